@@ -1,0 +1,10 @@
+//! Catchlight plans the light of a photo studio: arrange it, see it live, render the picture the camera would take.
+
+pub mod color;
+pub mod math;
+pub mod photo;
+pub mod scene;
+
+pub mod io;
+pub mod mannequin;
+pub mod raytrace;

@@ -1,0 +1,7 @@
+//! Vectors beyond glam: safe forms, frames, warps with their densities, rays with error bounds.
+
+mod frame;
+mod safe;
+
+pub use frame::{look_at, orthonormal_basis};
+pub use safe::{angle_between, safe_acos, safe_sqrt};

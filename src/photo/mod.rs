@@ -1,0 +1,6 @@
+//! Arithmetic of exposure, light meter and set-ups: what a photographer's own tools compute.
+
+pub mod exposure;
+mod picture;
+
+pub use picture::Picture;

@@ -1,0 +1,38 @@
+//! Meshes and pictures that a scene refers to, already in memory. `io` fills it; renderers only read.
+
+use super::{Mannequin, Mesh, Shape, tessellate};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// An sRGB picture, decoded to 8 bits a channel, rows from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Texture {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// `width * height` pixels, red green blue, sRGB-encoded.
+    pub rgb: Vec<[u8; 3]>,
+}
+
+/// What the scene's files and mannequins turned out to be. Cheap to clone: the contents are shared.
+#[derive(Clone, Debug, Default)]
+pub struct Assets {
+    /// Mesh files by the path the scene names.
+    pub meshes: HashMap<String, Arc<Mesh>>,
+    /// Mannequins in use.
+    pub mannequins: HashMap<Mannequin, Arc<Mesh>>,
+    /// Textures by the path the scene names.
+    pub textures: HashMap<String, Arc<Texture>>,
+}
+
+impl Assets {
+    /// The triangles of a shape; none where its file is missing (loading has warned of it).
+    pub fn mesh_of(&self, shape: &Shape) -> Option<Arc<Mesh>> {
+        match shape {
+            Shape::MeshFile { path } => self.meshes.get(path).cloned(),
+            Shape::Mannequin(mannequin) => self.mannequins.get(mannequin).cloned(),
+            primitive => tessellate(primitive).map(Arc::new),
+        }
+    }
+}

@@ -1,0 +1,260 @@
+//! The camera: sensor, lens, exposure settings, and the frame that all renderers share.
+
+use super::{Aim, ObjectId};
+use crate::math;
+use glam::{Affine3A, Mat4, Vec2, Vec3};
+
+/// A sensor's picture area, millimetres, in landscape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sensor {
+    /// 36 x 24 mm.
+    FullFrame,
+    /// 23.5 x 15.6 mm.
+    ApsC,
+    /// 17.3 x 13 mm.
+    MicroFourThirds,
+    /// 44 x 33 mm.
+    Medium44x33,
+    /// 54 x 40 mm.
+    Medium54x40,
+    /// Any other size, millimetres.
+    Custom {
+        /// Long side in landscape.
+        width_mm: f32,
+        /// Short side in landscape.
+        height_mm: f32,
+    },
+}
+
+impl Sensor {
+    /// The fixed sensors with the names a photographer knows.
+    pub const NAMED: [(&'static str, Sensor); 5] = [
+        ("Full frame 36x24", Sensor::FullFrame),
+        ("APS-C 23.5x15.6", Sensor::ApsC),
+        ("Micro Four Thirds 17.3x13", Sensor::MicroFourThirds),
+        ("Medium format 44x33", Sensor::Medium44x33),
+        ("Medium format 54x40", Sensor::Medium54x40),
+    ];
+
+    /// Width and height in landscape, millimetres.
+    pub fn size_mm(self) -> Vec2 {
+        match self {
+            Sensor::FullFrame => Vec2::new(36.0, 24.0),
+            Sensor::ApsC => Vec2::new(23.5, 15.6),
+            Sensor::MicroFourThirds => Vec2::new(17.3, 13.0),
+            Sensor::Medium44x33 => Vec2::new(44.0, 33.0),
+            Sensor::Medium54x40 => Vec2::new(54.0, 40.0),
+            Sensor::Custom { width_mm, height_mm } => Vec2::new(width_mm, height_mm),
+        }
+    }
+}
+
+/// How the camera is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Orientation {
+    /// Long side level.
+    #[default]
+    Landscape,
+    /// Turned upright.
+    Portrait,
+}
+
+/// What the lens is focused on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Focus {
+    /// The point that the camera aims at.
+    OnAim,
+    /// An object's aim point follows it: a point in the object's own space.
+    OnObject {
+        /// The object in focus.
+        object: ObjectId,
+        /// Point of the object in its own space, metres before its scale.
+        offset: Vec3,
+    },
+    /// A plane at this distance along the optical axis, metres.
+    Distance(f32),
+}
+
+/// Camera settings, as on the camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// Centre of the lens, metres.
+    pub position: Vec3,
+    /// What it looks at.
+    pub aim: Aim,
+    /// Turn about the optical axis, degrees, clockwise as seen from behind.
+    pub roll_deg: f32,
+    /// Picture area.
+    pub sensor: Sensor,
+    /// Landscape or portrait.
+    pub orientation: Orientation,
+    /// Focal length, millimetres.
+    pub focal_length_mm: f32,
+    /// Aperture as the f-number N, exact value.
+    pub f_number: f32,
+    /// Exposure time, seconds.
+    pub shutter_s: f32,
+    /// ISO speed.
+    pub iso: f32,
+    /// White balance, kelvin.
+    pub white_balance_k: f32,
+    /// Focus, used only with `depth_of_field`.
+    pub focus: Focus,
+    /// Whether the aperture blurs what is out of focus (thin lens). Off is a pinhole.
+    pub depth_of_field: bool,
+    /// Calibration constant of the incident meter, lux seconds (ISO 2720): 250 for a flat receptor.
+    pub meter_constant: f32,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Camera {
+            position: Vec3::new(0.0, 1.5, 3.0),
+            aim: Aim::Point(Vec3::new(0.0, 1.4, 0.0)),
+            roll_deg: 0.0,
+            sensor: Sensor::FullFrame,
+            orientation: Orientation::Landscape,
+            focal_length_mm: 85.0,
+            f_number: 5.6,
+            shutter_s: 1.0 / 125.0,
+            iso: 100.0,
+            white_balance_k: 5500.0,
+            focus: Focus::OnAim,
+            depth_of_field: false,
+            meter_constant: 250.0,
+        }
+    }
+}
+
+impl Camera {
+    /// Picture area as held, millimetres.
+    pub fn film_size_mm(&self) -> Vec2 {
+        let size = self.sensor.size_mm();
+        match self.orientation {
+            Orientation::Landscape => size,
+            Orientation::Portrait => Vec2::new(size.y, size.x),
+        }
+    }
+
+    /// Width over height of the uncropped picture.
+    pub fn aspect(&self) -> f32 {
+        let size = self.film_size_mm();
+        size.x / size.y
+    }
+
+    /// Picture size in pixels with the sensor's aspect whose longer side is `long_edge`.
+    pub fn picture_size(&self, long_edge: u32) -> (u32, u32) {
+        let aspect = self.aspect();
+        let short = |ratio: f32| ((long_edge as f32 * ratio).round() as u32).max(1);
+        if aspect >= 1.0 { (long_edge, short(1.0 / aspect)) } else { (short(aspect), long_edge) }
+    }
+
+    /// The frame of a camera that looks at `target`, for a picture of `aspect` (width / height). A picture of another
+    /// aspect than the sensor's is a crop of it, as a print would be: the lens keeps its angle on the side that fits.
+    pub fn frame(&self, target: Vec3, aspect: f32) -> CameraFrame {
+        let film = self.film_size_mm();
+        let (width_mm, height_mm) =
+            if aspect >= film.x / film.y { (film.x, film.x / aspect) } else { (film.y * aspect, film.y) };
+        let half_extent = Vec2::new(width_mm, height_mm) / (2.0 * self.focal_length_mm);
+        CameraFrame {
+            world_from_camera: math::look_at(self.position, target, -self.roll_deg.to_radians()),
+            half_extent,
+        }
+    }
+}
+
+/// The pinhole geometry of one picture: the single source of framing for tracer, rasteriser and preview.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraFrame {
+    /// Columns right, up, back and the lens centre; looks along -Z.
+    pub world_from_camera: Affine3A,
+    /// Half width and half height of the picture on a plane one metre ahead, metres.
+    pub half_extent: Vec2,
+}
+
+impl CameraFrame {
+    /// Unnormalised world direction through a picture point: (0, 0) is the top left corner, (1, 1) the bottom right.
+    /// Its component along the optical axis is 1 m.
+    pub fn direction(&self, picture_point: Vec2) -> Vec3 {
+        let x = (2.0 * picture_point.x - 1.0) * self.half_extent.x;
+        let y = (1.0 - 2.0 * picture_point.y) * self.half_extent.y;
+        self.world_from_camera.transform_vector3(Vec3::new(x, y, -1.0))
+    }
+
+    /// Lens centre, world space.
+    pub fn position(&self) -> Vec3 {
+        self.world_from_camera.translation.into()
+    }
+
+    /// Optical axis, unit length, world space.
+    pub fn forward(&self) -> Vec3 {
+        -Vec3::from(self.world_from_camera.matrix3.z_axis)
+    }
+
+    /// Clip from world with reversed, infinite depth: 1 at `near_m`, 0 at infinity.
+    pub fn clip_from_world(&self, near_m: f32) -> Mat4 {
+        let projection = Mat4::from_cols_array(&[
+            1.0 / self.half_extent.x,
+            0.0,
+            0.0,
+            0.0, //
+            0.0,
+            1.0 / self.half_extent.y,
+            0.0,
+            0.0, //
+            0.0,
+            0.0,
+            0.0,
+            -1.0, //
+            0.0,
+            0.0,
+            near_m,
+            0.0,
+        ]);
+        projection * Mat4::from(self.world_from_camera.inverse())
+    }
+
+    /// Picture point (0..1, top left origin) of a world point; none behind the camera.
+    pub fn project(&self, point: Vec3) -> Option<Vec2> {
+        let local = self.world_from_camera.inverse().transform_point3(point);
+        (local.z < -1e-6).then(|| {
+            let x = local.x / -local.z / self.half_extent.x;
+            let y = local.y / -local.z / self.half_extent.y;
+            Vec2::new(0.5 * (x + 1.0), 0.5 * (1.0 - y))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn project_inverts_direction() {
+        let camera = Camera::default();
+        let frame = camera.frame(Vec3::new(0.3, 1.2, -1.0), 1.5);
+        for point in [Vec2::new(0.0, 0.0), Vec2::new(0.25, 0.8), Vec2::new(1.0, 1.0)] {
+            let projected = frame.project(frame.position() + 3.0 * frame.direction(point));
+            assert!((projected.unwrap() - point).length() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn clip_matches_project_and_reverses_depth() {
+        let frame = Camera::default().frame(Vec3::ZERO, 1.5);
+        let world = frame.position() + 2.0 * frame.direction(Vec2::new(0.75, 0.25));
+        let clip = frame.clip_from_world(0.01) * world.extend(1.0);
+        assert!((clip.x / clip.w - 0.5).abs() < 1e-5 && (clip.y / clip.w - 0.5).abs() < 1e-5);
+        assert!((clip.z / clip.w - 0.005).abs() < 1e-6, "depth is near / distance");
+    }
+
+    #[test]
+    fn a_standing_figure_fills_the_frame_from_the_known_distances() {
+        // light_and_camera.md: a 1.9 m figure fills 24 mm of height from 2.8 m at 35 mm, 4.0 at 50, 6.7 at 85.
+        for (focal_length_mm, distance_m) in [(35.0, 2.8), (50.0, 4.0), (85.0, 6.7)] {
+            let camera = Camera { focal_length_mm, ..Camera::default() };
+            let height_m = 2.0 * camera.frame(Vec3::ZERO, 1.5).half_extent.y * distance_m;
+            assert!((height_m - 1.9).abs() < 0.03, "{focal_length_mm} mm: {height_m} m");
+        }
+    }
+}

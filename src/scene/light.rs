@@ -1,0 +1,223 @@
+//! Lights as a photographer states them: emitter, power, colour, role.
+
+use super::{Aim, LightId};
+use glam::Vec3;
+
+/// What a light does in the set-up. It never changes what the light emits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Hash)]
+pub enum Role {
+    /// The main light.
+    #[default]
+    Key,
+    /// Opens the key's shadows.
+    Fill,
+    /// Edge light from behind.
+    Rim,
+    /// On the hair, from above and behind.
+    Hair,
+    /// On the backdrop.
+    Background,
+    /// Anything else.
+    Accent,
+}
+
+impl Role {
+    /// All roles, in list order.
+    pub const ALL: [Role; 6] = [Role::Key, Role::Fill, Role::Rim, Role::Hair, Role::Background, Role::Accent];
+
+    /// Label in lists.
+    pub fn label(self) -> &'static str {
+        match self {
+            Role::Key => "Key",
+            Role::Fill => "Fill",
+            Role::Rim => "Rim",
+            Role::Hair => "Hair",
+            Role::Background => "Background",
+            Role::Accent => "Accent",
+        }
+    }
+}
+
+/// Geometry of what shines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Emitter {
+    /// A point that shines evenly all round.
+    Point,
+    /// A bare bulb or lantern with a size, shining evenly all round.
+    Sphere {
+        /// Radius, metres.
+        radius_m: f32,
+    },
+    /// A projector: even inside the inner cone, falling linearly in angle to nothing at the outer cone.
+    /// Equal angles are a hard edge. Full (edge to edge) angles, degrees, up to 180.
+    Spot {
+        /// Full angle of the even part.
+        inner_deg: f32,
+        /// Full angle where the light ends.
+        outer_deg: f32,
+    },
+    /// A Lambertian rectangle that shines forward only: softbox, strip, window.
+    RectPanel {
+        /// Width, metres.
+        width_m: f32,
+        /// Height, metres.
+        height_m: f32,
+    },
+    /// A Lambertian disc that shines forward only: octa, beauty dish with a sock.
+    RoundPanel {
+        /// Diameter, metres.
+        diameter_m: f32,
+    },
+    /// Parallel light from `position` towards the aim; position and distance do not matter.
+    Sun {
+        /// Angular diameter, degrees; 0 gives hard shadows, the real sun has 0.53.
+        angular_diameter_deg: f32,
+    },
+    /// Even light from everywhere around: an overcast sky, a white tent.
+    Surround,
+}
+
+impl Emitter {
+    /// Label in lists.
+    pub fn label(&self) -> &'static str {
+        match self {
+            Emitter::Point => "Point",
+            Emitter::Sphere { .. } => "Bulb",
+            Emitter::Spot { .. } => "Spot",
+            Emitter::RectPanel { .. } => "Rectangular panel",
+            Emitter::RoundPanel { .. } => "Round panel",
+            Emitter::Sun { .. } => "Sun",
+            Emitter::Surround => "Surround",
+        }
+    }
+
+    /// Sun and surround have no place: they are stated in lux and shine from infinity.
+    pub fn is_infinite(&self) -> bool {
+        matches!(self, Emitter::Sun { .. } | Emitter::Surround)
+    }
+}
+
+/// What the light gives with its dial at full power.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Output {
+    /// Continuous luminous flux, lm.
+    Lumens(f32),
+    /// Continuous intensity on the axis, cd.
+    Candela(f32),
+    /// Continuous, as metered on the axis: `lux` at `distance_m`, far-field (I = E d2).
+    LuxAt {
+        /// Illuminance, lx.
+        lux: f32,
+        /// Distance from the light, metres.
+        distance_m: f32,
+    },
+    /// Continuous light of a sun (illuminance normal to its direction) or a surround (illuminance on a plane that
+    /// sees half of it), lx. Only for those two.
+    Lux(f32),
+    /// Flash energy with the head's efficacy.
+    FlashWs {
+        /// Stored energy, Ws.
+        energy_ws: f32,
+        /// Light a Ws gives, lm s per Ws; real heads 15-50.
+        efficacy_lm_s_per_ws: f32,
+    },
+    /// Flash as a guide number on the axis, metres at ISO 100.
+    FlashGuideNumber(f32),
+}
+
+impl Output {
+    /// Efficacy assumed where nothing better is known, lm s per Ws.
+    pub const DEFAULT_EFFICACY: f32 = 40.0;
+
+    /// Whether this is a flash: counted once an exposure, whatever the shutter.
+    pub fn is_flash(&self) -> bool {
+        matches!(self, Output::FlashWs { .. } | Output::FlashGuideNumber(_))
+    }
+}
+
+/// Output and the dial on the head.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Power {
+    /// What the light gives at full power.
+    pub output: Output,
+    /// Dial, stops from full power: 0 is 1/1, -2 is 1/4.
+    pub dial_stops: f32,
+}
+
+/// A colour filter before the light. Its hue counts, not its loss: colours are scaled to luminance 1.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum Gel {
+    /// No gel.
+    #[default]
+    None,
+    /// Shift in mired (1e6 / K): positive warms (CTO), negative cools (CTB).
+    Mired(f32),
+    /// A party colour: linear RGB transmittance.
+    Tint([f32; 3]),
+}
+
+impl Gel {
+    /// Gels by the names on the swatch book.
+    pub const NAMED: [(&'static str, Gel); 9] = [
+        ("None", Gel::None),
+        ("1/8 CTO", Gel::Mired(26.0)),
+        ("1/4 CTO", Gel::Mired(64.0)),
+        ("1/2 CTO", Gel::Mired(109.0)),
+        ("Full CTO", Gel::Mired(159.0)),
+        ("1/8 CTB", Gel::Mired(-18.0)),
+        ("1/4 CTB", Gel::Mired(-35.0)),
+        ("1/2 CTB", Gel::Mired(-78.0)),
+        ("Full CTB", Gel::Mired(-137.0)),
+    ];
+}
+
+/// Where a light's colour comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ColorSource {
+    /// Correlated colour temperature, kelvin.
+    Kelvin(f32),
+    /// Linear RGB, scaled to luminance 1 when used.
+    Rgb([f32; 3]),
+}
+
+/// Colour of a light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightColor {
+    /// Colour of the source.
+    pub source: ColorSource,
+    /// Filter before it.
+    pub gel: Gel,
+}
+
+impl Default for LightColor {
+    fn default() -> Self {
+        LightColor { source: ColorSource::Kelvin(5500.0), gel: Gel::None }
+    }
+}
+
+/// One light of the studio.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Light {
+    /// Stable while the scene is open.
+    pub id: LightId,
+    /// Unique among objects and lights.
+    pub name: String,
+    /// Its part in the set-up.
+    pub role: Role,
+    /// Centre of the emitter, metres.
+    pub position: Vec3,
+    /// What it points at.
+    pub aim: Aim,
+    /// Turn about its axis, degrees.
+    pub roll_deg: f32,
+    /// What shines.
+    pub emitter: Emitter,
+    /// How much.
+    pub power: Power,
+    /// In which colour.
+    pub color: LightColor,
+    /// Switched on.
+    pub on: bool,
+    /// Whether the camera sees the emitter itself. Mirrors and glass always show it.
+    pub visible_to_camera: bool,
+}

@@ -1,0 +1,159 @@
+//! One surface model for everything: diffuse, metal, dielectric, clear glass, glow.
+
+/// Surface properties. Colours are scene-linear RGB with Rec.709 primaries.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Diffuse albedo, or the mirror colour of a metal; each channel in [0, 1).
+    pub base_color: [f32; 3],
+    /// Picture file (PNG or JPEG, sRGB) that multiplies `base_color`; relative to the scene file, `/` between folders.
+    pub base_color_texture: Option<String>,
+    /// 0 dielectric, 1 metal.
+    pub metallic: f32,
+    /// 0 mirror, 1 matte; GGX alpha is its square.
+    pub roughness: f32,
+    /// Index of refraction of the dielectric.
+    pub ior: f32,
+    /// 0 opaque, 1 clear glass or water.
+    pub transmission: f32,
+    /// Absorption inside a transmitting object, per metre (Beer-Lambert).
+    pub absorption_per_m: [f32; 3],
+    /// Luminance that the surface gives off as it glows, cd/m2, times its RGB.
+    pub emission_cd_m2: [f32; 3],
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Material {
+            base_color: [0.5; 3],
+            base_color_texture: None,
+            metallic: 0.0,
+            roughness: 0.6,
+            ior: 1.5,
+            transmission: 0.0,
+            absorption_per_m: [0.0; 3],
+            emission_cd_m2: [0.0; 3],
+        }
+    }
+}
+
+/// A material of the shelf, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MaterialPreset {
+    /// Light skin.
+    SkinLight,
+    /// Medium skin.
+    SkinMedium,
+    /// Dark skin.
+    SkinDark,
+    /// Glossy white of an eye.
+    Eye,
+    /// Cotton.
+    MatteFabric,
+    /// Satin.
+    Satin,
+    /// Black velvet.
+    BlackVelvet,
+    /// Shiny plastic.
+    GlossyPlastic,
+    /// Chrome.
+    Chrome,
+    /// Brushed aluminium.
+    BrushedAluminium,
+    /// Gold.
+    Gold,
+    /// Clear glass.
+    ClearGlass,
+    /// Water.
+    Water,
+    /// White backdrop paper.
+    WhitePaper,
+    /// Mid-grey backdrop paper.
+    GreyPaper,
+    /// Black backdrop paper.
+    BlackPaper,
+    /// 18 % grey card.
+    GreyCard,
+    /// Painted wall.
+    PaintedWall,
+    /// Studio floor, dark wood or concrete.
+    StudioFloor,
+}
+
+impl MaterialPreset {
+    /// The whole shelf, in list order.
+    pub const ALL: [MaterialPreset; 19] = [
+        MaterialPreset::SkinLight,
+        MaterialPreset::SkinMedium,
+        MaterialPreset::SkinDark,
+        MaterialPreset::Eye,
+        MaterialPreset::MatteFabric,
+        MaterialPreset::Satin,
+        MaterialPreset::BlackVelvet,
+        MaterialPreset::GlossyPlastic,
+        MaterialPreset::Chrome,
+        MaterialPreset::BrushedAluminium,
+        MaterialPreset::Gold,
+        MaterialPreset::ClearGlass,
+        MaterialPreset::Water,
+        MaterialPreset::WhitePaper,
+        MaterialPreset::GreyPaper,
+        MaterialPreset::BlackPaper,
+        MaterialPreset::GreyCard,
+        MaterialPreset::PaintedWall,
+        MaterialPreset::StudioFloor,
+    ];
+
+    /// Label in lists.
+    pub fn label(self) -> &'static str {
+        match self {
+            MaterialPreset::SkinLight => "Skin, light",
+            MaterialPreset::SkinMedium => "Skin, medium",
+            MaterialPreset::SkinDark => "Skin, dark",
+            MaterialPreset::Eye => "Eye",
+            MaterialPreset::MatteFabric => "Matte fabric",
+            MaterialPreset::Satin => "Satin",
+            MaterialPreset::BlackVelvet => "Black velvet",
+            MaterialPreset::GlossyPlastic => "Glossy plastic",
+            MaterialPreset::Chrome => "Chrome",
+            MaterialPreset::BrushedAluminium => "Brushed aluminium",
+            MaterialPreset::Gold => "Gold",
+            MaterialPreset::ClearGlass => "Clear glass",
+            MaterialPreset::Water => "Water",
+            MaterialPreset::WhitePaper => "White paper",
+            MaterialPreset::GreyPaper => "Grey paper",
+            MaterialPreset::BlackPaper => "Black paper",
+            MaterialPreset::GreyCard => "18 % grey card",
+            MaterialPreset::PaintedWall => "Painted wall",
+            MaterialPreset::StudioFloor => "Studio floor",
+        }
+    }
+
+    /// The material itself.
+    pub fn material(self) -> Material {
+        let opaque = |base_color, roughness| Material { base_color, roughness, ..Material::default() };
+        let metal = |base_color, roughness| Material { metallic: 1.0, ..opaque(base_color, roughness) };
+        let clear = |ior| Material { transmission: 1.0, ior, ..opaque([0.99; 3], 0.0) };
+        match self {
+            MaterialPreset::SkinLight => Material { ior: 1.4, ..opaque([0.62, 0.43, 0.34], 0.48) },
+            MaterialPreset::SkinMedium => Material { ior: 1.4, ..opaque([0.42, 0.25, 0.17], 0.45) },
+            MaterialPreset::SkinDark => Material { ior: 1.4, ..opaque([0.15, 0.08, 0.05], 0.42) },
+            MaterialPreset::Eye => Material { ior: 1.38, ..opaque([0.7, 0.68, 0.65], 0.08) },
+            MaterialPreset::MatteFabric => opaque([0.25, 0.27, 0.32], 0.95),
+            MaterialPreset::Satin => opaque([0.35, 0.05, 0.08], 0.35),
+            MaterialPreset::BlackVelvet => Material { ior: 1.1, ..opaque([0.006; 3], 1.0) },
+            MaterialPreset::GlossyPlastic => opaque([0.6, 0.08, 0.05], 0.12),
+            MaterialPreset::Chrome => metal([0.55, 0.556, 0.554], 0.03),
+            MaterialPreset::BrushedAluminium => metal([0.91, 0.92, 0.92], 0.4),
+            MaterialPreset::Gold => metal([0.95, 0.64, 0.29], 0.15),
+            MaterialPreset::ClearGlass => clear(1.52),
+            MaterialPreset::Water => clear(1.333),
+            MaterialPreset::WhitePaper => opaque([0.88, 0.88, 0.87], 0.95),
+            MaterialPreset::GreyPaper => opaque([0.3; 3], 0.95),
+            MaterialPreset::BlackPaper => opaque([0.03; 3], 0.95),
+            // No gloss at all: what a meter calls 18 % is the whole reflectance.
+            MaterialPreset::GreyCard => Material { ior: 1.0, ..opaque([0.18; 3], 1.0) },
+            MaterialPreset::PaintedWall => opaque([0.7, 0.69, 0.67], 0.85),
+            MaterialPreset::StudioFloor => opaque([0.2, 0.19, 0.18], 0.55),
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Triangles as every renderer reads them.
+
+use glam::{Vec2, Vec3};
+
+/// A run of triangles with a name of its own, so that it can have its own material.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MeshPart {
+    /// `eyes`, `floor`, an OBJ group.
+    pub name: String,
+    /// Its triangles, as a range of `Mesh::triangles`.
+    pub triangles: std::ops::Range<u32>,
+}
+
+/// An indexed triangle mesh in object space, metres. Front faces wind counter-clockwise.
+///
+/// `normals` and `uvs` are either empty or as long as `positions`. `parts` cover all triangles, in order.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Mesh {
+    /// Vertex positions, metres.
+    pub positions: Vec<Vec3>,
+    /// Unit vertex normals; empty means flat shading.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates, (0, 0) at the picture's bottom left; empty where the mesh has none.
+    pub uvs: Vec<Vec2>,
+    /// Vertex indices, three a triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// Named runs of triangles.
+    pub parts: Vec<MeshPart>,
+}
+
+impl Mesh {
+    /// Smallest and largest corner; both zero for a mesh without vertices.
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        let Some(&first) = self.positions.first() else { return (Vec3::ZERO, Vec3::ZERO) };
+        self.positions.iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)))
+    }
+
+    /// The corners of a triangle.
+    pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
+        self.triangles[triangle].map(|i| self.positions[i as usize])
+    }
+
+    /// One part for all triangles.
+    pub fn with_single_part(mut self, name: &str) -> Self {
+        self.parts = vec![MeshPart { name: name.to_owned(), triangles: 0..self.triangles.len() as u32 }];
+        self
+    }
+
+    /// Appends another mesh behind this one, its parts too. Attributes that only one of the two has are dropped.
+    pub fn append(&mut self, other: &Mesh) {
+        let (base, first) = (self.positions.len() as u32, self.triangles.len() as u32);
+        let keep = |ours: usize, theirs: usize| (ours as u32 == base) && theirs == other.positions.len();
+        if keep(self.normals.len(), other.normals.len()) {
+            self.normals.extend(&other.normals);
+        } else {
+            self.normals.clear();
+        }
+        if keep(self.uvs.len(), other.uvs.len()) {
+            self.uvs.extend(&other.uvs);
+        } else {
+            self.uvs.clear();
+        }
+        self.positions.extend(&other.positions);
+        self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| i + base)));
+        self.parts.extend(
+            other.parts.iter().map(|p| MeshPart {
+                name: p.name.clone(),
+                triangles: p.triangles.start + first..p.triangles.end + first,
+            }),
+        );
+    }
+
+    /// Replaces the normals by the angle-weighted mean of the faces around each vertex (Thurmer and Wuthrich 1998).
+    /// A vertex of zero-area faces alone gets +Y.
+    pub fn compute_smooth_normals(&mut self) {
+        let mut sums = vec![Vec3::ZERO; self.positions.len()];
+        for t in &self.triangles {
+            let p = t.map(|i| self.positions[i as usize]);
+            let face = (p[1] - p[0]).cross(p[2] - p[0]).normalize_or_zero();
+            for k in 0..3 {
+                let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
+                let angle = crate::math::angle_between(a, b);
+                sums[t[k] as usize] += face * angle;
+            }
+        }
+        self.normals = sums.into_iter().map(|n| n.try_normalize().unwrap_or(Vec3::Y)).collect();
+    }
+}

@@ -1,0 +1,146 @@
+//! The studio as plain data: what the user edits, what a file holds, what every renderer reads.
+//!
+//! Everything here is `Clone + PartialEq`, does no I/O and holds no GPU handle. Lengths are metres, angles are
+//! degrees (the fields say `_deg`: the file, the panels and the history then hold the very number the user typed;
+//! renderers convert once, when they prepare). Axes are right-handed with Y up; cameras and lights look along their
+//! local -Z.
+
+mod assets;
+mod camera;
+mod light;
+mod material;
+mod mesh;
+mod object;
+mod room;
+mod tessellate;
+mod validate;
+
+pub use assets::{Assets, Texture};
+pub use camera::{Camera, CameraFrame, Focus, Orientation, Sensor};
+pub use light::{ColorSource, Emitter, Gel, Light, LightColor, Output, Power, Role};
+pub use material::{Material, MaterialPreset};
+pub use mesh::{Mesh, MeshPart};
+pub use object::{Figure, Mannequin, Object, Pose, Shape, Transform};
+pub use room::Room;
+pub use tessellate::{room_mesh, tessellate};
+pub use validate::{Finding, Severity, validate};
+
+use glam::Vec3;
+
+/// Names an object for as long as the scene is open; files name objects by their unique `name` instead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ObjectId(pub u32);
+
+/// Names a light for as long as the scene is open; files name lights by their unique `name` instead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LightId(pub u32);
+
+/// A whole studio.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Scene {
+    /// Title, for window and lists.
+    pub name: String,
+    /// One line that says what the set-up is for.
+    pub description: String,
+    /// The camera that takes the picture.
+    pub camera: Camera,
+    /// Floor, walls and ceiling; none is an endless black void.
+    pub room: Option<Room>,
+    /// Mannequins, props and backdrops, in list order.
+    pub objects: Vec<Object>,
+    /// All lights, in list order; film layers follow this order.
+    pub lights: Vec<Light>,
+}
+
+/// Where a camera or a light looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Aim {
+    /// At a point of the studio, metres.
+    Point(Vec3),
+    /// At an object, and with it when it moves.
+    Object {
+        /// The object aimed at.
+        object: ObjectId,
+        /// Point of the object in its own space, metres before its scale (a mannequin's face, say).
+        offset: Vec3,
+    },
+    /// Fixed angles, degrees: yaw 0 looks along -Z and grows to the left (counter-clockwise from above), pitch is up.
+    Angles {
+        /// Turn about the vertical axis.
+        yaw_deg: f32,
+        /// Tilt, positive upwards.
+        pitch_deg: f32,
+    },
+}
+
+impl Scene {
+    /// The object with this id.
+    pub fn object(&self, id: ObjectId) -> Option<&Object> {
+        self.objects.iter().find(|o| o.id == id)
+    }
+
+    /// The object with this id, to be changed.
+    pub fn object_mut(&mut self, id: ObjectId) -> Option<&mut Object> {
+        self.objects.iter_mut().find(|o| o.id == id)
+    }
+
+    /// The light with this id.
+    pub fn light(&self, id: LightId) -> Option<&Light> {
+        self.lights.iter().find(|l| l.id == id)
+    }
+
+    /// The light with this id, to be changed.
+    pub fn light_mut(&mut self, id: LightId) -> Option<&mut Light> {
+        self.lights.iter_mut().find(|l| l.id == id)
+    }
+
+    /// An id no object has.
+    pub fn fresh_object_id(&self) -> ObjectId {
+        ObjectId(self.objects.iter().map(|o| o.id.0 + 1).max().unwrap_or(0))
+    }
+
+    /// An id no light has.
+    pub fn fresh_light_id(&self) -> LightId {
+        LightId(self.lights.iter().map(|l| l.id.0 + 1).max().unwrap_or(0))
+    }
+
+    /// `wanted`, or `wanted 2`, `wanted 3` ...: the first name that no object and no light bears.
+    pub fn unique_name(&self, wanted: &str) -> String {
+        let taken =
+            |name: &str| self.objects.iter().any(|o| o.name == name) || self.lights.iter().any(|l| l.name == name);
+        if !taken(wanted) {
+            return wanted.to_owned();
+        }
+        let stem = wanted.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
+        let stem = if stem.is_empty() { wanted } else { stem };
+        (2..).map(|n| format!("{stem} {n}")).find(|name| !taken(name)).unwrap_or_default()
+    }
+
+    /// The world point that `aim` means for something that stands at `position`. An aim at an object that is gone
+    /// means the origin; `validate` reports it.
+    pub fn aim_point(&self, aim: &Aim, position: Vec3) -> Vec3 {
+        match *aim {
+            Aim::Point(point) => point,
+            Aim::Object { object, offset } => {
+                self.object(object).map_or(Vec3::ZERO, |o| o.transform.world_from_object().transform_point3(offset))
+            }
+            Aim::Angles { yaw_deg, pitch_deg } => {
+                let (sin_yaw, cos_yaw) = yaw_deg.to_radians().sin_cos();
+                let (sin_pitch, cos_pitch) = pitch_deg.to_radians().sin_cos();
+                position + Vec3::new(-sin_yaw * cos_pitch, sin_pitch, -cos_yaw * cos_pitch)
+            }
+        }
+    }
+
+    /// World frame of a light: columns right, up, back (it shines along -Z), and its position.
+    pub fn light_frame(&self, light: &Light) -> glam::Affine3A {
+        let target = self.aim_point(&light.aim, light.position);
+        crate::math::look_at(light.position, target, light.roll_deg.to_radians())
+    }
+
+    /// What the camera frames at a picture aspect (width / height).
+    pub fn camera_frame(&self, aspect: f32) -> CameraFrame {
+        let target = self.aim_point(&self.camera.aim, self.camera.position);
+        self.camera.frame(target, aspect)
+    }
+}
