@@ -7,4 +7,6 @@ pub mod scene;
 
 pub mod io;
 pub mod mannequin;
+#[cfg(feature = "gui")]
+pub mod preview;
 pub mod raytrace;

@@ -1,0 +1,249 @@
+//! What there is to draw: one record a surface for the shaders, one item a run of triangles for the passes.
+
+use super::input::{Overlay, Pick};
+use super::light_table::{emission, picture_scale};
+use super::mesh_cache::{EmitterSurface, MeshCache, MeshKey};
+use super::texture_cache::{TextureCache, WHITE};
+use crate::photo::exposure;
+use crate::scene::{Assets, Emitter, Material, MeshPart, Scene};
+use bytemuck::{Pod, Zeroable};
+use eframe::wgpu;
+use glam::{Affine3A, Mat3A, Vec3};
+use std::f32::consts::PI;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// The surface shines and is not lit; twin of the flag in `scene.wgsl`.
+const FLAG_EMITTER: u32 = 1;
+/// The surface glows besides being lit.
+const FLAG_GLOWS: u32 = 2;
+/// Outlined as selected.
+const FLAG_SELECTED: u32 = 4;
+/// Outlined as hovered.
+const FLAG_HOVERED: u32 = 8;
+
+/// One surface in a storage buffer; twin of `Surface` in `scene.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(super) struct GpuSurface {
+    /// Rows of world from object.
+    pub world_from_object: [[f32; 4]; 3],
+    pub base_color: [f32; 3],
+    pub roughness: f32,
+    /// Picture units.
+    pub emission: [f32; 3],
+    pub metallic: f32,
+    pub ior: f32,
+    pub transmission: f32,
+    pub flags: u32,
+    pub unused: u32,
+}
+
+/// In which pass a run of triangles is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pass {
+    /// Opaque, seen from both sides.
+    Opaque,
+    /// Opaque, seen from the front only, so that the camera may look into a room from outside.
+    OneSided,
+    /// Clear glass or water: over the lit picture.
+    Glass,
+}
+
+/// A run of triangles.
+#[derive(Clone, Debug)]
+pub(super) struct DrawItem {
+    pub mesh: MeshKey,
+    pub indices: std::ops::Range<u32>,
+    /// Index of its record, which is also its mark in the id buffer (plus one).
+    pub record: u32,
+    pub texture: usize,
+    pub pass: Pass,
+    pub casts_shadow: bool,
+}
+
+/// Corners of something that casts a shadow: its box in object space and its place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Caster {
+    pub world_from_object: Affine3A,
+    pub low: Vec3,
+    pub high: Vec3,
+}
+
+impl Caster {
+    /// The eight corners in world space.
+    pub fn corners(&self) -> [Vec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |bit: usize, low: f32, high: f32| if i >> bit & 1 == 0 { low } else { high };
+            let corner = Vec3::new(
+                pick(0, self.low.x, self.high.x),
+                pick(1, self.low.y, self.high.y),
+                pick(2, self.low.z, self.high.z),
+            );
+            self.world_from_object.transform_point3(corner)
+        })
+    }
+}
+
+/// Everything a frame draws.
+#[derive(Clone, Debug, Default)]
+pub(super) struct DrawList {
+    pub records: Vec<GpuSurface>,
+    /// What a click on each record means.
+    pub owners: Vec<Option<Pick>>,
+    pub items: Vec<DrawItem>,
+    pub casters: Vec<Caster>,
+    /// Changes when anything that casts a shadow does.
+    pub caster_signature: u64,
+    /// World boxes of what is outlined.
+    pub outlined: Vec<Caster>,
+}
+
+/// The device and the caches that a draw list fills.
+pub(super) struct Uploads<'a> {
+    pub device: &'a wgpu::Device,
+    pub queue: &'a wgpu::Queue,
+    pub meshes: &'a mut MeshCache,
+    pub textures: &'a mut TextureCache,
+    pub assets: &'a Assets,
+}
+
+impl DrawList {
+    pub fn new(scene: &Scene, overlay: &Overlay, uploads: &mut Uploads) -> Self {
+        let mut list = DrawList::default();
+        let mut signature = DefaultHasher::new();
+        list.add_room(scene, uploads);
+        list.add_objects(scene, overlay, uploads, &mut signature);
+        list.add_emitters(scene, uploads);
+        list.caster_signature = signature.finish();
+        // Few state changes: opaque before glass, then by texture and mesh.
+        list.items.sort_by_key(|item| (item.pass as u32, item.texture));
+        list
+    }
+
+    fn add_room(&mut self, scene: &Scene, uploads: &mut Uploads) {
+        let Some(room) = &scene.room else { return };
+        let Some(mesh) = uploads.meshes.room(uploads.device, room) else { return };
+        let parts = uploads.meshes.get(mesh).map(|m| m.parts.clone()).unwrap_or_default();
+        for part in &parts {
+            let material = room.material_of(&part.name);
+            let record = self.add_record(&Affine3A::IDENTITY, material, scene, 0, None);
+            self.add_item(mesh, part, record, material, uploads);
+            if let Some(item) = self.items.last_mut() {
+                (item.pass, item.casts_shadow) = (Pass::OneSided, false);
+            }
+        }
+    }
+
+    fn add_objects(&mut self, scene: &Scene, overlay: &Overlay, uploads: &mut Uploads, signature: &mut impl Hasher) {
+        for object in scene.objects.iter().filter(|object| object.visible) {
+            let world_from_object = object.transform.world_from_object();
+            if !world_from_object.is_finite() {
+                continue;
+            }
+            let Some(mesh) = uploads.meshes.object(uploads.device, &object.shape, uploads.assets) else { continue };
+            let Some((parts, (low, high))) = uploads.meshes.get(mesh).map(|m| (m.parts.clone(), m.bounds)) else {
+                continue;
+            };
+            let caster = Caster { world_from_object, low, high };
+            let pick = Pick::Object(object.id);
+            let flags = outline_flags(overlay, pick);
+            for part in &parts {
+                let material = object.material_of(&part.name);
+                let record = self.add_record(&world_from_object, material, scene, flags, Some(pick));
+                self.add_item(mesh, part, record, material, uploads);
+            }
+            if self.items.iter().rev().take(parts.len()).any(|item| item.casts_shadow) {
+                self.casters.push(caster);
+                mesh.hash(signature);
+                world_from_object.to_cols_array().map(f32::to_bits).hash(signature);
+            }
+            if flags != 0 {
+                self.outlined.push(caster);
+            }
+        }
+    }
+
+    fn add_emitters(&mut self, scene: &Scene, uploads: &mut Uploads) {
+        for light in scene.lights.iter().filter(|light| light.on && light.visible_to_camera) {
+            let (surface, scale, area_m2) = match light.emitter {
+                Emitter::Sphere { radius_m } => {
+                    (EmitterSurface::Sphere, Vec3::splat(radius_m), PI * radius_m * radius_m)
+                }
+                Emitter::RectPanel { width_m, height_m } => {
+                    let half = Vec3::new(0.5 * width_m, 0.5 * height_m, 1.0);
+                    (EmitterSurface::Square, half, width_m * height_m)
+                }
+                Emitter::RoundPanel { diameter_m } => {
+                    let half = Vec3::new(0.5 * diameter_m, 0.5 * diameter_m, 1.0);
+                    (EmitterSurface::Disc, half, 0.25 * PI * diameter_m * diameter_m)
+                }
+                Emitter::Point | Emitter::Spot { .. } | Emitter::Sun { .. } | Emitter::Surround => continue,
+            };
+            let world_from_emitter = scene.light_frame(light) * Affine3A::from_scale(scale);
+            let luminance = picture_scale(light, &scene.camera) * exposure::axial_intensity(light) / area_m2;
+            if !world_from_emitter.is_finite() || !luminance.is_finite() {
+                continue;
+            }
+            let Some(mesh) = uploads.meshes.emitter(uploads.device, surface) else { continue };
+            let Some(parts) = uploads.meshes.get(mesh).map(|m| m.parts.clone()) else { continue };
+            // The housing behind the panel's front.
+            let housing = Material { base_color: [0.04; 3], ..Material::default() };
+            let owner = Some(Pick::Light(light.id));
+            let record = self.add_record(&world_from_emitter, &housing, scene, FLAG_EMITTER, owner);
+            self.records[record as usize].emission = luminance.into();
+            for part in &parts {
+                self.add_item(mesh, part, record, &housing, uploads);
+                if let Some(item) = self.items.last_mut() {
+                    item.casts_shadow = false;
+                }
+            }
+        }
+    }
+
+    fn add_record(
+        &mut self,
+        world_from_object: &Affine3A,
+        material: &Material,
+        scene: &Scene,
+        flags: u32,
+        owner: Option<Pick>,
+    ) -> u32 {
+        let glow = emission(material, &scene.camera);
+        let glows = glow.is_finite() && glow.max_element() > 0.0;
+        let Mat3A { x_axis: x, y_axis: y, z_axis: z } = world_from_object.matrix3;
+        let t = world_from_object.translation;
+        self.records.push(GpuSurface {
+            world_from_object: [[x.x, y.x, z.x, t.x], [x.y, y.y, z.y, t.y], [x.z, y.z, z.z, t.z]],
+            base_color: material.base_color.map(|c| c.clamp(0.0, 1.0)),
+            roughness: material.roughness.clamp(0.0, 1.0),
+            emission: if glows { glow.into() } else { [0.0; 3] },
+            metallic: material.metallic.clamp(0.0, 1.0),
+            ior: material.ior.clamp(1.0, 4.0),
+            transmission: material.transmission.clamp(0.0, 1.0),
+            flags: flags | if glows { FLAG_GLOWS } else { 0 },
+            unused: 0,
+        });
+        self.owners.push(owner);
+        self.records.len() as u32 - 1
+    }
+
+    fn add_item(&mut self, mesh: MeshKey, part: &MeshPart, record: u32, material: &Material, uploads: &mut Uploads) {
+        let picture = material.base_color_texture.as_ref().and_then(|path| uploads.assets.textures.get(path));
+        let texture = picture.map_or(WHITE, |p| uploads.textures.ensure(uploads.device, uploads.queue, p));
+        let glass = material.transmission > 0.0;
+        self.items.push(DrawItem {
+            mesh,
+            indices: part.triangles.start * 3..part.triangles.end * 3,
+            record,
+            texture,
+            pass: if glass { Pass::Glass } else { Pass::Opaque },
+            casts_shadow: !glass,
+        });
+    }
+}
+
+fn outline_flags(overlay: &Overlay, pick: Pick) -> u32 {
+    let selected = if overlay.selects(pick) { FLAG_SELECTED } else { 0 };
+    let hovered = if overlay.hovered == Some(pick) { FLAG_HOVERED } else { 0 };
+    selected | hovered
+}

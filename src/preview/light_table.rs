@@ -1,0 +1,256 @@
+//! Lights as the shaders read them: in picture units (exposure, shutter and white balance folded in), so that a
+//! shader's sum is the scene-linear pixel.
+
+use crate::color;
+use crate::photo::exposure::{self, Strength};
+use crate::scene::{Camera, Emitter, Light, Material, Room, Scene};
+use bytemuck::{Pod, Zeroable};
+use glam::{Affine3A, Vec2, Vec3};
+use std::f32::consts::PI;
+
+/// Lights beyond this number are not shown.
+pub(super) const MAX_LIGHTS: usize = 256;
+/// Smallest side of a panel and radius of a bulb, metres: a light of no size keeps a finite luminance.
+const SMALLEST_M: f32 = 1e-3;
+
+/// What a `GpuLight` is; the numbers are repeated in `light.wgsl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub(super) enum Kind {
+    Point = 0,
+    Spot = 1,
+    Sphere = 2,
+    Rect = 3,
+    Disc = 4,
+    Sun = 5,
+}
+
+/// One light in a storage buffer; twin of `Light` in `scene.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(super) struct GpuLight {
+    pub position: [f32; 3],
+    pub kind: u32,
+    /// Half width vector of a panel; unit otherwise.
+    pub right: [f32; 3],
+    /// Half angle of a spot's even part, radians.
+    pub inner_rad: f32,
+    /// Half height vector of a panel; unit otherwise.
+    pub up: [f32; 3],
+    /// Half angle where a spot ends, radians.
+    pub outer_rad: f32,
+    /// Unit direction in which it shines.
+    pub axis: [f32; 3],
+    /// Radius of a bulb, metres; tangent of a sun's half angle.
+    pub radius: f32,
+    /// Picture units of: intensity (point, spot), luminance (sphere, panels), normal illuminance (sun).
+    pub color: [f32; 3],
+    /// Area of a panel, m2.
+    pub area_m2: f32,
+    /// First shadow view.
+    pub first_view: u32,
+    /// Shadow views: 0, 1, or 6 for a cube.
+    pub view_count: u32,
+    /// Half axes of the emitter in its shadow view, for the penumbra: metres, or a tangent for the sun.
+    pub softness: [f32; 2],
+}
+
+/// Light that has no direction here, in picture units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Ambient {
+    /// Irradiance from all round: surround and the bounce estimate.
+    pub irradiance: Vec3,
+    /// Luminance of an endless surround behind everything.
+    pub surround_radiance: Vec3,
+    /// Estimated irradiance of the room's walls, direct and bounced.
+    pub wall_irradiance: Vec3,
+}
+
+/// The lights that are on, with the index each has in the scene.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LightTable {
+    pub lights: Vec<GpuLight>,
+    pub scene_index: Vec<usize>,
+    pub ambient: Ambient,
+}
+
+impl LightTable {
+    pub fn new(scene: &Scene, bounce_estimate: bool) -> Self {
+        let mut table = LightTable::default();
+        let mut flux = Vec3::ZERO;
+        for (index, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.on) {
+            let scale = picture_scale(light, &scene.camera);
+            if light.emitter == Emitter::Surround {
+                // A closed room keeps it out.
+                if scene.room.is_none() {
+                    table.ambient.irradiance += scale * illuminance(light);
+                }
+                continue;
+            }
+            let gpu = gpu_light(light, &scene.light_frame(light), scale);
+            let outside = gpu.kind == Kind::Sun as u32 && scene.room.is_some();
+            if outside || !is_usable(&gpu) || table.lights.len() == MAX_LIGHTS {
+                continue;
+            }
+            flux += scale * flux_of(light);
+            table.lights.push(gpu);
+            table.scene_index.push(index);
+        }
+        table.ambient.surround_radiance = table.ambient.irradiance / PI;
+        if let Some(room) = &scene.room {
+            let (bounced, total) = room_irradiance(room, flux);
+            table.ambient.wall_irradiance = total;
+            if bounce_estimate {
+                table.ambient.irradiance += bounced;
+            }
+        }
+        table
+    }
+}
+
+/// Picture value for each unit of a light, per channel.
+pub(super) fn picture_scale(light: &Light, camera: &Camera) -> Vec3 {
+    let seconds = exposure::integration_time_s(&light.power.output, camera);
+    color::light_rgb(&light.color, camera.white_balance_k) * exposure::pixel_per_cd_s_m2(camera) * seconds
+}
+
+/// Picture value of a surface's own glow.
+pub(super) fn emission(material: &Material, camera: &Camera) -> Vec3 {
+    Vec3::from(material.emission_cd_m2) * exposure::pixel_per_cd_s_m2(camera) * camera.shutter_s
+}
+
+fn illuminance(light: &Light) -> f32 {
+    if let Strength::Illuminance(lux) = exposure::strength(light) { lux } else { 0.0 }
+}
+
+fn flux_of(light: &Light) -> f32 {
+    exposure::intensity_per_flux(&light.emitter).map_or(0.0, |per_lm| exposure::axial_intensity(light) / per_lm)
+}
+
+fn is_usable(light: &GpuLight) -> bool {
+    bytemuck::cast_slice::<GpuLight, f32>(std::slice::from_ref(light)).iter().all(|x| x.is_finite())
+        && light.color.iter().any(|c| *c > 0.0)
+}
+
+fn gpu_light(light: &Light, world_from_light: &Affine3A, scale: Vec3) -> GpuLight {
+    let axes = world_from_light.matrix3;
+    let (right, up, axis) = (Vec3::from(axes.x_axis), Vec3::from(axes.y_axis), -Vec3::from(axes.z_axis));
+    let intensity = exposure::axial_intensity(light);
+    let mut gpu = GpuLight {
+        position: light.position.into(),
+        right: right.into(),
+        up: up.into(),
+        axis: axis.into(),
+        color: (scale * intensity).into(),
+        ..GpuLight::zeroed()
+    };
+    match light.emitter {
+        Emitter::Point => gpu.kind = Kind::Point as u32,
+        Emitter::Spot { inner_deg, outer_deg } => {
+            gpu.kind = Kind::Spot as u32;
+            gpu.outer_rad = (0.5 * outer_deg).to_radians();
+            gpu.inner_rad = (0.5 * inner_deg.min(outer_deg)).to_radians();
+        }
+        Emitter::Sphere { radius_m } => {
+            let radius = radius_m.max(SMALLEST_M);
+            gpu.kind = Kind::Sphere as u32;
+            gpu.radius = radius;
+            gpu.softness = [radius; 2];
+            gpu.color = (scale * intensity / (PI * radius * radius)).into();
+        }
+        Emitter::RectPanel { width_m, height_m } => {
+            let half = 0.5 * Vec2::new(width_m, height_m).max(Vec2::splat(SMALLEST_M));
+            panel(&mut gpu, Kind::Rect, half, 4.0 * half.x * half.y, scale * intensity);
+            // The shadow's kernel is a disc: one of the same area.
+            gpu.softness = (half * (4.0 / PI).sqrt()).into();
+        }
+        Emitter::RoundPanel { diameter_m } => {
+            let radius = 0.5 * diameter_m.max(SMALLEST_M);
+            panel(&mut gpu, Kind::Disc, Vec2::splat(radius), PI * radius * radius, scale * intensity);
+            gpu.softness = [radius; 2];
+        }
+        Emitter::Sun { angular_diameter_deg } => {
+            gpu.kind = Kind::Sun as u32;
+            gpu.radius = (0.5 * angular_diameter_deg.clamp(0.0, 90.0)).to_radians().tan();
+            gpu.softness = [gpu.radius; 2];
+            gpu.color = (scale * illuminance(light)).into();
+        }
+        Emitter::Surround => gpu.color = [0.0; 3],
+    }
+    gpu
+}
+
+fn panel(gpu: &mut GpuLight, kind: Kind, half: Vec2, area_m2: f32, intensity: Vec3) {
+    gpu.kind = kind as u32;
+    gpu.right = (Vec3::from(gpu.right) * half.x).into();
+    gpu.up = (Vec3::from(gpu.up) * half.y).into();
+    gpu.area_m2 = area_m2;
+    gpu.color = (intensity / area_m2).into();
+}
+
+/// Estimate of the light in a closed diffuse box, per channel: mean irradiance of its walls that comes from bounces,
+/// and in total. E = F / (S (1 - r)) with r the mean reflectance (integrating sphere).
+fn room_irradiance(room: &Room, flux: Vec3) -> (Vec3, Vec3) {
+    let size = room.size_m.max(Vec3::splat(0.1));
+    let (floor, walls) = (size.x * size.z, 2.0 * size.y * (size.x + size.z));
+    let surface = 2.0 * floor + walls;
+    let albedo = |material: &Material| Vec3::from(material.base_color).clamp(Vec3::ZERO, Vec3::splat(0.98));
+    let mean = (albedo(&room.floor) * floor + albedo(&room.ceiling) * floor + albedo(&room.walls) * walls) / surface;
+    let total = flux / (surface * (Vec3::ONE - mean));
+    (total * mean, total)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Aim, LightColor, LightId, Output, Power, Role};
+
+    fn light(emitter: Emitter, output: Output) -> Light {
+        Light {
+            id: LightId(0),
+            name: "Key".to_owned(),
+            role: Role::Key,
+            position: Vec3::new(0.0, 2.0, 0.0),
+            aim: Aim::Point(Vec3::ZERO),
+            roll_deg: 0.0,
+            emitter,
+            power: Power { output, dial_stops: 0.0 },
+            color: LightColor::default(),
+            on: true,
+            visible_to_camera: false,
+        }
+    }
+
+    #[test]
+    fn the_shutter_moves_continuous_light_and_not_flash() {
+        let flash = light(Emitter::Point, Output::FlashWs { energy_ws: 100.0, efficacy_lm_s_per_ws: 40.0 });
+        let lamp = light(Emitter::Point, Output::Lumens(1000.0));
+        let slow = Camera { shutter_s: 1.0 / 60.0, ..Camera::default() };
+        let fast = Camera { shutter_s: 1.0 / 120.0, ..Camera::default() };
+        assert_eq!(picture_scale(&flash, &slow), picture_scale(&flash, &fast));
+        assert!((picture_scale(&lamp, &slow) / picture_scale(&lamp, &fast) - 2.0).abs().max_element() < 1e-6);
+    }
+
+    #[test]
+    fn a_closed_box_holds_the_tabulated_light() {
+        // light_and_camera.md: a 4 m cube with 10 000 lm.
+        for (r, mean) in [(0.0, 104.17), (0.2, 130.21), (0.5, 208.33), (0.8, 520.83), (0.9, 1041.67)] {
+            let paint = Material { base_color: [r; 3], ..Material::default() };
+            let room = Room { size_m: Vec3::splat(4.0), floor: paint.clone(), walls: paint.clone(), ceiling: paint };
+            let (bounced, total) = room_irradiance(&room, Vec3::splat(10_000.0));
+            assert!((total.x / mean - 1.0).abs() < 1e-4, "r = {r}: {}", total.x);
+            assert!((total.x - bounced.x - 104.17).abs() < 0.2, "what is not bounced is direct");
+        }
+    }
+
+    #[test]
+    fn lights_that_are_off_or_without_size_do_no_harm() {
+        let mut scene = Scene { lights: vec![light(Emitter::Point, Output::Lumens(1000.0))], ..Scene::default() };
+        scene.lights[0].on = false;
+        assert!(LightTable::new(&scene, true).lights.is_empty());
+        scene.lights[0] = light(Emitter::RectPanel { width_m: 0.0, height_m: 0.0 }, Output::Lumens(1000.0));
+        assert_eq!(LightTable::new(&scene, true).lights.len(), 1);
+        scene.lights[0].power.dial_stops = f32::NAN;
+        assert!(LightTable::new(&scene, true).lights.is_empty());
+    }
+}

@@ -1,0 +1,187 @@
+//! Triangles on the graphics device: each mesh is uploaded once and stays while it is in use.
+
+use crate::scene::{Assets, Mesh, MeshPart, Room, Shape, room_mesh, tessellate};
+use bytemuck::{Pod, Zeroable};
+use eframe::wgpu::{self, util::DeviceExt as _};
+use glam::{Vec2, Vec3};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A mesh that no frame has used for so long is dropped.
+const KEPT_FRAMES: u64 = 300;
+
+/// One vertex as the shaders read it; twin of the vertex input in `geometry.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct Vertex {
+    position: [f32; 3],
+    /// Zero asks for the face's own normal.
+    normal: [f32; 3],
+    uv: [f32; 2],
+}
+
+/// Layout of the vertex buffer.
+pub(super) const VERTEX_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+    array_stride: size_of::<Vertex>() as u64,
+    step_mode: wgpu::VertexStepMode::Vertex,
+    attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x2],
+};
+
+/// Surface of an emitter that the camera sees.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum EmitterSurface {
+    /// Square from -1 to 1 in XY, facing -Z.
+    Square,
+    /// Unit disc in XY, facing -Z.
+    Disc,
+    /// Unit sphere.
+    Sphere,
+}
+
+/// What identifies a mesh: the pointer of shared triangles, the numbers of a formula.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum MeshKey {
+    Shared(usize),
+    Formula(u8, [u32; 4]),
+    Room([u32; 3]),
+    Emitter(EmitterSurface),
+}
+
+/// A mesh on the device.
+#[derive(Debug)]
+pub(super) struct GpuMesh {
+    pub vertices: wgpu::Buffer,
+    pub indices: wgpu::Buffer,
+    pub parts: Vec<MeshPart>,
+    /// Corners in object space.
+    pub bounds: (Vec3, Vec3),
+    last_used: u64,
+    /// Keeps the pointer in the key from being given to another mesh.
+    _source: Option<Arc<Mesh>>,
+}
+
+/// All meshes on the device.
+#[derive(Debug, Default)]
+pub(super) struct MeshCache {
+    meshes: HashMap<MeshKey, GpuMesh>,
+    frame: u64,
+}
+
+impl MeshCache {
+    /// Starts a frame and drops what has long been out of use.
+    pub fn begin_frame(&mut self) {
+        self.frame += 1;
+        let frame = self.frame;
+        self.meshes.retain(|_, mesh| frame - mesh.last_used <= KEPT_FRAMES);
+    }
+
+    /// A mesh that a key of this frame names.
+    pub fn get(&self, key: MeshKey) -> Option<&GpuMesh> {
+        self.meshes.get(&key)
+    }
+
+    /// Uploads a shape if need be; none where it has no triangles.
+    pub fn object(&mut self, device: &wgpu::Device, shape: &Shape, assets: &Assets) -> Option<MeshKey> {
+        if let Some(key) = formula_key(shape) {
+            return self.ensure(device, key, || tessellate(shape));
+        }
+        let shared = assets.mesh_of(shape)?;
+        let key = MeshKey::Shared(Arc::as_ptr(&shared) as usize);
+        self.ensure(device, key, || Some(Mesh::clone(&shared)))?;
+        if let Some(mesh) = self.meshes.get_mut(&key) {
+            mesh._source = Some(shared);
+        }
+        Some(key)
+    }
+
+    /// Uploads the room if need be.
+    pub fn room(&mut self, device: &wgpu::Device, room: &Room) -> Option<MeshKey> {
+        let key = MeshKey::Room(room.size_m.to_array().map(f32::to_bits));
+        self.ensure(device, key, || Some(room_mesh(room)))
+    }
+
+    /// Uploads an emitter's surface if need be.
+    pub fn emitter(&mut self, device: &wgpu::Device, surface: EmitterSurface) -> Option<MeshKey> {
+        self.ensure(device, MeshKey::Emitter(surface), || emitter_mesh(surface))
+    }
+
+    fn ensure(&mut self, device: &wgpu::Device, key: MeshKey, make: impl FnOnce() -> Option<Mesh>) -> Option<MeshKey> {
+        if let Some(mesh) = self.meshes.get_mut(&key) {
+            mesh.last_used = self.frame;
+        } else {
+            let mesh = upload(device, &make()?, self.frame)?;
+            self.meshes.insert(key, mesh);
+        }
+        Some(key)
+    }
+}
+
+fn formula_key(shape: &Shape) -> Option<MeshKey> {
+    let (tag, numbers) = match *shape {
+        Shape::MeshFile { .. } | Shape::Mannequin(_) => return None,
+        Shape::Plane { width_m, depth_m } => (0, [width_m, depth_m, 0.0, 0.0]),
+        Shape::Box { size_m } => (1, [size_m.x, size_m.y, size_m.z, 0.0]),
+        Shape::Sphere { radius_m } => (2, [radius_m, 0.0, 0.0, 0.0]),
+        Shape::Cylinder { radius_m, height_m } => (3, [radius_m, height_m, 0.0, 0.0]),
+        Shape::Sweep { width_m, height_m, depth_m, radius_m } => (4, [width_m, height_m, depth_m, radius_m]),
+    };
+    Some(MeshKey::Formula(tag, numbers.map(f32::to_bits)))
+}
+
+/// Puts a mesh on the device; none for one without triangles, with an index out of range, or too big for a buffer.
+fn upload(device: &wgpu::Device, mesh: &Mesh, frame: u64) -> Option<GpuMesh> {
+    let count = mesh.positions.len();
+    let in_range = mesh.triangles.iter().flatten().all(|&i| (i as usize) < count);
+    let largest = device.limits().max_buffer_size as usize;
+    let fits = count.max(mesh.triangles.len()) < largest / size_of::<Vertex>();
+    if mesh.triangles.is_empty() || !in_range || !fits {
+        return None;
+    }
+    let vertices: Vec<Vertex> = (0..count)
+        .map(|i| Vertex {
+            position: mesh.positions[i].into(),
+            normal: mesh.normals.get(i).copied().unwrap_or(Vec3::ZERO).into(),
+            uv: mesh.uvs.get(i).copied().unwrap_or(Vec2::ZERO).into(),
+        })
+        .collect();
+    let buffer = |label, contents, usage| {
+        device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+    };
+    let triangles = mesh.triangles.len() as u32;
+    let inside = |part: &MeshPart| MeshPart {
+        name: part.name.clone(),
+        triangles: part.triangles.start.min(triangles)..part.triangles.end.min(triangles),
+    };
+    Some(GpuMesh {
+        vertices: buffer("vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
+        indices: buffer("indices", bytemuck::cast_slice(&mesh.triangles), wgpu::BufferUsages::INDEX),
+        parts: mesh.parts.iter().map(inside).filter(|part| !part.triangles.is_empty()).collect(),
+        bounds: mesh.bounds(),
+        last_used: frame,
+        _source: None,
+    })
+}
+
+fn emitter_mesh(surface: EmitterSurface) -> Option<Mesh> {
+    let flat = |outline: Vec<Vec3>| {
+        let count = outline.len() as u32;
+        Mesh {
+            normals: vec![Vec3::NEG_Z; outline.len()],
+            positions: outline,
+            uvs: Vec::new(),
+            // A fan that winds counter-clockwise as seen from -Z.
+            triangles: (1..count - 1).map(|i| [0, i + 1, i]).collect(),
+            parts: Vec::new(),
+        }
+    };
+    let mesh = match surface {
+        EmitterSurface::Square => {
+            flat([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Vec3::new(x, y, 0.0)).to_vec())
+        }
+        EmitterSurface::Disc => {
+            flat((0..96).map(|i| Vec2::from_angle(i as f32 / 96.0 * std::f32::consts::TAU).extend(0.0)).collect())
+        }
+        EmitterSurface::Sphere => return tessellate(&Shape::Sphere { radius_m: 1.0 }),
+    };
+    Some(mesh.with_single_part("emitter"))
+}

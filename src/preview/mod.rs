@@ -1,0 +1,30 @@
+//! The live preview on wgpu: deferred shading with the scene's real lights, shadow maps, picking.
+//!
+//! Scene -> `DrawList` and `LightTable` (plain structs, one record a surface and a light) -> shadow maps (cached)
+//! -> geometry pass into a G-buffer -> lighting pass -> glass and overlay over the lit picture.
+//!
+//! Lights reach the shaders in picture units, so that what a shader sums is the scene-linear pixel. What it leaves out
+//! of the tracer's picture: bounced light (estimated), true reflection and refraction, exact soft shadows.
+
+mod draw_list;
+mod error;
+mod gpu;
+mod input;
+mod light_table;
+mod mesh_cache;
+pub mod offscreen;
+mod pick;
+mod pipelines;
+mod renderer;
+mod scene_buffers;
+mod shaders;
+mod shadow_maps;
+mod shadow_views;
+mod targets;
+mod texture_cache;
+
+pub use error::PreviewError;
+pub use gpu::Gpu;
+pub use input::{Options, Overlay, Pick, PreviewInput};
+pub use pick::ObjectMask;
+pub use renderer::PreviewRenderer;

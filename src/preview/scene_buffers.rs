@@ -1,0 +1,195 @@
+//! The buffers that every pass reads: frame, surfaces, lights, shadow views.
+
+use super::draw_list::GpuSurface;
+use super::light_table::{Ambient, GpuLight};
+use super::shadow_views::GpuShadowView;
+use crate::scene::{CameraFrame, Scene};
+use bytemuck::{Pod, Zeroable};
+use eframe::wgpu;
+use glam::Vec3;
+use std::f32::consts::PI;
+
+/// Nearest thing the preview shows, metres. Reversed float depth makes so small a value free.
+pub(super) const NEAR_M: f32 = 0.005;
+
+/// One frame's constants; twin of `Frame` in `scene.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(super) struct GpuFrame {
+    pub clip_from_world: [[f32; 4]; 4],
+    pub eye: [f32; 3],
+    pub near_m: f32,
+    pub ray_centre: [f32; 3],
+    pub light_count: u32,
+    pub ray_right: [f32; 3],
+    pub shadows: u32,
+    pub ray_up: [f32; 3],
+    pub has_room: u32,
+    pub ambient: [f32; 3],
+    pub pixel_angle: f32,
+    pub void_radiance: [f32; 3],
+    pub selected: u32,
+    pub floor_radiance: [f32; 3],
+    pub unused_0: f32,
+    pub wall_radiance: [f32; 3],
+    pub unused_1: f32,
+    pub ceiling_radiance: [f32; 3],
+    pub unused_2: f32,
+    pub room_size: [f32; 3],
+    pub unused_3: f32,
+    pub size: [f32; 2],
+    pub unused_4: [f32; 2],
+}
+
+impl GpuFrame {
+    /// Constants of a frame that looks through `camera` at a picture of this size.
+    pub fn new(camera: &CameraFrame, size: (u32, u32)) -> Self {
+        let axes = camera.world_from_camera.matrix3;
+        let extent = camera.half_extent;
+        GpuFrame {
+            clip_from_world: camera.clip_from_world(NEAR_M).to_cols_array_2d(),
+            eye: camera.position().into(),
+            near_m: NEAR_M,
+            ray_centre: camera.forward().into(),
+            ray_right: (Vec3::from(axes.x_axis) * extent.x).into(),
+            ray_up: (Vec3::from(axes.y_axis) * extent.y).into(),
+            pixel_angle: extent.y / size.1.max(1) as f32,
+            size: [size.0 as f32, size.1 as f32],
+            ..GpuFrame::zeroed()
+        }
+    }
+
+    /// Light without direction, and the room as mirrors show it (if `mirrored`).
+    pub fn set_ambient(&mut self, scene: &Scene, ambient: &Ambient, void_radiance: Vec3, mirrored: bool) {
+        self.ambient = ambient.irradiance.into();
+        self.void_radiance = void_radiance.max(ambient.surround_radiance).into();
+        let Some(room) = &scene.room else { return };
+        self.has_room = 1;
+        self.room_size = [0.5 * room.size_m.x, room.size_m.y, 0.5 * room.size_m.z];
+        if mirrored {
+            let radiance = |color: [f32; 3]| (Vec3::from(color) * ambient.wall_irradiance / PI).into();
+            self.floor_radiance = radiance(room.floor.base_color);
+            self.wall_radiance = radiance(room.walls.base_color);
+            self.ceiling_radiance = radiance(room.ceiling.base_color);
+        }
+    }
+}
+
+/// A storage buffer that grows.
+#[derive(Debug)]
+struct Growing {
+    buffer: wgpu::Buffer,
+    label: &'static str,
+}
+
+impl Growing {
+    fn new(device: &wgpu::Device, label: &'static str, bytes: u64) -> Self {
+        Growing { buffer: storage(device, label, bytes), label }
+    }
+
+    /// Writes the bytes; true if the buffer had to be replaced.
+    fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> bool {
+        let grows = bytes.len() as u64 > self.buffer.size();
+        if grows {
+            self.buffer = storage(device, self.label, (bytes.len() as u64).next_power_of_two());
+        }
+        if !bytes.is_empty() {
+            queue.write_buffer(&self.buffer, 0, bytes);
+        }
+        grows
+    }
+}
+
+fn storage(device: &wgpu::Device, label: &str, size: u64) -> wgpu::Buffer {
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+    device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+}
+
+/// Bind group 0 of all pipelines.
+#[derive(Debug)]
+pub(super) struct SceneBuffers {
+    layout: wgpu::BindGroupLayout,
+    bind_group: wgpu::BindGroup,
+    frame: wgpu::Buffer,
+    surfaces: Growing,
+    lights: Growing,
+    views: Growing,
+}
+
+impl SceneBuffers {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let stages = wgpu::ShaderStages::VERTEX_FRAGMENT;
+        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: stages,
+            ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+            count: None,
+        };
+        let storage_type = wgpu::BufferBindingType::Storage { read_only: true };
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("scene"),
+            entries: &[
+                entry(0, wgpu::BufferBindingType::Uniform),
+                entry(1, storage_type),
+                entry(2, storage_type),
+                entry(3, storage_type),
+            ],
+        });
+        let frame = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("frame"),
+            size: size_of::<GpuFrame>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let surfaces = Growing::new(device, "surfaces", 64 * size_of::<GpuSurface>() as u64);
+        let lights = Growing::new(device, "lights", 16 * size_of::<GpuLight>() as u64);
+        let views = Growing::new(device, "shadow views", 8 * size_of::<GpuShadowView>() as u64);
+        let bind_group = bind(device, &layout, &frame, [&surfaces, &lights, &views]);
+        SceneBuffers { layout, bind_group, frame, surfaces, lights, views }
+    }
+
+    /// Layout of the bind group.
+    pub fn layout(&self) -> &wgpu::BindGroupLayout {
+        &self.layout
+    }
+
+    /// The bind group.
+    pub fn bind_group(&self) -> &wgpu::BindGroup {
+        &self.bind_group
+    }
+
+    /// Uploads a frame's data.
+    pub fn write(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        frame: &GpuFrame,
+        surfaces: &[GpuSurface],
+        lights: &[GpuLight],
+        views: &[GpuShadowView],
+    ) {
+        queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(frame));
+        let replaced = [
+            self.surfaces.write(device, queue, bytemuck::cast_slice(surfaces)),
+            self.lights.write(device, queue, bytemuck::cast_slice(lights)),
+            self.views.write(device, queue, bytemuck::cast_slice(views)),
+        ];
+        if replaced.contains(&true) {
+            self.bind_group = bind(device, &self.layout, &self.frame, [&self.surfaces, &self.lights, &self.views]);
+        }
+    }
+}
+
+fn bind(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    frame: &wgpu::Buffer,
+    storage: [&Growing; 3],
+) -> wgpu::BindGroup {
+    let buffers = [frame, &storage[0].buffer, &storage[1].buffer, &storage[2].buffer];
+    let entries: Vec<_> = (0..)
+        .zip(buffers)
+        .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+        .collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("scene"), layout, entries: &entries })
+}

@@ -1,0 +1,69 @@
+// The geometry pass: what each pixel shows, before any light.
+
+override TEXTURED: bool = false;
+
+struct Corner {
+    @builtin(position) clip: vec4f,
+    @location(0) world: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) uv: vec2f,
+    @location(3) @interpolate(flat) surface: u32,
+}
+
+@vertex
+fn vertex(
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) uv: vec2f,
+    @builtin(instance_index) surface: u32,
+) -> Corner {
+    var out: Corner;
+    out.world = world_from_object(surface, position);
+    out.normal = world_normal(surface, normal);
+    out.clip = frame.clip_from_world * vec4f(out.world, 1.0);
+    // Textures are stored from the top.
+    out.uv = vec2f(uv.x, 1.0 - uv.y);
+    out.surface = surface;
+    return out;
+}
+
+@group(1) @binding(0) var base_color_texture: texture_2d<f32>;
+@group(1) @binding(1) var base_color_sampler: sampler;
+
+struct Pixel {
+    @location(0) gbuffer: vec4u,
+    // Surface number plus one, and the depth's bits.
+    @location(1) id: vec2u,
+}
+
+@fragment
+fn fragment(in: Corner, @builtin(front_facing) front: bool) -> Pixel {
+    let s = in.surface;
+    let to_eye = frame.eye - in.world;
+    var face = cross(dpdx(in.world), dpdy(in.world));
+    face *= select(-1.0, 1.0, dot(face, to_eye) >= 0.0);
+    face = face * inverseSqrt(max(dot(face, face), 1e-30));
+    var normal = in.normal;
+    let squared = dot(normal, normal);
+    // A vertex normal of zero asks for the face's; one that points away from the side that is seen is turned.
+    normal = select(face, normal * inverseSqrt(max(squared, 1e-30)), squared > 1e-20);
+    normal *= select(-1.0, 1.0, dot(normal, face) >= 0.0);
+
+    var color = surfaces[s].base_color;
+    if TEXTURED {
+        color *= textureSample(base_color_texture, base_color_sampler, in.uv).rgb;
+    }
+    let flags = surfaces[s].flags;
+    // 0 lit, 1 lit and glowing, 2 emitter's front.
+    let is_front = (flags & FLAG_EMITTER) != 0u && front;
+    let kind = select(select(0u, 1u, (flags & FLAG_GLOWS) != 0u), 2u, is_front);
+    var out: Pixel;
+    out.gbuffer = vec4u(
+        pack_direction(normal),
+        pack_color(color, kind),
+        pack_direction(face),
+        pack_gloss(surfaces[s].roughness, surfaces[s].metallic, surfaces[s].ior),
+    );
+    out.id = vec2u(s + 1u, bitcast<u32>(in.clip.z));
+    return out;
+}

@@ -1,0 +1,42 @@
+//! The shaders' sources. WGSL has no includes: each module is its files, one after the other.
+
+use eframe::wgpu;
+
+/// The geometry pass.
+pub(super) const GEOMETRY: &str = concat!(include_str!("scene.wgsl"), include_str!("geometry.wgsl"));
+/// The shadow maps.
+pub(super) const SHADOW_MAP: &str = concat!(include_str!("scene.wgsl"), include_str!("shadow_map.wgsl"));
+/// The lighting pass.
+pub(super) const LIGHTING: &str = concat!(
+    include_str!("scene.wgsl"),
+    include_str!("shadow.wgsl"),
+    include_str!("light.wgsl"),
+    include_str!("brdf.wgsl"),
+    include_str!("tone.wgsl"),
+    include_str!("lighting.wgsl")
+);
+
+/// Compiles a module.
+pub(super) fn module(device: &wgpu::Device, label: &str, source: &str) -> wgpu::ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wgpu::naga;
+
+    #[test]
+    fn every_module_is_valid_wgsl() {
+        for (name, source) in [("geometry", GEOMETRY), ("shadow map", SHADOW_MAP), ("lighting", LIGHTING)] {
+            let module = naga::front::wgsl::parse_str(source)
+                .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(source)));
+            naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::default())
+                .validate(&module)
+                .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(source)));
+        }
+    }
+}

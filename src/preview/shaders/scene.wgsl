@@ -1,0 +1,144 @@
+// What all passes share: the frame, the surfaces, the lights, and how a surface is packed into the G-buffer.
+
+const PI: f32 = 3.14159265;
+
+struct Frame {
+    clip_from_world: mat4x4f,
+    eye: vec3f,
+    near_m: f32,
+    // World directions: ray through the picture's middle (1 m along the axis) and half the picture to the right and up.
+    ray_centre: vec3f,
+    light_count: u32,
+    ray_right: vec3f,
+    shadows: u32,
+    ray_up: vec3f,
+    has_room: u32,
+    // Irradiance from all round, picture units.
+    ambient: vec3f,
+    // Half width of a pixel at distance 1 m.
+    pixel_angle: f32,
+    // Luminance where there is nothing.
+    void_radiance: vec3f,
+    selected: u32,
+    // Radiance of the room's surfaces as mirrors show them.
+    floor_radiance: vec3f,
+    unused_0: f32,
+    wall_radiance: vec3f,
+    unused_1: f32,
+    ceiling_radiance: vec3f,
+    unused_2: f32,
+    // Half width, height, half depth.
+    room_size: vec3f,
+    unused_3: f32,
+    size: vec2f,
+    unused_4: vec2f,
+}
+
+struct Surface {
+    world_row_0: vec4f,
+    world_row_1: vec4f,
+    world_row_2: vec4f,
+    base_color: vec3f,
+    roughness: f32,
+    emission: vec3f,
+    metallic: f32,
+    ior: f32,
+    transmission: f32,
+    flags: u32,
+    unused: u32,
+}
+
+const FLAG_EMITTER: u32 = 1u;
+const FLAG_GLOWS: u32 = 2u;
+const FLAG_SELECTED: u32 = 4u;
+const FLAG_HOVERED: u32 = 8u;
+
+struct Light {
+    position: vec3f,
+    kind: u32,
+    right: vec3f,
+    inner_rad: f32,
+    up: vec3f,
+    outer_rad: f32,
+    axis: vec3f,
+    radius: f32,
+    color: vec3f,
+    area_m2: f32,
+    first_view: u32,
+    view_count: u32,
+    softness: vec2f,
+}
+
+struct ShadowView {
+    clip_from_world: mat4x4f,
+    world_from_clip: mat4x4f,
+    field: vec2f,
+    near_m: f32,
+    range_m: f32,
+}
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<storage, read> surfaces: array<Surface>;
+@group(0) @binding(2) var<storage, read> lights: array<Light>;
+@group(0) @binding(3) var<storage, read> shadow_views: array<ShadowView>;
+
+// A unit vector as a point of the octahedron folded into a square, 16 bits each way (Cigolle et al. 2014).
+fn pack_direction(v: vec3f) -> u32 {
+    let p = v.xy / (abs(v.x) + abs(v.y) + abs(v.z));
+    let sign = select(vec2f(-1.0), vec2f(1.0), p >= vec2f(0.0));
+    return pack2x16snorm(select(p, (1.0 - abs(p.yx)) * sign, v.z < 0.0));
+}
+
+fn unpack_direction(packed: u32) -> vec3f {
+    let p = unpack2x16snorm(packed);
+    let z = 1.0 - abs(p.x) - abs(p.y);
+    let fold = max(-z, 0.0);
+    return normalize(vec3f(p - select(vec2f(-fold), vec2f(fold), p >= vec2f(0.0)), z));
+}
+
+// Colour as square roots in 10 bits each, so that black velvet keeps its digits; two bits for what the surface is.
+fn pack_color(color: vec3f, kind: u32) -> u32 {
+    let q = vec3u(sqrt(saturate(color)) * 1023.0 + 0.5);
+    return q.x | (q.y << 10u) | (q.z << 20u) | (kind << 30u);
+}
+
+fn unpack_color(packed: u32) -> vec3f {
+    let q = vec3f(vec3u(packed, packed >> 10u, packed >> 20u) & vec3u(1023u)) / 1023.0;
+    return q * q;
+}
+
+// Roughness and the square root of the dielectric's reflectance at normal incidence in 12 bits, metallic in 8.
+fn pack_gloss(roughness: f32, metallic: f32, ior: f32) -> u32 {
+    let root = (ior - 1.0) / (ior + 1.0);
+    return u32(roughness * 4095.0 + 0.5) | (u32(root * 4095.0 + 0.5) << 12u) | (u32(metallic * 255.0 + 0.5) << 24u);
+}
+
+// Roughness, square root of the dielectric's reflectance, metallic.
+fn unpack_gloss(packed: u32) -> vec3f {
+    return vec3f(vec3u(packed, packed >> 12u, packed >> 24u) & vec3u(4095u, 4095u, 255u)) / vec3f(4095.0, 4095.0, 255.0);
+}
+
+fn world_from_object(s: u32, p: vec3f) -> vec3f {
+    let q = vec4f(p, 1.0);
+    return vec3f(dot(surfaces[s].world_row_0, q), dot(surfaces[s].world_row_1, q), dot(surfaces[s].world_row_2, q));
+}
+
+// Normals go by the cofactors of the matrix, which exist for every scale, flat and mirrored ones too.
+fn world_normal(s: u32, n: vec3f) -> vec3f {
+    let a = surfaces[s].world_row_0.xyz;
+    let b = surfaces[s].world_row_1.xyz;
+    let c = surfaces[s].world_row_2.xyz;
+    let mirror = select(-1.0, 1.0, dot(a, cross(b, c)) >= 0.0);
+    return vec3f(dot(cross(b, c), n), dot(cross(c, a), n), dot(cross(a, b), n)) * mirror;
+}
+
+// World direction through a pixel centre, 1 m along the optical axis.
+fn pixel_ray(pixel: vec2f) -> vec3f {
+    let ndc = pixel / frame.size * 2.0 - 1.0;
+    return frame.ray_centre + ndc.x * frame.ray_right - ndc.y * frame.ray_up;
+}
+
+// A triangle that covers the picture.
+fn fullscreen_corner(index: u32) -> vec4f {
+    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}

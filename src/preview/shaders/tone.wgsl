@@ -1,0 +1,15 @@
+// Twin of `color::tone_curve` and `color::srgb_encode`; a test holds the two together.
+
+const SHOULDER: f32 = 0.6;
+
+fn tone_curve(linear: vec3f) -> vec3f {
+    let x = max(linear, vec3f(0.0));
+    let room = 1.0 - SHOULDER;
+    let curved = SHOULDER + room * (1.0 - exp(-(x - SHOULDER) / room));
+    return select(curved, x, x <= vec3f(SHOULDER));
+}
+
+fn srgb_encode(linear: vec3f) -> vec3f {
+    let curved = 1.055 * pow(max(linear, vec3f(0.0)), vec3f(1.0 / 2.4)) - 0.055;
+    return select(curved, 12.92 * linear, linear <= vec3f(0.0031308));
+}
