@@ -2,5 +2,6 @@
 
 pub mod exposure;
 mod picture;
+pub mod thirds;
 
 pub use picture::Picture;
