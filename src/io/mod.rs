@@ -1,1 +1,25 @@
-//! Files.
+//! Files: scenes as versioned RON, models as OBJ, textures, shipped studios, finished pictures.
+//!
+//! A file is checked once, here at the border: what comes out of [`load_scene`] can go to every renderer, and what
+//! does not pass leaves as an error that names the field, the value and the line. Odd but usable things become
+//! warnings beside the scene. A save writes a new file beside the old one and renames it.
+
+mod assets;
+mod atomic;
+mod error;
+mod layout;
+mod locate;
+mod mannequins;
+mod obj;
+mod picture;
+mod presets;
+mod ron_v1;
+mod scene_file;
+mod texture;
+
+pub use assets::load_assets;
+pub use error::{AssetError, LoadError, Problem, SaveError};
+pub use obj::{ImportedObj, import_obj};
+pub use picture::{PictureFormat, PictureInfo, export_layers, export_picture};
+pub use presets::{Preset, find_preset, presets};
+pub use scene_file::{FILE_LIMIT_BYTES, FORMAT, Loaded, load_scene, parse_scene, save_scene, write_scene};

@@ -26,6 +26,24 @@ pub struct Assets {
     pub textures: HashMap<String, Arc<Texture>>,
 }
 
+/// What is wrong with a path by which a scene names a file: it must be relative, `/` between folders, and must not
+/// lead out of the scene's folder.
+pub fn path_complaint(path: &str) -> Option<&'static str> {
+    if path.is_empty() {
+        Some("a path is needed")
+    } else if path.contains('\\') {
+        Some("write / between folders")
+    } else if path.starts_with('/') || path.chars().nth(1) == Some(':') {
+        Some("a path must be relative to the scene's folder")
+    } else if path.split('/').any(|part| part == "..") {
+        Some("a path must not lead out of the scene's folder")
+    } else if path.chars().any(char::is_control) {
+        Some("a path has no control characters")
+    } else {
+        None
+    }
+}
+
 impl Assets {
     /// The triangles of a shape; none where its file is missing (loading has warned of it).
     pub fn mesh_of(&self, shape: &Shape) -> Option<Arc<Mesh>> {

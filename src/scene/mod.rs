@@ -15,7 +15,7 @@ mod room;
 mod tessellate;
 mod validate;
 
-pub use assets::{Assets, Texture};
+pub use assets::{Assets, Texture, path_complaint};
 pub use camera::{Camera, CameraFrame, Focus, Orientation, Sensor};
 pub use light::{ColorSource, Emitter, Gel, Light, LightColor, Output, Power, Role};
 pub use material::{Material, MaterialPreset};
@@ -23,7 +23,7 @@ pub use mesh::{Mesh, MeshPart};
 pub use object::{Figure, Mannequin, Object, Pose, Shape, Transform};
 pub use room::Room;
 pub use tessellate::{room_mesh, tessellate};
-pub use validate::{Finding, Severity, validate};
+pub use validate::{Finding, LIST_LIMIT, Severity, placement, validate};
 
 use glam::Vec3;
 

@@ -1,0 +1,185 @@
+//! What can go wrong with files. Messages say what first and where last.
+
+use crate::scene::Finding;
+use std::fmt;
+use std::path::PathBuf;
+
+/// One thing that is wrong with the text of a scene file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// The field, as `lights[2] "Key" power.dial_stops`; empty where the text makes no sense at all.
+    pub field: String,
+    /// What is wrong with it, with the value.
+    pub message: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// What the file says there, cut to a few words.
+    pub text: String,
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.field.is_empty() {
+            write!(f, "{}: ", self.field)?;
+        }
+        write!(f, "{} (line {}, column {}", self.message, self.line, self.column)?;
+        if !self.text.is_empty() {
+            write!(f, ": `{}`", self.text)?;
+        }
+        f.write_str(")")
+    }
+}
+
+/// Why a scene could not be loaded. The scene that was open stays as it was.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// The file could not be read.
+    #[error("can't read the scene: {source}: {}", path.display())]
+    Read {
+        /// The reason.
+        source: std::io::Error,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file is larger than any studio.
+    #[error("a scene file has at most {} MB, this has {} MB", limit_bytes / 1_000_000, bytes / 1_000_000)]
+    TooLarge {
+        /// Its size.
+        bytes: u64,
+        /// The most that is read.
+        limit_bytes: u64,
+    },
+    /// The file is not UTF-8 text.
+    #[error("this is no scene file: byte {0} is not text")]
+    NotText(usize),
+    /// The text is not a scene, or not one that can be used; at least one problem, in file order.
+    #[error("{}", list(.0))]
+    Content(Vec<Problem>),
+    /// A problem with a named file.
+    #[error("{error}: {}", path.display())]
+    InFile {
+        /// What is wrong.
+        error: Box<LoadError>,
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+impl LoadError {
+    /// The problems of the text, where that is what is wrong.
+    pub fn problems(&self) -> &[Problem] {
+        match self {
+            LoadError::Content(problems) => problems,
+            LoadError::InFile { error, .. } => error.problems(),
+            _ => &[],
+        }
+    }
+}
+
+/// The first problems in full, the number of the others.
+fn list(problems: &[Problem]) -> String {
+    const SHOWN: usize = 3;
+    let mut text = problems.iter().take(SHOWN).map(Problem::to_string).collect::<Vec<_>>().join("; ");
+    if problems.len() > SHOWN {
+        text.push_str(&format!("; and {} more", problems.len() - SHOWN));
+    }
+    text
+}
+
+/// Why a file could not be written. The older file, if there was one, is still there and whole.
+#[derive(Debug, thiserror::Error)]
+pub enum SaveError {
+    /// The scene would not load again.
+    #[error("the scene can't be saved before this is mended: {0}")]
+    Invalid(Finding),
+    /// The folder to write into does not exist.
+    #[error("there is no such folder: {}", .0.display())]
+    NoFolder(PathBuf),
+    /// The path names a folder, or nothing.
+    #[error("this is no file name: {}", .0.display())]
+    NoFileName(PathBuf),
+    /// The ending of a picture's name is not one we write.
+    #[error("a picture's name ends in .png, .jpg or .exr, not in {ending:?}: {}", path.display())]
+    UnknownEnding {
+        /// What it ends in.
+        ending: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// A picture without pixels, or whose layers differ in size.
+    #[error("{0}")]
+    BadPicture(String),
+    /// The encoder failed.
+    #[error("can't encode the picture: {message}: {}", path.display())]
+    Encode {
+        /// The reason.
+        message: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The disk is full, the folder is read-only ...
+    #[error("can't write: {source}: {}", path.display())]
+    Write {
+        /// The reason.
+        source: std::io::Error,
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// Why a model or a texture could not be loaded.
+#[derive(Debug, thiserror::Error)]
+pub enum AssetError {
+    /// The file could not be read.
+    #[error("can't read it: {source}: {}", path.display())]
+    Read {
+        /// The reason.
+        source: std::io::Error,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The path leads out of the scene's folder, or is not a relative path.
+    #[error("{reason}: {path:?}")]
+    BadPath {
+        /// What is wrong with the path.
+        reason: &'static str,
+        /// The path as the scene names it.
+        path: String,
+    },
+    /// The scene has no file yet, so a relative path leads nowhere.
+    #[error("save the scene first, then its folder is where files are looked for: {path:?}")]
+    NoFolder {
+        /// The path as the scene names it.
+        path: String,
+    },
+    /// More than we are willing to load.
+    #[error("{what} is too large: {amount}, at most {limit}: {}", path.display())]
+    TooLarge {
+        /// The file, its triangles, its pixels.
+        what: &'static str,
+        /// How much.
+        amount: u64,
+        /// The most that is loaded.
+        limit: u64,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The OBJ file has a mistake.
+    #[error("not a usable OBJ model: {message}: {}", path.display())]
+    BadModel {
+        /// The mistake, with its line where known.
+        message: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The texture could not be decoded.
+    #[error("not a usable PNG or JPEG: {message}: {}", path.display())]
+    BadTexture {
+        /// The decoder's words.
+        message: String,
+        /// The file.
+        path: PathBuf,
+    },
+}

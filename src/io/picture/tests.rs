@@ -1,0 +1,91 @@
+use super::*;
+use exr::meta::attribute::{AttributeValue, Text};
+use exr::prelude::{ReadChannels, ReadLayers, read};
+
+/// A ramp past white, so that the tone curve shows.
+fn ramp(width: u32, height: u32, gain: f32) -> Picture {
+    let rgb = (0..width * height).map(|i| [gain * i as f32 / 10.0, 0.18, 1e-3 * i as f32]).collect();
+    Picture { width, height, rgb }
+}
+
+fn info() -> PictureInfo {
+    PictureInfo::new(&Camera::default(), "path", 64, u64::MAX)
+}
+
+#[test]
+fn png_holds_what_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.PNG");
+    let picture = ramp(7, 5, 1.0);
+    export_picture(&path, &picture, &info()).unwrap();
+    let read = image::load_from_memory(&std::fs::read(&path).unwrap()).unwrap().into_rgb8();
+    assert_eq!(read.dimensions(), (7, 5));
+    assert_eq!(read.pixels().map(|p| p.0).collect::<Vec<_>>(), picture.to_srgb8());
+}
+
+#[test]
+fn jpeg_is_close_to_what_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.jpeg");
+    let picture = Picture { width: 16, height: 16, rgb: vec![[0.18, 0.4, 0.1]; 256] };
+    export_picture(&path, &picture, &info()).unwrap();
+    let read = image::load_from_memory(&std::fs::read(&path).unwrap()).unwrap().into_rgb8();
+    for (ours, theirs) in read.get_pixel(8, 8).0.iter().zip(picture.to_srgb8()[0]) {
+        assert!(ours.abs_diff(theirs) <= 2, "quality 95 keeps an even colour within two steps");
+    }
+}
+
+#[test]
+fn exr_keeps_every_bit_the_layers_and_the_attributes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.exr");
+    let layers = [("Key".to_owned(), ramp(19, 33, 0.25)), ("Füll 灯".to_owned(), ramp(19, 33, 0.75))];
+    let whole = ramp(19, 33, 1.0);
+    export_layers(&path, &whole, &layers, &info()).unwrap();
+    let image =
+        read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes().from_file(&path);
+    let image = image.unwrap();
+    let expected = [("picture", &whole), ("Key", &layers[0].1), ("F_ll _", &layers[1].1)];
+    assert_eq!(image.layer_data.len(), 3);
+    for (layer, (name, picture)) in image.layer_data.iter().zip(expected) {
+        assert_eq!(layer.attributes.layer_name, Text::new_or_none(name));
+        // Channels are stored in the order of their names.
+        for (channel, component) in layer.channel_data.list.iter().zip([2, 1, 0]) {
+            let values: Vec<f32> = channel.sample_data.values_as_f32().collect();
+            assert_eq!(values, picture.rgb.iter().map(|c| c[component]).collect::<Vec<_>>(), "{name} {}", channel.name);
+        }
+        let other = |name| layer.attributes.other.get(&Text::new_or_none(name).unwrap()).cloned();
+        assert_eq!(other("spp"), Some(AttributeValue::I32(64)));
+        assert_eq!(other("seed"), Some(AttributeValue::Text(Text::new_or_none(u64::MAX.to_string()).unwrap())));
+        assert_eq!(other("method"), Some(AttributeValue::Text(Text::new_or_none("path").unwrap())));
+        // pi S / (C N^2) with f/5.6, ISO 100 and C = 250.
+        let Some(AttributeValue::F32(scale)) = other("exposureScale_cd_s_m2_per_unit") else { panic!("no scale") };
+        assert!((scale * std::f32::consts::PI * 100.0 / (250.0 * 5.6 * 5.6) - 1.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn one_pixel_and_odd_sizes_are_written() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.png", "a.jpg", "a.exr"] {
+        for (width, height) in [(1, 1), (1, 17), (31, 1)] {
+            export_picture(&folder.path().join(name), &ramp(width, height, 1.0), &info()).unwrap();
+        }
+    }
+}
+
+#[test]
+fn refusals_are_clear_and_leave_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = ramp(2, 2, 1.0);
+    let refused = |name: &str, picture: &Picture| {
+        export_picture(&folder.path().join(name), picture, &info()).unwrap_err().to_string()
+    };
+    assert!(refused("a.tiff", &picture).starts_with("a picture's name ends in .png, .jpg or .exr, not in \"tiff\""));
+    assert!(refused("a", &picture).contains(".png, .jpg or .exr"));
+    assert!(refused("none/a.png", &picture).starts_with("there is no such folder"));
+    assert!(refused("a.png", &Picture::default()).contains("no picture of 0 x 0"));
+    let layers = [("Key".to_owned(), ramp(3, 2, 1.0))];
+    assert!(export_layers(&folder.path().join("a.exr"), &picture, &layers, &info()).is_err());
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}

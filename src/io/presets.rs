@@ -1,0 +1,88 @@
+//! The studios that ship with the program, embedded in it.
+
+use super::error::LoadError;
+use super::scene_file::{self, Loaded};
+use std::sync::LazyLock;
+
+/// A shipped studio.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Preset {
+    /// Name of its file in `studio_presets`.
+    pub file_name: &'static str,
+    /// Title, as in the file.
+    pub name: String,
+    /// One line that says what the set-up is for, as in the file.
+    pub description: String,
+    /// The file.
+    pub text: &'static str,
+}
+
+impl Preset {
+    /// The studio, ready to be used.
+    ///
+    /// # Errors
+    /// None, as far as the tests know: every preset is loaded by one.
+    pub fn load(&self) -> Result<Loaded, LoadError> {
+        let (scene, warnings) = scene_file::parse_scene(self.text)?;
+        Ok(scene_file::complete(scene, warnings, None))
+    }
+}
+
+macro_rules! embedded {
+    ($($file:literal),+ $(,)?) => {
+        &[$(($file, include_str!(concat!("../../studio_presets/", $file)))),+]
+    };
+}
+
+/// In the order of menus: portraits from the plain to the special, then people, then things.
+const FILES: &[(&str, &str)] = embedded![
+    "three_point.ron",
+    "rembrandt.ron",
+    "butterfly.ron",
+    "loop.ron",
+    "split.ron",
+    "clamshell.ron",
+    "rim_low_key.ron",
+    "high_key.ron",
+    "gel_portrait.ron",
+    "window_light.ron",
+    "group.ron",
+    "interview.ron",
+    "product_still_life.ron",
+];
+
+/// All shipped studios, in menu order.
+pub fn presets() -> &'static [Preset] {
+    static PRESETS: LazyLock<Vec<Preset>> =
+        LazyLock::new(|| FILES.iter().map(|&(file, text)| preset(file, text)).collect());
+    &PRESETS
+}
+
+/// The shipped studio with this file name, or this title, whatever the case; the file's ending may be left out.
+pub fn find_preset(name: &str) -> Option<&'static Preset> {
+    let wanted = name.trim().to_lowercase();
+    let stem = wanted.strip_suffix(".ron").unwrap_or(&wanted);
+    presets().iter().find(|p| p.file_name.trim_end_matches(".ron") == stem || p.name.to_lowercase() == wanted)
+}
+
+fn preset(file_name: &'static str, text: &'static str) -> Preset {
+    let (name, description) = scene_file::parse_scene(text)
+        .map_or_else(|error| (file_name.to_owned(), error.to_string()), |(scene, _)| (scene.name, scene.description));
+    Preset { file_name, name, description, text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn presets_are_found_by_file_and_by_title() {
+        for preset in presets() {
+            for name in [preset.file_name, &preset.file_name[..preset.file_name.len() - 4], &preset.name.to_uppercase()]
+            {
+                assert_eq!(find_preset(name), Some(preset));
+            }
+        }
+        assert_eq!(find_preset("none"), None);
+    }
+}

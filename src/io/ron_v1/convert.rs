@@ -1,0 +1,331 @@
+//! Format 1 to and from the scene. In a file, aims name their object; in the scene they hold its id. Ids follow the
+//! order of the file.
+
+use super::{
+    AimV1, CameraV1, ColorV1, EmitterV1, FigureV1, FocusV1, GelV1, LightV1, MaterialV1, ObjectV1, OrientationV1,
+    OutputV1, PartMaterialV1, PoseV1, PowerV1, RoleV1, RoomV1, SceneV1, SensorV1, ShapeV1,
+};
+use crate::scene::{
+    Aim, Camera, ColorSource, Emitter, Figure, Focus, Gel, Light, LightColor, LightId, Mannequin, Material, Object,
+    ObjectId, Orientation, Output, Pose, Power, Role, Room, Scene, Sensor, Shape, Transform,
+};
+use glam::Vec3;
+use std::collections::HashMap;
+
+/// An aim or a focus at an object that the file does not have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::io) struct UnknownName {
+    /// The field that names it, as `lights[2] "Key" aim.name`.
+    pub place: String,
+    /// The name.
+    pub name: String,
+    /// All names that it could be.
+    pub known: Vec<String>,
+}
+
+/// Ids by name: the object's place in the file. The first of two equal names counts.
+struct Names(HashMap<String, ObjectId>);
+
+impl Names {
+    fn of(objects: &[ObjectV1]) -> Self {
+        // Backwards, so that the first of two equal names stays.
+        let ids = objects.iter().enumerate().rev().map(|(index, o)| (o.name.clone(), ObjectId(index as u32)));
+        Names(ids.collect())
+    }
+
+    fn id(&self, name: &str, place: &str) -> Result<ObjectId, UnknownName> {
+        self.0.get(name).copied().ok_or_else(|| {
+            let mut known: Vec<String> = self.0.keys().cloned().collect();
+            known.sort_unstable();
+            UnknownName { place: place.to_owned(), name: name.to_owned(), known }
+        })
+    }
+
+    fn aim(&self, aim: AimV1, place: &str) -> Result<Aim, UnknownName> {
+        Ok(match aim {
+            AimV1::Point(x, y, z) => Aim::Point(Vec3::new(x, y, z)),
+            AimV1::Object { name, offset } => {
+                Aim::Object { object: self.id(&name, &format!("{place}aim.name"))?, offset: Vec3::from(offset) }
+            }
+            AimV1::Angles { yaw_deg, pitch_deg } => Aim::Angles { yaw_deg, pitch_deg },
+        })
+    }
+
+    fn focus(&self, focus: FocusV1) -> Result<Focus, UnknownName> {
+        Ok(match focus {
+            FocusV1::OnAim => Focus::OnAim,
+            FocusV1::OnObject { name, offset } => {
+                Focus::OnObject { object: self.id(&name, "camera.focus.name")?, offset: Vec3::from(offset) }
+            }
+            FocusV1::Distance(distance) => Focus::Distance(distance),
+        })
+    }
+}
+
+/// The scene of a file. Names may still clash; everything else about it is up to `scene::validate`.
+pub(in crate::io) fn scene_from_v1(file: SceneV1) -> Result<Scene, UnknownName> {
+    let names = Names::of(&file.objects);
+    Ok(Scene {
+        name: file.name,
+        description: file.description,
+        camera: camera_from(file.camera, &names)?,
+        room: file.room.map(Room::from),
+        objects: file.objects.into_iter().enumerate().map(|(index, object)| object_from(object, index)).collect(),
+        lights: (file.lights.into_iter().enumerate())
+            .map(|(index, light)| light_from(light, index, &names))
+            .collect::<Result<_, _>>()?,
+    })
+}
+
+/// The file of a scene. Its names must be unique. An aim at an object that is gone becomes the point it means.
+pub(in crate::io) fn v1_from_scene(scene: &Scene) -> SceneV1 {
+    SceneV1 {
+        format: 1,
+        name: scene.name.clone(),
+        description: scene.description.clone(),
+        camera: camera_to(scene),
+        room: scene.room.as_ref().map(RoomV1::from),
+        objects: scene.objects.iter().map(ObjectV1::from).collect(),
+        lights: scene.lights.iter().map(|light| light_to(scene, light)).collect(),
+    }
+}
+
+fn camera_from(file: CameraV1, names: &Names) -> Result<Camera, UnknownName> {
+    Ok(Camera {
+        position: Vec3::from(file.position),
+        aim: names.aim(file.aim, "camera.")?,
+        roll_deg: file.roll_deg,
+        sensor: file.sensor.into(),
+        orientation: match file.orientation {
+            OrientationV1::Landscape => Orientation::Landscape,
+            OrientationV1::Portrait => Orientation::Portrait,
+        },
+        focal_length_mm: file.focal_length_mm,
+        f_number: file.f_number,
+        shutter_s: file.shutter_s,
+        iso: file.iso,
+        white_balance_k: file.white_balance_k,
+        focus: names.focus(file.focus)?,
+        depth_of_field: file.depth_of_field,
+        meter_constant: file.meter_constant,
+    })
+}
+
+fn camera_to(scene: &Scene) -> CameraV1 {
+    let camera = &scene.camera;
+    CameraV1 {
+        position: camera.position.to_array(),
+        aim: aim_to(scene, &camera.aim, camera.position),
+        roll_deg: camera.roll_deg,
+        sensor: camera.sensor.into(),
+        orientation: match camera.orientation {
+            Orientation::Landscape => OrientationV1::Landscape,
+            Orientation::Portrait => OrientationV1::Portrait,
+        },
+        focal_length_mm: camera.focal_length_mm,
+        f_number: camera.f_number,
+        shutter_s: camera.shutter_s,
+        iso: camera.iso,
+        white_balance_k: camera.white_balance_k,
+        focus: match camera.focus {
+            Focus::OnAim => FocusV1::OnAim,
+            Focus::OnObject { object, offset } => scene.object(object).map_or(FocusV1::OnAim, |object| {
+                FocusV1::OnObject { name: object.name.clone(), offset: offset.to_array() }
+            }),
+            Focus::Distance(distance) => FocusV1::Distance(distance),
+        },
+        depth_of_field: camera.depth_of_field,
+        meter_constant: camera.meter_constant,
+    }
+}
+
+fn aim_to(scene: &Scene, aim: &Aim, position: Vec3) -> AimV1 {
+    let point = |p: Vec3| AimV1::Point(p.x, p.y, p.z);
+    match *aim {
+        Aim::Point(target) => point(target),
+        Aim::Object { object, offset } => match scene.object(object) {
+            Some(object) => AimV1::Object { name: object.name.clone(), offset: offset.to_array() },
+            None => point(scene.aim_point(aim, position)),
+        },
+        Aim::Angles { yaw_deg, pitch_deg } => AimV1::Angles { yaw_deg, pitch_deg },
+    }
+}
+
+fn object_from(file: ObjectV1, index: usize) -> Object {
+    Object {
+        id: ObjectId(index as u32),
+        name: file.name,
+        transform: Transform {
+            position: Vec3::from(file.position),
+            rotation_deg: Vec3::from(file.rotation_deg),
+            scale: Vec3::from(file.scale),
+        },
+        shape: file.shape.into(),
+        material: file.material.into(),
+        part_materials: file.part_materials.into_iter().map(|part| (part.part, part.material.into())).collect(),
+        visible: file.visible,
+    }
+}
+
+impl From<&Object> for ObjectV1 {
+    fn from(object: &Object) -> Self {
+        let part = |(part, material): &(String, Material)| PartMaterialV1 {
+            part: part.clone(),
+            material: MaterialV1::from(material),
+        };
+        ObjectV1 {
+            name: object.name.clone(),
+            shape: ShapeV1::from(&object.shape),
+            position: object.transform.position.to_array(),
+            rotation_deg: object.transform.rotation_deg.to_array(),
+            scale: object.transform.scale.to_array(),
+            material: MaterialV1::from(&object.material),
+            part_materials: object.part_materials.iter().map(part).collect(),
+            visible: object.visible,
+        }
+    }
+}
+
+fn light_from(file: LightV1, index: usize, names: &Names) -> Result<Light, UnknownName> {
+    let place = format!("lights[{index}] {:?} ", file.name);
+    Ok(Light {
+        id: LightId(index as u32),
+        role: file.role.into(),
+        position: Vec3::from(file.position),
+        aim: names.aim(file.aim, &place)?,
+        roll_deg: file.roll_deg,
+        emitter: file.emitter.into(),
+        power: Power { output: file.power.output.into(), dial_stops: file.power.dial_stops },
+        color: LightColor {
+            source: match file.color {
+                ColorV1::Kelvin(kelvin) => ColorSource::Kelvin(kelvin),
+                ColorV1::Rgb(r, g, b) => ColorSource::Rgb([r, g, b]),
+            },
+            gel: match file.gel {
+                GelV1::NoGel => Gel::None,
+                GelV1::Mired(shift) => Gel::Mired(shift),
+                GelV1::Tint(r, g, b) => Gel::Tint([r, g, b]),
+            },
+        },
+        on: file.on,
+        visible_to_camera: file.visible_to_camera,
+        name: file.name,
+    })
+}
+
+fn light_to(scene: &Scene, light: &Light) -> LightV1 {
+    LightV1 {
+        name: light.name.clone(),
+        role: light.role.into(),
+        position: light.position.to_array(),
+        aim: aim_to(scene, &light.aim, light.position),
+        roll_deg: light.roll_deg,
+        emitter: light.emitter.into(),
+        power: PowerV1 { output: light.power.output.into(), dial_stops: light.power.dial_stops },
+        color: match light.color.source {
+            ColorSource::Kelvin(kelvin) => ColorV1::Kelvin(kelvin),
+            ColorSource::Rgb([r, g, b]) => ColorV1::Rgb(r, g, b),
+        },
+        gel: match light.color.gel {
+            Gel::None => GelV1::NoGel,
+            Gel::Mired(shift) => GelV1::Mired(shift),
+            Gel::Tint([r, g, b]) => GelV1::Tint(r, g, b),
+        },
+        on: light.on,
+        visible_to_camera: light.visible_to_camera,
+    }
+}
+
+impl From<RoomV1> for Room {
+    fn from(file: RoomV1) -> Self {
+        Room {
+            size_m: Vec3::from(file.size_m),
+            floor: file.floor.into(),
+            walls: file.walls.into(),
+            ceiling: file.ceiling.into(),
+        }
+    }
+}
+
+impl From<&Room> for RoomV1 {
+    fn from(room: &Room) -> Self {
+        RoomV1 {
+            size_m: room.size_m.to_array(),
+            floor: MaterialV1::from(&room.floor),
+            walls: MaterialV1::from(&room.walls),
+            ceiling: MaterialV1::from(&room.ceiling),
+        }
+    }
+}
+
+impl From<ShapeV1> for Shape {
+    fn from(file: ShapeV1) -> Self {
+        match file {
+            ShapeV1::MeshFile { path } => Shape::MeshFile { path },
+            ShapeV1::Mannequin { figure, pose } => {
+                Shape::Mannequin(Mannequin { figure: figure.into(), pose: pose.into() })
+            }
+            ShapeV1::Plane { width_m, depth_m } => Shape::Plane { width_m, depth_m },
+            ShapeV1::Box { size_m } => Shape::Box { size_m: Vec3::from(size_m) },
+            ShapeV1::Sphere { radius_m } => Shape::Sphere { radius_m },
+            ShapeV1::Cylinder { radius_m, height_m } => Shape::Cylinder { radius_m, height_m },
+            ShapeV1::Sweep { width_m, height_m, depth_m, radius_m } => {
+                Shape::Sweep { width_m, height_m, depth_m, radius_m }
+            }
+        }
+    }
+}
+
+impl From<&Shape> for ShapeV1 {
+    fn from(shape: &Shape) -> Self {
+        match shape.clone() {
+            Shape::MeshFile { path } => ShapeV1::MeshFile { path },
+            Shape::Mannequin(Mannequin { figure, pose }) => {
+                ShapeV1::Mannequin { figure: figure.into(), pose: pose.into() }
+            }
+            Shape::Plane { width_m, depth_m } => ShapeV1::Plane { width_m, depth_m },
+            Shape::Box { size_m } => ShapeV1::Box { size_m: size_m.to_array() },
+            Shape::Sphere { radius_m } => ShapeV1::Sphere { radius_m },
+            Shape::Cylinder { radius_m, height_m } => ShapeV1::Cylinder { radius_m, height_m },
+            Shape::Sweep { width_m, height_m, depth_m, radius_m } => {
+                ShapeV1::Sweep { width_m, height_m, depth_m, radius_m }
+            }
+        }
+    }
+}
+
+/// Both conversions between an enum of the file and one of the scene whose variants correspond one to one.
+macro_rules! same_variants {
+    ($file:ident <=> $scene:ident { $($variant:ident $(($x:ident))? $({ $($field:ident),+ })?),+ $(,)? }) => {
+        impl From<$file> for $scene {
+            fn from(value: $file) -> Self {
+                match value {
+                    $($file::$variant $(($x))? $({ $($field),+ })? => $scene::$variant $(($x))? $({ $($field),+ })?),+
+                }
+            }
+        }
+
+        impl From<$scene> for $file {
+            fn from(value: $scene) -> Self {
+                match value {
+                    $($scene::$variant $(($x))? $({ $($field),+ })? => $file::$variant $(($x))? $({ $($field),+ })?),+
+                }
+            }
+        }
+    };
+}
+
+same_variants!(FigureV1 <=> Figure { Woman, Man, Child, Bust });
+same_variants!(PoseV1 <=> Pose { Standing, Contrapposto, Seated, HeadTurned });
+same_variants!(RoleV1 <=> Role { Key, Fill, Rim, Hair, Background, Accent });
+same_variants!(SensorV1 <=> Sensor {
+    FullFrame, ApsC, MicroFourThirds, Medium44x33, Medium54x40, Custom { width_mm, height_mm },
+});
+same_variants!(EmitterV1 <=> Emitter {
+    Point, Sphere { radius_m }, Spot { inner_deg, outer_deg }, RectPanel { width_m, height_m },
+    RoundPanel { diameter_m }, Sun { angular_diameter_deg }, Surround,
+});
+same_variants!(OutputV1 <=> Output {
+    Lumens(lm), Candela(cd), LuxAt { lux, distance_m }, Lux(lux), FlashWs { energy_ws, efficacy_lm_s_per_ws },
+    FlashGuideNumber(gn),
+});

@@ -1,0 +1,137 @@
+//! Materials in format 1: `Preset(Chrome)`, or `Custom(...)` with what differs from the plain one.
+
+use super::{Triple, is};
+use crate::scene::{Material, MaterialPreset};
+use serde::{Deserialize, Serialize};
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "Material", deny_unknown_fields)]
+pub(super) enum MaterialV1 {
+    Preset(PresetV1),
+    Custom {
+        base_color: Triple,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        base_color_texture: Option<String>,
+        #[serde(default, skip_serializing_if = "is")]
+        metallic: f32,
+        #[serde(default = "usual_roughness")]
+        roughness: f32,
+        #[serde(default = "usual_ior", skip_serializing_if = "is_usual_ior")]
+        ior: f32,
+        #[serde(default, skip_serializing_if = "is")]
+        transmission: f32,
+        #[serde(default, skip_serializing_if = "is")]
+        absorption_per_m: Triple,
+        #[serde(default, skip_serializing_if = "is")]
+        emission_cd_m2: Triple,
+    },
+}
+
+fn usual_roughness() -> f32 {
+    Material::default().roughness
+}
+fn usual_ior() -> f32 {
+    Material::default().ior
+}
+fn is_usual_ior(value: &f32) -> bool {
+    *value == usual_ior()
+}
+
+/// Declares the shelf's names in the file and both conversions.
+macro_rules! presets {
+    ($($name:ident),+ $(,)?) => {
+        #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+        #[serde(rename = "Preset")]
+        pub(super) enum PresetV1 { $($name),+ }
+
+        impl From<PresetV1> for MaterialPreset {
+            fn from(preset: PresetV1) -> Self {
+                match preset { $(PresetV1::$name => MaterialPreset::$name),+ }
+            }
+        }
+
+        impl From<MaterialPreset> for PresetV1 {
+            fn from(preset: MaterialPreset) -> Self {
+                match preset { $(MaterialPreset::$name => PresetV1::$name),+ }
+            }
+        }
+    };
+}
+
+presets!(
+    SkinLight,
+    SkinMedium,
+    SkinDark,
+    Eye,
+    MatteFabric,
+    Satin,
+    BlackVelvet,
+    GlossyPlastic,
+    Chrome,
+    BrushedAluminium,
+    Gold,
+    ClearGlass,
+    Water,
+    WhitePaper,
+    GreyPaper,
+    BlackPaper,
+    GreyCard,
+    PaintedWall,
+    StudioFloor,
+);
+
+impl From<MaterialV1> for Material {
+    fn from(material: MaterialV1) -> Self {
+        match material {
+            MaterialV1::Preset(preset) => MaterialPreset::from(preset).material(),
+            MaterialV1::Custom {
+                base_color,
+                base_color_texture,
+                metallic,
+                roughness,
+                ior,
+                transmission,
+                absorption_per_m,
+                emission_cd_m2,
+            } => Material {
+                base_color,
+                base_color_texture,
+                metallic,
+                roughness,
+                ior,
+                transmission,
+                absorption_per_m,
+                emission_cd_m2,
+            },
+        }
+    }
+}
+
+impl From<&Material> for MaterialV1 {
+    /// A material that equals one of the shelf is written by its name.
+    fn from(material: &Material) -> Self {
+        if let Some(preset) = MaterialPreset::ALL.into_iter().find(|preset| preset.material() == *material) {
+            return MaterialV1::Preset(preset.into());
+        }
+        let Material {
+            base_color,
+            base_color_texture,
+            metallic,
+            roughness,
+            ior,
+            transmission,
+            absorption_per_m,
+            emission_cd_m2,
+        } = material.clone();
+        MaterialV1::Custom {
+            base_color,
+            base_color_texture,
+            metallic,
+            roughness,
+            ior,
+            transmission,
+            absorption_per_m,
+            emission_cd_m2,
+        }
+    }
+}

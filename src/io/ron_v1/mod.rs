@@ -1,0 +1,287 @@
+//! Format 1 of the scene file: the structs that serde reads and writes, apart from the scene's own so that the scene
+//! may grow without breaking files. A later format gets its own folder, and this one an upgrade step.
+//!
+//! Lengths are metres, angles degrees; other units stand in the names. What is as usual may be left out (a scale of 1,
+//! a light that is on); [`convert`] says how names become ids.
+
+mod convert;
+mod material;
+
+pub(super) use convert::{UnknownName, scene_from_v1, v1_from_scene};
+
+use crate::scene::Camera;
+use material::MaterialV1;
+use serde::{Deserialize, Serialize};
+
+/// Three numbers, written `(x, y, z)`.
+type Triple = [f32; 3];
+
+fn is<T: PartialEq + Default>(value: &T) -> bool {
+    *value == T::default()
+}
+fn yes() -> bool {
+    true
+}
+fn is_yes(value: &bool) -> bool {
+    *value
+}
+fn one() -> Triple {
+    [1.0; 3]
+}
+fn is_one(value: &Triple) -> bool {
+    *value == one()
+}
+fn usual_meter() -> f32 {
+    Camera::default().meter_constant
+}
+fn is_usual_meter(value: &f32) -> bool {
+    *value == usual_meter()
+}
+fn usual_efficacy() -> f32 {
+    crate::scene::Output::DEFAULT_EFFICACY
+}
+
+/// The whole file.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "Scene", deny_unknown_fields)]
+pub(super) struct SceneV1 {
+    format: u32,
+    name: String,
+    #[serde(default)]
+    description: String,
+    camera: CameraV1,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    room: Option<RoomV1>,
+    #[serde(default)]
+    objects: Vec<ObjectV1>,
+    #[serde(default)]
+    lights: Vec<LightV1>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "Camera", deny_unknown_fields)]
+struct CameraV1 {
+    position: Triple,
+    aim: AimV1,
+    #[serde(default, skip_serializing_if = "is")]
+    roll_deg: f32,
+    #[serde(default)]
+    sensor: SensorV1,
+    #[serde(default)]
+    orientation: OrientationV1,
+    focal_length_mm: f32,
+    f_number: f32,
+    shutter_s: f32,
+    iso: f32,
+    white_balance_k: f32,
+    #[serde(default, skip_serializing_if = "is")]
+    focus: FocusV1,
+    #[serde(default, skip_serializing_if = "is")]
+    depth_of_field: bool,
+    #[serde(default = "usual_meter", skip_serializing_if = "is_usual_meter")]
+    meter_constant: f32,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Sensor", deny_unknown_fields)]
+enum SensorV1 {
+    #[default]
+    FullFrame,
+    ApsC,
+    MicroFourThirds,
+    Medium44x33,
+    Medium54x40,
+    Custom {
+        width_mm: f32,
+        height_mm: f32,
+    },
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Orientation")]
+enum OrientationV1 {
+    #[default]
+    Landscape,
+    Portrait,
+}
+
+/// What the lens is focused on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Focus", deny_unknown_fields)]
+enum FocusV1 {
+    #[default]
+    OnAim,
+    OnObject {
+        name: String,
+        #[serde(default, skip_serializing_if = "is")]
+        offset: Triple,
+    },
+    Distance(f32),
+}
+
+/// Where a camera or a light looks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Aim", deny_unknown_fields)]
+enum AimV1 {
+    Point(f32, f32, f32),
+    Object {
+        name: String,
+        #[serde(default, skip_serializing_if = "is")]
+        offset: Triple,
+    },
+    Angles {
+        yaw_deg: f32,
+        pitch_deg: f32,
+    },
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "Room", deny_unknown_fields)]
+struct RoomV1 {
+    size_m: Triple,
+    floor: MaterialV1,
+    walls: MaterialV1,
+    ceiling: MaterialV1,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "Object", deny_unknown_fields)]
+struct ObjectV1 {
+    name: String,
+    shape: ShapeV1,
+    #[serde(default)]
+    position: Triple,
+    #[serde(default, skip_serializing_if = "is")]
+    rotation_deg: Triple,
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    scale: Triple,
+    material: MaterialV1,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    part_materials: Vec<PartMaterialV1>,
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    visible: bool,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "PartMaterial", deny_unknown_fields)]
+struct PartMaterialV1 {
+    part: String,
+    material: MaterialV1,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename = "Shape", deny_unknown_fields)]
+enum ShapeV1 {
+    MeshFile { path: String },
+    Mannequin { figure: FigureV1, pose: PoseV1 },
+    Plane { width_m: f32, depth_m: f32 },
+    Box { size_m: Triple },
+    Sphere { radius_m: f32 },
+    Cylinder { radius_m: f32, height_m: f32 },
+    Sweep { width_m: f32, height_m: f32, depth_m: f32, radius_m: f32 },
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename = "Figure")]
+enum FigureV1 {
+    Woman,
+    Man,
+    Child,
+    Bust,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename = "Pose")]
+enum PoseV1 {
+    Standing,
+    Contrapposto,
+    Seated,
+    HeadTurned,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "Light", deny_unknown_fields)]
+struct LightV1 {
+    name: String,
+    role: RoleV1,
+    #[serde(default)]
+    position: Triple,
+    aim: AimV1,
+    #[serde(default, skip_serializing_if = "is")]
+    roll_deg: f32,
+    emitter: EmitterV1,
+    power: PowerV1,
+    color: ColorV1,
+    #[serde(default, skip_serializing_if = "is")]
+    gel: GelV1,
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    on: bool,
+    #[serde(default, skip_serializing_if = "is")]
+    visible_to_camera: bool,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename = "Role")]
+enum RoleV1 {
+    Key,
+    Fill,
+    Rim,
+    Hair,
+    Background,
+    Accent,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename = "Emitter", deny_unknown_fields)]
+enum EmitterV1 {
+    Point,
+    Sphere { radius_m: f32 },
+    Spot { inner_deg: f32, outer_deg: f32 },
+    RectPanel { width_m: f32, height_m: f32 },
+    RoundPanel { diameter_m: f32 },
+    Sun { angular_diameter_deg: f32 },
+    Surround,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename = "Power", deny_unknown_fields)]
+struct PowerV1 {
+    output: OutputV1,
+    #[serde(default, skip_serializing_if = "is")]
+    dial_stops: f32,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename = "Output", deny_unknown_fields)]
+enum OutputV1 {
+    Lumens(f32),
+    Candela(f32),
+    LuxAt {
+        lux: f32,
+        distance_m: f32,
+    },
+    Lux(f32),
+    FlashWs {
+        energy_ws: f32,
+        #[serde(default = "usual_efficacy")]
+        efficacy_lm_s_per_ws: f32,
+    },
+    FlashGuideNumber(f32),
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename = "Color")]
+enum ColorV1 {
+    Kelvin(f32),
+    Rgb(f32, f32, f32),
+}
+
+/// `NoGel`, because `None` means an absent value in RON.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Gel")]
+enum GelV1 {
+    #[default]
+    NoGel,
+    Mired(f32),
+    Tint(f32, f32, f32),
+}

@@ -1,0 +1,64 @@
+//! Textures: PNG and JPEG through `image`, with limits.
+
+use super::error::AssetError;
+use super::obj::read_limited;
+use crate::scene::Texture;
+use std::io::Cursor;
+use std::path::Path;
+
+/// Largest texture file, bytes.
+const FILE_LIMIT_BYTES: u64 = 512 << 20;
+/// Most pixels along a side.
+const SIDE_LIMIT: u32 = 16_384;
+/// Most memory that decoding may take, bytes.
+const MEMORY_LIMIT_BYTES: u64 = 1 << 30;
+
+/// Loads a picture file as 8-bit sRGB.
+pub(super) fn load(path: &Path) -> Result<Texture, AssetError> {
+    let bytes = read_limited(path, FILE_LIMIT_BYTES)?;
+    let bad = |message: String| AssetError::BadTexture { message, path: path.to_owned() };
+    let mut reader = image::ImageReader::new(Cursor::new(bytes))
+        .with_guessed_format()
+        .map_err(|source| AssetError::Read { source, path: path.to_owned() })?;
+    let mut limits = image::Limits::default();
+    limits.max_image_width = Some(SIDE_LIMIT);
+    limits.max_image_height = Some(SIDE_LIMIT);
+    limits.max_alloc = Some(MEMORY_LIMIT_BYTES);
+    reader.limits(limits);
+    let picture = reader.decode().map_err(|error| bad(error.to_string()))?.into_rgb8();
+    let (width, height) = picture.dimensions();
+    if width == 0 || height == 0 {
+        return Err(bad("it has no pixels".to_owned()));
+    }
+    let rgb = picture.pixels().map(|pixel| pixel.0).collect();
+    Ok(Texture { width, height, rgb })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_png_is_read_as_it_was_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let pixels = image::RgbImage::from_fn(3, 2, |x, y| image::Rgb([x as u8 * 50, y as u8 * 100, 7]));
+        pixels.save(&path).unwrap();
+        let texture = load(&path).unwrap();
+        assert_eq!((texture.width, texture.height), (3, 2));
+        assert_eq!(texture.rgb[5], [100, 100, 7]);
+    }
+
+    #[test]
+    fn junk_is_an_error_that_names_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        std::fs::write(&path, b"not a picture").unwrap();
+        assert!(load(&path).unwrap_err().to_string().ends_with("a.png"));
+        // A PNG header that promises more pixels than are allowed.
+        let mut header = b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\xff\xff\xff\0\xff\xff\xff\x08\x02\0\0\0".to_vec();
+        header.extend([0; 16]);
+        std::fs::write(&path, header).unwrap();
+        assert!(matches!(load(&path), Err(AssetError::BadTexture { .. })));
+    }
+}

@@ -1,0 +1,108 @@
+//! The checks of single values that all others are made of.
+
+use super::{Finding, Severity};
+use glam::Vec3;
+
+/// The values that a field may have.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Allowed {
+    low: f32,
+    high: f32,
+    unit: &'static str,
+}
+
+impl Allowed {
+    /// From `low` to `high`, both allowed. The unit is for the message.
+    pub const fn between(low: f32, high: f32, unit: &'static str) -> Self {
+        Allowed { low, high, unit }
+    }
+
+    /// What is wrong with `value`, if anything. Phrased so that NaN is not inside.
+    fn complaint(self, value: f32) -> Option<String> {
+        let Allowed { low, high, unit } = self;
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        if !value.is_finite() {
+            Some(format!("{value} is no usable number; it must be from {low} to {high}{unit}"))
+        } else if value >= low && value <= high {
+            None
+        } else {
+            Some(format!("{value}{unit} is not allowed; it must be from {low} to {high}{unit}"))
+        }
+    }
+}
+
+/// Collects findings about the thing whose place it was told.
+#[derive(Debug, Default)]
+pub(super) struct Check {
+    findings: Vec<Finding>,
+    /// What comes before the field: `camera.` or `lights[2] "Key" `.
+    place: String,
+}
+
+impl Check {
+    /// Turns to another thing.
+    pub fn enter(&mut self, place: String) {
+        self.place = place;
+    }
+
+    pub fn has_findings(&self) -> bool {
+        !self.findings.is_empty()
+    }
+
+    pub fn finish(self) -> Vec<Finding> {
+        self.findings
+    }
+
+    pub fn error(&mut self, field: &str, message: String) {
+        self.push(Severity::Error, field, message);
+    }
+
+    pub fn warning(&mut self, field: &str, message: String) {
+        self.push(Severity::Warning, field, message);
+    }
+
+    fn push(&mut self, severity: Severity, field: &str, message: String) {
+        self.findings.push(Finding {
+            severity,
+            place: format!("{}{field}", self.place).trim_end().to_owned(),
+            message,
+        });
+    }
+
+    pub fn number(&mut self, field: &str, value: f32, allowed: Allowed) {
+        if let Some(complaint) = allowed.complaint(value) {
+            self.error(field, complaint);
+        }
+    }
+
+    /// Every component; the message names the first that is wrong.
+    pub fn vector(&mut self, field: &str, value: Vec3, allowed: Allowed) {
+        self.triple(field, ["x", "y", "z"], value.to_array(), allowed);
+    }
+
+    /// Every channel of a colour.
+    pub fn color(&mut self, field: &str, value: [f32; 3], allowed: Allowed) {
+        self.triple(field, ["red", "green", "blue"], value, allowed);
+    }
+
+    fn triple(&mut self, field: &str, names: [&str; 3], values: [f32; 3], allowed: Allowed) {
+        let complaint = names.iter().zip(values).find_map(|(name, v)| allowed.complaint(v).map(|c| (name, c)));
+        if let Some((name, complaint)) = complaint {
+            self.error(field, format!("{name} {complaint}"));
+        }
+    }
+
+    pub fn text(&mut self, field: &str, value: &str, limit: usize) {
+        let length = value.chars().count();
+        if length > limit {
+            self.error(field, format!("{length} characters are too many; at most {limit} are allowed"));
+        }
+    }
+
+    /// A path to a file of the scene: relative, `/` between folders, never out of the scene's folder.
+    pub fn asset_path(&mut self, field: &str, path: &str) {
+        if let Some(reason) = super::super::assets::path_complaint(path) {
+            self.error(field, format!("{path:?}: {reason}"));
+        }
+    }
+}

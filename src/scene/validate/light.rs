@@ -1,0 +1,96 @@
+//! Lights: emitter, power, colour, and which of them go together.
+
+use super::check::{Allowed, Check};
+use super::{PLACE, SIZE, TURN, check_aim};
+use crate::scene::{ColorSource, Emitter, Gel, Light, Output, Power, Scene};
+
+const AMOUNT: Allowed = Allowed::between(0.0, 1e9, "");
+/// The brightest that light of one watt can be, lm/W.
+const EFFICACY: Allowed = Allowed::between(0.0, 683.0, "lm s per Ws");
+
+pub(super) fn check_light(scene: &Scene, light: &Light, check: &mut Check) {
+    check.vector("position", light.position, PLACE);
+    let has_direction = !matches!(light.emitter, Emitter::Point | Emitter::Sphere { .. } | Emitter::Surround);
+    check_aim(scene, &light.aim, light.position, has_direction, check);
+    check.number("roll_deg", light.roll_deg, TURN);
+    check_emitter(&light.emitter, check);
+    check_power(&light.power, check);
+    check_pairing(light, check);
+    match light.color.source {
+        ColorSource::Kelvin(kelvin) => check.number("color[0]", kelvin, Allowed::between(1000.0, 25_000.0, "K")),
+        ColorSource::Rgb(rgb) => check_light_color("color", rgb, Allowed::between(0.0, 1000.0, ""), check),
+    }
+    match light.color.gel {
+        Gel::None => {}
+        Gel::Mired(shift) => check.number("gel[0]", shift, Allowed::between(-1000.0, 1000.0, "mired")),
+        Gel::Tint(rgb) => check_light_color("gel", rgb, Allowed::between(0.0, 1.0, ""), check),
+    }
+}
+
+fn check_light_color(field: &str, rgb: [f32; 3], allowed: Allowed, check: &mut Check) {
+    check.color(field, rgb, allowed);
+    if rgb == [0.0; 3] {
+        check.error(field, "black is no colour of light; one channel must be above 0".to_owned());
+    }
+}
+
+fn check_emitter(emitter: &Emitter, check: &mut Check) {
+    match *emitter {
+        Emitter::Point | Emitter::Surround => {}
+        Emitter::Sphere { radius_m } => check.number("emitter.radius_m", radius_m, SIZE),
+        Emitter::Spot { inner_deg, outer_deg } => {
+            check.number("emitter.inner_deg", inner_deg, Allowed::between(0.0, 180.0, "degrees"));
+            check.number("emitter.outer_deg", outer_deg, Allowed::between(0.1, 180.0, "degrees"));
+            if inner_deg > outer_deg {
+                let message = format!("the even cone of {inner_deg} degrees is wider than the whole of {outer_deg}");
+                check.error("emitter.inner_deg", message);
+            }
+        }
+        Emitter::RectPanel { width_m, height_m } => {
+            check.number("emitter.width_m", width_m, SIZE);
+            check.number("emitter.height_m", height_m, SIZE);
+        }
+        Emitter::RoundPanel { diameter_m } => check.number("emitter.diameter_m", diameter_m, SIZE),
+        Emitter::Sun { angular_diameter_deg } => {
+            check.number("emitter.angular_diameter_deg", angular_diameter_deg, Allowed::between(0.0, 90.0, "degrees"));
+        }
+    }
+}
+
+fn check_power(power: &Power, check: &mut Check) {
+    match power.output {
+        Output::Lumens(amount) | Output::Candela(amount) | Output::Lux(amount) => {
+            check.number("power.output[0]", amount, AMOUNT);
+        }
+        Output::LuxAt { lux, distance_m } => {
+            check.number("power.output.lux", lux, AMOUNT);
+            check.number("power.output.distance_m", distance_m, Allowed::between(1e-3, 1e4, "m"));
+        }
+        Output::FlashWs { energy_ws, efficacy_lm_s_per_ws } => {
+            check.number("power.output.energy_ws", energy_ws, Allowed::between(0.0, 1e6, "Ws"));
+            check.number("power.output.efficacy_lm_s_per_ws", efficacy_lm_s_per_ws, EFFICACY);
+        }
+        Output::FlashGuideNumber(guide_number) => {
+            check.number("power.output[0]", guide_number, Allowed::between(0.0, 1e4, "m"));
+        }
+    }
+    check.number("power.dial_stops", power.dial_stops, Allowed::between(-20.0, 10.0, "stops"));
+}
+
+/// Sun and surround are stated in lux; everything that has a place is stated in what it gives off.
+fn check_pairing(light: &Light, check: &mut Check) {
+    let kind = light.emitter.label();
+    match (light.emitter.is_infinite(), light.power.output) {
+        (true, Output::Lux(_)) => {}
+        (true, _) => {
+            let message = format!("a {} shines from infinity and is stated as Lux(...)", kind.to_lowercase());
+            check.error("power.output", message);
+        }
+        (false, Output::Lux(_)) => {
+            let message =
+                format!("Lux is for sun and surround; a {} needs its distance, too: LuxAt", kind.to_lowercase());
+            check.error("power.output", message);
+        }
+        (false, _) => {}
+    }
+}

@@ -1,0 +1,25 @@
+//! Surfaces.
+
+use super::check::{Allowed, Check};
+use crate::scene::Material;
+
+/// Reflectances lie in [0, 1): a surface that gives back everything keeps light in a closed room for ever.
+const REFLECTANCE: Allowed = Allowed::between(0.0, 0.999, "");
+const SHARE: Allowed = Allowed::between(0.0, 1.0, "");
+
+pub(super) fn check_material(field: &str, material: &Material, check: &mut Check) {
+    let name = |part: &str| format!("{field}.{part}");
+    check.color(&name("base_color"), material.base_color, REFLECTANCE);
+    if let Some(path) = &material.base_color_texture {
+        check.asset_path(&name("base_color_texture"), path);
+    }
+    check.number(&name("metallic"), material.metallic, SHARE);
+    check.number(&name("roughness"), material.roughness, SHARE);
+    check.number(&name("ior"), material.ior, Allowed::between(1.0, 4.0, ""));
+    check.number(&name("transmission"), material.transmission, SHARE);
+    check.color(&name("absorption_per_m"), material.absorption_per_m, Allowed::between(0.0, 1e6, "per m"));
+    check.color(&name("emission_cd_m2"), material.emission_cd_m2, Allowed::between(0.0, 1e9, "cd/m2"));
+    if material.metallic > 0.0 && material.transmission > 0.0 {
+        check.warning(&name("transmission"), "a metal is not transparent; its share of metal stays opaque".to_owned());
+    }
+}

@@ -1,0 +1,94 @@
+//! Things that stand where they were hardly meant to: a light inside a body, a camera behind the wall.
+
+use super::Finding;
+use crate::scene::{Assets, Object, Room, Scene, Shape};
+use glam::{Affine3A, Vec2, Vec3};
+
+/// Warnings about where camera and lights stand. They need the meshes; those that are missing are left out.
+pub fn placement(scene: &Scene, assets: &Assets) -> Vec<Finding> {
+    let bodies: Vec<Body> = scene.objects.iter().filter(|o| o.visible).filter_map(|o| Body::of(o, assets)).collect();
+    let mut findings = Vec::new();
+    let mut warn = |place: &str, message: String| findings.push(Finding::warning(place, message));
+
+    let camera = scene.camera.position;
+    if scene.room.as_ref().is_some_and(|room| is_outside(room, camera)) {
+        warn("camera.position", format!("{camera} is outside the room; a wall is in the way"));
+    }
+    if let Some(body) = bodies.iter().find(|body| body.holds(camera)) {
+        warn("camera.position", format!("{camera} is inside {:?}", body.object.name));
+    }
+    if !bodies.is_empty() && !bodies.iter().any(|body| is_framed(scene, body)) {
+        warn("camera.aim", "the camera looks past everything".to_owned());
+    }
+    for (index, light) in scene.lights.iter().enumerate().filter(|(_, l)| l.on && !l.emitter.is_infinite()) {
+        let place = format!("lights[{index}] {:?} position", light.name);
+        if scene.room.as_ref().is_some_and(|room| is_outside(room, light.position)) {
+            warn(&place, format!("{} is outside the room; a wall is in the way", light.position));
+        }
+        if let Some(body) = bodies.iter().find(|body| body.holds(light.position)) {
+            warn(&place, format!("{} is inside {:?}", light.position, body.object.name));
+        }
+    }
+    findings
+}
+
+fn is_outside(room: &Room, point: Vec3) -> bool {
+    let half = room.size_m * 0.5;
+    point.x.abs() > half.x || point.z.abs() > half.z || point.y < 0.0 || point.y > room.size_m.y
+}
+
+/// Whether some of a body's bounding box is in the picture, by its corners and its middle.
+fn is_framed(scene: &Scene, body: &Body) -> bool {
+    let frame = scene.camera_frame(scene.camera.aspect());
+    let inside = |p: Vec2| p.cmpge(Vec2::ZERO).all() && p.cmple(Vec2::ONE).all();
+    // Thirds of the box: a backdrop may fill the frame with all its corners outside.
+    let steps = [0.0, 1.0 / 3.0, 0.5, 2.0 / 3.0, 1.0];
+    let points = steps.iter().flat_map(|&x| steps.iter().flat_map(move |&y| steps.map(|z| Vec3::new(x, y, z))));
+    body.holds(frame.position())
+        || points
+            .map(|t| body.world_from_object.transform_point3(body.low + (body.high - body.low) * t))
+            .any(|point| frame.project(point).is_some_and(inside))
+}
+
+/// An object's box in its own space.
+struct Body<'a> {
+    object: &'a Object,
+    world_from_object: Affine3A,
+    low: Vec3,
+    high: Vec3,
+}
+
+impl<'a> Body<'a> {
+    fn of(object: &'a Object, assets: &Assets) -> Option<Self> {
+        let (low, high) = match object.shape {
+            Shape::MeshFile { .. } | Shape::Mannequin(_) => assets.mesh_of(&object.shape)?.bounds(),
+            Shape::Plane { width_m, depth_m } => centred(Vec3::new(width_m, 0.0, depth_m)),
+            Shape::Box { size_m } => centred(size_m),
+            Shape::Sphere { radius_m } => centred(Vec3::splat(2.0 * radius_m)),
+            Shape::Cylinder { radius_m, height_m } => centred(Vec3::new(2.0 * radius_m, height_m, 2.0 * radius_m)),
+            Shape::Sweep { width_m, height_m, depth_m, .. } => {
+                (Vec3::new(-0.5 * width_m, 0.0, 0.0), Vec3::new(0.5 * width_m, height_m, depth_m))
+            }
+        };
+        Some(Body { object, world_from_object: object.transform.world_from_object(), low, high })
+    }
+
+    /// Whether a point is inside, for the shapes that have an inside; files may be hollow, and glass is there to be lit
+    /// from within.
+    fn holds(&self, point: Vec3) -> bool {
+        let p = self.world_from_object.inverse().transform_point3(point);
+        let in_box = p.cmpgt(self.low).all() && p.cmplt(self.high).all();
+        let across = Vec2::new(p.x, p.z).length();
+        self.object.material.transmission == 0.0
+            && match self.object.shape {
+                Shape::Box { .. } | Shape::Mannequin(_) => in_box,
+                Shape::Sphere { radius_m } => p.length() < radius_m,
+                Shape::Cylinder { radius_m, .. } => in_box && across < radius_m,
+                Shape::MeshFile { .. } | Shape::Plane { .. } | Shape::Sweep { .. } => false,
+            }
+    }
+}
+
+fn centred(size: Vec3) -> (Vec3, Vec3) {
+    (-0.5 * size, 0.5 * size)
+}

@@ -1,0 +1,162 @@
+use super::*;
+use crate::scene::{
+    Assets, Camera, ColorSource, Emitter, Gel, Light, LightColor, LightId, Material, ObjectId, Output, Power, Role,
+    Transform,
+};
+
+fn object(name: &str) -> Object {
+    Object {
+        id: ObjectId(0),
+        name: name.to_owned(),
+        transform: Transform::default(),
+        shape: Shape::Box { size_m: Vec3::ONE },
+        material: Material::default(),
+        part_materials: Vec::new(),
+        visible: true,
+    }
+}
+
+fn light(name: &str) -> Light {
+    Light {
+        id: LightId(0),
+        name: name.to_owned(),
+        role: Role::Key,
+        position: Vec3::new(1.0, 2.0, 1.0),
+        aim: Aim::Point(Vec3::ZERO),
+        roll_deg: 0.0,
+        emitter: Emitter::RectPanel { width_m: 0.6, height_m: 0.9 },
+        power: Power { output: Output::Lumens(1000.0), dial_stops: 0.0 },
+        color: LightColor::default(),
+        on: true,
+        visible_to_camera: false,
+    }
+}
+
+fn good() -> Scene {
+    let camera = Camera { aim: Aim::Point(Vec3::ZERO), ..Camera::default() };
+    Scene { camera, objects: vec![object("Box")], lights: vec![light("Key")], ..Scene::default() }
+}
+
+/// The one finding of a scene that was good before `spoil`.
+fn finding(spoil: impl FnOnce(&mut Scene)) -> Finding {
+    let mut scene = good();
+    spoil(&mut scene);
+    let mut findings = validate(&scene);
+    if findings.iter().all(|f| f.severity == Severity::Warning) {
+        findings.extend(placement(&scene, &Assets::default()));
+    }
+    assert_eq!(findings.len(), 1, "{findings:#?}");
+    findings[0].clone()
+}
+
+#[test]
+fn a_good_scene_has_no_findings() {
+    assert_eq!(validate(&good()), []);
+    assert_eq!(placement(&good(), &Assets::default()), []);
+}
+
+#[test]
+fn errors_name_the_place_and_the_value() {
+    let found = finding(|s| s.lights[0].power.dial_stops = 400.0);
+    assert_eq!(found.severity, Severity::Error);
+    assert_eq!(
+        found.to_string(),
+        "lights[0] \"Key\" power.dial_stops: 400 stops is not allowed; it must be from -20 to 10 stops"
+    );
+    let found = finding(|s| s.objects[0].transform.position.y = f32::NAN);
+    assert_eq!(
+        found.to_string(),
+        "objects[0] \"Box\" position: y NaN is no usable number; it must be from -1000000 to 1000000 m"
+    );
+}
+
+#[test]
+fn every_number_has_a_bound() {
+    type Spoil = (&'static str, fn(&mut Scene));
+    let cases: &[Spoil] = &[
+        ("camera.focal_length_mm", |s| s.camera.focal_length_mm = 0.0),
+        ("camera.f_number", |s| s.camera.f_number = -8.0),
+        ("camera.iso", |s| s.camera.iso = f32::INFINITY),
+        ("camera.shutter_s", |s| s.camera.shutter_s = f32::NAN),
+        ("camera.sensor.width_mm", |s| s.camera.sensor = Sensor::Custom { width_mm: -1.0, height_mm: 24.0 }),
+        ("camera.focus", |s| s.camera.focus = Focus::OnObject { object: ObjectId(9), offset: Vec3::ZERO }),
+        ("camera.focus[0]", |s| s.camera.focus = Focus::Distance(0.0)),
+        ("room.size_m", |s| s.room = Some(Room { size_m: Vec3::new(9.0, -3.0, 9.0), ..Room::default() })),
+        ("room.floor.roughness", |s| {
+            let mut room = Room::default();
+            room.floor.roughness = 1.5;
+            s.room = Some(room);
+        }),
+        ("objects[0] \"Box\" shape.size_m", |s| s.objects[0].shape = Shape::Box { size_m: -Vec3::ONE }),
+        ("objects[0] \"Box\" scale", |s| s.objects[0].transform.scale.x = 0.0),
+        ("objects[0] \"Box\" material.base_color", |s| s.objects[0].material.base_color = [0.5, 1.0, 0.5]),
+        ("objects[0] \"Box\" material.ior", |s| s.objects[0].material.ior = 0.9),
+        ("objects[0] \"Box\" material.base_color_texture", |s| {
+            s.objects[0].material.base_color_texture = Some("../secret.png".to_owned());
+        }),
+        ("lights[0] \"Key\" emitter.inner_deg", |s| {
+            s.lights[0].emitter = Emitter::Spot { inner_deg: 50.0, outer_deg: 30.0 };
+        }),
+        ("lights[0] \"Key\" emitter.width_m", |s| {
+            s.lights[0].emitter = Emitter::RectPanel { width_m: 0.0, height_m: 1.0 };
+        }),
+        ("lights[0] \"Key\" power.output[0]", |s| s.lights[0].power.output = Output::Lumens(-1.0)),
+        ("lights[0] \"Key\" power.output", |s| s.lights[0].power.output = Output::Lux(100.0)),
+        ("lights[0] \"Key\" power.output", |s| s.lights[0].emitter = Emitter::Surround),
+        ("lights[0] \"Key\" color[0]", |s| s.lights[0].color.source = ColorSource::Kelvin(10.0)),
+        ("lights[0] \"Key\" color", |s| s.lights[0].color.source = ColorSource::Rgb([0.0; 3])),
+        ("lights[0] \"Key\" gel", |s| s.lights[0].color.gel = Gel::Tint([1.0, 2.0, 0.0])),
+        ("lights[0] \"Key\" aim", |s| s.lights[0].aim = Aim::Point(s.lights[0].position)),
+        ("lights[0] \"Key\" aim", |s| s.lights[0].aim = Aim::Object { object: ObjectId(7), offset: Vec3::ZERO }),
+        ("lights[0] \"Key\" name", |s| s.lights[0].name = "Key".repeat(100)),
+    ];
+    for (place, spoil) in cases {
+        let mut scene = good();
+        spoil(&mut scene);
+        let errors: Vec<Finding> = validate(&scene).into_iter().filter(|f| f.severity == Severity::Error).collect();
+        assert_eq!(errors.len(), 1, "{place}: {errors:#?}");
+        let found = errors[0].place.replace(&"Key".repeat(100), "Key");
+        assert_eq!(&found, place, "{errors:#?}");
+    }
+}
+
+#[test]
+fn equal_names_clash_also_between_objects_and_lights() {
+    assert!(finding(|s| s.lights[0].name = "Box".to_owned()).is_name_clash());
+}
+
+#[test]
+fn odd_scenes_are_warned_of() {
+    type Odd = (&'static str, fn(&mut Scene));
+    let cases: &[Odd] = &[
+        ("there is no light", |s| s.lights.clear()),
+        ("all lights are off", |s| s.lights[0].on = false),
+        ("gives 0", |s| s.lights[0].power.output = Output::Lumens(0.0)),
+        ("looks past everything", |s| s.camera.aim = Aim::Point(Vec3::new(0.0, 1.5, 9.0))),
+        ("is inside \"Box\"", |s| s.lights[0].position = Vec3::splat(0.2)),
+        ("is outside the room", |s| {
+            s.room = Some(Room::default());
+            s.lights[0].position.x = 8.0;
+        }),
+    ];
+    for (words, spoil) in cases {
+        let found = finding(spoil);
+        assert_eq!(found.severity, Severity::Warning);
+        assert!(found.message.contains(words), "{found}");
+    }
+}
+
+#[test]
+fn a_camera_inside_a_thing_is_noticed() {
+    let found = finding(|s| {
+        s.camera.position = Vec3::splat(0.1);
+        s.camera.aim = Aim::Point(Vec3::NEG_Z);
+    });
+    assert_eq!(found.place, "camera.position");
+}
+
+#[test]
+fn too_many_things_are_refused_before_each_is_looked_at() {
+    let found = finding(|s| s.lights = vec![light("Key"); LIST_LIMIT + 1]);
+    assert_eq!(found.message, "10001 are too many; at most 10000 fit in a scene");
+}
