@@ -1,1 +1,24 @@
-//! The tracer.
+//! The ray tracer: `prepare` a scene, `render` it wave by wave onto a [`Film`], develop the film.
+//!
+//! No clock, no entropy, no globals. A rendered value is a function of scene, pixel, sample, dimension and seed: the
+//! same bits for any number of threads.
+
+mod aggregate;
+mod bsdf;
+mod bvh;
+mod film;
+mod geometry;
+mod integrator;
+mod lens;
+mod lights;
+mod plan;
+mod prepare;
+mod sampler;
+mod schedule;
+mod texture;
+mod triangle;
+
+pub use film::{Film, Layer, MAX_LIGHT_LAYERS};
+pub use plan::RenderPlan;
+pub use prepare::{PrepareError, RenderScene, prepare};
+pub use schedule::{Control, Method, Settings, primary_objects, render};

@@ -1,0 +1,92 @@
+//! The GGX microfacet distribution with Smith's height-correlated masking (Walter et al. 2007, Heitz 2014), in a frame
+//! whose +Z is the normal. Isotropic; `alpha` is the square of the roughness.
+
+use crate::math::safe_sqrt;
+use glam::{Vec2, Vec3};
+use std::f32::consts::{PI, TAU};
+
+/// Below this a surface is a perfect mirror: single floats no longer resolve the lobe.
+pub const MIRROR_ALPHA: f32 = 1e-3;
+
+/// Density of facets with normal `m`, 1/sr.
+pub fn distribution(m: Vec3, alpha: f32) -> f32 {
+    let a2 = alpha * alpha;
+    // x2 + y2 keeps the digits that 1 - z2 loses near the pole.
+    let sin2 = m.x * m.x + m.y * m.y;
+    let d = m.z * m.z * a2 + sin2;
+    if m.z > 0.0 && d > 0.0 { a2 / (PI * d * d) } else { 0.0 }
+}
+
+/// Smith's Lambda.
+fn lambda(w: Vec3, alpha: f32) -> f32 {
+    let cos2 = w.z * w.z;
+    let tan2 = (1.0 - cos2).max(0.0) / cos2.max(f32::MIN_POSITIVE);
+    0.5 * (safe_sqrt(1.0 + alpha * alpha * tan2) - 1.0)
+}
+
+/// Share of facets that `w` sees.
+pub fn masking(w: Vec3, alpha: f32) -> f32 {
+    1.0 / (1.0 + lambda(w, alpha))
+}
+
+/// Share of facets that both directions see, heights correlated.
+pub fn masking_shadowing(wo: Vec3, wi: Vec3, alpha: f32) -> f32 {
+    1.0 / (1.0 + lambda(wo, alpha) + lambda(wi, alpha))
+}
+
+/// A facet normal among those that `wo` sees (Dupuy and Benyoub 2023, spherical caps).
+pub fn sample_visible_normal(wo: Vec3, alpha: f32, u: Vec2) -> Vec3 {
+    let stretched = Vec3::new(wo.x * alpha, wo.y * alpha, wo.z).normalize_or(Vec3::Z);
+    let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
+    let radius = safe_sqrt(1.0 - z * z);
+    let (sin, cos) = (TAU * u.x).sin_cos();
+    let h = Vec3::new(radius * cos, radius * sin, z) + stretched;
+    Vec3::new(h.x * alpha, h.y * alpha, h.z.max(0.0)).normalize_or(Vec3::Z)
+}
+
+/// Density of the reflected direction when the facet normal comes from [`sample_visible_normal`], 1/sr.
+pub fn reflection_pdf(wo: Vec3, m: Vec3, alpha: f32) -> f32 {
+    masking(wo, alpha) * distribution(m, alpha) / (4.0 * wo.z.max(f32::MIN_POSITIVE))
+}
+
+/// The mirrored direction about a facet normal.
+pub fn reflect(wo: Vec3, m: Vec3) -> Vec3 {
+    2.0 * wo.dot(m) * m - wo
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn facets_project_to_the_whole_surface() {
+        // Integral of D(m) cos(m) over the hemisphere is 1; tan of the angle is substituted to follow the peak.
+        for alpha in [0.01_f32, 0.1, 0.5, 1.0] {
+            let steps = 4000;
+            let mut sum = 0.0_f64;
+            for i in 0..steps {
+                let s = (f64::from(i) + 0.5) / f64::from(steps);
+                let tan = f64::from(alpha) * (s / (1.0 - s)).sqrt();
+                let theta = tan.atan();
+                let m = Vec3::new(theta.sin() as f32, 0.0, theta.cos() as f32);
+                // d(tan2)/ds = alpha2 / (1 - s)2, dw cos = pi cos4 d(tan2).
+                let jacobian = f64::from(alpha * alpha) / (1.0 - s).powi(2);
+                sum += f64::from(distribution(m, alpha)) * std::f64::consts::PI * theta.cos().powi(4) * jacobian;
+            }
+            assert!((sum / f64::from(steps) - 1.0).abs() < 1e-3, "alpha {alpha}: {}", sum / f64::from(steps));
+        }
+    }
+
+    #[test]
+    fn sampled_facets_face_the_viewer() {
+        for alpha in [0.001, 0.3, 1.0] {
+            for wo in [Vec3::Z, Vec3::new(0.999, 0.0, 0.0447), Vec3::new(0.6, 0.0, 0.8)] {
+                for i in 0..100 {
+                    let u = Vec2::new((i % 10) as f32 / 10.0, (i / 10) as f32 / 10.0);
+                    let m = sample_visible_normal(wo, alpha, u);
+                    assert!(m.is_finite() && m.z >= 0.0 && m.dot(wo) > -1e-5);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Bounding volume hierarchies: built as binary trees by obvhs, collapsed to eight children a node, traversed by our
+//! own code. One traversal serves triangles in a mesh and instances in the studio.
+
+mod build;
+mod traverse;
+mod wide;
+
+pub use build::build;
+pub use traverse::{Slabs, Stack};
+pub use wide::WideBvh;

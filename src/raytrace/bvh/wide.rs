@@ -1,0 +1,58 @@
+//! The tree in memory: nodes of eight boxes as structures of arrays, four cache lines each.
+
+use glam::Vec3;
+
+/// Children of a node.
+pub const WIDTH: usize = 8;
+
+/// Marks a child that is a leaf; the rest of the bits is the leaf's number.
+pub const LEAF: u32 = 1 << 31;
+
+/// Eight child boxes. Unused slots have an inverted box, which no ray hits.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Node {
+    /// `bounds[0]` lower and `bounds[1]` upper corners, by axis and child.
+    pub bounds: [[[f32; WIDTH]; 3]; 2],
+    /// Node index, or `LEAF | leaf index`.
+    pub children: [u32; WIDTH],
+}
+
+impl Node {
+    /// A node without children.
+    pub const EMPTY: Node =
+        Node { bounds: [[[f32::INFINITY; WIDTH]; 3], [[f32::NEG_INFINITY; WIDTH]; 3]], children: [LEAF; WIDTH] };
+
+    /// Puts a child into a slot.
+    pub fn set(&mut self, slot: usize, low: Vec3, high: Vec3, child: u32) {
+        for axis in 0..3 {
+            self.bounds[0][axis][slot] = low[axis];
+            self.bounds[1][axis][slot] = high[axis];
+        }
+        self.children[slot] = child;
+    }
+}
+
+/// An eight-wide tree. Node 0 is the root.
+#[derive(Clone, Debug, Default)]
+pub struct WideBvh {
+    pub(super) nodes: Vec<Node>,
+    /// Where each leaf's run in `primitives` starts, and one end mark.
+    pub(super) leaf_starts: Vec<u32>,
+    pub(super) primitives: Vec<u32>,
+    /// Smallest box around everything; none when there is nothing.
+    pub bounds: Option<(Vec3, Vec3)>,
+}
+
+impl WideBvh {
+    /// Number of leaves.
+    pub fn leaf_count(&self) -> usize {
+        self.leaf_starts.len().saturating_sub(1)
+    }
+
+    /// Primitive indices of a leaf.
+    pub fn leaf(&self, leaf: u32) -> &[u32] {
+        let i = leaf as usize;
+        &self.primitives[self.leaf_starts[i] as usize..self.leaf_starts[i + 1] as usize]
+    }
+}

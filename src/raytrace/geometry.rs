@@ -1,0 +1,241 @@
+//! Meshes ready for tracing, their instances, and what a hit says about the surface.
+
+use super::bvh::{self, Slabs, Stack, WideBvh};
+use super::triangle::{LANES, Packet, Sheared, TriangleHit};
+use crate::math::{self, Ray, gamma};
+use crate::scene::Mesh;
+use glam::{Affine3A, Mat3, Vec2, Vec3};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// A mesh with its tree.
+#[derive(Debug)]
+pub struct MeshGeometry {
+    mesh: Arc<Mesh>,
+    bvh: WideBvh,
+    /// One packet a leaf.
+    packets: Vec<Packet>,
+    /// Part of each triangle; empty when there is just one.
+    part_of_triangle: Vec<u16>,
+}
+
+impl MeshGeometry {
+    /// Builds the tree over all triangles.
+    pub fn new(mesh: Arc<Mesh>) -> Self {
+        let corners = |t: usize| mesh.corners(t);
+        let boxes: Vec<(Vec3, Vec3)> = (0..mesh.triangles.len())
+            .into_par_iter()
+            .map(|t| {
+                let [a, b, c] = corners(t);
+                (a.min(b).min(c), a.max(b).max(c))
+            })
+            .collect();
+        let bvh = bvh::build(&boxes, LANES as u32);
+        let packets = (0..bvh.leaf_count() as u32)
+            .into_par_iter()
+            .map(|leaf| Packet::new(bvh.leaf(leaf).iter().map(|&t| (t, corners(t as usize)))))
+            .collect();
+        let part_of_triangle = part_of_triangle(&mesh);
+        MeshGeometry { mesh, bvh, packets, part_of_triangle }
+    }
+
+    /// The mesh itself.
+    pub fn mesh(&self) -> &Arc<Mesh> {
+        &self.mesh
+    }
+
+    /// The closest hit of a ray in object space.
+    #[inline]
+    pub fn closest(&self, ray: &Ray, stack: &mut Stack) -> Option<TriangleHit> {
+        let sheared = Sheared::new(ray.origin, ray.direction);
+        let slabs = Slabs::new(ray.origin, ray.direction);
+        let mut best = None;
+        self.bvh.traverse(&slabs, ray.t_max, stack, |leaf, t_max, _| {
+            match self.packets[leaf as usize].intersect(&sheared, t_max) {
+                Some(hit) => {
+                    best = Some(hit);
+                    hit.t
+                }
+                None => t_max,
+            }
+        });
+        best
+    }
+
+    /// Whether anything lies on the ray, in object space.
+    #[inline]
+    pub fn any(&self, ray: &Ray, stack: &mut Stack) -> bool {
+        let sheared = Sheared::new(ray.origin, ray.direction);
+        let slabs = Slabs::new(ray.origin, ray.direction);
+        let mut found = false;
+        self.bvh.traverse(&slabs, ray.t_max, stack, |leaf, t_max, _| {
+            found = self.packets[leaf as usize].intersect(&sheared, t_max).is_some();
+            if found { -1.0 } else { t_max }
+        });
+        found
+    }
+
+    /// Index of the part that a triangle belongs to.
+    fn part(&self, triangle: u32) -> usize {
+        self.part_of_triangle.get(triangle as usize).copied().unwrap_or(0).into()
+    }
+}
+
+fn part_of_triangle(mesh: &Mesh) -> Vec<u16> {
+    if mesh.parts.len() < 2 {
+        return Vec::new();
+    }
+    let mut parts = vec![0; mesh.triangles.len()];
+    for (index, part) in mesh.parts.iter().enumerate() {
+        let range = part.triangles.start as usize..(part.triangles.end as usize).min(parts.len());
+        parts[range].fill(index.min(usize::from(u16::MAX)) as u16);
+    }
+    parts
+}
+
+/// A mesh placed in the studio. All world positions of the tracer are relative to the camera, so that a studio far from
+/// the origin keeps its precision near the lens.
+#[derive(Debug)]
+pub struct Instance {
+    /// The mesh.
+    pub geometry: Arc<MeshGeometry>,
+    /// Index into the scene's objects; `u32::MAX` for the room.
+    pub object: u32,
+    /// Material of each part, as an index into the scene's material table.
+    pub materials: Vec<u32>,
+    world_from_object: Affine3A,
+    object_from_world: Affine3A,
+    /// Inverse transpose, for normals.
+    normal_matrix: Mat3,
+}
+
+impl Instance {
+    /// Places a mesh; none when the transform cannot be inverted (a scale of zero): such a thing has no volume and is
+    /// not seen.
+    pub fn new(
+        geometry: Arc<MeshGeometry>,
+        world_from_object: Affine3A,
+        object: u32,
+        materials: Vec<u32>,
+    ) -> Option<Self> {
+        let object_from_world = world_from_object.inverse();
+        let normal_matrix = Mat3::from(object_from_world.matrix3).transpose();
+        let usable = object_from_world.is_finite() && world_from_object.is_finite();
+        usable.then_some(Instance { geometry, object, materials, world_from_object, object_from_world, normal_matrix })
+    }
+
+    /// World box of the eight corners of the mesh's box, rounded outwards.
+    pub fn world_bounds(&self) -> Option<(Vec3, Vec3)> {
+        let (low, high) = self.geometry.bvh.bounds?;
+        let centre = (low + high) * 0.5;
+        let half = (high - low) * 0.5;
+        let matrix = self.world_from_object.matrix3;
+        let reach = Vec3::from(matrix.x_axis).abs() * half.x
+            + Vec3::from(matrix.y_axis).abs() * half.y
+            + Vec3::from(matrix.z_axis).abs() * half.z;
+        let middle = self.world_from_object.transform_point3(centre);
+        let slack = (middle.abs() + reach) * gamma(8);
+        Some((middle - reach - slack, middle + reach + slack))
+    }
+
+    /// The ray in object space. `t` keeps its meaning.
+    #[inline]
+    pub fn to_object(&self, ray: &Ray) -> Ray {
+        Ray {
+            origin: self.object_from_world.transform_point3(ray.origin),
+            direction: self.object_from_world.transform_vector3(ray.direction),
+            t_max: ray.t_max,
+        }
+    }
+
+    /// All about the surface at a hit, in world space.
+    pub fn surface(&self, hit: &TriangleHit) -> Surface {
+        let mesh = &*self.geometry.mesh;
+        let indices = mesh.triangles[hit.triangle as usize].map(|i| i as usize);
+        let corners = indices.map(|i| mesh.positions[i]);
+        let [b1, b2] = hit.barycentric;
+        let weights = [1.0 - b1 - b2, b1, b2];
+        let terms = [corners[0] * weights[0], corners[1] * weights[1], corners[2] * weights[2]];
+        let local = terms[0] + terms[1] + terms[2];
+        let error = (terms[0].abs() + terms[1].abs() + terms[2].abs()) * gamma(7);
+        let face = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        let geometric_normal = (self.normal_matrix * face).normalize_or_zero();
+        let (normal, bulge) = if mesh.normals.is_empty() {
+            (geometric_normal, Vec3::ZERO)
+        } else {
+            let normals = indices.map(|i| mesh.normals[i]);
+            let smooth = normals[0] * weights[0] + normals[1] * weights[1] + normals[2] * weights[2];
+            let smooth = (self.normal_matrix * smooth).try_normalize().unwrap_or(geometric_normal);
+            // Normals that disagree with the winding: the winding says where outside is.
+            let smooth = if smooth.dot(geometric_normal) < 0.0 { -smooth } else { smooth };
+            (smooth, bulge(local, corners, normals, weights))
+        };
+        let uv = if mesh.uvs.is_empty() {
+            Vec2::ZERO
+        } else {
+            let uvs = indices.map(|i| mesh.uvs[i]);
+            uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2]
+        };
+        let part = self.geometry.part(hit.triangle);
+        Surface {
+            position: self.world_from_object.transform_point3(local),
+            position_error: self.world_error(local, error),
+            smooth_offset: self.world_from_object.transform_vector3(bulge),
+            geometric_normal,
+            normal,
+            uv,
+            material: self.materials.get(part).copied().unwrap_or(0),
+            object: self.object,
+        }
+    }
+
+    /// Error of a transformed point, and of the way back that a ray from there will take into this same mesh.
+    fn world_error(&self, local: Vec3, local_error: Vec3) -> Vec3 {
+        let forward = Mat3::from(self.world_from_object.matrix3).abs();
+        let backward = Mat3::from(self.object_from_world.matrix3).abs();
+        let world = forward * local.abs() + Vec3::from(self.world_from_object.translation).abs();
+        let back = (backward * world + Vec3::from(self.object_from_world.translation).abs()) * gamma(4);
+        forward * (local_error + back) * (1.0 + gamma(3)) + world * gamma(4)
+    }
+}
+
+/// From the flat triangle to the curved surface its normals describe: the mean of the projections onto the planes at
+/// the corners (Hanika 2021, "Hacking the Shadow Terminator"). Zero on flat and on concave places.
+fn bulge(local: Vec3, corners: [Vec3; 3], normals: [Vec3; 3], weights: [f32; 3]) -> Vec3 {
+    let mut offset = Vec3::ZERO;
+    for k in 0..3 {
+        let height = (local - corners[k]).dot(normals[k]).min(0.0);
+        offset -= normals[k] * (height * weights[k]);
+    }
+    offset
+}
+
+/// What a hit says about the surface, in world space.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// On the flat triangle.
+    pub position: Vec3,
+    /// Absolute error of `position`, an axis each.
+    pub position_error: Vec3,
+    /// From the flat triangle to the curved surface that the normals describe; rays towards the outside start there.
+    pub smooth_offset: Vec3,
+    /// Of the triangle, unit length, to the side from which its corners run counter-clockwise.
+    pub geometric_normal: Vec3,
+    /// Interpolated, on the same side as `geometric_normal`.
+    pub normal: Vec3,
+    /// Texture coordinates.
+    pub uv: Vec2,
+    /// Index into the material table.
+    pub material: u32,
+    /// Index into the scene's objects; `u32::MAX` for the room.
+    pub object: u32,
+}
+
+impl Surface {
+    /// Start of a ray that leaves in `direction`, off the surface by its error bound.
+    pub fn leave(&self, direction: Vec3) -> Vec3 {
+        let outside = direction.dot(self.geometric_normal) > 0.0;
+        let from = if outside { self.position + self.smooth_offset } else { self.position };
+        math::offset_origin(from, self.position_error, self.geometric_normal, direction)
+    }
+}

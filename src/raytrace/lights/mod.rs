@@ -1,0 +1,287 @@
+//! Emitters: what a point receives from each, by a chosen direction and by a ray that happens to meet it.
+//!
+//! Values are photometric and white (luminance of luminance 1): a light's colour is applied to its film layer.
+
+mod disc;
+mod rect;
+mod sphere;
+
+use crate::math::{orthonormal_basis, safe_sqrt, warp};
+use crate::photo::exposure::{self, Strength};
+use crate::scene::{Emitter, Light};
+use disc::Disc;
+use glam::{Affine3A, Vec2, Vec3};
+use rect::Rect;
+use sphere::Ball;
+use std::f32::consts::PI;
+
+/// Geometry and output of a light. Positions are relative to the camera, as everywhere in the tracer.
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    /// Intensity, cd.
+    Point { position: Vec3, intensity: f32 },
+    /// Axial intensity, cd; unit axis; full angles.
+    Spot { position: Vec3, axis: Vec3, intensity: f32, inner_deg: f32, outer_deg: f32 },
+    /// Luminance, cd/m2.
+    Rect { rect: Rect, luminance: f32 },
+    /// Luminance, cd/m2.
+    Disc { disc: Disc, luminance: f32 },
+    /// Luminance, cd/m2.
+    Ball { ball: Ball, luminance: f32 },
+    /// Unit direction towards it; illuminance normal to it, lx; `1 - cos` of half its angular diameter, 0 for none.
+    Sun { towards: Vec3, illuminance: f32, one_minus_cos: f32 },
+    /// Luminance, cd/m2.
+    Surround { luminance: f32 },
+}
+
+/// A light made ready for tracing.
+#[derive(Clone, Debug)]
+pub struct TracedLight {
+    source: Source,
+    /// Film layer that it adds to.
+    pub layer: usize,
+    /// Factor on its contributions: white where the layer holds one light (its colour is applied later), the light's
+    /// colour and time where several share a layer.
+    pub tint: Vec3,
+    /// Seconds for which it counts in the exposure (1 for flash); used to choose between lights.
+    pub time_s: f32,
+    /// Whether camera rays see the emitter.
+    pub visible_to_camera: bool,
+}
+
+/// Light from a chosen direction.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// Unit direction towards the light.
+    pub direction: Vec3,
+    /// Distance to the emitter, metres; infinite for the sun.
+    pub distance: f32,
+    /// Luminance over density (area lights) or illuminance normal to the direction (point, spot, sharp sun).
+    pub value: f32,
+    /// Density in solid angle; none for lights that only this technique can find.
+    pub pdf: Option<f32>,
+}
+
+/// What a ray sees of an emitter it crosses.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// Distance, in multiples of the unit direction; infinite for sun and surround.
+    pub distance: f32,
+    /// Luminance, cd/m2.
+    pub luminance: f32,
+}
+
+impl TracedLight {
+    /// Converts a scene light; `frame` is its frame relative to the camera. None for a light without any output.
+    pub fn new(light: &Light, frame: Affine3A, time_s: f32) -> Option<Self> {
+        let position = Vec3::from(frame.translation);
+        let (right, up) = (Vec3::from(frame.matrix3.x_axis), Vec3::from(frame.matrix3.y_axis));
+        let back = Vec3::from(frame.matrix3.z_axis);
+        let intensity = exposure::axial_intensity(light);
+        let illuminance = if let Strength::Illuminance(lux) = exposure::strength(light) { lux } else { 0.0 };
+        let source = match light.emitter {
+            Emitter::Point => Source::Point { position, intensity },
+            Emitter::Sphere { radius_m } if radius_m > 0.0 => {
+                let ball = Ball { centre: position, radius: radius_m };
+                Source::Ball { ball, luminance: intensity / (PI * radius_m * radius_m) }
+            }
+            Emitter::Sphere { .. } => Source::Point { position, intensity },
+            Emitter::Spot { inner_deg, outer_deg } => {
+                Source::Spot { position, axis: -back, intensity, inner_deg, outer_deg }
+            }
+            // The panel shines along -Z: right x up is +Z, so the width axis is turned round.
+            Emitter::RectPanel { width_m, height_m } => {
+                let rect = Rect { centre: position, right: -right, up, half: Vec2::new(width_m, height_m) * 0.5 };
+                Source::Rect { rect, luminance: intensity / rect.area() }
+            }
+            Emitter::RoundPanel { diameter_m } => {
+                let disc = Disc { centre: position, right: -right, up, radius: diameter_m * 0.5 };
+                Source::Disc { disc, luminance: intensity / disc.area() }
+            }
+            Emitter::Sun { angular_diameter_deg } => {
+                let half_rad = (angular_diameter_deg * 0.5).to_radians();
+                // 1 - cos a = 2 sin2(a / 2).
+                let one_minus_cos = 2.0 * (half_rad * 0.5).sin().powi(2);
+                Source::Sun { towards: back, illuminance, one_minus_cos }
+            }
+            Emitter::Surround => Source::Surround { luminance: illuminance / PI },
+        };
+        let output = intensity.max(illuminance);
+        (output > 0.0 && output.is_finite() && frame.is_finite()).then_some(TracedLight {
+            source,
+            layer: 0,
+            tint: Vec3::ONE,
+            time_s,
+            visible_to_camera: light.visible_to_camera,
+        })
+    }
+
+    /// Whether rays can meet it: it has a size.
+    pub fn has_size(&self) -> bool {
+        !matches!(self.source, Source::Point { .. } | Source::Spot { .. })
+            && !matches!(self.source, Source::Sun { one_minus_cos, .. } if one_minus_cos <= 0.0)
+    }
+
+    /// Whether choosing directions towards it helps. Not for a surround: the surface's own choice is as good.
+    pub fn is_sampled(&self) -> bool {
+        !matches!(self.source, Source::Surround { .. })
+    }
+
+    /// An unshadowed estimate of the luminous exposure at a point, up to a constant: how much this light deserves a
+    /// sample. Zero only where the light certainly gives nothing on the side of `normal`.
+    pub fn importance(&self, point: Vec3, normal: Vec3) -> f32 {
+        let estimate = match self.source {
+            Source::Point { position, intensity } => receive(point, normal, position, 0.0) * intensity,
+            Source::Spot { position, axis, intensity, inner_deg, outer_deg } => {
+                let cos = (point - position).normalize_or_zero().dot(axis);
+                let falloff = exposure::spot_falloff(cos, inner_deg, outer_deg);
+                receive(point, normal, position, 0.0) * intensity * falloff
+            }
+            Source::Rect { rect, luminance } => {
+                panel(point, rect.centre, rect.normal(), rect.half.length())
+                    * receive(point, normal, rect.centre, rect.half.length())
+                    * (luminance * rect.area())
+            }
+            Source::Disc { disc, luminance } => {
+                panel(point, disc.centre, disc.normal(), disc.radius)
+                    * receive(point, normal, disc.centre, disc.radius)
+                    * (luminance * disc.area())
+            }
+            Source::Ball { ball, luminance } => {
+                receive(point, normal, ball.centre, ball.radius) * (luminance * PI * ball.radius * ball.radius)
+            }
+            Source::Sun { towards, illuminance, one_minus_cos } => {
+                let slack = safe_sqrt(2.0 * one_minus_cos);
+                let cos = normal.dot(towards);
+                if cos > -slack { illuminance * cos.max(0.05) } else { 0.0 }
+            }
+            Source::Surround { .. } => 0.0,
+        };
+        estimate * self.time_s
+    }
+
+    /// Light that reaches `point` from a chosen place of the emitter, before shadow.
+    pub fn sample(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
+        match self.source {
+            Source::Point { position, intensity } => from_point(point, position, intensity),
+            Source::Spot { position, axis, intensity, inner_deg, outer_deg } => {
+                let cos = (point - position).normalize_or_zero().dot(axis);
+                let falloff = exposure::spot_falloff(cos, inner_deg, outer_deg);
+                if falloff > 0.0 { from_point(point, position, intensity * falloff) } else { None }
+            }
+            Source::Rect { rect, luminance } => {
+                if !shines_on(point, rect.centre, rect.normal()) {
+                    return None;
+                }
+                let (target, pdf) = rect.seen_from(point).sample(point, u)?;
+                towards(point, target, luminance, pdf)
+            }
+            Source::Disc { disc, luminance } => {
+                if !shines_on(point, disc.centre, disc.normal()) {
+                    return None;
+                }
+                let (target, pdf) = disc.sample(point, u)?;
+                towards(point, target, luminance, pdf)
+            }
+            Source::Ball { ball, luminance } => {
+                let (direction, distance, pdf) = ball.sample(point, u)?;
+                Some(LightSample { direction, distance, value: luminance / pdf, pdf: Some(pdf) })
+            }
+            Source::Sun { towards, illuminance, one_minus_cos } => {
+                if one_minus_cos <= 0.0 {
+                    return Some(LightSample {
+                        direction: towards,
+                        distance: f32::INFINITY,
+                        value: illuminance,
+                        pdf: None,
+                    });
+                }
+                let (tangent, bitangent) = orthonormal_basis(towards);
+                let local = warp::uniform_cone(u, one_minus_cos);
+                let direction = (tangent * local.x + bitangent * local.y + towards * local.z).normalize();
+                let pdf = warp::uniform_cone_pdf(one_minus_cos);
+                let value = sun_luminance(illuminance, one_minus_cos) / pdf;
+                Some(LightSample { direction, distance: f32::INFINITY, value, pdf: Some(pdf) })
+            }
+            Source::Surround { .. } => None,
+        }
+    }
+
+    /// What a ray (unit direction) sees of the emitter if nothing is in between.
+    pub fn seen_by(&self, origin: Vec3, direction: Vec3) -> Option<Seen> {
+        match self.source {
+            Source::Point { .. } | Source::Spot { .. } => None,
+            Source::Rect { rect, luminance } => {
+                let front = direction.dot(rect.normal()) < 0.0;
+                front.then(|| rect.intersect(origin, direction)).flatten().map(|distance| Seen { distance, luminance })
+            }
+            Source::Disc { disc, luminance } => {
+                let front = direction.dot(disc.normal()) < 0.0;
+                front.then(|| disc.intersect(origin, direction)).flatten().map(|distance| Seen { distance, luminance })
+            }
+            Source::Ball { ball, luminance } => {
+                ball.intersect(origin, direction).map(|distance| Seen { distance, luminance })
+            }
+            Source::Sun { towards, illuminance, one_minus_cos } => {
+                // |d - t|2 / 2 is 1 - cos without cancellation.
+                let inside = 0.5 * (direction - towards).length_squared() <= one_minus_cos;
+                (inside && one_minus_cos > 0.0)
+                    .then(|| Seen { distance: f32::INFINITY, luminance: sun_luminance(illuminance, one_minus_cos) })
+            }
+            Source::Surround { luminance } => Some(Seen { distance: f32::INFINITY, luminance }),
+        }
+    }
+
+    /// Density with which [`TracedLight::sample`] chooses a direction that meets the emitter at `distance`, 1/sr.
+    pub fn pdf(&self, point: Vec3, direction: Vec3, distance: f32) -> f32 {
+        match self.source {
+            Source::Rect { rect, .. } => rect.seen_from(point).pdf(point, point + direction * distance),
+            Source::Disc { disc, .. } => disc.pdf(point, point + direction * distance),
+            Source::Ball { ball, .. } => ball.pdf(point),
+            Source::Sun { one_minus_cos, .. } => warp::uniform_cone_pdf(one_minus_cos),
+            Source::Point { .. } | Source::Spot { .. } | Source::Surround { .. } => 0.0,
+        }
+    }
+}
+
+/// Luminance of a sun of illuminance E: E / (pi sin2 a).
+fn sun_luminance(illuminance: f32, one_minus_cos: f32) -> f32 {
+    illuminance / (PI * one_minus_cos * (2.0 - one_minus_cos))
+}
+
+fn from_point(point: Vec3, position: Vec3, intensity: f32) -> Option<LightSample> {
+    let to = position - point;
+    let distance = to.length();
+    let value = intensity / (distance * distance);
+    (distance > 0.0 && value.is_finite()).then(|| LightSample { direction: to / distance, distance, value, pdf: None })
+}
+
+fn towards(point: Vec3, target: Vec3, luminance: f32, pdf: f32) -> Option<LightSample> {
+    let to = target - point;
+    let distance = to.length();
+    (distance > 0.0).then(|| LightSample { direction: to / distance, distance, value: luminance / pdf, pdf: Some(pdf) })
+}
+
+/// Whether a point lies before a panel.
+fn shines_on(point: Vec3, centre: Vec3, normal: Vec3) -> bool {
+    (point - centre).dot(normal) > 0.0
+}
+
+/// Cosine over squared distance at the receiver, bounded from below so that no part of a light with this radius that
+/// reaches over the horizon is forgotten.
+fn receive(point: Vec3, normal: Vec3, centre: Vec3, radius: f32) -> f32 {
+    let to = centre - point;
+    let distance2 = to.length_squared().max(radius * radius).max(f32::MIN_POSITIVE);
+    let height = normal.dot(to);
+    if height <= -radius {
+        return 0.0;
+    }
+    (height / distance2.sqrt()).clamp(0.05, 1.0) / distance2
+}
+
+/// Cosine at a panel, likewise bounded; 0 behind it.
+fn panel(point: Vec3, centre: Vec3, normal: Vec3, radius: f32) -> f32 {
+    let from = point - centre;
+    let height = from.dot(normal);
+    if height > 0.0 { (height / from.length().max(radius)).clamp(0.02, 1.0) } else { 0.0 }
+}

@@ -1,0 +1,92 @@
+//! What a scene needs of the tracer, and why: "model no more than a scene needs".
+
+use super::bsdf::Surfacing;
+use super::lights::TracedLight;
+use std::fmt;
+
+/// Bounces are cut where what is left of the light falls under this share.
+const NEGLIGIBLE: f32 = 1.0 / 512.0;
+/// Never more bounces than this, however white the room.
+const MAX_BOUNCES: u32 = 64;
+/// Up to this many lights, the first hit samples each of them.
+const SAMPLE_ALL: usize = 6;
+
+/// What the tracer does for this scene. Derived from the scene alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderPlan {
+    /// Rays after the first hit may meet emitters: some light has a size.
+    pub emitters_have_size: bool,
+    /// Surfaces refract.
+    pub refraction: bool,
+    /// The lens has an aperture.
+    pub lens: bool,
+    /// All lights are sampled at the first hit (otherwise one, chosen by what it gives there).
+    pub sample_all_lights: bool,
+    /// Scattering events a path at most.
+    pub max_bounces: u32,
+    /// A reason a line.
+    pub reasons: Vec<String>,
+}
+
+impl RenderPlan {
+    /// Looks at what is there.
+    pub fn new(materials: &[Surfacing], lights: &[TracedLight], lens: bool) -> Self {
+        let mut reasons = Vec::new();
+        let emitters_have_size = lights.iter().any(TracedLight::has_size);
+        reasons.push(match (lights.is_empty(), emitters_have_size) {
+            (true, _) => "no light is on: only glowing surfaces are traced".to_owned(),
+            (false, true) => "some light has a size: lights are met by rays as well as sampled (MIS)".to_owned(),
+            (false, false) => "point, spot and sharp sun only: no rays towards emitters, no MIS".to_owned(),
+        });
+        let refraction = materials.iter().any(Surfacing::transmits);
+        reasons.push(if refraction {
+            "glass: paths refract, and go on through it".to_owned()
+        } else {
+            "no glass: no refraction".to_owned()
+        });
+        reasons.push(if lens {
+            "depth of field: rays start on the lens".to_owned()
+        } else {
+            "pinhole: no lens samples".to_owned()
+        });
+        let sampled = lights.iter().filter(|l| l.is_sampled()).count();
+        let sample_all_lights = sampled <= SAMPLE_ALL;
+        reasons.push(match sampled {
+            0 => "no light to choose from".to_owned(),
+            1 => "one light: no choice between lights".to_owned(),
+            n if sample_all_lights => format!("{n} lights: each is sampled at the first hit, one after it"),
+            n => format!("{n} lights: one is chosen a hit, by what it gives there"),
+        });
+        let albedo = materials.iter().map(Surfacing::largest_albedo).fold(0.0, f32::max);
+        let max_bounces = bounces_for(albedo) + if refraction { 8 } else { 0 };
+        reasons.push(format!("largest reflectance {albedo:.2}: at most {max_bounces} bounces leave less than 1/512"));
+        RenderPlan { emitters_have_size, refraction, lens, sample_all_lights, max_bounces, reasons }
+    }
+}
+
+/// Bounces after which less than 1/512 is left at this reflectance.
+fn bounces_for(albedo: f32) -> u32 {
+    if albedo <= NEGLIGIBLE {
+        return 1;
+    }
+    let bounces = (NEGLIGIBLE.ln() / albedo.min(0.999).ln()).ceil();
+    (bounces as u32 + 1).clamp(2, MAX_BOUNCES)
+}
+
+impl fmt::Display for RenderPlan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.reasons.iter().try_for_each(|reason| writeln!(f, "- {reason}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn darker_rooms_need_fewer_bounces() {
+        assert_eq!(bounces_for(0.0), 1);
+        assert_eq!(bounces_for(0.18), 5);
+        assert!(bounces_for(0.5) < bounces_for(0.8) && bounces_for(0.99) == MAX_BOUNCES);
+    }
+}

@@ -1,0 +1,189 @@
+//! From the scene that the user edits to flat tables that the tracer reads.
+
+use super::aggregate::Aggregate;
+use super::bsdf::Surfacing;
+use super::film::{self, Layer};
+use super::geometry::{Instance, MeshGeometry};
+use super::lens::Lens;
+use super::lights::TracedLight;
+use super::plan::RenderPlan;
+use super::texture::TextureMap;
+use crate::photo::exposure;
+use crate::scene::{self, Assets, Light, Material, Mesh, Scene, Severity};
+use glam::{Affine3A, Vec3};
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::Arc;
+use thiserror::Error;
+
+/// Why a scene cannot be rendered.
+#[derive(Debug, Error)]
+pub enum PrepareError {
+    /// The scene has an error that [`scene::validate`] finds.
+    #[error("the scene cannot be rendered: {0}")]
+    Invalid(String),
+}
+
+/// A scene ready for tracing. Positions are relative to the camera.
+#[derive(Debug)]
+pub struct RenderScene {
+    pub(super) aggregate: Aggregate,
+    pub(super) materials: Vec<Surfacing>,
+    pub(super) textures: Vec<TextureMap>,
+    pub(super) lights: Vec<TracedLight>,
+    pub(super) layers: Vec<Layer>,
+    /// Time by which a layer's luminance counts in the exposure, seconds; 1 where it is already in.
+    pub(super) layer_times: Vec<f32>,
+    /// Seconds for which glowing surfaces count.
+    pub(super) glow_time_s: f32,
+    /// Picture value of one cd s/m2.
+    pub(super) exposure: f32,
+    pub(super) lens: Lens,
+    plan: RenderPlan,
+}
+
+impl RenderScene {
+    /// What this scene needs, with reasons.
+    pub fn plan(&self) -> &RenderPlan {
+        &self.plan
+    }
+
+    /// Triangles in the studio, each instance counted.
+    pub fn triangle_count(&self) -> u64 {
+        self.aggregate.instances().iter().map(|i| i.geometry.mesh().triangles.len() as u64).sum()
+    }
+
+    /// Lights that are on.
+    pub fn light_count(&self) -> usize {
+        self.lights.len()
+    }
+
+    /// What a fresh film of this scene looks like.
+    pub(super) fn layers(&self) -> Vec<Layer> {
+        self.layers.clone()
+    }
+}
+
+/// Prepares a scene: trees, tables and the plan. Fails only for scenes that `validate` calls wrong; after it has
+/// succeeded nothing in the tracer can fail.
+pub fn prepare(scene: &Scene, assets: &Assets) -> Result<RenderScene, PrepareError> {
+    if let Some(error) = scene::validate(scene).into_iter().find(|f| f.severity == Severity::Error) {
+        return Err(PrepareError::Invalid(format!("{}: {}", error.place, error.message)));
+    }
+    let eye = scene.camera.position;
+    let mut tables = Tables::default();
+    let placed = place_everything(scene, assets, &mut tables);
+    let geometries = build_geometries(placed.iter().map(|p| &p.mesh));
+    let instances = placed
+        .into_iter()
+        .filter_map(|p| {
+            let geometry = geometries.get(&Arc::as_ptr(&p.mesh))?.clone();
+            Instance::new(geometry, relative_to(p.world_from_object, eye), p.object, p.materials)
+        })
+        .collect();
+    let (lights, layers) = trace_lights(scene, eye);
+    let layer_times = layer_times(&lights, &layers);
+    let lens = Lens::new(scene);
+    let plan = RenderPlan::new(&tables.materials, &lights, lens.has_aperture());
+    Ok(RenderScene {
+        aggregate: Aggregate::new(instances),
+        materials: tables.materials,
+        textures: tables.textures,
+        lights,
+        layers,
+        layer_times,
+        glow_time_s: scene.camera.shutter_s,
+        exposure: exposure::pixel_per_cd_s_m2(&scene.camera),
+        lens,
+        plan,
+    })
+}
+
+/// Moves the origin to the camera, so that coordinates near it are small and exact.
+pub(super) fn relative_to(mut transform: Affine3A, eye: Vec3) -> Affine3A {
+    transform.translation -= glam::Vec3A::from(eye);
+    transform
+}
+
+/// A mesh with its place and materials.
+struct Placed {
+    mesh: Arc<Mesh>,
+    world_from_object: Affine3A,
+    object: u32,
+    materials: Vec<u32>,
+}
+
+/// Materials and textures, each once.
+#[derive(Default)]
+struct Tables {
+    materials: Vec<Surfacing>,
+    known: Vec<Material>,
+    textures: Vec<TextureMap>,
+    texture_index: HashMap<String, u32>,
+}
+
+impl Tables {
+    fn material(&mut self, material: &Material, assets: &Assets) -> u32 {
+        if let Some(index) = self.known.iter().position(|m| m == material) {
+            return index as u32;
+        }
+        let texture = material.base_color_texture.as_ref().and_then(|path| self.texture(path, assets));
+        self.known.push(material.clone());
+        self.materials.push(Surfacing::new(material, texture));
+        self.known.len() as u32 - 1
+    }
+
+    fn texture(&mut self, path: &str, assets: &Assets) -> Option<u32> {
+        if let Some(&index) = self.texture_index.get(path) {
+            return Some(index);
+        }
+        let texture = assets.textures.get(path)?;
+        self.textures.push(TextureMap::new(texture));
+        let index = self.textures.len() as u32 - 1;
+        self.texture_index.insert(path.to_owned(), index);
+        Some(index)
+    }
+}
+
+fn place_everything(scene: &Scene, assets: &Assets, tables: &mut Tables) -> Vec<Placed> {
+    let mut placed = Vec::new();
+    if let Some(room) = &scene.room {
+        let mesh = Arc::new(scene::room_mesh(room));
+        let materials = mesh.parts.iter().map(|p| tables.material(room.material_of(&p.name), assets)).collect();
+        placed.push(Placed { mesh, world_from_object: Affine3A::IDENTITY, object: u32::MAX, materials });
+    }
+    for (index, object) in scene.objects.iter().enumerate().filter(|(_, o)| o.visible) {
+        let Some(mesh) = assets.mesh_of(&object.shape) else { continue };
+        let materials = mesh.parts.iter().map(|p| tables.material(object.material_of(&p.name), assets)).collect();
+        let world_from_object = object.transform.world_from_object();
+        placed.push(Placed { mesh, world_from_object, object: index as u32, materials });
+    }
+    placed
+}
+
+/// One geometry a mesh, built in parallel.
+fn build_geometries<'a>(meshes: impl Iterator<Item = &'a Arc<Mesh>>) -> HashMap<*const Mesh, Arc<MeshGeometry>> {
+    let unique: HashMap<*const Mesh, Arc<Mesh>> = meshes.map(|m| (Arc::as_ptr(m), m.clone())).collect();
+    let meshes: Vec<Arc<Mesh>> = unique.into_values().collect();
+    let built: Vec<Arc<MeshGeometry>> = meshes.into_par_iter().map(|m| Arc::new(MeshGeometry::new(m))).collect();
+    built.into_iter().map(|g| (Arc::as_ptr(g.mesh()), g)).collect()
+}
+
+fn trace_lights(scene: &Scene, eye: Vec3) -> (Vec<TracedLight>, Vec<Layer>) {
+    let traced = |light| {
+        let frame = relative_to(scene.light_frame(light), eye);
+        let time_s = exposure::integration_time_s(&light.power.output, &scene.camera);
+        Some((TracedLight::new(light, frame, time_s)?, light))
+    };
+    let mut lights: Vec<(TracedLight, &Light)> = scene.lights.iter().filter(|l| l.on).filter_map(traced).collect();
+    let layers = film::assign_layers(scene, &mut lights);
+    (lights.into_iter().map(|(light, _)| light).collect(), layers)
+}
+
+fn layer_times(lights: &[TracedLight], layers: &[Layer]) -> Vec<f32> {
+    let mut times = vec![1.0; layers.len()];
+    for light in lights.iter().filter(|l| layers[l.layer].light.is_some()) {
+        times[light.layer] = light.time_s;
+    }
+    times
+}

@@ -1,0 +1,106 @@
+//! Random numbers that are no accident: Owen-scrambled Sobol points (Burley 2020), one sequence a pixel.
+//!
+//! A value is a function of (pixel, sample, dimension, seed) alone, so that a picture has the same bits for any number
+//! of threads and a single pixel can be replayed. Dimensions come in sets of four; each set is the best four-dimensional
+//! Sobol sequence under its own scramble ("padding"): within a set all samples of a pixel are stratified together.
+
+use glam::Vec2;
+
+/// Four stratified numbers in [0, 1).
+pub type Set = [f32; 4];
+
+/// The sets of a path, in the order in which the integrator asks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Place in the pixel, place on the lens.
+    Camera,
+    /// Choice of a light, place on it.
+    Light {
+        /// Which of the lights, where several are sampled at one vertex.
+        slot: u32,
+        /// Vertex of the path, from 0.
+        bounce: u32,
+    },
+    /// Choice of a lobe, direction, roulette.
+    Bsdf {
+        /// Vertex of the path, from 0.
+        bounce: u32,
+    },
+}
+
+/// One sample of one pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampler {
+    pixel_seed: u32,
+    index: u32,
+}
+
+/// Mixes the bits of a number (Wellons' lowbias32).
+fn hash(mut x: u32) -> u32 {
+    x ^= x >> 16;
+    x = x.wrapping_mul(0x7feb_352d);
+    x ^= x >> 15;
+    x = x.wrapping_mul(0x846c_a68b);
+    x ^ (x >> 16)
+}
+
+impl Sampler {
+    /// The sample `index` of a pixel.
+    pub fn new(x: u32, y: u32, index: u32, seed: u32) -> Self {
+        // The sequence has 2^16 points; further ones come from a fresh scramble.
+        let epoch = index >> 16;
+        let pixel_seed = hash(x ^ hash(y ^ hash(seed ^ hash(epoch))));
+        Sampler { pixel_seed, index: index & 0xffff }
+    }
+
+    /// The numbers for a purpose.
+    #[inline]
+    pub fn set(&self, purpose: Purpose) -> Set {
+        let key = match purpose {
+            Purpose::Camera => 0,
+            Purpose::Bsdf { bounce } => 1 + 2 * bounce,
+            Purpose::Light { slot, bounce } => (2 + 2 * bounce) | (slot << 16),
+        };
+        sobol_burley::sample_4d(self.index, 0, hash(self.pixel_seed ^ hash(key)))
+    }
+}
+
+/// The last two numbers of a set, as a point of the unit square.
+pub fn point(set: &Set) -> Vec2 {
+    Vec2::new(set[2], set[3])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_depends_on_pixel_sample_purpose_and_seed_alone() {
+        let a = Sampler::new(3, 4, 5, 6).set(Purpose::Camera);
+        assert_eq!(a, Sampler::new(3, 4, 5, 6).set(Purpose::Camera));
+        for other in [Sampler::new(4, 3, 5, 6), Sampler::new(3, 4, 6, 6), Sampler::new(3, 4, 5, 7)] {
+            assert_ne!(a, other.set(Purpose::Camera));
+        }
+        assert_ne!(a, Sampler::new(3, 4, 5, 6).set(Purpose::Bsdf { bounce: 0 }));
+    }
+
+    #[test]
+    fn every_set_is_stratified_over_the_samples_of_a_pixel() {
+        for purpose in [Purpose::Camera, Purpose::Light { slot: 1, bounce: 2 }, Purpose::Bsdf { bounce: 3 }] {
+            for dimension in 0..4 {
+                let mut seen = [false; 64];
+                for index in 0..64 {
+                    let x = Sampler::new(10, 20, index, 1).set(purpose)[dimension];
+                    seen[(x * 64.0) as usize] = true;
+                }
+                assert!(seen.iter().all(|&s| s), "one sample in each of 64 strata");
+            }
+        }
+    }
+
+    #[test]
+    fn long_renders_go_on_past_the_sequence() {
+        let x = Sampler::new(0, 0, 1 << 16, 1).set(Purpose::Camera);
+        assert_ne!(x, Sampler::new(0, 0, 0, 1).set(Purpose::Camera));
+    }
+}

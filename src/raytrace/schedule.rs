@@ -1,0 +1,209 @@
+//! Waves of samples over all tiles, with snapshots, cancel and progress.
+
+use super::film::{Film, TileFilm};
+use super::integrator::{Limits, Sink, Tracer};
+use super::prepare::RenderScene;
+use super::sampler::{self, Purpose, Sampler};
+use crate::color::luminance;
+use crate::math::Ray;
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// How light is followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Method {
+    /// One scattering event: soft shadows and gloss, no bounce light. Mirrors and glass are passed through.
+    Direct,
+    /// Everything: the reference.
+    #[default]
+    Path,
+}
+
+/// What to render.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// How light is followed.
+    pub method: Method,
+    /// Samples a pixel at most.
+    pub spp: u32,
+    /// Bounces at most; none takes what the plan says.
+    pub max_depth: Option<u32>,
+    /// Another seed gives other noise.
+    pub seed: u32,
+    /// Stop when the estimated noise is under this many stops.
+    pub noise_stops: Option<f32>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings { width: 960, height: 640, method: Method::Path, spp: 64, max_depth: None, seed: 0, noise_stops: None }
+    }
+}
+
+/// Shared between a render and whoever watches it.
+#[derive(Debug, Default)]
+pub struct Control {
+    cancelled: AtomicBool,
+    rays: AtomicU64,
+    samples: AtomicU64,
+}
+
+impl Control {
+    /// A control that nobody has cancelled yet.
+    pub fn new() -> Self {
+        Control::default()
+    }
+
+    /// Asks the render to stop; it ends within a tile's time.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether a stop was asked for.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
+    /// Rays traced so far.
+    pub fn rays(&self) -> u64 {
+        self.rays.load(Ordering::Relaxed)
+    }
+
+    /// Pixel samples taken so far; `width * height * spp` when done.
+    pub fn samples_done(&self) -> u64 {
+        self.samples.load(Ordering::Relaxed)
+    }
+}
+
+/// Waves grow 1, 1, 2, 4 ... up to this many samples.
+const LARGEST_WAVE: u32 = 16;
+
+/// Renders on rayon's current pool. After each wave `on_wave` sees the film so far and may stop the render. A cancelled
+/// render keeps its complete waves; before the first is complete, the film is empty (0 samples).
+pub fn render(
+    scene: &RenderScene,
+    settings: &Settings,
+    control: &Control,
+    on_wave: &mut dyn FnMut(&Film) -> ControlFlow<()>,
+) -> Film {
+    let mut film = Film::new(settings.width, settings.height, scene.layers());
+    while film.spp() < settings.spp {
+        let wave = film.spp().clamp(1, LARGEST_WAVE).min(settings.spp - film.spp());
+        if !render_wave(scene, settings, control, &mut film, wave) {
+            break;
+        }
+        let quiet = settings.noise_stops.is_some_and(|limit| film.spp() >= 8 && film.noise_stops() <= limit);
+        if on_wave(&film).is_break() || quiet {
+            break;
+        }
+    }
+    film
+}
+
+/// Takes `wave` samples of every pixel. False, with the film unchanged, when cancelled on the way.
+fn render_wave(scene: &RenderScene, settings: &Settings, control: &Control, film: &mut Film, wave: u32) -> bool {
+    let half = film.next_half();
+    let job = TileJob { scene, settings, control, first_sample: film.spp(), wave, half };
+    // The tiles of a cancelled wave are thrown away, so that every pixel has the same samples.
+    let backup = film.tiles.clone();
+    let complete = film.tiles.par_iter_mut().with_max_len(1).all(|tile| job.run(tile));
+    if complete {
+        film.finish_wave(half, wave);
+    } else {
+        film.tiles = backup;
+    }
+    complete
+}
+
+/// A wave's work on one tile.
+struct TileJob<'a> {
+    scene: &'a RenderScene,
+    settings: &'a Settings,
+    control: &'a Control,
+    first_sample: u32,
+    wave: u32,
+    half: usize,
+}
+
+impl TileJob<'_> {
+    fn run(&self, tile: &mut TileFilm) -> bool {
+        if self.control.is_cancelled() {
+            return false;
+        }
+        let mut tracer = Tracer::new(self.scene);
+        let limits = limits(self.scene, self.settings);
+        let size = Vec2::new(self.settings.width as f32, self.settings.height as f32);
+        let frame = self.scene.lens.frame(size.x / size.y);
+        for pixel in 0..tile.pixels() {
+            let (x, y) = (tile.x + pixel as u32 % tile.width, tile.y + pixel as u32 / tile.width);
+            for sample in self.first_sample..self.first_sample + self.wave {
+                let sampler = Sampler::new(x, y, sample, self.settings.seed);
+                let set = sampler.set(Purpose::Camera);
+                let film_point = (Vec2::new(x as f32, y as f32) + Vec2::new(set[0], set[1])) / size;
+                let (origin, direction) = self.scene.lens.ray(&frame, film_point, sampler::point(&set));
+                let mut gate = Gate { tile, pixel, place: (x, y, sample), luminance: 0.0, scene: self.scene };
+                tracer.trace(origin, direction, &sampler, limits, &mut gate);
+                let value = gate.luminance * self.scene.exposure;
+                tile.add_luminance(self.half, pixel, value);
+            }
+        }
+        self.control.rays.fetch_add(tracer.rays, Ordering::Relaxed);
+        self.control.samples.fetch_add(tile.pixels() as u64 * u64::from(self.wave), Ordering::Relaxed);
+        true
+    }
+}
+
+fn limits(scene: &RenderScene, settings: &Settings) -> Limits {
+    let planned = scene.plan().max_bounces;
+    match settings.method {
+        Method::Direct => Limits { wide_bounces: 1, all_bounces: settings.max_depth.unwrap_or(planned.max(16)) },
+        Method::Path => {
+            let depth = settings.max_depth.unwrap_or(planned);
+            Limits { wide_bounces: depth, all_bounces: depth }
+        }
+    }
+}
+
+/// The one place where non-finite values are stopped: counted, reported with pixel and sample, shown black.
+struct Gate<'a> {
+    scene: &'a RenderScene,
+    tile: &'a mut TileFilm,
+    pixel: usize,
+    place: (u32, u32, u32),
+    luminance: f32,
+}
+
+impl Sink for Gate<'_> {
+    fn add(&mut self, layer: usize, value: Vec3) {
+        if value.is_finite() {
+            self.tile.add(layer, self.pixel, value);
+            self.luminance += luminance(value) * self.scene.layer_times[layer];
+        } else {
+            let (x, y, sample) = self.place;
+            self.tile.report_nonfinite(x, y, sample);
+        }
+    }
+}
+
+/// Index into the scene's objects of what each pixel's centre shows; `u32::MAX` for the room and for nothing.
+pub fn primary_objects(scene: &RenderScene, width: u32, height: u32) -> Vec<u32> {
+    let frame = scene.lens.frame(width as f32 / height as f32);
+    let at = |y: u32| {
+        let mut tracer = Tracer::new(scene);
+        (0..width)
+            .map(|x| {
+                let point = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / Vec2::new(width as f32, height as f32);
+                let direction = frame.direction(point).normalize();
+                let hit = tracer.closest(&Ray { origin: Vec3::ZERO, direction, t_max: f32::INFINITY });
+                hit.map_or(u32::MAX, |hit| scene.aggregate.instances()[hit.instance as usize].object)
+            })
+            .collect::<Vec<u32>>()
+    };
+    (0..height).into_par_iter().flat_map_iter(at).collect()
+}
