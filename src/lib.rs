@@ -10,3 +10,6 @@ pub mod mannequin;
 #[cfg(feature = "gui")]
 pub mod preview;
 pub mod raytrace;
+
+#[cfg(feature = "gui")]
+pub mod editor;

@@ -1,0 +1,305 @@
+//! The window: its state, and one frame of it. Commands are carried out in `commands` and `session`.
+
+use super::action::Item;
+use super::catalog::Shelf;
+use super::command::{BINDINGS, Centre, Command, Handle};
+use super::dialogs::FileDialogs;
+use super::document::Document;
+use super::files::{PresetInfo, Source, Tasks};
+use super::panels::menu::MenuState;
+use super::panels::outliner::OutlinerState;
+use super::panels::presets::PresetPicker;
+use super::panels::{add, help, inspector, menu, outliner, render, status};
+use super::picture_view::PictureView;
+use super::preview_host::PreviewHost;
+use super::recent::RecentFiles;
+use super::rendering::Rendering;
+use super::session::Session;
+use super::toasts::Toasts;
+use super::viewport::{Viewport, ViewportInput};
+use super::{files, theme};
+use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, Rect, Ui, ViewportCommand};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// How the window begins.
+#[derive(Debug)]
+pub struct Options {
+    /// The studio to open; none opens the first shipped one.
+    pub initial: Option<PathBuf>,
+    /// Who is asked for file names.
+    pub dialogs: FileDialogs,
+    /// Where the list of recent studios is kept; none keeps it in memory.
+    pub settings_folder: Option<PathBuf>,
+    /// When the program was started, to tell how long the first frame took.
+    pub started: Instant,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { initial: None, dialogs: FileDialogs::Desktop, settings_folder: None, started: Instant::now() }
+    }
+}
+
+/// The editor's window.
+#[derive(Debug)]
+pub struct App {
+    pub(super) document: Document,
+    pub(super) selection: Option<Item>,
+    pub(super) centre: Centre,
+    pub(super) handles: Handle,
+    pub(super) viewport: Viewport,
+    pub(super) rendering: Rendering,
+    pub(super) session: Session,
+    pub(super) tasks: Tasks,
+    pub(super) recent: RecentFiles,
+    pub(super) toasts: Toasts,
+    pub(super) outliner: OutlinerState,
+    pub(super) picker: PresetPicker,
+    pub(super) show_help: bool,
+    pub(super) presets: Vec<PresetInfo>,
+    shelf: Shelf,
+    picture_view: PictureView,
+    /// Number of the last press of mouse or key: what is dragged in one press is one undo step.
+    gesture: u64,
+    told_failure: bool,
+    title: String,
+    started: Instant,
+    first_frame: Option<Duration>,
+}
+
+impl App {
+    /// A window that begins to load its first studio.
+    pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> Self {
+        let ctx = &creation.egui_ctx;
+        theme::install(ctx);
+        let presets = files::presets();
+        let preview = PreviewHost::new(creation.wgpu_render_state.as_ref(), ctx);
+        let mut app = App {
+            document: Document::default(),
+            selection: None,
+            centre: Centre::default(),
+            handles: Handle::default(),
+            viewport: Viewport::new(preview),
+            rendering: Rendering::default(),
+            session: Session::new(options.dialogs),
+            tasks: Tasks::default(),
+            recent: RecentFiles::load(options.settings_folder),
+            toasts: Toasts::default(),
+            outliner: OutlinerState::default(),
+            picker: PresetPicker::default(),
+            show_help: false,
+            presets,
+            shelf: Shelf::Lights,
+            picture_view: PictureView::default(),
+            gesture: 0,
+            told_failure: false,
+            title: String::new(),
+            started: options.started,
+            first_frame: None,
+        };
+        let first = options.initial.map_or(Source::Preset(0), Source::File);
+        app.load(first, ctx);
+        app
+    }
+
+    /// The open studio.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// What is selected.
+    pub fn selection(&self) -> Option<Item> {
+        self.selection
+    }
+
+    /// Render settings, job and picture.
+    pub fn rendering(&self) -> &Rendering {
+        &self.rendering
+    }
+
+    /// Render settings, to be changed without the panel.
+    pub fn rendering_mut(&mut self) -> &mut Rendering {
+        &mut self.rendering
+    }
+
+    /// The messages on show.
+    pub fn toasts(&self) -> &Toasts {
+        &self.toasts
+    }
+
+    /// The viewport with its preview.
+    pub fn viewport(&self) -> &Viewport {
+        &self.viewport
+    }
+
+    /// The title of the window.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// What the middle of the window shows.
+    pub fn centre(&self) -> Centre {
+        self.centre
+    }
+
+    /// Whether something is on its way in the background: files, a render, the preview's start, a file dialog.
+    pub fn is_busy(&self) -> bool {
+        self.tasks.is_busy()
+            || self.rendering.is_busy()
+            || self.session.is_waiting()
+            || self.viewport.preview.is_starting()
+    }
+
+    /// From the start of the program to the end of the first frame.
+    pub fn first_frame(&self) -> Option<Duration> {
+        self.first_frame
+    }
+
+    /// Everything that came in from elsewhere since the last frame.
+    fn take_in(&mut self, ctx: &Context, out: &mut Vec<Command>) {
+        for done in self.tasks.finished() {
+            self.take_done(done, ctx);
+        }
+        self.take_dialog_answer(out);
+        self.take_drops(ctx, out);
+        self.take_close_request(ctx);
+        self.load_wanted_assets(ctx);
+        self.rendering.update(self.document.scene(), ctx);
+        match self.rendering.failure() {
+            Some(message) if !self.told_failure => {
+                self.toasts.error(format!("The render failed. {message}"));
+                self.told_failure = true;
+            }
+            Some(_) => {}
+            None => self.told_failure = false,
+        }
+        if self.selection.is_some_and(|item| !item.exists_in(self.document.scene())) {
+            self.selection = None;
+        }
+    }
+
+    /// Keys that mean a command, unless text is being typed or a question is open.
+    fn shortcuts(&self, ctx: &Context, out: &mut Vec<Command>) {
+        if ctx.text_edit_focused() || self.session.is_asking() || self.picker.is_open() {
+            return;
+        }
+        for (shortcut, command) in &BINDINGS {
+            if ctx.input_mut(|i| i.consume_shortcut(shortcut)) {
+                out.push(command());
+            }
+        }
+    }
+
+    /// The press that changes of this frame belong to; none where no button or key is held.
+    fn gesture(&mut self, ctx: &Context) -> Option<u64> {
+        let (began, held) = ctx.input(|i| {
+            let key_began = i.events.iter().any(|e| matches!(e, egui::Event::Key { pressed: true, repeat: false, .. }));
+            let held = i.pointer.any_down() || i.pointer.any_released() || !i.keys_down.is_empty();
+            (i.pointer.any_pressed() || key_began, held)
+        });
+        self.gesture += u64::from(began);
+        held.then_some(self.gesture)
+    }
+
+    /// All panels; returns where the middle one is.
+    fn panels(&mut self, ui: &mut Ui, out: &mut Vec<Command>) -> Rect {
+        let bar = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(8, 3));
+        let side = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(10, 4));
+        Panel::top("menu").frame(bar).show(ui, |ui| menu::menu_ui(ui, self.menu_state(), out));
+        Panel::bottom("status").frame(bar).exact_size(26.0).show(ui, |ui| {
+            let busy = self.tasks.is_busy().then_some("Loading\u{2026}");
+            status::status_ui(ui, &self.document, self.selection, self.centre, busy);
+        });
+        Panel::left("things").frame(side).default_size(250.0).size_range(200.0..=420.0).show(ui, |ui| {
+            let add_height = (ui.available_height() * 0.46).max(120.0);
+            Panel::top("add").frame(Frame::new()).default_size(add_height).resizable(true).show(ui, |ui| {
+                add::add_ui(ui, &mut self.shelf, out);
+            });
+            outliner::outliner_ui(ui, &self.document, self.selection, &mut self.outliner, out);
+        });
+        Panel::right("details").frame(side).default_size(340.0).size_range(300.0..=560.0).show(ui, |ui| {
+            Panel::bottom("render").frame(Frame::new()).resizable(false).show(ui, |ui| {
+                render::render_ui(ui, &mut self.rendering, self.document.scene(), out);
+            });
+            inspector::inspector_ui(ui, &self.document, self.selection, out);
+        });
+        let middle = Frame::new().fill(theme::SURROUND);
+        CentralPanel::default().frame(middle).show(ui, |ui| self.middle(ui, out)).response.rect
+    }
+
+    fn middle(&mut self, ui: &mut Ui, out: &mut Vec<Command>) {
+        let bar = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(8, 4));
+        Panel::top("views").frame(bar).show(ui, |ui| {
+            let mut follows = self.viewport.camera_follows;
+            menu::view_bar_ui(ui, self.menu_state(), &mut follows, out);
+            self.viewport.camera_follows = follows;
+        });
+        if self.centre == Centre::Picture {
+            self.picture_view.ui(ui, &self.rendering, self.document.scene(), out);
+            return;
+        }
+        let (width, height) = self.rendering.settings.pixels(&self.document.scene().camera);
+        let input = ViewportInput {
+            document: &self.document,
+            selection: self.selection,
+            centre: self.centre,
+            handles: self.handles,
+            picture_aspect: width as f32 / height as f32,
+        };
+        self.viewport.ui(ui, input, out);
+    }
+
+    fn menu_state(&self) -> MenuState<'_> {
+        MenuState {
+            document: &self.document,
+            selection: self.selection,
+            recent: &self.recent,
+            centre: self.centre,
+            handles: self.handles,
+            has_picture: self.rendering.developed().is_some(),
+            rendering: self.rendering.is_running(),
+        }
+    }
+
+    fn tell_title(&mut self, ctx: &Context) {
+        let star = if self.document.is_dirty() { "*" } else { "" };
+        let title = format!("{}{star} \u{2013} Catchlight", self.document.title());
+        if title != self.title {
+            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        let mut out = Vec::new();
+        let gesture = self.gesture(&ctx);
+        self.take_in(&ctx, &mut out);
+        self.shortcuts(&ctx, &mut out);
+        let middle = self.panels(ui, &mut out);
+        let presets = std::mem::take(&mut self.presets);
+        self.picker.ui(&ctx, &presets, &mut out);
+        self.presets = presets;
+        help::help_ui(&ctx, &mut self.show_help);
+        self.ask(&ctx, &mut out);
+        self.drop_hint(&ctx);
+        self.toasts.ui(&ctx, middle);
+        let changed = !out.is_empty();
+        for command in out {
+            self.run(command, gesture, &ctx);
+        }
+        if changed {
+            // What the commands changed was drawn before they ran.
+            ctx.request_repaint();
+        }
+        self.tell_title(&ctx);
+        if self.first_frame.is_none() {
+            let elapsed = self.started.elapsed();
+            log::debug!("first frame after {} ms", elapsed.as_millis());
+            self.first_frame = Some(elapsed);
+        }
+    }
+}

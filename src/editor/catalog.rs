@@ -1,0 +1,354 @@
+//! The list of things that can be put into the studio, by the names a photographer knows.
+
+use crate::scene::ColorSource;
+use crate::scene::{
+    Aim, Emitter, Figure, Gel, Light, LightColor, LightId, Mannequin, Material, MaterialPreset, Object, ObjectId,
+    Output, Pose, Power, Role, Shape, Transform,
+};
+use glam::Vec3;
+
+/// The shelves of the list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Shelf {
+    /// Everything that shines.
+    Lights,
+    /// Mannequins.
+    Figures,
+    /// Props and products.
+    Props,
+    /// Paper rolls.
+    Backdrops,
+}
+
+impl Shelf {
+    /// All shelves, in list order.
+    pub const ALL: [Shelf; 4] = [Shelf::Lights, Shelf::Figures, Shelf::Props, Shelf::Backdrops];
+
+    /// Its label.
+    pub fn label(self) -> &'static str {
+        match self {
+            Shelf::Lights => "Lights",
+            Shelf::Figures => "Figures",
+            Shelf::Props => "Props",
+            Shelf::Backdrops => "Backdrops",
+        }
+    }
+}
+
+/// What an entry of the list makes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A light with this emitter.
+    Light(Emitter),
+    /// A mannequin.
+    Figure(Mannequin),
+    /// A formula shape of a material, standing on the floor.
+    Prop(PropShape, MaterialPreset),
+    /// A paper roll.
+    Paper {
+        /// Width, metres.
+        width_m: f32,
+        /// Its paper.
+        paper: MaterialPreset,
+    },
+}
+
+/// Shapes of props with their sizes, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PropShape {
+    /// Edge lengths.
+    Box([f32; 3]),
+    /// Radius.
+    Sphere(f32),
+    /// Radius and height.
+    Cylinder(f32, f32),
+    /// Width and depth, lying.
+    Plane(f32, f32),
+    /// Width and height, upright, facing the front.
+    Card(f32, f32),
+}
+
+/// One entry of the list.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry {
+    /// Its name in the list, and the name of what it makes.
+    pub name: &'static str,
+    /// One line on what it is for.
+    pub tip: &'static str,
+    /// What it makes.
+    pub kind: Kind,
+}
+
+const fn light(name: &'static str, tip: &'static str, emitter: Emitter) -> Entry {
+    Entry { name, tip, kind: Kind::Light(emitter) }
+}
+
+const fn softbox(name: &'static str, tip: &'static str, width_m: f32, height_m: f32) -> Entry {
+    light(name, tip, Emitter::RectPanel { width_m, height_m })
+}
+
+const fn round(name: &'static str, tip: &'static str, diameter_m: f32) -> Entry {
+    light(name, tip, Emitter::RoundPanel { diameter_m })
+}
+
+const fn figure(name: &'static str, tip: &'static str, figure: Figure, pose: Pose) -> Entry {
+    Entry { name, tip, kind: Kind::Figure(Mannequin { figure, pose }) }
+}
+
+const fn prop(name: &'static str, tip: &'static str, shape: PropShape, material: MaterialPreset) -> Entry {
+    Entry { name, tip, kind: Kind::Prop(shape, material) }
+}
+
+const fn paper(name: &'static str, tip: &'static str, width_m: f32, paper: MaterialPreset) -> Entry {
+    Entry { name, tip, kind: Kind::Paper { width_m, paper } }
+}
+
+const LIGHTS: [Entry; 15] = [
+    softbox("Softbox 60 x 90", "The everyday softbox: soft edges on a face from 1 to 1.5 m.", 0.6, 0.9),
+    softbox("Softbox 90 x 120", "A large, very soft key or a broad fill.", 0.9, 1.2),
+    softbox("Softbox 60 x 60", "A small square softbox, for heads and products.", 0.6, 0.6),
+    softbox("Strip 30 x 120", "A narrow softbox: rim light along a body, clean lines on products.", 0.3, 1.2),
+    softbox("Strip 30 x 160", "A tall strip for full figures.", 0.3, 1.6),
+    round("Octa 120", "An octabox: round catchlights, soft wrapping light.", 1.2),
+    round("Octa 180", "A huge octabox, soft even for a full figure.", 1.8),
+    round("Beauty dish 55", "A dish: crisper than a softbox, with a smooth fall to shadow.", 0.55),
+    light(
+        "Bare bulb",
+        "A head without modifier: light in all directions, hard shadows.",
+        Emitter::Sphere { radius_m: 0.04 },
+    ),
+    light("Spot", "A projector or snoot: a cone with a hard edge.", Emitter::Spot { inner_deg: 20.0, outer_deg: 26.0 }),
+    light(
+        "Reflector 55 deg",
+        "A standard reflector: a hard, broad cone.",
+        Emitter::Spot { inner_deg: 40.0, outer_deg: 70.0 },
+    ),
+    softbox("LED panel 30 x 30", "A small continuous LED panel.", 0.3, 0.3),
+    softbox("Window 1 x 2 m", "A tall window with an even sky outside.", 1.0, 2.0),
+    light("Sun", "Parallel light with hard shadows.", Emitter::Sun { angular_diameter_deg: 0.53 }),
+    light("Overcast surround", "Even light from everywhere: a cloudy sky, a white tent.", Emitter::Surround),
+];
+
+const FIGURES: [Entry; 11] = [
+    figure("Bust", "Head and shoulders, looking ahead: for portrait light.", Figure::Bust, Pose::Standing),
+    figure("Bust, head turned", "Head and shoulders, the head 30 degrees to its left.", Figure::Bust, Pose::HeadTurned),
+    figure("Woman, standing", "1.68 m, upright, arms at the sides.", Figure::Woman, Pose::Standing),
+    figure("Woman, hand on hip", "1.68 m, weight on one leg.", Figure::Woman, Pose::Contrapposto),
+    figure("Woman, seated", "On a seat of 45 cm, which is not part of her.", Figure::Woman, Pose::Seated),
+    figure("Man, standing", "1.80 m, upright, arms at the sides.", Figure::Man, Pose::Standing),
+    figure("Man, hand on hip", "1.80 m, weight on one leg.", Figure::Man, Pose::Contrapposto),
+    figure("Man, seated", "On a seat of 45 cm, which is not part of him.", Figure::Man, Pose::Seated),
+    figure("Child, standing", "A child of eight, 1.28 m.", Figure::Child, Pose::Standing),
+    figure("Child, hand on hip", "A child of eight, weight on one leg.", Figure::Child, Pose::Contrapposto),
+    figure("Child, seated", "On a seat of 32 cm, which is not part of the child.", Figure::Child, Pose::Seated),
+];
+
+const PROPS: [Entry; 16] = [
+    prop("Box", "A box of 50 cm.", PropShape::Box([0.5, 0.5, 0.5]), MaterialPreset::MatteFabric),
+    prop("Sphere", "A matte ball of 30 cm.", PropShape::Sphere(0.15), MaterialPreset::MatteFabric),
+    prop("Cylinder", "An upright cylinder, 30 cm across.", PropShape::Cylinder(0.15, 0.4), MaterialPreset::MatteFabric),
+    prop("Plane", "A flat sheet of 1 x 1 m.", PropShape::Plane(1.0, 1.0), MaterialPreset::GreyPaper),
+    prop(
+        "Posing cube",
+        "A seat of 45 cm for seated figures.",
+        PropShape::Box([0.45, 0.45, 0.45]),
+        MaterialPreset::WhitePaper,
+    ),
+    prop(
+        "Table",
+        "A table top at 75 cm for product work.",
+        PropShape::Box([1.2, 0.75, 0.8]),
+        MaterialPreset::StudioFloor,
+    ),
+    prop(
+        "V-flat, white",
+        "1.2 x 2.4 m of white board: bounces light back.",
+        PropShape::Card(1.2, 2.4),
+        MaterialPreset::WhitePaper,
+    ),
+    prop(
+        "V-flat, black",
+        "1.2 x 2.4 m of black board: takes light away.",
+        PropShape::Card(1.2, 2.4),
+        MaterialPreset::BlackVelvet,
+    ),
+    prop("Grey card", "18 % grey, 20 x 25 cm.", PropShape::Card(0.2, 0.25), MaterialPreset::GreyCard),
+    prop("Chrome ball", "A mirror ball: shows every light around it.", PropShape::Sphere(0.1), MaterialPreset::Chrome),
+    prop(
+        "Grey ball",
+        "An 18 % grey ball: shows where the light falls.",
+        PropShape::Sphere(0.1),
+        MaterialPreset::GreyCard,
+    ),
+    prop("Glass ball", "A ball of clear glass.", PropShape::Sphere(0.08), MaterialPreset::ClearGlass),
+    prop(
+        "Flacon",
+        "A block of clear glass, 6 x 11 x 4 cm.",
+        PropShape::Box([0.06, 0.11, 0.04]),
+        MaterialPreset::ClearGlass,
+    ),
+    prop("Can", "A drink can of aluminium.", PropShape::Cylinder(0.033, 0.116), MaterialPreset::BrushedAluminium),
+    prop(
+        "Glossy pack",
+        "A shiny carton, 10 x 16 x 5 cm.",
+        PropShape::Box([0.1, 0.16, 0.05]),
+        MaterialPreset::GlossyPlastic,
+    ),
+    prop("Gold bar", "A gold block.", PropShape::Box([0.16, 0.04, 0.07]), MaterialPreset::Gold),
+];
+
+const BACKDROPS: [Entry; 9] = [
+    paper("White paper 1.35 m", "A narrow roll, for heads and busts.", 1.35, MaterialPreset::WhitePaper),
+    paper("White paper 2.72 m", "The usual roll, for one full figure.", 2.72, MaterialPreset::WhitePaper),
+    paper("White paper 3.55 m", "A wide roll, for groups.", 3.55, MaterialPreset::WhitePaper),
+    paper("Grey paper 1.35 m", "A narrow roll, for heads and busts.", 1.35, MaterialPreset::GreyPaper),
+    paper("Grey paper 2.72 m", "The usual roll, for one full figure.", 2.72, MaterialPreset::GreyPaper),
+    paper("Grey paper 3.55 m", "A wide roll, for groups.", 3.55, MaterialPreset::GreyPaper),
+    paper("Black paper 1.35 m", "A narrow roll, for heads and busts.", 1.35, MaterialPreset::BlackPaper),
+    paper("Black paper 2.72 m", "The usual roll, for one full figure.", 2.72, MaterialPreset::BlackPaper),
+    paper("Black paper 3.55 m", "A wide roll, for groups.", 3.55, MaterialPreset::BlackPaper),
+];
+
+/// The entries of a shelf.
+pub fn entries(shelf: Shelf) -> &'static [Entry] {
+    match shelf {
+        Shelf::Lights => &LIGHTS,
+        Shelf::Figures => &FIGURES,
+        Shelf::Props => &PROPS,
+        Shelf::Backdrops => &BACKDROPS,
+    }
+}
+
+/// What an entry makes, at the origin.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Made {
+    /// A light.
+    Light(Light),
+    /// Anything else.
+    Object(Object),
+}
+
+impl Entry {
+    /// Makes it; `placement` then finds it a place.
+    pub fn make(&self) -> Made {
+        match self.kind {
+            Kind::Light(emitter) => Made::Light(new_light(self.name, emitter)),
+            Kind::Figure(mannequin) => Made::Object(new_figure(self.name, mannequin)),
+            Kind::Prop(shape, material) => Made::Object(new_prop(self.name, shape, material.material())),
+            Kind::Paper { width_m, paper } => Made::Object(Object {
+                shape: Shape::Sweep { width_m, height_m: 2.75, depth_m: 3.0, radius_m: 0.6 },
+                material: paper.material(),
+                ..blank_object(self.name)
+            }),
+        }
+    }
+}
+
+/// The light of an entry, by its name.
+#[cfg(test)]
+pub fn light_named(name: &str) -> Option<Light> {
+    LIGHTS.iter().find(|e| e.name == name).and_then(|e| match e.make() {
+        Made::Light(light) => Some(light),
+        Made::Object(_) => None,
+    })
+}
+
+/// The object of an entry, by its name.
+#[cfg(test)]
+pub fn object_named(name: &str) -> Option<Object> {
+    [&FIGURES[..], &PROPS, &BACKDROPS].concat().iter().find(|e| e.name == name).and_then(|e| match e.make() {
+        Made::Object(object) => Some(object),
+        Made::Light(_) => None,
+    })
+}
+
+fn blank_object(name: &str) -> Object {
+    Object {
+        id: ObjectId(0),
+        name: name.to_owned(),
+        transform: Transform::default(),
+        shape: Shape::Sphere { radius_m: 0.1 },
+        material: Material::default(),
+        part_materials: Vec::new(),
+        visible: true,
+    }
+}
+
+fn new_figure(name: &str, mannequin: Mannequin) -> Object {
+    Object {
+        shape: Shape::Mannequin(mannequin),
+        material: MaterialPreset::SkinLight.material(),
+        part_materials: vec![("eyes".to_owned(), MaterialPreset::Eye.material())],
+        ..blank_object(name)
+    }
+}
+
+fn new_prop(name: &str, shape: PropShape, material: Material) -> Object {
+    let (shape, height_m, pitch_deg) = match shape {
+        PropShape::Box(size) => (Shape::Box { size_m: Vec3::from(size) }, 0.5 * size[1], 0.0),
+        PropShape::Sphere(radius_m) => (Shape::Sphere { radius_m }, radius_m, 0.0),
+        PropShape::Cylinder(radius_m, height_m) => (Shape::Cylinder { radius_m, height_m }, 0.5 * height_m, 0.0),
+        PropShape::Plane(width_m, depth_m) => (Shape::Plane { width_m, depth_m }, 0.002, 0.0),
+        PropShape::Card(width_m, height_m) => (Shape::Plane { width_m, depth_m: height_m }, 0.5 * height_m, 90.0),
+    };
+    let mut object = Object { shape, material, ..blank_object(name) };
+    object.transform.position.y = height_m;
+    object.transform.rotation_deg.x = pitch_deg;
+    object
+}
+
+fn new_light(name: &str, emitter: Emitter) -> Light {
+    let output = if emitter.is_infinite() {
+        Output::Lux(10_000.0)
+    } else {
+        Output::FlashWs { energy_ws: 400.0, efficacy_lm_s_per_ws: Output::DEFAULT_EFFICACY }
+    };
+    Light {
+        id: LightId(0),
+        name: name.to_owned(),
+        role: Role::Key,
+        position: Vec3::new(-1.2, 2.0, 1.4),
+        aim: Aim::Point(Vec3::new(0.0, 1.4, 0.0)),
+        roll_deg: 0.0,
+        emitter,
+        power: Power { output, dial_stops: -3.0 },
+        color: LightColor { source: ColorSource::Kelvin(5500.0), gel: Gel::None },
+        on: true,
+        visible_to_camera: matches!(emitter, Emitter::Surround),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn every_name_of_the_list_is_its_own() {
+        let mut names = HashSet::new();
+        for shelf in Shelf::ALL {
+            for entry in entries(shelf) {
+                assert!(names.insert(entry.name), "{} twice", entry.name);
+                assert!(entry.tip.ends_with('.'), "{}: tips are sentences", entry.name);
+            }
+        }
+    }
+
+    #[test]
+    fn props_stand_on_the_floor() {
+        for entry in &PROPS {
+            let Made::Object(object) = entry.make() else { unreachable!() };
+            let mesh = crate::scene::tessellate(&object.shape).unwrap();
+            let world = object.transform.world_from_object();
+            let low = mesh.positions.iter().map(|p| world.transform_point3(*p).y).fold(f32::MAX, f32::min);
+            assert!((0.0..0.003).contains(&(low + 1e-6)), "{}: {low}", entry.name);
+        }
+    }
+
+    #[test]
+    fn cards_face_the_front() {
+        let card = object_named("Grey card").unwrap();
+        let facing = card.transform.world_from_object().transform_vector3(Vec3::Y);
+        assert!((facing - Vec3::Z).length() < 1e-6, "{facing}");
+    }
+}

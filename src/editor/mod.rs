@@ -1,0 +1,91 @@
+//! The window: arrange the studio, see it live, render, save.
+//!
+//! Panels and viewport draw from the [`Document`] and push [`Command`]s; [`App::run`] carries them out. Every change of
+//! the scene is an [`Action`] inside a command, so menus, shortcuts, handles, undo and tests all take the same way.
+//! Files, renders and file dialogs work in threads of their own; their results are taken in at the start of a frame.
+
+mod action;
+mod app;
+mod catalog;
+mod command;
+mod commands;
+mod dialogs;
+mod document;
+mod files;
+mod gizmo;
+mod history;
+mod overlay;
+mod panels;
+mod picture_view;
+mod placement;
+mod preview_host;
+mod readout;
+mod recent;
+mod relight;
+mod render_job;
+mod rendering;
+mod session;
+mod studio_view;
+mod theme;
+mod toasts;
+mod viewport;
+mod widgets;
+
+pub use action::{Action, ActionError, Item};
+pub use app::{App, Options};
+pub use command::{BINDINGS, Centre, Command, Handle};
+pub use dialogs::{Answer, FileDialogs, Purpose};
+pub use document::Document;
+pub use rendering::{PictureSize, Quality, RenderSettings, Rendering};
+pub use toasts::{Toasts, Tone};
+pub use viewport::Viewport;
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Why there is no window.
+#[derive(Debug, thiserror::Error)]
+pub enum EditorError {
+    /// There is no display to open a window on.
+    #[error("there is no display to open a window on: {0}")]
+    NoDisplay(String),
+    /// There is a display, but nothing that can draw on it.
+    #[error("no graphics adapter can draw the window: {0}")]
+    NoGraphics(String),
+    /// Anything else that keeps the window from opening.
+    #[error("the window could not be opened: {0}")]
+    Window(String),
+}
+
+/// Opens the window and returns when it is closed. `initial` is the studio to open; none opens a shipped one.
+///
+/// # Errors
+/// When there is no display, no graphics adapter, or the window cannot be opened.
+pub fn run(initial: Option<PathBuf>) -> Result<(), EditorError> {
+    let started = Instant::now();
+    check_display()?;
+    let options = Options { initial, settings_folder: recent::settings_folder(), started, ..Options::default() };
+    let viewport = eframe::egui::ViewportBuilder::default()
+        .with_title("Catchlight")
+        .with_app_id("catchlight")
+        .with_inner_size([1440.0, 900.0])
+        .with_min_inner_size([900.0, 600.0])
+        .with_drag_and_drop(true);
+    let native = eframe::NativeOptions { viewport, renderer: eframe::Renderer::Wgpu, ..Default::default() };
+    let create: eframe::AppCreator<'_> = Box::new(move |creation| Ok(Box::new(App::new(creation, options))));
+    eframe::run_native("Catchlight", native, create).map_err(|error| match error {
+        eframe::Error::WinitEventLoop(error) => EditorError::NoDisplay(error.to_string()),
+        eframe::Error::Wgpu(error) => EditorError::NoGraphics(error.to_string()),
+        other => EditorError::Window(other.to_string()),
+    })
+}
+
+/// On Linux a window needs a Wayland or X11 display; asking winit without one gives a less helpful message.
+fn check_display() -> Result<(), EditorError> {
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let is_linux = cfg!(all(unix, not(target_os = "macos")));
+    if is_linux && !set("DISPLAY") && !set("WAYLAND_DISPLAY") && !set("WAYLAND_SOCKET") {
+        return Err(EditorError::NoDisplay("neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned()));
+    }
+    Ok(())
+}

@@ -1,0 +1,82 @@
+//! What egui paints over the preview: the picture's frame, the lights' names, the selected light's distance.
+
+use super::action::Item;
+use super::theme;
+use crate::scene::{CameraFrame, Light, Scene};
+use eframe::egui::{Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, vec2};
+use glam::Vec3;
+
+/// How near to a light's middle a click means the light, points.
+const CLICK_RADIUS: f32 = 9.0;
+
+/// Where a point of the studio shows in the view; none behind the eye or far outside.
+pub fn place_of(frame: &CameraFrame, rect: Rect, point: Vec3) -> Option<Pos2> {
+    let place = frame.project(point)?;
+    let inside = (-0.2..1.2).contains(&place.x) && (-0.2..1.2).contains(&place.y);
+    inside.then(|| rect.min + vec2(place.x * rect.width(), place.y * rect.height()))
+}
+
+/// The light whose middle is under the pointer.
+pub fn light_at(scene: &Scene, frame: &CameraFrame, rect: Rect, position: Pos2) -> Option<Item> {
+    let lights = scene.lights.iter().filter(|light| !light.emitter.is_infinite());
+    let near = lights.filter_map(|light| {
+        let distance = place_of(frame, rect, light.position)?.distance(position);
+        (distance < CLICK_RADIUS).then_some((distance, light.id))
+    });
+    near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| Item::Light(id))
+}
+
+/// Dims what the picture will not hold and draws the picture's edge.
+pub fn paint_picture_frame(painter: &Painter, view: Rect, picture: Rect) {
+    let dim = Color32::from_black_alpha(150);
+    let bands = [
+        Rect::from_min_max(view.min, Pos2::new(view.max.x, picture.min.y)),
+        Rect::from_min_max(Pos2::new(view.min.x, picture.max.y), view.max),
+        Rect::from_min_max(Pos2::new(view.min.x, picture.min.y), Pos2::new(picture.min.x, picture.max.y)),
+        Rect::from_min_max(Pos2::new(picture.max.x, picture.min.y), Pos2::new(view.max.x, picture.max.y)),
+    ];
+    for band in bands {
+        painter.rect_filled(band, 0.0, dim);
+    }
+    painter.rect_stroke(picture, CornerRadius::ZERO, Stroke::new(1.0, Color32::from_gray(200)), StrokeKind::Outside);
+}
+
+/// The names of the lights beside them, and how far the selected one is from what it aims at.
+pub fn paint_labels(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect, selection: Option<Item>) {
+    for light in scene.lights.iter().filter(|light| !light.emitter.is_infinite()) {
+        let selected = selection == Some(Item::Light(light.id));
+        paint_light_label(painter, frame, rect, light, selected);
+        if selected {
+            paint_aim(painter, scene, frame, rect, light);
+        }
+    }
+}
+
+fn paint_light_label(painter: &Painter, frame: &CameraFrame, rect: Rect, light: &Light, selected: bool) {
+    let Some(place) = place_of(frame, rect, light.position) else { return };
+    let color = if light.on { theme::role_color(light.role) } else { Color32::from_gray(110) };
+    painter.circle_filled(place, if selected { 4.5 } else { 3.5 }, color);
+    painter.circle_stroke(place, if selected { 4.5 } else { 3.5 }, Stroke::new(1.0, Color32::from_black_alpha(160)));
+    let text = if light.on { light.name.clone() } else { format!("{} (off)", light.name) };
+    // The selected light's handles need the room to its right.
+    let (offset, align) =
+        if selected { (vec2(0.0, 30.0), Align2::CENTER_TOP) } else { (vec2(9.0, 0.0), Align2::LEFT_CENTER) };
+    text_with_shadow(painter, place + offset, align, &text, color);
+}
+
+fn paint_aim(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect, light: &Light) {
+    let target = scene.aim_point(&light.aim, light.position);
+    let (Some(from), Some(to)) = (place_of(frame, rect, light.position), place_of(frame, rect, target)) else { return };
+    let color = theme::role_color(light.role).gamma_multiply(0.7);
+    painter.extend(Shape::dashed_line(&[from, to], Stroke::new(1.0, color), 6.0, 4.0));
+    painter.circle_stroke(to, 4.0, Stroke::new(1.0, color));
+    let distance = (target - light.position).length();
+    text_with_shadow(painter, from.lerp(to, 0.5), Align2::CENTER_BOTTOM, &format!("{distance:.2} m"), color);
+}
+
+/// Small text that stays readable over light and dark.
+fn text_with_shadow(painter: &Painter, place: Pos2, align: Align2, text: &str, color: Color32) {
+    let font = FontId::proportional(11.5);
+    painter.text(place + vec2(1.0, 1.0), align, text, font.clone(), Color32::from_black_alpha(200));
+    painter.text(place, align, text, font, color);
+}

@@ -1,0 +1,112 @@
+//! The list of things that can be added.
+
+use crate::editor::catalog::{Entry, Kind, Shelf, entries};
+use crate::editor::command::Command;
+use crate::editor::theme;
+use crate::scene::{Emitter, MaterialPreset};
+use eframe::egui::{self, Button, Color32, CornerRadius, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, vec2};
+
+/// Draws the list; `shelf` is the one on show.
+pub fn add_ui(ui: &mut Ui, shelf: &mut Shelf, out: &mut Vec<Command>) {
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("Add").strong());
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let import = ui.add(Button::new("Import OBJ\u{2026}").small());
+            if import
+                .on_hover_text("Bring in a model from an OBJ file (Ctrl+I), or drop the file on the window")
+                .clicked()
+            {
+                out.push(Command::Import);
+            }
+        });
+    });
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        ui.spacing_mut().button_padding.x = 6.0;
+        for each in Shelf::ALL {
+            if ui.selectable_label(*shelf == each, each.label()).on_hover_text(shelf_tip(each)).clicked() {
+                *shelf = each;
+            }
+        }
+    });
+    ui.separator();
+    ScrollArea::vertical().id_salt("add list").auto_shrink([false, false]).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 1.0;
+        for entry in entries(*shelf) {
+            if entry_ui(ui, entry) {
+                out.push(Command::Place(Box::new(entry.make())));
+            }
+        }
+    });
+}
+
+fn shelf_tip(shelf: Shelf) -> &'static str {
+    match shelf {
+        Shelf::Lights => "Softboxes, strips, dishes, bulbs, spots, windows, sun and sky",
+        Shelf::Figures => "Mannequins: woman, man, child and a portrait bust, in poses",
+        Shelf::Props => "Things to light: shapes, products, boards, reference balls and cards",
+        Shelf::Backdrops => "Paper rolls of 1.35, 2.72 and 3.55 m in white, grey and black",
+    }
+}
+
+fn entry_ui(ui: &mut Ui, entry: &Entry) -> bool {
+    ui.horizontal(|ui| {
+        let (icon, _) = ui.allocate_exact_size(vec2(20.0, 20.0), Sense::hover());
+        paint_icon(ui.painter(), icon, &entry.kind);
+        let button = Button::new(entry.name).frame_when_inactive(false).min_size(vec2(ui.available_width(), 22.0));
+        let button = ui.add(button.right_text(RichText::new("+").weak()));
+        button.on_hover_text(format!("Add: {}", entry.tip)).clicked()
+    })
+    .inner
+}
+
+/// A small drawing of what an entry is.
+fn paint_icon(painter: &egui::Painter, rect: egui::Rect, kind: &Kind) {
+    let (c, line) = (rect.center(), Stroke::new(1.3, Color32::from_gray(170)));
+    let glow = theme::ACCENT;
+    match kind {
+        Kind::Light(Emitter::RectPanel { width_m, height_m }) => {
+            let scale = 14.0 / width_m.max(*height_m);
+            let panel = egui::Rect::from_center_size(c, vec2((width_m * scale).max(4.0), (height_m * scale).max(4.0)));
+            painter.rect_stroke(panel, CornerRadius::same(1), Stroke::new(1.3, glow), StrokeKind::Middle);
+        }
+        Kind::Light(Emitter::RoundPanel { diameter_m }) => {
+            painter.circle_stroke(c, (4.0 + 2.0 * diameter_m).min(7.5), Stroke::new(1.3, glow));
+        }
+        Kind::Light(Emitter::Spot { .. }) => {
+            let cone = [c + vec2(-6.0, 0.0), c + vec2(6.0, -5.5), c + vec2(6.0, 5.5)];
+            painter.add(egui::Shape::closed_line(cone.to_vec(), Stroke::new(1.3, glow)));
+        }
+        Kind::Light(Emitter::Surround) => {
+            painter.circle_stroke(c, 7.0, Stroke::new(1.0, glow));
+            painter.circle_stroke(c, 4.0, Stroke::new(1.0, glow.gamma_multiply(0.6)));
+        }
+        Kind::Light(Emitter::Point | Emitter::Sphere { .. } | Emitter::Sun { .. }) => {
+            painter.circle_filled(c, 3.2, glow);
+            for i in 0..8 {
+                let direction = egui::Vec2::angled(i as f32 * std::f32::consts::FRAC_PI_4);
+                painter.line_segment([c + direction * 5.0, c + direction * 7.5], Stroke::new(1.2, glow));
+            }
+        }
+        Kind::Figure(_) => {
+            painter.circle_filled(c - vec2(0.0, 4.0), 3.2, line.color);
+            let shoulders = [c + vec2(-6.0, 8.0), c + vec2(-3.5, 1.0), c + vec2(3.5, 1.0), c + vec2(6.0, 8.0)];
+            painter.add(egui::Shape::convex_polygon(shoulders.to_vec(), line.color, Stroke::NONE));
+        }
+        Kind::Prop(_, preset) => paint_patch(painter, c, *preset, vec2(12.0, 12.0)),
+        Kind::Paper { width_m, paper } => paint_patch(painter, c, *paper, vec2(5.0 * width_m.min(3.0), 14.0)),
+    }
+}
+
+fn paint_patch(painter: &egui::Painter, c: egui::Pos2, preset: MaterialPreset, size: egui::Vec2) {
+    let [r, g, b] = preset.material().base_color.map(|v| (crate::color::srgb_encode(v) * 255.0) as u8);
+    let rect = egui::Rect::from_center_size(c, size);
+    painter.rect(
+        rect,
+        CornerRadius::same(2),
+        Color32::from_rgb(r, g, b),
+        Stroke::new(1.0, Color32::from_gray(110)),
+        StrokeKind::Middle,
+    );
+}

@@ -1,0 +1,69 @@
+//! What a light or the camera points at.
+
+use crate::editor::placement::aim_offset;
+use crate::editor::widgets::{self, DEGREES, METRES, row};
+use crate::scene::{Aim, Assets, Scene};
+use eframe::egui::{ComboBox, Ui};
+use glam::Vec3;
+
+/// The rows of an aim, for something that stands at `position`.
+pub fn aim_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, position: Vec3, aim: &mut Aim) {
+    let now = scene.aim_point(aim, position);
+    row(ui, "Aims at", "What it points at. Aimed at a thing, it follows the thing.", |ui| {
+        let current = match aim {
+            Aim::Point(_) => "A point".to_owned(),
+            Aim::Angles { .. } => "Fixed angles".to_owned(),
+            Aim::Object { object, .. } => {
+                scene.object(*object).map_or_else(|| "Nothing".to_owned(), |o| o.name.clone())
+            }
+        };
+        ComboBox::from_id_salt("aim").selected_text(current).width(ui.available_width() - 8.0).show_ui(ui, |ui| {
+            if ui.selectable_label(matches!(aim, Aim::Point(_)), "A point").clicked() {
+                *aim = Aim::Point(now);
+            }
+            if ui.selectable_label(matches!(aim, Aim::Angles { .. }), "Fixed angles").clicked() {
+                *aim = angles_towards(now - position);
+            }
+            ui.separator();
+            for object in &scene.objects {
+                let is_it = matches!(aim, Aim::Object { object: at, .. } if *at == object.id);
+                if ui.selectable_label(is_it, &object.name).clicked() && !is_it {
+                    *aim = Aim::Object { object: object.id, offset: aim_offset(object, assets) };
+                }
+            }
+        });
+    });
+    match aim {
+        Aim::Point(point) => {
+            row(ui, "Aim point", "Where it points, in the room", |ui| widgets::vec3_ui(ui, "Aim point", METRES, point));
+        }
+        Aim::Object { offset, .. } => {
+            let tip = "The point on the thing, from its origin along its own axes: a face, say";
+            row(ui, "Point on it", tip, |ui| widgets::vec3_ui(ui, "Point on it", METRES, offset));
+        }
+        Aim::Angles { yaw_deg, pitch_deg } => {
+            row(ui, "Turn", "To the left seen from above, from the back of the room", |ui| DEGREES.ui(ui, yaw_deg));
+            row(ui, "Tilt", "Upwards", |ui| DEGREES.ui(ui, pitch_deg));
+        }
+    }
+}
+
+/// The angles that look along a direction; level to the back where there is none.
+pub fn angles_towards(direction: Vec3) -> Aim {
+    let d = direction.try_normalize().unwrap_or(Vec3::NEG_Z);
+    Aim::Angles { yaw_deg: (-d.x).atan2(-d.z).to_degrees(), pitch_deg: 90.0 - crate::math::safe_acos(d.y).to_degrees() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_point_where_the_point_was() {
+        let scene = Scene::default();
+        for direction in [Vec3::new(1.0, 2.0, -3.0), Vec3::new(-0.2, -5.0, 1.0), Vec3::X] {
+            let aimed = scene.aim_point(&angles_towards(direction), Vec3::ZERO);
+            assert!((aimed - direction.normalize()).length() < 1e-5, "{direction} became {aimed}");
+        }
+    }
+}

@@ -1,0 +1,387 @@
+//! The inspector of a light.
+
+use super::power::{self, Unit};
+use super::{Context, aim, name_ui, title};
+use crate::color::{light_rgb, rgb_from_kelvin};
+use crate::editor::action::Action;
+use crate::editor::catalog::{self, Kind, Shelf};
+use crate::editor::command::Command;
+use crate::editor::widgets::{self, DEGREES, DISTANCE, METRES, Number, SIZE_CM, fact, row, section};
+use crate::editor::{readout, theme};
+use crate::photo::exposure;
+use crate::photo::thirds::Dial;
+use crate::scene::{ColorSource, Emitter, Gel, Light, LightId, Output, Role, Scene};
+use eframe::egui::{ComboBox, Label, RichText, Slider, SliderClamping, Ui, vec2};
+use glam::Vec3;
+
+/// Draws it.
+pub(super) fn light_ui(ui: &mut Ui, context: &mut Context<'_>, id: LightId) {
+    let (scene, assets) = (context.document.scene(), context.document.assets());
+    let Some(original) = scene.light(id) else { return };
+    let mut light = original.clone();
+    title(ui, &original.name, light.emitter.label());
+    row(ui, "Name", "Names are unique in a studio", |ui| {
+        if let Some(name) = name_ui(ui, &original.name) {
+            context.out.push(Command::Do(Action::Rename(crate::editor::action::Item::Light(id), name)));
+        }
+    });
+    row(ui, "Switch", "Whether it shines", |ui| {
+        widgets::choice(ui, &mut light.on, &[(true, "On", "It shines"), (false, "Off", "It is dark")])
+    });
+    role_row(ui, &mut light);
+    ui.separator();
+    section(ui, "Power", true, |ui| power_rows(ui, scene, &mut light));
+    section(ui, "Colour", true, |ui| color_rows(ui, scene, &mut light));
+    section(ui, "At the subject", true, |ui| readouts(ui, scene, &light));
+    section(ui, "Modifier", true, |ui| emitter_rows(ui, scene, &mut light));
+    section(ui, "Place and aim", true, |ui| {
+        if !matches!(light.emitter, Emitter::Surround) {
+            place_rows(ui, scene, &mut light);
+            aim::aim_rows(ui, scene, assets, light.position, &mut light.aim);
+            row(ui, "Roll", "Turn about its own axis: a strip from upright to level", |ui| {
+                DEGREES.ui(ui, &mut light.roll_deg)
+            });
+        } else {
+            ui.label(RichText::new("It shines from everywhere, so it has no place.").weak());
+        }
+    });
+    if light != *original {
+        context.out.push(Command::Do(Action::SetLight(Box::new(light))));
+    }
+}
+
+fn role_row(ui: &mut Ui, light: &mut Light) {
+    row(ui, "Role", "Its part in the set-up: a colour in lists and views. It changes nothing in the picture.", |ui| {
+        widgets::swatch(ui, theme::role_color(light.role), vec2(8.0, 16.0));
+        ComboBox::from_id_salt("role").selected_text(light.role.label()).show_ui(ui, |ui| {
+            for role in Role::ALL {
+                ui.selectable_value(&mut light.role, role, role.label());
+            }
+        });
+    });
+}
+
+const WS: Number = Number::new(2.0, 0.0, 100_000.0, 1, " Ws");
+const EFFICACY: Number = Number::new(0.2, 1.0, 200.0, 1, " lm s/Ws");
+const GUIDE: Number = Number::new(0.2, 0.0, 10_000.0, 1, "");
+const LUMENS: Number = Number::new(20.0, 0.0, 100_000_000.0, 0, " lm");
+const CANDELA: Number = Number::new(20.0, 0.0, 100_000_000.0, 0, " cd");
+const LUX: Number = Number::new(20.0, 0.0, 100_000_000.0, 0, " lx");
+
+fn power_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
+    dial_rows(ui, scene, light);
+    let unit = Unit::of(&light.power.output);
+    row(ui, "Stated as", "The unit of its full power. Changing the unit keeps the exposure.", |ui| {
+        let units: &[Unit] = if light.emitter.is_infinite() { &Unit::INFINITE } else { &Unit::FINITE };
+        ComboBox::from_id_salt("unit").selected_text(unit.label()).width(ui.available_width() - 8.0).show_ui(
+            ui,
+            |ui| {
+                for &each in units {
+                    if ui.selectable_label(unit == each, each.label()).clicked() && unit != each {
+                        light.power.output = power::convert(light, &scene.camera, each);
+                    }
+                }
+            },
+        );
+    });
+    row(ui, "Full power", "What it gives with the dial at 0", |ui| match &mut light.power.output {
+        Output::Lumens(flux) => drop(LUMENS.ui(ui, flux)),
+        Output::Candela(intensity) => drop(CANDELA.ui(ui, intensity)),
+        Output::Lux(lux) => drop(LUX.ui(ui, lux)),
+        Output::LuxAt { lux, distance_m } => {
+            LUX.ui(ui, lux);
+            ui.label("at");
+            ui.name_inputs("Distance of the reading", |ui| DISTANCE.ui(ui, distance_m));
+        }
+        Output::FlashWs { energy_ws, efficacy_lm_s_per_ws } => {
+            WS.ui(ui, energy_ws);
+            ui.name_inputs("Efficacy", |ui| EFFICACY.ui(ui, efficacy_lm_s_per_ws))
+                .on_hover_text("Light that a watt second gives: 15 to 50 for real heads");
+        }
+        Output::FlashGuideNumber(number) => {
+            ui.label("GN");
+            GUIDE.ui(ui, number).on_hover_text("Metres at ISO 100");
+        }
+    });
+}
+
+/// The dial on the head: a slider in tenths of a stop, buttons in thirds, and a button that meters.
+fn dial_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
+    let dial = &mut light.power.dial_stops;
+    row(ui, "Dial", "Stops from full power: 0 is full, \u{2212}1 half, \u{2212}2 a quarter", |ui| {
+        ui.spacing_mut().slider_width = (ui.available_width() - 64.0).max(60.0);
+        let mut shown = *dial;
+        let slider = Slider::new(&mut shown, -9.0..=1.0)
+            .step_by(0.1)
+            .clamping(SliderClamping::Never)
+            .update_while_editing(false)
+            .custom_formatter(|v, _| widgets::signed_stops(v as f32))
+            .custom_parser(|text| text.replace('\u{2212}', "-").trim().parse().ok());
+        let response = ui.add(slider).on_hover_text("Drag, or click the number and type it");
+        if response.changed() && shown.is_finite() {
+            *dial = shown;
+        }
+    });
+    row(ui, "", "", |ui| {
+        let dial = &mut light.power.dial_stops;
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for (sign, name, thirds) in
+            [("\u{2212}\u{2153}", "A third of a stop less", -1.0), ("+\u{2153}", "A third of a stop more", 1.0)]
+        {
+            if widgets::small_button(ui, sign, name).on_hover_text(name).clicked() {
+                *dial = ((*dial * 3.0 + thirds).round()) / 3.0;
+            }
+        }
+        ui.add_space(6.0);
+        ui.add(Label::new(RichText::new(power_fraction(*dial)).weak())).on_hover_text("The part of full power");
+        ui.add_space(6.0);
+        let tip = format!(
+            "Turns the dial, in thirds, so that a meter at the aim reads the camera's {}",
+            Dial::FNumber.label(scene.camera.f_number)
+        );
+        if ui.button("Meter").on_hover_text(tip).clicked() {
+            light.power.dial_stops = readout::dial_for(scene, light, 0.0);
+        }
+    });
+}
+
+/// `1/4` for whole stops, a percentage between.
+fn power_fraction(stops: f32) -> String {
+    let whole = stops.round();
+    match stops {
+        s if (s - whole).abs() < 0.02 && whole <= 0.0 && whole > -16.0 => format!("1/{}", (-whole).exp2()),
+        s => format!("{} %", widgets::three_digits(s.exp2() * 100.0)),
+    }
+}
+
+fn color_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
+    let white = scene.camera.white_balance_k;
+    row(ui, "Source", "Where its colour comes from", |ui| {
+        let mut is_kelvin = matches!(light.color.source, ColorSource::Kelvin(_));
+        widgets::choice(ui, &mut is_kelvin, &[(true, "Kelvin", "A colour temperature"), (false, "RGB", "Any colour")]);
+        match (is_kelvin, light.color.source) {
+            (true, ColorSource::Rgb(_)) => light.color.source = ColorSource::Kelvin(5500.0),
+            (false, ColorSource::Kelvin(k)) => {
+                let rgb = rgb_from_kelvin(k, 5500.0);
+                light.color.source = ColorSource::Rgb((rgb / rgb.max_element()).into());
+            }
+            _ => {}
+        }
+        let swatch = widgets::swatch(ui, widgets::display_color(light_rgb(&light.color, white)), vec2(44.0, 18.0));
+        swatch.on_hover_text(format!("Its colour, gel included, as the camera sees it at {white:.0} K"));
+    });
+    match &mut light.color.source {
+        ColorSource::Kelvin(kelvin) => kelvin_row(ui, "Temperature", kelvin),
+        ColorSource::Rgb(rgb) => {
+            row(ui, "Colour", "Only the hue counts: brightness comes from the power", |ui| {
+                ui.color_edit_button_rgb(rgb)
+            });
+        }
+    }
+    gel_rows(ui, light);
+}
+
+/// Named colour temperatures.
+const KELVINS: [(&str, f32); 6] = [
+    ("Candle 1900 K", 1900.0),
+    ("Tungsten 3200 K", 3200.0),
+    ("Fluorescent 4200 K", 4200.0),
+    ("Daylight, flash 5500 K", 5500.0),
+    ("Overcast 6500 K", 6500.0),
+    ("Shade 7500 K", 7500.0),
+];
+
+/// A slider of kelvin with a list of names.
+pub(super) fn kelvin_row(ui: &mut Ui, label: &str, kelvin: &mut f32) {
+    row(ui, label, "Colour temperature in kelvin: low is warm, high is cool", |ui| {
+        ui.spacing_mut().slider_width = (ui.available_width() - 108.0).max(50.0);
+        let mut shown = *kelvin;
+        let slider = Slider::new(&mut shown, 1800.0..=12_000.0).logarithmic(true).step_by(50.0).suffix(" K");
+        let slider = slider.clamping(SliderClamping::Never).update_while_editing(false).max_decimals(0);
+        if ui.add(slider).changed() && shown.is_finite() {
+            *kelvin = shown;
+        }
+        let menu = ui.menu_button("\u{23f7}", |ui| {
+            for (name, value) in KELVINS {
+                if ui.button(name).clicked() {
+                    *kelvin = value;
+                }
+            }
+        });
+        widgets::named(ui, &menu.response, &format!("{label} by name"));
+        menu.response.on_hover_text("By name: tungsten, daylight, shade");
+    });
+}
+
+fn gel_rows(ui: &mut Ui, light: &mut Light) {
+    let gel = &mut light.color.gel;
+    let named = Gel::NAMED.iter().find(|(_, each)| each == gel).map(|(name, _)| *name);
+    let current = named.unwrap_or(match gel {
+        Gel::None => "None",
+        Gel::Mired(_) => "Other mired shift",
+        Gel::Tint(_) => "Party colour",
+    });
+    row(ui, "Gel", "A filter before the light: CTO warms, CTB cools", |ui| {
+        ComboBox::from_id_salt("gel").selected_text(current).show_ui(ui, |ui| {
+            for (name, each) in Gel::NAMED {
+                ui.selectable_value(gel, each, name);
+            }
+            ui.separator();
+            if ui.selectable_label(current == "Other mired shift", "Other mired shift").clicked() {
+                *gel = Gel::Mired(50.0);
+            }
+            if ui.selectable_label(matches!(gel, Gel::Tint(_)), "Party colour").clicked() {
+                *gel = Gel::Tint([0.9, 0.1, 0.1]);
+            }
+        });
+        match gel {
+            Gel::Tint(rgb) => drop(ui.color_edit_button_rgb(rgb)),
+            Gel::Mired(shift) if named.is_none() => {
+                let field = Number::new(1.0, -400.0, 400.0, 0, " mired");
+                ui.name_inputs("Mired shift", |ui| field.ui(ui, shift));
+            }
+            _ => {}
+        }
+    });
+}
+
+fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
+    let at = readout::at_aim(scene, light);
+    let camera = &scene.camera;
+    let flash = light.power.output.is_flash();
+    let n = readout::f_number(camera, at.lux_s);
+    let over = readout::stops_over_camera(camera, at.lux_s);
+    let settings = format!("at ISO {} and {}", Dial::Iso.label(camera.iso), Dial::Shutter.label(camera.shutter_s));
+    let tip = format!("What a meter at the aim asks for, {settings}, from this light alone");
+    fact(ui, "Meter reads", &tip, RichText::new(format!("f/{n:.1}")).strong());
+    let reads = if over.is_finite() { format!("{} stops", widgets::signed_stops(over)) } else { "no light".to_owned() };
+    let tip = format!("Against the camera's {}: positive is brighter", Dial::FNumber.label(camera.f_number));
+    fact(ui, "To the camera", &tip, reads);
+    let (unit, what) = if flash { ("lx s", "Exposure") } else { ("lx", "Illuminance") };
+    fact(
+        ui,
+        what,
+        "On a surface at the aim that faces the light",
+        format!("{} {unit}", widgets::three_digits(at.illuminance)),
+    );
+    if !light.emitter.is_infinite() {
+        let unit = if flash { "cd s" } else { "cd" };
+        let intensity = widgets::three_digits(exposure::axial_intensity(light));
+        fact(ui, "Intensity", "On the light's axis, dial included", format!("{intensity} {unit}"));
+    }
+    if let Some(distance) = at.distance_m {
+        fact(ui, "Distance", "From the light to what it aims at", format!("{distance:.2} m"));
+    }
+    if !light.on {
+        ui.label(RichText::new("The light is off; these are its values when it is on.").weak().small());
+    }
+}
+
+fn emitter_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
+    let listed = catalog::entries(Shelf::Lights).iter();
+    let known = listed.clone().find(|e| e.kind == Kind::Light(light.emitter)).map(|e| e.name);
+    row(ui, "Kind", "What shapes the light. Choosing another keeps its power.", |ui| {
+        let current = known.unwrap_or_else(|| light.emitter.label());
+        ComboBox::from_id_salt("emitter").selected_text(current).width(ui.available_width() - 8.0).show_ui(ui, |ui| {
+            for entry in listed {
+                let Kind::Light(emitter) = entry.kind else { continue };
+                if ui.selectable_label(emitter == light.emitter, entry.name).on_hover_text(entry.tip).clicked() {
+                    power::change_emitter(scene, light, emitter);
+                }
+            }
+            if ui.selectable_label(light.emitter == Emitter::Point, "Point").clicked() {
+                power::change_emitter(scene, light, Emitter::Point);
+            }
+        });
+    });
+    const CONE: Number = Number::new(0.5, 0.5, 180.0, 1, "\u{b0}");
+    match &mut light.emitter {
+        Emitter::Point | Emitter::Surround => {}
+        Emitter::Sphere { radius_m } => {
+            drop(row(ui, "Diameter", "Of the bulb", |ui| SIZE_CM.scaled_ui(ui, radius_m, 200.0)))
+        }
+        Emitter::RectPanel { width_m, height_m } => {
+            row(ui, "Size", "Width and height of the shining area", |ui| {
+                ui.name_inputs("Width", |ui| SIZE_CM.scaled_ui(ui, width_m, 100.0));
+                ui.label("\u{d7}");
+                ui.name_inputs("Height", |ui| SIZE_CM.scaled_ui(ui, height_m, 100.0));
+            });
+        }
+        Emitter::RoundPanel { diameter_m } => {
+            row(ui, "Diameter", "Of the shining area", |ui| SIZE_CM.scaled_ui(ui, diameter_m, 100.0));
+        }
+        Emitter::Spot { inner_deg, outer_deg } => {
+            row(ui, "Even cone", "Full angle of the even part", |ui| CONE.ui(ui, inner_deg));
+            row(ui, "Outer cone", "Full angle where the light ends; equal to the even cone it has a hard edge", |ui| {
+                CONE.ui(ui, outer_deg)
+            });
+            *inner_deg = inner_deg.min(*outer_deg);
+        }
+        Emitter::Sun { angular_diameter_deg } => {
+            let field = Number::new(0.02, 0.0, 90.0, 2, "\u{b0}");
+            row(ui, "Disc", "Angular diameter: 0.53\u{b0} is the sun, 0 gives hard shadows", |ui| {
+                field.ui(ui, angular_diameter_deg)
+            });
+        }
+    }
+    row(ui, "In the picture", "Mirrors and glass always show it", |ui| {
+        ui.checkbox(&mut light.visible_to_camera, "Camera sees it");
+    });
+}
+
+fn place_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
+    row(ui, "Position", "Centre of the light, in the room", |ui| {
+        widgets::vec3_ui(ui, "Position", METRES, &mut light.position)
+    });
+    if light.emitter.is_infinite() {
+        return;
+    }
+    let target = scene.aim_point(&light.aim, light.position);
+    let away = light.position - target;
+    let mut distance = away.length();
+    let before = distance;
+    row(ui, "Distance", "To what it aims at: changing it moves the light along its axis", |ui| {
+        DISTANCE.ui(ui, &mut distance)
+    });
+    if distance != before && before > 1e-3 {
+        light.position = target + away * (distance / before);
+    }
+    let facts = format!("{:.0}\u{b0} round, {:.0}\u{b0} up", azimuth_deg(scene, target, away), elevation_deg(away));
+    fact(
+        ui,
+        "From camera",
+        "Its direction from the subject: round from the camera (positive to the camera's right), and up",
+        facts,
+    );
+}
+
+fn elevation_deg(away: Vec3) -> f32 {
+    away.y.atan2(away.x.hypot(away.z)).to_degrees()
+}
+
+/// Angle around the vertical from the camera's direction, positive to the camera's right.
+fn azimuth_deg(scene: &Scene, target: Vec3, away: Vec3) -> f32 {
+    let front = scene.camera.position - target;
+    let angle = away.x.atan2(away.z) - front.x.atan2(front.z);
+    let (sin, cos) = angle.sin_cos();
+    sin.atan2(cos).to_degrees()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fractions_of_power_read_as_on_the_head() {
+        assert_eq!([0.0, -1.0, -4.0].map(power_fraction), ["1/1", "1/2", "1/16"]);
+        assert_eq!(power_fraction(-0.5), "70.7 %");
+    }
+
+    #[test]
+    fn angles_are_seen_from_the_camera() {
+        let scene = Scene::default();
+        let right = Vec3::new(1.0, 0.0, 1.0);
+        assert!((azimuth_deg(&scene, Vec3::new(0.0, 1.5, 0.0), right) - 45.0).abs() < 1e-3);
+        assert!((elevation_deg(Vec3::new(0.0, 1.0, 1.0)) - 45.0).abs() < 1e-3);
+    }
+}

@@ -1,0 +1,90 @@
+//! The fields of a surface.
+
+use crate::editor::widgets::{self, Number, row};
+use crate::scene::{Material, MaterialPreset};
+use eframe::egui::{ComboBox, Slider, SliderClamping, Ui};
+
+/// Name of the preset that a material is, or "Custom".
+pub fn preset_name(material: &Material) -> &'static str {
+    let preset = MaterialPreset::ALL.iter().find(|preset| preset.material() == *material);
+    preset.map_or("Custom", |preset| preset.label())
+}
+
+/// A list of the shelf's materials.
+pub fn preset_combo(ui: &mut Ui, salt: &str, material: &mut Material) {
+    let current = preset_name(material);
+    ComboBox::from_id_salt(salt).selected_text(current).width(ui.available_width() - 8.0).show_ui(ui, |ui| {
+        for preset in MaterialPreset::ALL {
+            if ui.selectable_label(current == preset.label(), preset.label()).clicked() {
+                *material = preset.material();
+            }
+        }
+    });
+}
+
+/// All rows of a surface; true when a texture is to be chosen.
+pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> bool {
+    let mut choose = false;
+    ui.push_id(salt, |ui| {
+        row(ui, "Surface", "A material of the shelf; the rows below fine-tune it", |ui| {
+            preset_combo(ui, "preset", material)
+        });
+        row(ui, "Colour", "Base colour; of a metal, its reflection", |ui| {
+            ui.color_edit_button_rgb(&mut material.base_color);
+            // A surface that gives back everything it gets would never let the light end.
+            material.base_color = material.base_color.map(|c| c.clamp(0.0, 0.99));
+            ui.label(format!("{:.0} % grey", 100.0 * crate::color::luminance(material.base_color.into())))
+                .on_hover_text("How much of the light it gives back");
+        });
+        row(ui, "Texture", "A picture that multiplies the colour", |ui| match material.base_color_texture.clone() {
+            Some(path) => {
+                let name = path.rsplit('/').next().unwrap_or(&path).to_owned();
+                choose = ui.button(name).on_hover_text(format!("{path}. Click to choose another.")).clicked();
+                if ui.button("Remove").on_hover_text("Take the texture away").clicked() {
+                    material.base_color_texture = None;
+                }
+            }
+            None => choose = ui.button("Choose\u{2026}").on_hover_text("PNG or JPEG").clicked(),
+        });
+        unit_slider(ui, "Roughness", "0 is a mirror or polished, 1 is matte", &mut material.roughness);
+        unit_slider(ui, "Metal", "0 is skin, paper, plastic; 1 is metal", &mut material.metallic);
+        unit_slider(ui, "Clear", "0 is opaque, 1 is clear glass or water", &mut material.transmission);
+        row(ui, "Refraction", "Index of refraction: skin 1.4, glass 1.52, water 1.33", |ui| {
+            Number::new(0.005, 1.0, 3.0, 3, "").ui(ui, &mut material.ior)
+        });
+        if material.transmission > 0.0 {
+            row(ui, "Absorption", "What the inside takes away in a metre: red, green, blue", |ui| {
+                per_channel(ui, "Absorption", Number::new(0.1, 0.0, 10_000.0, 1, ""), &mut material.absorption_per_m);
+            });
+        }
+        row(ui, "Glow", "Luminance it gives off by itself, cd/m\u{b2}: red, green, blue", |ui| {
+            per_channel(ui, "Glow", Number::new(1.0, 0.0, 1e7, 0, ""), &mut material.emission_cd_m2);
+        });
+    });
+    choose
+}
+
+fn per_channel(ui: &mut Ui, name: &str, number: Number, value: &mut [f32; 3]) {
+    ui.spacing_mut().item_spacing.x = 3.0;
+    for (channel, letter) in value.iter_mut().zip(["red", "green", "blue"]) {
+        ui.name_inputs(format!("{name} {letter}"), |ui| number.ui(ui, channel)).on_hover_text(letter);
+    }
+}
+
+fn unit_slider(ui: &mut Ui, label: &str, tip: &str, value: &mut f32) {
+    row(ui, label, tip, |ui| {
+        ui.spacing_mut().slider_width = (ui.available_width() - 64.0).max(60.0);
+        let mut shown = *value;
+        let slider = Slider::new(&mut shown, 0.0..=1.0).max_decimals(2).clamping(SliderClamping::Edits);
+        if ui.add(slider.update_while_editing(false)).changed() && shown.is_finite() {
+            *value = shown;
+        }
+    });
+}
+
+/// The rows of one wall or part inside a foldable group.
+pub fn material_group(ui: &mut Ui, label: &str, material: &mut Material) -> bool {
+    let mut choose = false;
+    widgets::section(ui, label, false, |ui| choose = material_rows(ui, label, material));
+    choose
+}

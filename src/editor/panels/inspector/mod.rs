@@ -1,0 +1,84 @@
+//! The inspector: everything about the selected thing, in photographers' units.
+
+mod aim;
+mod camera;
+mod light;
+mod material;
+mod object;
+mod power;
+mod room;
+
+use crate::editor::action::{Action, Item};
+use crate::editor::command::Command;
+use crate::editor::document::Document;
+use eframe::egui::{self, RichText, ScrollArea, TextEdit, Ui};
+
+/// What a section of the inspector reads and where it puts its requests.
+struct Context<'a> {
+    document: &'a Document,
+    out: &'a mut Vec<Command>,
+}
+
+/// Draws the inspector of the selection.
+pub fn inspector_ui(ui: &mut Ui, document: &Document, selection: Option<Item>, out: &mut Vec<Command>) {
+    ScrollArea::vertical().id_salt("inspector").auto_shrink([false, false]).show(ui, |ui| {
+        ui.add_space(4.0);
+        let mut context = Context { document, out };
+        // Fields keep their state for the thing that they show, not for the place on the screen.
+        ui.push_id(selection, |ui| match selection {
+            Some(Item::Light(id)) => light::light_ui(ui, &mut context, id),
+            Some(Item::Object(id)) => object::object_ui(ui, &mut context, id),
+            Some(Item::Camera) => camera::camera_ui(ui, &mut context),
+            Some(Item::Room) => room::room_ui(ui, &mut context),
+            None => studio_ui(ui, &mut context),
+        });
+    });
+}
+
+/// Shown when nothing is selected: what the studio is about.
+fn studio_ui(ui: &mut Ui, context: &mut Context<'_>) {
+    let scene = context.document.scene();
+    title(ui, "Studio", "");
+    let (mut name, mut description) = (scene.name.clone(), scene.description.clone());
+    let fields = [("Title", &mut name, false), ("Description", &mut description, true)];
+    for (label, text, is_long) in fields {
+        ui.label(RichText::new(label).weak());
+        let field = if is_long { TextEdit::multiline(text).desired_rows(3) } else { TextEdit::singleline(text) };
+        ui.name_inputs(label, |ui| ui.add(field.desired_width(f32::INFINITY)));
+    }
+    if name != scene.name || description != scene.description {
+        context.out.push(Command::Do(Action::SetNotes { name, description }));
+    }
+    ui.add_space(8.0);
+    let (lights, on) = (scene.lights.len(), scene.lights.iter().filter(|l| l.on).count());
+    ui.label(RichText::new(format!("{lights} lights, {on} on. {} figures and things.", scene.objects.len())).weak());
+    ui.add_space(8.0);
+    ui.label(
+        RichText::new("Click a light, a figure or the camera, in the view or in the list, to see and change it here.")
+            .weak(),
+    );
+}
+
+/// The head of the inspector: name of the thing and what it is.
+fn title(ui: &mut Ui, name: &str, kind: &str) {
+    ui.horizontal(|ui| {
+        ui.add(egui::Label::new(RichText::new(name).heading().strong()).truncate());
+        if !kind.is_empty() && kind != name {
+            ui.label(RichText::new(kind).weak());
+        }
+    });
+    ui.separator();
+}
+
+/// A name field that gives its text when it is left, not at every key.
+fn name_ui(ui: &mut Ui, name: &str) -> Option<String> {
+    let id = ui.scope_id().with("name field");
+    let mut text = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_else(|| name.to_owned());
+    let field = ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY));
+    if field.has_focus() {
+        ui.data_mut(|d| d.insert_temp(id, text));
+        return None;
+    }
+    ui.data_mut(|d| d.remove::<String>(id));
+    (field.lost_focus() && text != name).then_some(text)
+}

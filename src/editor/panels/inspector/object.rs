@@ -1,0 +1,200 @@
+//! The inspector of a mannequin, prop or backdrop.
+
+use super::material::{material_group, material_rows, preset_name};
+use super::{Context, name_ui, title};
+use crate::editor::action::{Action, Item};
+use crate::editor::command::Command;
+use crate::editor::widgets::{self, DEGREES, METRES, Number, SIZE_CM, row, section};
+use crate::scene::{Assets, Figure, Mannequin, Object, ObjectId, Pose, Shape};
+use eframe::egui::{Button, ComboBox, RichText, Ui};
+use glam::Vec3;
+
+/// Draws it.
+pub(super) fn object_ui(ui: &mut Ui, context: &mut Context<'_>, id: ObjectId) {
+    let (scene, assets) = (context.document.scene(), context.document.assets());
+    let Some(original) = scene.object(id) else { return };
+    let mut object = original.clone();
+    title(ui, &original.name, object.shape.label());
+    row(ui, "Name", "Names are unique in a studio", |ui| {
+        if let Some(name) = name_ui(ui, &original.name) {
+            context.out.push(Command::Do(Action::Rename(Item::Object(id), name)));
+        }
+    });
+    row(ui, "Show", "Hidden things are neither seen nor do they cast shadows", |ui| {
+        widgets::choice(
+            ui,
+            &mut object.visible,
+            &[(true, "Visible", "It is there"), (false, "Hidden", "As if it were not there")],
+        );
+    });
+    ui.separator();
+    section(ui, "Shape and size", true, |ui| shape_rows(ui, assets, &mut object));
+    section(ui, "Place", true, |ui| place_rows(ui, &mut object));
+    section(ui, "Surface", true, |ui| {
+        if material_rows(ui, "own", &mut object.material) {
+            context.out.push(Command::ChooseTexture(Item::Object(id), None));
+        }
+    });
+    if let Some(part) = part_rows(ui, assets, &mut object) {
+        context.out.push(Command::ChooseTexture(Item::Object(id), Some(part)));
+    }
+    if object != *original {
+        context.out.push(Command::Do(Action::SetObject(Box::new(object))));
+    }
+}
+
+const FIGURES: [(Figure, &str); 4] =
+    [(Figure::Woman, "Woman"), (Figure::Man, "Man"), (Figure::Child, "Child"), (Figure::Bust, "Bust")];
+const POSES: [(Pose, &str); 4] = [
+    (Pose::Standing, "Standing"),
+    (Pose::Contrapposto, "Hand on hip"),
+    (Pose::Seated, "Seated"),
+    (Pose::HeadTurned, "Head turned"),
+];
+
+fn shape_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
+    match &mut object.shape {
+        Shape::Mannequin(mannequin) => mannequin_rows(ui, mannequin),
+        Shape::MeshFile { path } => {
+            row(ui, "File", "The model, relative to the studio's file", |ui| ui.label(path.as_str()));
+        }
+        Shape::Plane { width_m, depth_m } => {
+            centimetres(ui, &mut [("Width", width_m, 100.0), ("Length", depth_m, 100.0)])
+        }
+        Shape::Box { size_m } => {
+            let Vec3 { x, y, z } = size_m;
+            centimetres(ui, &mut [("Width", x, 100.0), ("Height", y, 100.0), ("Depth", z, 100.0)]);
+        }
+        Shape::Sphere { radius_m } => centimetres(ui, &mut [("Diameter", radius_m, 200.0)]),
+        Shape::Cylinder { radius_m, height_m } => {
+            centimetres(ui, &mut [("Diameter", radius_m, 200.0), ("Height", height_m, 100.0)]);
+        }
+        Shape::Sweep { width_m, height_m, depth_m, radius_m } => {
+            row(ui, "Roll", "Widths that paper comes in", |ui| {
+                let rolls = [(1.35, "1.35 m", "Narrow"), (2.72, "2.72 m", "Usual"), (3.55, "3.55 m", "Wide")];
+                widgets::choice(ui, width_m, &rolls);
+            });
+            let sizes = &mut [
+                ("Width", width_m, 100.0),
+                ("Hung at", height_m, 100.0),
+                ("On the floor", depth_m, 100.0),
+                ("Curve", radius_m, 100.0),
+            ];
+            centimetres(ui, sizes);
+        }
+    }
+    scale_rows(ui, assets, object);
+}
+
+fn mannequin_rows(ui: &mut Ui, mannequin: &mut Mannequin) {
+    row(ui, "Figure", "Who", |ui| {
+        let current = FIGURES.iter().find(|(each, _)| *each == mannequin.figure).map_or("", |(_, name)| name);
+        ComboBox::from_id_salt("figure").selected_text(current).show_ui(ui, |ui| {
+            for (figure, name) in FIGURES {
+                ui.selectable_value(&mut mannequin.figure, figure, name);
+            }
+        });
+    });
+    row(ui, "Pose", "How", |ui| {
+        let current = POSES.iter().find(|(each, _)| *each == mannequin.pose).map_or("", |(_, name)| name);
+        ComboBox::from_id_salt("pose").selected_text(current).show_ui(ui, |ui| {
+            for (pose, name) in POSES {
+                ui.selectable_value(&mut mannequin.pose, pose, name);
+            }
+        });
+    });
+}
+
+fn centimetres(ui: &mut Ui, sizes: &mut [(&str, &mut f32, f32)]) {
+    for (label, value, factor) in sizes {
+        row(ui, label, "Size of the thing itself, before its scale", |ui| SIZE_CM.scaled_ui(ui, value, *factor));
+    }
+}
+
+/// Figures are sized by their height, other things by a percentage.
+fn scale_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
+    let scale = &mut object.transform.scale;
+    let is_uniform = scale.x == scale.y && scale.y == scale.z;
+    let height_m = match &object.shape {
+        Shape::Mannequin(_) => assets.mesh_of(&object.shape).map(|mesh| mesh.bounds().1.y).filter(|h| *h > 0.0),
+        _ => None,
+    };
+    let before = scale.y;
+    let mut factor = before;
+    match height_m {
+        Some(height_m) => row(ui, "Height", "From the floor to the top of the head", |ui| {
+            Number::new(0.5, 5.0, 400.0, 1, " cm").scaled_ui(ui, &mut factor, 100.0 * height_m)
+        }),
+        None => row(ui, "Scale", "Of the whole thing", |ui| {
+            Number::new(0.5, 0.1, 100_000.0, 1, " %").scaled_ui(ui, &mut factor, 100.0)
+        }),
+    };
+    if factor != before && before != 0.0 {
+        *scale *= factor / before;
+    }
+    if !is_uniform {
+        row(ui, "Each axis", "Scale along its own axes", |ui| {
+            widgets::vec3_ui(ui, "Scale", Number::new(0.005, 0.001, 1000.0, 3, ""), scale);
+        });
+        row(ui, "", "", |ui| {
+            if ui.button("Same on all axes").on_hover_text("Undo the stretching").clicked() {
+                *scale = Vec3::splat(scale.y);
+            }
+        });
+    }
+}
+
+fn place_rows(ui: &mut Ui, object: &mut Object) {
+    let transform = &mut object.transform;
+    row(ui, "Position", "Of its origin, in the room", |ui| {
+        widgets::vec3_ui(ui, "Position", METRES, &mut transform.position)
+    });
+    row(ui, "Turn", "About the vertical axis", |ui| {
+        DEGREES.ui(ui, &mut transform.rotation_deg.y);
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for (text, by) in [("\u{2212}15\u{b0}", -15.0), ("+15\u{b0}", 15.0)] {
+            if ui.add(Button::new(text)).on_hover_text("Turn by 15 degrees").clicked() {
+                transform.rotation_deg.y = wrap_deg(transform.rotation_deg.y + by);
+            }
+        }
+    });
+    row(ui, "Tilt", "Forwards and backwards", |ui| DEGREES.ui(ui, &mut transform.rotation_deg.x));
+    row(ui, "Roll", "Sideways", |ui| DEGREES.ui(ui, &mut transform.rotation_deg.z));
+}
+
+/// The same angle in (-180, 180].
+fn wrap_deg(angle: f32) -> f32 {
+    let wrapped = angle.rem_euclid(360.0);
+    if wrapped > 180.0 { wrapped - 360.0 } else { wrapped }
+}
+
+/// Materials of named parts; returns the part for which a texture is to be chosen.
+fn part_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) -> Option<String> {
+    let mesh = assets.mesh_of(&object.shape)?;
+    if mesh.parts.len() < 2 {
+        return None;
+    }
+    let mut choose = None;
+    for part in &mesh.parts {
+        let own = object.part_materials.iter().position(|(name, _)| *name == part.name);
+        let Some(own) = own else {
+            row(ui, &part.name, "A part of the model that has the surface of the whole", |ui| {
+                if ui.button("Own surface").on_hover_text("Give this part a surface of its own").clicked() {
+                    object.part_materials.push((part.name.clone(), object.material.clone()));
+                }
+            });
+            continue;
+        };
+        let label = format!("Surface of {}", part.name);
+        if material_group(ui, &label, &mut object.part_materials[own].1) {
+            choose = Some(part.name.clone());
+        }
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(preset_name(&object.part_materials[own].1)).weak());
+            if ui.small_button("Same as the whole").on_hover_text("Take this part's own surface away").clicked() {
+                object.part_materials.remove(own);
+            }
+        });
+    }
+    choose
+}

@@ -1,0 +1,133 @@
+//! Units of power, and the change from one to another without a change of the picture.
+
+use crate::editor::readout;
+use crate::photo::exposure;
+use crate::scene::{Camera, Emitter, Light, Output, Scene};
+
+/// The units a power can be given in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Lumens.
+    Lumens,
+    /// Candela on the axis.
+    Candela,
+    /// Lux at a distance.
+    LuxAt,
+    /// Lux of sun or sky.
+    Lux,
+    /// Flash energy.
+    FlashWs,
+    /// Flash guide number.
+    GuideNumber,
+}
+
+impl Unit {
+    /// The units of things that have a place.
+    pub const FINITE: [Unit; 5] = [Unit::FlashWs, Unit::GuideNumber, Unit::Lumens, Unit::Candela, Unit::LuxAt];
+    /// The units of sun and surround.
+    pub const INFINITE: [Unit; 1] = [Unit::Lux];
+
+    /// Label in the list.
+    pub fn label(self) -> &'static str {
+        match self {
+            Unit::Lumens => "Continuous, lumens",
+            Unit::Candela => "Continuous, candela",
+            Unit::LuxAt => "Continuous, lux at a distance",
+            Unit::Lux => "Continuous, lux",
+            Unit::FlashWs => "Flash, watt seconds",
+            Unit::GuideNumber => "Flash, guide number",
+        }
+    }
+
+    /// The unit of an output.
+    pub fn of(output: &Output) -> Unit {
+        match output {
+            Output::Lumens(_) => Unit::Lumens,
+            Output::Candela(_) => Unit::Candela,
+            Output::LuxAt { .. } => Unit::LuxAt,
+            Output::Lux(_) => Unit::Lux,
+            Output::FlashWs { .. } => Unit::FlashWs,
+            Output::FlashGuideNumber(_) => Unit::GuideNumber,
+        }
+    }
+}
+
+/// The same light in another unit: the same intensity, and across flash and continuous light the same exposure at the
+/// camera's shutter.
+pub fn convert(light: &Light, camera: &Camera, unit: Unit) -> Output {
+    let full = Light { power: crate::scene::Power { dial_stops: 0.0, ..light.power }, ..light.clone() };
+    let per_flux = exposure::intensity_per_flux(&light.emitter).unwrap_or(1.0);
+    let was_flash = light.power.output.is_flash();
+    let is_flash = matches!(unit, Unit::FlashWs | Unit::GuideNumber);
+    let time = match (was_flash, is_flash) {
+        (true, false) => 1.0 / camera.shutter_s,
+        (false, true) => camera.shutter_s,
+        _ => 1.0,
+    };
+    let intensity = exposure::axial_intensity(&full) * time;
+    match unit {
+        Unit::Lumens => Output::Lumens(intensity / per_flux),
+        Unit::Candela => Output::Candela(intensity),
+        Unit::LuxAt => Output::LuxAt { lux: intensity, distance_m: 1.0 },
+        Unit::Lux => Output::Lux(10_000.0),
+        Unit::FlashWs => {
+            let efficacy_lm_s_per_ws = Output::DEFAULT_EFFICACY;
+            Output::FlashWs { energy_ws: intensity / per_flux / efficacy_lm_s_per_ws, efficacy_lm_s_per_ws }
+        }
+        // H(1 m) = 2.5 GN^2 at ISO 100, C = 250 lux s.
+        Unit::GuideNumber => Output::FlashGuideNumber((intensity / 2.5).max(0.0).sqrt()),
+    }
+}
+
+/// Gives a light another emitter. Between things with a place and sun or sky the exposure at the aim stays.
+pub fn change_emitter(scene: &Scene, light: &mut Light, emitter: Emitter) {
+    let before = readout::at_aim(scene, light);
+    let (was, is) = (light.emitter.is_infinite(), emitter.is_infinite());
+    light.emitter = emitter;
+    if was == is {
+        return;
+    }
+    let full = before.lux_s / scene.camera.shutter_s / light.power.dial_stops.exp2();
+    light.power.output = if is {
+        Output::Lux(full)
+    } else {
+        let distance_m = (scene.aim_point(&light.aim, light.position) - light.position).length().max(0.1);
+        convert(
+            &Light {
+                power: crate::scene::Power { output: Output::LuxAt { lux: full, distance_m }, ..light.power },
+                ..light.clone()
+            },
+            &scene.camera,
+            Unit::FlashWs,
+        )
+    };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::catalog;
+
+    #[test]
+    fn every_unit_says_the_same_exposure() {
+        let scene = Scene::default();
+        let mut light = catalog::light_named("Strip 30 x 120").unwrap();
+        let lux_s = readout::at_aim(&scene, &light).lux_s;
+        for unit in Unit::FINITE.into_iter().chain(Unit::FINITE.into_iter().rev()) {
+            light.power.output = convert(&light, &scene.camera, unit);
+            let now = readout::at_aim(&scene, &light).lux_s;
+            assert!((now / lux_s - 1.0).abs() < 1e-4, "{unit:?}: {now}, not {lux_s}");
+        }
+    }
+
+    #[test]
+    fn a_bulb_that_becomes_the_sun_and_back_keeps_its_order_of_brightness() {
+        let scene = Scene::default();
+        let mut light = catalog::light_named("Bare bulb").unwrap();
+        let lux_s = readout::at_aim(&scene, &light).lux_s;
+        change_emitter(&scene, &mut light, Emitter::Sun { angular_diameter_deg: 0.5 });
+        assert!((readout::at_aim(&scene, &light).lux_s / lux_s - 1.0).abs() < 1e-3);
+        change_emitter(&scene, &mut light, Emitter::Point);
+        assert!((readout::at_aim(&scene, &light).lux_s / lux_s - 1.0).abs() < 1e-3);
+    }
+}

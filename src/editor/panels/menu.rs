@@ -1,0 +1,175 @@
+//! The menu bar.
+
+use crate::editor::action::Item;
+use crate::editor::command::{Centre, Command, Handle};
+use crate::editor::document::Document;
+use crate::editor::recent::RecentFiles;
+use crate::editor::widgets;
+use eframe::egui::{Button, MenuBar, Ui};
+
+/// What the menus show beside the document.
+#[derive(Clone, Copy, Debug)]
+pub struct MenuState<'a> {
+    /// The open studio.
+    pub document: &'a Document,
+    /// What is selected.
+    pub selection: Option<Item>,
+    /// Studios opened before.
+    pub recent: &'a RecentFiles,
+    /// What the middle shows.
+    pub centre: Centre,
+    /// The handles on show.
+    pub handles: Handle,
+    /// Whether there is a picture to export.
+    pub has_picture: bool,
+    /// Whether a render is on its way.
+    pub rendering: bool,
+}
+
+/// Draws it.
+pub fn menu_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
+    MenuBar::new().ui(ui, |ui| {
+        ui.menu_button("File", |ui| file_menu(ui, state, out));
+        ui.menu_button("Edit", |ui| edit_menu(ui, state, out));
+        ui.menu_button("View", |ui| view_menu(ui, state, out));
+        ui.menu_button("Render", |ui| render_menu(ui, state, out));
+        ui.menu_button("Help", |ui| entry(ui, true, "Keys and mouse", "How to move around", Command::ToggleHelp, out));
+    });
+}
+
+/// One entry with its key.
+fn entry(ui: &mut Ui, enabled: bool, text: &str, tip: &str, command: Command, out: &mut Vec<Command>) {
+    let shortcut = command.shortcut().map(|s| ui.ctx().format_shortcut(&s)).unwrap_or_default();
+    let button = Button::new(text).shortcut_text(shortcut);
+    if ui.add_enabled(enabled, button).on_hover_text(tip).clicked() {
+        out.push(command);
+    }
+}
+
+fn file_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
+    ui.set_min_width(220.0);
+    entry(ui, true, "New from preset\u{2026}", "Start from a set-up a photographer would name", Command::New, out);
+    entry(ui, true, "Open\u{2026}", "Open a studio from a .ron file", Command::Open, out);
+    recent_menu(ui, state, out);
+    ui.separator();
+    entry(ui, true, "Save", "Write the studio to its file", Command::Save, out);
+    entry(ui, true, "Save as\u{2026}", "Write the studio to another file", Command::SaveAs, out);
+    ui.separator();
+    entry(ui, true, "Import OBJ\u{2026}", "Bring in a model", Command::Import, out);
+    entry(
+        ui,
+        state.has_picture,
+        "Export picture\u{2026}",
+        "Write the rendered picture as PNG, JPEG or EXR",
+        Command::ExportPicture,
+        out,
+    );
+    ui.separator();
+    entry(ui, true, "Quit", "Close the window", Command::Quit, out);
+}
+
+fn recent_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
+    let paths = state.recent.paths();
+    ui.add_enabled_ui(!paths.is_empty(), |ui| {
+        ui.menu_button("Open recent", |ui| {
+            for path in paths {
+                let name = path.file_name().map_or_else(|| path.to_string_lossy(), |name| name.to_string_lossy());
+                if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                    out.push(Command::OpenPath(path.clone()));
+                }
+            }
+            ui.separator();
+            entry(ui, true, "Clear this list", "The files stay where they are", Command::ClearRecent, out);
+        });
+    });
+}
+
+fn edit_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
+    ui.set_min_width(220.0);
+    let history = state.document.history();
+    let undo = history.undo_label().map_or_else(|| "Undo".to_owned(), |label| format!("Undo: {label}"));
+    let redo = history.redo_label().map_or_else(|| "Redo".to_owned(), |label| format!("Redo: {label}"));
+    entry(ui, history.undo_label().is_some(), &undo, "Take the last step back", Command::Undo, out);
+    entry(ui, history.redo_label().is_some(), &redo, "Do the step again", Command::Redo, out);
+    ui.separator();
+    let movable = matches!(state.selection, Some(Item::Object(_) | Item::Light(_)));
+    entry(ui, movable, "Duplicate", "Put a copy beside the selected thing", Command::DuplicateSelected, out);
+    entry(ui, movable, "Delete", "Take the selected thing away", Command::DeleteSelected, out);
+    if let Some(item) = state.selection.filter(|_| movable) {
+        entry(ui, true, "Rename", "Give the selected thing another name", Command::BeginRename(item), out);
+    }
+}
+
+fn view_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
+    ui.set_min_width(240.0);
+    entry(ui, true, "Camera view on or off", "What the picture will frame", Command::ToggleCameraView, out);
+    entry(ui, true, "Rendered picture", "The last render, large", Command::Show(Centre::Picture), out);
+    ui.separator();
+    entry(ui, true, "Bring selection into view", "Everything, when nothing is selected", Command::FrameSelection, out);
+    let in_studio = state.centre == Centre::Studio;
+    let tip = "Puts the camera where the studio view looks from";
+    entry(ui, in_studio, "Camera to this view", tip, Command::CameraFromView, out);
+    ui.separator();
+    for (handle, text, tip) in HANDLES {
+        let text = if state.handles == handle { format!("{text} (on)") } else { text.to_owned() };
+        entry(ui, true, &text, tip, Command::Handles(handle), out);
+    }
+}
+
+/// The three kinds of handles, with label and tip.
+pub const HANDLES: [(Handle, &str, &str); 3] = [
+    (Handle::Move, "Move", "Handles that move the selected thing"),
+    (Handle::Turn, "Turn", "Handles that turn the selected thing; a light swings its aim"),
+    (Handle::Size, "Size", "Handles that scale the selected thing"),
+];
+
+fn render_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
+    ui.set_min_width(200.0);
+    entry(ui, !state.rendering, "Render", "Trace the picture that the camera would take", Command::Render, out);
+    entry(ui, state.rendering, "Cancel", "Stop, and keep what is there", Command::CancelRender, out);
+}
+
+/// The row of view buttons over the middle of the window.
+pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool, out: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        let mut centre = state.centre;
+        let views = [
+            (Centre::Studio, "Studio", "Look at the studio from anywhere (1 switches to the camera and back)"),
+            (Centre::Camera, "Camera", "What the picture will frame (1)"),
+            (Centre::Picture, "Picture", "The rendered picture (3)"),
+        ];
+        widgets::choice(ui, &mut centre, &views);
+        if centre != state.centre {
+            out.push(Command::Show(centre));
+        }
+        if centre == Centre::Picture {
+            return;
+        }
+        ui.separator();
+        for (handle, text, tip) in HANDLES {
+            let key = Command::Handles(handle).shortcut().map(|s| ui.ctx().format_shortcut(&s)).unwrap_or_default();
+            let button = Button::selectable(state.handles == handle, text);
+            if ui.add(button).on_hover_text(format!("{tip} ({key})")).clicked() {
+                out.push(Command::Handles(handle));
+            }
+        }
+        ui.separator();
+        let frame = ui.button("Frame").on_hover_text("Bring the selection, or everything, into view (F)");
+        if frame.clicked() {
+            out.push(Command::FrameSelection);
+        }
+        ui.separator();
+        if centre == Centre::Camera {
+            ui.checkbox(camera_follows, "Move the camera").on_hover_text(
+                "On: orbit, pan, wheel and W A S D move the camera itself. Off: they leave to the studio view.",
+            );
+        } else {
+            let button = ui.button("Camera here");
+            if button.on_hover_text("Puts the camera where you look from now").clicked() {
+                out.push(Command::CameraFromView);
+                out.push(Command::Show(Centre::Camera));
+            }
+        }
+    });
+}

@@ -1,0 +1,11 @@
+//! The panels around the viewport. Each is one function that draws from the document and pushes commands.
+
+pub mod add;
+pub mod help;
+pub mod inspector;
+pub mod menu;
+pub mod outliner;
+pub mod presets;
+pub mod prompts;
+pub mod render;
+pub mod status;

@@ -1,0 +1,80 @@
+//! The list of shipped studios.
+
+use crate::editor::command::Command;
+use crate::editor::files::PresetInfo;
+use eframe::egui::{self, Button, Id, Modal, RichText, ScrollArea, Ui};
+
+/// Which studio of the list is marked; none while the list is closed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PresetPicker {
+    marked: Option<usize>,
+}
+
+impl PresetPicker {
+    /// Opens the list.
+    pub fn open(&mut self) {
+        self.marked = Some(0);
+    }
+
+    /// Whether the list is on show.
+    pub fn is_open(&self) -> bool {
+        self.marked.is_some()
+    }
+
+    /// Draws the list.
+    pub fn ui(&mut self, ctx: &egui::Context, presets: &[PresetInfo], out: &mut Vec<Command>) {
+        let Some(marked) = self.marked else { return };
+        let mut choice = None;
+        let modal = Modal::new(Id::unique("presets")).show(ctx, |ui| {
+            ui.set_width(520.0);
+            ui.heading("New from preset");
+            ui.label(
+                RichText::new("Each is a lit studio to start from. Your own file comes into being when you save.")
+                    .weak(),
+            );
+            ui.separator();
+            ScrollArea::vertical().max_height(420.0).show(ui, |ui| {
+                for (i, preset) in presets.iter().enumerate() {
+                    let response = preset_row(ui, preset, i == marked);
+                    if response.clicked() {
+                        self.marked = Some(i);
+                    }
+                    if response.double_clicked() {
+                        choice = Some(i);
+                    }
+                }
+            });
+            ui.separator();
+            ui.horizontal(|ui| {
+                let enabled = marked < presets.len();
+                if ui.add_enabled(enabled, Button::new("Open this studio")).clicked() {
+                    choice = Some(marked);
+                }
+                if ui.button("Cancel").clicked() {
+                    ui.close();
+                }
+            });
+        });
+        if choice.is_some() || modal.should_close() {
+            self.marked = None;
+        }
+        if let Some(index) = choice {
+            out.push(Command::NewFromPreset(index));
+        }
+    }
+}
+
+fn preset_row(ui: &mut Ui, preset: &PresetInfo, marked: bool) -> egui::Response {
+    let mut text = egui::text::LayoutJob::default();
+    let (name, line) = (egui::TextStyle::Button.resolve(ui.style()), egui::TextStyle::Small.resolve(ui.style()));
+    let visuals = ui.visuals();
+    let name_color = if marked { visuals.selection.stroke.color } else { visuals.strong_text_color() };
+    text.append(&preset.name, 0.0, egui::TextFormat::simple(name, name_color));
+    text.append("\n", 0.0, egui::TextFormat::default());
+    text.append(&preset.description, 0.0, egui::TextFormat::simple(line, visuals.weak_text_color()));
+    text.wrap.max_width = ui.available_width() - 20.0;
+    let button = Button::selectable(marked, text).min_size(egui::vec2(ui.available_width(), 40.0)).wrap();
+    let response = ui.add(button);
+    crate::editor::widgets::named(ui, &response, &preset.name);
+    response
+}

@@ -1,0 +1,103 @@
+//! Questions in the middle of the window: unsaved changes, and a path where the desktop has no dialog.
+
+use crate::editor::dialogs::Purpose;
+use eframe::egui::{self, Button, Id, Key, Modal, RichText, TextEdit};
+use std::path::{Path, PathBuf};
+
+/// The answer to "save the changes?".
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GuardAnswer {
+    /// Save, then go on.
+    Save,
+    /// Go on without.
+    Discard,
+    /// Stay.
+    Cancel,
+}
+
+/// Asks whether to save before `what`.
+pub fn guard_ui(ctx: &egui::Context, title: &str, what: &str) -> Option<GuardAnswer> {
+    let mut answer = None;
+    let modal = Modal::new(Id::unique("unsaved changes")).show(ctx, |ui| {
+        ui.set_width(420.0);
+        ui.heading("Unsaved changes");
+        ui.label(format!("\"{title}\" has changes that are not saved. Save them before {what}?"));
+        ui.add_space(8.0);
+        ui.horizontal(|ui| {
+            let choices = [
+                ("Save", GuardAnswer::Save, "Write the studio to its file first"),
+                ("Don't save", GuardAnswer::Discard, "The changes are lost"),
+                ("Cancel", GuardAnswer::Cancel, "Stay here (Esc)"),
+            ];
+            for (text, each, tip) in choices {
+                if ui.add(Button::new(text).min_size(egui::vec2(96.0, 26.0))).on_hover_text(tip).clicked() {
+                    answer = Some(each);
+                }
+            }
+        });
+    });
+    if answer.is_none() && modal.should_close() {
+        answer = Some(GuardAnswer::Cancel);
+    }
+    answer
+}
+
+/// A field for a path.
+#[derive(Clone, Debug)]
+pub struct PathPrompt {
+    /// What the path is for.
+    pub purpose: Purpose,
+    text: String,
+    had_focus: bool,
+}
+
+/// What became of a path prompt.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PathAnswer {
+    /// This path.
+    Chosen(PathBuf),
+    /// Nothing.
+    Cancelled,
+}
+
+impl PathPrompt {
+    /// A prompt that suggests a file in a folder.
+    pub fn new(purpose: Purpose, folder: Option<&Path>, file_name: &str) -> Self {
+        let folder = folder.map(Path::to_owned).or_else(|| std::env::current_dir().ok()).unwrap_or_default();
+        let path = if purpose.is_save() { folder.join(file_name) } else { folder.join("") };
+        PathPrompt { purpose, text: path.to_string_lossy().into_owned(), had_focus: false }
+    }
+
+    /// Draws it.
+    pub fn ui(&mut self, ctx: &egui::Context) -> Option<PathAnswer> {
+        let mut answer = None;
+        let modal = Modal::new(Id::unique("path prompt")).show(ctx, |ui| {
+            ui.set_width(560.0);
+            ui.heading(self.purpose.title());
+            ui.label(RichText::new("This desktop offers no file dialog, so please type the path.").weak());
+            let field =
+                ui.name_inputs("Path", |ui| ui.add(TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY)));
+            if !self.had_focus {
+                field.request_focus();
+                self.had_focus = true;
+            }
+            let entered = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+            ui.add_space(6.0);
+            ui.horizontal(|ui| {
+                let text = self.text.trim();
+                let word = if self.purpose.is_save() { "Save here" } else { "Open" };
+                let pressed = ui.add_enabled(!text.is_empty(), Button::new(word)).clicked();
+                if (pressed || entered) && !text.is_empty() {
+                    answer = Some(PathAnswer::Chosen(PathBuf::from(text)));
+                }
+                if ui.button("Cancel").clicked() {
+                    answer = Some(PathAnswer::Cancelled);
+                }
+            });
+        });
+        if answer.is_none() && modal.should_close() {
+            answer = Some(PathAnswer::Cancelled);
+        }
+        answer
+    }
+}

@@ -1,0 +1,176 @@
+//! The render panel: size, quality, the button, progress and a small picture.
+
+use crate::editor::command::{Centre, Command};
+use crate::editor::render_job::{Phase, Progress, method_label};
+use crate::editor::rendering::{PictureSize, Quality, RenderSettings, Rendering};
+use crate::editor::theme;
+use crate::editor::widgets::{self, Number, row};
+use crate::raytrace::Method;
+use crate::scene::Scene;
+use eframe::egui::{self, Button, ComboBox, DragValue, Image, ProgressBar, RichText, Sense, Ui, vec2};
+use std::time::Duration;
+
+/// Longest side of a picture, pixels.
+const LARGEST: u32 = 16_384;
+
+/// Draws it.
+pub fn render_ui(ui: &mut Ui, rendering: &mut Rendering, scene: &Scene, out: &mut Vec<Command>) {
+    ui.add_space(4.0);
+    ui.label(RichText::new("Render").strong());
+    ui.separator();
+    size_rows(ui, &mut rendering.settings, scene);
+    quality_rows(ui, &mut rendering.settings);
+    ui.add_space(4.0);
+    button_row(ui, rendering, out);
+    progress_ui(ui, rendering);
+    thumbnail_ui(ui, rendering, scene, out);
+    ui.add_space(4.0);
+}
+
+/// Long edges in the list, pixels.
+const EDGES: [(u32, &str); 4] = [(640, "small"), (1080, "screen"), (2160, "4K"), (4320, "print")];
+
+fn size_rows(ui: &mut Ui, settings: &mut RenderSettings, scene: &Scene) {
+    let (width, height) = settings.pixels(&scene.camera);
+    row(ui, "Size", "Pixels; the shape is the sensor's unless it is custom", |ui| {
+        let custom = matches!(settings.size, PictureSize::Custom(..));
+        let text = if custom { "Custom".to_owned() } else { format!("{width} \u{d7} {height}") };
+        ComboBox::from_id_salt("size").selected_text(text).width(ui.available_width() - 8.0).show_ui(ui, |ui| {
+            for (edge, word) in EDGES {
+                let (w, h) = scene.camera.picture_size(edge);
+                let label = format!("{w} \u{d7} {h}  ({word})");
+                ui.selectable_value(&mut settings.size, PictureSize::LongEdge(edge), label);
+            }
+            if ui.selectable_label(custom, "Custom").clicked() {
+                settings.size = PictureSize::Custom(width, height);
+            }
+        });
+    });
+    if let PictureSize::Custom(width, height) = &mut settings.size {
+        row(ui, "", "", |ui| {
+            let field = |value| DragValue::new(value).range(1..=LARGEST).suffix(" px").speed(4.0);
+            ui.name_inputs("Picture width", |ui| ui.add(field(width)));
+            ui.label("\u{d7}");
+            ui.name_inputs("Picture height", |ui| ui.add(field(height)));
+        });
+    }
+}
+
+fn quality_rows(ui: &mut Ui, settings: &mut RenderSettings) {
+    row(ui, "Quality", "More samples, less noise, more time: four times the samples halve the noise", |ui| {
+        let choices = [
+            (Quality::Draft, "Draft", "16 samples: seconds, to judge the light"),
+            (Quality::Good, "Good", "128 samples: to show around"),
+            (Quality::Final, "Final", "1024 samples: to deliver"),
+        ];
+        widgets::choice(ui, &mut settings.quality, &choices);
+        settings.samples = settings.quality.samples().unwrap_or(settings.samples);
+    });
+    row(ui, "Samples", "Light paths through each pixel", |ui| {
+        let mut samples = settings.samples as f32;
+        Number::new(1.0, 1.0, 65_536.0, 0, "").ui(ui, &mut samples);
+        if samples as u32 != settings.samples {
+            (settings.samples, settings.quality) = (samples as u32, Quality::Custom);
+        }
+        ComboBox::from_id_salt("method")
+            .selected_text(method_label(settings.method))
+            .width(ui.available_width() - 8.0)
+            .show_ui(ui, |ui| {
+                for method in [Method::Path, Method::Direct] {
+                    ui.selectable_value(&mut settings.method, method, method_label(method));
+                }
+            });
+    });
+}
+
+fn button_row(ui: &mut Ui, rendering: &Rendering, out: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let half = (ui.available_width() - 8.0) * 0.6;
+        if rendering.is_running() {
+            let cancel = ui.add(Button::new("Cancel").min_size(vec2(half, 28.0)));
+            if cancel.on_hover_text("Stop, and keep what is there").clicked() {
+                out.push(Command::CancelRender);
+            }
+        } else {
+            let render = widgets::primary_button(ui, "Render", half);
+            if render.on_hover_text("Trace the picture that the camera would take (R)").clicked() {
+                out.push(Command::Render);
+            }
+        }
+        let export = Button::new("Export\u{2026}").min_size(vec2(ui.available_width(), 28.0));
+        let export = ui.add_enabled(rendering.developed().is_some(), export);
+        let export = export.on_disabled_hover_text("Render first");
+        if export.on_hover_text("Write the picture as PNG, JPEG or EXR (Ctrl+E)").clicked() {
+            out.push(Command::ExportPicture);
+        }
+    });
+}
+
+fn progress_ui(ui: &mut Ui, rendering: &Rendering) {
+    let Some(job) = rendering.job() else { return };
+    let (phase, progress) = (job.phase(), job.progress());
+    let bar = ProgressBar::new(progress.fraction).desired_height(16.0).fill(theme::ACCENT.gamma_multiply(0.6));
+    let bar = ui.add(bar.text(RichText::new(progress_text(&phase, &progress)).small()));
+    widgets::named(ui, &bar, "Progress");
+    if phase != Phase::Preparing {
+        let samples = format!("{:.0} of {} samples", progress.samples.floor(), job.settings.spp);
+        let speed = format!("{:.1} Mrays/s", progress.mrays_s);
+        ui.label(RichText::new(format!("{samples}    {speed}    {}", duration_text(progress.elapsed))).weak().small());
+    }
+}
+
+fn progress_text(phase: &Phase, progress: &Progress) -> String {
+    match phase {
+        Phase::Preparing => "Preparing\u{2026}".to_owned(),
+        Phase::Tracing => match progress.left {
+            Some(left) => format!("{:.0} %, {} left", progress.fraction * 100.0, duration_text(left)),
+            None => format!("{:.0} %", progress.fraction * 100.0),
+        },
+        Phase::Done => "Done".to_owned(),
+        Phase::Cancelled => "Cancelled".to_owned(),
+        Phase::Failed(_) => "Failed".to_owned(),
+    }
+}
+
+/// `12 s`, `3 min 05 s`, `2 h 10 min`.
+pub fn duration_text(duration: Duration) -> String {
+    let seconds = duration.as_secs_f64();
+    match seconds {
+        s if s < 10.0 => format!("{s:.1} s"),
+        s if s < 60.0 => format!("{s:.0} s"),
+        s if s < 3600.0 => format!("{} min {:02} s", s as u64 / 60, s as u64 % 60),
+        s => format!("{} h {:02} min", s as u64 / 3600, s as u64 / 60 % 60),
+    }
+}
+
+fn thumbnail_ui(ui: &mut Ui, rendering: &Rendering, scene: &Scene, out: &mut Vec<Command>) {
+    let Some(texture) = rendering.texture() else { return };
+    let room = vec2(ui.available_width(), 200.0);
+    let size = texture.size_vec2();
+    let size = size * (room.x / size.x).min(room.y / size.y);
+    ui.vertical_centered(|ui| {
+        let image = Image::new((texture.id(), size)).alt_text("Rendered picture").sense(Sense::click());
+        let response =
+            ui.add(image).on_hover_text("Click to see it large (3)").on_hover_cursor(egui::CursorIcon::ZoomIn);
+        if response.clicked() {
+            out.push(Command::Show(Centre::Picture));
+        }
+    });
+    if rendering.is_out_of_date(scene) && !rendering.is_running() {
+        ui.label(RichText::new(OUT_OF_DATE).color(theme::ACCENT).small());
+    }
+}
+
+/// Said of a picture that no longer shows the studio as it is.
+pub const OUT_OF_DATE: &str = "Out of date: the studio has changed since. Light power, colour and switches follow at once; the rest needs a render.";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_read_well() {
+        let text = |s| duration_text(Duration::from_secs_f64(s));
+        assert_eq!([text(2.34), text(42.0), text(185.0), text(7800.0)], ["2.3 s", "42 s", "3 min 05 s", "2 h 10 min"]);
+    }
+}

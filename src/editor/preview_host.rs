@@ -1,0 +1,171 @@
+//! The live preview as a texture of the window: built in the background, drawn only when something changed.
+
+use super::document::Document;
+use crate::preview::{Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
+use crate::scene::CameraFrame;
+use eframe::egui::{Context, TextureId};
+use eframe::egui_wgpu::RenderState;
+use eframe::wgpu;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::time::{Duration, Instant};
+
+#[derive(Debug)]
+enum Stage {
+    /// The pipelines are being compiled.
+    Starting(Receiver<Result<PreviewRenderer, PreviewError>>),
+    Ready(Box<PreviewRenderer>),
+    /// There is no preview, and why.
+    Failed(String),
+}
+
+/// Everything that the picture depends on.
+#[derive(Clone, Debug, PartialEq)]
+struct Shown {
+    revision: u64,
+    frame: CameraFrame,
+    size: (u32, u32),
+    overlay: Overlay,
+    options: Options,
+}
+
+/// The preview and the texture it draws into.
+pub struct PreviewHost {
+    stage: Stage,
+    state: Option<RenderState>,
+    texture: Option<(TextureId, u64)>,
+    shown: Option<Shown>,
+    /// Pictures drawn so far.
+    draws: u64,
+    last_draw: Duration,
+}
+
+impl std::fmt::Debug for PreviewHost {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PreviewHost").field("stage", &self.stage).field("draws", &self.draws).finish_non_exhaustive()
+    }
+}
+
+impl PreviewHost {
+    /// Starts to build the preview on the window's device.
+    pub fn new(state: Option<&RenderState>, ctx: &Context) -> Self {
+        let stage = match state {
+            Some(state) => start(state, ctx),
+            None => Stage::Failed("The window has no wgpu device, so there is no live view.".to_owned()),
+        };
+        PreviewHost { stage, state: state.cloned(), texture: None, shown: None, draws: 0, last_draw: Duration::ZERO }
+    }
+
+    /// Why there is no preview.
+    pub fn failure(&self) -> Option<&str> {
+        match &self.stage {
+            Stage::Failed(message) => Some(message),
+            Stage::Starting(_) | Stage::Ready(_) => None,
+        }
+    }
+
+    /// Whether the preview is still being built.
+    pub fn is_starting(&self) -> bool {
+        matches!(self.stage, Stage::Starting(_))
+    }
+
+    /// Pictures drawn so far; does not grow while nothing changes.
+    pub fn draws(&self) -> u64 {
+        self.draws
+    }
+
+    /// Time the last picture took to set up and submit.
+    pub fn last_draw(&self) -> Duration {
+        self.last_draw
+    }
+
+    /// Builds the preview again after a failure.
+    pub fn restart(&mut self, ctx: &Context) {
+        if let Some(state) = &self.state {
+            self.stage = start(state, ctx);
+            self.shown = None;
+        }
+    }
+
+    /// The picture of the studio from `frame`, drawn anew if anything of it changed.
+    pub fn show(
+        &mut self,
+        document: &Document,
+        frame: CameraFrame,
+        size: (u32, u32),
+        overlay: Overlay,
+    ) -> Option<TextureId> {
+        self.finish_start();
+        let Stage::Ready(renderer) = &mut self.stage else { return None };
+        let wanted = Shown { revision: document.revision(), frame, size, overlay, options: Options::default() };
+        if self.shown.as_ref() != Some(&wanted) {
+            let began = Instant::now();
+            let input = PreviewInput {
+                scene: document.scene(),
+                assets: document.assets(),
+                frame,
+                size,
+                overlay: wanted.overlay.clone(),
+                options: wanted.options,
+            };
+            if let Err(error) = renderer.render(&input) {
+                self.stage = Stage::Failed(super::files::plain(&error));
+                return None;
+            }
+            (self.draws, self.last_draw, self.shown) = (self.draws + 1, began.elapsed(), Some(wanted));
+            self.register();
+        }
+        self.texture.map(|(id, _)| id)
+    }
+
+    fn finish_start(&mut self) {
+        let Stage::Starting(receiver) = &self.stage else { return };
+        match receiver.try_recv() {
+            Ok(Ok(renderer)) => self.stage = Stage::Ready(Box::new(renderer)),
+            Ok(Err(error)) => self.stage = Stage::Failed(super::files::plain(&error)),
+            Err(TryRecvError::Disconnected) => {
+                self.stage = Stage::Failed("The live view could not be built.".to_owned())
+            }
+            Err(TryRecvError::Empty) => {}
+        }
+    }
+
+    /// Tells egui of the picture's texture, when it is a new one.
+    fn register(&mut self) {
+        let (Stage::Ready(renderer), Some(state)) = (&self.stage, &self.state) else { return };
+        let generation = renderer.generation();
+        let mut egui_renderer = state.renderer.write();
+        match &mut self.texture {
+            Some((_, known)) if *known == generation => {}
+            Some((id, known)) => {
+                let (view, filter) = (renderer.color_view(), wgpu::FilterMode::Linear);
+                egui_renderer.update_egui_texture_from_wgpu_texture(&state.device, view, filter, *id);
+                *known = generation;
+            }
+            None => {
+                let (view, filter) = (renderer.color_view(), wgpu::FilterMode::Linear);
+                self.texture = Some((egui_renderer.register_native_texture(&state.device, view, filter), generation));
+            }
+        }
+    }
+
+    /// What stands at a pixel of the picture on show.
+    pub fn pick(&self, pixel: (u32, u32)) -> Option<Pick> {
+        match &self.stage {
+            Stage::Ready(renderer) => renderer.pick_blocking(pixel).ok().flatten(),
+            Stage::Starting(_) | Stage::Failed(_) => None,
+        }
+    }
+}
+
+fn start(state: &RenderState, ctx: &Context) -> Stage {
+    let (sender, receiver) = channel();
+    let (device, queue, ctx) = (state.device.clone(), state.queue.clone(), ctx.clone());
+    std::thread::spawn(move || {
+        let began = Instant::now();
+        let renderer = PreviewRenderer::new(&device, &queue);
+        log::debug!("the live view was built in {} ms", began.elapsed().as_millis());
+        let _ = sender.send(renderer);
+        ctx.request_repaint();
+    });
+    Stage::Starting(receiver)
+}

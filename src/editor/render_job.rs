@@ -1,0 +1,287 @@
+//! Rendering in the background, on an immutable copy of the studio, and developing the film in a thread of its own.
+
+use crate::io;
+use crate::photo::Picture;
+use crate::raytrace::{self, Control, Film, Method, Settings};
+use crate::scene::{Assets, Scene};
+use eframe::egui::{ColorImage, Context};
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// How far a render is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// Building trees and tables.
+    Preparing,
+    /// Taking samples.
+    Tracing,
+    /// All samples are taken.
+    Done,
+    /// Stopped by the user; what was complete is kept.
+    Cancelled,
+    /// It could not be done.
+    Failed(String),
+}
+
+impl Phase {
+    /// Whether the job still works.
+    pub fn is_running(&self) -> bool {
+        matches!(self, Phase::Preparing | Phase::Tracing)
+    }
+}
+
+/// Numbers for the progress bar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Part of the work that is done, 0 to 1.
+    pub fraction: f32,
+    /// Samples a pixel so far.
+    pub samples: f32,
+    /// Rays a second, millions.
+    pub mrays_s: f32,
+    /// Since the start.
+    pub elapsed: Duration,
+    /// Estimate of what is left; none before there is enough to judge by.
+    pub left: Option<Duration>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    phase: Mutex<Phase>,
+    film: Mutex<Option<Arc<Film>>>,
+    tracing_since: Mutex<Option<Instant>>,
+    ended: Mutex<Option<Instant>>,
+}
+
+/// One render. Dropping it cancels it.
+#[derive(Debug)]
+pub struct RenderJob {
+    control: Arc<Control>,
+    shared: Arc<Shared>,
+    /// The studio as it is being rendered.
+    pub scene: Arc<Scene>,
+    /// What was asked for.
+    pub settings: Settings,
+    started: Instant,
+}
+
+/// Snapshots come at most this often: each is a copy of the film.
+const SNAPSHOT_EVERY: Duration = Duration::from_millis(150);
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    // A panic in the tracer must not take the window down with it: the data are plain values.
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl RenderJob {
+    /// Starts to render a copy of the studio. Assets that are still on their way are loaded first.
+    pub fn start(scene: Scene, assets: Assets, folder: Option<PathBuf>, settings: Settings, ctx: Context) -> Self {
+        let control = Arc::new(Control::new());
+        let shared = Arc::new(Shared {
+            phase: Mutex::new(Phase::Preparing),
+            film: Mutex::new(None),
+            tracing_since: Mutex::new(None),
+            ended: Mutex::new(None),
+        });
+        let job = RenderJob {
+            control: control.clone(),
+            shared: shared.clone(),
+            scene: Arc::new(scene),
+            settings: settings.clone(),
+            started: Instant::now(),
+        };
+        let scene = job.scene.clone();
+        std::thread::spawn(move || {
+            let work = || trace(&scene, assets, folder, &settings, &control, &shared, &ctx);
+            // The tracer does not panic; if it did, the user would get a message and keep the window.
+            let end = std::panic::catch_unwind(std::panic::AssertUnwindSafe(work))
+                .unwrap_or_else(|_| Phase::Failed("The renderer stopped with an internal error.".to_owned()));
+            *lock(&shared.ended) = Some(Instant::now());
+            *lock(&shared.phase) = end;
+            ctx.request_repaint();
+        });
+        job
+    }
+
+    /// Asks it to stop.
+    pub fn cancel(&self) {
+        self.control.cancel();
+    }
+
+    /// How far it is.
+    pub fn phase(&self) -> Phase {
+        lock(&self.shared.phase).clone()
+    }
+
+    /// The latest snapshot.
+    pub fn film(&self) -> Option<Arc<Film>> {
+        lock(&self.shared.film).clone()
+    }
+
+    /// Numbers for the progress bar.
+    pub fn progress(&self) -> Progress {
+        let pixels = u64::from(self.settings.width) * u64::from(self.settings.height);
+        let total = (pixels * u64::from(self.settings.spp)).max(1);
+        let done = self.control.samples_done().min(total);
+        let end = lock(&self.shared.ended).unwrap_or_else(Instant::now);
+        let tracing = lock(&self.shared.tracing_since).map_or(0.0, |since| (end - since).as_secs_f64());
+        let fraction = done as f64 / total as f64;
+        let enough = tracing > 0.3 && fraction > 0.002;
+        Progress {
+            fraction: fraction as f32,
+            samples: done as f32 / pixels.max(1) as f32,
+            mrays_s: if tracing > 0.0 { (self.control.rays() as f64 * 1e-6 / tracing) as f32 } else { 0.0 },
+            elapsed: end - self.started,
+            left: enough.then(|| Duration::from_secs_f64(tracing * (1.0 - fraction) / fraction)),
+        }
+    }
+}
+
+impl Drop for RenderJob {
+    fn drop(&mut self) {
+        self.cancel();
+    }
+}
+
+/// The body of the render thread.
+fn trace(
+    scene: &Scene,
+    mut assets: Assets,
+    folder: Option<PathBuf>,
+    settings: &Settings,
+    control: &Control,
+    shared: &Shared,
+    ctx: &Context,
+) -> Phase {
+    io::load_assets(scene, folder.as_deref(), &mut assets);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(|i| format!("trace {i}")).build()
+    {
+        Ok(pool) => pool,
+        Err(error) => return Phase::Failed(format!("No threads to render with: {error}.")),
+    };
+    let prepared = match pool.install(|| raytrace::prepare(scene, &assets)) {
+        Ok(prepared) => prepared,
+        Err(error) => return Phase::Failed(super::files::plain(&error)),
+    };
+    if control.is_cancelled() {
+        return Phase::Cancelled;
+    }
+    *lock(&shared.tracing_since) = Some(Instant::now());
+    *lock(&shared.phase) = Phase::Tracing;
+    ctx.request_repaint();
+    let mut last_snapshot: Option<Instant> = None;
+    let film = pool.install(|| {
+        raytrace::render(&prepared, settings, control, &mut |film| {
+            if last_snapshot.is_none_or(|last| last.elapsed() >= SNAPSHOT_EVERY) {
+                *lock(&shared.film) = Some(Arc::new(film.clone()));
+                last_snapshot = Some(Instant::now());
+                ctx.request_repaint();
+            }
+            if control.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })
+    });
+    if film.spp() > 0 {
+        *lock(&shared.film) = Some(Arc::new(film));
+    }
+    if control.is_cancelled() { Phase::Cancelled } else { Phase::Done }
+}
+
+/// A developed film, ready to be shown and exported.
+#[derive(Debug)]
+pub struct Developed {
+    /// Scene-linear, for export.
+    pub picture: Arc<Picture>,
+    /// For the screen.
+    pub image: ColorImage,
+    /// Samples a pixel in it.
+    pub spp: u32,
+}
+
+#[derive(Debug, Default)]
+struct DeveloperState {
+    wanted: Option<(Arc<Film>, Scene)>,
+    result: Option<Developed>,
+    busy: bool,
+    closed: bool,
+}
+
+/// A thread that develops films; of several requests only the last one counts.
+#[derive(Debug, Default)]
+pub struct Developer {
+    state: Arc<(Mutex<DeveloperState>, Condvar)>,
+    running: bool,
+}
+
+impl Developer {
+    /// Asks for a picture with the lights as they are in `scene`.
+    pub fn request(&mut self, film: Arc<Film>, scene: Scene, ctx: &Context) {
+        if !self.running {
+            self.running = true;
+            let (state, ctx) = (self.state.clone(), ctx.clone());
+            std::thread::spawn(move || develop_loop(&state, &ctx));
+        }
+        lock(&self.state.0).wanted = Some((film, scene));
+        self.state.1.notify_one();
+    }
+
+    /// The newest picture, once.
+    pub fn take(&self) -> Option<Developed> {
+        lock(&self.state.0).result.take()
+    }
+
+    /// Whether a picture is on its way.
+    pub fn is_busy(&self) -> bool {
+        let state = lock(&self.state.0);
+        state.busy || state.wanted.is_some() || state.result.is_some()
+    }
+}
+
+impl Drop for Developer {
+    fn drop(&mut self) {
+        lock(&self.state.0).closed = true;
+        self.state.1.notify_one();
+    }
+}
+
+fn develop_loop(state: &(Mutex<DeveloperState>, Condvar), ctx: &Context) {
+    loop {
+        let (film, scene) = {
+            let mut guard = lock(&state.0);
+            loop {
+                if guard.closed {
+                    return;
+                }
+                if let Some(wanted) = guard.wanted.take() {
+                    guard.busy = true;
+                    break wanted;
+                }
+                guard = state.1.wait(guard).unwrap_or_else(PoisonError::into_inner);
+            }
+        };
+        let developed = develop(&film, &scene);
+        let mut guard = lock(&state.0);
+        guard.result = Some(developed);
+        guard.busy = false;
+        drop(guard);
+        ctx.request_repaint();
+    }
+}
+
+/// Develops a film with the lights of a scene.
+pub fn develop(film: &Film, scene: &Scene) -> Developed {
+    let picture = film.develop(scene);
+    let bytes: Vec<u8> = picture.to_srgb8().into_iter().flatten().collect();
+    let image = ColorImage::from_rgb([picture.width as usize, picture.height as usize], &bytes);
+    Developed { picture: Arc::new(picture), image, spp: film.spp() }
+}
+
+/// Name of a method in lists.
+pub fn method_label(method: Method) -> &'static str {
+    match method {
+        Method::Direct => "Direct light only",
+        Method::Path => "With bounced light",
+    }
+}
