@@ -1,0 +1,155 @@
+//! A figure put together: skeleton, flesh, head, eyes.
+
+use super::cubes::Cubes;
+use super::field::{Field, Group, Join};
+use super::head::{HEAD_UNITS, head, v};
+use super::pose::PoseAngles;
+use super::proportions::Build;
+use super::shape::Shape;
+use super::skeleton::Skeleton;
+use super::surface::Grid;
+use super::{eyes, limbs, surface, torso};
+use crate::scene::Mesh;
+use glam::{Affine3A, Vec3};
+
+/// How much of a figure is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// From head to foot.
+    Whole,
+    /// Head and shoulders on a flat base.
+    Bust,
+}
+
+/// How fine the triangles are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Detail {
+    /// Length of edges against full detail.
+    coarseness: f32,
+}
+
+impl Detail {
+    /// What is baked: fit for a portrait.
+    pub const FULL: Detail = Detail { coarseness: 1.0 };
+
+    /// Edges longer than in full detail by a factor of 1 to 4; beyond that the figure would fall apart.
+    pub fn new(coarseness: f32) -> Detail {
+        Detail { coarseness: coarseness.clamp(1.0, 4.0) }
+    }
+}
+
+/// Height over a standing figure's floor at which a bust is cut off, body units.
+const BUST_CUT: f32 = 1.19;
+
+/// A posed figure before it is meshed.
+#[derive(Clone, Debug)]
+pub struct Sculpture {
+    build: Build,
+    skeleton: Skeleton,
+    extent: Extent,
+}
+
+impl Sculpture {
+    /// Strikes the pose.
+    pub fn new(build: Build, pose: &PoseAngles, extent: Extent) -> Sculpture {
+        Sculpture { build, skeleton: Skeleton::new(&build, pose), extent }
+    }
+
+    /// Metres that the sculpture is lowered by to stand on y = 0.
+    fn base(&self) -> f32 {
+        match self.extent {
+            Extent::Whole => 0.0,
+            Extent::Bust => BUST_CUT * self.skeleton.unit,
+        }
+    }
+
+    /// World from head on the finished sculpture: origin between the eyes, +Z where it looks; metres.
+    pub fn head(&self) -> Affine3A {
+        Affine3A::from_translation(Vec3::NEG_Y * self.base()) * self.skeleton.head
+    }
+
+    /// The middle of the face, between the eyes and the tip of the nose, on the finished sculpture; metres.
+    pub fn face_point(&self) -> Vec3 {
+        let scale = self.build.head / HEAD_UNITS;
+        self.head().transform_point3(v(0.0, -18.0, 101.0) * scale)
+    }
+
+    /// The whole shape, still at its standing height.
+    fn field(&self) -> Field {
+        let (s, b) = (&self.skeleton, &self.build);
+        let mut groups = vec![torso::torso(s, b)];
+        groups.push(head(s.head, b.head, &b.face));
+        let mut cuts = Vec::new();
+        match self.extent {
+            Extent::Whole => {
+                groups.extend(s.legs.iter().map(|leg| limbs::leg(s, leg, b)));
+                groups.extend(s.arms.iter().map(|arm| limbs::arm(s, arm, b)));
+            }
+            Extent::Bust => {
+                groups.extend(s.arms.iter().map(|arm| shoulder_cap(s, arm.shoulder, arm.elbow)));
+                cuts.push((Shape::HalfSpace { normal: Vec3::Y, offset: self.base() }, 0.012));
+            }
+        }
+        Field { groups, cuts }
+    }
+
+    /// Wanted length of the mesh's edges, metres: finest at lids and lips, finer than the trunk at hands and feet.
+    fn edge_length(&self, p: Vec3, head_from_world: &Affine3A) -> f32 {
+        let (unit, scale) = (self.skeleton.unit, self.build.head / HEAD_UNITS);
+        let head = scale * head_edge_length(head_from_world.transform_point3(p) / scale);
+        let hands = self.skeleton.arms.iter().map(|a| (p - a.wrist - a.fingers * 0.09 * unit).length());
+        let feet = self.skeleton.legs.iter().map(|l| (p - l.foot.transform_point3(v(0.0, 0.03, 0.08) * unit)).length());
+        let hand = ramp(hands.fold(f32::INFINITY, f32::min) / unit, 0.11, 0.2, 0.006, 0.018);
+        let foot = ramp(feet.fold(f32::INFINITY, f32::min) / unit, 0.13, 0.25, 0.0075, 0.018);
+        head.min(hand * unit).min(foot * unit)
+    }
+
+    /// The closed surface with its parts.
+    pub fn mesh(&self, detail: Detail) -> Mesh {
+        let (low, high) = self.skeleton.bounds();
+        let low = low.with_y(low.y.max(self.base() - 0.03));
+        let cubes = Cubes::new(&self.field(), low, high);
+        let scale = self.build.head / HEAD_UNITS;
+        let focus = self.skeleton.head.transform_point3(v(0.0, -32.0, 80.0) * scale);
+        let grid = Grid { focus, cell_m: 0.001_5 * detail.coarseness, core_m: 0.1 };
+        let head_from_world = self.skeleton.head.inverse();
+        let target = |p: Vec3| detail.coarseness * self.edge_length(p, &head_from_world);
+        let mut mesh = surface::skin(&cubes, &grid, low, high, target).with_single_part("skin");
+        eyes::add_eyes(&mut mesh, self.skeleton.head, scale, &self.build.face);
+        for p in &mut mesh.positions {
+            p.y -= self.base();
+        }
+        mesh
+    }
+}
+
+/// The rounded stump of an arm on a bust.
+fn shoulder_cap(s: &Skeleton, shoulder: Vec3, elbow: Vec3) -> Group {
+    let u = s.unit;
+    let mut g = Group::in_world(Join { center: shoulder, radius: 0.085 * u, near: 0.05 * u, far: 0.05 * u });
+    let along = elbow - shoulder;
+    g.cone(shoulder, 0.047 * u, shoulder + along * 0.22, 0.041 * u, 0.0);
+    g
+}
+
+/// From `y0` at `x0` to `y1` at `x1`, level outside.
+fn ramp(x: f32, x0: f32, x1: f32, y0: f32, y1: f32) -> f32 {
+    y0 + (y1 - y0) * ((x - x0) / (x1 - x0)).clamp(0.0, 1.0)
+}
+
+/// Wanted length of edges on and around a head, all in head units.
+fn head_edge_length(p: Vec3) -> f32 {
+    let p = p.with_x(p.x.abs());
+    let from_face = p.distance(v(0.0, -32.0, 80.0));
+    let general = ramp(from_face, 55.0, 140.0, 2.2, 5.2) + ramp(from_face, 160.0, 450.0, 0.0, 11.0);
+    // Line of the mouth, lids, nostrils, ears: middle, radius, length of edges in it.
+    let mouth = p.distance(v(p.x.min(24.0), -71.0, 98.0 - 0.4 * p.x.min(24.0)));
+    let fine = [
+        (mouth, 5.0, 1.1),
+        (p.distance(v(31.5, 0.0, 82.0)), 16.0, 1.1),
+        (p.distance(v(9.0, -49.0, 100.0)), 9.0, 1.4),
+        (p.distance(v(78.0, -18.0, -14.0)), 30.0, 2.4),
+    ];
+    fine.iter()
+        .fold(general, |length, &(d, radius, wanted)| length.min(ramp(d, radius, radius + 14.0, wanted, general)))
+}
