@@ -47,12 +47,28 @@ pub(super) struct GpuLight {
     pub color: [f32; 3],
     /// Area of a panel, m2.
     pub area_m2: f32,
-    /// First shadow view.
-    pub first_view: u32,
-    /// Shadow views: 0, 1, or 6 for a cube.
-    pub view_count: u32,
-    /// Half axes of the emitter in its shadow view, for the penumbra: metres, or a tangent for the sun.
-    pub softness: [f32; 2],
+}
+
+impl GpuLight {
+    /// Family of lights that the lighting pass takes in one loop: points and suns, balls, rectangles, discs.
+    fn family(&self) -> usize {
+        match self.kind {
+            kind if kind == Kind::Sphere as u32 => 1,
+            kind if kind == Kind::Rect as u32 => 2,
+            kind if kind == Kind::Disc as u32 => 3,
+            _ => 0,
+        }
+    }
+
+    /// Half axes of the emitter as its penumbra sees them: metres, for a sun tangents.
+    pub fn softness(&self) -> Vec2 {
+        match self.family() {
+            // The shadow's kernel is a disc: one of the rectangle's area.
+            2 => Vec2::new(Vec3::from(self.right).length(), Vec3::from(self.up).length()) * (4.0 / PI).sqrt(),
+            3 => Vec2::splat(Vec3::from(self.right).length()),
+            _ => Vec2::splat(self.radius),
+        }
+    }
 }
 
 /// Light that has no direction here, in picture units.
@@ -66,11 +82,12 @@ pub(super) struct Ambient {
     pub wall_irradiance: Vec3,
 }
 
-/// The lights that are on, with the index each has in the scene.
+/// The lights that are on, sorted by family.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LightTable {
     pub lights: Vec<GpuLight>,
-    pub scene_index: Vec<usize>,
+    /// One past the last light of each family.
+    pub ends: [u32; 4],
     pub ambient: Ambient,
 }
 
@@ -78,7 +95,7 @@ impl LightTable {
     pub fn new(scene: &Scene, bounce_estimate: bool) -> Self {
         let mut table = LightTable::default();
         let mut flux = Vec3::ZERO;
-        for (index, light) in scene.lights.iter().enumerate().filter(|(_, light)| light.on) {
+        for light in scene.lights.iter().filter(|light| light.on) {
             let scale = picture_scale(light, &scene.camera);
             if light.emitter == Emitter::Surround {
                 // A closed room keeps it out.
@@ -94,8 +111,9 @@ impl LightTable {
             }
             flux += scale * flux_of(light);
             table.lights.push(gpu);
-            table.scene_index.push(index);
         }
+        table.lights.sort_by_key(GpuLight::family);
+        table.ends = std::array::from_fn(|f| table.lights.partition_point(|light| light.family() <= f) as u32);
         table.ambient.surround_radiance = table.ambient.irradiance / PI;
         if let Some(room) = &scene.room {
             let (bounced, total) = room_irradiance(room, flux);
@@ -105,6 +123,14 @@ impl LightTable {
             }
         }
         table
+    }
+}
+
+impl LightTable {
+    /// Which families have lights.
+    pub fn families(&self) -> [bool; 4] {
+        let [delta, spheres, rects, discs] = self.ends;
+        [delta > 0, spheres > delta, rects > spheres, discs > rects]
     }
 }
 
@@ -155,24 +181,19 @@ fn gpu_light(light: &Light, world_from_light: &Affine3A, scale: Vec3) -> GpuLigh
             let radius = radius_m.max(SMALLEST_M);
             gpu.kind = Kind::Sphere as u32;
             gpu.radius = radius;
-            gpu.softness = [radius; 2];
             gpu.color = (scale * intensity / (PI * radius * radius)).into();
         }
         Emitter::RectPanel { width_m, height_m } => {
             let half = 0.5 * Vec2::new(width_m, height_m).max(Vec2::splat(SMALLEST_M));
             panel(&mut gpu, Kind::Rect, half, 4.0 * half.x * half.y, scale * intensity);
-            // The shadow's kernel is a disc: one of the same area.
-            gpu.softness = (half * (4.0 / PI).sqrt()).into();
         }
         Emitter::RoundPanel { diameter_m } => {
             let radius = 0.5 * diameter_m.max(SMALLEST_M);
             panel(&mut gpu, Kind::Disc, Vec2::splat(radius), PI * radius * radius, scale * intensity);
-            gpu.softness = [radius; 2];
         }
         Emitter::Sun { angular_diameter_deg } => {
             gpu.kind = Kind::Sun as u32;
             gpu.radius = (0.5 * angular_diameter_deg.clamp(0.0, 90.0)).to_radians().tan();
-            gpu.softness = [gpu.radius; 2];
             gpu.color = (scale * illuminance(light)).into();
         }
         Emitter::Surround => gpu.color = [0.0; 3],

@@ -19,6 +19,7 @@ mod renderer;
 mod scene_buffers;
 mod shaders;
 mod shadow_maps;
+mod shadow_mask;
 mod shadow_views;
 mod targets;
 mod texture_cache;

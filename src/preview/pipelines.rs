@@ -2,8 +2,11 @@
 
 use super::mesh_cache::VERTEX_LAYOUT;
 use super::targets::{DEPTH_FORMAT, GBUFFER_FORMAT, ID_FORMAT, Output};
-use super::{shaders, shadow_maps};
+use super::{shaders, shadow_maps, shadow_mask};
 use eframe::wgpu;
+
+/// Moves the room back by about 1e-4 of the distance, so that paper laid on its floor lies on top.
+const BEHIND_COPLANAR: wgpu::DepthBiasState = wgpu::DepthBiasState { constant: -1024, slope_scale: -1.0, clamp: 0.0 };
 
 /// Layouts of the bind groups that the pipelines take.
 pub(super) struct Layouts<'a> {
@@ -12,6 +15,9 @@ pub(super) struct Layouts<'a> {
     pub gbuffer: &'a wgpu::BindGroupLayout,
     pub shadow_view: &'a wgpu::BindGroupLayout,
     pub shadow_maps: &'a wgpu::BindGroupLayout,
+    pub shadow_slots: &'a wgpu::BindGroupLayout,
+    pub raw_mask: &'a wgpu::BindGroupLayout,
+    pub masks: &'a wgpu::BindGroupLayout,
 }
 
 /// Pipelines that do not depend on the output's format.
@@ -22,10 +28,21 @@ pub(super) struct GeometryPipelines {
     pub shadow: wgpu::RenderPipeline,
 }
 
-/// Pipelines that write the picture.
+/// Pipelines of the shadow masks.
 #[derive(Debug)]
-pub(super) struct PicturePipelines {
-    pub lighting: wgpu::RenderPipeline,
+pub(super) struct MaskPipelines {
+    pub raw: wgpu::RenderPipeline,
+    pub blur: wgpu::RenderPipeline,
+}
+
+/// What the lighting pass is compiled for: rasterisers on a processor pay for code that is not used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct LightingVariant {
+    pub output: Output,
+    /// Whether there are points or suns, balls, rectangles, discs.
+    pub families: [bool; 4],
+    pub masks: usize,
+    pub scale: u32,
 }
 
 impl GeometryPipelines {
@@ -41,7 +58,10 @@ impl GeometryPipelines {
                     cull_mode: one_sided.then_some(wgpu::Face::Back),
                     ..Default::default()
                 },
-                depth_stencil: Some(nearer(DEPTH_FORMAT)),
+                depth_stencil: Some(wgpu::DepthStencilState {
+                    bias: if one_sided { BEHIND_COPLANAR } else { Default::default() },
+                    ..nearer(DEPTH_FORMAT)
+                }),
                 multisample: Default::default(),
                 fragment: Some(wgpu::FragmentState {
                     module: &module,
@@ -76,35 +96,69 @@ impl GeometryPipelines {
     }
 }
 
-impl PicturePipelines {
-    pub fn new(device: &wgpu::Device, layouts: &Layouts, output: Output) -> Self {
-        let module = shaders::module(device, "lighting", shaders::LIGHTING);
-        let layout = pipeline_layout(device, "lighting", &[layouts.scene, layouts.gbuffer, layouts.shadow_maps]);
-        let constants = [("LINEAR", f64::from(u8::from(output == Output::Linear)))];
-        let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
-        let lighting = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("lighting"),
-            layout: Some(&layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: Default::default(),
-            depth_stencil: None,
-            multisample: Default::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment"),
-                compilation_options: options,
-                targets: &[Some(output.format().into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        PicturePipelines { lighting }
+impl MaskPipelines {
+    pub fn new(device: &wgpu::Device, layouts: &Layouts, scale: u32) -> Self {
+        let constants = [("SCALE", f64::from(scale))];
+        let raw_groups = [layouts.scene, layouts.gbuffer, layouts.shadow_maps, layouts.shadow_slots];
+        let blur_groups = [layouts.scene, layouts.gbuffer, layouts.raw_mask];
+        let fullscreen = |label, source, groups: &[_]| {
+            let layout = pipeline_layout(device, label, groups);
+            fullscreen(device, label, source, &layout, &constants, shadow_mask::FORMAT)
+        };
+        MaskPipelines {
+            raw: fullscreen("shadow mask", shaders::SHADOW_MASK, &raw_groups),
+            blur: fullscreen("shadow blur", shaders::SHADOW_BLUR, &blur_groups),
+        }
     }
+}
+
+/// The lighting pass.
+pub(super) fn lighting(device: &wgpu::Device, layouts: &Layouts, variant: &LightingVariant) -> wgpu::RenderPipeline {
+    let flag = |set: bool| f64::from(u8::from(set));
+    let [delta, spheres, rects, discs] = variant.families.map(flag);
+    let constants = [
+        ("LINEAR", flag(variant.output == Output::Linear)),
+        ("HAS_DELTA", delta),
+        ("HAS_SPHERES", spheres),
+        ("HAS_RECTS", rects),
+        ("HAS_DISCS", discs),
+        ("MASKS", variant.masks as f64),
+        ("SCALE", f64::from(variant.scale)),
+    ];
+    let layout = pipeline_layout(device, "lighting", &[layouts.scene, layouts.gbuffer, layouts.masks]);
+    fullscreen(device, "lighting", shaders::LIGHTING, &layout, &constants, variant.output.format())
+}
+
+fn fullscreen(
+    device: &wgpu::Device,
+    label: &str,
+    source: &str,
+    layout: &wgpu::PipelineLayout,
+    constants: &[(&str, f64)],
+    format: wgpu::TextureFormat,
+) -> wgpu::RenderPipeline {
+    let module = shaders::module(device, label, source);
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(label),
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vertex"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: Default::default(),
+        depth_stencil: None,
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
+            targets: &[Some(format.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
 }
 
 fn pipeline_layout(device: &wgpu::Device, label: &str, groups: &[&wgpu::BindGroupLayout]) -> wgpu::PipelineLayout {

@@ -4,13 +4,17 @@ use super::draw_list::{DrawItem, DrawList, Pass, Uploads};
 use super::gpu::{LossFlag, guarded};
 use super::light_table::LightTable;
 use super::mesh_cache::MeshCache;
-use super::pipelines::{GeometryPipelines, Layouts, PicturePipelines};
+use super::pipelines::{self, GeometryPipelines, Layouts, LightingVariant, MaskPipelines};
 use super::scene_buffers::{GpuFrame, SceneBuffers};
 use super::shadow_maps::ShadowMaps;
+use super::shadow_mask::ShadowMasks;
+use super::shadow_views::ShadowPlan;
 use super::targets::{self, Output, Targets};
 use super::texture_cache::{TextureCache, WHITE};
-use super::{Pick, PreviewError, PreviewInput, shadow_views};
+use super::{Pick, PreviewError, PreviewInput};
 use eframe::wgpu;
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// Draws scenes on a graphics device and keeps what it uploaded between frames.
 #[derive(Debug)]
@@ -23,13 +27,24 @@ pub struct PreviewRenderer {
     buffers: SceneBuffers,
     shadow_maps: ShadowMaps,
     gbuffer_layout: wgpu::BindGroupLayout,
+    shadow_masks: ShadowMasks,
     geometry: GeometryPipelines,
-    display: PicturePipelines,
-    linear: Option<PicturePipelines>,
+    masking: MaskPipelines,
+    lighting: HashMap<LightingVariant, wgpu::RenderPipeline>,
+    /// Picture pixels a shadow mask pixel, along each side.
+    mask_scale: u32,
+    drawn: Drawn,
     pub(super) targets: Targets,
     generation: u64,
     /// What each record of the last frame stands for.
     pub(super) owners: Vec<Option<Pick>>,
+}
+
+/// What the buffers of the last frame hold, so that a change of power or colour alone draws no geometry.
+#[derive(Clone, Copy, Debug, Default)]
+struct Drawn {
+    geometry: Option<u64>,
+    masks: Option<u64>,
 }
 
 impl PreviewRenderer {
@@ -43,17 +58,14 @@ impl PreviewRenderer {
         guarded(device, &loss, || {
             let buffers = SceneBuffers::new(device);
             let textures = TextureCache::new(device, queue);
-            let shadow_maps = ShadowMaps::new(device, queue);
+            let shadow_maps = ShadowMaps::new(device);
             let gbuffer_layout = targets::lookup_layout(device);
-            let layouts = Layouts {
-                scene: buffers.layout(),
-                texture: textures.layout(),
-                gbuffer: &gbuffer_layout,
-                shadow_view: shadow_maps.view_index_layout(),
-                shadow_maps: shadow_maps.lookup_layout(),
-            };
+            let shadow_masks = ShadowMasks::new(device);
+            // A software rasteriser draws soft shadows at half the size.
+            let mask_scale = if device.adapter_info().device_type == wgpu::DeviceType::Cpu { 2 } else { 1 };
+            let layouts = layouts(&buffers, &textures, &gbuffer_layout, &shadow_maps, &shadow_masks);
             let geometry = GeometryPipelines::new(device, &layouts);
-            let display = PicturePipelines::new(device, &layouts, Output::Display);
+            let masking = MaskPipelines::new(device, &layouts, mask_scale);
             Ok(PreviewRenderer {
                 device: device.clone(),
                 queue: queue.clone(),
@@ -65,8 +77,11 @@ impl PreviewRenderer {
                 shadow_maps,
                 gbuffer_layout,
                 geometry,
-                display,
-                linear: None,
+                shadow_masks,
+                masking,
+                lighting: HashMap::new(),
+                mask_scale,
+                drawn: Drawn::default(),
                 generation: 0,
                 owners: Vec::new(),
             })
@@ -104,6 +119,7 @@ impl PreviewRenderer {
         });
         if done.is_err() {
             self.shadow_maps.invalidate();
+            self.drawn = Drawn::default();
         }
         done
     }
@@ -114,16 +130,7 @@ impl PreviewRenderer {
         if self.targets.size != size || self.targets.output != output {
             self.targets = Targets::new(&self.device, &self.gbuffer_layout, size, output);
             self.generation += 1;
-        }
-        if output == Output::Linear && self.linear.is_none() {
-            let layouts = Layouts {
-                scene: self.buffers.layout(),
-                texture: self.textures.layout(),
-                gbuffer: &self.gbuffer_layout,
-                shadow_view: self.shadow_maps.view_index_layout(),
-                shadow_maps: self.shadow_maps.lookup_layout(),
-            };
-            self.linear = Some(PicturePipelines::new(&self.device, &layouts, output));
+            self.drawn = Drawn::default();
         }
     }
 
@@ -140,27 +147,49 @@ impl PreviewRenderer {
                 assets: input.assets,
             },
         );
-        let mut table = LightTable::new(input.scene, input.options.bounce_estimate);
-        let views =
-            if input.options.shadows { shadow_views::plan(&mut table.lights, &list.casters) } else { Vec::new() };
-        let stale =
-            self.shadow_maps.stale(&self.device, &views, list.caster_signature, input.options.shadow_resolution);
-        let mut frame = GpuFrame::new(&input.frame, self.targets.size);
-        frame.light_count = table.lights.len() as u32;
-        frame.shadows = u32::from(input.options.shadows);
-        frame.selected = u32::from(!list.outlined.is_empty());
-        frame.set_ambient(input.scene, &table.ambient, input.overlay.void_color, input.options.environment_estimate);
-        self.buffers.write(&self.device, &self.queue, &frame, &list.records, &table.lights, &views);
+        let table = LightTable::new(input.scene, input.options.bounce_estimate);
+        let casters: &[_] = if input.options.shadows { &list.casters } else { &[] };
+        let plan = ShadowPlan::new(&table.lights, casters);
+        let resolution = input.options.shadow_resolution;
+        let stale = self.shadow_maps.stale(&self.device, &self.queue, &plan, list.caster_signature, resolution);
+        let frame = self.frame(input, &list, &table);
+        self.buffers.write(&self.device, &self.queue, &frame, &list.records, &table.lights);
+
+        let geometry = geometry_signature(&frame, &list);
+        let masks = mask_signature(geometry, &plan);
+        let renewed = self.shadow_masks.prepare(&self.device, &self.queue, &plan, self.mask_size());
+        let geometry_drawn = self.drawn.geometry == Some(geometry);
+        let masks_drawn = self.drawn.masks == Some(masks) && stale.is_empty() && !renewed;
 
         let mut encoder = self.device.create_command_encoder(&Default::default());
         for layer in stale {
             self.shadow_pass(&mut encoder, &list, layer);
         }
-        self.geometry_pass(&mut encoder, &list);
-        self.lighting_pass(&mut encoder, output);
+        if !geometry_drawn {
+            self.geometry_pass(&mut encoder, &list);
+        }
+        if !masks_drawn {
+            (0..plan.masks()).for_each(|mask| self.mask_passes(&mut encoder, mask));
+        }
+        self.lighting_pass(&mut encoder, &table, plan.masks(), output);
         self.queue.submit([encoder.finish()]);
+        self.drawn = Drawn { geometry: Some(geometry), masks: Some(masks) };
         self.textures.drop_unused();
         self.owners = list.owners;
+    }
+
+    fn frame(&self, input: &PreviewInput, list: &DrawList, table: &LightTable) -> GpuFrame {
+        let mut frame = GpuFrame::new(&input.frame, self.targets.size);
+        frame.light_ends = table.ends;
+        frame.selected = u32::from(!list.outlined.is_empty());
+        let (void, mirrored) = (input.overlay.void_color, input.options.environment_estimate);
+        frame.set_ambient(input.scene, &table.ambient, void, mirrored);
+        frame
+    }
+
+    fn mask_size(&self) -> (u32, u32) {
+        let (width, height) = self.targets.size;
+        (width.div_ceil(self.mask_scale), height.div_ceil(self.mask_scale))
     }
 
     fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, list: &DrawList, layer: usize) {
@@ -203,11 +232,27 @@ impl PreviewRenderer {
         }
     }
 
-    fn lighting_pass(&self, encoder: &mut wgpu::CommandEncoder, output: Output) {
-        let pipelines = match (output, &self.linear) {
-            (Output::Linear, Some(linear)) => linear,
-            _ => &self.display,
-        };
+    fn mask_passes(&self, encoder: &mut wgpu::CommandEncoder, mask: usize) {
+        let mut pass = self.shadow_masks.begin_raw(encoder, mask);
+        pass.set_pipeline(&self.masking.raw);
+        pass.set_bind_group(0, self.buffers.bind_group(), &[]);
+        pass.set_bind_group(1, &self.targets.lookup, &[]);
+        pass.set_bind_group(2, self.shadow_maps.lookup(), &[]);
+        pass.draw(0..3, 0..1);
+        drop(pass);
+        let mut pass = self.shadow_masks.begin_blur(encoder, mask);
+        pass.set_pipeline(&self.masking.blur);
+        pass.set_bind_group(0, self.buffers.bind_group(), &[]);
+        pass.set_bind_group(1, &self.targets.lookup, &[]);
+        pass.draw(0..3, 0..1);
+    }
+
+    fn lighting_pass(&mut self, encoder: &mut wgpu::CommandEncoder, table: &LightTable, masks: usize, output: Output) {
+        let variant = LightingVariant { output, families: table.families(), masks, scale: self.mask_scale };
+        let layouts =
+            layouts(&self.buffers, &self.textures, &self.gbuffer_layout, &self.shadow_maps, &self.shadow_masks);
+        let pipeline =
+            self.lighting.entry(variant).or_insert_with(|| pipelines::lighting(&self.device, &layouts, &variant));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("lighting"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -218,10 +263,10 @@ impl PreviewRenderer {
             })],
             ..Default::default()
         });
-        pass.set_pipeline(&pipelines.lighting);
+        pass.set_pipeline(pipeline);
         pass.set_bind_group(0, self.buffers.bind_group(), &[]);
         pass.set_bind_group(1, &self.targets.lookup, &[]);
-        pass.set_bind_group(2, self.shadow_maps.lookup(), &[]);
+        pass.set_bind_group(2, self.shadow_masks.lookup(), &[]);
         pass.draw(0..3, 0..1);
     }
 
@@ -231,4 +276,43 @@ impl PreviewRenderer {
         pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(item.indices.clone(), 0, item.record..item.record + 1);
     }
+}
+
+fn layouts<'a>(
+    buffers: &'a SceneBuffers,
+    textures: &'a TextureCache,
+    gbuffer: &'a wgpu::BindGroupLayout,
+    shadow_maps: &'a ShadowMaps,
+    shadow_masks: &'a ShadowMasks,
+) -> Layouts<'a> {
+    Layouts {
+        scene: buffers.layout(),
+        texture: textures.layout(),
+        gbuffer,
+        shadow_view: shadow_maps.view_layout(),
+        shadow_maps: shadow_maps.lookup_layout(),
+        shadow_slots: shadow_masks.slots_layout(),
+        raw_mask: shadow_masks.raw_layout(),
+        masks: shadow_masks.masks_layout(),
+    }
+}
+
+/// Changes when the G-buffer would.
+fn geometry_signature(frame: &GpuFrame, list: &DrawList) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    bytemuck::bytes_of(&frame.clip_from_world).hash(&mut hasher);
+    bytemuck::bytes_of(&frame.size).hash(&mut hasher);
+    bytemuck::cast_slice::<_, u8>(&list.records).hash(&mut hasher);
+    for item in &list.items {
+        (item.mesh, &item.indices, item.record, item.texture).hash(&mut hasher);
+    }
+    hasher.finish()
+}
+
+/// Changes when the shadow masks would, for the same maps.
+fn mask_signature(geometry: u64, plan: &ShadowPlan) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    geometry.hash(&mut hasher);
+    bytemuck::cast_slice::<_, u8>(&plan.slots).hash(&mut hasher);
+    hasher.finish()
 }

@@ -1,8 +1,7 @@
-//! The buffers that every pass reads: frame, surfaces, lights, shadow views.
+//! The buffers that every pass reads: frame, surfaces, lights.
 
 use super::draw_list::GpuSurface;
 use super::light_table::{Ambient, GpuLight};
-use super::shadow_views::GpuShadowView;
 use crate::scene::{CameraFrame, Scene};
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu;
@@ -20,9 +19,9 @@ pub(super) struct GpuFrame {
     pub eye: [f32; 3],
     pub near_m: f32,
     pub ray_centre: [f32; 3],
-    pub light_count: u32,
+    pub unused_5: f32,
     pub ray_right: [f32; 3],
-    pub shadows: u32,
+    pub unused_6: f32,
     pub ray_up: [f32; 3],
     pub has_room: u32,
     pub ambient: [f32; 3],
@@ -39,6 +38,7 @@ pub(super) struct GpuFrame {
     pub unused_3: f32,
     pub size: [f32; 2],
     pub unused_4: [f32; 2],
+    pub light_ends: [u32; 4],
 }
 
 impl GpuFrame {
@@ -113,7 +113,6 @@ pub(super) struct SceneBuffers {
     frame: wgpu::Buffer,
     surfaces: Growing,
     lights: Growing,
-    views: Growing,
 }
 
 impl SceneBuffers {
@@ -128,12 +127,7 @@ impl SceneBuffers {
         let storage_type = wgpu::BufferBindingType::Storage { read_only: true };
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("scene"),
-            entries: &[
-                entry(0, wgpu::BufferBindingType::Uniform),
-                entry(1, storage_type),
-                entry(2, storage_type),
-                entry(3, storage_type),
-            ],
+            entries: &[entry(0, wgpu::BufferBindingType::Uniform), entry(1, storage_type), entry(2, storage_type)],
         });
         let frame = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("frame"),
@@ -143,9 +137,8 @@ impl SceneBuffers {
         });
         let surfaces = Growing::new(device, "surfaces", 64 * size_of::<GpuSurface>() as u64);
         let lights = Growing::new(device, "lights", 16 * size_of::<GpuLight>() as u64);
-        let views = Growing::new(device, "shadow views", 8 * size_of::<GpuShadowView>() as u64);
-        let bind_group = bind(device, &layout, &frame, [&surfaces, &lights, &views]);
-        SceneBuffers { layout, bind_group, frame, surfaces, lights, views }
+        let bind_group = bind(device, &layout, &frame, [&surfaces, &lights]);
+        SceneBuffers { layout, bind_group, frame, surfaces, lights }
     }
 
     /// Layout of the bind group.
@@ -166,16 +159,14 @@ impl SceneBuffers {
         frame: &GpuFrame,
         surfaces: &[GpuSurface],
         lights: &[GpuLight],
-        views: &[GpuShadowView],
     ) {
         queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(frame));
         let replaced = [
             self.surfaces.write(device, queue, bytemuck::cast_slice(surfaces)),
             self.lights.write(device, queue, bytemuck::cast_slice(lights)),
-            self.views.write(device, queue, bytemuck::cast_slice(views)),
         ];
         if replaced.contains(&true) {
-            self.bind_group = bind(device, &self.layout, &self.frame, [&self.surfaces, &self.lights, &self.views]);
+            self.bind_group = bind(device, &self.layout, &self.frame, [&self.surfaces, &self.lights]);
         }
     }
 }
@@ -184,9 +175,9 @@ fn bind(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
     frame: &wgpu::Buffer,
-    storage: [&Growing; 3],
+    storage: [&Growing; 2],
 ) -> wgpu::BindGroup {
-    let buffers = [frame, &storage[0].buffer, &storage[1].buffer, &storage[2].buffer];
+    let buffers = [frame, &storage[0].buffer, &storage[1].buffer];
     let entries: Vec<_> = (0..)
         .zip(buffers)
         .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })

@@ -1,7 +1,8 @@
 //! The shadow maps themselves: one layer a view, redrawn only when the view or what casts shadows has changed.
 
-use super::shadow_views::{GpuShadowView, MAX_VIEWS};
+use super::shadow_views::{MAX_VIEWS, ShadowPlan};
 use eframe::wgpu;
+use glam::Mat4;
 
 /// Depth of all maps.
 pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -11,60 +12,57 @@ const OFFSET_STRIDE: u64 = 256;
 /// What a layer shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Content {
-    view: GpuShadowView,
+    view: Mat4,
     casters: u64,
 }
 
 /// All shadow maps, in one array texture.
 #[derive(Debug)]
 pub(super) struct ShadowMaps {
-    view_index_layout: wgpu::BindGroupLayout,
-    view_index: wgpu::BindGroup,
+    view_layout: wgpu::BindGroupLayout,
+    view_buffer: wgpu::Buffer,
+    view: wgpu::BindGroup,
     lookup_layout: wgpu::BindGroupLayout,
     lookup: wgpu::BindGroup,
-    sampler: wgpu::Sampler,
     layers: Vec<wgpu::TextureView>,
     contents: Vec<Option<Content>>,
     resolution: u32,
 }
 
 impl ShadowMaps {
-    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
-        let view_index_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("shadow view index"),
+    pub fn new(device: &wgpu::Device) -> Self {
+        let view_layout = dynamic_uniform_layout(device, "shadow view", wgpu::ShaderStages::VERTEX);
+        let view_buffer = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("shadow views"),
+            size: OFFSET_STRIDE * MAX_VIEWS as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let view = dynamic_uniform(device, "shadow view", &view_layout, &view_buffer, size_of::<Mat4>());
+        let lookup_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("shadow maps"),
             entries: &[wgpu::BindGroupLayoutEntry {
                 binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: true,
-                    min_binding_size: None,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Depth,
+                    view_dimension: wgpu::TextureViewDimension::D2Array,
+                    multisampled: false,
                 },
                 count: None,
             }],
         });
-        let view_index = view_index_bind_group(device, queue, &view_index_layout);
-        let lookup_layout = lookup_layout(device);
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor { label: Some("shadow"), ..Default::default() });
-        let (layers, lookup) = create_maps(device, &lookup_layout, &sampler, 1, 1);
-        ShadowMaps {
-            view_index_layout,
-            view_index,
-            lookup_layout,
-            lookup,
-            sampler,
-            layers,
-            contents: Vec::new(),
-            resolution: 1,
-        }
+        let (layers, lookup) = create_maps(device, &lookup_layout, 1, 1);
+        let contents = Vec::new();
+        ShadowMaps { view_layout, view_buffer, view, lookup_layout, lookup, layers, contents, resolution: 1 }
     }
 
-    /// Layout of the uniform that tells the shadow pass its view.
-    pub fn view_index_layout(&self) -> &wgpu::BindGroupLayout {
-        &self.view_index_layout
+    /// Layout of the uniform that holds the view of the shadow pass.
+    pub fn view_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.view_layout
     }
 
-    /// Layout with which other passes read the maps.
+    /// Layout with which the mask reads the maps.
     pub fn lookup_layout(&self) -> &wgpu::BindGroupLayout {
         &self.lookup_layout
     }
@@ -74,27 +72,34 @@ impl ShadowMaps {
         &self.lookup
     }
 
-    /// Makes room for the views and returns the layers that must be drawn anew.
+    /// Makes room for the views, uploads them, and returns the layers that must be drawn anew.
     pub fn stale(
         &mut self,
         device: &wgpu::Device,
-        views: &[GpuShadowView],
+        queue: &wgpu::Queue,
+        plan: &ShadowPlan,
         casters: u64,
         resolution: u32,
     ) -> Vec<usize> {
         let resolution = resolution.clamp(16, device.limits().max_texture_dimension_2d);
-        let count = views.len().max(1).next_power_of_two().min(MAX_VIEWS);
-        if !views.is_empty() && (count > self.contents.len() || resolution != self.resolution) {
-            (self.layers, self.lookup) =
-                create_maps(device, &self.lookup_layout, &self.sampler, resolution, count as u32);
+        let count = plan.views.len().max(1).next_power_of_two().min(MAX_VIEWS);
+        if !plan.views.is_empty() && (count > self.contents.len() || resolution != self.resolution) {
+            (self.layers, self.lookup) = create_maps(device, &self.lookup_layout, resolution, count as u32);
             self.contents = vec![None; count];
             self.resolution = resolution;
         }
-        let wanted = views.iter().map(|&view| Some(Content { view, casters }));
-        let stale: Vec<usize> =
-            wanted.enumerate().filter(|(layer, content)| self.contents[*layer] != *content).map(|(l, _)| l).collect();
-        for &layer in &stale {
-            self.contents[layer] = Some(Content { view: views[layer], casters });
+        let mut stale = Vec::new();
+        for (layer, &view) in plan.views.iter().enumerate() {
+            let content = Some(Content { view, casters });
+            if self.contents[layer] != content {
+                self.contents[layer] = content;
+                queue.write_buffer(
+                    &self.view_buffer,
+                    layer as u64 * OFFSET_STRIDE,
+                    bytemuck::bytes_of(&view.to_cols_array()),
+                );
+                stale.push(layer);
+            }
         }
         stale
     }
@@ -116,67 +121,57 @@ impl ShadowMaps {
             }),
             ..Default::default()
         });
-        pass.set_bind_group(1, &self.view_index, &[layer as u32 * OFFSET_STRIDE as u32]);
+        pass.set_bind_group(1, &self.view, &[layer as u32 * OFFSET_STRIDE as u32]);
         pass
     }
 }
 
-fn view_index_bind_group(
+/// Layout of one uniform buffer whose offset is given at each use.
+pub(super) fn dynamic_uniform_layout(
     device: &wgpu::Device,
-    queue: &wgpu::Queue,
-    layout: &wgpu::BindGroupLayout,
-) -> wgpu::BindGroup {
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("shadow view index"),
-        size: OFFSET_STRIDE * MAX_VIEWS as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    for view in 0..MAX_VIEWS {
-        queue.write_buffer(&buffer, view as u64 * OFFSET_STRIDE, bytemuck::bytes_of(&[view as u32; 4]));
-    }
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("shadow view index"),
-        layout,
-        entries: &[wgpu::BindGroupEntry {
+    label: &str,
+    visibility: wgpu::ShaderStages,
+) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(label),
+        entries: &[wgpu::BindGroupLayoutEntry {
             binding: 0,
-            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &buffer,
-                offset: 0,
-                size: std::num::NonZeroU64::new(16),
-            }),
+            visibility,
+            ty: wgpu::BindingType::Buffer {
+                ty: wgpu::BufferBindingType::Uniform,
+                has_dynamic_offset: true,
+                min_binding_size: None,
+            },
+            count: None,
         }],
     })
 }
 
-fn lookup_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("shadow maps"),
-        entries: &[
-            wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Depth,
-                    view_dimension: wgpu::TextureViewDimension::D2Array,
-                    multisampled: false,
-                },
-                count: None,
-            },
-            wgpu::BindGroupLayoutEntry {
-                binding: 1,
-                visibility: wgpu::ShaderStages::FRAGMENT,
-                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
-                count: None,
-            },
-        ],
+/// Bind group of such a buffer, `size` bytes at each use.
+pub(super) fn dynamic_uniform(
+    device: &wgpu::Device,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    buffer: &wgpu::Buffer,
+    size: usize,
+) -> wgpu::BindGroup {
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some(label),
+        layout,
+        entries: &[wgpu::BindGroupEntry {
+            binding: 0,
+            resource: wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer,
+                offset: 0,
+                size: std::num::NonZeroU64::new(size as u64),
+            }),
+        }],
     })
 }
 
 fn create_maps(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
-    sampler: &wgpu::Sampler,
     resolution: u32,
     layers: u32,
 ) -> (Vec<wgpu::TextureView>, wgpu::BindGroup) {
@@ -190,7 +185,28 @@ fn create_maps(
         usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],
     });
-    let layer_view = |layer| {
+    let lookup = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("shadow maps"),
+        layout,
+        entries: &[wgpu::BindGroupEntry {
+            binding: 0,
+            resource: wgpu::BindingResource::TextureView(&array_view(&texture)),
+        }],
+    });
+    (layer_views(&texture), lookup)
+}
+
+/// All layers of a texture as an array.
+pub(super) fn array_view(texture: &wgpu::Texture) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    })
+}
+
+/// Each layer of a texture by itself.
+pub(super) fn layer_views(texture: &wgpu::Texture) -> Vec<wgpu::TextureView> {
+    let layer = |layer| {
         texture.create_view(&wgpu::TextureViewDescriptor {
             dimension: Some(wgpu::TextureViewDimension::D2),
             base_array_layer: layer,
@@ -198,17 +214,5 @@ fn create_maps(
             ..Default::default()
         })
     };
-    let array = texture.create_view(&wgpu::TextureViewDescriptor {
-        dimension: Some(wgpu::TextureViewDimension::D2Array),
-        ..Default::default()
-    });
-    let lookup = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("shadow maps"),
-        layout,
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&array) },
-            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(sampler) },
-        ],
-    });
-    ((0..layers).map(layer_view).collect(), lookup)
+    (0..texture.depth_or_array_layers()).map(layer).collect()
 }

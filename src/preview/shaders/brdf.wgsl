@@ -6,6 +6,8 @@ struct Material {
     alpha2: f32,
     // Loss of single scattering given back, by its mean (Turquin 2019).
     boost: vec3f,
+    // Directional albedo of the coat or metal.
+    reflectance: vec3f,
 }
 
 fn schlick(f0: vec3f, cosine: f32) -> vec3f {
@@ -30,6 +32,7 @@ fn material(base: vec3f, gloss: vec3f, n_dot_v: f32) -> Material {
     let ab = albedo_scale_bias(n_dot_v, gloss.x);
     let single = saturate(m.f0 * ab.x + ab.y);
     m.boost = 1.0 + m.f0 * (1.0 / max(ab.x + ab.y, 0.3) - 1.0);
+    m.reflectance = single * m.boost;
     m.diffuse = base * (1.0 - gloss.z) * (1.0 - select(max(single.x, max(single.y, single.z)), 0.0, gloss.y == 0.0));
     return m;
 }

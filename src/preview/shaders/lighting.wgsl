@@ -2,9 +2,19 @@
 
 // Whether the picture leaves as scene-linear light or as it is shown.
 override LINEAR: bool = false;
+// Which families of lights there are: code for the others is left out.
+override HAS_DELTA: bool = true;
+override HAS_SPHERES: bool = true;
+override HAS_RECTS: bool = true;
+override HAS_DISCS: bool = true;
+// Textures of the shadow mask in use, four lights each; 0 without shadows.
+override MASKS: u32 = 0;
+// Picture pixels a mask pixel, along each side.
+override SCALE: u32 = 1;
 
 @group(1) @binding(0) var gbuffer: texture_2d<u32>;
 @group(1) @binding(1) var ids: texture_2d<u32>;
+@group(2) @binding(0) var masks: texture_2d_array<u32>;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -18,41 +28,134 @@ fn shown(radiance: vec3f) -> vec4f {
     return vec4f(srgb_encode(tone_curve(radiance)), 1.0);
 }
 
+struct Shading {
+    position: vec3f,
+    normal: vec3f,
+    view: vec3f,
+    mirror: vec3f,
+    n_dot_v: f32,
+    material: Material,
+}
+
+fn reflected(s: Shading, light: u32, a: Arrival) -> vec3f {
+    let diffuse = s.material.diffuse * (a.irradiance / PI);
+    let glossy = highlight(s.material, a, s.normal, s.view, s.n_dot_v);
+    return (diffuse + select(vec3f(0.0), glossy, a.irradiance > 0.0)) * lights[light].color;
+}
+
+// Shadows of four lights at a pixel. A mask of half the size is read at the four pixels around, as far as they lie on
+// the pixel's own plane.
+fn shadow(mask: u32, at: vec2f, depth: f32, face: vec3f) -> vec4f {
+    if SCALE == 1u {
+        return unpack4x8unorm(textureLoad(masks, vec2i(at), mask, 0).x);
+    }
+    let last = vec2i(textureDimensions(masks)) - 1;
+    let place = floor(at) / f32(SCALE);
+    let corner = vec2i(place);
+    let part = fract(place);
+    let here = dot(face, pixel_ray(at));
+    let scale = depth / select(here, 1e-6, abs(here) < 1e-6);
+    var sum = vec4f(0.0);
+    var total = 0.0;
+    for (var i = 0; i < 4; i++) {
+        let step = vec2i(i & 1, i >> 1);
+        let cell = min(corner + step, last);
+        let texel = textureLoad(masks, cell, mask, 0).xy;
+        let expected = dot(face, pixel_ray(vec2f(cell * i32(SCALE)) + 0.5)) * scale;
+        let same = abs(bitcast<f32>(texel.y) - expected) <= 0.01 * expected;
+        let across = mix(1.0 - part, part, vec2f(step));
+        let weight = (across.x * across.y + 1e-3) * select(1e-3, 1.0, same);
+        sum += unpack4x8unorm(texel.x) * weight;
+        total += weight;
+    }
+    return sum / total;
+}
+
 @fragment
 fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let pixel = vec2i(at.xy);
     let id = textureLoad(ids, pixel, 0).xy;
-    if id.x == 0u {
-        return shown(frame.void_radiance);
-    }
     let packed = textureLoad(gbuffer, pixel, 0);
     let kind = packed.y >> 30u;
-    if kind == 2u {
-        return shown(surfaces[id.x - 1u].emission);
-    }
+    let depth = max(bitcast<f32>(id.y), 1e-9);
     let ray = pixel_ray(at.xy);
-    let position = frame.eye + ray * (frame.near_m / bitcast<f32>(id.y));
-    let view = -normalize(ray);
-    let face = unpack_direction(packed.z);
-    let normal = unpack_direction(packed.x);
     let gloss = unpack_gloss(packed.w);
-    let n_dot_v = max(dot(normal, view), 1e-3);
-    let surface = material(unpack_color(packed.y), gloss, n_dot_v);
-    let mirror = reflect(-view, normal);
+    let face = unpack_direction(packed.z);
+    var s: Shading;
+    s.position = frame.eye + ray * (frame.near_m / depth);
+    s.view = -normalize(ray);
+    s.normal = unpack_direction(packed.x);
+    s.n_dot_v = max(dot(s.normal, s.view), 1e-3);
+    s.material = material(unpack_color(packed.y), gloss, s.n_dot_v);
+    s.mirror = reflect(-s.view, s.normal);
 
-    var radiance = surface.diffuse * frame.ambient / PI;
-    let ab = albedo_scale_bias(n_dot_v, gloss.x);
-    radiance += environment(position, mirror, gloss.x) * saturate(surface.f0 * ab.x + ab.y) * surface.boost;
-    if kind == 1u {
-        radiance += surfaces[id.x - 1u].emission;
+    var lit: array<vec4f, 4>;
+    for (var mask = 0u; mask < MASKS; mask++) {
+        lit[mask] = shadow(mask, at.xy, depth, face);
     }
-    for (var light = 0u; light < frame.light_count; light++) {
-        let a = arrival(light, position, normal, mirror);
-        if a.irradiance <= 0.0 {
-            continue;
+    var radiance = s.material.diffuse * frame.ambient / PI;
+    radiance += environment(s.position, s.mirror, gloss.x) * s.material.reflectance;
+
+    // The loops test at their end: there is at least one light of a family, and a rasteriser on a processor pays for
+    // the turn that a test at the start would leave at once.
+    if HAS_DELTA {
+        var light = 0u;
+        loop {
+            let a = delta_arrival(light, s.position, s.normal, s.mirror);
+            radiance += reflected(s, light, a) * lit_by(&lit, light);
+            light++;
+            continuing {
+                break if light >= frame.light_ends.x;
+            }
         }
-        let reflected = surface.diffuse * (a.irradiance / PI) + highlight(surface, a, normal, view, n_dot_v);
-        radiance += reflected * lights[light].color * visibility(light, position, face, at.xy);
     }
-    return shown(radiance);
+    if HAS_SPHERES {
+        var light = frame.light_ends.x;
+        loop {
+            let a = sphere_arrival(light, s.position, s.normal, s.mirror);
+            radiance += reflected(s, light, a) * lit_by(&lit, light);
+            light++;
+            continuing {
+                break if light >= frame.light_ends.y;
+            }
+        }
+    }
+    if HAS_RECTS {
+        var light = frame.light_ends.y;
+        loop {
+            let a = rect_arrival(light, s.position, s.normal, s.mirror);
+            radiance += reflected(s, light, a) * lit_by(&lit, light);
+            light++;
+            continuing {
+                break if light >= frame.light_ends.z;
+            }
+        }
+    }
+    if HAS_DISCS {
+        var light = frame.light_ends.z;
+        loop {
+            let a = disc_arrival(light, s.position, s.normal, s.mirror);
+            radiance += reflected(s, light, a) * lit_by(&lit, light);
+            light++;
+            continuing {
+                break if light >= frame.light_ends.w;
+            }
+        }
+    }
+    // Kinds: 1 lit and glowing, 2 an emitter's front.
+    if kind != 0u {
+        radiance = select(radiance, vec3f(0.0), kind == 2u) + surfaces[id.x - 1u].emission;
+    }
+    return shown(select(radiance, frame.void_radiance, id.x == 0u));
+}
+
+// Shadow of a light: four lights a mask, the rest are lit.
+fn lit_by(lit: ptr<function, array<vec4f, 4>>, light: u32) -> f32 {
+    if MASKS == 0u {
+        return 1.0;
+    }
+    if MASKS == 1u {
+        return select(1.0, (*lit)[0][light & 3u], light < 4u);
+    }
+    return select(1.0, (*lit)[(light >> 2u) & 3u][light & 3u], light < 4u * MASKS);
 }

@@ -6,10 +6,13 @@ use eframe::wgpu;
 pub(super) const GEOMETRY: &str = concat!(include_str!("scene.wgsl"), include_str!("geometry.wgsl"));
 /// The shadow maps.
 pub(super) const SHADOW_MAP: &str = concat!(include_str!("scene.wgsl"), include_str!("shadow_map.wgsl"));
+/// The shadow masks.
+pub(super) const SHADOW_MASK: &str = concat!(include_str!("scene.wgsl"), include_str!("shadow_mask.wgsl"));
+/// The blur of the shadow masks.
+pub(super) const SHADOW_BLUR: &str = concat!(include_str!("scene.wgsl"), include_str!("shadow_blur.wgsl"));
 /// The lighting pass.
 pub(super) const LIGHTING: &str = concat!(
     include_str!("scene.wgsl"),
-    include_str!("shadow.wgsl"),
     include_str!("light.wgsl"),
     include_str!("brdf.wgsl"),
     include_str!("tone.wgsl"),
@@ -31,7 +34,14 @@ mod tests {
 
     #[test]
     fn every_module_is_valid_wgsl() {
-        for (name, source) in [("geometry", GEOMETRY), ("shadow map", SHADOW_MAP), ("lighting", LIGHTING)] {
+        let modules = [
+            ("geometry", GEOMETRY),
+            ("shadow map", SHADOW_MAP),
+            ("shadow mask", SHADOW_MASK),
+            ("shadow blur", SHADOW_BLUR),
+            ("lighting", LIGHTING),
+        ];
+        for (name, source) in modules {
             let module = naga::front::wgsl::parse_str(source)
                 .unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(source)));
             naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::default())

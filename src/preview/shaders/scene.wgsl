@@ -8,9 +8,9 @@ struct Frame {
     near_m: f32,
     // World directions: ray through the picture's middle (1 m along the axis) and half the picture to the right and up.
     ray_centre: vec3f,
-    light_count: u32,
+    unused_5: f32,
     ray_right: vec3f,
-    shadows: u32,
+    unused_6: f32,
     ray_up: vec3f,
     has_room: u32,
     // Irradiance from all round, picture units.
@@ -32,6 +32,8 @@ struct Frame {
     unused_3: f32,
     size: vec2f,
     unused_4: vec2f,
+    // One past the last light of each family: points and suns, balls, rectangles, discs. Lights are sorted so.
+    light_ends: vec4u,
 }
 
 struct Surface {
@@ -64,23 +66,11 @@ struct Light {
     radius: f32,
     color: vec3f,
     area_m2: f32,
-    first_view: u32,
-    view_count: u32,
-    softness: vec2f,
-}
-
-struct ShadowView {
-    clip_from_world: mat4x4f,
-    world_from_clip: mat4x4f,
-    field: vec2f,
-    near_m: f32,
-    range_m: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<storage, read> surfaces: array<Surface>;
 @group(0) @binding(2) var<storage, read> lights: array<Light>;
-@group(0) @binding(3) var<storage, read> shadow_views: array<ShadowView>;
 
 // A unit vector as a point of the octahedron folded into a square, 16 bits each way (Cigolle et al. 2014).
 fn pack_direction(v: vec3f) -> u32 {
