@@ -1,5 +1,6 @@
 //! Catchlight plans the light of a photo studio: arrange it, see it live, render the picture the camera would take.
 
+pub mod cli;
 pub mod color;
 pub mod math;
 pub mod photo;

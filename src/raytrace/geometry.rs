@@ -185,7 +185,6 @@ impl Instance {
             normal,
             uv,
             material: self.materials.get(part).copied().unwrap_or(0),
-            object: self.object,
         }
     }
 
@@ -227,8 +226,6 @@ pub struct Surface {
     pub uv: Vec2,
     /// Index into the material table.
     pub material: u32,
-    /// Index into the scene's objects; `u32::MAX` for the room.
-    pub object: u32,
 }
 
 impl Surface {

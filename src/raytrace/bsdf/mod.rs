@@ -85,8 +85,6 @@ pub struct BsdfSample {
     pub pdf: f32,
     /// From a perfect mirror or glass: no other technique can find it.
     pub specular: bool,
-    /// Goes through the surface.
-    pub transmitted: bool,
     /// Square of the relative index crossed: radiance grows by it inside glass, and roulette must not see that.
     pub eta_scale: f32,
 }
@@ -216,14 +214,7 @@ impl<'a> Bsdf<'a> {
             return None;
         }
         let (value, pdf) = self.eval_local(wi);
-        (pdf > 0.0).then(|| BsdfSample {
-            direction,
-            weight: value / pdf,
-            pdf,
-            specular: false,
-            transmitted: false,
-            eta_scale: 1.0,
-        })
+        (pdf > 0.0).then(|| BsdfSample { direction, weight: value / pdf, pdf, specular: false, eta_scale: 1.0 })
     }
 
     fn sample_glass(&self, choice: f32) -> Option<BsdfSample> {
@@ -243,7 +234,7 @@ impl<'a> Bsdf<'a> {
         let transmitted = wi.z < 0.0;
         // The direction must leave on the side that the triangle agrees with.
         let agrees = (direction.dot(self.geometric_normal) < 0.0) == transmitted;
-        agrees.then_some(BsdfSample { direction, weight, pdf: 0.0, specular: true, transmitted, eta_scale })
+        agrees.then_some(BsdfSample { direction, weight, pdf: 0.0, specular: true, eta_scale })
     }
 }
 
@@ -262,7 +253,7 @@ mod tests {
         for i in 0..n * n {
             let set = sobol_burley::sample_4d(i, 0, 7);
             if let Some(sample) = bsdf.sample(set[0], Vec2::new(set[2], set[3])) {
-                sum += sample.weight * if sample.transmitted { 1.0 / sample.eta_scale } else { 1.0 };
+                sum += sample.weight / sample.eta_scale;
             }
         }
         sum / (n * n) as f32

@@ -1,0 +1,29 @@
+//! `catchlight check SCENE`: what is wrong or odd with a studio.
+
+use super::{Failure, input, say};
+use std::path::PathBuf;
+
+/// Arguments of `check`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Studio: a .ron file, or the name of a shipped one.
+    scene: PathBuf,
+}
+
+/// Prints what there is to say; fails when the studio cannot be used.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let loaded = input::load_studio(&arguments.scene)?;
+    let scene = &loaded.scene;
+    let verdict = match loaded.warnings.len() {
+        0 => "nothing odd".to_owned(),
+        1 => "1 warning".to_owned(),
+        n => format!("{n} warnings"),
+    };
+    say(format_args!(
+        "{}: {} objects, {} lights, {verdict}",
+        if scene.name.is_empty() { "studio" } else { &scene.name },
+        scene.objects.len(),
+        scene.lights.len(),
+    ));
+    Ok(())
+}

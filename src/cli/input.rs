@@ -1,0 +1,46 @@
+//! What subcommands are given: studios and sizes.
+
+use crate::io::{self, Loaded};
+use anyhow::Context;
+use std::path::Path;
+
+/// Largest picture edge, pixels.
+const LARGEST_EDGE: u32 = 16384;
+
+/// Loads a studio: a file, or a shipped one by name. Warnings go to stderr.
+pub fn load_studio(scene: &Path) -> anyhow::Result<Loaded> {
+    let shipped = if scene.exists() { None } else { scene.to_str().and_then(io::find_preset) };
+    let loaded = match shipped {
+        Some(preset) => preset.load().with_context(|| format!("the shipped studio {}", preset.file_name))?,
+        None => io::load_scene(scene)?,
+    };
+    for warning in &loaded.warnings {
+        eprintln!("warning: {}: {}", warning.place, warning.message);
+    }
+    Ok(loaded)
+}
+
+/// A picture size like `1920x1280`.
+pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let wrong = || format!("`{text}` is no picture size: write WIDTHxHEIGHT in pixels, such as 1920x1280");
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
+    let edge = |side: &str| side.trim().parse::<u32>().ok().filter(|n| *n > 0).ok_or_else(wrong);
+    let (width, height) = (edge(width)?, edge(height)?);
+    if width > LARGEST_EDGE || height > LARGEST_EDGE {
+        return Err(format!("a picture edge has at most {LARGEST_EDGE} pixels, not {}", width.max(height)));
+    }
+    Ok((width, height))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_and_nonsense_is_refused() {
+        assert_eq!(parse_size("640x480"), Ok((640, 480)));
+        for wrong in ["640", "0x5", "x", "-3x4", "1e3x5", "99999x1", "640x480x3"] {
+            assert!(parse_size(wrong).is_err(), "{wrong}");
+        }
+    }
+}

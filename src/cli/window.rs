@@ -1,0 +1,25 @@
+//! What needs a graphics adapter: the editor and its preview.
+
+use super::Failure;
+use crate::io::{self, Loaded, PictureInfo};
+use crate::preview::{self, PreviewInput};
+use std::path::{Path, PathBuf};
+
+/// Opens the editor.
+pub fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
+    let scene = scene.unwrap_or_else(|| "three_point".into());
+    Err(Failure::Machine(anyhow::anyhow!(
+        "no editor; to render instead: catchlight render {} -o picture.png",
+        scene.display()
+    )))
+}
+
+/// Renders the preview offscreen and writes it.
+pub fn write_preview(loaded: &Loaded, size: (u32, u32), output: &Path) -> Result<(), Failure> {
+    let machine = |error: preview::PreviewError| Failure::Machine(error.into());
+    let gpu = preview::Gpu::headless().map_err(machine)?;
+    let mut renderer = preview::PreviewRenderer::new(&gpu.device, &gpu.queue).map_err(machine)?;
+    let input = PreviewInput::camera_view(&loaded.scene, &loaded.assets, size);
+    let picture = renderer.linear_picture(&input).map_err(machine)?;
+    Ok(io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene.camera, "preview", 1, 0))?)
+}
