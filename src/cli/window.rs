@@ -1,17 +1,19 @@
 //! What needs a graphics adapter: the editor and its preview.
 
 use super::Failure;
+use crate::editor;
 use crate::io::{self, Loaded, PictureInfo};
 use crate::preview::{self, PreviewInput};
+use anyhow::anyhow;
 use std::path::{Path, PathBuf};
 
 /// Opens the editor.
 pub fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
-    let scene = scene.unwrap_or_else(|| "three_point".into());
-    Err(Failure::Machine(anyhow::anyhow!(
-        "no editor; to render instead: catchlight render {} -o picture.png",
-        scene.display()
-    )))
+    let named = scene.as_ref().map_or_else(|| "three_point".to_owned(), |path| path.display().to_string());
+    editor::run(scene).map_err(|error| {
+        let hint = format!("{error}; to render without a window: catchlight render {named} -o picture.png");
+        Failure::Machine(anyhow!(hint))
+    })
 }
 
 /// Renders the preview offscreen and writes it.
