@@ -83,6 +83,8 @@ impl Number {
             .suffix(self.suffix)
             .update_while_editing(false);
         let response = ui.add(field);
+        // The field would call itself by its unit; its row names it.
+        ui.ctx().accesskit_node_builder(response.id, |node| node.clear_label());
         // Writing back only what changed keeps the file's own digits.
         if shown != before && shown.is_finite() {
             *value = shown / factor;
@@ -163,6 +165,16 @@ pub fn small_button(ui: &mut Ui, sign: &str, name: &str) -> Response {
 /// Gives a widget a name for screen readers and tests.
 pub fn named(ui: &Ui, response: &Response, name: &str) {
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
+}
+
+/// A button that opens a colour picker; colours are scene-linear. The colour keeps its digits until it is changed.
+pub fn color_ui(ui: &mut Ui, rgb: &mut [f32; 3]) -> Response {
+    let mut shown = *rgb;
+    let response = ui.color_edit_button_rgb(&mut shown);
+    if response.changed() && shown.iter().all(|c| c.is_finite()) {
+        *rgb = shown;
+    }
+    response
 }
 
 /// A patch of a display colour.

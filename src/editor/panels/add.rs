@@ -2,7 +2,7 @@
 
 use crate::editor::catalog::{Entry, Kind, Shelf, entries};
 use crate::editor::command::Command;
-use crate::editor::theme;
+use crate::editor::{theme, widgets};
 use crate::scene::{Emitter, MaterialPreset};
 use eframe::egui::{self, Button, Color32, CornerRadius, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, vec2};
 
@@ -56,6 +56,7 @@ fn entry_ui(ui: &mut Ui, entry: &Entry) -> bool {
         paint_icon(ui.painter(), icon, &entry.kind);
         let button = Button::new(entry.name).frame_when_inactive(false).min_size(vec2(ui.available_width(), 22.0));
         let button = ui.add(button.right_text(RichText::new("+").weak()));
+        widgets::named(ui, &button, &format!("Add {}", entry.name));
         button.on_hover_text(format!("Add: {}", entry.tip)).clicked()
     })
     .inner

@@ -135,7 +135,9 @@ fn name_button(ui: &mut Ui, name: &str, selected: bool, faded: bool) -> egui::Re
     // Room on the right for a lamp and an eye.
     let width = (ui.available_width() - 56.0).max(40.0);
     let button = Button::selectable(selected, text).right_text("").truncate().min_size(vec2(width, 22.0));
-    ui.allocate_ui(vec2(width, 22.0), |ui| ui.add(button.sense(Sense::click()))).inner
+    let response = ui.allocate_ui(vec2(width, 22.0), |ui| ui.add(button.sense(Sense::click()))).inner;
+    widgets::named(ui, &response, name);
+    response
 }
 
 /// The name of a thing: click selects, double click renames, the other button opens the menu.

@@ -7,23 +7,24 @@ use crate::editor::theme;
 use crate::editor::widgets::{self, Number, row};
 use crate::raytrace::Method;
 use crate::scene::Scene;
-use eframe::egui::{self, Button, ComboBox, DragValue, Image, ProgressBar, RichText, Sense, Ui, vec2};
+use eframe::egui::{self, Button, ComboBox, Image, ProgressBar, RichText, Sense, Ui, vec2};
 use std::time::Duration;
 
 /// Longest side of a picture, pixels.
-const LARGEST: u32 = 16_384;
+const LARGEST: f32 = 16_384.0;
 
 /// Draws it.
 pub fn render_ui(ui: &mut Ui, rendering: &mut Rendering, scene: &Scene, out: &mut Vec<Command>) {
     ui.add_space(4.0);
     ui.label(RichText::new("Render").strong());
     ui.separator();
+    thumbnail_ui(ui, rendering, scene, out);
     size_rows(ui, &mut rendering.settings, scene);
     quality_rows(ui, &mut rendering.settings);
-    ui.add_space(4.0);
-    button_row(ui, rendering, out);
     progress_ui(ui, rendering);
-    thumbnail_ui(ui, rendering, scene, out);
+    ui.add_space(4.0);
+    // Last, at the foot of the window: what comes and goes above does not move the buttons.
+    button_row(ui, rendering, out);
     ui.add_space(4.0);
 }
 
@@ -48,10 +49,12 @@ fn size_rows(ui: &mut Ui, settings: &mut RenderSettings, scene: &Scene) {
     });
     if let PictureSize::Custom(width, height) = &mut settings.size {
         row(ui, "", "", |ui| {
-            let field = |value| DragValue::new(value).range(1..=LARGEST).suffix(" px").speed(4.0);
-            ui.name_inputs("Picture width", |ui| ui.add(field(width)));
-            ui.label("\u{d7}");
-            ui.name_inputs("Picture height", |ui| ui.add(field(height)));
+            const PIXELS: Number = Number::new(4.0, 1.0, LARGEST, 0, " px");
+            for (name, value) in [("Picture width", width), ("Picture height", height)] {
+                let mut pixels = *value as f32;
+                ui.name_inputs(name, |ui| PIXELS.ui(ui, &mut pixels));
+                *value = pixels as u32;
+            }
         });
     }
 }
@@ -93,6 +96,7 @@ fn button_row(ui: &mut Ui, rendering: &Rendering, out: &mut Vec<Command>) {
             }
         } else {
             let render = widgets::primary_button(ui, "Render", half);
+            widgets::named(ui, &render, "Render the picture");
             if render.on_hover_text("Trace the picture that the camera would take (R)").clicked() {
                 out.push(Command::Render);
             }

@@ -100,7 +100,7 @@ fn power_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
         }
         Output::FlashGuideNumber(number) => {
             ui.label("GN");
-            GUIDE.ui(ui, number).on_hover_text("Metres at ISO 100");
+            ui.name_inputs("Guide number", |ui| GUIDE.ui(ui, number)).on_hover_text("Metres at ISO 100");
         }
     });
 }
@@ -117,7 +117,8 @@ fn dial_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
             .update_while_editing(false)
             .custom_formatter(|v, _| widgets::signed_stops(v as f32))
             .custom_parser(|text| text.replace('\u{2212}', "-").trim().parse().ok());
-        let response = ui.add(slider).on_hover_text("Drag, or click the number and type it");
+        let response = ui.name_inputs("Dial", |ui| ui.add(slider));
+        let response = response.on_hover_text("Drag, or click the number and type it");
         if response.changed() && shown.is_finite() {
             *dial = shown;
         }
@@ -173,9 +174,7 @@ fn color_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     match &mut light.color.source {
         ColorSource::Kelvin(kelvin) => kelvin_row(ui, "Temperature", kelvin),
         ColorSource::Rgb(rgb) => {
-            row(ui, "Colour", "Only the hue counts: brightness comes from the power", |ui| {
-                ui.color_edit_button_rgb(rgb)
-            });
+            row(ui, "Colour", "Only the hue counts: brightness comes from the power", |ui| widgets::color_ui(ui, rgb));
         }
     }
     gel_rows(ui, light);
@@ -201,15 +200,15 @@ pub(super) fn kelvin_row(ui: &mut Ui, label: &str, kelvin: &mut f32) {
         if ui.add(slider).changed() && shown.is_finite() {
             *kelvin = shown;
         }
-        let menu = ui.menu_button("\u{23f7}", |ui| {
+        let list = ComboBox::from_id_salt("kelvin by name").width(24.0).show_ui(ui, |ui| {
             for (name, value) in KELVINS {
-                if ui.button(name).clicked() {
+                if ui.selectable_label(*kelvin == value, name).clicked() {
                     *kelvin = value;
                 }
             }
         });
-        widgets::named(ui, &menu.response, &format!("{label} by name"));
-        menu.response.on_hover_text("By name: tungsten, daylight, shade");
+        widgets::named(ui, &list.response, &format!("{label} by name"));
+        list.response.on_hover_text("By name: tungsten, daylight, shade");
     });
 }
 
@@ -235,7 +234,7 @@ fn gel_rows(ui: &mut Ui, light: &mut Light) {
             }
         });
         match gel {
-            Gel::Tint(rgb) => drop(ui.color_edit_button_rgb(rgb)),
+            Gel::Tint(rgb) => drop(widgets::color_ui(ui, rgb)),
             Gel::Mired(shift) if named.is_none() => {
                 let field = Number::new(1.0, -400.0, 400.0, 0, " mired");
                 ui.name_inputs("Mired shift", |ui| field.ui(ui, shift));

@@ -30,9 +30,10 @@ pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> bool {
             preset_combo(ui, "preset", material)
         });
         row(ui, "Colour", "Base colour; of a metal, its reflection", |ui| {
-            ui.color_edit_button_rgb(&mut material.base_color);
-            // A surface that gives back everything it gets would never let the light end.
-            material.base_color = material.base_color.map(|c| c.clamp(0.0, 0.99));
+            if widgets::color_ui(ui, &mut material.base_color).changed() {
+                // A surface that gives back everything it gets would never let the light end.
+                material.base_color = material.base_color.map(|c| c.clamp(0.0, 0.99));
+            }
             ui.label(format!("{:.0} % grey", 100.0 * crate::color::luminance(material.base_color.into())))
                 .on_hover_text("How much of the light it gives back");
         });
