@@ -1,0 +1,112 @@
+//! The shipped studios as a photographer would check them with a meter: exposure on the key, ratios between the lights.
+//! The illuminances here are closed forms, apart from every renderer.
+
+use catchlight::io::presets;
+use catchlight::photo::exposure;
+use catchlight::scene::{Emitter, Light, Role, Scene};
+use std::f32::consts::PI;
+
+/// Luminous exposure (lux s) that one light gives, directly, on a receptor that stands at its aim and faces it.
+fn metered_lux_s(scene: &Scene, light: &Light) -> f32 {
+    let distance = scene.aim_point(&light.aim, light.position).distance(light.position);
+    let per_axial_intensity = match light.emitter {
+        // A rectangle on its axis: the sum of four corner patches (Lambert's formula for parallel planes).
+        Emitter::RectPanel { width_m, height_m } => {
+            let (a, b) = (0.5 * width_m, 0.5 * height_m);
+            let (to_a, to_b) = (a.hypot(distance), b.hypot(distance));
+            2.0 * (a / to_a * (b / to_a).atan() + b / to_b * (a / to_b).atan()) / (width_m * height_m)
+        }
+        Emitter::RoundPanel { diameter_m } => 1.0 / (0.25 * diameter_m * diameter_m + distance * distance),
+        Emitter::Point | Emitter::Sphere { .. } | Emitter::Spot { .. } => 1.0 / (distance * distance),
+        Emitter::Sun { .. } | Emitter::Surround => return f32::NAN,
+    };
+    let time_s = exposure::integration_time_s(&light.power.output, &scene.camera);
+    exposure::axial_intensity(light) * per_axial_intensity * time_s
+}
+
+/// Stops of a light over what the camera's settings ask for.
+fn stops_over(scene: &Scene, lux_s: f32) -> f32 {
+    let n = exposure::f_number(lux_s, scene.camera.iso, scene.camera.meter_constant);
+    2.0 * (n / scene.camera.f_number).log2()
+}
+
+fn of_role(scene: &Scene, role: Role) -> impl Iterator<Item = f32> + '_ {
+    scene.lights.iter().filter(move |l| l.role == role).map(|light| stops_over(scene, metered_lux_s(scene, light)))
+}
+
+fn scene(file: &str) -> Scene {
+    let preset = presets().iter().find(|p| p.file_name == file);
+    preset.and_then(|p| p.load().ok()).map(|loaded| loaded.scene).unwrap_or_default()
+}
+
+#[test]
+fn the_meter_formulas_agree_with_the_printed_table() {
+    // light_and_camera.md's table: 1000 lm, 60x90 cm at 1 m 267.05 lx, round 120 cm at 1 m 234.05 lx.
+    let mut scene = scene("three_point.ron");
+    let light = &mut scene.lights[0];
+    light.aim = catchlight::scene::Aim::Point(light.position + glam::Vec3::X);
+    light.power.dial_stops = 0.0;
+    light.power.output = catchlight::scene::Output::FlashWs { energy_ws: 100.0, efficacy_lm_s_per_ws: 10.0 };
+    for (emitter, expected) in [
+        (Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, 267.05),
+        (Emitter::RoundPanel { diameter_m: 1.2 }, 234.05),
+        (Emitter::Point, 1000.0 / (4.0 * PI)),
+    ] {
+        let light = Light { emitter, ..scene.lights[0].clone() };
+        let ours = metered_lux_s(&scene, &light);
+        assert!((ours / expected - 1.0).abs() < 1e-4, "{emitter:?}: {ours}");
+    }
+}
+
+#[test]
+fn keys_are_exposed_right_and_fills_are_weaker() {
+    for preset in presets() {
+        let scene = scene(preset.file_name);
+        let keys: Vec<f32> = of_role(&scene, Role::Key).collect();
+        assert!(keys.len() == 1 || preset.file_name == "rim_low_key.ron", "{}: {keys:?}", preset.file_name);
+        for key in keys {
+            // A little under where a fill or a bright room adds to it.
+            assert!((-0.8..=0.2).contains(&key), "{}: the key is {key:+.2} stops off", preset.file_name);
+            for fill in of_role(&scene, Role::Fill) {
+                let ratio = key - fill;
+                assert!((0.9..=4.0).contains(&ratio), "{}: key:fill is {ratio:.2} stops", preset.file_name);
+            }
+        }
+    }
+}
+
+#[test]
+fn dials_stay_within_what_heads_can_do() {
+    for preset in presets() {
+        for light in &scene(preset.file_name).lights {
+            let dial = light.power.dial_stops;
+            assert!((-8.0..=0.0).contains(&dial), "{}: {} at {dial}", preset.file_name, light.name);
+            assert!(light.power.output.is_flash() || dial > -7.0);
+        }
+    }
+}
+
+/// Azimuth and elevation, degrees, of a light as seen from a face at its aim that looks along +Z.
+fn angles(scene: &Scene, name: &str) -> (f32, f32) {
+    let light = scene.lights.iter().find(|l| l.name == name).cloned();
+    let offset = light.map(|l| l.position - scene.aim_point(&l.aim, l.position)).unwrap_or_default();
+    (offset.x.atan2(offset.z).to_degrees(), offset.y.atan2(offset.x.hypot(offset.z)).to_degrees())
+}
+
+#[test]
+fn patterns_have_the_angles_of_the_textbook() {
+    // light_and_camera.md, portrait patterns. Positions are rounded to the centimetre, so half a degree is let off.
+    for (file, light, azimuths, elevations) in [
+        ("butterfly.ron", "Beauty dish", 0.0..=0.0, 25.0..=45.0),
+        ("loop.ron", "Key octa", 20.0..=50.0, 25.0..=60.0),
+        ("rembrandt.ron", "Key softbox", 45.0..=60.0, 40.0..=50.0),
+        ("split.ron", "Key strip", 90.0..=90.0, 0.0..=0.0),
+        ("clamshell.ron", "Upper octa", 0.0..=0.0, 25.0..=60.0),
+        ("clamshell.ron", "Lower softbox", 0.0..=0.0, -60.0..=-25.0),
+    ] {
+        let (azimuth, elevation) = angles(&scene(file), light);
+        let within = |x: f32, range: std::ops::RangeInclusive<f32>| x >= range.start() - 0.5 && x <= range.end() + 0.5;
+        assert!(within(azimuth, azimuths), "{file}: azimuth {azimuth}");
+        assert!(within(elevation, elevations), "{file}: elevation {elevation}");
+    }
+}
