@@ -36,6 +36,17 @@ fn every_shipped_studio_is_stored_as_we_write_it() {
 }
 
 #[test]
+fn every_shipped_studio_loads_without_a_warning() {
+    for preset in presets() {
+        let loaded = preset.load().unwrap_or_else(|e| panic!("{}: {e}", preset.file_name));
+        assert_eq!(loaded.warnings, [], "{}", preset.file_name);
+        for object in &loaded.scene.objects {
+            assert!(loaded.assets.mesh_of(&object.shape).is_some(), "{}: {}", preset.file_name, object.name);
+        }
+    }
+}
+
+#[test]
 fn a_hand_written_file_may_leave_out_what_is_as_usual() {
     let text = r#"
         // Comments, odd spacing and a name for the struct are fine.
