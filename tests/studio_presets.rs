@@ -98,8 +98,8 @@ fn patterns_have_the_angles_of_the_textbook() {
     // light_and_camera.md, portrait patterns. Positions are rounded to the centimetre, so half a degree is let off.
     for (file, light, azimuths, elevations) in [
         ("butterfly.ron", "Beauty dish", 0.0..=0.0, 25.0..=45.0),
-        ("loop.ron", "Key octa", 20.0..=50.0, 25.0..=60.0),
-        ("rembrandt.ron", "Key softbox", 45.0..=60.0, 40.0..=50.0),
+        ("loop.ron", "Key dish", 20.0..=50.0, 25.0..=60.0),
+        ("rembrandt.ron", "Key reflector", 45.0..=60.0, 40.0..=50.0),
         ("split.ron", "Key strip", 90.0..=90.0, 0.0..=0.0),
         ("clamshell.ron", "Upper octa", 0.0..=0.0, 25.0..=60.0),
         ("clamshell.ron", "Lower softbox", 0.0..=0.0, -60.0..=-25.0),
