@@ -549,3 +549,22 @@ fn a_window_without_a_device_says_so_and_still_works() {
     click(&mut window, "Add Octa 120");
     render_tiny(&mut window);
 }
+
+#[test]
+fn a_typed_title_is_one_step_and_survives_a_click_elsewhere() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let light = scene(&window).lights[0].name.clone();
+    window.get_by_role_and_label(egui::accesskit::Role::TextInput, "Title").click();
+    settle(&mut window);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    for letter in ["D", "u", "s", "k"] {
+        window.event(Event::Text(letter.to_owned()));
+    }
+    settle(&mut window);
+    click(&mut window, &light);
+    assert_eq!(scene(&window).name, "Dusk");
+    assert_eq!(undo_depth(&window), 1);
+}

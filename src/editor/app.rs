@@ -66,6 +66,7 @@ pub struct App {
     title: String,
     started: Instant,
     first_frame: Option<Duration>,
+    told_first_view: bool,
 }
 
 impl App {
@@ -97,6 +98,7 @@ impl App {
             title: String::new(),
             started: options.started,
             first_frame: None,
+            told_first_view: false,
         };
         let first = options.initial.map_or(Source::Preset(0), Source::File);
         app.load(first, ctx);
@@ -220,7 +222,7 @@ impl App {
         });
         Panel::right("details").frame(side).default_size(340.0).size_range(300.0..=560.0).show(ui, |ui| {
             Panel::bottom("render").frame(Frame::new()).resizable(false).show(ui, |ui| {
-                render::render_ui(ui, &mut self.rendering, self.document.scene(), out);
+                render::render_ui(ui, &mut self.rendering, self.document.scene(), self.centre, out);
             });
             inspector::inspector_ui(ui, &self.document, self.selection, out);
         });
@@ -300,6 +302,10 @@ impl eframe::App for App {
             let elapsed = self.started.elapsed();
             log::debug!("first frame after {} ms", elapsed.as_millis());
             self.first_frame = Some(elapsed);
+        }
+        if !self.told_first_view && self.viewport.preview.draws() > 0 && !self.tasks.is_busy() {
+            log::debug!("first live view of the studio after {} ms", self.started.elapsed().as_millis());
+            self.told_first_view = true;
         }
     }
 }

@@ -60,7 +60,7 @@ fn paint_light_label(painter: &Painter, frame: &CameraFrame, rect: Rect, light: 
     let text = if light.on { light.name.clone() } else { format!("{} (off)", light.name) };
     // The selected light's handles need the room to its right.
     let (offset, align) =
-        if selected { (vec2(0.0, 30.0), Align2::CENTER_TOP) } else { (vec2(9.0, 0.0), Align2::LEFT_CENTER) };
+        if selected { (vec2(0.0, -84.0), Align2::CENTER_BOTTOM) } else { (vec2(9.0, 0.0), Align2::LEFT_CENTER) };
     text_with_shadow(painter, place + offset, align, &text, color);
 }
 
@@ -71,7 +71,13 @@ fn paint_aim(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect, 
     painter.extend(Shape::dashed_line(&[from, to], Stroke::new(1.0, color), 6.0, 4.0));
     painter.circle_stroke(to, 4.0, Stroke::new(1.0, color));
     let distance = (target - light.position).length();
-    text_with_shadow(painter, from.lerp(to, 0.5), Align2::CENTER_BOTTOM, &format!("{distance:.2} m"), color);
+    text_with_shadow(
+        painter,
+        from.lerp(to, 0.6) + vec2(8.0, 0.0),
+        Align2::LEFT_CENTER,
+        &format!("{distance:.2} m"),
+        color,
+    );
 }
 
 /// Small text that stays readable over light and dark.

@@ -31,11 +31,11 @@ impl PictureView {
         super::widgets::named(ui, &response, "Picture view");
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 0.0, theme::SURROUND);
-        let Some(texture) = rendering.texture() else {
+        let (Some(texture), Some(size)) = (rendering.texture(), rendering.size()) else {
             self.empty_ui(ui, rect, rendering, out);
             return;
         };
-        let pixels = texture.size_vec2() / ui.pixels_per_point();
+        let pixels = vec2(size.0 as f32, size.1 as f32) / ui.pixels_per_point();
         let fit = (rect.width() / pixels.x).min(rect.height() / pixels.y) * 0.97;
         self.interact(ui, rect, &response, fit);
         let zoom = self.zoom.unwrap_or(fit);

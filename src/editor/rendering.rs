@@ -143,9 +143,15 @@ impl Rendering {
         self.texture.as_ref()
     }
 
-    /// The picture for export.
+    /// The picture for export; not yet while only a small forerunner of a large one is on show.
     pub fn developed(&self) -> Option<&Developed> {
-        self.developed.as_ref()
+        let (width, height) = self.size()?;
+        self.developed.as_ref().filter(|d| (d.picture.width, d.picture.height) == (width, height))
+    }
+
+    /// Pixels across and down of the picture that is on show or on its way.
+    pub fn size(&self) -> Option<(u32, u32)> {
+        self.job.as_ref().map(|job| (job.settings.width, job.settings.height))
     }
 
     /// Whether the picture is not what a render would show now.

@@ -257,6 +257,12 @@ pub fn three_digits(value: f32) -> String {
     }
 }
 
+/// A question in the middle of the window.
+pub fn dialog(ctx: &egui::Context, name: &str) -> egui::Modal {
+    let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16);
+    egui::Modal::new(egui::Id::unique(name)).frame(frame).backdrop_color(Color32::from_black_alpha(140))
+}
+
 /// The button that asks for attention.
 pub fn primary_button(ui: &mut Ui, text: &str, width: f32) -> Response {
     let label = RichText::new(text).color(Color32::from_gray(16)).strong();

@@ -22,16 +22,21 @@ const KEYS: [(&str, &str); 22] = [
     ("Ctrl+N, Ctrl+O", "New from preset, open"),
     ("Ctrl+S, Ctrl+Shift+S", "Save, save as"),
     ("Ctrl+I, Ctrl+E", "Import OBJ, export picture"),
-    ("Esc", "Let go of a drag, close a dialog"),
+    ("Esc", "Close a dialog"),
     ("Drag a number", "Change it; Shift: finely. Click: type it"),
     ("Drop a file", "A studio (.ron) opens, a model (.obj) comes in"),
 ];
 
 /// Draws the window; `open` is cleared when it is closed.
 pub fn help_ui(ctx: &egui::Context, open: &mut bool) {
-    egui::Window::new("Keys and mouse").open(open).resizable(false).collapsible(false).default_width(480.0).show(
-        ctx,
-        |ui| {
+    egui::Window::new("Keys and mouse")
+        .open(open)
+        .resizable(false)
+        .collapsible(false)
+        .default_width(480.0)
+        .pivot(egui::Align2::CENTER_CENTER)
+        .default_pos(ctx.content_rect().center())
+        .show(ctx, |ui| {
             Grid::new("keys").num_columns(2).spacing([24.0, 5.0]).show(ui, |ui| {
                 for (keys, meaning) in KEYS {
                     ui.label(RichText::new(keys).strong());
@@ -39,6 +44,5 @@ pub fn help_ui(ctx: &egui::Context, open: &mut bool) {
                     ui.end_row();
                 }
             });
-        },
-    );
+        });
 }

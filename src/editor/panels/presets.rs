@@ -2,7 +2,8 @@
 
 use crate::editor::command::Command;
 use crate::editor::files::PresetInfo;
-use eframe::egui::{self, Button, Id, Modal, RichText, ScrollArea, Ui};
+use crate::editor::widgets;
+use eframe::egui::{self, Button, Key, Modifiers, RichText, ScrollArea, Ui};
 
 /// Which studio of the list is marked; none while the list is closed.
 #[derive(Clone, Copy, Debug, Default)]
@@ -23,9 +24,21 @@ impl PresetPicker {
 
     /// Draws the list.
     pub fn ui(&mut self, ctx: &egui::Context, presets: &[PresetInfo], out: &mut Vec<Command>) {
-        let Some(marked) = self.marked else { return };
+        let Some(mut marked) = self.marked else { return };
+        let before = marked;
         let mut choice = None;
-        let modal = Modal::new(Id::unique("presets")).show(ctx, |ui| {
+        let pressed = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
+        if pressed(Key::ArrowDown) {
+            marked = (marked + 1).min(presets.len().saturating_sub(1));
+        }
+        if pressed(Key::ArrowUp) {
+            marked = marked.saturating_sub(1);
+        }
+        if pressed(Key::Enter) {
+            choice = Some(marked);
+        }
+        let by_key = marked != before;
+        let modal = widgets::dialog(ctx, "presets").show(ctx, |ui| {
             ui.set_width(520.0);
             ui.heading("New from preset");
             ui.label(
@@ -37,7 +50,10 @@ impl PresetPicker {
                 for (i, preset) in presets.iter().enumerate() {
                     let response = preset_row(ui, preset, i == marked);
                     if response.clicked() {
-                        self.marked = Some(i);
+                        marked = i;
+                    }
+                    if by_key && i == marked {
+                        response.scroll_to_me(None);
                     }
                     if response.double_clicked() {
                         choice = Some(i);
@@ -55,9 +71,8 @@ impl PresetPicker {
                 }
             });
         });
-        if choice.is_some() || modal.should_close() {
-            self.marked = None;
-        }
+        let closes = choice.is_some() || modal.should_close();
+        self.marked = (!closes).then_some(marked);
         if let Some(index) = choice {
             out.push(Command::NewFromPreset(index));
         }
@@ -75,6 +90,6 @@ fn preset_row(ui: &mut Ui, preset: &PresetInfo, marked: bool) -> egui::Response 
     text.wrap.max_width = ui.available_width() - 20.0;
     let button = Button::selectable(marked, text).min_size(egui::vec2(ui.available_width(), 40.0)).wrap();
     let response = ui.add(button);
-    crate::editor::widgets::named(ui, &response, &preset.name);
+    widgets::named(ui, &response, &preset.name);
     response
 }

@@ -1,7 +1,8 @@
 //! Questions in the middle of the window: unsaved changes, and a path where the desktop has no dialog.
 
 use crate::editor::dialogs::Purpose;
-use eframe::egui::{self, Button, Id, Key, Modal, RichText, TextEdit};
+use crate::editor::widgets;
+use eframe::egui::{self, Button, Key, RichText, TextEdit};
 use std::path::{Path, PathBuf};
 
 /// The answer to "save the changes?".
@@ -18,7 +19,7 @@ pub enum GuardAnswer {
 /// Asks whether to save before `what`.
 pub fn guard_ui(ctx: &egui::Context, title: &str, what: &str) -> Option<GuardAnswer> {
     let mut answer = None;
-    let modal = Modal::new(Id::unique("unsaved changes")).show(ctx, |ui| {
+    let modal = widgets::dialog(ctx, "unsaved changes").show(ctx, |ui| {
         ui.set_width(420.0);
         ui.heading("Unsaved changes");
         ui.label(format!("\"{title}\" has changes that are not saved. Save them before {what}?"));
@@ -71,7 +72,7 @@ impl PathPrompt {
     /// Draws it.
     pub fn ui(&mut self, ctx: &egui::Context) -> Option<PathAnswer> {
         let mut answer = None;
-        let modal = Modal::new(Id::unique("path prompt")).show(ctx, |ui| {
+        let modal = widgets::dialog(ctx, "path prompt").show(ctx, |ui| {
             ui.set_width(560.0);
             ui.heading(self.purpose.title());
             ui.label(RichText::new("This desktop offers no file dialog, so please type the path.").weak());

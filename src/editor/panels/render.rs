@@ -14,11 +14,13 @@ use std::time::Duration;
 const LARGEST: f32 = 16_384.0;
 
 /// Draws it.
-pub fn render_ui(ui: &mut Ui, rendering: &mut Rendering, scene: &Scene, out: &mut Vec<Command>) {
+pub fn render_ui(ui: &mut Ui, rendering: &mut Rendering, scene: &Scene, centre: Centre, out: &mut Vec<Command>) {
     ui.add_space(4.0);
     ui.label(RichText::new("Render").strong());
     ui.separator();
-    thumbnail_ui(ui, rendering, scene, out);
+    if centre != Centre::Picture {
+        thumbnail_ui(ui, rendering, scene, out);
+    }
     size_rows(ui, &mut rendering.settings, scene);
     quality_rows(ui, &mut rendering.settings);
     progress_ui(ui, rendering);
@@ -150,7 +152,8 @@ pub fn duration_text(duration: Duration) -> String {
 fn thumbnail_ui(ui: &mut Ui, rendering: &Rendering, scene: &Scene, out: &mut Vec<Command>) {
     let Some(texture) = rendering.texture() else { return };
     let room = vec2(ui.available_width(), 200.0);
-    let size = texture.size_vec2();
+    let Some((width, height)) = rendering.size() else { return };
+    let size = vec2(width as f32, height as f32);
     let size = size * (room.x / size.x).min(room.y / size.y);
     ui.vertical_centered(|ui| {
         let image = Image::new((texture.id(), size)).alt_text("Rendered picture").sense(Sense::click());

@@ -1,7 +1,7 @@
 //! The inspector of a light.
 
 use super::power::{self, Unit};
-use super::{Context, aim, name_ui, title};
+use super::{Context, aim, text_ui, title};
 use crate::color::{light_rgb, rgb_from_kelvin};
 use crate::editor::action::Action;
 use crate::editor::catalog::{self, Kind, Shelf};
@@ -21,7 +21,7 @@ pub(super) fn light_ui(ui: &mut Ui, context: &mut Context<'_>, id: LightId) {
     let mut light = original.clone();
     title(ui, &original.name, light.emitter.label());
     row(ui, "Name", "Names are unique in a studio", |ui| {
-        if let Some(name) = name_ui(ui, &original.name) {
+        if let Some(name) = text_ui(ui, "name", &original.name, false) {
             context.out.push(Command::Do(Action::Rename(crate::editor::action::Item::Light(id), name)));
         }
     });

@@ -39,13 +39,13 @@ pub fn inspector_ui(ui: &mut Ui, document: &Document, selection: Option<Item>, o
 fn studio_ui(ui: &mut Ui, context: &mut Context<'_>) {
     let scene = context.document.scene();
     title(ui, "Studio", "");
-    let (mut name, mut description) = (scene.name.clone(), scene.description.clone());
-    let fields = [("Title", &mut name, false), ("Description", &mut description, true)];
-    for (label, text, is_long) in fields {
+    let mut notes = (scene.name.clone(), scene.description.clone());
+    for (label, text, is_long) in [("Title", &mut notes.0, false), ("Description", &mut notes.1, true)] {
         ui.label(RichText::new(label).weak());
-        let field = if is_long { TextEdit::multiline(text).desired_rows(3) } else { TextEdit::singleline(text) };
-        ui.name_inputs(label, |ui| ui.add(field.desired_width(f32::INFINITY)));
+        let changed = ui.name_inputs(label, |ui| text_ui(ui, label, text, is_long));
+        *text = changed.unwrap_or_else(|| text.clone());
     }
+    let (name, description) = notes;
     if name != scene.name || description != scene.description {
         context.out.push(Command::Do(Action::SetNotes { name, description }));
     }
@@ -70,15 +70,17 @@ fn title(ui: &mut Ui, name: &str, kind: &str) {
     ui.separator();
 }
 
-/// A name field that gives its text when it is left, not at every key.
-fn name_ui(ui: &mut Ui, name: &str) -> Option<String> {
-    let id = ui.scope_id().with("name field");
-    let mut text = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_else(|| name.to_owned());
-    let field = ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY));
+/// A field that gives its text when it is left, not at every key: one undo step.
+fn text_ui(ui: &mut Ui, salt: &str, text: &str, is_long: bool) -> Option<String> {
+    let id = ui.scope_id().with(salt);
+    let mut edited = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_else(|| text.to_owned());
+    let field =
+        if is_long { TextEdit::multiline(&mut edited).desired_rows(3) } else { TextEdit::singleline(&mut edited) };
+    let field = ui.add(field.desired_width(f32::INFINITY));
     if field.has_focus() {
-        ui.data_mut(|d| d.insert_temp(id, text));
+        ui.data_mut(|d| d.insert_temp(id, edited));
         return None;
     }
     ui.data_mut(|d| d.remove::<String>(id));
-    (field.lost_focus() && text != name).then_some(text)
+    (field.lost_focus() && edited != text).then_some(edited)
 }

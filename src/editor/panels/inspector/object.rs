@@ -1,7 +1,7 @@
 //! The inspector of a mannequin, prop or backdrop.
 
 use super::material::{material_group, material_rows, preset_name};
-use super::{Context, name_ui, title};
+use super::{Context, text_ui, title};
 use crate::editor::action::{Action, Item};
 use crate::editor::command::Command;
 use crate::editor::widgets::{self, DEGREES, METRES, Number, SIZE_CM, row, section};
@@ -16,7 +16,7 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut Context<'_>, id: ObjectId) {
     let mut object = original.clone();
     title(ui, &original.name, object.shape.label());
     row(ui, "Name", "Names are unique in a studio", |ui| {
-        if let Some(name) = name_ui(ui, &original.name) {
+        if let Some(name) = text_ui(ui, "name", &original.name, false) {
             context.out.push(Command::Do(Action::Rename(Item::Object(id), name)));
         }
     });
