@@ -213,7 +213,11 @@ fn explain(text: &str, error: &ron::error::SpannedError) -> Problem {
         E::ExpectedString => "a text in quotes is expected".to_owned(),
         other => lower_first(&other.to_string()),
     };
-    Problem { text: shorten(&text[value]), ..problem_at(text, field, message, at..at) }
+    let quoted = match &error.code {
+        E::NoSuchStructField { found, .. } => found,
+        _ => &text[value],
+    };
+    Problem { text: shorten(quoted), ..problem_at(text, field, message, at..at) }
 }
 
 fn explain_name(text: &str, unknown: &UnknownName) -> Problem {
