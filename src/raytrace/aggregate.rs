@@ -75,3 +75,135 @@ impl Aggregate {
         self.instances[hit.instance as usize].surface(&hit.triangle)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::warp;
+    use crate::raytrace::geometry::MeshGeometry;
+    use crate::scene::{Mesh, Shape, tessellate};
+    use glam::{Affine3A, Quat, Vec2, Vec3};
+    use std::sync::Arc;
+
+    /// Deterministic numbers in 0..1.
+    fn numbers(seed: u32) -> impl FnMut() -> f32 {
+        let mut i = 0;
+        move || {
+            i += 1;
+            sobol_burley::sample(i % 65536, i / 65536, seed)
+        }
+    }
+
+    fn soup(triangles: usize) -> Mesh {
+        let mut next = numbers(3);
+        let mut mesh = Mesh::default();
+        for i in 0..triangles as u32 {
+            let centre = Vec3::new(next(), next(), next()) * 4.0 - 2.0;
+            for _ in 0..3 {
+                mesh.positions.push(centre + (Vec3::new(next(), next(), next()) - 0.5) * 0.4);
+            }
+            mesh.triangles.push([3 * i, 3 * i + 1, 3 * i + 2]);
+        }
+        mesh.with_single_part("soup")
+    }
+
+    fn some_rays(count: u32) -> Vec<Ray> {
+        let mut next = numbers(11);
+        let ray = |_| {
+            let origin = Vec3::new(next(), next(), next()) * 6.0 - 3.0;
+            let mut direction = warp::uniform_sphere(Vec2::new(next(), next()));
+            // Some along the axes, where slabs meet zero and infinity.
+            if next() < 0.1 {
+                direction = [Vec3::X, Vec3::NEG_Y, Vec3::Z][(next() * 3.0) as usize % 3];
+            }
+            Ray { origin, direction, t_max: if next() < 0.5 { f32::INFINITY } else { next() * 3.0 } }
+        };
+        (0..count).map(ray).collect()
+    }
+
+    fn instance(mesh: Mesh, transform: Affine3A, object: u32) -> Instance {
+        Instance::new(Arc::new(MeshGeometry::new(Arc::new(mesh))), transform, object, vec![0]).unwrap()
+    }
+
+    /// Every triangle of every instance, with the same triangle test in the same space.
+    fn brute_force(instances: &[Instance], ray: &Ray) -> Option<(u32, TriangleHit)> {
+        use crate::raytrace::triangle::{Packet, Sheared};
+        let mut best: Option<(u32, TriangleHit)> = None;
+        for (index, instance) in instances.iter().enumerate() {
+            let local = instance.to_object(ray);
+            let sheared = Sheared::new(local.origin, local.direction);
+            let mesh = instance.geometry.mesh();
+            for t in 0..mesh.triangles.len() {
+                let end = best.as_ref().map_or(ray.t_max, |b| b.1.t);
+                if let Some(hit) = Packet::new([(t as u32, mesh.corners(t))]).intersect(&sheared, end) {
+                    best = Some((index as u32, hit));
+                }
+            }
+        }
+        best
+    }
+
+    #[test]
+    fn the_tree_finds_what_testing_every_triangle_finds() {
+        let turned = Affine3A::from_scale_rotation_translation(
+            Vec3::new(0.5, 2.0, 1.0),
+            Quat::from_rotation_y(0.7),
+            Vec3::new(1.0, 0.2, -0.5),
+        );
+        let sphere = tessellate(&Shape::Box { size_m: Vec3::ONE }).unwrap();
+        let aggregate = Aggregate::new(vec![
+            instance(soup(700), Affine3A::IDENTITY, 0),
+            instance(soup(300), turned, 1),
+            instance(sphere, Affine3A::from_translation(Vec3::Y), 2),
+        ]);
+        let mut stack = Stack::default();
+        let mut hits = 0;
+        for (i, ray) in some_rays(4000).iter().enumerate() {
+            let ours = aggregate.closest(ray, &mut stack);
+            let truth = brute_force(aggregate.instances(), ray);
+            // Two triangles at the very same distance may be named in either order; the distance is the same to the bit.
+            assert_eq!(ours.map(|h| h.triangle.t), truth.map(|(_, h)| h.t), "ray {i}: {ray:?}");
+            assert_eq!(aggregate.blocked(ray, &mut stack), truth.is_some(), "ray {i}: {ray:?}");
+            hits += usize::from(truth.is_some());
+        }
+        assert!(hits > 1000, "only {hits} rays hit anything: the test says little");
+    }
+
+    #[test]
+    fn an_empty_studio_is_missed() {
+        let aggregate = Aggregate::new(vec![instance(Mesh::default().with_single_part("none"), Affine3A::IDENTITY, 0)]);
+        let ray = Ray { origin: Vec3::ZERO, direction: Vec3::Z, t_max: f32::INFINITY };
+        assert!(aggregate.closest(&ray, &mut Stack::default()).is_none());
+    }
+
+    #[test]
+    fn a_million_rays_never_hit_the_triangle_they_leave_nor_leak_from_a_ball() {
+        // Also far from the origin, where the camera-relative space has small numbers only near the camera.
+        let ball = tessellate(&Shape::Sphere { radius_m: 1.0 }).unwrap();
+        for far in [0.0, 1e3, 1e5] {
+            let place = Affine3A::from_translation(Vec3::new(far, -far, far));
+            let aggregate = Aggregate::new(vec![instance(ball.clone(), place, 0)]);
+            let mut stack = Stack::default();
+            let mut next = numbers(5);
+            for _ in 0..340_000 {
+                let origin = Vec3::new(far, -far, far);
+                let out = warp::uniform_sphere(Vec2::new(next(), next()));
+                let inside = Ray { origin, direction: out, t_max: f32::INFINITY };
+                let hit = aggregate.closest(&inside, &mut stack).expect("a ray from the centre leaked");
+                let surface = aggregate.surface(&hit);
+                // Outwards again: a convex ball is never met from its own surface.
+                let local = warp::cosine_hemisphere(Vec2::new(next(), next()));
+                let (t, b) = crate::math::orthonormal_basis(surface.geometric_normal);
+                let direction = t * local.x + b * local.y + surface.geometric_normal * local.z.max(1e-3);
+                let away = Ray { origin: surface.leave(direction), direction, t_max: f32::INFINITY };
+                if let Some(again) = aggregate.closest(&away, &mut stack) {
+                    // The tessellated ball is convex only up to rounding: grazing rays may touch a neighbour.
+                    assert_ne!(again.triangle.triangle, hit.triangle.triangle, "left and hit the same triangle");
+                }
+                // Inwards: the other side must be found.
+                let inwards = Ray { origin: surface.leave(-direction), direction: -direction, t_max: f32::INFINITY };
+                assert!(aggregate.closest(&inwards, &mut stack).is_some(), "a ray leaked at {far}");
+            }
+        }
+    }
+}

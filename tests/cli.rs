@@ -1,0 +1,163 @@
+//! The program as a process: arguments, files, exit codes, what goes to stdout and what to stderr.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn catchlight(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_catchlight"))
+        .current_dir(folder)
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+#[test]
+fn render_writes_each_format_and_reports_in_json() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.png", "b.jpg", "c.exr"] {
+        let output = catchlight(
+            folder.path(),
+            &["render", "product_still_life", "-o", name, "--size", "48x32", "--spp", "2", "--json", "--threads", "2"],
+        );
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let report: Value = serde_json::from_str(stdout(&output).trim()).unwrap();
+        for key in [
+            "width",
+            "height",
+            "spp",
+            "threads",
+            "method",
+            "seed",
+            "triangles",
+            "lights",
+            "build_s",
+            "trace_s",
+            "wall_s",
+            "rays",
+            "noise_stops",
+            "nonfinite",
+        ] {
+            assert!(report.get(key).is_some(), "the report lacks {key}: {report}");
+        }
+        assert_eq!((report["width"].as_u64(), report["spp"].as_u64()), (Some(48), Some(2)));
+        assert!(report["rays"].as_u64().unwrap() > 48 * 32 * 2);
+        assert!(folder.path().join(name).metadata().unwrap().len() > 500);
+    }
+    let png = image::open(folder.path().join("a.png")).unwrap().to_rgb8();
+    assert_eq!(png.dimensions(), (48, 32));
+    assert!(png.pixels().any(|p| p[1] > 100));
+}
+
+#[test]
+fn exr_holds_scene_linear_values_and_how_they_came_about() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["render", "split", "-o", "x.exr", "--size", "24x36", "--spp", "2", "--seed", "9", "--layers"];
+    let output = catchlight(folder.path(), &arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let bytes = std::fs::read(folder.path().join("x.exr")).unwrap();
+    assert_eq!(&bytes[..4], &[0x76, 0x2f, 0x31, 0x01]);
+    let header = String::from_utf8_lossy(&bytes[..bytes.len().min(8192)]).into_owned();
+    for attribute in ["spp", "seed", "method", "version", "cd"] {
+        assert!(header.contains(attribute), "no {attribute} in the header");
+    }
+}
+
+#[test]
+fn explain_says_what_is_left_out_and_why() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["render", "three_point", "-o", "x.png", "--size", "12x18", "--spp", "1", "--explain"];
+    let output = catchlight(folder.path(), &arguments);
+    assert!(stdout(&output).contains("no glass: no refraction"), "{}", stdout(&output));
+}
+
+#[test]
+fn presets_are_listed_with_a_description() {
+    let output = catchlight(Path::new("."), &["presets"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(stdout(&output).lines().count() >= 8);
+    assert!(stdout(&output).lines().any(|l| l.starts_with("rembrandt ") && l.len() > 40));
+}
+
+#[test]
+fn wrong_input_is_exit_code_1_with_a_reason_and_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("bad.ron"), "(format: 1, name: \"x\", camra: ())").unwrap();
+    for (arguments, reason) in [
+        (vec!["render", "nowhere.ron", "-o", "x.png"], "nowhere.ron"),
+        (vec!["render", "three_point", "-o", "x.bmp"], "bmp"),
+        (vec!["render", "three_point", "-o", "missing/x.png"], "missing"),
+        (vec!["render", "three_point", "-o", "x.png", "--size", "0x10"], "0x10"),
+        (vec!["render", "three_point", "-o", "x.png", "--spp", "0"], "0"),
+        (vec!["render", "three_point", "-o", "x.png", "--layers"], "exr"),
+        (vec!["check", "bad.ron"], "camra"),
+        (vec!["render", "bad.ron", "-o", "x.png"], "camera"),
+        (vec!["dance"], "dance"),
+    ] {
+        let output = catchlight(folder.path(), &arguments);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {}", stderr(&output));
+        assert!(stderr(&output).contains(reason), "{arguments:?}: {}", stderr(&output));
+        assert!(stdout(&output).is_empty());
+        assert!(!folder.path().join("x.png").exists());
+    }
+}
+
+#[test]
+fn check_passes_a_good_studio_and_names_what_is_odd() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(catchlight(folder.path(), &["check", "loop"]).status.code(), Some(0));
+    let dark = catchlight::io::write_scene(&catchlight::scene::Scene::default());
+    std::fs::write(folder.path().join("dark.ron"), dark).unwrap();
+    let output = catchlight(folder.path(), &["check", "dark.ron"]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(stderr(&output).contains("light"), "a studio without lights is odd: {}", stderr(&output));
+}
+
+#[test]
+fn without_a_display_the_editor_names_the_render_command() {
+    let output = catchlight(Path::new("."), &[]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("catchlight render"), "{}", stderr(&output));
+}
+
+#[test]
+fn time_ends_a_render_with_a_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["render", "split", "-o", "x.png", "--size", "64x96", "--time", "0.5", "--json"];
+    let output = catchlight(folder.path(), &arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let report: Value = serde_json::from_str(stdout(&output).trim()).unwrap();
+    // Generous: the machine may be busy. What matters is that it ends and has a picture.
+    assert!(report["trace_s"].as_f64().unwrap() < 20.0 && report["spp"].as_u64().unwrap() >= 1);
+    assert!(folder.path().join("x.png").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_what_is_rendered() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_catchlight"))
+        .current_dir(folder.path())
+        .args(["render", "split", "-o", "x.png", "--size", "64x96", "--spp", "100000", "--json"])
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    // Long enough for the first samples on a busy machine; the render itself would take minutes.
+    std::thread::sleep(std::time::Duration::from_secs(4));
+    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    let status = child.wait().unwrap();
+    assert_eq!(status.code(), Some(130));
+    assert_eq!(image::open(folder.path().join("x.png")).unwrap().to_rgb8().dimensions(), (64, 96));
+}

@@ -1,0 +1,90 @@
+//! Every shipped studio, rendered: finite, lit, the same for any number of threads.
+#![allow(clippy::unwrap_used)]
+
+use catchlight::io;
+use catchlight::raytrace::{self, Control, Film, Method, RenderScene, Settings};
+use std::ops::ControlFlow;
+
+fn render(scene: &RenderScene, settings: &Settings, threads: usize) -> Film {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| raytrace::render(scene, settings, &Control::new(), &mut |_| ControlFlow::Continue(())))
+}
+
+#[test]
+fn each_shipped_studio_renders_finite_and_lit() {
+    assert!(io::presets().len() >= 8);
+    for preset in io::presets() {
+        let loaded = preset.load().unwrap();
+        assert!(loaded.warnings.is_empty(), "{}: {:?}", preset.file_name, loaded.warnings);
+        let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
+        let (width, height) = loaded.scene.camera.picture_size(48);
+        let film = render(&prepared, &Settings { width, height, spp: 4, ..Settings::default() }, 2);
+        assert_eq!(film.nonfinite(), 0, "{}: first at {:?}", preset.file_name, film.first_nonfinite());
+        let picture = film.develop(&loaded.scene);
+        assert!(picture.rgb.iter().flatten().all(|c| c.is_finite() && *c >= 0.0), "{}", preset.file_name);
+        let brightest = picture.rgb.iter().map(|p| p[1]).fold(0.0, f32::max);
+        // Even a low key picture has an edge of a face near middle grey.
+        assert!(brightest > 0.15, "{}: the brightest pixel is {brightest}", preset.file_name);
+    }
+}
+
+#[test]
+fn one_thread_and_many_give_the_same_bits() {
+    for (name, method) in
+        [("three_point", Method::Path), ("product_still_life", Method::Path), ("split", Method::Direct)]
+    {
+        let loaded = io::find_preset(name).unwrap().load().unwrap();
+        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
+        let prepared_alone = one.install(|| raytrace::prepare(&loaded.scene, &loaded.assets)).unwrap();
+        let settings = Settings { width: 77, height: 45, spp: 3, method, ..Settings::default() };
+        let reference = render(&prepared_alone, &settings, 1).develop(&loaded.scene);
+        for threads in [2, 5] {
+            let bits =
+                |p: &catchlight::photo::Picture| -> Vec<u32> { p.rgb.iter().flatten().map(|c| c.to_bits()).collect() };
+            let picture = render(&prepared, &settings, threads).develop(&loaded.scene);
+            assert!(bits(&reference) == bits(&picture), "{name} differs with {threads} threads");
+        }
+    }
+}
+
+#[test]
+fn a_seed_changes_the_noise_and_nothing_else() {
+    let loaded = io::find_preset("three_point").unwrap().load().unwrap();
+    let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
+    let picture = |seed| {
+        let settings = Settings { width: 32, height: 32, spp: 16, seed, ..Settings::default() };
+        render(&prepared, &settings, 2).develop(&loaded.scene)
+    };
+    let (a, b) = (picture(1), picture(2));
+    assert_ne!(a, b);
+    let mean = |p: &catchlight::photo::Picture| p.rgb.iter().map(|c| c[1]).sum::<f32>() / p.rgb.len() as f32;
+    // 16384 samples: the means agree far better than the 1 % asked for here.
+    assert!((mean(&a) / mean(&b) - 1.0).abs() < 0.01);
+}
+
+#[test]
+fn a_cancelled_render_keeps_its_complete_waves() {
+    let loaded = io::find_preset("three_point").unwrap().load().unwrap();
+    let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
+    let settings = Settings { width: 40, height: 40, spp: 64, ..Settings::default() };
+    let control = Control::new();
+    let film = raytrace::render(&prepared, &settings, &control, &mut |film| {
+        if film.spp() == 4 {
+            control.cancel();
+        }
+        ControlFlow::Continue(())
+    });
+    assert_eq!(film.spp(), 4);
+    let reference = render(&prepared, &Settings { spp: 4, ..settings }, 2);
+    assert_eq!(film.develop(&loaded.scene), reference.develop(&loaded.scene));
+}
+
+#[test]
+fn noise_ends_a_render_early_and_falls_with_samples() {
+    let loaded = io::find_preset("three_point").unwrap().load().unwrap();
+    let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
+    let settings = Settings { width: 64, height: 64, spp: 4096, noise_stops: Some(0.1), ..Settings::default() };
+    let film = render(&prepared, &settings, 2);
+    assert!(film.spp() < 4096 && film.noise_stops() <= 0.1, "{} stops at {} samples", film.noise_stops(), film.spp());
+}

@@ -1,0 +1,79 @@
+//! Small scenes for tests: a grey card, a ball, a light.
+#![allow(dead_code)]
+
+use catchlight::scene::{
+    Aim, Camera, Emitter, Light, LightColor, LightId, Material, Object, ObjectId, Output, Power, Role, Scene, Sensor,
+    Shape, Transform,
+};
+use glam::Vec3;
+
+/// Of the card.
+pub const REFLECTANCE: f32 = 0.18;
+
+/// A square sensor close to `target` on the side of `normal`, well balanced, framing less than a centimetre.
+pub fn looking_at_card(target: Vec3, normal: Vec3) -> Camera {
+    // From the side, so that the camera would not shade what it looks at if it could.
+    let side = if normal.x.abs() < 0.5 { Vec3::X } else { Vec3::Y };
+    Camera {
+        position: target + normal * 0.08 + side * 0.02,
+        aim: Aim::Point(target),
+        sensor: Sensor::Custom { width_mm: 24.0, height_mm: 24.0 },
+        focal_length_mm: 300.0,
+        ..Camera::default()
+    }
+}
+
+/// An object with a grey matte surface.
+pub fn object(name: &str, shape: Shape, position: Vec3) -> Object {
+    let material = Material { base_color: [REFLECTANCE; 3], ior: 1.0, roughness: 1.0, ..Material::default() };
+    Object {
+        id: ObjectId(name.len() as u32),
+        name: name.into(),
+        transform: Transform { position, ..Transform::default() },
+        shape,
+        material,
+        part_materials: Vec::new(),
+        visible: true,
+    }
+}
+
+/// A square card that faces +Z, and a camera that sees nothing else.
+pub fn card_at(position: Vec3, size_m: f32) -> Scene {
+    let mut card = object("Card", Shape::Plane { width_m: size_m, depth_m: size_m }, position);
+    card.transform.rotation_deg = Vec3::X * 90.0;
+    Scene { objects: vec![card], camera: looking_at_card(position, Vec3::Z), ..Scene::default() }
+}
+
+/// A light that points at the origin, in the camera's white.
+pub fn light(emitter: Emitter, output: Output, position: Vec3) -> Light {
+    Light {
+        id: LightId(0),
+        name: "Light".into(),
+        role: Role::Key,
+        position,
+        aim: Aim::Point(Vec3::ZERO),
+        roll_deg: 0.0,
+        emitter,
+        power: Power { output, dial_stops: 0.0 },
+        color: LightColor::default(),
+        on: true,
+        visible_to_camera: false,
+    }
+}
+
+/// A ball of this material before an even white surround that the camera sees.
+pub fn ball_in_even_light(material: Material) -> Scene {
+    let mut ball = object("Ball", Shape::Sphere { radius_m: 0.5 }, Vec3::ZERO);
+    ball.material = material;
+    let mut surround = light(Emitter::Surround, Output::Lux(1000.0), Vec3::ZERO);
+    surround.aim = Aim::Point(Vec3::NEG_Z);
+    surround.visible_to_camera = true;
+    let camera = Camera {
+        position: Vec3::Z * 3.0,
+        aim: Aim::Point(Vec3::ZERO),
+        sensor: Sensor::Custom { width_mm: 24.0, height_mm: 24.0 },
+        focal_length_mm: 50.0,
+        ..Camera::default()
+    };
+    Scene { objects: vec![ball], lights: vec![surround], camera, ..Scene::default() }
+}
