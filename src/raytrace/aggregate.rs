@@ -100,7 +100,7 @@ mod tests {
         for i in 0..triangles as u32 {
             let centre = Vec3::new(next(), next(), next()) * 4.0 - 2.0;
             for _ in 0..3 {
-                mesh.positions.push(centre + (Vec3::new(next(), next(), next()) - 0.5) * 0.4);
+                mesh.positions.push(centre + (Vec3::new(next(), next(), next()) - 0.5) * 1.5);
             }
             mesh.triangles.push([3 * i, 3 * i + 1, 3 * i + 2]);
         }

@@ -9,7 +9,7 @@ use glam::Vec3;
 /// Triangles in a packet.
 pub const LANES: usize = 4;
 
-/// Up to four triangles, corners by vertex, axis and lane. Unused lanes hold triangles of no area.
+/// Up to four triangles, corners by vertex, axis and lane. Unused lanes hold NaN, which no comparison lets pass.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
 pub struct Packet {
@@ -61,7 +61,7 @@ impl Sheared {
 impl Packet {
     /// Packs up to four triangles, given by their number and corners.
     pub fn new(triangles: impl IntoIterator<Item = (u32, [Vec3; 3])>) -> Self {
-        let mut packet = Packet { corners: [[[0.0; LANES]; 3]; 3], triangles: [u32::MAX; LANES] };
+        let mut packet = Packet { corners: [[[f32::NAN; LANES]; 3]; 3], triangles: [u32::MAX; LANES] };
         for (lane, (number, corners)) in triangles.into_iter().take(LANES).enumerate() {
             packet.triangles[lane] = number;
             for (vertex, corner) in corners.iter().enumerate() {
@@ -124,12 +124,16 @@ impl Packet {
     }
 }
 
-/// Edge functions without rounding of the products: 24-bit factors fit a 53-bit product.
+/// Edge functions without rounding of the products (24-bit factors fit a 53-bit product), in the lanes where one came
+/// out 0.
 #[cold]
 fn edges_in_f64(e: &mut [[f32; LANES]; 3], x: &[[f32; LANES]; 3], y: &[[f32; LANES]; 3]) {
-    for k in 0..3 {
-        let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-        for i in 0..LANES {
+    for i in 0..LANES {
+        if e.iter().all(|edge| edge[i] != 0.0) {
+            continue;
+        }
+        for k in 0..3 {
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
             let exact = f64::from(x[b][i]) * f64::from(y[a][i]) - f64::from(y[b][i]) * f64::from(x[a][i]);
             e[k][i] = exact as f32;
         }
