@@ -70,7 +70,7 @@ fn exr_holds_scene_linear_values_and_how_they_came_about() {
     let bytes = std::fs::read(folder.path().join("x.exr")).unwrap();
     assert_eq!(&bytes[..4], &[0x76, 0x2f, 0x31, 0x01]);
     let header = String::from_utf8_lossy(&bytes[..bytes.len().min(8192)]).into_owned();
-    for attribute in ["spp", "seed", "method", "version", "cd"] {
+    for attribute in ["spp", "seed", "method", "catchlightVersion", "cd"] {
         assert!(header.contains(attribute), "no {attribute} in the header");
     }
 }

@@ -3,6 +3,7 @@
 //! Results go to stdout, progress and complaints to stderr. Exit codes: 0 done, 1 the input is wrong, 2 the machine
 //! can't, 130 interrupted.
 
+mod bake;
 mod check;
 mod input;
 mod presets;
@@ -36,6 +37,9 @@ enum Command {
     Check(check::Arguments),
     /// List the shipped studios.
     Presets(presets::Arguments),
+    /// Bake the mannequins' OBJ files.
+    #[command(hide = true)]
+    BakeMannequins(bake::Arguments),
 }
 
 /// Why a command ended without its result.
@@ -71,6 +75,7 @@ pub fn run(started: Instant) -> ExitCode {
         Some(Command::Preview(arguments)) => preview::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::Presets(arguments)) => presets::run(&arguments),
+        Some(Command::BakeMannequins(arguments)) => bake::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -100,7 +100,7 @@ impl App {
             first_frame: None,
             told_first_view: false,
         };
-        let first = options.initial.map_or(Source::Preset(0), Source::File);
+        let first = options.initial.map_or(Source::Preset(0), Source::named);
         app.load(first, ctx);
         app
     }

@@ -72,6 +72,15 @@ pub enum Source {
     Preset(usize),
 }
 
+impl Source {
+    /// A file where there is one, else the shipped studio of that name.
+    pub fn named(path: PathBuf) -> Self {
+        let shipped = path.to_str().filter(|_| !path.exists()).and_then(io::find_preset);
+        let place = shipped.and_then(|preset| io::presets().iter().position(|p| p.file_name == preset.file_name));
+        place.map_or(Source::File(path), Source::Preset)
+    }
+}
+
 /// Background tasks and the channel their results come through.
 #[derive(Debug)]
 pub struct Tasks {

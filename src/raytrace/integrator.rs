@@ -149,7 +149,7 @@ impl<'a> Tracer<'a> {
             .iter()
             .filter(|light| light.visible_to_camera)
             .filter_map(|light| light.seen_by(ray.origin, ray.direction).map(|seen| (light, seen)))
-            .filter(|(_, seen)| seen.distance < distance)
+            .filter(|(_, seen)| seen.distance <= distance)
             .min_by(|a, b| a.1.distance.total_cmp(&b.1.distance));
         let Some((light, seen)) = nearest else { return false };
         if seen.distance.is_finite() {

@@ -1,0 +1,21 @@
+//! `catchlight bake-mannequins -o DIR`: makes the figures in `assets/mannequins` again. For developers; hidden.
+
+use super::{Failure, say};
+use crate::mannequin;
+use std::path::PathBuf;
+
+/// Arguments of `bake-mannequins`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Folder for the OBJ files.
+    #[arg(short, long)]
+    output: PathBuf,
+}
+
+/// Bakes every figure and prints the file names.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    for name in mannequin::bake(&arguments.output)? {
+        say(name);
+    }
+    Ok(())
+}
