@@ -261,7 +261,8 @@ impl<'a> Tracer<'a> {
 /// to go on.
 fn survives(throughput: &mut Vec3, eta_scale: f32, bounce: u32, u: f32) -> bool {
     let left = throughput.max_element() / eta_scale;
-    if !(left > 0.0) {
+    // NaN ends the path, as black does.
+    if left.is_nan() || left <= 0.0 {
         return false;
     }
     if bounce < ROULETTE_FROM {

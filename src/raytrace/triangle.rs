@@ -132,10 +132,10 @@ fn edges_in_f64(e: &mut [[f32; LANES]; 3], x: &[[f32; LANES]; 3], y: &[[f32; LAN
         if e.iter().all(|edge| edge[i] != 0.0) {
             continue;
         }
-        for k in 0..3 {
+        for (k, edge) in e.iter_mut().enumerate() {
             let (a, b) = ((k + 1) % 3, (k + 2) % 3);
             let exact = f64::from(x[b][i]) * f64::from(y[a][i]) - f64::from(y[b][i]) * f64::from(x[a][i]);
-            e[k][i] = exact as f32;
+            edge[i] = exact as f32;
         }
     }
 }
