@@ -226,6 +226,24 @@ fn a_light_moves_by_its_handles_in_one_step() {
 }
 
 #[test]
+fn a_figure_slides_over_the_floor_by_the_ring_at_its_feet() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let figure = scene(&window).objects[0].clone();
+    click(&mut window, &figure.name);
+    let view = window.get_by_label("Viewport").rect();
+    let frame = window.state().viewport().view.frame(view.width() / view.height());
+    let place = frame.project(figure.transform.position).unwrap();
+    let feet = view.min + vec2(place.x * view.width(), place.y * view.height());
+    drag(&mut window, PointerButton::Primary, feet, feet + vec2(70.0, 25.0));
+    let moved = scene(&window).objects[0].transform.position;
+    assert!((moved - figure.transform.position).length() > 0.1, "{moved}");
+    assert_eq!((moved.y, undo_depth(&window)), (figure.transform.position.y, 1));
+}
+
+#[test]
 fn the_mouse_orbits_pans_and_zooms_without_touching_the_scene() {
     if !has_adapter() {
         return;

@@ -1,9 +1,9 @@
 //! The list of things that can be put into the studio, by the names a photographer knows.
 
-use crate::scene::ColorSource;
+use crate::mannequin;
 use crate::scene::{
-    Aim, Emitter, Figure, Gel, Light, LightColor, LightId, Mannequin, Material, MaterialPreset, Object, ObjectId,
-    Output, Pose, Power, Role, Shape, Transform,
+    Aim, ColorSource, Emitter, Figure, Gel, Light, LightColor, LightId, Mannequin, Material, MaterialPreset, Object,
+    ObjectId, Output, Pose, Power, Role, Shape, Transform,
 };
 use glam::Vec3;
 
@@ -274,13 +274,10 @@ fn blank_object(name: &str) -> Object {
     }
 }
 
-fn new_figure(name: &str, mannequin: Mannequin) -> Object {
-    Object {
-        shape: Shape::Mannequin(mannequin),
-        material: MaterialPreset::SkinLight.material(),
-        part_materials: vec![("eyes".to_owned(), MaterialPreset::Eye.material())],
-        ..blank_object(name)
-    }
+fn new_figure(name: &str, figure: Mannequin) -> Object {
+    let material = MaterialPreset::SkinLight.material();
+    let part_materials = mannequin::default_parts(&material);
+    Object { shape: Shape::Mannequin(figure), material, part_materials, ..blank_object(name) }
 }
 
 fn new_prop(name: &str, shape: PropShape, material: Material) -> Object {

@@ -2,6 +2,7 @@
 
 use super::action::{Action, Item};
 use super::command::Handle;
+use super::floor_handle::FloorHandle;
 use crate::math;
 use crate::scene::{Aim, Camera, CameraFrame, Emitter, Light, Object, Scene};
 use eframe::egui::{self, Color32, Rect, Rgba};
@@ -41,12 +42,13 @@ pub struct Handles {
     shown: bool,
     /// What a light was when the drag began: sizes are told from there.
     start: Option<Emitter>,
+    floor: FloorHandle,
 }
 
 impl Handles {
     /// Whether the pointer is on a handle or drags one.
     pub fn wants_pointer(&self) -> bool {
-        self.active || (self.shown && self.gizmo.is_focused())
+        self.active || (self.shown && (self.gizmo.is_focused() || self.floor.wants_pointer()))
     }
 
     /// Takes the pointer in; returns the change that a drag makes.
@@ -65,7 +67,25 @@ impl Handles {
             self.reset();
             return None;
         };
-        self.gizmo.update_config(config(handle, frame, rect, pointer.snap));
+        let mut config = config(handle, frame, rect, pointer.snap);
+        if matches!(item, Item::Object(_)) {
+            config.modes.remove(GizmoMode::TranslateView);
+        }
+        self.gizmo.update_config(config);
+        if let (Item::Object(id), Handle::Move) = (item, handle) {
+            // The ring in the middle slides things over the floor; the library's own would lift them off it.
+            if !self.gizmo.is_focused() || self.floor.is_dragged() {
+                let moved = self.floor.update(target.position, frame, rect, pointer);
+                if self.floor.wants_pointer() {
+                    self.gizmo.update(GizmoInteraction::default(), &[target.transform()]);
+                    let mut object = scene.object(id)?.clone();
+                    object.transform.position = moved?;
+                    return Some(Action::SetObject(Box::new(object)));
+                }
+            }
+        } else {
+            self.floor = FloorHandle::default();
+        }
         let interaction = GizmoInteraction {
             cursor_pos: (pointer.position.x, pointer.position.y),
             hovered: pointer.is_over,
@@ -100,6 +120,7 @@ impl Handles {
         });
         let mesh = egui::Mesh { indices: data.indices.clone(), vertices: vertices.collect(), ..egui::Mesh::default() };
         painter.add(mesh);
+        self.floor.paint(painter);
     }
 }
 

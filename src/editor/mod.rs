@@ -12,6 +12,7 @@ mod commands;
 mod dialogs;
 mod document;
 mod files;
+mod floor_handle;
 mod gizmo;
 mod history;
 mod overlay;
@@ -74,7 +75,11 @@ pub fn run(initial: Option<PathBuf>) -> Result<(), EditorError> {
     let native = eframe::NativeOptions { viewport, renderer: eframe::Renderer::Wgpu, ..Default::default() };
     let create: eframe::AppCreator<'_> = Box::new(move |creation| Ok(Box::new(App::new(creation, options))));
     eframe::run_native("Catchlight", native, create).map_err(|error| match error {
-        eframe::Error::WinitEventLoop(error) => EditorError::NoDisplay(error.to_string()),
+        eframe::Error::WinitEventLoop(error) => {
+            // The reason comes last, after places in source files.
+            let text = error.to_string();
+            EditorError::NoDisplay(text.rsplit(": ").next().unwrap_or(&text).to_owned())
+        }
         eframe::Error::Wgpu(error) => EditorError::NoGraphics(error.to_string()),
         other => EditorError::Window(other.to_string()),
     })

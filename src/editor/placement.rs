@@ -2,7 +2,8 @@
 
 use super::action::Item;
 use super::readout;
-use crate::scene::{Aim, Assets, Figure, Light, Mannequin, Object, ObjectId, Role, Scene, Shape};
+use crate::mannequin;
+use crate::scene::{Aim, Assets, Light, Object, ObjectId, Role, Scene, Shape};
 use glam::{Quat, Vec3};
 
 /// Height of the aim where there is nothing to aim at, metres.
@@ -11,34 +12,13 @@ const NOTHING_HEIGHT_M: f32 = 1.3;
 /// The point of an object that lights and camera aim at, in the object's own space: a mannequin's face, the middle of
 /// anything else.
 pub fn aim_offset(object: &Object, assets: &Assets) -> Vec3 {
-    let bounds = assets.mesh_of(&object.shape).map(|mesh| mesh.bounds());
-    match (&object.shape, bounds) {
-        (Shape::Mannequin(mannequin), bounds) => {
-            let (top, head) = (bounds.map_or_else(|| nominal_height_m(mannequin), |b| b.1.y), head_m(mannequin.figure));
-            Vec3::new(0.0, top - 0.5 * head, 0.4 * head)
-        }
-        (Shape::Sweep { height_m, depth_m, .. }, _) => Vec3::new(0.0, 0.5 * height_m, 0.2 * depth_m),
-        (_, Some((low, high))) => 0.5 * (low + high),
-        (_, None) => Vec3::ZERO,
-    }
-}
-
-/// Height of a figure, metres.
-fn nominal_height_m(mannequin: &Mannequin) -> f32 {
-    match mannequin.figure {
-        Figure::Woman => 1.68,
-        Figure::Man => 1.8,
-        Figure::Child => 1.28,
-        Figure::Bust => 0.6,
-    }
-}
-
-/// Length of a figure's head, metres.
-fn head_m(figure: Figure) -> f32 {
-    match figure {
-        Figure::Woman | Figure::Bust => 0.225,
-        Figure::Man => 0.24,
-        Figure::Child => 0.2,
+    match &object.shape {
+        Shape::Mannequin(figure) => mannequin::face_point(mannequin::resolve(*figure)),
+        Shape::Sweep { height_m, depth_m, .. } => Vec3::new(0.0, 0.5 * height_m, 0.2 * depth_m),
+        _ => assets.mesh_of(&object.shape).map_or(Vec3::ZERO, |mesh| {
+            let (low, high) = mesh.bounds();
+            0.5 * (low + high)
+        }),
     }
 }
 

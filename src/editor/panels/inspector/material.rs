@@ -34,7 +34,7 @@ pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> bool {
                 // A surface that gives back everything it gets would never let the light end.
                 material.base_color = material.base_color.map(|c| c.clamp(0.0, 0.99));
             }
-            ui.label(format!("{:.0} % grey", 100.0 * crate::color::luminance(material.base_color.into())))
+            ui.label(format!("reflects {:.0} %", 100.0 * crate::color::luminance(material.base_color.into())))
                 .on_hover_text("How much of the light it gives back");
         });
         row(ui, "Texture", "A picture that multiplies the colour", |ui| match material.base_color_texture.clone() {

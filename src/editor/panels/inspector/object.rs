@@ -5,6 +5,7 @@ use super::{Context, text_ui, title};
 use crate::editor::action::{Action, Item};
 use crate::editor::command::Command;
 use crate::editor::widgets::{self, DEGREES, METRES, Number, SIZE_CM, row, section};
+use crate::mannequin;
 use crate::scene::{Assets, Figure, Mannequin, Object, ObjectId, Pose, Shape};
 use eframe::egui::{Button, ComboBox, RichText, Ui};
 use glam::Vec3;
@@ -86,23 +87,25 @@ fn shape_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
     scale_rows(ui, assets, object);
 }
 
-fn mannequin_rows(ui: &mut Ui, mannequin: &mut Mannequin) {
+fn mannequin_rows(ui: &mut Ui, figure: &mut Mannequin) {
     row(ui, "Figure", "Who", |ui| {
-        let current = FIGURES.iter().find(|(each, _)| *each == mannequin.figure).map_or("", |(_, name)| name);
+        let current = FIGURES.iter().find(|(each, _)| *each == figure.figure).map_or("", |(_, name)| name);
         ComboBox::from_id_salt("figure").selected_text(current).show_ui(ui, |ui| {
-            for (figure, name) in FIGURES {
-                ui.selectable_value(&mut mannequin.figure, figure, name);
+            for (who, name) in FIGURES {
+                ui.selectable_value(&mut figure.figure, who, name);
             }
         });
     });
     row(ui, "Pose", "How", |ui| {
-        let current = POSES.iter().find(|(each, _)| *each == mannequin.pose).map_or("", |(_, name)| name);
+        let current = POSES.iter().find(|(each, _)| *each == figure.pose).map_or("", |(_, name)| name);
         ComboBox::from_id_salt("pose").selected_text(current).show_ui(ui, |ui| {
-            for (pose, name) in POSES {
-                ui.selectable_value(&mut mannequin.pose, pose, name);
+            let has = |pose| mannequin::ALL.contains(&Mannequin { pose, ..*figure });
+            for (pose, name) in POSES.into_iter().filter(|(pose, _)| has(*pose)) {
+                ui.selectable_value(&mut figure.pose, pose, name);
             }
         });
     });
+    *figure = mannequin::resolve(*figure);
 }
 
 fn centimetres(ui: &mut Ui, sizes: &mut [(&str, &mut f32, f32)]) {
