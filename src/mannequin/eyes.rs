@@ -8,9 +8,9 @@ use glam::{Affine3A, Vec3};
 /// Segments around the line of sight.
 const SEGMENTS: u32 = 40;
 /// Half the width of an iris, head units.
-const IRIS: f32 = 6.1;
+const IRIS: f32 = 5.8;
 /// Half the width of a pupil.
-const PUPIL: f32 = 2.5;
+const PUPIL: f32 = 2.2;
 /// Radius of curvature of the iris' front, which bulges out of the ball as a cornea does.
 const CORNEA: f32 = 9.6;
 

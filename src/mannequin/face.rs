@@ -28,7 +28,8 @@ pub(super) fn add_face(g: &mut Group, f: &FaceShape) {
 fn add_cheeks(g: &mut Group, f: &FaceShape) {
     // Cheekbone, from under the eye to the arch before the ear.
     g.cone(v(38.0, -26.0, 66.0), 13.0, v(60.0, -22.0, 32.0), 8.0, 22.0);
-    g.cone(v(60.0, -22.0, 32.0), 7.0, v(66.0, -16.0, 4.0), 6.0, 16.0);
+    g.cone(v(60.0, -22.0, 32.0), 6.5, v(65.0, -16.0, 4.0), 5.0, 18.0);
+    g.cone(v(47.0, -40.0, 52.0), 15.0 * f.fullness, v(56.0, -40.0, 16.0), 11.0 * f.fullness, 26.0);
     g.brush(&[v(42.0, -24.0, 74.0), v(58.0, -20.0, 50.0)], 24.0, 2.5 * f.cheek, Vec3::ONE);
     // The hollow under it.
     g.brush(&[v(46.0, -56.0, 60.0), v(54.0, -48.0, 40.0)], 26.0, -2.5 * f.hollow, Vec3::ONE);
@@ -84,24 +85,25 @@ fn add_mouth(g: &mut Group, f: &FaceShape) {
     // The round of the teeth.
     g.ball(v(0.0, -70.0, 70.0), v(31.0, 22.0, 30.0), 18.0);
     // Upper lip with its bow, lower lip; both run out into the corners.
+    let w = f.mouth;
     let upper = vec![
-        (v(0.0, -66.8, 97.5), 4.6 * l),
-        (v(6.0, -66.0, 97.5), 4.9 * l),
-        (v(14.0, -67.8, 94.5), 3.9 * l),
-        (v(24.0, -71.0, 86.0), 1.8),
+        (v(0.0, -66.6, 97.6), 4.9 * l),
+        (v(6.0 * w, -65.8, 97.6), 5.2 * l),
+        (v(14.0 * w, -67.6, 94.6), 4.2 * l),
+        (v(24.0 * w, -71.0, 86.0), 1.8),
     ];
     let lower = vec![
         (v(0.0, -76.6, 95.5), 5.8 * l),
-        (v(8.0, -76.4, 95.0), 5.6 * l),
-        (v(16.0, -74.8, 91.5), 3.9 * l),
-        (v(24.0, -71.8, 86.0), 1.8),
+        (v(8.0 * w, -76.4, 95.0), 5.6 * l),
+        (v(16.0 * w, -74.8, 91.5), 3.9 * l),
+        (v(24.0 * w, -71.8, 86.0), 1.8),
     ];
     g.add(Shape::Tube(upper), 4.0);
     g.add(Shape::Tube(lower), 4.0);
     // Line of the mouth, and its corners.
-    let line = [v(0.0, -71.6, 101.0), v(6.0, -71.0, 100.5), v(14.0, -71.3, 97.0), v(23.0, -71.6, 89.5)];
+    let line = [v(0.0, -71.6, 101.0), v(6.0 * w, -71.0, 100.5), v(14.0 * w, -71.3, 97.0), v(23.0 * w, -71.6, 89.5)];
     g.brush(&line, 3.0, -1.7, ON_FACE);
-    g.brush(&[v(24.5, -71.8, 88.0), v(26.5, -72.5, 86.0)], 6.0, -1.6, ON_FACE);
+    g.brush(&[v(24.5 * w, -71.8, 88.0), v(26.5 * w, -72.5, 86.0)], 6.0, -1.6, ON_FACE);
     // Philtrum with its two ridges.
     g.brush(&[v(0.0, -54.0, 100.0), v(0.0, -62.5, 102.0)], 4.5, -1.1, ON_FACE);
     g.brush(&[v(4.2, -55.0, 100.0), v(5.6, -62.5, 101.0)], 3.6, 0.7, ON_FACE);
@@ -120,12 +122,12 @@ fn add_eyelids(g: &mut Group, f: &FaceShape) {
     // The slit.
     let slit = Almond {
         center: eye + v(0.3, 0.2, 0.0),
-        half_length: 14.6,
-        rise: 5.6 * f.eye_open,
-        fall: 4.6 * f.eye_open,
+        half_length: 13.9,
+        rise: 4.8 * f.eye_open,
+        fall: 4.2 * f.eye_open,
         tilt: 0.07,
         peak: -0.15,
-        back: eye.z - 2.0,
+        back: eye.z + 2.5,
     };
     g.cut(Shape::Almond(slit), 1.6);
 }

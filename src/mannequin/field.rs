@@ -166,13 +166,15 @@ pub struct Field {
     pub groups: Vec<Group>,
     /// Taken off at the end, with a rounding width: a bust's flat base.
     pub cuts: Vec<(Shape, f32)>,
+    /// How far the surface lies outside what the groups make, metres: the cloth of a garment.
+    pub inflate: f32,
 }
 
 impl Field {
     /// Signed distance in metres, negative inside.
     pub fn distance(&self, p: Vec3) -> f32 {
         let joined = self.groups.iter().fold(FAR_M, |d, group| smooth_min(d, group.distance(p), group.join.width(p)));
-        self.cuts.iter().fold(joined, |d, (shape, k)| smooth_max(d, -shape.distance(p), *k))
+        self.cuts.iter().fold(joined - self.inflate, |d, (shape, k)| smooth_max(d, -shape.distance(p), *k))
     }
 
     /// Gradient by central differences.
@@ -196,7 +198,7 @@ impl Field {
             }
             joined = smooth_min(joined, d, group.join.width(center));
         }
-        Field { groups, cuts: self.cuts.clone() }
+        Field { groups, cuts: self.cuts.clone(), inflate: self.inflate }
     }
 }
 
@@ -211,7 +213,7 @@ mod tests {
         body.brush(&[Vec3::X * 0.3, Vec3::new(0.2, 0.2, 0.0)], 0.05, 0.01, Vec3::ONE);
         let mut head = Group::in_world(Join::even(0.05));
         head.ball(Vec3::Y * 0.4, Vec3::new(0.15, 0.2, 0.15), 0.0);
-        Field { groups: vec![body, head], cuts: Vec::new() }
+        Field { groups: vec![body, head], ..Field::default() }
     }
 
     #[test]

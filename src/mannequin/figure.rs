@@ -2,6 +2,7 @@
 
 use super::cubes::Cubes;
 use super::field::{Field, Group, Join};
+use super::garment::Garment;
 use super::head::{HEAD_UNITS, head, v};
 use super::pose::PoseAngles;
 use super::proportions::Build;
@@ -90,7 +91,18 @@ impl Sculpture {
                 cuts.push((Shape::HalfSpace { normal: Vec3::Y, offset: self.base() }, 0.012));
             }
         }
-        Field { groups, cuts }
+        Field { groups, cuts, ..Field::default() }
+    }
+
+    /// The suit as a part of its own, fine at its hems.
+    fn clothes(&self, detail: Detail, low: Vec3, high: Vec3) -> Mesh {
+        let unit = self.skeleton.unit;
+        let garment = Garment::new(&self.skeleton, &self.build);
+        let cubes = Cubes::new(&garment.field, low, high);
+        let middle = self.skeleton.waist.transform_point3(Vec3::Y * 1.15 * unit);
+        let grid = Grid { focus: middle, cell_m: 0.006 * unit * detail.coarseness.min(1.5), core_m: 1.0 };
+        let target = |p: Vec3| detail.coarseness * unit * ramp(garment.to_hem(p) / unit, 0.005, 0.035, 0.004, 0.021);
+        surface::skin(&cubes, &grid, low, high, target).with_single_part("clothes")
     }
 
     /// Wanted length of the mesh's edges, metres: finest at lids and lips, finer than the trunk at hands and feet.
@@ -99,8 +111,8 @@ impl Sculpture {
         let head = scale * head_edge_length(head_from_world.transform_point3(p) / scale);
         let hands = self.skeleton.arms.iter().map(|a| (p - a.wrist - a.fingers * 0.09 * unit).length());
         let feet = self.skeleton.legs.iter().map(|l| (p - l.foot.transform_point3(v(0.0, 0.03, 0.08) * unit)).length());
-        let hand = ramp(hands.fold(f32::INFINITY, f32::min) / unit, 0.11, 0.2, 0.006, 0.018);
-        let foot = ramp(feet.fold(f32::INFINITY, f32::min) / unit, 0.13, 0.25, 0.0075, 0.018);
+        let hand = ramp(hands.fold(f32::INFINITY, f32::min) / unit, 0.11, 0.2, 0.006, 0.02);
+        let foot = ramp(feet.fold(f32::INFINITY, f32::min) / unit, 0.13, 0.25, 0.0075, 0.02);
         head.min(hand * unit).min(foot * unit)
     }
 
@@ -116,6 +128,9 @@ impl Sculpture {
         let target = |p: Vec3| detail.coarseness * self.edge_length(p, &head_from_world);
         let mut mesh = surface::skin(&cubes, &grid, low, high, target).with_single_part("skin");
         eyes::add_eyes(&mut mesh, self.skeleton.head, scale, &self.build.face);
+        if self.extent == Extent::Whole {
+            mesh.append(&self.clothes(detail, low, high));
+        }
         for p in &mut mesh.positions {
             p.y -= self.base();
         }
@@ -141,14 +156,14 @@ fn ramp(x: f32, x0: f32, x1: f32, y0: f32, y1: f32) -> f32 {
 fn head_edge_length(p: Vec3) -> f32 {
     let p = p.with_x(p.x.abs());
     let from_face = p.distance(v(0.0, -32.0, 80.0));
-    let general = ramp(from_face, 55.0, 140.0, 2.2, 5.2) + ramp(from_face, 160.0, 450.0, 0.0, 11.0);
+    let general = ramp(from_face, 55.0, 140.0, 2.2, 5.2) + ramp(from_face, 160.0, 450.0, 0.0, 13.0);
     // Line of the mouth, lids, nostrils, ears: middle, radius, length of edges in it.
     let mouth = p.distance(v(p.x.min(24.0), -71.0, 98.0 - 0.4 * p.x.min(24.0)));
     let fine = [
         (mouth, 5.0, 1.1),
         (p.distance(v(31.5, 0.0, 82.0)), 16.0, 1.1),
         (p.distance(v(9.0, -49.0, 100.0)), 9.0, 1.4),
-        (p.distance(v(78.0, -18.0, -14.0)), 30.0, 2.4),
+        (p.distance(v(78.0, -18.0, -14.0)), 28.0, 2.2),
     ];
     fine.iter()
         .fold(general, |length, &(d, radius, wanted)| length.min(ramp(d, radius, radius + 14.0, wanted, general)))

@@ -35,8 +35,17 @@ impl Bone {
     }
 }
 
-/// Upper arm, forearm and the hand's root; the hand follows in `extremities`.
+/// Upper arm, forearm and hand.
 pub fn arm(s: &Skeleton, arm: &Arm, b: &Build) -> Group {
+    let mut g = upper_arm(s, arm, b);
+    let outwards = s.chest.transform_vector3(Vec3::X * arm.side.sign());
+    add_forearm(&mut g, arm, b, outwards, s.unit);
+    super::extremities::add_hand(&mut g, arm, b, s.unit);
+    g
+}
+
+/// Shoulder to elbow.
+pub fn upper_arm(s: &Skeleton, arm: &Arm, b: &Build) -> Group {
     let (u, l, m) = (s.unit, b.limb, b.muscle);
     let join = Join { center: arm.shoulder, radius: 0.085 * u, near: 0.05 * u, far: 0.004 * u };
     let mut g = Group::in_world(join);
@@ -50,19 +59,31 @@ pub fn arm(s: &Skeleton, arm: &Arm, b: &Build) -> Group {
     upper.belly(&mut g, upper.at(0.16, 0.0, 0.018 * l), deltoid, 0.03);
     upper.belly(&mut g, upper.at(0.58, 0.017 * l, -0.003), Vec3::new(0.032, 0.09, 0.028 + 0.006 * m) * l, 0.025);
     upper.belly(&mut g, upper.at(0.5, -0.018 * l, 0.0), Vec3::new(0.034, 0.11, 0.026 + 0.006 * m) * l, 0.025);
-    // Forearm: full below the elbow, flat at the wrist. Its broad side follows the palm.
+    g
+}
+
+fn add_forearm(g: &mut Group, arm: &Arm, b: &Build, outwards: Vec3, u: f32) {
+    let l = b.limb;
+    let r = |metres: f32| metres * l * u;
+    // Full below the elbow, flat at the wrist. Its broad side follows the palm.
     let fore = Bone::new(arm.elbow, arm.wrist, arm.palm, outwards, u);
     g.cone(fore.at(0.0, 0.0, 0.0), r(0.035), fore.at(0.9, 0.0, 0.0), r(0.023), 0.02 * u);
-    fore.belly(&mut g, fore.at(0.28, 0.006 * l, 0.006), Vec3::new(0.041, 0.085, 0.034) * l, 0.025);
-    fore.belly(&mut g, fore.at(0.93, 0.0, 0.0), Vec3::new(0.029, 0.04, 0.019) * l, 0.02);
+    fore.belly(g, fore.at(0.28, 0.006 * l, 0.006), Vec3::new(0.041, 0.085, 0.034) * l, 0.025);
+    fore.belly(g, fore.at(0.93, 0.0, 0.0), Vec3::new(0.029, 0.04, 0.019) * l, 0.02);
     let back = (arm.shoulder + arm.wrist) * 0.5 - arm.elbow;
     g.ball(arm.elbow - back.normalize_or(Vec3::ZERO) * 0.016 * u, Vec3::splat(r(0.024)), 0.02 * u);
-    super::extremities::add_hand(&mut g, arm, b, u);
-    g
 }
 
 /// Thigh, shin and foot.
 pub fn leg(s: &Skeleton, leg: &Leg, b: &Build) -> Group {
+    let mut g = thigh(s, leg, b);
+    add_shin(&mut g, s, leg, b);
+    super::extremities::add_foot(&mut g, leg, b, s.unit);
+    g
+}
+
+/// Hip to knee.
+pub fn thigh(s: &Skeleton, leg: &Leg, b: &Build) -> Group {
     let (u, l, m) = (s.unit, b.limb, b.muscle);
     let join = Join { center: leg.hip, radius: 0.12 * u, near: 0.045 * u, far: 0.006 * u };
     let mut g = Group::in_world(join);
@@ -77,19 +98,24 @@ pub fn leg(s: &Skeleton, leg: &Leg, b: &Build) -> Group {
     // Above the kneecap, inside and outside.
     thigh.belly(&mut g, thigh.at(0.84, 0.018, -0.02 * l), Vec3::new(0.024, 0.05, 0.028) * l, 0.025);
     thigh.belly(&mut g, thigh.at(0.78, 0.018, 0.022 * l), Vec3::new(0.024, 0.055, 0.028) * l, 0.025);
+    g
+}
+
+fn add_shin(g: &mut Group, s: &Skeleton, leg: &Leg, b: &Build) {
+    let (u, l, m) = (s.unit, b.limb, b.muscle);
+    let outwards = s.pelvis.transform_vector3(Vec3::X * leg.side.sign());
+    let r = |metres: f32| metres * l * u;
     let shin = Bone::new(leg.knee, leg.ankle, leg.front, outwards, u);
     g.cone(shin.at(0.0, -0.004, 0.0), r(0.047), shin.at(1.0, 0.0, 0.0), r(0.031), 0.03 * u);
-    let kneecap = (thigh.front + shin.front).normalize_or(Vec3::Z) * 0.03 * l * u;
-    shin.belly(&mut g, leg.knee + kneecap, Vec3::new(0.025, 0.03, 0.022) * l, 0.025);
+    let kneecap = (leg.front + shin.front).normalize_or(Vec3::Z) * 0.03 * l * u;
+    shin.belly(g, leg.knee + kneecap, Vec3::new(0.025, 0.03, 0.022) * l, 0.025);
     g.cone(shin.at(0.1, 0.026 * l, 0.0), r(0.018), shin.at(0.7, 0.014 * l, 0.0), r(0.018), 0.03 * u);
     // Calf: the inner head hangs lower.
     let calf = 0.9 + 0.1 * m;
-    shin.belly(&mut g, shin.at(0.28, -0.026 * l, -0.014 * l), Vec3::new(0.034, 0.095, 0.036) * l * calf, 0.03);
-    shin.belly(&mut g, shin.at(0.24, -0.026 * l, 0.016 * l), Vec3::new(0.033, 0.085, 0.034) * l * calf, 0.03);
+    shin.belly(g, shin.at(0.28, -0.026 * l, -0.014 * l), Vec3::new(0.034, 0.095, 0.036) * l * calf, 0.03);
+    shin.belly(g, shin.at(0.24, -0.026 * l, 0.016 * l), Vec3::new(0.033, 0.085, 0.034) * l * calf, 0.03);
     g.cone(shin.at(0.6, -0.018 * l, 0.0), r(0.02), shin.at(1.02, -0.03, 0.0), r(0.0125), 0.03 * u);
     // Ankle bones.
     g.ball(shin.at(0.985, 0.002, 0.029 * l), Vec3::splat(r(0.013)), 0.015 * u);
     g.ball(shin.at(0.965, 0.005, -0.029 * l), Vec3::splat(r(0.014)), 0.015 * u);
-    super::extremities::add_foot(&mut g, leg, b, u);
-    g
 }

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Build (measures) + PoseAngles -> skeleton -> groups of shapes (head, trunk, limbs) = one signed distance field
-//!   -> surface nets -> even triangles on the surface -> Mesh with the parts skin, eyes, iris, pupil
+//!   -> surface nets -> even triangles on the surface -> Mesh with the parts skin, eyes, iris, pupil, clothes
 //! ```
 //!
 //! The field is one, so the skin is one closed surface. The head is modelled after mean adult landmarks, because a
@@ -16,6 +16,7 @@ mod eyes;
 mod face;
 mod field;
 mod figure;
+mod garment;
 mod head;
 mod limbs;
 mod obj;
@@ -102,7 +103,7 @@ pub fn file_name(mannequin: Mannequin) -> String {
     format!("{figure}_{pose}.obj")
 }
 
-/// Surfaces of the parts that are not skin: eyes, iris, pupil. `skin` is the object's own material; it is taken so
+/// Surfaces of the parts that are not skin: eyes, iris, pupil and the suit that whole figures wear. `skin` is the object's own material; it is taken so
 /// that a dark skin gets dark eyes.
 pub fn default_parts(skin: &Material) -> Vec<(String, Material)> {
     let gloss = |base_color| Material { base_color, ..MaterialPreset::Eye.material() };
@@ -113,6 +114,7 @@ pub fn default_parts(skin: &Material) -> Vec<(String, Material)> {
         ("eyes".to_owned(), MaterialPreset::Eye.material()),
         ("iris".to_owned(), gloss(iris)),
         ("pupil".to_owned(), gloss([0.005; 3])),
+        ("clothes".to_owned(), MaterialPreset::MatteFabric.material()),
     ]
 }
 

@@ -23,6 +23,8 @@ pub struct FaceShape {
     pub nose: f32,
     /// Width of the nose.
     pub nose_width: f32,
+    /// Width of the mouth.
+    pub mouth: f32,
     /// Fullness of the lips.
     pub lips: f32,
     /// How wide the eyes are open.
@@ -78,6 +80,7 @@ const MEAN_FACE: FaceShape = FaceShape {
     hollow: 1.0,
     nose: 1.0,
     nose_width: 1.0,
+    mouth: 1.0,
     lips: 1.0,
     eye_open: 1.0,
     eye_forward: 0.0,
@@ -107,11 +110,12 @@ impl Build {
                     skull: 0.98,
                     jaw: 0.9,
                     brow: 0.0,
-                    hollow: 0.9,
+                    hollow: 0.5,
                     nose: 0.93,
                     nose_width: 0.92,
-                    lips: 1.12,
-                    eye_open: 1.0,
+                    mouth: 0.96,
+                    lips: 1.16,
+                    eye_open: 1.06,
                     ear: 0.92,
                     age: 0.6,
                     ..MEAN_FACE
@@ -130,7 +134,7 @@ impl Build {
                 neck: 0.058,
                 limb: 1.05,
                 muscle: 1.0,
-                face: FaceShape { jaw: 1.06, chin: 1.5, brow: 2.0, eye_open: 0.88, ..MEAN_FACE },
+                face: FaceShape { jaw: 1.06, chin: 1.5, brow: 2.0, eye_open: 0.92, ..MEAN_FACE },
             },
             Figure::Child => Build {
                 height: 1.28,
@@ -156,7 +160,8 @@ impl Build {
                     fullness: 1.1,
                     nose: 0.72,
                     nose_width: 0.86,
-                    lips: 1.0,
+                    mouth: 0.84,
+                    lips: 1.04,
                     eye_open: 1.15,
                     age: 0.2,
                     ..MEAN_FACE

@@ -10,6 +10,13 @@ fn coarse(mannequin: Mannequin) -> Mesh {
     mesh
 }
 
+fn part_names(mannequin: Mannequin) -> &'static [&'static str] {
+    match mannequin.figure {
+        Figure::Bust => &["skin", "eyes", "iris", "pupil"],
+        _ => &["skin", "eyes", "iris", "pupil", "clothes"],
+    }
+}
+
 fn part<'a>(mesh: &'a Mesh, name: &str) -> &'a [[u32; 3]] {
     let part = mesh.parts.iter().find(|p| p.name == name).unwrap();
     &mesh.triangles[part.triangles.start as usize..part.triangles.end as usize]
@@ -38,6 +45,30 @@ fn assert_closed(triangles: &[[u32; 3]], what: &str) {
     }
 }
 
+/// How many pieces triangles that share vertices form.
+fn pieces(triangles: &[[u32; 3]]) -> usize {
+    let mut parent: HashMap<u32, u32> = triangles.iter().flatten().map(|&v| (v, v)).collect();
+    fn root(parent: &mut HashMap<u32, u32>, mut v: u32) -> u32 {
+        while parent[&v] != v {
+            let up = parent[&parent[&v]];
+            parent.insert(v, up);
+            v = up;
+        }
+        v
+    }
+    let mut pieces = parent.len();
+    for t in triangles {
+        for (a, b) in [(t[0], t[1]), (t[1], t[2])] {
+            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+            if a != b {
+                parent.insert(a, b);
+                pieces -= 1;
+            }
+        }
+    }
+    pieces
+}
+
 fn volume(mesh: &Mesh, triangles: &[[u32; 3]]) -> f32 {
     triangles.iter().map(|t| t.map(|i| mesh.positions[i as usize])).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
 }
@@ -52,10 +83,12 @@ fn every_figure_is_a_closed_solid_without_slivers() {
     for mannequin in ALL {
         let name = file_name(mannequin);
         let mesh = coarse(mannequin);
-        assert_eq!(mesh.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>(), ["skin", "eyes", "iris", "pupil"]);
-        for part_name in ["skin", "eyes", "iris", "pupil"] {
+        assert_eq!(mesh.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>(), part_names(mannequin));
+        for &part_name in part_names(mannequin) {
             let triangles = part(&mesh, part_name);
             assert_closed(triangles, &format!("{name} {part_name}"));
+            let wanted = if ["skin", "clothes"].contains(&part_name) { 1 } else { 2 };
+            assert_eq!(pieces(triangles), wanted, "{name} {part_name}");
             assert!(volume(&mesh, triangles) > 0.0, "{name} {part_name} is inside out");
         }
         // A body weighs about what water does: litres are kilograms.
@@ -150,7 +183,7 @@ fn every_pair_names_a_baked_file_that_tobj_reads_as_its_parts() {
             assert!(ALL.contains(&resolve(mannequin)));
             let path = folder.join(file_name(mannequin));
             let (models, _) = tobj::load_obj(&path, &tobj::LoadOptions::default()).unwrap();
-            assert_eq!(models.iter().map(|m| m.name.as_str()).collect::<Vec<_>>(), ["skin", "eyes", "iris", "pupil"]);
+            assert_eq!(models.iter().map(|m| m.name.as_str()).collect::<Vec<_>>(), part_names(mannequin));
             let triangles: usize = models.iter().map(|m| m.mesh.indices.len() / 3).sum();
             assert!((30_000..120_000).contains(&triangles), "{}: {triangles} triangles", path.display());
             assert!(path.metadata().unwrap().len() < 4_000_000, "{}", path.display());

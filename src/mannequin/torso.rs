@@ -106,9 +106,11 @@ fn add_chest(clay: &mut Sculptor, s: &Skeleton, b: &Build) {
     let blade = Mat3::from_rotation_y(0.4);
     clay.pair(&s.chest, v(cw * 0.58, 1.345, -cd * 0.83), v(0.055, 0.075, 0.025), blade, 0.04);
     // Chest muscles.
-    let pec = Mat3::from_rotation_y(0.35) * Mat3::from_rotation_z(0.25);
-    let depth = 0.016 + 0.008 * b.muscle;
-    clay.pair(&s.chest, v(cw * 0.46, 1.345, cd * 0.76), v(0.088, 0.06, depth), pec, 0.045);
+    if b.muscle > 0.5 {
+        let pec = Mat3::from_rotation_y(0.35) * Mat3::from_rotation_z(0.25);
+        let depth = 0.016 + 0.008 * b.muscle;
+        clay.pair(&s.chest, v(cw * 0.46, 1.345, cd * 0.76), v(0.08, 0.058, depth), pec, 0.06);
+    }
     if b.bust > 0.0 {
         let r = b.bust / u;
         let turn = Mat3::from_rotation_y(0.3);
@@ -133,7 +135,7 @@ fn add_neck(clay: &mut Sculptor, s: &Skeleton, b: &Build) {
         group.cone(a * u, ra * u, b * u, rb * u, k * u);
     };
     column(root(v(0.0, rest::NECK - 0.03, -0.03)), n * 1.12, on_head(v(0.0, -58.0, -20.0)), n, 0.05);
-    column(root(v(0.0, rest::NECK - 0.005, -0.04)), n * 0.75, on_head(v(0.0, -34.0, -44.0)), n * 0.72, 0.03);
+    column(root(v(0.0, rest::NECK - 0.005, -0.036)), n * 0.7, on_head(v(0.0, -34.0, -37.0)), n * 0.7, 0.03);
     column(root(v(0.0, rest::NECK - 0.03, -0.005)), n * 0.72, on_head(v(0.0, -80.0, 8.0)), n * 0.62, 0.03);
     // The muscle from behind the ear to the pit of the throat.
     let shoulder = 0.5 * b.shoulder_width / u;
@@ -170,11 +172,10 @@ fn add_relief(clay: &mut Sculptor, s: &Skeleton, b: &Build) {
         0.022,
     );
     clay.brush(&s.chest, &[v(0.0, 1.46, 0.05), v(0.0, 1.45, 0.06)], 0.03, -0.008);
-    let m = 0.4 + 0.6 * b.muscle;
+    let m = 0.2 + 0.8 * b.muscle;
     clay.brush(&s.chest, &[v(0.0, 1.42, cd * 0.85), v(0.0, 1.26, cd)], 0.035, -0.006 * m);
     clay.brush(&s.waist, &[v(0.0, 1.19, wd * 1.05), v(0.0, 1.06, wd * 1.05)], 0.03, -0.004 * m);
-    clay.brush(&s.waist, &[v(0.0, 1.035, wd * 1.03), v(0.0, 1.03, wd * 1.03)], 0.016, -0.008);
-    clay.brush(&s.chest, &[v(0.0, 1.43, -cd * 0.9), v(0.0, 1.2, -cd)], 0.035, -0.007);
-    clay.brush(&s.waist, &[v(0.0, 1.2, -cd), v(0.0, 1.0, -wd)], 0.04, -0.009);
+    clay.brush(&s.chest, &[v(0.0, 1.43, -cd * 0.9), v(0.0, 1.2, -cd)], 0.035, -0.004 - 0.003 * m);
+    clay.brush(&s.waist, &[v(0.0, 1.2, -cd), v(0.0, 1.0, -wd)], 0.04, -0.005 - 0.004 * m);
     clay.brush_pair(&s.pelvis, &[v(0.14, 0.99, wd * 0.7), v(0.06, 0.915, wd * 0.95)], 0.03, -0.005 * m);
 }
