@@ -244,6 +244,31 @@ fn a_figure_slides_over_the_floor_by_the_ring_at_its_feet() {
 }
 
 #[test]
+fn a_click_selects_what_is_seen_there() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let (figure, light) = (scene(&window).objects[0].clone(), scene(&window).lights[1].clone());
+    let view = window.get_by_label("Viewport").rect();
+    let frame = window.state().viewport().view.frame(view.width() / view.height());
+    let mut click_at = |point: glam::Vec3| {
+        let place = frame.project(point).unwrap();
+        let at = view.min + vec2(place.x * view.width(), place.y * view.height());
+        window.event(Event::PointerMoved(at));
+        for pressed in [true, false] {
+            let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+            window.event(Event::PointerButton { pos: at, button, pressed, modifiers });
+        }
+        settle(&mut window);
+        window.state().selection()
+    };
+    assert_eq!(click_at(figure.transform.position + glam::Vec3::Y), Some(Item::Object(figure.id)));
+    assert_eq!(click_at(light.position), Some(Item::Light(light.id)));
+    assert_eq!(click_at(glam::Vec3::new(-2.9, 0.3, -4.0)), None, "the room is no thing to be selected by a click");
+}
+
+#[test]
 fn the_mouse_orbits_pans_and_zooms_without_touching_the_scene() {
     if !has_adapter() {
         return;
