@@ -61,7 +61,12 @@ struct Receiver {
 
 // Where a point falls on a light's map, and the depth of its tangent plane around.
 fn receiver(slot: u32, position: vec3f, face: vec3f) -> Receiver {
-    let offset = position - slots[slot].position;
+    let texel = slots[slot].field.x / f32(textureDimensions(shadow_maps).x);
+    let to_light = slots[slot].position - position;
+    let distance = select(length(to_light), 1.0, slots[slot].kind == 2u);
+    // A step off the surface by the map's rounding: half a texel where the light grazes, next to none where it faces.
+    let facing = select(dot(face, to_light) / max(distance, 1e-6), -dot(face, slots[slot].forward), slots[slot].kind == 2u);
+    let offset = face * (5e-4 + 0.7 * texel * distance * (1.0 - abs(facing))) - to_light;
     var right = slots[slot].right;
     var up = slots[slot].up;
     var forward = slots[slot].forward;
@@ -92,9 +97,9 @@ fn receiver(slot: u32, position: vec3f, face: vec3f) -> Receiver {
     let parallel_depth = (slots[slot].far_m + PARALLEL_BIAS_M - local.z) / near;
     r.depth = select(near / local.z * (1.0 + RELATIVE_BIAS), parallel_depth, parallel);
     let slope = select(near * normal.xy / height, normal.xy / (normal.z * near), parallel) / texels;
-    // A plane seen edge-on has no slope to speak of, and is dark anyway.
-    let usable = max(abs(slope.x), abs(slope.y)) < 0.02 * select(abs(r.depth), 1.0, parallel);
-    r.slope = select(vec2f(0.0), vec2f(slope.x, -slope.y), usable);
+    // A plane seen edge-on is dark anyway; its slope must stay finite.
+    let steepest = 0.25 * select(abs(r.depth), 1.0, parallel);
+    r.slope = clamp(vec2f(slope.x, -slope.y), vec2f(-steepest), vec2f(steepest));
     r.inside = (parallel || local.z > 0.0) && all(r.at > vec2f(0.0)) && all(r.at < vec2f(resolution));
     r.layer = i32(layer);
     r.resolution = resolution;
@@ -106,37 +111,42 @@ fn disc_tap(i: u32, count: u32) -> vec2f {
     return vec2f(cos(angle), sin(angle)) * sqrt((f32(i) + 0.5) / f32(count));
 }
 
+// Depth of what stands in the light's way at a tap (x), and whether it does (y). It does if it lies before the
+// receiver's plane and inside the cone from the receiver to the emitter's outline: what is merely beside, like the
+// rise of a hollow, takes nothing. `spread` is the cone's growth in texels for each unit of depth.
+fn blocker_at(r: Receiver, tap: vec2f, spread: vec2f) -> vec2f {
+    let texel = floor(r.at + tap);
+    let offset = texel + 0.5 - r.at;
+    let depth = textureLoad(shadow_maps, vec2i(texel), r.layer, 0);
+    let before = depth > r.depth + dot(r.slope, offset);
+    let aside = max(abs(offset) - 1.0, vec2f(0.0)) / spread;
+    let gap = depth - r.depth;
+    let inside = dot(aside, aside) <= gap * gap;
+    return vec2f(depth, 1.0) * select(0.0, 1.0, before && inside);
+}
+
 // Fraction of a light that passes: 1 lit, 0 in full shadow. `turn` rotates the taps.
-fn visibility(slot: u32, position: vec3f, face: vec3f, turn: vec2f) -> f32 {
+fn visibility(slot: u32, position: vec3f, face: vec3f, turn: mat2x2f) -> f32 {
     let r = receiver(slot, position, face);
     let parallel = slots[slot].kind == 2u;
     let near = slots[slot].near_m;
-    let softness = slots[slot].softness * (r.resolution / slots[slot].field);
+    let softness = max(slots[slot].softness, vec2f(1e-5)) * (r.resolution / slots[slot].field);
+    let spread = softness * select(1.0 / near, near, parallel);
     // Blockers are sought where the emitter's outline falls for one half-way to the light.
     let reach = 0.15 * r.resolution;
     let search = clamp(softness * select(r.depth / near, 1.5, parallel), vec2f(1.0), vec2f(reach));
-    var depth_sum = 0.0;
-    var blockers = 0.0;
+    var found = vec2f(0.0);
     for (var i = 0u; i < SEARCH_TAPS; i++) {
-        let tap = disc_tap(i, SEARCH_TAPS);
-        let texel = floor(r.at + vec2f(tap.x * turn.x - tap.y * turn.y, tap.x * turn.y + tap.y * turn.x) * search);
-        let depth = textureLoad(shadow_maps, vec2i(texel), r.layer, 0);
-        let blocks = select(0.0, 1.0, depth > r.depth + dot(r.slope, texel + 0.5 - r.at));
-        depth_sum += blocks * depth;
-        blockers += blocks;
+        found += blocker_at(r, turn * disc_tap(i, SEARCH_TAPS) * search, spread);
     }
-    let blocker = depth_sum / max(blockers, 1.0);
-    let gap = max(blocker - r.depth, 0.0) * select(1.0 / near, near, parallel);
-    let radius = clamp(softness * gap, vec2f(0.7), vec2f(0.2 * r.resolution));
-    var lit = 0.0;
+    let gap = max(found.x / max(found.y, 1.0) - r.depth, 0.0);
+    let radius = clamp(spread * gap, vec2f(0.7), vec2f(0.2 * r.resolution));
+    var blocked = 0.0;
     for (var i = 0u; i < FILTER_TAPS; i++) {
-        let tap = disc_tap(i, FILTER_TAPS);
-        let texel = floor(r.at + vec2f(tap.x * turn.x - tap.y * turn.y, tap.x * turn.y + tap.y * turn.x) * radius);
-        let depth = textureLoad(shadow_maps, vec2i(texel), r.layer, 0);
-        lit += select(1.0, 0.0, depth > r.depth + dot(r.slope, texel + 0.5 - r.at));
+        blocked += blocker_at(r, turn * disc_tap(i, FILTER_TAPS) * radius, spread).y;
     }
     let whole = !r.inside || slots[slot].kind == 0u;
-    return select(lit / f32(FILTER_TAPS), 1.0, whole);
+    return select(1.0 - blocked / f32(FILTER_TAPS), 1.0, whole);
 }
 
 @fragment
@@ -146,11 +156,10 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec2u {
     let depth = textureLoad(ids, pixel, 0).y;
     let face = unpack_direction(textureLoad(gbuffer, pixel, 0).z);
     let ray = pixel_ray(vec2f(pixel) + 0.5);
-    // A step off the surface hides the map's rounding on curved receivers.
-    let position = frame.eye + ray * (frame.near_m / max(bitcast<f32>(depth), 1e-9)) + face * 5e-4;
+    let position = frame.eye + ray * (frame.near_m / max(bitcast<f32>(depth), 1e-9));
     // Nine rotations in every three by three pixels, which the blur that follows evens out.
     let angle = f32((cell.x % 3u) * 3u + cell.y % 3u) * (2.0 * PI / 9.0);
-    let turn = vec2f(cos(angle), sin(angle));
+    let turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
     let lit = vec4f(
         visibility(0u, position, face, turn),
         visibility(1u, position, face, turn),
