@@ -5,10 +5,10 @@ use super::light_table::{emission, picture_scale};
 use super::mesh_cache::{EmitterSurface, MeshCache, MeshKey};
 use super::texture_cache::{TextureCache, WHITE};
 use crate::photo::exposure;
-use crate::scene::{Assets, Emitter, Material, MeshPart, Scene};
+use crate::scene::{Assets, Emitter, Material, MeshPart, Scene, Shape};
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu;
-use glam::{Affine3A, Mat3A, Vec3};
+use glam::{Affine3A, Mat3A, Mat4, Vec3, Vec4};
 use std::f32::consts::PI;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -43,7 +43,7 @@ pub(super) struct GpuSurface {
 pub(super) enum Pass {
     /// Opaque, seen from both sides.
     Opaque,
-    /// Opaque, seen from the front only, so that the camera may look into a room from outside.
+    /// Opaque, seen from the front only: a camera outside looks into the room.
     OneSided,
     /// Clear glass or water: over the lit picture.
     Glass,
@@ -58,7 +58,35 @@ pub(super) struct DrawItem {
     pub record: u32,
     pub texture: usize,
     pub pass: Pass,
-    pub casts_shadow: bool,
+    pub shadow: Shadow,
+    /// Index of its box among the casters, if it casts a shadow.
+    pub caster: usize,
+}
+
+/// What of a run of triangles casts shadows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shadow {
+    /// Nothing.
+    Nothing,
+    /// All of it: a sheet.
+    Sheet,
+    /// The sides turned away from the light: a solid, whose far side is nearest to what it touches, so that shadows are
+    /// dark and sharp where it stands.
+    Solid,
+    /// The same for one that is mirrored by its scale.
+    MirroredSolid,
+}
+
+impl Shadow {
+    fn of(shape: &Shape, world_from_object: &Affine3A) -> Self {
+        match shape {
+            Shape::Plane { .. } | Shape::Sweep { .. } | Shape::MeshFile { .. } => Shadow::Sheet,
+            Shape::Mannequin(_) | Shape::Box { .. } | Shape::Sphere { .. } | Shape::Cylinder { .. } => {
+                let mirrored = world_from_object.matrix3.determinant() < 0.0;
+                if mirrored { Shadow::MirroredSolid } else { Shadow::Solid }
+            }
+        }
+    }
 }
 
 /// Corners of something that casts a shadow: its box in object space and its place.
@@ -81,6 +109,16 @@ impl Caster {
             );
             self.world_from_object.transform_point3(corner)
         })
+    }
+}
+
+impl DrawList {
+    /// Whether a view may see something of an item's box.
+    pub fn is_seen(&self, item: &DrawItem, clip_from_world: &Mat4) -> bool {
+        let Some(caster) = self.casters.get(item.caster) else { return false };
+        let corners = caster.corners().map(|corner| *clip_from_world * corner.extend(1.0));
+        let beyond = |outside: fn(Vec4) -> bool| corners.iter().all(|corner| outside(*corner));
+        !(beyond(|c| c.x > c.w) || beyond(|c| c.x < -c.w) || beyond(|c| c.y > c.w) || beyond(|c| c.y < -c.w))
     }
 }
 
@@ -129,7 +167,7 @@ impl DrawList {
             let record = self.add_record(&Affine3A::IDENTITY, material, scene, 0, None);
             self.add_item(mesh, part, record, material, uploads);
             if let Some(item) = self.items.last_mut() {
-                (item.pass, item.casts_shadow) = (Pass::OneSided, false);
+                item.pass = Pass::OneSided;
             }
         }
     }
@@ -151,8 +189,12 @@ impl DrawList {
                 let material = object.material_of(&part.name);
                 let record = self.add_record(&world_from_object, material, scene, flags, Some(pick));
                 self.add_item(mesh, part, record, material, uploads);
+                if let Some(item) = self.items.last_mut().filter(|item| item.pass == Pass::Opaque) {
+                    item.shadow = Shadow::of(&object.shape, &world_from_object);
+                    item.caster = self.casters.len();
+                }
             }
-            if self.items.iter().rev().take(parts.len()).any(|item| item.casts_shadow) {
+            if self.items.iter().rev().take(parts.len()).any(|item| item.shadow != Shadow::Nothing) {
                 self.casters.push(caster);
                 mesh.hash(signature);
                 world_from_object.to_cols_array().map(f32::to_bits).hash(signature);
@@ -186,15 +228,15 @@ impl DrawList {
             }
             let Some(mesh) = uploads.meshes.emitter(uploads.device, surface) else { continue };
             let Some(parts) = uploads.meshes.get(mesh).map(|m| m.parts.clone()) else { continue };
-            // The housing behind the panel's front.
-            let housing = Material { base_color: [0.04; 3], ..Material::default() };
+            let black = Material { base_color: [0.0; 3], ..Material::default() };
             let owner = Some(Pick::Light(light.id));
-            let record = self.add_record(&world_from_emitter, &housing, scene, FLAG_EMITTER, owner);
+            let record = self.add_record(&world_from_emitter, &black, scene, FLAG_EMITTER, owner);
             self.records[record as usize].emission = luminance.into();
             for part in &parts {
-                self.add_item(mesh, part, record, &housing, uploads);
+                self.add_item(mesh, part, record, &black, uploads);
+                // From behind, the camera looks through an emitter.
                 if let Some(item) = self.items.last_mut() {
-                    item.casts_shadow = false;
+                    item.pass = Pass::OneSided;
                 }
             }
         }
@@ -237,7 +279,8 @@ impl DrawList {
             record,
             texture,
             pass: if glass { Pass::Glass } else { Pass::Opaque },
-            casts_shadow: !glass,
+            shadow: Shadow::Nothing,
+            caster: 0,
         });
     }
 }

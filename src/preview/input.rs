@@ -75,10 +75,10 @@ impl Overlay {
 pub struct Options {
     /// Shadows of objects.
     pub shadows: bool,
-    /// Adds an estimate of the light that bounces off the room's walls: even all over the room, from the lights' total
-    /// flux and the mean reflectance. Off, the picture holds direct light alone.
+    /// Adds an estimate of bounced light: in a room, even light from the lights' total flux and the mean reflectance;
+    /// without one, what the backdrops throw back at the subjects. Off, the picture holds direct light alone.
     pub bounce_estimate: bool,
-    /// Rooms mirrored in chrome and glass as an estimate, so that they are not black.
+    /// Walls and backdrops mirrored in chrome and glass as six even faces, so that they are not black.
     pub environment_estimate: bool,
     /// Pixels along each side of a shadow map.
     pub shadow_resolution: u32,

@@ -7,12 +7,15 @@
 //! of the tracer's picture: bounced light (estimated), true reflection and refraction, exact soft shadows.
 
 mod draw_list;
+mod environment;
 mod error;
+mod gizmo;
 mod gpu;
 mod input;
 mod light_table;
 mod mesh_cache;
 pub mod offscreen;
+mod overlay_pass;
 mod pick;
 mod pipelines;
 mod renderer;
@@ -27,5 +30,5 @@ mod texture_cache;
 pub use error::PreviewError;
 pub use gpu::Gpu;
 pub use input::{Options, Overlay, Pick, PreviewInput};
-pub use pick::ObjectMask;
+pub use pick::{ObjectMask, PickHit};
 pub use renderer::PreviewRenderer;

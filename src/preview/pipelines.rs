@@ -1,8 +1,11 @@
 //! The fixed list of pipelines. Constructors of pipelines are tables; they run long for that reason.
 
+use super::draw_list::Shadow;
+use super::gizmo::{GpuLine, GpuTint};
 use super::mesh_cache::VERTEX_LAYOUT;
+use super::shadow_maps::{self, Side};
 use super::targets::{DEPTH_FORMAT, GBUFFER_FORMAT, ID_FORMAT, Output};
-use super::{shaders, shadow_maps, shadow_mask};
+use super::{shaders, shadow_mask};
 use eframe::wgpu;
 
 /// Moves the room back by about 1e-4 of the distance, so that paper laid on its floor lies on top.
@@ -25,7 +28,8 @@ pub(super) struct Layouts<'a> {
 pub(super) struct GeometryPipelines {
     /// By `[textured][one-sided]`.
     pub geometry: [[wgpu::RenderPipeline; 2]; 2],
-    pub shadow: wgpu::RenderPipeline,
+    /// Of sheets, solids, mirrored solids.
+    shadow: [wgpu::RenderPipeline; 3],
 }
 
 /// Pipelines of the shadow masks.
@@ -78,20 +82,32 @@ impl GeometryPipelines {
         };
         let shadow_module = shaders::module(device, "shadow map", shaders::SHADOW_MAP);
         let shadow_layout = pipeline_layout(device, "shadow map", &[layouts.scene, layouts.shadow_view]);
-        let shadow = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("shadow map"),
-            layout: Some(&shadow_layout),
-            vertex: mesh_vertices(&shadow_module),
-            primitive: Default::default(),
-            depth_stencil: Some(nearer(shadow_maps::FORMAT)),
-            multisample: Default::default(),
-            fragment: None,
-            multiview_mask: None,
-            cache: None,
-        });
+        let shadow = |cull_mode| {
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("shadow map"),
+                layout: Some(&shadow_layout),
+                vertex: mesh_vertices(&shadow_module),
+                primitive: wgpu::PrimitiveState { cull_mode, ..Default::default() },
+                depth_stencil: Some(nearer(shadow_maps::FORMAT)),
+                multisample: Default::default(),
+                fragment: None,
+                multiview_mask: None,
+                cache: None,
+            })
+        };
         GeometryPipelines {
             geometry: [[geometry(false, false), geometry(false, true)], [geometry(true, false), geometry(true, true)]],
-            shadow,
+            shadow: [shadow(None), shadow(Some(wgpu::Face::Front)), shadow(Some(wgpu::Face::Back))],
+        }
+    }
+
+    /// The pipeline that draws a run of triangles into a shadow map; none if it casts no shadow.
+    pub fn shadow(&self, shadow: Shadow, side: Side) -> Option<&wgpu::RenderPipeline> {
+        match (shadow, side) {
+            (Shadow::Nothing, _) => None,
+            (Shadow::Sheet, _) | (_, Side::Near) => Some(&self.shadow[0]),
+            (Shadow::Solid, Side::Far) => Some(&self.shadow[1]),
+            (Shadow::MirroredSolid, Side::Far) => Some(&self.shadow[2]),
         }
     }
 }
@@ -127,6 +143,99 @@ pub(super) fn lighting(device: &wgpu::Device, layouts: &Layouts, variant: &Light
     ];
     let layout = pipeline_layout(device, "lighting", &[layouts.scene, layouts.gbuffer, layouts.masks]);
     fullscreen(device, "lighting", shaders::LIGHTING, &layout, &constants, variant.output.format())
+}
+
+/// Glass over the lit picture.
+pub(super) fn glass(device: &wgpu::Device, layouts: &Layouts, variant: &LightingVariant) -> wgpu::RenderPipeline {
+    let flag = |set: bool| f64::from(u8::from(set));
+    let [delta, spheres, rects, discs] = variant.families.map(flag);
+    let constants = [
+        ("LINEAR", flag(variant.output == Output::Linear)),
+        ("HAS_DELTA", delta),
+        ("HAS_SPHERES", spheres),
+        ("HAS_RECTS", rects),
+        ("HAS_DISCS", discs),
+    ];
+    let module = shaders::module(device, "glass", shaders::GLASS);
+    let layout = pipeline_layout(device, "glass", &[layouts.scene]);
+    let color = wgpu::ColorTargetState {
+        blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+        ..variant.output.format().into()
+    };
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("glass"),
+        layout: Some(&layout),
+        vertex: mesh_vertices(&module),
+        primitive: Default::default(),
+        depth_stencil: Some(nearer(DEPTH_FORMAT)),
+        multisample: Default::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
+            targets: &[Some(color), Some(ID_FORMAT.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// Lines, tints and the outline, blended over the picture as it is shown.
+#[derive(Debug)]
+pub(super) struct OverlayPipelines {
+    pub lines: wgpu::RenderPipeline,
+    pub tints: wgpu::RenderPipeline,
+    pub outline: wgpu::RenderPipeline,
+}
+
+impl OverlayPipelines {
+    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
+        let layout = pipeline_layout(device, "overlay", &[layouts.scene, layouts.gbuffer]);
+        let overlay = shaders::module(device, "overlay", shaders::OVERLAY);
+        let outline = shaders::module(device, "outline", shaders::OUTLINE);
+        let pipeline = |module: &wgpu::ShaderModule, entry_point, buffers: &[_]| {
+            let color = wgpu::ColorTargetState {
+                blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+                ..Output::Display.format().into()
+            };
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some("overlay"),
+                layout: Some(&layout),
+                vertex: wgpu::VertexState {
+                    module,
+                    entry_point: Some(entry_point),
+                    compilation_options: Default::default(),
+                    buffers,
+                },
+                primitive: Default::default(),
+                depth_stencil: None,
+                multisample: Default::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module,
+                    entry_point: Some("fragment"),
+                    compilation_options: Default::default(),
+                    targets: &[Some(color)],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        let line = wgpu::VertexBufferLayout {
+            array_stride: size_of::<GpuLine>() as u64,
+            step_mode: wgpu::VertexStepMode::Instance,
+            attributes: &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4],
+        };
+        let tint = wgpu::VertexBufferLayout {
+            array_stride: size_of::<GpuTint>() as u64,
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &wgpu::vertex_attr_array![0 => Float32x4, 1 => Float32x4],
+        };
+        OverlayPipelines {
+            lines: pipeline(&overlay, "line_vertex", &[Some(line)]),
+            tints: pipeline(&overlay, "tint_vertex", &[Some(tint)]),
+            outline: pipeline(&outline, "vertex", &[]),
+        }
+    }
 }
 
 fn fullscreen(

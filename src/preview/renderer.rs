@@ -1,17 +1,22 @@
 //! One frame, pass by pass: shadow maps, geometry, lighting.
 
 use super::draw_list::{DrawItem, DrawList, Pass, Uploads};
+use super::environment::Environment;
+use super::gizmo::Gizmos;
 use super::gpu::{LossFlag, guarded};
 use super::light_table::LightTable;
 use super::mesh_cache::MeshCache;
+use super::overlay_pass::OverlayPass;
+use super::pick::WaitingPick;
 use super::pipelines::{self, GeometryPipelines, Layouts, LightingVariant, MaskPipelines};
 use super::scene_buffers::{GpuFrame, SceneBuffers};
-use super::shadow_maps::ShadowMaps;
+use super::shadow_maps::{ShadowMaps, Side};
 use super::shadow_mask::ShadowMasks;
 use super::shadow_views::ShadowPlan;
 use super::targets::{self, Output, Targets};
 use super::texture_cache::{TextureCache, WHITE};
-use super::{Pick, PreviewError, PreviewInput};
+use super::{Options, Pick, PreviewError, PreviewInput};
+use crate::scene::CameraFrame;
 use eframe::wgpu;
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -31,6 +36,8 @@ pub struct PreviewRenderer {
     geometry: GeometryPipelines,
     masking: MaskPipelines,
     lighting: HashMap<LightingVariant, wgpu::RenderPipeline>,
+    glass: HashMap<LightingVariant, wgpu::RenderPipeline>,
+    overlay: OverlayPass,
     /// Picture pixels a shadow mask pixel, along each side.
     mask_scale: u32,
     drawn: Drawn,
@@ -38,6 +45,10 @@ pub struct PreviewRenderer {
     generation: u64,
     /// What each record of the last frame stands for.
     pub(super) owners: Vec<Option<Pick>>,
+    /// What was drawn over the last frame, and where it was seen from.
+    pub(super) gizmos: Gizmos,
+    pub(super) view: Option<CameraFrame>,
+    pub(super) waiting_pick: Option<WaitingPick>,
 }
 
 /// What the buffers of the last frame hold, so that a change of power or colour alone draws no geometry.
@@ -66,6 +77,7 @@ impl PreviewRenderer {
             let layouts = layouts(&buffers, &textures, &gbuffer_layout, &shadow_maps, &shadow_masks);
             let geometry = GeometryPipelines::new(device, &layouts);
             let masking = MaskPipelines::new(device, &layouts, mask_scale);
+            let overlay = OverlayPass::new(device, &layouts);
             Ok(PreviewRenderer {
                 device: device.clone(),
                 queue: queue.clone(),
@@ -80,6 +92,11 @@ impl PreviewRenderer {
                 shadow_masks,
                 masking,
                 lighting: HashMap::new(),
+                glass: HashMap::new(),
+                overlay,
+                gizmos: Gizmos::default(),
+                view: None,
+                waiting_pick: None,
                 mask_scale,
                 drawn: Drawn::default(),
                 generation: 0,
@@ -152,7 +169,7 @@ impl PreviewRenderer {
         let plan = ShadowPlan::new(&table.lights, casters);
         let resolution = input.options.shadow_resolution;
         let stale = self.shadow_maps.stale(&self.device, &self.queue, &plan, list.caster_signature, resolution);
-        let frame = self.frame(input, &list, &table);
+        let frame = self.frame(input, &table);
         self.buffers.write(&self.device, &self.queue, &frame, &list.records, &table.lights);
 
         let geometry = geometry_signature(&frame, &list);
@@ -162,8 +179,11 @@ impl PreviewRenderer {
         let masks_drawn = self.drawn.masks == Some(masks) && stale.is_empty() && !renewed;
 
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        for layer in stale {
-            self.shadow_pass(&mut encoder, &list, layer);
+        for view in stale {
+            let seen = |item: &&DrawItem| list.is_seen(item, &plan.views[view]);
+            let items: Vec<&DrawItem> = list.items.iter().filter(seen).collect();
+            self.shadow_pass(&mut encoder, &items, view, Side::Near);
+            self.shadow_pass(&mut encoder, &items, view, Side::Far);
         }
         if !geometry_drawn {
             self.geometry_pass(&mut encoder, &list);
@@ -172,18 +192,36 @@ impl PreviewRenderer {
             (0..plan.masks()).for_each(|mask| self.mask_passes(&mut encoder, mask));
         }
         self.lighting_pass(&mut encoder, &table, plan.masks(), output);
+        let has_glass = list.items.iter().any(|item| item.pass == Pass::Glass);
+        if has_glass {
+            self.glass_pass(&mut encoder, &list, &table, output);
+        }
+        self.view = Some(input.frame);
+        self.gizmos = Gizmos::default();
+        if output == Output::Display {
+            self.overlay_pass(&mut encoder, input, &list);
+        }
         self.queue.submit([encoder.finish()]);
-        self.drawn = Drawn { geometry: Some(geometry), masks: Some(masks) };
+        // Glass has left its marks in the id buffer: what lies behind it is drawn anew.
+        self.drawn = if has_glass { Drawn::default() } else { Drawn { geometry: Some(geometry), masks: Some(masks) } };
         self.textures.drop_unused();
         self.owners = list.owners;
     }
 
-    fn frame(&self, input: &PreviewInput, list: &DrawList, table: &LightTable) -> GpuFrame {
+    fn frame(&self, input: &PreviewInput, table: &LightTable) -> GpuFrame {
         let mut frame = GpuFrame::new(&input.frame, self.targets.size);
         frame.light_ends = table.ends;
-        frame.selected = u32::from(!list.outlined.is_empty());
-        let (void, mirrored) = (input.overlay.void_color, input.options.environment_estimate);
-        frame.set_ambient(input.scene, &table.ambient, void, mirrored);
+        frame.set_ambient(&table.ambient, input.overlay.void_color);
+        let Options { bounce_estimate, environment_estimate, .. } = input.options;
+        if let Some(environment) = Environment::new(input.scene, table) {
+            if environment_estimate {
+                frame.set_environment(&environment);
+            }
+            // A room has its own estimate, which counts all bounces.
+            if bounce_estimate && input.scene.room.is_none() {
+                frame.set_bounce(&environment);
+            }
+        }
         frame
     }
 
@@ -192,12 +230,14 @@ impl PreviewRenderer {
         (width.div_ceil(self.mask_scale), height.div_ceil(self.mask_scale))
     }
 
-    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, list: &DrawList, layer: usize) {
-        let mut pass = self.shadow_maps.begin_pass(encoder, layer);
-        pass.set_pipeline(&self.geometry.shadow);
+    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, items: &[&DrawItem], view: usize, side: Side) {
+        let mut pass = self.shadow_maps.begin_pass(encoder, view, side);
         pass.set_bind_group(0, self.buffers.bind_group(), &[]);
-        for item in list.items.iter().filter(|item| item.casts_shadow) {
-            self.draw_item(&mut pass, item);
+        for item in items {
+            if let Some(pipeline) = self.geometry.shadow(item.shadow, side) {
+                pass.set_pipeline(pipeline);
+                self.draw_item(&mut pass, item);
+            }
         }
     }
 
@@ -230,6 +270,47 @@ impl PreviewRenderer {
             pass.set_bind_group(1, self.textures.get(item.texture), &[]);
             self.draw_item(&mut pass, item);
         }
+    }
+
+    fn glass_pass(&mut self, encoder: &mut wgpu::CommandEncoder, list: &DrawList, table: &LightTable, output: Output) {
+        let variant = LightingVariant { output, families: table.families(), masks: 0, scale: 1 };
+        let layouts =
+            layouts(&self.buffers, &self.textures, &self.gbuffer_layout, &self.shadow_maps, &self.shadow_masks);
+        self.glass.entry(variant).or_insert_with(|| pipelines::glass(&self.device, &layouts, &variant));
+        let Some(pipeline) = self.glass.get(&variant) else { return };
+        let keep = |view| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })
+        };
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("glass"),
+            color_attachments: &[keep(&self.targets.color_view), keep(&self.targets.ids_view)],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &self.targets.depth,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, self.buffers.bind_group(), &[]);
+        for item in list.items.iter().filter(|item| item.pass == Pass::Glass) {
+            self.draw_item(&mut pass, item);
+        }
+    }
+
+    fn overlay_pass(&mut self, encoder: &mut wgpu::CommandEncoder, input: &PreviewInput, list: &DrawList) {
+        let gizmos = Gizmos::new(input.scene, &input.overlay, &input.frame);
+        let outlined = self.overlay.outlined_area(&input.frame, self.targets.size, &list.outlined);
+        if outlined.is_some() || !gizmos.lines.is_empty() {
+            self.overlay.upload(&self.device, &self.queue, &gizmos);
+            self.overlay.draw(encoder, &self.targets, self.buffers.bind_group(), outlined);
+        }
+        self.gizmos = gizmos;
     }
 
     fn mask_passes(&self, encoder: &mut wgpu::CommandEncoder, mask: usize) {

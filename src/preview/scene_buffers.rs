@@ -1,12 +1,12 @@
 //! The buffers that every pass reads: frame, surfaces, lights.
 
 use super::draw_list::GpuSurface;
+use super::environment::Environment;
 use super::light_table::{Ambient, GpuLight};
-use crate::scene::{CameraFrame, Scene};
+use crate::scene::CameraFrame;
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu;
 use glam::Vec3;
-use std::f32::consts::PI;
 
 /// Nearest thing the preview shows, metres. Reversed float depth makes so small a value free.
 pub(super) const NEAR_M: f32 = 0.005;
@@ -23,19 +23,17 @@ pub(super) struct GpuFrame {
     pub ray_right: [f32; 3],
     pub unused_6: f32,
     pub ray_up: [f32; 3],
-    pub has_room: u32,
+    pub unused_2: f32,
     pub ambient: [f32; 3],
     pub pixel_angle: f32,
     pub void_radiance: [f32; 3],
-    pub selected: u32,
-    pub floor_radiance: [f32; 3],
-    pub unused_0: f32,
-    pub wall_radiance: [f32; 3],
-    pub unused_1: f32,
-    pub ceiling_radiance: [f32; 3],
-    pub unused_2: f32,
-    pub room_size: [f32; 3],
     pub unused_3: f32,
+    pub environment_low: [f32; 3],
+    pub unused_0: f32,
+    pub environment_high: [f32; 3],
+    pub unused_1: f32,
+    pub environment_radiance: [[f32; 4]; 6],
+    pub bounce: [[f32; 4]; 6],
     pub size: [f32; 2],
     pub unused_4: [f32; 2],
     pub light_ends: [u32; 4],
@@ -59,19 +57,25 @@ impl GpuFrame {
         }
     }
 
-    /// Light without direction, and the room as mirrors show it (if `mirrored`).
-    pub fn set_ambient(&mut self, scene: &Scene, ambient: &Ambient, void_radiance: Vec3, mirrored: bool) {
+    /// Light from all round, and what there is where there is nothing.
+    pub fn set_ambient(&mut self, ambient: &Ambient, void_radiance: Vec3) {
         self.ambient = ambient.irradiance.into();
-        self.void_radiance = void_radiance.max(ambient.surround_radiance).into();
-        let Some(room) = &scene.room else { return };
-        self.has_room = 1;
-        self.room_size = [0.5 * room.size_m.x, room.size_m.y, 0.5 * room.size_m.z];
-        if mirrored {
-            let radiance = |color: [f32; 3]| (Vec3::from(color) * ambient.wall_irradiance / PI).into();
-            self.floor_radiance = radiance(room.floor.base_color);
-            self.wall_radiance = radiance(room.walls.base_color);
-            self.ceiling_radiance = radiance(room.ceiling.base_color);
-        }
+        self.void_radiance = void_radiance.max(ambient.void_radiance).into();
+        self.environment_low = [-1e3; 3];
+        self.environment_high = [1e3; 3];
+        self.environment_radiance = [ambient.surround_radiance.extend(0.0).into(); 6];
+    }
+
+    /// What mirrors show.
+    pub fn set_environment(&mut self, environment: &Environment) {
+        self.environment_low = environment.low.into();
+        self.environment_high = environment.high.into();
+        self.environment_radiance = environment.radiance.map(|c| c.extend(0.0).into());
+    }
+
+    /// Light that backdrops throw back.
+    pub fn set_bounce(&mut self, environment: &Environment) {
+        self.bounce = environment.irradiance.map(|c| c.extend(0.0).into());
     }
 }
 

@@ -1,4 +1,6 @@
-//! The shadow maps themselves: one layer a view, redrawn only when the view or what casts shadows has changed.
+//! The shadow maps themselves: two layers a view, redrawn only when the view or what casts shadows has changed.
+//!
+//! The first layer of a view holds what is nearest to the light; in the second, solids show their far sides.
 
 use super::shadow_views::{MAX_VIEWS, ShadowPlan};
 use eframe::wgpu;
@@ -9,7 +11,16 @@ pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float
 /// Dynamic uniform offsets are multiples of this on every device.
 const OFFSET_STRIDE: u64 = 256;
 
-/// What a layer shows.
+/// Which sides of solids a layer holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    /// Whatever is nearest to the light.
+    Near = 0,
+    /// Their far sides.
+    Far = 1,
+}
+
+/// What the layers of a view show.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Content {
     view: Mat4,
@@ -52,7 +63,7 @@ impl ShadowMaps {
                 count: None,
             }],
         });
-        let (layers, lookup) = create_maps(device, &lookup_layout, 1, 1);
+        let (layers, lookup) = create_maps(device, &lookup_layout, 1, 2);
         let contents = Vec::new();
         ShadowMaps { view_layout, view_buffer, view, lookup_layout, lookup, layers, contents, resolution: 1 }
     }
@@ -72,7 +83,7 @@ impl ShadowMaps {
         &self.lookup
     }
 
-    /// Makes room for the views, uploads them, and returns the layers that must be drawn anew.
+    /// Makes room for the views, uploads them, and returns the indices of those that must be drawn anew.
     pub fn stale(
         &mut self,
         device: &wgpu::Device,
@@ -84,21 +95,21 @@ impl ShadowMaps {
         let resolution = resolution.clamp(16, device.limits().max_texture_dimension_2d);
         let count = plan.views.len().max(1).next_power_of_two().min(MAX_VIEWS);
         if !plan.views.is_empty() && (count > self.contents.len() || resolution != self.resolution) {
-            (self.layers, self.lookup) = create_maps(device, &self.lookup_layout, resolution, count as u32);
+            (self.layers, self.lookup) = create_maps(device, &self.lookup_layout, resolution, 2 * count as u32);
             self.contents = vec![None; count];
             self.resolution = resolution;
         }
         let mut stale = Vec::new();
-        for (layer, &view) in plan.views.iter().enumerate() {
+        for (index, &view) in plan.views.iter().enumerate() {
             let content = Some(Content { view, casters });
-            if self.contents[layer] != content {
-                self.contents[layer] = content;
+            if self.contents[index] != content {
+                self.contents[index] = content;
                 queue.write_buffer(
                     &self.view_buffer,
-                    layer as u64 * OFFSET_STRIDE,
+                    index as u64 * OFFSET_STRIDE,
                     bytemuck::bytes_of(&view.to_cols_array()),
                 );
-                stale.push(layer);
+                stale.push(index);
             }
         }
         stale
@@ -109,19 +120,24 @@ impl ShadowMaps {
         self.contents.fill(None);
     }
 
-    /// Starts drawing into a layer.
-    pub fn begin_pass<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, layer: usize) -> wgpu::RenderPass<'e> {
+    /// Starts drawing into a layer of a view.
+    pub fn begin_pass<'e>(
+        &self,
+        encoder: &'e mut wgpu::CommandEncoder,
+        index: usize,
+        side: Side,
+    ) -> wgpu::RenderPass<'e> {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow map"),
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.layers[layer],
+                view: &self.layers[2 * index + side as usize],
                 // Reversed depth: 0 is infinitely far.
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
             ..Default::default()
         });
-        pass.set_bind_group(1, &self.view, &[layer as u32 * OFFSET_STRIDE as u32]);
+        pass.set_bind_group(1, &self.view, &[index as u32 * OFFSET_STRIDE as u32]);
         pass
     }
 }

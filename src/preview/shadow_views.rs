@@ -9,7 +9,7 @@ use glam::{Affine3A, Mat4, Quat, Vec2, Vec3, Vec4};
 pub(super) const MAX_VIEWS: usize = 32;
 /// Lights that cast shadows, four a mask; lights beyond cast none.
 pub(super) const MAX_SLOTS: usize = 16;
-/// Tangent of the widest half angle of one view, 75 degrees.
+/// Tangent of the widest half angle of one view, 75 degrees; a light whose casters reach farther gets a cube.
 const WIDEST: f32 = 3.73;
 /// Half width of a cube face at distance 1, a little over 1 so that the kernel may reach over the edge.
 const CUBE_FACE: f32 = 1.04;
@@ -76,41 +76,47 @@ impl ShadowPlan {
     }
 
     fn add(&mut self, light: &GpuLight, corners: &[Vec3]) {
-        let view = view_of(light, corners);
-        let layers = if view.is_some_and(|(slot, _)| slot.kind == Projection::Cube as u32) { 6 } else { 1 };
-        match view {
-            Some((slot, clip_from_world)) if self.views.len() + layers <= MAX_VIEWS => {
-                let softness = light.softness().into();
-                self.slots.push(GpuShadowSlot { layer: self.views.len() as u32, softness, ..slot });
-                if layers == 6 {
-                    self.views.extend(cube_views(light.position.into()));
-                } else {
-                    self.views.push(clip_from_world);
-                }
-            }
-            _ => self.slots.push(GpuShadowSlot::zeroed()),
+        let (mut slot, views) = views_of(light, corners, MAX_VIEWS - self.views.len());
+        if !views.is_empty() {
+            (slot.layer, slot.softness) = (self.views.len() as u32, light.softness().into());
         }
+        self.slots.push(slot);
+        self.views.extend(views);
     }
 }
 
-fn view_of(light: &GpuLight, corners: &[Vec3]) -> Option<(GpuShadowSlot, Mat4)> {
-    let position = Vec3::from(light.position);
-    let right = Vec3::from(light.right).normalize_or(Vec3::X);
-    let up = Vec3::from(light.up).normalize_or(Vec3::Y);
-    let frame = Affine3A::from_mat3_translation(glam::Mat3::from_cols(right, up, -Vec3::from(light.axis)), position);
-    match light.kind {
+/// How a light reads its shadow, and up to `room` views; an empty slot and none if it casts no shadow.
+fn views_of(light: &GpuLight, corners: &[Vec3], room: usize) -> (GpuShadowSlot, Vec<Mat4>) {
+    let frame = Affine3A::from_mat3_translation(
+        glam::Mat3::from_cols(
+            Vec3::from(light.right).normalize_or(Vec3::X),
+            Vec3::from(light.up).normalize_or(Vec3::Y),
+            -Vec3::from(light.axis),
+        ),
+        light.position.into(),
+    );
+    let spot_limit = light.outer_rad.min(1.3).tan().min(WIDEST);
+    let one = match light.kind {
         kind if kind == Kind::Sun as u32 => parallel(&frame, corners),
-        kind if kind == Kind::Spot as u32 => perspective(&frame, corners, light.outer_rad.min(1.3).tan().min(WIDEST)),
-        kind if kind == Kind::Rect as u32 || kind == Kind::Disc as u32 => perspective(&frame, corners, WIDEST),
+        kind if kind == Kind::Spot as u32 => perspective(&frame, corners, spot_limit),
+        kind if kind == Kind::Rect as u32 || kind == Kind::Disc as u32 => {
+            if room >= 6 && corners.iter().any(|corner| !is_within(&frame, *corner)) {
+                return cube(&frame);
+            }
+            perspective(&frame, corners, WIDEST)
+        }
         _ => {
             let centre = corners.iter().sum::<Vec3>() / corners.len() as f32;
-            let towards = crate::math::look_at(position, centre, 0.0);
-            if corners.iter().all(|corner| is_within(&towards, *corner)) {
-                perspective(&towards, corners, WIDEST)
-            } else {
-                Some((cube_slot(position), Mat4::IDENTITY))
+            let towards = crate::math::look_at(frame.translation.into(), centre, 0.0);
+            if room >= 6 && corners.iter().any(|corner| !is_within(&towards, *corner)) {
+                return cube(&Affine3A::from_translation(light.position.into()));
             }
+            perspective(&towards, corners, WIDEST)
         }
+    };
+    match one.filter(|_| room >= 1) {
+        Some((slot, view)) => (slot, vec![view]),
+        None => (GpuShadowSlot::zeroed(), Vec::new()),
     }
 }
 
@@ -190,13 +196,8 @@ fn parallel(frame: &Affine3A, corners: &[Vec3]) -> Option<(GpuShadowSlot, Mat4)>
     })
 }
 
-fn cube_slot(position: Vec3) -> GpuShadowSlot {
-    let field = Vec2::splat(CUBE_FACE);
-    slot(&Affine3A::from_translation(position), Projection::Cube, -field, 2.0 * field)
-}
-
-/// Six views in the order +X, -X, +Y, -Y, +Z, -Z, turned as `shadow_mask.wgsl` repeats.
-fn cube_views(position: Vec3) -> [Mat4; 6] {
+/// Six views in the order +X, -X, +Y, -Y, +Z, -Z of the frame, turned as `shadow_mask.wgsl` repeats.
+fn cube(frame: &Affine3A) -> (GpuShadowSlot, Vec<Mat4>) {
     let quarter = std::f32::consts::FRAC_PI_2;
     let turns = [
         Quat::from_rotation_y(-quarter),
@@ -207,10 +208,11 @@ fn cube_views(position: Vec3) -> [Mat4; 6] {
         Quat::IDENTITY,
     ];
     let face = Vec2::splat(CUBE_FACE);
-    turns.map(|turn| {
-        let inverse = Affine3A::from_rotation_translation(turn, position).inverse();
+    let view = |turn| {
+        let inverse = (*frame * Affine3A::from_quat(turn)).inverse();
         perspective_matrix(-face, face) * Mat4::from(inverse)
-    })
+    };
+    (slot(frame, Projection::Cube, -face, 2.0 * face), turns.map(view).to_vec())
 }
 
 #[cfg(test)]
@@ -280,7 +282,10 @@ mod tests {
         let plan = ShadowPlan::new(&[light(Kind::Rect); 40], &[unit_box_at(Vec3::ZERO)]);
         assert_eq!((plan.views.len(), plan.masks()), (MAX_SLOTS, MAX_SLOTS / 4));
         let all_round = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
-        assert!(ShadowPlan::new(&[light(Kind::Point); 16], &all_round).views.len() <= MAX_VIEWS);
+        let plan = ShadowPlan::new(&[light(Kind::Rect); 16], &all_round);
+        // Five cubes, then single views for as long as there is room.
+        assert_eq!((plan.views.len(), plan.slots[5].kind), (MAX_VIEWS, Projection::Perspective as u32));
+        assert_eq!(plan.slots[7].kind, 0);
         assert_eq!(ShadowPlan::new(&[light(Kind::Rect)], &[]), ShadowPlan::default());
     }
 }

@@ -10,10 +10,11 @@ struct Material {
     reflectance: vec3f,
 }
 
+// Schlick's Fresnel; a surface of next to no reflectance (a grey card of index 1) stays without at grazing angles.
 fn schlick(f0: vec3f, cosine: f32) -> vec3f {
     let x = saturate(1.0 - cosine);
     let x2 = x * x;
-    return f0 + (1.0 - f0) * (x2 * x2 * x);
+    return f0 + (saturate(50.0 * f0) - f0) * (x2 * x2 * x);
 }
 
 // Directional albedo of GGX with f0 as (scale, bias): Karis 2014, physically based shading on mobile.
@@ -30,10 +31,10 @@ fn material(base: vec3f, gloss: vec3f, n_dot_v: f32) -> Material {
     m.alpha2 = max(alpha * alpha, 1e-6);
     m.f0 = mix(vec3f(gloss.y * gloss.y), base, gloss.z);
     let ab = albedo_scale_bias(n_dot_v, gloss.x);
-    let single = saturate(m.f0 * ab.x + ab.y);
+    let single = saturate(m.f0 * ab.x + saturate(50.0 * m.f0) * ab.y);
     m.boost = 1.0 + m.f0 * (1.0 / max(ab.x + ab.y, 0.3) - 1.0);
     m.reflectance = single * m.boost;
-    m.diffuse = base * (1.0 - gloss.z) * (1.0 - select(max(single.x, max(single.y, single.z)), 0.0, gloss.y == 0.0));
+    m.diffuse = base * (1.0 - gloss.z) * (1.0 - max(single.x, max(single.y, single.z)));
     return m;
 }
 
@@ -56,22 +57,26 @@ fn highlight(m: Material, a: Arrival, normal: vec3f, view: vec3f, n_dot_v: f32) 
     return fresnel * m.boost * (falloff * falloff * peak * masking * n_dot_l * a.perpendicular);
 }
 
-// What a mirror shows where no light stands: the room as a box of even paint, or the even ambient light.
+// What a mirror shows where no light stands: the box around the subjects, the blurrier the rougher the mirror.
 fn environment(position: vec3f, direction: vec3f, roughness: f32) -> vec3f {
-    let even = frame.ambient / PI;
-    if frame.has_room == 0u {
-        return even;
-    }
-    let size = frame.room_size;
-    let middle = vec3f(position.x, position.y - 0.5 * size.y, position.z);
-    let extent = vec3f(size.x, 0.5 * size.y, size.z);
     let safe = select(direction, vec3f(1e-6), abs(direction) < vec3f(1e-6));
-    let t = max((extent - middle) / safe, (-extent - middle) / safe);
-    let first = min(t.x, min(t.y, t.z));
-    var radiance = frame.wall_radiance;
-    if t.y <= first {
-        radiance = select(frame.floor_radiance, frame.ceiling_radiance, direction.y > 0.0);
-    }
-    let mean = (frame.floor_radiance + frame.ceiling_radiance + 2.0 * frame.wall_radiance) * 0.25;
-    return mix(radiance, mean, roughness);
+    let t = max((frame.environment_high - position) / safe, (frame.environment_low - position) / safe);
+    let by_x = t.x <= min(t.y, t.z);
+    let by_y = !by_x && t.y <= t.z;
+    let face_x = select(frame.environment_radiance[1].rgb, frame.environment_radiance[0].rgb, direction.x > 0.0);
+    let face_y = select(frame.environment_radiance[3].rgb, frame.environment_radiance[2].rgb, direction.y > 0.0);
+    let face_z = select(frame.environment_radiance[5].rgb, frame.environment_radiance[4].rgb, direction.z > 0.0);
+    let sharp = select(select(face_z, face_y, by_y), face_x, by_x);
+    let weight = direction * direction;
+    let even = face_x * weight.x + face_y * weight.y + face_z * weight.z;
+    return mix(sharp, even, saturate(roughness * 2.0));
+}
+
+// Irradiance from all round and from bounces.
+fn ambient(normal: vec3f) -> vec3f {
+    let weight = normal * normal;
+    return frame.ambient
+        + select(frame.bounce[1].rgb, frame.bounce[0].rgb, normal.x > 0.0) * weight.x
+        + select(frame.bounce[3].rgb, frame.bounce[2].rgb, normal.y > 0.0) * weight.y
+        + select(frame.bounce[5].rgb, frame.bounce[4].rgb, normal.z > 0.0) * weight.z;
 }

@@ -32,7 +32,7 @@ fn vertex(
 
 struct Pixel {
     @location(0) gbuffer: vec4u,
-    // Surface number plus one, and the depth's bits.
+    // Surface number plus one with its marks, and the depth's bits.
     @location(1) id: vec2u,
 }
 
@@ -64,6 +64,6 @@ fn fragment(in: Corner, @builtin(front_facing) front: bool) -> Pixel {
         pack_direction(face),
         pack_gloss(surfaces[s].roughness, surfaces[s].metallic, surfaces[s].ior),
     );
-    out.id = vec2u(s + 1u, bitcast<u32>(in.clip.z));
+    out.id = vec2u((s + 1u) | mark_of(flags), bitcast<u32>(in.clip.z));
     return out;
 }

@@ -93,7 +93,7 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     for (var mask = 0u; mask < MASKS; mask++) {
         lit[mask] = shadow(mask, at.xy, depth, face);
     }
-    var radiance = s.material.diffuse * frame.ambient / PI;
+    var radiance = s.material.diffuse * ambient(s.normal) / PI;
     radiance += environment(s.position, s.mirror, gloss.x) * s.material.reflectance;
 
     // The loops test at their end: there is at least one light of a family, and a rasteriser on a processor pays for
@@ -144,7 +144,7 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     }
     // Kinds: 1 lit and glowing, 2 an emitter's front.
     if kind != 0u {
-        radiance = select(radiance, vec3f(0.0), kind == 2u) + surfaces[id.x - 1u].emission;
+        radiance = select(radiance, vec3f(0.0), kind == 2u) + surfaces[(id.x & MARK_NUMBER) - 1u].emission;
     }
     return shown(select(radiance, frame.void_radiance, id.x == 0u));
 }

@@ -18,6 +18,18 @@ pub(super) const LIGHTING: &str = concat!(
     include_str!("tone.wgsl"),
     include_str!("lighting.wgsl")
 );
+/// Glass over the lit picture.
+pub(super) const GLASS: &str = concat!(
+    include_str!("scene.wgsl"),
+    include_str!("light.wgsl"),
+    include_str!("brdf.wgsl"),
+    include_str!("tone.wgsl"),
+    include_str!("glass.wgsl")
+);
+/// Lines and tints.
+pub(super) const OVERLAY: &str = concat!(include_str!("scene.wgsl"), include_str!("overlay.wgsl"));
+/// The outline of the selection.
+pub(super) const OUTLINE: &str = concat!(include_str!("scene.wgsl"), include_str!("outline.wgsl"));
 
 /// Compiles a module.
 pub(super) fn module(device: &wgpu::Device, label: &str, source: &str) -> wgpu::ShaderModule {
@@ -40,6 +52,9 @@ mod tests {
             ("shadow mask", SHADOW_MASK),
             ("shadow blur", SHADOW_BLUR),
             ("lighting", LIGHTING),
+            ("glass", GLASS),
+            ("overlay", OVERLAY),
+            ("outline", OUTLINE),
         ];
         for (name, source) in modules {
             let module = naga::front::wgsl::parse_str(source)

@@ -12,24 +12,22 @@ struct Frame {
     ray_right: vec3f,
     unused_6: f32,
     ray_up: vec3f,
-    has_room: u32,
+    unused_2: f32,
     // Irradiance from all round, picture units.
     ambient: vec3f,
     // Half width of a pixel at distance 1 m.
     pixel_angle: f32,
     // Luminance where there is nothing.
     void_radiance: vec3f,
-    selected: u32,
-    // Radiance of the room's surfaces as mirrors show them.
-    floor_radiance: vec3f,
-    unused_0: f32,
-    wall_radiance: vec3f,
-    unused_1: f32,
-    ceiling_radiance: vec3f,
-    unused_2: f32,
-    // Half width, height, half depth.
-    room_size: vec3f,
     unused_3: f32,
+    // The box around the subjects, and the radiance of its faces +X, -X, +Y, -Y, +Z, -Z as mirrors show them.
+    environment_low: vec3f,
+    unused_0: f32,
+    environment_high: vec3f,
+    unused_1: f32,
+    environment_radiance: array<vec4f, 6>,
+    // Bounced irradiance on a surface that faces each of them.
+    bounce: array<vec4f, 6>,
     size: vec2f,
     unused_4: vec2f,
     // One past the last light of each family: points and suns, balls, rectangles, discs. Lights are sorted so.
@@ -54,6 +52,16 @@ const FLAG_EMITTER: u32 = 1u;
 const FLAG_GLOWS: u32 = 2u;
 const FLAG_SELECTED: u32 = 4u;
 const FLAG_HOVERED: u32 = 8u;
+
+// Bits of the id buffer besides the surface's number.
+const MARK_SELECTED: u32 = 1u << 31u;
+const MARK_HOVERED: u32 = 1u << 30u;
+const MARK_NUMBER: u32 = MARK_HOVERED - 1u;
+
+fn mark_of(flags: u32) -> u32 {
+    return select(0u, MARK_SELECTED, (flags & FLAG_SELECTED) != 0u)
+        | select(0u, MARK_HOVERED, (flags & FLAG_HOVERED) != 0u);
+}
 
 struct Light {
     position: vec3f,

@@ -36,7 +36,7 @@ struct Slot {
 // Picture pixels a mask pixel, along each side.
 override SCALE: u32 = 1;
 
-const SEARCH_TAPS: u32 = 8u;
+const SEARCH_TAPS: u32 = 10u;
 const FILTER_TAPS: u32 = 12u;
 const GOLDEN_ANGLE: f32 = 2.39996323;
 // Nothing blocks a light closer to the receiver than this part of the distance, and metres in a parallel view.
@@ -57,41 +57,54 @@ struct Receiver {
     layer: i32,
     inside: bool,
     resolution: f32,
+    // How much of the emitter's width and height shows in this direction.
+    foreshortening: vec2f,
+}
+
+// A vector (right, up, forward) of the cube in the frame of one of its faces.
+fn turned(v: vec3f, by_x: bool, by_y: bool, sign: f32) -> vec3f {
+    let to_x = vec3f(-sign * v.z, v.y, sign * v.x);
+    let to_y = vec3f(v.x, -sign * v.z, sign * v.y);
+    let to_z = vec3f(-sign * v.x, v.y, -sign * v.z);
+    return select(select(to_z, to_y, by_y), to_x, by_x);
 }
 
 // Where a point falls on a light's map, and the depth of its tangent plane around.
-fn receiver(slot: u32, position: vec3f, face: vec3f) -> Receiver {
+fn receiver(slot: u32, position: vec3f, face: vec3f, draw: f32) -> Receiver {
     let texel = slots[slot].field.x / f32(textureDimensions(shadow_maps).x);
     let to_light = slots[slot].position - position;
     let distance = select(length(to_light), 1.0, slots[slot].kind == 2u);
-    // A step off the surface by the map's rounding: half a texel where the light grazes, next to none where it faces.
+    // A step off the surface by the map's rounding: more where the light grazes, next to none where it faces.
     let facing = select(dot(face, to_light) / max(distance, 1e-6), -dot(face, slots[slot].forward), slots[slot].kind == 2u);
-    let offset = face * (5e-4 + 0.7 * texel * distance * (1.0 - abs(facing))) - to_light;
-    var right = slots[slot].right;
-    var up = slots[slot].up;
-    var forward = slots[slot].forward;
+    let offset = face * (5e-4 + 0.25 * texel * distance * (1.0 - abs(facing))) - to_light;
+    var local = vec3f(
+        dot(slots[slot].right, offset),
+        dot(slots[slot].up, offset),
+        dot(slots[slot].forward, offset),
+    );
+    var normal = vec3f(dot(slots[slot].right, face), dot(slots[slot].up, face), dot(slots[slot].forward, face));
     var layer = slots[slot].layer;
+    var r: Receiver;
+    r.foreshortening = vec2f(1.0);
     if slots[slot].kind == 3u {
-        // The faces in the order +X, -X, +Y, -Y, +Z, -Z, turned as `shadow_views` turns them.
-        let size = abs(offset);
+        // The faces in the order +X, -X, +Y, -Y, +Z, -Z, turned as `shadow_views` turns them. Forward is -Z.
+        let size = abs(local);
         let by_x = size.x >= size.y && size.x >= size.z;
         let by_y = !by_x && size.y >= size.z;
-        let positive = select(select(offset.z, offset.y, by_y), offset.x, by_x) > 0.0;
+        let positive = select(select(-local.z, local.y, by_y), local.x, by_x) > 0.0;
         let sign = select(-1.0, 1.0, positive);
-        forward = select(select(vec3f(0.0, 0.0, sign), vec3f(0.0, sign, 0.0), by_y), vec3f(sign, 0.0, 0.0), by_x);
-        right = select(select(vec3f(-sign, 0.0, 0.0), vec3f(1.0, 0.0, 0.0), by_y), vec3f(0.0, 0.0, sign), by_x);
-        up = select(vec3f(0.0, 1.0, 0.0), vec3f(0.0, 0.0, sign), by_y);
+        local = turned(local, by_x, by_y, sign);
+        normal = turned(normal, by_x, by_y, sign);
+        // From the side an emitter is seen edge-on.
+        r.foreshortening = select(select(vec2f(1.0), vec2f(1.0, 0.3), by_y), vec2f(0.3, 1.0), by_x);
         layer += select(select(4u, 2u, by_y), 0u, by_x) + select(1u, 0u, positive);
     }
-    let local = vec3f(dot(right, offset), dot(up, offset), dot(forward, offset));
-    let normal = vec3f(dot(right, face), dot(up, face), dot(forward, face));
     let height = dot(normal, local);
     let near = slots[slot].near_m;
     let parallel = slots[slot].kind == 2u;
     let resolution = f32(textureDimensions(shadow_maps).x);
     let low = slots[slot].low;
     let texels = resolution / slots[slot].field;
-    var r: Receiver;
     let plane_point = select(local.xy / local.z, local.xy, parallel);
     r.at = vec2f(plane_point.x - low.x, slots[slot].field.y - (plane_point.y - low.y)) * texels;
     let parallel_depth = (slots[slot].far_m + PARALLEL_BIAS_M - local.z) / near;
@@ -101,19 +114,23 @@ fn receiver(slot: u32, position: vec3f, face: vec3f) -> Receiver {
     let steepest = 0.25 * select(abs(r.depth), 1.0, parallel);
     r.slope = clamp(vec2f(slope.x, -slope.y), vec2f(-steepest), vec2f(steepest));
     r.inside = (parallel || local.z > 0.0) && all(r.at > vec2f(0.0)) && all(r.at < vec2f(resolution));
-    r.layer = i32(layer);
+    // Two maps a view. Solids' far sides give dark and sharp contacts. Their near sides serve receivers that turn away from
+    // the emitter's middle and see at most its edge: for them the body itself stands in the way. Over the terminator the
+    // choice is drawn, and the blur makes it a blend.
+    let near_side = draw < saturate(1.0 - 6.0 * facing);
+    r.layer = i32(2u * layer + select(1u, 0u, near_side));
     r.resolution = resolution;
     return r;
 }
 
-fn disc_tap(i: u32, count: u32) -> vec2f {
+fn direction(i: u32) -> vec2f {
     let angle = f32(i) * GOLDEN_ANGLE;
-    return vec2f(cos(angle), sin(angle)) * sqrt((f32(i) + 0.5) / f32(count));
+    return vec2f(cos(angle), sin(angle));
 }
 
-// Depth of what stands in the light's way at a tap (x), and whether it does (y). It does if it lies before the
-// receiver's plane and inside the cone from the receiver to the emitter's outline: what is merely beside, like the
-// rise of a hollow, takes nothing. `spread` is the cone's growth in texels for each unit of depth.
+// How far before the receiver (in depth) what stands in the light's way at a tap is (x), and whether it does (y). It does
+// if it lies before the receiver's plane and inside the cone from the receiver to the emitter's outline: what is merely
+// beside, like the rise of a hollow, takes nothing. `spread` is the cone's growth in texels for each unit of depth.
 fn blocker_at(r: Receiver, tap: vec2f, spread: vec2f) -> vec2f {
     let texel = floor(r.at + tap);
     let offset = texel + 0.5 - r.at;
@@ -122,30 +139,37 @@ fn blocker_at(r: Receiver, tap: vec2f, spread: vec2f) -> vec2f {
     let aside = max(abs(offset) - 1.0, vec2f(0.0)) / spread;
     let gap = depth - r.depth;
     let inside = dot(aside, aside) <= gap * gap;
-    return vec2f(depth, 1.0) * select(0.0, 1.0, before && inside);
+    return vec2f(max(gap, 0.0), select(0.0, 1.0, before && inside));
 }
 
-// Fraction of a light that passes: 1 lit, 0 in full shadow. `turn` rotates the taps.
-fn visibility(slot: u32, position: vec3f, face: vec3f, turn: mat2x2f) -> f32 {
-    let r = receiver(slot, position, face);
+// Fraction of a light that passes: 1 lit, 0 in full shadow. `turn` rotates the taps, `draw` lies
+// evenly in 0..1.
+fn visibility(slot: u32, position: vec3f, face: vec3f, turn: mat2x2f, draw: f32) -> f32 {
+    let r = receiver(slot, position, face, draw);
     let parallel = slots[slot].kind == 2u;
     let near = slots[slot].near_m;
-    let softness = max(slots[slot].softness, vec2f(1e-5)) * (r.resolution / slots[slot].field);
+    let softness = max(slots[slot].softness * r.foreshortening, vec2f(1e-5)) * (r.resolution / slots[slot].field);
     let spread = softness * select(1.0 / near, near, parallel);
-    // Blockers are sought where the emitter's outline falls for one half-way to the light.
-    let reach = 0.15 * r.resolution;
+    // Blockers are sought as far as the emitter's outline falls for one half-way to the light, and more densely near
+    // the middle, where those that touch the receiver are.
+    let reach = 0.35 * r.resolution;
     let search = clamp(softness * select(r.depth / near, 1.5, parallel), vec2f(1.0), vec2f(reach));
+    let least = select(0.02 * r.depth, 0.01, parallel);
+    // Mean gap to the blockers; each counts by how much of the emitter it can cover from there.
     var found = vec2f(0.0);
     for (var i = 0u; i < SEARCH_TAPS; i++) {
-        found += blocker_at(r, turn * disc_tap(i, SEARCH_TAPS) * search, spread);
+        let part = f32(i) / f32(SEARCH_TAPS - 1u);
+        let blocker = blocker_at(r, turn * (direction(i) * part * part) * search, spread);
+        let apart = blocker.x + least;
+        found += vec2f(blocker.x, 1.0) * (blocker.y / (apart * apart));
     }
-    let gap = max(found.x / max(found.y, 1.0) - r.depth, 0.0);
-    let radius = clamp(spread * gap, vec2f(0.7), vec2f(0.2 * r.resolution));
+    let gap = found.x / max(found.y, 1e-6);
+    let radius = clamp(spread * gap, vec2f(0.7), vec2f(reach));
     var blocked = 0.0;
     for (var i = 0u; i < FILTER_TAPS; i++) {
-        blocked += blocker_at(r, turn * disc_tap(i, FILTER_TAPS) * radius, spread).y;
+        blocked += blocker_at(r, turn * (direction(i) * sqrt((f32(i) + 0.5) / f32(FILTER_TAPS))) * radius, spread).y;
     }
-    let whole = !r.inside || slots[slot].kind == 0u;
+    let whole = !r.inside || slots[slot].kind == 0u || found.y == 0.0;
     return select(1.0 - blocked / f32(FILTER_TAPS), 1.0, whole);
 }
 
@@ -158,13 +182,16 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec2u {
     let ray = pixel_ray(vec2f(pixel) + 0.5);
     let position = frame.eye + ray * (frame.near_m / max(bitcast<f32>(depth), 1e-9));
     // Nine rotations in every three by three pixels, which the blur that follows evens out.
-    let angle = f32((cell.x % 3u) * 3u + cell.y % 3u) * (2.0 * PI / 9.0);
+    let ninth = f32((cell.x % 3u) * 3u + cell.y % 3u);
+    let angle = ninth * (2.0 * PI / 9.0);
+    // Another order than the angle's, so that the two do not go together.
+    let draw = (f32((u32(ninth) * 4u) % 9u) + 0.5) / 9.0;
     let turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
     let lit = vec4f(
-        visibility(0u, position, face, turn),
-        visibility(1u, position, face, turn),
-        visibility(2u, position, face, turn),
-        visibility(3u, position, face, turn),
+        visibility(0u, position, face, turn, draw),
+        visibility(1u, position, face, turn, draw),
+        visibility(2u, position, face, turn, draw),
+        visibility(3u, position, face, turn, draw),
     );
     return vec2u(pack4x8unorm(lit), depth);
 }

@@ -1,0 +1,209 @@
+//! What surrounds the subjects, as an estimate: a box of six even faces for mirrors, and the light that backdrops throw
+//! back. Computed on the processor from a few rays against walls, papers and boxes, lit without shadows.
+
+use super::light_table::{GpuLight, Kind, LightTable};
+use crate::photo::exposure;
+use crate::scene::{Mesh, Scene, Shape, room_mesh, tessellate};
+use glam::{Affine3A, Vec3};
+use std::f32::consts::{PI, TAU};
+
+/// Directions of the six faces.
+const FACES: [Vec3; 6] = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+/// Rays for the light that comes back.
+const RAYS: u32 = 96;
+/// Distance of a face where there is nothing, metres.
+const FAR_M: f32 = 20.0;
+
+/// The surroundings of the subjects.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Environment {
+    /// Corners of the box, metres.
+    pub low: Vec3,
+    pub high: Vec3,
+    /// Radiance of the faces +X, -X, +Y, -Y, +Z, -Z, picture units.
+    pub radiance: [Vec3; 6],
+    /// Irradiance from bounced light on a surface that faces each of them, picture units.
+    pub irradiance: [Vec3; 6],
+}
+
+/// A lit sheet in world space.
+struct Sheet {
+    corners: [Vec3; 3],
+    albedo: Vec3,
+}
+
+impl Environment {
+    /// The surroundings; none where there is no subject or nothing around it.
+    pub fn new(scene: &Scene, table: &LightTable) -> Option<Self> {
+        let probe = probe(scene)?;
+        let sheets = sheets(scene);
+        let radiance = |direction: Vec3| {
+            let Some((distance, sheet)) = first_hit(&sheets, probe, direction) else {
+                return (FAR_M, table.ambient.surround_radiance);
+            };
+            let [a, b, c] = sheet.corners;
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let facing = if normal.dot(direction) > 0.0 { -normal } else { normal };
+            let lit = irradiance(&table.lights, probe + distance * direction, facing) + table.ambient.irradiance;
+            (distance, sheet.albedo * lit / PI)
+        };
+        let faces = FACES.map(radiance);
+        let distance = faces.map(|(distance, _)| distance);
+        let mut bounced = [Vec3::ZERO; 6];
+        for direction in sphere_directions() {
+            let weight = radiance(direction).1 * (2.0 * TAU / RAYS as f32);
+            for (sum, face) in bounced.iter_mut().zip(FACES) {
+                *sum += weight * face.dot(direction).max(0.0);
+            }
+        }
+        let environment = Environment {
+            low: probe - Vec3::new(distance[1], distance[3], distance[5]),
+            high: probe + Vec3::new(distance[0], distance[2], distance[4]),
+            radiance: faces.map(|(_, radiance)| radiance),
+            irradiance: bounced,
+        };
+        environment.radiance.iter().chain(&environment.irradiance).all(|c| c.is_finite()).then_some(environment)
+    }
+}
+
+fn is_sheet(shape: &Shape) -> bool {
+    matches!(shape, Shape::Sweep { .. } | Shape::Plane { .. })
+}
+
+/// Middle of the subjects: everything visible that is not a backdrop.
+fn probe(scene: &Scene) -> Option<Vec3> {
+    let subjects = scene.objects.iter().filter(|o| o.visible && !is_sheet(&o.shape));
+    let (mut sum, mut count) = (Vec3::ZERO, 0.0);
+    for object in subjects {
+        // Figures stand on their origin.
+        let middle = if matches!(object.shape, Shape::Mannequin(_)) { Vec3::Y * 0.5 } else { Vec3::ZERO };
+        sum += object.transform.world_from_object().transform_point3(middle);
+        count += 1.0;
+    }
+    let middle = sum / count + Vec3::Y * 0.02;
+    (count > 0.0 && middle.is_finite()).then_some(middle)
+}
+
+fn sheets(scene: &Scene) -> Vec<Sheet> {
+    let mut sheets = Vec::new();
+    let mut add = |mesh: &Mesh, world: Affine3A, albedo: &dyn Fn(&str) -> [f32; 3]| {
+        for part in &mesh.parts {
+            let albedo = Vec3::from(albedo(&part.name)).clamp(Vec3::ZERO, Vec3::ONE);
+            let corners = part.triangles.clone().map(|t| mesh.corners(t as usize));
+            sheets.extend(corners.map(|c| Sheet { corners: c.map(|p| world.transform_point3(p)), albedo }));
+        }
+    };
+    if let Some(room) = &scene.room {
+        add(&room_mesh(room), Affine3A::IDENTITY, &|part| room.material_of(part).base_color);
+    }
+    for object in scene.objects.iter().filter(|o| o.visible && is_sheet(&o.shape)) {
+        let Some(mesh) = tessellate(&object.shape) else { continue };
+        add(&mesh, object.transform.world_from_object(), &|part| {
+            let material = object.material_of(part);
+            if material.transmission > 0.0 { [0.0; 3] } else { material.base_color }
+        });
+    }
+    sheets
+}
+
+/// Nearest sheet and its distance (Moller and Trumbore 1997; an estimate needs no watertight test).
+fn first_hit(sheets: &[Sheet], origin: Vec3, direction: Vec3) -> Option<(f32, &Sheet)> {
+    let distance = |sheet: &Sheet| {
+        let [a, b, c] = sheet.corners;
+        let (u, v) = (b - a, c - a);
+        let p = direction.cross(v);
+        let scale = 1.0 / u.dot(p);
+        let from_a = origin - a;
+        let x = from_a.dot(p) * scale;
+        let q = from_a.cross(u);
+        let y = direction.dot(q) * scale;
+        let t = v.dot(q) * scale;
+        (x >= 0.0 && y >= 0.0 && x + y <= 1.0 && t > 1e-4).then_some(t)
+    };
+    sheets
+        .iter()
+        .filter_map(|sheet| Some((distance(sheet)?, sheet)))
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .filter(|(distance, _)| *distance < FAR_M)
+}
+
+/// Irradiance without shadows, panels taken from their middle.
+fn irradiance(lights: &[GpuLight], point: Vec3, normal: Vec3) -> Vec3 {
+    lights.iter().map(|light| Vec3::from(light.color) * light_factor(light, point, normal)).sum()
+}
+
+fn light_factor(light: &GpuLight, point: Vec3, normal: Vec3) -> f32 {
+    let axis = Vec3::from(light.axis);
+    if light.kind == Kind::Sun as u32 {
+        return normal.dot(-axis).max(0.0);
+    }
+    let to_light = Vec3::from(light.position) - point;
+    let squared = to_light.length_squared().max(1e-6);
+    let direction = to_light / squared.sqrt();
+    let (cosine, facing) = (normal.dot(direction).max(0.0), -axis.dot(direction));
+    match light.kind {
+        kind if kind == Kind::Point as u32 => cosine / squared,
+        kind if kind == Kind::Spot as u32 => {
+            let (inner, outer) = (2.0 * light.inner_rad.to_degrees(), 2.0 * light.outer_rad.to_degrees());
+            exposure::spot_falloff(facing, inner, outer) * cosine / squared
+        }
+        kind if kind == Kind::Sphere as u32 => {
+            let area = PI * light.radius * light.radius;
+            area * cosine / squared.max(light.radius * light.radius)
+        }
+        _ => light.area_m2 * cosine * facing.max(0.0) / (squared + light.area_m2 / PI),
+    }
+}
+
+/// Even directions over the sphere (golden spiral).
+fn sphere_directions() -> impl Iterator<Item = Vec3> {
+    (0..RAYS).map(|i| {
+        let height = 1.0 - (2 * i + 1) as f32 / RAYS as f32;
+        let turn = glam::Vec2::from_angle(i as f32 * 2.399_963_2) * (1.0 - height * height).max(0.0).sqrt();
+        Vec3::new(turn.x, height, turn.y)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Material, Object, ObjectId, Room, Transform};
+
+    fn subject() -> Object {
+        Object {
+            id: ObjectId(0),
+            name: "Ball".to_owned(),
+            transform: Transform { position: Vec3::Y, ..Transform::default() },
+            shape: Shape::Sphere { radius_m: 0.1 },
+            material: Material::default(),
+            part_materials: Vec::new(),
+            visible: true,
+        }
+    }
+
+    #[test]
+    fn an_even_room_reflects_its_paint_and_its_size() {
+        let paint = Material { base_color: [0.5; 3], ..Material::default() };
+        let room =
+            Room { size_m: Vec3::new(4.0, 3.0, 6.0), floor: paint.clone(), walls: paint.clone(), ceiling: paint };
+        let scene = Scene { room: Some(room), objects: vec![subject()], ..Scene::default() };
+        let mut table = LightTable::default();
+        table.ambient.irradiance = Vec3::splat(PI);
+        let environment = Environment::new(&scene, &table).unwrap();
+        assert!((environment.low - Vec3::new(-2.0, 0.0, -3.0)).abs().max_element() < 1e-4);
+        assert!((environment.high - Vec3::new(2.0, 3.0, 3.0)).abs().max_element() < 1e-4);
+        for face in 0..6 {
+            assert!((environment.radiance[face].x - 0.5).abs() < 1e-5);
+            // Half of pi comes back; 96 rays hold it within two percent.
+            assert!((environment.irradiance[face].x / (0.5 * PI) - 1.0).abs() < 0.02);
+        }
+    }
+
+    #[test]
+    fn nothing_around_gives_nothing_back() {
+        let scene = Scene { objects: vec![subject()], ..Scene::default() };
+        let environment = Environment::new(&scene, &LightTable::default()).unwrap();
+        assert_eq!((environment.radiance, environment.irradiance), ([Vec3::ZERO; 6], [Vec3::ZERO; 6]));
+        assert_eq!(Environment::new(&Scene::default(), &LightTable::default()), None);
+    }
+}

@@ -1,0 +1,118 @@
+//! The forward pass over the finished picture: outline of the selection, tints, lines.
+
+use super::draw_list::Caster;
+use super::gizmo::Gizmos;
+use super::pipelines::{Layouts, OverlayPipelines};
+use super::targets::Targets;
+use crate::scene::CameraFrame;
+use eframe::wgpu;
+use glam::{UVec2, Vec2};
+
+/// Part of a picture in pixels: corner and size.
+pub(super) type Area = (UVec2, UVec2);
+
+/// Pipelines and buffers of the overlay.
+#[derive(Debug)]
+pub(super) struct OverlayPass {
+    pipelines: OverlayPipelines,
+    lines: Vertices,
+    tints: Vertices,
+}
+
+/// A vertex buffer that grows, and how much of it is in use.
+#[derive(Debug)]
+struct Vertices {
+    buffer: wgpu::Buffer,
+    count: u32,
+}
+
+impl Vertices {
+    fn new(device: &wgpu::Device, size: u64) -> Self {
+        let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
+        let descriptor = wgpu::BufferDescriptor { label: Some("overlay"), size, usage, mapped_at_creation: false };
+        Vertices { buffer: device.create_buffer(&descriptor), count: 0 }
+    }
+
+    fn write<T: bytemuck::Pod>(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, items: &[T]) {
+        let bytes: &[u8] = bytemuck::cast_slice(items);
+        if bytes.len() as u64 > self.buffer.size() {
+            *self = Vertices::new(device, (bytes.len() as u64).next_power_of_two());
+        }
+        if !bytes.is_empty() {
+            queue.write_buffer(&self.buffer, 0, bytes);
+        }
+        self.count = items.len() as u32;
+    }
+}
+
+impl OverlayPass {
+    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
+        OverlayPass {
+            pipelines: OverlayPipelines::new(device, layouts),
+            lines: Vertices::new(device, 1 << 16),
+            tints: Vertices::new(device, 1 << 12),
+        }
+    }
+
+    /// The part of the picture in which outlined boxes can show; none if there are none.
+    pub fn outlined_area(&self, frame: &CameraFrame, size: (u32, u32), outlined: &[Caster]) -> Option<Area> {
+        let scale = Vec2::new(size.0 as f32, size.1 as f32);
+        let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+        for corner in outlined.iter().flat_map(Caster::corners) {
+            match frame.project(corner) {
+                Some(place) => (low, high) = (low.min(place * scale), high.max(place * scale)),
+                // A corner behind the eye may show anywhere.
+                None => (low, high) = (Vec2::ZERO, scale),
+            }
+        }
+        let (low, high) = ((low - 3.0).max(Vec2::ZERO), (high + 3.0).min(scale));
+        (low.cmplt(high).all()).then(|| {
+            let corner = low.floor().as_uvec2();
+            (corner, high.ceil().as_uvec2().min(UVec2::from(size)) - corner)
+        })
+    }
+
+    /// Uploads lines and tints.
+    pub fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, gizmos: &Gizmos) {
+        self.lines.write(device, queue, &gizmos.lines);
+        self.tints.write(device, queue, &gizmos.tints);
+    }
+
+    /// Draws over the picture.
+    pub fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        targets: &Targets,
+        scene: &wgpu::BindGroup,
+        outlined: Option<Area>,
+    ) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("overlay"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &targets.color_view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
+            })],
+            ..Default::default()
+        });
+        pass.set_bind_group(0, scene, &[]);
+        pass.set_bind_group(1, &targets.lookup, &[]);
+        if let Some((corner, size)) = outlined {
+            pass.set_pipeline(&self.pipelines.outline);
+            pass.set_scissor_rect(corner.x, corner.y, size.x, size.y);
+            pass.draw(0..3, 0..1);
+            pass.set_scissor_rect(0, 0, targets.size.0, targets.size.1);
+        }
+        if self.tints.count > 0 {
+            pass.set_pipeline(&self.pipelines.tints);
+            pass.set_vertex_buffer(0, self.tints.buffer.slice(..));
+            pass.draw(0..self.tints.count, 0..1);
+        }
+        if self.lines.count > 0 {
+            pass.set_pipeline(&self.pipelines.lines);
+            pass.set_vertex_buffer(0, self.lines.buffer.slice(..));
+            pass.draw(0..6, 0..self.lines.count);
+        }
+    }
+}

@@ -1,0 +1,112 @@
+// Clear glass and water over the lit picture: what mirrors in it is added, its rim darkens what lies behind. Nothing is
+// refracted; the outline and the highlights tell the shape.
+
+override LINEAR: bool = false;
+override HAS_DELTA: bool = true;
+override HAS_SPHERES: bool = true;
+override HAS_RECTS: bool = true;
+override HAS_DISCS: bool = true;
+
+struct Corner {
+    @builtin(position) clip: vec4f,
+    @location(0) world: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) @interpolate(flat) surface: u32,
+}
+
+@vertex
+fn vertex(
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @builtin(instance_index) surface: u32,
+) -> Corner {
+    var out: Corner;
+    out.world = world_from_object(surface, position);
+    out.normal = world_normal(surface, normal);
+    out.clip = frame.clip_from_world * vec4f(out.world, 1.0);
+    out.surface = surface;
+    return out;
+}
+
+struct Pixel {
+    @location(0) color: vec4f,
+    @location(1) id: vec2u,
+}
+
+@fragment
+fn fragment(in: Corner) -> Pixel {
+    let to_eye = frame.eye - in.world;
+    let view = normalize(to_eye);
+    var face = cross(dpdx(in.world), dpdy(in.world));
+    face *= select(-1.0, 1.0, dot(face, to_eye) >= 0.0) * inverseSqrt(max(dot(face, face), 1e-30));
+    let squared = dot(in.normal, in.normal);
+    var normal = select(face, in.normal * inverseSqrt(max(squared, 1e-30)), squared > 1e-20);
+    normal *= select(-1.0, 1.0, dot(normal, face) >= 0.0);
+
+    let s = in.surface;
+    let n_dot_v = max(dot(normal, view), 1e-3);
+    let gloss = vec3f(surfaces[s].roughness, (surfaces[s].ior - 1.0) / (surfaces[s].ior + 1.0), 0.0);
+    let coat = material(vec3f(0.0), gloss, n_dot_v);
+    let mirror = reflect(-view, normal);
+    let fresnel = schlick(coat.f0, n_dot_v);
+    var radiance = environment(in.world, mirror, gloss.x) * fresnel;
+    if HAS_DELTA {
+        radiance += glints(0u, frame.light_ends.x, 0u, coat, in.world, normal, view, n_dot_v, mirror);
+    }
+    if HAS_SPHERES {
+        radiance += glints(frame.light_ends.x, frame.light_ends.y, 1u, coat, in.world, normal, view, n_dot_v, mirror);
+    }
+    if HAS_RECTS {
+        radiance += glints(frame.light_ends.y, frame.light_ends.z, 2u, coat, in.world, normal, view, n_dot_v, mirror);
+    }
+    if HAS_DISCS {
+        radiance += glints(frame.light_ends.z, frame.light_ends.w, 3u, coat, in.world, normal, view, n_dot_v, mirror);
+    }
+    // Glass bends light most at its rim, where it gathers what is dark around it.
+    let rim = pow(1.0 - n_dot_v, 3.0);
+    let alpha = saturate(0.08 + 0.4 * rim + 1.0 - surfaces[s].transmission);
+    let around = frame.ambient / PI + environment(in.world, -view, 1.0);
+    let body = surfaces[s].base_color * around * 0.4;
+    var out: Pixel;
+    if LINEAR {
+        out.color = vec4f(radiance + body * alpha, alpha);
+    } else {
+        // The target holds encoded values: add as much as the light would add to what is likely behind.
+        let added = srgb_encode(tone_curve(around + radiance)) - srgb_encode(tone_curve(around));
+        out.color = vec4f(added + srgb_encode(tone_curve(body)) * alpha, alpha);
+    }
+    let marks = mark_of(surfaces[s].flags);
+    out.id = vec2u((s + 1u) | marks, bitcast<u32>(in.clip.z));
+    return out;
+}
+
+// Highlights of a family of lights.
+fn glints(
+    first: u32,
+    end: u32,
+    family: u32,
+    coat: Material,
+    position: vec3f,
+    normal: vec3f,
+    view: vec3f,
+    n_dot_v: f32,
+    mirror: vec3f,
+) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var light = first; light < end; light++) {
+        var a: Arrival;
+        switch family {
+            case 0u: {
+                a = delta_arrival(light, position, normal, mirror);
+            }
+            case 1u: {
+                a = sphere_arrival(light, position, normal, mirror);
+            }
+            default: {
+                a = panel_highlight(light, lights[light].position - position, mirror, family == 3u);
+            }
+        }
+        sum += highlight(coat, a, normal, view, n_dot_v) * lights[light].color;
+    }
+    return sum;
+}
