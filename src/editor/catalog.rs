@@ -38,8 +38,8 @@ impl Shelf {
 /// What an entry of the list makes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// A light with this emitter.
-    Light(Emitter),
+    /// A light with this emitter, and what it gives at full power.
+    Light(Emitter, Output),
     /// A mannequin.
     Figure(Mannequin),
     /// A formula shape of a material, standing on the floor.
@@ -79,8 +79,16 @@ pub struct Entry {
     pub kind: Kind,
 }
 
+/// A studio flash head of 400 Ws.
+const HEAD: Output = Output::FlashWs { energy_ws: 400.0, efficacy_lm_s_per_ws: Output::DEFAULT_EFFICACY };
+
 const fn light(name: &'static str, tip: &'static str, emitter: Emitter) -> Entry {
-    Entry { name, tip, kind: Kind::Light(emitter) }
+    Entry { name, tip, kind: Kind::Light(emitter, HEAD) }
+}
+
+/// A light that shines all the time.
+const fn continuous(name: &'static str, tip: &'static str, emitter: Emitter, output: Output) -> Entry {
+    Entry { name, tip, kind: Kind::Light(emitter, output) }
 }
 
 const fn softbox(name: &'static str, tip: &'static str, width_m: f32, height_m: f32) -> Entry {
@@ -123,10 +131,30 @@ const LIGHTS: [Entry; 15] = [
         "A standard reflector: a hard, broad cone.",
         Emitter::Spot { inner_deg: 40.0, outer_deg: 70.0 },
     ),
-    softbox("LED panel 30 x 30", "A small continuous LED panel.", 0.3, 0.3),
-    softbox("Window 1 x 2 m", "A tall window with an even sky outside.", 1.0, 2.0),
-    light("Sun", "Parallel light with hard shadows.", Emitter::Sun { angular_diameter_deg: 0.53 }),
-    light("Overcast surround", "Even light from everywhere: a cloudy sky, a white tent.", Emitter::Surround),
+    continuous(
+        "LED panel 30 x 30",
+        "A continuous LED panel of 5000 lm: faint beside flash at a short shutter.",
+        Emitter::RectPanel { width_m: 0.3, height_m: 0.3 },
+        Output::Lumens(5000.0),
+    ),
+    continuous(
+        "Window 1 x 2 m",
+        "A tall window with an even, overcast sky outside: 3000 cd/m2.",
+        Emitter::RectPanel { width_m: 1.0, height_m: 2.0 },
+        Output::Lumens(18_850.0),
+    ),
+    continuous(
+        "Sun",
+        "Parallel light with hard shadows, up to full sunlight.",
+        Emitter::Sun { angular_diameter_deg: 0.53 },
+        Output::Lux(100_000.0),
+    ),
+    continuous(
+        "Overcast surround",
+        "Even light from everywhere: a cloudy sky, a white tent.",
+        Emitter::Surround,
+        Output::Lux(20_000.0),
+    ),
 ];
 
 const FIGURES: [Entry; 11] = [
@@ -232,7 +260,7 @@ impl Entry {
     /// Makes it; `placement` then finds it a place.
     pub fn make(&self) -> Made {
         match self.kind {
-            Kind::Light(emitter) => Made::Light(new_light(self.name, emitter)),
+            Kind::Light(emitter, output) => Made::Light(new_light(self.name, emitter, output)),
             Kind::Figure(mannequin) => Made::Object(new_figure(self.name, mannequin)),
             Kind::Prop(shape, material) => Made::Object(new_prop(self.name, shape, material.material())),
             Kind::Paper { width_m, paper } => Made::Object(Object {
@@ -294,12 +322,7 @@ fn new_prop(name: &str, shape: PropShape, material: Material) -> Object {
     object
 }
 
-fn new_light(name: &str, emitter: Emitter) -> Light {
-    let output = if emitter.is_infinite() {
-        Output::Lux(10_000.0)
-    } else {
-        Output::FlashWs { energy_ws: 400.0, efficacy_lm_s_per_ws: Output::DEFAULT_EFFICACY }
-    };
+fn new_light(name: &str, emitter: Emitter, output: Output) -> Light {
     Light {
         id: LightId(0),
         name: name.to_owned(),

@@ -70,7 +70,8 @@ pub fn place_light(scene: &Scene, assets: &Assets, selected: Option<Item>, light
     let around = Quat::from_rotation_y(azimuth_deg.to_radians()) * towards_camera(scene, target);
     light.position = target + (around * cos + Vec3::Y * sin) * distance_m;
     light.position.y = light.position.y.max(0.1);
-    light.power.dial_stops = readout::dial_for(scene, light, stops);
+    // No head gives more than its full power.
+    light.power.dial_stops = readout::dial_for(scene, light, stops).min(0.0);
 }
 
 /// Finds a new object a free place: figures and props on the floor before the others, backdrops behind the subject and

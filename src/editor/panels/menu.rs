@@ -131,7 +131,7 @@ fn render_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
 
 /// The row of view buttons over the middle of the window.
 pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool, out: &mut Vec<Command>) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         let mut centre = state.centre;
         let views = [

@@ -278,12 +278,13 @@ fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
 
 fn emitter_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     let listed = catalog::entries(Shelf::Lights).iter();
-    let known = listed.clone().find(|e| e.kind == Kind::Light(light.emitter)).map(|e| e.name);
+    let known =
+        listed.clone().find(|e| matches!(e.kind, Kind::Light(emitter, _) if emitter == light.emitter)).map(|e| e.name);
     row(ui, "Kind", "What shapes the light. Choosing another keeps its power.", |ui| {
         let current = known.unwrap_or_else(|| light.emitter.label());
         ComboBox::from_id_salt("emitter").selected_text(current).width(ui.available_width() - 8.0).show_ui(ui, |ui| {
             for entry in listed {
-                let Kind::Light(emitter) = entry.kind else { continue };
+                let Kind::Light(emitter, _) = entry.kind else { continue };
                 if ui.selectable_label(emitter == light.emitter, entry.name).on_hover_text(entry.tip).clicked() {
                     power::change_emitter(scene, light, emitter);
                 }
