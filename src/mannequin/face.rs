@@ -105,8 +105,8 @@ fn add_mouth(g: &mut Group, f: &FaceShape) {
     g.brush(&line, 3.0, -1.7, ON_FACE);
     g.brush(&[v(24.5 * w, -71.8, 88.0), v(26.5 * w, -72.5, 86.0)], 6.0, -1.6, ON_FACE);
     // Philtrum with its two ridges.
-    g.brush(&[v(0.0, -54.0, 100.0), v(0.0, -62.5, 102.0)], 4.5, -1.1, ON_FACE);
-    g.brush(&[v(4.2, -55.0, 100.0), v(5.6, -62.5, 101.0)], 3.6, 0.7, ON_FACE);
+    g.brush(&[v(0.0, -57.5, 100.0), v(0.0, -62.5, 102.0)], 4.5, -1.1, ON_FACE);
+    g.brush(&[v(4.6, -58.0, 100.0), v(5.6, -62.5, 101.0)], 3.6, 0.7, ON_FACE);
     // Fold over the chin, fold beside the nose.
     g.brush(&[v(0.0, -87.5, 96.0), v(12.0, -86.0, 93.0)], 11.0, -2.6, ON_FACE);
     g.brush(&[v(21.0, -48.0, 90.0), v(29.0, -60.0, 86.0), v(33.0, -69.0, 82.0)], 9.0, -f.age, ON_FACE);

@@ -101,7 +101,12 @@ impl Sculpture {
         let cubes = Cubes::new(&garment.field, low, high);
         let middle = self.skeleton.waist.transform_point3(Vec3::Y * 1.15 * unit);
         let grid = Grid { focus: middle, cell_m: 0.006 * unit * detail.coarseness.min(1.5), core_m: 1.0 };
-        let target = |p: Vec3| detail.coarseness * unit * ramp(garment.to_hem(p) / unit, 0.005, 0.035, 0.004, 0.021);
+        let target = |p: Vec3| {
+            let hem = ramp(garment.to_hem(p) / unit, 0.005, 0.035, 0.004, 0.02);
+            // Collar bones are thinner than the triangles of a flat back.
+            let bones = ramp(garment.to_neckline(p) / unit, 0.01, 0.2, 0.006, 0.02);
+            detail.coarseness * unit * hem.min(bones)
+        };
         surface::skin(&cubes, &grid, low, high, target).with_single_part("clothes")
     }
 
@@ -158,13 +163,49 @@ fn head_edge_length(p: Vec3) -> f32 {
     let from_face = p.distance(v(0.0, -32.0, 80.0));
     let general = ramp(from_face, 55.0, 140.0, 2.2, 5.2) + ramp(from_face, 160.0, 450.0, 0.0, 13.0);
     // Line of the mouth, lids, nostrils, ears: middle, radius, length of edges in it.
-    let mouth = p.distance(v(p.x.min(24.0), -71.0, 98.0 - 0.4 * p.x.min(24.0)));
+    let mouth = p.distance(v(p.x.min(27.0), -71.0, 98.0 - 0.4 * p.x.min(27.0)));
     let fine = [
         (mouth, 5.0, 1.1),
         (p.distance(v(31.5, 0.0, 82.0)), 16.0, 1.1),
-        (p.distance(v(9.0, -49.0, 100.0)), 9.0, 1.4),
+        (p.distance(v(p.x.min(9.0), -50.0, 101.0)), 9.0, 1.3),
+        (p.distance(v(0.0, -56.0, 101.0)), 8.0, 1.2),
         (p.distance(v(78.0, -18.0, -14.0)), 28.0, 2.2),
     ];
     fine.iter()
         .fold(general, |length, &(d, radius, wanted)| length.min(ramp(d, radius, radius + 14.0, wanted, general)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Figure, Pose};
+    use rayon::prelude::*;
+
+    /// Edges' and triangles' middles lie deepest where the body is round: there it would poke through the cloth.
+    #[test]
+    fn the_suit_lies_outside_the_body() {
+        let dressed = [
+            (Figure::Woman, Pose::Standing),
+            (Figure::Man, Pose::Standing),
+            (Figure::Child, Pose::Contrapposto),
+            (Figure::Man, Pose::Seated),
+        ];
+        for (figure, pose) in dressed {
+            let sculpture = Sculpture::new(Build::of(figure), &PoseAngles::of(figure, pose), Extent::Whole);
+            let (low, high) = sculpture.skeleton.bounds();
+            let body = Cubes::new(&sculpture.field(), low, high);
+            let garment = Garment::new(&sculpture.skeleton, &sculpture.build);
+            let suit = sculpture.clothes(Detail::FULL, low, high);
+            let nearest = |i: usize| {
+                let [a, b, c] = suit.corners(i);
+                let middles = [(a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0, (a + b + c) / 3.0];
+                // The hems' flat ends reach into the body.
+                let off_hem = middles.into_iter().filter(|&p| garment.to_hem(p) > 0.01);
+                off_hem.map(|p| (body.distance(p), p.to_array())).min_by(|a, b| a.0.total_cmp(&b.0))
+            };
+            let nearest = (0..suit.triangles.len()).into_par_iter().filter_map(nearest);
+            let nearest = nearest.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
+            assert!(nearest.0 > 0.000_8, "{figure:?} {pose:?}: {nearest:?}");
+        }
+    }
 }

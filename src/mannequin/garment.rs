@@ -68,7 +68,12 @@ impl Garment {
             .map(|(point, normal)| ((p - *point).dot(*normal).abs(), (p - *point).length()))
             .filter(|&(_, from_middle)| from_middle < 0.2)
             .map(|(to_plane, _)| to_plane);
-        planes.fold(self.neckline.distance(p).abs(), f32::min)
+        planes.fold(self.to_neckline(p), f32::min)
+    }
+
+    /// Distance to the hollow of the neck, metres.
+    pub fn to_neckline(&self, p: Vec3) -> f32 {
+        self.neckline.distance(p).abs()
     }
 }
 

@@ -129,7 +129,7 @@ fn contrapposto() -> PoseAngles {
         chest: Turn::new(0.0, 3.0, 5.0),
         neck: Turn::new(0.0, 2.0, -2.0),
         head: Turn::new(0.0, 3.0, -2.0),
-        arms: [ArmPose::Free { abduct_deg: 9.0, lift_deg: 4.0, elbow_deg: 18.0 }, on_hip],
+        arms: [ArmPose::Free { abduct_deg: 15.0, lift_deg: 4.0, elbow_deg: 18.0 }, on_hip],
         legs: [
             LegPose { ankle: Vec2::new(0.13, 0.06), toes_out_deg: 24.0, knee_out_deg: 0.0 },
             LegPose { ankle: Vec2::new(0.085, -0.05), toes_out_deg: 10.0, knee_out_deg: 0.0 },

@@ -139,7 +139,7 @@ impl Build {
             Figure::Child => Build {
                 height: 1.28,
                 head: 1.28 / 6.0,
-                shoulder_width: 0.232,
+                shoulder_width: 0.244,
                 chest_width: 0.21,
                 chest_depth: 0.165,
                 waist_width: 0.2,

@@ -165,9 +165,9 @@ fn add_relief(clay: &mut Sculptor, s: &Skeleton, b: &Build) {
     let u = s.unit;
     let (cd, wd) = (0.5 * b.chest_depth / u, 0.5 * b.waist_depth / u);
     let shoulder = 0.5 * b.shoulder_width / u;
-    clay.cones((&s.chest, v(0.022, 1.448, 0.042), 0.0085), (&s.chest, v(shoulder * 0.5, 1.458, 0.038), 0.0065), 0.022);
+    clay.cones((&s.chest, v(0.022, 1.448, 0.04), 0.0085), (&s.chest, v(shoulder * 0.5, 1.456, 0.016), 0.0065), 0.022);
     clay.cones(
-        (&s.chest, v(shoulder * 0.5, 1.458, 0.038), 0.0065),
+        (&s.chest, v(shoulder * 0.5, 1.456, 0.016), 0.0065),
         (&s.chest, v(shoulder * 0.93, 1.458, -0.01), 0.008),
         0.022,
     );
