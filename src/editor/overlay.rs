@@ -41,10 +41,20 @@ pub fn paint_picture_frame(painter: &Painter, view: Rect, picture: Rect) {
     painter.rect_stroke(picture, CornerRadius::ZERO, Stroke::new(1.0, Color32::from_gray(200)), StrokeKind::Outside);
 }
 
-/// The names of the lights beside them, and how far the selected one is from what it aims at.
-pub fn paint_labels(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect, selection: Option<Item>) {
+/// The names of the lights (all of them, or the selected one's) beside them, and how far the selected one is from what it aims at.
+pub fn paint_labels(
+    painter: &Painter,
+    scene: &Scene,
+    frame: &CameraFrame,
+    rect: Rect,
+    selection: Option<Item>,
+    all: bool,
+) {
     for light in scene.lights.iter().filter(|light| !light.emitter.is_infinite()) {
         let selected = selection == Some(Item::Light(light.id));
+        if !(all || selected) {
+            continue;
+        }
         paint_light_label(painter, frame, rect, light, selected);
         if selected {
             paint_aim(painter, scene, frame, rect, light);

@@ -202,7 +202,8 @@ impl Viewport {
         if let Some(picture) = picture {
             overlay::paint_picture_frame(&painter, rect, picture);
         }
-        overlay::paint_labels(&painter, input.document.scene(), &frame, rect, input.selection);
+        let all = input.centre == Centre::Studio;
+        overlay::paint_labels(&painter, input.document.scene(), &frame, rect, input.selection, all);
         if input.selection.is_some_and(|item| item.exists_in(input.document.scene())) {
             self.handles.paint(&painter);
         }
@@ -245,7 +246,8 @@ fn overlay_of(input: ViewportInput<'_>) -> Overlay {
     };
     Overlay {
         grid: studio,
-        light_gizmos: true,
+        // In the camera view the picture counts: only a light that is being worked on shows itself.
+        light_gizmos: studio || matches!(input.selection, Some(Item::Light(_))),
         camera_gizmo: studio.then_some(input.picture_aspect),
         selection: pick.into_iter().collect(),
         void_color: Vec3::splat(0.012),
