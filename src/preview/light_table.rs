@@ -117,10 +117,8 @@ impl LightTable {
         table.lights.sort_by_key(GpuLight::family);
         table.ends = std::array::from_fn(|f| table.lights.partition_point(|light| light.family() <= f) as u32);
         table.ambient.surround_radiance = table.ambient.irradiance / PI;
-        if let Some(room) = &scene.room {
-            if bounce_estimate {
-                table.ambient.irradiance += bounced_irradiance(room, flux);
-            }
+        if let Some(room) = scene.room.as_ref().filter(|_| bounce_estimate) {
+            table.ambient.irradiance += bounced_irradiance(room, flux);
         }
         table
     }

@@ -6,8 +6,8 @@ const KIND_SPHERE: u32 = 2u;
 const KIND_RECT: u32 = 3u;
 const KIND_DISC: u32 = 4u;
 const KIND_SUN: u32 = 5u;
-// Corners of the polygon that stands for a disc, of the same area. Twice as many do not change the irradiance on its axis by a thousandth, however near.
-const DISC_CORNERS: u32 = 8u;
+// Corners of the polygon that stands for a disc, of the same area. Six come within 0.2 % on its axis, however near.
+const DISC_CORNERS: u32 = 6u;
 
 // Falls linearly in angle from the inner to the outer half angle; a step where they are equal.
 fn spot_falloff(cosine: f32, inner_rad: f32, outer_rad: f32) -> f32 {
