@@ -2,6 +2,7 @@
 
 use super::bvh::{self, Slabs, Stack, WideBvh};
 use super::geometry::{Instance, Surface};
+use super::simd;
 use super::triangle::TriangleHit;
 use crate::math::Ray;
 
@@ -36,37 +37,63 @@ impl Aggregate {
     }
 
     /// The closest hit.
-    #[inline]
     pub fn closest(&self, ray: &Ray, stack: &mut Stack) -> Option<Hit> {
-        let slabs = Slabs::new(ray.origin, ray.direction);
-        let mut best = None;
-        self.bvh.traverse(&slabs, ray.t_max, stack, |leaf, t_max, stack| {
-            let mut end = t_max;
-            for &index in self.bvh.leaf(leaf) {
-                let instance = &self.instances[index as usize];
-                let local = instance.to_object(&Ray { t_max: end, ..*ray });
-                if let Some(triangle) = instance.geometry.closest(&local, stack) {
-                    end = triangle.t;
-                    best = Some(Hit { instance: index, triangle });
-                }
-            }
-            end
-        });
-        best
+        simd::widest(
+            #[inline(always)]
+            || self.find_closest(ray, stack),
+        )
     }
 
     /// Whether anything lies on the ray before its end.
-    #[inline]
     pub fn blocked(&self, ray: &Ray, stack: &mut Stack) -> bool {
+        simd::widest(
+            #[inline(always)]
+            || self.find_any(ray, stack),
+        )
+    }
+
+    #[inline(always)]
+    fn find_closest(&self, ray: &Ray, stack: &mut Stack) -> Option<Hit> {
+        let slabs = Slabs::new(ray.origin, ray.direction);
+        let mut best = None;
+        self.bvh.traverse(
+            &slabs,
+            ray.t_max,
+            stack,
+            #[inline(always)]
+            |leaf, t_max, stack| {
+                let mut end = t_max;
+                for &index in self.bvh.leaf(leaf) {
+                    let instance = &self.instances[index as usize];
+                    let local = instance.to_object(&Ray { t_max: end, ..*ray });
+                    if let Some(triangle) = instance.geometry.closest(&local, stack) {
+                        end = triangle.t;
+                        best = Some(Hit { instance: index, triangle });
+                    }
+                }
+                end
+            },
+        );
+        best
+    }
+
+    #[inline(always)]
+    fn find_any(&self, ray: &Ray, stack: &mut Stack) -> bool {
         let slabs = Slabs::new(ray.origin, ray.direction);
         let mut found = false;
-        self.bvh.traverse(&slabs, ray.t_max, stack, |leaf, t_max, stack| {
-            found = self.bvh.leaf(leaf).iter().any(|&index| {
-                let instance = &self.instances[index as usize];
-                instance.geometry.any(&instance.to_object(ray), stack)
-            });
-            if found { -1.0 } else { t_max }
-        });
+        self.bvh.traverse(
+            &slabs,
+            ray.t_max,
+            stack,
+            #[inline(always)]
+            |leaf, t_max, stack| {
+                found = self.bvh.leaf(leaf).iter().any(|&index| {
+                    let instance = &self.instances[index as usize];
+                    instance.geometry.any(&instance.to_object(ray), stack)
+                });
+                if found { -1.0 } else { t_max }
+            },
+        );
         found
     }
 
@@ -164,6 +191,10 @@ mod tests {
             // Two triangles at the very same distance may be named in either order; the distance is the same to the bit.
             assert_eq!(ours.map(|h| h.triangle.t), truth.map(|(_, h)| h.t), "ray {i}: {ray:?}");
             assert_eq!(aggregate.blocked(ray, &mut stack), truth.is_some(), "ray {i}: {ray:?}");
+            // The twin without wide vectors gives the same bits.
+            let plain = aggregate.find_closest(ray, &mut stack);
+            assert_eq!(plain.map(|h| h.triangle), ours.map(|h| h.triangle), "ray {i}: {ray:?}");
+            assert_eq!(aggregate.find_any(ray, &mut stack), truth.is_some(), "ray {i}: {ray:?}");
             hits += usize::from(truth.is_some());
         }
         assert!(hits > 1000, "only {hits} rays hit anything: the test says little");

@@ -45,33 +45,43 @@ impl MeshGeometry {
     }
 
     /// The closest hit of a ray in object space.
-    #[inline]
+    #[inline(always)]
     pub fn closest(&self, ray: &Ray, stack: &mut Stack) -> Option<TriangleHit> {
         let sheared = Sheared::new(ray.origin, ray.direction);
         let slabs = Slabs::new(ray.origin, ray.direction);
         let mut best = None;
-        self.bvh.traverse(&slabs, ray.t_max, stack, |leaf, t_max, _| {
-            match self.packets[leaf as usize].intersect(&sheared, t_max) {
+        self.bvh.traverse(
+            &slabs,
+            ray.t_max,
+            stack,
+            #[inline(always)]
+            |leaf, t_max, _| match self.packets[leaf as usize].intersect(&sheared, t_max) {
                 Some(hit) => {
                     best = Some(hit);
                     hit.t
                 }
                 None => t_max,
-            }
-        });
+            },
+        );
         best
     }
 
     /// Whether anything lies on the ray, in object space.
-    #[inline]
+    #[inline(always)]
     pub fn any(&self, ray: &Ray, stack: &mut Stack) -> bool {
         let sheared = Sheared::new(ray.origin, ray.direction);
         let slabs = Slabs::new(ray.origin, ray.direction);
         let mut found = false;
-        self.bvh.traverse(&slabs, ray.t_max, stack, |leaf, t_max, _| {
-            found = self.packets[leaf as usize].intersect(&sheared, t_max).is_some();
-            if found { -1.0 } else { t_max }
-        });
+        self.bvh.traverse(
+            &slabs,
+            ray.t_max,
+            stack,
+            #[inline(always)]
+            |leaf, t_max, _| {
+                found = self.packets[leaf as usize].intersect(&sheared, t_max).is_some();
+                if found { -1.0 } else { t_max }
+            },
+        );
         found
     }
 
@@ -139,7 +149,7 @@ impl Instance {
     }
 
     /// The ray in object space. `t` keeps its meaning.
-    #[inline]
+    #[inline(always)]
     pub fn to_object(&self, ray: &Ray) -> Ray {
         Ray {
             origin: self.object_from_world.transform_point3(ray.origin),

@@ -15,6 +15,7 @@ mod plan;
 mod prepare;
 mod sampler;
 mod schedule;
+mod simd;
 mod texture;
 mod triangle;
 

@@ -39,6 +39,7 @@ pub struct TriangleHit {
 
 impl Sheared {
     /// Prepares a ray. The direction must not be zero.
+    #[inline(always)]
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
         let abs = direction.abs();
         let z = if abs.x > abs.y && abs.x > abs.z {
@@ -74,7 +75,7 @@ impl Packet {
     }
 
     /// The nearest hit with 0 < t < `t_max`. Triangles of no area are never hit.
-    #[inline]
+    #[inline(always)]
     pub fn intersect(&self, ray: &Sheared, t_max: f32) -> Option<TriangleHit> {
         let [kx, ky, kz] = ray.axes;
         let mut x = [[0.0_f32; LANES]; 3];

@@ -19,17 +19,20 @@ pub struct Slabs {
 const WIDEN: f32 = 1.0 + 2.0 * gamma(3);
 
 /// `a` where it is larger than `b`; else `b`, also when `a` is NaN.
+#[inline(always)]
 fn max_or(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
 /// `a` where it is smaller than `b`; else `b`, also when `a` is NaN.
+#[inline(always)]
 fn min_or(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 impl Slabs {
     /// Prepares a ray.
+    #[inline(always)]
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
         let inverse = direction.recip();
         let near = inverse.to_array().map(|x| usize::from(x.is_sign_negative()));
@@ -37,7 +40,7 @@ impl Slabs {
     }
 
     /// Entry distance into each child, and which children are entered before `t_max`.
-    #[inline]
+    #[inline(always)]
     fn test(&self, node: &Node, t_max: f32) -> ([f32; WIDTH], u32) {
         let mut enter = [0.0_f32; WIDTH];
         let mut leave = [t_max; WIDTH];
@@ -68,7 +71,7 @@ pub struct Stack {
 impl WideBvh {
     /// Visits the leaves that a ray meets before `t_max`, roughly from near to far. `visit` gets the leaf's number and
     /// the current end of the ray and returns the new one (smaller after a hit; negative stops the walk).
-    #[inline]
+    #[inline(always)]
     pub fn traverse(
         &self,
         slabs: &Slabs,
@@ -107,7 +110,7 @@ impl WideBvh {
     }
 
     /// Tests a node's children: the nearest one hit is returned, the others are pushed, farthest first.
-    #[inline]
+    #[inline(always)]
     fn descend(&self, index: u32, slabs: &Slabs, t_max: f32, stack: &mut Stack) -> Option<u32> {
         let node = &self.nodes[index as usize];
         let (enter, mut mask) = slabs.test(node, t_max);

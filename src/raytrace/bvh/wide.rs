@@ -51,6 +51,7 @@ impl WideBvh {
     }
 
     /// Primitive indices of a leaf.
+    #[inline(always)]
     pub fn leaf(&self, leaf: u32) -> &[u32] {
         let i = leaf as usize;
         &self.primitives[self.leaf_starts[i] as usize..self.leaf_starts[i + 1] as usize]
