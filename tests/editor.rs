@@ -21,11 +21,11 @@ type Window = Harness<'static, App>;
 /// Longest wait for a background task: machines that test are slow and shared.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Whether there is a graphics adapter. Without one the test says so and passes, unless `CATCHLIGHT_NEED_GPU` is set.
+/// Whether there is a graphics adapter. Without one the test says so and passes, unless `CATCHLIGHT_REQUIRE_GPU` is set.
 fn has_adapter() -> bool {
     match Gpu::headless() {
         Ok(_) => true,
-        Err(error) if std::env::var_os("CATCHLIGHT_NEED_GPU").is_some() => panic!("{error}"),
+        Err(error) if std::env::var_os("CATCHLIGHT_REQUIRE_GPU").is_some() => panic!("{error}"),
         Err(error) => {
             eprintln!("SKIPPED, no graphics adapter: {error}");
             false

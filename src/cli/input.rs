@@ -20,6 +20,16 @@ pub fn load_studio(scene: &Path) -> anyhow::Result<Loaded> {
     Ok(loaded)
 }
 
+/// Complains about a studio that is neither a file nor shipped, before a window is opened for it.
+pub fn check_exists(scene: &Path) -> anyhow::Result<()> {
+    anyhow::ensure!(
+        scene.exists() || scene.to_str().is_some_and(|name| io::find_preset(name).is_some()),
+        "neither a command, nor a studio file, nor a shipped studio: {}",
+        scene.display()
+    );
+    Ok(())
+}
+
 /// A picture size like `1920x1280`.
 pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let wrong = || format!("`{text}` is no picture size: write WIDTHxHEIGHT in pixels, such as 1920x1280");

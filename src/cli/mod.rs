@@ -70,7 +70,7 @@ pub fn run(started: Instant) -> ExitCode {
         }
     };
     let result = match arguments.command {
-        None => window::open(arguments.scene),
+        None => open(arguments.scene),
         Some(Command::Render(arguments)) => render::run(&arguments, started),
         Some(Command::Preview(arguments)) => preview::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),
@@ -83,6 +83,13 @@ pub fn run(started: Instant) -> ExitCode {
         Err(Failure::Machine(error)) => complain(&error, 2),
         Err(Failure::Interrupted) => ExitCode::from(130),
     }
+}
+
+fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
+    if let Some(scene) = &scene {
+        input::check_exists(scene)?;
+    }
+    window::open(scene)
 }
 
 fn complain(error: &anyhow::Error, code: u8) -> ExitCode {

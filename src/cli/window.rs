@@ -9,18 +9,11 @@ use std::path::{Path, PathBuf};
 
 /// Opens the editor on a studio file, a shipped studio by name, or the first shipped one.
 pub fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
-    if let Some(path) = scene.as_deref().filter(|path| !path.exists() && shipped(path).is_none()) {
-        return Err(anyhow!("neither a command, nor a studio file, nor a shipped studio: {}", path.display()).into());
-    }
     let named = scene.as_ref().map_or_else(|| "three_point".to_owned(), |path| path.display().to_string());
     editor::run(scene).map_err(|error| {
         let hint = format!("{error}; to render without a window: catchlight render {named} -o picture.png");
         Failure::Machine(anyhow!(hint))
     })
-}
-
-fn shipped(name: &Path) -> Option<&'static io::Preset> {
-    name.to_str().and_then(io::find_preset)
 }
 
 /// Renders the preview offscreen and writes it.
