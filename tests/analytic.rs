@@ -234,3 +234,30 @@ fn hidden_things_cast_no_shadow_and_shown_things_do() {
     scene.objects[1].visible = true;
     assert_eq!(illuminance(&scene, Method::Direct, 4), 0.0);
 }
+
+#[test]
+fn a_texture_is_upright_on_a_card() {
+    use catchlight::scene::Texture;
+    // A card that faces +Z, its far edge up: four quarters of a picture, red and green over blue and white.
+    let mut scene = card_at(Vec3::ZERO, 0.02);
+    scene.objects[0].material.base_color = [0.9; 3];
+    scene.objects[0].material.base_color_texture = Some("quarters.png".into());
+    scene.camera.position = Vec3::Z * 0.25;
+    scene.lights.push(light(Emitter::Point, Output::Lumens(1000.0), Vec3::new(0.0, 0.3, 1.0)));
+    let rgb = vec![[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
+    let mut assets = Assets::default();
+    assets.textures.insert("quarters.png".into(), std::sync::Arc::new(Texture { width: 2, height: 2, rgb }));
+    let prepared = raytrace::prepare(&scene, &assets).unwrap();
+    let settings = Settings { width: 8, height: 8, method: Method::Direct, spp: 4, ..Settings::default() };
+    let film = raytrace::render(&prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+    let picture = film.develop(&scene);
+    let strongest = |x, y| {
+        let p = picture.at(x, y);
+        (0..3).filter(|&c| p[c] > 0.5 * p[0].max(p[1]).max(p[2])).collect::<Vec<_>>()
+    };
+    // Looking along -Z at a card turned up about X: its +Z edge is below, its texture's top is the -Z edge, above.
+    assert_eq!(strongest(2, 2), [0]);
+    assert_eq!(strongest(5, 2), [1]);
+    assert_eq!(strongest(2, 5), [2]);
+    assert_eq!(strongest(5, 5), [0, 1, 2]);
+}

@@ -51,7 +51,7 @@ pub enum EditorError {
     #[error("there is no display to open a window on: {0}")]
     NoDisplay(String),
     /// There is a display, but nothing that can draw on it.
-    #[error("no graphics adapter can draw the window: {0}")]
+    #[error("no graphics adapter can draw the window (on Debian: apt-get install mesa-vulkan-drivers libvulkan1): {0}")]
     NoGraphics(String),
     /// Anything else that keeps the window from opening.
     #[error("the window could not be opened: {0}")]
