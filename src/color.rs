@@ -17,9 +17,9 @@ pub fn xy_from_kelvin(kelvin: f64) -> (f64, f64) {
     (planck.0 + (daylight.0 - planck.0) * blend, planck.1 + (daylight.1 - planck.1) * blend)
 }
 
-/// Planckian locus, Kim et al. 2002 (US patent 7024034), 1667..25000 K; below, Krystek 1985 in CIE 1960 uv.
+/// Planckian locus by Krystek's rational approximation in CIE 1960 uv (1985): within 1e-4 from 1000 to 15000 K. It is
+/// used up to 5000 K.
 fn planckian_xy(t: f64) -> (f64, f64) {
-    // Krystek's rational approximation is within 1e-4 from 1000 to 15000 K; we use Planck only up to 5000 K.
     let u = (0.860_117_757 + 1.541_182_54e-4 * t + 1.286_412_12e-7 * t * t)
         / (1.0 + 8.424_202_35e-4 * t + 7.081_451_63e-7 * t * t);
     let v = (0.317_398_726 + 4.228_062_45e-5 * t + 4.204_816_91e-8 * t * t)
