@@ -104,7 +104,7 @@ impl<'a> Tracer<'a> {
             let Some(hit) = hit else { return };
             let surface = self.scene.aggregate.surface(&hit);
             let material = &self.scene.materials[surface.material as usize];
-            if material.emission != Vec3::ZERO {
+            if material.glows() {
                 let glow = self.scene.layers.len() - 1;
                 sink.add(glow, throughput * material.emission * self.scene.glow_time_s);
             }

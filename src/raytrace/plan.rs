@@ -14,7 +14,7 @@ const SAMPLE_ALL: usize = 6;
 /// What the tracer does for this scene. Derived from the scene alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderPlan {
-    /// Rays after the first hit may meet emitters: some light has a size.
+    /// Rays after the first hit may meet emitters: some light has a size, or a surface glows.
     pub emitters_have_size: bool,
     /// Surfaces refract.
     pub refraction: bool,
@@ -32,8 +32,10 @@ impl RenderPlan {
     /// Looks at what is there.
     pub fn new(materials: &[Surfacing], lights: &[TracedLight], lens: bool) -> Self {
         let mut reasons = Vec::new();
-        let emitters_have_size = lights.iter().any(TracedLight::has_size);
-        reasons.push(match (lights.is_empty(), emitters_have_size) {
+        let glow = materials.iter().any(Surfacing::glows);
+        let sized_lights = lights.iter().any(TracedLight::has_size);
+        let emitters_have_size = sized_lights || glow;
+        reasons.push(match (lights.is_empty(), sized_lights) {
             (true, _) => "no light is on: only glowing surfaces are traced".to_owned(),
             (false, true) => "some light has a size: lights are met by rays as well as sampled (MIS)".to_owned(),
             (false, false) => "point, spot and sharp sun only: no rays towards emitters, no MIS".to_owned(),

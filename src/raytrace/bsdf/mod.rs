@@ -52,6 +52,11 @@ impl Surfacing {
         }
     }
 
+    /// Whether the surface gives off light.
+    pub fn glows(&self) -> bool {
+        self.emission != Vec3::ZERO
+    }
+
     /// Whether some light goes through.
     pub fn transmits(&self) -> bool {
         self.transmission > 0.0
