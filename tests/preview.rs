@@ -548,7 +548,17 @@ fn every_shipped_studio_is_laid_out_as_the_tracer_sees_it_and_is_not_black() {
 #[test]
 fn direct_light_on_a_figure_agrees_with_the_tracer() {
     let Some((_gpu, mut renderer)) = renderer() else { return };
-    for name in ["three_point", "rembrandt", "product_still_life"] {
+    // A twentieth of a stop in the middle is what no eye sees; penumbras from one map a light stray farther. The last
+    // has no light from the front at all: what is seen is the grazing edge of gloss and shadow, where maps are weakest.
+    let studios = [
+        ("three_point", 0.03, 0.15),
+        ("rembrandt", 0.03, 0.2),
+        ("product_still_life", 0.03, 0.3),
+        ("window_light", 0.03, 0.2),
+        ("split", 0.08, 0.45),
+        ("rim_low_key", 0.7, 1.4),
+    ];
+    for (name, median_limit, tenth_limit) in studios {
         let mut loaded = catchlight::io::find_preset(name).unwrap().load().unwrap();
         // Mirrors and glass show what no rasteriser sees.
         for object in &mut loaded.scene.objects {
@@ -582,8 +592,7 @@ fn direct_light_on_a_figure_agrees_with_the_tracer() {
         errors.sort_by(f32::total_cmp);
         let (median, tenth_worst) = (errors[errors.len() / 2], errors[errors.len() * 9 / 10]);
         println!("{name}: median {median:.3} stops, 90 % within {tenth_worst:.3}");
-        // A twentieth of a stop is what an eye does not see; penumbras of one shadow map a light stray farther.
-        assert!(median < 0.05 && tenth_worst < 0.4, "{name}: {median} and {tenth_worst} stops");
+        assert!(median < median_limit && tenth_worst < tenth_limit, "{name}: {median} and {tenth_worst} stops");
     }
 }
 

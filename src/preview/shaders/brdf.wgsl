@@ -4,10 +4,38 @@ struct Material {
     diffuse: vec3f,
     f0: vec3f,
     alpha2: f32,
-    // Loss of single scattering given back, by its mean (Turquin 2019).
+    // Light lost between facets given back, by its mean (Turquin 2019).
     boost: vec3f,
     // Directional albedo of the coat or metal.
     reflectance: vec3f,
+}
+
+// A point to be lit.
+struct Shading {
+    position: vec3f,
+    normal: vec3f,
+    // Two directions that make a frame with the normal.
+    tangent: vec3f,
+    bitangent: vec3f,
+    view: vec3f,
+    n_dot_v: f32,
+    material: Material,
+}
+
+// A point with its frame (Duff et al. 2017).
+fn shading(position: vec3f, normal: vec3f, view: vec3f, base: vec3f, gloss: vec3f) -> Shading {
+    var s: Shading;
+    let sign = select(-1.0, 1.0, normal.z >= 0.0);
+    let a = -1.0 / (sign + normal.z);
+    let b = normal.x * normal.y * a;
+    s.tangent = vec3f(1.0 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x);
+    s.bitangent = vec3f(b, sign + normal.y * normal.y * a, -normal.y);
+    s.position = position;
+    s.normal = normal;
+    s.view = view;
+    s.n_dot_v = max(dot(normal, view), 1e-3);
+    s.material = material(base, gloss, s.n_dot_v);
+    return s;
 }
 
 // Schlick's Fresnel; a surface of next to no reflectance (a grey card of index 1) stays without at grazing angles.
@@ -17,11 +45,19 @@ fn schlick(f0: vec3f, cosine: f32) -> vec3f {
     return f0 + (saturate(50.0 * f0) - f0) * (x2 * x2 * x);
 }
 
-// Directional albedo of GGX with f0 as (scale, bias): Karis 2014, physically based shading on mobile.
+// Directional albedo of GGX under height-correlated Smith masking with Schlick's Fresnel: factors of f0 and f90. Our fit
+// of the integral, 0.01 in the mean for cosines over 0.1.
 fn albedo_scale_bias(n_dot_v: f32, roughness: f32) -> vec2f {
-    let r = roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
-    let a = min(r.x * r.x, exp2(-9.28 * n_dot_v)) * r.x + r.y;
-    return vec2f(-1.04, 1.04) * a + r.zw;
+    let r = roughness;
+    let x = n_dot_v;
+    let p0 = 2.4759 + x * (-6.1760 + 2.7884 * x);
+    let p1 = -5.3802 + x * (18.1899 - 9.3620 * x);
+    let p2 = 3.0843 + x * (-11.0647 + 6.1318 * x);
+    let whole = saturate(1.0 - r * r * (p0 + r * (p1 + r * p2)));
+    let y = 1.0 - x;
+    let y2 = y * y;
+    let bias = y2 * y2 * y * (1.0 + r * (0.5558 + r * (-10.0677 + r * (15.4936 - 6.9515 * r))));
+    return vec2f(whole - bias, bias);
 }
 
 fn material(base: vec3f, gloss: vec3f, n_dot_v: f32) -> Material {
@@ -31,30 +67,116 @@ fn material(base: vec3f, gloss: vec3f, n_dot_v: f32) -> Material {
     m.alpha2 = max(alpha * alpha, 1e-6);
     m.f0 = mix(vec3f(gloss.y * gloss.y), base, gloss.z);
     let ab = albedo_scale_bias(n_dot_v, gloss.x);
-    let single = saturate(m.f0 * ab.x + saturate(50.0 * m.f0) * ab.y);
-    m.boost = 1.0 + m.f0 * (1.0 / max(ab.x + ab.y, 0.3) - 1.0);
+    let single = m.f0 * ab.x + saturate(50.0 * m.f0) * ab.y;
+    m.boost = 1.0 + m.f0 * (1.0 / max(ab.x + ab.y, LOWEST_ROUND) - 1.0);
     m.reflectance = single * m.boost;
     m.diffuse = base * (1.0 - gloss.z) * (1.0 - max(single.x, max(single.y, single.z)));
     return m;
 }
 
-// Radiance of a light's highlight, as a factor of its colour. The lobe's width adds to the emitter's: where the emitter
-// is small this is GGX times its illuminance, where it fills the lobe its luminance times the reflectance.
-fn highlight(m: Material, a: Arrival, normal: vec3f, view: vec3f, n_dot_v: f32) -> vec3f {
-    let n_dot_l = dot(normal, a.direction);
-    if n_dot_l <= 0.0 || a.perpendicular <= 0.0 {
-        return vec3f(0.0);
-    }
-    let half_sum = a.direction + view;
+// Smith masking and shadowing, height-correlated, over the two cosines and 4: what D and F are multiplied by.
+fn masking(alpha2: f32, n_dot_v: f32, n_dot_l: f32) -> f32 {
+    return 0.5 / (n_dot_l * sqrt(alpha2 + (1.0 - alpha2) * n_dot_v * n_dot_v)
+        + n_dot_v * sqrt(alpha2 + (1.0 - alpha2) * n_dot_l * n_dot_l));
+}
+
+// Highlight of a light without a size, for unit illuminance normal to it.
+fn glint(s: Shading, direction: vec3f, radius: f32) -> vec3f {
+    let n_dot_l = dot(s.normal, direction);
+    let half_sum = direction + s.view;
     let half_vector = half_sum * inverseSqrt(max(dot(half_sum, half_sum), 1e-20));
-    let across = cross(normal, half_vector);
-    let n_dot_h = dot(normal, half_vector);
-    let falloff = m.alpha2 / (m.alpha2 * n_dot_h * n_dot_h + dot(across, across));
-    let peak = 1.0 / (PI * m.alpha2 + a.solid_angle / (4.0 * n_dot_v));
-    let masking = 0.5 / (n_dot_l * sqrt(m.alpha2 + (1.0 - m.alpha2) * n_dot_v * n_dot_v)
-        + n_dot_v * sqrt(m.alpha2 + (1.0 - m.alpha2) * n_dot_l * n_dot_l));
-    let fresnel = schlick(m.f0, dot(view, half_vector));
-    return fresnel * m.boost * (falloff * falloff * peak * masking * n_dot_l * a.perpendicular);
+    let across = cross(s.normal, half_vector);
+    let n_dot_h = dot(s.normal, half_vector);
+    // A sun's disc widens the lobe.
+    let alpha2 = s.material.alpha2 + 0.25 * radius * radius;
+    let lobe = alpha2 / (alpha2 * n_dot_h * n_dot_h + dot(across, across));
+    let value = lobe * lobe / (PI * alpha2) * masking(s.material.alpha2, s.n_dot_v, max(n_dot_l, 1e-4)) * n_dot_l;
+    return schlick(s.material.f0, dot(s.view, half_vector)) * s.material.boost * select(0.0, value, n_dot_l > 0.0);
+}
+
+// Least height of a half vector, as a part of the distance: where emitter and viewer face each other over a grazing
+// surface, slopes run to infinity. The disc's two axes tell less than the corners of a rectangle and need more.
+const LOWEST: f32 = 0.1;
+const LOWEST_ROUND: f32 = 0.3;
+
+// Slope of the half vector towards a point of the emitter, in the frame of the normal.
+fn slope_to(s: Shading, p: vec3f, lowest: f32) -> vec2f {
+    let distance = sqrt(dot(p, p));
+    let half_vector = p + s.view * distance;
+    let height = max(dot(half_vector, s.normal), lowest * distance);
+    return vec2f(dot(half_vector, s.tangent), dot(half_vector, s.bitangent)) / height;
+}
+
+// Part of the facets whose slopes lie in a disc of squared radius `reach2` about a slope of squared length `off2`. The
+// distribution is that of an even sphere in stereographic projection, so the disc is a cap.
+fn facets_in_disc(reach2: f32, off2: f32, alpha2: f32) -> f32 {
+    let sum = off2 + alpha2 + reach2;
+    return 0.5 - 0.5 * (off2 + alpha2 - reach2) * inverseSqrt(max(sum * sum - 4.0 * off2 * reach2, 1e-30));
+}
+
+// Part of the facets whose slopes lie in a hexagon. GGX over the plane of slopes is the form factor of that plane
+// seen from a height alpha, so Lambert's formula gives it.
+fn facets_in_hexagon(slopes: array<vec2f, 6>, alpha: f32) -> f32 {
+    let up = vec3f(0.0, 0.0, 1.0);
+    var sum = 0.0;
+    for (var i = 0u; i < 6u; i++) {
+        let next = select(i + 1u, 0u, i == 5u);
+        sum += edge_part(vec3f(slopes[i], alpha), vec3f(slopes[next], alpha), up);
+    }
+    return abs(sum) / (2.0 * PI);
+}
+
+// Highlight of an emitter of unit luminance with a middle and half axes: mirrored to half vectors it covers a region of
+// slopes, and as many facets as have such slopes show it.
+fn highlight(s: Shading, a: Arrival, round: bool) -> vec3f {
+    let alpha2 = s.material.alpha2;
+    var middle: vec2f;
+    var slope_u: vec2f;
+    var slope_v: vec2f;
+    var part: f32;
+    if round {
+        let left = slope_to(s, a.centre - a.right, LOWEST_ROUND);
+        let right = slope_to(s, a.centre + a.right, LOWEST_ROUND);
+        let low = slope_to(s, a.centre - a.up, LOWEST_ROUND);
+        let high = slope_to(s, a.centre + a.up, LOWEST_ROUND);
+        middle = 0.25 * (left + right + low + high);
+        slope_u = 0.5 * (right - left);
+        slope_v = 0.5 * (high - low);
+    } else {
+        // The corners, and the middles of the sides along `up`: strips are mirrored in curves.
+        let p = slope_to(s, a.centre - a.right - a.up, LOWEST);
+        let q = slope_to(s, a.centre + a.right - a.up, LOWEST);
+        let r = slope_to(s, a.centre + a.right, LOWEST);
+        let t = slope_to(s, a.centre + a.right + a.up, LOWEST);
+        let u = slope_to(s, a.centre - a.right + a.up, LOWEST);
+        let w = slope_to(s, a.centre - a.right, LOWEST);
+        middle = 0.5 * (r + w);
+        slope_u = 0.5 * (r - w);
+        slope_v = 0.25 * (t + u - p - q);
+        part = facets_in_hexagon(array(p, q, r, t, u, w), sqrt(alpha2));
+    }
+    // Where the mirror direction is, in half axes from the emitter's middle.
+    let area = slope_u.x * slope_v.y - slope_u.y * slope_v.x;
+    let safe_area = select(area, 1e-12, abs(area) < 1e-12);
+    let mirror = vec2f(slope_v.x * middle.y - slope_v.y * middle.x, slope_u.y * middle.x - slope_u.x * middle.y)
+        / safe_area;
+    if round {
+        part = facets_in_disc(abs(area), dot(mirror, mirror) * abs(area), alpha2);
+    }
+    // Fresnel and masking at the emitter's point that is nearest to the mirror direction.
+    let in_square = clamp(mirror, vec2f(-1.0), vec2f(1.0));
+    let in_disc = mirror * inverseSqrt(max(dot(mirror, mirror), 1.0));
+    let nearest = select(in_square, in_disc, round);
+    let telling = a.centre + nearest.x * a.right + nearest.y * a.up;
+    let direction = telling * inverseSqrt(max(dot(telling, telling), 1e-20));
+    let half_sum = direction + s.view;
+    let half_vector = half_sum * inverseSqrt(max(dot(half_sum, half_sum), 1e-20));
+    // That point may be below the horizon while others are not.
+    let n_dot_l = max(dot(s.normal, direction), 0.08);
+    let v_dot_h = dot(s.view, half_vector);
+    let n_dot_h = max(dot(s.normal, half_vector), 0.05);
+    let weight = masking(alpha2, s.n_dot_v, n_dot_l) * 4.0 * n_dot_l * v_dot_h / n_dot_h;
+    return schlick(s.material.f0, v_dot_h) * s.material.boost * (part * weight);
 }
 
 // What a mirror shows where no light stands: the box around the subjects, the blurrier the rougher the mirror.

@@ -46,21 +46,21 @@ fn fragment(in: Corner) -> Pixel {
     let s = in.surface;
     let n_dot_v = max(dot(normal, view), 1e-3);
     let gloss = vec3f(surfaces[s].roughness, (surfaces[s].ior - 1.0) / (surfaces[s].ior + 1.0), 0.0);
-    let coat = material(vec3f(0.0), gloss, n_dot_v);
+    let coat = shading(in.world, normal, view, vec3f(0.0), gloss);
     let mirror = reflect(-view, normal);
-    let fresnel = schlick(coat.f0, n_dot_v);
+    let fresnel = schlick(coat.material.f0, n_dot_v);
     var radiance = environment(in.world, mirror, gloss.x) * fresnel;
     if HAS_DELTA {
-        radiance += glints(0u, frame.light_ends.x, 0u, coat, in.world, normal, view, n_dot_v, mirror);
+        radiance += glints(coat, 0u, frame.light_ends.x, 0u);
     }
     if HAS_SPHERES {
-        radiance += glints(frame.light_ends.x, frame.light_ends.y, 1u, coat, in.world, normal, view, n_dot_v, mirror);
+        radiance += glints(coat, frame.light_ends.x, frame.light_ends.y, 1u);
     }
     if HAS_RECTS {
-        radiance += glints(frame.light_ends.y, frame.light_ends.z, 2u, coat, in.world, normal, view, n_dot_v, mirror);
+        radiance += glints(coat, frame.light_ends.y, frame.light_ends.z, 2u);
     }
     if HAS_DISCS {
-        radiance += glints(frame.light_ends.z, frame.light_ends.w, 3u, coat, in.world, normal, view, n_dot_v, mirror);
+        radiance += glints(coat, frame.light_ends.z, frame.light_ends.w, 3u);
     }
     // Glass bends light most at its rim, where it gathers what is dark around it.
     let rim = pow(1.0 - n_dot_v, 3.0);
@@ -81,32 +81,24 @@ fn fragment(in: Corner) -> Pixel {
 }
 
 // Highlights of a family of lights.
-fn glints(
-    first: u32,
-    end: u32,
-    family: u32,
-    coat: Material,
-    position: vec3f,
-    normal: vec3f,
-    view: vec3f,
-    n_dot_v: f32,
-    mirror: vec3f,
-) -> vec3f {
+fn glints(coat: Shading, first: u32, end: u32, family: u32) -> vec3f {
     var sum = vec3f(0.0);
     for (var light = first; light < end; light++) {
         var a: Arrival;
-        switch family {
-            case 0u: {
-                a = delta_arrival(light, position, normal, mirror);
-            }
-            case 1u: {
-                a = sphere_arrival(light, position, normal, mirror);
-            }
-            default: {
-                a = panel_highlight(light, lights[light].position - position, mirror, family == 3u);
-            }
+        var value: vec3f;
+        if family == 0u {
+            let point = delta_arrival(light, coat.position);
+            value = glint(coat, point.xyz, lights[light].radius) * point.w;
+        } else if family == 1u {
+            value = highlight(coat, sphere_arrival(light, coat.position, coat.normal), true);
+        } else {
+            a.centre = lights[light].position - coat.position;
+            a.right = lights[light].right;
+            a.up = lights[light].up;
+            let before = dot(a.centre, lights[light].axis) < 0.0;
+            value = select(vec3f(0.0), highlight(coat, a, family == 3u), before);
         }
-        sum += highlight(coat, a, normal, view, n_dot_v) * lights[light].color;
+        sum += value * lights[light].color;
     }
     return sum;
 }

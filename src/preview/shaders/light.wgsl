@@ -108,26 +108,18 @@ fn sphere_irradiance(cosine: f32, distance: f32, radius: f32) -> f32 {
     return max(squared * cosine * acos(inside) - edge + atan2(sqrt(max(squared - cosine * cosine, 0.0)), sqrt(1.0 - squared)), 0.0);
 }
 
-// What a light does at a point, before shadow.
+// A light as a point sees it, before shadow.
 struct Arrival {
     // Irradiance, as a factor of the light's colour.
     irradiance: f32,
-    // Solid angle of the emitter and normal illuminance for the highlight, as a factor of the colour.
-    solid_angle: f32,
-    perpendicular: f32,
-    // Where the highlight comes from, unit.
-    direction: vec3f,
+    // Middle of the emitter, and its half axes: none of a size for points.
+    centre: vec3f,
+    right: vec3f,
+    up: vec3f,
 }
 
-// Most telling direction of a ball: the one nearest to the mirror direction (Karis 2013).
-fn toward_ball(to_centre: vec3f, radius: f32, mirror: vec3f) -> vec3f {
-    let off = dot(to_centre, mirror) * mirror - to_centre;
-    return normalize(to_centre + off * saturate(radius * inverseSqrt(max(dot(off, off), 1e-20))));
-}
-
-// A light without a size, or the sun.
-fn delta_arrival(light: u32, position: vec3f, normal: vec3f, mirror: vec3f) -> Arrival {
-    var out: Arrival;
+// What a point, a spot or a sun sends to a place: illuminance normal to its direction (w) and the direction.
+fn delta_arrival(light: u32, position: vec3f) -> vec4f {
     let kind = lights[light].kind;
     let axis = lights[light].axis;
     let to_light = lights[light].position - position;
@@ -136,62 +128,34 @@ fn delta_arrival(light: u32, position: vec3f, normal: vec3f, mirror: vec3f) -> A
     let cone = spot_falloff(-dot(direction, axis), lights[light].inner_rad, lights[light].outer_rad);
     let near = select(1.0, cone, kind == KIND_SPOT) / squared;
     let is_sun = kind == KIND_SUN;
-    let radius = lights[light].radius;
-    let toward = select(direction, -axis, is_sun);
-    out.perpendicular = select(near, 1.0, is_sun);
-    out.irradiance = max(dot(normal, toward), 0.0) * out.perpendicular;
-    out.solid_angle = PI * radius * radius;
-    out.direction = toward_ball(toward, radius, mirror);
-    return out;
+    return vec4f(select(direction, -axis, is_sun), select(near, 1.0, is_sun));
 }
 
-fn sphere_arrival(light: u32, position: vec3f, normal: vec3f, mirror: vec3f) -> Arrival {
+fn sphere_arrival(light: u32, position: vec3f, normal: vec3f) -> Arrival {
     var out: Arrival;
-    let to_light = lights[light].position - position;
-    let distance = sqrt(max(dot(to_light, to_light), 1e-12));
+    out.centre = lights[light].position - position;
+    let squared = max(dot(out.centre, out.centre), 1e-12);
+    let direction = out.centre * inverseSqrt(squared);
     let radius = lights[light].radius;
-    out.irradiance = sphere_irradiance(dot(normal, to_light) / distance, distance, radius);
-    let sine = min(radius / distance, 1.0);
-    out.solid_angle = 2.0 * PI * (1.0 - sqrt(1.0 - sine * sine));
-    out.perpendicular = out.solid_angle;
-    out.direction = toward_ball(to_light, radius, mirror);
+    out.irradiance = sphere_irradiance(dot(normal, direction), sqrt(squared), radius);
+    // The disc that covers the ball from here.
+    let sine = min(radius * inverseSqrt(squared), 0.99);
+    let across = cross(direction, select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(direction.y) < 0.9));
+    out.right = across * (inverseSqrt(dot(across, across)) * radius * inverseSqrt(1.0 - sine * sine));
+    out.up = cross(direction, out.right);
     return out;
 }
 
-// A panel but for its irradiance: the highlight comes from where the mirror ray hits the panel's plane, moved into the
-// panel. A ray that runs away from the plane counts as hitting it far off.
-fn panel_highlight(light: u32, to_light: vec3f, mirror: vec3f, round: bool) -> Arrival {
+fn panel_arrival(light: u32, position: vec3f, normal: vec3f, round: bool) -> Arrival {
     var out: Arrival;
-    let axis = lights[light].axis;
-    let right = lights[light].right;
-    let up = lights[light].up;
-    let height = max(-dot(to_light, axis), 0.0);
-    let hit = mirror * (height / max(-dot(mirror, axis), 1e-3)) - to_light;
-    let local = vec2f(dot(hit, right) / dot(right, right), dot(hit, up) / dot(up, up));
-    let in_square = clamp(local, vec2f(-1.0), vec2f(1.0));
-    let in_disc = local * inverseSqrt(max(dot(local, local), 1.0));
-    let nearest = select(in_square, in_disc, round);
-    let telling = to_light + nearest.x * right + nearest.y * up;
-    let reach = max(dot(telling, telling), 1e-12);
-    out.direction = telling * inverseSqrt(reach);
-    let flat_angle = lights[light].area_m2 * height * inverseSqrt(reach) / reach;
-    out.solid_angle = flat_angle / (1.0 + flat_angle / (2.0 * PI));
-    out.perpendicular = out.solid_angle;
-    return out;
-}
-
-fn rect_arrival(light: u32, position: vec3f, normal: vec3f, mirror: vec3f) -> Arrival {
-    let to_light = lights[light].position - position;
-    var out = panel_highlight(light, to_light, mirror, false);
-    let before = dot(to_light, lights[light].axis) < 0.0;
-    out.irradiance = select(0.0, rect_irradiance(to_light, lights[light].right, lights[light].up, normal), before);
-    return out;
-}
-
-fn disc_arrival(light: u32, position: vec3f, normal: vec3f, mirror: vec3f) -> Arrival {
-    let to_light = lights[light].position - position;
-    var out = panel_highlight(light, to_light, mirror, true);
-    let before = dot(to_light, lights[light].axis) < 0.0;
-    out.irradiance = select(0.0, disc_irradiance(to_light, lights[light].right, lights[light].up, normal), before);
+    out.centre = lights[light].position - position;
+    out.right = lights[light].right;
+    out.up = lights[light].up;
+    if round {
+        out.irradiance = disc_irradiance(out.centre, out.right, out.up, normal);
+    } else {
+        out.irradiance = rect_irradiance(out.centre, out.right, out.up, normal);
+    }
+    out.irradiance = select(0.0, out.irradiance, dot(out.centre, lights[light].axis) < 0.0);
     return out;
 }

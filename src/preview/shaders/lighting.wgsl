@@ -21,25 +21,19 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     return fullscreen_corner(index);
 }
 
-fn shown(radiance: vec3f) -> vec4f {
+fn shown(radiance: vec3f, at: vec2f) -> vec4f {
     if LINEAR {
         return vec4f(radiance, 1.0);
     }
-    return vec4f(srgb_encode(tone_curve(radiance)), 1.0);
+    // Less than one code of noise (Jimenez 2014, interleaved gradient noise), so that soft backdrops show no bands.
+    let noise = fract(52.9829189 * fract(dot(at, vec2f(0.06711056, 0.00583715)))) - 0.5;
+    return vec4f(srgb_encode(tone_curve(radiance)) + noise * (0.9 / 255.0), 1.0);
 }
 
-struct Shading {
-    position: vec3f,
-    normal: vec3f,
-    view: vec3f,
-    mirror: vec3f,
-    n_dot_v: f32,
-    material: Material,
-}
-
-fn reflected(s: Shading, light: u32, a: Arrival) -> vec3f {
+// An emitter with a size. What has none of its light above the horizon gives no highlight either.
+fn reflected(s: Shading, light: u32, a: Arrival, round: bool) -> vec3f {
     let diffuse = s.material.diffuse * (a.irradiance / PI);
-    let glossy = highlight(s.material, a, s.normal, s.view, s.n_dot_v);
+    let glossy = highlight(s, a, round);
     return (diffuse + select(vec3f(0.0), glossy, a.irradiance > 0.0)) * lights[light].color;
 }
 
@@ -81,28 +75,25 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let ray = pixel_ray(at.xy);
     let gloss = unpack_gloss(packed.w);
     let face = unpack_direction(packed.z);
-    var s: Shading;
-    s.position = frame.eye + ray * (frame.near_m / depth);
-    s.view = -normalize(ray);
-    s.normal = unpack_direction(packed.x);
-    s.n_dot_v = max(dot(s.normal, s.view), 1e-3);
-    s.material = material(unpack_color(packed.y), gloss, s.n_dot_v);
-    s.mirror = reflect(-s.view, s.normal);
+    let position = frame.eye + ray * (frame.near_m / depth);
+    let s = shading(position, unpack_direction(packed.x), -normalize(ray), unpack_color(packed.y), gloss);
 
     var lit: array<vec4f, 4>;
     for (var mask = 0u; mask < MASKS; mask++) {
         lit[mask] = shadow(mask, at.xy, depth, face);
     }
     var radiance = s.material.diffuse * ambient(s.normal) / PI;
-    radiance += environment(s.position, s.mirror, gloss.x) * s.material.reflectance;
+    radiance += environment(position, reflect(-s.view, s.normal), gloss.x) * s.material.reflectance;
 
     // The loops test at their end: there is at least one light of a family, and a rasteriser on a processor pays for
     // the turn that a test at the start would leave at once.
     if HAS_DELTA {
         var light = 0u;
         loop {
-            let a = delta_arrival(light, s.position, s.normal, s.mirror);
-            radiance += reflected(s, light, a) * lit_by(&lit, light);
+            let a = delta_arrival(light, position);
+            let glossy = glint(s, a.xyz, lights[light].radius);
+            let diffuse = s.material.diffuse * (max(dot(s.normal, a.xyz), 0.0) / PI);
+            radiance += (diffuse + glossy) * lights[light].color * (a.w * lit_by(&lit, light));
             light++;
             continuing {
                 break if light >= frame.light_ends.x;
@@ -112,8 +103,8 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     if HAS_SPHERES {
         var light = frame.light_ends.x;
         loop {
-            let a = sphere_arrival(light, s.position, s.normal, s.mirror);
-            radiance += reflected(s, light, a) * lit_by(&lit, light);
+            let a = sphere_arrival(light, position, s.normal);
+            radiance += reflected(s, light, a, true) * lit_by(&lit, light);
             light++;
             continuing {
                 break if light >= frame.light_ends.y;
@@ -123,8 +114,8 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     if HAS_RECTS {
         var light = frame.light_ends.y;
         loop {
-            let a = rect_arrival(light, s.position, s.normal, s.mirror);
-            radiance += reflected(s, light, a) * lit_by(&lit, light);
+            let a = panel_arrival(light, position, s.normal, false);
+            radiance += reflected(s, light, a, false) * lit_by(&lit, light);
             light++;
             continuing {
                 break if light >= frame.light_ends.z;
@@ -134,8 +125,8 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     if HAS_DISCS {
         var light = frame.light_ends.z;
         loop {
-            let a = disc_arrival(light, s.position, s.normal, s.mirror);
-            radiance += reflected(s, light, a) * lit_by(&lit, light);
+            let a = panel_arrival(light, position, s.normal, true);
+            radiance += reflected(s, light, a, true) * lit_by(&lit, light);
             light++;
             continuing {
                 break if light >= frame.light_ends.w;
@@ -146,7 +137,7 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     if kind != 0u {
         radiance = select(radiance, vec3f(0.0), kind == 2u) + surfaces[(id.x & MARK_NUMBER) - 1u].emission;
     }
-    return shown(select(radiance, frame.void_radiance, id.x == 0u));
+    return shown(select(radiance, frame.void_radiance, id.x == 0u), at.xy);
 }
 
 // Shadow of a light: four lights a mask, the rest are lit.
