@@ -2,6 +2,7 @@
 
 use crate::io::{self, Loaded};
 use anyhow::Context;
+use glam::Vec3;
 use std::path::Path;
 
 /// Largest picture edge, pixels.
@@ -42,6 +43,15 @@ pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
     Ok((width, height))
 }
 
+/// A place or direction like `0,1.4,-0.1`.
+pub fn parse_vec3(text: &str) -> Result<Vec3, String> {
+    let wrong = || format!("`{text}` is no place: write X,Y,Z in metres, such as 0,1.4,-0.1");
+    let parts: Vec<f32> =
+        text.split(',').map(|part| part.trim().parse().map_err(|_| wrong())).collect::<Result<_, _>>()?;
+    let vector = <[f32; 3]>::try_from(parts).map(Vec3::from).map_err(|_| wrong())?;
+    if vector.is_finite() { Ok(vector) } else { Err(wrong()) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -51,6 +61,14 @@ mod tests {
         assert_eq!(parse_size("640x480"), Ok((640, 480)));
         for wrong in ["640", "0x5", "x", "-3x4", "1e3x5", "99999x1", "640x480x3"] {
             assert!(parse_size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn places_have_three_finite_numbers() {
+        assert_eq!(parse_vec3("-1, 2.5,3e-1"), Ok(Vec3::new(-1.0, 2.5, 0.3)));
+        for wrong in ["1,2", "1,2,3,4", "", "a,b,c", "1;2;3", "NaN,0,0", "0,inf,0", "1e39,0,0"] {
+            assert!(parse_vec3(wrong).is_err(), "{wrong}");
         }
     }
 }

@@ -6,6 +6,7 @@
 mod bake;
 mod check;
 mod input;
+mod meter;
 mod presets;
 mod preview;
 mod render;
@@ -33,6 +34,8 @@ enum Command {
     Render(render::Arguments),
     /// Draw the live preview of a studio to a picture, without a window.
     Preview(preview::Arguments),
+    /// Read a light meter at a place of a studio: every light, direct and bounced.
+    Meter(meter::Arguments),
     /// Say what is wrong or odd with a studio file.
     Check(check::Arguments),
     /// List the shipped studios.
@@ -73,6 +76,7 @@ pub fn run(started: Instant) -> ExitCode {
         None => open(arguments.scene),
         Some(Command::Render(arguments)) => render::run(&arguments, started),
         Some(Command::Preview(arguments)) => preview::run(&arguments),
+        Some(Command::Meter(arguments)) => meter::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::Presets(arguments)) => presets::run(&arguments),
         Some(Command::BakeMannequins(arguments)) => bake::run(&arguments),

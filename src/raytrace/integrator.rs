@@ -77,7 +77,8 @@ impl<'a> Tracer<'a> {
         self.scene.aggregate.closest(ray, &mut self.stack)
     }
 
-    fn blocked(&mut self, origin: Vec3, direction: Vec3, distance: f32) -> bool {
+    /// Whether anything but emitters lies between a point and one at `distance` from it.
+    pub fn blocked(&mut self, origin: Vec3, direction: Vec3, distance: f32) -> bool {
         self.rays += 1;
         // Stop short of the emitter by the rounding of the distance: it may lie on a surface.
         let ray = Ray { origin, direction, t_max: distance * (1.0 - 4.0 * f32::EPSILON) };

@@ -67,10 +67,22 @@ impl RenderScene {
 /// Prepares a scene: trees, tables and the plan. Fails only for scenes that `validate` calls wrong; after it has
 /// succeeded nothing in the tracer can fail.
 pub fn prepare(scene: &Scene, assets: &Assets) -> Result<RenderScene, PrepareError> {
+    prepare_around(scene, assets, scene.camera.position, film::assign_layers)
+}
+
+/// How lights get the layers that they add to.
+pub(super) type AssignLayers = fn(&Scene, &mut [(TracedLight, &Light)]) -> Vec<Layer>;
+
+/// Prepares a scene with the tracer's origin at `eye`: what lies near it keeps the most digits.
+pub(super) fn prepare_around(
+    scene: &Scene,
+    assets: &Assets,
+    eye: Vec3,
+    assign_layers: AssignLayers,
+) -> Result<RenderScene, PrepareError> {
     if let Some(error) = scene::validate(scene).into_iter().find(|f| f.severity == Severity::Error) {
         return Err(PrepareError::Invalid(format!("{}: {}", error.place, error.message)));
     }
-    let eye = scene.camera.position;
     let mut tables = Tables::default();
     let placed = place_everything(scene, assets, &mut tables);
     let geometries = build_geometries(placed.iter().map(|p| &p.mesh));
@@ -81,7 +93,7 @@ pub fn prepare(scene: &Scene, assets: &Assets) -> Result<RenderScene, PrepareErr
             Instance::new(geometry, relative_to(p.world_from_object, eye), p.object, p.materials)
         })
         .collect();
-    let (lights, layers) = trace_lights(scene, eye);
+    let (lights, layers) = trace_lights(scene, eye, assign_layers);
     let layer_times = layer_times(&lights, &layers);
     let lens = Lens::new(scene);
     let plan = RenderPlan::new(&tables.materials, &lights, lens.has_aperture());
@@ -169,14 +181,14 @@ fn build_geometries<'a>(meshes: impl Iterator<Item = &'a Arc<Mesh>>) -> HashMap<
     built.into_iter().map(|g| (Arc::as_ptr(g.mesh()), g)).collect()
 }
 
-fn trace_lights(scene: &Scene, eye: Vec3) -> (Vec<TracedLight>, Vec<Layer>) {
+fn trace_lights(scene: &Scene, eye: Vec3, assign_layers: AssignLayers) -> (Vec<TracedLight>, Vec<Layer>) {
     let traced = |light| {
         let frame = relative_to(scene.light_frame(light), eye);
         let time_s = exposure::integration_time_s(&light.power.output, &scene.camera);
         Some((TracedLight::new(light, frame, time_s)?, light))
     };
     let mut lights: Vec<(TracedLight, &Light)> = scene.lights.iter().filter(|l| l.on).filter_map(traced).collect();
-    let layers = film::assign_layers(scene, &mut lights);
+    let layers = assign_layers(scene, &mut lights);
     (lights.into_iter().map(|(light, _)| light).collect(), layers)
 }
 
