@@ -3,6 +3,8 @@
 mod frame;
 mod ray;
 mod safe;
+#[cfg(test)]
+pub mod statistics;
 pub mod warp;
 
 pub use frame::{look_at, orthonormal_basis};

@@ -53,6 +53,7 @@ pub fn uniform_cone_pdf(one_minus_cos: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::statistics::{ChiSquare, Numbers, share};
 
     #[test]
     fn directions_are_unit_and_in_range() {
@@ -68,16 +69,54 @@ mod tests {
         }
     }
 
+    /// p-value of samples that should fall evenly into the cells of a unit square.
+    fn evenly(seed: u64, cell: impl Fn(Vec2) -> (f32, f32)) -> f64 {
+        const CELLS: usize = 16;
+        const SAMPLES: usize = 100_000;
+        let mut numbers = Numbers::new(seed);
+        let mut counts = vec![0.0; CELLS * CELLS];
+        for _ in 0..SAMPLES {
+            let (u, v) = cell(numbers.square());
+            let index = |x: f32| ((x * CELLS as f32) as usize).min(CELLS - 1);
+            counts[index(v) * CELLS + index(u)] += 1.0;
+        }
+        let mut test = ChiSquare::default();
+        counts.iter().for_each(|&c| test.cell(c, SAMPLES as f64 / (CELLS * CELLS) as f64));
+        test.p_value()
+    }
+
+    fn turn(x: f32, y: f32) -> f32 {
+        let turn = y.atan2(x) / TAU;
+        turn - turn.floor()
+    }
+
     #[test]
-    fn the_disc_is_filled_evenly() {
-        let n = 200;
-        let inside = (0..n * n)
-            .filter(|i| {
-                let u = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32;
-                concentric_disc(u).length() < 0.5
-            })
-            .count();
-        // A quarter of the area lies within half the radius; the grid errs by its boundary cells.
-        assert!((inside as f32 / (n * n) as f32 - 0.25).abs() < 0.01);
+    fn every_warp_follows_its_density() {
+        // Each maps back to the unit square by its cumulative density: radius squared, sin2, height, drop; azimuth.
+        let wide_cone = |w: Vec3| ((1.0 - w.z) / 0.5, turn(w.x, w.y));
+        // 1 - cos of a thin cone from the sine: its cosine has no digits.
+        let thin_cone = |w: Vec3| ((w.x * w.x + w.y * w.y) / 2e-8, turn(w.x, w.y));
+        let results = [
+            evenly(1, |u| (concentric_disc(u).length_squared(), turn(concentric_disc(u).x, concentric_disc(u).y))),
+            evenly(2, |u| {
+                let w = cosine_hemisphere(u);
+                (w.x * w.x + w.y * w.y, turn(w.x, w.y))
+            }),
+            evenly(3, |u| (0.5 - 0.5 * uniform_sphere(u).z, turn(uniform_sphere(u).x, uniform_sphere(u).y))),
+            evenly(4, |u| wide_cone(uniform_cone(u, 0.5))),
+            evenly(5, |u| thin_cone(uniform_cone(u, 1e-8))),
+        ];
+        for (warp, p) in results.iter().enumerate() {
+            assert!(*p > share(results.len()), "warp {warp}: p = {p}");
+        }
+    }
+
+    #[test]
+    fn densities_are_those_of_the_shapes() {
+        for cos in [0.0, 0.3, 1.0] {
+            assert_eq!(cosine_hemisphere_pdf(cos), cos / PI);
+        }
+        assert_eq!(cosine_hemisphere_pdf(-0.1), 0.0);
+        assert!((uniform_cone_pdf(2.0) - 1.0 / (4.0 * PI)).abs() < 1e-8);
     }
 }

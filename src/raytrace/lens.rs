@@ -58,3 +58,49 @@ impl Lens {
         (origin, (direction * self.focus_m - origin).normalize())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::statistics::{ChiSquare, Numbers, share};
+    use crate::scene::{Aim, Camera};
+
+    fn scene(focus: Focus) -> Scene {
+        let aim = Aim::Point(Vec3::NEG_Z * 3.0);
+        let camera = Camera { position: Vec3::ZERO, aim, focal_length_mm: 85.0, f_number: 1.4, ..Camera::default() };
+        Scene { camera: Camera { depth_of_field: true, focus, ..camera }, ..Scene::default() }
+    }
+
+    #[test]
+    fn the_aperture_is_filled_evenly_and_all_its_rays_meet_in_focus() {
+        let lens = Lens::new(&scene(Focus::Distance(2.0)));
+        let frame = lens.frame(1.5);
+        let radius = 0.085 / (2.0 * 1.4);
+        let mut numbers = Numbers::new(31);
+        const CELLS: usize = 12;
+        const SAMPLES: usize = 40_000;
+        let mut counts = vec![0.0; CELLS * CELLS];
+        let picture_point = Vec2::new(0.2, 0.7);
+        for _ in 0..SAMPLES {
+            let (origin, direction) = lens.ray(&frame, picture_point, numbers.square());
+            assert!(origin.z.abs() < 1e-7 && (direction.length() - 1.0).abs() < 1e-5);
+            let focus = origin + direction * ((-2.0 - origin.z) / direction.z);
+            assert!((focus - frame.direction(picture_point) * 2.0).length() < 2e-6);
+            let turn = origin.y.atan2(origin.x) / std::f32::consts::TAU;
+            let index = |x: f32| ((x * CELLS as f32) as usize).min(CELLS - 1);
+            counts[index(origin.length_squared() / (radius * radius)) * CELLS + index(turn - turn.floor())] += 1.0;
+        }
+        let mut test = ChiSquare::default();
+        counts.iter().for_each(|&c| test.cell(c, SAMPLES as f64 / (CELLS * CELLS) as f64));
+        assert!(test.p_value() > share(1), "p = {}", test.p_value());
+    }
+
+    #[test]
+    fn focus_behind_the_camera_is_a_pinhole() {
+        let mut behind = scene(Focus::OnObject { object: crate::scene::ObjectId(9), offset: Vec3::ZERO });
+        behind.camera.position = Vec3::NEG_Z * 5.0;
+        behind.camera.aim = Aim::Point(Vec3::NEG_Z * 9.0);
+        // An object that is gone counts as the origin, which lies behind.
+        assert!(!Lens::new(&behind).has_aperture());
+    }
+}

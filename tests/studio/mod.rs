@@ -1,5 +1,11 @@
 //! Small scenes for tests: a grey card, a ball, a light.
 #![allow(dead_code)]
+#![allow(clippy::unwrap_used)]
+
+pub mod closed_forms;
+pub mod measure;
+#[path = "../../src/math/statistics.rs"]
+pub mod statistics;
 
 use catchlight::scene::{
     Aim, Camera, Emitter, Light, LightColor, LightId, Material, Object, ObjectId, Output, Power, Role, Scene, Sensor,

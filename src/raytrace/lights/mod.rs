@@ -285,3 +285,6 @@ fn panel(point: Vec3, centre: Vec3, normal: Vec3, radius: f32) -> f32 {
     let height = from.dot(normal);
     if height > 0.0 { (height / from.length().max(radius)).clamp(0.02, 1.0) } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests;

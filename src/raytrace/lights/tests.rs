@@ -1,0 +1,249 @@
+//! Samplers of lights against their densities, and every emitter's flux over a sphere around it.
+
+use super::*;
+use crate::math::look_at;
+use crate::math::statistics::{ChiSquare, Estimate, Numbers, share};
+use crate::scene::{Aim, LightColor, LightId, Output, Power, Role};
+
+/// A light at the origin that shines along -Z.
+fn traced(emitter: Emitter, output: Output) -> TracedLight {
+    let light = Light {
+        id: LightId(0),
+        name: "Light".into(),
+        role: Role::Key,
+        position: Vec3::ZERO,
+        aim: Aim::Point(Vec3::NEG_Z),
+        roll_deg: 0.0,
+        emitter,
+        power: Power { output, dial_stops: 0.0 },
+        color: LightColor::default(),
+        on: true,
+        visible_to_camera: false,
+    };
+    TracedLight::new(&light, look_at(Vec3::ZERO, Vec3::NEG_Z, 0.0), 1.0).unwrap()
+}
+
+/// Places before a panel of 0.6 x 0.9 m: on the axis, aside, grazing, close to its middle, edge and corner, far away.
+const PLACES: [Vec3; 10] = [
+    Vec3::new(0.0, 0.0, -1.0),
+    Vec3::new(1.2, 0.3, -0.7),
+    Vec3::new(2.0, -1.0, -0.05),
+    Vec3::new(0.45, 0.1, -0.02),
+    Vec3::new(0.05, -0.1, -0.01),
+    Vec3::new(0.3, 0.45, -0.1),
+    Vec3::new(0.31, 0.0, -0.003),
+    Vec3::new(3.0, 4.0, -12.0),
+    Vec3::new(0.0, 8.0, -0.4),
+    Vec3::new(-20.0, 3.0, -5.0),
+];
+
+const CELLS: usize = 10;
+
+/// Chi-square of a flat emitter's sampler on a grid of its surface. `place(u, v)` maps the grid's unit square to the
+/// surface with a constant area density, `cell` back.
+fn flat_sampler_p(
+    light: &TracedLight,
+    from: Vec3,
+    area: f32,
+    place: impl Fn(f64, f64) -> Vec3,
+    cell: impl Fn(Vec3) -> (f32, f32),
+    numbers: &mut Numbers,
+) -> f64 {
+    const SAMPLES: usize = 40_000;
+    // The density over a cell, on a finer grid: near places make it vary over a cell by orders of magnitude.
+    const FINE: usize = 40;
+    let mut counts = vec![0.0; CELLS * CELLS];
+    let mut drawn = 0.0;
+    for _ in 0..SAMPLES {
+        let Some(sample) = light.sample(from, numbers.square()) else { continue };
+        let (u, v) = cell(from + sample.direction * sample.distance);
+        let index = |x: f32| ((x * CELLS as f32) as usize).min(CELLS - 1);
+        counts[index(v) * CELLS + index(u)] += 1.0;
+        drawn += 1.0;
+    }
+    let mut expected = vec![0.0_f64; CELLS * CELLS];
+    let steps = CELLS * FINE;
+    for i in 0..steps {
+        for j in 0..steps {
+            let target = place((i as f64 + 0.5) / steps as f64, (j as f64 + 0.5) / steps as f64);
+            let to = target - from;
+            let (distance, direction) = (to.length(), to.normalize());
+            let cos = f64::from(direction.z.abs());
+            let solid_angle = f64::from(area) / (steps * steps) as f64 * cos / f64::from(distance * distance);
+            let pdf = f64::from(light.pdf(from, direction, distance));
+            expected[j / FINE * CELLS + i / FINE] += pdf * solid_angle;
+        }
+    }
+    let total: f64 = expected.iter().sum();
+    // The density is that of all samples: midpoints on 400 x 400 points integrate it to better than half a percent.
+    assert!((total - 1.0).abs() < 5e-3, "the density integrates to {total} seen from {from}");
+    let mut test = ChiSquare::default();
+    counts.iter().zip(&expected).for_each(|(&c, &e)| test.cell(c, e / total * drawn));
+    test.p_value()
+}
+
+#[test]
+fn directions_to_rectangles_follow_their_density() {
+    let (width_m, height_m) = (0.6, 0.9);
+    let light = traced(Emitter::RectPanel { width_m, height_m }, Output::Lumens(1000.0));
+    let mut numbers = Numbers::new(11);
+    for from in PLACES {
+        let place = |u: f64, v: f64| Vec3::new((u as f32 - 0.5) * width_m, (v as f32 - 0.5) * height_m, 0.0);
+        let cell = |p: Vec3| (p.x / width_m + 0.5, p.y / height_m + 0.5);
+        let p = flat_sampler_p(&light, from, width_m * height_m, place, cell, &mut numbers);
+        assert!(p > share(PLACES.len()), "from {from}: p = {p}");
+    }
+}
+
+#[test]
+fn directions_to_discs_follow_their_density() {
+    let radius = 0.6_f32;
+    let light = traced(Emitter::RoundPanel { diameter_m: 2.0 * radius }, Output::Lumens(1000.0));
+    let mut numbers = Numbers::new(12);
+    for from in PLACES {
+        // Equal areas: radius by the root, angle.
+        let place = |u: f64, v: f64| {
+            let (r, angle) = (f64::from(radius) * u.sqrt(), std::f64::consts::TAU * v);
+            Vec3::new((r * angle.cos()) as f32, (r * angle.sin()) as f32, 0.0)
+        };
+        let cell = |p: Vec3| {
+            let turn = p.y.atan2(p.x) / std::f32::consts::TAU;
+            ((p.x * p.x + p.y * p.y) / (radius * radius), turn - turn.floor())
+        };
+        let p = flat_sampler_p(&light, from, light_area(&light), place, cell, &mut numbers);
+        assert!(p > share(PLACES.len()), "from {from}: p = {p}");
+    }
+}
+
+fn light_area(light: &TracedLight) -> f32 {
+    match light.source {
+        Source::Rect { rect, .. } => rect.area(),
+        Source::Disc { disc, .. } => disc.area(),
+        _ => 0.0,
+    }
+}
+
+#[test]
+fn directions_to_balls_and_suns_fill_their_cones_evenly() {
+    let mut numbers = Numbers::new(13);
+    let ball = |radius_m| traced(Emitter::Sphere { radius_m }, Output::Lumens(1000.0));
+    let sun = |angular_diameter_deg| traced(Emitter::Sun { angular_diameter_deg }, Output::Lux(1000.0));
+    let far = Vec3::new(0.4, -0.3, 2.0);
+    let lights = [
+        (ball(0.5), far),
+        (ball(1e-3), far),
+        (ball(1.0), Vec3::new(0.0, 1.0001, 0.0)),
+        (ball(1e-5), Vec3::X * 100.0),
+        (sun(0.53), far),
+        (sun(90.0), far),
+        (sun(0.01), far),
+    ];
+    for (light, from) in &lights {
+        const SAMPLES: usize = 40_000;
+        let axis = match light.source {
+            Source::Sun { towards, .. } => towards,
+            _ => -from.normalize(),
+        };
+        let first = light.sample(*from, Vec2::splat(0.5)).unwrap();
+        let pdf = light.pdf(*from, first.direction, first.distance);
+        // Uniform: the density is one over the cone's solid angle, 2 pi (1 - cos).
+        let one_minus_cos = 1.0 / (std::f32::consts::TAU * pdf);
+        let (tangent, bitangent) = orthonormal_basis(axis);
+        let mut counts = vec![0.0; CELLS * CELLS];
+        for _ in 0..SAMPLES {
+            let sample = light.sample(*from, numbers.square()).unwrap();
+            assert_eq!(sample.pdf, Some(light.pdf(*from, sample.direction, sample.distance)));
+            let drop = 0.5 * (sample.direction - axis).length_squared() / one_minus_cos;
+            let turn = sample.direction.dot(bitangent).atan2(sample.direction.dot(tangent)) / std::f32::consts::TAU;
+            let index = |x: f32| ((x * CELLS as f32) as usize).min(CELLS - 1);
+            counts[index(drop) * CELLS + index(turn - turn.floor())] += 1.0;
+        }
+        let mut test = ChiSquare::default();
+        counts.iter().for_each(|&c| test.cell(c, SAMPLES as f64 / (CELLS * CELLS) as f64));
+        assert!(test.p_value() > share(lights.len()), "{light:?}: p = {}", test.p_value());
+    }
+}
+
+#[test]
+fn a_sphere_around_any_emitter_receives_its_whole_flux() {
+    // 1000 lm in each; the illuminance normal to the sphere, at random places of a sphere of 1.5 m, with one light
+    // sample each. The tolerance is the sampling error; single precision adds 1e-5.
+    let emitters = [
+        Emitter::Point,
+        Emitter::Sphere { radius_m: 0.01 },
+        Emitter::Sphere { radius_m: 1.0 },
+        Emitter::RectPanel { width_m: 0.6, height_m: 0.9 },
+        Emitter::RectPanel { width_m: 2.0, height_m: 0.05 },
+        Emitter::RoundPanel { diameter_m: 1.2 },
+        Emitter::RoundPanel { diameter_m: 2.9 },
+        Emitter::Spot { inner_deg: 30.0, outer_deg: 30.0 },
+        Emitter::Spot { inner_deg: 20.0, outer_deg: 60.0 },
+        Emitter::Spot { inner_deg: 0.0, outer_deg: 180.0 },
+        Emitter::Spot { inner_deg: 180.0, outer_deg: 180.0 },
+    ];
+    let mut numbers = Numbers::new(14);
+    for emitter in emitters {
+        let light = traced(emitter, Output::Lumens(1000.0));
+        const RADIUS: f32 = 1.5;
+        let area = f64::from(4.0 * PI * RADIUS * RADIUS);
+        let flux = Estimate::of((0..200_000).map(|_| {
+            let outwards = numbers.direction();
+            let sample = light.sample(outwards * RADIUS, numbers.square());
+            // Inside the sphere everything is before the receiver, which looks to the centre.
+            sample.map_or(0.0, |s| f64::from(s.value * s.direction.dot(-outwards).max(0.0)) * area)
+        }));
+        assert!(flux.agrees(1000.0, 1e-5, emitters.len()), "{emitter:?}: {flux:?} lm");
+    }
+}
+
+#[test]
+fn the_chosen_direction_meets_what_a_ray_sees() {
+    // Light sampling and rays that happen to meet the emitter must speak of the same luminance and density.
+    let mut numbers = Numbers::new(15);
+    for emitter in [
+        Emitter::Sphere { radius_m: 0.2 },
+        Emitter::RectPanel { width_m: 0.6, height_m: 0.9 },
+        Emitter::RoundPanel { diameter_m: 1.2 },
+    ] {
+        let light = traced(emitter, Output::Lumens(1000.0));
+        for from in PLACES {
+            let mut met = 0;
+            for _ in 0..200 {
+                let Some(sample) = light.sample(from, numbers.square()) else { continue };
+                let pdf = sample.pdf.unwrap();
+                // At the very rim rounding may miss it.
+                let Some(seen) = light.seen_by(from, sample.direction) else { continue };
+                met += 1;
+                assert!((seen.luminance / pdf / sample.value - 1.0).abs() < 1e-4, "{emitter:?} from {from}");
+                assert!((seen.distance / sample.distance - 1.0).abs() < 2e-3, "{emitter:?} from {from}");
+                let again = light.pdf(from, sample.direction, seen.distance);
+                // The distance to a plane met at a grazing angle keeps few digits.
+                assert!((again / pdf - 1.0).abs() < 2e-2, "{emitter:?} from {from}: {again} for {pdf}");
+            }
+            assert!(met > 150 || (met == 0 && from.length() < 0.2), "{emitter:?} from {from}: {met} of 200 met");
+        }
+    }
+}
+
+#[test]
+fn no_light_that_gives_something_is_never_chosen() {
+    // Choice by importance is right only where no light with a share has none.
+    let mut numbers = Numbers::new(16);
+    for emitter in [
+        Emitter::Point,
+        Emitter::Sphere { radius_m: 0.7 },
+        Emitter::Spot { inner_deg: 20.0, outer_deg: 70.0 },
+        Emitter::RectPanel { width_m: 2.0, height_m: 3.0 },
+        Emitter::RoundPanel { diameter_m: 3.0 },
+    ] {
+        let light = traced(emitter, Output::Lumens(1000.0));
+        for _ in 0..20_000 {
+            let from = numbers.direction() * numbers.between(0.01, 4.0);
+            let normal = numbers.direction();
+            let Some(sample) = light.sample(from, numbers.square()) else { continue };
+            if sample.direction.dot(normal) > 1e-4 && sample.value > 0.0 {
+                assert!(light.importance(from, normal) > 0.0, "{emitter:?} seen from {from}, facing {normal}");
+            }
+        }
+    }
+}

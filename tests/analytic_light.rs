@@ -1,0 +1,257 @@
+//! Every emitter against closed forms, read from rendered pictures. A tolerance is a number of standard errors, which
+//! come from the scatter of the pixels and so from the number of samples; the families share a false-alarm rate of
+//! 1 in 1000 (`math::statistics`). `BIAS` is what the measuring card itself may be off.
+#![allow(clippy::unwrap_used)]
+
+mod studio;
+
+use catchlight::raytrace::Method;
+use catchlight::scene::{Aim, Emitter, Output, Scene, Shape};
+use glam::{DVec3, Vec3};
+use std::f64::consts::PI;
+use studio::closed_forms::{disc, polygon, vec3};
+use studio::light;
+use studio::measure::{BIAS, corners, illuminance, meter_card, square};
+use studio::statistics::{Estimate, Numbers};
+
+fn lit(emitter: Emitter, position: Vec3, aim: Vec3, receiver: Vec3, normal: Vec3) -> Scene {
+    let mut scene = meter_card(receiver, normal);
+    scene.lights.push(light(emitter, Output::Lumens(1000.0), position));
+    scene.lights[0].aim = Aim::Point(aim);
+    scene
+}
+
+fn check(reading: Estimate, truth: f64, tests: usize, what: &str) {
+    assert!(reading.agrees(truth, BIAS, tests), "{what}: {reading:?} for {truth} lx");
+}
+
+#[test]
+fn any_panel_lights_any_receiver_as_lamberts_polygon_says() {
+    // Sizes, distances, turns and receivers at random: also behind the panel, edge-on, cut by the horizon.
+    let mut numbers = Numbers::new(41);
+    let tests = 80;
+    let (mut lit_ones, mut dark) = (0, 0);
+    for _ in 0..tests {
+        let (width_m, height_m) = (numbers.between(0.05, 2.0), numbers.between(0.05, 2.0));
+        let position = numbers.direction() * numbers.between(0.2, 4.0);
+        let (aim, normal) = (position + numbers.direction(), numbers.direction());
+        let mut scene = lit(Emitter::RectPanel { width_m, height_m }, position, aim, Vec3::ZERO, normal);
+        scene.lights[0].roll_deg = numbers.between(0.0, 360.0);
+        let luminance = 1000.0 / (PI * f64::from(width_m * height_m));
+        let front = (Vec3::ZERO - position).dot(aim - position) > 0.0;
+        let outline = corners(&scene, 0, width_m, height_m);
+        let truth = if front { polygon(&outline, luminance, DVec3::ZERO, vec3(normal)) } else { 0.0 };
+        // The card has a size: where the panel's edge is on its horizon, light changes across it.
+        let reading = illuminance(&scene, &square(Method::Direct, 8, 64));
+        check(reading, truth, tests, &format!("{width_m} x {height_m} at {position} to {aim}, facing {normal}"));
+        if truth > 0.0 { lit_ones += 1 } else { dark += 1 }
+    }
+    assert!(lit_ones > 15 && dark > 15, "{lit_ones} lit and {dark} dark");
+}
+
+#[test]
+fn any_disc_lights_any_receiver_as_a_polygon_of_many_corners() {
+    let mut numbers = Numbers::new(42);
+    let tests = 40;
+    for _ in 0..tests {
+        let diameter_m = numbers.between(0.05, 2.0);
+        let position = numbers.direction() * numbers.between(0.3, 4.0);
+        // Roughly towards the receiver and back, so that most are lit.
+        let (aim, normal) = (numbers.direction() * 0.5, (position + numbers.direction()).normalize());
+        let scene = lit(Emitter::RoundPanel { diameter_m }, position, aim, Vec3::ZERO, normal);
+        let frame = scene.light_frame(&scene.lights[0]);
+        let outline = disc(
+            vec3(position),
+            vec3(frame.matrix3.x_axis.into()),
+            vec3(frame.matrix3.y_axis.into()),
+            0.5 * f64::from(diameter_m),
+        );
+        let luminance = 1000.0 / (PI * PI * 0.25 * f64::from(diameter_m * diameter_m));
+        let front = (-position).dot(aim - position) > 0.0;
+        let truth = if front { polygon(&outline, luminance, DVec3::ZERO, vec3(normal)) } else { 0.0 };
+        let reading = illuminance(&scene, &square(Method::Direct, 8, 128));
+        check(reading, truth, tests, &format!("{diameter_m} m at {position} to {aim}, facing {normal}"));
+    }
+}
+
+#[test]
+fn a_panel_a_hands_breadth_away_and_one_across_the_street_are_both_right() {
+    // From a centimetre before a softbox, where it fills the half space, to 200 m; from a postage stamp to a facade.
+    let cases =
+        [(0.6, 0.9, 0.01), (0.6, 0.9, 0.1), (0.6, 0.9, 200.0), (0.02, 0.02, 0.5), (30.0, 60.0, 2.0), (0.3, 1.6, 0.05)];
+    for (width_m, height_m, distance) in cases {
+        let scene = lit(Emitter::RectPanel { width_m, height_m }, Vec3::Z * distance, Vec3::ZERO, Vec3::ZERO, Vec3::Z);
+        let luminance = 1000.0 / (PI * f64::from(width_m * height_m));
+        let truth = polygon(&corners(&scene, 0, width_m, height_m), luminance, DVec3::ZERO, DVec3::Z);
+        let reading = illuminance(&scene, &square(Method::Direct, 8, 256));
+        check(reading, truth, cases.len(), &format!("{width_m} x {height_m} at {distance} m"));
+    }
+}
+
+#[test]
+fn a_panel_along_the_floor_lights_it_right_even_where_it_is_seen_almost_edge_on() {
+    // A strip that stands on the floor and looks along it: receivers from a hand's breadth to 10 m before it, and a panel
+    // whose plane the receiver all but touches. These are the angles at which solid angles lose their digits.
+    let mut cases = Vec::new();
+    for distance in [0.1, 0.5, 2.0, 10.0] {
+        cases.push((Vec3::new(0.0, 0.15, -distance), Vec3::new(0.0, 0.15, 1.0), Vec3::Y, 1.6, 0.3));
+    }
+    for height in [1e-3, 1e-2, 3e-2] {
+        // Facing down, a little above the receiver's level, beside it.
+        cases.push((Vec3::new(0.9, height, 0.0), Vec3::new(0.9, -1.0, 0.0), Vec3::X, 0.6, 0.9));
+        cases.push((Vec3::new(0.9, height, 0.2), Vec3::new(0.9, -1.0, 0.2), Vec3::new(0.8, 0.6, 0.0), 0.6, 0.9));
+    }
+    for (position, aim, normal, width_m, height_m) in &cases {
+        let (width_m, height_m) = (*width_m, *height_m);
+        let scene = lit(Emitter::RectPanel { width_m, height_m }, *position, *aim, Vec3::ZERO, *normal);
+        let luminance = 1000.0 / (PI * f64::from(width_m * height_m));
+        let truth = polygon(&corners(&scene, 0, width_m, height_m), luminance, DVec3::ZERO, vec3(*normal));
+        let reading = illuminance(&scene, &square(Method::Direct, 16, 256));
+        // A millimetre above the receiver's plane the card's 0.2 mm to the side count: 1 %.
+        assert!(reading.agrees(truth, 0.01, cases.len()), "at {position}, facing {normal}: {reading:?} for {truth} lx");
+        assert!(reading.error < 0.05 * truth, "at {position}: {reading:?} says little about {truth} lx");
+    }
+}
+
+#[test]
+fn balls_of_any_size_light_any_receiver_above_its_horizon_as_points_do() {
+    let mut numbers = Numbers::new(43);
+    let tests = 30;
+    for _ in 0..tests {
+        let distance = numbers.between(0.3, 6.0);
+        let radius_m = distance * numbers.between(1e-4, 0.6);
+        let towards = numbers.direction();
+        // Tilted so far that the whole ball stays above the horizon.
+        let free = (radius_m / distance).acos().min(1.5) * numbers.between(0.0, 0.95);
+        let aside = towards.any_orthonormal_vector();
+        let normal = towards * free.cos() + aside * free.sin();
+        let scene = lit(Emitter::Sphere { radius_m }, towards * distance, Vec3::ZERO, Vec3::ZERO, normal.normalize());
+        let d2 = f64::from(distance).powi(2);
+        let truth = 1000.0 / (4.0 * PI * d2) * f64::from(normal.normalize().dot(towards));
+        check(
+            illuminance(&scene, &square(Method::Direct, 8, 64)),
+            truth,
+            tests,
+            &format!("{radius_m} m at {distance} m"),
+        );
+    }
+}
+
+#[test]
+fn a_ball_half_below_the_horizon_gives_what_its_upper_half_gives() {
+    // The centre on the horizon of the receiver: E = L (a - sin a cos a) with the half-angle a (Gershun 1936).
+    for ratio in [0.1_f64, 0.5, 0.9] {
+        let scene =
+            lit(Emitter::Sphere { radius_m: 2.0 * ratio as f32 }, Vec3::X * 2.0, Vec3::ZERO, Vec3::ZERO, Vec3::Z);
+        let luminance = 1000.0 / (4.0 * PI * PI * (2.0 * ratio).powi(2));
+        let a = ratio.asin();
+        check(
+            illuminance(&scene, &square(Method::Direct, 8, 256)),
+            luminance * (a - a.sin() * a.cos()),
+            3,
+            &format!("sine of the half-angle {ratio}"),
+        );
+    }
+}
+
+#[test]
+fn inverse_square_holds_from_a_centimetre_to_a_kilometre_without_a_clamp() {
+    for distance in [0.01_f32, 0.1, 1.0, 10.0, 100.0, 1000.0] {
+        for emitter in [Emitter::Point, Emitter::Spot { inner_deg: 60.0, outer_deg: 60.0 }] {
+            let scene = lit(emitter, Vec3::Z * distance, Vec3::ZERO, Vec3::ZERO, Vec3::Z);
+            let per_steradian =
+                if emitter == Emitter::Point { 4.0 * PI } else { 2.0 * PI * (1.0 - 30_f64.to_radians().cos()) };
+            let truth = 1000.0 / per_steradian / f64::from(distance).powi(2);
+            // At a centimetre the card's corners are 0.3 mm off the axis: (1 + r2/d2)^-2 is 0.2 % less.
+            let bias = if distance < 0.05 { 2e-3 } else { BIAS };
+            let reading = illuminance(&scene, &square(Method::Direct, 4, 4));
+            assert!(reading.agrees(truth, bias, 12), "{emitter:?} at {distance} m: {reading:?} for {truth} lx");
+        }
+    }
+}
+
+#[test]
+fn a_spot_falls_off_linearly_in_angle_between_its_cones() {
+    // Full inside 10 degrees off the axis, nothing beyond 35: I0 = F / (2 pi (1 - (sin b - sin a) / (b - a))).
+    let (a, b) = (10_f64.to_radians(), 35_f64.to_radians());
+    let axial = 1000.0 / (2.0 * PI * (1.0 - (b.sin() - a.sin()) / (b - a)));
+    for (off_deg, share) in
+        [(0.0, 1.0), (9.0, 1.0), (15.0, 0.8), (22.5, 0.5), (34.0, 0.04), (36.0, 0.0), (90.0, 0.0), (180.0, 0.0)]
+    {
+        let (sin, cos) = f64::to_radians(off_deg).sin_cos();
+        let receiver = Vec3::new(sin as f32, 0.0, -cos as f32) * 2.0;
+        let emitter = Emitter::Spot { inner_deg: 20.0, outer_deg: 70.0 };
+        let scene = lit(emitter, Vec3::ZERO, Vec3::NEG_Z, receiver, -receiver.normalize());
+        let reading = illuminance(&scene, &square(Method::Direct, 4, 4));
+        // Close to the outer edge a rounded angle counts more.
+        assert!(reading.agrees(axial * share / 4.0, 1e-3, 8), "{off_deg} degrees: {reading:?}");
+    }
+}
+
+#[test]
+fn the_same_flux_stated_in_any_way_is_the_same_light() {
+    // 1000 lm of a panel are 1000 / pi cd on its axis, and what that gives at 3 m.
+    let axial = 1000.0 / std::f32::consts::PI;
+    let panel = Emitter::RectPanel { width_m: 0.1, height_m: 0.1 };
+    let readings =
+        [Output::Lumens(1000.0), Output::Candela(axial), Output::LuxAt { lux: axial / 9.0, distance_m: 3.0 }].map(
+            |output| {
+                let mut scene = lit(panel, Vec3::Z * 2.0, Vec3::ZERO, Vec3::ZERO, Vec3::Z);
+                scene.lights[0].power.output = output;
+                illuminance(&scene, &square(Method::Direct, 4, 16)).mean
+            },
+        );
+    // The same samples: nothing but rounding differs.
+    assert!(readings.iter().all(|r| (r / readings[0] - 1.0).abs() < 1e-5), "{readings:?}");
+}
+
+#[test]
+fn backdrops_behind_the_subject_fall_off_by_the_table() {
+    // light_and_camera.md: backdrop 1.5 m behind the subject, light 0.5, 1, 2, 3, 4 m before it.
+    for (before, stops) in [(0.5, -4.0), (1.0, -2.64), (2.0, -1.61), (3.0, -1.17), (4.0, -0.92)] {
+        let at = |depth: f32| {
+            let scene = lit(Emitter::Point, Vec3::Z * before, Vec3::ZERO, Vec3::Z * -depth, Vec3::Z);
+            illuminance(&scene, &square(Method::Direct, 4, 4)).mean
+        };
+        let ours = (at(1.5) / at(0.0)).log2();
+        // The table has two decimals.
+        assert!((ours - stops).abs() < 0.0051, "{before} m: {ours} stops for {stops}");
+    }
+}
+
+#[test]
+fn a_surround_lights_a_tilted_card_by_what_it_sees_of_it() {
+    // A surround lights any free card with its lux; over a black floor a tilted one sees (1 + cos) / 2 of it.
+    for tilt_deg in [0.0_f32, 45.0, 90.0, 135.0] {
+        let (sin, cos) = tilt_deg.to_radians().sin_cos();
+        let mut scene = meter_card(Vec3::Y * 0.5, Vec3::new(sin, cos, 0.0));
+        let mut floor = studio::object("Floor", Shape::Plane { width_m: 4000.0, depth_m: 4000.0 }, Vec3::ZERO);
+        floor.material.base_color = [0.0; 3];
+        scene.objects.push(floor);
+        scene.lights.push(light(Emitter::Surround, Output::Lux(1000.0), Vec3::ZERO));
+        let truth = 1000.0 * 0.5 * (1.0 + f64::from(cos));
+        check(illuminance(&scene, &square(Method::Path, 16, 64)), truth, 4, &format!("{tilt_deg} degrees"));
+    }
+}
+
+#[test]
+fn the_suns_cosine_and_its_disc_cut_by_the_horizon() {
+    let sun = |angular_diameter_deg, elevation_deg: f32, tests| {
+        let (sin, cos) = elevation_deg.to_radians().sin_cos();
+        let mut scene = meter_card(Vec3::ZERO, Vec3::Y);
+        scene.lights.push(light(
+            Emitter::Sun { angular_diameter_deg },
+            Output::Lux(80_000.0),
+            Vec3::new(cos, sin, 0.0),
+        ));
+        (illuminance(&scene, &square(Method::Direct, 8, 256)), 80_000.0 * f64::from(sin), tests)
+    };
+    for (diameter, elevation) in [(0.0, 90.0), (0.0, 30.0), (0.53, 5.0), (20.0, 50.0)] {
+        let (reading, truth, tests) = sun(diameter, elevation, 5);
+        check(reading, truth, tests, &format!("{diameter} degrees wide, {elevation} degrees high"));
+    }
+    // Half set: L (a - sin a cos a) for the luminance E / (pi sin2 a).
+    let a = 10_f64.to_radians();
+    let (reading, _, _) = sun(20.0, 0.0, 5);
+    check(reading, 80_000.0 / (PI * a.sin().powi(2)) * (a - a.sin() * a.cos()), 5, "half set");
+}

@@ -1,0 +1,79 @@
+//! Readings from rendered pictures, each with its standard error.
+//!
+//! Every pixel has its own scramble of the random sequence and, on a tiny card, the same expected value: pixels are
+//! independent repetitions. Their scatter gives the standard error of the mean, and with it the tolerance of a test.
+
+use super::closed_forms::vec3;
+use super::statistics::Estimate;
+use super::{REFLECTANCE, looking_at_card, object};
+use catchlight::photo::Picture;
+use catchlight::raytrace::{self, Control, Film, Method, Settings};
+use catchlight::scene::{Assets, Camera, Scene, Shape};
+use glam::{DVec3, Quat, Vec3};
+use std::ops::ControlFlow;
+
+/// What a card of 0.4 mm, single precision and pictures in `f32` add to a reading, as a share of it.
+pub const BIAS: f64 = 2e-4;
+
+/// A film with every sample of `settings`.
+pub fn film(scene: &Scene, settings: &Settings) -> Film {
+    film_with(scene, &Assets::default(), settings)
+}
+
+/// The same, of a scene with models.
+pub fn film_with(scene: &Scene, assets: &Assets, settings: &Settings) -> Film {
+    let prepared = raytrace::prepare(scene, assets).unwrap();
+    let film = raytrace::render(&prepared, settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+    assert_eq!(film.nonfinite(), 0, "{:?}", film.first_nonfinite());
+    film
+}
+
+/// A square picture.
+pub fn square(method: Method, side: u32, spp: u32) -> Settings {
+    Settings { width: side, height: side, method, spp, ..Settings::default() }
+}
+
+/// A finished picture; every pixel must be a number.
+pub fn picture(scene: &Scene, settings: &Settings) -> Picture {
+    let picture = film(scene, settings).develop(scene);
+    assert!(picture.rgb.iter().flatten().all(|v| v.is_finite() && *v >= 0.0), "a pixel is no light");
+    picture
+}
+
+/// Illuminance of a card of 18 % for a green picture value, by the exposure equation turned round, lux.
+pub fn lux_per_value(camera: &Camera) -> f64 {
+    let n2 = f64::from(camera.f_number * camera.f_number);
+    f64::from(camera.meter_constant) * n2 / f64::from(camera.iso * REFLECTANCE * camera.shutter_s)
+}
+
+/// Luminance for a green picture value of continuous light, cd/m2.
+pub fn luminance_per_value(camera: &Camera) -> f64 {
+    lux_per_value(camera) * f64::from(REFLECTANCE) / std::f64::consts::PI
+}
+
+/// Mean of the green values.
+pub fn values(picture: &Picture) -> Estimate {
+    Estimate::of(picture.rgb.iter().map(|p| f64::from(p[1])))
+}
+
+/// What a meter at the card reads, lux.
+pub fn illuminance(scene: &Scene, settings: &Settings) -> Estimate {
+    let Estimate { mean, error } = values(&picture(scene, settings));
+    let scale = lux_per_value(&scene.camera);
+    Estimate { mean: mean * scale, error: error * scale }
+}
+
+/// A card at `position` that faces `normal`, and a camera that sees 0.4 mm of it and nothing else.
+pub fn meter_card(position: Vec3, normal: Vec3) -> Scene {
+    let mut card = object("Card", Shape::Plane { width_m: 2e-3, depth_m: 2e-3 }, position);
+    card.transform.set_rotation(Quat::from_rotation_arc(Vec3::Y, normal));
+    let camera = Camera { focal_length_mm: 5000.0, ..looking_at_card(position, normal) };
+    Scene { objects: vec![card], camera, ..Scene::default() }
+}
+
+/// Where a panel's corners are, counter-clockwise as seen from the side it shines to.
+pub fn corners(scene: &Scene, light: usize, width_m: f32, height_m: f32) -> [DVec3; 4] {
+    let frame = scene.light_frame(&scene.lights[light]);
+    [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)]
+        .map(|(x, y)| vec3(frame.transform_point3(Vec3::new(x * width_m, y * height_m, 0.0) * 0.5)))
+}
