@@ -4,6 +4,7 @@
 //! can't, 130 interrupted.
 
 mod bake;
+mod chart;
 mod check;
 mod input;
 mod meter;
@@ -38,6 +39,8 @@ enum Command {
     Meter(meter::Arguments),
     /// Say what is wrong or odd with a studio file.
     Check(check::Arguments),
+    /// Chart speed against accuracy.
+    Chart(chart::Arguments),
     /// List the shipped studios.
     Presets(presets::Arguments),
     /// Bake the mannequins' OBJ files.
@@ -78,6 +81,7 @@ pub fn run(started: Instant) -> ExitCode {
         Some(Command::Preview(arguments)) => preview::run(&arguments),
         Some(Command::Meter(arguments)) => meter::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),
+        Some(Command::Chart(arguments)) => chart::run(&arguments),
         Some(Command::Presets(arguments)) => presets::run(&arguments),
         Some(Command::BakeMannequins(arguments)) => bake::run(&arguments),
     };

@@ -2,7 +2,7 @@
 
 use super::bvh::{self, Slabs, Stack, WideBvh};
 use super::geometry::{Instance, Surface};
-use super::simd;
+use super::simd::{self, Kernels, Query};
 use super::triangle::TriangleHit;
 use crate::math::Ray;
 
@@ -38,68 +38,82 @@ impl Aggregate {
 
     /// The closest hit.
     pub fn closest(&self, ray: &Ray, stack: &mut Stack) -> Option<Hit> {
-        simd::widest(
-            #[inline(always)]
-            || self.find_closest(ray, stack),
-        )
+        simd::dispatch(Closest { aggregate: self, ray, stack })
     }
 
     /// Whether anything lies on the ray before its end.
     pub fn blocked(&self, ray: &Ray, stack: &mut Stack) -> bool {
-        simd::widest(
-            #[inline(always)]
-            || self.find_any(ray, stack),
-        )
-    }
-
-    #[inline(always)]
-    fn find_closest(&self, ray: &Ray, stack: &mut Stack) -> Option<Hit> {
-        let slabs = Slabs::new(ray.origin, ray.direction);
-        let mut best = None;
-        self.bvh.traverse(
-            &slabs,
-            ray.t_max,
-            stack,
-            #[inline(always)]
-            |leaf, t_max, stack| {
-                let mut end = t_max;
-                for &index in self.bvh.leaf(leaf) {
-                    let instance = &self.instances[index as usize];
-                    let local = instance.to_object(&Ray { t_max: end, ..*ray });
-                    if let Some(triangle) = instance.geometry.closest(&local, stack) {
-                        end = triangle.t;
-                        best = Some(Hit { instance: index, triangle });
-                    }
-                }
-                end
-            },
-        );
-        best
-    }
-
-    #[inline(always)]
-    fn find_any(&self, ray: &Ray, stack: &mut Stack) -> bool {
-        let slabs = Slabs::new(ray.origin, ray.direction);
-        let mut found = false;
-        self.bvh.traverse(
-            &slabs,
-            ray.t_max,
-            stack,
-            #[inline(always)]
-            |leaf, t_max, stack| {
-                found = self.bvh.leaf(leaf).iter().any(|&index| {
-                    let instance = &self.instances[index as usize];
-                    instance.geometry.any(&instance.to_object(ray), stack)
-                });
-                if found { -1.0 } else { t_max }
-            },
-        );
-        found
+        simd::dispatch(Blocked { aggregate: self, ray, stack })
     }
 
     /// The surface at a hit.
     pub fn surface(&self, hit: &Hit) -> Surface {
         self.instances[hit.instance as usize].surface(&hit.triangle)
+    }
+}
+
+/// See [`Aggregate::closest`].
+struct Closest<'a> {
+    aggregate: &'a Aggregate,
+    ray: &'a Ray,
+    stack: &'a mut Stack,
+}
+
+impl Query for Closest<'_> {
+    type Answer = Option<Hit>;
+
+    #[inline(always)]
+    fn run<K: Kernels>(self) -> Option<Hit> {
+        let Closest { aggregate, ray, stack } = self;
+        let slabs = Slabs::new(ray.origin, ray.direction);
+        let mut best = None;
+        aggregate.bvh.nearest_first::<K>(
+            &slabs,
+            ray.t_max,
+            stack,
+            #[inline(always)]
+            |leaf, mut t_max, stack| {
+                for &instance in aggregate.bvh.leaf(leaf) {
+                    let placed = &aggregate.instances[instance as usize];
+                    let local = placed.to_object(&Ray { t_max, ..*ray });
+                    if let Some(triangle) = placed.geometry.closest::<K>(&local, stack) {
+                        t_max = triangle.t;
+                        best = Some(Hit { instance, triangle });
+                    }
+                }
+                t_max
+            },
+        );
+        best
+    }
+}
+
+/// See [`Aggregate::blocked`].
+struct Blocked<'a> {
+    aggregate: &'a Aggregate,
+    ray: &'a Ray,
+    stack: &'a mut Stack,
+}
+
+impl Query for Blocked<'_> {
+    type Answer = bool;
+
+    #[inline(always)]
+    fn run<K: Kernels>(self) -> bool {
+        let Blocked { aggregate, ray, stack } = self;
+        let slabs = Slabs::new(ray.origin, ray.direction);
+        aggregate.bvh.any::<K>(
+            &slabs,
+            ray.t_max,
+            stack,
+            #[inline(always)]
+            |leaf, stack| {
+                aggregate.bvh.leaf(leaf).iter().any(|&index| {
+                    let placed = &aggregate.instances[index as usize];
+                    placed.geometry.any::<K>(&placed.to_object(ray), stack)
+                })
+            },
+        )
     }
 }
 
@@ -192,9 +206,10 @@ mod tests {
             assert_eq!(ours.map(|h| h.triangle.t), truth.map(|(_, h)| h.t), "ray {i}: {ray:?}");
             assert_eq!(aggregate.blocked(ray, &mut stack), truth.is_some(), "ray {i}: {ray:?}");
             // The twin without wide vectors gives the same bits.
-            let plain = aggregate.find_closest(ray, &mut stack);
+            let plain = Closest { aggregate: &aggregate, ray, stack: &mut stack }.run::<Plain>();
             assert_eq!(plain.map(|h| h.triangle), ours.map(|h| h.triangle), "ray {i}: {ray:?}");
-            assert_eq!(aggregate.find_any(ray, &mut stack), truth.is_some(), "ray {i}: {ray:?}");
+            let plain = Blocked { aggregate: &aggregate, ray, stack: &mut stack }.run::<Plain>();
+            assert_eq!(plain, truth.is_some(), "ray {i}: {ray:?}");
             hits += usize::from(truth.is_some());
         }
         assert!(hits > 1000, "only {hits} rays hit anything: the test says little");

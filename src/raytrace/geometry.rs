@@ -1,7 +1,8 @@
 //! Meshes ready for tracing, their instances, and what a hit says about the surface.
 
 use super::bvh::{self, Slabs, Stack, WideBvh};
-use super::triangle::{LANES, Packet, Sheared, TriangleHit};
+use super::simd::{Kernels, WIDTH};
+use super::triangle::{Packet, Sheared, TriangleHit};
 use crate::math::{self, Ray, gamma};
 use crate::scene::Mesh;
 use glam::{Affine3A, Mat3, Vec2, Vec3};
@@ -30,7 +31,7 @@ impl MeshGeometry {
                 (a.min(b).min(c), a.max(b).max(c))
             })
             .collect();
-        let bvh = bvh::build(&boxes, LANES as u32);
+        let bvh = bvh::build(&boxes, WIDTH as u32);
         let packets = (0..bvh.leaf_count() as u32)
             .into_par_iter()
             .map(|leaf| Packet::new(bvh.leaf(leaf).iter().map(|&t| (t, corners(t as usize)))))
@@ -46,16 +47,16 @@ impl MeshGeometry {
 
     /// The closest hit of a ray in object space.
     #[inline(always)]
-    pub fn closest(&self, ray: &Ray, stack: &mut Stack) -> Option<TriangleHit> {
+    pub fn closest<K: Kernels>(&self, ray: &Ray, stack: &mut Stack) -> Option<TriangleHit> {
         let sheared = Sheared::new(ray.origin, ray.direction);
         let slabs = Slabs::new(ray.origin, ray.direction);
         let mut best = None;
-        self.bvh.traverse(
+        self.bvh.nearest_first::<K>(
             &slabs,
             ray.t_max,
             stack,
             #[inline(always)]
-            |leaf, t_max, _| match self.packets[leaf as usize].intersect(&sheared, t_max) {
+            |leaf, t_max, _| match K::triangles(&self.packets[leaf as usize], &sheared, t_max) {
                 Some(hit) => {
                     best = Some(hit);
                     hit.t
@@ -68,21 +69,16 @@ impl MeshGeometry {
 
     /// Whether anything lies on the ray, in object space.
     #[inline(always)]
-    pub fn any(&self, ray: &Ray, stack: &mut Stack) -> bool {
+    pub fn any<K: Kernels>(&self, ray: &Ray, stack: &mut Stack) -> bool {
         let sheared = Sheared::new(ray.origin, ray.direction);
         let slabs = Slabs::new(ray.origin, ray.direction);
-        let mut found = false;
-        self.bvh.traverse(
+        self.bvh.any::<K>(
             &slabs,
             ray.t_max,
             stack,
             #[inline(always)]
-            |leaf, t_max, _| {
-                found = self.packets[leaf as usize].intersect(&sheared, t_max).is_some();
-                if found { -1.0 } else { t_max }
-            },
-        );
-        found
+            |leaf, _| K::triangles(&self.packets[leaf as usize], &sheared, ray.t_max).is_some(),
+        )
     }
 
     /// Index of the part that a triangle belongs to.

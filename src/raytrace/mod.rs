@@ -9,6 +9,7 @@ mod bvh;
 mod film;
 mod geometry;
 mod integrator;
+mod intersectors;
 mod lens;
 mod lights;
 mod plan;
@@ -21,6 +22,7 @@ mod texture;
 mod triangle;
 
 pub use film::{Film, Layer, MAX_LIGHT_LAYERS};
+pub use intersectors::{Intersection, Intersector};
 pub use plan::RenderPlan;
 pub use prepare::{PrepareError, RenderScene, prepare};
 pub use probe::{Effort, Place, Probe, Probed};

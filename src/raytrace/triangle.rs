@@ -1,29 +1,27 @@
-//! Ray against triangles, four at a time, watertight along shared edges.
+//! Ray against triangles, eight at a time, watertight along shared edges. The arithmetic is in [`super::simd`].
 //!
 //! Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection": the ray is sheared onto an axis; edge functions
 //! are then evaluated alike for both neighbours of an edge, so no ray slips between them. Edge functions that come out
 //! exactly 0 are computed again in f64.
 
+use super::simd::WIDTH;
 use glam::Vec3;
 
-/// Triangles in a packet.
-pub const LANES: usize = 4;
-
-/// Up to four triangles, corners by vertex, axis and lane. Unused lanes hold NaN, which no comparison lets pass.
+/// Up to eight triangles, corners by vertex, axis and lane. Unused lanes hold NaN, which no comparison lets pass.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(16))]
+#[repr(C, align(64))]
 pub struct Packet {
-    corners: [[[f32; LANES]; 3]; 3],
+    pub(super) corners: [[[f32; WIDTH]; 3]; 3],
     /// Triangle numbers in the mesh.
-    pub triangles: [u32; LANES],
+    triangles: [u32; WIDTH],
 }
 
 /// A ray made ready for the test: permuted so that its largest direction component is Z, and sheared onto it.
 #[derive(Clone, Copy, Debug)]
 pub struct Sheared {
-    origin: Vec3,
-    axes: [usize; 3],
-    shear: Vec3,
+    pub(super) origin: Vec3,
+    pub(super) axes: [usize; 3],
+    pub(super) shear: Vec3,
 }
 
 /// Where a ray meets a triangle.
@@ -60,10 +58,10 @@ impl Sheared {
 }
 
 impl Packet {
-    /// Packs up to four triangles, given by their number and corners.
+    /// Packs up to eight triangles, given by their number and corners.
     pub fn new(triangles: impl IntoIterator<Item = (u32, [Vec3; 3])>) -> Self {
-        let mut packet = Packet { corners: [[[f32::NAN; LANES]; 3]; 3], triangles: [u32::MAX; LANES] };
-        for (lane, (number, corners)) in triangles.into_iter().take(LANES).enumerate() {
+        let mut packet = Packet { corners: [[[f32::NAN; WIDTH]; 3]; 3], triangles: [u32::MAX; WIDTH] };
+        for (lane, (number, corners)) in triangles.into_iter().take(WIDTH).enumerate() {
             packet.triangles[lane] = number;
             for (vertex, corner) in corners.iter().enumerate() {
                 for axis in 0..3 {
@@ -74,62 +72,19 @@ impl Packet {
         packet
     }
 
-    /// The nearest hit with 0 < t < `t_max`. Triangles of no area are never hit.
+    /// What is known of a hit in a lane, from its distance and edge functions.
     #[inline(always)]
-    pub fn intersect(&self, ray: &Sheared, t_max: f32) -> Option<TriangleHit> {
-        let [kx, ky, kz] = ray.axes;
-        let mut x = [[0.0_f32; LANES]; 3];
-        let mut y = [[0.0_f32; LANES]; 3];
-        let mut z = [[0.0_f32; LANES]; 3];
-        for v in 0..3 {
-            for i in 0..LANES {
-                let depth = self.corners[v][kz][i] - ray.origin[kz];
-                x[v][i] = (self.corners[v][kx][i] - ray.origin[kx]) - ray.shear.x * depth;
-                y[v][i] = (self.corners[v][ky][i] - ray.origin[ky]) - ray.shear.y * depth;
-                z[v][i] = ray.shear.z * depth;
-            }
-        }
-        let mut e = [[0.0_f32; LANES]; 3];
-        let mut on_edge = false;
-        for (k, edge) in e.iter_mut().enumerate() {
-            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
-            for i in 0..LANES {
-                edge[i] = x[b][i] * y[a][i] - y[b][i] * x[a][i];
-                on_edge |= edge[i] == 0.0;
-            }
-        }
-        if on_edge {
-            edges_in_f64(&mut e, &x, &y);
-        }
-        let mut t = [0.0_f32; LANES];
-        let mut hit = [false; LANES];
-        let mut any = false;
-        for i in 0..LANES {
-            let (u, v, w) = (e[0][i], e[1][i], e[2][i]);
-            let inside = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
-            let determinant = u + v + w;
-            t[i] = (u * z[0][i] + v * z[1][i] + w * z[2][i]) / determinant;
-            hit[i] = inside && determinant != 0.0 && t[i] > 0.0 && t[i] < t_max;
-            any |= hit[i];
-        }
-        if !any {
-            return None;
-        }
-        let nearest = (0..LANES).filter(|&i| hit[i]).min_by(|&a, &b| t[a].total_cmp(&t[b]))?;
-        let inverse = 1.0 / (e[0][nearest] + e[1][nearest] + e[2][nearest]);
-        Some(TriangleHit {
-            t: t[nearest],
-            triangle: self.triangles[nearest],
-            barycentric: [e[1][nearest] * inverse, e[2][nearest] * inverse],
-        })
+    pub(super) fn hit(&self, lane: usize, t: f32, edges: [f32; 3]) -> TriangleHit {
+        let inverse = 1.0 / (edges[0] + edges[1] + edges[2]);
+        TriangleHit { t, triangle: self.triangles[lane], barycentric: [edges[1] * inverse, edges[2] * inverse] }
     }
 }
 
 /// Edge functions without rounding of the products (24-bit factors fit a 53-bit product), in the lanes where one came
 /// out 0.
 #[cold]
-fn edges_in_f64(e: &mut [[f32; LANES]; 3], x: &[[f32; LANES]; 3], y: &[[f32; LANES]; 3]) {
-    for i in 0..LANES {
+pub(super) fn edges_in_f64(e: &mut [[f32; WIDTH]; 3], x: &[[f32; WIDTH]; 3], y: &[[f32; WIDTH]; 3]) {
+    for i in 0..WIDTH {
         if e.iter().all(|edge| edge[i] != 0.0) {
             continue;
         }
@@ -144,6 +99,27 @@ fn edges_in_f64(e: &mut [[f32; LANES]; 3], x: &[[f32; LANES]; 3], y: &[[f32; LAN
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::raytrace::simd::{Kernels, Plain, Query, dispatch};
+
+    /// The test with the kernels of this processor.
+    struct Test<'a>(&'a Packet, &'a Sheared, f32);
+
+    impl Query for Test<'_> {
+        type Answer = Option<TriangleHit>;
+
+        #[inline(always)]
+        fn run<K: Kernels>(self) -> Self::Answer {
+            K::triangles(self.0, self.1, self.2)
+        }
+    }
+
+    impl Packet {
+        fn intersect(&self, ray: &Sheared, t_max: f32) -> Option<TriangleHit> {
+            let hit = dispatch(Test(self, ray, t_max));
+            assert_eq!(hit, Plain::triangles(self, ray, t_max), "the twins differ");
+            hit
+        }
+    }
 
     fn unit_triangle() -> Packet {
         Packet::new([(7, [Vec3::ZERO, Vec3::X, Vec3::Y])])
@@ -184,7 +160,7 @@ mod tests {
         let corners: Vec<[Vec3; 3]> =
             (0..7).map(|i| [centre, rim(i), if i == 6 { rim(0) } else { rim(i + 1) }]).collect();
         let packets: Vec<Packet> =
-            corners.chunks(LANES).map(|c| Packet::new(c.iter().enumerate().map(|(i, c)| (i as u32, *c)))).collect();
+            corners.chunks(WIDTH).map(|c| Packet::new(c.iter().enumerate().map(|(i, c)| (i as u32, *c)))).collect();
         for k in 0..20_000 {
             let edge = &corners[k % 7];
             let along = (k / 7) as f32 / (20_000.0 / 7.0) * 0.9;

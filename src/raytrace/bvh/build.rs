@@ -1,6 +1,7 @@
 //! Building: PLOC with reinsertion (obvhs), then the collapse to eight children.
 
-use super::wide::{LEAF, Node, WIDTH, WideBvh};
+use super::wide::{LEAF, Node, WideBvh};
+use crate::raytrace::simd::WIDTH;
 use glam::Vec3;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::leaf_collapser::collapse;

@@ -7,4 +7,4 @@ mod wide;
 
 pub use build::build;
 pub use traverse::{Slabs, Stack};
-pub use wide::WideBvh;
+pub use wide::{Node, WideBvh};

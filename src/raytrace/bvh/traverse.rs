@@ -1,34 +1,25 @@
-//! Walking a ray through the tree, nearest box first.
+//! Walking a ray through the tree.
 
-use super::wide::{LEAF, Node, WIDTH, WideBvh};
+use super::wide::{LEAF, WideBvh};
 use crate::math::gamma;
+use crate::raytrace::simd::{Kernels, WIDTH};
 use glam::Vec3;
 
 /// What the box test wants of a ray: origin, inverse direction, and which side of each box is near.
 ///
-/// A direction component of zero gives an infinite inverse; `0 * inf` is NaN, and [`max_or`] and [`min_or`] drop it,
-/// so that a ray along a box's face is tested by the other axes alone.
+/// A direction component of zero gives an infinite inverse; `0 * inf` is NaN, and the kernels drop it, so that a ray
+/// along a box's face is tested by the other axes alone.
 #[derive(Clone, Copy, Debug)]
 pub struct Slabs {
-    origin: Vec3,
-    inverse: Vec3,
-    near: [usize; 3],
+    pub(in crate::raytrace) origin: Vec3,
+    pub(in crate::raytrace) inverse: Vec3,
+    /// `inverse`, widened for the far sides to cover the rounding of both products (Ize 2013).
+    pub(in crate::raytrace) inverse_far: Vec3,
+    /// 0 where the lower side is near, 1 where the upper is.
+    pub(in crate::raytrace) near: [usize; 3],
 }
 
-/// The far side is widened by this factor to cover the rounding of both products (Ize 2013).
 const WIDEN: f32 = 1.0 + 2.0 * gamma(3);
-
-/// `a` where it is larger than `b`; else `b`, also when `a` is NaN.
-#[inline(always)]
-fn max_or(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
-}
-
-/// `a` where it is smaller than `b`; else `b`, also when `a` is NaN.
-#[inline(always)]
-fn min_or(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
 
 impl Slabs {
     /// Prepares a ray.
@@ -36,28 +27,7 @@ impl Slabs {
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
         let inverse = direction.recip();
         let near = inverse.to_array().map(|x| usize::from(x.is_sign_negative()));
-        Slabs { origin, inverse, near }
-    }
-
-    /// Entry distance into each child, and which children are entered before `t_max`.
-    #[inline(always)]
-    fn test(&self, node: &Node, t_max: f32) -> ([f32; WIDTH], u32) {
-        let mut enter = [0.0_f32; WIDTH];
-        let mut leave = [t_max; WIDTH];
-        for axis in 0..3 {
-            let near = &node.bounds[self.near[axis]][axis];
-            let far = &node.bounds[1 - self.near[axis]][axis];
-            let (origin, inverse) = (self.origin[axis], self.inverse[axis]);
-            for i in 0..WIDTH {
-                enter[i] = max_or((near[i] - origin) * inverse, enter[i]);
-                leave[i] = min_or((far[i] - origin) * inverse * WIDEN, leave[i]);
-            }
-        }
-        let mut mask = 0;
-        for i in 0..WIDTH {
-            mask |= u32::from(enter[i] <= leave[i]) << i;
-        }
-        (enter, mask)
+        Slabs { origin, inverse, inverse_far: inverse * WIDEN, near }
     }
 }
 
@@ -65,78 +35,125 @@ impl Slabs {
 /// inside an instance) use the same one above a mark.
 #[derive(Clone, Debug, Default)]
 pub struct Stack {
-    open: Vec<(u32, f32)>,
+    /// Entry distance in the upper half (as bits, which sort like the distance because it is not negative), child
+    /// below.
+    open: Vec<u64>,
+}
+
+#[inline(always)]
+fn entry(enter: f32, child: u32) -> u64 {
+    u64::from(enter.to_bits()) << 32 | u64::from(child)
+}
+
+#[inline(always)]
+fn enter_of(entry: u64) -> f32 {
+    f32::from_bits((entry >> 32) as u32)
 }
 
 impl WideBvh {
     /// Visits the leaves that a ray meets before `t_max`, roughly from near to far. `visit` gets the leaf's number and
-    /// the current end of the ray and returns the new one (smaller after a hit; negative stops the walk).
+    /// the current end of the ray and returns the new one (smaller after a hit).
     #[inline(always)]
-    pub fn traverse(
+    pub fn nearest_first<K: Kernels>(
         &self,
         slabs: &Slabs,
         mut t_max: f32,
         stack: &mut Stack,
         mut visit: impl FnMut(u32, f32, &mut Stack) -> f32,
     ) {
-        if self.nodes.is_empty() {
-            return;
-        }
         let mark = stack.open.len();
-        let mut current = 0;
+        let mut current = self.root();
         loop {
-            if current & LEAF != 0 {
-                t_max = visit(current & !LEAF, t_max, stack);
-                if t_max < 0.0 {
-                    stack.open.truncate(mark);
-                    return;
+            if current & LEAF == 0 {
+                let node = &self.nodes[current as usize];
+                let mut enter = [0.0; WIDTH];
+                let mut mask = K::boxes(slabs, node, t_max, &mut enter);
+                if mask != 0 {
+                    let slot = mask.trailing_zeros() as usize % WIDTH;
+                    mask &= mask - 1;
+                    if mask == 0 {
+                        current = node.children[slot];
+                        continue;
+                    }
+                    let base = stack.open.len();
+                    stack.open.push(entry(enter[slot], node.children[slot]));
+                    while mask != 0 {
+                        let slot = mask.trailing_zeros() as usize % WIDTH;
+                        mask &= mask - 1;
+                        insert(&mut stack.open, base, entry(enter[slot], node.children[slot]));
+                    }
                 }
-            } else if let Some(nearest) = self.descend(current, slabs, t_max, stack) {
-                current = nearest;
-                continue;
+            } else if current != NOTHING {
+                t_max = visit(current & !LEAF, t_max, stack);
             }
             current = loop {
-                if stack.open.len() == mark {
+                if stack.open.len() <= mark {
                     return;
                 }
                 // The mark keeps this pop inside our own part of the stack.
-                if let Some((child, enter)) = stack.open.pop()
-                    && enter < t_max
-                {
-                    break child;
+                match stack.open.pop() {
+                    Some(entry) if enter_of(entry) < t_max => break entry as u32,
+                    _ => {}
                 }
             };
         }
     }
 
-    /// Tests a node's children: the nearest one hit is returned, the others are pushed, farthest first.
+    /// Whether `visit` says yes for some leaf that a ray meets before `t_max`, in no order.
     #[inline(always)]
-    fn descend(&self, index: u32, slabs: &Slabs, t_max: f32, stack: &mut Stack) -> Option<u32> {
-        let node = &self.nodes[index as usize];
-        let (enter, mut mask) = slabs.test(node, t_max);
-        if mask == 0 {
-            return None;
-        }
-        let first = mask.trailing_zeros() as usize;
-        mask &= mask - 1;
-        if mask == 0 {
-            return Some(node.children[first]);
-        }
-        let base = stack.open.len();
-        stack.open.push((node.children[first], enter[first]));
-        while mask != 0 {
-            let slot = mask.trailing_zeros() as usize;
-            mask &= mask - 1;
-            // Insertion sort, farthest at the bottom: rarely more than three children are hit.
-            let entry = (node.children[slot], enter[slot]);
-            stack.open.push(entry);
-            let mut i = stack.open.len() - 1;
-            while i > base && stack.open[i - 1].1 < entry.1 {
-                stack.open[i] = stack.open[i - 1];
-                i -= 1;
+    pub fn any<K: Kernels>(
+        &self,
+        slabs: &Slabs,
+        t_max: f32,
+        stack: &mut Stack,
+        mut visit: impl FnMut(u32, &mut Stack) -> bool,
+    ) -> bool {
+        let mark = stack.open.len();
+        let mut current = self.root();
+        loop {
+            if current & LEAF == 0 {
+                let node = &self.nodes[current as usize];
+                let mut mask = K::boxes(slabs, node, t_max, &mut [0.0; WIDTH]);
+                if mask != 0 {
+                    current = node.children[mask.trailing_zeros() as usize % WIDTH];
+                    mask &= mask - 1;
+                    while mask != 0 {
+                        stack.open.push(u64::from(node.children[mask.trailing_zeros() as usize % WIDTH]));
+                        mask &= mask - 1;
+                    }
+                    continue;
+                }
+            } else if current != NOTHING && visit(current & !LEAF, stack) {
+                stack.open.truncate(mark);
+                return true;
             }
-            stack.open[i] = entry;
+            if stack.open.len() <= mark {
+                return false;
+            }
+            let Some(entry) = stack.open.pop() else { return false };
+            current = entry as u32;
         }
-        stack.open.pop().map(|(child, _)| child)
     }
+
+    /// The root; [`NOTHING`] in an empty tree.
+    #[inline(always)]
+    fn root(&self) -> u32 {
+        if self.nodes.is_empty() { NOTHING } else { 0 }
+    }
+}
+
+/// A reference to no leaf.
+const NOTHING: u32 = u32::MAX;
+
+/// Adds an entry to the part of the stack from `base` on, which is sorted with the nearest on top: rarely more than
+/// three.
+#[inline(always)]
+fn insert(open: &mut Vec<u64>, base: usize, entry: u64) {
+    open.push(entry);
+    let mut i = open.len() - 1;
+    while i > base && open[i - 1] < entry {
+        open[i] = open[i - 1];
+        i -= 1;
+    }
+    open[i] = entry;
 }

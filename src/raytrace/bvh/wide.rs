@@ -1,9 +1,8 @@
 //! The tree in memory: nodes of eight boxes as structures of arrays, four cache lines each.
 
+use super::traverse::Slabs;
+use crate::raytrace::simd::WIDTH;
 use glam::Vec3;
-
-/// Children of a node.
-pub const WIDTH: usize = 8;
 
 /// Marks a child that is a leaf; the rest of the bits is the leaf's number.
 pub const LEAF: u32 = 1 << 31;
@@ -30,6 +29,13 @@ impl Node {
             self.bounds[1][axis][slot] = high[axis];
         }
         self.children[slot] = child;
+    }
+
+    /// The sides of all boxes that a ray meets first and last along an axis.
+    #[inline(always)]
+    pub fn sides(&self, slabs: &Slabs, axis: usize) -> (&[f32; WIDTH], &[f32; WIDTH]) {
+        let near = slabs.near[axis] & 1;
+        (&self.bounds[near][axis], &self.bounds[near ^ 1][axis])
     }
 }
 

@@ -1,0 +1,192 @@
+//! `catchlight chart --traversal MESH.obj`: rays a second by intersection method and number of threads.
+
+use crate::cli::{Failure, say};
+use crate::io;
+use crate::math::{Ray, orthonormal_basis, warp};
+use crate::raytrace::{Intersection, Intersector};
+use crate::scene::Mesh;
+use anyhow::{Context, anyhow, ensure};
+use clap::ValueEnum;
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Rays that are made here.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+pub enum RayKind {
+    /// From a camera before the model, pixel by pixel.
+    #[default]
+    Primary,
+    /// Scattered from where those hit, in their order.
+    Bounce,
+    /// The same, shuffled.
+    Shuffled,
+}
+
+/// Edge of the picture whose camera rays are made.
+const EDGE: u32 = 512;
+/// Rays that a thread takes at a time.
+const CHUNK: usize = 4096;
+/// A method is timed for at least this long, over whole passes.
+const TIMED_S: f64 = 0.5;
+/// Methods that would test more triangles than this in a pass trace every n-th ray.
+const MOST_TESTS: u64 = 4_000_000_000;
+/// Largest ray file, bytes.
+const RAY_FILE_LIMIT: u64 = 4 << 30;
+
+/// One line of the result.
+#[derive(Debug, Serialize)]
+struct Row {
+    method: &'static str,
+    threads: usize,
+    build_s: f64,
+    mrays_s: f64,
+    hits: u64,
+    /// Mean distance over the hits, in multiples of the direction; null without hits.
+    mean_t: Option<f64>,
+    /// Rays traced; fewer than given for methods that would take minutes.
+    rays: usize,
+}
+
+/// A way to find hits, by the name that the result gives it.
+pub fn parse_method(name: &str) -> Result<Intersection, String> {
+    let known = Intersection::ALL.map(Intersection::label);
+    let found = Intersection::ALL.into_iter().find(|method| method.label() == name);
+    found.ok_or_else(|| format!("there is no `{name}`, only {}", known.join(", ")))
+}
+
+/// Measures and prints.
+pub fn run(model: &Path, rays: Option<&Path>, kind: RayKind, methods: &[Intersection], json: bool) -> Result<(), Failure> {
+    let mesh = Arc::new(io::import_obj(model)?.mesh);
+    let rays = match rays {
+        Some(path) => read_rays(path)?,
+        None => made_rays(&mesh, kind),
+    };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut rows = Vec::new();
+    for &method in methods {
+        for threads in 1..=cores {
+            rows.push(measure(&mesh, method, threads, &rays)?);
+            eprintln!("{} on {threads} threads: {:.3} Mrays/s", method.label(), rows.last().map_or(0.0, |r| r.mrays_s));
+        }
+    }
+    if json {
+        say(serde_json::to_string(&rows).context("can't write the results")?);
+    } else {
+        say(format!("{} triangles, {} rays, closest hit\n", mesh.triangles.len(), rays.len()));
+        say("| method | threads | build s | Mrays/s | hits | mean t |\n|---|---|---|---|---|---|");
+        for row in rows {
+            let mean_t = row.mean_t.map_or("-".to_owned(), |t| format!("{t:.5}"));
+            let Row { method, threads, build_s, mrays_s, hits, rays, .. } = row;
+            say(format!("| {method} | {threads} | {build_s:.3} | {mrays_s:.3} | {hits} of {rays} | {mean_t} |"));
+        }
+    }
+    Ok(())
+}
+
+fn measure(mesh: &Arc<Mesh>, method: Intersection, threads: usize, rays: &[Ray]) -> Result<Row, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|error| Failure::Machine(anyhow!(error).context("can't start the threads")))?;
+    let started = Instant::now();
+    let intersector = pool.install(|| Intersector::new(mesh, method));
+    let build_s = started.elapsed().as_secs_f64();
+    let tests_a_ray = if method == Intersection::Bvh { 1 } else { mesh.triangles.len() as u64 };
+    let step = (rays.len() as u64 * tests_a_ray).div_ceil(MOST_TESTS).max(1) as usize;
+    let rays: Vec<Ray> = rays.iter().step_by(step).copied().collect();
+    let pass = || -> Vec<f32> { rays.par_chunks(CHUNK).flat_map_iter(|chunk| intersector.distances(chunk)).collect() };
+    let started = Instant::now();
+    let distances = pool.install(pass);
+    let mut passes = 1;
+    while started.elapsed().as_secs_f64() < TIMED_S {
+        std::hint::black_box(pool.install(pass));
+        passes += 1;
+    }
+    let trace_s = started.elapsed().as_secs_f64();
+    let hits = distances.iter().filter(|t| t.is_finite()).count() as u64;
+    let sum: f64 = distances.iter().filter(|t| t.is_finite()).map(|&t| f64::from(t)).sum();
+    Ok(Row {
+        method: method.label(),
+        threads,
+        build_s,
+        mrays_s: (rays.len() * passes) as f64 / trace_s / 1e6,
+        hits,
+        mean_t: (hits > 0).then(|| sum / hits as f64),
+        rays: rays.len(),
+    })
+}
+
+/// Reads a ray file; refuses what is no whole number of rays, or no ray.
+fn read_rays(path: &Path) -> anyhow::Result<Vec<Ray>> {
+    let size = std::fs::metadata(path).with_context(|| format!("can't read the rays: {}", path.display()))?.len();
+    ensure!(size <= RAY_FILE_LIMIT, "a ray file has at most {RAY_FILE_LIMIT} bytes, not {size}: {}", path.display());
+    let bytes = std::fs::read(path).with_context(|| format!("can't read the rays: {}", path.display()))?;
+    let ray_bytes = 6 * size_of::<f32>();
+    ensure!(
+        !bytes.is_empty() && bytes.len().is_multiple_of(ray_bytes),
+        "a ray file holds six 4-byte floats a ray; {} bytes are no whole number of rays: {}",
+        bytes.len(),
+        path.display()
+    );
+    let rays = bytes.chunks_exact(ray_bytes).enumerate().map(|(index, ray)| {
+        let number = |i: usize| f32::from_le_bytes([ray[4 * i], ray[4 * i + 1], ray[4 * i + 2], ray[4 * i + 3]]);
+        let origin = Vec3::new(number(0), number(1), number(2));
+        let direction = Vec3::new(number(3), number(4), number(5));
+        let usable = origin.is_finite() && direction.is_finite() && direction != Vec3::ZERO;
+        ensure!(usable, "ray {index} is none: from {origin} along {direction}: {}", path.display());
+        Ok(Ray { origin, direction, t_max: f32::INFINITY })
+    });
+    rays.collect()
+}
+
+/// Rays about a model, the same each time.
+fn made_rays(mesh: &Arc<Mesh>, kind: RayKind) -> Vec<Ray> {
+    let primary = camera_rays(mesh);
+    if matches!(kind, RayKind::Primary) {
+        return primary;
+    }
+    let mut rays = bounced(mesh, &primary);
+    if matches!(kind, RayKind::Shuffled) {
+        // Fisher and Yates, with numbers from a scrambled Sobol sequence.
+        for i in (1..rays.len()).rev() {
+            let index = i as u32;
+            let u = sobol_burley::sample(index & 0xffff, 0, index >> 16);
+            rays.swap(i, ((i + 1) as f32 * u) as usize);
+        }
+    }
+    rays
+}
+
+/// A square picture that the model fills, from ahead and a little above.
+fn camera_rays(mesh: &Mesh) -> Vec<Ray> {
+    let (low, high) = mesh.bounds();
+    let (centre, radius) = ((low + high) * 0.5, (high - low).length() * 0.5);
+    let back = Vec3::new(0.2, 0.2, 1.0).normalize();
+    let (right, up) = orthonormal_basis(back);
+    let origin = centre + back * (3.0 * radius);
+    let pixel = |i: u32| {
+        let x = (((i % EDGE) as f32 + 0.5) / EDGE as f32 - 0.5) * 2.0 * radius;
+        let y = (((i / EDGE) as f32 + 0.5) / EDGE as f32 - 0.5) * 2.0 * radius;
+        let direction = (centre + right * x + up * y - origin).normalize_or(-back);
+        Ray { origin, direction, t_max: f32::INFINITY }
+    };
+    (0..EDGE * EDGE).map(pixel).collect()
+}
+
+/// From the hits of `rays`, diffusely about the direction they came from, a hair off the surface.
+fn bounced(mesh: &Arc<Mesh>, rays: &[Ray]) -> Vec<Ray> {
+    let distances = Intersector::new(mesh, Intersection::Bvh).distances(rays);
+    let hits = rays.iter().zip(distances).enumerate().filter(|(_, (_, t))| t.is_finite());
+    hits.map(|(i, (ray, t))| {
+        let [a, b, ..] = sobol_burley::sample_4d(i as u32 & 0xffff, 0, i as u32 >> 16);
+        let local = warp::cosine_hemisphere(Vec2::new(a, b));
+        let (tangent, bitangent) = orthonormal_basis(-ray.direction);
+        let direction = tangent * local.x + bitangent * local.y - ray.direction * local.z;
+        Ray { origin: ray.origin + ray.direction * (t * 0.9999), direction, t_max: f32::INFINITY }
+    })
+    .collect()
+}

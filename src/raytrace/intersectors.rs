@@ -1,0 +1,185 @@
+//! Ways to find the closest hit in a mesh, from every triangle to our tree: what `catchlight chart --traversal` compares.
+//!
+//! All use the same watertight triangle kernel, so they find the same distances to the bit; they differ only in how many
+//! triangles they test.
+
+use super::bvh::Stack;
+use super::geometry::MeshGeometry;
+use super::simd::{self, Kernels, Query, WIDTH};
+use super::triangle::{Packet, Sheared};
+use crate::math::Ray;
+use crate::scene::Mesh;
+use glam::Vec3;
+use std::sync::Arc;
+
+/// How the closest hit is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Intersection {
+    /// Every triangle of the mesh.
+    EveryTriangle,
+    /// A box around each part of the mesh, tested by dividing by the direction; then every triangle of the part.
+    Box,
+    /// The same with the inverse direction and its signs computed once a ray.
+    BoxPrecomputed,
+    /// The eight-wide tree that renders use.
+    Bvh,
+}
+
+impl Intersection {
+    /// All, slowest first.
+    pub const ALL: [Intersection; 4] =
+        [Intersection::EveryTriangle, Intersection::Box, Intersection::BoxPrecomputed, Intersection::Bvh];
+
+    /// Its name in tables.
+    pub fn label(self) -> &'static str {
+        match self {
+            Intersection::EveryTriangle => "brute",
+            Intersection::Box => "box",
+            Intersection::BoxPrecomputed => "box-precomputed",
+            Intersection::Bvh => "bvh",
+        }
+    }
+}
+
+/// A mesh prepared for one of the ways.
+#[derive(Debug)]
+pub struct Intersector {
+    method: Intersection,
+    parts: Vec<Part>,
+    tree: Option<MeshGeometry>,
+}
+
+/// Triangles with a box around them.
+#[derive(Debug)]
+struct Part {
+    low: Vec3,
+    high: Vec3,
+    packets: Vec<Packet>,
+}
+
+impl Part {
+    fn new(mesh: &Mesh, triangles: std::ops::Range<u32>) -> Self {
+        let all: Vec<u32> = triangles.collect();
+        let corners = all.iter().flat_map(|&t| mesh.corners(t as usize));
+        let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let (low, high) = corners.fold(start, |(low, high), p| (low.min(p), high.max(p)));
+        let pack = |chunk: &[u32]| Packet::new(chunk.iter().map(|&t| (t, mesh.corners(t as usize))));
+        Part { low, high, packets: all.chunks(WIDTH).map(pack).collect() }
+    }
+
+    /// Slabs by division, each axis ordered by comparison.
+    fn is_met_by_division(&self, ray: &Ray) -> bool {
+        let (mut enter, mut leave) = (0.0_f32, ray.t_max);
+        for axis in 0..3 {
+            let a = (self.low[axis] - ray.origin[axis]) / ray.direction[axis];
+            let b = (self.high[axis] - ray.origin[axis]) / ray.direction[axis];
+            // min and max drop the NaN of an origin on a slab that the ray runs along.
+            enter = a.min(b).max(enter);
+            leave = a.max(b).min(leave);
+        }
+        enter <= leave * (1.0 + 4.0 * f32::EPSILON)
+    }
+
+    /// Slabs with what is known of the ray beforehand.
+    fn is_met(&self, ray: &Ray, inverse: Vec3, negative: [bool; 3]) -> bool {
+        let (mut enter, mut leave) = (0.0_f32, ray.t_max);
+        for axis in 0..3 {
+            let (near, far) =
+                if negative[axis] { (self.high[axis], self.low[axis]) } else { (self.low[axis], self.high[axis]) };
+            enter = ((near - ray.origin[axis]) * inverse[axis]).max(enter);
+            leave = ((far - ray.origin[axis]) * inverse[axis]).min(leave);
+        }
+        enter <= leave * (1.0 + 4.0 * f32::EPSILON)
+    }
+}
+
+impl Intersector {
+    /// Prepares a mesh.
+    pub fn new(mesh: &Arc<Mesh>, method: Intersection) -> Self {
+        let whole = std::slice::from_ref(&(0..mesh.triangles.len() as u32)).to_vec();
+        let (ranges, tree) = match method {
+            Intersection::EveryTriangle => (whole, None),
+            Intersection::Box | Intersection::BoxPrecomputed => {
+                (mesh.parts.iter().map(|part| part.triangles.clone()).collect(), None)
+            }
+            Intersection::Bvh => (Vec::new(), Some(MeshGeometry::new(mesh.clone()))),
+        };
+        let parts = ranges.into_iter().map(|range| Part::new(mesh, range)).collect();
+        Intersector { method, parts, tree }
+    }
+
+    /// Distances of the closest hits, in multiples of each ray's direction; infinite for a miss.
+    pub fn distances(&self, rays: &[Ray]) -> Vec<f32> {
+        simd::dispatch(Distances { intersector: self, rays })
+    }
+
+    #[inline(always)]
+    fn closest<K: Kernels>(&self, ray: &Ray, stack: &mut Stack) -> Option<f32> {
+        if let Some(tree) = &self.tree {
+            return tree.closest::<K>(ray, stack).map(|hit| hit.t);
+        }
+        let sheared = Sheared::new(ray.origin, ray.direction);
+        let inverse = ray.direction.recip();
+        let negative = inverse.to_array().map(f32::is_sign_negative);
+        let mut nearest = None;
+        let mut ray = *ray;
+        for part in &self.parts {
+            let met = match self.method {
+                Intersection::Box => part.is_met_by_division(&ray),
+                Intersection::BoxPrecomputed => part.is_met(&ray, inverse, negative),
+                Intersection::EveryTriangle | Intersection::Bvh => true,
+            };
+            for packet in part.packets.iter().filter(|_| met) {
+                if let Some(hit) = K::triangles(packet, &sheared, ray.t_max) {
+                    ray.t_max = hit.t;
+                    nearest = Some(hit.t);
+                }
+            }
+        }
+        nearest
+    }
+}
+
+/// See [`Intersector::distances`].
+struct Distances<'a> {
+    intersector: &'a Intersector,
+    rays: &'a [Ray],
+}
+
+impl Query for Distances<'_> {
+    type Answer = Vec<f32>;
+
+    #[inline(always)]
+    fn run<K: Kernels>(self) -> Vec<f32> {
+        let mut stack = Stack::default();
+        let distance = |ray: &Ray| self.intersector.closest::<K>(ray, &mut stack).unwrap_or(f32::INFINITY);
+        self.rays.iter().map(distance).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::warp;
+    use crate::scene::{Shape, tessellate};
+    use glam::Vec2;
+
+    #[test]
+    fn all_ways_find_the_same_hits_to_the_bit() {
+        let mut mesh = tessellate(&Shape::Sphere { radius_m: 1.0 }).unwrap();
+        mesh.append(&tessellate(&Shape::Box { size_m: [3.0, 0.5, 0.5] }).unwrap());
+        let mesh = Arc::new(mesh);
+        assert!(mesh.parts.len() > 1, "boxes a part need parts");
+        let ray = |i: u32| {
+            let [a, b, c, d] = sobol_burley::sample_4d(i, 0, 1);
+            let origin = 2.5 * warp::uniform_sphere(Vec2::new(a, b));
+            Ray { origin, direction: warp::uniform_sphere(Vec2::new(c, d)), t_max: f32::INFINITY }
+        };
+        let rays: Vec<Ray> = (0..4096).map(ray).collect();
+        let truth = Intersector::new(&mesh, Intersection::EveryTriangle).distances(&rays);
+        assert!(truth.iter().filter(|t| t.is_finite()).count() > 400);
+        for method in Intersection::ALL {
+            assert_eq!(Intersector::new(&mesh, method).distances(&rays), truth, "{}", method.label());
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! The two kernels of ray traversal, a ray against eight boxes and against eight triangles, for the processor at hand.
+//!
+//! [`Avx2`](avx2::Avx2) is written in intrinsics, [`Plain`] in portable Rust. Nothing is fused or reordered in either,
+//! so both give the same bits, and tests compare them. A [`Query`] is compiled once for each; [`dispatch`] asks the
+//! processor which one it can run.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+mod plain;
+
+use super::bvh::{Node, Slabs};
+use super::triangle::{Packet, Sheared, TriangleHit};
+pub use plain::Plain;
+
+/// Boxes in a node and triangles in a packet.
+pub const WIDTH: usize = 8;
+
+/// What a set of vector instructions must be able to do.
+pub trait Kernels {
+    /// Entry distances into a node's boxes, and a bit for each box that is entered before `t_max`.
+    fn boxes(slabs: &Slabs, node: &Node, t_max: f32, enter: &mut [f32; WIDTH]) -> u32;
+
+    /// The nearest triangle hit with 0 < t < `t_max`. Triangles of no area are never hit.
+    fn triangles(packet: &Packet, ray: &Sheared, t_max: f32) -> Option<TriangleHit>;
+}
+
+/// Work that is compiled once for each set of instructions. `run` and all it calls must be `#[inline(always)]`.
+pub trait Query {
+    /// What comes out.
+    type Answer;
+
+    /// Does the work with the given kernels.
+    fn run<K: Kernels>(self) -> Self::Answer;
+}
+
+/// Runs a query with the widest instructions that the processor has.
+#[inline]
+pub fn dispatch<Q: Query>(query: Q) -> Q::Answer {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        return avx2::run(query);
+    }
+    query.run::<Plain>()
+}
