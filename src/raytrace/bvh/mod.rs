@@ -2,6 +2,7 @@
 //! own code. One traversal serves triangles in a mesh and instances in the studio.
 
 mod build;
+mod collapse;
 mod traverse;
 mod wide;
 
