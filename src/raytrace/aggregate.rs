@@ -122,6 +122,7 @@ mod tests {
     use super::*;
     use crate::math::warp;
     use crate::raytrace::geometry::MeshGeometry;
+    use crate::raytrace::simd::Plain;
     use crate::scene::{Mesh, Shape, tessellate};
     use glam::{Affine3A, Quat, Vec2, Vec3};
     use std::sync::Arc;

@@ -114,7 +114,7 @@ mod tests {
     }
 
     impl Packet {
-        fn intersect(&self, ray: &Sheared, t_max: f32) -> Option<TriangleHit> {
+        pub(in crate::raytrace) fn intersect(&self, ray: &Sheared, t_max: f32) -> Option<TriangleHit> {
             let hit = dispatch(Test(self, ray, t_max));
             assert_eq!(hit, Plain::triangles(self, ray, t_max), "the twins differ");
             hit

@@ -59,7 +59,13 @@ pub fn parse_method(name: &str) -> Result<Intersection, String> {
 }
 
 /// Measures and prints.
-pub fn run(model: &Path, rays: Option<&Path>, kind: RayKind, methods: &[Intersection], json: bool) -> Result<(), Failure> {
+pub fn run(
+    model: &Path,
+    rays: Option<&Path>,
+    kind: RayKind,
+    methods: &[Intersection],
+    json: bool,
+) -> Result<(), Failure> {
     let mesh = Arc::new(io::import_obj(model)?.mesh);
     let rays = match rays {
         Some(path) => read_rays(path)?,
