@@ -109,6 +109,8 @@ pub struct Instance {
     pub object: u32,
     /// Material of each part, as an index into the scene's material table.
     pub materials: Vec<u32>,
+    /// The mesh encloses no space: where it is clear, it is a thin pane.
+    pub sheet: bool,
     world_from_object: Affine3A,
     object_from_world: Affine3A,
     /// Inverse transpose, for normals.
@@ -127,7 +129,15 @@ impl Instance {
         let object_from_world = world_from_object.inverse();
         let normal_matrix = Mat3::from(object_from_world.matrix3).transpose();
         let usable = object_from_world.is_finite() && world_from_object.is_finite();
-        usable.then_some(Instance { geometry, object, materials, world_from_object, object_from_world, normal_matrix })
+        usable.then_some(Instance {
+            geometry,
+            object,
+            materials,
+            sheet: false,
+            world_from_object,
+            object_from_world,
+            normal_matrix,
+        })
     }
 
     /// World box of the eight corners of the mesh's box, rounded outwards.
@@ -191,6 +201,7 @@ impl Instance {
             normal,
             uv,
             material: self.materials.get(part).copied().unwrap_or(0),
+            sheet: self.sheet,
         }
     }
 
@@ -232,6 +243,8 @@ pub struct Surface {
     pub uv: Vec2,
     /// Index into the material table.
     pub material: u32,
+    /// Of a mesh that encloses no space.
+    pub sheet: bool,
 }
 
 impl Surface {

@@ -3,12 +3,16 @@
 //! Unidirectional, with light sampling at every vertex and multiple importance sampling (Veach 1997, power heuristic)
 //! where both techniques can find a light. `direct` is the same with one scattering event; mirrors and glass are passed
 //! through in both. Emitters neither cast shadows nor stop light: only the camera sees them as solid from the front.
+//!
+//! Light sampling goes straight through thin panes, as light does. Through bodies of glass it goes straight, too, but only
+//! for lights without a size, which no refracted ray would ever find: right for flat glass, without caustics for curved.
 
 use super::aggregate::Hit;
-use super::bsdf::{Bsdf, BsdfSample};
+use super::bsdf::{Behind, Bsdf, Polarisation, pane_transmittance};
 use super::bvh::Stack;
 use super::geometry::Surface;
 use super::lights::TracedLight;
+use super::media::Media;
 use super::prepare::RenderScene;
 use super::sampler::{self, Purpose, Sampler};
 use crate::color::luminance;
@@ -30,6 +34,15 @@ pub trait Sink {
     fn add(&mut self, layer: usize, value: Vec3);
 }
 
+impl Vertex {
+    fn new(position: Vec3, normal: Vec3) -> Self {
+        Vertex { position, normal, left_from: position, travelled: 0.0, pdf: None, total_importance: 0.0 }
+    }
+}
+
+/// Surfaces that light on its straight way through glass may cross.
+const CLEAR_SURFACES: u32 = 64;
+
 /// Bounces before roulette begins.
 const ROULETTE_FROM: u32 = 3;
 
@@ -47,6 +60,9 @@ pub struct Tracer<'a> {
 struct Vertex {
     position: Vec3,
     normal: Vec3,
+    /// Where the ray left, and how far it has come through thin panes since.
+    left_from: Vec3,
+    travelled: f32,
     /// Density of the direction that was taken; none after a mirror, glass or at the camera.
     pdf: Option<f32>,
     /// Sum of the lights' importances, where one was chosen; 0 where all were sampled.
@@ -80,9 +96,44 @@ impl<'a> Tracer<'a> {
     /// Whether anything but emitters lies between a point and one at `distance` from it.
     pub fn blocked(&mut self, origin: Vec3, direction: Vec3, distance: f32) -> bool {
         self.rays += 1;
-        // Stop short of the emitter by the rounding of the distance: it may lie on a surface.
-        let ray = Ray { origin, direction, t_max: distance * (1.0 - 4.0 * f32::EPSILON) };
+        let ray = Ray { origin, direction, t_max: short_of(origin, distance) };
         self.scene.aggregate.blocked(&ray, &mut self.stack)
+    }
+
+    /// Share of a light that reaches a point inside `media`, from `distance` away along a direction. Thin panes let it
+    /// through; bodies of glass do for a light without a size.
+    fn visibility(&mut self, origin: Vec3, direction: Vec3, distance: f32, sized: bool, mut media: Media) -> Vec3 {
+        let scene = self.scene;
+        if !scene.plan().refraction {
+            return if self.blocked(origin, direction, distance) { Vec3::ZERO } else { Vec3::ONE };
+        }
+        let mut ray = Ray { origin, direction, t_max: short_of(origin, distance) };
+        let mut passed = Vec3::ONE;
+        for _ in 0..CLEAR_SURFACES {
+            let Some(hit) = self.closest(&ray) else {
+                // A sun beyond the last surface is not inside of anything.
+                let rest = if ray.t_max.is_finite() { ray.t_max } else { 0.0 };
+                return passed * media.transmittance(&scene.materials, rest);
+            };
+            let surface = scene.aggregate.surface(&hit);
+            let material = &scene.materials[surface.material as usize];
+            if !material.transmits() || (sized && !surface.sheet) {
+                return Vec3::ZERO;
+            }
+            let cos = direction.dot(surface.geometric_normal);
+            passed *= media.transmittance(&scene.materials, hit.triangle.t) * material.transmission();
+            if surface.sheet {
+                passed *= pane_transmittance(cos, material.ior());
+            } else {
+                // Each of two parallel faces takes its half of what the pane takes, in stops.
+                let eta = media.interface(&scene.materials, surface.material, cos < 0.0).eta;
+                passed *= pane_transmittance(cos, eta.max(1.0 / eta)).sqrt();
+                media.cross(surface.material, cos < 0.0);
+            }
+            let rest = ray.t_max - hit.triangle.t;
+            ray = Ray { origin: surface.leave(direction), direction, t_max: rest };
+        }
+        Vec3::ZERO
     }
 
     /// Follows a camera ray and gives every light's share to `sink`.
@@ -90,7 +141,9 @@ impl<'a> Tracer<'a> {
         let mut ray = Ray { origin, direction, t_max: f32::INFINITY };
         let mut throughput = Vec3::ONE;
         let mut eta_scale = 1.0;
-        let mut vertex = Vertex { position: origin, normal: direction, pdf: None, total_importance: 0.0 };
+        let mut vertex = Vertex::new(origin, direction);
+        let mut media = Media::default();
+        let mut polarisation = Polarisation::NONE;
         let mut wide_bounces = 0;
         for bounce in 0.. {
             let hit = self.closest(&ray);
@@ -100,34 +153,56 @@ impl<'a> Tracer<'a> {
                     return;
                 }
             } else {
-                self.meet_emitters(&ray, distance, throughput, &vertex, sink);
+                self.meet_emitters(&ray, distance, throughput, &vertex, &media, sink);
             }
             let Some(hit) = hit else { return };
             let surface = self.scene.aggregate.surface(&hit);
             let material = &self.scene.materials[surface.material as usize];
+            let wo = -ray.direction;
+            let outside = wo.dot(surface.geometric_normal) >= 0.0;
+            throughput *= if media.innermost().is_none() && material.transmits() && !outside && !surface.sheet {
+                // The path began inside this body.
+                material.transmittance(distance)
+            } else {
+                media.transmittance(&self.scene.materials, distance)
+            };
             if material.glows() {
                 let glow = self.scene.layers.len() - 1;
                 sink.add(glow, throughput * material.emission * self.scene.glow_time_s);
             }
-            let wo = -ray.direction;
-            if material.transmits() && wo.dot(surface.geometric_normal) < 0.0 {
-                throughput *= (-material.absorption_per_m * distance).exp();
-            }
-            if wide_bounces >= limits.wide_bounces || bounce >= limits.all_bounces {
+            // Straight through a pane a ray goes on after the last bounce, as light sampling there counts on.
+            let ends = wide_bounces >= limits.wide_bounces;
+            if bounce >= limits.all_bounces || (ends && !(surface.sheet && material.transmits())) {
                 return;
             }
             let texture = material.texture.map_or(Vec3::ONE, |t| self.scene.textures[t as usize].at(surface.uv));
-            let bsdf = Bsdf::new(material, texture, surface.normal, surface.geometric_normal, wo);
-            vertex = Vertex { position: surface.position, normal: bsdf.normal(), pdf: None, total_importance: 0.0 };
-            if material.scatters_widely() {
+            let mut bsdf = Bsdf::new(material, texture, surface.normal, surface.geometric_normal, wo);
+            if material.transmits() {
+                let interface = || media.interface(&self.scene.materials, surface.material, outside);
+                let behind = if surface.sheet { Behind::Pane } else { Behind::Body(interface()) };
+                bsdf = bsdf.through(behind, polarisation);
+            }
+            let before = vertex;
+            vertex = Vertex::new(surface.position, bsdf.normal());
+            if material.scatters_widely() && !ends {
                 let all = bounce == 0 && self.scene.plan().sample_all_lights;
-                vertex.total_importance = self.sample_lights(&surface, &bsdf, sampler, bounce, all, throughput, sink);
+                vertex.total_importance =
+                    self.sample_lights(&surface, &bsdf, &media, sampler, bounce, all, throughput, sink);
             }
             let set = sampler.set(Purpose::Bsdf { bounce });
             let Some(sample) = bsdf.sample(set[0], sampler::point(&set)) else { return };
+            if ends && !sample.straight {
+                return;
+            }
             throughput *= sample.weight;
             eta_scale *= sample.eta_scale;
-            if !sample.specular {
+            polarisation = sample.polarisation;
+            if sample.through && !surface.sheet {
+                media.cross(surface.material, outside);
+            }
+            if sample.straight {
+                vertex = Vertex { travelled: before.travelled + distance, ..before };
+            } else if !sample.specular {
                 wide_bounces += 1;
                 vertex.pdf = Some(sample.pdf);
                 let last = wide_bounces >= limits.wide_bounces || bounce + 1 >= limits.all_bounces;
@@ -138,7 +213,10 @@ impl<'a> Tracer<'a> {
             if !survives(&mut throughput, eta_scale, bounce, set[1]) {
                 return;
             }
-            ray = leave(&surface, &sample);
+            ray = Ray { origin: surface.leave(sample.direction), direction: sample.direction, t_max: f32::INFINITY };
+            if !sample.straight {
+                vertex.left_from = ray.origin;
+            }
         }
     }
 
@@ -150,7 +228,7 @@ impl<'a> Tracer<'a> {
             .iter()
             .filter(|light| light.visible_to_camera)
             .filter_map(|light| light.seen_by(ray.origin, ray.direction).map(|seen| (light, seen)))
-            .filter(|(_, seen)| seen.distance <= distance)
+            .filter(|(_, seen)| reaches(ray, seen.distance, distance))
             .min_by(|a, b| a.1.distance.total_cmp(&b.1.distance));
         let Some((light, seen)) = nearest else { return false };
         if seen.distance.is_finite() {
@@ -167,22 +245,33 @@ impl<'a> Tracer<'a> {
     }
 
     /// Emitters that a scattered ray crosses before it ends.
-    fn meet_emitters(&self, ray: &Ray, distance: f32, throughput: Vec3, vertex: &Vertex, sink: &mut impl Sink) {
+    fn meet_emitters(
+        &self,
+        ray: &Ray,
+        distance: f32,
+        throughput: Vec3,
+        vertex: &Vertex,
+        media: &Media,
+        sink: &mut impl Sink,
+    ) {
         for light in &self.scene.lights {
             let Some(seen) = light.seen_by(ray.origin, ray.direction) else { continue };
-            // A surround is met by every ray that leaves the studio.
-            if seen.distance > distance || (seen.distance.is_infinite() && distance.is_finite()) {
+            if !reaches(ray, seen.distance, distance) {
                 continue;
             }
             let weight = match vertex.pdf {
                 Some(pdf) if light.is_sampled() => {
                     let choice = self.choice_probability(light, vertex);
-                    let other = choice * light.pdf(ray.origin, ray.direction, seen.distance);
-                    power_heuristic(pdf, other)
+                    let other = light.pdf(vertex.left_from, ray.direction, vertex.travelled + seen.distance);
+                    power_heuristic(pdf, choice * other)
                 }
                 _ => 1.0,
             };
-            sink.add(light.layer, throughput * light.tint * (seen.luminance * weight));
+            let mut left = throughput;
+            if seen.distance.is_finite() {
+                left *= media.transmittance(&self.scene.materials, seen.distance);
+            }
+            sink.add(light.layer, left * light.tint * (seen.luminance * weight));
         }
     }
 
@@ -202,6 +291,7 @@ impl<'a> Tracer<'a> {
         &mut self,
         surface: &Surface,
         bsdf: &Bsdf<'_>,
+        media: &Media,
         sampler: &Sampler,
         bounce: u32,
         all: bool,
@@ -212,7 +302,7 @@ impl<'a> Tracer<'a> {
         if all || scene.lights.len() == 1 {
             for (slot, light) in scene.lights.iter().enumerate().filter(|(_, l)| l.is_sampled()) {
                 let set = sampler.set(Purpose::Light { slot: slot as u32, bounce });
-                self.sample_light(light, 1.0, surface, bsdf, &set, throughput, sink);
+                self.sample_light(light, 1.0, surface, bsdf, media, &set, throughput, sink);
             }
             return 0.0;
         }
@@ -226,7 +316,7 @@ impl<'a> Tracer<'a> {
         for light in &scene.lights {
             let share = importance(light);
             if left < share {
-                self.sample_light(light, share / total, surface, bsdf, &set, throughput, sink);
+                self.sample_light(light, share / total, surface, bsdf, media, &set, throughput, sink);
                 break;
             }
             left -= share;
@@ -241,6 +331,7 @@ impl<'a> Tracer<'a> {
         choice: f32,
         surface: &Surface,
         bsdf: &Bsdf<'_>,
+        media: &Media,
         set: &sampler::Set,
         throughput: Vec3,
         sink: &mut impl Sink,
@@ -252,8 +343,9 @@ impl<'a> Tracer<'a> {
         }
         let weight = sample.pdf.map_or(1.0, |light_pdf| power_heuristic(light_pdf * choice, pdf));
         let origin = surface.leave(sample.direction);
-        if !self.blocked(origin, sample.direction, sample.distance) {
-            sink.add(light.layer, throughput * value * light.tint * (sample.value * weight / choice));
+        let visible = self.visibility(origin, sample.direction, sample.distance, sample.pdf.is_some(), *media);
+        if visible != Vec3::ZERO {
+            sink.add(light.layer, throughput * visible * value * light.tint * (sample.value * weight / choice));
         }
     }
 }
@@ -277,8 +369,19 @@ fn survives(throughput: &mut Vec3, eta_scale: f32, bounce: u32, u: f32) -> bool 
     luminance(*throughput).is_finite()
 }
 
-fn leave(surface: &Surface, sample: &BsdfSample) -> Ray {
-    Ray { origin: surface.leave(sample.direction), direction: sample.direction, t_max: f32::INFINITY }
+/// A share of coordinates and distances that is more than their rounding on the way to an emitter: some 20 micrometres
+/// at five metres. Emitters may lie on a surface (a panel on the wall, a lamp on the ceiling) and are seen all the same.
+const TOUCHING: f32 = 32.0 * f32::EPSILON;
+
+/// End of a ray towards an emitter that may lie on a surface.
+fn short_of(origin: Vec3, distance: f32) -> f32 {
+    distance - TOUCHING * (distance + origin.abs().max_element())
+}
+
+/// Whether an emitter at one distance is seen before a surface at another. Sun and surround are seen by rays that leave
+/// the studio.
+fn reaches(ray: &Ray, emitter: f32, surface: f32) -> bool {
+    if emitter.is_finite() { short_of(ray.origin, emitter) <= surface } else { surface.is_infinite() }
 }
 
 #[cfg(test)]

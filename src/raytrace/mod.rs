@@ -12,6 +12,7 @@ mod integrator;
 mod intersectors;
 mod lens;
 mod lights;
+mod media;
 mod plan;
 mod prepare;
 mod probe;

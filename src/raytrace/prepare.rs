@@ -90,7 +90,11 @@ pub(super) fn prepare_around(
         .into_iter()
         .filter_map(|p| {
             let geometry = geometries.get(&Arc::as_ptr(&p.mesh))?.clone();
-            Instance::new(geometry, relative_to(p.world_from_object, eye), p.object, p.materials)
+            let clear = p.materials.iter().any(|&m| tables.materials[m as usize].transmits());
+            let sheet = clear && !p.mesh.is_closed();
+            let mut placed = Instance::new(geometry, relative_to(p.world_from_object, eye), p.object, p.materials)?;
+            placed.sheet = sheet;
+            Some(placed)
         })
         .collect();
     let (lights, layers) = trace_lights(scene, eye, assign_layers);

@@ -1,6 +1,8 @@
 //! Triangles as every renderer reads them.
 
 use glam::{Vec2, Vec3};
+use std::cmp::Ordering;
+use std::collections::HashMap;
 
 /// A run of triangles with a name of its own, so that it can have its own material.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,6 +72,31 @@ impl Mesh {
         );
     }
 
+    /// Whether the triangles enclose a space: every edge is shared by as many triangles one way as the other. Vertices at
+    /// the same place count as one. A few open edges are forgiven (files are rarely perfect), if as many triangles look
+    /// one way as the other.
+    pub fn is_closed(&self) -> bool {
+        let place = |i: u32| (self.positions[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
+        let mut edges: HashMap<[[u32; 3]; 2], i32> = HashMap::with_capacity(self.triangles.len() * 3 / 2);
+        let (mut looking, mut area) = (Vec3::ZERO, 0.0);
+        for (index, triangle) in self.triangles.iter().enumerate() {
+            let [a, b, c] = self.corners(index);
+            let face = (b - a).cross(c - a);
+            looking += face;
+            area += face.length();
+            let p = triangle.map(place);
+            for [from, to] in [[p[0], p[1]], [p[1], p[2]], [p[2], p[0]]] {
+                match from.cmp(&to) {
+                    Ordering::Less => *edges.entry([from, to]).or_default() += 1,
+                    Ordering::Greater => *edges.entry([to, from]).or_default() -= 1,
+                    Ordering::Equal => {}
+                }
+            }
+        }
+        let open = edges.values().filter(|&&balance| balance != 0).count();
+        open == 0 || (open * 100 < edges.len() && looking.length() < 1e-2 * area)
+    }
+
     /// Replaces the normals by the angle-weighted mean of the faces around each vertex (Thurmer and Wuthrich 1998).
     /// A vertex of zero-area faces alone gets +Y.
     pub fn compute_smooth_normals(&mut self) {
@@ -84,5 +111,30 @@ impl Mesh {
             }
         }
         self.normals = sums.into_iter().map(|n| n.try_normalize().unwrap_or(Vec3::Y)).collect();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Room, Shape, room_mesh, tessellate};
+
+    #[test]
+    fn solids_enclose_a_space_and_sheets_do_not() {
+        for (shape, closed) in [
+            (Shape::Box { size_m: Vec3::new(1.0, 2.0, 0.01) }, true),
+            (Shape::Sphere { radius_m: 0.1 }, true),
+            (Shape::Cylinder { radius_m: 0.3, height_m: 2.0 }, true),
+            (Shape::Plane { width_m: 1.0, depth_m: 2.0 }, false),
+            (Shape::Sweep { width_m: 2.0, height_m: 3.0, depth_m: 2.0, radius_m: 0.5 }, false),
+        ] {
+            assert_eq!(tessellate(&shape).unwrap().is_closed(), closed, "{shape:?}");
+        }
+        assert!(room_mesh(&Room::default()).is_closed());
+        let mut holed = tessellate(&Shape::Sphere { radius_m: 1.0 }).unwrap();
+        holed.triangles.truncate(holed.triangles.len() - 1);
+        assert!(holed.is_closed(), "one lost triangle of thousands does not make it a pane");
+        holed.triangles.truncate(holed.triangles.len() / 2);
+        assert!(!holed.is_closed(), "half a ball is a bowl of thin glass");
     }
 }

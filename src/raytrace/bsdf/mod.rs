@@ -8,11 +8,16 @@
 mod albedo;
 mod fresnel;
 mod ggx;
+mod glass;
+mod polarisation;
 
+use super::media::Interface;
 use crate::color::luminance;
 use crate::math::{orthonormal_basis, warp};
 use crate::scene::Material;
 use albedo::AlbedoTable;
+pub use glass::{Behind, pane_transmittance};
+pub use polarisation::Polarisation;
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
@@ -27,7 +32,7 @@ pub struct Surfacing {
     ior: f32,
     transmission: f32,
     /// Per metre, inside clear glass.
-    pub absorption_per_m: Vec3,
+    absorption_per_m: Vec3,
     /// Luminance times colour that the surface gives off, cd/m2.
     pub emission: Vec3,
     gloss: AlbedoTable,
@@ -38,13 +43,17 @@ impl Surfacing {
     /// Tabulates what the material needs.
     pub fn new(material: &Material, texture: Option<u32>) -> Self {
         let alpha = material.roughness * material.roughness;
+        // A metal is opaque: only the rest lets light through, and the metal is a larger part of what does not.
+        let transmission = material.transmission * (1.0 - material.metallic);
+        let opaque = 1.0 - transmission;
+        let metallic = if opaque > 0.0 { (material.metallic / opaque).min(1.0) } else { 0.0 };
         Surfacing {
             base_color: material.base_color.into(),
             texture,
-            metallic: material.metallic,
+            metallic,
             alpha,
             ior: material.ior,
-            transmission: material.transmission,
+            transmission,
             absorption_per_m: material.absorption_per_m.into(),
             emission: material.emission_cd_m2.into(),
             gloss: AlbedoTable::dielectric(material.ior, alpha),
@@ -60,6 +69,21 @@ impl Surfacing {
     /// Whether some light goes through.
     pub fn transmits(&self) -> bool {
         self.transmission > 0.0
+    }
+
+    /// Share of light that goes through.
+    pub fn transmission(&self) -> f32 {
+        self.transmission
+    }
+
+    /// Index of refraction.
+    pub fn ior(&self) -> f32 {
+        self.ior
+    }
+
+    /// Share of light left after a distance inside.
+    pub fn transmittance(&self, distance: f32) -> Vec3 {
+        (-self.absorption_per_m * distance).exp()
     }
 
     fn is_smooth(&self) -> bool {
@@ -92,6 +116,28 @@ pub struct BsdfSample {
     pub specular: bool,
     /// Square of the relative index crossed: radiance grows by it inside glass, and roulette must not see that.
     pub eta_scale: f32,
+    /// Polarisation that is accepted from there on.
+    pub polarisation: Polarisation,
+    /// To the other side of the surface.
+    pub through: bool,
+    /// Through a thin pane, straight on: other techniques can find it as if the pane were not there.
+    pub straight: bool,
+}
+
+impl BsdfSample {
+    /// All light from one direction.
+    fn specular(direction: Vec3) -> Self {
+        BsdfSample {
+            direction,
+            weight: Vec3::ONE,
+            pdf: 0.0,
+            specular: true,
+            eta_scale: 1.0,
+            polarisation: Polarisation::NONE,
+            through: false,
+            straight: false,
+        }
+    }
 }
 
 /// The scattering at one point for one outgoing direction.
@@ -107,8 +153,12 @@ pub struct Bsdf<'a> {
     geometric_normal: Vec3,
     /// Towards the viewer, in the shading frame.
     wo: Vec3,
-    /// The viewer is outside.
-    outside: bool,
+    /// The same, world space.
+    wo_world: Vec3,
+    /// What light that goes through comes to.
+    behind: Behind,
+    /// Polarisation that the viewer accepts.
+    polarisation: Polarisation,
 }
 
 impl<'a> Bsdf<'a> {
@@ -120,9 +170,30 @@ impl<'a> Bsdf<'a> {
         // An interpolated normal that looks away from the viewer would show the surface's back: take the triangle's.
         let normal = if normal.dot(wo) * side > 1e-4 { normal * side } else { geometric_normal };
         let (tangent, bitangent) = orthonormal_basis(normal);
+        let wo_world = wo;
         let wo = Vec3::new(wo.dot(tangent), wo.dot(bitangent), wo.dot(normal).max(1e-6));
         let base_color = surfacing.base_color * texture;
-        Bsdf { surfacing, base_color, tangent, bitangent, normal, geometric_normal, wo, outside }
+        // A body in air, unless `through` says otherwise.
+        let eta = if outside { surfacing.ior } else { 1.0 / surfacing.ior };
+        let behind = Behind::Body(Interface { eta, unknown: false });
+        let polarisation = Polarisation::NONE;
+        Bsdf {
+            surfacing,
+            base_color,
+            tangent,
+            bitangent,
+            normal,
+            geometric_normal,
+            wo,
+            wo_world,
+            behind,
+            polarisation,
+        }
+    }
+
+    /// The same surface with this behind it, for a viewer who accepts this polarisation.
+    pub fn through(self, behind: Behind, polarisation: Polarisation) -> Self {
+        Bsdf { behind, polarisation, ..self }
     }
 
     /// Normal on the viewer's side.
@@ -205,9 +276,7 @@ impl<'a> Bsdf<'a> {
         let choice = self.lobe_choice();
         let wi = if lobe < choice {
             if s.is_smooth() {
-                let wi = Vec3::new(-self.wo.x, -self.wo.y, self.wo.z);
-                let weight = self.gloss_color(self.wo.z) / choice;
-                return self.specular(wi, weight, 1.0);
+                return self.mirrored(self.gloss_color(self.wo.z) / choice);
             }
             let m = ggx::sample_visible_normal(self.wo, s.alpha, u);
             ggx::reflect(self.wo, m)
@@ -219,27 +288,16 @@ impl<'a> Bsdf<'a> {
             return None;
         }
         let (value, pdf) = self.eval_local(wi);
-        (pdf > 0.0).then(|| BsdfSample { direction, weight: value / pdf, pdf, specular: false, eta_scale: 1.0 })
+        let wide = BsdfSample { pdf, specular: false, ..BsdfSample::specular(direction) };
+        (pdf > 0.0).then(|| BsdfSample { weight: value / pdf, ..wide })
     }
 
-    fn sample_glass(&self, choice: f32) -> Option<BsdfSample> {
-        let ior = self.surfacing.ior;
-        let eta = if self.outside { ior } else { 1.0 / ior };
-        let reflectance = fresnel::dielectric(self.wo.z, eta);
-        if choice < reflectance {
-            return self.specular(Vec3::new(-self.wo.x, -self.wo.y, self.wo.z), Vec3::ONE, 1.0);
-        }
-        let wi = fresnel::refract(self.wo, eta)?;
-        let scale = 1.0 / (eta * eta);
-        self.specular(wi, Vec3::splat(scale), scale)
-    }
-
-    fn specular(&self, wi: Vec3, weight: Vec3, eta_scale: f32) -> Option<BsdfSample> {
-        let direction = self.to_world(wi).normalize_or_zero();
-        let transmitted = wi.z < 0.0;
-        // The direction must leave on the side that the triangle agrees with.
-        let agrees = (direction.dot(self.geometric_normal) < 0.0) == transmitted;
-        agrees.then_some(BsdfSample { direction, weight, pdf: 0.0, specular: true, eta_scale })
+    /// The mirror direction about the shading normal; about the triangle's where that would go below the surface.
+    fn mirrored(&self, weight: Vec3) -> Option<BsdfSample> {
+        let about = |normal: Vec3| (2.0 * self.wo_world.dot(normal) * normal - self.wo_world).normalize_or_zero();
+        let above = |direction: &Vec3| direction.dot(self.geometric_normal) > 0.0;
+        let direction = Some(about(self.normal)).filter(above).or(Some(about(self.geometric_normal)).filter(above))?;
+        Some(BsdfSample { weight, ..BsdfSample::specular(direction) })
     }
 }
 
