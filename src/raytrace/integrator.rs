@@ -102,7 +102,7 @@ impl<'a> Tracer<'a> {
 
     /// Share of a light that reaches a point inside `media`, from `distance` away along a direction. Thin panes let it
     /// through; bodies of glass do for a light without a size.
-    fn visibility(&mut self, origin: Vec3, direction: Vec3, distance: f32, sized: bool, mut media: Media) -> Vec3 {
+    pub fn visibility(&mut self, origin: Vec3, direction: Vec3, distance: f32, sized: bool, mut media: Media) -> Vec3 {
         let scene = self.scene;
         if !scene.plan().refraction {
             return if self.blocked(origin, direction, distance) { Vec3::ZERO } else { Vec3::ONE };

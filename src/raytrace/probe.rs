@@ -3,11 +3,13 @@
 //! Direct light comes from stratified points on each emitter with shadow rays (a point, a spot and a sharp sun need
 //! one). Bounced light is found by the path tracer, started in directions that the receptor weights. Both are taken in
 //! sixteen independently scrambled sequences; their scatter is the error that is reported, and sampling goes on until
-//! it is small or the rays are spent. What glass or mirrors let through counts as bounced, and is the noisiest part.
+//! it is small or the rays are spent. What mirrors show counts as bounced, and so
+//! does what glass lets through of a light with a size; it is the noisiest part.
 
 use super::film::Layer;
 use super::integrator::{Limits, Sink, Tracer};
 use super::lights::TracedLight;
+use super::media::Media;
 use super::prepare::{PrepareError, RenderScene, prepare_around};
 use super::sampler::{self, Purpose, Sampler};
 use super::schedule::Control;
@@ -440,8 +442,15 @@ impl Job<'_> {
             let lit = sample.map_or(0.0, |sample| {
                 let response = receiver.receptor.response(sample.direction.dot(receiver.facing));
                 let value = sample.value * response;
-                let dark = value <= 0.0 || tracer.blocked(receiver.origin, sample.direction, sample.distance);
-                if dark { 0.0 } else { value }
+                if value <= 0.0 {
+                    return 0.0;
+                }
+                let (origin, direction, distance) = (receiver.origin, sample.direction, sample.distance);
+                if light.has_size() {
+                    // What glass lets through of it is found by the paths.
+                    return if tracer.blocked(origin, direction, distance) { 0.0 } else { value };
+                }
+                value * luminance(tracer.visibility(origin, direction, distance, false, Media::default()))
             });
             let (sum, points) = &mut sequence.direct[layer];
             *points += 1;

@@ -16,9 +16,9 @@ use crate::color::luminance;
 use crate::math::{orthonormal_basis, warp};
 use crate::scene::Material;
 use albedo::AlbedoTable;
+use glam::{Vec2, Vec3};
 pub use glass::{Behind, pane_transmittance};
 pub use polarisation::Polarisation;
-use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
 /// A material made ready for tracing.
@@ -177,18 +177,7 @@ impl<'a> Bsdf<'a> {
         let eta = if outside { surfacing.ior } else { 1.0 / surfacing.ior };
         let behind = Behind::Body(Interface { eta, unknown: false });
         let polarisation = Polarisation::NONE;
-        Bsdf {
-            surfacing,
-            base_color,
-            tangent,
-            bitangent,
-            normal,
-            geometric_normal,
-            wo,
-            wo_world,
-            behind,
-            polarisation,
-        }
+        Bsdf { surfacing, base_color, tangent, bitangent, normal, geometric_normal, wo, wo_world, behind, polarisation }
     }
 
     /// The same surface with this behind it, for a viewer who accepts this polarisation.

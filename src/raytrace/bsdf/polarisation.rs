@@ -89,7 +89,8 @@ mod tests {
         let normal = (path * brewster.to_radians().cos() + after.across * brewster.to_radians().sin()).normalize();
         assert!(after.meet(path, normal, 1.5).reflectance < 1e-4);
         // Not turned, it gives back all of the s reflectance.
-        let same = (path * brewster.to_radians().cos() + path.cross(after.across) * brewster.to_radians().sin()).normalize();
+        let same =
+            (path * brewster.to_radians().cos() + path.cross(after.across) * brewster.to_radians().sin()).normalize();
         let (s, _) = fresnel::amplitudes(wo.z, 1.5);
         assert!((after.meet(path, same, 1.5).reflectance - s * s).abs() < 1e-4);
     }

@@ -1,0 +1,268 @@
+//! Glass, mirrors and water against closed forms, read from rendered pictures. Tolerances are standard errors of the
+//! pixels' scatter, as in `analytic_light`.
+#![allow(clippy::unwrap_used)]
+
+mod studio;
+
+use catchlight::raytrace::Method;
+use catchlight::scene::{Aim, Camera, Emitter, Material, Object, Output, Scene, Sensor, Shape, Transform};
+use glam::Vec3;
+use std::f64::consts::PI;
+use studio::closed_forms::{fresnel, pane};
+use studio::light;
+use studio::measure::{BIAS, illuminance, luminance_per_value, meter_card, picture, square, values};
+use studio::statistics::Estimate;
+
+const LUMINANCE: f32 = 1000.0;
+
+fn glass(ior: f32) -> Material {
+    Material { transmission: 1.0, roughness: 0.0, ior, ..Material::default() }
+}
+
+fn thing(name: &str, shape: Shape, material: Material, position: Vec3, rotation_deg: Vec3) -> Object {
+    let transform = Transform { position, rotation_deg, ..Transform::default() };
+    Object { material, transform, ..studio::object(name, shape, position) }
+}
+
+/// A black wall that glows with 1000 cd/m2, seen straight on from `distance` by a camera with a tiny angle. Half a metre
+/// wide: what a tilted pane reflects misses it.
+fn glowing_wall(distance: f32) -> Scene {
+    let black = Material { base_color: [0.0; 3], emission_cd_m2: [LUMINANCE; 3], ior: 1.0, ..Material::default() };
+    let wall = thing("Wall", Shape::Plane { width_m: 0.5, depth_m: 0.5 }, black, Vec3::ZERO, Vec3::X * 90.0);
+    let camera = Camera {
+        position: Vec3::Z * distance,
+        aim: Aim::Point(Vec3::ZERO),
+        sensor: Sensor::Custom { width_mm: 24.0, height_mm: 24.0 },
+        focal_length_mm: 5000.0,
+        ..Camera::default()
+    };
+    Scene { objects: vec![wall], camera, ..Scene::default() }
+}
+
+/// Luminance of the picture over that of the wall.
+fn share(scene: &Scene, side: u32, spp: u32) -> Estimate {
+    let Estimate { mean, error } = values(&picture(scene, &square(Method::Path, side, spp)));
+    let scale = luminance_per_value(&scene.camera) / f64::from(LUMINANCE);
+    Estimate { mean: mean * scale, error: error * scale }
+}
+
+#[test]
+fn panes_let_through_by_angle_what_both_polarisations_pass_with_all_inner_reflections() {
+    // The four values of light_and_camera.md (n = 1.52: 0.918, 0.916, 0.844, 0.456), more angles and other glass.
+    let table =
+        [(0.0, 1.52, Some(0.918)), (30.0, 1.52, Some(0.916)), (60.0, 1.52, Some(0.844)), (80.0, 1.52, Some(0.456))];
+    let more = [(45.0, 1.52, None), (70.0, 1.52, None), (60.0, 1.33, None), (50.0, 2.4, None), (75.0, 1.9, None)];
+    for (deg, n, printed) in table.into_iter().chain(more) {
+        let truth = pane(f64::to_radians(deg), f64::from(n));
+        assert!(printed.is_none_or(|p: f64| (p - truth).abs() < 6e-4), "{deg}: {truth}");
+        for sheet in [false, true] {
+            let mut scene = glowing_wall(3.0);
+            let (shape, turn) = if sheet {
+                (Shape::Plane { width_m: 3.0, depth_m: 3.0 }, 90.0 + deg as f32)
+            } else {
+                (Shape::Box { size_m: Vec3::new(3.0, 3.0, 0.004) }, deg as f32)
+            };
+            scene.objects.push(thing("Pane", shape, glass(n), Vec3::Z * 1.5, Vec3::X * turn));
+            let reading = share(&scene, 32, 64);
+            assert!(reading.agrees(truth, BIAS, 18), "{deg} degrees, n {n}, sheet {sheet}: {reading:?} for {truth}");
+            // Single interfaces, without memory of the polarisation, would be off by more than we allow from 60 degrees.
+            let (s, p) = fresnel(f64::to_radians(deg), f64::from(n));
+            let mean = 0.5 * (s + p);
+            let forgetful = (1.0 - mean) / (1.0 + mean);
+            assert!(deg < 59.0 || n < 1.4 || !reading.agrees(forgetful, BIAS, 18), "{deg}: {reading:?} says little");
+        }
+    }
+}
+
+#[test]
+fn a_point_light_shines_through_a_pane_as_much_as_the_pane_lets_through() {
+    for (deg, sheet) in [(0.0_f32, false), (50.0, false), (0.0, true), (70.0, true)] {
+        let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
+        scene.lights.push(light(Emitter::Point, Output::Lumens(1000.0), Vec3::Z * 2.0));
+        let open = illuminance(&scene, &square(Method::Direct, 8, 16)).mean;
+        let (shape, turn) = if sheet {
+            (Shape::Plane { width_m: 3.0, depth_m: 3.0 }, 90.0 + deg)
+        } else {
+            (Shape::Box { size_m: Vec3::new(3.0, 3.0, 0.004) }, deg)
+        };
+        scene.objects.push(thing("Pane", shape, glass(1.52), Vec3::Z, Vec3::X * turn));
+        for method in [Method::Direct, Method::Path] {
+            let reading = illuminance(&scene, &square(method, 8, 64));
+            let truth = open * pane(f64::from(deg).to_radians(), 1.52);
+            // The pane brings the light's image closer by t (1 - 1/n) = 1.4 mm of 2 m: 0.14 %, which is left out. The card
+            // of 18 % and the pane light each other by far less.
+            assert!(
+                reading.agrees(truth, 2e-3, 8),
+                "{deg} degrees, sheet {sheet}, {method:?}: {reading:?} for {truth} lx"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_softbox_behind_a_thin_pane_loses_what_the_pane_takes_in_every_method() {
+    for emitter in [Emitter::RectPanel { width_m: 0.3, height_m: 0.3 }, Emitter::Sphere { radius_m: 0.02 }] {
+        let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
+        scene.lights.push(light(emitter, Output::Lumens(1000.0), Vec3::Z * 3.0));
+        let open = illuminance(&scene, &square(Method::Direct, 16, 64)).mean;
+        let pane_object =
+            thing("Pane", Shape::Plane { width_m: 8.0, depth_m: 8.0 }, glass(1.52), Vec3::Z, Vec3::X * 90.0);
+        scene.objects.push(pane_object);
+        for method in [Method::Direct, Method::Path] {
+            let reading = illuminance(&scene, &square(method, 16, 64));
+            let truth = open * pane(0.0, 1.52);
+            // Rays meet the pane at up to 4 degrees, where it takes as much to 0.01 %.
+            assert!(reading.agrees(truth, 1e-3, 4), "{emitter:?}, {method:?}: {reading:?} for {truth} lx");
+        }
+    }
+}
+
+#[test]
+fn a_softbox_behind_thick_glass_arrives_by_refraction() {
+    // Rays through a body of glass find a light with a size by themselves; light sampling must leave it to them.
+    let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
+    let panel = Emitter::RectPanel { width_m: 2.0, height_m: 2.0 };
+    scene.lights.push(light(panel, Output::Lumens(1000.0), Vec3::Z * 1.5));
+    let open = illuminance(&scene, &square(Method::Path, 16, 64)).mean;
+    let shape = Shape::Box { size_m: Vec3::new(6.0, 6.0, 0.004) };
+    scene.objects.push(thing("Pane", shape, glass(1.52), Vec3::Z * 0.7, Vec3::ZERO));
+    let reading = illuminance(&scene, &square(Method::Path, 64, 64));
+    // Within 43 degrees the pane passes between 0.918 and 0.906.
+    assert!(reading.mean / open > 0.9 && reading.mean / open < 0.925, "{reading:?} of {open} lx");
+    assert!(reading.error / open < 0.005, "{reading:?} says little");
+}
+
+#[test]
+fn water_in_glass_and_glass_in_glass_have_the_faces_that_they_have() {
+    // A slab of 10 cm with another of 4 cm in it, straight on. R of each face by the two indices it parts; the slab's
+    // transmittance is the sum over all ways between four faces, by 2 x 2 transfer of intensities.
+    let cases = [
+        (1.5_f32, 1.5_f32, 0.0_f32, 0.0_f32),
+        (1.5, 1.33, 0.0, 0.0),
+        (1.5, 1.0, 0.0, 0.0),
+        (1.33, 2.0, 5.0, 0.0),
+        (1.5, 1.5, 5.0, 20.0),
+    ];
+    for (outer, inner, outer_per_m, inner_per_m) in cases {
+        let mut scene = glowing_wall(3.0);
+        let body = |ior, per_m: f32| Material { absorption_per_m: [per_m; 3], ..glass(ior) };
+        for (name, material, size) in
+            [("Outer", body(outer, outer_per_m), 0.1_f32), ("Inner", body(inner, inner_per_m), 0.04)]
+        {
+            let shape = Shape::Box { size_m: Vec3::new(2.0 + size, 2.0 + size, size) };
+            scene.objects.push(thing(name, shape, material, Vec3::Z * 1.5, Vec3::ZERO));
+        }
+        // The same material twice is one entry of the tracer's table; both bodies must be told apart all the same.
+        let r = |a: f32, b: f32| ((f64::from(a) - f64::from(b)) / (f64::from(a) + f64::from(b))).powi(2);
+        let faces = [r(1.0, outer), r(outer, inner), r(inner, outer), r(outer, 1.0)];
+        let gaps = [0.03 * outer_per_m, 0.04 * inner_per_m, 0.03 * outer_per_m].map(|a| f64::from(-a).exp());
+        let truth = stack_transmittance(&faces, &gaps);
+        let reading = share(&scene, 32, 64);
+        assert!(reading.agrees(truth, 1e-3, cases.len()), "{outer} with {inner} in it: {reading:?} for {truth}");
+    }
+}
+
+/// Transmittance of parallel faces with these reflectances and transmittances of the gaps between them: adding one face
+/// after the other (Stokes 1862).
+fn stack_transmittance(faces: &[f64], gaps: &[f64]) -> f64 {
+    let (mut through, mut back) = (1.0 - faces[0], faces[0]);
+    for (face, gap) in faces[1..].iter().zip(gaps) {
+        let echo = 1.0 - back * gap * gap * face;
+        let next = through * gap * (1.0 - face) / echo;
+        // Seen from behind: what returns there.
+        back = face + (1.0 - face) * (1.0 - face) * gap * gap * back / echo;
+        through = next;
+    }
+    through
+}
+
+#[test]
+fn what_stands_in_coloured_water_is_seen_through_it() {
+    // A glowing card in the middle of a tank: light from it crosses half of the water and one face.
+    let mut scene = glowing_wall(3.0);
+    let water = Material { absorption_per_m: [4.0; 3], ..glass(1.33) };
+    let shape = Shape::Box { size_m: Vec3::new(10.0, 10.0, 1.0) };
+    scene.objects.push(thing("Water", shape, water, Vec3::ZERO, Vec3::ZERO));
+    // Radiance that leaves water is spread out by n2; a glowing wall in it gives that much less.
+    let truth = (1.0 - (0.33 / 2.33_f64).powi(2)) * (-0.5 * 4.0_f64).exp() / 1.33_f64.powi(2);
+    let reading = share(&scene, 32, 64);
+    assert!(reading.agrees(truth, 1e-3, 1), "{reading:?} for {truth}");
+}
+
+#[test]
+fn a_camera_in_water_sees_no_more_light_than_there_is() {
+    // The camera stands in its own air: an even surround of 1 looks like 1 at most, from in a ball or a tank.
+    for shape in [Shape::Sphere { radius_m: 1.0 }, Shape::Box { size_m: Vec3::splat(2.0) }] {
+        let mut scene = studio::ball_in_even_light(glass(1.33));
+        let open = values(&picture(&Scene { objects: Vec::new(), ..scene.clone() }, &square(Method::Path, 8, 4))).mean;
+        scene.objects[0].shape = shape.clone();
+        scene.camera.position = Vec3::new(0.1, 0.05, 0.2);
+        scene.camera.aim = Aim::Point(Vec3::NEG_Z);
+        scene.camera.focal_length_mm = 24.0;
+        let reading = values(&picture(&scene, &square(Method::Path, 32, 64)));
+        let ratio = Estimate { mean: reading.mean / open, error: reading.error / open };
+        assert!(ratio.agrees(1.0, 5e-3, 2), "{shape:?}: {ratio:?}");
+    }
+}
+
+#[test]
+fn a_slab_shifts_what_is_behind_it_by_snells_law() {
+    // d = t sin(i) (1 - cos(i) / (n cos(r))) for a slab of thickness t under the angle i. The wall's edge is in the middle
+    // of the picture: the lit share of it moves with the edge.
+    for (deg, n) in [(30.0_f64, 1.5_f64), (60.0, 1.52), (45.0, 1.33)] {
+        let mut scene = glowing_wall(3.0);
+        scene.objects[0].transform.position.x = 0.25;
+        scene.camera.focal_length_mm = 1000.0;
+        let width_m = 3.0 * 24.0 / 1000.0;
+        let before = share(&scene, 64, 16).mean;
+        let thickness = 0.02;
+        let shape = Shape::Box { size_m: Vec3::new(4.0, 4.0, thickness as f32) };
+        // Turned about Y; its far ends are out of the picture.
+        scene.objects.push(thing("Slab", shape, glass(n as f32), Vec3::Z * 1.5, Vec3::Y * deg as f32));
+        let i = deg.to_radians();
+        let after = share(&scene, 64, 128).mean / pane(i, n);
+        let r = (i.sin() / n).asin();
+        let shift = thickness * i.sin() * (1.0 - i.cos() / (n * r.cos()));
+        // Every pair of inner reflections shows the edge again, 2 t tan(r) cos(i) back, with R2 of the light.
+        let (s, p) = fresnel(i, n);
+        let again = |face: f64| (1.0 - face) / (1.0 + face) * face * face / (1.0 - face * face);
+        let ghosts = 0.5 * (again(s) + again(p)) / pane(i, n) * 2.0 * thickness * r.tan() * i.cos();
+        let ours = ((after - before) * width_m).abs();
+        // The edge is seen 0.2 degrees off the axis, where the slab is tilted so much more: up to 1.5 %; sampling 0.5 %.
+        let truth = shift - ghosts;
+        assert!((ours / truth - 1.0).abs() < 0.03, "{deg} degrees: shifted by {ours} for {truth} m");
+    }
+}
+
+#[test]
+fn a_mirror_shows_the_softbox_where_the_angle_of_reflection_says_and_as_bright() {
+    // A mirror of reflectance 0.9 under 45 degrees; the panel hangs where the reflected axis goes, and fills the view.
+    let metal = Material { base_color: [0.9; 3], metallic: 1.0, roughness: 0.0, ..Material::default() };
+    let mut scene = glowing_wall(3.0);
+    scene.objects.clear();
+    scene.objects.push(thing("Mirror", Shape::Plane { width_m: 1.0, depth_m: 1.0 }, metal, Vec3::ZERO, Vec3::X * 45.0));
+    let (width_m, height_m) = (0.2, 0.2);
+    let area = width_m * height_m;
+    let panel =
+        light(Emitter::RectPanel { width_m, height_m }, Output::Lumens(LUMINANCE * area * PI as f32), Vec3::Y * 2.0);
+    scene.lights.push(panel);
+    let reading = share(&scene, 8, 16);
+    let schlick = 0.9 + 0.1 * (1.0 - 45_f64.to_radians().cos()).powi(5);
+    assert!(reading.agrees(schlick, 1e-4, 1), "{reading:?} for {schlick}");
+    // The picture of 24 mm at 5 m focal length is 24 mm wide on the panel: 30 cm aside there is none of it.
+    scene.lights[0].position.z = 0.3;
+    scene.lights[0].aim = Aim::Point(Vec3::Z * 0.3);
+    assert_eq!(share(&scene, 8, 16).mean, 0.0);
+}
+
+#[test]
+fn the_back_of_a_softbox_is_not_seen_in_a_mirror() {
+    let metal = Material { base_color: [0.9; 3], metallic: 1.0, roughness: 0.0, ..Material::default() };
+    let mut scene = glowing_wall(3.0);
+    scene.objects.clear();
+    scene.objects.push(thing("Mirror", Shape::Plane { width_m: 1.0, depth_m: 1.0 }, metal, Vec3::ZERO, Vec3::X * 45.0));
+    let mut panel = light(Emitter::RectPanel { width_m: 0.2, height_m: 0.2 }, Output::Lumens(100.0), Vec3::Y * 2.0);
+    panel.aim = Aim::Point(Vec3::Y * 3.0);
+    scene.lights.push(panel);
+    assert_eq!(share(&scene, 8, 4).mean, 0.0);
+}
