@@ -9,8 +9,8 @@ use catchlight::photo::{Picture, exposure};
 use catchlight::preview::{Gpu, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
 use catchlight::raytrace;
 use catchlight::scene::{
-    Aim, Assets, Camera, CameraFrame, Emitter, Light, LightColor, LightId, Material, MaterialPreset, Object, ObjectId,
-    Output, Power, Role, Room, Scene, Shape, Texture, Transform,
+    Aim, Assets, Camera, CameraFrame, Emitter, Light, LightColor, LightId, Material, MaterialPreset, Modifier, Object,
+    ObjectId, Output, Power, Role, Room, Scene, Shape, Texture, Transform,
 };
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
@@ -59,6 +59,7 @@ fn light(id: u32, position: Vec3, target: Vec3, emitter: Emitter, output: Output
         aim: Aim::Point(target),
         roll_deg: 0.0,
         emitter,
+        modifier: Modifier::default(),
         power: Power { output, dial_stops: 0.0 },
         color: LightColor::default(),
         on: true,

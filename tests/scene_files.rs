@@ -203,9 +203,14 @@ fn light(objects: usize) -> impl Strategy<Value = Light> {
     (
         (name(), 0..Role::ALL.len(), vector(-10.0, 10.0), aim(objects), number(-180.0, 180.0)),
         (power, source, gel, any::<bool>(), any::<bool>()),
+        modifier(),
     )
         .prop_map(
-            |((name, role, position, aim, roll_deg), (((emitter, output), dial_stops), source, gel, on, seen))| Light {
+            |(
+                (name, role, position, aim, roll_deg),
+                (((emitter, output), dial_stops), source, gel, on, seen),
+                modifier,
+            )| Light {
                 id: LightId(0),
                 name,
                 role: Role::ALL[role],
@@ -213,12 +218,30 @@ fn light(objects: usize) -> impl Strategy<Value = Light> {
                 aim,
                 roll_deg,
                 emitter,
+                // Light from infinity can only be weakened.
+                modifier: if emitter.is_infinite() { Modifier::loss(modifier.loss_stops) } else { modifier },
                 power: Power { output, dial_stops },
                 color: LightColor { source, gel },
                 on,
                 visible_to_camera: seen,
             },
         )
+}
+
+fn modifier() -> impl Strategy<Value = Modifier> {
+    let cone = (0.0..60.0_f32, 60.0..180.0_f32).prop_map(|(inner_deg, outer_deg)| Cone { inner_deg, outer_deg });
+    let doors = prop::array::uniform4(0.0..90.0_f32).prop_map(|[left_deg, right_deg, top_deg, bottom_deg]| BarnDoors {
+        left_deg,
+        right_deg,
+        top_deg,
+        bottom_deg,
+    });
+    let (beam, grid, doors) = (prop::option::of(cone), prop::option::of(1.0..90.0_f32), prop::option::of(doors));
+    let all =
+        (0.0..3.0_f32, 0.0..3.0_f32, beam, grid, doors).prop_map(|(loss_stops, scrim_stops, beam, grid_deg, doors)| {
+            Modifier { loss_stops, scrim_stops, beam, grid_deg, doors }
+        });
+    prop_oneof![Just(Modifier::default()), all]
 }
 
 fn camera(objects: usize) -> impl Strategy<Value = Camera> {

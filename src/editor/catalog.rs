@@ -2,8 +2,8 @@
 
 use crate::mannequin;
 use crate::scene::{
-    Aim, ColorSource, Emitter, Figure, Gel, Light, LightColor, LightId, Mannequin, Material, MaterialPreset, Object,
-    ObjectId, Output, Pose, Power, Role, Shape, Transform,
+    Aim, ColorSource, Emitter, Figure, Gel, Light, LightColor, LightId, Mannequin, Material, MaterialPreset, Modifier,
+    NamedModifier, Object, ObjectId, Output, Pose, Power, Role, Shape, Transform,
 };
 use glam::Vec3;
 
@@ -38,8 +38,8 @@ impl Shelf {
 /// What an entry of the list makes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// A light with this emitter, and what it gives at full power.
-    Light(Emitter, Output),
+    /// A light with this emitter and modifier, and what it gives at full power.
+    Light(Emitter, Modifier, Output),
     /// A mannequin.
     Figure(Mannequin),
     /// A formula shape of a material, standing on the floor.
@@ -82,21 +82,14 @@ pub struct Entry {
 /// A studio flash head of 400 Ws.
 const HEAD: Output = Output::FlashWs { energy_ws: 400.0, efficacy_lm_s_per_ws: Output::DEFAULT_EFFICACY };
 
-const fn light(name: &'static str, tip: &'static str, emitter: Emitter) -> Entry {
-    Entry { name, tip, kind: Kind::Light(emitter, HEAD) }
+/// A flash head with something of the rack before it.
+const fn modified(named: &NamedModifier) -> Entry {
+    Entry { name: named.name, tip: named.tip, kind: Kind::Light(named.emitter, named.modifier, HEAD) }
 }
 
 /// A light that shines all the time.
 const fn continuous(name: &'static str, tip: &'static str, emitter: Emitter, output: Output) -> Entry {
-    Entry { name, tip, kind: Kind::Light(emitter, output) }
-}
-
-const fn softbox(name: &'static str, tip: &'static str, width_m: f32, height_m: f32) -> Entry {
-    light(name, tip, Emitter::RectPanel { width_m, height_m })
-}
-
-const fn round(name: &'static str, tip: &'static str, diameter_m: f32) -> Entry {
-    light(name, tip, Emitter::RoundPanel { diameter_m })
+    Entry { name, tip, kind: Kind::Light(emitter, Modifier::loss(0.0), output) }
 }
 
 const fn figure(name: &'static str, tip: &'static str, figure: Figure, pose: Pose) -> Entry {
@@ -111,26 +104,20 @@ const fn paper(name: &'static str, tip: &'static str, width_m: f32, paper: Mater
     Entry { name, tip, kind: Kind::Paper { width_m, paper } }
 }
 
-const LIGHTS: [Entry; 15] = [
-    softbox("Softbox 60 x 90", "The everyday softbox: soft edges on a face from 1 to 1.5 m.", 0.6, 0.9),
-    softbox("Softbox 90 x 120", "A large, very soft key or a broad fill.", 0.9, 1.2),
-    softbox("Softbox 60 x 60", "A small square softbox, for heads and products.", 0.6, 0.6),
-    softbox("Strip 30 x 120", "A narrow softbox: rim light along a body, clean lines on products.", 0.3, 1.2),
-    softbox("Strip 30 x 160", "A tall strip for full figures.", 0.3, 1.6),
-    round("Octa 120", "An octabox: round catchlights, soft wrapping light.", 1.2),
-    round("Octa 180", "A huge octabox, soft even for a full figure.", 1.8),
-    round("Beauty dish 55", "A dish: crisper than a softbox, with a smooth fall to shadow.", 0.55),
-    light(
-        "Bare bulb",
-        "A head without modifier: light in all directions, hard shadows.",
-        Emitter::Sphere { radius_m: 0.04 },
-    ),
-    light("Spot", "A projector or snoot: a cone with a hard edge.", Emitter::Spot { inner_deg: 20.0, outer_deg: 26.0 }),
-    light(
-        "Reflector 55 deg",
-        "A standard reflector: a hard, broad cone.",
-        Emitter::Spot { inner_deg: 40.0, outer_deg: 70.0 },
-    ),
+const RACK: usize = NamedModifier::ALL.len();
+
+/// Flash heads with every modifier, then what shines all the time.
+const LIGHTS: [Entry; RACK + CONTINUOUS.len()] = {
+    let mut list = [CONTINUOUS[0]; RACK + CONTINUOUS.len()];
+    let mut i = 0;
+    while i < list.len() {
+        list[i] = if i < RACK { modified(&NamedModifier::ALL[i]) } else { CONTINUOUS[i - RACK] };
+        i += 1;
+    }
+    list
+};
+
+const CONTINUOUS: [Entry; 4] = [
     continuous(
         "LED panel 30 x 30",
         "A continuous LED panel of 5000 lm: faint beside flash at a short shutter.",
@@ -260,7 +247,7 @@ impl Entry {
     /// Makes it; `placement` then finds it a place.
     pub fn make(&self) -> Made {
         match self.kind {
-            Kind::Light(emitter, output) => Made::Light(new_light(self.name, emitter, output)),
+            Kind::Light(emitter, modifier, output) => Made::Light(new_light(self.name, emitter, modifier, output)),
             Kind::Figure(mannequin) => Made::Object(new_figure(self.name, mannequin)),
             Kind::Prop(shape, material) => Made::Object(new_prop(self.name, shape, material.material())),
             Kind::Paper { width_m, paper } => Made::Object(Object {
@@ -322,7 +309,9 @@ fn new_prop(name: &str, shape: PropShape, material: Material) -> Object {
     object
 }
 
-fn new_light(name: &str, emitter: Emitter, output: Output) -> Light {
+fn new_light(name: &str, emitter: Emitter, modifier: Modifier, output: Output) -> Light {
+    // What the modifier swallows is dialled in, in thirds: all of them arrive about equally bright.
+    let loss_thirds = (3.0 * (modifier.loss_stops + modifier.scrim_stops)).round();
     Light {
         id: LightId(0),
         name: name.to_owned(),
@@ -331,7 +320,8 @@ fn new_light(name: &str, emitter: Emitter, output: Output) -> Light {
         aim: Aim::Point(Vec3::new(0.0, 1.4, 0.0)),
         roll_deg: 0.0,
         emitter,
-        power: Power { output, dial_stops: -3.0 },
+        modifier,
+        power: Power { output, dial_stops: -3.0 + loss_thirds / 3.0 },
         color: LightColor { source: ColorSource::Kelvin(5500.0), gel: Gel::None },
         on: true,
         visible_to_camera: matches!(emitter, Emitter::Surround),

@@ -1,8 +1,10 @@
 //! What a light gives where it aims: the read-outs of the inspector. Closed forms for free light, without bounce and
 //! without what stands in the way.
 
+use crate::photo::beam;
 use crate::photo::exposure::{self, Strength, strength};
 use crate::scene::{Camera, Emitter, Light, Scene};
+use glam::Vec2;
 use std::f32::consts::PI;
 
 /// A light at its aim point, on a surface that faces it.
@@ -34,6 +36,9 @@ pub fn on_axis(light: &Light, distance_m: f32) -> f32 {
         Strength::Flux(_) | Strength::AxialIntensity(_) => exposure::axial_intensity(light),
     };
     let h = distance_m.max(1e-3);
+    if light.modifier.narrows() && matches!(light.emitter, Emitter::RectPanel { .. } | Emitter::RoundPanel { .. }) {
+        return narrowed_panel(light, intensity, h);
+    }
     match light.emitter {
         Emitter::RectPanel { width_m, height_m } => {
             let (a, b) = (0.5 * width_m.max(1e-4), 0.5 * height_m.max(1e-4));
@@ -50,6 +55,30 @@ pub fn on_axis(light: &Light, distance_m: f32) -> f32 {
         Emitter::Point | Emitter::Sphere { .. } | Emitter::Spot { .. } => intensity / (h * h),
         Emitter::Sun { .. } | Emitter::Surround => 0.0,
     }
+}
+
+/// A panel behind a grid or in a dish, on its axis: from its rim less arrives than Lambert's law says. Midpoints of a
+/// grid over the panel.
+fn narrowed_panel(light: &Light, intensity: f32, h: f32) -> f32 {
+    const CELLS: i32 = 24;
+    let (half, round) = match light.emitter {
+        Emitter::RectPanel { width_m, height_m } => (0.5 * Vec2::new(width_m, height_m), false),
+        Emitter::RoundPanel { diameter_m } => (Vec2::splat(0.5 * diameter_m), true),
+        _ => return 0.0,
+    };
+    let (mut sum, mut cells) = (0.0, 0);
+    for i in 0..CELLS * CELLS {
+        let unit = (Vec2::new((i % CELLS) as f32, (i / CELLS) as f32) + 0.5) * (2.0 / CELLS as f32) - 1.0;
+        if round && unit.length_squared() > 1.0 {
+            continue;
+        }
+        // From the cell to the receiver on the axis, in the light's frame.
+        let to = (-(unit * half)).extend(-h);
+        let squared = to.length_squared();
+        sum += beam::passed(&light.modifier, to / squared.sqrt()) * h * h / (squared * squared);
+        cells += 1;
+    }
+    intensity * sum / cells.max(1) as f32
 }
 
 /// The f-number a meter at the aim point asks for, from this light alone, at the camera's ISO and shutter.
@@ -76,12 +105,13 @@ pub fn dial_for(scene: &Scene, light: &Light, stops: f32) -> f32 {
 mod tests {
     use super::*;
     use crate::editor::catalog;
-    use crate::scene::{Aim, Output, Power};
+    use crate::scene::{Aim, Modifier, Output, Power};
     use glam::Vec3;
 
     fn light(emitter: Emitter) -> Light {
+        let modifier = Modifier::default();
         let power = Power { output: Output::Lumens(1000.0), dial_stops: 0.0 };
-        Light { emitter, power, ..catalog::light_named("Bare bulb").unwrap() }
+        Light { emitter, modifier, power, ..catalog::light_named("Bare bulb").unwrap() }
     }
 
     #[test]
@@ -96,6 +126,22 @@ mod tests {
             for (distance, lux) in [0.5, 1.0, 3.0].into_iter().zip(expected) {
                 let ours = on_axis(&light(emitter), distance);
                 assert!((ours / lux - 1.0).abs() < 3e-4, "{emitter:?} at {distance}: {ours}, not {lux}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_panel_whose_beam_cuts_nothing_is_a_panel_and_one_with_a_grid_is_less() {
+        for emitter in [Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, Emitter::RoundPanel { diameter_m: 1.2 }] {
+            for distance in [0.5, 1.0, 3.0] {
+                let bare = light(emitter);
+                let open = crate::scene::Cone { inner_deg: 180.0, outer_deg: 180.0 };
+                let cut = |modifier| on_axis(&Light { modifier, ..bare.clone() }, distance);
+                let same = cut(Modifier { beam: Some(open), ..Modifier::default() });
+                // Midpoints of 24 x 24 cells; a disc's rim has steps.
+                assert!((same / on_axis(&bare, distance) - 1.0).abs() < 0.01, "{emitter:?} at {distance}: {same}");
+                let grid = cut(Modifier { grid_deg: Some(40.0), ..Modifier::default() });
+                assert!(grid < 0.9 * same, "{emitter:?} at {distance}: {grid} of {same}");
             }
         }
     }

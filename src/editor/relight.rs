@@ -1,20 +1,21 @@
 //! What a finished picture can follow without tracing, and what makes it out of date.
 
 use crate::raytrace::Film;
-use crate::scene::{Camera, LightColor, LightId, Power, Scene};
+use crate::scene::{Camera, LightColor, LightId, Modifier, Power, Scene};
 
 /// Everything that developing a film reads from a scene: when this is the same, the picture is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DevelopKey {
     exposure: [f32; 5],
-    lights: Vec<(LightId, Power, LightColor, bool)>,
+    lights: Vec<(LightId, Power, LightColor, bool, [f32; 2])>,
 }
 
 impl DevelopKey {
     /// The key of a scene.
     pub fn of(scene: &Scene) -> Self {
         let Camera { f_number, shutter_s, iso, white_balance_k, meter_constant, .. } = scene.camera;
-        let lights = scene.lights.iter().map(|l| (l.id, l.power, l.color, l.on)).collect();
+        let losses = |m: &Modifier| [m.loss_stops, m.scrim_stops];
+        let lights = scene.lights.iter().map(|l| (l.id, l.power, l.color, l.on, losses(&l.modifier))).collect();
         DevelopKey { exposure: [f_number, shutter_s, iso, white_balance_k, meter_constant], lights }
     }
 }
@@ -30,6 +31,8 @@ pub fn is_up_to_date(film: &Film, rendered: &Scene, now: &Scene) -> bool {
         (light.name, light.role) = (old.name.clone(), old.role);
         if has_layer(light.id) {
             (light.power, light.color, light.on) = (old.power, old.color, old.on);
+            let Modifier { loss_stops, scrim_stops, .. } = old.modifier;
+            (light.modifier.loss_stops, light.modifier.scrim_stops) = (loss_stops, scrim_stops);
         } else if !light.on && !old.on {
             // Dark then and dark now: where it stands and what it could give does not matter.
             *light = old.clone();

@@ -141,7 +141,7 @@ fn light_factor(light: &GpuLight, point: Vec3, normal: Vec3) -> f32 {
     let squared = to_light.length_squared().max(1e-6);
     let direction = to_light / squared.sqrt();
     let (cosine, facing) = (normal.dot(direction).max(0.0), -axis.dot(direction));
-    match light.kind {
+    let factor = match light.kind {
         kind if kind == Kind::Point as u32 => cosine / squared,
         kind if kind == Kind::Spot as u32 => {
             let (inner, outer) = (2.0 * light.inner_rad.to_degrees(), 2.0 * light.outer_rad.to_degrees());
@@ -152,7 +152,8 @@ fn light_factor(light: &GpuLight, point: Vec3, normal: Vec3) -> f32 {
             area * cosine / squared.max(light.radius * light.radius)
         }
         _ => light.area_m2 * cosine * facing.max(0.0) / (squared + light.area_m2 / PI),
-    }
+    };
+    factor * light.passed(-direction)
 }
 
 /// Even directions over the sphere (golden spiral).

@@ -313,7 +313,7 @@ fn has_direction(emitter: &Emitter) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Aim, LightColor, LightId, Output, Power};
+    use crate::scene::{Aim, LightColor, LightId, Modifier, Output, Power};
 
     fn studio() -> Scene {
         let light = |id, x, emitter| Light {
@@ -324,6 +324,7 @@ mod tests {
             aim: Aim::Point(Vec3::ZERO),
             roll_deg: 0.0,
             emitter,
+            modifier: Modifier::default(),
             power: Power { output: Output::Lumens(1000.0), dial_stops: 0.0 },
             color: LightColor::default(),
             on: true,

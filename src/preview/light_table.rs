@@ -2,8 +2,9 @@
 //! shader's sum is the scene-linear pixel.
 
 use crate::color;
+use crate::photo::beam;
 use crate::photo::exposure::{self, Strength};
-use crate::scene::{Camera, Emitter, Light, Material, Room, Scene};
+use crate::scene::{BarnDoors, Camera, Cone, Emitter, Light, Material, Modifier, Room, Scene};
 use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Vec2, Vec3};
 use std::f32::consts::PI;
@@ -47,6 +48,26 @@ pub(super) struct GpuLight {
     pub color: [f32; 3],
     /// Area of a panel, m2.
     pub area_m2: f32,
+    /// Half angles of its beam: even, whole, where a grid ends, radians.
+    pub beam_rad: [f32; 3],
+    /// Whether those or the doors cut anything: 0 or 1.
+    pub has_beam: u32,
+    /// Barn doors, open so far from the axis: left, right, top, bottom, radians.
+    pub doors_rad: [f32; 4],
+}
+
+/// An angle that cuts nothing, radians: beyond half a turn, and for a grid so far that its slope is nothing either.
+const OPEN_RAD: f32 = 1e9;
+
+fn set_beam(gpu: &mut GpuLight, modifier: &Modifier) {
+    let half = |full_deg: f32| (0.5 * full_deg).to_radians();
+    let cone = modifier.beam.map(|cone| [half(cone.inner_deg.min(cone.outer_deg)), half(cone.outer_deg)]);
+    let [inner, outer] = cone.unwrap_or([OPEN_RAD; 2]);
+    gpu.beam_rad = [inner, outer, modifier.grid_deg.map_or(OPEN_RAD, half)];
+    gpu.has_beam = u32::from(modifier.narrows());
+    gpu.doors_rad = modifier.doors.map_or([OPEN_RAD; 4], |doors| {
+        [doors.left_deg, doors.right_deg, doors.top_deg, doors.bottom_deg].map(f32::to_radians)
+    });
 }
 
 impl GpuLight {
@@ -58,6 +79,24 @@ impl GpuLight {
             kind if kind == Kind::Disc as u32 => 3,
             _ => 0,
         }
+    }
+
+    /// Part that its modifier lets pass in a unit direction away from it.
+    pub fn passed(&self, away: Vec3) -> f32 {
+        if self.has_beam == 0 {
+            return 1.0;
+        }
+        let full = |half_rad: f32| (2.0 * half_rad).to_degrees();
+        let [inner, outer, grid] = self.beam_rad;
+        let [left_deg, right_deg, top_deg, bottom_deg] = self.doors_rad.map(f32::to_degrees);
+        let modifier = Modifier {
+            beam: (outer < PI).then(|| Cone { inner_deg: full(inner), outer_deg: full(outer) }),
+            grid_deg: (grid < PI).then(|| full(grid)),
+            doors: Some(BarnDoors { left_deg, right_deg, top_deg, bottom_deg }).filter(|_| self.doors_rad[0] < PI),
+            ..Modifier::default()
+        };
+        let across = |axis: [f32; 3]| away.dot(Vec3::from(axis).normalize_or_zero());
+        beam::passed(&modifier, Vec3::new(across(self.right), across(self.up), -away.dot(Vec3::from(self.axis))))
     }
 
     /// Half axes of the emitter as its penumbra sees them: metres, for a sun tangents.
@@ -148,7 +187,9 @@ fn illuminance(light: &Light) -> f32 {
 }
 
 fn flux_of(light: &Light) -> f32 {
-    exposure::intensity_per_flux(&light.emitter).map_or(0.0, |per_lm| exposure::axial_intensity(light) / per_lm)
+    let bare =
+        exposure::intensity_per_flux(&light.emitter).map_or(0.0, |per_lm| exposure::axial_intensity(light) / per_lm);
+    bare * beam::passed_share(&light.emitter, &light.modifier)
 }
 
 fn is_usable(light: &GpuLight) -> bool {
@@ -196,6 +237,7 @@ fn gpu_light(light: &Light, world_from_light: &Affine3A, scale: Vec3) -> GpuLigh
         }
         Emitter::Surround => gpu.color = [0.0; 3],
     }
+    set_beam(&mut gpu, &light.modifier);
     gpu
 }
 
@@ -232,6 +274,7 @@ mod tests {
             aim: Aim::Point(Vec3::ZERO),
             roll_deg: 0.0,
             emitter,
+            modifier: Modifier::default(),
             power: Power { output, dial_stops: 0.0 },
             color: LightColor::default(),
             on: true,

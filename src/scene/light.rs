@@ -1,6 +1,6 @@
 //! Lights as a photographer states them: emitter, power, colour, role.
 
-use super::{Aim, LightId};
+use super::{Aim, Gel, LightId, Modifier};
 use glam::Vec3;
 
 /// What a light does in the set-up. It never changes what the light emits.
@@ -97,7 +97,7 @@ impl Emitter {
     }
 }
 
-/// What the light gives with its dial at full power.
+/// What the light gives with its dial at full power, before its [`Modifier`] takes from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Output {
     /// Continuous luminous flux, lm.
@@ -144,33 +144,6 @@ pub struct Power {
     pub dial_stops: f32,
 }
 
-/// A colour filter before the light. Its hue counts, not its loss: colours are scaled to luminance 1.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub enum Gel {
-    /// No gel.
-    #[default]
-    None,
-    /// Shift in mired (1e6 / K): positive warms (CTO), negative cools (CTB).
-    Mired(f32),
-    /// A party colour: linear RGB transmittance.
-    Tint([f32; 3]),
-}
-
-impl Gel {
-    /// Gels by the names on the swatch book.
-    pub const NAMED: [(&'static str, Gel); 9] = [
-        ("None", Gel::None),
-        ("1/8 CTO", Gel::Mired(26.0)),
-        ("1/4 CTO", Gel::Mired(64.0)),
-        ("1/2 CTO", Gel::Mired(109.0)),
-        ("Full CTO", Gel::Mired(159.0)),
-        ("1/8 CTB", Gel::Mired(-18.0)),
-        ("1/4 CTB", Gel::Mired(-35.0)),
-        ("1/2 CTB", Gel::Mired(-78.0)),
-        ("Full CTB", Gel::Mired(-137.0)),
-    ];
-}
-
 /// Where a light's colour comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ColorSource {
@@ -212,6 +185,8 @@ pub struct Light {
     pub roll_deg: f32,
     /// What shines.
     pub emitter: Emitter,
+    /// What is lost before it leaves.
+    pub modifier: Modifier,
     /// How much.
     pub power: Power,
     /// In which colour.

@@ -7,9 +7,11 @@
 
 mod assets;
 mod camera;
+mod gel;
 mod light;
 mod material;
 mod mesh;
+mod modifier;
 mod object;
 mod room;
 mod tessellate;
@@ -17,9 +19,11 @@ mod validate;
 
 pub use assets::{Assets, Texture, path_complaint};
 pub use camera::{Camera, CameraFrame, Focus, Orientation, Sensor};
-pub use light::{ColorSource, Emitter, Gel, Light, LightColor, Output, Power, Role};
+pub use gel::{Gel, GelFamily, NamedGel};
+pub use light::{ColorSource, Emitter, Light, LightColor, Output, Power, Role};
 pub use material::{Material, MaterialPreset};
 pub use mesh::{Mesh, MeshPart};
+pub use modifier::{BarnDoors, Cone, HARD_GRIDS_DEG, Modifier, NamedModifier, SOFT_GRIDS_DEG};
 pub use object::{Figure, Mannequin, Object, Pose, Shape, Transform};
 pub use room::Room;
 pub use tessellate::{room_mesh, tessellate};

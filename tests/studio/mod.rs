@@ -8,8 +8,8 @@ pub mod measure;
 pub mod statistics;
 
 use catchlight::scene::{
-    Aim, Camera, Emitter, Light, LightColor, LightId, Material, Object, ObjectId, Output, Power, Role, Scene, Sensor,
-    Shape, Transform,
+    Aim, Camera, Emitter, Light, LightColor, LightId, Material, Modifier, Object, ObjectId, Output, Power, Role, Scene,
+    Sensor, Shape, Transform,
 };
 use glam::Vec3;
 
@@ -60,6 +60,7 @@ pub fn light(emitter: Emitter, output: Output, position: Vec3) -> Light {
         aim: Aim::Point(Vec3::ZERO),
         roll_deg: 0.0,
         emitter,
+        modifier: Modifier::default(),
         power: Power { output, dial_stops: 0.0 },
         color: LightColor::default(),
         on: true,

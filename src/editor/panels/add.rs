@@ -67,23 +67,23 @@ fn paint_icon(painter: &egui::Painter, rect: egui::Rect, kind: &Kind) {
     let (c, line) = (rect.center(), Stroke::new(1.3, Color32::from_gray(170)));
     let glow = theme::ACCENT;
     match kind {
-        Kind::Light(Emitter::RectPanel { width_m, height_m }, _) => {
+        Kind::Light(Emitter::RectPanel { width_m, height_m }, ..) => {
             let scale = 14.0 / width_m.max(*height_m);
             let panel = egui::Rect::from_center_size(c, vec2((width_m * scale).max(4.0), (height_m * scale).max(4.0)));
             painter.rect_stroke(panel, CornerRadius::same(1), Stroke::new(1.3, glow), StrokeKind::Middle);
         }
-        Kind::Light(Emitter::RoundPanel { diameter_m }, _) => {
+        Kind::Light(Emitter::RoundPanel { diameter_m }, ..) => {
             painter.circle_stroke(c, (4.0 + 2.0 * diameter_m).min(7.5), Stroke::new(1.3, glow));
         }
-        Kind::Light(Emitter::Spot { .. }, _) => {
+        Kind::Light(Emitter::Spot { .. }, ..) => {
             let cone = [c + vec2(-6.0, 0.0), c + vec2(6.0, -5.5), c + vec2(6.0, 5.5)];
             painter.add(egui::Shape::closed_line(cone.to_vec(), Stroke::new(1.3, glow)));
         }
-        Kind::Light(Emitter::Surround, _) => {
+        Kind::Light(Emitter::Surround, ..) => {
             painter.circle_stroke(c, 7.0, Stroke::new(1.0, glow));
             painter.circle_stroke(c, 4.0, Stroke::new(1.0, glow.gamma_multiply(0.6)));
         }
-        Kind::Light(Emitter::Point | Emitter::Sphere { .. } | Emitter::Sun { .. }, _) => {
+        Kind::Light(Emitter::Point | Emitter::Sphere { .. } | Emitter::Sun { .. }, ..) => {
             painter.circle_filled(c, 3.2, glow);
             for i in 0..8 {
                 let direction = egui::Vec2::angled(i as f32 * std::f32::consts::FRAC_PI_4);

@@ -2,12 +2,14 @@
 //! order of the file.
 
 use super::{
-    AimV1, CameraV1, ColorV1, EmitterV1, FigureV1, FocusV1, GelV1, LightV1, MaterialV1, ObjectV1, OrientationV1,
-    OutputV1, PartMaterialV1, PoseV1, PowerV1, RoleV1, RoomV1, SceneV1, SensorV1, ShapeV1,
+    AimV1, BarnDoorsV1, CameraV1, ColorV1, ConeV1, EmitterV1, FigureV1, FocusV1, GelV1, LightV1, MaterialV1,
+    ModifierV1, ObjectV1, OrientationV1, OutputV1, PartMaterialV1, PoseV1, PowerV1, RoleV1, RoomV1, SceneV1, SensorV1,
+    ShapeV1,
 };
 use crate::scene::{
-    Aim, Camera, ColorSource, Emitter, Figure, Focus, Gel, Light, LightColor, LightId, Mannequin, Material, Object,
-    ObjectId, Orientation, Output, Pose, Power, Role, Room, Scene, Sensor, Shape, Transform,
+    Aim, BarnDoors, Camera, ColorSource, Cone, Emitter, Figure, Focus, Gel, Light, LightColor, LightId, Mannequin,
+    Material, Modifier, Object, ObjectId, Orientation, Output, Pose, Power, Role, Room, Scene, Sensor, Shape,
+    Transform,
 };
 use glam::Vec3;
 use std::collections::HashMap;
@@ -195,6 +197,7 @@ fn light_from(file: LightV1, index: usize, names: &Names) -> Result<Light, Unkno
         aim: names.aim(file.aim, &place)?,
         roll_deg: file.roll_deg,
         emitter: file.emitter.into(),
+        modifier: file.modifier.into(),
         power: Power { output: file.power.output.into(), dial_stops: file.power.dial_stops },
         color: LightColor {
             source: match file.color {
@@ -221,6 +224,7 @@ fn light_to(scene: &Scene, light: &Light) -> LightV1 {
         aim: aim_to(scene, &light.aim, light.position),
         roll_deg: light.roll_deg,
         emitter: light.emitter.into(),
+        modifier: light.modifier.into(),
         power: PowerV1 { output: light.power.output.into(), dial_stops: light.power.dial_stops },
         color: match light.color.source {
             ColorSource::Kelvin(kelvin) => ColorV1::Kelvin(kelvin),
@@ -233,6 +237,34 @@ fn light_to(scene: &Scene, light: &Light) -> LightV1 {
         },
         on: light.on,
         visible_to_camera: light.visible_to_camera,
+    }
+}
+
+impl From<ModifierV1> for Modifier {
+    fn from(file: ModifierV1) -> Self {
+        let ModifierV1 { loss_stops, scrim_stops, beam, grid_deg, doors } = file;
+        let cone = |ConeV1 { inner_deg, outer_deg }| Cone { inner_deg, outer_deg };
+        let flaps = |BarnDoorsV1 { left_deg, right_deg, top_deg, bottom_deg }| BarnDoors {
+            left_deg,
+            right_deg,
+            top_deg,
+            bottom_deg,
+        };
+        Modifier { loss_stops, scrim_stops, beam: beam.map(cone), grid_deg, doors: doors.map(flaps) }
+    }
+}
+
+impl From<Modifier> for ModifierV1 {
+    fn from(modifier: Modifier) -> Self {
+        let Modifier { loss_stops, scrim_stops, beam, grid_deg, doors } = modifier;
+        let cone = |Cone { inner_deg, outer_deg }| ConeV1 { inner_deg, outer_deg };
+        let flaps = |BarnDoors { left_deg, right_deg, top_deg, bottom_deg }| BarnDoorsV1 {
+            left_deg,
+            right_deg,
+            top_deg,
+            bottom_deg,
+        };
+        ModifierV1 { loss_stops, scrim_stops, beam: beam.map(cone), grid_deg, doors: doors.map(flaps) }
     }
 }
 

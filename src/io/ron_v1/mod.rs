@@ -210,6 +210,8 @@ struct LightV1 {
     #[serde(default, skip_serializing_if = "is")]
     roll_deg: f32,
     emitter: EmitterV1,
+    #[serde(default, skip_serializing_if = "is")]
+    modifier: ModifierV1,
     power: PowerV1,
     color: ColorV1,
     #[serde(default, skip_serializing_if = "is")]
@@ -241,6 +243,38 @@ enum EmitterV1 {
     RoundPanel { diameter_m: f32 },
     Sun { angular_diameter_deg: f32 },
     Surround,
+}
+
+/// What is lost before the light leaves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Modifier", deny_unknown_fields)]
+struct ModifierV1 {
+    #[serde(default, skip_serializing_if = "is")]
+    loss_stops: f32,
+    #[serde(default, skip_serializing_if = "is")]
+    scrim_stops: f32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    beam: Option<ConeV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    grid_deg: Option<f32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    doors: Option<BarnDoorsV1>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Cone", deny_unknown_fields)]
+struct ConeV1 {
+    inner_deg: f32,
+    outer_deg: f32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "BarnDoors", deny_unknown_fields)]
+struct BarnDoorsV1 {
+    left_deg: f32,
+    right_deg: f32,
+    top_deg: f32,
+    bottom_deg: f32,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

@@ -90,13 +90,17 @@ fn glints(coat: Shading, first: u32, end: u32, family: u32) -> vec3f {
             let point = delta_arrival(light, coat.position);
             value = glint(coat, point.xyz, lights[light].radius) * point.w;
         } else if family == 1u {
-            value = highlight(coat, sphere_arrival(light, coat.position, coat.normal), true);
+            let ball = sphere_arrival(light, coat.position, coat.normal);
+            value = highlight(coat, ball, true) * ball.passed;
         } else {
             a.centre = lights[light].position - coat.position;
             a.right = lights[light].right;
             a.up = lights[light].up;
             let before = dot(a.centre, lights[light].axis) < 0.0;
             value = select(vec3f(0.0), highlight(coat, a, family == 3u), before);
+            if lights[light].has_beam != 0u {
+                value *= passed(light, -normalize(a.centre));
+            }
         }
         sum += value * lights[light].color;
     }

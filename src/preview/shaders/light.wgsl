@@ -108,10 +108,59 @@ fn sphere_irradiance(cosine: f32, distance: f32, radius: f32) -> f32 {
     return max(squared * cosine * acos(inside) - edge + atan2(sqrt(max(squared - cosine * cosine, 0.0)), sqrt(1.0 - squared)), 0.0);
 }
 
+// Angle over which a barn door's edge goes from light to dark.
+const DOOR_EDGE_RAD: f32 = 0.06981317;
+
+// Part of the light that a flap leaves; at 90 degrees it is out of the way.
+fn flap(open_rad: f32, angle_rad: f32) -> f32 {
+    return select(saturate((open_rad - angle_rad) / DOOR_EDGE_RAD + 0.5), 1.0, open_rad >= 0.5 * PI);
+}
+
+// Part that a light's modifier lets pass in a unit direction away from it; twin of `photo::beam::passed`.
+fn passed(light: u32, away: vec3f) -> f32 {
+    let cosine = dot(away, lights[light].axis);
+    let beam = lights[light].beam_rad;
+    var part = spot_falloff(cosine, beam.x, beam.y) * spot_falloff(cosine, 0.0, beam.z);
+    let doors = lights[light].doors_rad;
+    if min(min(doors.x, doors.y), min(doors.z, doors.w)) < 0.5 * PI {
+        let across = atan2(dot(away, normalize(lights[light].right)), max(cosine, 1e-6));
+        let up = atan2(dot(away, normalize(lights[light].up)), max(cosine, 1e-6));
+        part *= flap(doors.x, -across) * flap(doors.y, across) * flap(doors.z, up) * flap(doors.w, -up);
+        part = select(0.0, part, cosine > 0.0);
+    }
+    return part;
+}
+
+// The same over a panel, as the mean over points of it, weighted by what they send to the receiver.
+fn panel_passed(light: u32, position: vec3f, normal: vec3f, round: bool) -> f32 {
+    if lights[light].has_beam == 0u {
+        return 1.0;
+    }
+    const POINTS: u32 = 36u;
+    var sum = 0.0;
+    var total = 1e-12;
+    for (var i = 0u; i < POINTS; i++) {
+        // A grid over a rectangle, a sunflower over a disc.
+        let radius = sqrt((f32(i) + 0.5) / f32(POINTS));
+        let turn = f32(i) * 2.3999632;
+        let cell = (vec2f(f32(i % 6u), f32(i / 6u)) + 0.5) / 3.0 - 1.0;
+        let at = select(cell, radius * vec2f(cos(turn), sin(turn)), round);
+        let to = lights[light].position + at.x * lights[light].right + at.y * lights[light].up - position;
+        let squared = max(dot(to, to), 1e-12);
+        let away = -to * inverseSqrt(squared);
+        let weight = max(-dot(away, normal), 0.0) * max(dot(away, lights[light].axis), 0.0) / squared;
+        sum += weight * passed(light, away);
+        total += weight;
+    }
+    return sum / total;
+}
+
 // A light as a point sees it, before shadow.
 struct Arrival {
     // Irradiance, as a factor of the light's colour.
     irradiance: f32,
+    // Part that its modifier lets pass.
+    passed: f32,
     // Middle of the emitter, and its half axes: none of a size for points.
     centre: vec3f,
     right: vec3f,
@@ -126,7 +175,10 @@ fn delta_arrival(light: u32, position: vec3f) -> vec4f {
     let squared = max(dot(to_light, to_light), 1e-12);
     let direction = to_light * inverseSqrt(squared);
     let cone = spot_falloff(-dot(direction, axis), lights[light].inner_rad, lights[light].outer_rad);
-    let near = select(1.0, cone, kind == KIND_SPOT) / squared;
+    var near = select(1.0, cone, kind == KIND_SPOT) / squared;
+    if lights[light].has_beam != 0u {
+        near *= passed(light, -direction);
+    }
     let is_sun = kind == KIND_SUN;
     return vec4f(select(direction, -axis, is_sun), select(near, 1.0, is_sun));
 }
@@ -138,6 +190,10 @@ fn sphere_arrival(light: u32, position: vec3f, normal: vec3f) -> Arrival {
     let direction = out.centre * inverseSqrt(squared);
     let radius = lights[light].radius;
     out.irradiance = sphere_irradiance(dot(normal, direction), sqrt(squared), radius);
+    out.passed = 1.0;
+    if lights[light].has_beam != 0u {
+        out.passed = passed(light, -direction);
+    }
     // The disc that covers the ball from here.
     let sine = min(radius * inverseSqrt(squared), 0.99);
     let across = cross(direction, select(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), abs(direction.y) < 0.9));
@@ -157,5 +213,6 @@ fn panel_arrival(light: u32, position: vec3f, normal: vec3f, round: bool) -> Arr
         out.irradiance = rect_irradiance(out.centre, out.right, out.up, normal);
     }
     out.irradiance = select(0.0, out.irradiance, dot(out.centre, lights[light].axis) < 0.0);
+    out.passed = panel_passed(light, position, normal, round);
     return out;
 }

@@ -34,7 +34,7 @@ fn shown(radiance: vec3f, at: vec2f) -> vec4f {
 fn reflected(s: Shading, light: u32, a: Arrival, round: bool) -> vec3f {
     let diffuse = s.material.diffuse * (a.irradiance / PI);
     let glossy = highlight(s, a, round);
-    return (diffuse + select(vec3f(0.0), glossy, a.irradiance > 0.0)) * lights[light].color;
+    return (diffuse + select(vec3f(0.0), glossy, a.irradiance > 0.0)) * lights[light].color * a.passed;
 }
 
 // Shadows of four lights at a pixel. A mask of half the size is read at the four pixels around, as far as they lie on

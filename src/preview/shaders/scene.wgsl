@@ -74,6 +74,11 @@ struct Light {
     radius: f32,
     color: vec3f,
     area_m2: f32,
+    // Half angles of its beam: even, whole, where a grid ends; and whether any of these or doors cut anything.
+    beam_rad: vec3f,
+    has_beam: u32,
+    // Barn doors, open so far from the axis: left, right, top, bottom.
+    doors_rad: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

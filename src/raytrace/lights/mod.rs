@@ -7,10 +7,11 @@ mod rect;
 mod sphere;
 
 use crate::math::{orthonormal_basis, safe_sqrt, warp};
+use crate::photo::beam;
 use crate::photo::exposure::{self, Strength};
-use crate::scene::{Emitter, Light};
+use crate::scene::{Emitter, Light, Modifier};
 use disc::Disc;
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Affine3A, Mat3, Vec2, Vec3};
 use rect::Rect;
 use sphere::Ball;
 use std::f32::consts::PI;
@@ -47,7 +48,19 @@ pub struct TracedLight {
     pub time_s: f32,
     /// Whether camera rays see the emitter.
     pub visible_to_camera: bool,
+    /// What a grid, a snoot or flaps leave of it, by direction.
+    beam: Option<Beam>,
 }
+
+/// A modifier that keeps light from some directions, in the light's frame.
+#[derive(Clone, Copy, Debug)]
+struct Beam {
+    modifier: Modifier,
+    light_from_world: Mat3,
+}
+
+/// A share that keeps a light with a grid in the choice between lights where its middle seems dark: its edge may not be.
+const LEAST_BEAM: f32 = 0.02;
 
 /// Light from a chosen direction.
 #[derive(Clone, Copy, Debug)]
@@ -113,7 +126,27 @@ impl TracedLight {
             tint: Vec3::ONE,
             time_s,
             visible_to_camera: light.visible_to_camera,
+            beam: light
+                .modifier
+                .narrows()
+                .then(|| Beam { modifier: light.modifier, light_from_world: Mat3::from(frame.matrix3).transpose() }),
         })
+    }
+
+    /// Part of the light that its modifier lets pass in a unit direction away from it.
+    fn passed(&self, away: Vec3) -> f32 {
+        self.beam.map_or(1.0, |beam| beam::passed(&beam.modifier, beam.light_from_world * away))
+    }
+
+    /// Where it is, if it is anywhere.
+    fn centre(&self) -> Option<Vec3> {
+        match self.source {
+            Source::Point { position, .. } | Source::Spot { position, .. } => Some(position),
+            Source::Rect { rect, .. } => Some(rect.centre),
+            Source::Disc { disc, .. } => Some(disc.centre),
+            Source::Ball { ball, .. } => Some(ball.centre),
+            Source::Sun { .. } | Source::Surround { .. } => None,
+        }
     }
 
     /// Whether rays can meet it: it has a size.
@@ -157,11 +190,21 @@ impl TracedLight {
             }
             Source::Surround { .. } => 0.0,
         };
-        estimate * self.time_s
+        let passed = match (self.beam, self.centre()) {
+            (Some(_), Some(centre)) => self.passed((point - centre).normalize_or_zero()).max(LEAST_BEAM),
+            _ => 1.0,
+        };
+        estimate * passed * self.time_s
     }
 
     /// Light that reaches `point` from a chosen place of the emitter, before shadow.
     pub fn sample(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
+        let sample = self.sample_source(point, u)?;
+        Some(LightSample { value: sample.value * self.passed(-sample.direction), ..sample })
+    }
+
+    /// The same without its beam.
+    fn sample_source(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
         match self.source {
             Source::Point { position, intensity } => from_point(point, position, intensity),
             Source::Spot { position, axis, intensity, inner_deg, outer_deg } => {
@@ -209,6 +252,11 @@ impl TracedLight {
 
     /// What a ray (unit direction) sees of the emitter if nothing is in between.
     pub fn seen_by(&self, origin: Vec3, direction: Vec3) -> Option<Seen> {
+        let seen = self.source_seen_by(origin, direction)?;
+        Some(Seen { luminance: seen.luminance * self.passed(-direction), ..seen })
+    }
+
+    fn source_seen_by(&self, origin: Vec3, direction: Vec3) -> Option<Seen> {
         match self.source {
             Source::Point { .. } | Source::Spot { .. } => None,
             Source::Rect { rect, luminance } => {

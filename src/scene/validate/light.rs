@@ -2,7 +2,7 @@
 
 use super::check::{Allowed, Check};
 use super::{PLACE, SIZE, TURN, check_aim};
-use crate::scene::{ColorSource, Emitter, Gel, Light, Output, Power, Scene};
+use crate::scene::{BarnDoors, ColorSource, Cone, Emitter, Gel, Light, Modifier, Output, Power, Scene};
 
 const AMOUNT: Allowed = Allowed::between(0.0, 1e9, "");
 /// The brightest that light of one watt can be, lm/W.
@@ -14,6 +14,7 @@ pub(super) fn check_light(scene: &Scene, light: &Light, check: &mut Check) {
     check_aim(scene, &light.aim, light.position, has_direction, check);
     check.number("roll_deg", light.roll_deg, TURN);
     check_emitter(&light.emitter, check);
+    check_modifier(&light.modifier, check);
     check_power(&light.power, check);
     check_pairing(light, check);
     match light.color.source {
@@ -57,6 +58,30 @@ fn check_emitter(emitter: &Emitter, check: &mut Check) {
     }
 }
 
+fn check_modifier(modifier: &Modifier, check: &mut Check) {
+    const LOSS: Allowed = Allowed::between(0.0, 20.0, "stops");
+    const FLAP: Allowed = Allowed::between(0.0, 90.0, "degrees");
+    check.number("modifier.loss_stops", modifier.loss_stops, LOSS);
+    check.number("modifier.scrim_stops", modifier.scrim_stops, LOSS);
+    if let Some(Cone { inner_deg, outer_deg }) = modifier.beam {
+        check.number("modifier.beam.inner_deg", inner_deg, Allowed::between(0.0, 180.0, "degrees"));
+        check.number("modifier.beam.outer_deg", outer_deg, Allowed::between(0.1, 180.0, "degrees"));
+        if inner_deg > outer_deg {
+            let message = format!("the even beam of {inner_deg} degrees is wider than the whole of {outer_deg}");
+            check.error("modifier.beam.inner_deg", message);
+        }
+    }
+    if let Some(grid_deg) = modifier.grid_deg {
+        check.number("modifier.grid_deg", grid_deg, Allowed::between(0.1, 180.0, "degrees"));
+    }
+    if let Some(BarnDoors { left_deg, right_deg, top_deg, bottom_deg }) = modifier.doors {
+        check.number("modifier.doors.left_deg", left_deg, FLAP);
+        check.number("modifier.doors.right_deg", right_deg, FLAP);
+        check.number("modifier.doors.top_deg", top_deg, FLAP);
+        check.number("modifier.doors.bottom_deg", bottom_deg, FLAP);
+    }
+}
+
 fn check_power(power: &Power, check: &mut Check) {
     match power.output {
         Output::Lumens(amount) | Output::Candela(amount) | Output::Lux(amount) => {
@@ -81,6 +106,10 @@ fn check_power(power: &Power, check: &mut Check) {
 fn check_pairing(light: &Light, check: &mut Check) {
     let kind = light.emitter.label();
     match (light.emitter.is_infinite(), light.power.output) {
+        (true, Output::Lux(_)) if light.modifier.narrows() => {
+            let message = format!("a {} shines from infinity; only a loss can come before it", kind.to_lowercase());
+            check.error("modifier", message);
+        }
         (true, Output::Lux(_)) => {}
         (true, _) => {
             let message = format!("a {} shines from infinity and is stated as Lux(...)", kind.to_lowercase());

@@ -1,7 +1,7 @@
 use super::*;
 use crate::scene::{
-    Assets, Camera, ColorSource, Emitter, Gel, Light, LightColor, LightId, Material, ObjectId, Output, Power, Role,
-    Transform,
+    Assets, Camera, ColorSource, Emitter, Gel, Light, LightColor, LightId, Material, Modifier, ObjectId, Output, Power,
+    Role, Transform,
 };
 
 fn object(name: &str) -> Object {
@@ -25,6 +25,7 @@ fn light(name: &str) -> Light {
         aim: Aim::Point(Vec3::ZERO),
         roll_deg: 0.0,
         emitter: Emitter::RectPanel { width_m: 0.6, height_m: 0.9 },
+        modifier: Modifier::default(),
         power: Power { output: Output::Lumens(1000.0), dial_stops: 0.0 },
         color: LightColor::default(),
         on: true,

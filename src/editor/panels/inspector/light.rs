@@ -1,16 +1,15 @@
 //! The inspector of a light.
 
 use super::power::{self, Unit};
-use super::{Context, aim, text_ui, title};
+use super::{Context, aim, gel, modifier, text_ui, title};
 use crate::color::{light_rgb, rgb_from_kelvin};
 use crate::editor::action::Action;
-use crate::editor::catalog::{self, Kind, Shelf};
 use crate::editor::command::Command;
-use crate::editor::widgets::{self, DEGREES, DISTANCE, METRES, Number, SIZE_CM, fact, row, section};
+use crate::editor::widgets::{self, DEGREES, DISTANCE, METRES, Number, fact, row, section};
 use crate::editor::{readout, theme};
 use crate::photo::exposure;
 use crate::photo::thirds::Dial;
-use crate::scene::{ColorSource, Emitter, Gel, Light, LightId, Output, Role, Scene};
+use crate::scene::{ColorSource, Emitter, Light, LightId, Output, Role, Scene};
 use eframe::egui::{ComboBox, Label, RichText, Slider, SliderClamping, Ui, vec2};
 use glam::Vec3;
 
@@ -33,7 +32,7 @@ pub(super) fn light_ui(ui: &mut Ui, context: &mut Context<'_>, id: LightId) {
     section(ui, "Power", true, |ui| power_rows(ui, scene, &mut light));
     section(ui, "Colour", true, |ui| color_rows(ui, scene, &mut light));
     section(ui, "At the subject", true, |ui| readouts(ui, scene, &light));
-    section(ui, "Modifier", true, |ui| emitter_rows(ui, scene, &mut light));
+    section(ui, "Modifier", true, |ui| modifier::modifier_rows(ui, scene, &mut light));
     section(ui, "Place and aim", true, |ui| {
         if !matches!(light.emitter, Emitter::Surround) {
             place_rows(ui, scene, &mut light);
@@ -177,7 +176,7 @@ fn color_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
             row(ui, "Colour", "Only the hue counts: brightness comes from the power", |ui| widgets::color_ui(ui, rgb));
         }
     }
-    gel_rows(ui, light);
+    gel::gel_rows(ui, &mut light.color.gel);
 }
 
 /// Named colour temperatures.
@@ -212,38 +211,6 @@ pub(super) fn kelvin_row(ui: &mut Ui, label: &str, kelvin: &mut f32) {
     });
 }
 
-fn gel_rows(ui: &mut Ui, light: &mut Light) {
-    let gel = &mut light.color.gel;
-    let named = Gel::NAMED.iter().find(|(_, each)| each == gel).map(|(name, _)| *name);
-    let current = named.unwrap_or(match gel {
-        Gel::None => "None",
-        Gel::Mired(_) => "Other mired shift",
-        Gel::Tint(_) => "Party colour",
-    });
-    row(ui, "Gel", "A filter before the light: CTO warms, CTB cools", |ui| {
-        ComboBox::from_id_salt("gel").selected_text(current).show_ui(ui, |ui| {
-            for (name, each) in Gel::NAMED {
-                ui.selectable_value(gel, each, name);
-            }
-            ui.separator();
-            if ui.selectable_label(current == "Other mired shift", "Other mired shift").clicked() {
-                *gel = Gel::Mired(50.0);
-            }
-            if ui.selectable_label(matches!(gel, Gel::Tint(_)), "Party colour").clicked() {
-                *gel = Gel::Tint([0.9, 0.1, 0.1]);
-            }
-        });
-        match gel {
-            Gel::Tint(rgb) => drop(widgets::color_ui(ui, rgb)),
-            Gel::Mired(shift) if named.is_none() => {
-                let field = Number::new(1.0, -400.0, 400.0, 0, " mired");
-                ui.name_inputs("Mired shift", |ui| field.ui(ui, shift));
-            }
-            _ => {}
-        }
-    });
-}
-
 fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
     let at = readout::at_aim(scene, light);
     let camera = &scene.camera;
@@ -274,59 +241,6 @@ fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
     if !light.on {
         ui.label(RichText::new("The light is off; these are its values when it is on.").weak().small());
     }
-}
-
-fn emitter_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
-    let listed = catalog::entries(Shelf::Lights).iter();
-    let known =
-        listed.clone().find(|e| matches!(e.kind, Kind::Light(emitter, _) if emitter == light.emitter)).map(|e| e.name);
-    row(ui, "Kind", "What shapes the light. Choosing another keeps its power.", |ui| {
-        let current = known.unwrap_or_else(|| light.emitter.label());
-        ComboBox::from_id_salt("emitter").selected_text(current).width(ui.available_width() - 8.0).show_ui(ui, |ui| {
-            for entry in listed {
-                let Kind::Light(emitter, _) = entry.kind else { continue };
-                if ui.selectable_label(emitter == light.emitter, entry.name).on_hover_text(entry.tip).clicked() {
-                    power::change_emitter(scene, light, emitter);
-                }
-            }
-            if ui.selectable_label(light.emitter == Emitter::Point, "Point").clicked() {
-                power::change_emitter(scene, light, Emitter::Point);
-            }
-        });
-    });
-    const CONE: Number = Number::new(0.5, 0.5, 180.0, 1, "\u{b0}");
-    match &mut light.emitter {
-        Emitter::Point | Emitter::Surround => {}
-        Emitter::Sphere { radius_m } => {
-            drop(row(ui, "Diameter", "Of the bulb", |ui| SIZE_CM.scaled_ui(ui, radius_m, 200.0)))
-        }
-        Emitter::RectPanel { width_m, height_m } => {
-            row(ui, "Size", "Width and height of the shining area", |ui| {
-                ui.name_inputs("Width", |ui| SIZE_CM.scaled_ui(ui, width_m, 100.0));
-                ui.label("\u{d7}");
-                ui.name_inputs("Height", |ui| SIZE_CM.scaled_ui(ui, height_m, 100.0));
-            });
-        }
-        Emitter::RoundPanel { diameter_m } => {
-            row(ui, "Diameter", "Of the shining area", |ui| SIZE_CM.scaled_ui(ui, diameter_m, 100.0));
-        }
-        Emitter::Spot { inner_deg, outer_deg } => {
-            row(ui, "Even cone", "Full angle of the even part", |ui| CONE.ui(ui, inner_deg));
-            row(ui, "Outer cone", "Full angle where the light ends; equal to the even cone it has a hard edge", |ui| {
-                CONE.ui(ui, outer_deg)
-            });
-            *inner_deg = inner_deg.min(*outer_deg);
-        }
-        Emitter::Sun { angular_diameter_deg } => {
-            let field = Number::new(0.02, 0.0, 90.0, 2, "\u{b0}");
-            row(ui, "Disc", "Angular diameter: 0.53\u{b0} is the sun, 0 gives hard shadows", |ui| {
-                field.ui(ui, angular_diameter_deg)
-            });
-        }
-    }
-    row(ui, "In the picture", "Mirrors and glass always show it", |ui| {
-        ui.checkbox(&mut light.visible_to_camera, "Camera sees it");
-    });
 }
 
 fn place_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {

@@ -2,8 +2,10 @@
 
 mod aim;
 mod camera;
+mod gel;
 mod light;
 mod material;
+mod modifier;
 mod object;
 mod power;
 mod room;

@@ -1,8 +1,8 @@
 //! Units of power, and the change from one to another without a change of the picture.
 
 use crate::editor::readout;
-use crate::photo::exposure;
-use crate::scene::{Camera, Emitter, Light, Output, Scene};
+use crate::photo::{beam, exposure};
+use crate::scene::{Camera, Emitter, Light, Modifier, Output, Scene};
 
 /// The units a power can be given in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,7 +55,12 @@ impl Unit {
 /// The same light in another unit: the same intensity, and across flash and continuous light the same exposure at the
 /// camera's shutter.
 pub fn convert(light: &Light, camera: &Camera, unit: Unit) -> Output {
-    let full = Light { power: crate::scene::Power { dial_stops: 0.0, ..light.power }, ..light.clone() };
+    // Power is stated before the modifier, whatever its unit.
+    let full = Light {
+        power: crate::scene::Power { dial_stops: 0.0, ..light.power },
+        modifier: Modifier::default(),
+        ..light.clone()
+    };
     let per_flux = exposure::intensity_per_flux(&light.emitter).unwrap_or(1.0);
     let was_flash = light.power.output.is_flash();
     let is_flash = matches!(unit, Unit::FlashWs | Unit::GuideNumber);
@@ -79,15 +84,17 @@ pub fn convert(light: &Light, camera: &Camera, unit: Unit) -> Output {
     }
 }
 
-/// Gives a light another emitter. Between things with a place and sun or sky the exposure at the aim stays.
-pub fn change_emitter(scene: &Scene, light: &mut Light, emitter: Emitter) {
+/// Gives a light another emitter and modifier; its power stays. Between things with a place and sun or sky the exposure
+/// at the aim stays.
+pub fn change_emitter(scene: &Scene, light: &mut Light, emitter: Emitter, modifier: Modifier) {
     let before = readout::at_aim(scene, light);
     let (was, is) = (light.emitter.is_infinite(), emitter.is_infinite());
-    light.emitter = emitter;
+    (light.emitter, light.modifier) = (emitter, modifier);
     if was == is {
         return;
     }
-    let full = before.lux_s / scene.camera.shutter_s / light.power.dial_stops.exp2();
+    let passed = light.power.dial_stops.exp2() * beam::transmittance(&modifier);
+    let full = before.lux_s / scene.camera.shutter_s / passed;
     light.power.output = if is {
         Output::Lux(full)
     } else {
@@ -125,9 +132,9 @@ mod tests {
         let scene = Scene::default();
         let mut light = catalog::light_named("Bare bulb").unwrap();
         let lux_s = readout::at_aim(&scene, &light).lux_s;
-        change_emitter(&scene, &mut light, Emitter::Sun { angular_diameter_deg: 0.5 });
+        change_emitter(&scene, &mut light, Emitter::Sun { angular_diameter_deg: 0.5 }, Modifier::default());
         assert!((readout::at_aim(&scene, &light).lux_s / lux_s - 1.0).abs() < 1e-3);
-        change_emitter(&scene, &mut light, Emitter::Point);
+        change_emitter(&scene, &mut light, Emitter::Point, Modifier::loss(1.0));
         assert!((readout::at_aim(&scene, &light).lux_s / lux_s - 1.0).abs() < 1e-3);
     }
 }
