@@ -127,7 +127,8 @@ fn files_keep_modifiers_and_files_without_them_stay_readable() {
 
 #[test]
 fn impossible_modifiers_are_refused_with_their_field() {
-    let cases: [(&str, fn(&mut Light)); 5] = [
+    type Break = fn(&mut Light);
+    let cases: [(&str, Break); 5] = [
         ("modifier.loss_stops", |l| l.modifier.loss_stops = -1.0),
         ("modifier.grid_deg", |l| l.modifier.grid_deg = Some(f32::NAN)),
         ("modifier.beam.inner_deg", |l| l.modifier.beam = Some(Cone { inner_deg: 50.0, outer_deg: 20.0 })),

@@ -119,6 +119,13 @@ impl NamedModifier {
     /// more the larger and the more cloth; half a stop for a white dish; 1 stop for a reflecting umbrella, 1.7 for one
     /// that is shot through.
     pub const ALL: [NamedModifier; 32] = [
+        NamedModifier {
+            name: "Bare bulb",
+            tip: "A head without modifier: light in all directions, hard shadows.",
+            emitter: Emitter::Sphere { radius_m: 0.04 },
+            modifier: Modifier::loss(0.0),
+        },
+        hard("Reflector", "A standard reflector: a hard, broad cone.", REFLECTOR_LOSS),
         soft("Softbox 60 x 90", "The everyday softbox: soft edges on a face from 1 to 1.5 m.", 0.6, 0.9, 1.3),
         soft("Softbox 90 x 120", "A large, very soft key or a broad fill.", 0.9, 1.2, 1.6),
         soft("Softbox 60 x 60", "A small square softbox, for heads and products.", 0.6, 0.6, 1.1),
@@ -136,13 +143,6 @@ impl NamedModifier {
         round("Umbrella 105", "A white umbrella that reflects, for heads and half figures.", 1.05, 1.0),
         round("Umbrella 165", "A huge white umbrella: an even fill for a whole room.", 1.65, 1.0),
         round("Shoot-through 105", "A translucent umbrella: half of its light goes back and is lost.", 1.05, 1.7),
-        NamedModifier {
-            name: "Bare bulb",
-            tip: "A head without modifier: light in all directions, hard shadows.",
-            emitter: Emitter::Sphere { radius_m: 0.04 },
-            modifier: Modifier::loss(0.0),
-        },
-        hard("Reflector", "A standard reflector: a hard, broad cone.", REFLECTOR_LOSS),
         hard("Reflector, 40\u{b0} grid", "A honeycomb: a hard pool that fades out.", REFLECTOR_LOSS.grid(40.0)),
         hard(
             "Reflector, 30\u{b0} grid",

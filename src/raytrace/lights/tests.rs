@@ -3,7 +3,7 @@
 use super::*;
 use crate::math::look_at;
 use crate::math::statistics::{ChiSquare, Estimate, Numbers, share};
-use crate::scene::{Aim, LightColor, LightId, Output, Power, Role};
+use crate::scene::{Aim, LightColor, LightId, Modifier, Output, Power, Role};
 
 /// A light at the origin that shines along -Z.
 fn traced(emitter: Emitter, output: Output) -> TracedLight {
@@ -15,6 +15,7 @@ fn traced(emitter: Emitter, output: Output) -> TracedLight {
         aim: Aim::Point(Vec3::NEG_Z),
         roll_deg: 0.0,
         emitter,
+        modifier: Modifier::default(),
         power: Power { output, dial_stops: 0.0 },
         color: LightColor::default(),
         on: true,
