@@ -611,3 +611,37 @@ fn a_typed_title_is_one_step_and_survives_a_click_elsewhere() {
     assert_eq!(scene(&window).name, "Dusk");
     assert_eq!(undo_depth(&window), 1);
 }
+
+#[test]
+fn the_light_meter_reads_in_the_background_follows_the_dial_and_can_be_undone() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let reading = |window: &Window| window.state().meter().reading().unwrap().as_ref().unwrap().clone();
+    assert!(window.state().meter().reading().is_none());
+    click(&mut window, "Light meter");
+    assert_eq!(window.state().selection(), Some(Item::Meter));
+    let before = reading(&window);
+    let key = before.key().unwrap().clone();
+    assert_eq!((before.lights.len(), key.name.as_str()), (scene(&window).lights.len(), "Key softbox"));
+    for label in ["Light meter, dome", "No light reaches the meter."] {
+        let shown = window.query_by_label(label).is_some();
+        assert_eq!(shown, label == "Light meter, dome", "{label}");
+    }
+    assert!(window.query_by_label_contains("key:fill").is_some());
+    assert!(window.query_by_label_contains("Flash 100 %").is_some());
+    // A stop less on the key is a stop less at the meter.
+    let mut light = scene(&window).lights[0].clone();
+    light.power.dial_stops -= 1.0;
+    window.state_mut().run(Command::Do(Action::SetLight(Box::new(light))), None, &egui::Context::default());
+    settle(&mut window);
+    let after = reading(&window);
+    let stops = (after.lux_s(&after.lights[0]) / before.lux_s(&before.lights[0])).log2();
+    // Both readings are good to 0.15 %.
+    assert!((stops + 1.0).abs() < 0.01, "{stops}");
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    assert_eq!((scene(&window).meter, undo_depth(&window)), (None, 0));
+    assert!(window.query_by_label_contains("key:fill").is_none(), "no meter, no read-out");
+}

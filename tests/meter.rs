@@ -291,6 +291,17 @@ fn wrong_places_are_refused_with_a_reason_and_odd_ones_are_told() {
         assert_eq!(output.status.code(), Some(1), "{arguments:?}: {complaint}");
         assert!(complaint.contains(reason) && output.stdout.is_empty(), "{arguments:?}: {complaint}");
     }
+    let mut metered = Scene::default();
+    metered.lights.push(light(Emitter::Point, Output::Lumens(1000.0), Vec3::Y * 3.0));
+    metered.meter = Some(catchlight::scene::Meter {
+        position: Vec3::Y,
+        facing: catchlight::scene::Facing::Angles { yaw_deg: 0.0, pitch_deg: 90.0 },
+        receptor: Receptor::Flat,
+    });
+    std::fs::write(folder.path().join("own.ron"), catchlight::io::write_scene(&metered)).unwrap();
+    let own = json(&catchlight(folder.path(), &["meter", "own.ron", "--json"]));
+    let expected = 1000.0 / (4.0 * f64::from(PI)) / 4.0;
+    assert!((own["total"]["lux"].as_f64().unwrap() / expected - 1.0).abs() < 1e-3, "the studio's own meter: {own}");
     for (at, told) in [("0,0.9,0", "inside of \"Woman\""), ("0,9,0", "outside of the room")] {
         let output = catchlight(folder.path(), &["meter", "three_point", "--at", at, "--spp", "16", "--json"]);
         let report = json(&output);

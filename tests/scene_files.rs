@@ -308,8 +308,9 @@ fn scene() -> impl Strategy<Value = Scene> {
             proptest::option::of(room()),
             proptest::collection::vec(object(), objects),
             proptest::collection::vec(light(objects), 0..4),
+            any::<(bool, bool)>(),
         )
-            .prop_map(|(name, description, camera, room, mut objects, mut lights)| {
+            .prop_map(|(name, description, camera, room, mut objects, mut lights, (has_meter, on_camera))| {
                 // As after loading: ids in list order, names unique.
                 for (i, object) in objects.iter_mut().enumerate() {
                     object.id = ObjectId(i as u32);
@@ -319,7 +320,12 @@ fn scene() -> impl Strategy<Value = Scene> {
                     light.id = LightId(i as u32);
                     light.name.push_str(&format!(" l{i}"));
                 }
-                Scene { name, description, camera, room, objects, lights }
+                let facing = match on_camera {
+                    true => Facing::Camera,
+                    false => Facing::Angles { yaw_deg: camera.roll_deg, pitch_deg: 12.5 },
+                };
+                let meter = has_meter.then_some(Meter { position: camera.position, facing, receptor: Receptor::Dome });
+                Scene { name, description, camera, room, objects, lights, meter }
             })
     })
 }

@@ -22,9 +22,9 @@ use std::path::PathBuf;
 pub struct Arguments {
     /// Studio: a .ron file, or the name of a shipped one.
     scene: PathBuf,
-    /// Where the receptor is: X,Y,Z in metres.
+    /// Where the receptor is: X,Y,Z in metres [default: where the studio's own meter stands, as that stands].
     #[arg(long, value_name = "X,Y,Z", value_parser = input::parse_vec3, allow_hyphen_values = true)]
-    at: Vec3,
+    at: Option<Vec3>,
     /// The direction that it faces: X,Y,Z of any length [default: towards the camera].
     #[arg(long, value_name = "X,Y,Z", value_parser = input::parse_vec3, allow_hyphen_values = true)]
     facing: Option<Vec3>,
@@ -120,22 +120,26 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn place(arguments: &Arguments, scene: &Scene) -> anyhow::Result<Place> {
-    let position = arguments.at;
+    let own = scene.meter.filter(|_| arguments.at.is_none());
+    let position = arguments.at.or(own.map(|meter| meter.position));
+    let position = position.context("say where the meter is with --at X,Y,Z, or put one up in the editor")?;
     anyhow::ensure!(
         position.abs().max_element() <= 1e6,
         "--at {position} is further from the origin than a studio reaches (1000 km)"
     );
-    let facing = match arguments.facing {
-        Some(direction) => direction
+    let facing = match (arguments.facing, own) {
+        (Some(direction), _) => direction
             .as_dvec3()
             .try_normalize()
             .ok_or_else(|| anyhow!("--facing {direction} has no length, and so no direction"))?
             .as_vec3(),
-        None => (scene.camera.position - position)
+        (None, Some(meter)) => meter.direction(scene),
+        (None, None) => (scene.camera.position - position)
             .try_normalize()
             .ok_or_else(|| anyhow!("the meter is where the camera is; say what it faces with --facing X,Y,Z"))?,
     };
-    let receptor = if arguments.dome { Receptor::Dome } else { Receptor::Flat };
+    let dome = arguments.dome || own.is_some_and(|meter| meter.receptor == Receptor::Dome);
+    let receptor = if dome { Receptor::Dome } else { Receptor::Flat };
     Ok(Place { position, facing, receptor })
 }
 
@@ -215,7 +219,8 @@ fn light_report(reading: &Reading, light: &LightReading) -> LightReport {
 fn table(arguments: &Arguments, place: &Place, probed: &Probed) -> String {
     let reading = &probed.reading;
     let [p, d] = [place.position, place.facing];
-    let towards = if arguments.facing.is_none() { "the camera".to_owned() } else { vector(d) };
+    let to_camera = arguments.facing.is_none() && arguments.at.is_some();
+    let towards = if to_camera { "the camera".to_owned() } else { vector(d) };
     let mut text = format!("{} receptor at {} m, facing {towards}\n\n", place.receptor.label(), vector(p));
     let width = reading.lights.iter().map(|l| l.name.chars().count()).max().unwrap_or(0).max(5);
     let _ = writeln!(

@@ -1,6 +1,6 @@
 //! Every change to the scene. Menus, shortcuts, panels, gizmos, undo and tests all go through [`Action`].
 
-use crate::scene::{Aim, Camera, Focus, Light, LightId, Object, ObjectId, Room, Scene};
+use crate::scene::{Aim, Camera, Focus, Light, LightId, Meter, Object, ObjectId, Room, Scene};
 use glam::Vec3;
 
 /// Something that can be selected.
@@ -14,6 +14,8 @@ pub enum Item {
     Object(ObjectId),
     /// A light.
     Light(LightId),
+    /// The light meter.
+    Meter,
 }
 
 impl Item {
@@ -23,6 +25,7 @@ impl Item {
             Item::Camera | Item::Room => true,
             Item::Object(id) => scene.object(id).is_some(),
             Item::Light(id) => scene.light(id).is_some(),
+            Item::Meter => scene.meter.is_some(),
         }
     }
 
@@ -33,6 +36,7 @@ impl Item {
             Item::Room => "Room".to_owned(),
             Item::Object(id) => scene.object(id).map(|o| o.name.clone()).unwrap_or_default(),
             Item::Light(id) => scene.light(id).map(|l| l.name.clone()).unwrap_or_default(),
+            Item::Meter => "Light meter".to_owned(),
         }
     }
 }
@@ -52,6 +56,8 @@ pub enum Action {
     SetCamera(Box<Camera>),
     /// Replaces the room; none takes it away.
     SetRoom(Option<Box<Room>>),
+    /// Puts the light meter up or elsewhere; none takes it away.
+    SetMeter(Option<Meter>),
     /// Title and description of the studio.
     SetNotes {
         /// Title.
@@ -79,6 +85,9 @@ pub enum ActionError {
     /// The camera and the room are always there, once.
     #[error("The {0} cannot be deleted, duplicated or renamed.")]
     Fixed(&'static str),
+    /// There is one meter, and it has no name.
+    #[error("There is one light meter in a studio: move it to where you want to read.")]
+    Single,
     /// What the action is about has gone.
     #[error("That is no longer in the studio.")]
     Gone,
@@ -100,6 +109,9 @@ impl Action {
             Action::SetLight(light) => light_change_label(scene, light),
             Action::SetCamera(_) => "Change camera".to_owned(),
             Action::SetRoom(_) => "Change room".to_owned(),
+            Action::SetMeter(None) => "Take the meter away".to_owned(),
+            Action::SetMeter(Some(_)) if scene.meter.is_none() => "Put a meter up".to_owned(),
+            Action::SetMeter(Some(_)) => "Change light meter".to_owned(),
             Action::SetNotes { .. } => "Change notes".to_owned(),
             Action::Rename(_, name) => format!("Rename to {name}"),
             Action::Delete(item) => format!("Delete {}", item.name(scene)),
@@ -114,6 +126,7 @@ impl Action {
             Action::SetLight(light) => Some(Item::Light(light.id)),
             Action::SetCamera(_) => Some(Item::Camera),
             Action::SetRoom(_) => Some(Item::Room),
+            Action::SetMeter(_) => Some(Item::Meter),
             _ => None,
         }
     }
@@ -143,6 +156,11 @@ impl Action {
             Action::SetRoom(room) => {
                 scene.room = room.map(|room| *room);
                 Ok(None)
+            }
+            Action::SetMeter(meter) => {
+                let is_new = scene.meter.is_none() && meter.is_some();
+                scene.meter = meter;
+                Ok(is_new.then_some(Item::Meter))
             }
             Action::SetNotes { name, description } => {
                 (scene.name, scene.description) = (name, description);
@@ -196,6 +214,7 @@ fn rename(scene: &mut Scene, item: Item, name: &str) -> Result<(), ActionError> 
         Item::Light(id) => scene.light_mut(id).ok_or(ActionError::Gone)?.name = name.to_owned(),
         Item::Camera => return Err(ActionError::Fixed("camera")),
         Item::Room => return Err(ActionError::Fixed("room")),
+        Item::Meter => return Err(ActionError::Single),
     }
     Ok(())
 }
@@ -211,6 +230,7 @@ fn delete(scene: &mut Scene, item: Item) -> Result<(), ActionError> {
             scene.light(id).ok_or(ActionError::Gone)?;
             scene.lights.retain(|l| l.id != id);
         }
+        Item::Meter => scene.meter = None,
         Item::Camera => return Err(ActionError::Fixed("camera")),
         Item::Room => return Err(ActionError::Fixed("room")),
     }
@@ -246,6 +266,7 @@ fn duplicate(scene: &mut Scene, item: Item) -> Result<Item, ActionError> {
         }
         Item::Camera => Err(ActionError::Fixed("camera")),
         Item::Room => Err(ActionError::Fixed("room")),
+        Item::Meter => Err(ActionError::Single),
     }
 }
 

@@ -6,10 +6,11 @@ use super::command::{BINDINGS, Centre, Command, Handle};
 use super::dialogs::FileDialogs;
 use super::document::Document;
 use super::files::{PresetInfo, Source, Tasks};
+use super::meter_job::MeterJob;
 use super::panels::menu::MenuState;
 use super::panels::outliner::OutlinerState;
 use super::panels::presets::PresetPicker;
-use super::panels::{add, help, inspector, menu, outliner, render, status};
+use super::panels::{self, add, help, inspector, menu, outliner, render, status};
 use super::picture_view::PictureView;
 use super::preview_host::PreviewHost;
 use super::recent::RecentFiles;
@@ -56,6 +57,7 @@ pub struct App {
     pub(super) toasts: Toasts,
     pub(super) outliner: OutlinerState,
     pub(super) picker: PresetPicker,
+    pub(super) meter: MeterJob,
     pub(super) show_help: bool,
     pub(super) presets: Vec<PresetInfo>,
     shelf: Shelf,
@@ -89,6 +91,7 @@ impl App {
             toasts: Toasts::default(),
             outliner: OutlinerState::default(),
             picker: PresetPicker::default(),
+            meter: MeterJob::default(),
             show_help: false,
             presets,
             shelf: Shelf::Lights,
@@ -135,6 +138,11 @@ impl App {
         &self.viewport
     }
 
+    /// The readings of the studio's light meter.
+    pub fn meter(&self) -> &MeterJob {
+        &self.meter
+    }
+
     /// The title of the window.
     pub fn title(&self) -> &str {
         &self.title
@@ -149,6 +157,7 @@ impl App {
     pub fn is_busy(&self) -> bool {
         self.tasks.is_busy()
             || self.rendering.is_busy()
+            || self.meter.is_busy()
             || self.session.is_waiting()
             || self.viewport.preview.is_starting()
     }
@@ -168,6 +177,8 @@ impl App {
         self.take_close_request(ctx);
         self.load_wanted_assets(ctx);
         self.rendering.update(self.document.scene(), ctx);
+        let document = &self.document;
+        self.meter.update(document.scene(), document.assets(), document.revision(), ctx);
         match self.rendering.failure() {
             Some(message) if !self.told_failure => {
                 self.toasts.error(format!("The render failed. {message}"));
@@ -249,7 +260,11 @@ impl App {
             handles: self.handles,
             picture_aspect: width as f32 / height as f32,
         };
+        let view = ui.available_rect_before_wrap();
         self.viewport.ui(ui, input, out);
+        if let Some(meter) = &self.document.scene().meter {
+            panels::meter::meter_ui(ui.ctx(), view, meter, self.meter.reading(), out);
+        }
     }
 
     fn menu_state(&self) -> MenuState<'_> {

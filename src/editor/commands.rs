@@ -68,7 +68,7 @@ impl App {
 
     fn with_selected(&mut self, otherwise: &str, action: impl FnOnce(Item) -> Action) {
         match self.selection {
-            Some(item @ (Item::Object(_) | Item::Light(_))) => self.apply(action(item), None),
+            Some(item @ (Item::Object(_) | Item::Light(_) | Item::Meter)) => self.apply(action(item), None),
             Some(Item::Camera | Item::Room) | None => self.toasts.news(otherwise),
         }
     }

@@ -4,7 +4,7 @@ use super::action::{Action, Item};
 use super::command::Handle;
 use super::floor_handle::FloorHandle;
 use crate::math;
-use crate::scene::{Aim, Camera, CameraFrame, Emitter, Light, Object, Scene};
+use crate::scene::{Aim, Camera, CameraFrame, Emitter, Light, Meter, Object, Scene};
 use eframe::egui::{self, Color32, Rect, Rgba};
 use glam::{Quat, Vec3};
 use transform_gizmo::math::{Pos2, Transform};
@@ -160,6 +160,11 @@ impl Target {
                 let target = Target { position: scene.camera.position, rotation, scale: Vec3::ONE };
                 (handle != Handle::Size).then_some(target)
             }
+            Item::Meter => {
+                let position = scene.meter?.position;
+                let target = Target { position, rotation: Quat::IDENTITY, scale: Vec3::ONE };
+                (handle == Handle::Move).then_some(target)
+            }
             Item::Room => None,
         }
     }
@@ -229,6 +234,7 @@ impl Target {
                 }
                 Some(Action::SetCamera(Box::new(camera)))
             }
+            Item::Meter => Some(Action::SetMeter(Some(Meter { position, ..scene.meter? }))),
             Item::Room => None,
         }
     }

@@ -15,6 +15,7 @@ mod files;
 mod floor_handle;
 mod gizmo;
 mod history;
+mod meter_job;
 mod overlay;
 mod panels;
 mod picture_view;

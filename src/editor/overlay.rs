@@ -8,6 +8,8 @@ use glam::Vec3;
 
 /// How near to a light's middle a click means the light, points.
 const CLICK_RADIUS: f32 = 9.0;
+/// Length of the line to where the meter faces, metres.
+const METER_NEEDLE_M: f32 = 0.15;
 
 /// Where a point of the studio shows in the view; none behind the eye or far outside.
 pub fn place_of(frame: &CameraFrame, rect: Rect, point: Vec3) -> Option<Pos2> {
@@ -24,6 +26,26 @@ pub fn light_at(scene: &Scene, frame: &CameraFrame, rect: Rect, position: Pos2) 
         (distance < CLICK_RADIUS).then_some((distance, light.id))
     });
     near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| Item::Light(id))
+}
+
+/// Whether the light meter is under the pointer.
+pub fn meter_at(scene: &Scene, frame: &CameraFrame, rect: Rect, position: Pos2) -> bool {
+    let place = scene.meter.and_then(|meter| place_of(frame, rect, meter.position));
+    place.is_some_and(|place| place.distance(position) < CLICK_RADIUS)
+}
+
+/// The light meter: a white receptor, and a line to where it faces.
+pub fn paint_meter(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect) {
+    let Some(meter) = scene.meter else { return };
+    let Some(place) = place_of(frame, rect, meter.position) else { return };
+    let white = Color32::from_gray(240);
+    let tip = meter.position + meter.direction(scene) * METER_NEEDLE_M;
+    if let Some(tip) = place_of(frame, rect, tip) {
+        painter.line_segment([place, tip], Stroke::new(1.5, white));
+    }
+    painter.circle_filled(place, 5.0, white);
+    painter.circle_stroke(place, 5.0, Stroke::new(1.5, Color32::from_black_alpha(200)));
+    text_with_shadow(painter, place + vec2(0.0, 8.0), Align2::CENTER_TOP, "meter", white);
 }
 
 /// Dims what the picture will not hold and draws the picture's edge.

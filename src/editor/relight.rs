@@ -25,6 +25,7 @@ impl DevelopKey {
 pub fn is_up_to_date(film: &Film, rendered: &Scene, now: &Scene) -> bool {
     let has_layer = |id| film.layers().iter().any(|layer| layer.light == Some(id));
     let mut comparable = now.clone();
+    comparable.meter = rendered.meter;
     (comparable.name, comparable.description) = (rendered.name.clone(), rendered.description.clone());
     for light in &mut comparable.lights {
         let Some(old) = rendered.light(light.id) else { continue };

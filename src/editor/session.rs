@@ -306,7 +306,7 @@ impl App {
                 material.base_color_texture = Some(path);
                 Action::SetRoom(Some(Box::new(room)))
             }),
-            Item::Camera | Item::Light(_) => None,
+            Item::Camera | Item::Light(_) | Item::Meter => None,
         };
         if let Some(action) = action {
             self.apply(action, None);

@@ -175,6 +175,10 @@ impl Viewport {
         let picked = self.preview.pick((pixel.x.max(0.0) as u32, pixel.y.max(0.0) as u32));
         let scene = input.document.scene();
         let (frame, _) = self.frame(scene, input, rect);
+        if overlay::meter_at(scene, &frame, rect, position) {
+            out.push(Command::Select(Some(Item::Meter)));
+            return;
+        }
         let item = match picked {
             Some(Pick::Light(id)) => Some(Item::Light(id)),
             Some(Pick::Camera) => Some(Item::Camera),
@@ -204,6 +208,7 @@ impl Viewport {
         }
         let all = input.centre == Centre::Studio;
         overlay::paint_labels(&painter, input.document.scene(), &frame, rect, input.selection, all);
+        overlay::paint_meter(&painter, input.document.scene(), &frame, rect);
         if input.selection.is_some_and(|item| item.exists_in(input.document.scene())) {
             self.handles.paint(&painter);
         }
@@ -307,6 +312,7 @@ fn bounds(document: &Document, selection: Option<Item>) -> Option<(Vec3, Vec3)> 
         Some(Item::Object(id)) => scene.object(id).and_then(of_object),
         Some(Item::Light(id)) => scene.light(id).map(|light| point(light.position)),
         Some(Item::Camera) => Some(point(scene.camera.position)),
+        Some(Item::Meter) => scene.meter.map(|meter| point(meter.position)),
         Some(Item::Room) | None => {
             let things = scene.objects.iter().filter(|o| !matches!(o.shape, Shape::Sweep { .. } | Shape::Plane { .. }));
             let lights = scene.lights.iter().filter(|l| !l.emitter.is_infinite()).map(|l| point(l.position));

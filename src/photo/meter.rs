@@ -6,20 +6,11 @@
 
 use super::exposure;
 use super::thirds::Dial;
+pub use crate::scene::Receptor;
 use crate::scene::{Camera, LightId, Role};
 
 /// Lux in a foot-candle: a lumen a square foot.
 pub const LUX_PER_FOOT_CANDLE: f32 = 10.763_91;
-
-/// What gathers the light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Receptor {
-    /// A flat disc: Lambert's cosine law. For ratios, and for flat things.
-    #[default]
-    Flat,
-    /// A dome: cardioid response, half of the light from the side and none from straight behind. For faces.
-    Dome,
-}
 
 impl Receptor {
     /// Part of a light's normal illuminance that counts, by the cosine of its angle from where the receptor faces.

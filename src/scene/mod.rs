@@ -11,6 +11,7 @@ mod gel;
 mod light;
 mod material;
 mod mesh;
+mod meter;
 mod modifier;
 mod object;
 mod room;
@@ -23,6 +24,7 @@ pub use gel::{Gel, GelFamily, NamedGel};
 pub use light::{ColorSource, Emitter, Light, LightColor, Output, Power, Role};
 pub use material::{Material, MaterialPreset};
 pub use mesh::{Mesh, MeshPart};
+pub use meter::{Facing, Meter, Receptor};
 pub use modifier::{BarnDoors, Cone, HARD_GRIDS_DEG, Modifier, NamedModifier, SOFT_GRIDS_DEG};
 pub use object::{Figure, Mannequin, Object, Pose, Shape, Transform};
 pub use room::Room;
@@ -54,6 +56,8 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// All lights, in list order; film layers follow this order.
     pub lights: Vec<Light>,
+    /// The light meter, where one is up.
+    pub meter: Option<Meter>,
 }
 
 /// Where a camera or a light looks.

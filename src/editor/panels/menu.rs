@@ -1,10 +1,11 @@
 //! The menu bar.
 
-use crate::editor::action::Item;
+use crate::editor::action::{Action, Item};
 use crate::editor::command::{Centre, Command, Handle};
 use crate::editor::document::Document;
 use crate::editor::recent::RecentFiles;
 use crate::editor::widgets;
+use crate::scene::{Facing, Meter, Receptor, Scene};
 use eframe::egui::{Button, MenuBar, Ui};
 
 /// What the menus show beside the document.
@@ -129,6 +130,19 @@ fn render_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     entry(ui, state.rendering, "Cancel", "Stop, and keep what is there", Command::CancelRender, out);
 }
 
+/// How far before the camera's aim a new meter stands, metres: clear of a face that is aimed at.
+const METER_CLEARANCE_M: f32 = 0.12;
+
+fn put_meter_up(scene: &Scene) -> Command {
+    if scene.meter.is_some() {
+        return Command::Select(Some(Item::Meter));
+    }
+    let target = scene.aim_point(&scene.camera.aim, scene.camera.position);
+    let towards = (scene.camera.position - target).normalize_or_zero();
+    let position = target + towards * METER_CLEARANCE_M;
+    Command::Do(Action::SetMeter(Some(Meter { position, facing: Facing::Camera, receptor: Receptor::Dome })))
+}
+
 /// The row of view buttons over the middle of the window.
 pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool, out: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
@@ -158,6 +172,10 @@ pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool,
         let frame = ui.button("Frame").on_hover_text("Bring the selection, or everything, into view (F)");
         if frame.clicked() {
             out.push(Command::FrameSelection);
+        }
+        let meter = ui.add(Button::selectable(state.document.scene().meter.is_some(), "Light meter"));
+        if meter.on_hover_text("Puts a light meter where the camera aims, or selects it").clicked() {
+            out.push(put_meter_up(state.document.scene()));
         }
         ui.separator();
         if centre == Centre::Camera {

@@ -4,6 +4,7 @@ pub mod add;
 pub mod help;
 pub mod inspector;
 pub mod menu;
+pub mod meter;
 pub mod outliner;
 pub mod presets;
 pub mod prompts;

@@ -40,6 +40,9 @@ pub fn outliner_ui(
         let room_tip =
             if scene.room.is_some() { "Floor, walls and ceiling" } else { "Switched off: an endless black void" };
         fixed_row(ui, Item::Room, "Room", room_tip, selection, out);
+        if scene.meter.is_some() {
+            fixed_row(ui, Item::Meter, "Light meter", "Reads every light where it stands", selection, out);
+        }
         heading(ui, "Lights", scene.lights.len());
         for light in &scene.lights {
             light_row(ui, document, light, selection, state, out);

@@ -29,6 +29,7 @@ fn selection_line(scene: &Scene, item: Item) -> String {
         Item::Light(id) => scene.light(id).filter(|l| !l.emitter.is_infinite()).map(|l| l.position),
         Item::Object(id) => scene.object(id).map(|o| o.transform.position),
         Item::Camera => Some(scene.camera.position),
+        Item::Meter => scene.meter.map(|meter| meter.position),
         Item::Room => None,
     };
     match place {

@@ -2,14 +2,14 @@
 //! order of the file.
 
 use super::{
-    AimV1, BarnDoorsV1, CameraV1, ColorV1, ConeV1, EmitterV1, FigureV1, FocusV1, GelV1, LightV1, MaterialV1,
-    ModifierV1, ObjectV1, OrientationV1, OutputV1, PartMaterialV1, PoseV1, PowerV1, RoleV1, RoomV1, SceneV1, SensorV1,
-    ShapeV1,
+    AimV1, BarnDoorsV1, CameraV1, ColorV1, ConeV1, EmitterV1, FacingV1, FigureV1, FocusV1, GelV1, LightV1, MaterialV1,
+    MeterV1, ModifierV1, ObjectV1, OrientationV1, OutputV1, PartMaterialV1, PoseV1, PowerV1, ReceptorV1, RoleV1,
+    RoomV1, SceneV1, SensorV1, ShapeV1,
 };
 use crate::scene::{
-    Aim, BarnDoors, Camera, ColorSource, Cone, Emitter, Figure, Focus, Gel, Light, LightColor, LightId, Mannequin,
-    Material, Modifier, Object, ObjectId, Orientation, Output, Pose, Power, Role, Room, Scene, Sensor, Shape,
-    Transform,
+    Aim, BarnDoors, Camera, ColorSource, Cone, Emitter, Facing, Figure, Focus, Gel, Light, LightColor, LightId,
+    Mannequin, Material, Meter, Modifier, Object, ObjectId, Orientation, Output, Pose, Power, Receptor, Role, Room,
+    Scene, Sensor, Shape, Transform,
 };
 use glam::Vec3;
 use std::collections::HashMap;
@@ -76,6 +76,7 @@ pub(in crate::io) fn scene_from_v1(file: SceneV1) -> Result<Scene, UnknownName> 
         lights: (file.lights.into_iter().enumerate())
             .map(|(index, light)| light_from(light, index, &names))
             .collect::<Result<_, _>>()?,
+        meter: file.meter.map(Meter::from),
     })
 }
 
@@ -89,6 +90,7 @@ pub(in crate::io) fn v1_from_scene(scene: &Scene) -> SceneV1 {
         room: scene.room.as_ref().map(RoomV1::from),
         objects: scene.objects.iter().map(ObjectV1::from).collect(),
         lights: scene.lights.iter().map(|light| light_to(scene, light)).collect(),
+        meter: scene.meter.map(MeterV1::from),
     }
 }
 
@@ -268,6 +270,18 @@ impl From<Modifier> for ModifierV1 {
     }
 }
 
+impl From<MeterV1> for Meter {
+    fn from(MeterV1 { position, facing, receptor }: MeterV1) -> Self {
+        Meter { position: Vec3::from(position), facing: facing.into(), receptor: receptor.into() }
+    }
+}
+
+impl From<Meter> for MeterV1 {
+    fn from(Meter { position, facing, receptor }: Meter) -> Self {
+        MeterV1 { position: position.to_array(), facing: facing.into(), receptor: receptor.into() }
+    }
+}
+
 impl From<RoomV1> for Room {
     fn from(file: RoomV1) -> Self {
         Room {
@@ -361,3 +375,5 @@ same_variants!(OutputV1 <=> Output {
     Lumens(lm), Candela(cd), LuxAt { lux, distance_m }, Lux(lux), FlashWs { energy_ws, efficacy_lm_s_per_ws },
     FlashGuideNumber(gn),
 });
+same_variants!(FacingV1 <=> Facing { Camera, Angles { yaw_deg, pitch_deg } });
+same_variants!(ReceptorV1 <=> Receptor { Flat, Dome });

@@ -56,6 +56,38 @@ pub(super) struct SceneV1 {
     objects: Vec<ObjectV1>,
     #[serde(default)]
     lights: Vec<LightV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    meter: Option<MeterV1>,
+}
+
+/// A light meter that stands in the studio.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename = "Meter", deny_unknown_fields)]
+struct MeterV1 {
+    position: Triple,
+    #[serde(default, skip_serializing_if = "is")]
+    facing: FacingV1,
+    #[serde(default)]
+    receptor: ReceptorV1,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Facing", deny_unknown_fields)]
+enum FacingV1 {
+    #[default]
+    Camera,
+    Angles {
+        yaw_deg: f32,
+        pitch_deg: f32,
+    },
+}
+
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[serde(rename = "Receptor")]
+enum ReceptorV1 {
+    #[default]
+    Flat,
+    Dome,
 }
 
 #[derive(Debug, Serialize, Deserialize)]

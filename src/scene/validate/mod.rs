@@ -12,7 +12,7 @@ mod placement;
 
 pub use placement::placement;
 
-use super::{Aim, Focus, Object, Room, Scene, Sensor, Shape};
+use super::{Aim, Facing, Focus, Meter, Object, Room, Scene, Sensor, Shape};
 use check::{Allowed, Check};
 use glam::Vec3;
 use std::collections::HashSet;
@@ -109,6 +109,9 @@ pub fn validate(scene: &Scene) -> Vec<Finding> {
         check_name(&l.name, &mut names, &mut check);
         light::check_light(scene, l, &mut check);
     }
+    if let Some(meter) = &scene.meter {
+        check_meter(meter, &mut check);
+    }
     check.enter(String::new());
     oddities::warn_of_lights(scene, &mut check);
     check.finish()
@@ -170,6 +173,15 @@ fn check_aim(scene: &Scene, aim: &Aim, position: Vec3, has_direction: bool, chec
     let offset = scene.aim_point(aim, position) - position;
     if has_direction && position.is_finite() && offset.is_finite() && offset.length() < 1e-5 {
         check.error("aim", format!("it aims at its own place {position}, which is no direction"));
+    }
+}
+
+fn check_meter(meter: &Meter, check: &mut Check) {
+    check.enter("meter.".to_owned());
+    check.vector("position", meter.position, PLACE);
+    if let Facing::Angles { yaw_deg, pitch_deg } = meter.facing {
+        check.number("facing.yaw_deg", yaw_deg, TURN);
+        check.number("facing.pitch_deg", pitch_deg, Allowed::between(-90.0, 90.0, "degrees"));
     }
 }
 

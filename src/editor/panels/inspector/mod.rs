@@ -5,6 +5,7 @@ mod camera;
 mod gel;
 mod light;
 mod material;
+mod meter;
 mod modifier;
 mod object;
 mod power;
@@ -31,6 +32,7 @@ pub fn inspector_ui(ui: &mut Ui, document: &Document, selection: Option<Item>, o
             Some(Item::Light(id)) => light::light_ui(ui, &mut context, id),
             Some(Item::Object(id)) => object::object_ui(ui, &mut context, id),
             Some(Item::Camera) => camera::camera_ui(ui, &mut context),
+            Some(Item::Meter) => meter::meter_ui(ui, &mut context),
             Some(Item::Room) => room::room_ui(ui, &mut context),
             None => studio_ui(ui, &mut context),
         });

@@ -29,8 +29,14 @@ fn kind_row(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     let is_current = |e: &catalog::Entry| matches!(e.kind, Kind::Light(emitter, modifier, _) if emitter == light.emitter && modifier == light.modifier);
     let known = NamedModifier::of(&light.emitter, &light.modifier).map(|named| named.name);
     let known = known.or_else(|| listed.clone().find(|e| is_current(e)).map(|e| e.name));
+    // A softbox whose loss was set by hand is still that softbox.
+    let by_shape = NamedModifier::ALL.iter().find(|named| {
+        let of_same_beam = Modifier { loss_stops: named.modifier.loss_stops, ..light.modifier };
+        named.emitter == light.emitter && named.modifier == Modifier { scrim_stops: 0.0, ..of_same_beam }
+    });
+    let shown = known.or(by_shape.map(|named| named.name));
     row(ui, "Modifier", "What shapes the light. Choosing another keeps the head's power.", |ui| {
-        let current = known.unwrap_or_else(|| light.emitter.label());
+        let current = shown.unwrap_or_else(|| light.emitter.label());
         let width = ui.available_width() - 8.0;
         let list = ComboBox::from_id_salt("emitter").selected_text(current).width(width).height(420.0);
         list.show_ui(ui, |ui| {

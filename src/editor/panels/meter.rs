@@ -1,0 +1,104 @@
+//! The read-out of the studio's light meter, over the view.
+
+use crate::editor::action::Item;
+use crate::editor::command::Command;
+use crate::editor::{theme, widgets};
+use crate::photo::meter::{LUX_PER_FOOT_CANDLE, LightReading, Reading, nearest_third};
+use crate::photo::thirds::Dial;
+use crate::scene::{Meter, Receptor};
+use eframe::egui::{self, Align2, Context, Frame, Grid, Id, Label, Rect, RichText, Ui, vec2};
+
+/// Draws it in the upper left corner of the view.
+pub fn meter_ui(
+    ctx: &Context,
+    view: Rect,
+    meter: &Meter,
+    reading: Option<&Result<Reading, String>>,
+    out: &mut Vec<Command>,
+) {
+    let area = egui::Area::new(Id::unique("light meter")).pivot(Align2::LEFT_TOP);
+    area.fixed_pos(view.min + vec2(10.0, 44.0)).order(egui::Order::Middle).constrain(true).show(ctx, |ui| {
+        let frame = Frame::popup(ui.style()).inner_margin(8);
+        frame.show(ui, |ui| {
+            ui.set_max_width(300.0);
+            ui.horizontal(|ui| {
+                let title = match meter.receptor {
+                    Receptor::Flat => "Light meter, flat",
+                    Receptor::Dome => "Light meter, dome",
+                };
+                let button = ui.add(egui::Button::new(RichText::new(title).strong()).frame(false));
+                if button.on_hover_text("Select the meter: move it with its handles").clicked() {
+                    out.push(Command::Select(Some(Item::Meter)));
+                }
+            });
+            match reading {
+                Some(Ok(reading)) => reading_ui(ui, reading),
+                Some(Err(message)) => drop(ui.label(message)),
+                None => drop(ui.label(RichText::new("Reading\u{2026}").weak())),
+            }
+        });
+    });
+}
+
+fn reading_ui(ui: &mut Ui, reading: &Reading) {
+    if reading.total_lux_s() <= 0.0 {
+        ui.label("No light reaches the meter.");
+        return;
+    }
+    let n = reading.f_number();
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(nearest_third(n)).size(26.0).strong());
+        ui.vertical(|ui| {
+            let settings =
+                format!("at ISO {}, {}", Dial::Iso.label(reading.iso), Dial::Shutter.label(reading.shutter_s));
+            ui.label(RichText::new(settings).weak());
+            ui.label(RichText::new(format!("f/{n:.2} exactly, EV {:.1}", reading.ev100())).weak());
+        });
+    });
+    Grid::new("light meter lights").num_columns(4).spacing([8.0, 2.0]).show(ui, |ui| {
+        for light in &reading.lights {
+            light_row(ui, reading, light);
+        }
+    });
+    ui.add_space(4.0);
+    for ratio in reading.ratios().into_iter().flatten() {
+        let text = format!("{}  {}:1  ({:.1} stops)", ratio.name, widgets::three_digits(ratio.value), ratio.stops());
+        ui.label(text).on_hover_text("By the roles of the lights");
+    }
+    if let Some(share) = reading.flash_share() {
+        ui.label(format!("Flash {:.0} %, continuous {:.0} %", 100.0 * share, 100.0 - 100.0 * share))
+            .on_hover_text("Parts of the exposure: the continuous one follows the shutter");
+    }
+    let (direct, bounced) = reading.total_lux();
+    let lux = direct + bounced;
+    let [lux_s, foot_candles] = [reading.total_lux_s(), lux / LUX_PER_FOOT_CANDLE].map(widgets::three_digits);
+    let amounts = format!("{lux_s} lx s = {} lx = {foot_candles} fc", widgets::three_digits(lux));
+    let tip = "In one exposure; in lux and foot-candles as steady light at this shutter would give it";
+    ui.label(RichText::new(amounts).weak()).on_hover_text(tip);
+    let error = reading.relative_error().unwrap_or(0.0);
+    let quality = format!("{:.0} % bounced, good to {:.1} %", 100.0 * bounced / lux, (100.0 * error).max(0.1));
+    ui.label(RichText::new(quality).weak());
+}
+
+/// Role, name, stops against the key, part of the exposure.
+fn light_row(ui: &mut Ui, reading: &Reading, light: &LightReading) {
+    let key = reading.key().is_some_and(|key| key.light == light.light);
+    let color = light.role.map_or(egui::Color32::GRAY, theme::role_color);
+    widgets::swatch(ui, color, vec2(6.0, 14.0));
+    ui.allocate_ui_with_layout(vec2(130.0, 16.0), egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        ui.set_min_width(130.0);
+        ui.add(Label::new(&light.name).truncate());
+    });
+    let stops = match reading.share_stops(light) {
+        _ if key => "key".to_owned(),
+        Some(stops) => format!("{} stops", widgets::signed_stops(stops)),
+        None => "dark".to_owned(),
+    };
+    let [direct, bounced] = [light.direct, light.bounced].map(widgets::three_digits);
+    let unit = if light.flash { "lx s" } else { "lx" };
+    let tip = format!("Against the key. Direct {direct} {unit}, bounced {bounced} {unit}");
+    ui.label(stops).on_hover_text(tip);
+    let share = 100.0 * reading.lux_s(light) / reading.total_lux_s();
+    ui.label(RichText::new(format!("{share:.0} %")).weak()).on_hover_text("Part of the exposure");
+    ui.end_row();
+}
