@@ -6,6 +6,7 @@
 mod bake;
 mod chart;
 mod check;
+mod crowd;
 mod input;
 mod meter;
 mod presets;
@@ -33,7 +34,7 @@ struct Arguments {
 enum Command {
     /// Render a studio to a picture, without a window.
     Render(render::Arguments),
-    /// Draw the live preview of a studio to a picture, without a window.
+    /// Draw the live preview of a studio to a picture, or time its frames, without a window.
     Preview(preview::Arguments),
     /// Read a light meter at a place of a studio: every light, direct and bounced.
     Meter(meter::Arguments),

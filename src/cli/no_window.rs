@@ -1,6 +1,7 @@
 //! Stands in for `window.rs` where the program was built without the `gui` feature.
 
 use super::Failure;
+use super::preview::TimesReport;
 use crate::io::Loaded;
 use anyhow::anyhow;
 use std::path::{Path, PathBuf};
@@ -17,5 +18,14 @@ pub fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
 
 /// There is no graphics-card preview in this build.
 pub fn write_preview(_loaded: &Loaded, _size: (u32, u32), _output: &Path) -> Result<(), Failure> {
-    Err(Failure::Machine(anyhow!("this build has no live preview (it was made without the `gui` feature)")))
+    Err(no_preview())
+}
+
+/// There is no graphics-card preview to be timed in this build.
+pub fn time_preview(_loaded: &Loaded, _size: (u32, u32), _frames: u32, _radius: bool) -> Result<TimesReport, Failure> {
+    Err(no_preview())
+}
+
+fn no_preview() -> Failure {
+    Failure::Machine(anyhow!("this build has no live preview (it was made without the `gui` feature)"))
 }

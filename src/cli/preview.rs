@@ -1,7 +1,16 @@
-//! `catchlight preview SCENE -o OUT`: the live preview's picture, without a window.
+//! `catchlight preview SCENE`: the live preview without a window, as a picture or as the time its frames take.
 
-use super::{Failure, input, window};
+use super::{Failure, crowd, input, say, window};
+use anyhow::anyhow;
+use serde::Serialize;
 use std::path::PathBuf;
+
+/// Size at which frame times are stated.
+const TIMED_SIZE: (u32, u32) = (1280, 720);
+/// Numbers of lights that `--lights` goes through.
+const LIGHT_COUNTS: [usize; 4] = [1, 4, 16, 60];
+/// Frames timed where `--frames` does not say.
+const FRAMES: u32 = 30;
 
 /// Arguments of `preview`.
 #[derive(Debug, clap::Args)]
@@ -9,18 +18,85 @@ pub struct Arguments {
     /// Studio: a .ron file, or the name of a shipped one.
     scene: PathBuf,
     /// Picture file; the ending says which kind: png, jpg, exr.
-    #[arg(short, long)]
-    output: PathBuf,
-    /// Picture size in pixels, WIDTHxHEIGHT [default: 960 on the long edge, in the sensor's shape].
+    #[arg(short, long, required_unless_present_any = ["frames", "lights"])]
+    output: Option<PathBuf>,
+    /// Picture size in pixels, WIDTHxHEIGHT [default: 960 on the long edge, in the sensor's shape; 1280x720 for times].
     #[arg(long, value_parser = input::parse_size)]
     size: Option<(u32, u32)>,
+    /// Time this many frames, the camera turning a little each time.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    frames: Option<u32>,
+    /// Time frames against the number of lights: five figures of the studio under 1, 4, 16 and 60 lights, each with and
+    /// without the radius beyond which a light is left out.
+    #[arg(long)]
+    lights: bool,
+    /// Print times as JSON.
+    #[arg(long)]
+    json: bool,
 }
 
-/// Renders and writes.
+/// What `--frames` and `--lights` print.
+#[derive(Debug, Serialize)]
+pub struct TimesReport {
+    /// Name of the studio.
+    pub scene: String,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// The graphics adapter and its interface.
+    pub adapter: String,
+    /// Lights that are on.
+    pub lights: usize,
+    /// Whether lights are left out where they fall under 1/256 of display white.
+    pub light_radius: bool,
+    /// Frames measured.
+    pub frames: usize,
+    /// Half of the frames took less.
+    pub median_ms: f64,
+    /// Nine of ten frames took less.
+    pub ninety_percent_ms: f64,
+}
+
+/// Renders and writes, or measures and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    // A wrong file name should not cost a rendering.
-    crate::io::PictureFormat::of(&arguments.output)?;
-    let loaded = input::load_studio(&arguments.scene)?;
-    let size = arguments.size.unwrap_or_else(|| loaded.scene.camera.picture_size(960));
-    window::write_preview(&loaded, size, &arguments.output)
+    if let Some(output) = &arguments.output {
+        // A wrong file name should not cost a rendering.
+        crate::io::PictureFormat::of(output)?;
+    }
+    let mut loaded = input::load_studio(&arguments.scene)?;
+    if let Some(output) = &arguments.output {
+        let size = arguments.size.unwrap_or_else(|| loaded.scene.camera.picture_size(960));
+        window::write_preview(&loaded, size, output)?;
+    }
+    let size = arguments.size.unwrap_or(TIMED_SIZE);
+    let frames = arguments.frames.unwrap_or(FRAMES);
+    if arguments.lights {
+        let Some(crowd) = crowd::five_figures(&loaded.scene) else {
+            return Err(Failure::Input(anyhow!("--lights wants a studio with at least one figure")));
+        };
+        for lights in LIGHT_COUNTS {
+            loaded.scene = crowd::lit_by(&crowd, lights);
+            for radius in [true, false] {
+                print(&window::time_preview(&loaded, size, frames, radius)?, arguments.json)?;
+            }
+        }
+    } else if arguments.frames.is_some() {
+        print(&window::time_preview(&loaded, size, frames, true)?, arguments.json)?;
+    }
+    Ok(())
+}
+
+fn print(report: &TimesReport, json: bool) -> Result<(), Failure> {
+    if json {
+        say(serde_json::to_string(report)?);
+        return Ok(());
+    }
+    let TimesReport { scene, width, height, adapter, lights, frames, median_ms, ninety_percent_ms, .. } = report;
+    let radius = if report.light_radius { "" } else { ", each over the whole picture" };
+    say(format!(
+        "{scene}, {width}x{height}, {adapter}, {lights} lights{radius}: {median_ms:.1} ms a frame in the median of \
+         {frames}, 90 % within {ninety_percent_ms:.1} ms"
+    ));
+    Ok(())
 }

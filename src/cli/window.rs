@@ -1,9 +1,10 @@
 //! What needs a graphics adapter: the editor and its preview.
 
 use super::Failure;
+use super::preview::TimesReport;
 use crate::editor;
 use crate::io::{self, Loaded, PictureInfo};
-use crate::preview::{self, PreviewInput};
+use crate::preview::{Gpu, Options, PreviewError, PreviewInput, PreviewRenderer};
 use anyhow::anyhow;
 use std::path::{Path, PathBuf};
 
@@ -18,10 +19,42 @@ pub fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
 
 /// Renders the preview offscreen and writes it.
 pub fn write_preview(loaded: &Loaded, size: (u32, u32), output: &Path) -> Result<(), Failure> {
-    let machine = |error: preview::PreviewError| Failure::Machine(error.into());
-    let gpu = preview::Gpu::headless().map_err(machine)?;
-    let mut renderer = preview::PreviewRenderer::new(&gpu.device, &gpu.queue).map_err(machine)?;
+    let (_, mut renderer) = start()?;
     let input = PreviewInput::camera_view(&loaded.scene, &loaded.assets, size);
     let picture = renderer.linear_picture(&input).map_err(machine)?;
     Ok(io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene.camera, "preview", 1, 0))?)
+}
+
+/// Times frames of the preview in motion.
+pub fn time_preview(
+    loaded: &Loaded,
+    (width, height): (u32, u32),
+    frames: u32,
+    light_radius: bool,
+) -> Result<TimesReport, Failure> {
+    let (gpu, mut renderer) = start()?;
+    let mut input = PreviewInput::camera_view(&loaded.scene, &loaded.assets, (width, height));
+    input.options = Options { light_radius, ..input.options };
+    let times = renderer.time_frames(&input, frames).map_err(machine)?;
+    Ok(TimesReport {
+        scene: loaded.scene.name.clone(),
+        width,
+        height,
+        adapter: gpu.name,
+        lights: loaded.scene.lights.iter().filter(|light| light.on).count(),
+        light_radius,
+        frames: times.frames,
+        median_ms: times.median_ms,
+        ninety_percent_ms: times.ninety_percent_ms,
+    })
+}
+
+fn start() -> Result<(Gpu, PreviewRenderer), Failure> {
+    let gpu = Gpu::headless().map_err(machine)?;
+    let renderer = PreviewRenderer::new(&gpu.device, &gpu.queue).map_err(machine)?;
+    Ok((gpu, renderer))
+}
+
+fn machine(error: PreviewError) -> Failure {
+    Failure::Machine(error.into())
 }

@@ -80,13 +80,21 @@ pub struct Options {
     pub bounce_estimate: bool,
     /// Walls and backdrops mirrored in chrome and glass as six even faces, so that they are not black.
     pub environment_estimate: bool,
+    /// Leaves a light out where it falls under 1/256 of display white: in its place many lights cost little.
+    pub light_radius: bool,
     /// Pixels along each side of a shadow map.
     pub shadow_resolution: u32,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { shadows: true, bounce_estimate: true, environment_estimate: true, shadow_resolution: 1024 }
+        Options {
+            shadows: true,
+            bounce_estimate: true,
+            environment_estimate: true,
+            light_radius: true,
+            shadow_resolution: 1024,
+        }
     }
 }
 

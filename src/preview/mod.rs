@@ -9,6 +9,7 @@
 mod draw_list;
 mod environment;
 mod error;
+mod frame_times;
 mod gizmo;
 mod gpu;
 mod input;
@@ -28,6 +29,7 @@ mod targets;
 mod texture_cache;
 
 pub use error::PreviewError;
+pub use frame_times::FrameTimes;
 pub use gpu::Gpu;
 pub use input::{Options, Overlay, Pick, PreviewInput};
 pub use pick::{ObjectMask, PickHit};

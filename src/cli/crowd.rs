@@ -1,0 +1,99 @@
+//! The studio of `preview --lights`: five figures, and any number of small lights around them.
+
+use crate::scene::{
+    Aim, Emitter, Light, LightColor, LightId, Modifier, Object, ObjectId, Output, Power, Role, Scene, Shape, Transform,
+};
+use glam::{Vec2, Vec3};
+
+/// Figures in the group.
+const FIGURES: usize = 5;
+/// Distance between neighbours, metres.
+const APART_M: f32 = 0.75;
+/// Light of all lights together on a figure, as if each stood at `RING_M`, lx s: f/8 at ISO 100.
+const EXPOSURE_LUX_S: f32 = 160.0;
+/// Radius of the ring of lights, metres.
+const RING_M: f32 = 2.2;
+/// Turn from one light to the next: never the same place twice.
+const GOLDEN_ANGLE: f32 = 2.399_963_2;
+
+/// The studio with five figures side by side, as many of them copies as need be; none if it has no figure.
+pub fn five_figures(scene: &Scene) -> Option<Scene> {
+    let is_figure = |object: &&Object| matches!(object.shape, Shape::Mannequin(_));
+    let figures: Vec<Object> = scene.objects.iter().filter(is_figure).cloned().collect();
+    let mut crowd = scene.clone();
+    crowd.objects.retain(|object| !is_figure(&object));
+    for (place, figure) in figures.iter().cycle().take(FIGURES).enumerate() {
+        let mut figure = figure.clone();
+        figure.id = ObjectId(crowd.fresh_object_id().0.max(1000));
+        figure.name = crowd.unique_name(&figure.name);
+        figure.transform = Transform {
+            position: Vec3::new((place as f32 - 2.0) * APART_M, 0.0, 0.0),
+            rotation_deg: Vec3::Y * (2.0 - place as f32) * 8.0,
+            ..figure.transform
+        };
+        crowd.objects.push(figure);
+    }
+    // The whole group in the frame, from where a photographer would stand.
+    crowd.camera.position = Vec3::new(0.0, 1.5, 5.0);
+    crowd.camera.aim = Aim::Point(Vec3::new(0.0, 1.1, 0.0));
+    crowd.camera.focal_length_mm = 35.0;
+    (!figures.is_empty()).then_some(crowd)
+}
+
+/// The same studio under this many lights, panels, spots and bulbs in turn. Together they give the same exposure,
+/// however many they are.
+pub fn lit_by(crowd: &Scene, count: usize) -> Scene {
+    let mut scene = crowd.clone();
+    scene.lights = (0..count).map(|index| small_light(index, count)).collect();
+    scene
+}
+
+fn small_light(index: usize, count: usize) -> Light {
+    let turn = index as f32 * GOLDEN_ANGLE;
+    let height_m = 0.6 + 2.0 * ((index as f32 + 0.5) / count as f32);
+    // An oval about the group: every light stands about as far from the nearest figure.
+    let around = Vec2::from_angle(turn + 0.6) * Vec2::new(RING_M + 0.5 * APART_M * (FIGURES - 1) as f32, RING_M);
+    let figure = Vec3::X * APART_M * (index % FIGURES) as f32 - Vec3::X * APART_M * 2.0;
+    let emitter = match index % 3 {
+        0 => Emitter::RectPanel { width_m: 0.3, height_m: 0.4 },
+        1 => Emitter::Spot { inner_deg: 20.0, outer_deg: 40.0 },
+        _ => Emitter::Sphere { radius_m: 0.05 },
+    };
+    let intensity = EXPOSURE_LUX_S * RING_M * RING_M / count as f32;
+    Light {
+        id: LightId(index as u32),
+        name: format!("Small light {}", index + 1),
+        role: Role::Accent,
+        position: Vec3::new(around.x, height_m, around.y),
+        aim: Aim::Point(figure + Vec3::Y * 1.4),
+        roll_deg: 0.0,
+        emitter,
+        modifier: Modifier::default(),
+        // The guide number is the distance times the f-number at ISO 100: H(1 m) = 2.5 GN^2.
+        power: Power { output: Output::FlashGuideNumber((intensity / 2.5).sqrt()), dial_stops: 0.0 },
+        color: LightColor::default(),
+        on: true,
+        visible_to_camera: false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::photo::exposure;
+
+    #[test]
+    fn five_figures_under_lights_that_add_up_to_the_same() {
+        let loaded = crate::io::find_preset("three_point").unwrap().load().unwrap();
+        let crowd = five_figures(&loaded.scene).unwrap();
+        let figures = crowd.objects.iter().filter(|o| matches!(o.shape, Shape::Mannequin(_))).count();
+        assert_eq!(figures, FIGURES);
+        for count in [1, 4, 60] {
+            let scene = lit_by(&crowd, count);
+            let total: f32 = scene.lights.iter().map(exposure::axial_intensity).sum();
+            assert!((total / (EXPOSURE_LUX_S * RING_M * RING_M) - 1.0).abs() < 1e-3, "{count}: {total}");
+            assert_eq!((scene.lights.len(), crate::scene::validate(&scene).len()), (count, 0));
+        }
+        assert!(five_figures(&Scene::default()).is_none());
+    }
+}

@@ -1,0 +1,127 @@
+//! Files that are opened, saved, dropped, broken or about to be lost.
+
+use super::*;
+
+/// A file on the desktop.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+fn drop_file(window: &mut Window, path: &Path) {
+    window.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(path.to_owned())));
+    settle(window);
+}
+
+const PYRAMID: &str = "o Pyramid\nv 0 0 0\nv 1 0 0\nv 0 0 1\nv 0 1 0\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n";
+
+#[test]
+fn unsaved_changes_are_asked_about_before_they_are_lost() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("kept.ron");
+    let mut window = window_with_answers([file.clone()]);
+    assert!(close_requested(&mut window), "nothing to lose, so it closes");
+    click(&mut window, "Add Octa 120");
+    assert!(!close_requested(&mut window));
+    click(&mut window, "Cancel");
+    let changed = scene(&window).clone();
+
+    press(&mut window, Modifiers::COMMAND, Key::N);
+    click(&mut window, "Split");
+    click(&mut window, "Open this studio");
+    assert_eq!(*scene(&window), changed, "it asks first");
+    click(&mut window, "Save");
+    assert!(file.exists());
+    assert_ne!(*scene(&window), changed, "and then goes on");
+
+    click(&mut window, "Add Octa 120");
+    assert!(!close_requested(&mut window));
+    window.get_by_label("Don't save").click();
+    window.run_steps(3);
+    settle(&mut window);
+    assert!(close_requested(&mut window), "told to lose the changes, it closes");
+}
+
+#[test]
+fn files_can_be_dropped_and_models_travel_with_the_studio() {
+    if !has_adapter() {
+        return;
+    }
+    let (desktop, home) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let model = desktop.path().join("pyramid.obj");
+    std::fs::write(&model, PYRAMID).unwrap();
+    let file = home.path().join("studio.ron");
+    let mut window = window_with_answers([file.clone()]);
+    drop_file(&mut window, &model);
+    let object = scene(&window).objects.last().unwrap().clone();
+    assert_eq!(object.name, "pyramid");
+    assert!(matches!(&object.shape, Shape::MeshFile { path } if path == "models/pyramid.obj"), "{:?}", object.shape);
+    press(&mut window, Modifiers::COMMAND, Key::S);
+    assert!(home.path().join("models/pyramid.obj").exists(), "{:?}", errors(&window));
+
+    drop_file(&mut window, &desktop.path().join("notes.txt"));
+    assert_eq!(errors(&window).len(), 1);
+    let other = desktop.path().join("other.ron");
+    std::fs::write(&other, catchlight::io::presets()[3].text).unwrap();
+    drop_file(&mut window, &other);
+    assert_eq!(window.state().document().path(), Some(other.as_path()));
+    drop_file(&mut window, &file);
+    let reopened = window.state().document();
+    assert!(reopened.assets().meshes.contains_key("models/pyramid.obj"));
+}
+
+#[test]
+fn a_broken_file_is_told_and_leaves_the_open_studio_as_it_was() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = window_with_answers([]);
+    let before = scene(&window).clone();
+    let whole = catchlight::io::presets()[0].text;
+    let broken = [&whole[..whole.len() / 2], "", "(format: 99)", "[[[[", &whole.replace("f_number", "f_numbr")];
+    for (i, text) in broken.into_iter().enumerate() {
+        let file = folder.path().join(format!("broken {i}.ron"));
+        std::fs::write(&file, text).unwrap();
+        drop_file(&mut window, &file);
+        let told = errors(&window);
+        assert!(told.last().is_some_and(|t| t.contains(&format!("broken {i}.ron"))), "{told:?}");
+    }
+    drop_file(&mut window, &folder.path().join("gone.ron"));
+    let bad_model = folder.path().join("bad.obj");
+    std::fs::write(&bad_model, "f 1 2 9\n").unwrap();
+    drop_file(&mut window, &bad_model);
+    assert_eq!((scene(&window), undo_depth(&window)), (&before, 0));
+    let shown = errors(&window).len();
+    window.get_all_by_label("Dismiss").next().unwrap().click();
+    settle(&mut window);
+    assert_eq!(errors(&window).len(), shown - 1);
+}
+
+#[test]
+fn a_desktop_without_dialogs_gets_a_field_for_the_path() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("typed.ron");
+    let answers = VecDeque::from([Answer::Unavailable, Answer::Cancelled]);
+    let mut window = window(Options { dialogs: FileDialogs::Scripted(answers), ..Options::default() });
+    press(&mut window, Modifiers::COMMAND, Key::S);
+    let field = window.get_by_label("Path");
+    field.set_text_value_accesskit(&file.to_string_lossy());
+    settle(&mut window);
+    click(&mut window, "Save here");
+    assert!(file.exists(), "{:?}", errors(&window));
+}

@@ -1,0 +1,193 @@
+//! The real window, driven as a user would: egui_kittest with a wgpu device, so that the live preview runs, too.
+#![cfg(feature = "gui")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
+
+use catchlight::editor::{
+    Action, Answer, App, Centre, Command, FileDialogs, Item, Options, PictureSize, Quality, Tone,
+};
+use catchlight::preview::Gpu;
+use catchlight::scene::{Aim, Scene, Shape};
+use eframe::egui::{
+    self, Event, Key, Modifiers, PointerButton, Pos2, ViewportCommand, ViewportEvent, ViewportId, vec2,
+};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+mod files;
+mod panels;
+mod rendering;
+mod viewport;
+
+type Window = Harness<'static, App>;
+
+/// Longest wait for a background task: machines that test are slow and shared.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Whether there is a graphics adapter. Without one the test says so and passes, unless `CATCHLIGHT_REQUIRE_GPU` is set.
+fn has_adapter() -> bool {
+    match Gpu::headless() {
+        Ok(_) => true,
+        Err(error) if std::env::var_os("CATCHLIGHT_REQUIRE_GPU").is_some() => panic!("{error}"),
+        Err(error) => {
+            eprintln!("SKIPPED, no graphics adapter: {error}");
+            false
+        }
+    }
+}
+
+fn window(options: Options) -> Window {
+    let builder = Harness::builder().with_size(vec2(1440.0, 900.0)).with_step_dt(1.0 / 30.0).with_max_steps(60);
+    let mut window = builder.wgpu().build_eframe(move |creation| App::new(creation, options));
+    settle(&mut window);
+    window
+}
+
+fn window_with_answers(paths: impl IntoIterator<Item = PathBuf>) -> Window {
+    window(Options { dialogs: FileDialogs::scripted(paths), ..Options::default() })
+}
+
+/// Runs frames until nothing is on its way and nothing asks for another frame.
+fn settle(window: &mut Window) {
+    let began = Instant::now();
+    while window.try_run().is_err() || window.state().is_busy() {
+        assert!(began.elapsed() < PATIENCE, "still busy after {PATIENCE:?}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn click(window: &mut Window, label: &str) {
+    window.get_by_label(label).click();
+    settle(window);
+}
+
+fn press(window: &mut Window, modifiers: Modifiers, key: Key) {
+    window.key_press_modifiers(modifiers, key);
+    settle(window);
+}
+
+/// Presses at a point, moves in steps, lets go.
+fn drag(window: &mut Window, button: PointerButton, from: Pos2, to: Pos2) {
+    window.event(Event::PointerMoved(from));
+    window.step();
+    window.event(Event::PointerButton { pos: from, button, pressed: true, modifiers: Modifiers::NONE });
+    window.step();
+    for i in 1..=10 {
+        window.event(Event::PointerMoved(from + (to - from) * (i as f32 / 10.0)));
+        window.step();
+    }
+    window.event(Event::PointerButton { pos: to, button, pressed: false, modifiers: Modifiers::NONE });
+    settle(window);
+}
+
+fn scene(window: &Window) -> &Scene {
+    window.state().document().scene()
+}
+
+fn undo_depth(window: &Window) -> usize {
+    window.state().document().history().depth()
+}
+
+fn errors(window: &Window) -> Vec<&str> {
+    window.state().toasts().texts(Tone::Error)
+}
+
+/// Renders a picture of a few pixels.
+fn render_tiny(window: &mut Window) {
+    let rendering = window.state_mut().rendering_mut();
+    rendering.settings.size = PictureSize::Custom(48, 32);
+    rendering.settings.samples = 2;
+    rendering.settings.quality = Quality::Custom;
+    settle(window);
+    click(window, "Render the picture");
+    let rendering = window.state().rendering();
+    assert!(rendering.developed().is_some(), "{:?} {:?}", rendering.job().map(|job| job.phase()), errors(window));
+}
+
+fn close_requested(window: &mut Window) -> bool {
+    let root = window.input_mut().viewports.get_mut(&ViewportId::ROOT).unwrap();
+    root.events.push(ViewportEvent::Close);
+    window.step();
+    let commands = &window.output().viewport_output[&ViewportId::ROOT].commands;
+    let stays = commands.contains(&ViewportCommand::CancelClose);
+    settle(window);
+    !stays
+}
+
+#[test]
+fn a_studio_from_the_shelf_to_a_picture_on_disk_and_back() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (picture, file) = (folder.path().join("portrait.png"), folder.path().join("my studio.ron"));
+    let mut window = window_with_answers([picture.clone(), file.clone(), file.clone()]);
+    assert!(!scene(&window).lights.is_empty(), "the first preset is open");
+    let lights = scene(&window).lights.len();
+
+    click(&mut window, "Add Octa 120");
+    assert_eq!(scene(&window).lights.len(), lights + 1);
+    let Some(Item::Light(id)) = window.state().selection() else { panic!("the new light is selected") };
+    window.get_by_label("Position x").set_value_accesskit(-1.5);
+    settle(&mut window);
+    assert_eq!(scene(&window).light(id).unwrap().position.x, -1.5);
+
+    render_tiny(&mut window);
+    assert_eq!(window.state().centre(), Centre::Picture);
+    press(&mut window, Modifiers::COMMAND, Key::E);
+    let written = image::open(&picture).unwrap();
+    assert_eq!((written.width(), written.height()), (48, 32));
+
+    assert!(window.state().title().contains('*'));
+    press(&mut window, Modifiers::COMMAND, Key::S);
+    assert!(file.exists() && !window.state().title().contains('*'), "{:?}", errors(&window));
+    let saved = scene(&window).clone();
+    press(&mut window, Modifiers::COMMAND, Key::N);
+    click(&mut window, "Rembrandt");
+    click(&mut window, "Open this studio");
+    assert_ne!(*scene(&window), saved);
+    press(&mut window, Modifiers::COMMAND, Key::O);
+    assert_eq!(catchlight::io::write_scene(scene(&window)), catchlight::io::write_scene(&saved));
+    assert!(errors(&window).is_empty(), "{:?}", errors(&window));
+}
+
+#[test]
+fn everything_can_be_undone_and_done_again() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let begin = scene(&window).clone();
+    click(&mut window, "Add Strip 30 x 120");
+    click(&mut window, "Props");
+    click(&mut window, "Add Chrome ball");
+    press(&mut window, Modifiers::COMMAND, Key::D);
+    let name = window.state().selection().unwrap().name(scene(&window));
+    click(&mut window, &format!("{name} visible"));
+    press(&mut window, Modifiers::NONE, Key::Delete);
+    assert_eq!(undo_depth(&window), 5);
+    let end = scene(&window).clone();
+    for _ in 0..5 {
+        press(&mut window, Modifiers::COMMAND, Key::Z);
+    }
+    assert_eq!(*scene(&window), begin);
+    assert!(!window.state().document().is_dirty());
+    for _ in 0..3 {
+        press(&mut window, Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    }
+    press(&mut window, Modifiers::COMMAND, Key::Y);
+    press(&mut window, Modifiers::COMMAND, Key::Y);
+    assert_eq!(*scene(&window), end);
+}
+
+#[test]
+fn a_window_without_a_device_says_so_and_still_works() {
+    let builder = Harness::builder().with_size(vec2(1200.0, 800.0)).with_max_steps(60);
+    let mut window = builder.build_eframe(|creation| App::new(creation, Options::default()));
+    settle(&mut window);
+    assert!(window.state().viewport().preview.failure().is_some());
+    click(&mut window, "Add Octa 120");
+    render_tiny(&mut window);
+}

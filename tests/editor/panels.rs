@@ -1,0 +1,169 @@
+//! Panels: sliders, names, lists, the inspector.
+
+use super::*;
+
+#[test]
+fn a_slider_drag_is_one_undo_step_and_the_next_one_another() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let name = scene(&window).lights[0].name.clone();
+    click(&mut window, &name);
+    let before = scene(&window).lights[0].power.dial_stops;
+    for step in 1..=2 {
+        let slider = window.get_by_role_and_label(egui::accesskit::Role::Slider, "Dial").rect();
+        drag(&mut window, PointerButton::Primary, slider.left_center() + vec2(40.0, 0.0), slider.center());
+        let slider = window.get_by_role_and_label(egui::accesskit::Role::Slider, "Dial").rect();
+        drag(
+            &mut window,
+            PointerButton::Primary,
+            slider.center(),
+            slider.left_center() + vec2(30.0 * step as f32, 0.0),
+        );
+        assert_eq!(undo_depth(&window), 2 * step);
+    }
+    for _ in 0..4 {
+        press(&mut window, Modifiers::COMMAND, Key::Z);
+    }
+    assert_eq!(scene(&window).lights[0].power.dial_stops, before);
+}
+
+#[test]
+fn keys_are_letters_while_a_name_is_typed() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let name = scene(&window).lights[0].name.clone();
+    let light = window.get_by_label(&name);
+    light.click();
+    light.click();
+    settle(&mut window);
+    let field = window.get_by_label("New name");
+    assert!(field.is_focused());
+    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    for (key, letter) in [(Key::R, "r"), (Key::F, "f"), (Key::Num1, "1"), (Key::W, "w")] {
+        window.event(Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE });
+        window.event(Event::Text(letter.to_owned()));
+        window.event(Event::Key { key, physical_key: None, pressed: false, repeat: false, modifiers: Modifiers::NONE });
+    }
+    settle(&mut window);
+    assert!(window.state().rendering().job().is_none() && window.state().centre() == Centre::Studio);
+    press(&mut window, Modifiers::NONE, Key::Enter);
+    assert_eq!(scene(&window).lights[0].name, "rf1w");
+    press(&mut window, Modifiers::NONE, Key::Num1);
+    assert_eq!(window.state().centre(), Centre::Camera);
+}
+
+#[test]
+fn a_name_that_is_taken_is_refused_in_plain_words() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let (first, second) = (scene(&window).lights[0].clone(), scene(&window).lights[1].name.clone());
+    let rename = Command::Do(Action::Rename(Item::Light(first.id), second));
+    window.state_mut().run(rename, None, &egui::Context::default());
+    settle(&mut window);
+    assert_eq!(scene(&window).lights[0].name, first.name);
+    assert_eq!(errors(&window).len(), 1);
+}
+
+#[test]
+fn a_figure_from_the_list_comes_with_its_mesh_and_is_aimed_at() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    click(&mut window, "Figures");
+    click(&mut window, "Add Child, standing");
+    let Some(Item::Object(id)) = window.state().selection() else { panic!("the figure is selected") };
+    let shape = scene(&window).object(id).unwrap().shape.clone();
+    let mesh = window.state().document().assets().mesh_of(&shape);
+    assert!(mesh.is_some_and(|mesh| mesh.triangles.len() > 1000), "{:?}", window.state().toasts());
+    window.get_all_by_label("Lights").next().unwrap().click();
+    settle(&mut window);
+    click(&mut window, "Add Beauty dish 55");
+    let light = scene(&window).lights.last().unwrap();
+    assert!(matches!(light.aim, Aim::Object { object, .. } if object == id));
+}
+
+#[test]
+fn every_preset_opens_and_every_panel_draws() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    for index in 0..catchlight::io::presets().len() {
+        window.state_mut().run(Command::NewFromPreset(index), None, &egui::Context::default());
+        settle(&mut window);
+        let items: Vec<Item> = {
+            let scene = scene(&window);
+            let objects = scene.objects.iter().map(|o| Item::Object(o.id));
+            let lights = scene.lights.iter().map(|l| Item::Light(l.id));
+            objects.chain(lights).chain([Item::Camera, Item::Room]).collect()
+        };
+        for item in items {
+            let select = Command::Select(Some(item));
+            window.state_mut().run(select, None, &egui::Context::default());
+            settle(&mut window);
+        }
+        let changed = window.state().document().history().undo_label().map(str::to_owned);
+        assert_eq!(changed, None, "drawing the inspector changes nothing");
+        assert!(errors(&window).is_empty(), "{:?}", errors(&window));
+    }
+}
+
+#[test]
+fn a_typed_title_is_one_step_and_survives_a_click_elsewhere() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let light = scene(&window).lights[0].name.clone();
+    window.get_by_role_and_label(egui::accesskit::Role::TextInput, "Title").click();
+    settle(&mut window);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    for letter in ["D", "u", "s", "k"] {
+        window.event(Event::Text(letter.to_owned()));
+    }
+    settle(&mut window);
+    click(&mut window, &light);
+    assert_eq!(scene(&window).name, "Dusk");
+    assert_eq!(undo_depth(&window), 1);
+}
+
+#[test]
+fn the_light_meter_reads_in_the_background_follows_the_dial_and_can_be_undone() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let reading = |window: &Window| window.state().meter().reading().unwrap().as_ref().unwrap().clone();
+    assert!(window.state().meter().reading().is_none());
+    click(&mut window, "Light meter");
+    assert_eq!(window.state().selection(), Some(Item::Meter));
+    let before = reading(&window);
+    let key = before.key().unwrap().clone();
+    assert_eq!((before.lights.len(), key.name.as_str()), (scene(&window).lights.len(), "Key softbox"));
+    for label in ["Light meter, dome", "No light reaches the meter."] {
+        let shown = window.query_by_label(label).is_some();
+        assert_eq!(shown, label == "Light meter, dome", "{label}");
+    }
+    assert!(window.query_by_label_contains("key:fill").is_some());
+    assert!(window.query_by_label_contains("Flash 100 %").is_some());
+    // A stop less on the key is a stop less at the meter.
+    let mut light = scene(&window).lights[0].clone();
+    light.power.dial_stops -= 1.0;
+    window.state_mut().run(Command::Do(Action::SetLight(Box::new(light))), None, &egui::Context::default());
+    settle(&mut window);
+    let after = reading(&window);
+    let stops = (after.lux_s(&after.lights[0]) / before.lux_s(&before.lights[0])).log2();
+    // Both readings are good to 0.15 %.
+    assert!((stops + 1.0).abs() < 0.01, "{stops}");
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    assert_eq!((scene(&window).meter, undo_depth(&window)), (None, 0));
+    assert!(window.query_by_label_contains("key:fill").is_none(), "no meter, no read-out");
+}

@@ -1,0 +1,59 @@
+//! Renders from the window.
+
+use super::*;
+
+#[test]
+fn light_changes_develop_the_picture_anew_without_tracing() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    render_tiny(&mut window);
+    let brightness = |window: &Window| -> f32 {
+        let picture = &window.state().rendering().developed().unwrap().picture;
+        picture.rgb.iter().flatten().sum()
+    };
+    let rays = |window: &Window| window.state().rendering().job().unwrap().progress();
+    let (bright, traced) = (brightness(&window), rays(&window));
+    let scene_now = scene(&window).clone();
+    assert!(!window.state().rendering().is_out_of_date(&scene_now));
+    for light in scene_now.lights.iter().map(|l| l.name.clone()) {
+        click(&mut window, &format!("{light} on"));
+    }
+    let dark = scene(&window).clone();
+    assert!(brightness(&window) < 0.02 * bright, "{} of {bright}", brightness(&window));
+    assert!(!window.state().rendering().is_out_of_date(&dark), "switches need no render");
+    assert_eq!(rays(&window), traced);
+    let mut camera = dark.camera.clone();
+    camera.position.x += 0.5;
+    window.state_mut().run(Command::Do(Action::SetCamera(Box::new(camera))), None, &egui::Context::default());
+    settle(&mut window);
+    let moved = scene(&window).clone();
+    assert!(window.state().rendering().is_out_of_date(&moved), "a moved camera needs one");
+}
+
+#[test]
+fn a_render_can_be_cancelled_and_keeps_what_it_has() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let rendering = window.state_mut().rendering_mut();
+    rendering.settings.size = PictureSize::Custom(160, 120);
+    rendering.settings.samples = 60_000;
+    rendering.settings.quality = Quality::Custom;
+    settle(&mut window);
+    window.get_by_label("Render the picture").click();
+    let began = Instant::now();
+    while window.state().rendering().developed().is_none() {
+        assert!(began.elapsed() < PATIENCE);
+        window.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    // The small picture has just come into the panel: a frame for the layout to settle.
+    window.run_steps(2);
+    window.get_by_label("Cancel").click();
+    settle(&mut window);
+    assert!(!window.state().rendering().is_running());
+    assert!(window.state().rendering().developed().is_some_and(|d| d.spp > 0 && d.spp < 60_000));
+}

@@ -1,0 +1,130 @@
+//! The live preview against closed forms, against the tracer's layout, and against what an editor can do to it.
+//!
+//! Without a graphics adapter these tests say so and pass; with `CATCHLIGHT_REQUIRE_GPU` set they fail.
+#![cfg(feature = "gui")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
+
+use catchlight::color;
+use catchlight::photo::{Picture, exposure};
+use catchlight::preview::{Gpu, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
+use catchlight::raytrace;
+use catchlight::scene::{
+    Aim, Assets, Camera, CameraFrame, Emitter, Light, LightColor, LightId, Material, MaterialPreset, Modifier, Object,
+    ObjectId, Output, Power, Role, Room, Scene, Shape, Texture, Transform,
+};
+use glam::{Vec2, Vec3};
+use std::f32::consts::PI;
+use std::sync::Arc;
+
+mod against_tracer;
+mod closed_forms;
+mod picture;
+
+/// A renderer, or a loud skip where the machine has no adapter and nobody insists on one.
+fn renderer() -> Option<(Gpu, PreviewRenderer)> {
+    match Gpu::headless() {
+        Ok(gpu) => {
+            let renderer = PreviewRenderer::new(&gpu.device, &gpu.queue).expect("the preview must start");
+            Some((gpu, renderer))
+        }
+        Err(error) if std::env::var_os("CATCHLIGHT_REQUIRE_GPU").is_some() => {
+            panic!("CATCHLIGHT_REQUIRE_GPU is set, but: {error}")
+        }
+        Err(error) => {
+            eprintln!("\n!!! SKIPPED, the preview is not tested here: {error}\n");
+            None
+        }
+    }
+}
+
+/// A diffuse surface of 18 % without gloss, on which pixels are illuminance times a known factor.
+fn grey_card() -> Material {
+    MaterialPreset::GreyCard.material()
+}
+
+fn object(id: u32, shape: Shape, position: Vec3, material: Material) -> Object {
+    Object {
+        id: ObjectId(id),
+        name: format!("Object {id}"),
+        transform: Transform { position, ..Transform::default() },
+        shape,
+        material,
+        part_materials: Vec::new(),
+        visible: true,
+    }
+}
+
+fn light(id: u32, position: Vec3, target: Vec3, emitter: Emitter, output: Output) -> Light {
+    Light {
+        id: LightId(id),
+        name: format!("Light {id}"),
+        role: Role::Key,
+        position,
+        aim: Aim::Point(target),
+        roll_deg: 0.0,
+        emitter,
+        modifier: Modifier::default(),
+        power: Power { output, dial_stops: 0.0 },
+        color: LightColor::default(),
+        on: true,
+        visible_to_camera: false,
+    }
+}
+
+/// A floor of grey card and one light, in no room; the camera looks at the floor's middle from the side.
+fn floor_under(light: Light) -> Scene {
+    let floor = Shape::Plane { width_m: 12.0, depth_m: 12.0 };
+    Scene {
+        camera: Camera {
+            position: Vec3::new(0.0, 6.0, 6.0),
+            aim: Aim::Point(Vec3::ZERO),
+            focal_length_mm: 24.0,
+            iso: 100.0,
+            f_number: 4.0,
+            shutter_s: 0.5,
+            ..Camera::default()
+        },
+        objects: vec![object(0, floor, Vec3::ZERO, grey_card())],
+        lights: vec![light],
+        ..Scene::default()
+    }
+}
+
+fn direct(scene: &Scene, size: (u32, u32)) -> PreviewInput<'_> {
+    let no_assets: &'static Assets = Box::leak(Box::default());
+    PreviewInput { options: Options::direct_only(), ..PreviewInput::camera_view(scene, no_assets, size) }
+}
+
+/// Scene-linear luminance at a point, between the four pixels around it.
+fn seen_at(picture: &Picture, frame: &CameraFrame, point: Vec3) -> f32 {
+    let size = Vec2::new(picture.width as f32, picture.height as f32);
+    let place = frame.project(point).unwrap() * size - 0.5;
+    let (corner, part) = (place.floor().as_uvec2(), place.fract());
+    let at = |x: u32, y: u32| color::luminance(picture.at(corner.x + x, corner.y + y).into());
+    let row = |y: u32| at(0, y) + (at(1, y) - at(0, y)) * part.x;
+    row(0) + (row(1) - row(0)) * part.y
+}
+
+/// Illuminance that a picture shows on grey card at a point, lx.
+fn lux_at(renderer: &mut PreviewRenderer, scene: &Scene, point: Vec3) -> f32 {
+    lux_of(renderer, &direct(scene, (301, 201)), point)
+}
+
+/// The same without shadows.
+fn unshadowed_lux_at(renderer: &mut PreviewRenderer, scene: &Scene, point: Vec3) -> f32 {
+    let mut input = direct(scene, (301, 201));
+    input.options.shadows = false;
+    lux_of(renderer, &input, point)
+}
+
+fn lux_of(renderer: &mut PreviewRenderer, input: &PreviewInput, point: Vec3) -> f32 {
+    let camera = &input.scene.camera;
+    let picture = renderer.linear_picture(input).unwrap();
+    let per_lux = exposure::pixel_per_cd_s_m2(camera) * camera.shutter_s * 0.18 / PI;
+    seen_at(&picture, &input.frame, point) / per_lux
+}
+
+fn assert_close(actual: f32, expected: f32, tolerance: f32, what: &str) {
+    let error = actual / expected - 1.0;
+    assert!(error.abs() <= tolerance, "{what}: {actual} instead of {expected}, off by {:.2} %", error * 100.0);
+}

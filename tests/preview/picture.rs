@@ -1,0 +1,253 @@
+//! What the picture shows: shadows, textures, clicks, overlay, and that nothing an editor does to it breaks it.
+
+use super::*;
+
+#[test]
+fn things_cast_shadows_and_stand_on_them() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    let emitters = [
+        Emitter::Point,
+        Emitter::Sphere { radius_m: 0.05 },
+        Emitter::Spot { inner_deg: 60.0, outer_deg: 80.0 },
+        Emitter::RectPanel { width_m: 0.2, height_m: 0.2 },
+        Emitter::RoundPanel { diameter_m: 0.2 },
+    ];
+    let cube = Shape::Box { size_m: Vec3::splat(0.5) };
+    for emitter in emitters {
+        let mut scene = floor_under(light(0, Vec3::new(2.0, 2.0, 0.0), Vec3::ZERO, emitter, Output::Lumens(5000.0)));
+        let lit = lux_at(&mut renderer, &scene, Vec3::new(-0.5, 0.0, 0.0));
+        scene.objects.push(object(1, cube.clone(), Vec3::Y * 0.25, grey_card()));
+        // The shadow runs from the box's foot to 0.4 m behind it; a pixel of the shadow mask covers 6 cm.
+        for x in [-0.34, -0.45, -0.55] {
+            let dark = lux_at(&mut renderer, &scene, Vec3::new(x, 0.0, 0.0));
+            assert!(dark < 0.03 * lit, "{emitter:?}: {dark} lx at {x} m, {lit} lx without the box");
+        }
+        let beside = lux_at(&mut renderer, &scene, Vec3::new(-0.5, 0.0, 0.6));
+        let behind = lux_at(&mut renderer, &scene, Vec3::new(-1.2, 0.0, 0.0));
+        assert!(beside > 0.5 * lit && behind > 0.3 * lit, "{emitter:?}: {beside}, {behind} of {lit}");
+    }
+}
+
+#[test]
+fn a_floor_does_not_shadow_itself_however_flat_the_light() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    for height in [0.1, 0.5, 3.0] {
+        let emitter = Emitter::RectPanel { width_m: 1.0, height_m: 0.1 };
+        let place = Vec3::new(3.0, height, 0.0);
+        let scene = floor_under(light(0, place, Vec3::new(0.0, height * 0.5, 0.0), emitter, Output::Lumens(9000.0)));
+        let mut input = direct(&scene, (151, 101));
+        let shadowed = renderer.linear_picture(&input).unwrap();
+        input.options.shadows = false;
+        let free = renderer.linear_picture(&input).unwrap();
+        for (with, without) in shadowed.rgb.iter().zip(&free.rgb) {
+            assert!((with[1] - without[1]).abs() <= 0.01 * without[1] + 1e-6, "{height} m: {with:?}, {without:?}");
+        }
+    }
+}
+
+#[test]
+fn the_shaders_tone_curve_is_the_processors() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    let camera = Camera { position: Vec3::new(0.0, 0.0, 4.0), aim: Aim::Point(Vec3::ZERO), ..Camera::default() };
+    let per_cd_m2 = exposure::pixel_per_cd_s_m2(&camera) * camera.shutter_s;
+    for step in 0..24 {
+        let value = 0.002 * 1.4_f32.powi(step);
+        let glow = Material {
+            base_color: [0.0; 3],
+            ior: 1.0,
+            emission_cd_m2: [value / per_cd_m2, 0.5 * value / per_cd_m2, 0.0],
+            ..Material::default()
+        };
+        let card = Shape::Box { size_m: Vec3::ONE };
+        let scene =
+            Scene { camera: camera.clone(), objects: vec![object(0, card, Vec3::ZERO, glow)], ..Scene::default() };
+        let picture = renderer.picture(&direct(&scene, (9, 9))).unwrap();
+        let expected = color::display_srgb8([value, 0.5 * value, 0.0]);
+        for (channel, (ours, theirs)) in picture.get_pixel(4, 4).0.iter().zip(expected).enumerate() {
+            assert!(ours.abs_diff(theirs) <= 1, "{value} in channel {channel}: {ours} instead of {theirs}");
+        }
+    }
+}
+
+#[test]
+fn a_texture_shows_upright_and_averaged() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    let mut assets = Assets::default();
+    // Upper half red, lower half blue.
+    let rgb = (0..64 * 64).map(|i| if i < 32 * 64 { [255, 0, 0] } else { [0, 0, 255] }).collect();
+    assets.textures.insert("flag.png".to_owned(), Arc::new(Texture { width: 64, height: 64, rgb }));
+    let cloth = Material { base_color_texture: Some("flag.png".to_owned()), ..grey_card() };
+    let front = Vec3::new(0.0, 0.0, 4.0);
+    let scene = Scene {
+        camera: Camera { position: front, aim: Aim::Point(Vec3::ZERO), ..Camera::default() },
+        objects: vec![object(0, Shape::Box { size_m: Vec3::splat(1.0) }, Vec3::ZERO, cloth)],
+        lights: vec![light(0, front, Vec3::ZERO, Emitter::Point, Output::Lumens(1e6))],
+        ..Scene::default()
+    };
+    let input =
+        PreviewInput { options: Options::direct_only(), ..PreviewInput::camera_view(&scene, &assets, (90, 60)) };
+    let picture = renderer.linear_picture(&input).unwrap();
+    let at = |y: f32| {
+        let place = input.frame.project(Vec3::new(0.2, y, 0.5)).unwrap() * Vec2::new(90.0, 60.0);
+        picture.at(place.x as u32, place.y as u32)
+    };
+    let (above, below) = (at(0.3), at(-0.3));
+    assert!(above[0] > 0.1 && above[2] < 1e-3 * above[0], "{above:?}");
+    assert!(below[2] > 0.1 && below[0] < 1e-3 * below[2], "{below:?}");
+}
+
+#[test]
+fn a_click_finds_what_is_under_it() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    let mut scene = floor_under(light(
+        7,
+        Vec3::new(0.0, 1.0, -2.0),
+        Vec3::new(0.0, 1.0, 0.0),
+        Emitter::RectPanel { width_m: 1.0, height_m: 1.0 },
+        Output::Lumens(1000.0),
+    ));
+    scene.lights[0].visible_to_camera = true;
+    scene.room = Some(Room { size_m: Vec3::new(13.0, 9.0, 13.0), ..Room::default() });
+    scene.objects.push(object(3, Shape::Sphere { radius_m: 0.4 }, Vec3::new(1.5, 0.4, 1.0), grey_card()));
+    scene.objects.push(object(
+        4,
+        Shape::Sphere { radius_m: 0.4 },
+        Vec3::new(-1.5, 0.4, 1.0),
+        MaterialPreset::ClearGlass.material(),
+    ));
+    let mut input = direct(&scene, (300, 200));
+    renderer.render(&input).unwrap();
+    let frame = input.frame;
+    let pixel = move |point: Vec3| {
+        let place = frame.project(point).unwrap() * Vec2::new(300.0, 200.0);
+        (place.x as u32, place.y as u32)
+    };
+    let ball = Vec3::new(1.5, 0.4, 1.0);
+    assert_eq!(renderer.pick_blocking(pixel(ball)).unwrap(), Some(Pick::Object(ObjectId(3))));
+    assert_eq!(
+        renderer.pick_blocking(pixel(-ball * Vec3::new(1.0, -1.0, -1.0))).unwrap(),
+        Some(Pick::Object(ObjectId(4)))
+    );
+    assert_eq!(renderer.pick_blocking(pixel(Vec3::new(0.0, 1.0, -2.0))).unwrap(), Some(Pick::Light(LightId(7))));
+    assert_eq!(renderer.pick_blocking(pixel(Vec3::new(0.0, 0.5, -6.4))).unwrap(), None, "a wall is no thing");
+    assert_eq!(renderer.pick_blocking((300, 0)).unwrap(), None);
+
+    let floor = Vec3::new(0.5, 0.0, 2.0);
+    let hit = renderer.hit_blocking(pixel(floor)).unwrap().unwrap();
+    assert_eq!(hit.pick, Some(Pick::Object(ObjectId(0))));
+    assert!((hit.point.unwrap() - floor).length() < 0.05, "{hit:?}");
+
+    renderer.request_pick(pixel(ball)).unwrap();
+    let answer = (0..1000).find_map(|_| {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+        renderer.poll_pick()
+    });
+    assert_eq!(answer.unwrap().pick, Some(Pick::Object(ObjectId(3))));
+    assert_eq!(renderer.poll_pick(), None);
+
+    // A light that the camera does not see is found by its gizmo.
+    scene.lights[0].visible_to_camera = false;
+    input = direct(&scene, (300, 200));
+    let corner = pixel(Vec3::new(0.5, 1.2, -2.0));
+    renderer.render(&input).unwrap();
+    assert_eq!(renderer.pick_blocking(corner).unwrap(), Some(Pick::Object(ObjectId(0))));
+    input.overlay.light_gizmos = true;
+    renderer.render(&input).unwrap();
+    assert_eq!(renderer.pick_blocking(corner).unwrap(), Some(Pick::Light(LightId(7))));
+}
+
+#[test]
+fn the_overlay_draws_over_the_picture_and_only_when_asked() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    let mut scene = floor_under(light(0, Vec3::Y * 3.0, Vec3::ZERO, Emitter::Point, Output::Lumens(9000.0)));
+    scene.objects.push(object(1, Shape::Sphere { radius_m: 0.6 }, Vec3::Y * 0.6, grey_card()));
+    let mut input = direct(&scene, (240, 160));
+    let plain = renderer.picture(&input).unwrap();
+    let mut differs = |overlay: Overlay| {
+        input.overlay = overlay;
+        let picture = renderer.picture(&input).unwrap();
+        picture.pixels().zip(plain.pixels()).filter(|(a, b)| a != b).count()
+    };
+    assert_eq!(differs(Overlay::default()), 0);
+    assert!(differs(Overlay { grid: true, ..Overlay::default() }) > 500);
+    assert!(differs(Overlay { light_gizmos: true, ..Overlay::default() }) > 20);
+    let outlined = differs(Overlay { selection: vec![Pick::Object(ObjectId(1))], ..Overlay::default() });
+    // Two pixels around a disc of about 13 pixels radius.
+    assert!((100..400).contains(&outlined), "{outlined} pixels of outline");
+}
+
+#[test]
+fn what_is_kept_between_frames_never_shows() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    let panel = Emitter::RectPanel { width_m: 0.6, height_m: 0.6 };
+    let mut scene = floor_under(light(0, Vec3::new(1.0, 2.0, 1.0), Vec3::ZERO, panel, Output::Lumens(20_000.0)));
+    scene.objects.push(object(1, Shape::Box { size_m: Vec3::splat(0.6) }, Vec3::Y * 0.3, grey_card()));
+    let changes: [fn(&mut Scene); 7] = [
+        |_| (),
+        |scene| scene.lights[0].power.dial_stops = -1.0,
+        |scene| scene.lights[0].position.x = -1.0,
+        |scene| scene.objects[1].transform.position.x = 0.7,
+        |scene| scene.objects[1].material.base_color = [0.7, 0.1, 0.1],
+        |scene| scene.objects[1].material.transmission = 1.0,
+        |scene| scene.objects[1].material.transmission = 0.0,
+    ];
+    for (step, change) in changes.into_iter().enumerate() {
+        change(&mut scene);
+        let kept = renderer.picture(&direct(&scene, (150, 100))).unwrap();
+        let (_, mut fresh) = self::renderer().unwrap();
+        assert_eq!(kept, fresh.picture(&direct(&scene, (150, 100))).unwrap(), "after change {step}");
+    }
+}
+
+#[test]
+fn any_size_and_any_scene_is_drawn() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    let empty = Scene::default();
+    for size in [(0, 0), (1, 1), (0, 7), (333, 1), (1, 333), (17, 31), (640, 3), (64, 64)] {
+        let picture = renderer.picture(&direct(&empty, size)).unwrap();
+        assert_eq!(picture.dimensions(), (size.0.max(1), size.1.max(1)));
+    }
+    let mut crowd = floor_under(light(0, Vec3::Y * 3.0, Vec3::ZERO, Emitter::Point, Output::Lumens(9000.0)));
+    for i in 0..1000 {
+        let place = Vec3::new((i % 32) as f32 * 0.2 - 3.0, 0.1, (i / 32) as f32 * 0.2 - 3.0);
+        crowd.objects.push(object(i + 1, Shape::Box { size_m: Vec3::splat(0.1) }, place, grey_card()));
+    }
+    crowd.lights.extend((1..70).map(|i| {
+        let place = Vec3::new(i as f32 * 0.1 - 3.0, 1.0, 0.0);
+        light(i, place, Vec3::ZERO, Emitter::RectPanel { width_m: 0.1, height_m: 0.1 }, Output::Lumens(50.0))
+    }));
+    crowd.objects[5].transform.scale = Vec3::ZERO;
+    crowd.objects[6].transform.position.x = f32::NAN;
+    crowd.objects[7].transform.scale = Vec3::new(-1.0, 1.0, 1.0);
+    crowd.lights[3].power.output = Output::Lumens(f32::INFINITY);
+    crowd.lights[4].position = Vec3::ZERO;
+    let overlay = Overlay {
+        grid: true,
+        light_gizmos: true,
+        camera_gizmo: Some(f32::NAN),
+        selection: crowd.objects.iter().map(|o| Pick::Object(o.id)).collect(),
+        ..Overlay::default()
+    };
+    let input = PreviewInput { overlay, ..direct(&crowd, (97, 61)) };
+    assert!(renderer.picture(&input).unwrap().pixels().any(|p| p.0 != [0; 3]));
+    let linear = renderer.linear_picture(&input).unwrap();
+    assert!(linear.rgb.iter().flatten().all(|c| c.is_finite()));
+    let dark = Scene { lights: Vec::new(), ..crowd };
+    let unlit = renderer.linear_picture(&direct(&dark, (97, 61))).unwrap();
+    assert!(unlit.rgb.iter().flatten().all(|c| *c == 0.0));
+}
+
+#[test]
+fn a_lost_device_is_an_error_and_a_new_one_works() {
+    let Some((gpu, mut renderer)) = renderer() else { return };
+    let scene = floor_under(light(0, Vec3::Y * 3.0, Vec3::ZERO, Emitter::Point, Output::Lumens(9000.0)));
+    renderer.render(&direct(&scene, (32, 32))).unwrap();
+    gpu.device.destroy();
+    let _ = gpu.device.poll(eframe::wgpu::PollType::wait_indefinitely());
+    let error = renderer.render(&direct(&scene, (48, 32))).map(|_| ()).unwrap_err();
+    assert!(matches!(error, PreviewError::DeviceLost(_)), "{error}");
+    assert!(renderer.pick_blocking((1, 1)).is_err() && renderer.request_pick((1, 1)).is_err());
+    assert!(renderer.poll_pick().is_none());
+    let (_gpu, mut renderer) = self::renderer().unwrap();
+    renderer.render(&direct(&scene, (48, 32))).unwrap();
+}

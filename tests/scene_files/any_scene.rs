@@ -1,0 +1,292 @@
+//! Scenes drawn at random survive the round trip; junk and changed bytes do no harm.
+
+use super::preset_text;
+use catchlight::io::{parse_scene, write_scene};
+use catchlight::scene::*;
+use glam::Vec3;
+use proptest::prelude::*;
+
+fn number(low: f32, high: f32) -> impl Strategy<Value = f32> {
+    prop_oneof![3 => low..=high, 1 => Just(low), 1 => Just(high), 1 => (low..=high).prop_map(f32::round)]
+        .prop_map(move |x| x.clamp(low, high))
+}
+
+fn vector(low: f32, high: f32) -> impl Strategy<Value = Vec3> {
+    [number(low, high), number(low, high), number(low, high)].prop_map(Vec3::from)
+}
+
+fn color(high: f32) -> impl Strategy<Value = [f32; 3]> {
+    // Never black: that is no colour of light.
+    [number(0.001, high), number(0.001, high), number(0.001, high)]
+}
+
+fn material() -> impl Strategy<Value = Material> {
+    let custom = (
+        color(0.999),
+        proptest::option::of("[a-z]{1,8}/[a-z ]{1,8}\\.png"),
+        number(0.0, 1.0),
+        number(0.0, 1.0),
+        number(1.0, 4.0),
+        color(1e6),
+        color(1e9),
+    )
+        .prop_map(
+            |(base_color, base_color_texture, metallic, roughness, ior, absorption_per_m, emission_cd_m2)| Material {
+                base_color,
+                base_color_texture,
+                metallic,
+                roughness,
+                ior,
+                transmission: if metallic > 0.0 { 0.0 } else { 0.7 },
+                absorption_per_m,
+                emission_cd_m2,
+            },
+        );
+    prop_oneof![(0..MaterialPreset::ALL.len()).prop_map(|i| MaterialPreset::ALL[i].material()), custom]
+}
+
+fn shape() -> impl Strategy<Value = Shape> {
+    let size = || number(1e-5, 1e5);
+    prop_oneof![
+        "[a-z]{1,8}\\.obj".prop_map(|path| Shape::MeshFile { path }),
+        (0..4_usize, 0..4_usize).prop_map(|(f, p)| {
+            let figure = [Figure::Woman, Figure::Man, Figure::Child, Figure::Bust][f];
+            let pose = [Pose::Standing, Pose::Contrapposto, Pose::Seated, Pose::HeadTurned][p];
+            Shape::Mannequin(Mannequin { figure, pose })
+        }),
+        (size(), size()).prop_map(|(width_m, depth_m)| Shape::Plane { width_m, depth_m }),
+        vector(1e-5, 1e5).prop_map(|size_m| Shape::Box { size_m }),
+        size().prop_map(|radius_m| Shape::Sphere { radius_m }),
+        (size(), size()).prop_map(|(radius_m, height_m)| Shape::Cylinder { radius_m, height_m }),
+        (size(), size(), size(), number(0.0, 1e5)).prop_map(|(width_m, height_m, depth_m, radius_m)| Shape::Sweep {
+            width_m,
+            height_m,
+            depth_m,
+            radius_m
+        }),
+    ]
+}
+
+/// Names with everything that could upset a text format.
+fn name() -> impl Strategy<Value = String> {
+    prop_oneof!["[A-Z][a-z]{1,8}", "\\PC{1,12}", "[\"\\\\/(),:\\[\\]{}#r'\n\t ]{0,6}x"]
+}
+
+fn aim(objects: usize) -> impl Strategy<Value = Aim> {
+    let angles = (number(-1e5, 1e5), number(-90.0, 90.0))
+        .prop_map(|(yaw_deg, pitch_deg)| Aim::Angles { yaw_deg, pitch_deg })
+        .boxed();
+    // Places are taken from 10 m around, aims from 20 m away, so that nothing aims at itself.
+    let point = vector(20.0, 1e6).prop_map(Aim::Point);
+    if objects == 0 {
+        return prop_oneof![angles, point].boxed();
+    }
+    let object =
+        (0..objects, vector(20.0, 1e6)).prop_map(|(i, offset)| Aim::Object { object: ObjectId(i as u32), offset });
+    prop_oneof![angles, point, object].boxed()
+}
+
+fn object() -> impl Strategy<Value = Object> {
+    let transform = (vector(-10.0, 10.0), vector(-360.0, 360.0), prop_oneof![Just(Vec3::ONE), vector(0.5, 2.0)])
+        .prop_map(|(position, rotation_deg, scale)| Transform { position, rotation_deg, scale });
+    let parts = proptest::collection::btree_map(name(), material(), 0..3).prop_map(|m| m.into_iter().collect());
+    (name(), transform, shape(), material(), parts, any::<bool>()).prop_map(
+        |(name, transform, shape, material, part_materials, visible)| Object {
+            id: ObjectId(0),
+            name,
+            transform,
+            shape,
+            material,
+            part_materials,
+            visible,
+        },
+    )
+}
+
+fn emitter_and_output() -> impl Strategy<Value = (Emitter, Output)> {
+    let size = || number(1e-5, 1e5);
+    let emitter = prop_oneof![
+        Just(Emitter::Point),
+        size().prop_map(|radius_m| Emitter::Sphere { radius_m }),
+        (number(0.1, 180.0), number(0.0, 1.0))
+            .prop_map(|(outer_deg, share)| Emitter::Spot { inner_deg: outer_deg * share, outer_deg }),
+        (size(), size()).prop_map(|(width_m, height_m)| Emitter::RectPanel { width_m, height_m }),
+        size().prop_map(|diameter_m| Emitter::RoundPanel { diameter_m }),
+        number(0.0, 90.0).prop_map(|angular_diameter_deg| Emitter::Sun { angular_diameter_deg }),
+        Just(Emitter::Surround),
+    ];
+    (emitter, number(0.0, 1e4), number(0.01, 600.0), 0..5_usize).prop_map(|(emitter, a, b, kind)| {
+        let finite = [
+            Output::Lumens(a),
+            Output::Candela(a),
+            Output::LuxAt { lux: a, distance_m: b },
+            Output::FlashWs { energy_ws: a, efficacy_lm_s_per_ws: b },
+            Output::FlashGuideNumber(a),
+        ];
+        (emitter, if emitter.is_infinite() { Output::Lux(a) } else { finite[kind] })
+    })
+}
+
+fn light(objects: usize) -> impl Strategy<Value = Light> {
+    let source =
+        prop_oneof![number(1000.0, 25_000.0).prop_map(ColorSource::Kelvin), color(1000.0).prop_map(ColorSource::Rgb)];
+    let gel =
+        prop_oneof![Just(Gel::None), number(-1000.0, 1000.0).prop_map(Gel::Mired), color(1.0).prop_map(Gel::Tint)];
+    let power = (emitter_and_output(), prop_oneof![Just(0.0), number(-20.0, 10.0)]);
+    (
+        (name(), 0..Role::ALL.len(), vector(-10.0, 10.0), aim(objects), number(-180.0, 180.0)),
+        (power, source, gel, any::<bool>(), any::<bool>()),
+        modifier(),
+    )
+        .prop_map(
+            |(
+                (name, role, position, aim, roll_deg),
+                (((emitter, output), dial_stops), source, gel, on, seen),
+                modifier,
+            )| Light {
+                id: LightId(0),
+                name,
+                role: Role::ALL[role],
+                position,
+                aim,
+                roll_deg,
+                emitter,
+                // Light from infinity can only be weakened.
+                modifier: if emitter.is_infinite() { Modifier::loss(modifier.loss_stops) } else { modifier },
+                power: Power { output, dial_stops },
+                color: LightColor { source, gel },
+                on,
+                visible_to_camera: seen,
+            },
+        )
+}
+
+fn modifier() -> impl Strategy<Value = Modifier> {
+    let cone = (0.0..60.0_f32, 60.0..180.0_f32).prop_map(|(inner_deg, outer_deg)| Cone { inner_deg, outer_deg });
+    let doors = prop::array::uniform4(0.0..90.0_f32).prop_map(|[left_deg, right_deg, top_deg, bottom_deg]| BarnDoors {
+        left_deg,
+        right_deg,
+        top_deg,
+        bottom_deg,
+    });
+    let (beam, grid, doors) = (prop::option::of(cone), prop::option::of(1.0..90.0_f32), prop::option::of(doors));
+    let all =
+        (0.0..3.0_f32, 0.0..3.0_f32, beam, grid, doors).prop_map(|(loss_stops, scrim_stops, beam, grid_deg, doors)| {
+            Modifier { loss_stops, scrim_stops, beam, grid_deg, doors }
+        });
+    prop_oneof![Just(Modifier::default()), all]
+}
+
+fn camera(objects: usize) -> impl Strategy<Value = Camera> {
+    let sensor = prop_oneof![
+        (0..5_usize).prop_map(|i| Sensor::NAMED[i].1),
+        (number(1.0, 100.0), number(1.0, 100.0))
+            .prop_map(|(width_mm, height_mm)| Sensor::Custom { width_mm, height_mm }),
+    ];
+    let orientation = prop_oneof![Just(Orientation::Landscape), Just(Orientation::Portrait)];
+    let focus = (0..=objects, vector(-1.0, 1.0), number(0.1, 100.0)).prop_map(move |(i, offset, distance)| {
+        if i < objects {
+            Focus::OnObject { object: ObjectId(i as u32), offset }
+        } else if distance > 50.0 {
+            Focus::OnAim
+        } else {
+            Focus::Distance(distance)
+        }
+    });
+    (
+        (vector(-10.0, 10.0), aim(objects), number(-180.0, 180.0), sensor, orientation, focus, any::<bool>()),
+        (
+            number(1.0, 800.0),
+            number(0.5, 64.0),
+            number(1e-4, 30.0),
+            number(1.0, 1e5),
+            number(1e3, 25e3),
+            number(240.0, 340.0),
+        ),
+    )
+        .prop_map(
+            |((position, aim, roll_deg, sensor, orientation, focus, depth_of_field), (mm, n, t, s, k, c))| Camera {
+                position,
+                aim,
+                roll_deg,
+                sensor,
+                orientation,
+                focal_length_mm: mm,
+                f_number: n,
+                shutter_s: t,
+                iso: s,
+                white_balance_k: k,
+                focus,
+                depth_of_field,
+                meter_constant: c,
+            },
+        )
+}
+
+fn room() -> impl Strategy<Value = Room> {
+    (vector(0.1, 1e4), material(), material(), material()).prop_map(|(size_m, floor, walls, ceiling)| Room {
+        size_m,
+        floor,
+        walls,
+        ceiling,
+    })
+}
+
+fn scene() -> impl Strategy<Value = Scene> {
+    (0..4_usize).prop_flat_map(|objects| {
+        (
+            name(),
+            name(),
+            camera(objects),
+            proptest::option::of(room()),
+            proptest::collection::vec(object(), objects),
+            proptest::collection::vec(light(objects), 0..4),
+            any::<(bool, bool)>(),
+        )
+            .prop_map(|(name, description, camera, room, mut objects, mut lights, (has_meter, on_camera))| {
+                // As after loading: ids in list order, names unique.
+                for (i, object) in objects.iter_mut().enumerate() {
+                    object.id = ObjectId(i as u32);
+                    object.name.push_str(&format!(" o{i}"));
+                }
+                for (i, light) in lights.iter_mut().enumerate() {
+                    light.id = LightId(i as u32);
+                    light.name.push_str(&format!(" l{i}"));
+                }
+                let facing = match on_camera {
+                    true => Facing::Camera,
+                    false => Facing::Angles { yaw_deg: camera.roll_deg, pitch_deg: 12.5 },
+                };
+                let meter = has_meter.then_some(Meter { position: camera.position, facing, receptor: Receptor::Dome });
+                Scene { name, description, camera, room, objects, lights, meter }
+            })
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn any_scene_survives_the_round_trip(scene in scene()) {
+        let text = write_scene(&scene);
+        let (read, _) = parse_scene(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        prop_assert_eq!(&read, &scene, "{}", text);
+        prop_assert_eq!(write_scene(&read), text);
+    }
+
+    #[test]
+    fn any_junk_is_an_error_or_a_scene(text in "\\PC{0,200}", bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+        let _ = parse_scene(&text);
+        let _ = parse_scene(&String::from_utf8_lossy(&bytes));
+    }
+
+    #[test]
+    fn any_change_of_one_byte_is_an_error_or_a_scene(at in 0..10_000_usize, byte in 0x20..0x7f_u8) {
+        let mut bytes = preset_text().as_bytes().to_vec();
+        let at = at % bytes.len();
+        bytes[at] = byte;
+        if let Ok(text) = String::from_utf8(bytes) {
+            let _ = parse_scene(&text);
+        }
+    }
+}

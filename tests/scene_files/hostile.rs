@@ -1,0 +1,150 @@
+//! Files that are wrong, cut, huge or lead out of their folder.
+
+use super::SMALL;
+use catchlight::io::{FILE_LIMIT_BYTES, LoadError, load_scene, parse_scene};
+use catchlight::scene::LIST_LIMIT;
+use std::time::{Duration, Instant};
+
+/// The message of a text that must not load.
+fn refused(text: &str) -> String {
+    let read = parse_scene(text).map(|_| text);
+    assert!(read.is_err(), "this was read without an error:\n{text}");
+    read.map_or_else(|error| error.to_string(), str::to_owned)
+}
+
+#[test]
+fn errors_name_the_field_the_value_and_the_line() {
+    assert!(parse_scene(SMALL).unwrap().1.is_empty());
+    // What is changed to what, and what the message must hold.
+    let cases: &[(&str, &str, &[&str])] = &[
+        ("f_number: 8.0", "f_number: NaN", &["camera.f_number", "NaN", "line 8"]),
+        ("f_number: 8.0", "f_number: -8.0", &["camera.f_number", "-8", "line 8"]),
+        ("f_number: 8.0", "f_number: \"eight\"", &["camera.f_number", "\"eight\"", "line 8", "a number is expected"]),
+        ("f_number: 8.0", "f_numbr: 8.0", &["\"f_numbr\"", "did you mean \"f_number\"?", "line 8"]),
+        ("iso: 100.0", "iso: inf", &["camera.iso", "inf", "line 10"]),
+        ("iso: 100.0", "iso: 1e308", &["camera.iso", "1e308", "line 10"]),
+        ("iso: 100.0", "iso: 1e99999", &["camera.iso", "1e99999", "line 10"]),
+        ("iso: 100.0", "iso: 100.0, iso: 200.0", &["\"iso\"", "twice", "line 10"]),
+        ("        iso: 100.0,\n", "", &["\"iso\"", "missing", "camera"]),
+        ("focal_length_mm: 85.0", "focal_length_mm: 0.0", &["camera.focal_length_mm", "line 7"]),
+        ("position: (0.0, 1.5, 3.0)", "position: (0.0, 1e308, 3.0)", &["camera.position", "1e308", "line 5"]),
+        ("position: (0.0, 1.5, 3.0)", "position: (0.0, 1.5)", &["camera.position", "line 5"]),
+        ("position: (0.0, 1.5, 3.0)", "position: (0.0, 1.5, \"x\")", &["camera.position", "\"x\"", "line 5"]),
+        ("radius_m: 0.1", "radius_m: -0.1", &["objects[0] \"Ball\" shape.radius_m", "-0.1", "line 16"]),
+        ("Sphere(radius_m: 0.1)", "Spere(radius_m: 0.1)", &["objects[0].shape", "did you mean \"Sphere\"?", "line 16"]),
+        ("Preset(Chrome)", "Preset(Chrom)", &["objects[0].material", "did you mean \"Chrome\"?", "line 17"]),
+        (
+            "aim: Object(name: \"Ball\"),\n            emitter",
+            "aim: Object(name: \"Bal\"),\n            emitter",
+            &["lights[0] \"Key\" aim.name", "no object \"Bal\"", "did you mean \"Ball\"?", "line 25"],
+        ),
+        (
+            "aim: Object(name: \"Ball\"),\n        focal",
+            "aim: Object(name: \"Woman\"),\n        focal",
+            &["camera.aim.name", "no object \"Woman\"", "line 6"],
+        ),
+        (
+            "aim: Object(name: \"Ball\"),\n            emitter",
+            "aim: Point(1.0, 2.0, 1.0),\n            emitter",
+            &["lights[0] \"Key\" aim", "no direction", "line 25"],
+        ),
+        ("energy_ws: 200.0", "energy_ws: -200.0", &["lights[0] \"Key\" power.output.energy_ws", "-200", "line 27"]),
+        ("dial_stops: -1.0", "dial_stops: 1e308", &["lights[0] \"Key\" power.dial_stops", "1e308", "line 27"]),
+        ("FlashWs(energy_ws: 200.0)", "Lux(200.0)", &["lights[0] \"Key\" power.output", "Lux", "line 27"]),
+        ("RectPanel(width_m: 0.6, height_m: 0.9)", "Surround", &["lights[0] \"Key\" power.output", "line 27"]),
+        (
+            "RectPanel(width_m: 0.6, height_m: 0.9)",
+            "Spot(inner_deg: 40.0, outer_deg: 400.0)",
+            &["lights[0] \"Key\" emitter.outer_deg", "400", "line 26"],
+        ),
+        ("role: Key", "role: Boss", &["lights[0].role", "Boss", "Key, Fill", "line 23"]),
+        ("format: 1", "format: 2", &["format 2", "only up to 1", "line 2"]),
+        ("format: 1", "format: \"one\"", &["format", "one", "line 2"]),
+        ("    format: 1,\n", "", &["format: 1"]),
+    ];
+    let mut unclear = Vec::new();
+    for (from, to, words) in cases {
+        let text = SMALL.replacen(from, to, 1);
+        assert_ne!(text, SMALL, "{from}");
+        let message = refused(&text);
+        let missing: Vec<_> = words.iter().filter(|word| !message.contains(**word)).collect();
+        if !missing.is_empty() {
+            unclear.push(format!("{to:?}: no {missing:?} in: {message}"));
+        }
+    }
+    assert!(unclear.is_empty(), "{}", unclear.join("\n"));
+}
+
+#[test]
+fn empty_and_binary_files_are_refused() {
+    for text in ["", " \n", "\u{feff}", "\0\0\0", "()", "[]", "1", "(format: 1)", "\"", "/*", "r#\"", "PK\u{3}\u{4}"] {
+        assert!(!refused(text).is_empty());
+    }
+    assert!(refused("").contains("empty"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.ron");
+    std::fs::write(&path, b"(format: 1, name: \"\xff\xfe\"").unwrap();
+    let error = load_scene(&path).unwrap_err();
+    assert!(matches!(&error, LoadError::InFile { error, .. } if matches!(**error, LoadError::NotText(_))), "{error}");
+    assert!(error.to_string().ends_with("a.ron"), "the path comes last: {error}");
+    assert!(matches!(load_scene(&folder.path().join("none.ron")), Err(LoadError::Read { .. })));
+    assert!(load_scene(folder.path()).is_err(), "a folder is no scene");
+}
+
+#[test]
+fn a_file_cut_anywhere_is_refused() {
+    let whole = SMALL.trim_end();
+    for end in (0..whole.len()).filter(|end| whole.is_char_boundary(*end)) {
+        refused(&whole[..end]);
+    }
+}
+
+#[test]
+fn bracket_bombs_are_refused_at_once() {
+    let started = Instant::now();
+    for bracket in ["(", "[", "{", "(a:", "Some(", "/*"] {
+        refused(&format!("(format: 1, name: {}", bracket.repeat(1_000_000)));
+    }
+    let bomb = "(".repeat(200_000_000);
+    assert!(matches!(parse_scene(&bomb), Err(LoadError::TooLarge { .. })));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bomb.ron");
+    std::fs::write(&path, bomb).unwrap();
+    let error = load_scene(&path).unwrap_err().to_string();
+    assert!(error.contains("200 MB") && error.ends_with("bomb.ron"), "{error}");
+    std::fs::write(&path, "(".repeat(FILE_LIMIT_BYTES as usize)).unwrap();
+    assert!(load_scene(&path).unwrap_err().to_string().contains("nest too deep"));
+    assert!(started.elapsed() < Duration::from_secs(5), "{:?}", started.elapsed());
+}
+
+#[test]
+fn ten_thousand_equal_names_and_too_many_lights_do_not_hang() {
+    let light = &SMALL[SMALL.find("        (\n            name: \"Key\"").unwrap()..SMALL.rfind("    ],").unwrap()];
+    let with_lights = |n: usize| SMALL.replace(light, &light.repeat(n));
+    let started = Instant::now();
+    assert_eq!(parse_scene(&with_lights(LIST_LIMIT)).unwrap().0.lights.len(), LIST_LIMIT);
+    assert!(refused(&with_lights(LIST_LIMIT + 1)).contains("10001 are too many"));
+    assert!(started.elapsed() < Duration::from_secs(10), "{:?}", started.elapsed());
+}
+
+#[test]
+fn missing_and_escaping_assets() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("studio.ron");
+    let with_mesh = |mesh: &str| SMALL.replace("Sphere(radius_m: 0.1)", &format!("MeshFile(path: {mesh:?})"));
+    std::fs::write(&path, with_mesh("models/none.obj")).unwrap();
+    let loaded = load_scene(&path).unwrap();
+    assert_eq!(loaded.warnings.len(), 1, "{:?}", loaded.warnings);
+    let warning = loaded.warnings[0].to_string();
+    assert!(warning.starts_with("objects[0] \"Ball\" shape.path: the object is left out"), "{warning}");
+    for escape in ["../x.obj", "/etc/passwd", "a/../../x.obj", "C:/x.obj", "a\\x.obj", ""] {
+        std::fs::write(&path, with_mesh(escape)).unwrap();
+        let error = load_scene(&path).unwrap_err().to_string();
+        assert!(error.contains("objects[0] \"Ball\" shape.path") && error.contains("line 16"), "{error}");
+    }
+    std::fs::write(folder.path().join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    std::fs::write(&path, with_mesh("a.obj")).unwrap();
+    let loaded = load_scene(&path).unwrap();
+    assert!(loaded.warnings.is_empty());
+    assert_eq!(loaded.assets.mesh_of(&loaded.scene.objects[0].shape).unwrap().triangles.len(), 1);
+}
