@@ -34,7 +34,7 @@ pub fn time_preview(
 ) -> Result<TimesReport, Failure> {
     let (gpu, mut renderer) = start()?;
     let mut input = PreviewInput::camera_view(&loaded.scene, &loaded.assets, (width, height));
-    input.options = Options { light_radius, ..input.options };
+    input.options = Options { light_radius, draft: std::env::var_os("CL_FINE").is_none(), ..input.options };
     let times = renderer.time_frames(&input, frames).map_err(machine)?;
     Ok(TimesReport {
         scene: loaded.scene.name.clone(),

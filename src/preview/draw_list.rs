@@ -3,6 +3,7 @@
 use super::input::{Overlay, Pick};
 use super::light_table::{emission, picture_scale};
 use super::mesh_cache::{EmitterSurface, MeshCache, MeshKey};
+use super::pipelines::Sides;
 use super::texture_cache::{TextureCache, WHITE};
 use crate::photo::exposure;
 use crate::scene::{Assets, Emitter, Material, MeshPart, Scene, Shape};
@@ -98,6 +99,15 @@ pub(super) struct Caster {
 }
 
 impl Caster {
+    /// Whether a point may lie inside: it does in the box around the corners, and a little beyond.
+    fn may_hold(&self, point: Vec3) -> bool {
+        let corners = self.corners();
+        let (low, high) =
+            corners.iter().fold((corners[0], corners[0]), |(low, high), corner| (low.min(*corner), high.max(*corner)));
+        let margin = Vec3::splat(0.02);
+        point.cmpge(low - margin).all() && point.cmple(high + margin).all()
+    }
+
     /// The eight corners in world space.
     pub fn corners(&self) -> [Vec3; 8] {
         std::array::from_fn(|i| {
@@ -113,6 +123,17 @@ impl Caster {
 }
 
 impl DrawList {
+    /// Which sides of an item can be seen from `eye`.
+    pub fn sides(&self, item: &DrawItem, eye: Vec3) -> Sides {
+        let outside = || self.casters.get(item.caster).is_some_and(|caster| !caster.may_hold(eye));
+        match (item.pass, item.shadow) {
+            (Pass::OneSided, _) => Sides::Room,
+            (_, Shadow::Solid) if outside() => Sides::Front,
+            (_, Shadow::MirroredSolid) if outside() => Sides::Back,
+            _ => Sides::Both,
+        }
+    }
+
     /// Whether a view may see something of an item's box.
     pub fn is_seen(&self, item: &DrawItem, clip_from_world: &Mat4) -> bool {
         let Some(caster) = self.casters.get(item.caster) else { return false };

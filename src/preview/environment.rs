@@ -151,7 +151,7 @@ fn light_factor(light: &GpuLight, point: Vec3, normal: Vec3) -> f32 {
             let area = PI * light.radius * light.radius;
             area * cosine / squared.max(light.radius * light.radius)
         }
-        _ => light.area_m2 * cosine * facing.max(0.0) / (squared + light.area_m2 / PI),
+        _ => light.area_m2() * cosine * facing.max(0.0) / (squared + light.area_m2() / PI),
     };
     factor * light.passed(-direction)
 }

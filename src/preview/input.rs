@@ -82,6 +82,9 @@ pub struct Options {
     pub environment_estimate: bool,
     /// Leaves a light out where it falls under 1/256 of display white: in its place many lights cost little.
     pub light_radius: bool,
+    /// While something moves: on a rasteriser that runs on the processor, lights one pixel in four and spreads the light
+    /// over the surfaces. Adapters with a card of their own take no notice.
+    pub draft: bool,
     /// Pixels along each side of a shadow map.
     pub shadow_resolution: u32,
 }
@@ -93,6 +96,7 @@ impl Default for Options {
             bounce_estimate: true,
             environment_estimate: true,
             light_radius: true,
+            draft: false,
             shadow_resolution: 1024,
         }
     }

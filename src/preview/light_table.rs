@@ -11,6 +11,8 @@ use std::f32::consts::PI;
 
 /// Lights beyond this number are not shown.
 pub(super) const MAX_LIGHTS: usize = 256;
+/// What is left out of the picture of many lights: 1/256 of display white.
+const LEAST_SHOWN: f32 = 1.0 / 256.0;
 /// Smallest side of a panel and radius of a bulb, metres: a light of no size keeps a finite luminance.
 const SMALLEST_M: f32 = 1e-3;
 
@@ -46,8 +48,8 @@ pub(super) struct GpuLight {
     pub radius: f32,
     /// Picture units of: intensity (point, spot), luminance (sphere, panels), normal illuminance (sun).
     pub color: [f32; 3],
-    /// Area of a panel, m2.
-    pub area_m2: f32,
+    /// Distance at which it falls under 1/256 of display white on white, metres; 0 for a sun, which never does.
+    pub reach_m: f32,
     /// Half angles of its beam: even, whole, where a grid ends, radians.
     pub beam_rad: [f32; 3],
     /// Whether those or the doors cut anything: 0 or 1.
@@ -72,7 +74,7 @@ fn set_beam(gpu: &mut GpuLight, modifier: &Modifier) {
 
 impl GpuLight {
     /// Family of lights that the lighting pass takes in one loop: points and suns, balls, rectangles, discs.
-    fn family(&self) -> usize {
+    pub fn family(&self) -> usize {
         match self.kind {
             kind if kind == Kind::Sphere as u32 => 1,
             kind if kind == Kind::Rect as u32 => 2,
@@ -97,6 +99,15 @@ impl GpuLight {
         };
         let across = |axis: [f32; 3]| away.dot(Vec3::from(axis).normalize_or_zero());
         beam::passed(&modifier, Vec3::new(across(self.right), across(self.up), -away.dot(Vec3::from(self.axis))))
+    }
+
+    /// Area of a panel, m2; that of a ball's disc.
+    pub fn area_m2(&self) -> f32 {
+        match self.family() {
+            2 => 4.0 * Vec3::from(self.right).length() * Vec3::from(self.up).length(),
+            3 => PI * Vec3::from(self.right).length_squared(),
+            _ => PI * self.radius * self.radius,
+        }
     }
 
     /// Half axes of the emitter as its penumbra sees them: metres, for a sun tangents.
@@ -209,6 +220,7 @@ fn gpu_light(light: &Light, world_from_light: &Affine3A, scale: Vec3) -> GpuLigh
         color: (scale * intensity).into(),
         ..GpuLight::zeroed()
     };
+    gpu.reach_m = (scale.max_element() * intensity / (PI * LEAST_SHOWN)).max(0.0).sqrt();
     match light.emitter {
         Emitter::Point => gpu.kind = Kind::Point as u32,
         Emitter::Spot { inner_deg, outer_deg } => {
@@ -224,16 +236,17 @@ fn gpu_light(light: &Light, world_from_light: &Affine3A, scale: Vec3) -> GpuLigh
         }
         Emitter::RectPanel { width_m, height_m } => {
             let half = 0.5 * Vec2::new(width_m, height_m).max(Vec2::splat(SMALLEST_M));
-            panel(&mut gpu, Kind::Rect, half, 4.0 * half.x * half.y, scale * intensity);
+            panel(&mut gpu, Kind::Rect, half, scale * intensity);
         }
         Emitter::RoundPanel { diameter_m } => {
             let radius = 0.5 * diameter_m.max(SMALLEST_M);
-            panel(&mut gpu, Kind::Disc, Vec2::splat(radius), PI * radius * radius, scale * intensity);
+            panel(&mut gpu, Kind::Disc, Vec2::splat(radius), scale * intensity);
         }
         Emitter::Sun { angular_diameter_deg } => {
             gpu.kind = Kind::Sun as u32;
             gpu.radius = (0.5 * angular_diameter_deg.clamp(0.0, 90.0)).to_radians().tan();
             gpu.color = (scale * illuminance(light)).into();
+            gpu.reach_m = 0.0;
         }
         Emitter::Surround => gpu.color = [0.0; 3],
     }
@@ -241,12 +254,11 @@ fn gpu_light(light: &Light, world_from_light: &Affine3A, scale: Vec3) -> GpuLigh
     gpu
 }
 
-fn panel(gpu: &mut GpuLight, kind: Kind, half: Vec2, area_m2: f32, intensity: Vec3) {
+fn panel(gpu: &mut GpuLight, kind: Kind, half: Vec2, intensity: Vec3) {
     gpu.kind = kind as u32;
     gpu.right = (Vec3::from(gpu.right) * half.x).into();
     gpu.up = (Vec3::from(gpu.up) * half.y).into();
-    gpu.area_m2 = area_m2;
-    gpu.color = (intensity / area_m2).into();
+    gpu.color = (intensity / gpu.area_m2()).into();
 }
 
 /// Estimate of the bounced light in a closed diffuse box, per channel: E = F r / (S (1 - r)) with r the mean

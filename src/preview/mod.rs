@@ -14,6 +14,8 @@ mod gizmo;
 mod gpu;
 mod input;
 mod light_table;
+mod light_tiles;
+mod lighting_pass;
 mod mesh_cache;
 pub mod offscreen;
 mod overlay_pass;

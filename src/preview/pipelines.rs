@@ -4,7 +4,7 @@ use super::draw_list::Shadow;
 use super::gizmo::{GpuLine, GpuTint};
 use super::mesh_cache::VERTEX_LAYOUT;
 use super::shadow_maps::{self, Side};
-use super::targets::{DEPTH_FORMAT, GBUFFER_FORMAT, ID_FORMAT, Output};
+use super::targets::{CELL_FORMAT, DEPTH_FORMAT, GBUFFER_FORMAT, ID_FORMAT, Output};
 use super::{shaders, shadow_mask};
 use eframe::wgpu;
 
@@ -21,15 +21,41 @@ pub(super) struct Layouts<'a> {
     pub shadow_slots: &'a wgpu::BindGroupLayout,
     pub raw_mask: &'a wgpu::BindGroupLayout,
     pub masks: &'a wgpu::BindGroupLayout,
+    pub cells: &'a wgpu::BindGroupLayout,
 }
 
 /// Pipelines that do not depend on the output's format.
 #[derive(Debug)]
 pub(super) struct GeometryPipelines {
-    /// By `[textured][one-sided]`.
-    pub geometry: [[wgpu::RenderPipeline; 2]; 2],
+    /// By whether textured, then by `Sides`.
+    geometry: [[wgpu::RenderPipeline; 4]; 2],
     /// Of sheets, solids, mirrored solids.
     shadow: [wgpu::RenderPipeline; 3],
+}
+
+/// Which sides of a run of triangles are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sides {
+    /// Both: sheets, and solids with the camera inside.
+    Both = 0,
+    /// The front, as of a room that is seen into from outside.
+    Room = 1,
+    /// The front, as of a solid: its far side is hidden anyway.
+    Front = 2,
+    /// The back, as of a solid that is mirrored by its scale.
+    Back = 3,
+}
+
+impl Sides {
+    const ALL: [Sides; 4] = [Sides::Both, Sides::Room, Sides::Front, Sides::Back];
+
+    fn culled(self) -> Option<wgpu::Face> {
+        match self {
+            Sides::Both => None,
+            Sides::Room | Sides::Front => Some(wgpu::Face::Back),
+            Sides::Back => Some(wgpu::Face::Front),
+        }
+    }
 }
 
 /// Pipelines of the shadow masks.
@@ -47,23 +73,29 @@ pub(super) struct LightingVariant {
     pub families: [bool; 4],
     pub masks: usize,
     pub scale: u32,
+    /// Each tile of the picture has its own list of lights.
+    pub listed: bool,
+    /// A light's modifier narrows its beam.
+    pub beams: bool,
+    /// One pixel in four, for a draft.
+    pub cells: bool,
 }
 
 impl GeometryPipelines {
     pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
         let module = shaders::module(device, "geometry", shaders::GEOMETRY);
         let layout = pipeline_layout(device, "geometry", &[layouts.scene, layouts.texture]);
-        let geometry = |textured: bool, one_sided: bool| {
+        let geometry = |textured: bool, sides: Sides| {
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("geometry"),
                 layout: Some(&layout),
                 vertex: mesh_vertices(&module),
                 primitive: wgpu::PrimitiveState {
-                    cull_mode: one_sided.then_some(wgpu::Face::Back),
+                    cull_mode: sides.culled(),
                     ..Default::default()
                 },
                 depth_stencil: Some(wgpu::DepthStencilState {
-                    bias: if one_sided { BEHIND_COPLANAR } else { Default::default() },
+                    bias: if sides == Sides::Room { BEHIND_COPLANAR } else { Default::default() },
                     ..nearer(DEPTH_FORMAT)
                 }),
                 multisample: Default::default(),
@@ -96,9 +128,14 @@ impl GeometryPipelines {
             })
         };
         GeometryPipelines {
-            geometry: [[geometry(false, false), geometry(false, true)], [geometry(true, false), geometry(true, true)]],
+            geometry: [false, true].map(|textured| Sides::ALL.map(|sides| geometry(textured, sides))),
             shadow: [shadow(None), shadow(Some(wgpu::Face::Front)), shadow(Some(wgpu::Face::Back))],
         }
+    }
+
+    /// The pipeline that draws a run of triangles into the G-buffer.
+    pub fn geometry(&self, textured: bool, sides: Sides) -> &wgpu::RenderPipeline {
+        &self.geometry[usize::from(textured)][sides as usize]
     }
 
     /// The pipeline that draws a run of triangles into a shadow map; none if it casts no shadow.
@@ -113,13 +150,12 @@ impl GeometryPipelines {
 }
 
 impl MaskPipelines {
-    pub fn new(device: &wgpu::Device, layouts: &Layouts, scale: u32) -> Self {
-        let constants = [("SCALE", f64::from(scale))];
+    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
         let raw_groups = [layouts.scene, layouts.gbuffer, layouts.shadow_maps, layouts.shadow_slots];
         let blur_groups = [layouts.scene, layouts.gbuffer, layouts.raw_mask];
         let fullscreen = |label, source, groups: &[_]| {
             let layout = pipeline_layout(device, label, groups);
-            fullscreen(device, label, source, &layout, &constants, shadow_mask::FORMAT)
+            fullscreen(device, (label, "fragment"), source, &layout, &[], shadow_mask::FORMAT)
         };
         MaskPipelines {
             raw: fullscreen("shadow mask", shaders::SHADOW_MASK, &raw_groups),
@@ -140,9 +176,18 @@ pub(super) fn lighting(device: &wgpu::Device, layouts: &Layouts, variant: &Light
         ("HAS_DISCS", discs),
         ("MASKS", variant.masks as f64),
         ("SCALE", f64::from(variant.scale)),
+        ("LISTED", flag(variant.listed)),
+        ("HAS_BEAMS", flag(variant.beams)),
     ];
     let layout = pipeline_layout(device, "lighting", &[layouts.scene, layouts.gbuffer, layouts.masks]);
-    fullscreen(device, "lighting", shaders::LIGHTING, &layout, &constants, variant.output.format())
+    let (entry, format) = if variant.cells { ("cell", CELL_FORMAT) } else { ("fragment", variant.output.format()) };
+    fullscreen(device, ("lighting", entry), shaders::LIGHTING, &layout, &constants, format)
+}
+
+/// Light of one pixel in four, spread over the picture as it is shown.
+pub(super) fn resolve(device: &wgpu::Device, layouts: &Layouts) -> wgpu::RenderPipeline {
+    let layout = pipeline_layout(device, "resolve", &[layouts.scene, layouts.gbuffer, layouts.cells]);
+    fullscreen(device, ("resolve", "fragment"), shaders::RESOLVE, &layout, &[], Output::Display.format())
 }
 
 /// Glass over the lit picture.
@@ -240,7 +285,7 @@ impl OverlayPipelines {
 
 fn fullscreen(
     device: &wgpu::Device,
-    label: &str,
+    (label, entry): (&str, &str),
     source: &str,
     layout: &wgpu::PipelineLayout,
     constants: &[(&str, f64)],
@@ -261,7 +306,7 @@ fn fullscreen(
         multisample: Default::default(),
         fragment: Some(wgpu::FragmentState {
             module: &module,
-            entry_point: Some("fragment"),
+            entry_point: Some(entry),
             compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
             targets: &[Some(format.into())],
         }),

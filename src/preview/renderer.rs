@@ -5,20 +5,22 @@ use super::environment::Environment;
 use super::gizmo::Gizmos;
 use super::gpu::{LossFlag, guarded};
 use super::light_table::LightTable;
+use super::light_tiles::{TILES_BYTES, light_tiles};
+use super::lighting_pass::{LightingInput, LightingPasses};
 use super::mesh_cache::MeshCache;
 use super::overlay_pass::OverlayPass;
 use super::pick::WaitingPick;
-use super::pipelines::{self, GeometryPipelines, Layouts, LightingVariant, MaskPipelines};
-use super::scene_buffers::{GpuFrame, SceneBuffers};
+use super::pipelines::{GeometryPipelines, Layouts, LightingVariant, MaskPipelines};
+use super::scene_buffers::{GpuFrame, LIGHTS_BYTES, SceneBuffers};
 use super::shadow_maps::{ShadowMaps, Side};
 use super::shadow_mask::ShadowMasks;
 use super::shadow_views::ShadowPlan;
-use super::targets::{self, Output, Targets};
+use super::targets::{Output, TargetLayouts, Targets};
 use super::texture_cache::{TextureCache, WHITE};
 use super::{Options, Pick, PreviewError, PreviewInput};
 use crate::scene::CameraFrame;
 use eframe::wgpu;
-use std::collections::HashMap;
+use glam::Vec3;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// Draws scenes on a graphics device and keeps what it uploaded between frames.
@@ -31,15 +33,14 @@ pub struct PreviewRenderer {
     textures: TextureCache,
     buffers: SceneBuffers,
     shadow_maps: ShadowMaps,
-    gbuffer_layout: wgpu::BindGroupLayout,
+    target_layouts: TargetLayouts,
     shadow_masks: ShadowMasks,
     geometry: GeometryPipelines,
     masking: MaskPipelines,
-    lighting: HashMap<LightingVariant, wgpu::RenderPipeline>,
-    glass: HashMap<LightingVariant, wgpu::RenderPipeline>,
+    lighting: LightingPasses,
     overlay: OverlayPass,
-    /// Picture pixels a shadow mask pixel, along each side.
-    mask_scale: u32,
+    /// The adapter is a software rasteriser.
+    on_processor: bool,
     drawn: Drawn,
     pub(super) targets: Targets,
     generation: u64,
@@ -62,42 +63,44 @@ impl PreviewRenderer {
     /// Compiles the pipelines. The device may be the window's.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, PreviewError> {
         let limits = device.limits();
-        if limits.max_storage_buffers_per_shader_stage < 3 || limits.max_color_attachment_bytes_per_sample < 24 {
-            return Err(PreviewError::Unsupported("no storage buffers or too small a G-buffer".to_owned()));
+        if limits.max_storage_buffers_per_shader_stage < 1
+            || limits.max_color_attachment_bytes_per_sample < 24
+            || limits.max_uniform_buffer_binding_size < LIGHTS_BYTES.max(TILES_BYTES)
+        {
+            return Err(PreviewError::Unsupported("too small buffers or too small a G-buffer".to_owned()));
         }
         let loss = LossFlag::watch(device);
         guarded(device, &loss, || {
             let buffers = SceneBuffers::new(device);
             let textures = TextureCache::new(device, queue);
             let shadow_maps = ShadowMaps::new(device);
-            let gbuffer_layout = targets::lookup_layout(device);
+            let target_layouts = TargetLayouts::new(device);
             let shadow_masks = ShadowMasks::new(device);
-            // A software rasteriser draws soft shadows at half the size.
-            let mask_scale = if device.adapter_info().device_type == wgpu::DeviceType::Cpu { 2 } else { 1 };
-            let layouts = layouts(&buffers, &textures, &gbuffer_layout, &shadow_maps, &shadow_masks);
+            let on_processor = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
+            let layouts = layouts(&buffers, &textures, &target_layouts, &shadow_maps, &shadow_masks);
             let geometry = GeometryPipelines::new(device, &layouts);
-            let masking = MaskPipelines::new(device, &layouts, mask_scale);
+            let masking = MaskPipelines::new(device, &layouts);
+            let lighting = LightingPasses::new(device, &layouts);
             let overlay = OverlayPass::new(device, &layouts);
             Ok(PreviewRenderer {
                 device: device.clone(),
                 queue: queue.clone(),
                 loss: loss.clone(),
                 meshes: MeshCache::default(),
-                targets: Targets::new(device, &gbuffer_layout, (1, 1), Output::Display),
+                targets: Targets::new(device, &target_layouts, (1, 1), Output::Display),
                 textures,
                 buffers,
                 shadow_maps,
-                gbuffer_layout,
+                target_layouts,
                 geometry,
                 shadow_masks,
                 masking,
-                lighting: HashMap::new(),
-                glass: HashMap::new(),
+                lighting,
                 overlay,
                 gizmos: Gizmos::default(),
                 view: None,
                 waiting_pick: None,
-                mask_scale,
+                on_processor,
                 drawn: Drawn::default(),
                 generation: 0,
                 owners: Vec::new(),
@@ -127,6 +130,21 @@ impl PreviewRenderer {
         self.targets.size
     }
 
+    /// Whether `Options::draft` makes a difference here: the adapter is a processor.
+    pub fn draws_drafts(&self) -> bool {
+        self.on_processor
+    }
+
+    /// Picture pixels a pixel of the shadow masks, along each side: a processor draws soft shadows at half the size, and
+    /// at a quarter while something moves.
+    fn mask_scale(&self, draft: bool) -> u32 {
+        match (self.on_processor, draft) {
+            (false, _) => 1,
+            (true, false) => 2,
+            (true, true) => 4,
+        }
+    }
+
     pub(super) fn render_to(&mut self, input: &PreviewInput, output: Output) -> Result<(), PreviewError> {
         let (device, loss) = (self.device.clone(), self.loss.clone());
         let done = guarded(&device, &loss, || {
@@ -145,7 +163,7 @@ impl PreviewRenderer {
         let largest = self.device.limits().max_texture_dimension_2d;
         let size = (size.0.clamp(1, largest), size.1.clamp(1, largest));
         if self.targets.size != size || self.targets.output != output {
-            self.targets = Targets::new(&self.device, &self.gbuffer_layout, size, output);
+            self.targets = Targets::new(&self.device, &self.target_layouts, size, output);
             self.generation += 1;
             self.drawn = Drawn::default();
         }
@@ -169,12 +187,15 @@ impl PreviewRenderer {
         let plan = ShadowPlan::new(&table.lights, casters);
         let resolution = input.options.shadow_resolution;
         let stale = self.shadow_maps.stale(&self.device, &self.queue, &plan, list.caster_signature, resolution);
-        let frame = self.frame(input, &table);
-        self.buffers.write(&self.device, &self.queue, &frame, &list.records, &table.lights);
+        let draft = input.options.draft && self.on_processor && output == Output::Display;
+        let scale = self.mask_scale(draft);
+        let frame = GpuFrame { mask_scale: scale, ..self.frame(input, &table) };
+        let tiles = if input.options.light_radius { light_tiles(&table, &input.frame) } else { None };
+        self.buffers.write(&self.device, &self.queue, &frame, &list.records, &table.lights, tiles.as_deref());
 
         let geometry = geometry_signature(&frame, &list);
         let masks = mask_signature(geometry, &plan);
-        let renewed = self.shadow_masks.prepare(&self.device, &self.queue, &plan, self.mask_size());
+        let renewed = self.shadow_masks.prepare(&self.device, &self.queue, &plan, self.mask_size(scale));
         let geometry_drawn = self.drawn.geometry == Some(geometry);
         let masks_drawn = self.drawn.masks == Some(masks) && stale.is_empty() && !renewed;
 
@@ -186,12 +207,21 @@ impl PreviewRenderer {
             self.shadow_pass(&mut encoder, &items, view, Side::Far);
         }
         if !geometry_drawn {
-            self.geometry_pass(&mut encoder, &list);
+            self.geometry_pass(&mut encoder, &list, input.frame.position());
         }
         if !masks_drawn {
             (0..plan.masks()).for_each(|mask| self.mask_passes(&mut encoder, mask));
         }
-        self.lighting_pass(&mut encoder, &table, plan.masks(), output);
+        let variant = LightingVariant {
+            output,
+            families: table.families(),
+            masks: plan.masks(),
+            scale,
+            listed: tiles.is_some(),
+            beams: table.lights.iter().any(|light| light.has_beam != 0),
+            cells: draft,
+        };
+        self.lighting_pass(&mut encoder, variant);
         let has_glass = list.items.iter().any(|item| item.pass == Pass::Glass);
         if has_glass {
             self.glass_pass(&mut encoder, &list, &table, output);
@@ -225,9 +255,9 @@ impl PreviewRenderer {
         frame
     }
 
-    fn mask_size(&self) -> (u32, u32) {
+    fn mask_size(&self, scale: u32) -> (u32, u32) {
         let (width, height) = self.targets.size;
-        (width.div_ceil(self.mask_scale), height.div_ceil(self.mask_scale))
+        (width.div_ceil(scale), height.div_ceil(scale))
     }
 
     fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, items: &[&DrawItem], view: usize, side: Side) {
@@ -241,7 +271,7 @@ impl PreviewRenderer {
         }
     }
 
-    fn geometry_pass(&self, encoder: &mut wgpu::CommandEncoder, list: &DrawList) {
+    fn geometry_pass(&self, encoder: &mut wgpu::CommandEncoder, list: &DrawList, eye: Vec3) {
         let clear = |view| {
             Some(wgpu::RenderPassColorAttachment {
                 view,
@@ -265,19 +295,19 @@ impl PreviewRenderer {
         });
         pass.set_bind_group(0, self.buffers.bind_group(), &[]);
         for item in list.items.iter().filter(|item| item.pass != Pass::Glass) {
-            let (textured, one_sided) = (item.texture != WHITE, item.pass == Pass::OneSided);
-            pass.set_pipeline(&self.geometry.geometry[usize::from(textured)][usize::from(one_sided)]);
+            let sides = list.sides(item, eye);
+            pass.set_pipeline(self.geometry.geometry(item.texture != WHITE, sides));
             pass.set_bind_group(1, self.textures.get(item.texture), &[]);
             self.draw_item(&mut pass, item);
         }
     }
 
     fn glass_pass(&mut self, encoder: &mut wgpu::CommandEncoder, list: &DrawList, table: &LightTable, output: Output) {
-        let variant = LightingVariant { output, families: table.families(), masks: 0, scale: 1 };
+        let families = table.families();
+        let variant = LightingVariant { output, families, masks: 0, scale: 1, listed: false, beams: true, cells: false };
         let layouts =
-            layouts(&self.buffers, &self.textures, &self.gbuffer_layout, &self.shadow_maps, &self.shadow_masks);
-        self.glass.entry(variant).or_insert_with(|| pipelines::glass(&self.device, &layouts, &variant));
-        let Some(pipeline) = self.glass.get(&variant) else { return };
+            layouts(&self.buffers, &self.textures, &self.target_layouts, &self.shadow_maps, &self.shadow_masks);
+        let pipeline = self.lighting.glass(&self.device, &layouts, variant).clone();
         let keep = |view| {
             Some(wgpu::RenderPassColorAttachment {
                 view,
@@ -296,7 +326,7 @@ impl PreviewRenderer {
             }),
             ..Default::default()
         });
-        pass.set_pipeline(pipeline);
+        pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, self.buffers.bind_group(), &[]);
         for item in list.items.iter().filter(|item| item.pass == Pass::Glass) {
             self.draw_item(&mut pass, item);
@@ -328,27 +358,15 @@ impl PreviewRenderer {
         pass.draw(0..3, 0..1);
     }
 
-    fn lighting_pass(&mut self, encoder: &mut wgpu::CommandEncoder, table: &LightTable, masks: usize, output: Output) {
-        let variant = LightingVariant { output, families: table.families(), masks, scale: self.mask_scale };
+    fn lighting_pass(&mut self, encoder: &mut wgpu::CommandEncoder, variant: LightingVariant) {
         let layouts =
-            layouts(&self.buffers, &self.textures, &self.gbuffer_layout, &self.shadow_maps, &self.shadow_masks);
-        let pipeline =
-            self.lighting.entry(variant).or_insert_with(|| pipelines::lighting(&self.device, &layouts, &variant));
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("lighting"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &self.targets.color_view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
-        });
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, self.buffers.bind_group(), &[]);
-        pass.set_bind_group(1, &self.targets.lookup, &[]);
-        pass.set_bind_group(2, self.shadow_masks.lookup(), &[]);
-        pass.draw(0..3, 0..1);
+            layouts(&self.buffers, &self.textures, &self.target_layouts, &self.shadow_maps, &self.shadow_masks);
+        let input = LightingInput {
+            scene: self.buffers.bind_group(),
+            targets: &self.targets,
+            masks: self.shadow_masks.lookup(),
+        };
+        self.lighting.draw(&self.device, &layouts, encoder, &input, variant);
     }
 
     fn draw_item(&self, pass: &mut wgpu::RenderPass, item: &DrawItem) {
@@ -362,14 +380,15 @@ impl PreviewRenderer {
 fn layouts<'a>(
     buffers: &'a SceneBuffers,
     textures: &'a TextureCache,
-    gbuffer: &'a wgpu::BindGroupLayout,
+    targets: &'a TargetLayouts,
     shadow_maps: &'a ShadowMaps,
     shadow_masks: &'a ShadowMasks,
 ) -> Layouts<'a> {
     Layouts {
         scene: buffers.layout(),
         texture: textures.layout(),
-        gbuffer,
+        gbuffer: &targets.gbuffer,
+        cells: &targets.cells,
         shadow_view: shadow_maps.view_layout(),
         shadow_maps: shadow_maps.lookup_layout(),
         shadow_slots: shadow_masks.slots_layout(),

@@ -2,7 +2,8 @@
 
 use super::draw_list::GpuSurface;
 use super::environment::Environment;
-use super::light_table::{Ambient, GpuLight};
+use super::light_tiles::TILES_BYTES;
+use super::light_table::{Ambient, GpuLight, MAX_LIGHTS};
 use crate::scene::CameraFrame;
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu;
@@ -19,7 +20,8 @@ pub(super) struct GpuFrame {
     pub eye: [f32; 3],
     pub near_m: f32,
     pub ray_centre: [f32; 3],
-    pub unused_5: f32,
+    /// Picture pixels a pixel of the shadow masks, along each side.
+    pub mask_scale: u32,
     pub ray_right: [f32; 3],
     pub unused_6: f32,
     pub ray_up: [f32; 3],
@@ -79,6 +81,9 @@ impl GpuFrame {
     }
 }
 
+/// Bytes of the table of lights.
+pub(super) const LIGHTS_BYTES: u64 = (MAX_LIGHTS * size_of::<GpuLight>()) as u64;
+
 /// A storage buffer that grows.
 #[derive(Debug)]
 struct Growing {
@@ -116,7 +121,9 @@ pub(super) struct SceneBuffers {
     bind_group: wgpu::BindGroup,
     frame: wgpu::Buffer,
     surfaces: Growing,
-    lights: Growing,
+    /// A uniform, not a storage buffer: rasterisers on a processor read uniforms several times faster.
+    lights: wgpu::Buffer,
+    tiles: wgpu::Buffer,
 }
 
 impl SceneBuffers {
@@ -131,18 +138,19 @@ impl SceneBuffers {
         let storage_type = wgpu::BufferBindingType::Storage { read_only: true };
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("scene"),
-            entries: &[entry(0, wgpu::BufferBindingType::Uniform), entry(1, storage_type), entry(2, storage_type)],
+            entries: &[
+                entry(0, wgpu::BufferBindingType::Uniform),
+                entry(1, storage_type),
+                entry(2, wgpu::BufferBindingType::Uniform),
+                entry(3, wgpu::BufferBindingType::Uniform),
+            ],
         });
-        let frame = device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("frame"),
-            size: size_of::<GpuFrame>() as u64,
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let frame = uniform(device, "frame", size_of::<GpuFrame>() as u64);
+        let lights = uniform(device, "lights", LIGHTS_BYTES);
+        let tiles = uniform(device, "light tiles", TILES_BYTES);
         let surfaces = Growing::new(device, "surfaces", 64 * size_of::<GpuSurface>() as u64);
-        let lights = Growing::new(device, "lights", 16 * size_of::<GpuLight>() as u64);
-        let bind_group = bind(device, &layout, &frame, [&surfaces, &lights]);
-        SceneBuffers { layout, bind_group, frame, surfaces, lights }
+        let bind_group = bind(device, &layout, [&frame, &surfaces.buffer, &lights, &tiles]);
+        SceneBuffers { layout, bind_group, frame, surfaces, lights, tiles }
     }
 
     /// Layout of the bind group.
@@ -163,25 +171,29 @@ impl SceneBuffers {
         frame: &GpuFrame,
         surfaces: &[GpuSurface],
         lights: &[GpuLight],
+        tiles: Option<&[[u32; 4]]>,
     ) {
         queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(frame));
-        let replaced = [
-            self.surfaces.write(device, queue, bytemuck::cast_slice(surfaces)),
-            self.lights.write(device, queue, bytemuck::cast_slice(lights)),
-        ];
-        if replaced.contains(&true) {
-            self.bind_group = bind(device, &self.layout, &self.frame, [&self.surfaces, &self.lights]);
+        let lights: &[u8] = bytemuck::cast_slice(&lights[..lights.len().min(MAX_LIGHTS)]);
+        if !lights.is_empty() {
+            queue.write_buffer(&self.lights, 0, lights);
+        }
+        if let Some(tiles) = tiles {
+            queue.write_buffer(&self.tiles, 0, bytemuck::cast_slice(tiles));
+        }
+        if self.surfaces.write(device, queue, bytemuck::cast_slice(surfaces)) {
+            let buffers = [&self.frame, &self.surfaces.buffer, &self.lights, &self.tiles];
+            self.bind_group = bind(device, &self.layout, buffers);
         }
     }
 }
 
-fn bind(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    frame: &wgpu::Buffer,
-    storage: [&Growing; 2],
-) -> wgpu::BindGroup {
-    let buffers = [frame, &storage[0].buffer, &storage[1].buffer];
+fn uniform(device: &wgpu::Device, label: &str, size: u64) -> wgpu::Buffer {
+    let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+    device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+}
+
+fn bind(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffers: [&wgpu::Buffer; 4]) -> wgpu::BindGroup {
     let entries: Vec<_> = (0..)
         .zip(buffers)
         .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })

@@ -41,11 +41,17 @@ pub(super) struct Targets {
     pub color_view: wgpu::TextureView,
     /// G-buffer and ids, for reading.
     pub lookup: wgpu::BindGroup,
+    /// Light of one pixel in four, for drafts, and the same for reading.
+    pub cells: wgpu::TextureView,
+    pub cells_lookup: wgpu::BindGroup,
 }
 
+/// Matte and glossy light, normal and depth of one pixel in four, packed by `scene.wgsl`.
+pub(super) const CELL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+
 impl Targets {
-    pub fn new(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, size: (u32, u32), output: Output) -> Self {
-        let texture = |label, format, usage| {
+    pub fn new(device: &wgpu::Device, layouts: &TargetLayouts, size: (u32, u32), output: Output) -> Self {
+        let sized = |label, size: (u32, u32), format, usage| {
             device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
@@ -57,6 +63,7 @@ impl Targets {
                 view_formats: &[],
             })
         };
+        let texture = |label, format, usage| sized(label, size, format, usage);
         let (read, copy) = (wgpu::TextureUsages::TEXTURE_BINDING, wgpu::TextureUsages::COPY_SRC);
         let view = |texture: &wgpu::Texture| texture.create_view(&Default::default());
         let gbuffer = view(&texture("G-buffer", GBUFFER_FORMAT, read));
@@ -65,13 +72,22 @@ impl Targets {
         let color = texture("preview", output.format(), read | copy);
         let lookup = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("G-buffer"),
-            layout,
+            layout: &layouts.gbuffer,
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&gbuffer) },
                 wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&ids_view) },
             ],
         });
+        let half = (size.0.div_ceil(2), size.1.div_ceil(2));
+        let cells = view(&sized("light cells", half, CELL_FORMAT, read));
+        let cells_lookup = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("light cells"),
+            layout: &layouts.cells,
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&cells) }],
+        });
         Targets {
+            cells,
+            cells_lookup,
             size,
             output,
             gbuffer,
@@ -85,8 +101,25 @@ impl Targets {
     }
 }
 
-/// Layout with which passes read the G-buffer.
-pub(super) fn lookup_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+/// Layouts with which passes read the targets.
+#[derive(Debug)]
+pub(super) struct TargetLayouts {
+    /// G-buffer and ids.
+    pub gbuffer: wgpu::BindGroupLayout,
+    /// Light of one pixel in four.
+    pub cells: wgpu::BindGroupLayout,
+}
+
+impl TargetLayouts {
+    pub fn new(device: &wgpu::Device) -> Self {
+        TargetLayouts {
+            gbuffer: uint_layout(device, "G-buffer", 2),
+            cells: uint_layout(device, "light cells", 1),
+        }
+    }
+}
+
+fn uint_layout(device: &wgpu::Device, label: &str, textures: u32) -> wgpu::BindGroupLayout {
     let entry = |binding| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::FRAGMENT,
@@ -97,10 +130,8 @@ pub(super) fn lookup_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
         },
         count: None,
     };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("G-buffer"),
-        entries: &[entry(0), entry(1)],
-    })
+    let entries: Vec<_> = (0..textures).map(entry).collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
 }
 
 /// Copies a part of a texture to memory: `bytes_per_pixel` times width bytes a row, without padding.

@@ -1,7 +1,8 @@
 // The one material: Lambert under a GGX coat, or a GGX metal. alpha = roughness^2, height-correlated Smith masking.
 
 struct Material {
-    diffuse: vec3f,
+    // Part of the base colour that is diffuse reflectance.
+    matte: f32,
     f0: vec3f,
     alpha2: f32,
     // Light lost between facets given back, by its mean (Turquin 2019).
@@ -70,7 +71,7 @@ fn material(base: vec3f, gloss: vec3f, n_dot_v: f32) -> Material {
     let single = m.f0 * ab.x + saturate(50.0 * m.f0) * ab.y;
     m.boost = 1.0 + m.f0 * (1.0 / max(ab.x + ab.y, LOWEST_ROUND) - 1.0);
     m.reflectance = single * m.boost;
-    m.diffuse = base * (1.0 - gloss.z) * (1.0 - max(single.x, max(single.y, single.z)));
+    m.matte = (1.0 - gloss.z) * (1.0 - max(single.x, max(single.y, single.z)));
     return m;
 }
 
@@ -114,16 +115,11 @@ fn facets_in_disc(reach2: f32, off2: f32, alpha2: f32) -> f32 {
     return 0.5 - 0.5 * (off2 + alpha2 - reach2) * inverseSqrt(max(sum * sum - 4.0 * off2 * reach2, 1e-30));
 }
 
-// Part of the facets whose slopes lie in a hexagon. GGX over the plane of slopes is the form factor of that plane
-// seen from a height alpha, so Lambert's formula gives it.
-fn facets_in_hexagon(slopes: array<vec2f, 6>, alpha: f32) -> f32 {
-    let up = vec3f(0.0, 0.0, 1.0);
-    var sum = 0.0;
-    for (var i = 0u; i < 6u; i++) {
-        let next = select(i + 1u, 0u, i == 5u);
-        sum += edge_part(vec3f(slopes[i], alpha), vec3f(slopes[next], alpha), up);
-    }
-    return abs(sum) / (2.0 * PI);
+// One edge's part of the facets whose slopes lie in a polygon. GGX over the plane of slopes is the form factor of that
+// plane seen from a height alpha, so Lambert's formula gives it.
+fn slope_edge(a: vec2f, b: vec2f, alpha2: f32) -> f32 {
+    let scale = inverseSqrt((dot(a, a) + alpha2) * (dot(b, b) + alpha2));
+    return (a.x * b.y - a.y * b.x) * scale * angle_over_sine((dot(a, b) + alpha2) * scale);
 }
 
 // Highlight of an emitter of unit luminance with a middle and half axes: mirrored to half vectors it covers a region of
@@ -153,7 +149,9 @@ fn highlight(s: Shading, a: Arrival, round: bool) -> vec3f {
         middle = 0.5 * (r + w);
         slope_u = 0.5 * (r - w);
         slope_v = 0.25 * (t + u - p - q);
-        part = facets_in_hexagon(array(p, q, r, t, u, w), sqrt(alpha2));
+        let sum = slope_edge(p, q, alpha2) + slope_edge(q, r, alpha2) + slope_edge(r, t, alpha2)
+            + slope_edge(t, u, alpha2) + slope_edge(u, w, alpha2) + slope_edge(w, p, alpha2);
+        part = abs(sum) / (2.0 * PI);
     }
     // Where the mirror direction is, in half axes from the emitter's middle.
     let area = slope_u.x * slope_v.y - slope_u.y * slope_v.x;

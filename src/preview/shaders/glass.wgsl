@@ -6,6 +6,9 @@ override HAS_DELTA: bool = true;
 override HAS_SPHERES: bool = true;
 override HAS_RECTS: bool = true;
 override HAS_DISCS: bool = true;
+// Mirrors show a light however far it is.
+const LISTED: bool = false;
+const HAS_BEAMS: bool = true;
 
 struct Corner {
     @builtin(position) clip: vec4f,

@@ -1,4 +1,7 @@
-// The lighting pass: every pixel of the G-buffer under every light.
+// The lighting pass: every pixel of the G-buffer under every light that reaches it.
+//
+// `fragment` lights each pixel. `cell` lights one pixel in four for `resolve.wgsl`, which spreads it: a draft for
+// rasterisers on a processor while something moves.
 
 // Whether the picture leaves as scene-linear light or as it is shown.
 override LINEAR: bool = false;
@@ -11,6 +14,10 @@ override HAS_DISCS: bool = true;
 override MASKS: u32 = 0;
 // Picture pixels a mask pixel, along each side.
 override SCALE: u32 = 1;
+// Whether each tile of the picture has its own list of lights.
+override LISTED: bool = false;
+// Whether any light's modifier narrows its beam.
+override HAS_BEAMS: bool = true;
 
 @group(1) @binding(0) var gbuffer: texture_2d<u32>;
 @group(1) @binding(1) var ids: texture_2d<u32>;
@@ -21,24 +28,22 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     return fullscreen_corner(index);
 }
 
-fn shown(radiance: vec3f, at: vec2f) -> vec4f {
-    if LINEAR {
-        return vec4f(radiance, 1.0);
-    }
-    // Less than one code of noise (Jimenez 2014, interleaved gradient noise), so that soft backdrops show no bands.
-    let noise = fract(52.9829189 * fract(dot(at, vec2f(0.06711056, 0.00583715)))) - 0.5;
-    return vec4f(srgb_encode(tone_curve(radiance)) + noise * (0.9 / 255.0), 1.0);
+// Of each light at the pixel: how much passes.
+var<private> shadows: array<vec4f, 4>;
+
+// Light that leaves a pixel: for each unit of its base colour, and the rest.
+struct Lit {
+    matte: vec3f,
+    glossy: vec3f,
 }
 
-// An emitter with a size. What has none of its light above the horizon gives no highlight either.
-fn reflected(s: Shading, light: u32, a: Arrival, round: bool) -> vec3f {
-    let diffuse = s.material.diffuse * (a.irradiance / PI);
-    let glossy = highlight(s, a, round);
-    return (diffuse + select(vec3f(0.0), glossy, a.irradiance > 0.0)) * lights[light].color * a.passed;
+// Highlight of an emitter with a size. What has none of its light above the horizon gives no highlight either.
+fn seen_highlight(s: Shading, a: Arrival, round: bool) -> vec3f {
+    return select(vec3f(0.0), highlight(s, a, round), a.irradiance > 0.0);
 }
 
-// Shadows of four lights at a pixel. A mask of half the size is read at the four pixels around, as far as they lie on
-// the pixel's own plane.
+// Shadows of four lights at a pixel. A mask of a part of the size is read at the four pixels around, as far as they lie
+// on the pixel's own plane.
 fn shadow(mask: u32, at: vec2f, depth: f32, face: vec3f) -> vec4f {
     if SCALE == 1u {
         return unpack4x8unorm(textureLoad(masks, vec2i(at), mask, 0).x);
@@ -65,88 +70,130 @@ fn shadow(mask: u32, at: vec2f, depth: f32, face: vec3f) -> vec4f {
     return sum / total;
 }
 
-@fragment
-fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
-    let pixel = vec2i(at.xy);
-    let id = textureLoad(ids, pixel, 0).xy;
-    let packed = textureLoad(gbuffer, pixel, 0);
-    let kind = packed.y >> 30u;
-    let depth = max(bitcast<f32>(id.y), 1e-9);
-    let ray = pixel_ray(at.xy);
-    let gloss = unpack_gloss(packed.w);
-    let face = unpack_direction(packed.z);
-    let position = frame.eye + ray * (frame.near_m / depth);
-    let s = shading(position, unpack_direction(packed.x), -normalize(ray), unpack_color(packed.y), gloss);
-
-    var lit: array<vec4f, 4>;
-    for (var mask = 0u; mask < MASKS; mask++) {
-        lit[mask] = shadow(mask, at.xy, depth, face);
-    }
-    var radiance = s.material.diffuse * ambient(s.normal) / PI;
-    radiance += environment(position, reflect(-s.view, s.normal), gloss.x) * s.material.reflectance;
-
-    // The loops test at their end: there is at least one light of a family, and a rasteriser on a processor pays for
-    // the turn that a test at the start would leave at once.
-    if HAS_DELTA {
-        var light = 0u;
-        loop {
-            let a = delta_arrival(light, position);
-            let glossy = glint(s, a.xyz, lights[light].radius);
-            let diffuse = s.material.diffuse * (max(dot(s.normal, a.xyz), 0.0) / PI);
-            radiance += (diffuse + glossy) * lights[light].color * (a.w * lit_by(&lit, light));
-            light++;
-            continuing {
-                break if light >= frame.light_ends.x;
-            }
-        }
-    }
-    if HAS_SPHERES {
-        var light = frame.light_ends.x;
-        loop {
-            let a = sphere_arrival(light, position, s.normal);
-            radiance += reflected(s, light, a, true) * lit_by(&lit, light);
-            light++;
-            continuing {
-                break if light >= frame.light_ends.y;
-            }
-        }
-    }
-    if HAS_RECTS {
-        var light = frame.light_ends.y;
-        loop {
-            let a = panel_arrival(light, position, s.normal, false);
-            radiance += reflected(s, light, a, false) * lit_by(&lit, light);
-            light++;
-            continuing {
-                break if light >= frame.light_ends.z;
-            }
-        }
-    }
-    if HAS_DISCS {
-        var light = frame.light_ends.z;
-        loop {
-            let a = panel_arrival(light, position, s.normal, true);
-            radiance += reflected(s, light, a, true) * lit_by(&lit, light);
-            light++;
-            continuing {
-                break if light >= frame.light_ends.w;
-            }
-        }
-    }
-    // Kinds: 1 lit and glowing, 2 an emitter's front.
-    if kind != 0u {
-        radiance = select(radiance, vec3f(0.0), kind == 2u) + surfaces[(id.x & MARK_NUMBER) - 1u].emission;
-    }
-    return shown(select(radiance, frame.void_radiance, id.x == 0u), at.xy);
-}
-
 // Shadow of a light: four lights a mask, the rest are lit.
-fn lit_by(lit: ptr<function, array<vec4f, 4>>, light: u32) -> f32 {
+fn lit_by(light: u32) -> f32 {
     if MASKS == 0u {
         return 1.0;
     }
     if MASKS == 1u {
-        return select(1.0, (*lit)[0][light & 3u], light < 4u);
+        return select(1.0, shadows[0][light & 3u], light < 4u);
     }
-    return select(1.0, (*lit)[(light >> 2u) & 3u][light & 3u], light < 4u * MASKS);
+    return select(1.0, shadows[(light >> 2u) & 3u][light & 3u], light < 4u * MASKS);
+}
+
+// The G-buffer at a pixel, and where it stands.
+struct Sample {
+    packed: vec4u,
+    id: vec2u,
+    at: vec2f,
+}
+
+fn sample_at(pixel: vec2u) -> Sample {
+    return Sample(textureLoad(gbuffer, pixel, 0), textureLoad(ids, pixel, 0).xy, vec2f(pixel) + 0.5);
+}
+
+fn read_shadows(p: Sample) {
+    let face = unpack_direction(p.packed.z);
+    for (var mask = 0u; mask < MASKS; mask++) {
+        shadows[mask] = shadow(mask, p.at, max(bitcast<f32>(p.id.y), 1e-9), face);
+    }
+}
+
+// The loops test at their end: there is at least one light of a family, and a rasteriser on a processor pays for the
+// turn that a test at the start would leave at once.
+fn lit(p: Sample) -> Lit {
+    let depth = max(bitcast<f32>(p.id.y), 1e-9);
+    let ray = pixel_ray(p.at);
+    let gloss = unpack_gloss(p.packed.w);
+    let position = frame.eye + ray * (frame.near_m / depth);
+    let s = shading(position, unpack_direction(p.packed.x), -normalize(ray), unpack_color(p.packed.y), gloss);
+    var matte = ambient(s.normal);
+    var glossy = environment(position, reflect(-s.view, s.normal), gloss.x) * s.material.reflectance;
+
+    let tile = tile_at(p.at);
+    if HAS_DELTA {
+        var k = 0u;
+        loop {
+            let light = listed_light(tile, k);
+            let a = delta_arrival(light, position);
+            let color = lights[light].color * (a.w * lit_by(light) * present(k, deltas_end(tile)));
+            matte += color * max(dot(s.normal, a.xyz), 0.0);
+            glossy += glint(s, a.xyz, lights[light].radius) * color;
+            k++;
+            continuing {
+                break if k >= deltas_end(tile);
+            }
+        }
+    }
+    if HAS_SPHERES {
+        var k = deltas_end(tile);
+        loop {
+            let light = listed_light(tile, k);
+            let a = sphere_arrival(light, position, s.normal);
+            let color = lights[light].color * (lit_by(light) * present(k, spheres_end(tile)) * reach(light, a.centre) * a.passed);
+            matte += color * a.irradiance;
+            glossy += color * seen_highlight(s, a, true);
+            k++;
+            continuing {
+                break if k >= spheres_end(tile);
+            }
+        }
+    }
+    if HAS_RECTS {
+        var k = spheres_end(tile);
+        loop {
+            let light = listed_light(tile, k);
+            let a = panel_arrival(light, position, s.normal, false);
+            let color = lights[light].color * (lit_by(light) * present(k, rects_end(tile)) * reach(light, a.centre) * a.passed);
+            matte += color * a.irradiance;
+            glossy += color * seen_highlight(s, a, false);
+            k++;
+            continuing {
+                break if k >= rects_end(tile);
+            }
+        }
+    }
+    if HAS_DISCS {
+        var k = rects_end(tile);
+        loop {
+            let light = listed_light(tile, k);
+            let a = panel_arrival(light, position, s.normal, true);
+            let color = lights[light].color * (lit_by(light) * present(k, discs_end(tile)) * reach(light, a.centre) * a.passed);
+            matte += color * a.irradiance;
+            glossy += color * seen_highlight(s, a, true);
+            k++;
+            continuing {
+                break if k >= discs_end(tile);
+            }
+        }
+    }
+    matte *= s.material.matte / PI;
+    // Kinds: 1 lit and glowing, 2 an emitter's front.
+    let kind = p.packed.y >> 30u;
+    if kind != 0u {
+        glossy = select(glossy, vec3f(0.0), kind == 2u) + surfaces[(p.id.x & MARK_NUMBER) - 1u].emission;
+    }
+    glossy = select(glossy, frame.void_radiance, p.id.x == 0u);
+    return Lit(matte, glossy);
+}
+
+@fragment
+fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    let p = sample_at(vec2u(at.xy));
+    read_shadows(p);
+    let out = lit(p);
+    let radiance = select(unpack_color(p.packed.y), vec3f(0.0), p.id.x == 0u) * out.matte + out.glossy;
+    if LINEAR {
+        return vec4f(radiance, 1.0);
+    }
+    return shown(radiance, at.xy);
+}
+
+// One pixel in four: matte and glossy light, normal, depth.
+@fragment
+fn cell(@builtin(position) at: vec4f) -> @location(0) vec4u {
+    let p = sample_at(min(vec2u(at.xy) * 2u, vec2u(frame.size) - 1u));
+    read_shadows(p);
+    let out = lit(p);
+    return vec4u(pack_radiance(out.matte), pack_radiance(out.glossy), p.packed.x, p.id.y);
 }

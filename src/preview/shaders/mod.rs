@@ -18,6 +18,9 @@ pub(super) const LIGHTING: &str = concat!(
     include_str!("tone.wgsl"),
     include_str!("lighting.wgsl")
 );
+/// Light of a quarter of the pixels, spread over all.
+pub(super) const RESOLVE: &str =
+    concat!(include_str!("scene.wgsl"), include_str!("tone.wgsl"), include_str!("resolve.wgsl"));
 /// Glass over the lit picture.
 pub(super) const GLASS: &str = concat!(
     include_str!("scene.wgsl"),
@@ -52,6 +55,7 @@ mod tests {
             ("shadow mask", SHADOW_MASK),
             ("shadow blur", SHADOW_BLUR),
             ("lighting", LIGHTING),
+            ("resolve", RESOLVE),
             ("glass", GLASS),
             ("overlay", OVERLAY),
             ("outline", OUTLINE),

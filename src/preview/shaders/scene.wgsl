@@ -8,7 +8,8 @@ struct Frame {
     near_m: f32,
     // World directions: ray through the picture's middle (1 m along the axis) and half the picture to the right and up.
     ray_centre: vec3f,
-    unused_5: f32,
+    // Picture pixels a pixel of the shadow masks, along each side.
+    mask_scale: u32,
     ray_right: vec3f,
     unused_6: f32,
     ray_up: vec3f,
@@ -73,7 +74,8 @@ struct Light {
     axis: vec3f,
     radius: f32,
     color: vec3f,
-    area_m2: f32,
+    // Distance at which it falls under 1/256 of display white, metres; none where 0.
+    reach_m: f32,
     // Half angles of its beam: even, whole, where a grid ends; and whether any of these or doors cut anything.
     beam_rad: vec3f,
     has_beam: u32,
@@ -83,7 +85,15 @@ struct Light {
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<storage, read> surfaces: array<Surface>;
-@group(0) @binding(2) var<storage, read> lights: array<Light>;
+@group(0) @binding(2) var<uniform> lights: array<Light, 256>;
+// Lights that reach each tile of the picture, a row of tiles after the other: one past the last of each family, then
+// their indices, four a word.
+@group(0) @binding(3) var<uniform> tiles: array<vec4u, TILES_LENGTH>;
+
+const TILE_COLUMNS: u32 = 16u;
+const TILE_ROWS: u32 = 9u;
+const TILE_STRIDE: u32 = 17u;
+const TILES_LENGTH: u32 = TILE_COLUMNS * TILE_ROWS * TILE_STRIDE;
 
 // A unit vector as a point of the octahedron folded into a square, 16 bits each way (Cigolle et al. 2014).
 fn pack_direction(v: vec3f) -> u32 {
@@ -119,6 +129,29 @@ fn pack_gloss(roughness: f32, metallic: f32, ior: f32) -> u32 {
 // Roughness, square root of the dielectric's reflectance, metallic.
 fn unpack_gloss(packed: u32) -> vec3f {
     return vec3f(vec3u(packed, packed >> 12u, packed >> 24u) & vec3u(4095u, 4095u, 255u)) / vec3f(4095.0, 4095.0, 255.0);
+}
+
+// Radiance or irradiance as three mantissas of nine bits and one exponent of five (the RGB9E5 of graphics interfaces):
+// 0.2 % of the largest channel, from 2^-24 to 65408.
+fn pack_radiance(value: vec3f) -> u32 {
+    let color = clamp(value, vec3f(0.0), vec3f(65408.0));
+    let largest = max(max(color.x, color.y), max(color.z, 1.5258789e-5));
+    // The exponent of the largest channel; one more where its mantissa rounds up to 512.
+    let least = i32(bitcast<u32>(largest) >> 23u) - 111;
+    let fits = u32(largest * ldexp_24(least) + 0.5) < 512u;
+    let exponent = select(least + 1, least, fits);
+    let q = vec3u(color * ldexp_24(exponent) + 0.5);
+    return q.x | (q.y << 9u) | (q.z << 18u) | (u32(exponent) << 27u);
+}
+
+// 2^(24 - exponent): mantissas for each unit.
+fn ldexp_24(exponent: i32) -> f32 {
+    return bitcast<f32>(u32(151 - exponent) << 23u);
+}
+
+fn unpack_radiance(packed: u32) -> vec3f {
+    let q = vec3f(vec3u(packed, packed >> 9u, packed >> 18u) & vec3u(511u));
+    return q * bitcast<f32>(((packed >> 27u) + 103u) << 23u);
 }
 
 fn world_from_object(s: u32, p: vec3f) -> vec3f {

@@ -4,8 +4,6 @@
 @group(1) @binding(1) var ids: texture_2d<u32>;
 @group(2) @binding(0) var mask: texture_2d<u32>;
 
-override SCALE: u32 = 1;
-
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     return fullscreen_corner(index);
@@ -16,12 +14,12 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec2u {
     let cell = vec2i(at.xy);
     let last = vec2i(textureDimensions(mask)) - 1;
     let own = textureLoad(mask, cell, 0).y;
-    let pixel = min(vec2u(cell) * SCALE, vec2u(frame.size) - 1u);
+    let pixel = min(vec2u(cell) * frame.mask_scale, vec2u(frame.size) - 1u);
     let face = unpack_direction(textureLoad(gbuffer, pixel, 0).z);
     // Depth over a plane goes with the cosine between ray and normal.
     let here = dot(face, pixel_ray(vec2f(pixel) + 0.5));
-    let right = dot(face, frame.ray_right) * 2.0 * f32(SCALE) / frame.size.x;
-    let down = -dot(face, frame.ray_up) * 2.0 * f32(SCALE) / frame.size.y;
+    let right = dot(face, frame.ray_right) * 2.0 * f32(frame.mask_scale) / frame.size.x;
+    let down = -dot(face, frame.ray_up) * 2.0 * f32(frame.mask_scale) / frame.size.y;
     let scale = bitcast<f32>(own) / select(here, 1e-6, abs(here) < 1e-6);
     var sum = vec4f(0.0);
     var count = 0.0;

@@ -5,7 +5,8 @@
 // the receiver's own plane gives the exact depth at every texel: a flat receiver never shadows itself, however wide the
 // kernel, and needs next to no bias.
 //
-// Everything is straight-line code with fixed taps: a processor that rasterises runs all branches anyway.
+// A processor that rasterises runs both sides of every branch; only a loop's end saves it work. So what the search has
+// settled ends the filter's loop, whose end must not be known when the shader is compiled, lest it be unrolled.
 
 // One light's view; twin of `GpuShadowSlot`.
 struct Slot {
@@ -33,12 +34,10 @@ struct Slot {
 @group(2) @binding(0) var shadow_maps: texture_depth_2d_array;
 @group(3) @binding(0) var<uniform> slots: array<Slot, 4>;
 
-// Picture pixels a mask pixel, along each side.
-override SCALE: u32 = 1;
-
-const SEARCH_TAPS: u32 = 8u;
+const SEARCH_TAPS: u32 = 6u;
 const FILTER_TAPS: u32 = 10u;
-const GOLDEN_ANGLE: f32 = 2.39996323;
+// Turn by the golden angle, from one tap to the next.
+const GOLDEN_TURN: mat2x2f = mat2x2f(-0.737368878, 0.675490294, -0.675490294, -0.737368878);
 // Nothing blocks a light closer to the receiver than this part of the distance, and metres in a parallel view.
 const RELATIVE_BIAS: f32 = 5e-4;
 const PARALLEL_BIAS_M: f32 = 1e-3;
@@ -123,11 +122,6 @@ fn receiver(slot: u32, position: vec3f, face: vec3f, draw: f32) -> Receiver {
     return r;
 }
 
-fn direction(i: u32) -> vec2f {
-    let angle = f32(i) * GOLDEN_ANGLE;
-    return vec2f(cos(angle), sin(angle));
-}
-
 // How far before the receiver (in depth) what stands in the light's way at a tap is (x), and whether it does (y). It does
 // if it lies before the receiver's plane and inside the cone from the receiver to the emitter's outline: what is merely
 // beside, like the rise of a hollow, takes nothing. `spread` is the cone's growth in texels for each unit of depth.
@@ -145,10 +139,16 @@ fn blocker_at(r: Receiver, tap: vec2f, spread: vec2f) -> vec2f {
 
 // Fraction of a light that passes: 1 lit, 0 in full shadow. `turn` rotates the taps, `draw` lies
 // evenly in 0..1.
-fn visibility(slot: u32, position: vec3f, face: vec3f, turn: mat2x2f, draw: f32) -> f32 {
+fn visibility(slot: u32, position: vec3f, face: vec3f, turn: vec2f, draw: f32) -> f32 {
     let r = receiver(slot, position, face, draw);
     let parallel = slots[slot].kind == 2u;
     let near = slots[slot].near_m;
+    // The emitter lies wholly below the horizon of the face.
+    let to_light = slots[slot].position - position;
+    let height = select(dot(face, to_light), -dot(face, slots[slot].forward), parallel);
+    let below = height < -length(slots[slot].softness) && slots[slot].kind != 0u;
+    // Nothing to look for.
+    let settled = !r.inside || slots[slot].kind == 0u || below;
     let softness = max(slots[slot].softness * r.foreshortening, vec2f(1e-5)) * (r.resolution / slots[slot].field);
     let spread = softness * select(1.0 / near, near, parallel);
     // Blockers are sought as far as the emitter's outline falls for one half-way to the light, and more densely near
@@ -158,26 +158,41 @@ fn visibility(slot: u32, position: vec3f, face: vec3f, turn: mat2x2f, draw: f32)
     let least = select(0.02 * r.depth, 0.01, parallel);
     // Mean gap to the blockers; each counts by how much of the emitter it can cover from there.
     var found = vec2f(0.0);
+    var hits = 0u;
+    var tap = turn;
     for (var i = 0u; i < SEARCH_TAPS; i++) {
         let part = f32(i) / f32(SEARCH_TAPS - 1u);
-        let blocker = blocker_at(r, turn * (direction(i) * part * part) * search, spread);
+        let blocker = blocker_at(r, tap * (part * part) * search, spread);
         let apart = blocker.x + least;
         found += vec2f(blocker.x, 1.0) * (blocker.y / (apart * apart));
+        hits += u32(blocker.y);
+        tap = GOLDEN_TURN * tap;
     }
     let gap = found.x / max(found.y, 1e-6);
     let radius = clamp(spread * gap, vec2f(0.7), vec2f(reach));
     var blocked = 0.0;
-    for (var i = 0u; i < FILTER_TAPS; i++) {
-        blocked += blocker_at(r, turn * (direction(i) * sqrt((f32(i) + 0.5) / f32(FILTER_TAPS))) * radius, spread).y;
+    tap = turn;
+    var i = 0u;
+    // No blocker at all, or nothing but blockers as far as the emitter's outline falls.
+    let whole = hits == SEARCH_TAPS && all(radius <= search);
+    let known = settled || hits == 0u || whole;
+    let filter_taps = select(FILTER_TAPS, 1u, known);
+    loop {
+        blocked += blocker_at(r, tap * sqrt((f32(i) + 0.5) / f32(FILTER_TAPS)) * radius, spread).y;
+        tap = GOLDEN_TURN * tap;
+        i++;
+        continuing {
+            break if i >= filter_taps;
+        }
     }
-    let whole = !r.inside || slots[slot].kind == 0u || found.y == 0.0;
-    return select(1.0 - blocked / f32(FILTER_TAPS), 1.0, whole);
+    let searched = select(1.0 - blocked / f32(FILTER_TAPS), select(1.0, 0.0, whole), known);
+    return select(searched, select(1.0, 0.0, below), settled);
 }
 
 @fragment
 fn fragment(@builtin(position) at: vec4f) -> @location(0) vec2u {
     let cell = vec2u(at.xy);
-    let pixel = min(cell * SCALE, vec2u(frame.size) - 1u);
+    let pixel = min(cell * frame.mask_scale, vec2u(frame.size) - 1u);
     let depth = textureLoad(ids, pixel, 0).y;
     let face = unpack_direction(textureLoad(gbuffer, pixel, 0).z);
     let ray = pixel_ray(vec2f(pixel) + 0.5);
@@ -187,7 +202,7 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec2u {
     let angle = ninth * (2.0 * PI / 9.0);
     // Another order than the angle's, so that the two do not go together.
     let draw = (f32((u32(ninth) * 4u) % 9u) + 0.5) / 9.0;
-    let turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle));
+    let turn = vec2f(cos(angle), sin(angle));
     let lit = vec4f(
         visibility(0u, position, face, turn, draw),
         visibility(1u, position, face, turn, draw),

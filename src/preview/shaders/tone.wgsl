@@ -13,3 +13,10 @@ fn srgb_encode(linear: vec3f) -> vec3f {
     let curved = 1.055 * pow(max(linear, vec3f(0.0)), vec3f(1.0 / 2.4)) - 0.055;
     return select(curved, 12.92 * linear, linear <= vec3f(0.0031308));
 }
+
+// A pixel as it is shown, with less than one code of noise (Jimenez 2014, interleaved gradient noise), so that soft
+// backdrops show no bands.
+fn shown(radiance: vec3f, at: vec2f) -> vec4f {
+    let noise = fract(52.9829189 * fract(dot(at, vec2f(0.06711056, 0.00583715)))) - 0.5;
+    return vec4f(srgb_encode(tone_curve(radiance)) + noise * (0.9 / 255.0), 1.0);
+}

@@ -1,0 +1,81 @@
+//! The passes that light the G-buffer: in full, or as a draft that lights one pixel in four and spreads the light.
+
+use super::pipelines::{self, Layouts, LightingVariant};
+use super::targets::Targets;
+use eframe::wgpu;
+use std::collections::HashMap;
+
+/// Pipelines of the lighting passes, compiled when a scene first needs them.
+#[derive(Debug)]
+pub(super) struct LightingPasses {
+    lighting: HashMap<LightingVariant, wgpu::RenderPipeline>,
+    glass: HashMap<LightingVariant, wgpu::RenderPipeline>,
+    resolve: wgpu::RenderPipeline,
+}
+
+/// What the lighting passes read.
+pub(super) struct LightingInput<'a> {
+    pub scene: &'a wgpu::BindGroup,
+    pub targets: &'a Targets,
+    pub masks: &'a wgpu::BindGroup,
+}
+
+impl LightingPasses {
+    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
+        let resolve = pipelines::resolve(device, layouts);
+        LightingPasses { lighting: HashMap::new(), glass: HashMap::new(), resolve }
+    }
+
+    /// The pipeline of glass over the lit picture.
+    pub fn glass(
+        &mut self,
+        device: &wgpu::Device,
+        layouts: &Layouts,
+        variant: LightingVariant,
+    ) -> &wgpu::RenderPipeline {
+        self.glass.entry(variant).or_insert_with(|| pipelines::glass(device, layouts, &variant))
+    }
+
+    /// Lights the picture as the variant says.
+    pub fn draw(
+        &mut self,
+        device: &wgpu::Device,
+        layouts: &Layouts,
+        encoder: &mut wgpu::CommandEncoder,
+        input: &LightingInput,
+        variant: LightingVariant,
+    ) {
+        let lighting =
+            self.lighting.entry(variant).or_insert_with(|| pipelines::lighting(device, layouts, &variant));
+        let target = if variant.cells { &input.targets.cells } else { &input.targets.color_view };
+        fullscreen_pass(encoder, "lighting", target, lighting, [input.scene, &input.targets.lookup, input.masks]);
+        if variant.cells {
+            let groups = [input.scene, &input.targets.lookup, &input.targets.cells_lookup];
+            fullscreen_pass(encoder, "resolve", &input.targets.color_view, &self.resolve, groups);
+        }
+    }
+}
+
+fn fullscreen_pass(
+    encoder: &mut wgpu::CommandEncoder,
+    label: &str,
+    view: &wgpu::TextureView,
+    pipeline: &wgpu::RenderPipeline,
+    groups: [&wgpu::BindGroup; 3],
+) {
+    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+        })],
+        ..Default::default()
+    });
+    pass.set_pipeline(pipeline);
+    for (index, group) in (0..).zip(groups) {
+        pass.set_bind_group(index, group, &[]);
+    }
+    pass.draw(0..3, 0..1);
+}
