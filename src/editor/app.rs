@@ -153,13 +153,15 @@ impl App {
         self.centre
     }
 
-    /// Whether something is on its way in the background: files, a render, the preview's start, a file dialog.
+    /// Whether something is on its way in the background: files, a render, the preview's start or its
+    /// picture in full, a file dialog.
     pub fn is_busy(&self) -> bool {
         self.tasks.is_busy()
             || self.rendering.is_busy()
             || self.meter.is_busy()
             || self.session.is_waiting()
             || self.viewport.preview.is_starting()
+            || (self.viewport.preview.is_draft() && self.centre != Centre::Picture)
     }
 
     /// From the start of the program to the end of the first frame.

@@ -9,6 +9,9 @@ use eframe::wgpu;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
+/// How long nothing must change before a draft gives way to the picture in full.
+const SETTLED: Duration = Duration::from_millis(120);
+
 #[derive(Debug)]
 enum Stage {
     /// The pipelines are being compiled.
@@ -34,6 +37,8 @@ pub struct PreviewHost {
     state: Option<RenderState>,
     texture: Option<(TextureId, u64)>,
     shown: Option<Shown>,
+    /// When the picture on show was drawn, if it is a draft.
+    draft_since: Option<Instant>,
     /// Pictures drawn so far.
     draws: u64,
     last_draw: Duration,
@@ -52,7 +57,15 @@ impl PreviewHost {
             Some(state) => start(state, ctx),
             None => Stage::Failed("The window has no wgpu device, so there is no live view.".to_owned()),
         };
-        PreviewHost { stage, state: state.cloned(), texture: None, shown: None, draws: 0, last_draw: Duration::ZERO }
+        PreviewHost {
+            stage,
+            state: state.cloned(),
+            texture: None,
+            shown: None,
+            draft_since: None,
+            draws: 0,
+            last_draw: Duration::ZERO,
+        }
     }
 
     /// Why there is no preview.
@@ -66,6 +79,11 @@ impl PreviewHost {
     /// Whether the preview is still being built.
     pub fn is_starting(&self) -> bool {
         matches!(self.stage, Stage::Starting(_))
+    }
+
+    /// Whether the picture on show is a draft that is about to be drawn in full.
+    pub fn is_draft(&self) -> bool {
+        self.draft_since.is_some()
     }
 
     /// Pictures drawn so far; does not grow while nothing changes.
@@ -86,35 +104,53 @@ impl PreviewHost {
         }
     }
 
-    /// The picture of the studio from `frame`, drawn anew if anything of it changed.
+    /// The picture of the studio from `frame`, drawn anew if anything of it changed: as a draft where the adapter is a
+    /// processor, and in full as soon as nothing has changed for a moment.
     pub fn show(
         &mut self,
+        ctx: &Context,
         document: &Document,
         frame: CameraFrame,
         size: (u32, u32),
         overlay: Overlay,
     ) -> Option<TextureId> {
         self.finish_start();
-        let Stage::Ready(renderer) = &mut self.stage else { return None };
+        let Stage::Ready(renderer) = &self.stage else { return None };
+        let drafts = renderer.draws_drafts();
         let wanted = Shown { revision: document.revision(), frame, size, overlay, options: Options::default() };
-        if self.shown.as_ref() != Some(&wanted) {
-            let began = Instant::now();
-            let input = PreviewInput {
-                scene: document.scene(),
-                assets: document.assets(),
-                frame,
-                size,
-                overlay: wanted.overlay.clone(),
-                options: wanted.options,
-            };
-            if let Err(error) = renderer.render(&input) {
-                self.stage = Stage::Failed(super::files::plain(&error));
-                return None;
-            }
-            (self.draws, self.last_draw, self.shown) = (self.draws + 1, began.elapsed(), Some(wanted));
-            self.register();
+        let changed = self.shown.as_ref() != Some(&wanted);
+        let settled = self.draft_since.is_some_and(|since| since.elapsed() >= SETTLED);
+        if changed || settled {
+            // The very first picture is drawn in full: there is no motion to keep up with.
+            let draft = changed && drafts && self.shown.is_some();
+            self.draw(document, wanted, draft)?;
+            self.draft_since = draft.then(Instant::now);
+        }
+        if let Some(since) = self.draft_since {
+            ctx.request_repaint_after(SETTLED.saturating_sub(since.elapsed()));
         }
         self.texture.map(|(id, _)| id)
+    }
+
+    fn draw(&mut self, document: &Document, wanted: Shown, draft: bool) -> Option<()> {
+        let Stage::Ready(renderer) = &mut self.stage else { return None };
+        let began = Instant::now();
+        let input = PreviewInput {
+            scene: document.scene(),
+            assets: document.assets(),
+            frame: wanted.frame,
+            size: wanted.size,
+            overlay: wanted.overlay.clone(),
+            options: Options { draft, ..wanted.options },
+        };
+        if let Err(error) = renderer.render(&input) {
+            self.stage = Stage::Failed(super::files::plain(&error));
+            self.draft_since = None;
+            return None;
+        }
+        (self.draws, self.last_draw, self.shown) = (self.draws + 1, began.elapsed(), Some(wanted));
+        self.register();
+        Some(())
     }
 
     fn finish_start(&mut self) {

@@ -196,7 +196,7 @@ impl Viewport {
         let pixels = rect.size() * ui.pixels_per_point();
         let size = ((pixels.x.round() as u32).max(1), (pixels.y.round() as u32).max(1));
         let overlay = overlay_of(input);
-        match self.preview.show(input.document, frame, size, overlay) {
+        match self.preview.show(ui.ctx(), input.document, frame, size, overlay) {
             Some(texture) => {
                 let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
                 painter.image(texture, rect, uv, egui::Color32::WHITE);

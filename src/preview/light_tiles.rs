@@ -77,10 +77,7 @@ mod tests {
     use glam::{Affine3A, Vec3};
 
     fn camera() -> CameraFrame {
-        CameraFrame {
-            world_from_camera: Affine3A::from_translation(Vec3::Z * 5.0),
-            half_extent: Vec2::new(0.5, 0.3),
-        }
+        CameraFrame { world_from_camera: Affine3A::from_translation(Vec3::Z * 5.0), half_extent: Vec2::new(0.5, 0.3) }
     }
 
     fn table(places: &[(Vec3, f32)]) -> LightTable {
@@ -101,8 +98,9 @@ mod tests {
     #[test]
     fn every_point_within_reach_lies_in_a_tile_that_lists_the_light() {
         let camera = camera();
-        let places: Vec<_> =
-            (0..40).map(|i| (Vec3::new((i % 7) as f32 - 3.0, (i % 5) as f32 - 2.0, (i % 11) as f32 - 5.0), 0.7)).collect();
+        let places: Vec<_> = (0..40)
+            .map(|i| (Vec3::new((i % 7) as f32 - 3.0, (i % 5) as f32 - 2.0, (i % 11) as f32 - 5.0), 0.7))
+            .collect();
         let tiles = light_tiles(&table(&places), &camera).unwrap();
         for (index, (place, reach)) in places.iter().enumerate() {
             for i in 0..200 {
@@ -110,7 +108,8 @@ mod tests {
                 let up = 1.0 - 2.0 * (i as f32 + 0.5) / 200.0;
                 let side = turn * (1.0 - up * up).sqrt();
                 let point = *place + Vec3::new(side.x, up, side.y) * *reach * 0.999;
-                let Some(seen) = camera.project(point).filter(|p| p.min_element() >= 0.0 && p.max_element() < 1.0) else {
+                let Some(seen) = camera.project(point).filter(|p| p.min_element() >= 0.0 && p.max_element() < 1.0)
+                else {
                     continue;
                 };
                 let (column, row) = ((seen.x * COLUMNS as f32) as usize, (seen.y * ROWS as f32) as usize);

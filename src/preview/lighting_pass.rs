@@ -45,8 +45,7 @@ impl LightingPasses {
         input: &LightingInput,
         variant: LightingVariant,
     ) {
-        let lighting =
-            self.lighting.entry(variant).or_insert_with(|| pipelines::lighting(device, layouts, &variant));
+        let lighting = self.lighting.entry(variant).or_insert_with(|| pipelines::lighting(device, layouts, &variant));
         let target = if variant.cells { &input.targets.cells } else { &input.targets.color_view };
         fullscreen_pass(encoder, "lighting", target, lighting, [input.scene, &input.targets.lookup, input.masks]);
         if variant.cells {

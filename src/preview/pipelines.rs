@@ -90,10 +90,7 @@ impl GeometryPipelines {
                 label: Some("geometry"),
                 layout: Some(&layout),
                 vertex: mesh_vertices(&module),
-                primitive: wgpu::PrimitiveState {
-                    cull_mode: sides.culled(),
-                    ..Default::default()
-                },
+                primitive: wgpu::PrimitiveState { cull_mode: sides.culled(), ..Default::default() },
                 depth_stencil: Some(wgpu::DepthStencilState {
                     bias: if sides == Sides::Room { BEHIND_COPLANAR } else { Default::default() },
                     ..nearer(DEPTH_FORMAT)

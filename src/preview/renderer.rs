@@ -304,7 +304,8 @@ impl PreviewRenderer {
 
     fn glass_pass(&mut self, encoder: &mut wgpu::CommandEncoder, list: &DrawList, table: &LightTable, output: Output) {
         let families = table.families();
-        let variant = LightingVariant { output, families, masks: 0, scale: 1, listed: false, beams: true, cells: false };
+        let variant =
+            LightingVariant { output, families, masks: 0, scale: 1, listed: false, beams: true, cells: false };
         let layouts =
             layouts(&self.buffers, &self.textures, &self.target_layouts, &self.shadow_maps, &self.shadow_masks);
         let pipeline = self.lighting.glass(&self.device, &layouts, variant).clone();

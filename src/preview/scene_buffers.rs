@@ -2,8 +2,8 @@
 
 use super::draw_list::GpuSurface;
 use super::environment::Environment;
-use super::light_tiles::TILES_BYTES;
 use super::light_table::{Ambient, GpuLight, MAX_LIGHTS};
+use super::light_tiles::TILES_BYTES;
 use crate::scene::CameraFrame;
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu;

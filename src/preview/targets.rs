@@ -112,10 +112,7 @@ pub(super) struct TargetLayouts {
 
 impl TargetLayouts {
     pub fn new(device: &wgpu::Device) -> Self {
-        TargetLayouts {
-            gbuffer: uint_layout(device, "G-buffer", 2),
-            cells: uint_layout(device, "light cells", 1),
-        }
+        TargetLayouts { gbuffer: uint_layout(device, "G-buffer", 2), cells: uint_layout(device, "light cells", 1) }
     }
 }
 

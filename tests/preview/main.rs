@@ -18,6 +18,8 @@ use std::sync::Arc;
 
 mod against_tracer;
 mod closed_forms;
+mod drafts;
+mod each_light;
 mod picture;
 
 /// A renderer, or a loud skip where the machine has no adapter and nobody insists on one.

@@ -1,0 +1,65 @@
+//! What is cheaper may show, but not much: drafts while something moves, lights that are left out beyond their reach.
+
+use super::*;
+
+/// Mean and 99th percentile of the differences between two pictures, codes of 255.
+fn differences(a: &image::RgbImage, b: &image::RgbImage) -> (f32, u8) {
+    let mut codes: Vec<u8> = a.as_raw().iter().zip(b.as_raw()).map(|(a, b)| a.abs_diff(*b)).collect();
+    codes.sort_unstable();
+    let mean = codes.iter().map(|c| f32::from(*c)).sum::<f32>() / codes.len() as f32;
+    (mean, codes[codes.len() * 99 / 100])
+}
+
+#[test]
+fn a_draft_shows_the_same_light_and_gives_way_to_the_very_same_picture() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    for name in ["three_point", "product_still_life", "gel_portrait"] {
+        let loaded = catchlight::io::find_preset(name).unwrap().load().unwrap();
+        let mut input = PreviewInput::camera_view(&loaded.scene, &loaded.assets, (481, 321));
+        let full = renderer.picture(&input).unwrap();
+        input.options.draft = true;
+        let (mean, most) = differences(&renderer.picture(&input).unwrap(), &full);
+        // One pixel in four is lit: what is lost are the finest highlights and the edges of shadows.
+        assert!(mean < 1.5 && most < 40, "{name}: {mean} codes in the mean, {most} in the 99th percentile");
+        if !renderer.draws_drafts() {
+            assert_eq!((mean, most), (0.0, 0), "a graphics card has no need of drafts");
+        }
+        input.options.draft = false;
+        assert_eq!(renderer.picture(&input).unwrap(), full, "{name}: a draft leaves nothing behind");
+    }
+}
+
+#[test]
+fn a_light_beyond_its_reach_is_not_missed() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    // Forty small lights over the floor: each reaches a part of it.
+    let mut scene = floor_under(light(0, Vec3::Y, Vec3::ZERO, Emitter::Point, Output::Candela(1.0)));
+    scene.lights = (0..40)
+        .map(|i| {
+            let place = Vec3::new((i % 8) as f32 * 1.2 - 4.2, 0.6, (i / 8) as f32 * 1.2 - 2.4);
+            let emitter = match i % 4 {
+                0 => Emitter::Point,
+                1 => Emitter::Sphere { radius_m: 0.05 },
+                2 => Emitter::RectPanel { width_m: 0.2, height_m: 0.3 },
+                _ => Emitter::RoundPanel { diameter_m: 0.2 },
+            };
+            light(i, place, Vec3::new(place.x, 0.0, place.z), emitter, Output::Candela(1.5))
+        })
+        .collect();
+    let mut input = direct(&scene, (301, 201));
+    input.options.shadows = false;
+    let near = renderer.linear_picture(&input).unwrap();
+    input.options.light_radius = false;
+    let all = renderer.linear_picture(&input).unwrap();
+    let luminance =
+        |picture: &Picture| -> Vec<f32> { picture.rgb.iter().map(|rgb| color::luminance((*rgb).into())).collect() };
+    let (near, all) = (luminance(&near), luminance(&all));
+    let lost: Vec<f32> = all.iter().zip(&near).map(|(all, near)| all - near).collect();
+    let most = lost.iter().fold(0.0_f32, |a, b| a.max(*b));
+    // Each of the forty is left out where it would give 1/256 to white paper; the card is a fifth of that.
+    assert!(most < 40.0 * 0.18 / 256.0 / 0.64, "{most} lost");
+    assert!(most > 0.0, "somewhere a light is out of reach");
+    assert!(lost.iter().all(|lost| *lost > -1e-3), "nothing is added");
+    let brightest = all.iter().fold(0.0_f32, |a, b| a.max(*b));
+    assert!(brightest > 0.01, "{brightest}");
+}
