@@ -1,7 +1,7 @@
 //! Directions to a rectangle, uniform in solid angle (Urena, Fajardo and King 2013, "An Area-Preserving
 //! Parametrization for Spherical Rectangles").
 
-use crate::math::{safe_acos, safe_sqrt};
+use crate::math::safe_sqrt;
 use glam::{Vec2, Vec3};
 use std::f32::consts::TAU;
 
@@ -30,7 +30,7 @@ pub struct SphericalRect {
     high: Vec2,
     z: f32,
     axis_z: Vec3,
-    /// Cosine terms of the lower and upper edge planes.
+    /// Cosines of the lower and upper edge planes.
     b0: f32,
     b1: f32,
     k: f32,
@@ -70,14 +70,45 @@ impl Rect {
         }
         let middle = Vec2::new(d.dot(self.right), d.dot(self.up));
         let (low, high) = (middle - self.half, middle + self.half);
-        // Normals of the planes through the point and each edge, Z component: the corner angles follow from them.
-        let plane = |y: f32| -> f32 { y / safe_sqrt(z * z + y * y).max(f32::MIN_POSITIVE) };
-        let (n0, n1, n2, n3) = (-plane(low.y), plane(high.x), plane(high.y), -plane(low.x));
-        let angles = safe_acos(-n0 * n1) + safe_acos(-n1 * n2) + safe_acos(-n2 * n3) + safe_acos(-n3 * n0);
-        let solid_angle = (angles - TAU).max(0.0);
-        let k = TAU - safe_acos(-n2 * n3) - safe_acos(-n3 * n0);
-        SphericalRect { rect: *self, low, high, z, axis_z, b0: n0, b1: n2, k, solid_angle }
+        // The angles add up to 2 pi and the solid angle. Each pair is known but for a full turn, which k can do
+        // without. From closer than some micrometres the whole half space may be taken for nothing: it is then sampled
+        // by area, as anything small.
+        let (edge0, edge1) = (EdgePlane::new(-low.y, z), EdgePlane::new(high.x, z));
+        let (edge2, edge3) = (EdgePlane::new(high.y, z), EdgePlane::new(-low.x, z));
+        let upper = sum_of_angles(edge2.corner(edge3), edge3.corner(edge0));
+        let excess = sum_of_angles(edge0.corner(edge1), edge1.corner(edge2)) + upper;
+        let turned = if excess < -1e-5 { excess + TAU } else { excess };
+        let solid_angle = if turned > TAU - 1e-5 { 0.0 } else { turned.max(0.0) };
+        let (b0, b1, k) = (edge0.cos, edge2.cos, -upper);
+        SphericalRect { rect: *self, low, high, z, axis_z, b0, b1, k, solid_angle }
     }
+}
+
+/// The plane through the viewer and an edge of the rectangle: cosine between its normal and the rectangle's, and the
+/// square of the sine, which keeps its digits where the rectangle is seen edge-on.
+#[derive(Clone, Copy, Debug)]
+struct EdgePlane {
+    cos: f32,
+    sin2: f32,
+}
+
+impl EdgePlane {
+    /// Of the edge at `offset` in the rectangle's plane, `z` away.
+    fn new(offset: f32, z: f32) -> Self {
+        let inverse = 1.0 / (z * z + offset * offset).max(f32::MIN_POSITIVE);
+        EdgePlane { cos: offset * safe_sqrt(inverse), sin2: z * z * inverse }
+    }
+
+    /// Cosine and sine of the corner that it makes with the plane of the next edge, which stands at right angles.
+    fn corner(self, next: EdgePlane) -> (f32, f32) {
+        (-self.cos * next.cos, safe_sqrt(self.sin2 + self.cos * self.cos * next.sin2))
+    }
+}
+
+/// Sum of two angles given by cosine and sine, but for a full turn: by one arc tangent, where arc cosines are slow and
+/// lose their digits near zero.
+fn sum_of_angles((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> f32 {
+    (sin_a * cos_b + cos_a * sin_b).atan2(cos_a * cos_b - sin_a * sin_b)
 }
 
 impl SphericalRect {
