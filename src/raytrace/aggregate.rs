@@ -1,16 +1,31 @@
-//! All that a ray can hit: the tree over the instances.
+//! All that a ray can hit: small things in one tree of world triangles, large ones as instances in a tree above theirs.
+//!
+//! An instance costs a ray a transform and a fresh start, dear for the dozen triangles of a wall. So meshes with few
+//! triangles are copied into one tree, where they stand; moving one of them costs building that tree anew, which is
+//! quick because it is small.
 
 use super::bvh::{self, Slabs, Stack, WideBvh};
 use super::geometry::{Instance, Surface};
 use super::simd::{self, Kernels, Query};
 use super::triangle::TriangleHit;
+use super::triangle_tree::TriangleTree;
 use crate::math::Ray;
 
-/// Instances and the tree over them.
+/// Meshes with up to this many triangles are copied into the tree of small things.
+const SMALL: usize = 4096;
+
+/// Instances and the trees over them.
 #[derive(Debug, Default)]
 pub struct Aggregate {
     instances: Vec<Instance>,
+    /// The triangles of small instances, in world space.
+    small: TriangleTree,
+    /// Instance and triangle of each triangle in `small`.
+    small_triangles: Vec<(u32, u32)>,
+    /// Over the boxes of the large instances.
     bvh: WideBvh,
+    /// Instance of each box in `bvh`.
+    large: Vec<u32>,
 }
 
 /// A hit of some instance.
@@ -23,12 +38,24 @@ pub struct Hit {
 }
 
 impl Aggregate {
-    /// Builds the top tree. Instances without triangles are dropped.
+    /// Builds the trees. Instances without triangles are never hit.
     pub fn new(instances: Vec<Instance>) -> Self {
-        let (instances, boxes): (Vec<_>, Vec<_>) =
-            instances.into_iter().filter_map(|i| i.world_bounds().map(|b| (i, b))).unzip();
+        let (mut small_triangles, mut large, mut boxes) = (Vec::new(), Vec::new(), Vec::new());
+        for (index, instance) in instances.iter().enumerate() {
+            let count = instance.geometry.mesh().triangles.len();
+            if count <= SMALL {
+                small_triangles.extend((0..count as u32).map(|triangle| (index as u32, triangle)));
+            } else if let Some(bounds) = instance.world_bounds() {
+                large.push(index as u32);
+                boxes.push(bounds);
+            }
+        }
+        let small = TriangleTree::new(small_triangles.len(), |i| {
+            let (instance, triangle) = small_triangles[i];
+            instances[instance as usize].world_corners(triangle as usize)
+        });
         let bvh = bvh::build(&boxes, 1);
-        Aggregate { instances, bvh }
+        Aggregate { instances, small, small_triangles, bvh, large }
     }
 
     /// The instances, in the order that [`Hit::instance`] counts.
@@ -66,17 +93,23 @@ impl Query for Closest<'_> {
     fn run<K: Kernels>(self) -> Option<Hit> {
         let Closest { aggregate, ray, stack } = self;
         let slabs = Slabs::new(ray.origin, ray.direction);
-        let mut best = None;
+        let mut best = aggregate.small.closest::<K>(ray, &slabs, stack).map(|hit| {
+            let (instance, triangle) = aggregate.small_triangles[hit.triangle as usize];
+            Hit { instance, triangle: TriangleHit { triangle, ..hit } }
+        });
+        let t_max = best.map_or(ray.t_max, |hit| hit.triangle.t);
         aggregate.bvh.nearest_first::<K>(
             &slabs,
-            ray.t_max,
+            t_max,
             stack,
             #[inline(always)]
             |leaf, mut t_max, stack| {
-                for &instance in aggregate.bvh.leaf(leaf) {
+                for &index in aggregate.bvh.leaf(leaf) {
+                    let instance = aggregate.large[index as usize];
                     let placed = &aggregate.instances[instance as usize];
                     let local = placed.to_object(&Ray { t_max, ..*ray });
-                    if let Some(triangle) = placed.geometry.closest::<K>(&local, stack) {
+                    let slabs = Slabs::new(local.origin, local.direction);
+                    if let Some(triangle) = placed.geometry.tree.closest::<K>(&local, &slabs, stack) {
                         t_max = triangle.t;
                         best = Some(Hit { instance, triangle });
                     }
@@ -102,6 +135,9 @@ impl Query for Blocked<'_> {
     fn run<K: Kernels>(self) -> bool {
         let Blocked { aggregate, ray, stack } = self;
         let slabs = Slabs::new(ray.origin, ray.direction);
+        if aggregate.small.any::<K>(ray, &slabs, stack) {
+            return true;
+        }
         aggregate.bvh.any::<K>(
             &slabs,
             ray.t_max,
@@ -109,8 +145,10 @@ impl Query for Blocked<'_> {
             #[inline(always)]
             |leaf, stack| {
                 aggregate.bvh.leaf(leaf).iter().any(|&index| {
-                    let placed = &aggregate.instances[index as usize];
-                    placed.geometry.any::<K>(&placed.to_object(ray), stack)
+                    let placed = &aggregate.instances[aggregate.large[index as usize] as usize];
+                    let local = placed.to_object(ray);
+                    let slabs = Slabs::new(local.origin, local.direction);
+                    placed.geometry.tree.any::<K>(&local, &slabs, stack)
                 })
             },
         )

@@ -1,21 +1,18 @@
 //! Meshes ready for tracing, their instances, and what a hit says about the surface.
 
-use super::bvh::{self, Slabs, Stack, WideBvh};
-use super::simd::{Kernels, WIDTH};
-use super::triangle::{Packet, Sheared, TriangleHit};
+use super::triangle::TriangleHit;
+use super::triangle_tree::TriangleTree;
 use crate::math::{self, Ray, gamma};
 use crate::scene::Mesh;
 use glam::{Affine3A, Mat3, Vec2, Vec3};
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// A mesh with its tree.
 #[derive(Debug)]
 pub struct MeshGeometry {
     mesh: Arc<Mesh>,
-    bvh: WideBvh,
-    /// One packet a leaf.
-    packets: Vec<Packet>,
+    /// In object space.
+    pub tree: TriangleTree,
     /// Part of each triangle; empty when there is just one.
     part_of_triangle: Vec<u16>,
 }
@@ -23,62 +20,14 @@ pub struct MeshGeometry {
 impl MeshGeometry {
     /// Builds the tree over all triangles.
     pub fn new(mesh: Arc<Mesh>) -> Self {
-        let corners = |t: usize| mesh.corners(t);
-        let boxes: Vec<(Vec3, Vec3)> = (0..mesh.triangles.len())
-            .into_par_iter()
-            .map(|t| {
-                let [a, b, c] = corners(t);
-                (a.min(b).min(c), a.max(b).max(c))
-            })
-            .collect();
-        let bvh = bvh::build(&boxes, WIDTH as u32);
-        let packets = (0..bvh.leaf_count() as u32)
-            .into_par_iter()
-            .map(|leaf| Packet::new(bvh.leaf(leaf).iter().map(|&t| (t, corners(t as usize)))))
-            .collect();
+        let tree = TriangleTree::new(mesh.triangles.len(), |t| mesh.corners(t));
         let part_of_triangle = part_of_triangle(&mesh);
-        MeshGeometry { mesh, bvh, packets, part_of_triangle }
+        MeshGeometry { mesh, tree, part_of_triangle }
     }
 
     /// The mesh itself.
     pub fn mesh(&self) -> &Arc<Mesh> {
         &self.mesh
-    }
-
-    /// The closest hit of a ray in object space.
-    #[inline(always)]
-    pub fn closest<K: Kernels>(&self, ray: &Ray, stack: &mut Stack) -> Option<TriangleHit> {
-        let sheared = Sheared::new(ray.origin, ray.direction);
-        let slabs = Slabs::new(ray.origin, ray.direction);
-        let mut best = None;
-        self.bvh.nearest_first::<K>(
-            &slabs,
-            ray.t_max,
-            stack,
-            #[inline(always)]
-            |leaf, t_max, _| match K::triangles(&self.packets[leaf as usize], &sheared, t_max) {
-                Some(hit) => {
-                    best = Some(hit);
-                    hit.t
-                }
-                None => t_max,
-            },
-        );
-        best
-    }
-
-    /// Whether anything lies on the ray, in object space.
-    #[inline(always)]
-    pub fn any<K: Kernels>(&self, ray: &Ray, stack: &mut Stack) -> bool {
-        let sheared = Sheared::new(ray.origin, ray.direction);
-        let slabs = Slabs::new(ray.origin, ray.direction);
-        self.bvh.any::<K>(
-            &slabs,
-            ray.t_max,
-            stack,
-            #[inline(always)]
-            |leaf, _| K::triangles(&self.packets[leaf as usize], &sheared, ray.t_max).is_some(),
-        )
     }
 
     /// Index of the part that a triangle belongs to.
@@ -142,7 +91,7 @@ impl Instance {
 
     /// World box of the eight corners of the mesh's box, rounded outwards.
     pub fn world_bounds(&self) -> Option<(Vec3, Vec3)> {
-        let (low, high) = self.geometry.bvh.bounds?;
+        let (low, high) = self.geometry.tree.bounds()?;
         let centre = (low + high) * 0.5;
         let half = (high - low) * 0.5;
         let matrix = self.world_from_object.matrix3;
@@ -152,6 +101,11 @@ impl Instance {
         let middle = self.world_from_object.transform_point3(centre);
         let slack = (middle.abs() + reach) * gamma(8);
         Some((middle - reach - slack, middle + reach + slack))
+    }
+
+    /// The corners of a triangle in world space.
+    pub fn world_corners(&self, triangle: usize) -> [Vec3; 3] {
+        self.geometry.mesh.corners(triangle).map(|corner| self.world_from_object.transform_point3(corner))
     }
 
     /// The ray in object space. `t` keeps its meaning.

@@ -3,10 +3,10 @@
 //! All use the same watertight triangle kernel, so they find the same distances to the bit; they differ only in how many
 //! triangles they test.
 
-use super::bvh::Stack;
-use super::geometry::MeshGeometry;
+use super::bvh::{Slabs, Stack};
 use super::simd::{self, Kernels, Query, WIDTH};
 use super::triangle::{Packet, Sheared};
+use super::triangle_tree::TriangleTree;
 use crate::math::Ray;
 use crate::scene::Mesh;
 use glam::Vec3;
@@ -46,7 +46,7 @@ impl Intersection {
 pub struct Intersector {
     method: Intersection,
     parts: Vec<Part>,
-    tree: Option<MeshGeometry>,
+    tree: Option<TriangleTree>,
 }
 
 /// Triangles with a box around them.
@@ -102,7 +102,7 @@ impl Intersector {
             Intersection::Box | Intersection::BoxPrecomputed => {
                 (mesh.parts.iter().map(|part| part.triangles.clone()).collect(), None)
             }
-            Intersection::Bvh => (Vec::new(), Some(MeshGeometry::new(mesh.clone()))),
+            Intersection::Bvh => (Vec::new(), Some(TriangleTree::new(mesh.triangles.len(), |t| mesh.corners(t)))),
         };
         let parts = ranges.into_iter().map(|range| Part::new(mesh, range)).collect();
         Intersector { method, parts, tree }
@@ -116,7 +116,7 @@ impl Intersector {
     #[inline(always)]
     fn closest<K: Kernels>(&self, ray: &Ray, stack: &mut Stack) -> Option<f32> {
         if let Some(tree) = &self.tree {
-            return tree.closest::<K>(ray, stack).map(|hit| hit.t);
+            return tree.closest::<K>(ray, &Slabs::new(ray.origin, ray.direction), stack).map(|hit| hit.t);
         }
         let sheared = Sheared::new(ray.origin, ray.direction);
         let inverse = ray.direction.recip();

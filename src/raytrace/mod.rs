@@ -21,6 +21,7 @@ mod schedule;
 mod simd;
 mod texture;
 mod triangle;
+mod triangle_tree;
 
 pub use film::{Film, Layer, MAX_LIGHT_LAYERS};
 pub use intersectors::{Intersection, Intersector};

@@ -19,9 +19,9 @@ pub struct Packet {
 /// A ray made ready for the test: permuted so that its largest direction component is Z, and sheared onto it.
 #[derive(Clone, Copy, Debug)]
 pub struct Sheared {
-    pub(super) origin: Vec3,
+    pub(super) origin: [f32; 3],
     pub(super) axes: [usize; 3],
-    pub(super) shear: Vec3,
+    pub(super) shear: [f32; 3],
 }
 
 /// Where a ray meets a triangle.
@@ -47,15 +47,18 @@ impl Sheared {
         } else {
             2
         };
-        let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
-        if direction[z] < 0.0 {
-            std::mem::swap(&mut x, &mut y);
-        }
+        let direction = direction.to_array();
+        // Right-handed about the ray, whichever way it runs along its axis.
+        let (x, y) = if direction[z] < 0.0 { (BEFORE[z], AFTER[z]) } else { (AFTER[z], BEFORE[z]) };
         let inverse = 1.0 / direction[z];
-        let shear = Vec3::new(direction[x] * inverse, direction[y] * inverse, inverse);
-        Sheared { origin, axes: [x, y, z], shear }
+        let shear = [direction[x] * inverse, direction[y] * inverse, inverse];
+        Sheared { origin: origin.to_array(), axes: [x, y, z], shear }
     }
 }
+
+/// The axis after each, and the one before.
+const AFTER: [usize; 3] = [1, 2, 0];
+const BEFORE: [usize; 3] = [2, 0, 1];
 
 impl Packet {
     /// Packs up to eight triangles, given by their number and corners.

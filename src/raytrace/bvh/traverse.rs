@@ -1,6 +1,6 @@
 //! Walking a ray through the tree.
 
-use super::wide::{LEAF, WideBvh};
+use super::wide::{LEAF, Node, WideBvh};
 use crate::math::gamma;
 use crate::raytrace::simd::{Kernels, WIDTH};
 use glam::Vec3;
@@ -11,15 +11,15 @@ use glam::Vec3;
 /// along a box's face is tested by the other axes alone.
 #[derive(Clone, Copy, Debug)]
 pub struct Slabs {
-    pub(in crate::raytrace) origin: Vec3,
-    pub(in crate::raytrace) inverse: Vec3,
-    /// `inverse`, widened for the far sides to cover the rounding of both products (Ize 2013).
-    pub(in crate::raytrace) inverse_far: Vec3,
+    pub(in crate::raytrace) origin: [f32; 3],
+    /// One over the direction, negated: kernels take the planes from the origin.
+    pub(in crate::raytrace) minus_inverse: [f32; 3],
     /// 0 where the lower side is near, 1 where the upper is.
     pub(in crate::raytrace) near: [usize; 3],
 }
 
-const WIDEN: f32 = 1.0 + 2.0 * gamma(3);
+/// Far sides are widened by this, to cover the rounding of both products (Ize 2013).
+pub const WIDEN: f32 = 1.0 + 2.0 * gamma(3);
 
 impl Slabs {
     /// Prepares a ray.
@@ -27,7 +27,7 @@ impl Slabs {
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
         let inverse = direction.recip();
         let near = inverse.to_array().map(|x| usize::from(x.is_sign_negative()));
-        Slabs { origin, inverse, inverse_far: inverse * WIDEN, near }
+        Slabs { origin: origin.to_array(), minus_inverse: (-inverse).to_array(), near }
     }
 }
 
@@ -38,6 +38,25 @@ pub struct Stack {
     /// Entry distance in the upper half (as bits, which sort like the distance because it is not negative), child
     /// below.
     open: Vec<u64>,
+    /// Entries in use.
+    top: usize,
+}
+
+impl Stack {
+    /// Room for all children of a node above `top`.
+    #[inline(always)]
+    fn room(&mut self, top: usize) -> &mut [u64; WIDTH] {
+        if self.open.len() < top + WIDTH {
+            self.grow(top);
+        }
+        // The line before made sure of it: the fallback is never taken.
+        self.open[top..].first_chunk_mut().unwrap_or_else(|| unreachable!("the stack has just grown"))
+    }
+
+    #[cold]
+    fn grow(&mut self, top: usize) {
+        self.open.resize(2 * (top + WIDTH).max(128), 0);
+    }
 }
 
 #[inline(always)]
@@ -61,40 +80,36 @@ impl WideBvh {
         stack: &mut Stack,
         mut visit: impl FnMut(u32, f32, &mut Stack) -> f32,
     ) {
-        let mark = stack.open.len();
-        let mut current = self.root();
+        if self.nodes.is_empty() {
+            return;
+        }
+        let mark = stack.top;
+        let mut top = mark;
+        let mut current = 0;
         loop {
+            let mut met = None;
             if current & LEAF == 0 {
                 let node = &self.nodes[current as usize];
                 let mut enter = [0.0; WIDTH];
-                let mut mask = K::boxes(slabs, node, t_max, &mut enter);
-                if mask != 0 {
-                    let slot = mask.trailing_zeros() as usize % WIDTH;
-                    mask &= mask - 1;
-                    if mask == 0 {
-                        current = node.children[slot];
-                        continue;
-                    }
-                    let base = stack.open.len();
-                    stack.open.push(entry(enter[slot], node.children[slot]));
-                    while mask != 0 {
-                        let slot = mask.trailing_zeros() as usize % WIDTH;
-                        mask &= mask - 1;
-                        insert(&mut stack.open, base, entry(enter[slot], node.children[slot]));
-                    }
-                }
-            } else if current != NOTHING {
+                let mask = K::boxes(slabs, node, t_max, &mut enter);
+                met = nearest_on_top(node, &enter, mask, stack.room(top), &mut top);
+            } else {
+                stack.top = top;
                 t_max = visit(current & !LEAF, t_max, stack);
             }
-            current = loop {
-                if stack.open.len() <= mark {
-                    return;
-                }
-                // The mark keeps this pop inside our own part of the stack.
-                match stack.open.pop() {
-                    Some(entry) if enter_of(entry) < t_max => break entry as u32,
-                    _ => {}
-                }
+            current = match met {
+                Some(nearest) => nearest,
+                None => loop {
+                    if top == mark {
+                        stack.top = mark;
+                        return;
+                    }
+                    top -= 1;
+                    let entry = stack.open[top];
+                    if enter_of(entry) < t_max {
+                        break entry as u32;
+                    }
+                },
             };
         }
     }
@@ -108,52 +123,68 @@ impl WideBvh {
         stack: &mut Stack,
         mut visit: impl FnMut(u32, &mut Stack) -> bool,
     ) -> bool {
-        let mark = stack.open.len();
-        let mut current = self.root();
+        if self.nodes.is_empty() {
+            return false;
+        }
+        let mark = stack.top;
+        let mut top = mark;
+        let mut current = 0;
         loop {
             if current & LEAF == 0 {
                 let node = &self.nodes[current as usize];
                 let mut mask = K::boxes(slabs, node, t_max, &mut [0.0; WIDTH]);
-                if mask != 0 {
-                    current = node.children[mask.trailing_zeros() as usize % WIDTH];
+                let room = stack.room(top);
+                let mut count = 0;
+                while mask != 0 {
+                    room[count % WIDTH] = u64::from(node.children[mask.trailing_zeros() as usize % WIDTH]);
                     mask &= mask - 1;
-                    while mask != 0 {
-                        stack.open.push(u64::from(node.children[mask.trailing_zeros() as usize % WIDTH]));
-                        mask &= mask - 1;
-                    }
-                    continue;
+                    count += 1;
                 }
-            } else if current != NOTHING && visit(current & !LEAF, stack) {
-                stack.open.truncate(mark);
-                return true;
+                top += count;
+            } else {
+                stack.top = top;
+                if visit(current & !LEAF, stack) {
+                    stack.top = mark;
+                    return true;
+                }
             }
-            if stack.open.len() <= mark {
+            if top == mark {
+                stack.top = mark;
                 return false;
             }
-            let Some(entry) = stack.open.pop() else { return false };
-            current = entry as u32;
+            top -= 1;
+            current = stack.open[top] as u32;
         }
-    }
-
-    /// The root; [`NOTHING`] in an empty tree.
-    #[inline(always)]
-    fn root(&self) -> u32 {
-        if self.nodes.is_empty() { NOTHING } else { 0 }
     }
 }
 
-/// A reference to no leaf.
-const NOTHING: u32 = u32::MAX;
-
-/// Adds an entry to the part of the stack from `base` on, which is sorted with the nearest on top: rarely more than
-/// three.
+/// Puts the children of the mask on the stack, all but the nearest, which is returned. The others lie in no order:
+/// those that a hit has overtaken by the time they are taken up cost one comparison.
 #[inline(always)]
-fn insert(open: &mut Vec<u64>, base: usize, entry: u64) {
-    open.push(entry);
-    let mut i = open.len() - 1;
-    while i > base && open[i - 1] < entry {
-        open[i] = open[i - 1];
-        i -= 1;
+fn nearest_on_top(
+    node: &Node,
+    enter: &[f32; WIDTH],
+    mut mask: u32,
+    room: &mut [u64; WIDTH],
+    top: &mut usize,
+) -> Option<u32> {
+    if mask == 0 {
+        return None;
     }
-    open[i] = entry;
+    let mut next = || {
+        let slot = mask.trailing_zeros() as usize % WIDTH;
+        mask &= mask - 1;
+        (entry(enter[slot], node.children[slot]), mask)
+    };
+    let (mut nearest, mut left) = next();
+    let mut count = 0;
+    while left != 0 {
+        let (other, rest) = next();
+        room[count % WIDTH] = nearest.max(other);
+        nearest = nearest.min(other);
+        count += 1;
+        left = rest;
+    }
+    *top += count;
+    Some(nearest as u32)
 }

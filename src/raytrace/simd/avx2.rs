@@ -2,7 +2,7 @@
 #![expect(unsafe_code, reason = "calls into code made for AVX2, behind the check that the processor has it")]
 
 use super::{Kernels, Query, WIDTH};
-use crate::raytrace::bvh::{Node, Slabs};
+use crate::raytrace::bvh::{Node, Slabs, WIDEN};
 use crate::raytrace::triangle::{Packet, Sheared, TriangleHit, edges_in_f64};
 use std::arch::x86_64::*;
 
@@ -63,14 +63,14 @@ fn boxes(slabs: &Slabs, node: &Node, t_max: f32, enter: &mut [f32; WIDTH]) -> u3
     for axis in 0..3 {
         let (near, far) = node.sides(slabs, axis);
         let origin = _mm256_set1_ps(slabs.origin[axis]);
-        let to_near = _mm256_mul_ps(_mm256_sub_ps(load(near), origin), _mm256_set1_ps(slabs.inverse[axis]));
-        let to_far = _mm256_mul_ps(_mm256_sub_ps(load(far), origin), _mm256_set1_ps(slabs.inverse_far[axis]));
+        let minus_inverse = _mm256_set1_ps(slabs.minus_inverse[axis]);
         // These give their second operand when the first is NaN.
-        entered = _mm256_max_ps(to_near, entered);
-        left = _mm256_min_ps(to_far, left);
+        entered = _mm256_max_ps(_mm256_mul_ps(_mm256_sub_ps(origin, load(near)), minus_inverse), entered);
+        left = _mm256_min_ps(_mm256_mul_ps(_mm256_sub_ps(origin, load(far)), minus_inverse), left);
     }
     *enter = store(entered);
-    _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entered, left)) as u32
+    let widened = _mm256_mul_ps(left, _mm256_set1_ps(WIDEN));
+    _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entered, widened)) as u32
 }
 
 #[inline]
@@ -82,8 +82,8 @@ fn triangles(packet: &Packet, ray: &Sheared, t_max: f32) -> Option<TriangleHit> 
     let depth = [corner(0, kz), corner(1, kz), corner(2, kz)];
     let shear =
         |v: usize, axis: usize, by: f32| _mm256_sub_ps(corner(v, axis), _mm256_mul_ps(_mm256_set1_ps(by), depth[v]));
-    let x = [shear(0, kx, ray.shear.x), shear(1, kx, ray.shear.x), shear(2, kx, ray.shear.x)];
-    let y = [shear(0, ky, ray.shear.y), shear(1, ky, ray.shear.y), shear(2, ky, ray.shear.y)];
+    let x = [shear(0, kx, ray.shear[0]), shear(1, kx, ray.shear[0]), shear(2, kx, ray.shear[0])];
+    let y = [shear(0, ky, ray.shear[1]), shear(1, ky, ray.shear[1]), shear(2, ky, ray.shear[1])];
     let edge = |a: usize, b: usize| _mm256_sub_ps(_mm256_mul_ps(x[b], y[a]), _mm256_mul_ps(y[b], x[a]));
     let mut e = [edge(1, 2), edge(2, 0), edge(0, 1)];
     let zero = _mm256_setzero_ps();
@@ -101,7 +101,7 @@ fn triangles(packet: &Packet, ray: &Sheared, t_max: f32) -> Option<TriangleHit> 
     if _mm256_movemask_ps(inside) == 0 {
         return None;
     }
-    let z = depth.map(|d| _mm256_mul_ps(_mm256_set1_ps(ray.shear.z), d));
+    let z = depth.map(|d| _mm256_mul_ps(_mm256_set1_ps(ray.shear[2]), d));
     let determinant = _mm256_add_ps(_mm256_add_ps(e[0], e[1]), e[2]);
     let weighted =
         _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(e[0], z[0]), _mm256_mul_ps(e[1], z[1])), _mm256_mul_ps(e[2], z[2]));

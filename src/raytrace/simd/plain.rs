@@ -1,7 +1,7 @@
 //! The kernels in portable Rust: what other processors run, and the twin that tests hold the intrinsics to.
 
 use super::{Kernels, WIDTH};
-use crate::raytrace::bvh::{Node, Slabs};
+use crate::raytrace::bvh::{Node, Slabs, WIDEN};
 use crate::raytrace::triangle::{Packet, Sheared, TriangleHit, edges_in_f64};
 use std::array::from_fn;
 
@@ -28,13 +28,13 @@ impl Kernels for Plain {
         let mut leave = [t_max; WIDTH];
         for axis in 0..3 {
             let (near, far) = node.sides(slabs, axis);
-            let origin = slabs.origin[axis];
+            let (origin, minus_inverse) = (slabs.origin[axis], slabs.minus_inverse[axis]);
             for i in 0..WIDTH {
-                enter[i] = max_or((near[i] - origin) * slabs.inverse[axis], enter[i]);
-                leave[i] = min_or((far[i] - origin) * slabs.inverse_far[axis], leave[i]);
+                enter[i] = max_or((origin - near[i]) * minus_inverse, enter[i]);
+                leave[i] = min_or((origin - far[i]) * minus_inverse, leave[i]);
             }
         }
-        (0..WIDTH).fold(0, |mask, i| mask | u32::from(enter[i] <= leave[i]) << i)
+        (0..WIDTH).fold(0, |mask, i| mask | u32::from(enter[i] <= leave[i] * WIDEN) << i)
     }
 
     #[inline(always)]
@@ -49,7 +49,7 @@ impl Kernels for Plain {
                 from_fn(|i| place[i] - shear * depth[v][i])
             })
         };
-        let (x, y) = (sheared(kx, ray.shear.x), sheared(ky, ray.shear.y));
+        let (x, y) = (sheared(kx, ray.shear[0]), sheared(ky, ray.shear[1]));
         let mut edges: [[f32; WIDTH]; 3] = from_fn(|k| {
             let (a, b) = ((k + 1) % 3, (k + 2) % 3);
             from_fn(|i| x[b][i] * y[a][i] - y[b][i] * x[a][i])
@@ -58,7 +58,7 @@ impl Kernels for Plain {
             edges_in_f64(&mut edges, &x, &y);
         }
         let t: [f32; WIDTH] = from_fn(|i| {
-            let z: [f32; 3] = from_fn(|v| ray.shear.z * depth[v][i]);
+            let z: [f32; 3] = from_fn(|v| ray.shear[2] * depth[v][i]);
             let determinant = edges[0][i] + edges[1][i] + edges[2][i];
             (edges[0][i] * z[0] + edges[1][i] * z[1] + edges[2][i] * z[2]) / determinant
         });
