@@ -210,12 +210,14 @@ mod tests {
         use crate::raytrace::triangle::{Packet, Sheared};
         let mut best: Option<(u32, TriangleHit)> = None;
         for (index, instance) in instances.iter().enumerate() {
-            let local = instance.to_object(ray);
-            let sheared = Sheared::new(local.origin, local.direction);
             let mesh = instance.geometry.mesh();
+            let small = mesh.triangles.len() <= SMALL;
+            let local = if small { *ray } else { instance.to_object(ray) };
+            let sheared = Sheared::new(local.origin, local.direction);
             for t in 0..mesh.triangles.len() {
                 let end = best.as_ref().map_or(ray.t_max, |b| b.1.t);
-                if let Some(hit) = Packet::new([(t as u32, mesh.corners(t))]).intersect(&sheared, end) {
+                let corners = if small { instance.world_corners(t) } else { mesh.corners(t) };
+                if let Some(hit) = Packet::new([(t as u32, corners)]).intersect(&sheared, end) {
                     best = Some((index as u32, hit));
                 }
             }
@@ -232,7 +234,7 @@ mod tests {
         );
         let sphere = tessellate(&Shape::Box { size_m: Vec3::ONE }).unwrap();
         let aggregate = Aggregate::new(vec![
-            instance(soup(700), Affine3A::IDENTITY, 0),
+            instance(soup(SMALL + 1), turned * Affine3A::from_scale(Vec3::splat(0.9)), 0),
             instance(soup(300), turned, 1),
             instance(sphere, Affine3A::from_translation(Vec3::Y), 2),
         ]);

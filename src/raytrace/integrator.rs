@@ -184,12 +184,12 @@ impl<'a> Tracer<'a> {
             }
             let before = vertex;
             vertex = Vertex::new(surface.position, bsdf.normal());
+            let [light_set, set] = sampler.pair(Purpose::Light { slot: 0, bounce }, Purpose::Bsdf { bounce });
             if material.scatters_widely() && !ends {
                 let all = bounce == 0 && self.scene.plan().sample_all_lights;
                 vertex.total_importance =
-                    self.sample_lights(&surface, &bsdf, &media, sampler, bounce, all, throughput, sink);
+                    self.sample_lights(&surface, &bsdf, &media, sampler, &light_set, bounce, all, throughput, sink);
             }
-            let set = sampler.set(Purpose::Bsdf { bounce });
             let Some(sample) = bsdf.sample(set[0], sampler::point(&set)) else { return };
             if ends && !sample.straight {
                 return;
@@ -293,6 +293,7 @@ impl<'a> Tracer<'a> {
         bsdf: &Bsdf<'_>,
         media: &Media,
         sampler: &Sampler,
+        first_set: &sampler::Set,
         bounce: u32,
         all: bool,
         throughput: Vec3,
@@ -301,7 +302,8 @@ impl<'a> Tracer<'a> {
         let scene = self.scene;
         if all || scene.lights.len() == 1 {
             for (slot, light) in scene.lights.iter().enumerate().filter(|(_, l)| l.is_sampled()) {
-                let set = sampler.set(Purpose::Light { slot: slot as u32, bounce });
+                let slot = slot as u32;
+                let set = if slot == 0 { *first_set } else { sampler.set(Purpose::Light { slot, bounce }) };
                 self.sample_light(light, 1.0, surface, bsdf, media, &set, throughput, sink);
             }
             return 0.0;
@@ -311,12 +313,11 @@ impl<'a> Tracer<'a> {
         if !(total > 0.0 && total.is_finite()) {
             return f32::MIN_POSITIVE;
         }
-        let set = sampler.set(Purpose::Light { slot: 0, bounce });
-        let mut left = set[0] * total;
+        let mut left = first_set[0] * total;
         for light in &scene.lights {
             let share = importance(light);
             if left < share {
-                self.sample_light(light, share / total, surface, bsdf, media, &set, throughput, sink);
+                self.sample_light(light, share / total, surface, bsdf, media, first_set, throughput, sink);
                 break;
             }
             left -= share;

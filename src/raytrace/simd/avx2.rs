@@ -1,7 +1,7 @@
 //! The kernels in AVX2, 256 bits wide. The one place with `unsafe` code.
 #![expect(unsafe_code, reason = "calls into code made for AVX2, behind the check that the processor has it")]
 
-use super::{Kernels, Query, WIDTH};
+use super::{Kernels, Query, WIDTH, sobol};
 use crate::raytrace::bvh::{Node, Slabs, WIDEN};
 use crate::raytrace::triangle::{Packet, Sheared, TriangleHit, edges_in_f64};
 use std::arch::x86_64::*;
@@ -37,7 +37,16 @@ impl Kernels for Avx2 {
         // SAFETY: this type is only named inside `compiled_for_avx2`.
         unsafe { triangles(packet, ray, t_max) }
     }
+
+    #[inline(always)]
+    fn sobol(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2] {
+        // SAFETY: this type is only named inside `compiled_for_avx2`.
+        unsafe { sobol_pair(index, seeds) }
+    }
 }
+
+/// Bit-reverses each byte's half: the reversed value of four bits, by value.
+const REVERSED_NIBBLE: [i8; 16] = [0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15];
 
 #[inline]
 #[target_feature(enable = "avx2")]
@@ -124,4 +133,53 @@ fn triangles(packet: &Packet, ray: &Sheared, t_max: f32) -> Option<TriangleHit> 
         }
     }
     Some(packet.hit(nearest, t[nearest], e.map(|e| store(e)[nearest])))
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn sobol_pair(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2] {
+    let splat = |n: u32| _mm256_set1_epi32(n as i32);
+    let times = |n, factor: u32| _mm256_mullo_epi32(n, splat(factor));
+    let [low, high] = seeds.map(|seed| {
+        let shuffled = sobol::scramble(index.reverse_bits(), sobol::hash(seed ^ sobol::SHUFFLE)) >> 16;
+        let part = |i: usize| four(&sobol::NIBBLES[i][(shuffled >> (4 * i)) as usize % 16]);
+        _mm_xor_si128(_mm_xor_si128(part(0), part(1)), _mm_xor_si128(part(2), part(3)))
+    });
+    let point = _mm256_set_m128i(high, low);
+    // The scrambles of the eight dimensions.
+    let [low, high] = seeds.map(|seed| _mm_set1_epi32(seed.wrapping_mul(sobol::SEED_FACTOR) as i32));
+    let dimensions = _mm256_broadcastsi128_si256(four(&sobol::DIMENSION_SEEDS));
+    let mut by = _mm256_xor_si256(_mm256_xor_si256(_mm256_set_m128i(high, low), dimensions), splat(sobol::HASH_START));
+    by = times(_mm256_xor_si256(by, _mm256_srli_epi32::<16>(by)), sobol::HASH_FACTORS[0]);
+    by = times(_mm256_xor_si256(by, _mm256_srli_epi32::<15>(by)), sobol::HASH_FACTORS[1]);
+    by = _mm256_xor_si256(by, _mm256_srli_epi32::<16>(by));
+    let mut n = _mm256_xor_si256(point, times(point, sobol::SCRAMBLE_FACTORS[0]));
+    n = _mm256_mullo_epi32(_mm256_add_epi32(n, by), _mm256_or_si256(_mm256_srli_epi32::<16>(by), splat(1)));
+    n = _mm256_xor_si256(n, times(n, sobol::SCRAMBLE_FACTORS[1]));
+    n = _mm256_xor_si256(n, times(n, sobol::SCRAMBLE_FACTORS[2]));
+    // The highest 23 bits are the mantissa of a number in [1, 2).
+    let mantissa = _mm256_srli_epi32::<9>(reverse_bits(n));
+    let one_to_two = _mm256_castsi256_ps(_mm256_or_si256(mantissa, splat(1.0_f32.to_bits())));
+    let [a, b, c, d, e, f, g, h] = store(_mm256_sub_ps(one_to_two, _mm256_set1_ps(1.0)));
+    [[a, b, c, d], [e, f, g, h]]
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn four(values: &[u32; 4]) -> __m128i {
+    let [a, b, c, d] = values.map(|value| value as i32);
+    _mm_setr_epi32(a, b, c, d)
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn reverse_bits(n: __m256i) -> __m256i {
+    let [a, b, c, d, e, f, g, h, i, j, k, l, m, n_, o, p] = REVERSED_NIBBLE;
+    let reversed = _mm256_broadcastsi128_si256(_mm_setr_epi8(a, b, c, d, e, f, g, h, i, j, k, l, m, n_, o, p));
+    let low_half = _mm256_set1_epi8(15);
+    let low = _mm256_shuffle_epi8(reversed, _mm256_and_si256(n, low_half));
+    let high = _mm256_shuffle_epi8(reversed, _mm256_and_si256(_mm256_srli_epi32::<4>(n), low_half));
+    let bytes = _mm256_or_si256(_mm256_slli_epi32::<4>(low), high);
+    let order = _mm_setr_epi8(3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12);
+    _mm256_shuffle_epi8(bytes, _mm256_broadcastsi128_si256(order))
 }

@@ -1,4 +1,5 @@
-//! The two kernels of ray traversal, a ray against eight boxes and against eight triangles, for the processor at hand.
+//! The inner kernels for the processor at hand: a ray against eight boxes, a ray against eight triangles, two sets of
+//! random numbers.
 //!
 //! [`Avx2`](avx2::Avx2) is written in intrinsics, [`Plain`] in portable Rust. Nothing is fused or reordered in either,
 //! so both give the same bits, and tests compare them. A [`Query`] is compiled once for each; [`dispatch`] asks the
@@ -7,6 +8,8 @@
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 mod plain;
+#[cfg(target_arch = "x86_64")]
+mod sobol;
 
 use super::bvh::{Node, Slabs};
 use super::triangle::{Packet, Sheared, TriangleHit};
@@ -22,6 +25,9 @@ pub trait Kernels {
 
     /// The nearest triangle hit with 0 < t < `t_max`. Triangles of no area are never hit.
     fn triangles(packet: &Packet, ray: &Sheared, t_max: f32) -> Option<TriangleHit>;
+
+    /// The first four dimensions of the Owen-scrambled Sobol point `index` (under 2^16), for each of two seeds.
+    fn sobol(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2];
 }
 
 /// Work that is compiled once for each set of instructions. `run` and all it calls must be `#[inline(always)]`.

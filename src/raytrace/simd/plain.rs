@@ -67,4 +67,9 @@ impl Kernels for Plain {
         let nearest = hits.min_by(|&a, &b| t[a].total_cmp(&t[b]))?;
         Some(packet.hit(nearest, t[nearest], edges.map(|e| e[nearest])))
     }
+
+    #[inline(always)]
+    fn sobol(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2] {
+        seeds.map(|seed| sobol_burley::sample_4d(index, 0, seed))
+    }
 }
