@@ -4,7 +4,7 @@ use super::triangle::TriangleHit;
 use super::triangle_tree::TriangleTree;
 use crate::math::{self, Ray, gamma};
 use crate::scene::Mesh;
-use glam::{Affine3A, Mat3, Vec2, Vec3};
+use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
 use std::sync::Arc;
 
 /// A mesh with its tree.
@@ -62,8 +62,11 @@ pub struct Instance {
     pub sheet: bool,
     world_from_object: Affine3A,
     object_from_world: Affine3A,
+    /// Both ways in absolute values, for error bounds.
+    forward_abs: Affine3A,
+    backward_abs: Affine3A,
     /// Inverse transpose, for normals.
-    normal_matrix: Mat3,
+    normal_matrix: Mat3A,
 }
 
 impl Instance {
@@ -76,7 +79,7 @@ impl Instance {
         materials: Vec<u32>,
     ) -> Option<Self> {
         let object_from_world = world_from_object.inverse();
-        let normal_matrix = Mat3::from(object_from_world.matrix3).transpose();
+        let normal_matrix = object_from_world.matrix3.transpose();
         let usable = object_from_world.is_finite() && world_from_object.is_finite();
         usable.then_some(Instance {
             geometry,
@@ -85,6 +88,8 @@ impl Instance {
             sheet: false,
             world_from_object,
             object_from_world,
+            forward_abs: abs(&world_from_object),
+            backward_abs: abs(&object_from_world),
             normal_matrix,
         })
     }
@@ -122,7 +127,7 @@ impl Instance {
     pub fn surface(&self, hit: &TriangleHit) -> Surface {
         let mesh = &*self.geometry.mesh;
         let indices = mesh.triangles[hit.triangle as usize].map(|i| i as usize);
-        let corners = indices.map(|i| mesh.positions[i]);
+        let corners = indices.map(|i| Vec3A::from(mesh.positions[i]));
         let [b1, b2] = hit.barycentric;
         let weights = [1.0 - b1 - b2, b1, b2];
         let terms = [corners[0] * weights[0], corners[1] * weights[1], corners[2] * weights[2]];
@@ -131,9 +136,9 @@ impl Instance {
         let face = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
         let geometric_normal = (self.normal_matrix * face).normalize_or_zero();
         let (normal, bulge) = if mesh.normals.is_empty() {
-            (geometric_normal, Vec3::ZERO)
+            (geometric_normal, Vec3A::ZERO)
         } else {
-            let normals = indices.map(|i| mesh.normals[i]);
+            let normals = indices.map(|i| Vec3A::from(mesh.normals[i]));
             let smooth = normals[0] * weights[0] + normals[1] * weights[1] + normals[2] * weights[2];
             let smooth = (self.normal_matrix * smooth).try_normalize().unwrap_or(geometric_normal);
             // Normals that disagree with the winding: the winding says where outside is.
@@ -148,11 +153,11 @@ impl Instance {
         };
         let part = self.geometry.part(hit.triangle);
         Surface {
-            position: self.world_from_object.transform_point3(local),
-            position_error: self.world_error(local, error),
-            smooth_offset: self.world_from_object.transform_vector3(bulge),
-            geometric_normal,
-            normal,
+            position: self.world_from_object.transform_point3a(local).into(),
+            position_error: self.world_error(local, error).into(),
+            smooth_offset: self.world_from_object.transform_vector3a(bulge).into(),
+            geometric_normal: geometric_normal.into(),
+            normal: normal.into(),
             uv,
             material: self.materials.get(part).copied().unwrap_or(0),
             sheet: self.sheet,
@@ -160,19 +165,23 @@ impl Instance {
     }
 
     /// Error of a transformed point, and of the way back that a ray from there will take into this same mesh.
-    fn world_error(&self, local: Vec3, local_error: Vec3) -> Vec3 {
-        let forward = Mat3::from(self.world_from_object.matrix3).abs();
-        let backward = Mat3::from(self.object_from_world.matrix3).abs();
-        let world = forward * local.abs() + Vec3::from(self.world_from_object.translation).abs();
-        let back = (backward * world + Vec3::from(self.object_from_world.translation).abs()) * gamma(4);
-        forward * (local_error + back) * (1.0 + gamma(3)) + world * gamma(4)
+    fn world_error(&self, local: Vec3A, local_error: Vec3A) -> Vec3A {
+        let (forward, backward) = (&self.forward_abs, &self.backward_abs);
+        let world = forward.transform_point3a(local.abs());
+        let back = backward.transform_point3a(world) * gamma(4);
+        forward.transform_vector3a(local_error + back) * (1.0 + gamma(3)) + world * gamma(4)
     }
+}
+
+/// The transform of absolute values.
+fn abs(transform: &Affine3A) -> Affine3A {
+    Affine3A { matrix3: transform.matrix3.abs(), translation: transform.translation.abs() }
 }
 
 /// From the flat triangle to the curved surface its normals describe: the mean of the projections onto the planes at
 /// the corners (Hanika 2021, "Hacking the Shadow Terminator"). Zero on flat and on concave places.
-fn bulge(local: Vec3, corners: [Vec3; 3], normals: [Vec3; 3], weights: [f32; 3]) -> Vec3 {
-    let mut offset = Vec3::ZERO;
+fn bulge(local: Vec3A, corners: [Vec3A; 3], normals: [Vec3A; 3], weights: [f32; 3]) -> Vec3A {
+    let mut offset = Vec3A::ZERO;
     for k in 0..3 {
         let height = (local - corners[k]).dot(normals[k]).min(0.0);
         offset -= normals[k] * (height * weights[k]);

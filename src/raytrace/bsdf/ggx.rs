@@ -18,7 +18,7 @@ pub fn distribution(m: Vec3, alpha: f32) -> f32 {
 }
 
 /// Smith's Lambda.
-fn lambda(w: Vec3, alpha: f32) -> f32 {
+pub fn lambda(w: Vec3, alpha: f32) -> f32 {
     let cos2 = w.z * w.z;
     let tan2 = (1.0 - cos2).max(0.0) / cos2.max(f32::MIN_POSITIVE);
     0.5 * (safe_sqrt(1.0 + alpha * alpha * tan2) - 1.0)
@@ -42,11 +42,6 @@ pub fn sample_visible_normal(wo: Vec3, alpha: f32, u: Vec2) -> Vec3 {
     let (sin, cos) = (TAU * u.x).sin_cos();
     let h = Vec3::new(radius * cos, radius * sin, z) + stretched;
     Vec3::new(h.x * alpha, h.y * alpha, h.z.max(0.0)).normalize_or(Vec3::Z)
-}
-
-/// Density of the reflected direction when the facet normal comes from [`sample_visible_normal`], 1/sr.
-pub fn reflection_pdf(wo: Vec3, m: Vec3, alpha: f32) -> f32 {
-    masking(wo, alpha) * distribution(m, alpha) / (4.0 * wo.z.max(f32::MIN_POSITIVE))
 }
 
 /// The mirrored direction about a facet normal.

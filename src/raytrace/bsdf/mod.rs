@@ -96,6 +96,19 @@ impl Surfacing {
         if self.transmission > 0.0 { 1.0_f32.max(body) } else { body + (1.0 - body) * self.gloss.mean }
     }
 
+    /// Chance of the gloss against the body, where the gloss takes this share of the light.
+    fn gloss_choice(&self, base_color: Vec3, gloss_albedo: f32) -> f32 {
+        let color = luminance(base_color);
+        let gloss = (1.0 - self.metallic) * gloss_albedo + self.metallic * color.max(0.04);
+        let body = (1.0 - self.metallic) * (1.0 - gloss_albedo) * color;
+        if body <= 0.0 { 1.0 } else { gloss / (gloss + body) }
+    }
+
+    /// The diffuse body under the gloss, as far as the viewer's side goes.
+    fn body(&self, base_color: Vec3, gloss_albedo: f32) -> Vec3 {
+        base_color * ((1.0 - self.metallic) * (1.0 - gloss_albedo) / (PI * (1.0 - self.gloss.mean).max(1e-4)))
+    }
+
     /// Whether light sampling is of use: there is something besides perfect reflection and refraction.
     pub fn scatters_widely(&self) -> bool {
         let body = self.metallic < 1.0 && self.base_color.max_element() > 0.0;
@@ -153,6 +166,12 @@ pub struct Bsdf<'a> {
     geometric_normal: Vec3,
     /// Towards the viewer, in the shading frame.
     wo: Vec3,
+    /// Smith's Lambda of `wo`.
+    lambda_o: f32,
+    /// Chance of the gloss against the body.
+    gloss_choice: f32,
+    /// The body's share of the BSDF, but for what the gloss keeps from the incoming light.
+    body: Vec3,
     /// The same, world space.
     wo_world: Vec3,
     /// What light that goes through comes to.
@@ -177,7 +196,22 @@ impl<'a> Bsdf<'a> {
         let eta = if outside { surfacing.ior } else { 1.0 / surfacing.ior };
         let behind = Behind::Body(Interface { eta, unknown: false });
         let polarisation = Polarisation::NONE;
-        Bsdf { surfacing, base_color, tangent, bitangent, normal, geometric_normal, wo, wo_world, behind, polarisation }
+        let gloss_albedo = surfacing.gloss.at(wo.z);
+        Bsdf {
+            surfacing,
+            base_color,
+            tangent,
+            bitangent,
+            normal,
+            geometric_normal,
+            wo,
+            lambda_o: ggx::lambda(wo, surfacing.alpha),
+            gloss_choice: surfacing.gloss_choice(base_color, gloss_albedo),
+            body: surfacing.body(base_color, gloss_albedo),
+            wo_world,
+            behind,
+            polarisation,
+        }
     }
 
     /// The same surface with this behind it, for a viewer who accepts this polarisation.
@@ -206,29 +240,18 @@ impl<'a> Bsdf<'a> {
 
     fn eval_local(&self, wi: Vec3) -> (Vec3, f32) {
         let s = self.surfacing;
-        let choice = self.lobe_choice();
-        let mut value = self.body(wi) * wi.z;
-        let mut pdf = (1.0 - choice) * warp::cosine_hemisphere_pdf(wi.z);
+        let mut value = self.body * ((1.0 - s.gloss.at(wi.z)) * wi.z);
+        let mut pdf = (1.0 - self.gloss_choice) * warp::cosine_hemisphere_pdf(wi.z);
         if !s.is_smooth() {
             let m = (self.wo + wi).normalize_or(Vec3::Z);
             let cos_half = self.wo.dot(m).clamp(0.0, 1.0);
-            let shape =
-                ggx::distribution(m, s.alpha) * ggx::masking_shadowing(self.wo, wi, s.alpha) / (4.0 * self.wo.z);
-            value += self.gloss_color(cos_half) * shape;
-            pdf += choice * ggx::reflection_pdf(self.wo, m, s.alpha);
+            // The density of visible normals is this times the masking of `wo`; the BSDF, times that of both.
+            let shape = ggx::distribution(m, s.alpha) / (4.0 * self.wo.z);
+            value += self.gloss_color(cos_half) * (shape / (1.0 + self.lambda_o + ggx::lambda(wi, s.alpha)));
+            pdf += self.gloss_choice * shape / (1.0 + self.lambda_o);
         }
         let opaque = 1.0 - s.transmission;
         (value * opaque, pdf * opaque)
-    }
-
-    /// Diffuse body under the gloss.
-    fn body(&self, wi: Vec3) -> Vec3 {
-        let s = self.surfacing;
-        if s.metallic >= 1.0 {
-            return Vec3::ZERO;
-        }
-        let entering = (1.0 - s.gloss.at(self.wo.z)) * (1.0 - s.gloss.at(wi.z)) / (1.0 - s.gloss.mean).max(1e-4);
-        self.base_color * ((1.0 - s.metallic) * entering / PI)
     }
 
     /// Fresnel colour of the gloss, metal and dielectric mixed.
@@ -246,15 +269,6 @@ impl<'a> Bsdf<'a> {
         color
     }
 
-    /// Chance of the gloss against the body.
-    fn lobe_choice(&self) -> f32 {
-        let s = self.surfacing;
-        let gloss_albedo = s.gloss.at(self.wo.z);
-        let gloss = (1.0 - s.metallic) * gloss_albedo + s.metallic * luminance(self.base_color).max(0.04);
-        let body = (1.0 - s.metallic) * (1.0 - gloss_albedo) * luminance(self.base_color);
-        if body <= 0.0 { 1.0 } else { gloss / (gloss + body) }
-    }
-
     /// Chooses a direction. None where the choice fell on one that carries nothing.
     pub fn sample(&self, lobe: f32, u: Vec2) -> Option<BsdfSample> {
         let s = self.surfacing;
@@ -262,7 +276,7 @@ impl<'a> Bsdf<'a> {
             return self.sample_glass(lobe / s.transmission);
         }
         let lobe = if s.transmission > 0.0 { (lobe - s.transmission) / (1.0 - s.transmission) } else { lobe };
-        let choice = self.lobe_choice();
+        let choice = self.gloss_choice;
         let wi = if lobe < choice {
             if s.is_smooth() {
                 return self.mirrored(self.gloss_color(self.wo.z) / choice);

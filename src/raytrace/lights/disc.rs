@@ -19,12 +19,19 @@ pub struct Disc {
     pub up: Vec3,
     /// Radius, metres.
     pub radius: f32,
+    /// The direction it faces.
+    normal: Vec3,
 }
 
 impl Disc {
+    /// From its centre, unit axes and radius.
+    pub fn new(centre: Vec3, right: Vec3, up: Vec3, radius: f32) -> Self {
+        Disc { centre, right, up, radius, normal: right.cross(up) }
+    }
+
     /// The direction it faces.
     pub fn normal(&self) -> Vec3 {
-        self.right.cross(self.up)
+        self.normal
     }
 
     /// Area, m2.
@@ -43,7 +50,7 @@ impl Disc {
 
     /// The square around the disc.
     fn square(&self) -> Rect {
-        Rect { centre: self.centre, right: self.right, up: self.up, half: Vec2::splat(self.radius) }
+        Rect::new(self.centre, self.right, self.up, Vec2::splat(self.radius))
     }
 
     /// Whether some of the disc is nearer than half its radius.
@@ -83,7 +90,7 @@ mod tests {
 
     #[test]
     fn the_light_of_a_disc_is_found_from_a_millimetre_to_metres_and_beside_its_edge() {
-        let disc = Disc { centre: Vec3::ZERO, right: Vec3::X, up: Vec3::Y, radius: 0.6 };
+        let disc = Disc::new(Vec3::ZERO, Vec3::X, Vec3::Y, 0.6);
         for (height, beside) in
             [(0.001, 0.0), (0.01, 0.3), (0.1, 0.0), (0.29, 0.0), (0.31, 0.0), (0.8, 0.5), (3.0, 2.0)]
         {

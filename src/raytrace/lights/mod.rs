@@ -104,11 +104,11 @@ impl TracedLight {
             }
             // The panel shines along -Z: right x up is +Z, so the width axis is turned round.
             Emitter::RectPanel { width_m, height_m } => {
-                let rect = Rect { centre: position, right: -right, up, half: Vec2::new(width_m, height_m) * 0.5 };
+                let rect = Rect::new(position, -right, up, Vec2::new(width_m, height_m) * 0.5);
                 Source::Rect { rect, luminance: intensity / rect.area() }
             }
             Emitter::RoundPanel { diameter_m } => {
-                let disc = Disc { centre: position, right: -right, up, radius: diameter_m * 0.5 };
+                let disc = Disc::new(position, -right, up, diameter_m * 0.5);
                 Source::Disc { disc, luminance: intensity / disc.area() }
             }
             Emitter::Sun { angular_diameter_deg } => {
@@ -171,14 +171,10 @@ impl TracedLight {
                 receive(point, normal, position, 0.0) * intensity * falloff
             }
             Source::Rect { rect, luminance } => {
-                panel(point, rect.centre, rect.normal(), rect.half.length())
-                    * receive(point, normal, rect.centre, rect.half.length())
-                    * (luminance * rect.area())
+                panel(point, normal, rect.centre, rect.normal(), rect.reach) * (luminance * rect.area())
             }
             Source::Disc { disc, luminance } => {
-                panel(point, disc.centre, disc.normal(), disc.radius)
-                    * receive(point, normal, disc.centre, disc.radius)
-                    * (luminance * disc.area())
+                panel(point, normal, disc.centre, disc.normal(), disc.radius) * (luminance * disc.area())
             }
             Source::Ball { ball, luminance } => {
                 receive(point, normal, ball.centre, ball.radius) * (luminance * PI * ball.radius * ball.radius)
@@ -327,11 +323,16 @@ fn receive(point: Vec3, normal: Vec3, centre: Vec3, radius: f32) -> f32 {
     (height / distance2.sqrt()).clamp(0.05, 1.0) / distance2
 }
 
-/// Cosine at a panel, likewise bounded; 0 behind it.
-fn panel(point: Vec3, centre: Vec3, normal: Vec3, radius: f32) -> f32 {
-    let from = point - centre;
-    let height = from.dot(normal);
-    if height > 0.0 { (height / from.length().max(radius)).clamp(0.02, 1.0) } else { 0.0 }
+/// The same for a panel, times the cosine there, likewise bounded; 0 behind it.
+fn panel(point: Vec3, normal: Vec3, centre: Vec3, facing: Vec3, radius: f32) -> f32 {
+    let to = centre - point;
+    let (height, before) = (normal.dot(to), -facing.dot(to));
+    if height <= -radius || before <= 0.0 {
+        return 0.0;
+    }
+    let inverse2 = 1.0 / to.length_squared().max(radius * radius).max(f32::MIN_POSITIVE);
+    let inverse = inverse2.sqrt();
+    (height * inverse).clamp(0.05, 1.0) * (before * inverse).clamp(0.02, 1.0) * inverse2
 }
 
 #[cfg(test)]

@@ -16,6 +16,10 @@ pub struct Rect {
     pub up: Vec3,
     /// Half width and half height, metres.
     pub half: Vec2,
+    /// Half the diagonal, metres.
+    pub reach: f32,
+    /// The direction it faces.
+    normal: Vec3,
 }
 
 /// Below this solid angle (sr) the spherical formulas lose their digits, and sampling by area is as good.
@@ -23,8 +27,8 @@ const SMALL: f32 = 1e-3;
 
 /// The rectangle as seen from a point.
 #[derive(Clone, Copy, Debug)]
-pub struct SphericalRect {
-    rect: Rect,
+pub struct SphericalRect<'a> {
+    rect: &'a Rect,
     /// Corner and opposite corner in the local frame; `z` is minus the distance to the plane.
     low: Vec2,
     high: Vec2,
@@ -39,9 +43,14 @@ pub struct SphericalRect {
 }
 
 impl Rect {
+    /// From its centre, unit axes and half sizes.
+    pub fn new(centre: Vec3, right: Vec3, up: Vec3, half: Vec2) -> Self {
+        Rect { centre, right, up, half, reach: half.length(), normal: right.cross(up) }
+    }
+
     /// The direction it faces.
     pub fn normal(&self) -> Vec3 {
-        self.right.cross(self.up)
+        self.normal
     }
 
     /// Area, m2.
@@ -60,7 +69,7 @@ impl Rect {
     }
 
     /// How the rectangle looks from `point`.
-    pub fn seen_from(&self, point: Vec3) -> SphericalRect {
+    pub fn seen_from(&self, point: Vec3) -> SphericalRect<'_> {
         let d = self.centre - point;
         let mut axis_z = self.normal();
         let mut z = d.dot(axis_z);
@@ -80,7 +89,7 @@ impl Rect {
         let turned = if excess < -1e-5 { excess + TAU } else { excess };
         let solid_angle = if turned > TAU - 1e-5 { 0.0 } else { turned.max(0.0) };
         let (b0, b1, k) = (edge0.cos, edge2.cos, -upper);
-        SphericalRect { rect: *self, low, high, z, axis_z, b0, b1, k, solid_angle }
+        SphericalRect { rect: self, low, high, z, axis_z, b0, b1, k, solid_angle }
     }
 }
 
@@ -111,7 +120,7 @@ fn sum_of_angles((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> f32 
     (sin_a * cos_b + cos_a * sin_b).atan2(cos_a * cos_b - sin_a * sin_b)
 }
 
-impl SphericalRect {
+impl SphericalRect<'_> {
     /// A point of the rectangle and the density of its direction, 1/sr. None when the rectangle is seen edge-on.
     pub fn sample(&self, from: Vec3, u: Vec2) -> Option<(Vec3, f32)> {
         if self.solid_angle < SMALL {
@@ -153,23 +162,24 @@ mod tests {
     use super::*;
 
     fn rect() -> Rect {
-        Rect { centre: Vec3::new(0.2, 1.0, -0.3), right: Vec3::X, up: Vec3::Y, half: Vec2::new(0.3, 0.45) }
+        Rect::new(Vec3::new(0.2, 1.0, -0.3), Vec3::X, Vec3::Y, Vec2::new(0.3, 0.45))
     }
 
     #[test]
     fn a_square_seen_from_its_cubes_centre_is_a_sixth_of_the_sphere() {
-        let face = Rect { centre: Vec3::Z, right: Vec3::X, up: Vec3::Y, half: Vec2::ONE };
+        let face = Rect::new(Vec3::Z, Vec3::X, Vec3::Y, Vec2::ONE);
         assert!((face.seen_from(Vec3::ZERO).solid_angle - TAU / 3.0).abs() < 1e-5);
     }
 
     #[test]
     fn samples_lie_on_the_rectangle_and_their_density_matches() {
         for from in [Vec3::new(0.0, 0.5, 1.0), Vec3::new(3.0, 0.2, 5.0), Vec3::new(0.2, 1.0, -0.29), Vec3::ZERO] {
-            let seen = rect().seen_from(from);
+            let rect = rect();
+            let seen = rect.seen_from(from);
             for i in 0..400 {
                 let u = Vec2::new((i % 20) as f32 + 0.5, (i / 20) as f32 + 0.5) / 20.0;
                 let (target, pdf) = seen.sample(from, u).unwrap();
-                let local = target - rect().centre;
+                let local = target - rect.centre;
                 assert!(local.x.abs() <= 0.3001 && local.y.abs() <= 0.4501 && local.z.abs() < 1e-4, "{from} {local}");
                 assert!((seen.pdf(from, target) / pdf - 1.0).abs() < 1e-3);
             }
@@ -180,23 +190,25 @@ mod tests {
     fn spherical_sampling_is_uniform_in_solid_angle() {
         // The mean of 1 / (area density) over the samples is area over solid angle, within the grid's error.
         let from = Vec3::new(0.1, 0.6, 0.2);
-        let seen = rect().seen_from(from);
+        let rect = rect();
+        let seen = rect.seen_from(from);
         let n = 64;
         let mut area = 0.0;
         for i in 0..n * n {
             let u = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32;
             let (target, pdf) = seen.sample(from, u).unwrap();
             let to = target - from;
-            let cos = to.normalize().dot(rect().normal()).abs();
+            let cos = to.normalize().dot(rect.normal()).abs();
             area += to.length_squared() / cos / pdf / (n * n) as f32;
         }
-        assert!((area / rect().area() - 1.0).abs() < 2e-3, "{area}");
+        assert!((area / rect.area() - 1.0).abs() < 2e-3, "{area}");
     }
 
     #[test]
     fn edge_on_and_touching_are_finite() {
         for from in [Vec3::new(2.0, 1.0, -0.3), Vec3::new(0.2, 1.0, -0.3), Vec3::new(0.5, 1.0, -0.3)] {
-            let seen = rect().seen_from(from);
+            let rect = rect();
+            let seen = rect.seen_from(from);
             assert!(seen.solid_angle.is_finite());
             if let Some((target, pdf)) = seen.sample(from, Vec2::new(0.3, 0.7)) {
                 assert!(target.is_finite() && pdf.is_finite());
