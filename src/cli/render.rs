@@ -108,8 +108,10 @@ struct Report {
     trace_s: f64,
     /// From the start of the process to the written file.
     wall_s: f64,
-    /// From the start of the process to the first sample of every pixel.
+    /// From the start of the process to the first picture: of a large one, a coarse version.
     first_picture_s: f64,
+    /// From the start of the process to the first sample of every pixel.
+    first_wave_s: f64,
     rays: u64,
     /// Millions of rays a second, all threads.
     mrays_s: f64,
@@ -140,11 +142,14 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
     }
     let settings = settings(arguments, &loaded);
     let trace_started = Instant::now();
-    let (film, first_picture) = trace(arguments, &pool, &scene, &settings, &control);
+    let coarse = settings
+        .coarse()
+        .map(|coarse| pool.install(|| raytrace::render(&scene, &coarse, &control, &mut |_| ControlFlow::Break(()))));
+    let coarse_done = Instant::now();
+    let (film, first_wave) = trace(arguments, &pool, &scene, &settings, &control);
     let trace_s = trace_started.elapsed().as_secs_f64();
     if film.spp() == 0 {
-        eprintln!("interrupted before the first sample of every pixel was done; nothing is written");
-        return Err(Failure::Interrupted);
+        return keep_coarse(arguments, &loaded, coarse.as_ref(), &settings);
     }
     if let Some((x, y, sample)) = film.first_nonfinite() {
         eprintln!(
@@ -153,8 +158,9 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
             arguments.seed
         );
     }
-    write(arguments, &loaded, &film)?;
+    write(arguments, &loaded, &film, &settings)?;
     let interrupted = interrupted.load(Ordering::Relaxed);
+    let seconds = |then: Option<Instant>| then.map_or(0.0, |then| (then - started).as_secs_f64());
     let report = Report {
         width: film.width(),
         height: film.height(),
@@ -168,7 +174,8 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
         build_s,
         trace_s,
         wall_s: started.elapsed().as_secs_f64(),
-        first_picture_s: first_picture.map_or(0.0, |t| (t - started).as_secs_f64()),
+        first_picture_s: seconds(if coarse.is_some() { Some(coarse_done) } else { first_wave }),
+        first_wave_s: seconds(first_wave),
         rays: control.rays(),
         mrays_s: control.rays() as f64 / trace_s.max(1e-9) / 1e6,
         noise_stops: Some(film.noise_stops()).filter(|n| n.is_finite()),
@@ -178,6 +185,23 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
     };
     tell(arguments, &report)?;
     if interrupted { Err(Failure::Interrupted) } else { Ok(()) }
+}
+
+/// Interrupted before the first sample of every pixel: of a large picture the coarse version is left.
+fn keep_coarse(
+    arguments: &Arguments,
+    loaded: &Loaded,
+    coarse: Option<&Film>,
+    settings: &Settings,
+) -> Result<(), Failure> {
+    match coarse.filter(|film| film.spp() > 0) {
+        Some(film) => {
+            write(arguments, loaded, film, settings)?;
+            eprintln!("interrupted before the first sample of every pixel was done; a coarse picture is kept");
+        }
+        None => eprintln!("interrupted before the first sample of every pixel was done; nothing is written"),
+    }
+    Err(Failure::Interrupted)
 }
 
 /// A wrong file name should not cost a rendering.
@@ -288,12 +312,16 @@ fn watch(
     bar.finish_and_clear();
 }
 
-fn write(arguments: &Arguments, loaded: &Loaded, film: &Film) -> anyhow::Result<()> {
+/// Writes the picture in the size that was asked for, whatever size the film has.
+fn write(arguments: &Arguments, loaded: &Loaded, film: &Film, settings: &Settings) -> anyhow::Result<()> {
     let camera = &loaded.scene.camera;
     let info = PictureInfo::new(camera, arguments.method.label(), film.spp(), arguments.seed.into());
-    let picture = film.develop(&loaded.scene);
+    let (width, height) = (settings.width, settings.height);
+    let picture = film.develop(&loaded.scene).resized(width, height);
     if arguments.layers {
-        io::export_layers(&arguments.output, &picture, &film.develop_layers(&loaded.scene), &info)?;
+        let layers = film.develop_layers(&loaded.scene).into_iter();
+        let layers: Vec<_> = layers.map(|(name, layer)| (name, layer.resized(width, height))).collect();
+        io::export_layers(&arguments.output, &picture, &layers, &info)?;
     } else {
         io::export_picture(&arguments.output, &picture, &info)?;
     }

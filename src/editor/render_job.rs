@@ -172,7 +172,7 @@ fn trace(
     *lock(&shared.tracing_since) = Some(Instant::now());
     *lock(&shared.phase) = Phase::Tracing;
     ctx.request_repaint();
-    if let Some(coarse) = coarse(settings) {
+    if let Some(coarse) = settings.coarse() {
         let film =
             pool.install(|| raytrace::render(&prepared, &coarse, &Control::new(), &mut |_| ControlFlow::Break(())));
         *lock(&shared.film) = Some(Arc::new(film));
@@ -193,16 +193,6 @@ fn trace(
         *lock(&shared.film) = Some(Arc::new(film));
     }
     if control.is_cancelled() { Phase::Cancelled } else { Phase::Done }
-}
-
-/// Pixels from which on a small picture comes first: the first wave of a large one takes its time.
-const LARGE: u64 = 150_000;
-
-/// The small picture that is shown until the first samples of a large one are there.
-fn coarse(settings: &Settings) -> Option<Settings> {
-    let (width, height) = (settings.width, settings.height);
-    let is_large = u64::from(width) * u64::from(height) > LARGE;
-    is_large.then(|| Settings { width: width.div_ceil(5), height: height.div_ceil(5), spp: 1, ..settings.clone() })
 }
 
 /// A developed film, ready to be shown and exported.

@@ -22,8 +22,32 @@ impl Picture {
         self.rgb[y as usize * self.width as usize + x as usize]
     }
 
+    /// The same picture in other pixels, each the nearest of these.
+    pub fn resized(&self, width: u32, height: u32) -> Picture {
+        let nearest = |i: u32, ours: u32, theirs: u32| {
+            (u64::from(2 * i + 1) * u64::from(ours) / u64::from(2 * theirs.max(1))).min(u64::from(ours.max(1) - 1))
+                as u32
+        };
+        let rows = (0..height).map(|y| nearest(y, self.height, height));
+        let rgb = rows.flat_map(|y| (0..width).map(move |x| self.at(nearest(x, self.width, width), y))).collect();
+        Picture { width, height, rgb }
+    }
+
     /// The picture as it is shown: tone curve and sRGB encoding, 8 bits a channel.
     pub fn to_srgb8(&self) -> Vec<[u8; 3]> {
         self.rgb.iter().map(|&c| crate::color::display_srgb8(c)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn resizing_takes_the_nearest_pixel() {
+        let small = Picture { width: 2, height: 1, rgb: vec![[1.0; 3], [2.0; 3]] };
+        let values: Vec<f32> = small.resized(5, 2).rgb.iter().map(|rgb| rgb[0]).collect();
+        assert_eq!(values, [1.0, 1.0, 2.0, 2.0, 2.0, 1.0, 1.0, 2.0, 2.0, 2.0]);
+        assert_eq!(small.resized(2, 1), small);
     }
 }

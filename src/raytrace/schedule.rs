@@ -46,6 +46,18 @@ impl Default for Settings {
     }
 }
 
+/// Pixels from which on a small picture comes first: the first wave of a large one takes its time.
+const LARGE: u64 = 150_000;
+
+impl Settings {
+    /// One sample of a small version of a large picture, to be shown until the first wave is done.
+    pub fn coarse(&self) -> Option<Settings> {
+        let is_large = u64::from(self.width) * u64::from(self.height) > LARGE;
+        let small = |edge: u32| edge.div_ceil(4);
+        is_large.then(|| Settings { width: small(self.width), height: small(self.height), spp: 1, ..self.clone() })
+    }
+}
+
 /// Shared between a render and whoever watches it.
 #[derive(Debug, Default)]
 pub struct Control {
