@@ -58,6 +58,8 @@ pub struct Arguments {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum MethodName {
+    /// Phong lobes, hard shadows, mirrors and glass, no bounces.
+    Whitted,
     /// Direct light only: soft shadows, no bounces.
     Direct,
     /// Everything: the reference.
@@ -67,6 +69,7 @@ enum MethodName {
 impl MethodName {
     fn method(self) -> Method {
         match self {
+            MethodName::Whitted => Method::Whitted,
             MethodName::Direct => Method::Direct,
             MethodName::Path => Method::Path,
         }
@@ -74,6 +77,7 @@ impl MethodName {
 
     fn label(self) -> &'static str {
         match self {
+            MethodName::Whitted => "whitted",
             MethodName::Direct => "direct",
             MethodName::Path => "path",
         }

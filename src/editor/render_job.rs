@@ -287,6 +287,7 @@ pub fn develop(film: &Film, scene: &Scene) -> Developed {
 /// Name of a method in lists.
 pub fn method_label(method: Method) -> &'static str {
     match method {
+        Method::Whitted => "Hard shadows, no bounced light",
         Method::Direct => "Direct light only",
         Method::Path => "With bounced light",
     }

@@ -197,6 +197,7 @@ impl App {
         let picture = developed.picture.clone();
         let Settings { method, seed, .. } = job.settings;
         let name = match method {
+            Method::Whitted => "whitted",
             Method::Direct => "direct",
             Method::Path => "path",
         };

@@ -35,7 +35,7 @@ pub trait Sink {
 }
 
 impl Vertex {
-    fn new(position: Vec3, normal: Vec3) -> Self {
+    pub(super) fn new(position: Vec3, normal: Vec3) -> Self {
         Vertex { position, normal, left_from: position, travelled: 0.0, pdf: None, total_importance: 0.0 }
     }
 }
@@ -49,7 +49,7 @@ const ROULETTE_FROM: u32 = 3;
 /// A thread's view of the scene with its scratch space and counters.
 #[derive(Debug)]
 pub struct Tracer<'a> {
-    scene: &'a RenderScene,
+    pub(super) scene: &'a RenderScene,
     stack: Stack,
     /// Rays traced so far.
     pub rays: u64,
@@ -57,7 +57,7 @@ pub struct Tracer<'a> {
 
 /// The last vertex that sampled lights, as far as weighting a later hit needs it.
 #[derive(Clone, Copy, Debug)]
-struct Vertex {
+pub(super) struct Vertex {
     position: Vec3,
     normal: Vec3,
     /// Where the ray left, and how far it has come through thin panes since.
@@ -221,7 +221,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// The camera sees emitters as solid from the front. True if one hides what is behind it.
-    fn camera_sees_emitter(&mut self, ray: &Ray, distance: f32, sink: &mut impl Sink) -> bool {
+    pub(super) fn camera_sees_emitter(&mut self, ray: &Ray, distance: f32, sink: &mut impl Sink) -> bool {
         let scene = self.scene;
         let nearest = scene
             .lights
@@ -245,7 +245,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// Emitters that a scattered ray crosses before it ends.
-    fn meet_emitters(
+    pub(super) fn meet_emitters(
         &self,
         ray: &Ray,
         distance: f32,

@@ -22,6 +22,7 @@ mod simd;
 mod texture;
 mod triangle;
 mod triangle_tree;
+mod whitted;
 
 pub use film::{Film, Layer, MAX_LIGHT_LAYERS};
 pub use intersectors::{Intersection, Intersector};

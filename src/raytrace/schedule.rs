@@ -14,6 +14,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// How light is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Method {
+    /// Phong lobes, hard shadows, mirrors and glass: Whitted's recursion, to compare with.
+    Whitted,
     /// One scattering event: soft shadows and gloss, no bounce light. Mirrors and glass are passed through.
     Direct,
     /// Everything: the reference.
@@ -160,7 +162,10 @@ impl TileJob<'_> {
                 let film_point = (Vec2::new(x as f32, y as f32) + Vec2::new(set[0], set[1])) / size;
                 let (origin, direction) = self.scene.lens.ray(&frame, film_point, sampler::point(&set));
                 let mut gate = Gate { tile, pixel, place: (x, y, sample), luminance: 0.0, scene: self.scene };
-                tracer.trace(origin, direction, &sampler, limits, &mut gate);
+                match self.settings.method {
+                    Method::Whitted => tracer.whitted(origin, direction, limits.all_bounces, &mut gate),
+                    Method::Direct | Method::Path => tracer.trace(origin, direction, &sampler, limits, &mut gate),
+                }
                 let value = gate.luminance * self.scene.exposure;
                 tile.add_luminance(self.half, pixel, value);
             }
@@ -171,9 +176,13 @@ impl TileJob<'_> {
     }
 }
 
+/// Mirrors and glass that Whitted's method follows: enough to look through a bottle and back.
+const WHITTED_DEPTH: u32 = 10;
+
 fn limits(scene: &RenderScene, settings: &Settings) -> Limits {
     let planned = scene.plan().max_bounces;
     match settings.method {
+        Method::Whitted => Limits { wide_bounces: 1, all_bounces: settings.max_depth.unwrap_or(WHITTED_DEPTH) },
         Method::Direct => Limits { wide_bounces: 1, all_bounces: settings.max_depth.unwrap_or(planned.max(16)) },
         Method::Path => {
             let depth = settings.max_depth.unwrap_or(planned);

@@ -6,9 +6,10 @@
 //! gives back all light; metals are scaled by 1 + F0 (1 / E - 1) for light that bounces between facets (Turquin 2019).
 
 mod albedo;
-mod fresnel;
+pub mod fresnel;
 mod ggx;
 mod glass;
+mod phong;
 mod polarisation;
 
 use super::media::Interface;

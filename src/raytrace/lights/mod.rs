@@ -199,6 +199,31 @@ impl TracedLight {
         Some(LightSample { value: sample.value * self.passed(-sample.direction), ..sample })
     }
 
+    /// Light that reaches `point` if all of it came from the emitter's centre, before shadow. None from a surround.
+    pub fn from_centre(&self, point: Vec3) -> Option<LightSample> {
+        let small = |centre: Vec3, intensity: f32, facing: Option<Vec3>| {
+            let sample = from_point(point, centre, intensity)?;
+            let cos = facing.map_or(1.0, |facing| -sample.direction.dot(facing));
+            (cos > 0.0).then(|| LightSample { value: sample.value * cos, ..sample })
+        };
+        let sample = match self.source {
+            Source::Point { .. } | Source::Spot { .. } => self.sample_source(point, Vec2::splat(0.5)),
+            Source::Rect { rect, luminance } => small(rect.centre, luminance * rect.area(), Some(rect.normal())),
+            Source::Disc { disc, luminance } => small(disc.centre, luminance * disc.area(), Some(disc.normal())),
+            Source::Ball { ball, luminance } => small(ball.centre, luminance * PI * ball.radius * ball.radius, None),
+            Source::Sun { towards, illuminance, .. } => {
+                Some(LightSample { direction: towards, distance: f32::INFINITY, value: illuminance, pdf: None })
+            }
+            Source::Surround { .. } => None,
+        }?;
+        Some(LightSample { value: sample.value * self.passed(-sample.direction), ..sample })
+    }
+
+    /// Luminance of a surround, cd/m2.
+    pub fn surround_luminance(&self) -> Option<f32> {
+        if let Source::Surround { luminance } = self.source { Some(luminance) } else { None }
+    }
+
     /// The same without its beam.
     fn sample_source(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
         match self.source {
