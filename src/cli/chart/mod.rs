@@ -1,15 +1,31 @@
-//! `catchlight chart`: speed against accuracy.
+//! `catchlight chart`: speed against accuracy, and rays a second by intersection method.
 
+mod accuracy;
+mod drawing;
 mod traversal;
 
-use super::Failure;
+use super::{Failure, input};
 use crate::raytrace::Intersection;
-use anyhow::anyhow;
 use std::path::PathBuf;
 
 /// Arguments of `chart`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
+    /// Studios: .ron files, or names of shipped ones [default: three_point, product_still_life].
+    #[arg(conflicts_with = "traversal")]
+    scenes: Vec<PathBuf>,
+    /// Folder for chart.csv, chart.md and a drawing (.svg) a studio; made if it is not there.
+    #[arg(short, long, value_name = "DIR", required_unless_present = "traversal", conflicts_with = "traversal")]
+    output: Option<PathBuf>,
+    /// Picture size in pixels, WIDTHxHEIGHT.
+    #[arg(long, value_parser = input::parse_size, default_value = "120x80")]
+    size: (u32, u32),
+    /// Most samples a pixel that are timed; each method is timed at 1, 4, 16 ... of them.
+    #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    spp: u32,
+    /// Samples a pixel of the reference, of its own seed [default: 32 times --spp].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    reference_spp: Option<u32>,
     /// Compare ways to find the closest hit in this OBJ model: every triangle, a box a part, our tree.
     #[arg(long, value_name = "MESH.obj")]
     traversal: Option<PathBuf>,
@@ -29,11 +45,12 @@ pub struct Arguments {
 
 /// Runs the study that was asked for.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    match &arguments.traversal {
-        Some(model) => {
+    match (&arguments.traversal, &arguments.output) {
+        (Some(model), _) => {
             let methods = if arguments.way.is_empty() { &Intersection::ALL[..] } else { &arguments.way };
             traversal::run(model, arguments.rays.as_deref(), arguments.ray_kind, methods, arguments.json)
         }
-        None => Err(Failure::Input(anyhow!("say what to chart: --traversal MESH.obj"))),
+        (None, Some(folder)) => accuracy::run(arguments, folder),
+        (None, None) => Err(Failure::Input(anyhow::anyhow!("name a folder for the chart: -o DIR"))),
     }
 }

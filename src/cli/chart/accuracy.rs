@@ -1,0 +1,215 @@
+//! `catchlight chart [SCENE ...] -o DIR`: every method's error against its time, beside the converged path-traced picture.
+//!
+//! Error is the mean over pixels and colours of (x - r)^2 / (r^2 + 0.0001), r from the reference (relative mean squared
+//! error; the small term, a hundredth of a grey card's sixth stop down, keeps black pixels from counting without bound),
+//! and the median pixel's error in stops of luminance. Time is tracing alone, on all cores; trees are built once.
+
+use super::{Arguments, drawing};
+use crate::cli::{Failure, input, say};
+use crate::color::luminance;
+use crate::io::Loaded;
+use crate::photo::Picture;
+use crate::raytrace::{self, Control, Method, RenderScene, Settings};
+use anyhow::Context;
+use glam::Vec3;
+use serde::Serialize;
+use std::fmt::Write;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// One measured point.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The studio's name.
+    pub scene: String,
+    /// What was varied, with its value: a method, a number of threads, a number of bounces.
+    pub method: String,
+    /// Samples a pixel.
+    pub spp: u32,
+    threads: usize,
+    /// Tracing, seconds.
+    pub trace_s: f64,
+    mrays_s: f64,
+    /// Relative mean squared error against the reference.
+    pub rel_mse: f64,
+    /// Median over pixels, stops of luminance.
+    median_stops: f64,
+}
+
+/// Seed of the reference; measurements have seed 0.
+const REFERENCE_SEED: u32 = 7;
+/// Bounces of the study of time and error against depth.
+const DEPTHS: [u32; 4] = [1, 2, 4, 8];
+const METHODS: [(Method, &str); 3] = [(Method::Whitted, "whitted"), (Method::Direct, "direct"), (Method::Path, "path")];
+
+/// Measures, and writes the folder.
+pub fn run(arguments: &Arguments, folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).with_context(|| format!("can't make the folder: {}", folder.display()))?;
+    let default = [PathBuf::from("three_point"), PathBuf::from("product_still_life")];
+    let scenes = if arguments.scenes.is_empty() { &default[..] } else { &arguments.scenes };
+    let mut rows = Vec::new();
+    for path in scenes {
+        let loaded = input::load_studio(path)?;
+        let measured = measure(arguments, &loaded)?;
+        let stem = path.file_stem().map_or("studio".into(), |stem| stem.to_string_lossy().into_owned());
+        drawing::draw(&folder.join(format!("{stem}.svg")), &loaded.scene.name, &measured)?;
+        rows.extend(measured);
+    }
+    write(&folder.join("chart.csv"), &csv(&rows))?;
+    let table = markdown(&rows);
+    write(&folder.join("chart.md"), &table)?;
+    if arguments.json {
+        say(serde_json::to_string(&rows).context("can't write the results")?);
+    } else {
+        say(table.trim_end());
+    }
+    Ok(())
+}
+
+/// A studio with what the measurements share.
+struct Study<'a> {
+    name: &'a str,
+    loaded: &'a Loaded,
+    scene: RenderScene,
+    size: (u32, u32),
+    reference: Picture,
+}
+
+fn measure(arguments: &Arguments, loaded: &Loaded) -> Result<Vec<Row>, Failure> {
+    let (size, cores) = (arguments.size, std::thread::available_parallelism().map_or(1, usize::from));
+    let scene = raytrace::prepare(&loaded.scene, &loaded.assets)?;
+    let reference_spp = arguments.reference_spp.unwrap_or(32 * arguments.spp);
+    eprintln!("{}: reference of {reference_spp} samples a pixel ...", loaded.scene.name);
+    let settings = Settings { spp: reference_spp, seed: REFERENCE_SEED, ..settings(size, Method::Path) };
+    let film = raytrace::render(&scene, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+    let reference = film.develop(&loaded.scene);
+    let study = Study { name: &loaded.scene.name, loaded, scene, size, reference };
+    let mut rows = Vec::new();
+    for (method, label) in METHODS {
+        let mut spp = 1;
+        while spp <= arguments.spp {
+            rows.push(study.row(label.to_owned(), Settings { spp, ..settings_of(&study, method) }, cores)?);
+            spp *= 4;
+        }
+    }
+    let spp = arguments.spp.min(16);
+    for depth in DEPTHS {
+        let settings = Settings { spp, max_depth: Some(depth), ..settings_of(&study, Method::Path) };
+        rows.push(study.row(format!("path, {depth} bounces"), settings, cores)?);
+    }
+    for threads in 1..cores {
+        let settings = Settings { spp, ..settings_of(&study, Method::Path) };
+        rows.push(study.row(format!("path, {threads} of {cores} threads"), settings, threads)?);
+    }
+    Ok(rows)
+}
+
+fn settings((width, height): (u32, u32), method: Method) -> Settings {
+    Settings { width, height, method, ..Settings::default() }
+}
+
+fn settings_of(study: &Study<'_>, method: Method) -> Settings {
+    settings(study.size, method)
+}
+
+impl Study<'_> {
+    fn row(&self, method: String, settings: Settings, threads: usize) -> Result<Row, Failure> {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|error| Failure::Machine(anyhow::anyhow!(error).context("can't start the threads")))?;
+        let control = Control::new();
+        let started = Instant::now();
+        let film =
+            pool.install(|| raytrace::render(&self.scene, &settings, &control, &mut |_| ControlFlow::Continue(())));
+        let trace_s = started.elapsed().as_secs_f64();
+        let (rel_mse, median_stops) = error(&film.develop(&self.loaded.scene), &self.reference);
+        eprintln!("{}: {method}, {} samples: {trace_s:.2} s, error {rel_mse:.2e}", self.name, settings.spp);
+        Ok(Row {
+            scene: self.name.to_owned(),
+            method,
+            spp: settings.spp,
+            threads,
+            trace_s,
+            mrays_s: control.rays() as f64 / trace_s.max(1e-9) / 1e6,
+            rel_mse,
+            median_stops,
+        })
+    }
+}
+
+/// Relative mean squared error, and the median over pixels of the error in stops.
+fn error(picture: &Picture, reference: &Picture) -> (f64, f64) {
+    let mut sum = 0.0;
+    let mut stops: Vec<f64> = Vec::with_capacity(picture.rgb.len());
+    for (ours, truth) in picture.rgb.iter().zip(&reference.rgb) {
+        for (x, r) in ours.iter().zip(truth).map(|(&x, &r)| (f64::from(x), f64::from(r))) {
+            sum += (x - r).powi(2) / (r * r + 1e-4);
+        }
+        // Four stops under a hundredth of white, nobody sees stops.
+        let bright = |rgb: &[f32; 3]| f64::from(luminance(Vec3::from(*rgb))).max(6e-4);
+        stops.push((bright(ours) / bright(truth)).log2().abs());
+    }
+    stops.sort_by(f64::total_cmp);
+    let median = stops.get(stops.len() / 2).copied().unwrap_or(0.0);
+    (sum / (3 * picture.rgb.len()).max(1) as f64, median)
+}
+
+fn csv(rows: &[Row]) -> String {
+    let mut text = "scene,method,spp,threads,trace_s,mrays_s,rel_mse,median_stops\n".to_owned();
+    for row in rows {
+        let Row { scene, method, spp, threads, trace_s, mrays_s, rel_mse, median_stops } = row;
+        let (scene, method) = (quoted(scene), quoted(method));
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "{scene},{method},{spp},{threads},{trace_s:.6},{mrays_s:.4},{rel_mse:.6e},{median_stops:.6}"
+        );
+    }
+    text
+}
+
+/// A field of a csv file (RFC 4180).
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('"', "\"\""))
+}
+
+fn markdown(rows: &[Row]) -> String {
+    let mut text = "| studio | method | samples | threads | seconds | Mrays/s | relative MSE | median, stops |\n\
+                    |---|---|---|---|---|---|---|---|\n"
+        .to_owned();
+    for row in rows {
+        let Row { scene, method, spp, threads, trace_s, mrays_s, rel_mse, median_stops } = row;
+        let scene = scene.replace('|', "\\|");
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "| {scene} | {method} | {spp} | {threads} | {trace_s:.3} | {mrays_s:.2} | {rel_mse:.2e} | {median_stops:.4} |"
+        );
+    }
+    text
+}
+
+fn write(path: &Path, text: &str) -> anyhow::Result<()> {
+    std::fs::write(path, text).with_context(|| format!("can't write {}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_one_stop_over_is_one_stop_off() {
+        let reference = Picture { width: 2, height: 1, rgb: vec![[0.2; 3], [0.5; 3]] };
+        let over = Picture { rgb: vec![[0.4; 3], [1.0; 3]], ..reference.clone() };
+        let (rel_mse, median) = error(&over, &reference);
+        assert!((median - 1.0).abs() < 1e-6 && (rel_mse - 1.0).abs() < 2e-3, "{rel_mse} {median}");
+        assert_eq!(error(&reference, &reference), (0.0, 0.0));
+    }
+
+    #[test]
+    fn names_with_commas_and_quotes_stay_one_field() {
+        assert_eq!(quoted("a, \"b\""), "\"a, \"\"b\"\"\"");
+    }
+}

@@ -1,0 +1,57 @@
+//! The drawing of a chart: error against seconds, both logarithmic, a line a method.
+
+use super::accuracy::Row;
+use anyhow::anyhow;
+use plotters::prelude::*;
+use std::path::Path;
+
+/// Colours that the colour-blind tell apart (Okabe and Ito).
+const COLORS: [RGBColor; 4] =
+    [RGBColor(213, 94, 0), RGBColor(0, 114, 178), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
+
+/// Draws the rows of the methods proper; studies of depth and threads are left to the table.
+pub fn draw(path: &Path, title: &str, rows: &[Row]) -> anyhow::Result<()> {
+    draw_svg(path, title, rows).map_err(|error| anyhow!("can't draw {}: {error}", path.display()))
+}
+
+fn draw_svg(path: &Path, title: &str, rows: &[Row]) -> Result<(), Box<dyn std::error::Error>> {
+    let rows: Vec<&Row> = rows.iter().filter(|row| !row.method.contains(',')).collect();
+    // Errors of exactly zero have no place on a logarithmic axis.
+    let place = |row: &Row| (row.trace_s.max(1e-5), row.rel_mse.max(1e-9));
+    let range = |of: fn((f64, f64)) -> f64| {
+        let values = rows.iter().map(|row| of(place(row)));
+        let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
+        (low / 1.5)..(high * 1.5)
+    };
+    let area = SVGBackend::new(path, (800, 520)).into_drawing_area();
+    area.fill(&WHITE)?;
+    let mut chart = ChartBuilder::on(&area)
+        .caption(format!("{title}: error against time"), ("sans-serif", 20))
+        .margin(12)
+        .x_label_area_size(44)
+        .y_label_area_size(76)
+        .build_cartesian_2d(range(|p| p.0).log_scale(), range(|p| p.1).log_scale())?;
+    chart
+        .configure_mesh()
+        .max_light_lines(0)
+        .bold_line_style(BLACK.mix(0.12))
+        .x_labels(8)
+        .y_labels(8)
+        .x_desc("seconds of tracing, all cores")
+        .y_desc("relative mean squared error")
+        .x_label_formatter(&|x| format!("{x:.3}"))
+        .y_label_formatter(&|y| format!("{y:.0e}"))
+        .draw()?;
+    let mut methods: Vec<&str> = rows.iter().map(|row| row.method.as_str()).collect();
+    methods.dedup();
+    for (method, color) in methods.into_iter().zip(COLORS.iter().cycle()) {
+        let points: Vec<(f64, f64)> = rows.iter().filter(|row| row.method == method).map(|row| place(row)).collect();
+        chart
+            .draw_series(LineSeries::new(points.iter().copied(), color.stroke_width(2)).point_size(4))?
+            .label(method)
+            .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2)));
+    }
+    chart.configure_series_labels().background_style(WHITE.mix(0.85)).border_style(BLACK.mix(0.3)).draw()?;
+    area.present()?;
+    Ok(())
+}

@@ -1,0 +1,93 @@
+//! `catchlight chart` as a process: what it writes is whole, and says what the methods are.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn chart(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_catchlight")).current_dir(folder).arg("chart").args(arguments).output().unwrap()
+}
+
+fn json(output: &Output) -> Vec<Value> {
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn more_samples_bring_the_path_tracer_nearer_and_the_others_stay_off() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["three_point", "-o", "out", "--size", "24x16", "--spp", "16", "--json"];
+    let rows = json(&chart(folder.path(), &arguments));
+    let error = |method: &str, spp: u64| {
+        let row = rows.iter().find(|row| row["method"] == method && row["spp"] == spp).unwrap();
+        assert!(row["trace_s"].as_f64().unwrap() > 0.0 && row["mrays_s"].as_f64().unwrap() > 0.0);
+        row["rel_mse"].as_f64().unwrap()
+    };
+    // Sixteen times the samples: a sixteenth of the error or less; a third leaves room for a seed's luck.
+    assert!(error("path", 16) < error("path", 1) / 3.0);
+    // What the others leave out, no number of samples brings back.
+    for method in ["whitted", "direct"] {
+        assert!(error(method, 16) > 2.0 * error("path", 16), "{method}");
+    }
+    let read = |name: &str| std::fs::read_to_string(folder.path().join("out").join(name)).unwrap();
+    assert_eq!(read("chart.csv").lines().count(), rows.len() + 1);
+    assert_eq!(read("chart.md").lines().count(), rows.len() + 2);
+    let drawing = read("three_point.svg");
+    assert!(drawing.starts_with("<svg") && drawing.trim_end().ends_with("</svg>") && drawing.contains("whitted"));
+}
+
+/// A unit square in the XY plane, cut in two, and a ray file's bytes.
+fn square(folder: &Path) {
+    let model = "o a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\no b\nv 0 0 -1\nv 1 1 -1\nv 0 1 -1\nf 5 6 7\n";
+    std::fs::write(folder.join("square.obj"), model).unwrap();
+    let rays: [[f32; 6]; 4] = [
+        [0.7, 0.2, 2.0, 0.0, 0.0, -1.0],
+        [0.2, 0.7, 2.0, 0.0, 0.0, -2.0],
+        [0.2, 0.7, 2.0, 0.0, 0.0, 1.0],
+        [5.0, 0.7, 2.0, 0.0, 0.0, -1.0],
+    ];
+    std::fs::write(
+        folder.join("rays.bin"),
+        rays.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>(),
+    )
+    .unwrap();
+}
+
+#[test]
+fn all_ways_to_find_a_hit_agree_on_rays_from_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    square(folder.path());
+    let rows = json(&chart(folder.path(), &["--traversal", "square.obj", "--rays", "rays.bin", "--json"]));
+    let cores = std::thread::available_parallelism().unwrap().get();
+    assert_eq!(rows.len(), 4 * cores, "a row a method and number of threads");
+    for row in &rows {
+        // The first ray meets the near square at 2; the second, twice as fast, meets the far triangle at 1.5.
+        assert_eq!(row["hits"], 2, "{row}");
+        assert!((row["mean_t"].as_f64().unwrap() - 1.75).abs() < 1e-6, "{row}");
+        assert!(row["build_s"].as_f64().is_some() && row["mrays_s"].as_f64().unwrap() > 0.0);
+    }
+    assert_eq!(rows.iter().filter(|row| row["method"] == "bvh").count(), cores);
+}
+
+#[test]
+fn bad_rays_and_missing_folders_are_refused_with_a_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    square(folder.path());
+    std::fs::write(folder.path().join("short.bin"), [0; 23]).unwrap();
+    let nan = [f32::NAN; 6].map(f32::to_le_bytes).concat();
+    std::fs::write(folder.path().join("nan.bin"), nan).unwrap();
+    for (arguments, complaint) in [
+        (&["--traversal", "square.obj", "--rays", "short.bin"][..], "23 bytes"),
+        (&["--traversal", "square.obj", "--rays", "nan.bin"], "ray 0"),
+        (&["--traversal", "square.obj", "--rays", "none.bin"], "none.bin"),
+        (&["--traversal", "none.obj"], "none.obj"),
+        (&["three_point"], "--output"),
+        (&["no_such_studio", "-o", "out"], "no_such_studio"),
+    ] {
+        let output = chart(folder.path(), arguments);
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {stderr}");
+        assert!(stderr.contains(complaint), "{arguments:?}: {stderr}");
+    }
+}
