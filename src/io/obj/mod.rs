@@ -2,6 +2,7 @@
 
 mod lines;
 mod materials;
+mod smooth;
 
 use super::error::AssetError;
 use crate::scene::{Material, Mesh, MeshPart};
@@ -27,7 +28,7 @@ pub struct ImportedObj {
     pub warnings: Vec<String>,
 }
 
-/// Imports an OBJ file: polygons become triangles, groups become parts, missing normals are made smooth. A missing MTL
+/// Imports an OBJ file: polygons become triangles, groups become parts, missing normals are made smooth up to hard edges. A missing MTL
 /// file is a warning.
 ///
 /// # Errors
@@ -52,7 +53,7 @@ pub fn import_obj(path: &Path) -> Result<ImportedObj, AssetError> {
         });
     }
     let materials = materials.unwrap_or_default();
-    let mut imported = assemble(models, &materials).map_err(bad_model)?;
+    let mut imported = assemble(models, &materials, smooth::CREASE_DEG).map_err(bad_model)?;
     imported.warnings.extend(library.into_warnings());
     Ok(imported)
 }
@@ -61,7 +62,8 @@ pub fn import_obj(path: &Path) -> Result<ImportedObj, AssetError> {
 pub(super) fn read_shipped(text: &[u8]) -> Option<Mesh> {
     let no_materials = |_: &Path| Ok(Default::default());
     let (models, _) = tobj::load_obj_buf(&mut &text[..], &tobj::GPU_LOAD_OPTIONS, no_materials).ok()?;
-    assemble(models, &[]).ok().map(|imported| imported.mesh)
+    // Figures are smooth all over.
+    assemble(models, &[], 180.0).ok().map(|imported| imported.mesh)
 }
 
 /// Reads a whole file that must not be larger than `limit`.
@@ -80,7 +82,7 @@ pub(super) fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, AssetErro
 }
 
 /// One mesh of all groups; groups without triangles are dropped.
-fn assemble(models: Vec<tobj::Model>, materials: &[tobj::Material]) -> Result<ImportedObj, String> {
+fn assemble(models: Vec<tobj::Model>, materials: &[tobj::Material], crease_deg: f32) -> Result<ImportedObj, String> {
     let mut mesh = Mesh::default();
     let mut part_materials: Vec<(String, Material)> = Vec::new();
     let names = part_names(&models, materials);
@@ -116,7 +118,7 @@ fn assemble(models: Vec<tobj::Model>, materials: &[tobj::Material]) -> Result<Im
         warnings.push("some texture coordinates are no numbers; all are left out".to_owned());
         mesh.uvs.clear();
     }
-    mend_normals(&mut mesh, &mut warnings);
+    mend_normals(&mut mesh, crease_deg, &mut warnings);
     Ok(ImportedObj { mesh, part_materials, warnings })
 }
 
@@ -143,35 +145,17 @@ fn triples(values: &[f32]) -> impl Iterator<Item = Vec3> + '_ {
     values.chunks_exact(3).map(|v| Vec3::new(v[0], v[1], v[2]))
 }
 
-/// Unit normals for every vertex. The file's where they are all usable; else smooth ones.
-fn mend_normals(mesh: &mut Mesh, warnings: &mut Vec<String>) {
+/// Unit normals for every vertex. The file's where they are all usable; else computed ones.
+fn mend_normals(mesh: &mut Mesh, crease_deg: f32, warnings: &mut Vec<String>) {
     let unit: Option<Vec<Vec3>> = mesh.normals.iter().map(|n| n.try_normalize()).collect();
     match unit {
         Some(unit) if !unit.is_empty() => mesh.normals = unit,
-        Some(_) => smooth_across_seams(mesh),
+        Some(_) => smooth::compute_normals(mesh, crease_deg),
         None => {
             warnings.push("some normals have no direction; all are computed anew".to_owned());
-            smooth_across_seams(mesh);
+            smooth::compute_normals(mesh, crease_deg);
         }
     }
-}
-
-/// Smooth normals, also where texture coordinates or groups split one place into several vertices.
-fn smooth_across_seams(mesh: &mut Mesh) {
-    let mut first_at: HashMap<[u32; 3], u32> = HashMap::with_capacity(mesh.positions.len());
-    let mut welded = Mesh::default();
-    let weld: Vec<u32> = (mesh.positions.iter())
-        .map(|p| {
-            // Adding zero makes -0 and 0 the same place.
-            *first_at.entry((*p + Vec3::ZERO).to_array().map(f32::to_bits)).or_insert_with(|| {
-                welded.positions.push(*p);
-                welded.positions.len() as u32 - 1
-            })
-        })
-        .collect();
-    welded.triangles = mesh.triangles.iter().map(|t| t.map(|i| weld[i as usize])).collect();
-    welded.compute_smooth_normals();
-    mesh.normals = weld.iter().map(|&i| welded.normals[i as usize]).collect();
 }
 
 #[cfg(test)]
