@@ -134,7 +134,7 @@ fn a_millimetre_object_stands_on_a_ten_metre_cyclorama() {
         scene.objects[1].shape = Shape::Sphere { radius_m: 0.5 * size };
         scene.objects[1].transform.position = Vec3::Y * 0.5 * size;
         let sun = Emitter::Sun { angular_diameter_deg: 0.0 };
-        scene.lights[0] = light(sun, Output::Lux(10_000.0), Vec3::new(1.0, 2.0, 1.0));
+        scene.lights[0] = light(sun, Output::Lux(10_000.0), Vec3::new(2.0, 1.0, 0.5));
         scene.camera.position = Vec3::new(0.0, 3.0, 1.0) * size;
         scene.camera.aim = Aim::Point(Vec3::Y * 0.5 * size);
         picture(&scene, &square(Method::Direct, 32, 16))
