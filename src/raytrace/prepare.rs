@@ -9,7 +9,7 @@ use super::lights::TracedLight;
 use super::plan::RenderPlan;
 use super::texture::TextureMap;
 use crate::photo::exposure;
-use crate::scene::{self, Assets, Light, Material, Mesh, Scene, Severity};
+use crate::scene::{self, Assets, Light, Material, Mesh, Scene, Severity, Shape};
 use glam::{Affine3A, Vec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -86,12 +86,12 @@ pub(super) fn prepare_around(
     let mut tables = Tables::default();
     let placed = place_everything(scene, assets, &mut tables);
     let geometries = build_geometries(placed.iter().map(|p| &p.mesh));
+    let mut closed = Closed::default();
     let instances = placed
         .into_iter()
         .filter_map(|p| {
             let geometry = geometries.get(&Arc::as_ptr(&p.mesh))?.clone();
-            let clear = p.materials.iter().any(|&m| tables.materials[m as usize].transmits());
-            let sheet = clear && !p.mesh.is_closed();
+            let sheet = closed.is_sheet(&p.mesh, &p.materials, &tables);
             let mut placed = Instance::new(geometry, relative_to(p.world_from_object, eye), p.object, p.materials)?;
             placed.sheet = sheet;
             Some(placed)
@@ -168,13 +168,50 @@ fn place_everything(scene: &Scene, assets: &Assets, tables: &mut Tables) -> Vec<
         let materials = mesh.parts.iter().map(|p| tables.material(room.material_of(&p.name), assets)).collect();
         placed.push(Placed { mesh, world_from_object: Affine3A::IDENTITY, object: u32::MAX, materials });
     }
+    let mut round = RoundMeshes::default();
     for (index, object) in scene.objects.iter().enumerate().filter(|(_, o)| o.visible) {
-        let Some(mesh) = assets.mesh_of(&object.shape) else { continue };
+        let Some((mesh, size)) = round.mesh_of(&object.shape, assets) else { continue };
         let materials = mesh.parts.iter().map(|p| tables.material(object.material_of(&p.name), assets)).collect();
-        let world_from_object = object.transform.world_from_object();
+        let world_from_object = object.transform.world_from_object() * Affine3A::from_scale(size);
         placed.push(Placed { mesh, world_from_object, object: index as u32, materials });
     }
     placed
+}
+
+/// One ball and one cylinder for all balls and cylinders: thousands of them fit in memory.
+#[derive(Default)]
+struct RoundMeshes {
+    ball: Option<Arc<Mesh>>,
+    cylinder: Option<Arc<Mesh>>,
+}
+
+impl RoundMeshes {
+    /// A shape's mesh and the scale by which it becomes the shape.
+    fn mesh_of(&mut self, shape: &Shape, assets: &Assets) -> Option<(Arc<Mesh>, Vec3)> {
+        let (unit, slot, size) = match *shape {
+            Shape::Sphere { radius_m } => (Shape::Sphere { radius_m: 1.0 }, &mut self.ball, Vec3::splat(radius_m)),
+            Shape::Cylinder { radius_m, height_m } => {
+                let unit = Shape::Cylinder { radius_m: 1.0, height_m: 1.0 };
+                (unit, &mut self.cylinder, Vec3::new(radius_m, height_m, radius_m))
+            }
+            _ => return assets.mesh_of(shape).map(|mesh| (mesh, Vec3::ONE)),
+        };
+        if slot.is_none() {
+            *slot = assets.mesh_of(&unit);
+        }
+        slot.clone().map(|mesh| (mesh, size))
+    }
+}
+
+/// Which meshes enclose a space, looked at once each, and only those with something clear.
+#[derive(Default)]
+struct Closed(HashMap<*const Mesh, bool>);
+
+impl Closed {
+    fn is_sheet(&mut self, mesh: &Arc<Mesh>, materials: &[u32], tables: &Tables) -> bool {
+        let clear = materials.iter().any(|&m| tables.materials[m as usize].transmits());
+        clear && !*self.0.entry(Arc::as_ptr(mesh)).or_insert_with(|| mesh.is_closed())
+    }
 }
 
 /// One geometry a mesh, built in parallel.

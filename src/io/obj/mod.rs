@@ -8,6 +8,7 @@ use super::error::AssetError;
 use crate::scene::{Material, Mesh, MeshPart};
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// Largest OBJ file, bytes.
@@ -70,8 +71,12 @@ pub(super) fn read_shipped(text: &[u8]) -> Option<Mesh> {
 pub(super) fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, AssetError> {
     use std::io::Read;
     let read_error = |source| AssetError::Read { source, path: path.to_owned() };
+    // A pipe would keep us waiting for as long as nobody writes to it.
+    let metadata = std::fs::metadata(path).map_err(read_error)?;
+    if !metadata.is_file() {
+        return Err(read_error(std::io::Error::new(ErrorKind::InvalidInput, "it is no regular file")));
+    }
     let file = std::fs::File::open(path).map_err(read_error)?;
-    let metadata = file.metadata().map_err(read_error)?;
     let mut bytes = Vec::with_capacity(metadata.len().min(limit) as usize);
     file.take(limit + 1).read_to_end(&mut bytes).map_err(read_error)?;
     if bytes.len() as u64 > limit {
