@@ -77,8 +77,16 @@ fn any_disc_lights_any_receiver_as_a_polygon_of_many_corners() {
 #[test]
 fn a_panel_a_hands_breadth_away_and_one_across_the_street_are_both_right() {
     // From a centimetre before a softbox, where it fills the half space, to 200 m; from a postage stamp to a facade.
-    let cases =
-        [(0.6, 0.9, 0.01), (0.6, 0.9, 0.1), (0.6, 0.9, 200.0), (0.02, 0.02, 0.5), (30.0, 60.0, 2.0), (0.3, 1.6, 0.05)];
+    let cases = [
+        (0.6, 0.9, 0.01),
+        (0.6, 0.9, 0.1),
+        (0.6, 0.9, 200.0),
+        (0.02, 0.02, 0.5),
+        (0.1, 0.1, 1.4),
+        (0.1, 0.1, 1.6),
+        (30.0, 60.0, 2.0),
+        (0.3, 1.6, 0.05),
+    ];
     for (width_m, height_m, distance) in cases {
         let scene = lit(Emitter::RectPanel { width_m, height_m }, Vec3::Z * distance, Vec3::ZERO, Vec3::ZERO, Vec3::Z);
         let luminance = 1000.0 / (PI * f64::from(width_m * height_m));

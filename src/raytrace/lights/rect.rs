@@ -22,8 +22,9 @@ pub struct Rect {
     normal: Vec3,
 }
 
-/// Below this solid angle (sr) the spherical formulas lose their digits, and sampling by area is as good.
-const SMALL: f32 = 1e-3;
+/// Below this solid angle (sr) the spherical formulas lose their digits (1e-4 of the light here), and sampling by area is
+/// as good.
+const SMALL: f32 = 4e-3;
 
 /// The rectangle as seen from a point.
 #[derive(Clone, Copy, Debug)]
