@@ -14,6 +14,7 @@ mod preview;
 mod render;
 #[cfg_attr(not(feature = "gui"), path = "no_window.rs")]
 mod window;
+mod zbuffer;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;

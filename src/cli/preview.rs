@@ -1,9 +1,10 @@
 //! `catchlight preview SCENE`: the live preview without a window, as a picture or as the time its frames take.
 
-use super::{Failure, crowd, input, say, window};
+use super::{Failure, crowd, input, say, window, zbuffer};
+use crate::io::Loaded;
 use anyhow::anyhow;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Size at which frame times are stated.
 const TIMED_SIZE: (u32, u32) = (1280, 720);
@@ -30,6 +31,9 @@ pub struct Arguments {
     /// without the radius beyond which a light is left out.
     #[arg(long)]
     lights: bool,
+    /// Draw on the processor, without a graphics adapter: no shadows.
+    #[arg(long, conflicts_with = "lights")]
+    cpu: bool,
     /// Print times as JSON.
     #[arg(long)]
     json: bool,
@@ -46,6 +50,9 @@ pub struct TimesReport {
     pub height: u32,
     /// The graphics adapter and its interface.
     pub adapter: String,
+    /// Triangles in the studio, where the processor draws.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub triangles: Option<u64>,
     /// Lights that are on.
     pub lights: usize,
     /// Whether lights are left out where they fall under 1/256 of display white.
@@ -72,7 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut loaded = input::load_studio(&arguments.scene)?;
     if let Some(output) = &arguments.output {
         let size = arguments.size.unwrap_or_else(|| loaded.scene.camera.picture_size(960));
-        window::write_preview(&loaded, size, output)?;
+        write(&loaded, size, output, arguments.cpu)?;
     }
     let size = arguments.size.unwrap_or(TIMED_SIZE);
     let frames = arguments.frames.unwrap_or(FRAMES);
@@ -87,9 +94,24 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             }
         }
     } else if arguments.frames.is_some() {
-        print(&window::time_preview(&loaded, size, frames, true)?, arguments.json)?;
+        let report = match arguments.cpu {
+            true => zbuffer::time(&loaded, size, frames),
+            false => window::time_preview(&loaded, size, frames, true)?,
+        };
+        print(&report, arguments.json)?;
     }
     Ok(())
+}
+
+/// Writes the preview; without an adapter, or where `cpu` asks for it, as the processor draws it.
+fn write(loaded: &Loaded, size: (u32, u32), output: &Path, cpu: bool) -> Result<(), Failure> {
+    if !cpu {
+        match window::write_preview(loaded, size, output) {
+            Err(Failure::Machine(error)) => eprintln!("{error:#}; drawn on the processor instead, without shadows"),
+            done => return done,
+        }
+    }
+    zbuffer::write(loaded, size, output)
 }
 
 fn print(report: &TimesReport, json: bool) -> Result<(), Failure> {
@@ -98,7 +120,11 @@ fn print(report: &TimesReport, json: bool) -> Result<(), Failure> {
         return Ok(());
     }
     let TimesReport { scene, width, height, adapter, lights, frames, median_ms, ninety_percent_ms, .. } = report;
-    let radius = if report.light_radius { "" } else { ", each over the whole picture" };
+    let radius = match report.triangles {
+        Some(triangles) => format!(", {triangles} triangles"),
+        None if report.light_radius => String::new(),
+        None => ", each over the whole picture".to_owned(),
+    };
     let draft = if report.draft { " as a draft" } else { "" };
     let full = if report.draft { format!("; in full {:.1} ms", report.full_median_ms) } else { String::new() };
     say(format!(

@@ -43,6 +43,7 @@ pub fn time_preview(
         width,
         height,
         adapter: gpu.name,
+        triangles: None,
         lights: loaded.scene.lights.iter().filter(|light| light.on).count(),
         light_radius,
         draft: renderer.draws_drafts(),

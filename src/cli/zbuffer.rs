@@ -1,0 +1,80 @@
+//! The z-buffer on the processor, from the command line: `preview --cpu` and `render --method zbuffer`.
+
+use super::Failure;
+use super::preview::TimesReport;
+use crate::io::{self, Loaded, PictureInfo};
+use crate::photo::Picture;
+use crate::raster::{Rasterizer, Shading};
+use glam::{Affine3A, Quat, Vec3};
+use std::path::Path;
+use std::time::Instant;
+
+/// Turn of the camera from one timed frame to the next, radians.
+const TURN_RAD: f32 = 0.004;
+/// Distance ahead of the camera about which it turns, metres.
+const PIVOT_M: f32 = 2.0;
+
+/// Draws a studio with `samples` pixels along each side of every pixel of the picture.
+pub fn picture(loaded: &Loaded, (width, height): (u32, u32), samples: u32) -> Picture {
+    let camera = loaded.scene.camera_frame(width as f32 / height as f32);
+    let rasterizer = Rasterizer::new(&loaded.scene, &loaded.assets);
+    let fine = (width * samples, height * samples);
+    let drawn = rasterizer.draw(&loaded.scene, &camera, fine, Shading::default()).picture;
+    if samples == 1 { drawn } else { reduced(&drawn, samples) }
+}
+
+/// Means over squares of pixels.
+fn reduced(fine: &Picture, samples: u32) -> Picture {
+    let mut picture = Picture::new(fine.width / samples, fine.height / samples);
+    let part = 1.0 / (samples * samples) as f32;
+    for (i, pixel) in (0_u32..).zip(picture.rgb.iter_mut()) {
+        let (x, y) = (i % picture.width * samples, i / picture.width * samples);
+        let sum: Vec3 = (0..samples * samples).map(|k| Vec3::from(fine.at(x + k % samples, y + k / samples))).sum();
+        *pixel = (sum * part).into();
+    }
+    picture
+}
+
+/// Draws and writes the preview.
+pub fn write(loaded: &Loaded, size: (u32, u32), output: &Path) -> Result<(), Failure> {
+    let picture = picture(loaded, size, 1);
+    Ok(io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene.camera, "zbuffer", 1, 0))?)
+}
+
+/// Times frames with a camera that turns.
+pub fn time(loaded: &Loaded, (width, height): (u32, u32), frames: u32) -> TimesReport {
+    let rasterizer = Rasterizer::new(&loaded.scene, &loaded.assets);
+    let camera = loaded.scene.camera_frame(width as f32 / height as f32);
+    let pivot = camera.world_from_camera.transform_point3(Vec3::NEG_Z * PIVOT_M);
+    let mut times: Vec<f64> = (0..=frames)
+        .map(|step| {
+            let mut moved = camera;
+            let turn = Affine3A::from_quat(Quat::from_rotation_y(step as f32 * TURN_RAD));
+            moved.world_from_camera = Affine3A::from_translation(pivot)
+                * turn
+                * Affine3A::from_translation(-pivot)
+                * camera.world_from_camera;
+            let began = Instant::now();
+            let drawn = rasterizer.draw(&loaded.scene, &moved, (width, height), Shading::default());
+            std::hint::black_box(&drawn);
+            began.elapsed().as_secs_f64() * 1e3
+        })
+        .skip(1)
+        .collect();
+    times.sort_by(f64::total_cmp);
+    let at = |part: f64| times[((times.len() - 1) as f64 * part).round() as usize];
+    TimesReport {
+        scene: loaded.scene.name.clone(),
+        width,
+        height,
+        adapter: format!("z-buffer on {} threads", rayon::current_num_threads()),
+        triangles: Some(rasterizer.triangle_count()),
+        lights: loaded.scene.lights.iter().filter(|light| light.on).count(),
+        light_radius: false,
+        draft: false,
+        frames: times.len(),
+        median_ms: at(0.5),
+        ninety_percent_ms: at(0.9),
+        full_median_ms: at(0.5),
+    }
+}
