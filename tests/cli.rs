@@ -161,3 +161,35 @@ fn ctrl_c_keeps_what_is_rendered() {
     assert_eq!(status.code(), Some(130));
     assert_eq!(image::open(folder.path().join("x.png")).unwrap().to_rgb8().dimensions(), (64, 96));
 }
+
+#[test]
+fn the_zbuffer_draws_without_a_graphics_adapter_in_the_same_units() {
+    let folder = tempfile::tempdir().unwrap();
+    let render =
+        ["render", "three_point", "-o", "z.png", "--method", "zbuffer", "--size", "48x72", "--spp", "4", "--json"];
+    let output = catchlight(folder.path(), &render);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let report: Value = serde_json::from_str(stdout(&output).trim()).unwrap();
+    assert_eq!(
+        (report["method"].as_str(), report["spp"].as_u64(), report["rays"].as_u64()),
+        (Some("zbuffer"), Some(4), Some(0))
+    );
+    let output = catchlight(folder.path(), &["preview", "three_point", "-o", "p.png", "--cpu", "--size", "48x72"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let output = catchlight(
+        folder.path(),
+        &["render", "three_point", "-o", "d.png", "--method", "direct", "--size", "48x72", "--spp", "4"],
+    );
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    // Without shadows it is brighter, but by the same exposure: well within a stop in the mean of encoded codes.
+    let mean = |name: &str| {
+        let bytes = image::open(folder.path().join(name)).unwrap().to_rgb8().into_raw();
+        bytes.iter().map(|c| f64::from(*c)).sum::<f64>() / bytes.len() as f64
+    };
+    let (z, p, d) = (mean("z.png"), mean("p.png"), mean("d.png"));
+    assert!((z - p).abs() < 3.0 && z / d > 0.9 && z / d < 1.3, "{z}, {p}, {d}");
+    let timed =
+        catchlight(folder.path(), &["preview", "three_point", "--cpu", "--frames", "2", "--size", "64x36", "--json"]);
+    let times: Value = serde_json::from_str(stdout(&timed).trim()).unwrap();
+    assert!(times["median_ms"].as_f64().unwrap() > 0.0 && times["triangles"].as_u64().unwrap() > 10_000);
+}

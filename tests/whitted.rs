@@ -6,8 +6,8 @@ mod studio;
 use catchlight::raytrace::Method;
 use catchlight::scene::{Emitter, Output};
 use glam::Vec3;
-use studio::measure::{illuminance, meter_card, square};
 use studio::light;
+use studio::measure::{illuminance, meter_card, square};
 
 /// Illuminance that a card facing the light from `height` metres shows, by a method.
 fn lux(method: Method, emitter: Emitter, height: f32) -> f64 {

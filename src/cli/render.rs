@@ -1,6 +1,6 @@
 //! `catchlight render SCENE -o OUT`: a picture without a window.
 
-use super::{Failure, input, say};
+use super::{Failure, input, say, zbuffer};
 use crate::io::{self, Loaded, PictureFormat, PictureInfo};
 use crate::raytrace::{self, Control, Film, Method, RenderScene, Settings};
 use anyhow::{Context, anyhow};
@@ -58,6 +58,8 @@ pub struct Arguments {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum MethodName {
+    /// A z-buffer on the processor: visibility and direct light, no shadows.
+    Zbuffer,
     /// Phong lobes, hard shadows, mirrors and glass, no bounces.
     Whitted,
     /// Direct light only: soft shadows, no bounces.
@@ -67,16 +69,19 @@ enum MethodName {
 }
 
 impl MethodName {
-    fn method(self) -> Method {
+    /// The tracer's method; none for what no ray draws.
+    fn traced(self) -> Option<Method> {
         match self {
-            MethodName::Whitted => Method::Whitted,
-            MethodName::Direct => Method::Direct,
-            MethodName::Path => Method::Path,
+            MethodName::Zbuffer => None,
+            MethodName::Whitted => Some(Method::Whitted),
+            MethodName::Direct => Some(Method::Direct),
+            MethodName::Path => Some(Method::Path),
         }
     }
 
     fn label(self) -> &'static str {
         match self {
+            MethodName::Zbuffer => "zbuffer",
             MethodName::Whitted => "whitted",
             MethodName::Direct => "direct",
             MethodName::Path => "path",
@@ -138,13 +143,16 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
     let load_started = Instant::now();
     let loaded = pool.install(|| input::load_studio(&arguments.scene))?;
     let load_s = load_started.elapsed().as_secs_f64();
+    let Some(method) = arguments.method.traced() else {
+        return draw_zbuffer(arguments, &loaded, &pool, started, load_s);
+    };
     let build_started = Instant::now();
     let scene = pool.install(|| raytrace::prepare(&loaded.scene, &loaded.assets))?;
     let build_s = build_started.elapsed().as_secs_f64();
     if arguments.explain {
         say_plan(&scene, arguments.json);
     }
-    let settings = settings(arguments, &loaded);
+    let settings = settings(arguments, &loaded, method);
     let trace_started = Instant::now();
     let coarse = settings
         .coarse()
@@ -235,13 +243,57 @@ fn stop_on_ctrl_c(control: &Arc<Control>) -> Result<Arc<AtomicBool>, Failure> {
     Ok(interrupted)
 }
 
-fn settings(arguments: &Arguments, loaded: &Loaded) -> Settings {
+/// Draws and writes without a ray. Samples are a square of pixels a pixel, 4 x 4 at most.
+fn draw_zbuffer(
+    arguments: &Arguments,
+    loaded: &Loaded,
+    pool: &rayon::ThreadPool,
+    started: Instant,
+    load_s: f64,
+) -> Result<(), Failure> {
+    if arguments.layers || arguments.explain {
+        return Err(Failure::Input(anyhow!("--layers and --explain are for methods that trace, not for zbuffer")));
+    }
+    let (width, height) = arguments.size.unwrap_or_else(|| loaded.scene.camera.picture_size(960));
+    let samples = arguments.spp.unwrap_or(1).isqrt().clamp(1, 4);
+    let draw_started = Instant::now();
+    let (picture, triangles) = pool.install(|| zbuffer::picture(loaded, (width, height), samples));
+    let trace_s = draw_started.elapsed().as_secs_f64();
+    let info = PictureInfo::new(&loaded.scene.camera, "zbuffer", samples * samples, arguments.seed.into());
+    let first_picture_s = started.elapsed().as_secs_f64();
+    io::export_picture(&arguments.output, &picture, &info)?;
+    let report = Report {
+        width,
+        height,
+        spp: samples * samples,
+        threads: pool.current_num_threads(),
+        method: arguments.method.label(),
+        seed: arguments.seed,
+        triangles,
+        lights: loaded.scene.lights.iter().filter(|light| light.on).count(),
+        load_s,
+        build_s: 0.0,
+        trace_s,
+        wall_s: started.elapsed().as_secs_f64(),
+        first_picture_s,
+        first_wave_s: first_picture_s,
+        rays: 0,
+        mrays_s: 0.0,
+        noise_stops: None,
+        nonfinite: 0,
+        interrupted: false,
+        output: arguments.output.display().to_string(),
+    };
+    Ok(tell(arguments, &report)?)
+}
+
+fn settings(arguments: &Arguments, loaded: &Loaded, method: Method) -> Settings {
     let (width, height) = arguments.size.unwrap_or_else(|| loaded.scene.camera.picture_size(960));
     let open_ended = arguments.noise.is_some() || arguments.time.is_some();
     Settings {
         width,
         height,
-        method: arguments.method.method(),
+        method,
         spp: arguments.spp.unwrap_or(if open_ended { MOST_SPP } else { DEFAULT_SPP }),
         max_depth: arguments.max_depth,
         seed: arguments.seed,

@@ -14,13 +14,14 @@ const TURN_RAD: f32 = 0.004;
 /// Distance ahead of the camera about which it turns, metres.
 const PIVOT_M: f32 = 2.0;
 
-/// Draws a studio with `samples` pixels along each side of every pixel of the picture.
-pub fn picture(loaded: &Loaded, (width, height): (u32, u32), samples: u32) -> Picture {
+/// Draws a studio with `samples` pixels along each side of every pixel of the picture; and how many triangles it has.
+pub fn picture(loaded: &Loaded, (width, height): (u32, u32), samples: u32) -> (Picture, u64) {
     let camera = loaded.scene.camera_frame(width as f32 / height as f32);
     let rasterizer = Rasterizer::new(&loaded.scene, &loaded.assets);
     let fine = (width * samples, height * samples);
     let drawn = rasterizer.draw(&loaded.scene, &camera, fine, Shading::default()).picture;
-    if samples == 1 { drawn } else { reduced(&drawn, samples) }
+    let picture = if samples == 1 { drawn } else { reduced(&drawn, samples) };
+    (picture, rasterizer.triangle_count())
 }
 
 /// Means over squares of pixels.
@@ -37,7 +38,7 @@ fn reduced(fine: &Picture, samples: u32) -> Picture {
 
 /// Draws and writes the preview.
 pub fn write(loaded: &Loaded, size: (u32, u32), output: &Path) -> Result<(), Failure> {
-    let picture = picture(loaded, size, 1);
+    let (picture, _) = picture(loaded, size, 1);
     Ok(io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene.camera, "zbuffer", 1, 0))?)
 }
 

@@ -58,7 +58,10 @@ pub(super) enum Place {
 /// A first look at the corners: bits of the planes that each is beyond. A corner that is no number is beyond all.
 pub(super) fn place(corners: [Vec4; 3]) -> Place {
     let beyond = corners.map(|corner| {
-        distances(corner).iter().enumerate().fold(0_u32, |bits, (i, d)| bits | (u32::from(!(*d >= 0.0)) << i))
+        distances(corner).iter().enumerate().fold(0_u32, |bits, (plane, distance)| {
+            let inside = *distance >= 0.0;
+            bits | (u32::from(!inside) << plane)
+        })
     });
     match beyond {
         [0, 0, 0] => Place::Inside,

@@ -13,6 +13,9 @@ use std::f32::consts::PI;
 /// Part of a clear surface that is shown as if it were paint, so that glass can be seen.
 const GLASS_BODY: f32 = 0.15;
 
+/// Where a highlight has fallen to 1e-6 of its middle.
+const FAR_FROM_HIGHLIGHT: f32 = 14.0;
+
 /// A material as it is shaded here.
 #[derive(Clone, Copy, Debug)]
 struct Finish {
@@ -141,8 +144,13 @@ impl<'a> Shader<'a> {
             lit.matte += illuminance * cos;
             if self.shading != Shading::Lambert {
                 let half = (direction + view).normalize_or_zero();
+                let n_dot_h = normal.dot(half).max(0.0);
+                // x^n <= exp(-n (1 - x)): far from the highlight there is none.
+                if finish.exponent * (1.0 - n_dot_h) > FAR_FROM_HIGHLIGHT {
+                    continue;
+                }
                 let fresnel = finish.f0 + (Vec3::ONE - finish.f0) * (1.0 - view.dot(half)).clamp(0.0, 1.0).powi(5);
-                let lobe = finish.scale * normal.dot(half).max(0.0).powf(finish.exponent);
+                let lobe = finish.scale * n_dot_h.powf(finish.exponent);
                 lit.glossy += fresnel * illuminance * (lobe * cos);
             }
         }
