@@ -30,7 +30,7 @@ pub struct Arguments {
     /// Samples a pixel [default: 64, or as many as --noise or --time allow].
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     spp: Option<u32>,
-    /// Stop when the noise is under this many stops, such as 0.05.
+    /// Sample each part of the picture until its noise is under this many stops, such as 0.05.
     #[arg(long, value_name = "STOPS", value_parser = positive)]
     noise: Option<f32>,
     /// Stop after this many seconds.
@@ -104,7 +104,10 @@ const MOST_SPP: u32 = 65_536;
 struct Report {
     width: u32,
     height: u32,
+    /// Samples that every pixel has.
     spp: u32,
+    /// In the mean; more than `spp` where noise was sought out.
+    mean_spp: f64,
     threads: usize,
     method: &'static str,
     seed: u32,
@@ -177,6 +180,7 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
         width: film.width(),
         height: film.height(),
         spp: film.spp(),
+        mean_spp: film.mean_spp(),
         threads: pool.current_num_threads(),
         method: arguments.method.label(),
         seed: arguments.seed,
@@ -390,8 +394,8 @@ fn tell(arguments: &Arguments, report: &Report) -> anyhow::Result<()> {
     } else {
         let noise = report.noise_stops.map_or(String::new(), |n| format!(", noise {n:.2} stops"));
         eprintln!(
-            "{}: {}x{}, {} samples a pixel in {:.2} s, {:.1} Mrays/s{noise}",
-            report.output, report.width, report.height, report.spp, report.trace_s, report.mrays_s
+            "{}: {}x{}, {:.0} samples a pixel in {:.2} s, {:.1} Mrays/s{noise}",
+            report.output, report.width, report.height, report.mean_spp, report.trace_s, report.mrays_s
         );
     }
     Ok(())

@@ -108,6 +108,8 @@ pub struct TileFilm {
     sums: Vec<Vec3>,
     /// Sum of exposed luminance of the two halves of the samples, to estimate the noise.
     halves: [Vec<f32>; 2],
+    /// Samples a pixel in each half.
+    samples: [u32; 2],
     /// Non-finite contributions that were dropped.
     pub nonfinite: u64,
     /// Pixel and sample of the first of them.
@@ -124,6 +126,7 @@ impl TileFilm {
             height,
             sums: vec![Vec3::ZERO; pixels * layers],
             halves: [vec![0.0; pixels], vec![0.0; pixels]],
+            samples: [0; 2],
             nonfinite: 0,
             first_nonfinite: None,
         }
@@ -146,6 +149,46 @@ impl TileFilm {
         self.halves[half][pixel] += luminance;
     }
 
+    /// Samples a pixel so far.
+    pub fn spp(&self) -> u32 {
+        self.samples[0] + self.samples[1]
+    }
+
+    /// Factor from sums to means.
+    fn per_sample(&self) -> f32 {
+        1.0 / self.spp().max(1) as f32
+    }
+
+    /// Which half the next wave goes to: the one with fewer samples.
+    pub fn next_half(&self) -> usize {
+        usize::from(self.samples[1] < self.samples[0])
+    }
+
+    /// Books a wave of samples of every pixel.
+    pub fn finish_wave(&mut self, half: usize, samples: u32) {
+        self.samples[half] += samples;
+    }
+
+    /// Estimated noise: root mean square error of the pixels over the mean brightness, in stops. From the difference of
+    /// the two halves of the samples; infinite before there are two, none for tiles darker than eight stops under grey.
+    pub fn noise_stops(&self) -> Option<f32> {
+        let [a, b] = self.samples.map(|n| n as f32);
+        if a == 0.0 || b == 0.0 {
+            return Some(f32::INFINITY);
+        }
+        // Var(mean of all) = Var(difference of the halves' means) ab / (a + b)^2.
+        let scale = a * b / ((a + b) * (a + b));
+        let pixels = self.pixels() as f32;
+        let (mut square, mut mean) = (0.0, 0.0);
+        for (first, second) in self.halves[0].iter().zip(&self.halves[1]) {
+            let difference = first / a - second / b;
+            square += difference * difference * scale;
+            mean += (first + second) / (a + b);
+        }
+        let mean = mean / pixels;
+        (mean > 0.18 / 256.0).then(|| (1.0 + (square / pixels).sqrt() / mean).log2())
+    }
+
     /// Counts a non-finite contribution.
     pub fn report_nonfinite(&mut self, x: u32, y: u32, sample: u32) {
         self.nonfinite += 1;
@@ -161,10 +204,6 @@ pub struct Film {
     layers: Vec<Layer>,
     /// Rows of tiles from the top.
     pub(super) tiles: Vec<TileFilm>,
-    /// Samples of all pixels so far.
-    spp: u32,
-    /// Of them in each half.
-    pub(super) half_samples: [u32; 2],
 }
 
 impl Film {
@@ -176,7 +215,7 @@ impl Film {
                 tiles.push(TileFilm::new(x, y, TILE.min(width - x), TILE.min(height - y), layers.len()));
             }
         }
-        Film { width, height, layers, tiles, spp: 0, half_samples: [0; 2] }
+        Film { width, height, layers, tiles }
     }
 
     /// Pixels across.
@@ -189,9 +228,15 @@ impl Film {
         self.height
     }
 
-    /// Samples a pixel so far.
+    /// Samples that every pixel has; some have more where noise was sought out, or where a wave was cut short.
     pub fn spp(&self) -> u32 {
-        self.spp
+        self.tiles.iter().map(TileFilm::spp).min().unwrap_or(0)
+    }
+
+    /// Samples a pixel in the mean.
+    pub fn mean_spp(&self) -> f64 {
+        let samples: u64 = self.tiles.iter().map(|tile| tile.pixels() as u64 * u64::from(tile.spp())).sum();
+        samples as f64 / (f64::from(self.width) * f64::from(self.height)).max(1.0)
     }
 
     /// The layers, in the order of [`Film::develop_layers`].
@@ -209,24 +254,14 @@ impl Film {
         self.tiles.iter().find_map(|t| t.first_nonfinite)
     }
 
-    /// Which half the next wave goes to: the one with fewer samples.
-    pub(super) fn next_half(&self) -> usize {
-        usize::from(self.half_samples[1] < self.half_samples[0])
-    }
-
-    /// Books a wave of samples that all tiles have taken.
-    pub(super) fn finish_wave(&mut self, half: usize, samples: u32) {
-        self.spp += samples;
-        self.half_samples[half] += samples;
-    }
-
     /// The picture with exposure, white balance, and each light's power, colour and switch as they are in `scene` now.
     /// Lights that were off when the render began have no layer and stay dark.
     pub fn develop(&self, scene: &Scene) -> Picture {
         let weights = self.weights(scene);
         self.picture(|tile, pixel| {
             let pixels = tile.pixels();
-            weights.iter().enumerate().map(|(layer, weight)| tile.sums[layer * pixels + pixel] * *weight).sum()
+            let sums = weights.iter().enumerate().map(|(layer, weight)| tile.sums[layer * pixels + pixel] * *weight);
+            sums.sum::<Vec3>() * tile.per_sample()
         })
     }
 
@@ -234,15 +269,16 @@ impl Film {
     pub fn develop_layers(&self, scene: &Scene) -> Vec<(String, Picture)> {
         let weights = self.weights(scene);
         let one = |(layer, info): (usize, &Layer)| {
-            let picture = self.picture(|tile, pixel| tile.sums[layer * tile.pixels() + pixel] * weights[layer]);
+            let picture = self
+                .picture(|tile, pixel| tile.sums[layer * tile.pixels() + pixel] * weights[layer] * tile.per_sample());
             (info.name.clone(), picture)
         };
         self.layers.iter().enumerate().map(one).collect()
     }
 
-    /// Factor of each layer from sums to picture values.
+    /// Factor of each layer from means to picture values.
     fn weights(&self, scene: &Scene) -> Vec<Vec3> {
-        let scale = exposure::pixel_per_cd_s_m2(&scene.camera) / self.spp.max(1) as f32;
+        let scale = exposure::pixel_per_cd_s_m2(&scene.camera);
         self.layers.iter().map(|layer| layer.weight(scene) * scale).collect()
     }
 
@@ -257,30 +293,10 @@ impl Film {
         picture
     }
 
-    /// Estimated noise: the median over the tiles of the standard error relative to the brightness, in stops. From the
-    /// difference of the two halves of the samples; infinite before there are two.
+    /// Estimated noise: the median over the tiles of their noise, in stops. Infinite before there are two samples.
     pub fn noise_stops(&self) -> f32 {
-        let [a, b] = self.half_samples.map(|n| n as f32);
-        if a == 0.0 || b == 0.0 {
-            return f32::INFINITY;
-        }
-        // Var(mean of all) = Var(difference of the halves' means) ab / (a + b)^2.
-        let scale = a * b / ((a + b) * (a + b));
-        let mut errors: Vec<f32> = self.tiles.iter().filter_map(|tile| tile_noise(tile, a, b, scale)).collect();
-        errors.sort_by(f32::total_cmp);
-        errors.get(errors.len() / 2).map_or(0.0, |relative| (1.0 + relative).log2())
+        let mut noise: Vec<f32> = self.tiles.iter().filter_map(TileFilm::noise_stops).collect();
+        noise.sort_by(f32::total_cmp);
+        noise.get(noise.len() / 2).copied().unwrap_or(0.0)
     }
-}
-
-/// Root mean square error of a tile over its mean; none for tiles darker than eight stops under grey.
-fn tile_noise(tile: &TileFilm, a: f32, b: f32, scale: f32) -> Option<f32> {
-    let pixels = tile.pixels() as f32;
-    let (mut square, mut mean) = (0.0, 0.0);
-    for (first, second) in tile.halves[0].iter().zip(&tile.halves[1]) {
-        let difference = first / a - second / b;
-        square += difference * difference * scale;
-        mean += (first + second) / (a + b);
-    }
-    let mean = mean / pixels;
-    (mean > 0.18 / 256.0).then(|| (square / pixels).sqrt() / mean)
 }

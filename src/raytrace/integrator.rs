@@ -43,6 +43,9 @@ impl Vertex {
 /// Surfaces that light on its straight way through glass may cross.
 const CLEAR_SURFACES: u32 = 64;
 
+/// Lights whose importances are kept while one is chosen.
+const FEW_LIGHTS: usize = 8;
+
 /// Bounces before roulette begins.
 const ROULETTE_FROM: u32 = 3;
 
@@ -308,14 +311,20 @@ impl<'a> Tracer<'a> {
             }
             return 0.0;
         }
+        // Few lights are asked once, many once more on the way to the chosen one.
+        let mut shares = [0.0; FEW_LIGHTS];
         let importance = |light: &TracedLight| light.importance(surface.position, bsdf.normal());
-        let total: f32 = scene.lights.iter().map(importance).sum();
+        let (few, many) = scene.lights.split_at(scene.lights.len().min(FEW_LIGHTS));
+        for (share, light) in shares.iter_mut().zip(few) {
+            *share = importance(light);
+        }
+        let total = shares.iter().sum::<f32>() + many.iter().map(importance).sum::<f32>();
         if !(total > 0.0 && total.is_finite()) {
             return f32::MIN_POSITIVE;
         }
         let mut left = first_set[0] * total;
-        for light in &scene.lights {
-            let share = importance(light);
+        for (index, light) in scene.lights.iter().enumerate() {
+            let share = shares.get(index).copied().unwrap_or_else(|| importance(light));
             if left < share {
                 self.sample_light(light, share / total, surface, bsdf, media, first_set, throughput, sink);
                 break;

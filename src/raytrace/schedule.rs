@@ -38,7 +38,7 @@ pub struct Settings {
     pub max_depth: Option<u32>,
     /// Another seed gives other noise.
     pub seed: u32,
-    /// Stop when the estimated noise is under this many stops.
+    /// Stop where the estimated noise of a tile is under this many stops.
     pub noise_stops: Option<f32>,
 }
 
@@ -98,8 +98,12 @@ impl Control {
 /// Waves grow 1, 1, 2, 4 ... up to this many samples.
 const LARGEST_WAVE: u32 = 16;
 
-/// Renders on rayon's current pool. After each wave `on_wave` sees the film so far and may stop the render. A cancelled
-/// render keeps its complete waves; before the first is complete, the film is empty (0 samples).
+/// Samples before a tile may be called quiet: fewer tell too little about its noise.
+const JUDGED_FROM: u32 = 8;
+
+/// Renders on rayon's current pool. After each wave `on_wave` sees the film so far and may stop the render. Where
+/// [`Settings::noise_stops`] is set, tiles that are as quiet take no more samples. A cancelled render keeps every tile's
+/// complete waves; before the first wave is complete, the film has 0 samples.
 pub fn render(
     scene: &RenderScene,
     settings: &Settings,
@@ -107,32 +111,28 @@ pub fn render(
     on_wave: &mut dyn FnMut(&Film) -> ControlFlow<()>,
 ) -> Film {
     let mut film = Film::new(settings.width, settings.height, scene.layers());
-    while film.spp() < settings.spp {
-        let wave = film.spp().clamp(1, LARGEST_WAVE).min(settings.spp - film.spp());
-        if !render_wave(scene, settings, control, &mut film, wave) {
+    let mut taken = 0;
+    while taken < settings.spp {
+        let wave = taken.clamp(1, LARGEST_WAVE).min(settings.spp - taken);
+        let job = TileJob { scene, settings, control, wave };
+        let mut noisy: Vec<&mut TileFilm> = film.tiles.iter_mut().filter(|tile| !settings.is_quiet(tile)).collect();
+        if noisy.is_empty() || !noisy.par_iter_mut().with_max_len(1).all(|tile| job.run(tile)) {
             break;
         }
-        let quiet = settings.noise_stops.is_some_and(|limit| film.spp() >= 8 && film.noise_stops() <= limit);
-        if on_wave(&film).is_break() || quiet {
+        taken += wave;
+        if on_wave(&film).is_break() {
             break;
         }
     }
     film
 }
 
-/// Takes `wave` samples of every pixel. False, with the film unchanged, when cancelled on the way.
-fn render_wave(scene: &RenderScene, settings: &Settings, control: &Control, film: &mut Film, wave: u32) -> bool {
-    let half = film.next_half();
-    let job = TileJob { scene, settings, control, first_sample: film.spp(), wave, half };
-    // The tiles of a cancelled wave are thrown away, so that every pixel has the same samples.
-    let backup = film.tiles.clone();
-    let complete = film.tiles.par_iter_mut().with_max_len(1).all(|tile| job.run(tile));
-    if complete {
-        film.finish_wave(half, wave);
-    } else {
-        film.tiles = backup;
+impl Settings {
+    /// Whether a tile needs no more samples.
+    fn is_quiet(&self, tile: &TileFilm) -> bool {
+        let within = |limit: f32| tile.noise_stops().is_none_or(|noise| noise <= limit);
+        tile.spp() >= JUDGED_FROM && self.noise_stops.is_some_and(within)
     }
-    complete
 }
 
 /// A wave's work on one tile.
@@ -140,9 +140,7 @@ struct TileJob<'a> {
     scene: &'a RenderScene,
     settings: &'a Settings,
     control: &'a Control,
-    first_sample: u32,
     wave: u32,
-    half: usize,
 }
 
 impl TileJob<'_> {
@@ -150,13 +148,14 @@ impl TileJob<'_> {
         if self.control.is_cancelled() {
             return false;
         }
+        let (first_sample, half) = (tile.spp(), tile.next_half());
         let mut tracer = Tracer::new(self.scene);
         let limits = limits(self.scene, self.settings);
         let size = Vec2::new(self.settings.width as f32, self.settings.height as f32);
         let frame = self.scene.lens.frame(size.x / size.y);
         for pixel in 0..tile.pixels() {
             let (x, y) = (tile.x + pixel as u32 % tile.width, tile.y + pixel as u32 / tile.width);
-            for sample in self.first_sample..self.first_sample + self.wave {
+            for sample in first_sample..first_sample + self.wave {
                 let sampler = Sampler::new(x, y, sample, self.settings.seed);
                 let set = sampler.set(Purpose::Camera);
                 let film_point = (Vec2::new(x as f32, y as f32) + Vec2::new(set[0], set[1])) / size;
@@ -167,9 +166,10 @@ impl TileJob<'_> {
                     Method::Direct | Method::Path => tracer.trace(origin, direction, &sampler, limits, &mut gate),
                 }
                 let value = gate.luminance * self.scene.exposure;
-                tile.add_luminance(self.half, pixel, value);
+                tile.add_luminance(half, pixel, value);
             }
         }
+        tile.finish_wave(half, self.wave);
         self.control.rays.fetch_add(tracer.rays, Ordering::Relaxed);
         self.control.samples.fetch_add(tile.pixels() as u64 * u64::from(self.wave), Ordering::Relaxed);
         true

@@ -100,7 +100,7 @@ impl Tracer<'_> {
         scatter: impl Fn(Vec3) -> Vec3,
     ) {
         for light in &self.scene.lights {
-            let Some(sample) = light.from_centre(surface.position) else { continue };
+            let Some(sample) = light.sample_centre(surface.position) else { continue };
             let value = scatter(sample.direction);
             if value == Vec3::ZERO {
                 continue;

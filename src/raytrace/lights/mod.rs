@@ -200,11 +200,11 @@ impl TracedLight {
     }
 
     /// Light that reaches `point` if all of it came from the emitter's centre, before shadow. None from a surround.
-    pub fn from_centre(&self, point: Vec3) -> Option<LightSample> {
+    pub fn sample_centre(&self, point: Vec3) -> Option<LightSample> {
         let small = |centre: Vec3, intensity: f32, facing: Option<Vec3>| {
             let sample = from_point(point, centre, intensity)?;
             let cos = facing.map_or(1.0, |facing| -sample.direction.dot(facing));
-            (cos > 0.0).then(|| LightSample { value: sample.value * cos, ..sample })
+            (cos > 0.0).then_some(LightSample { value: sample.value * cos, ..sample })
         };
         let sample = match self.source {
             Source::Point { .. } | Source::Spot { .. } => self.sample_source(point, Vec2::splat(0.5)),
