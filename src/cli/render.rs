@@ -270,6 +270,7 @@ fn draw_zbuffer(
         width,
         height,
         spp: samples * samples,
+        mean_spp: f64::from(samples * samples),
         threads: pool.current_num_threads(),
         method: arguments.method.label(),
         seed: arguments.seed,
