@@ -29,6 +29,7 @@ pub mod photo;
 pub mod raster;
 pub mod raytrace;
 pub mod scene;
+pub mod truth;
 
 #[cfg(feature = "gui")]
 pub mod editor;

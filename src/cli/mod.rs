@@ -12,6 +12,7 @@ mod meter;
 mod presets;
 mod preview;
 mod render;
+mod truth;
 #[cfg_attr(not(feature = "gui"), path = "no_window.rs")]
 mod window;
 mod zbuffer;
@@ -45,6 +46,9 @@ enum Command {
     Chart(chart::Arguments),
     /// List the shipped studios.
     Presets(presets::Arguments),
+    /// Print readings beside the closed forms that they should match.
+    #[command(hide = true)]
+    Truth(truth::Arguments),
     /// Bake the mannequins' OBJ files.
     #[command(hide = true)]
     BakeMannequins(bake::Arguments),
@@ -85,6 +89,7 @@ pub fn run(started: Instant) -> ExitCode {
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::Chart(arguments)) => chart::run(&arguments),
         Some(Command::Presets(arguments)) => presets::run(&arguments),
+        Some(Command::Truth(arguments)) => truth::run(&arguments),
         Some(Command::BakeMannequins(arguments)) => bake::run(&arguments),
     };
     match result {

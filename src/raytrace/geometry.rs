@@ -132,7 +132,11 @@ impl Instance {
         let weights = [1.0 - b1 - b2, b1, b2];
         let terms = [corners[0] * weights[0], corners[1] * weights[1], corners[2] * weights[2]];
         let local = terms[0] + terms[1] + terms[2];
-        let error = (terms[0].abs() + terms[1].abs() + terms[2].abs()) * gamma(7);
+        // The distances of a ray that starts here come from differences to the corners: a triangle that lies in a plane
+        // of coordinate 0 has an exact point on it, and would still be met again by rays that leave it.
+        let reach = corners.map(|corner| (corner - local).abs().max_element());
+        let reach = reach[0].max(reach[1]).max(reach[2]) * gamma(16);
+        let error = (terms[0].abs() + terms[1].abs() + terms[2].abs()) * gamma(7) + Vec3A::splat(reach);
         let face = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
         let geometric_normal = (self.normal_matrix * face).normalize_or_zero();
         let (normal, bulge) = if mesh.normals.is_empty() {

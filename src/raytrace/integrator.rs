@@ -141,10 +141,36 @@ impl<'a> Tracer<'a> {
 
     /// Follows a camera ray and gives every light's share to `sink`.
     pub fn trace(&mut self, origin: Vec3, direction: Vec3, sampler: &Sampler, limits: Limits, sink: &mut impl Sink) {
+        self.follow_path(origin, direction, sampler, limits, Vertex::new(origin, direction), sink);
+    }
+
+    /// The same for a receptor that has sampled the lights by itself: what of them is met straight on, through thin panes
+    /// as well, is left out.
+    pub fn trace_past_lights(
+        &mut self,
+        origin: Vec3,
+        direction: Vec3,
+        sampler: &Sampler,
+        limits: Limits,
+        sink: &mut impl Sink,
+    ) {
+        // A density of next to nothing: the other technique has all the weight.
+        let vertex = Vertex { pdf: Some(f32::MIN_POSITIVE), ..Vertex::new(origin, direction) };
+        self.follow_path(origin, direction, sampler, limits, vertex, sink);
+    }
+
+    fn follow_path(
+        &mut self,
+        origin: Vec3,
+        direction: Vec3,
+        sampler: &Sampler,
+        limits: Limits,
+        mut vertex: Vertex,
+        sink: &mut impl Sink,
+    ) {
         let mut ray = Ray { origin, direction, t_max: f32::INFINITY };
         let mut throughput = Vec3::ONE;
         let mut eta_scale = 1.0;
-        let mut vertex = Vertex::new(origin, direction);
         let mut media = Media::default();
         let mut polarisation = Polarisation::NONE;
         let mut wide_bounces = 0;

@@ -3,8 +3,8 @@
 //! Direct light comes from stratified points on each emitter with shadow rays (a point, a spot and a sharp sun need
 //! one). Bounced light is found by the path tracer, started in directions that the receptor weights. Both are taken in
 //! sixteen independently scrambled sequences; their scatter is the error that is reported, and sampling goes on until
-//! it is small or the rays are spent. What mirrors show counts as bounced, and so
-//! does what glass lets through of a light with a size; it is the noisiest part.
+//! it is small or the rays are spent. Thin panes let direct light through. What mirrors show counts as bounced, and so
+//! does what bodies of glass let through of a light with a size; it is the noisiest part.
 
 use super::film::Layer;
 use super::integrator::{Limits, Sink, Tracer};
@@ -446,11 +446,8 @@ impl Job<'_> {
                     return 0.0;
                 }
                 let (origin, direction, distance) = (receiver.origin, sample.direction, sample.distance);
-                if light.has_size() {
-                    // What glass lets through of it is found by the paths.
-                    return if tracer.blocked(origin, direction, distance) { 0.0 } else { value };
-                }
-                value * luminance(tracer.visibility(origin, direction, distance, false, Media::default()))
+                // What bodies of glass let through of a light with a size is found by the paths.
+                value * luminance(tracer.visibility(origin, direction, distance, light.has_size(), Media::default()))
             });
             let (sum, points) = &mut sequence.direct[layer];
             *points += 1;
@@ -473,7 +470,7 @@ impl Job<'_> {
         self.straight(tracer, direction, &mut Gather { sums: &mut sequence.straight, weight, nonfinite });
         let nonfinite = &mut sequence.nonfinite;
         let mut gather = Gather { sums: &mut sequence.bounced, weight, nonfinite };
-        tracer.trace(receiver.origin, direction, &sampler, LIMITS, &mut gather);
+        tracer.trace_past_lights(receiver.origin, direction, &sampler, LIMITS, &mut gather);
         if self.probe.glows {
             // The path has counted the glow of the first surface, too, which is direct light.
             let glow = self.probe.lights.len();

@@ -2,7 +2,7 @@
 #![allow(dead_code)]
 #![allow(clippy::unwrap_used)]
 
-pub mod closed_forms;
+pub use catchlight::truth::forms as closed_forms;
 pub mod measure;
 #[path = "../../src/math/statistics.rs"]
 pub mod statistics;

@@ -1,4 +1,5 @@
-//! What light does where mathematics can say it, in double precision and independent of the code under test.
+//! What light does where mathematics can say it, in double precision and independent of the code under test. The table
+//! of the README and the tests both take it from here.
 
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
@@ -61,4 +62,38 @@ pub fn fresnel(angle_rad: f64, n: f64) -> (f64, f64) {
 pub fn pane(angle_rad: f64, n: f64) -> f64 {
     let (s, p) = fresnel(angle_rad, n);
     0.5 * ((1.0 - s) / (1.0 + s) + (1.0 - p) / (1.0 + p))
+}
+
+/// Illuminance on the axis of a rectangle of this flux, facing it: Lambert's formula over its own centre.
+pub fn rectangle_on_axis(flux: f64, width: f64, height: f64, distance: f64) -> f64 {
+    let (a, b) = (0.5 * width, 0.5 * height);
+    let (ha, hb) = (distance.hypot(a), distance.hypot(b));
+    let luminance = flux / (PI * width * height);
+    2.0 * luminance * (a / ha * (b / ha).atan() + b / hb * (a / hb).atan())
+}
+
+/// Illuminance on the axis of a Lambertian disc of this flux, facing it.
+pub fn disc_on_axis(flux: f64, diameter: f64, distance: f64) -> f64 {
+    flux / PI / (0.25 * diameter * diameter + distance * distance)
+}
+
+/// Illuminance under a bulb of this flux at a height over a floor, so far beside it.
+pub fn bulb_over_floor(flux: f64, height: f64, beside: f64) -> f64 {
+    flux / (4.0 * PI) * height / (height * height + beside * beside).powf(1.5)
+}
+
+/// Axial intensity of a hard cone of this full angle.
+pub fn hard_cone(flux: f64, full_deg: f64) -> f64 {
+    flux / (2.0 * PI * (1.0 - (0.5 * full_deg).to_radians().cos()))
+}
+
+/// Axial intensity of a cone that is even inside one full angle and falls linearly in angle to nothing at another.
+pub fn soft_cone(flux: f64, inner_deg: f64, outer_deg: f64) -> f64 {
+    let (a, b) = ((0.5 * inner_deg).to_radians(), (0.5 * outer_deg).to_radians());
+    flux / (2.0 * PI * (1.0 - (b.sin() - a.sin()) / (b - a)))
+}
+
+/// Mean illuminance in a closed diffuse box of this area and reflectance.
+pub fn closed_box(flux: f64, area: f64, reflectance: f64) -> f64 {
+    flux / (area * (1.0 - reflectance))
 }
