@@ -10,6 +10,8 @@
 //! `raytrace::render` fills a film wave by wave, `Film::develop` makes a [`photo::Picture`] of it, which a window shows
 //! or [`io::export_picture`] writes. `preview` draws the same scene on the graphics card while the user works.
 //!
+//! `truth` sets readings of the meter and of renders beside closed forms: the README's table, and the tests' measure.
+//!
 //! Invariants:
 //! 1. `scene` does no I/O. `raytrace` has no clock, no entropy, no globals, and cannot fail once `prepare` succeeded.
 //! 2. A rendered value is a function of (scene, pixel, sample, dimension, seed): same bits for any number of threads.
