@@ -147,7 +147,7 @@ mod tests {
         in_time(&vec![(Vec3::ZERO, Vec3::ONE); MANY]);
         // Some hidden among others, whose boxes are large beside them.
         let place =
-            |i: usize| if i % 2 == 0 { Vec3::splat(0.1) } else { Vec3::new((i % 317) as f32, (i / 317) as f32, 0.0) };
+            |i: usize| if i < MANY / 2 { Vec3::splat(0.1) } else { Vec3::new((i % 317) as f32, (i / 317) as f32, 0.0) };
         in_time(&(0..MANY).map(|i| (place(i), place(i) + 1e-3)).collect::<Vec<_>>());
     }
 
