@@ -301,3 +301,27 @@ fn a_point_through_a_glass_ball_has_no_caustic_and_no_black_shadow() {
     let pane = studio::closed_forms::pane(0.0, 1.5);
     assert!((ours - pane).abs() < 0.01, "{ours} of the open light for {pane}");
 }
+
+#[test]
+fn whitted_takes_a_softbox_for_a_point_and_its_shadow_is_hard() {
+    // README, "where each method fails": 60 x 90 cm at half a metre are 729.52 lx; their centre alone would give 1273.24,
+    // 0.8 stop more. Half of the softbox hidden is all or nothing.
+    let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
+    let softbox = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
+    scene.lights.push(light(softbox, Output::Lumens(1000.0), Vec3::Z * 0.5));
+    let whitted = |scene: &Scene| illuminance(scene, &square(Method::Whitted, 4, 4)).mean;
+    let near = whitted(&scene);
+    assert!((near / 1273.24 - 1.0).abs() < 0.01, "{near} lx");
+    assert!(((near / 729.52).log2() - 0.80).abs() < 0.02);
+    for (edge, share) in [(-0.01_f32, 1.0), (0.01, 0.0)] {
+        // A blade halfway whose edge is a centimetre beside the axis.
+        let mut half = scene.clone();
+        let blade = Shape::Plane { width_m: 2.0, depth_m: 2.0 };
+        let at = Vec3::new(edge - 1.0, 0.0, 0.25);
+        half.objects.push(thing("Blade", blade, Material::default(), at, Vec3::X * 90.0));
+        assert!((whitted(&half) / near - share).abs() < 0.01, "blade to {edge}: {}", whitted(&half));
+        // The true share is about a half.
+        let soft = illuminance(&half, &square(Method::Direct, 8, 64)).mean / 729.52;
+        assert!((soft - 0.5).abs() < 0.1, "blade to {edge}: {soft}");
+    }
+}

@@ -62,7 +62,7 @@ fn holds(scene: &Scene, assets: &Assets) -> Picture {
         assert_eq!(film.nonfinite(), 0, "{method:?}: {:?}", film.first_nonfinite());
         film.develop(scene)
     };
-    for method in [Method::Direct, Method::Path] {
+    for method in [Method::Whitted, Method::Direct, Method::Path] {
         let picture = with(1, method);
         assert!(
             picture.rgb.iter().flatten().all(|v| v.is_finite() && *v >= 0.0),
