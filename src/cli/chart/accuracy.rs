@@ -5,7 +5,7 @@
 //! and the median pixel's error in stops of luminance. Time is tracing alone, on all cores; trees are built once.
 
 use super::{Arguments, drawing};
-use crate::cli::{Failure, input, say};
+use crate::cli::{Failure, input, say, zbuffer};
 use crate::color::luminance;
 use crate::io::Loaded;
 use crate::photo::Picture;
@@ -86,6 +86,9 @@ fn measure(arguments: &Arguments, loaded: &Loaded) -> Result<Vec<Row>, Failure> 
     let reference = film.develop(&loaded.scene);
     let study = Study { name: &loaded.scene.name, loaded, scene, size, reference };
     let mut rows = Vec::new();
+    for side in [1, 2, 4].into_iter().filter(|side| side * side <= arguments.spp) {
+        rows.push(study.zbuffer(side, cores));
+    }
     for (method, label) in METHODS {
         let mut spp = 1;
         while spp <= arguments.spp {
@@ -114,6 +117,14 @@ fn settings_of(study: &Study<'_>, method: Method) -> Settings {
 }
 
 impl Study<'_> {
+    /// The z-buffer, with `side` pixels along each side of a pixel.
+    fn zbuffer(&self, side: u32, threads: usize) -> Row {
+        let started = Instant::now();
+        let (picture, _) = zbuffer::picture(self.loaded, self.size, side);
+        let trace_s = started.elapsed().as_secs_f64();
+        self.compare("zbuffer".to_owned(), side * side, threads, trace_s, 0, &picture)
+    }
+
     fn row(&self, method: String, settings: Settings, threads: usize) -> Result<Row, Failure> {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -124,18 +135,15 @@ impl Study<'_> {
         let film =
             pool.install(|| raytrace::render(&self.scene, &settings, &control, &mut |_| ControlFlow::Continue(())));
         let trace_s = started.elapsed().as_secs_f64();
-        let (rel_mse, median_stops) = error(&film.develop(&self.loaded.scene), &self.reference);
-        eprintln!("{}: {method}, {} samples: {trace_s:.2} s, error {rel_mse:.2e}", self.name, settings.spp);
-        Ok(Row {
-            scene: self.name.to_owned(),
-            method,
-            spp: settings.spp,
-            threads,
-            trace_s,
-            mrays_s: control.rays() as f64 / trace_s.max(1e-9) / 1e6,
-            rel_mse,
-            median_stops,
-        })
+        let picture = film.develop(&self.loaded.scene);
+        Ok(self.compare(method, settings.spp, threads, trace_s, control.rays(), &picture))
+    }
+
+    fn compare(&self, method: String, spp: u32, threads: usize, trace_s: f64, rays: u64, picture: &Picture) -> Row {
+        let (rel_mse, median_stops) = error(picture, &self.reference);
+        eprintln!("{}: {method}, {spp} samples: {trace_s:.3} s, error {rel_mse:.2e}", self.name);
+        let mrays_s = rays as f64 / trace_s.max(1e-9) / 1e6;
+        Row { scene: self.name.to_owned(), method, spp, threads, trace_s, mrays_s, rel_mse, median_stops }
     }
 }
 
