@@ -1,8 +1,6 @@
 //! The studio of `preview --lights`: five figures, and any number of small lights around them.
 
-use crate::scene::{
-    Aim, Emitter, Light, LightColor, LightId, Modifier, Object, ObjectId, Output, Power, Role, Scene, Shape, Transform,
-};
+use crate::scene::{Aim, Emitter, Light, LightId, Object, ObjectId, Output, Role, Scene, Shape, Transform};
 use glam::{Vec2, Vec3};
 
 /// Figures in the group.
@@ -66,14 +64,8 @@ fn small_light(index: usize, count: usize) -> Light {
         role: Role::Accent,
         position: Vec3::new(around.x, height_m, around.y),
         aim: Aim::Point(figure + Vec3::Y * 1.4),
-        roll_deg: 0.0,
-        emitter,
-        modifier: Modifier::default(),
         // The guide number is the distance times the f-number at ISO 100: H(1 m) = 2.5 GN^2.
-        power: Power { output: Output::FlashGuideNumber((intensity / 2.5).sqrt()), dial_stops: 0.0 },
-        color: LightColor::default(),
-        on: true,
-        visible_to_camera: false,
+        ..Light::new(emitter, Output::FlashGuideNumber((intensity / 2.5).sqrt()))
     }
 }
 

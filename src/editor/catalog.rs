@@ -2,8 +2,8 @@
 
 use crate::mannequin;
 use crate::scene::{
-    Aim, ColorSource, Emitter, Figure, Gel, Light, LightColor, LightId, Mannequin, Material, MaterialPreset, Modifier,
-    NamedModifier, Object, ObjectId, Output, Pose, Power, Role, Shape, Transform,
+    Aim, ColorSource, Emitter, Figure, Gel, Light, LightColor, Mannequin, Material, MaterialPreset, Modifier,
+    NamedModifier, Object, ObjectId, Output, Pose, Power, Shape, Transform,
 };
 use glam::Vec3;
 
@@ -313,18 +313,14 @@ fn new_light(name: &str, emitter: Emitter, modifier: Modifier, output: Output) -
     // What the modifier swallows is dialled in, in thirds: all of them arrive about equally bright.
     let loss_thirds = (3.0 * (modifier.loss_stops + modifier.scrim_stops)).round();
     Light {
-        id: LightId(0),
         name: name.to_owned(),
-        role: Role::Key,
         position: Vec3::new(-1.2, 2.0, 1.4),
         aim: Aim::Point(Vec3::new(0.0, 1.4, 0.0)),
-        roll_deg: 0.0,
-        emitter,
         modifier,
         power: Power { output, dial_stops: -3.0 + loss_thirds / 3.0 },
         color: LightColor { source: ColorSource::Kelvin(5500.0), gel: Gel::None },
-        on: true,
         visible_to_camera: matches!(emitter, Emitter::Surround),
+        ..Light::new(emitter, output)
     }
 }
 

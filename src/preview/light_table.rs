@@ -275,23 +275,10 @@ fn bounced_irradiance(room: &Room, flux: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Aim, LightColor, LightId, Output, Power, Role};
+    use crate::scene::{Aim, Output};
 
     fn light(emitter: Emitter, output: Output) -> Light {
-        Light {
-            id: LightId(0),
-            name: "Key".to_owned(),
-            role: Role::Key,
-            position: Vec3::new(0.0, 2.0, 0.0),
-            aim: Aim::Point(Vec3::ZERO),
-            roll_deg: 0.0,
-            emitter,
-            modifier: Modifier::default(),
-            power: Power { output, dial_stops: 0.0 },
-            color: LightColor::default(),
-            on: true,
-            visible_to_camera: false,
-        }
+        Light { position: Vec3::Y * 2.0, aim: Aim::Point(Vec3::ZERO), ..Light::new(emitter, output) }
     }
 
     #[test]

@@ -85,6 +85,80 @@ impl fmt::Display for RenderPlan {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::raytrace::{Control, Settings, prepare, render};
+    use crate::scene::{
+        Aim, Assets, Camera, Emitter, Light, LightId, Material, Object, ObjectId, Output, Room, Scene, Shape, Transform,
+    };
+    use glam::Vec3;
+    use std::ops::ControlFlow;
+
+    /// Everything on, whatever the scene.
+    fn full() -> RenderPlan {
+        RenderPlan {
+            emitters_have_size: true,
+            refraction: true,
+            lens: true,
+            sample_all_lights: false,
+            max_bounces: MAX_BOUNCES,
+            reasons: Vec::new(),
+        }
+    }
+
+    /// A ball in a room under two lights.
+    fn studio(emitters: [Emitter; 2], ball: Material) -> Scene {
+        let ball = Object {
+            id: ObjectId(1),
+            name: "Ball".into(),
+            transform: Transform { position: Vec3::new(0.0, 1.0, 0.0), ..Transform::default() },
+            shape: Shape::Sphere { radius_m: 0.5 },
+            material: ball,
+            part_materials: Vec::new(),
+            visible: true,
+        };
+        let light = |(i, emitter)| Light {
+            id: LightId(2 + i as u32),
+            name: format!("Light {i}"),
+            position: Vec3::new(1.5 - 3.0 * i as f32, 2.5, 1.0),
+            aim: Aim::Point(Vec3::Y),
+            ..Light::new(emitter, Output::Lumens(8000.0))
+        };
+        let lights = emitters.into_iter().enumerate().map(light).collect();
+        let camera = Camera { position: Vec3::new(0.0, 1.4, 3.0), aim: Aim::Point(Vec3::Y), ..Camera::default() };
+        Scene { camera, room: Some(Room::default()), objects: vec![ball], lights, ..Scene::default() }
+    }
+
+    /// Mean picture value, and its standard error from the scatter of eight seeds.
+    fn mean(scene: &Scene, plan: Option<RenderPlan>) -> (f32, f32) {
+        let mut prepared = prepare(scene, &Assets::default()).unwrap();
+        prepared.plan = plan.unwrap_or(prepared.plan);
+        let value = |seed| {
+            let settings = Settings { width: 24, height: 16, spp: 64, seed, ..Settings::default() };
+            let film = render(&prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+            let picture = film.develop(scene);
+            picture.rgb.iter().flatten().sum::<f32>() / (3 * picture.rgb.len()) as f32
+        };
+        let values: Vec<f32> = (0..8).map(value).collect();
+        let mean = values.iter().sum::<f32>() / 8.0;
+        let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f32>() / 7.0;
+        (mean, (variance / 8.0).sqrt())
+    }
+
+    #[test]
+    fn every_shortcut_keeps_the_mean_of_the_full_model() {
+        let panel = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
+        let spot = Emitter::Spot { inner_deg: 40.0, outer_deg: 70.0 };
+        for emitters in [[Emitter::Point, spot], [panel, Emitter::Sphere { radius_m: 0.05 }]] {
+            let scene = studio(emitters, Material::default());
+            let plan = prepare(&scene, &Assets::default()).unwrap().plan;
+            assert!(!plan.refraction && plan.sample_all_lights && plan.max_bounces < MAX_BOUNCES, "{plan}");
+            assert_eq!(plan.emitters_have_size, emitters[0] == panel);
+            let ((ours, error), (full, full_error)) = (mean(&scene, None), mean(&scene, Some(full())));
+            // What the bounces that are cut off leave, and four standard errors (one false alarm in 10 000).
+            let tolerance = NEGLIGIBLE * full + 4.0 * error.hypot(full_error);
+            assert!((ours - full).abs() < tolerance, "{ours} for {full}, within {tolerance}");
+            assert!(tolerance < 0.02 * full, "too noisy to say anything: {tolerance} of {full}");
+        }
+    }
 
     #[test]
     fn darker_rooms_need_fewer_bounces() {

@@ -39,7 +39,7 @@ pub struct RenderScene {
     /// Picture value of one cd s/m2.
     pub(super) exposure: f32,
     pub(super) lens: Lens,
-    plan: RenderPlan,
+    pub(super) plan: RenderPlan,
 }
 
 impl RenderScene {

@@ -196,3 +196,23 @@ pub struct Light {
     /// Whether the camera sees the emitter itself. Mirrors and glass always show it.
     pub visible_to_camera: bool,
 }
+
+impl Light {
+    /// A key light without a modifier, in white, switched on and unseen by the camera: at the origin, along -Z.
+    pub fn new(emitter: Emitter, output: Output) -> Self {
+        Light {
+            id: LightId(0),
+            name: "Light".to_owned(),
+            role: Role::Key,
+            position: Vec3::ZERO,
+            aim: Aim::Point(Vec3::NEG_Z),
+            roll_deg: 0.0,
+            emitter,
+            modifier: Modifier::default(),
+            power: Power { output, dial_stops: 0.0 },
+            color: LightColor::default(),
+            on: true,
+            visible_to_camera: false,
+        }
+    }
+}

@@ -5,8 +5,8 @@ use crate::photo::exposure;
 use crate::photo::meter::Receptor;
 use crate::raytrace::{self, Control, Effort, Place, Probe, Settings};
 use crate::scene::{
-    Aim, Assets, Camera, Emitter, Light, LightColor, LightId, Material, MaterialPreset, Modifier, Object, ObjectId,
-    Output, Power, Role, Room, Scene, Sensor, Shape, Transform,
+    Aim, Assets, Camera, Emitter, Light, LightId, Material, MaterialPreset, Object, ObjectId, Output, Room, Scene,
+    Sensor, Shape, Transform,
 };
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
@@ -33,20 +33,7 @@ fn row(case: impl Into<String>, unit: &'static str, closed_form: f64, ours: f64,
 
 /// A light at `position` that aims at `target`.
 fn light(emitter: Emitter, output: Output, position: Vec3, target: Vec3) -> Light {
-    Light {
-        id: LightId(0),
-        name: "Light".to_owned(),
-        role: Role::Key,
-        position,
-        aim: Aim::Point(target),
-        roll_deg: 0.0,
-        emitter,
-        modifier: Modifier::default(),
-        power: Power { output, dial_stops: 0.0 },
-        color: LightColor::default(),
-        on: true,
-        visible_to_camera: false,
-    }
+    Light { position, aim: Aim::Point(target), ..Light::new(emitter, output) }
 }
 
 fn object(shape: Shape, material: Material, position: Vec3, rotation_deg: Vec3) -> Object {

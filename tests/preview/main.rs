@@ -9,8 +9,8 @@ use catchlight::photo::{Picture, exposure};
 use catchlight::preview::{Gpu, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
 use catchlight::raytrace;
 use catchlight::scene::{
-    Aim, Assets, Camera, CameraFrame, Emitter, Light, LightColor, LightId, Material, MaterialPreset, Modifier, Object,
-    ObjectId, Output, Power, Role, Room, Scene, Shape, Texture, Transform,
+    Aim, Assets, Camera, CameraFrame, Emitter, Light, LightId, Material, MaterialPreset, Object, ObjectId, Output,
+    Room, Scene, Shape, Texture, Transform,
 };
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
@@ -57,20 +57,8 @@ fn object(id: u32, shape: Shape, position: Vec3, material: Material) -> Object {
 }
 
 fn light(id: u32, position: Vec3, target: Vec3, emitter: Emitter, output: Output) -> Light {
-    Light {
-        id: LightId(id),
-        name: format!("Light {id}"),
-        role: Role::Key,
-        position,
-        aim: Aim::Point(target),
-        roll_deg: 0.0,
-        emitter,
-        modifier: Modifier::default(),
-        power: Power { output, dial_stops: 0.0 },
-        color: LightColor::default(),
-        on: true,
-        visible_to_camera: false,
-    }
+    let (id, name) = (LightId(id), format!("Light {id}"));
+    Light { id, name, position, aim: Aim::Point(target), ..Light::new(emitter, output) }
 }
 
 /// A floor of grey card and one light, in no room; the camera looks at the floor's middle from the side.

@@ -8,8 +8,7 @@ pub mod measure;
 pub mod statistics;
 
 use catchlight::scene::{
-    Aim, Camera, Emitter, Light, LightColor, LightId, Material, Modifier, Object, ObjectId, Output, Power, Role, Scene,
-    Sensor, Shape, Transform,
+    Aim, Camera, Emitter, Light, Material, Object, ObjectId, Output, Scene, Sensor, Shape, Transform,
 };
 use glam::Vec3;
 
@@ -52,20 +51,7 @@ pub fn card_at(position: Vec3, size_m: f32) -> Scene {
 
 /// A light that points at the origin, in the camera's white.
 pub fn light(emitter: Emitter, output: Output, position: Vec3) -> Light {
-    Light {
-        id: LightId(0),
-        name: "Light".into(),
-        role: Role::Key,
-        position,
-        aim: Aim::Point(Vec3::ZERO),
-        roll_deg: 0.0,
-        emitter,
-        modifier: Modifier::default(),
-        power: Power { output, dial_stops: 0.0 },
-        color: LightColor::default(),
-        on: true,
-        visible_to_camera: false,
-    }
+    Light { position, aim: Aim::Point(Vec3::ZERO), ..Light::new(emitter, output) }
 }
 
 /// A ball of this material before an even white surround that the camera sees.

@@ -45,12 +45,11 @@ pub struct Stack {
 impl Stack {
     /// Room for all children of a node above `top`.
     #[inline(always)]
-    fn room(&mut self, top: usize) -> &mut [u64; WIDTH] {
+    fn room(&mut self, top: usize) -> &mut [u64] {
         if self.open.len() < top + WIDTH {
             self.grow(top);
         }
-        // The line before made sure of it: the fallback is never taken.
-        self.open[top..].first_chunk_mut().unwrap_or_else(|| unreachable!("the stack has just grown"))
+        &mut self.open[top..top + WIDTH]
     }
 
     #[cold]
@@ -161,13 +160,7 @@ impl WideBvh {
 /// Puts the children of the mask on the stack, all but the nearest, which is returned. The others lie in no order:
 /// those that a hit has overtaken by the time they are taken up cost one comparison.
 #[inline(always)]
-fn nearest_on_top(
-    node: &Node,
-    enter: &[f32; WIDTH],
-    mut mask: u32,
-    room: &mut [u64; WIDTH],
-    top: &mut usize,
-) -> Option<u32> {
+fn nearest_on_top(node: &Node, enter: &[f32; WIDTH], mut mask: u32, room: &mut [u64], top: &mut usize) -> Option<u32> {
     if mask == 0 {
         return None;
     }

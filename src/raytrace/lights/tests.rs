@@ -3,24 +3,11 @@
 use super::*;
 use crate::math::look_at;
 use crate::math::statistics::{ChiSquare, Estimate, Numbers, share};
-use crate::scene::{Aim, LightColor, LightId, Modifier, Output, Power, Role};
+use crate::scene::Output;
 
 /// A light at the origin that shines along -Z.
 fn traced(emitter: Emitter, output: Output) -> TracedLight {
-    let light = Light {
-        id: LightId(0),
-        name: "Light".into(),
-        role: Role::Key,
-        position: Vec3::ZERO,
-        aim: Aim::Point(Vec3::NEG_Z),
-        roll_deg: 0.0,
-        emitter,
-        modifier: Modifier::default(),
-        power: Power { output, dial_stops: 0.0 },
-        color: LightColor::default(),
-        on: true,
-        visible_to_camera: false,
-    };
+    let light = Light::new(emitter, output);
     TracedLight::new(&light, look_at(Vec3::ZERO, Vec3::NEG_Z, 0.0), 1.0).unwrap()
 }
 

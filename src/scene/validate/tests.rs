@@ -1,8 +1,5 @@
 use super::*;
-use crate::scene::{
-    Assets, Camera, ColorSource, Emitter, Gel, Light, LightColor, LightId, Material, Modifier, ObjectId, Output, Power,
-    Role, Transform,
-};
+use crate::scene::{Assets, Camera, ColorSource, Emitter, Gel, Light, Material, ObjectId, Output, Transform};
 
 fn object(name: &str) -> Object {
     Object {
@@ -17,20 +14,9 @@ fn object(name: &str) -> Object {
 }
 
 fn light(name: &str) -> Light {
-    Light {
-        id: LightId(0),
-        name: name.to_owned(),
-        role: Role::Key,
-        position: Vec3::new(1.0, 2.0, 1.0),
-        aim: Aim::Point(Vec3::ZERO),
-        roll_deg: 0.0,
-        emitter: Emitter::RectPanel { width_m: 0.6, height_m: 0.9 },
-        modifier: Modifier::default(),
-        power: Power { output: Output::Lumens(1000.0), dial_stops: 0.0 },
-        color: LightColor::default(),
-        on: true,
-        visible_to_camera: false,
-    }
+    let panel = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
+    let (name, position) = (name.to_owned(), Vec3::new(1.0, 2.0, 1.0));
+    Light { name, position, aim: Aim::Point(Vec3::ZERO), ..Light::new(panel, Output::Lumens(1000.0)) }
 }
 
 fn good() -> Scene {
