@@ -16,20 +16,34 @@ const SUPERSAMPLES: u32 = 4;
 const SPP: u32 = 48;
 /// Darker pixels count as not lit: one code of an 8-bit picture at its dark end would be a twentieth of them.
 const LIT: f32 = 0.005;
+/// Lights that draw an edge so thin that no block fits into it: their pictures are larger, with more samples, since what
+/// grazes is noisier. Those that shine from behind are seen from their own side, too, where blocks fit.
+const EDGES: &[(&str, &str)] = &[
+    ("split", "Key strip"),
+    ("rim_low_key", "Left strip"),
+    ("rim_low_key", "Right strip"),
+    ("interview", "Tungsten hair light"),
+];
+/// Longer side and samples a pixel of those.
+const FINE: (u32, u32) = (240, 192);
+/// Angle about the vertical between light and camera, seen from the subject, in a picture from the light's side.
+const BESIDE_RAD: f32 = 0.6;
 /// Side of a block, pixels.
 const BLOCK: usize = 8;
 
-/// What issue and README promise, in stops: median over the pixels, worst block.
-const LIMITS: (f32, f32) = (0.1, 0.3);
-/// Part of the pixels that may be dark in the preview and lit in the tracer; the rims have few pixels but edges.
-const FALSE_SHADOW: f32 = 0.04;
+/// What issue and README promise, in stops: median over the pixels, worst block. And the part of the pixels that may be
+/// dark in the preview and lit in the tracer: the edges of shadows.
+const LIMITS: (f32, f32, f32) = (0.1, 0.3, 0.04);
 
-/// Lights that stray farther, with their own limits and why.
-const WEAK: &[(&str, &str, (f32, f32), &str)] =
-    &[("rim_low_key", "Left strip", (0.5, 0.3), GRAZING_RIM), ("rim_low_key", "Right strip", (0.35, 0.3), GRAZING_RIM)];
-/// A hundred pixels that see a tall strip from behind, over the edge of the body: gloss at grazing angles and the
-/// shadow of the surface on itself, where one map a light is weakest.
-const GRAZING_RIM: &str = "grazing gloss and self-shadow of tall strips from behind";
+/// Lights that stray farther, and how far they may.
+///
+/// Two tall strips behind the shoulders, on the few pixels of the body's edge that see them. In the median, half is the
+/// highlight of a strip from one telling point, half the noise of both pictures. False shadow falls where a pixel turns
+/// from a strip's middle and sees one end of it: lighting counts the part above the horizon alone, and the shadow, drawn
+/// from the middle, sees the body before the rest and takes that once more. Dividing it by the part above the horizon
+/// ends this but lights others wrongly: a fifth too much light in all.
+const WEAK: &[(&str, &str, (f32, f32, f32))] =
+    &[("rim_low_key", "Left strip", (0.14, 0.3, 0.17)), ("rim_low_key", "Right strip", (0.14, 0.3, 0.13))];
 
 /// One light's pictures, a value a compared pixel.
 struct Pictures {
@@ -60,32 +74,54 @@ fn each_light_alone_is_the_tracers_direct_light() {
         let lights: Vec<(LightId, String)> = loaded.scene.lights.iter().map(|l| (l.id, l.name.clone())).collect();
         for (id, name) in lights {
             loaded.scene.lights.iter_mut().for_each(|light| light.on = light.id == id);
-            let c = compare(&draw(&mut renderer, &loaded));
-            println!(
-                "{studio:20} {name:24} median {:.3} over {:5} pixels, worst {:.3} of {:3} blocks, {:.2} % false shadow",
-                c.median_stops,
-                c.pixels,
-                c.worst_stops,
-                c.blocks,
-                c.false_shadow * 100.0
-            );
+            let is_edge = EDGES.contains(&(studio, name.as_str()));
+            let (long_edge, spp) = if is_edge { FINE } else { (LONG_EDGE, SPP) };
+            let c = compare(&draw(&mut renderer, &loaded, long_edge, spp));
             let weak = WEAK.iter().find(|weak| weak.0 == studio && weak.1 == name);
-            let (median, worst) = weak.map_or(LIMITS, |weak| weak.2);
-            if c.median_stops > median || c.worst_stops > worst || c.false_shadow > FALSE_SHADOW {
-                let why = weak.map_or("", |weak| weak.3);
-                wrong.push(format!(
-                    "{studio}, {name}: median {:.3}, worst {:.3}, false shadow {:.3} {why}",
-                    c.median_stops, c.worst_stops, c.false_shadow
-                ));
+            wrong.extend(c.report(studio, &name, weak.map_or(LIMITS, |weak| weak.2)));
+            if is_edge && c.blocks == 0 {
+                let beside = from_beside(&loaded.scene, id);
+                let camera = std::mem::replace(&mut loaded.scene.camera, beside);
+                let c = compare(&draw(&mut renderer, &loaded, LONG_EDGE, SPP));
+                loaded.scene.camera = camera;
+                assert!(c.blocks > 0, "{studio}, {name}: the worst block of none proves nothing");
+                wrong.extend(c.report(studio, &format!("{name}, from beside"), LIMITS));
             }
         }
     }
     assert!(wrong.is_empty(), "too far from the tracer:\n{}", wrong.join("\n"));
 }
 
-fn draw(renderer: &mut PreviewRenderer, loaded: &Loaded) -> Pictures {
+impl Comparison {
+    /// Prints it, and says what is farther off than median, worst block and false shadow may be.
+    fn report(&self, studio: &str, name: &str, (median, worst, false_shadow): (f32, f32, f32)) -> Option<String> {
+        let line = format!(
+            "{studio:20} {name:34} median {:.3} over {:5} pixels, worst {:.3} of {:3} blocks, {:.2} % false shadow",
+            self.median_stops,
+            self.pixels,
+            self.worst_stops,
+            self.blocks,
+            self.false_shadow * 100.0
+        );
+        println!("{line}");
+        let is_wrong = self.median_stops > median || self.worst_stops > worst || self.false_shadow > false_shadow;
+        is_wrong.then_some(line)
+    }
+}
+
+/// A camera as far from its subject as the scene's, turned about it to stand beside a light.
+fn from_beside(scene: &Scene, id: LightId) -> Camera {
+    let camera = &scene.camera;
+    let target = scene.aim_point(&camera.aim, camera.position);
+    let light = scene.lights.iter().find(|light| light.id == id).unwrap();
+    let to_light = (light.position - target).with_y(0.0).normalize();
+    let away = glam::Quat::from_rotation_y(BESIDE_RAD) * to_light * camera.position.distance(target);
+    Camera { position: target + away, aim: Aim::Point(target), ..camera.clone() }
+}
+
+fn draw(renderer: &mut PreviewRenderer, loaded: &Loaded, long_edge: u32, spp: u32) -> Pictures {
     let scene = &loaded.scene;
-    let (width, height) = scene.camera.picture_size(LONG_EDGE);
+    let (width, height) = scene.camera.picture_size(long_edge);
     let fine = (width * SUPERSAMPLES, height * SUPERSAMPLES);
     let mut input =
         PreviewInput { options: Options::direct_only(), ..PreviewInput::camera_view(scene, &loaded.assets, fine) };
@@ -100,7 +136,7 @@ fn draw(renderer: &mut PreviewRenderer, loaded: &Loaded) -> Pictures {
     });
     Pictures {
         columns: width as usize,
-        traced: traced(loaded, width, height),
+        traced: traced(loaded, width, height, spp),
         shown,
         unshadowed,
         rasterable: rasterable.collect(),
@@ -114,10 +150,10 @@ fn is_rasterable(scene: &Scene, id: ObjectId) -> bool {
     })
 }
 
-fn traced(loaded: &Loaded, width: u32, height: u32) -> Vec<f32> {
+fn traced(loaded: &Loaded, width: u32, height: u32, spp: u32) -> Vec<f32> {
     let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
     let method = raytrace::Method::Direct;
-    let settings = raytrace::Settings { width, height, spp: SPP, method, ..raytrace::Settings::default() };
+    let settings = raytrace::Settings { width, height, spp, method, ..raytrace::Settings::default() };
     let film = raytrace::render(&prepared, &settings, &raytrace::Control::new(), &mut |_| ControlFlow::Continue(()));
     film.develop(&loaded.scene).rgb.iter().map(|rgb| color::luminance((*rgb).into())).collect()
 }
