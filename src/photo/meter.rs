@@ -108,7 +108,7 @@ impl Reading {
 
     /// All light in one exposure, E t + H, lux s.
     pub fn total_lux_s(&self) -> f32 {
-        self.lights.iter().map(|light| self.lux_s(light)).sum()
+        total(self.lights.iter().map(|light| self.lux_s(light)))
     }
 
     /// Direct and bounced light as steady light at the camera's shutter, lux.
@@ -150,9 +150,9 @@ impl Reading {
 
     /// Part of the exposure that comes from flash, 0 to 1; none in the dark.
     pub fn flash_share(&self) -> Option<f32> {
-        let total = self.total_lux_s();
-        let flash: f32 = self.lights.iter().filter(|l| l.flash).map(|l| self.lux_s(l)).sum();
-        (total > 0.0).then(|| flash / total)
+        let whole = self.total_lux_s();
+        let flash = total(self.lights.iter().filter(|l| l.flash).map(|l| self.lux_s(l)));
+        (whole > 0.0).then(|| flash / whole)
     }
 
     /// Standard error of the whole exposure relative to it; none in the dark.
@@ -163,7 +163,7 @@ impl Reading {
     }
 
     fn lux_s_of(&self, role: Role) -> f32 {
-        self.lights.iter().filter(|l| l.role == Some(role)).map(|l| self.lux_s(l)).sum()
+        total(self.lights.iter().filter(|l| l.role == Some(role)).map(|l| self.lux_s(l)))
     }
 
     /// Key against fill, in the two ways in which ratios are quoted. None without light from both roles.
@@ -187,6 +187,11 @@ pub fn nearest_third(f_number: f32) -> String {
     }
 }
 
+/// Sum that is 0 of nothing: the standard library's is -0, which would be printed so.
+fn total(values: impl Iterator<Item = f32>) -> f32 {
+    values.fold(0.0, |sum, value| sum + value)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -208,6 +213,8 @@ mod tests {
         assert!((both.total_lux_s() - 240.0).abs() < 1e-3);
         assert!((both.f_number() - (240.0_f32 * 100.0 / 250.0).sqrt()).abs() < 1e-4);
         assert!((both.flash_share().unwrap() - 160.0 / 240.0).abs() < 1e-6);
+        let no_flash = Reading { lights: vec![light(1, Role::Key, false, 10_000.0)], ..both.clone() };
+        assert!(no_flash.flash_share().is_some_and(|share| share == 0.0 && share.is_sign_positive()), "-0 is printed");
         // The flash as steady light at this shutter: 160 x 125 lx.
         assert!((both.total_lux().0 / 30_000.0 - 1.0).abs() < 1e-6);
         let slower = Reading { shutter_s: 1.0 / 60.0, ..both.clone() };
