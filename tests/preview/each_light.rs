@@ -37,8 +37,9 @@ const LIMITS: (f32, f32, f32) = (0.1, 0.3, 0.04);
 
 /// Lights that stray farther, and how far they may.
 ///
-/// Two tall strips behind the shoulders, on the few pixels of the body's edge that see them. In the median, half is the
-/// highlight of a strip from one telling point, half the noise of both pictures. False shadow falls where a pixel turns
+/// Two tall strips behind the shoulders, on the few pixels of the body's edge that see them. What is left in the median
+/// is the highlight, taken at one telling point of a strip whose brightness there changes along its length, and the
+/// noise of both pictures; which of them weighs more was not measured. False shadow falls where a pixel turns
 /// from a strip's middle and sees one end of it: lighting counts the part above the horizon alone, and the shadow, drawn
 /// from the middle, sees the body before the rest and takes that once more. Dividing it by the part above the horizon
 /// ends this but lights others wrongly: a fifth too much light in all.

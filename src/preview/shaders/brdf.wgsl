@@ -167,7 +167,7 @@ fn disc_highlight(s: Shading, a: Arrival) -> vec3f {
 }
 
 // A rectangle is cut at the horizon along `up`. The sides along it are bent in the plane of slopes, most where a tall
-// strip stands behind a grazing surface: two chords a side lost a tenth of its light.
+// strip stands behind a grazing surface: two chords a side lost a tenth of a stop.
 fn rect_highlight(s: Shading, a: Arrival) -> vec3f {
     let rise = dot(s.normal, a.up);
     let above = saturate(0.5 + 0.5 * dot(s.normal, a.centre) / max(abs(rise), 1e-6));
