@@ -16,6 +16,7 @@ mod media;
 mod plan;
 mod prepare;
 mod probe;
+mod receiver;
 mod sampler;
 mod schedule;
 mod simd;

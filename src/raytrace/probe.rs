@@ -11,16 +11,16 @@ use super::integrator::{Limits, Sink, Tracer};
 use super::lights::TracedLight;
 use super::media::Media;
 use super::prepare::{PrepareError, RenderScene, prepare_around};
+use super::receiver::Receiver;
 use super::sampler::{self, Purpose, Sampler};
 use super::schedule::Control;
 use crate::color::{self, luminance};
-use crate::math::{Ray, orthonormal_basis, safe_sqrt, warp};
+use crate::math::{Ray, warp};
 use crate::photo::exposure::{self, Strength};
 use crate::photo::meter::{LightReading, Reading, Receptor};
 use crate::scene::{Assets, Camera, Light, LightId, Scene};
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
-use std::f32::consts::{PI, TAU};
 
 /// Independent sequences: enough to tell their scatter to a fifth, few enough to stay well stratified each.
 const REPLICATES: u32 = 16;
@@ -30,10 +30,6 @@ const LIMITS: Limits = Limits { wide_bounces: 4096, all_bounces: 4096 };
 const FIRST_ROUND: (u32, u32) = (64, 1024);
 /// Most emitter points of a light in a sequence.
 const MOST_POINTS: u32 = 16_384;
-
-/// A meter that is laid on a surface measures what falls on it: its receptor stands this far before the place. Surfaces
-/// of objects of some ten metres are off by less from rounding; it matters by 0.01 % half a metre from a light.
-const LIFT_M: f32 = 2e-5;
 
 /// Where and how the receptor stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -225,48 +221,6 @@ fn blank(light: &Light) -> LightReading {
         direct: 0.0,
         bounced: 0.0,
         standard_error: 0.0,
-    }
-}
-
-/// The receptor in the tracer's space.
-#[derive(Clone, Copy, Debug)]
-struct Receiver {
-    origin: Vec3,
-    facing: Vec3,
-    tangent: Vec3,
-    bitangent: Vec3,
-    receptor: Receptor,
-}
-
-impl Receiver {
-    fn new(place: &Place, eye: Vec3) -> Self {
-        let (tangent, bitangent) = orthonormal_basis(place.facing);
-        let origin = (place.position - eye) + place.facing * LIFT_M;
-        Receiver { origin, facing: place.facing, tangent, bitangent, receptor: place.receptor }
-    }
-
-    /// A direction, with the density of the receptor's response up to a factor.
-    fn direction(&self, u: Vec2) -> Vec3 {
-        let local = match self.receptor {
-            Receptor::Flat => warp::cosine_hemisphere(u),
-            Receptor::Dome => {
-                // Density (1 + cos) / (4 pi): the cumulated share below a cosine is ((1 + cos) / 2)^2.
-                let cos = 2.0 * safe_sqrt(u.x) - 1.0;
-                let (sin_turn, cos_turn) = (TAU * u.y).sin_cos();
-                let radius = safe_sqrt(1.0 - cos * cos);
-                Vec3::new(radius * cos_turn, radius * sin_turn, cos)
-            }
-        };
-        self.tangent * local.x + self.bitangent * local.y + self.facing * local.z
-    }
-
-    /// What one sample of [`Receiver::direction`] with luminance 1 counts: the integral of the response over all
-    /// directions, sr.
-    fn weight(&self) -> f32 {
-        match self.receptor {
-            Receptor::Flat => PI,
-            Receptor::Dome => TAU,
-        }
     }
 }
 
