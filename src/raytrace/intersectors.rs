@@ -96,7 +96,7 @@ impl Part {
 impl Intersector {
     /// Prepares a mesh.
     pub fn new(mesh: &Arc<Mesh>, method: Intersection) -> Self {
-        let whole = std::slice::from_ref(&(0..mesh.triangles.len() as u32)).to_vec();
+        let whole: Vec<_> = std::iter::once(0..mesh.triangles.len() as u32).collect();
         let (ranges, tree) = match method {
             Intersection::EveryTriangle => (whole, None),
             Intersection::Box | Intersection::BoxPrecomputed => {

@@ -1,8 +1,8 @@
 //! `catchlight chart [SCENE ...] -o DIR`: every method's error against its time, beside the converged path-traced picture.
 //!
-//! Error is the mean over pixels and colours of (x - r)^2 / (r^2 + 0.0001), r from the reference (relative mean squared
-//! error; the small term, a hundredth of a grey card's sixth stop down, keeps black pixels from counting without bound),
-//! and the median pixel's error in stops of luminance. Time is tracing alone, on all cores; trees are built once.
+//! Error is the mean over pixels and colours of (x - r)^2 / (r^2 + 0.01^2), r from the reference (relative mean squared
+//! error; the small term, four stops under a grey card, keeps black pixels from counting without bound), and the median
+//! pixel's error in stops of luminance. Time is tracing alone, on all cores; trees are built once.
 
 use super::{Arguments, drawing};
 use crate::cli::{Failure, input, say, zbuffer};
@@ -81,8 +81,8 @@ fn measure(arguments: &Arguments, loaded: &Loaded) -> Result<Vec<Row>, Failure> 
     let scene = raytrace::prepare(&loaded.scene, &loaded.assets)?;
     let reference_spp = arguments.reference_spp.unwrap_or(32 * arguments.spp);
     eprintln!("{}: reference of {reference_spp} samples a pixel ...", loaded.scene.name);
-    let settings = Settings { spp: reference_spp, seed: REFERENCE_SEED, ..settings(size, Method::Path) };
-    let film = raytrace::render(&scene, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+    let converged = Settings { spp: reference_spp, seed: REFERENCE_SEED, ..settings(size, Method::Path) };
+    let film = raytrace::render(&scene, &converged, &Control::new(), &mut |_| ControlFlow::Continue(()));
     let reference = film.develop(&loaded.scene);
     let study = Study { name: &loaded.scene.name, loaded, scene, size, reference };
     let mut rows = Vec::new();
@@ -92,28 +92,24 @@ fn measure(arguments: &Arguments, loaded: &Loaded) -> Result<Vec<Row>, Failure> 
     for (method, label) in METHODS {
         let mut spp = 1;
         while spp <= arguments.spp {
-            rows.push(study.row(label.to_owned(), Settings { spp, ..settings_of(&study, method) }, cores)?);
+            rows.push(study.row(label.to_owned(), Settings { spp, ..settings(size, method) }, cores)?);
             spp *= 4;
         }
     }
     let spp = arguments.spp.min(16);
     for depth in DEPTHS {
-        let settings = Settings { spp, max_depth: Some(depth), ..settings_of(&study, Method::Path) };
-        rows.push(study.row(format!("path, {depth} bounces"), settings, cores)?);
+        let shallow = Settings { spp, max_depth: Some(depth), ..settings(size, Method::Path) };
+        rows.push(study.row(format!("path, {depth} bounces"), shallow, cores)?);
     }
     for threads in 1..cores {
-        let settings = Settings { spp, ..settings_of(&study, Method::Path) };
-        rows.push(study.row(format!("path, {threads} of {cores} threads"), settings, threads)?);
+        let narrow = Settings { spp, ..settings(size, Method::Path) };
+        rows.push(study.row(format!("path, {threads} of {cores} threads"), narrow, threads)?);
     }
     Ok(rows)
 }
 
 fn settings((width, height): (u32, u32), method: Method) -> Settings {
     Settings { width, height, method, ..Settings::default() }
-}
-
-fn settings_of(study: &Study<'_>, method: Method) -> Settings {
-    settings(study.size, method)
 }
 
 impl Study<'_> {
@@ -155,7 +151,7 @@ fn error(picture: &Picture, reference: &Picture) -> (f64, f64) {
         for (x, r) in ours.iter().zip(truth).map(|(&x, &r)| (f64::from(x), f64::from(r))) {
             sum += (x - r).powi(2) / (r * r + 1e-4);
         }
-        // Four stops under a hundredth of white, nobody sees stops.
+        // Four stops under a hundredth of white nobody sees stops.
         let bright = |rgb: &[f32; 3]| f64::from(luminance(Vec3::from(*rgb))).max(6e-4);
         stops.push((bright(ours) / bright(truth)).log2().abs());
     }

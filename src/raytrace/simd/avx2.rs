@@ -6,15 +6,14 @@ use crate::raytrace::bvh::{Node, Slabs, WIDEN};
 use crate::raytrace::triangle::{Packet, Sheared, TriangleHit, edges_in_f64};
 use std::arch::x86_64::*;
 
-/// Runs a query with these kernels.
-///
-/// # Panics
-/// Never: [`super::dispatch`] has asked the processor; this asks again because it is free beside a query.
+/// Runs a query with these kernels; gives it back where the processor cannot.
 #[inline]
-pub fn run<Q: Query>(query: Q) -> Q::Answer {
-    debug_assert!(std::arch::is_x86_feature_detected!("avx2"));
-    // SAFETY: `dispatch`, the only caller, has just found that the processor has AVX2.
-    unsafe { compiled_for_avx2(query) }
+pub fn run<Q: Query>(query: Q) -> Result<Q::Answer, Q> {
+    if !std::arch::is_x86_feature_detected!("avx2") {
+        return Err(query);
+    }
+    // SAFETY: the processor has AVX2; it was asked on the line above.
+    Ok(unsafe { compiled_for_avx2(query) })
 }
 
 #[target_feature(enable = "avx2")]

@@ -43,8 +43,9 @@ pub trait Query {
 #[inline]
 pub fn dispatch<Q: Query>(query: Q) -> Q::Answer {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
-        return avx2::run(query);
-    }
+    let query = match avx2::run(query) {
+        Ok(answer) => return answer,
+        Err(query) => query,
+    };
     query.run::<Plain>()
 }
