@@ -13,6 +13,8 @@ use crate::math::Ray;
 
 /// Meshes with up to this many triangles are copied into the tree of small things.
 const SMALL: usize = 4096;
+/// Triangles that are copied in all: thousands of balls stay instances of one mesh.
+const COPIED: usize = 1 << 18;
 
 /// Instances and the trees over them.
 #[derive(Debug, Default)]
@@ -43,7 +45,7 @@ impl Aggregate {
         let (mut small_triangles, mut large, mut boxes) = (Vec::new(), Vec::new(), Vec::new());
         for (index, instance) in instances.iter().enumerate() {
             let count = instance.geometry.mesh().triangles.len();
-            if count <= SMALL {
+            if count <= SMALL && small_triangles.len() + count <= COPIED {
                 small_triangles.extend((0..count as u32).map(|triangle| (index as u32, triangle)));
             } else if let Some(bounds) = instance.world_bounds() {
                 large.push(index as u32);
@@ -254,6 +256,27 @@ mod tests {
             hits += usize::from(truth.is_some());
         }
         assert!(hits > 1000, "only {hits} rays hit anything: the test says little");
+    }
+
+    #[test]
+    fn of_ten_thousand_balls_few_are_copied_and_all_are_hit() {
+        let ball = Arc::new(MeshGeometry::new(Arc::new(soup(100))));
+        let place = |i: u32| Affine3A::from_translation(Vec3::new(10.0 * i as f32, 0.0, 0.0));
+        let instances: Vec<Instance> =
+            (0..10_000).map(|i| Instance::new(ball.clone(), place(i), i, vec![0]).unwrap()).collect();
+        let aggregate = Aggregate::new(instances);
+        assert!(aggregate.small_triangles.len() <= COPIED && aggregate.large.len() > 7_000);
+        let mut stack = Stack::default();
+        for i in (0..10_000).step_by(333) {
+            let (low, high) = aggregate.instances()[i].world_bounds().unwrap();
+            let count = (0..64).filter(|&k| {
+                let aside = Vec3::new(((k % 8) as f32 + 0.5) / 8.0, ((k / 8) as f32 + 0.5) / 8.0, 0.0);
+                let origin = low + (high - low) * aside - Vec3::Z;
+                let ray = Ray { origin, direction: Vec3::Z, t_max: f32::INFINITY };
+                aggregate.closest(&ray, &mut stack).is_some_and(|hit| hit.instance as usize == i)
+            });
+            assert!(count.count() > 10, "ball {i}");
+        }
     }
 
     #[test]
