@@ -85,6 +85,9 @@ pub struct Options {
     /// While something moves: on a rasteriser that runs on the processor, lights one pixel in four and spreads the light
     /// over the surfaces. Adapters with a card of their own take no notice.
     pub draft: bool,
+    /// Draws only what lies over the picture, on nothing: transparent, colour times coverage. For a picture that comes
+    /// from elsewhere. Depth and ids are there all the same, so that things hide each other and can be picked.
+    pub overlay_alone: bool,
     /// Pixels along each side of a shadow map.
     pub shadow_resolution: u32,
 }
@@ -97,6 +100,7 @@ impl Default for Options {
             environment_estimate: true,
             light_radius: true,
             draft: false,
+            overlay_alone: false,
             shadow_resolution: 1024,
         }
     }

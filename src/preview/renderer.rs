@@ -8,7 +8,7 @@ use super::light_table::LightTable;
 use super::light_tiles::{TILES_BYTES, light_tiles};
 use super::lighting_pass::{LightingInput, LightingPasses};
 use super::mesh_cache::MeshCache;
-use super::overlay_pass::OverlayPass;
+use super::overlay_pass::{self, OverlayPass};
 use super::pick::WaitingPick;
 use super::pipelines::{GeometryPipelines, Layouts, LightingVariant, MaskPipelines};
 use super::scene_buffers::{GpuFrame, LIGHTS_BYTES, SceneBuffers};
@@ -183,7 +183,8 @@ impl PreviewRenderer {
             },
         );
         let table = LightTable::new(input.scene, input.options.bounce_estimate);
-        let casters: &[_] = if input.options.shadows { &list.casters } else { &[] };
+        let overlay_alone = input.options.overlay_alone;
+        let casters: &[_] = if input.options.shadows && !overlay_alone { &list.casters } else { &[] };
         let plan = ShadowPlan::new(&table.lights, casters);
         let resolution = input.options.shadow_resolution;
         let stale = self.shadow_maps.stale(&self.device, &self.queue, &plan, list.caster_signature, resolution);
@@ -221,10 +222,15 @@ impl PreviewRenderer {
             beams: table.lights.iter().any(|light| light.has_beam != 0),
             cells: draft,
         };
-        self.lighting_pass(&mut encoder, variant);
+        if !overlay_alone {
+            self.lighting_pass(&mut encoder, variant);
+        }
         let has_glass = list.items.iter().any(|item| item.pass == Pass::Glass);
         if has_glass {
             self.glass_pass(&mut encoder, &list, &table, output);
+        }
+        if overlay_alone {
+            overlay_pass::clear(&mut encoder, &self.targets.color_view);
         }
         self.view = Some(input.frame);
         self.gizmos = Gizmos::default();

@@ -251,3 +251,33 @@ fn a_lost_device_is_an_error_and_a_new_one_works() {
     let (_gpu, mut renderer) = self::renderer().unwrap();
     renderer.render(&direct(&scene, (48, 32))).unwrap();
 }
+
+#[test]
+fn the_overlay_alone_leaves_the_picture_out_and_things_can_still_be_picked() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    let lamp = light(0, Vec3::new(1.5, 3.0, 1.0), Vec3::ZERO, Emitter::Point, Output::Lumens(20_000.0));
+    let mut scene = floor_under(lamp);
+    for (id, x, material) in [(1, -0.5, grey_card()), (2, 0.5, MaterialPreset::ClearGlass.material())] {
+        scene.objects.push(object(id, Shape::Sphere { radius_m: 0.4 }, Vec3::new(x, 0.4, 0.0), material));
+    }
+    let mut input = direct(&scene, (151, 101));
+    input.overlay.selection = vec![Pick::Object(ObjectId(1))];
+    let whole = renderer.picture(&input).unwrap();
+    input.options.overlay_alone = true;
+    let alone = renderer.picture(&input).unwrap();
+    let pixel = |point: Vec3| {
+        let place = input.frame.project(point).unwrap() * Vec2::new(151.0, 101.0);
+        (place.x as u32, place.y as u32)
+    };
+    let (ball, glass) = (pixel(Vec3::new(-0.5, 0.4, 0.0)), pixel(Vec3::new(0.5, 0.4, 0.0)));
+    assert!(whole.get_pixel(ball.0, ball.1).0[1] > 20);
+    for place in [ball, glass] {
+        assert_eq!(alone.get_pixel(place.0, place.1).0, [0; 3], "no picture under the overlay");
+    }
+    let outlined = alone.pixels().filter(|pixel| pixel.0 != [0; 3]).count();
+    assert!((20..2000).contains(&outlined), "{outlined} pixels of outline");
+    assert_eq!(renderer.pick_blocking(ball).unwrap(), Some(Pick::Object(ObjectId(1))));
+    assert_eq!(renderer.pick_blocking(glass).unwrap(), Some(Pick::Object(ObjectId(2))));
+    input.options.overlay_alone = false;
+    assert_eq!(renderer.picture(&input).unwrap(), whole, "the picture comes back");
+}
