@@ -55,15 +55,20 @@ pub(super) enum Place {
     Across,
 }
 
-/// A first look at the corners: bits of the planes that each is beyond. A corner that is no number is beyond all.
-pub(super) fn place(corners: [Vec4; 3]) -> Place {
-    let beyond = corners.map(|corner| {
-        distances(corner).iter().enumerate().fold(0_u32, |bits, (plane, distance)| {
-            let inside = *distance >= 0.0;
-            bits | (u32::from(!inside) << plane)
-        })
-    });
-    match beyond {
+/// Bits of the planes that a corner is beyond.
+pub(super) type Planes = u8;
+
+/// The planes that a corner is beyond: all, if it is no number.
+pub(super) fn beyond(corner: Vec4) -> Planes {
+    distances(corner).iter().enumerate().fold(0, |bits, (plane, distance)| {
+        let inside = *distance >= 0.0;
+        bits | (Planes::from(!inside) << plane)
+    })
+}
+
+/// A first look at a triangle.
+pub(super) fn place(corners: [Planes; 3]) -> Place {
+    match corners {
         [0, 0, 0] => Place::Inside,
         [a, b, c] if a & b & c != 0 => Place::Outside,
         _ => Place::Across,
@@ -117,7 +122,7 @@ mod tests {
     fn a_triangle_that_covers_the_screen_is_kept_though_all_its_corners_are_outside() {
         let far = |x: f32, y: f32| Vec4::new(x, y, 0.5, 1.0);
         let corners = [far(-9.0, -9.0), far(9.0, -9.0), far(0.0, 20.0)];
-        assert_eq!(place(corners), Place::Across);
+        assert_eq!(place(corners.map(beyond)), Place::Across);
         let polygon = cut(corners);
         assert_eq!(polygon.corners().len(), 4, "the whole screen");
         for corner in polygon.corners() {
@@ -139,8 +144,8 @@ mod tests {
             let again = corners[0] * corner.weights.x + corners[1] * corner.weights.y + corners[2] * corner.weights.z;
             assert!((again - corner.clip).length() < 1e-5, "weights lead to the same point");
         }
-        assert_eq!(place([Vec4::new(0.0, 0.0, near, -1.0); 3]), Place::Outside);
-        assert_eq!(place([Vec4::NAN; 3]), Place::Outside);
+        assert_eq!(place([beyond(Vec4::new(0.0, 0.0, near, -1.0)); 3]), Place::Outside);
+        assert_eq!(place([beyond(Vec4::NAN); 3]), Place::Outside);
     }
 
     #[test]

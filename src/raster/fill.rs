@@ -4,13 +4,17 @@
 //! shows, and then shades each pixel once.
 
 use super::Drawing;
+use super::row::{self, Row, Run};
 use super::shade::Shader;
 use crate::photo::Picture;
-use glam::{Vec3, Vec4};
+use glam::{Mat3, Vec3, Vec4};
 use rayon::prelude::*;
 
-/// Side of a tile, pixels.
-const TILE: usize = 64;
+/// Size of a tile, pixels.
+const TILE_WIDTH: usize = row::WIDTH;
+const TILE_HEIGHT: usize = 16;
+/// Pixels in a row of a triangle that are asked one by one; more are found by dividing.
+const FEW_PIXELS: usize = 12;
 /// Positions in a pixel, along each side.
 const SUBPIXELS: i64 = 256;
 /// Largest picture edge, pixels: the edges' products stay far inside 64 bits.
@@ -31,17 +35,27 @@ impl Screen {
     }
 
     fn tiles(self) -> (usize, usize) {
-        ((self.width as usize).div_ceil(TILE), (self.height as usize).div_ceil(TILE))
+        ((self.width as usize).div_ceil(TILE_WIDTH), (self.height as usize).div_ceil(TILE_HEIGHT))
     }
 
-    /// Position in 1/256 pixels, y down, and 1/w of a point inside clip space.
-    fn project(self, clip: Vec4) -> ([i64; 2], f32) {
-        let inverse = 1.0 / clip.w;
-        let fixed = |part: f32, pixels: u32| (f64::from(part) * f64::from(pixels) * SUBPIXELS as f64).round() as i64;
-        let x = fixed(0.5 + 0.5 * clip.x * inverse, self.width);
-        let y = fixed(0.5 - 0.5 * clip.y * inverse, self.height);
-        ([x, y], inverse)
+    /// Where a point inside clip space lies.
+    pub fn project(self, clip: Vec4) -> OnScreen {
+        let inverse_w = 1.0 / clip.w;
+        // Not negative inside: adding a half and cutting off rounds.
+        let fixed = |part: f32, pixels: u32| (f64::from(part) * f64::from(pixels) * SUBPIXELS as f64 + 0.5) as i32;
+        let x = fixed(0.5 + 0.5 * clip.x * inverse_w, self.width);
+        let y = fixed(0.5 - 0.5 * clip.y * inverse_w, self.height);
+        OnScreen { at: [x, y], inverse_w }
     }
+}
+
+/// A point on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct OnScreen {
+    /// In 1/256 pixels, y down.
+    at: [i32; 2],
+    /// One over the distance along the camera's axis, 1/m.
+    inverse_w: f32,
 }
 
 /// A triangle inside the screen, its corners in an order that makes the area positive.
@@ -68,23 +82,21 @@ pub(super) struct Facing {
 impl ScreenTriangle {
     /// None if it has no area, or shows its back where only fronts are drawn.
     pub fn new(
-        screen: Screen,
-        clip: [Vec4; 3],
+        [a, b, c]: [OnScreen; 3],
         weights: [Vec3; 3],
         facing: Facing,
         (placed, triangle, surface): (u32, u32, u32),
     ) -> Option<Self> {
-        let [a, b, c] = clip.map(|corner| screen.project(corner));
-        let area = edge(a.0, b.0, c.0);
+        let wide = |corner: OnScreen| corner.at.map(i64::from);
+        let area = edge(wide(a), wide(b), wide(c));
         // Counter-clockwise fronts have a negative area where y runs down.
         if area == 0 || (facing.one_sided && area > 0) {
             return None;
         }
         let ([a, b, c], weights) =
             if area > 0 { ([a, b, c], weights) } else { ([a, c, b], [weights[0], weights[2], weights[1]]) };
-        let depth = |corner: ([i64; 2], f32)| corner.1 * facing.depth_factor;
-        let inverse_w = [depth(a), depth(b), depth(c)];
-        Some(ScreenTriangle { at: [a.0, b.0, c.0], inverse_w, weights, placed, triangle, surface })
+        let inverse_w = [a, b, c].map(|corner| corner.inverse_w * facing.depth_factor);
+        Some(ScreenTriangle { at: [a, b, c].map(wide), inverse_w, weights, placed, triangle, surface })
     }
 
     /// Smallest and largest position of a side, 1/256 pixels.
@@ -106,18 +118,22 @@ impl ScreenTriangle {
         edge(self.at[0], self.at[1], self.at[2])
     }
 
-    /// Weights of the corners at a pixel's centre, as they are on the screen.
-    fn screen_weights(&self, x: usize, y: usize) -> Vec3 {
+    /// Weights of the screen's corners over their distance, at a pixel's centre and from one pixel to the next.
+    fn over_distance(&self, x: usize, y: usize) -> (Vec3, Vec3) {
         let p = centre(x, y);
         let [a, b, c] = self.at;
-        Vec3::new(edge(b, c, p) as f32, edge(c, a, p) as f32, edge(a, b, p) as f32) / self.area() as f32
+        let scale = Vec3::from(self.inverse_w) / self.area() as f32;
+        let at = Vec3::new(edge(b, c, p) as f32, edge(c, a, p) as f32, edge(a, b, p) as f32);
+        let fall = |from: [i64; 2], to: [i64; 2]| ((from[1] - to[1]) * SUBPIXELS) as f32;
+        let step = Vec3::new(fall(b, c), fall(c, a), fall(a, b));
+        (at * scale, step * scale)
     }
 
-    /// Weights of the whole triangle's corners at a pixel's centre, correct in perspective.
-    pub fn weights_at(&self, x: usize, y: usize) -> Vec3 {
-        let near = self.screen_weights(x, y) * Vec3::from(self.inverse_w);
-        let w = 1.0 / near.element_sum();
-        (self.weights[0] * near.x + self.weights[1] * near.y + self.weights[2] * near.z) * w
+    /// Pixels of a row that show it, from `first` to `end` of a tile that begins at pixel `tile_x` of the screen.
+    fn run(&self, tile_x: usize, y: usize, first: usize, end: usize) -> Run {
+        let (start, step) = self.over_distance(tile_x + first, y);
+        let whole = Mat3::from_cols(self.weights[0], self.weights[1], self.weights[2]);
+        Run { first, end, start: whole * start, step: whole * step }
     }
 }
 
@@ -130,27 +146,24 @@ fn centre(x: usize, y: usize) -> [i64; 2] {
     [x as i64 * SUBPIXELS + SUBPIXELS / 2, y as i64 * SUBPIXELS + SUBPIXELS / 2]
 }
 
-/// Fills, shades and joins the tiles.
+/// Fills and shades the tiles, a row of tiles at a time.
 pub(super) fn draw(screen: Screen, triangles: &[ScreenTriangle], shader: &Shader) -> Drawing {
-    let (columns, rows) = screen.tiles();
     let bins = bins(screen, triangles);
-    let tiles: Vec<Tile> = (0..columns * rows)
-        .into_par_iter()
-        .map(|index| {
-            let mut tile = Tile::new(screen, index % columns, index / columns);
-            bins[index].iter().for_each(|&t| tile.fill(&triangles[t as usize], t));
-            tile.shade(triangles, shader);
-            tile
-        })
-        .collect();
+    let (columns, _) = screen.tiles();
     let (width, height) = (screen.width as usize, screen.height as usize);
     let mut picture = Picture::new(screen.width, screen.height);
     let mut objects = vec![super::NO_OBJECT; width * height];
-    picture.rgb.par_chunks_mut(width).zip(objects.par_chunks_mut(width)).enumerate().for_each(|(y, (rgb, objects))| {
-        for tile in &tiles[y / TILE * columns..][..columns] {
-            let from = (y - tile.y) * TILE;
-            rgb[tile.x..tile.x + tile.width].copy_from_slice(&tile.rgb[from..from + tile.width]);
-            objects[tile.x..tile.x + tile.width].copy_from_slice(&tile.objects[from..from + tile.width]);
+    let rows = picture.rgb.par_chunks_mut(width * TILE_HEIGHT).zip(objects.par_chunks_mut(width * TILE_HEIGHT));
+    rows.zip(bins.par_chunks(columns)).enumerate().for_each(|(row, ((rgb, objects), bins))| {
+        let mut shown = Row::new(shader.nothing());
+        for (column, bin) in bins.iter().enumerate() {
+            let mut tile = Tile::new(screen, column, row);
+            bin.iter().for_each(|&t| tile.fill(&triangles[t as usize], t));
+            for y in 0..tile.height {
+                let pixels = y * width + tile.x..y * width + tile.x + tile.width;
+                tile.show(y, triangles, shader, &mut shown, &mut objects[pixels.clone()]);
+                shader.pixels(&shown, &mut rgb[pixels]);
+            }
         }
     });
     Drawing { picture, objects }
@@ -163,8 +176,8 @@ fn bins(screen: Screen, triangles: &[ScreenTriangle]) -> Vec<Vec<u32>> {
     for (index, triangle) in (0..).zip(triangles) {
         let ((x0, x1), (y0, y1)) = (triangle.pixels(0, screen.width), triangle.pixels(1, screen.height));
         if x0 < x1 && y0 < y1 {
-            for y in y0 / TILE..=(y1 - 1) / TILE {
-                (x0 / TILE..=(x1 - 1) / TILE).for_each(|x| bins[y * columns + x].push(index));
+            for y in y0 / TILE_HEIGHT..=(y1 - 1) / TILE_HEIGHT {
+                (x0 / TILE_WIDTH..=(x1 - 1) / TILE_WIDTH).for_each(|x| bins[y * columns + x].push(index));
             }
         }
     }
@@ -178,71 +191,75 @@ struct Tile {
     width: usize,
     height: usize,
     /// 1/w, nearer is greater; 0 where there is nothing.
-    depth: Vec<f32>,
-    shown: Vec<u32>,
-    rgb: Vec<[f32; 3]>,
-    objects: Vec<u32>,
+    depth: [[f32; TILE_WIDTH]; TILE_HEIGHT],
+    shown: [[u32; TILE_WIDTH]; TILE_HEIGHT],
 }
 
 impl Tile {
     fn new(screen: Screen, column: usize, row: usize) -> Self {
-        let (x, y) = (column * TILE, row * TILE);
+        let (x, y) = (column * TILE_WIDTH, row * TILE_HEIGHT);
         Tile {
             x,
             y,
-            width: TILE.min(screen.width as usize - x),
-            height: TILE.min(screen.height as usize - y),
-            depth: vec![0.0; TILE * TILE],
-            shown: vec![NONE; TILE * TILE],
-            rgb: vec![[0.0; 3]; TILE * TILE],
-            objects: vec![super::NO_OBJECT; TILE * TILE],
+            width: TILE_WIDTH.min(screen.width as usize - x),
+            height: TILE_HEIGHT.min(screen.height as usize - y),
+            depth: [[0.0; TILE_WIDTH]; TILE_HEIGHT],
+            shown: [[NONE; TILE_WIDTH]; TILE_HEIGHT],
         }
     }
 
+    /// Keeps the triangle where it is nearer than what is there.
     fn fill(&mut self, triangle: &ScreenTriangle, index: u32) {
-        let (first, end) = triangle.pixels(1, (self.y + self.height) as u32);
-        let x_range = triangle.pixels(0, (self.x + self.width) as u32);
-        let (x0, x1) = (x_range.0.max(self.x), x_range.1);
+        let (y0, y1) = triangle.pixels(1, (self.y + self.height) as u32);
+        let (x0, x1) = triangle.pixels(0, (self.x + self.width) as u32);
+        let (x0, y0) = (x0.max(self.x), y0.max(self.y));
+        if x0 >= x1 || y0 >= y1 {
+            return;
+        }
         let [a, b, c] = triangle.at;
-        let edges = [(b, c), (c, a), (a, b)].map(|(from, to)| Edge::new(from, to));
-        let area = triangle.area() as f32;
-        let depth_at = |x: usize, y: usize| triangle.screen_weights(x, y).dot(Vec3::from(triangle.inverse_w));
-        // 1/w is affine over the screen: its change from one pixel to the next.
-        let slope = {
-            let change = |e: &Edge| e.per_pixel as f32 / area;
-            Vec3::from(edges.each_ref().map(change)).dot(Vec3::from(triangle.inverse_w))
-        };
-        for y in first.max(self.y)..end {
-            let (mut low, mut high) = (x0 as i64, x1 as i64);
-            edges.iter().for_each(|edge| edge.narrow(y, &mut low, &mut high));
-            if low >= high {
-                continue;
-            }
-            let row = (y - self.y) * TILE;
-            let (from, to) = (row + low as usize - self.x, row + high as usize - self.x);
-            let start = depth_at(low as usize, y);
-            let pixels = self.depth[from..to].iter_mut().zip(&mut self.shown[from..to]);
-            for (step, (depth, shown)) in pixels.enumerate() {
-                let here = start + step as f32 * slope;
-                if here > *depth {
-                    (*depth, *shown) = (here, index);
+        let mut edges = [(b, c), (c, a), (a, b)].map(|(from, to)| Edge::new(from, to, x0, y0));
+        let (start, step) = triangle.over_distance(x0, y0);
+        let (depth, right) = (start.element_sum(), step.element_sum());
+        let down = edges.each_ref().map(|e| e.per_row as f32);
+        let down = Vec3::from(down).dot(Vec3::from(triangle.inverse_w)) / triangle.area() as f32;
+        for (row, y) in (y0 - self.y..y1 - self.y).enumerate() {
+            let depth = depth + row as f32 * down;
+            let pixels = x0 - self.x..x1 - self.x;
+            let (depths, shown) = (&mut self.depth[y][pixels.clone()], &mut self.shown[y][pixels]);
+            let mut keep = |from: usize, to: usize| {
+                let pixels = depths[from..to].iter_mut().zip(&mut shown[from..to]);
+                for ((nearest, shown), i) in pixels.zip(&row::STEPS[from..to]) {
+                    let here = depth + i * right;
+                    // Written either way, so that it needs no jump.
+                    let nearer = here > *nearest;
+                    *nearest = if nearer { here } else { *nearest };
+                    *shown = if nearer { index } else { *shown };
+                }
+            };
+            if x1 - x0 <= FEW_PIXELS {
+                (0..x1 - x0).filter(|&x| edges.iter().all(|edge| edge.at(x) >= 0)).for_each(|x| keep(x, x + 1));
+            } else {
+                let (mut low, mut high) = (0, (x1 - x0) as i64);
+                edges.iter().for_each(|edge| edge.narrow(&mut low, &mut high));
+                if low < high {
+                    keep(low as usize, high as usize);
                 }
             }
+            edges.iter_mut().for_each(|edge| edge.start += edge.per_row);
         }
     }
 
-    fn shade(&mut self, triangles: &[ScreenTriangle], shader: &Shader) {
-        for y in 0..self.height {
-            for x in 0..self.width {
-                let i = y * TILE + x;
-                let Some(triangle) = triangles.get(self.shown[i] as usize) else {
-                    self.rgb[i] = shader.nothing();
-                    continue;
-                };
-                let weights = triangle.weights_at(self.x + x, self.y + y);
-                self.rgb[i] = shader.pixel(triangle, weights).into();
-                self.objects[i] = shader.object(triangle);
+    /// Collects what each pixel of a row shows, run by run.
+    fn show(&self, y: usize, triangles: &[ScreenTriangle], shader: &Shader, row: &mut Row, objects: &mut [u32]) {
+        row.surface.fill(shader.nothing());
+        let mut first = 0;
+        for same in self.shown[y][..self.width].chunk_by(|a, b| a == b) {
+            let end = first + same.len();
+            if let Some(triangle) = triangles.get(same[0] as usize) {
+                shader.show(row, &triangle.run(self.x, self.y + y, first, end), triangle);
+                objects[first..end].fill(shader.object(triangle));
             }
+            first = end;
         }
     }
 }
@@ -250,28 +267,32 @@ impl Tile {
 /// An edge function over the screen, with the top-left rule: a pixel centre on the edge counts where the edge is the
 /// top or the left one, so that of two neighbours exactly one has it.
 struct Edge {
-    from: [i64; 2],
-    to: [i64; 2],
+    /// At the first pixel of a row.
+    start: i64,
     per_pixel: i64,
-    bias: i64,
+    per_row: i64,
 }
 
 impl Edge {
-    fn new(from: [i64; 2], to: [i64; 2]) -> Self {
+    fn new(from: [i64; 2], to: [i64; 2], x: usize, y: usize) -> Self {
         let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
         let top_or_left = dy < 0 || (dy == 0 && dx > 0);
-        Edge { from, to, per_pixel: -dy * SUBPIXELS, bias: if top_or_left { 0 } else { -1 } }
+        let bias = if top_or_left { 0 } else { -1 };
+        Edge { start: edge(from, to, centre(x, y)) + bias, per_pixel: -dy * SUBPIXELS, per_row: dx * SUBPIXELS }
+    }
+
+    fn at(&self, x: usize) -> i64 {
+        self.start + self.per_pixel * x as i64
     }
 
     /// Narrows a run of pixels of a row to those inside.
-    fn narrow(&self, y: usize, low: &mut i64, high: &mut i64) {
-        let at_zero = edge(self.from, self.to, centre(0, y)) + self.bias;
+    fn narrow(&self, low: &mut i64, high: &mut i64) {
         match self.per_pixel {
-            0 if at_zero < 0 => *high = *low,
+            0 if self.start < 0 => *high = *low,
             0 => {}
-            // at_zero + per_pixel x >= 0.
-            rise if rise > 0 => *low = (*low).max((-at_zero + rise - 1).div_euclid(rise)),
-            fall => *high = (*high).min(at_zero.div_euclid(-fall) + 1),
+            // start + per_pixel x >= 0.
+            rise if rise > 0 => *low = (*low).max((-self.start + rise - 1).div_euclid(rise)),
+            fall => *high = (*high).min(self.start.div_euclid(-fall) + 1),
         }
     }
 }
@@ -289,7 +310,7 @@ mod tests {
     fn triangle(corners: [(f32, f32); 3]) -> Option<ScreenTriangle> {
         let facing = Facing { one_sided: false, depth_factor: 1.0 };
         let weights = [Vec3::X, Vec3::Y, Vec3::Z];
-        ScreenTriangle::new(SCREEN, corners.map(|(x, y)| clip(x, y)), weights, facing, (0, 0, 0))
+        ScreenTriangle::new(corners.map(|(x, y)| SCREEN.project(clip(x, y))), weights, facing, (0, 0, 0))
     }
 
     /// How often each pixel is filled.
@@ -303,7 +324,7 @@ mod tests {
                 for y in 0..tile.height {
                     for x in 0..tile.width {
                         let place = (tile.y + y) * SCREEN.width as usize + tile.x + x;
-                        counts[place] += u32::from(tile.shown[y * TILE + x] == 0);
+                        counts[place] += u32::from(tile.shown[y][x] == 0);
                     }
                 }
             }
@@ -339,8 +360,8 @@ mod tests {
         let side = Vec4::new(9.0, 9.0, 0.1, 9.0);
         let facing = Facing { one_sided: false, depth_factor: 1.0 };
         let weights = [Vec3::X, Vec3::Y, Vec3::Z];
-        let t = ScreenTriangle::new(SCREEN, [near, far, side], weights, facing, (0, 0, 0)).unwrap();
-        let along = t.weights_at(48, 60);
+        let t = ScreenTriangle::new([near, far, side].map(|p| SCREEN.project(p)), weights, facing, (0, 0, 0)).unwrap();
+        let along = t.run(0, 60, 48, 49).weights(48);
         assert!((along.y - 0.1).abs() < 0.01, "{along}");
     }
 }

@@ -1,7 +1,8 @@
 //! The software renderer: a z-buffer on the processor, the first rung of the ladder and the preview without an adapter.
 //!
 //! World -> clip space ([`world`]) -> inside the six planes ([`clip`]) -> sub-pixel screen positions and exact edges
-//! ([`fill`]) -> one shading of each pixel that is left ([`shade`]), all parallel over rayon. Pictures have the exposure
+//! ([`fill`]) -> one shading of each pixel that is left, eight at a time ([`shade`]), all parallel over
+//! rayon. Pictures have the exposure
 //! and the scene-linear units of every other rung.
 //!
 //! Models visibility and direct light. Leaves out shadows, reflections and bounces; panels shine as from their middle,
@@ -10,6 +11,8 @@
 mod clip;
 mod fill;
 mod lights;
+mod packet;
+mod row;
 mod shade;
 mod world;
 
@@ -69,10 +72,10 @@ impl Rasterizer {
     /// Draws what a camera sees. The scene is the one that this was made of; its lights and camera may have changed.
     pub fn draw(&self, scene: &Scene, camera: &CameraFrame, size: (u32, u32), shading: Shading) -> Drawing {
         let screen = Screen::new(size);
-        let lights = lights::Lights::new(scene);
-        let vertices = self.world.transformed(camera);
+        let lights = lights::Lights::new(scene, camera.position());
+        let vertices = self.world.transformed(camera, screen);
         let triangles = self.world.screen_triangles(&vertices, screen);
-        let shader = shade::Shader::new(&self.world, &vertices, &lights, camera.position(), shading);
+        let shader = shade::Shader::new(&self.world, &vertices, &lights, shading);
         fill::draw(screen, &triangles, &shader)
     }
 }

@@ -1,9 +1,9 @@
 //! What stands in the studio, and its way into clip space.
 
 use super::clip::{self, Place};
-use super::fill::{Facing, Screen, ScreenTriangle};
+use super::fill::{Facing, OnScreen, Screen, ScreenTriangle};
 use crate::scene::{Assets, CameraFrame, Material, Mesh, Scene, Texture, room_mesh};
-use glam::{Affine3A, Vec3, Vec4};
+use glam::{Affine3A, Mat4, Vec3, Vec3A, Vec4};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -43,10 +43,21 @@ pub(super) struct World {
 /// A mesh's vertices after the first stage.
 #[derive(Debug)]
 pub(super) struct Vertices {
-    pub clip: Vec<Vec4>,
-    pub world: Vec<Vec3>,
+    /// In clip space, and on the screen.
+    corners: Vec<Corner>,
+    /// From the eye, along the axes of the world.
+    pub view: Vec<Vec3>,
     /// Of any length; empty where the mesh has none.
     pub normals: Vec<Vec3>,
+}
+
+/// A vertex in clip space.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    clip: Vec4,
+    /// Of no use beyond the planes.
+    on_screen: OnScreen,
+    beyond: clip::Planes,
 }
 
 impl World {
@@ -92,20 +103,26 @@ impl World {
     }
 
     /// All vertices as a camera sees them.
-    pub fn transformed(&self, camera: &CameraFrame) -> Vec<Vertices> {
-        let clip_from_world = camera.clip_from_world(NEAR_M);
+    pub fn transformed(&self, camera: &CameraFrame, screen: Screen) -> Vec<Vertices> {
+        let eye = Vec3A::from(camera.position());
+        let clip_from_view = camera.clip_from_world(NEAR_M) * Mat4::from_translation(eye.into());
         let transform = |placed: &Placed| {
-            let world_from_object = placed.world_from_object;
-            let world: Vec<Vec3> =
-                placed.mesh.positions.par_iter().map(|p| world_from_object.transform_point3(*p)).collect();
+            let Affine3A { matrix3, translation } = placed.world_from_object;
+            let view_from_object = Affine3A { matrix3, translation: translation - eye };
+            let view: Vec<Vec3> =
+                placed.mesh.positions.par_iter().map(|p| view_from_object.transform_point3(*p)).collect();
+            let corner = |point: &Vec3| {
+                let clip = clip_from_view * point.extend(1.0);
+                Corner { clip, on_screen: screen.project(clip), beyond: clip::beyond(clip) }
+            };
             // Normals go by the cofactors, which exist for every scale.
-            let [x, y, z] = [0, 1, 2].map(|i| Vec3::from(world_from_object.matrix3.col(i)));
+            let [x, y, z] = [0, 1, 2].map(|i| Vec3::from(matrix3.col(i)));
             let mirror = if x.dot(y.cross(z)) < 0.0 { -1.0 } else { 1.0 };
             let cofactors = glam::Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * mirror;
             Vertices {
-                clip: world.par_iter().map(|p| clip_from_world * p.extend(1.0)).collect(),
+                corners: view.par_iter().map(corner).collect(),
                 normals: placed.mesh.normals.par_iter().map(|n| cofactors * *n).collect(),
-                world,
+                view,
             }
         };
         self.placed.iter().map(transform).collect()
@@ -145,19 +162,23 @@ impl World {
         out: &mut Vec<ScreenTriangle>,
     ) {
         let placed = &self.placed[index];
-        let corner = |i: u32| vertices.clip.get(i as usize).copied().unwrap_or(Vec4::NAN);
-        let corners = placed.mesh.triangles[triangle].map(corner);
         let name = (index as u32, triangle as u32, surface);
-        let whole = [Vec3::X, Vec3::Y, Vec3::Z];
-        match clip::place(corners) {
+        let [Some(a), Some(b), Some(c)] = placed.mesh.triangles[triangle].map(|i| vertices.corners.get(i as usize))
+        else {
+            return;
+        };
+        match clip::place([a.beyond, b.beyond, c.beyond]) {
             Place::Outside => {}
-            Place::Inside => out.extend(ScreenTriangle::new(screen, corners, whole, placed.facing, name)),
+            Place::Inside => {
+                let corners = [a.on_screen, b.on_screen, c.on_screen];
+                out.extend(ScreenTriangle::new(corners, [Vec3::X, Vec3::Y, Vec3::Z], placed.facing, name));
+            }
             Place::Across => {
-                let polygon = clip::cut(corners);
+                let polygon = clip::cut([a.clip, b.clip, c.clip]);
                 for pair in polygon.corners().windows(2).skip(1) {
                     let fan = [polygon.corners()[0], pair[0], pair[1]];
-                    let (clip, weights) = (fan.map(|c| c.clip), fan.map(|c| c.weights));
-                    out.extend(ScreenTriangle::new(screen, clip, weights, placed.facing, name));
+                    let (corners, weights) = (fan.map(|c| screen.project(c.clip)), fan.map(|c| c.weights));
+                    out.extend(ScreenTriangle::new(corners, weights, placed.facing, name));
                 }
             }
         }
