@@ -93,3 +93,18 @@ fn bad_rays_and_missing_folders_are_refused_with_a_reason() {
         assert!(stderr.contains(complaint), "{arguments:?}: {stderr}");
     }
 }
+
+#[test]
+fn scaling_tells_what_grows_with_triangles_lights_and_pixels() {
+    let folder = tempfile::tempdir().unwrap();
+    let few = ["--scaling", "--triangles", "2000,8000", "--lights", "1,9", "--sizes", "32x24,64x48", "--json"];
+    let rows = json(&chart(folder.path(), &few));
+    let column = |varies: &str, key: &str| -> Vec<f64> {
+        rows.iter().filter(|row| row["varies"] == varies).map(|row| row[key].as_f64().unwrap()).collect()
+    };
+    assert_eq!(column("lights", "lights"), [1.0, 9.0]);
+    assert_eq!(column("pixels", "paths"), [768.0, 3072.0]);
+    let triangles = column("triangles", "triangles");
+    assert!(triangles[1] - triangles[0] > 5000.0, "{triangles:?}");
+    assert!(rows.iter().all(|row| row["trace_s"].as_f64().unwrap() > 0.0 && row["prepare_s"].as_f64().unwrap() > 0.0));
+}

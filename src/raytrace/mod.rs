@@ -27,7 +27,7 @@ mod whitted;
 
 pub use film::{Film, Layer, MAX_LIGHT_LAYERS};
 pub use intersectors::{Intersection, Intersector};
-pub use plan::RenderPlan;
+pub use plan::{RenderPlan, Shortcut};
 pub use prepare::{PrepareError, RenderScene, prepare};
 pub use probe::{Effort, Place, Probe, Probed};
 pub use schedule::{Control, Method, Settings, primary_objects, render};

@@ -29,7 +29,56 @@ pub struct RenderPlan {
     pub reasons: Vec<String>,
 }
 
+/// Something of the full model that a plan leaves out, for its reason.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shortcut {
+    /// Rays do not look for emitters after the first hit.
+    EmittersNotMet,
+    /// No ray refracts.
+    NoRefraction,
+    /// Rays start at one point.
+    Pinhole,
+    /// No choice between lights at the first hit.
+    EveryLight,
+    /// Paths end at a depth that the largest reflectance gives.
+    FewBounces,
+}
+
+impl Shortcut {
+    /// All there are.
+    pub const ALL: [Shortcut; 5] = [
+        Shortcut::EmittersNotMet,
+        Shortcut::NoRefraction,
+        Shortcut::Pinhole,
+        Shortcut::EveryLight,
+        Shortcut::FewBounces,
+    ];
+
+    /// Its name on the chart.
+    pub fn label(self) -> &'static str {
+        match self {
+            Shortcut::EmittersNotMet => "no rays towards emitters",
+            Shortcut::NoRefraction => "no refraction",
+            Shortcut::Pinhole => "no lens samples",
+            Shortcut::EveryLight => "every light at the first hit",
+            Shortcut::FewBounces => "depth from the largest reflectance",
+        }
+    }
+}
+
 impl RenderPlan {
+    /// The same plan with one shortcut undone.
+    pub fn without(mut self, shortcut: Shortcut) -> Self {
+        match shortcut {
+            Shortcut::EmittersNotMet => self.emitters_have_size = true,
+            Shortcut::NoRefraction => self.refraction = true,
+            Shortcut::Pinhole => self.lens = true,
+            Shortcut::EveryLight => self.sample_all_lights = false,
+            Shortcut::FewBounces => self.max_bounces = MAX_BOUNCES,
+        }
+        self
+    }
+
     /// Looks at what is there.
     pub fn new(materials: &[Surfacing], lights: &[TracedLight], lens: bool) -> Self {
         let mut reasons = Vec::new();
@@ -92,16 +141,9 @@ mod tests {
     use glam::Vec3;
     use std::ops::ControlFlow;
 
-    /// Everything on, whatever the scene.
-    fn full() -> RenderPlan {
-        RenderPlan {
-            emitters_have_size: true,
-            refraction: true,
-            lens: true,
-            sample_all_lights: false,
-            max_bounces: MAX_BOUNCES,
-            reasons: Vec::new(),
-        }
+    /// Everything on.
+    fn full(plan: &RenderPlan) -> RenderPlan {
+        Shortcut::ALL.into_iter().fold(plan.clone(), RenderPlan::without)
     }
 
     /// A ball in a room under two lights.
@@ -152,7 +194,7 @@ mod tests {
             let plan = prepare(&scene, &Assets::default()).unwrap().plan;
             assert!(!plan.refraction && plan.sample_all_lights && plan.max_bounces < MAX_BOUNCES, "{plan}");
             assert_eq!(plan.emitters_have_size, emitters[0] == panel);
-            let ((ours, error), (full, full_error)) = (mean(&scene, None), mean(&scene, Some(full())));
+            let ((ours, error), (full, full_error)) = (mean(&scene, None), mean(&scene, Some(full(&plan))));
             // What the bounces that are cut off leave, and four standard errors (one false alarm in 10 000).
             let tolerance = NEGLIGIBLE * full + 4.0 * error.hypot(full_error);
             assert!((ours - full).abs() < tolerance, "{ours} for {full}, within {tolerance}");

@@ -48,6 +48,11 @@ impl RenderScene {
         &self.plan
     }
 
+    /// Takes another plan, to see what a shortcut saves. Leaving out what the scene needs makes the picture wrong.
+    pub fn set_plan(&mut self, plan: RenderPlan) {
+        self.plan = plan;
+    }
+
     /// Triangles in the studio, each instance counted.
     pub fn triangle_count(&self) -> u64 {
         self.aggregate.instances().iter().map(|i| i.geometry.mesh().triangles.len() as u64).sum()

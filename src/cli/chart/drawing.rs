@@ -1,6 +1,6 @@
 //! The drawing of a chart: error against seconds, both logarithmic, a line a method.
 
-use super::accuracy::Row;
+use super::accuracy::{Row, Vary};
 use anyhow::anyhow;
 use plotters::prelude::*;
 use std::path::Path;
@@ -15,7 +15,7 @@ pub fn draw(path: &Path, title: &str, rows: &[Row]) -> anyhow::Result<()> {
 }
 
 fn draw_svg(path: &Path, title: &str, rows: &[Row]) -> Result<(), Box<dyn std::error::Error>> {
-    let rows: Vec<&Row> = rows.iter().filter(|row| !row.method.contains(',')).collect();
+    let rows: Vec<&Row> = rows.iter().filter(|row| row.study == Vary::Method).collect();
     // Errors of exactly zero have no place on a logarithmic axis.
     let place = |row: &Row| (row.trace_s.max(1e-5), row.rel_mse.max(1e-9));
     let range = |of: fn((f64, f64)) -> f64| {

@@ -2,6 +2,8 @@
 
 mod accuracy;
 mod drawing;
+mod reference;
+mod scaling;
 mod traversal;
 
 use super::{Failure, input};
@@ -14,8 +16,9 @@ pub struct Arguments {
     /// Studios: .ron files, or names of shipped ones [default: three_point, product_still_life].
     #[arg(conflicts_with = "traversal")]
     scenes: Vec<PathBuf>,
-    /// Folder for chart.csv, chart.md and a drawing (.svg) a studio; made if it is not there.
-    #[arg(short, long, value_name = "DIR", required_unless_present = "traversal", conflicts_with = "traversal")]
+    /// Folder for chart.csv, chart.md and a drawing (.svg) a studio, and for references, which are kept for the next
+    /// time; made if it is not there.
+    #[arg(short, long, value_name = "DIR", required_unless_present_any = ["traversal", "scaling"], conflicts_with_all = ["traversal", "scaling"])]
     output: Option<PathBuf>,
     /// Picture size in pixels, WIDTHxHEIGHT.
     #[arg(long, value_parser = input::parse_size, default_value = "120x80")]
@@ -38,6 +41,12 @@ pub struct Arguments {
     /// Measure only this way of --traversal; may be given several times.
     #[arg(long, value_parser = traversal::parse_method, requires = "traversal")]
     way: Vec<Intersection>,
+    /// Show how build time, tracing and memory grow with triangles, lights and pixels.
+    #[arg(long, conflicts_with_all = ["traversal", "scenes"])]
+    scaling: bool,
+    /// What --scaling takes.
+    #[command(flatten)]
+    range: scaling::Range,
     /// Print one JSON value with the results.
     #[arg(long)]
     json: bool,
@@ -45,6 +54,9 @@ pub struct Arguments {
 
 /// Runs the study that was asked for.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.scaling {
+        return scaling::run(&arguments.range, arguments.json);
+    }
     match (&arguments.traversal, &arguments.output) {
         (Some(model), _) => {
             let methods = if arguments.way.is_empty() { &Intersection::ALL[..] } else { &arguments.way };

@@ -6,8 +6,8 @@ use exr::image::RgbChannels;
 use exr::image::write::channels::GetPixel;
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{
-    Encoding, Image, ImageAttributes, IntegerBounds, Layer, LayerAttributes, SpecificChannels, Text, Vec2,
-    WritableImage,
+    Encoding, Image, ImageAttributes, IntegerBounds, Layer, LayerAttributes, ReadChannels, ReadLayers,
+    SpecificChannels, Text, Vec2, WritableImage,
 };
 use std::io::Cursor;
 
@@ -22,6 +22,25 @@ pub(super) fn encode(picture: &Picture, layers: &[(String, Picture)], info: &Pic
     let mut content = Cursor::new(Vec::new());
     image.write().to_buffered(&mut content).map_err(|error| error.to_string())?;
     Ok(content.into_inner())
+}
+
+/// The first picture of a file with red, green and blue.
+pub(super) fn decode(content: &[u8]) -> Result<Picture, String> {
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgb_channels(
+            |size, _| Picture::new(size.width() as u32, size.height() as u32),
+            |picture: &mut Picture, at, (r, g, b): (f32, f32, f32)| {
+                let index = at.y() * picture.width as usize + at.x();
+                picture.rgb[index] = [r, g, b];
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(Cursor::new(content))
+        .map_err(|error| error.to_string())?;
+    Ok(image.layer_data.channel_data.pixels)
 }
 
 /// A picture as the exr crate asks for it.

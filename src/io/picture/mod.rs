@@ -60,6 +60,15 @@ impl PictureFormat {
     }
 }
 
+/// Reads the picture of an EXR file.
+///
+/// # Errors
+/// A message for a file that cannot be read or holds no red, green and blue.
+pub fn read_exr(path: &Path) -> Result<Picture, String> {
+    let content = std::fs::read(path).map_err(|error| error.to_string())?;
+    exr_file::decode(&content)
+}
+
 /// Writes a picture in the format that the file name asks for. An older file is replaced only by a whole new one.
 ///
 /// # Errors

@@ -1,0 +1,87 @@
+//! The converged picture that all others are compared with, kept beside the chart for the next time.
+
+use crate::io::{self, Loaded, PictureInfo};
+use crate::photo::Picture;
+use crate::raytrace::{self, Control, RenderScene, Settings};
+use crate::scene::Mesh;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// The reference for a studio: from the folder, if it was made of this very studio by this version, or traced and put
+/// there. A folder that takes no file costs a warning.
+pub fn of(folder: &Path, loaded: &Loaded, scene: &RenderScene, settings: &Settings) -> Picture {
+    let (spp, size) = (settings.spp, (settings.width, settings.height));
+    let path = path(folder, loaded, settings);
+    if let Ok(picture) = io::read_exr(&path)
+        && (picture.width, picture.height) == size
+    {
+        eprintln!("{}: reference of {spp} samples a pixel, from {}", loaded.scene.name, path.display());
+        return picture;
+    }
+    eprintln!("{}: reference of {spp} samples a pixel ...", loaded.scene.name);
+    let film = raytrace::render(scene, settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+    let picture = film.develop(&loaded.scene);
+    let info = PictureInfo::new(&loaded.scene.camera, "path", spp, u64::from(settings.seed));
+    if let Err(error) = io::export_picture(&path, &picture, &info) {
+        log::warn!("the reference is not kept: {error}");
+    }
+    picture
+}
+
+/// A name for this studio, its files, the settings and the version.
+fn path(folder: &Path, loaded: &Loaded, settings: &Settings) -> PathBuf {
+    let mut hasher = DefaultHasher::new();
+    env!("CARGO_PKG_VERSION").hash(&mut hasher);
+    io::write_scene(&loaded.scene).hash(&mut hasher);
+    (settings.width, settings.height, settings.spp, settings.seed).hash(&mut hasher);
+    for object in &loaded.scene.objects {
+        if let Some(mesh) = loaded.assets.mesh_of(&object.shape) {
+            hash_mesh(&mesh, &mut hasher);
+        }
+    }
+    let mut textures: Vec<_> = loaded.assets.textures.iter().collect();
+    textures.sort_by_key(|(path, _)| *path);
+    textures.into_iter().for_each(|(path, texture)| (path, &texture.rgb).hash(&mut hasher));
+    folder.join(format!("reference-{:016x}.exr", hasher.finish()))
+}
+
+fn hash_mesh(mesh: &Mesh, hasher: &mut DefaultHasher) {
+    for vector in mesh.positions.iter().chain(&mesh.normals) {
+        vector.to_array().map(f32::to_bits).hash(hasher);
+    }
+    mesh.uvs.iter().for_each(|uv| uv.to_array().map(f32::to_bits).hash(hasher));
+    mesh.triangles.hash(hasher);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raytrace::Method;
+
+    #[test]
+    fn a_reference_is_kept_for_the_same_studio_only() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut loaded = io::find_preset("three_point").unwrap().load().unwrap();
+        let settings = Settings { width: 6, height: 4, spp: 1, method: Method::Path, ..Settings::default() };
+        let files = || std::fs::read_dir(folder.path()).unwrap().count();
+        let made = |loaded: &Loaded| {
+            let scene = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
+            of(folder.path(), loaded, &scene, &settings)
+        };
+        let first = made(&loaded);
+        assert_eq!((made(&loaded), files()), (first.clone(), 1), "taken from the file");
+        // What lies in the file is what is taken.
+        let dark = Picture::new(6, 4);
+        io::export_picture(
+            &path(folder.path(), &loaded, &settings),
+            &dark,
+            &PictureInfo::new(&loaded.scene.camera, "path", 1, 0),
+        )
+        .unwrap();
+        assert_eq!(made(&loaded), dark);
+        loaded.scene.lights[0].power.dial_stops -= 1.0;
+        assert_ne!(made(&loaded), first);
+        assert_eq!(files(), 2);
+    }
+}

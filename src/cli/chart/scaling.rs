@@ -1,0 +1,211 @@
+//! `catchlight chart --scaling`: how preparing, tracing and memory grow with triangles, lights and pixels.
+//!
+//! What theory says: preparing grows with the number of triangles, a ray with its logarithm; light sampling at a hit with
+//! the number of lights as long as each is asked what it gives there; a picture with its pixels.
+
+use crate::cli::{Failure, crowd, input, say};
+use crate::io;
+use crate::raytrace::{self, Control, Settings};
+use crate::scene::{
+    Aim, Assets, Camera, Emitter, Light, LightId, Material, Mesh, Object, ObjectId, Output, Room, Scene, Shape,
+    Transform,
+};
+use anyhow::{Context, anyhow};
+use glam::Vec3;
+use serde::Serialize;
+use std::f32::consts::{PI, TAU};
+use std::fmt::Write;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// How far the study goes.
+#[derive(Debug, clap::Args)]
+pub struct Range {
+    /// Triangles of the models of --scaling.
+    #[arg(long, value_delimiter = ',', value_name = "N,...", requires = "scaling", value_parser = clap::value_parser!(u64).range(8..=100_000_000), default_values_t = [10_000, 100_000, 1_000_000, 10_000_000])]
+    triangles: Vec<u64>,
+    /// Lights of --scaling, around five figures.
+    #[arg(long, value_delimiter = ',', value_name = "N,...", requires = "scaling", value_parser = clap::value_parser!(u64).range(1..=100_000), default_values_t = [1, 10, 100, 1000])]
+    lights: Vec<u64>,
+    /// Picture sizes of --scaling.
+    #[arg(long, value_delimiter = ',', value_name = "WIDTHxHEIGHT,...", requires = "scaling", value_parser = input::parse_size, default_value = "640x480,1920x1080,3840x2160,7680x4320")]
+    sizes: Vec<(u32, u32)>,
+}
+
+/// Picture of the studies of triangles and lights.
+const SIZE: (u32, u32) = (320, 240);
+/// Samples a pixel there.
+const SPP: u32 = 4;
+
+/// One measurement.
+#[derive(Debug, Serialize)]
+struct Row {
+    /// `triangles`, `lights` or `pixels`.
+    varies: &'static str,
+    /// How many of them.
+    count: u64,
+    triangles: u64,
+    lights: usize,
+    /// Trees and tables, seconds.
+    prepare_s: f64,
+    trace_s: f64,
+    /// On all cores.
+    mrays_s: f64,
+    paths: u64,
+    /// What preparing added to the process's resident memory, MB; null where the system does not say.
+    memory_mb: Option<f64>,
+}
+
+/// Measures and prints.
+pub fn run(range: &Range, json: bool) -> Result<(), Failure> {
+    let mut rows = Vec::new();
+    for &count in &range.triangles {
+        let (scene, assets) = bumpy_ball(count);
+        rows.push(measure("triangles", count, &scene, &assets, SIZE, SPP)?);
+    }
+    let studio = io::find_preset("three_point").context("the studio three_point is not shipped")?.load()?;
+    let crowd = crowd::five_figures(&studio.scene).context("the studio three_point has no figure")?;
+    for &count in &range.lights {
+        let lit = crowd::lit_by(&crowd, count as usize);
+        rows.push(measure("lights", count, &lit, &studio.assets, SIZE, SPP)?);
+    }
+    for &(width, height) in &range.sizes {
+        let pixels = u64::from(width) * u64::from(height);
+        rows.push(measure("pixels", pixels, &studio.scene, &studio.assets, (width, height), 1)?);
+    }
+    if json {
+        say(serde_json::to_string(&rows).context("can't write the results")?);
+    } else {
+        say(table(&rows).trim_end());
+    }
+    Ok(())
+}
+
+fn measure(
+    varies: &'static str,
+    count: u64,
+    scene: &Scene,
+    assets: &Assets,
+    (width, height): (u32, u32),
+    spp: u32,
+) -> Result<Row, Failure> {
+    eprintln!("{count} {varies} ...");
+    let before = resident_mb();
+    let started = Instant::now();
+    let prepared = raytrace::prepare(scene, assets)?;
+    let prepare_s = started.elapsed().as_secs_f64();
+    let memory_mb = resident_mb().zip(before).map(|(after, before)| (after - before).max(0.0));
+    let control = Control::new();
+    let settings = Settings { width, height, spp, ..Settings::default() };
+    let started = Instant::now();
+    let film = raytrace::render(&prepared, &settings, &control, &mut |_| ControlFlow::Continue(()));
+    let trace_s = started.elapsed().as_secs_f64();
+    if film.spp() < spp {
+        return Err(Failure::Machine(anyhow!("the picture of {count} {varies} was not finished")));
+    }
+    Ok(Row {
+        varies,
+        count,
+        triangles: prepared.triangle_count(),
+        lights: prepared.light_count(),
+        prepare_s,
+        trace_s,
+        mrays_s: control.rays() as f64 / trace_s.max(1e-9) / 1e6,
+        paths: u64::from(width) * u64::from(height) * u64::from(spp),
+        memory_mb,
+    })
+}
+
+/// Memory of this process, MB, where /proc tells.
+fn resident_mb() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
+    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes / 1024.0)
+}
+
+/// A ball with bumps of about this many triangles, in a room under a softbox.
+fn bumpy_ball(triangles: u64) -> (Scene, Assets) {
+    const NAME: &str = "bumpy ball";
+    let mut assets = Assets::default();
+    assets.meshes.insert(NAME.to_owned(), Arc::new(bumpy_mesh(triangles)));
+    let ball = Object {
+        id: ObjectId(1),
+        name: "Ball".to_owned(),
+        transform: Transform { position: Vec3::Y, ..Transform::default() },
+        shape: Shape::MeshFile { path: NAME.to_owned() },
+        material: Material::default(),
+        part_materials: Vec::new(),
+        visible: true,
+    };
+    let softbox = Light {
+        id: LightId(2),
+        position: Vec3::new(1.2, 2.0, 1.5),
+        aim: Aim::Point(Vec3::Y),
+        ..Light::new(Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, Output::Lumens(8000.0))
+    };
+    let camera = Camera { position: Vec3::new(0.0, 1.2, 2.6), aim: Aim::Point(Vec3::Y), ..Camera::default() };
+    let scene =
+        Scene { camera, room: Some(Room::default()), objects: vec![ball], lights: vec![softbox], ..Scene::default() };
+    (scene, assets)
+}
+
+/// Rings and sectors, two triangles each; those at the poles have no area.
+fn bumpy_mesh(triangles: u64) -> Mesh {
+    let rings = ((triangles as f64 / 4.0).sqrt().round() as u32).max(2);
+    let sectors = 2 * rings;
+    let point = |ring: u32, sector: u32| {
+        let (down, around) = (ring as f32 / rings as f32 * PI, sector as f32 / sectors as f32 * TAU);
+        let radius = 0.5 + 0.03 * (9.0 * down).sin() * (11.0 * around).sin();
+        Vec3::new(down.sin() * around.cos(), down.cos(), -down.sin() * around.sin()) * radius
+    };
+    let positions = (0..=rings).flat_map(|ring| (0..sectors).map(move |sector| point(ring, sector))).collect();
+    let corner = |ring: u32, sector: u32| ring * sectors + sector % sectors;
+    let quads = (0..rings).flat_map(|ring| (0..sectors).map(move |sector| (ring, sector)));
+    let triangles = quads.flat_map(|(ring, sector)| {
+        let [a, b] = [corner(ring, sector), corner(ring + 1, sector)];
+        let [c, d] = [corner(ring + 1, sector + 1), corner(ring, sector + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    Mesh { positions, triangles: triangles.collect(), ..Mesh::default() }.with_single_part("ball")
+}
+
+fn table(rows: &[Row]) -> String {
+    let mut text =
+        "| varies | count | triangles | lights | prepare, s | trace, s | Mrays/s | us a path | memory, MB |\n\
+                    |---|---|---|---|---|---|---|---|---|\n"
+            .to_owned();
+    for row in rows {
+        let Row { varies, count, triangles, lights, prepare_s, trace_s, mrays_s, paths, memory_mb } = row;
+        let path_us = trace_s / *paths as f64 * 1e6;
+        let memory = memory_mb.map_or("-".to_owned(), |mb| format!("{mb:.0}"));
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "| {varies} | {count} | {triangles} | {lights} | {prepare_s:.3} | {trace_s:.3} | {mrays_s:.2} | {path_us:.2} \
+             | {memory} |"
+        );
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ball_is_closed_and_has_the_triangles_that_were_asked_for() {
+        let mesh = bumpy_mesh(10_000);
+        assert_eq!(mesh.triangles.len(), 10_000);
+        // Every edge is walked once each way.
+        let mut edges = std::collections::HashMap::<(u32, u32), i32>::new();
+        for [a, b, c] in &mesh.triangles {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                *edges.entry((*from.min(to), *from.max(to))).or_default() += if from < to { 1 } else { -1 };
+            }
+        }
+        let inner = |edge: &(u32, u32)| edge.0 >= 100 && edge.1 < 50 * 100;
+        assert!(edges.iter().filter(|(edge, _)| inner(edge)).all(|(_, balance)| *balance == 0));
+    }
+}
