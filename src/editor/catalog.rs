@@ -286,6 +286,7 @@ fn blank_object(name: &str) -> Object {
         material: Material::default(),
         part_materials: Vec::new(),
         visible: true,
+        locked: false,
     }
 }
 

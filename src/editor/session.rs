@@ -270,6 +270,7 @@ impl App {
             material: MaterialPreset::MatteFabric.material(),
             part_materials,
             visible: true,
+            locked: false,
         };
         placement::place_object(self.document.scene(), self.selection, &mut object);
         self.apply(Action::AddObject(Box::new(object)), None);

@@ -221,8 +221,8 @@ fn explain(text: &str, error: &ron::error::SpannedError) -> Problem {
 }
 
 fn explain_name(text: &str, unknown: &UnknownName) -> Problem {
-    let UnknownName { place, name, known } = unknown;
-    let message = format!("there is no object {name:?}; {}", nearest(name, known.iter().map(String::as_str)));
+    let UnknownName { kind, place, name, known } = unknown;
+    let message = format!("there is no {kind} {name:?}; {}", nearest(name, known.iter().map(String::as_str)));
     problem_at(text, place.clone(), message, locate::value_at(text, &path_of(place)))
 }
 

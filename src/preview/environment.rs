@@ -179,6 +179,7 @@ mod tests {
             material: Material::default(),
             part_materials: Vec::new(),
             visible: true,
+            locked: false,
         }
     }
 

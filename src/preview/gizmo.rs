@@ -329,6 +329,8 @@ mod tests {
             color: LightColor::default(),
             on: true,
             visible_to_camera: false,
+            muted: false,
+            locked: false,
         };
         Scene {
             lights: vec![

@@ -156,6 +156,7 @@ mod tests {
             material: ball,
             part_materials: Vec::new(),
             visible: true,
+            locked: false,
         };
         let light = |(i, emitter)| Light {
             id: LightId(2 + i as u32),

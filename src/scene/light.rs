@@ -168,6 +168,15 @@ impl Default for LightColor {
     }
 }
 
+/// Some lights alone, and how to go back.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Solo {
+    /// The lights that shine alone.
+    pub lights: Vec<LightId>,
+    /// The lights that were on before, and will be again.
+    pub restores: Vec<LightId>,
+}
+
 /// One light of the studio.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
@@ -195,6 +204,10 @@ pub struct Light {
     pub on: bool,
     /// Whether the camera sees the emitter itself. Mirrors and glass always show it.
     pub visible_to_camera: bool,
+    /// Off only for now: it belongs to the set-up and comes on again when it is unmuted. Means nothing while `on`.
+    pub muted: bool,
+    /// Stays where it is: the editor neither moves nor deletes it, and a click in a view goes past it.
+    pub locked: bool,
 }
 
 impl Light {
@@ -213,6 +226,8 @@ impl Light {
             color: LightColor::default(),
             on: true,
             visible_to_camera: false,
+            muted: false,
+            locked: false,
         }
     }
 }

@@ -21,7 +21,7 @@ mod validate;
 pub use assets::{Assets, Texture, path_complaint};
 pub use camera::{Camera, CameraFrame, Focus, Orientation, Sensor};
 pub use gel::{Gel, GelFamily, NamedGel};
-pub use light::{ColorSource, Emitter, Light, LightColor, Output, Power, Role};
+pub use light::{ColorSource, Emitter, Light, LightColor, Output, Power, Role, Solo};
 pub use material::{Material, MaterialPreset};
 pub use mesh::{Mesh, MeshPart};
 pub use meter::{Facing, Meter, Receptor};
@@ -58,6 +58,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// The light meter, where one is up.
     pub meter: Option<Meter>,
+    /// While some lights shine alone: which, and what was on before.
+    pub solo: Option<Solo>,
 }
 
 /// Where a camera or a light looks.

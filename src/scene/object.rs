@@ -154,6 +154,8 @@ pub struct Object {
     pub part_materials: Vec<(String, Material)>,
     /// Hidden things are neither seen nor do they cast shadows.
     pub visible: bool,
+    /// Stays where it is: the editor neither moves nor deletes it, and a click in a view goes past it.
+    pub locked: bool,
 }
 
 impl Object {

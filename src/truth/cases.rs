@@ -45,6 +45,7 @@ fn object(shape: Shape, material: Material, position: Vec3, rotation_deg: Vec3) 
         material,
         part_materials: Vec::new(),
         visible: true,
+        locked: false,
     }
 }
 

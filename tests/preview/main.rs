@@ -53,6 +53,7 @@ fn object(id: u32, shape: Shape, position: Vec3, material: Material) -> Object {
         material,
         part_materials: Vec::new(),
         visible: true,
+        locked: false,
     }
 }
 

@@ -90,8 +90,8 @@ fn object() -> impl Strategy<Value = Object> {
     let transform = (vector(-10.0, 10.0), vector(-360.0, 360.0), prop_oneof![Just(Vec3::ONE), vector(0.5, 2.0)])
         .prop_map(|(position, rotation_deg, scale)| Transform { position, rotation_deg, scale });
     let parts = proptest::collection::btree_map(name(), material(), 0..3).prop_map(|m| m.into_iter().collect());
-    (name(), transform, shape(), material(), parts, any::<bool>()).prop_map(
-        |(name, transform, shape, material, part_materials, visible)| Object {
+    (name(), transform, shape(), material(), parts, any::<bool>(), any::<bool>()).prop_map(
+        |(name, transform, shape, material, part_materials, visible, locked)| Object {
             id: ObjectId(0),
             name,
             transform,
@@ -99,6 +99,7 @@ fn object() -> impl Strategy<Value = Object> {
             material,
             part_materials,
             visible,
+            locked,
         },
     )
 }
@@ -135,13 +136,13 @@ fn light(objects: usize) -> impl Strategy<Value = Light> {
     let power = (emitter_and_output(), prop_oneof![Just(0.0), number(-20.0, 10.0)]);
     (
         (name(), 0..Role::ALL.len(), vector(-10.0, 10.0), aim(objects), number(-180.0, 180.0)),
-        (power, source, gel, any::<bool>(), any::<bool>()),
+        (power, source, gel, any::<[bool; 4]>()),
         modifier(),
     )
         .prop_map(
             |(
                 (name, role, position, aim, roll_deg),
-                (((emitter, output), dial_stops), source, gel, on, seen),
+                (((emitter, output), dial_stops), source, gel, [on, seen, muted, locked]),
                 modifier,
             )| Light {
                 id: LightId(0),
@@ -157,6 +158,8 @@ fn light(objects: usize) -> impl Strategy<Value = Light> {
                 color: LightColor { source, gel },
                 on,
                 visible_to_camera: seen,
+                muted,
+                locked,
             },
         )
 }
@@ -241,25 +244,30 @@ fn scene() -> impl Strategy<Value = Scene> {
             proptest::option::of(room()),
             proptest::collection::vec(object(), objects),
             proptest::collection::vec(light(objects), 0..4),
-            any::<(bool, bool)>(),
+            any::<(bool, bool, bool)>(),
         )
-            .prop_map(|(name, description, camera, room, mut objects, mut lights, (has_meter, on_camera))| {
-                // As after loading: ids in list order, names unique.
-                for (i, object) in objects.iter_mut().enumerate() {
-                    object.id = ObjectId(i as u32);
-                    object.name.push_str(&format!(" o{i}"));
-                }
-                for (i, light) in lights.iter_mut().enumerate() {
-                    light.id = LightId(i as u32);
-                    light.name.push_str(&format!(" l{i}"));
-                }
-                let facing = match on_camera {
-                    true => Facing::Camera,
-                    false => Facing::Angles { yaw_deg: camera.roll_deg, pitch_deg: 12.5 },
-                };
-                let meter = has_meter.then_some(Meter { position: camera.position, facing, receptor: Receptor::Dome });
-                Scene { name, description, camera, room, objects, lights, meter }
-            })
+            .prop_map(
+                |(name, description, camera, room, mut objects, mut lights, (has_meter, on_camera, has_solo))| {
+                    // As after loading: ids in list order, names unique.
+                    for (i, object) in objects.iter_mut().enumerate() {
+                        object.id = ObjectId(i as u32);
+                        object.name.push_str(&format!(" o{i}"));
+                    }
+                    for (i, light) in lights.iter_mut().enumerate() {
+                        light.id = LightId(i as u32);
+                        light.name.push_str(&format!(" l{i}"));
+                    }
+                    let facing = match on_camera {
+                        true => Facing::Camera,
+                        false => Facing::Angles { yaw_deg: camera.roll_deg, pitch_deg: 12.5 },
+                    };
+                    let meter =
+                        has_meter.then_some(Meter { position: camera.position, facing, receptor: Receptor::Dome });
+                    let ids = |on| lights.iter().filter(|l| l.on == on).map(|l| l.id).collect();
+                    let solo = has_solo.then(|| Solo { lights: ids(true), restores: ids(false) });
+                    Scene { name, description, camera, room, objects, lights, meter, solo }
+                },
+            )
     })
 }
 

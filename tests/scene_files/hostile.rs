@@ -48,6 +48,7 @@ fn errors_name_the_field_the_value_and_the_line() {
             "aim: Point(1.0, 2.0, 1.0),\n            emitter",
             &["lights[0] \"Key\" aim", "no direction", "line 25"],
         ),
+        ("objects: [", "solo: (lights: [\"Kye\"]),\n    objects: [", &["solo.lights", "no light \"Kye\"", "\"Key\"?"]),
         ("energy_ws: 200.0", "energy_ws: -200.0", &["lights[0] \"Key\" power.output.energy_ws", "-200", "line 27"]),
         ("dial_stops: -1.0", "dial_stops: 1e308", &["lights[0] \"Key\" power.dial_stops", "1e308", "line 27"]),
         ("FlashWs(energy_ws: 200.0)", "Lux(200.0)", &["lights[0] \"Key\" power.output", "Lux", "line 27"]),

@@ -39,6 +39,7 @@ pub fn object(name: &str, shape: Shape, position: Vec3) -> Object {
         material,
         part_materials: Vec::new(),
         visible: true,
+        locked: false,
     }
 }
 

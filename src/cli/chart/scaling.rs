@@ -138,6 +138,7 @@ fn bumpy_ball(triangles: u64) -> (Scene, Assets) {
         material: Material::default(),
         part_materials: Vec::new(),
         visible: true,
+        locked: false,
     };
     let softbox = Light {
         id: LightId(2),

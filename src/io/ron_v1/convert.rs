@@ -4,19 +4,21 @@
 use super::{
     AimV1, BarnDoorsV1, CameraV1, ColorV1, ConeV1, EmitterV1, FacingV1, FigureV1, FocusV1, GelV1, LightV1, MaterialV1,
     MeterV1, ModifierV1, ObjectV1, OrientationV1, OutputV1, PartMaterialV1, PoseV1, PowerV1, ReceptorV1, RoleV1,
-    RoomV1, SceneV1, SensorV1, ShapeV1,
+    RoomV1, SceneV1, SensorV1, ShapeV1, SoloV1,
 };
 use crate::scene::{
     Aim, BarnDoors, Camera, ColorSource, Cone, Emitter, Facing, Figure, Focus, Gel, Light, LightColor, LightId,
     Mannequin, Material, Meter, Modifier, Object, ObjectId, Orientation, Output, Pose, Power, Receptor, Role, Room,
-    Scene, Sensor, Shape, Transform,
+    Scene, Sensor, Shape, Solo, Transform,
 };
 use glam::Vec3;
 use std::collections::HashMap;
 
-/// An aim or a focus at an object that the file does not have.
+/// A name of an object or a light that the file does not have.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::io) struct UnknownName {
+    /// What it should name: `object` or `light`.
+    pub kind: &'static str,
     /// The field that names it, as `lights[2] "Key" aim.name`.
     pub place: String,
     /// The name.
@@ -39,7 +41,7 @@ impl Names {
         self.0.get(name).copied().ok_or_else(|| {
             let mut known: Vec<String> = self.0.keys().cloned().collect();
             known.sort_unstable();
-            UnknownName { place: place.to_owned(), name: name.to_owned(), known }
+            UnknownName { kind: "object", place: place.to_owned(), name: name.to_owned(), known }
         })
     }
 
@@ -67,6 +69,7 @@ impl Names {
 /// The scene of a file. Names may still clash; everything else about it is up to `scene::validate`.
 pub(in crate::io) fn scene_from_v1(file: SceneV1) -> Result<Scene, UnknownName> {
     let names = Names::of(&file.objects);
+    let solo = file.solo.map(|solo| solo_from(solo, &file.lights)).transpose()?;
     Ok(Scene {
         name: file.name,
         description: file.description,
@@ -77,7 +80,31 @@ pub(in crate::io) fn scene_from_v1(file: SceneV1) -> Result<Scene, UnknownName> 
             .map(|(index, light)| light_from(light, index, &names))
             .collect::<Result<_, _>>()?,
         meter: file.meter.map(Meter::from),
+        solo,
     })
+}
+
+/// Lights by name: their places in the file. The first of two equal names counts.
+fn solo_from(file: SoloV1, lights: &[LightV1]) -> Result<Solo, UnknownName> {
+    let by_name: HashMap<&str, LightId> =
+        lights.iter().enumerate().rev().map(|(index, light)| (light.name.as_str(), LightId(index as u32))).collect();
+    let ids = |names: Vec<String>, place: &str| {
+        let id = |name: String| match by_name.get(name.as_str()) {
+            Some(&id) => Ok(id),
+            None => {
+                let mut known: Vec<String> = by_name.keys().map(|&name| name.to_owned()).collect();
+                known.sort_unstable();
+                Err(UnknownName { kind: "light", place: place.to_owned(), name, known })
+            }
+        };
+        names.into_iter().map(id).collect::<Result<Vec<_>, _>>()
+    };
+    Ok(Solo { lights: ids(file.lights, "solo.lights")?, restores: ids(file.restores, "solo.restores")? })
+}
+
+fn solo_to(scene: &Scene, solo: &Solo) -> SoloV1 {
+    let names = |ids: &[LightId]| ids.iter().filter_map(|id| Some(scene.light(*id)?.name.clone())).collect();
+    SoloV1 { lights: names(&solo.lights), restores: names(&solo.restores) }
 }
 
 /// The file of a scene. Its names must be unique. An aim at an object that is gone becomes the point it means.
@@ -91,6 +118,7 @@ pub(in crate::io) fn v1_from_scene(scene: &Scene) -> SceneV1 {
         objects: scene.objects.iter().map(ObjectV1::from).collect(),
         lights: scene.lights.iter().map(|light| light_to(scene, light)).collect(),
         meter: scene.meter.map(MeterV1::from),
+        solo: scene.solo.as_ref().map(|solo| solo_to(scene, solo)),
     }
 }
 
@@ -168,6 +196,7 @@ fn object_from(file: ObjectV1, index: usize) -> Object {
         material: file.material.into(),
         part_materials: file.part_materials.into_iter().map(|part| (part.part, part.material.into())).collect(),
         visible: file.visible,
+        locked: file.locked,
     }
 }
 
@@ -186,6 +215,7 @@ impl From<&Object> for ObjectV1 {
             material: MaterialV1::from(&object.material),
             part_materials: object.part_materials.iter().map(part).collect(),
             visible: object.visible,
+            locked: object.locked,
         }
     }
 }
@@ -214,6 +244,8 @@ fn light_from(file: LightV1, index: usize, names: &Names) -> Result<Light, Unkno
         },
         on: file.on,
         visible_to_camera: file.visible_to_camera,
+        muted: file.muted,
+        locked: file.locked,
         name: file.name,
     })
 }
@@ -239,6 +271,8 @@ fn light_to(scene: &Scene, light: &Light) -> LightV1 {
         },
         on: light.on,
         visible_to_camera: light.visible_to_camera,
+        muted: light.muted,
+        locked: light.locked,
     }
 }
 

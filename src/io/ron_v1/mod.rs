@@ -58,6 +58,17 @@ pub(super) struct SceneV1 {
     lights: Vec<LightV1>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     meter: Option<MeterV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    solo: Option<SoloV1>,
+}
+
+/// Lights that shine alone, by name, and those that were on before.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "Solo", deny_unknown_fields)]
+struct SoloV1 {
+    lights: Vec<String>,
+    #[serde(default)]
+    restores: Vec<String>,
 }
 
 /// A light meter that stands in the studio.
@@ -192,6 +203,8 @@ struct ObjectV1 {
     part_materials: Vec<PartMaterialV1>,
     #[serde(default = "yes", skip_serializing_if = "is_yes")]
     visible: bool,
+    #[serde(default, skip_serializing_if = "is")]
+    locked: bool,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -252,6 +265,10 @@ struct LightV1 {
     on: bool,
     #[serde(default, skip_serializing_if = "is")]
     visible_to_camera: bool,
+    #[serde(default, skip_serializing_if = "is")]
+    muted: bool,
+    #[serde(default, skip_serializing_if = "is")]
+    locked: bool,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

@@ -10,6 +10,7 @@ fn object(name: &str) -> Object {
         material: Material::default(),
         part_materials: Vec::new(),
         visible: true,
+        locked: false,
     }
 }
 
