@@ -85,7 +85,7 @@ impl Gizmos {
         }
         if overlay.light_gizmos {
             for light in &scene.lights {
-                gizmos.add_light(scene, light, overlay, view.position());
+                gizmos.add_light(scene, light, overlay, view);
             }
         }
         if let Some(aspect) = overlay.camera_gizmo.filter(|aspect| *aspect > 0.0) {
@@ -140,7 +140,7 @@ impl Gizmos {
         }
     }
 
-    fn add_light(&mut self, scene: &Scene, light: &Light, overlay: &Overlay, eye: Vec3) {
+    fn add_light(&mut self, scene: &Scene, light: &Light, overlay: &Overlay, view: &CameraFrame) {
         if light.emitter == Emitter::Surround {
             return;
         }
@@ -157,7 +157,8 @@ impl Gizmos {
         let first = self.lines.len();
         let frame = scene.light_frame(light);
         // A gizmo without a size of its own stays visible from afar.
-        let size_m = (0.012 * (light.position - eye).length()).max(0.05);
+        let half_view_m = (light.position - view.position()).length() * view.half_extent.y;
+        let size_m = (0.035 * half_view_m).max(0.05);
         self.add_emitter(light, &frame, pen, size_m);
         self.handles.push((pick, first..self.lines.len()));
 
