@@ -1,45 +1,9 @@
 //! Every change to the scene. Menus, shortcuts, panels, gizmos, undo and tests all go through [`Action`].
 
-use crate::scene::{Aim, Camera, Focus, Light, LightId, Meter, Object, ObjectId, Room, Scene};
-use glam::Vec3;
-
-/// Something that can be selected.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Item {
-    /// The camera.
-    Camera,
-    /// Floor, walls and ceiling.
-    Room,
-    /// A mannequin, prop or backdrop.
-    Object(ObjectId),
-    /// A light.
-    Light(LightId),
-    /// The light meter.
-    Meter,
-}
-
-impl Item {
-    /// Whether the scene has it. The room counts as there even when it is switched off, so that it can be switched on.
-    pub fn exists_in(self, scene: &Scene) -> bool {
-        match self {
-            Item::Camera | Item::Room => true,
-            Item::Object(id) => scene.object(id).is_some(),
-            Item::Light(id) => scene.light(id).is_some(),
-            Item::Meter => scene.meter.is_some(),
-        }
-    }
-
-    /// Its name in lists and messages.
-    pub fn name(self, scene: &Scene) -> String {
-        match self {
-            Item::Camera => "Camera".to_owned(),
-            Item::Room => "Room".to_owned(),
-            Item::Object(id) => scene.object(id).map(|o| o.name.clone()).unwrap_or_default(),
-            Item::Light(id) => scene.light(id).map(|l| l.name.clone()).unwrap_or_default(),
-            Item::Meter => "Light meter".to_owned(),
-        }
-    }
-}
+use super::arrange::{self, MirrorPlane};
+use super::item::{Item, name_of_all};
+use super::switches;
+use crate::scene::{Camera, Light, LightId, Meter, Object, Room, Scene};
 
 /// A change to the scene. New objects and lights get their id and a unique name when the action is applied.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,10 +31,32 @@ pub enum Action {
     },
     /// Gives an object or a light another name.
     Rename(Item, String),
-    /// Takes an object or a light away. What aimed at the object keeps aiming at where it was.
-    Delete(Item),
-    /// Puts a copy of an object or a light beside it.
-    Duplicate(Item),
+    /// Takes objects, lights or the meter away. What aimed at an object keeps aiming at where it was.
+    Delete(Vec<Item>),
+    /// Puts copies of objects and lights beside them.
+    Duplicate(Vec<Item>),
+    /// Puts things, or copies of them, on the other side of a plane.
+    Mirror {
+        /// What is mirrored.
+        items: Vec<Item>,
+        /// Where.
+        plane: MirrorPlane,
+        /// Whether the originals stay.
+        copies: bool,
+    },
+    /// Mutes lights, or brings those back that were muted.
+    Mute(Vec<LightId>, bool),
+    /// Lets lights shine alone; none brings back what was on before.
+    Solo(Vec<LightId>),
+    /// Locks things in their places, or lets them go.
+    Lock(Vec<Item>, bool),
+    /// Several changes as one step, all or none.
+    Together {
+        /// What the undo menu calls it.
+        label: String,
+        /// The changes, in order.
+        actions: Vec<Action>,
+    },
 }
 
 /// Why an action cannot be done, in words for the user.
@@ -88,6 +74,9 @@ pub enum ActionError {
     /// There is one meter, and it has no name.
     #[error("There is one light meter in a studio: move it to where you want to read.")]
     Single,
+    /// What is locked does not move.
+    #[error("{0} is locked in its place: unlock it first (K, or the padlock in the list).")]
+    Locked(String),
     /// What the action is about has gone.
     #[error("That is no longer in the studio.")]
     Gone,
@@ -95,9 +84,6 @@ pub enum ActionError {
     #[error("{0}")]
     Invalid(String),
 }
-
-/// How far a copy stands from its original, metres.
-const COPY_OFFSET: Vec3 = Vec3::new(0.4, 0.0, 0.0);
 
 impl Action {
     /// What the undo menu calls it.
@@ -114,63 +100,94 @@ impl Action {
             Action::SetMeter(Some(_)) => "Change light meter".to_owned(),
             Action::SetNotes { .. } => "Change notes".to_owned(),
             Action::Rename(_, name) => format!("Rename to {name}"),
-            Action::Delete(item) => format!("Delete {}", item.name(scene)),
-            Action::Duplicate(item) => format!("Duplicate {}", item.name(scene)),
+            Action::Delete(items) => format!("Delete {}", name_of_all(items, scene)),
+            Action::Duplicate(items) => format!("Duplicate {}", name_of_all(items, scene)),
+            Action::Mirror { items, copies: false, .. } => format!("Mirror {}", name_of_all(items, scene)),
+            Action::Mirror { items, copies: true, .. } => format!("Mirrored copy of {}", name_of_all(items, scene)),
+            Action::Mute(lights, true) => format!("Mute {}", name_of_all(&as_items(lights), scene)),
+            Action::Mute(lights, false) => format!("Unmute {}", name_of_all(&as_items(lights), scene)),
+            Action::Solo(lights) if lights.is_empty() => "End solo".to_owned(),
+            Action::Solo(lights) => format!("Solo {}", name_of_all(&as_items(lights), scene)),
+            Action::Lock(items, true) => format!("Lock {}", name_of_all(items, scene)),
+            Action::Lock(items, false) => format!("Unlock {}", name_of_all(items, scene)),
+            Action::Together { label, .. } => label.clone(),
         }
     }
 
-    /// What a drag of this action keeps changing; steps of one drag on the same item are one undo step.
-    pub fn target(&self) -> Option<Item> {
+    /// What a drag of this action keeps changing; steps of one drag on the same things are one undo step.
+    pub fn targets(&self) -> Vec<Item> {
         match self {
-            Action::SetObject(object) => Some(Item::Object(object.id)),
-            Action::SetLight(light) => Some(Item::Light(light.id)),
-            Action::SetCamera(_) => Some(Item::Camera),
-            Action::SetRoom(_) => Some(Item::Room),
-            Action::SetMeter(_) => Some(Item::Meter),
-            _ => None,
+            Action::SetObject(object) => vec![Item::Object(object.id)],
+            Action::SetLight(light) => vec![Item::Light(light.id)],
+            Action::SetCamera(_) => vec![Item::Camera],
+            Action::SetRoom(_) => vec![Item::Room],
+            Action::SetMeter(_) => vec![Item::Meter],
+            Action::Together { actions, .. } => actions.iter().flat_map(Action::targets).collect(),
+            _ => Vec::new(),
         }
     }
 
-    /// Changes the scene. Returns what should be selected afterwards, where that is for the action to say. On an error
-    /// the scene may be half changed: the caller keeps a copy.
-    pub fn apply(self, scene: &mut Scene) -> Result<Option<Item>, ActionError> {
+    /// Changes the scene. Returns what should be selected afterwards; empty where the selection stays. On an error the
+    /// scene may be half changed: the caller keeps a copy.
+    pub fn apply(self, scene: &mut Scene) -> Result<Vec<Item>, ActionError> {
         match self {
-            Action::AddObject(object) => Ok(Some(add_object(scene, *object))),
-            Action::AddLight(light) => Ok(Some(add_light(scene, *light))),
-            Action::SetObject(new) => {
-                check_name(scene, Item::Object(new.id), &new.name)?;
-                let id = new.id;
-                *scene.object_mut(id).ok_or(ActionError::Gone)? = *new;
-                Ok(None)
-            }
-            Action::SetLight(new) => {
-                check_name(scene, Item::Light(new.id), &new.name)?;
-                let id = new.id;
-                *scene.light_mut(id).ok_or(ActionError::Gone)? = *new;
-                Ok(None)
-            }
-            Action::SetCamera(camera) => {
-                scene.camera = *camera;
-                Ok(None)
-            }
-            Action::SetRoom(room) => {
-                scene.room = room.map(|room| *room);
-                Ok(None)
-            }
+            Action::AddObject(object) => return Ok(vec![add_object(scene, *object)]),
+            Action::AddLight(light) => return Ok(vec![add_light(scene, *light)]),
+            Action::SetObject(new) => set_object(scene, *new)?,
+            Action::SetLight(new) => set_light(scene, *new)?,
+            Action::SetCamera(camera) => scene.camera = *camera,
+            Action::SetRoom(room) => scene.room = room.map(|room| *room),
             Action::SetMeter(meter) => {
                 let is_new = scene.meter.is_none() && meter.is_some();
                 scene.meter = meter;
-                Ok(is_new.then_some(Item::Meter))
+                return Ok(if is_new { vec![Item::Meter] } else { Vec::new() });
             }
-            Action::SetNotes { name, description } => {
-                (scene.name, scene.description) = (name, description);
-                Ok(None)
+            Action::SetNotes { name, description } => (scene.name, scene.description) = (name, description),
+            Action::Rename(item, name) => rename(scene, item, &name)?,
+            Action::Delete(items) => arrange::delete(scene, &items)?,
+            Action::Duplicate(items) => return arrange::duplicate(scene, &items),
+            Action::Mirror { items, plane, copies } => return arrange::mirror(scene, &items, &plane, copies),
+            Action::Mute(lights, mute) => switches::mute(scene, &lights, mute)?,
+            Action::Solo(lights) => switches::solo(scene, lights)?,
+            Action::Lock(items, locked) => switches::lock(scene, &items, locked)?,
+            Action::Together { actions, .. } => {
+                let mut selected = Vec::new();
+                for action in actions {
+                    selected.extend(action.apply(scene)?);
+                }
+                return Ok(selected);
             }
-            Action::Rename(item, name) => rename(scene, item, &name).map(|()| None),
-            Action::Delete(item) => delete(scene, item).map(|()| None),
-            Action::Duplicate(item) => duplicate(scene, item).map(Some),
         }
+        Ok(Vec::new())
     }
+}
+
+fn as_items(lights: &[LightId]) -> Vec<Item> {
+    lights.iter().copied().map(Item::Light).collect()
+}
+
+fn set_object(scene: &mut Scene, new: Object) -> Result<(), ActionError> {
+    check_name(scene, Item::Object(new.id), &new.name)?;
+    let old = scene.object_mut(new.id).ok_or(ActionError::Gone)?;
+    if old.locked && old.transform != new.transform {
+        return Err(ActionError::Locked(new.name));
+    }
+    *old = new;
+    Ok(())
+}
+
+fn set_light(scene: &mut Scene, new: Light) -> Result<(), ActionError> {
+    check_name(scene, Item::Light(new.id), &new.name)?;
+    let (id, old) = (new.id, scene.light_mut(new.id).ok_or(ActionError::Gone)?);
+    if old.locked && (old.position, old.aim, old.roll_deg) != (new.position, new.aim, new.roll_deg) {
+        return Err(ActionError::Locked(new.name));
+    }
+    let switched = old.on != new.on;
+    *old = new;
+    if switched {
+        switches::switched_by_hand(scene, id);
+    }
+    Ok(())
 }
 
 fn light_change_label(scene: &Scene, new: &Light) -> String {
@@ -181,7 +198,8 @@ fn light_change_label(scene: &Scene, new: &Light) -> String {
     }
 }
 
-fn add_object(scene: &mut Scene, mut object: Object) -> Item {
+/// Adds an object under an id and a name of its own.
+pub fn add_object(scene: &mut Scene, mut object: Object) -> Item {
     object.id = scene.fresh_object_id();
     object.name = scene.unique_name(&object.name);
     let item = Item::Object(object.id);
@@ -189,7 +207,8 @@ fn add_object(scene: &mut Scene, mut object: Object) -> Item {
     item
 }
 
-fn add_light(scene: &mut Scene, mut light: Light) -> Item {
+/// Adds a light under an id and a name of its own.
+pub fn add_light(scene: &mut Scene, mut light: Light) -> Item {
     light.id = scene.fresh_light_id();
     light.name = scene.unique_name(&light.name);
     let item = Item::Light(light.id);
@@ -219,61 +238,12 @@ fn rename(scene: &mut Scene, item: Item, name: &str) -> Result<(), ActionError> 
     Ok(())
 }
 
-fn delete(scene: &mut Scene, item: Item) -> Result<(), ActionError> {
-    match item {
-        Item::Object(id) => {
-            scene.object(id).ok_or(ActionError::Gone)?;
-            release_aims(scene, id);
-            scene.objects.retain(|o| o.id != id);
-        }
-        Item::Light(id) => {
-            scene.light(id).ok_or(ActionError::Gone)?;
-            scene.lights.retain(|l| l.id != id);
-        }
-        Item::Meter => scene.meter = None,
-        Item::Camera => return Err(ActionError::Fixed("camera")),
-        Item::Room => return Err(ActionError::Fixed("room")),
-    }
-    Ok(())
-}
-
-/// Turns every aim and focus on an object into one at the same point of the studio.
-fn release_aims(scene: &mut Scene, id: ObjectId) {
-    let fixed = |scene: &Scene, aim: Aim| match aim {
-        Aim::Object { object, .. } if object == id => Aim::Point(scene.aim_point(&aim, Vec3::ZERO)),
-        other => other,
-    };
-    scene.camera.aim = fixed(scene, scene.camera.aim);
-    for i in 0..scene.lights.len() {
-        scene.lights[i].aim = fixed(scene, scene.lights[i].aim);
-    }
-    if matches!(scene.camera.focus, Focus::OnObject { object, .. } if object == id) {
-        scene.camera.focus = Focus::OnAim;
-    }
-}
-
-fn duplicate(scene: &mut Scene, item: Item) -> Result<Item, ActionError> {
-    match item {
-        Item::Object(id) => {
-            let mut copy = scene.object(id).ok_or(ActionError::Gone)?.clone();
-            copy.transform.position += COPY_OFFSET;
-            Ok(add_object(scene, copy))
-        }
-        Item::Light(id) => {
-            let mut copy = scene.light(id).ok_or(ActionError::Gone)?.clone();
-            copy.position += COPY_OFFSET;
-            Ok(add_light(scene, copy))
-        }
-        Item::Camera => Err(ActionError::Fixed("camera")),
-        Item::Room => Err(ActionError::Fixed("room")),
-        Item::Meter => Err(ActionError::Single),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::editor::catalog;
+    use crate::scene::{Aim, Focus, ObjectId};
+    use glam::Vec3;
 
     fn studio() -> (Scene, ObjectId, LightId) {
         let mut scene = Scene::default();
@@ -291,7 +261,7 @@ mod tests {
         scene.object_mut(object).unwrap().transform.position = Vec3::new(1.0, 2.0, 3.0);
         scene.light_mut(light).unwrap().aim = Aim::Object { object, offset: Vec3::Y };
         scene.camera.focus = Focus::OnObject { object, offset: Vec3::ZERO };
-        Action::Delete(Item::Object(object)).apply(&mut scene).unwrap();
+        Action::Delete(vec![Item::Object(object)]).apply(&mut scene).unwrap();
         assert_eq!(scene.light(light).unwrap().aim, Aim::Point(Vec3::new(1.0, 3.0, 3.0)));
         assert_eq!(scene.camera.focus, Focus::OnAim);
         assert!(scene.objects.is_empty());
@@ -304,7 +274,7 @@ mod tests {
         let error = Action::Rename(Item::Object(object), light_name.clone()).apply(&mut scene).unwrap_err();
         assert_eq!(error, ActionError::NameTaken(light_name));
         assert_eq!(Action::Rename(Item::Object(object), "  ".into()).apply(&mut scene), Err(ActionError::EmptyName));
-        let copy = Action::Duplicate(Item::Light(light)).apply(&mut scene).unwrap().unwrap();
+        let copy = Action::Duplicate(vec![Item::Light(light)]).apply(&mut scene).unwrap()[0];
         assert_ne!(copy, Item::Light(light));
         assert_ne!(copy.name(&scene), Item::Light(light).name(&scene));
     }
@@ -312,6 +282,22 @@ mod tests {
     #[test]
     fn the_camera_cannot_be_deleted() {
         let (mut scene, ..) = studio();
-        assert_eq!(Action::Delete(Item::Camera).apply(&mut scene), Err(ActionError::Fixed("camera")));
+        assert_eq!(Action::Delete(vec![Item::Camera]).apply(&mut scene), Err(ActionError::Fixed("camera")));
+    }
+
+    #[test]
+    fn what_is_locked_keeps_its_place_and_can_still_be_dimmed() {
+        let (mut scene, object, light) = studio();
+        Action::Lock(vec![Item::Object(object), Item::Light(light)], true).apply(&mut scene).unwrap();
+        let mut changed = scene.light(light).unwrap().clone();
+        changed.power.dial_stops -= 1.0;
+        Action::SetLight(Box::new(changed.clone())).apply(&mut scene).unwrap();
+        changed.position.x += 1.0;
+        let name = changed.name.clone();
+        assert_eq!(Action::SetLight(Box::new(changed)).apply(&mut scene), Err(ActionError::Locked(name)));
+        let mut changed = scene.object(object).unwrap().clone();
+        changed.transform.rotation_deg.y += 1.0;
+        let name = changed.name.clone();
+        assert_eq!(Action::SetObject(Box::new(changed)).apply(&mut scene), Err(ActionError::Locked(name)));
     }
 }

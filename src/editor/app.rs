@@ -1,11 +1,11 @@
 //! The window: its state, and one frame of it. Commands are carried out in `commands` and `session`.
 
-use super::action::Item;
 use super::catalog::Shelf;
-use super::command::{BINDINGS, Centre, Command, Handle};
+use super::command::{Centre, Command, Handle};
 use super::dialogs::FileDialogs;
 use super::document::Document;
 use super::files::{PresetInfo, Source, Tasks};
+use super::keys::{BINDINGS, Binding};
 use super::meter_job::MeterJob;
 use super::panels::menu::MenuState;
 use super::panels::outliner::OutlinerState;
@@ -15,6 +15,7 @@ use super::picture_view::PictureView;
 use super::preview_host::PreviewHost;
 use super::recent::RecentFiles;
 use super::rendering::Rendering;
+use super::selection::Selection;
 use super::session::Session;
 use super::toasts::Toasts;
 use super::viewport::{Viewport, ViewportInput};
@@ -46,8 +47,10 @@ impl Default for Options {
 #[derive(Debug)]
 pub struct App {
     pub(super) document: Document,
-    pub(super) selection: Option<Item>,
+    pub(super) selection: Selection,
     pub(super) centre: Centre,
+    /// What a light's view goes back to.
+    pub(super) before_light: Centre,
     pub(super) handles: Handle,
     pub(super) viewport: Viewport,
     pub(super) rendering: Rendering,
@@ -63,7 +66,7 @@ pub struct App {
     shelf: Shelf,
     picture_view: PictureView,
     /// Number of the last press of mouse or key: what is dragged in one press is one undo step.
-    gesture: u64,
+    pub(super) gesture: u64,
     told_failure: bool,
     title: String,
     started: Instant,
@@ -80,8 +83,9 @@ impl App {
         let preview = PreviewHost::new(creation.wgpu_render_state.as_ref(), ctx);
         let mut app = App {
             document: Document::default(),
-            selection: None,
+            selection: Selection::default(),
             centre: Centre::default(),
+            before_light: Centre::default(),
             handles: Handle::default(),
             viewport: Viewport::new(preview),
             rendering: Rendering::default(),
@@ -114,8 +118,8 @@ impl App {
     }
 
     /// What is selected.
-    pub fn selection(&self) -> Option<Item> {
-        self.selection
+    pub fn selection(&self) -> &Selection {
+        &self.selection
     }
 
     /// Render settings, job and picture.
@@ -189,19 +193,36 @@ impl App {
             Some(_) => {}
             None => self.told_failure = false,
         }
-        if self.selection.is_some_and(|item| !item.exists_in(self.document.scene())) {
-            self.selection = None;
+        self.selection.keep_existing(self.document.scene());
+        if matches!(self.centre, Centre::Light(id) if self.document.scene().light(id).is_none()) {
+            self.centre = Centre::Studio;
         }
     }
 
     /// Keys that mean a command, unless text is being typed or a question is open.
-    fn shortcuts(&self, ctx: &Context, out: &mut Vec<Command>) {
-        if ctx.text_edit_focused() || self.session.is_asking() || self.picker.is_open() {
+    fn shortcuts(&mut self, ctx: &Context, out: &mut Vec<Command>) {
+        // An open menu takes Esc itself.
+        let menu = egui::Popup::is_any_open(ctx);
+        if ctx.text_edit_focused() || self.session.is_asking() || self.picker.is_open() || menu {
             return;
         }
-        for (shortcut, command) in &BINDINGS {
+        if self.viewport.is_dragging() {
+            // What is typed now is the number of the drag.
+            if ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, egui::Key::Escape)) {
+                // At once, or the drag would go on in this very frame.
+                self.viewport.give_up_drag();
+                out.push(Command::Escape);
+            }
+            return;
+        }
+        // A key that is kept down repeats itself: only steps back and forth are meant by that.
+        let repeats =
+            ctx.input(|i| i.events.iter().any(|e| matches!(e, egui::Event::Key { pressed: true, repeat: true, .. })));
+        for Binding { shortcut, command, .. } in &BINDINGS {
             if ctx.input_mut(|i| i.consume_shortcut(shortcut)) {
-                out.push(command());
+                let command = command();
+                let may_repeat = matches!(command, Command::Undo | Command::Redo);
+                out.extend((may_repeat || !repeats).then_some(command));
             }
         }
     }
@@ -211,7 +232,8 @@ impl App {
         let (began, held) = ctx.input(|i| {
             let key_began = i.events.iter().any(|e| matches!(e, egui::Event::Key { pressed: true, repeat: false, .. }));
             let held = i.pointer.any_down() || i.pointer.any_released() || !i.keys_down.is_empty();
-            (i.pointer.any_pressed() || key_began, held)
+            // A key that is pressed while a button is held belongs to the drag.
+            (i.pointer.any_pressed() || (key_began && !i.pointer.any_down()), held)
         });
         self.gesture += u64::from(began);
         held.then_some(self.gesture)
@@ -224,20 +246,20 @@ impl App {
         Panel::top("menu").frame(bar).show(ui, |ui| menu::menu_ui(ui, self.menu_state(), out));
         Panel::bottom("status").frame(bar).exact_size(26.0).show(ui, |ui| {
             let busy = self.tasks.is_busy().then_some("Loading\u{2026}");
-            status::status_ui(ui, &self.document, self.selection, self.centre, busy);
+            status::status_ui(ui, &self.document, &self.selection, self.centre, busy);
         });
-        Panel::left("things").frame(side).default_size(250.0).size_range(200.0..=420.0).show(ui, |ui| {
+        Panel::left("things").frame(side).default_size(270.0).size_range(200.0..=420.0).show(ui, |ui| {
             let add_height = (ui.available_height() * 0.46).max(120.0);
             Panel::top("add").frame(Frame::new()).default_size(add_height).resizable(true).show(ui, |ui| {
                 add::add_ui(ui, &mut self.shelf, out);
             });
-            outliner::outliner_ui(ui, &self.document, self.selection, &mut self.outliner, out);
+            outliner::outliner_ui(ui, &self.document, &self.selection, &mut self.outliner, out);
         });
         Panel::right("details").frame(side).default_size(340.0).size_range(300.0..=560.0).show(ui, |ui| {
             Panel::bottom("render").frame(Frame::new()).resizable(false).show(ui, |ui| {
                 render::render_ui(ui, &mut self.rendering, self.document.scene(), self.centre, out);
             });
-            inspector::inspector_ui(ui, &self.document, self.selection, out);
+            inspector::inspector_ui(ui, &self.document, &self.selection, out);
         });
         let middle = Frame::new().fill(theme::SURROUND);
         CentralPanel::default().frame(middle).show(ui, |ui| self.middle(ui, out)).response.rect
@@ -257,7 +279,7 @@ impl App {
         let (width, height) = self.rendering.settings.pixels(&self.document.scene().camera);
         let input = ViewportInput {
             document: &self.document,
-            selection: self.selection,
+            selection: &self.selection,
             centre: self.centre,
             handles: self.handles,
             picture_aspect: width as f32 / height as f32,
@@ -272,10 +294,11 @@ impl App {
     fn menu_state(&self) -> MenuState<'_> {
         MenuState {
             document: &self.document,
-            selection: self.selection,
+            selection: &self.selection,
             recent: &self.recent,
             centre: self.centre,
             handles: self.handles,
+            snap: self.viewport.snap,
             has_picture: self.rendering.developed().is_some(),
             rendering: self.rendering.is_running(),
         }

@@ -1,8 +1,13 @@
 //! What menus, shortcuts, panels and the viewport ask of the window. Changes of the scene travel inside as actions.
 
-use super::action::{Action, Item};
+use super::action::Action;
 use super::dialogs::Purpose;
-use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use super::item::Item;
+use super::keys::BINDINGS;
+use super::studio_view::Side;
+use super::swing::Swing;
+use crate::scene::LightId;
+use eframe::egui::KeyboardShortcut;
 use std::path::PathBuf;
 
 /// What the middle of the window shows.
@@ -13,6 +18,8 @@ pub enum Centre {
     Studio,
     /// What the camera frames.
     Camera,
+    /// What a light sees along its axis.
+    Light(LightId),
     /// The rendered picture.
     Picture,
 }
@@ -36,14 +43,45 @@ pub enum Command {
     Do(Action),
     /// Change the scene after giving the new light or object a place in it.
     Place(Box<super::catalog::Made>),
-    /// Select one thing or nothing.
+    /// Select one thing, or nothing.
     Select(Option<Item>),
+    /// Take a thing into the selection, or out of it.
+    ToggleSelected(Item),
+    /// Select these things, too.
+    SelectAlso(Vec<Item>),
+    /// Select all lights and things that are not locked.
+    SelectAll,
+    /// Leave what is under way: a drag, a mode, the selection.
+    Escape,
     /// Begin to rename a thing in the list.
     BeginRename(Item),
-    /// Delete the selected thing.
+    /// Delete what is selected.
     DeleteSelected,
-    /// Copy the selected thing.
+    /// Copy what is selected.
     DuplicateSelected,
+    /// Put what is selected, or copies of it, on the other side of the subject's face.
+    MirrorSelected {
+        /// Whether the originals stay.
+        copies: bool,
+    },
+    /// Hide the selected things and mute the selected lights, or bring them back.
+    HideSelected,
+    /// Show every thing and unmute every light.
+    ShowAll,
+    /// Let the selected lights shine alone, or bring back what was on before.
+    SoloSelected,
+    /// Lock the selection in its place, or let it go.
+    LockSelected,
+    /// Look at the studio from a side, without perspective.
+    LookFrom(Side),
+    /// Perspective on or off.
+    ToggleParallel,
+    /// Look through the last selected light, or back.
+    ToggleLightView,
+    /// Place the last selected light by its highlight or its light, or end that.
+    TogglePlacing(Swing),
+    /// Snapping of handles on or off.
+    ToggleSnap,
     /// Take the last step back.
     Undo,
     /// Do it again.
@@ -95,65 +133,6 @@ pub enum Command {
 impl Command {
     /// The key that gives it, where there is one.
     pub fn shortcut(&self) -> Option<KeyboardShortcut> {
-        BINDINGS.iter().find(|(_, command)| command() == *self).map(|(shortcut, _)| *shortcut)
-    }
-}
-
-const fn key(key: Key) -> KeyboardShortcut {
-    KeyboardShortcut::new(Modifiers::NONE, key)
-}
-
-const fn ctrl(key: Key) -> KeyboardShortcut {
-    KeyboardShortcut::new(Modifiers::COMMAND, key)
-}
-
-const fn ctrl_shift(key: Key) -> KeyboardShortcut {
-    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
-}
-
-/// A key and the command it gives.
-type Binding = (KeyboardShortcut, fn() -> Command);
-
-/// All keys with one fixed meaning. Of two that match, the one with more modifiers comes first.
-pub const BINDINGS: [Binding; 20] = [
-    (ctrl_shift(Key::S), || Command::SaveAs),
-    (ctrl_shift(Key::Z), || Command::Redo),
-    (ctrl(Key::Z), || Command::Undo),
-    (ctrl(Key::Y), || Command::Redo),
-    (ctrl(Key::N), || Command::New),
-    (ctrl(Key::O), || Command::Open),
-    (ctrl(Key::S), || Command::Save),
-    (ctrl(Key::I), || Command::Import),
-    (ctrl(Key::E), || Command::ExportPicture),
-    (ctrl(Key::D), || Command::DuplicateSelected),
-    (ctrl(Key::Q), || Command::Quit),
-    (key(Key::Delete), || Command::DeleteSelected),
-    (key(Key::F), || Command::FrameSelection),
-    (key(Key::Num1), || Command::ToggleCameraView),
-    (key(Key::Num3), || Command::Show(Centre::Picture)),
-    (key(Key::R), || Command::Render),
-    (key(Key::M), || Command::Handles(Handle::Move)),
-    (key(Key::T), || Command::Handles(Handle::Turn)),
-    (key(Key::Z), || Command::Handles(Handle::Size)),
-    (key(Key::F1), || Command::ToggleHelp),
-];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::collections::HashSet;
-
-    #[test]
-    fn no_key_means_two_things() {
-        let keys: HashSet<String> = BINDINGS.iter().map(|(shortcut, _)| format!("{shortcut:?}")).collect();
-        assert_eq!(keys.len(), BINDINGS.len());
-    }
-
-    #[test]
-    fn the_contract_of_keys_holds() {
-        assert_eq!(Command::Render.shortcut(), Some(key(Key::R)));
-        assert_eq!(Command::ToggleCameraView.shortcut(), Some(key(Key::Num1)));
-        assert_eq!(Command::SaveAs.shortcut(), Some(ctrl_shift(Key::S)));
-        assert_eq!(Command::DuplicateSelected.shortcut(), Some(ctrl(Key::D)));
+        BINDINGS.iter().find(|binding| (binding.command)() == *self).map(|binding| binding.shortcut)
     }
 }

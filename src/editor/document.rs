@@ -1,7 +1,8 @@
 //! The open studio: scene, assets, file, history. The scene changes only in [`Document::apply`], undo and redo.
 
-use super::action::{Action, ActionError, Item};
+use super::action::{Action, ActionError};
 use super::history::{History, MergeKey};
+use super::item::Item;
 use crate::scene::{Assets, Finding, Material, Scene, Severity, Shape, validate};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -73,12 +74,13 @@ impl Document {
         file.or(name).unwrap_or_else(|| "Untitled".to_owned())
     }
 
-    /// Does an action as one undo step. Steps of one `gesture` (one press of the mouse) on the same item join. On an
-    /// error the scene is as it was.
-    pub fn apply(&mut self, action: Action, gesture: Option<u64>) -> Result<Option<Item>, ActionError> {
+    /// Does an action as one undo step; returns what should be selected then, if anything. Steps of one `gesture` (one
+    /// press of the mouse) on the same things join. On an error the scene is as it was.
+    pub fn apply(&mut self, action: Action, gesture: Option<u64>) -> Result<Vec<Item>, ActionError> {
         let before = self.scene.clone();
         let label = action.label(&before);
-        let merge = gesture.zip(action.target()).map(|(gesture, target)| MergeKey { gesture, target });
+        let targets = action.targets();
+        let merge = gesture.filter(|_| !targets.is_empty()).map(|gesture| MergeKey { gesture, targets });
         let done = action.apply(&mut self.scene).and_then(|select| match new_error(&before, &self.scene) {
             Some(error) => Err(ActionError::Invalid(error.message)),
             None => Ok(select),
@@ -90,6 +92,12 @@ impl Document {
             self.revision += 1;
         }
         done
+    }
+
+    /// Gives up what a press has changed so far, as if it had never begun.
+    pub fn abandon(&mut self, gesture: u64) {
+        let abandoned = self.history.abandon(&mut self.scene, gesture);
+        self.revision += u64::from(abandoned);
     }
 
     /// Takes the last step back; returns what it was.

@@ -1,6 +1,6 @@
 //! The ring with which a thing slides over the floor, at the height it stands at.
 
-use super::gizmo::Pointer;
+use super::gizmo::{Pointer, STEP_M};
 use super::overlay::place_of;
 use crate::scene::CameraFrame;
 use eframe::egui::{self, Color32, Pos2, Rect, Stroke};
@@ -9,9 +9,7 @@ use glam::{Vec2, Vec3};
 /// Size of the ring and reach of the pointer, points.
 const RADIUS: f32 = 12.0;
 const REACH: f32 = 15.0;
-/// Steps with Ctrl, metres.
-const STEP_M: f32 = 0.1;
-/// Farthest from the eye that a thing is dragged, metres: near the horizon a point is a long way.
+/// Farthest that a thing is dragged at once, metres: near the horizon a point is a long way.
 const FARTHEST_M: f32 = 60.0;
 
 /// The ring.
@@ -19,8 +17,8 @@ const FARTHEST_M: f32 = 60.0;
 pub struct FloorHandle {
     place: Option<Pos2>,
     hovered: bool,
-    /// From the point of the floor under the pointer to the thing, while it is dragged.
-    grip: Option<Vec3>,
+    /// The thing and the point of its height under the pointer when the drag began.
+    grip: Option<(Vec3, Vec3)>,
 }
 
 impl FloorHandle {
@@ -34,7 +32,7 @@ impl FloorHandle {
         self.grip.is_some()
     }
 
-    /// Takes the pointer in; returns where a drag puts the thing that is at `position`.
+    /// Takes the pointer in; returns how far a drag has moved the thing that is now at `position`.
     pub fn update(&mut self, position: Vec3, frame: &CameraFrame, rect: Rect, pointer: Pointer) -> Option<Vec3> {
         self.place = place_of(frame, rect, position);
         let on_ring = self.place.is_some_and(|place| place.distance(pointer.position) < REACH);
@@ -42,14 +40,19 @@ impl FloorHandle {
         if !pointer.down {
             self.grip = None;
         }
-        let on_floor = floor_point(position.y, frame, rect, pointer.position)?;
         if self.hovered && pointer.pressed {
-            self.grip = Some(position - on_floor);
+            self.grip = floor_point(position.y, frame, rect, pointer.position).map(|point| (position, point));
         }
-        let moved = on_floor + self.grip?;
-        let snap = |v: f32| if pointer.snap { (v / STEP_M).round() * STEP_M } else { v };
-        let moved = Vec3::new(snap(moved.x), position.y, snap(moved.z));
-        (moved != position).then_some(moved)
+        let (start, gripped) = self.grip?;
+        let by = floor_point(start.y, frame, rect, pointer.position)? - gripped;
+        if by.length() > FARTHEST_M {
+            return None;
+        }
+        // Steps are places in the room, so that things line up.
+        let snap = |from: f32, by: f32| {
+            if pointer.snap { ((from + by) / STEP_M).round() * STEP_M - from } else { by }
+        };
+        Some(Vec3::new(snap(start.x, by.x), 0.0, snap(start.z, by.z)))
     }
 
     /// Draws it.
@@ -61,13 +64,13 @@ impl FloorHandle {
     }
 }
 
-/// The point at height `height_m` under the pointer; none above the horizon or far away.
+/// The point at height `height_m` under the pointer; none above the horizon.
 fn floor_point(height_m: f32, frame: &CameraFrame, rect: Rect, pointer: Pos2) -> Option<Vec3> {
     let at = (pointer - rect.min) / rect.size();
     let (eye, direction) = (frame.position(), frame.direction(Vec2::new(at.x, at.y)));
     let distance = (height_m - eye.y) / direction.y;
     // Written so that a level direction, which gives no number, is none, too.
-    (distance > 0.0 && distance < FARTHEST_M).then(|| eye + direction * distance)
+    (distance > 0.0 && distance.is_finite()).then(|| eye + direction * distance)
 }
 
 #[cfg(test)]
@@ -83,9 +86,9 @@ mod tests {
         let from = place_of(&frame, rect, position).unwrap() + egui::vec2(4.0, -3.0);
         let mut handle = FloorHandle::default();
         let pointer = Pointer { position: from, is_over: true, pressed: true, down: true, snap: false };
-        assert_eq!(handle.update(position, &frame, rect, pointer), None, "a press moves nothing");
+        assert_eq!(handle.update(position, &frame, rect, pointer), Some(Vec3::ZERO), "a press moves nothing");
         let to = from + egui::vec2(120.0, 60.0);
-        position = handle.update(position, &frame, rect, Pointer { position: to, pressed: false, ..pointer }).unwrap();
+        position += handle.update(position, &frame, rect, Pointer { position: to, pressed: false, ..pointer }).unwrap();
         assert_eq!(position.y, 0.3);
         let place = place_of(&frame, rect, position).unwrap();
         assert!((place - to).length() < 6.0, "the thing is under the pointer");

@@ -1,22 +1,29 @@
-//! Handles for moving, turning and sizing the selected thing, over the viewport.
+//! Handles for moving, turning and sizing the selected things, over the viewport.
 
-use super::action::{Action, Item};
+use super::action::Action;
 use super::command::Handle;
 use super::floor_handle::FloorHandle;
-use crate::math;
-use crate::scene::{Aim, Camera, CameraFrame, Emitter, Light, Meter, Object, Scene};
-use eframe::egui::{self, Color32, Rect, Rgba};
-use glam::{Quat, Vec3};
+use super::held::{Change, Held, pivot};
+use super::item::Item;
+use super::overlay::text_with_shadow;
+use super::typed::TypedNumber;
+use crate::scene::{CameraFrame, Scene};
+use eframe::egui::{self, Align2, Color32, Event, Rect, Rgba, vec2};
+use glam::{DVec3, Quat, Vec3};
 use transform_gizmo::math::{Pos2, Transform};
-use transform_gizmo::{EnumSet, Gizmo, GizmoConfig, GizmoInteraction, GizmoMode, GizmoOrientation, GizmoVisuals, mint};
+use transform_gizmo::{
+    EnumSet, Gizmo, GizmoConfig, GizmoInteraction, GizmoMode, GizmoOrientation, GizmoResult, GizmoVisuals, mint,
+};
 
-/// Steps with Ctrl: metres, degrees, part of the scale.
-const STEP_M: f32 = 0.1;
-const STEP_DEG: f32 = 5.0;
+/// Snapping steps: metres, degrees, part of the scale.
+pub const STEP_M: f32 = 0.1;
+/// Degrees of a snapped turn.
+pub const STEP_DEG: f32 = 15.0;
 const STEP_SCALE: f32 = 0.1;
-/// Depths between which handles can be, metres.
+/// The nearest that handles can be to the eye, metres.
 const NEAR_M: f64 = 0.02;
-const FAR_M: f64 = 500.0;
+/// Below this sine of the view's tilt the floor is seen too much from its edge to slide things over it.
+const LEAST_TILT: f32 = 0.1;
 
 /// What the mouse does over the handles.
 #[derive(Clone, Copy, Debug)]
@@ -33,54 +40,123 @@ pub struct Pointer {
     pub snap: bool,
 }
 
+/// Where the handles are seen from.
+#[derive(Clone, Copy, Debug)]
+pub struct HandleView<'a> {
+    /// What the view frames.
+    pub frame: &'a CameraFrame,
+    /// The view on the screen, points.
+    pub rect: Rect,
+}
+
+/// A drag under way.
+#[derive(Clone, Debug)]
+struct Drag {
+    held: Held,
+    change: Change,
+    typed: TypedNumber,
+}
+
+impl Drag {
+    /// The change with the typed amount, where one is typed: it goes the way that the drag goes.
+    fn told(&self) -> Change {
+        let Some(amount) = self.typed.value() else { return self.change };
+        match self.change {
+            Change::Move(by) => Change::Move(by.normalize_or_zero() * amount),
+            Change::Turn(axis, angle) => Change::Turn(axis, amount.to_radians() * if angle < 0.0 { -1.0 } else { 1.0 }),
+            Change::Size(factor) => {
+                let by = (factor - Vec3::ONE).abs();
+                Change::Size(Vec3::ONE + by / by.max_element().max(1e-6) * (amount - 1.0))
+            }
+        }
+    }
+}
+
 /// The handles of the selection.
 #[derive(Debug, Default)]
 pub struct Handles {
     gizmo: Gizmo,
-    active: bool,
+    drag: Option<Drag>,
+    /// The drag was ended by a key; what is left of the press does nothing.
+    spent: bool,
     /// Whether the selection has handles of the kind on show.
     shown: bool,
-    /// What a light was when the drag began: sizes are told from there.
-    start: Option<Emitter>,
     floor: FloorHandle,
 }
 
 impl Handles {
     /// Whether the pointer is on a handle or drags one.
     pub fn wants_pointer(&self) -> bool {
-        self.active || (self.shown && (self.gizmo.is_focused() || self.floor.wants_pointer()))
+        self.is_dragging() || (self.shown && (self.gizmo.is_focused() || self.floor.wants_pointer()))
     }
 
-    /// Takes the pointer in; returns the change that a drag makes.
+    /// Whether something is dragged by them, so that keys are numbers.
+    pub fn is_dragging(&self) -> bool {
+        self.drag.is_some() || self.spent
+    }
+
+    /// Takes the pointer and keys in; returns the change that a drag makes of the things.
     pub fn update(
         &mut self,
         scene: &Scene,
-        item: Item,
+        items: &[Item],
         handle: Handle,
-        frame: &CameraFrame,
-        rect: Rect,
+        view: HandleView<'_>,
         pointer: Pointer,
+        keys: &[Event],
     ) -> Option<Action> {
-        let target = Target::of(scene, item, handle);
-        self.shown = target.is_some();
-        let Some(target) = target else {
+        let place = pivot(scene, items, handle);
+        self.shown = place.is_some();
+        let Some(place) = place else {
             self.reset();
             return None;
         };
-        let mut config = config(handle, frame, rect, pointer.snap);
-        if matches!(item, Item::Object(_)) {
+        self.spent &= pointer.down;
+        let change = self.dragged(scene, items, handle, place, view, pointer).filter(|_| !self.spent);
+        let Some(change) = change else {
+            self.drag = None;
+            return None;
+        };
+        if self.drag.is_none() {
+            let held = Held::new(scene, items, handle)?;
+            self.drag = Some(Drag { held, change, typed: TypedNumber::default() });
+        }
+        let drag = self.drag.as_mut()?;
+        drag.change = change;
+        drag.typed.take(keys);
+        let action = drag.held.changed(drag.told());
+        if drag.typed.is_finished() {
+            self.give_up();
+        }
+        action
+    }
+
+    /// What the pointer has done to the things since the drag began.
+    fn dragged(
+        &mut self,
+        scene: &Scene,
+        items: &[Item],
+        handle: Handle,
+        place: Vec3,
+        HandleView { frame, rect }: HandleView<'_>,
+        pointer: Pointer,
+    ) -> Option<Change> {
+        let mut config = config(handle, frame, rect, pointer.snap, place);
+        let on_floor = handle == Handle::Move
+            && items.iter().any(|item| matches!(item, Item::Object(_)))
+            && frame.forward().y.abs() > LEAST_TILT;
+        if on_floor {
             config.modes.remove(GizmoMode::TranslateView);
         }
         self.gizmo.update_config(config);
-        if let (Item::Object(id), Handle::Move) = (item, handle) {
+        let target = target(scene, items, handle, place);
+        if on_floor {
             // The ring in the middle slides things over the floor; the library's own would lift them off it.
             if !self.gizmo.is_focused() || self.floor.is_dragged() {
-                let moved = self.floor.update(target.position, frame, rect, pointer);
+                let moved = self.floor.update(place, frame, rect, pointer);
                 if self.floor.wants_pointer() {
-                    self.gizmo.update(GizmoInteraction::default(), &[target.transform()]);
-                    let mut object = scene.object(id)?.clone();
-                    object.transform.position = moved?;
-                    return Some(Action::SetObject(Box::new(object)));
+                    self.gizmo.update(GizmoInteraction::default(), &[target]);
+                    return moved.map(Change::Move);
                 }
             }
         } else {
@@ -92,14 +168,13 @@ impl Handles {
             drag_started: pointer.is_over && pointer.pressed,
             dragging: pointer.down,
         };
-        let result = self.gizmo.update(interaction, &[target.transform()]);
-        let began = result.is_some() && !self.active;
-        self.active = result.is_some();
-        if began {
-            self.start = emitter_of(scene, item);
-        }
-        let moved = *result?.1.first()?;
-        target.moved(scene, item, handle, &moved, self.start)
+        self.gizmo.update(interaction, &[target]).map(|(result, _)| change_of(result))
+    }
+
+    /// Ends the drag; the button may still be held.
+    pub fn give_up(&mut self) {
+        self.spent = self.is_dragging();
+        self.drag = None;
     }
 
     /// Forgets a drag, because there is nothing selected that has handles.
@@ -107,8 +182,8 @@ impl Handles {
         *self = Handles::default();
     }
 
-    /// Draws them.
-    pub fn paint(&self, painter: &egui::Painter) {
+    /// Draws them, and how far a drag has come.
+    pub fn paint(&self, painter: &egui::Painter, pointer: Option<egui::Pos2>) {
         if !self.shown {
             return;
         }
@@ -121,156 +196,64 @@ impl Handles {
         let mesh = egui::Mesh { indices: data.indices.clone(), vertices: vertices.collect(), ..egui::Mesh::default() };
         painter.add(mesh);
         self.floor.paint(painter);
+        if let (Some(drag), Some(at)) = (&self.drag, pointer) {
+            text_with_shadow(painter, at + vec2(18.0, -18.0), Align2::LEFT_BOTTOM, &amount(drag), Color32::WHITE);
+        }
     }
 }
 
-fn emitter_of(scene: &Scene, item: Item) -> Option<Emitter> {
-    match item {
-        Item::Light(id) => scene.light(id).map(|light| light.emitter),
+/// How far a drag has come: as typed, or as measured with a hint that it can be typed.
+fn amount(drag: &Drag) -> String {
+    let unit = match drag.change {
+        Change::Move(_) => " m",
+        Change::Turn(..) => "\u{b0}",
+        Change::Size(_) => " times",
+    };
+    let number = match drag.change {
+        _ if !drag.typed.text().is_empty() => return format!("{}{unit}    Enter sets it", drag.typed.text()),
+        Change::Move(by) => format!("{:.2}", by.length()),
+        Change::Turn(_, angle) => format!("{:.1}", angle.to_degrees().abs()),
+        Change::Size(factor) => {
+            let most = factor.to_array().into_iter().max_by(|a, b| (a - 1.0).abs().total_cmp(&(b - 1.0).abs()));
+            format!("{:.2}", most.unwrap_or(1.0))
+        }
+    };
+    format!("{number}{unit}")
+}
+
+fn change_of(result: GizmoResult) -> Change {
+    let vector = |v: mint::Vector3<f64>| DVec3::new(v.x, v.y, v.z).as_vec3();
+    match result {
+        GizmoResult::Translation { total, .. } => Change::Move(vector(total)),
+        // The library tells the angle on the screen, which runs the other way.
+        GizmoResult::Rotation { axis, total, .. } => Change::Turn(vector(axis).normalize_or(Vec3::Y), -total as f32),
+        GizmoResult::Scale { total } => Change::Size(vector(total)),
+        GizmoResult::Arcball { total, .. } => {
+            let turn = Quat::from_xyzw(total.v.x as f32, total.v.y as f32, total.v.z as f32, total.s as f32);
+            let (axis, angle) = turn.normalize().to_axis_angle();
+            Change::Turn(axis, angle)
+        }
+    }
+}
+
+/// The things as the handles see them: a place, and the axes of what is sized.
+fn target(scene: &Scene, items: &[Item], handle: Handle, place: Vec3) -> Transform {
+    let rotation = match (handle, items) {
+        (Handle::Size, [Item::Object(id)]) => scene.object(*id).map(|object| object.transform.rotation()),
+        (Handle::Size, [Item::Light(id)]) => {
+            scene.light(*id).map(|light| Quat::from_mat3a(&scene.light_frame(light).matrix3))
+        }
         _ => None,
-    }
+    };
+    let (q, [x, y, z]) = (rotation.unwrap_or(Quat::IDENTITY).as_dquat(), place.as_dvec3().to_array());
+    Transform::from_scale_rotation_translation(
+        mint::Vector3 { x: 1.0, y: 1.0, z: 1.0 },
+        mint::Quaternion { s: q.w, v: mint::Vector3 { x: q.x, y: q.y, z: q.z } },
+        mint::Vector3 { x, y, z },
+    )
 }
 
-/// Place, turn and scale of what the handles hold.
-#[derive(Clone, Copy, Debug)]
-struct Target {
-    position: Vec3,
-    rotation: Quat,
-    scale: Vec3,
-}
-
-impl Target {
-    /// The selection as the handles see it; none where there is nothing to hold.
-    fn of(scene: &Scene, item: Item, handle: Handle) -> Option<Self> {
-        match item {
-            Item::Object(id) => {
-                let t = &scene.object(id)?.transform;
-                Some(Target { position: t.position, rotation: t.rotation(), scale: t.scale })
-            }
-            Item::Light(id) => {
-                let light = scene.light(id)?;
-                let has_place = !matches!(light.emitter, Emitter::Surround);
-                let has_size = !matches!(light.emitter, Emitter::Point | Emitter::Sun { .. });
-                let rotation = Quat::from_mat3a(&scene.light_frame(light).matrix3);
-                let target = Target { position: light.position, rotation, scale: Vec3::ONE };
-                (has_place && (handle != Handle::Size || has_size)).then_some(target)
-            }
-            Item::Camera => {
-                let rotation = Quat::from_mat3a(&scene.camera_frame(1.0).world_from_camera.matrix3);
-                let target = Target { position: scene.camera.position, rotation, scale: Vec3::ONE };
-                (handle != Handle::Size).then_some(target)
-            }
-            Item::Meter => {
-                let position = scene.meter?.position;
-                let target = Target { position, rotation: Quat::IDENTITY, scale: Vec3::ONE };
-                (handle == Handle::Move).then_some(target)
-            }
-            Item::Room => None,
-        }
-    }
-
-    fn transform(&self) -> Transform {
-        let [x, y, z] = self.position.as_dvec3().to_array();
-        let [sx, sy, sz] = self.scale.as_dvec3().to_array();
-        let q = self.rotation.as_dquat();
-        Transform::from_scale_rotation_translation(
-            mint::Vector3 { x: sx, y: sy, z: sz },
-            mint::Quaternion { s: q.w, v: mint::Vector3 { x: q.x, y: q.y, z: q.z } },
-            mint::Vector3 { x, y, z },
-        )
-    }
-
-    /// The action that brings the selection to where the handles are now.
-    fn moved(
-        &self,
-        scene: &Scene,
-        item: Item,
-        handle: Handle,
-        to: &Transform,
-        start: Option<Emitter>,
-    ) -> Option<Action> {
-        let position = Vec3::new(to.translation.x as f32, to.translation.y as f32, to.translation.z as f32);
-        let v = to.rotation.v;
-        let rotation = Quat::from_xyzw(v.x as f32, v.y as f32, v.z as f32, to.rotation.s as f32).normalize();
-        let scale = Vec3::new(to.scale.x as f32, to.scale.y as f32, to.scale.z as f32);
-        if !(position.is_finite() && rotation.is_finite() && scale.is_finite()) {
-            return None;
-        }
-        match item {
-            Item::Object(id) => {
-                let mut object: Object = scene.object(id)?.clone();
-                match handle {
-                    Handle::Move => object.transform.position = position,
-                    Handle::Turn => object.transform.set_rotation(rotation),
-                    Handle::Size => object.transform.scale = scale.max(Vec3::splat(0.001)),
-                }
-                Some(Action::SetObject(Box::new(object)))
-            }
-            Item::Light(id) => {
-                let mut light: Light = scene.light(id)?.clone();
-                match handle {
-                    Handle::Move => light.position = position,
-                    Handle::Turn => {
-                        let reach = (scene.aim_point(&light.aim, light.position) - light.position).length();
-                        let (aim, roll_rad) = aim_of(light.position, rotation, reach);
-                        (light.aim, light.roll_deg) = (aim, roll_rad.to_degrees());
-                    }
-                    Handle::Size => {
-                        light.emitter = start.unwrap_or(light.emitter);
-                        resize(&mut light.emitter, scale);
-                    }
-                }
-                Some(Action::SetLight(Box::new(light)))
-            }
-            Item::Camera => {
-                let mut camera: Camera = scene.camera.clone();
-                if handle == Handle::Move {
-                    camera.position = position;
-                } else {
-                    let reach = (scene.aim_point(&camera.aim, camera.position) - camera.position).length();
-                    let (aim, roll_rad) = aim_of(camera.position, rotation, reach);
-                    // A camera's roll is clockwise as seen from behind, a frame's is not.
-                    (camera.aim, camera.roll_deg) = (aim, -roll_rad.to_degrees());
-                }
-                Some(Action::SetCamera(Box::new(camera)))
-            }
-            Item::Meter => Some(Action::SetMeter(Some(Meter { position, ..scene.meter? }))),
-            Item::Room => None,
-        }
-    }
-}
-
-/// The aim point at a distance along a rotation's -Z, and the roll that completes it.
-fn aim_of(position: Vec3, rotation: Quat, reach_m: f32) -> (Aim, f32) {
-    let target = position - rotation * Vec3::Z * reach_m.max(0.1);
-    let level = math::look_at(position, target, 0.0).matrix3;
-    let right = rotation * Vec3::X;
-    let roll = right.dot(level.y_axis.into()).atan2(right.dot(level.x_axis.into()));
-    // Handles turn by small steps: what is left of them by rounding is no roll.
-    (Aim::Point(target), if roll.abs() < 1e-4 { 0.0 } else { roll })
-}
-
-/// Makes an emitter larger or smaller by factors along its own axes.
-fn resize(emitter: &mut Emitter, scale: Vec3) {
-    let scale = scale.clamp(Vec3::splat(0.01), Vec3::splat(100.0));
-    // The axis that is pulled says how much for things with one size.
-    let most = [scale.x, scale.y].into_iter().max_by(|a, b| a.ln().abs().total_cmp(&b.ln().abs())).unwrap_or(1.0);
-    match emitter {
-        Emitter::RectPanel { width_m, height_m } => {
-            *width_m = (*width_m * scale.x).clamp(0.01, 20.0);
-            *height_m = (*height_m * scale.y).clamp(0.01, 20.0);
-        }
-        Emitter::RoundPanel { diameter_m } => *diameter_m = (*diameter_m * most).clamp(0.01, 20.0),
-        Emitter::Sphere { radius_m } => *radius_m = (*radius_m * most).clamp(0.002, 10.0),
-        Emitter::Spot { inner_deg, outer_deg } => {
-            let factor = most.clamp(0.5 / outer_deg.max(0.5), 179.0 / outer_deg.max(0.5));
-            (*inner_deg, *outer_deg) = (*inner_deg * factor, *outer_deg * factor);
-        }
-        Emitter::Point | Emitter::Sun { .. } | Emitter::Surround => {}
-    }
-}
-
-fn config(handle: Handle, frame: &CameraFrame, rect: Rect, snap: bool) -> GizmoConfig {
+fn config(handle: Handle, frame: &CameraFrame, rect: Rect, snap: bool, place: Vec3) -> GizmoConfig {
     let modes: EnumSet<GizmoMode> = match handle {
         Handle::Move => GizmoMode::all_translate(),
         Handle::Turn => GizmoMode::all_rotate(),
@@ -278,7 +261,7 @@ fn config(handle: Handle, frame: &CameraFrame, rect: Rect, snap: bool) -> GizmoC
     };
     GizmoConfig {
         view_matrix: rows(frame.world_from_camera.inverse()),
-        projection_matrix: projection(frame),
+        projection_matrix: projection(frame, f64::from((place - frame.position()).length())),
         viewport: transform_gizmo::Rect::from_min_max(
             Pos2::new(rect.min.x, rect.min.y),
             Pos2::new(rect.max.x, rect.max.y),
@@ -299,10 +282,11 @@ fn rows(affine: glam::Affine3A) -> mint::RowMatrix4<f64> {
     [m.row(0).to_array(), m.row(1).to_array(), m.row(2).to_array(), m.row(3).to_array()].into()
 }
 
-/// The frame's projection with depth from -1 to 1, which the handles' library expects.
-fn projection(frame: &CameraFrame) -> mint::RowMatrix4<f64> {
+/// The frame's projection with depth from -1 to 1, which the handles' library expects, for handles so far away.
+fn projection(frame: &CameraFrame, distance_m: f64) -> mint::RowMatrix4<f64> {
     let (x, y) = (1.0 / f64::from(frame.half_extent.x), 1.0 / f64::from(frame.half_extent.y));
-    let (a, b) = ((FAR_M + NEAR_M) / (NEAR_M - FAR_M), 2.0 * FAR_M * NEAR_M / (NEAR_M - FAR_M));
+    let far = 2.0 * distance_m + 100.0;
+    let (a, b) = ((far + NEAR_M) / (NEAR_M - far), 2.0 * far * NEAR_M / (NEAR_M - far));
     [[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, a, b], [0.0, 0.0, -1.0, 0.0]].into()
 }
 
@@ -311,13 +295,14 @@ mod tests {
     use super::*;
     use crate::editor::catalog;
     use crate::editor::studio_view::StudioView;
+    use crate::scene::Aim;
 
     fn scene_with_light() -> (Scene, Item) {
         let mut scene = Scene::default();
         let mut light = catalog::light_named("Softbox 60 x 90").unwrap();
         light.position = Vec3::new(0.0, 1.1, 0.0);
         light.aim = Aim::Point(Vec3::new(0.0, 1.1, -2.0));
-        let item = Action::AddLight(Box::new(light)).apply(&mut scene).unwrap().unwrap();
+        let item = Action::AddLight(Box::new(light)).apply(&mut scene).unwrap()[0];
         (scene, item)
     }
 
@@ -325,16 +310,17 @@ mod tests {
     fn dragging_the_middle_of_the_handles_moves_a_light_with_the_pointer() {
         let (mut scene, item) = scene_with_light();
         let view = StudioView::default();
-        let rect = Rect::from_min_size(egui::pos2(100.0, 50.0), egui::vec2(800.0, 600.0));
+        let rect = Rect::from_min_size(egui::pos2(100.0, 50.0), vec2(800.0, 600.0));
         let frame = view.frame(800.0 / 600.0);
         let mut handles = Handles::default();
         let start = rect.center();
         let mut pointer = Pointer { position: start, is_over: true, pressed: false, down: false, snap: false };
-        handles.update(&scene, item, Handle::Move, &frame, rect, pointer);
+        let view = HandleView { frame: &frame, rect };
+        handles.update(&scene, &[item], Handle::Move, view, pointer, &[]);
         assert!(handles.wants_pointer(), "the pointer is on the middle handle");
         for (pressed, x) in [(true, 0.0), (false, 30.0), (false, 60.0)] {
-            pointer = Pointer { position: start + egui::vec2(x, 0.0), pressed, down: true, ..pointer };
-            if let Some(action) = handles.update(&scene, item, Handle::Move, &frame, rect, pointer) {
+            pointer = Pointer { position: start + vec2(x, 0.0), pressed, down: true, ..pointer };
+            if let Some(action) = handles.update(&scene, &[item], Handle::Move, view, pointer, &[]) {
                 action.apply(&mut scene).unwrap();
             }
         }
@@ -343,21 +329,18 @@ mod tests {
     }
 
     #[test]
-    fn an_aim_and_a_roll_make_the_same_frame() {
-        let rotation = Quat::from_euler(glam::EulerRot::YXZ, 0.7, -0.4, 0.3);
-        let (aim, roll) = aim_of(Vec3::ONE, rotation, 2.0);
-        let Aim::Point(target) = aim else { unreachable!() };
-        let frame = math::look_at(Vec3::ONE, target, roll);
-        assert!(Quat::from_mat3a(&frame.matrix3).angle_between(rotation) < 1e-3);
-    }
-
-    #[test]
-    fn sizes_stay_sane() {
-        let mut panel = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
-        resize(&mut panel, Vec3::new(2.0, 1.0, 1.0));
-        assert_eq!(panel, Emitter::RectPanel { width_m: 1.2, height_m: 0.9 });
-        let mut spot = Emitter::Spot { inner_deg: 40.0, outer_deg: 70.0 };
-        resize(&mut spot, Vec3::splat(50.0));
-        assert!(matches!(spot, Emitter::Spot { outer_deg, .. } if outer_deg < 180.0));
+    fn a_typed_number_goes_the_way_of_the_drag() {
+        let (scene, item) = scene_with_light();
+        let held = Held::new(&scene, &[item], Handle::Move).unwrap();
+        let mut drag = Drag { held, change: Change::Move(Vec3::new(0.0, -0.2, 0.0)), typed: TypedNumber::default() };
+        assert_eq!(drag.told(), drag.change);
+        drag.typed.take(&[Event::Text("1.5".into())]);
+        assert_eq!(drag.told(), Change::Move(Vec3::new(0.0, -1.5, 0.0)));
+        drag.change = Change::Turn(Vec3::Y, -0.1);
+        assert_eq!(drag.told(), Change::Turn(Vec3::Y, -1.5_f32.to_radians()));
+        drag.change = Change::Size(Vec3::new(1.0, 0.8, 1.0));
+        assert_eq!(drag.told(), Change::Size(Vec3::new(1.0, 1.5, 1.0)));
+        drag.change = Change::Size(Vec3::splat(1.2));
+        assert_eq!(drag.told(), Change::Size(Vec3::splat(1.5)));
     }
 }

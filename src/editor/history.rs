@@ -1,18 +1,18 @@
 //! Undo and redo as snapshots: a scene is plain data and small, meshes and pictures live in the shared assets.
 
-use super::action::Item;
+use super::item::Item;
 use crate::scene::Scene;
 
 /// Steps kept; the oldest are dropped.
 const CAPACITY: usize = 300;
 
 /// Tells the steps of one drag: the press of the mouse that began it, and what it changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MergeKey {
     /// Number of the press.
     pub gesture: u64,
     /// What is dragged.
-    pub target: Item,
+    pub targets: Vec<Item>,
 }
 
 #[derive(Clone, Debug)]
@@ -61,6 +61,16 @@ impl History {
         Some(step.label)
     }
 
+    /// Takes the last step back for good if it belongs to this press; whether it did.
+    pub fn abandon(&mut self, scene: &mut Scene, gesture: u64) -> bool {
+        let belongs = self.undo.last().and_then(|step| step.merge.as_ref()).is_some_and(|key| key.gesture == gesture);
+        if belongs {
+            self.undo(scene);
+            self.redo.pop();
+        }
+        belongs
+    }
+
     /// What undo would take back.
     pub fn undo_label(&self) -> Option<&str> {
         self.undo.last().map(|step| step.label.as_str())
@@ -102,7 +112,7 @@ mod tests {
     #[test]
     fn one_drag_is_one_step_and_the_next_drag_another() {
         let mut history = History::default();
-        let key = |gesture, target| Some(MergeKey { gesture, target });
+        let key = |gesture, target| Some(MergeKey { gesture, targets: vec![target] });
         for name in ["a", "b", "c"] {
             history.record(named(name), "drag".into(), key(1, Item::Camera));
         }

@@ -1,6 +1,7 @@
 //! What egui paints over the preview: the picture's frame, the lights' names, the selected light's distance.
 
-use super::action::Item;
+use super::item::Item;
+use super::selection::Selection;
 use super::theme;
 use crate::scene::{CameraFrame, Light, Scene};
 use eframe::egui::{Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, vec2};
@@ -63,57 +64,78 @@ pub fn paint_picture_frame(painter: &Painter, view: Rect, picture: Rect) {
     painter.rect_stroke(picture, CornerRadius::ZERO, Stroke::new(1.0, Color32::from_gray(200)), StrokeKind::Outside);
 }
 
-/// The names of the lights (all of them, or the selected one's) beside them, and how far the selected one is from what it aims at.
+/// The names of the lights (all of them, or the selected ones') beside them, and with `aims` how far the selected ones are
+/// from what they aim at.
 pub fn paint_labels(
     painter: &Painter,
     scene: &Scene,
     frame: &CameraFrame,
     rect: Rect,
-    selection: Option<Item>,
+    selection: &Selection,
     all: bool,
+    aims: bool,
 ) {
     for light in scene.lights.iter().filter(|light| !light.emitter.is_infinite()) {
-        let selected = selection == Some(Item::Light(light.id));
+        let selected = selection.contains(Item::Light(light.id));
         if !(all || selected) {
             continue;
         }
-        paint_light_label(painter, frame, rect, light, selected);
-        if selected {
+        // One selected light's handles need the room to its right.
+        paint_light_label(painter, frame, rect, light, selected, selection.len() == 1 && selected);
+        if selected && aims {
             paint_aim(painter, scene, frame, rect, light);
         }
     }
 }
 
-fn paint_light_label(painter: &Painter, frame: &CameraFrame, rect: Rect, light: &Light, selected: bool) {
+fn paint_light_label(
+    painter: &Painter,
+    frame: &CameraFrame,
+    rect: Rect,
+    light: &Light,
+    selected: bool,
+    has_handles: bool,
+) {
     let Some(place) = place_of(frame, rect, light.position) else { return };
     let color = if light.on { theme::role_color(light.role) } else { Color32::from_gray(110) };
     painter.circle_filled(place, if selected { 4.5 } else { 3.5 }, color);
     painter.circle_stroke(place, if selected { 4.5 } else { 3.5 }, Stroke::new(1.0, Color32::from_black_alpha(160)));
-    let text = if light.on { light.name.clone() } else { format!("{} (off)", light.name) };
-    // The selected light's handles need the room to its right.
-    let (offset, align) =
-        if selected { (vec2(0.0, -84.0), Align2::CENTER_BOTTOM) } else { (vec2(9.0, 0.0), Align2::LEFT_CENTER) };
+    let state = match (light.on, light.muted, light.locked) {
+        (true, _, false) => "",
+        (true, _, true) => " (locked)",
+        (false, true, _) => " (muted)",
+        (false, false, _) => " (off)",
+    };
+    let text = format!("{}{state}", light.name);
+    let (offset, align) = label_place(has_handles);
     text_with_shadow(painter, place + offset, align, &text, color);
+}
+
+/// Where a light's name stands from the light: over its handles where it has them.
+pub fn label_place(has_handles: bool) -> (eframe::egui::Vec2, Align2) {
+    if has_handles { (vec2(0.0, -84.0), Align2::CENTER_BOTTOM) } else { (vec2(9.0, 0.0), Align2::LEFT_CENTER) }
 }
 
 fn paint_aim(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect, light: &Light) {
     let target = scene.aim_point(&light.aim, light.position);
+    let color = theme::role_color(light.role);
+    paint_aim_line(painter, frame, rect, light.position, target, color);
     let (Some(from), Some(to)) = (place_of(frame, rect, light.position), place_of(frame, rect, target)) else { return };
-    let color = theme::role_color(light.role).gamma_multiply(0.7);
-    painter.extend(Shape::dashed_line(&[from, to], Stroke::new(1.0, color), 6.0, 4.0));
-    painter.circle_stroke(to, 4.0, Stroke::new(1.0, color));
-    let distance = (target - light.position).length();
-    text_with_shadow(
-        painter,
-        from.lerp(to, 0.6) + vec2(8.0, 0.0),
-        Align2::LEFT_CENTER,
-        &format!("{distance:.2} m"),
-        color,
-    );
+    let text = format!("{:.2} m", (target - light.position).length());
+    let place = from.lerp(to, 0.6) + vec2(8.0, 0.0);
+    text_with_shadow(painter, place, Align2::LEFT_CENTER, &text, color.gamma_multiply(0.7));
+}
+
+/// A dashed line from a light or the camera to what it is aimed at.
+pub fn paint_aim_line(painter: &Painter, frame: &CameraFrame, rect: Rect, from: Vec3, target: Vec3, color: Color32) {
+    let (Some(from), Some(to)) = (place_of(frame, rect, from), place_of(frame, rect, target)) else { return };
+    let stroke = Stroke::new(1.0, color.gamma_multiply(0.7));
+    painter.extend(Shape::dashed_line(&[from, to], stroke, 6.0, 4.0));
+    painter.circle_stroke(to, 4.0, stroke);
 }
 
 /// Small text that stays readable over light and dark.
-fn text_with_shadow(painter: &Painter, place: Pos2, align: Align2, text: &str, color: Color32) {
+pub fn text_with_shadow(painter: &Painter, place: Pos2, align: Align2, text: &str, color: Color32) {
     let font = FontId::proportional(11.5);
     painter.text(place + vec2(1.0, 1.0), align, text, font.clone(), Color32::from_black_alpha(200));
     painter.text(place, align, text, font, color);

@@ -1,6 +1,6 @@
 //! Where a new thing goes, so that it is in the picture and useful without further ado.
 
-use super::action::Item;
+use super::item::Item;
 use super::readout;
 use crate::mannequin;
 use crate::scene::{Aim, Assets, Light, Object, ObjectId, Role, Scene, Shape};

@@ -1,13 +1,15 @@
 //! Files in and out of the window: open, save, import, export, drops, and the questions on the way.
 
-use super::action::{Action, Item};
+use super::action::Action;
 use super::app::App;
 use super::command::{Centre, Command};
 use super::dialogs::{Answer, FileDialogs, Purpose};
 use super::document::Document;
 use super::files::{self, Done, Imported, Opened, Source};
+use super::item::Item;
 use super::panels::prompts::{self, GuardAnswer, PathAnswer, PathPrompt};
 use super::placement;
+use super::selection::Selection;
 use crate::io::PictureInfo;
 use crate::raytrace::{Method, Settings};
 use crate::scene::{Assets, Material, MaterialPreset, Object, ObjectId, Shape, Transform};
@@ -243,11 +245,12 @@ impl App {
         }
         self.rendering.clear();
         self.document = Document::new(opened.scene, opened.assets, opened.path);
-        self.selection = None;
-        if self.centre == Centre::Picture {
+        self.selection = Selection::default();
+        self.viewport.swing = None;
+        if matches!(self.centre, Centre::Picture | Centre::Light(_)) {
             self.centre = Centre::Studio;
         }
-        self.viewport.frame_selection(&self.document, None);
+        self.viewport.frame_selection(&self.document, &self.selection);
         ctx.request_repaint();
     }
 
@@ -272,7 +275,7 @@ impl App {
             visible: true,
             locked: false,
         };
-        placement::place_object(self.document.scene(), self.selection, &mut object);
+        placement::place_object(self.document.scene(), self.selection.last(), &mut object);
         self.apply(Action::AddObject(Box::new(object)), None);
         warnings.into_iter().for_each(|warning| self.toasts.warning(warning));
     }

@@ -1,8 +1,9 @@
-//! The free view of the studio: an eye that orbits, pans, zooms and flies.
+//! The free view of the studio: an eye that orbits, pans, zooms and flies, and the views from the room's axes.
 
 use crate::math;
 use crate::scene::CameraFrame;
-use glam::{Quat, Vec2, Vec3};
+use glam::{Affine3A, Quat, Vec2, Vec3};
+use std::f32::consts::{FRAC_PI_2, PI};
 
 /// Half the vertical field of view, as a tangent: a 35 mm lens on full frame.
 const HALF_HEIGHT: f32 = 12.0 / 35.0;
@@ -10,6 +11,69 @@ const HALF_HEIGHT: f32 = 12.0 / 35.0;
 const ORBIT_SPEED: f32 = 0.008;
 /// Steepest look up or down, radians: straight would make left and right meaningless.
 const STEEPEST: f32 = 1.55;
+
+/// Where the eye of a parallel view stands, metres from its target: so far away, with a lens to match, that what lies
+/// 3 m before or behind the target shifts by less than a thousandth of its distance from the middle (0.7 pixels at the
+/// edge of 900), while single precision still tells a tenth of a millimetre.
+const PARALLEL_EYE_M: f32 = 2000.0;
+
+/// A side of the room that the studio is looked at from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// From above; the back of the room is up.
+    Top,
+    /// From the front (+Z).
+    Front,
+    /// From the right (+X).
+    Right,
+    /// From the back.
+    Back,
+    /// From the left.
+    Left,
+    /// From below.
+    Bottom,
+}
+
+impl Side {
+    /// All of them; the three with a key come first.
+    pub const ALL: [Side; 6] = [Side::Top, Side::Front, Side::Right, Side::Back, Side::Left, Side::Bottom];
+
+    /// Its name.
+    pub fn label(self) -> &'static str {
+        match self {
+            Side::Top => "Top",
+            Side::Front => "Front",
+            Side::Right => "Right side",
+            Side::Back => "Back",
+            Side::Left => "Left side",
+            Side::Bottom => "Below",
+        }
+    }
+
+    /// Unit direction from the target to the eye.
+    pub fn away(self) -> Vec3 {
+        match self {
+            Side::Top => Vec3::Y,
+            Side::Front => Vec3::Z,
+            Side::Right => Vec3::X,
+            Side::Back => Vec3::NEG_Z,
+            Side::Left => Vec3::NEG_X,
+            Side::Bottom => Vec3::NEG_Y,
+        }
+    }
+
+    /// Yaw and pitch, radians.
+    fn angles(self) -> (f32, f32) {
+        match self {
+            Side::Top => (0.0, FRAC_PI_2),
+            Side::Front => (0.0, 0.0),
+            Side::Right => (FRAC_PI_2, 0.0),
+            Side::Back => (PI, 0.0),
+            Side::Left => (-FRAC_PI_2, 0.0),
+            Side::Bottom => (0.0, -FRAC_PI_2),
+        }
+    }
+}
 
 /// An eye on a sphere about a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,11 +86,22 @@ pub struct StudioView {
     pub pitch_rad: f32,
     /// From eye to target, metres.
     pub distance_m: f32,
+    /// Without perspective: what is equally long looks equally long, near or far.
+    pub parallel: bool,
+    /// The side it looks from; none when it was turned from there.
+    pub side: Option<Side>,
 }
 
 impl Default for StudioView {
     fn default() -> Self {
-        StudioView { target: Vec3::new(0.0, 1.1, 0.0), yaw_rad: 0.7, pitch_rad: 0.3, distance_m: 5.5 }
+        StudioView {
+            target: Vec3::new(0.0, 1.1, 0.0),
+            yaw_rad: 0.7,
+            pitch_rad: 0.3,
+            distance_m: 5.5,
+            parallel: false,
+            side: None,
+        }
     }
 }
 
@@ -39,8 +114,9 @@ impl StudioView {
         StudioView {
             target,
             yaw_rad: away.x.atan2(away.z),
-            pitch_rad: (std::f32::consts::FRAC_PI_2 - math::safe_acos(up)).clamp(-STEEPEST, STEEPEST),
+            pitch_rad: (FRAC_PI_2 - math::safe_acos(up)).clamp(-STEEPEST, STEEPEST),
             distance_m,
+            ..StudioView::default()
         }
     }
 
@@ -55,22 +131,69 @@ impl StudioView {
         self.target + self.away() * self.distance_m
     }
 
+    /// Half of what a view shows from bottom to top at its target, metres.
+    pub fn half_height_m(&self) -> f32 {
+        HALF_HEIGHT * self.distance_m
+    }
+
+    /// World from view: columns right, up, back. Unlike a frame made by looking at a point it has a right even straight
+    /// up and down.
+    fn rotation(&self) -> Quat {
+        Quat::from_rotation_y(self.yaw_rad) * Quat::from_rotation_x(-self.pitch_rad)
+    }
+
     /// The frame for a view of `aspect` (width / height).
     pub fn frame(&self, aspect: f32) -> CameraFrame {
+        let (eye_m, half_height) = match self.parallel {
+            false => (self.distance_m, HALF_HEIGHT),
+            true => (PARALLEL_EYE_M, self.half_height_m() / PARALLEL_EYE_M),
+        };
+        let eye = self.target + self.away() * eye_m;
         CameraFrame {
-            world_from_camera: math::look_at(self.eye(), self.target, 0.0),
-            half_extent: Vec2::new(HALF_HEIGHT * aspect.max(1e-3), HALF_HEIGHT),
+            world_from_camera: Affine3A::from_rotation_translation(self.rotation(), eye),
+            half_extent: Vec2::new(half_height * aspect.max(1e-3), half_height),
         }
+    }
+
+    /// Looks from a side, at the same scale, without perspective.
+    pub fn look_from(&mut self, side: Side) {
+        (self.yaw_rad, self.pitch_rad) = side.angles();
+        (self.parallel, self.side) = (true, Some(side));
+    }
+
+    /// Perspective or none; from a side it goes back to perspective and keeps the direction.
+    pub fn toggle_parallel(&mut self) {
+        (self.parallel, self.side) = (!self.parallel, None);
     }
 
     /// Turns about the target, by mouse travel in points.
     pub fn orbit(&mut self, travel: Vec2) {
-        self.yaw_rad -= travel.x * ORBIT_SPEED;
-        self.pitch_rad = (self.pitch_rad + travel.y * ORBIT_SPEED).clamp(-STEEPEST, STEEPEST);
+        self.orbit_about(self.target, travel);
     }
 
-    /// Looks around from where the eye is.
-    pub fn look(&mut self, travel: Vec2) {
+    /// Turns about a point, which stays where it shows. From a side it goes back to perspective.
+    pub fn orbit_about(&mut self, pivot: Vec3, travel: Vec2) {
+        if travel == Vec2::ZERO {
+            return;
+        }
+        if self.side.take().is_some() {
+            self.parallel = false;
+        }
+        let before = self.rotation();
+        self.yaw_rad -= travel.x * ORBIT_SPEED;
+        self.pitch_rad = (self.pitch_rad + travel.y * ORBIT_SPEED).clamp(-STEEPEST, STEEPEST);
+        let turn = self.rotation() * before.inverse();
+        if pivot != self.target {
+            self.target = pivot + turn * (self.target - pivot);
+        }
+    }
+
+    /// Looks around from where the eye is; from a side, shifts instead.
+    pub fn look(&mut self, travel: Vec2, view_height: f32) {
+        if self.side.is_some() {
+            self.pan(travel, view_height);
+            return;
+        }
         let eye = self.eye();
         self.orbit(0.5 * travel);
         self.target = eye - self.away() * self.distance_m;
@@ -78,9 +201,8 @@ impl StudioView {
 
     /// Shifts sideways and up, so that what lies at the target follows the mouse. Travel and height in points.
     pub fn pan(&mut self, travel: Vec2, view_height: f32) {
-        let metres = 2.0 * HALF_HEIGHT * self.distance_m / view_height.max(1.0);
-        let frame = self.frame(1.0).world_from_camera.matrix3;
-        self.target += (Vec3::from(frame.y_axis) * travel.y - Vec3::from(frame.x_axis) * travel.x) * metres;
+        let metres = 2.0 * self.half_height_m() / view_height.max(1.0);
+        self.target += self.rotation() * Vec3::new(-travel.x, travel.y, 0.0) * metres;
     }
 
     /// Goes closer (positive) or farther; 1 is about a notch of a wheel.
@@ -88,8 +210,13 @@ impl StudioView {
         self.distance_m = (self.distance_m * (-0.12 * notches).exp()).clamp(0.05, 200.0);
     }
 
-    /// Flies: right, up and ahead in metres.
+    /// Flies: right, up and ahead in metres. A parallel view knows no ahead: there it is up, too.
     pub fn fly(&mut self, right_up_ahead: Vec3) {
+        if self.parallel {
+            let up = right_up_ahead.y + right_up_ahead.z;
+            self.target += self.rotation() * Vec3::new(right_up_ahead.x, up, 0.0);
+            return;
+        }
         let level = Quat::from_rotation_y(self.yaw_rad);
         let step = level * Vec3::X * right_up_ahead.x + Vec3::Y * right_up_ahead.y - self.away() * right_up_ahead.z;
         self.target += step;
@@ -119,7 +246,7 @@ mod tests {
     fn looking_around_keeps_the_eye_and_orbiting_keeps_the_target() {
         let mut view = StudioView::default();
         let eye = view.eye();
-        view.look(Vec2::new(40.0, -25.0));
+        view.look(Vec2::new(40.0, -25.0), 600.0);
         assert!((view.eye() - eye).length() < 1e-5);
         let target = view.target;
         view.orbit(Vec2::new(-70.0, 9000.0));
@@ -146,5 +273,43 @@ mod tests {
             let place = view.frame(1.0).project(corner).unwrap();
             assert!(place.min_element() > 0.0 && place.max_element() < 1.0, "{corner} at {place}");
         }
+    }
+
+    #[test]
+    fn from_a_side_equal_lengths_look_equal_near_and_far() {
+        for side in Side::ALL {
+            let mut view = StudioView { target: Vec3::new(0.3, 1.0, -0.4), ..StudioView::default() };
+            view.look_from(side);
+            let frame = view.frame(1.5);
+            assert!((frame.forward() + side.away()).length() < 1e-6, "{side:?} looks along {}", frame.forward());
+            let axes = frame.world_from_camera.matrix3;
+            let corner = Vec3::from(axes.x_axis) + Vec3::from(axes.y_axis);
+            let at = |depth: f32| frame.project(view.target + corner + side.away() * depth).unwrap() - 0.5;
+            // A shift of under a pixel in a view of 900.
+            assert!((at(3.0) - at(-3.0)).length() * 900.0 < 1.0, "{side:?}: {} and {}", at(3.0), at(-3.0));
+            let expected = Vec2::new(1.0 / 1.5, -1.0) / (2.0 * view.half_height_m());
+            assert!((at(0.0) - expected).length() < 1e-4, "{side:?}: a metre is a metre, {} not {expected}", at(0.0));
+        }
+    }
+
+    #[test]
+    fn the_plan_has_the_back_of_the_room_up_and_the_right_on_the_right() {
+        let mut view = StudioView::default();
+        view.look_from(Side::Top);
+        let axes = view.frame(1.0).world_from_camera.matrix3;
+        assert!((Vec3::from(axes.x_axis) - Vec3::X).length() < 1e-6);
+        assert!((Vec3::from(axes.y_axis) - Vec3::NEG_Z).length() < 1e-6);
+        view.orbit(Vec2::new(1.0, 0.0));
+        assert_eq!((view.parallel, view.side), (false, None), "turned, it is a view like any other");
+    }
+
+    #[test]
+    fn what_is_orbited_about_stays_where_it_shows() {
+        let mut view = StudioView::default();
+        let pivot = Vec3::new(0.8, 1.7, -0.5);
+        let before = view.frame(1.5).project(pivot).unwrap();
+        view.orbit_about(pivot, Vec2::new(130.0, -40.0));
+        let after = view.frame(1.5).project(pivot).unwrap();
+        assert!((after - before).length() < 1e-4, "{before} became {after}");
     }
 }

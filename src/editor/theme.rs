@@ -5,6 +5,8 @@ use eframe::egui::{self, Color32, CornerRadius, FontFamily, FontId, Stroke, Text
 
 /// The one colour that asks for attention: selection, render button.
 pub const ACCENT: Color32 = Color32::from_rgb(232, 166, 60);
+/// What is silenced for now.
+pub const MUTED: Color32 = Color32::from_rgb(226, 104, 92);
 /// Something went well.
 pub const GOOD: Color32 = Color32::from_rgb(120, 176, 120);
 /// Something went wrong.

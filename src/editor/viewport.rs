@@ -1,20 +1,24 @@
 //! The middle of the window: the live preview with navigation, selection and handles.
 
-use super::action::{Action, Item};
+use super::action::Action;
+use super::axis_cross::{self, axis_cross_ui};
+use super::bounds::bounds;
 use super::command::{Centre, Command, Handle};
 use super::document::Document;
-use super::gizmo::{Handles, Pointer};
-use super::overlay;
+use super::gizmo::{HandleView, Handles, Pointer};
+use super::item::Item;
+use super::navigation::{camera_as_view, light_as_view, moved_camera, moved_light, steer};
+use super::picking::Band;
 use super::preview_host::PreviewHost;
+use super::selection::{Selection, centre};
 use super::studio_view::StudioView;
-use super::theme;
+use super::swing_drag::SwingDrag;
+use super::{light_view, overlay, plan, theme};
 use crate::preview::{Overlay, Pick};
-use crate::scene::{Aim, Camera, CameraFrame, Scene, Shape};
-use eframe::egui::{self, EventFilter, Key, PointerButton, Pos2, Rect, Response, Sense, Ui, vec2};
+use crate::scene::{Camera, CameraFrame, Scene};
+use eframe::egui::{self, EventFilter, Pos2, Rect, Response, Sense, Ui, vec2};
 use glam::{Vec2, Vec3};
 
-/// Speed of flying, metres a second; four times with Shift.
-const FLY_M_S: f32 = 1.8;
 /// Room around the picture's frame in the camera view.
 const FRAME_MARGIN: f32 = 0.92;
 
@@ -24,8 +28,8 @@ pub struct ViewportInput<'a> {
     /// The open studio.
     pub document: &'a Document,
     /// What is selected.
-    pub selection: Option<Item>,
-    /// Studio or camera view.
+    pub selection: &'a Selection,
+    /// What is looked through: the studio's eye, the camera or a light.
     pub centre: Centre,
     /// The handles to show.
     pub handles: Handle,
@@ -40,15 +44,38 @@ pub struct Viewport {
     pub view: StudioView,
     /// Whether navigation in the camera view moves the camera.
     pub camera_follows: bool,
+    /// Whether handles go in steps; Ctrl turns it round.
+    pub snap: bool,
+    /// The light that is placed by its highlight or its light, if one is.
+    pub swing: Option<SwingDrag>,
     /// The live preview.
     pub preview: PreviewHost,
     handles: Handles,
+    band: Option<Band>,
 }
 
 impl Viewport {
     /// A viewport with a preview to come.
     pub fn new(preview: PreviewHost) -> Self {
-        Viewport { view: StudioView::default(), camera_follows: false, preview, handles: Handles::default() }
+        Viewport {
+            view: StudioView::default(),
+            camera_follows: false,
+            snap: false,
+            swing: None,
+            preview,
+            handles: Handles::default(),
+            band: None,
+        }
+    }
+
+    /// Whether handles are dragged, so that keys are numbers and Esc gives the drag up.
+    pub fn is_dragging(&self) -> bool {
+        self.handles.is_dragging()
+    }
+
+    /// Ends a drag of the handles; the button may still be held.
+    pub fn give_up_drag(&mut self) {
+        self.handles.give_up();
     }
 
     /// Draws it and takes mouse and keys in.
@@ -59,22 +86,43 @@ impl Viewport {
         self.navigate(ui, &response, input, out);
         let scene = input.document.scene();
         let (frame, picture) = self.frame(scene, input, rect);
-        self.handle_drag(ui, &response, rect, &frame, input, out);
-        self.click(ui, &response, rect, input, out);
+        // Another choice ends what was about the light.
+        let chosen = input.selection.lights().last().copied();
+        self.swing = self.swing.take().filter(|swing| Some(swing.placing().light) == chosen);
+        if let Some(swing) = &mut self.swing {
+            self.handles.reset();
+            self.band = None;
+            if !swing.drag(ui, &response, input.document, &frame, out) {
+                self.swing = None;
+            }
+        } else {
+            self.handle_drag(ui, &response, rect, &frame, input, out);
+            self.band(ui, &response, &frame, input, out);
+            self.click(ui, &response, &frame, input, out);
+        }
         self.paint(ui, rect, frame, picture, input);
+        if input.centre == Centre::Studio {
+            axis_cross_ui(ui, rect, &self.view, &frame, out);
+        }
     }
 
     /// What the view frames, and where the picture's frame lies in it (camera view only).
     fn frame(&self, scene: &Scene, input: ViewportInput<'_>, rect: Rect) -> (CameraFrame, Option<Rect>) {
         let aspect = rect.width() / rect.height();
-        if input.centre != Centre::Camera {
-            return (self.view.frame(aspect), None);
+        match input.centre {
+            Centre::Camera => {
+                let mut frame = scene.camera_frame(input.picture_aspect);
+                let height = (rect.width() / input.picture_aspect).min(rect.height()) * FRAME_MARGIN;
+                let picture = Rect::from_center_size(rect.center(), vec2(height * input.picture_aspect, height));
+                frame.half_extent *= Vec2::new(rect.width() / picture.width(), rect.height() / picture.height());
+                (frame, Some(picture))
+            }
+            Centre::Light(id) => {
+                let frame = scene.light(id).map(|light| light_view::frame(scene, light, aspect));
+                (frame.unwrap_or_else(|| self.view.frame(aspect)), None)
+            }
+            Centre::Studio | Centre::Picture => (self.view.frame(aspect), None),
         }
-        let mut frame = scene.camera_frame(input.picture_aspect);
-        let height = (rect.width() / input.picture_aspect).min(rect.height()) * FRAME_MARGIN;
-        let picture = Rect::from_center_size(rect.center(), vec2(height * input.picture_aspect, height));
-        frame.half_extent *= Vec2::new(rect.width() / picture.width(), rect.height() / picture.height());
-        (frame, Some(picture))
     }
 
     fn navigate(&mut self, ui: &Ui, response: &Response, input: ViewportInput<'_>, out: &mut Vec<Command>) {
@@ -82,56 +130,33 @@ impl Viewport {
             response.request_focus();
         }
         if response.has_focus() {
-            let filter = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
+            // Esc is a command of its own here, not the way to leave the view.
+            let filter =
+                EventFilter { horizontal_arrows: true, vertical_arrows: true, escape: true, ..EventFilter::default() };
             ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
         }
         let scene = input.document.scene();
-        let in_camera = input.centre == Centre::Camera;
-        let mut view = if in_camera { camera_as_view(scene) } else { self.view };
+        let light = if let Centre::Light(id) = input.centre { scene.light(id) } else { None };
+        let (mut view, pivot) = match (input.centre, light) {
+            (Centre::Camera, _) => (camera_as_view(scene), None),
+            (_, Some(light)) => (light_as_view(scene, light), None),
+            _ => (self.view, input.selection.centre(scene)),
+        };
         let before = view;
-        let kept_aim = self.steer(ui, response, &mut view);
+        let kept_aim = steer(ui, response, &mut view, pivot, self.handles.wants_pointer());
         if view == before {
             return;
         }
-        if in_camera && self.camera_follows {
-            let action = Action::SetCamera(Box::new(moved_camera(scene, &view, kept_aim)));
-            out.push(Command::Do(action));
-            return;
+        if let Some(light) = light {
+            out.push(Command::Do(Action::SetLight(Box::new(moved_light(light, &view, kept_aim)))));
+        } else if input.centre == Centre::Camera && self.camera_follows {
+            out.push(Command::Do(Action::SetCamera(Box::new(moved_camera(scene, &view, kept_aim)))));
+        } else {
+            if input.centre == Centre::Camera {
+                out.push(Command::Show(Centre::Studio));
+            }
+            self.view = view;
         }
-        if in_camera {
-            out.push(Command::Show(Centre::Studio));
-        }
-        self.view = view;
-    }
-
-    /// Mouse and keys to a new view. True when the target stayed what it was (orbit, zoom).
-    fn steer(&self, ui: &Ui, response: &Response, view: &mut StudioView) -> bool {
-        let modifiers = ui.input(|i| i.modifiers);
-        let travel = Vec2::new(response.drag_delta().x, response.drag_delta().y);
-        let middle = response.dragged_by(PointerButton::Middle)
-            || (response.dragged_by(PointerButton::Primary) && modifiers.alt && !self.handles.wants_pointer());
-        let mut keeps_target = true;
-        if middle && modifiers.shift {
-            view.pan(travel, response.rect.height());
-            keeps_target = false;
-        } else if middle && modifiers.command {
-            view.zoom(-travel.y * 0.05);
-        } else if middle {
-            view.orbit(travel);
-        } else if response.dragged_by(PointerButton::Secondary) {
-            view.look(travel);
-            keeps_target = false;
-        }
-        if response.contains_pointer() {
-            let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
-            view.zoom(scroll * 0.02 + pinch.ln() * 8.0);
-        }
-        let flown = fly_step(ui, response);
-        if flown != Vec3::ZERO {
-            view.fly(flown);
-            keeps_target = false;
-        }
-        keeps_target
     }
 
     fn handle_drag(
@@ -143,51 +168,69 @@ impl Viewport {
         input: ViewportInput<'_>,
         out: &mut Vec<Command>,
     ) {
-        // From the camera's own view its handles would sit on the lens.
-        let held = input.selection.filter(|item| input.centre != Centre::Camera || *item != Item::Camera);
-        let (Some(item), Some(position)) = (held, ui.input(|i| i.pointer.latest_pos())) else {
+        let scene = input.document.scene();
+        let items = handled(scene, input);
+        let Some(position) = ui.input(|i| i.pointer.latest_pos()).filter(|_| !items.is_empty()) else {
             self.handles.reset();
             return;
         };
+        let on_cross = input.centre == Centre::Studio && axis_cross::place(rect).contains(position);
         let pointer = ui.input(|i| Pointer {
             position,
-            is_over: response.contains_pointer() && !i.modifiers.alt,
+            is_over: response.contains_pointer() && !on_cross && !i.modifiers.alt,
             pressed: i.pointer.primary_pressed(),
             down: i.pointer.primary_down(),
-            snap: i.modifiers.command,
+            snap: i.modifiers.command != self.snap,
         });
-        let scene = input.document.scene();
-        if let Some(action) = self.handles.update(scene, item, input.handles, frame, rect, pointer) {
+        let keys = if self.handles.is_dragging() { ui.input(|i| i.events.clone()) } else { Vec::new() };
+        let view = HandleView { frame, rect };
+        if let Some(action) = self.handles.update(scene, &items, input.handles, view, pointer, &keys) {
             out.push(Command::Do(action));
-        }
-        if !item.exists_in(scene) {
-            self.handles.reset();
         }
     }
 
-    fn click(&self, ui: &Ui, response: &Response, rect: Rect, input: ViewportInput<'_>, out: &mut Vec<Command>) {
-        let Some(position) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return };
-        if self.handles.wants_pointer() || ui.input(|i| i.modifiers.alt) {
-            return;
-        }
-        let scale = ui.pixels_per_point();
-        let pixel = (position - rect.min) * scale;
-        let picked = self.preview.pick((pixel.x.max(0.0) as u32, pixel.y.max(0.0) as u32));
-        let scene = input.document.scene();
-        let (frame, _) = self.frame(scene, input, rect);
-        if overlay::meter_at(scene, &frame, rect, position) {
-            out.push(Command::Select(Some(Item::Meter)));
-            return;
-        }
-        let item = match picked {
-            Some(Pick::Light(id)) => Some(Item::Light(id)),
-            Some(Pick::Camera) => Some(Item::Camera),
-            Some(Pick::Object(id)) => {
-                Some(overlay::light_at(scene, &frame, rect, position).unwrap_or(Item::Object(id)))
+    /// Draws and ends a box that selects what lies in it.
+    fn band(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        frame: &CameraFrame,
+        input: ViewportInput<'_>,
+        out: &mut Vec<Command>,
+    ) {
+        let taken = self.handles.wants_pointer();
+        if let Some(chosen) = Band::drag(&mut self.band, ui, response, taken, frame, input.document) {
+            let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
+            if !adds {
+                out.push(Command::Select(None));
             }
-            None => overlay::light_at(scene, &frame, rect, position),
-        };
-        out.push(Command::Select(item));
+            out.push(Command::SelectAlso(chosen));
+        }
+    }
+
+    fn click(
+        &self,
+        ui: &Ui,
+        response: &Response,
+        frame: &CameraFrame,
+        input: ViewportInput<'_>,
+        out: &mut Vec<Command>,
+    ) {
+        let Some(position) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return };
+        let (alt, adds) = ui.input(|i| (i.modifiers.alt, i.modifiers.shift || i.modifiers.command));
+        if self.handles.wants_pointer() || alt {
+            return;
+        }
+        let rect = response.rect;
+        let pixel = (position - rect.min) * ui.pixels_per_point();
+        let picked = self.preview.pick((pixel.x.max(0.0) as u32, pixel.y.max(0.0) as u32));
+        let item = super::picking::meant(input.document.scene(), frame, rect, position, picked);
+        out.extend(match (item, adds) {
+            (Some(item), true) => Some(Command::ToggleSelected(item)),
+            // A click beside with a key held keeps what was gathered.
+            (None, true) => None,
+            (item, false) => Some(Command::Select(item)),
+        });
     }
 
     fn paint(&mut self, ui: &mut Ui, rect: Rect, frame: CameraFrame, picture: Option<Rect>, input: ViewportInput<'_>) {
@@ -195,7 +238,7 @@ impl Viewport {
         painter.rect_filled(rect, 0.0, theme::SURROUND);
         let pixels = rect.size() * ui.pixels_per_point();
         let size = ((pixels.x.round() as u32).max(1), (pixels.y.round() as u32).max(1));
-        let overlay = overlay_of(input);
+        let overlay = self.overlay_of(input);
         match self.preview.show(ui.ctx(), input.document, frame, size, overlay) {
             Some(texture) => {
                 let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
@@ -203,14 +246,35 @@ impl Viewport {
             }
             None => self.no_preview_ui(ui, rect),
         }
+        let scene = input.document.scene();
         if let Some(picture) = picture {
             overlay::paint_picture_frame(&painter, rect, picture);
         }
-        let all = input.centre == Centre::Studio;
-        overlay::paint_labels(&painter, input.document.scene(), &frame, rect, input.selection, all);
-        overlay::paint_meter(&painter, input.document.scene(), &frame, rect);
-        if input.selection.is_some_and(|item| item.exists_in(input.document.scene())) {
-            self.handles.paint(&painter);
+        let side = self.view.side.filter(|_| input.centre == Centre::Studio);
+        if let Some(side) = side {
+            plan::paint_grid(&painter, &frame, rect, side, self.view.target, self.view.half_height_m());
+            plan::paint_distances(&painter, scene, &frame, rect, input.selection);
+        }
+        if let Centre::Light(id) = input.centre {
+            if let Some(light) = scene.light(id) {
+                light_view::paint(&painter, light, &frame, rect);
+                let text =
+                    format!("Through {}: orbit swings it, the wheel moves it nearer or away.    Esc ends", light.name);
+                light_view::paint_banner(&painter, rect, &text);
+            }
+        } else {
+            let all = input.centre == Centre::Studio;
+            overlay::paint_labels(&painter, scene, &frame, rect, input.selection, all, side.is_none());
+        }
+        overlay::paint_meter(&painter, scene, &frame, rect);
+        if let Some(swing) = &self.swing {
+            swing.paint(&painter, scene, &frame, rect);
+        } else if !handled(scene, input).is_empty() {
+            let pointer = ui.input(|i| i.pointer.latest_pos());
+            self.handles.paint(&painter, pointer);
+        }
+        if let Some(band) = &self.band {
+            band.paint(&painter);
         }
     }
 
@@ -230,7 +294,7 @@ impl Viewport {
     }
 
     /// Brings the selection, or everything that stands in the studio, into view.
-    pub fn frame_selection(&mut self, document: &Document, selection: Option<Item>) {
+    pub fn frame_selection(&mut self, document: &Document, selection: &Selection) {
         let (low, high) = bounds(document, selection).unwrap_or((Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 2.0, 1.0)));
         self.view.frame_box(low, high);
     }
@@ -239,88 +303,44 @@ impl Viewport {
     pub fn camera_from_view(&self, scene: &Scene) -> Camera {
         moved_camera(scene, &self.view, false)
     }
-}
 
-fn overlay_of(input: ViewportInput<'_>) -> Overlay {
-    let studio = input.centre == Centre::Studio;
-    let pick = match input.selection {
-        Some(Item::Object(id)) => Some(Pick::Object(id)),
-        Some(Item::Light(id)) => Some(Pick::Light(id)),
-        Some(Item::Camera) if studio => Some(Pick::Camera),
-        _ => None,
-    };
-    Overlay {
-        grid: studio,
+    fn overlay_of(&self, input: ViewportInput<'_>) -> Overlay {
+        let studio = input.centre == Centre::Studio;
+        let pick = |item: &Item| match *item {
+            Item::Object(id) => Some(Pick::Object(id)),
+            Item::Light(id) => Some(Pick::Light(id)),
+            Item::Camera if studio => Some(Pick::Camera),
+            Item::Camera | Item::Room | Item::Meter => None,
+        };
         // In the camera view the picture counts: only a light that is being worked on shows itself.
-        light_gizmos: studio || matches!(input.selection, Some(Item::Light(_))),
-        camera_gizmo: studio.then_some(input.picture_aspect),
-        selection: pick.into_iter().collect(),
-        void_color: Vec3::splat(0.012),
-        ..Overlay::default()
-    }
-}
-
-/// Metres to fly this frame (right, up, ahead), while keys are held and nothing else listens to them.
-fn fly_step(ui: &Ui, response: &Response) -> Vec3 {
-    let focused = ui.memory(|m| m.focused());
-    let listens = response.has_focus() || (focused.is_none() && response.contains_pointer());
-    if !listens {
-        return Vec3::ZERO;
-    }
-    let (step, dt, fast) = ui.input(|i| {
-        let plain = !i.modifiers.command && !i.modifiers.alt;
-        let held = |a: Key, b: Key| f32::from(u8::from(plain && (i.key_down(a) || i.key_down(b))));
-        let right = held(Key::D, Key::ArrowRight) - held(Key::A, Key::ArrowLeft);
-        let ahead = held(Key::W, Key::ArrowUp) - held(Key::S, Key::ArrowDown);
-        let up = held(Key::E, Key::PageUp) - held(Key::Q, Key::PageDown);
-        (Vec3::new(right, up, ahead), i.stable_dt.min(0.1), i.modifiers.shift)
-    });
-    if step != Vec3::ZERO {
-        ui.ctx().request_repaint();
-    }
-    step * FLY_M_S * dt * if fast { 4.0 } else { 1.0 }
-}
-
-/// The camera's place as a view that can be steered.
-fn camera_as_view(scene: &Scene) -> StudioView {
-    let camera = &scene.camera;
-    StudioView::looking(camera.position, scene.aim_point(&camera.aim, camera.position))
-}
-
-/// The camera where a view looks from. Its aim stays what it is when the target did.
-fn moved_camera(scene: &Scene, view: &StudioView, kept_aim: bool) -> Camera {
-    let mut camera = scene.camera.clone();
-    camera.position = view.eye();
-    if !kept_aim || matches!(camera.aim, Aim::Angles { .. }) {
-        camera.aim = Aim::Point(view.target);
-    }
-    camera
-}
-
-/// The box around the selection, or around all figures, props and lights.
-fn bounds(document: &Document, selection: Option<Item>) -> Option<(Vec3, Vec3)> {
-    let scene = document.scene();
-    let point = |p: Vec3| (p - Vec3::splat(0.4), p + Vec3::splat(0.4));
-    let of_object = |object: &crate::scene::Object| {
-        let (low, high) = document.assets().mesh_of(&object.shape)?.bounds();
-        let world = object.transform.world_from_object();
-        let corners =
-            (0..8).map(|i| Vec3::new([low.x, high.x][i & 1], [low.y, high.y][i >> 1 & 1], [low.z, high.z][i >> 2]));
-        join(corners.map(|corner| world.transform_point3(corner)).map(|p| (p, p)))
-    };
-    match selection {
-        Some(Item::Object(id)) => scene.object(id).and_then(of_object),
-        Some(Item::Light(id)) => scene.light(id).map(|light| point(light.position)),
-        Some(Item::Camera) => Some(point(scene.camera.position)),
-        Some(Item::Meter) => scene.meter.map(|meter| point(meter.position)),
-        Some(Item::Room) | None => {
-            let things = scene.objects.iter().filter(|o| !matches!(o.shape, Shape::Sweep { .. } | Shape::Plane { .. }));
-            let lights = scene.lights.iter().filter(|l| !l.emitter.is_infinite()).map(|l| point(l.position));
-            join(things.filter_map(of_object).chain(lights))
+        let lights = match input.centre {
+            Centre::Studio => true,
+            Centre::Camera => !input.selection.lights().is_empty(),
+            Centre::Light(_) | Centre::Picture => false,
+        };
+        Overlay {
+            // From a side the grid with numbers takes its place.
+            grid: studio && self.view.side.is_none(),
+            light_gizmos: lights,
+            camera_gizmo: studio.then_some(input.picture_aspect),
+            selection: input.selection.items().iter().filter_map(pick).collect(),
+            void_color: Vec3::splat(0.012),
+            ..Overlay::default()
         }
     }
 }
 
-fn join(boxes: impl Iterator<Item = (Vec3, Vec3)>) -> Option<(Vec3, Vec3)> {
-    boxes.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
+/// What of the selection the handles hold: what has a place and is not locked there. From the camera's own view its
+/// handles would sit on the lens, and a light that is looked through is steered by the view.
+fn handled(scene: &Scene, input: ViewportInput<'_>) -> Vec<Item> {
+    let mut items = input.selection.movable(scene);
+    match input.centre {
+        Centre::Camera => items.retain(|item| *item != Item::Camera),
+        Centre::Light(_) => items.clear(),
+        Centre::Studio | Centre::Picture => {}
+    }
+    if centre(&items, scene).is_none() {
+        items.clear();
+    }
+    items
 }

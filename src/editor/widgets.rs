@@ -81,6 +81,7 @@ impl Number {
             .clamp_existing_to_range(false)
             .max_decimals(self.decimals)
             .suffix(self.suffix)
+            .custom_parser(move |text| super::units::parse(text, self.suffix))
             .update_while_editing(false);
         let response = ui.add(field);
         // The field would call itself by its unit; its row names it.
@@ -223,6 +224,39 @@ pub fn lamp_toggle(ui: &mut Ui, on: bool, glow: Color32, name: &str) -> Response
         }
         painter.hline(c.x - 2.0..=c.x + 2.0, c.y + 4.5, stroke);
         painter.hline(c.x - 1.5..=c.x + 1.5, c.y + 6.5, stroke);
+    })
+}
+
+/// A toggle that shows a letter, on a patch of colour when it is on.
+pub fn letter_toggle(ui: &mut Ui, letter: &str, on: bool, color: Color32, name: &str) -> Response {
+    icon_toggle(ui, name, |painter, rect, visuals| {
+        let patch = egui::Rect::from_center_size(rect.center(), vec2(16.0, 16.0));
+        if on {
+            painter.rect_filled(patch, CornerRadius::same(3), color);
+        }
+        let ink = if on { Color32::from_gray(16) } else { visuals.fg_stroke.color.gamma_multiply(0.45) };
+        painter.text(rect.center(), egui::Align2::CENTER_CENTER, letter, egui::FontId::proportional(12.5), ink);
+    })
+}
+
+/// A toggle that shows a padlock, closed or open.
+pub fn lock_toggle(ui: &mut Ui, locked: bool, name: &str) -> Response {
+    icon_toggle(ui, name, |painter, rect, visuals| {
+        let color = visuals.fg_stroke.color.gamma_multiply(if locked { 1.0 } else { 0.3 });
+        let (c, stroke) = (rect.center(), egui::Stroke::new(1.4, color));
+        let body = egui::Rect::from_center_size(c + vec2(0.0, 3.0), vec2(10.0, 7.0));
+        if locked {
+            painter.rect_filled(body, CornerRadius::same(1), color);
+        } else {
+            painter.rect_stroke(body, CornerRadius::same(1), stroke, egui::StrokeKind::Inside);
+        }
+        // The open shackle is lifted and turned to the side.
+        let hinge = if locked { c } else { c + vec2(4.0, -1.5) };
+        let bow = (0..=8).map(|i| egui::emath::Vec2::angled(std::f32::consts::PI * (1.0 + i as f32 / 8.0)));
+        painter.line(bow.map(|v| hinge + vec2(0.0, -2.0) + v * 3.2).collect(), stroke);
+        for side in [-3.2, 3.2] {
+            painter.line_segment([hinge + vec2(side, -2.0), hinge + vec2(side, 0.0)], stroke);
+        }
     })
 }
 

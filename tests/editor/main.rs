@@ -18,8 +18,12 @@ use std::time::{Duration, Instant};
 
 mod files;
 mod panels;
+mod placing;
 mod rendering;
+mod selection;
+mod switches;
 mod viewport;
+mod views;
 
 type Window = Harness<'static, App>;
 
@@ -82,6 +86,39 @@ fn drag(window: &mut Window, button: PointerButton, from: Pos2, to: Pos2) {
     settle(window);
 }
 
+/// Presses at a point and lets go.
+fn click_at(window: &mut Window, at: Pos2, modifiers: Modifiers) {
+    window.event(Event::PointerMoved(at));
+    window.step();
+    window.event(Event::ModifiersChanged(modifiers));
+    window.step();
+    for pressed in [true, false] {
+        window.event(Event::PointerButton { pos: at, button: PointerButton::Primary, pressed, modifiers });
+        window.step();
+    }
+    window.event(Event::ModifiersChanged(Modifiers::NONE));
+    settle(window);
+}
+
+/// Where a point of the studio shows on the screen.
+fn shown_at(window: &Window, point: glam::Vec3) -> Pos2 {
+    let view = window.get_by_label("Viewport").rect();
+    let frame = window.state().viewport().view.frame(view.width() / view.height());
+    let place = frame.project(point).unwrap();
+    view.min + vec2(place.x * view.width(), place.y * view.height())
+}
+
+/// Carries a command out as the window would.
+fn run(window: &mut Window, command: Command) {
+    window.state_mut().run(command, None, &egui::Context::default());
+    settle(window);
+}
+
+fn select(window: &mut Window, items: &[Item]) {
+    run(window, Command::Select(None));
+    run(window, Command::SelectAlso(items.to_vec()));
+}
+
 fn scene(window: &Window) -> &Scene {
     window.state().document().scene()
 }
@@ -129,7 +166,7 @@ fn a_studio_from_the_shelf_to_a_picture_on_disk_and_back() {
 
     click(&mut window, "Add Octa 120");
     assert_eq!(scene(&window).lights.len(), lights + 1);
-    let Some(Item::Light(id)) = window.state().selection() else { panic!("the new light is selected") };
+    let Some(Item::Light(id)) = window.state().selection().last() else { panic!("the new light is selected") };
     window.get_by_label("Position x").set_value_accesskit(-1.5);
     settle(&mut window);
     assert_eq!(scene(&window).light(id).unwrap().position.x, -1.5);
@@ -164,7 +201,7 @@ fn everything_can_be_undone_and_done_again() {
     click(&mut window, "Props");
     click(&mut window, "Add Chrome ball");
     press(&mut window, Modifiers::COMMAND, Key::D);
-    let name = window.state().selection().unwrap().name(scene(&window));
+    let name = window.state().selection().last().unwrap().name(scene(&window));
     click(&mut window, &format!("{name} visible"));
     press(&mut window, Modifiers::NONE, Key::Delete);
     assert_eq!(undo_depth(&window), 5);

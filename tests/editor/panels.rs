@@ -78,7 +78,7 @@ fn a_figure_from_the_list_comes_with_its_mesh_and_is_aimed_at() {
     let mut window = window_with_answers([]);
     click(&mut window, "Figures");
     click(&mut window, "Add Child, standing");
-    let Some(Item::Object(id)) = window.state().selection() else { panic!("the figure is selected") };
+    let Some(Item::Object(id)) = window.state().selection().last() else { panic!("the figure is selected") };
     let shape = scene(&window).object(id).unwrap().shape.clone();
     let mesh = window.state().document().assets().mesh_of(&shape);
     assert!(mesh.is_some_and(|mesh| mesh.triangles.len() > 1000), "{:?}", window.state().toasts());
@@ -143,7 +143,7 @@ fn the_light_meter_reads_in_the_background_follows_the_dial_and_can_be_undone() 
     let reading = |window: &Window| window.state().meter().reading().unwrap().as_ref().unwrap().clone();
     assert!(window.state().meter().reading().is_none());
     click(&mut window, "Light meter");
-    assert_eq!(window.state().selection(), Some(Item::Meter));
+    assert_eq!(window.state().selection().last(), Some(Item::Meter));
     let before = reading(&window);
     let key = before.key().unwrap().clone();
     assert_eq!((before.lights.len(), key.name.as_str()), (scene(&window).lights.len(), "Key softbox"));

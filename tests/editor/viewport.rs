@@ -59,7 +59,7 @@ fn a_click_selects_what_is_seen_there() {
             window.event(Event::PointerButton { pos: at, button, pressed, modifiers });
         }
         settle(&mut window);
-        window.state().selection()
+        window.state().selection().last()
     };
     assert_eq!(click_at(figure.transform.position + glam::Vec3::Y), Some(Item::Object(figure.id)));
     assert_eq!(click_at(light.position), Some(Item::Light(light.id)));

@@ -1,48 +1,56 @@
 //! The list of keys and what the mouse does.
 
-use eframe::egui::{self, Grid, RichText};
+use crate::editor::keys::BINDINGS;
+use eframe::egui::{self, Grid, RichText, ScrollArea, Ui};
 
-const KEYS: [(&str, &str); 22] = [
+/// What the mouse does, and keys that are held.
+const MOUSE: [(&str, &str); 18] = [
     ("Left click", "Select what is under the pointer"),
-    ("Left drag on a handle", "Move, turn or size the selected thing; with Ctrl in steps"),
-    ("Middle drag, Alt + left drag", "Orbit"),
-    ("Shift + middle drag, Shift + Alt + left drag", "Pan"),
-    ("Wheel, Ctrl + middle drag", "Closer and farther"),
+    ("Shift or Ctrl + click", "Take it in or out; in the list Shift takes all from the last to here"),
+    ("Left drag", "Select what lies in a box; with Shift or Ctrl: too"),
+    ("Left drag on a handle", "Move, turn or size what is selected"),
+    ("\u{2026} then 1.5 and Enter", "By exactly that: metres, degrees, times"),
+    ("\u{2026} then Esc", "Give the drag up"),
+    ("Right click in the list", "All that can be done to a thing"),
+    ("Middle drag, Alt + left drag", "Orbit about the selection; through a light: swing it"),
+    ("Shift + middle drag", "Pan (also Shift + Alt + left drag)"),
+    ("Wheel, Ctrl + middle drag", "Closer and farther; through a light: move it so"),
     ("Right drag", "Look around"),
     ("W A S D, arrows", "Fly ahead, left, back, right (Shift: faster)"),
     ("Q E", "Fly down and up"),
-    ("F", "Bring the selection into view"),
-    ("1", "Camera view on or off"),
-    ("3", "The rendered picture"),
-    ("M  T  Z", "Handles: move, turn, size"),
-    ("R", "Render"),
-    ("Delete", "Delete the selected thing"),
-    ("Ctrl+D", "Duplicate it"),
-    ("Ctrl+Z, Ctrl+Shift+Z", "Undo, redo"),
-    ("Ctrl+N, Ctrl+O", "New from preset, open"),
-    ("Ctrl+S, Ctrl+Shift+S", "Save, save as"),
-    ("Ctrl+I, Ctrl+E", "Import OBJ, export picture"),
-    ("Esc", "Close a dialog"),
-    ("Drag a number", "Change it; Shift: finely. Click: type it"),
+    ("Click an end of the axes", "Look from there, without perspective"),
+    ("Drag a number", "Change it; Shift: finely"),
+    ("Click a number", "Type it, with any unit: 150 cm, 1.5 m, 5 ft"),
     ("Drop a file", "A studio (.ron) opens, a model (.obj) comes in"),
+    ("Esc in a dialog", "Close it"),
 ];
 
 /// Draws the window; `open` is cleared when it is closed.
 pub fn help_ui(ctx: &egui::Context, open: &mut bool) {
+    let height = (ctx.content_rect().height() - 120.0).max(200.0);
     egui::Window::new("Keys and mouse")
         .open(open)
         .resizable(false)
         .collapsible(false)
-        .default_width(480.0)
+        .default_width(560.0)
         .pivot(egui::Align2::CENTER_CENTER)
         .default_pos(ctx.content_rect().center())
         .show(ctx, |ui| {
-            Grid::new("keys").num_columns(2).spacing([24.0, 5.0]).show(ui, |ui| {
-                for (keys, meaning) in KEYS {
-                    ui.label(RichText::new(keys).strong());
-                    ui.label(meaning);
-                    ui.end_row();
-                }
+            ScrollArea::vertical().max_height(height).show(ui, |ui| {
+                Grid::new("keys").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
+                    for (keys, meaning) in MOUSE {
+                        line(ui, keys, meaning);
+                    }
+                    for binding in &BINDINGS {
+                        line(ui, &ui.ctx().format_shortcut(&binding.shortcut), binding.meaning);
+                    }
+                });
             });
         });
+}
+
+fn line(ui: &mut Ui, keys: &str, meaning: &str) {
+    ui.label(RichText::new(keys).strong());
+    ui.label(meaning);
+    ui.end_row();
 }

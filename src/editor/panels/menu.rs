@@ -1,9 +1,13 @@
 //! The menu bar.
 
-use crate::editor::action::{Action, Item};
+use super::item_menu::selection_entries;
+use crate::editor::action::Action;
 use crate::editor::command::{Centre, Command, Handle};
 use crate::editor::document::Document;
+use crate::editor::item::Item;
 use crate::editor::recent::RecentFiles;
+use crate::editor::selection::Selection;
+use crate::editor::studio_view::Side;
 use crate::editor::widgets;
 use crate::scene::{Facing, Meter, Receptor, Scene};
 use eframe::egui::{Button, MenuBar, Ui};
@@ -14,13 +18,15 @@ pub struct MenuState<'a> {
     /// The open studio.
     pub document: &'a Document,
     /// What is selected.
-    pub selection: Option<Item>,
+    pub selection: &'a Selection,
     /// Studios opened before.
     pub recent: &'a RecentFiles,
     /// What the middle shows.
     pub centre: Centre,
     /// The handles on show.
     pub handles: Handle,
+    /// Whether the handles snap.
+    pub snap: bool,
     /// Whether there is a picture to export.
     pub has_picture: bool,
     /// Whether a render is on its way.
@@ -39,7 +45,7 @@ pub fn menu_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
 }
 
 /// One entry with its key.
-fn entry(ui: &mut Ui, enabled: bool, text: &str, tip: &str, command: Command, out: &mut Vec<Command>) {
+pub fn entry(ui: &mut Ui, enabled: bool, text: &str, tip: &str, command: Command, out: &mut Vec<Command>) {
     let shortcut = command.shortcut().map(|s| ui.ctx().format_shortcut(&s)).unwrap_or_default();
     let button = Button::new(text).shortcut_text(shortcut);
     if ui.add_enabled(enabled, button).on_hover_text(tip).clicked() {
@@ -93,18 +99,36 @@ fn edit_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     entry(ui, history.undo_label().is_some(), &undo, "Take the last step back", Command::Undo, out);
     entry(ui, history.redo_label().is_some(), &redo, "Do the step again", Command::Redo, out);
     ui.separator();
-    let movable = matches!(state.selection, Some(Item::Object(_) | Item::Light(_)));
-    entry(ui, movable, "Duplicate", "Put a copy beside the selected thing", Command::DuplicateSelected, out);
-    entry(ui, movable, "Delete", "Take the selected thing away", Command::DeleteSelected, out);
-    if let Some(item) = state.selection.filter(|_| movable) {
-        entry(ui, true, "Rename", "Give the selected thing another name", Command::BeginRename(item), out);
+    entry(ui, true, "Select all", "All lights and things that are not locked", Command::SelectAll, out);
+    if let [item] = state.selection.items()
+        && item.can_be_copied()
+    {
+        entry(ui, true, "Rename", "Give the selected thing another name", Command::BeginRename(*item), out);
     }
+    selection_entries(ui, state.document.scene(), state.selection, out);
+    entry(ui, true, "Show and unmute all", "Nothing is hidden or muted any more", Command::ShowAll, out);
 }
 
 fn view_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     ui.set_min_width(240.0);
     entry(ui, true, "Camera view on or off", "What the picture will frame", Command::ToggleCameraView, out);
     entry(ui, true, "Rendered picture", "The last render, large", Command::Show(Centre::Picture), out);
+    ui.menu_button("Look from", |ui| {
+        ui.set_min_width(150.0);
+        for side in Side::ALL {
+            entry(ui, true, side.label(), "Without perspective, with a metre grid", Command::LookFrom(side), out);
+        }
+    });
+    entry(ui, true, "Perspective on or off", "Whether what is far looks small", Command::ToggleParallel, out);
+    let light = !state.selection.lights().is_empty() || matches!(state.centre, Centre::Light(_));
+    entry(
+        ui,
+        light,
+        "Through the selected light",
+        "What the light sees; once more: back",
+        Command::ToggleLightView,
+        out,
+    );
     ui.separator();
     entry(ui, true, "Bring selection into view", "Everything, when nothing is selected", Command::FrameSelection, out);
     let in_studio = state.centre == Centre::Studio;
@@ -115,12 +139,16 @@ fn view_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
         let text = if state.handles == handle { format!("{text} (on)") } else { text.to_owned() };
         entry(ui, true, &text, tip, Command::Handles(handle), out);
     }
+    let text = if state.snap { "Snap (on)" } else { "Snap" };
+    entry(ui, true, text, SNAP_TIP, Command::ToggleSnap, out);
 }
+
+const SNAP_TIP: &str = "Handles go in steps of 0.1 m and 15\u{b0}; with Ctrl the other way round";
 
 /// The three kinds of handles, with label and tip.
 pub const HANDLES: [(Handle, &str, &str); 3] = [
     (Handle::Move, "Move", "Handles that move the selected thing"),
-    (Handle::Turn, "Turn", "Handles that turn the selected thing; a light swings its aim"),
+    (Handle::Turn, "Turn", "Handles that turn the selected thing; a light aimed at a thing swings round it"),
     (Handle::Size, "Size", "Handles that scale the selected thing"),
 ];
 
@@ -154,6 +182,14 @@ pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool,
             (Centre::Picture, "Picture", "The rendered picture (3)"),
         ];
         widgets::choice(ui, &mut centre, &views);
+        if let Centre::Light(id) = state.centre
+            && let Some(light) = state.document.scene().light(id)
+        {
+            let button = Button::selectable(true, format!("Through {}", light.name));
+            if ui.add(button).on_hover_text("What this light sees. Click to go back (V, Esc)").clicked() {
+                out.push(Command::ToggleLightView);
+            }
+        }
         if centre != state.centre {
             out.push(Command::Show(centre));
         }
@@ -167,6 +203,10 @@ pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool,
             if ui.add(button).on_hover_text(format!("{tip} ({key})")).clicked() {
                 out.push(Command::Handles(handle));
             }
+        }
+        let snap = ui.add(Button::selectable(state.snap, "Snap"));
+        if snap.on_hover_text(format!("{SNAP_TIP} (G)")).clicked() {
+            out.push(Command::ToggleSnap);
         }
         ui.separator();
         let frame = ui.button("Frame").on_hover_text("Bring the selection, or everything, into view (F)");

@@ -1,14 +1,14 @@
 //! The read-out of the studio's light meter, over the view.
 
-use crate::editor::action::Item;
 use crate::editor::command::Command;
+use crate::editor::item::Item;
 use crate::editor::{theme, widgets};
 use crate::photo::meter::{LUX_PER_FOOT_CANDLE, LightReading, Reading, nearest_third};
 use crate::photo::thirds::Dial;
 use crate::scene::{Meter, Receptor};
-use eframe::egui::{self, Align2, Context, Frame, Grid, Id, Label, Rect, RichText, Ui, vec2};
+use eframe::egui::{self, Context, Frame, Grid, Id, Label, Rect, RichText, Ui, vec2};
 
-/// Draws it in the upper left corner of the view.
+/// Draws it: a small window over the view that can be moved and folded. It begins in the view's upper left corner.
 pub fn meter_ui(
     ctx: &Context,
     view: Rect,
@@ -16,27 +16,28 @@ pub fn meter_ui(
     reading: Option<&Result<Reading, String>>,
     out: &mut Vec<Command>,
 ) {
-    let area = egui::Area::new(Id::unique("light meter")).pivot(Align2::LEFT_TOP);
-    area.fixed_pos(view.min + vec2(10.0, 44.0)).order(egui::Order::Middle).constrain(true).show(ctx, |ui| {
-        let frame = Frame::popup(ui.style()).inner_margin(8);
-        frame.show(ui, |ui| {
-            ui.set_max_width(300.0);
-            ui.horizontal(|ui| {
-                let title = match meter.receptor {
-                    Receptor::Flat => "Light meter, flat",
-                    Receptor::Dome => "Light meter, dome",
-                };
-                let button = ui.add(egui::Button::new(RichText::new(title).strong()).frame(false));
-                if button.on_hover_text("Select the meter: move it with its handles").clicked() {
-                    out.push(Command::Select(Some(Item::Meter)));
-                }
-            });
-            match reading {
-                Some(Ok(reading)) => reading_ui(ui, reading),
-                Some(Err(message)) => drop(ui.label(message)),
-                None => drop(ui.label(RichText::new("Reading\u{2026}").weak())),
-            }
-        });
+    let title = match meter.receptor {
+        Receptor::Flat => "Light meter, flat",
+        Receptor::Dome => "Light meter, dome",
+    };
+    let window = egui::Window::new(title)
+        .id(Id::unique("light meter"))
+        .default_pos(view.min + vec2(10.0, 44.0))
+        .constrain_to(view)
+        .resizable(false)
+        .default_width(300.0)
+        .frame(Frame::window(&ctx.global_style()).inner_margin(8));
+    window.show(ctx, |ui| {
+        ui.set_max_width(300.0);
+        match reading {
+            Some(Ok(reading)) => reading_ui(ui, reading),
+            Some(Err(message)) => drop(ui.label(message)),
+            None => drop(ui.label(RichText::new("Reading\u{2026}").weak())),
+        }
+        let button = ui.small_button("Select the meter");
+        if button.on_hover_text("Move it with its handles, set it up in the inspector").clicked() {
+            out.push(Command::Select(Some(Item::Meter)));
+        }
     });
 }
 

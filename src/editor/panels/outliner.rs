@@ -1,12 +1,15 @@
-//! The list of everything in the studio, with lamps, eyes, names and a context menu.
+//! The list of everything in the studio, with names, switches and a context menu.
 
+use super::item_menu::item_menu_ui;
 use crate::color::light_rgb;
-use crate::editor::action::{Action, Item};
+use crate::editor::action::Action;
 use crate::editor::command::Command;
 use crate::editor::document::Document;
+use crate::editor::item::Item;
+use crate::editor::selection::Selection;
 use crate::editor::{theme, widgets};
-use crate::scene::{Light, Object};
-use eframe::egui::{self, Button, Key, RichText, ScrollArea, Sense, TextEdit, Ui, vec2};
+use crate::scene::{Light, Object, Scene};
+use eframe::egui::{self, Button, Key, Response, RichText, ScrollArea, Sense, TextEdit, Ui, vec2};
 
 /// What the list remembers between frames.
 #[derive(Clone, Debug, Default)]
@@ -22,11 +25,19 @@ impl OutlinerState {
     }
 }
 
+/// What the rows of the list read, and where they put their requests.
+struct Rows<'a> {
+    document: &'a Document,
+    selection: &'a Selection,
+    state: &'a mut OutlinerState,
+    out: &'a mut Vec<Command>,
+}
+
 /// Draws the list.
 pub fn outliner_ui(
     ui: &mut Ui,
     document: &Document,
-    selection: Option<Item>,
+    selection: &Selection,
     state: &mut OutlinerState,
     out: &mut Vec<Command>,
 ) {
@@ -36,20 +47,21 @@ pub fn outliner_ui(
     ScrollArea::vertical().id_salt("outliner").auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         let scene = document.scene();
-        fixed_row(ui, Item::Camera, "Camera", "Lens, exposure and framing", selection, out);
+        let mut rows = Rows { document, selection, state, out };
+        rows.fixed(ui, Item::Camera, "Camera", "Lens, exposure and framing");
         let room_tip =
             if scene.room.is_some() { "Floor, walls and ceiling" } else { "Switched off: an endless black void" };
-        fixed_row(ui, Item::Room, "Room", room_tip, selection, out);
+        rows.fixed(ui, Item::Room, "Room", room_tip);
         if scene.meter.is_some() {
-            fixed_row(ui, Item::Meter, "Light meter", "Reads every light where it stands", selection, out);
+            rows.fixed(ui, Item::Meter, "Light meter", "Reads every light where it stands");
         }
-        heading(ui, "Lights", scene.lights.len());
+        rows.lights_heading(ui);
         for light in &scene.lights {
-            light_row(ui, document, light, selection, state, out);
+            rows.light(ui, light);
         }
         heading(ui, "Figures and things", scene.objects.len());
         for object in &scene.objects {
-            object_row(ui, object, selection, state, out);
+            rows.object(ui, object);
         }
     });
 }
@@ -60,119 +72,176 @@ fn heading(ui: &mut Ui, title: &str, count: usize) {
     ui.label(RichText::new(text).weak().small());
 }
 
-fn fixed_row(ui: &mut Ui, item: Item, name: &str, tip: &str, selection: Option<Item>, out: &mut Vec<Command>) {
-    ui.horizontal(|ui| {
-        ui.add_space(16.0);
-        if name_button(ui, name, selection == Some(item), false).on_hover_text(tip).clicked() {
-            out.push(Command::Select(Some(item)));
-        }
-    });
+/// The rows from top to bottom.
+fn listed(scene: &Scene) -> Vec<Item> {
+    let fixed = [Item::Camera, Item::Room].into_iter().chain(scene.meter.map(|_| Item::Meter));
+    let lights = scene.lights.iter().map(|l| Item::Light(l.id));
+    fixed.chain(lights).chain(scene.objects.iter().map(|o| Item::Object(o.id))).collect()
 }
 
-fn light_row(
-    ui: &mut Ui,
-    document: &Document,
-    light: &Light,
-    selection: Option<Item>,
-    state: &mut OutlinerState,
-    out: &mut Vec<Command>,
-) {
-    let item = Item::Light(light.id);
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        let chip = widgets::swatch(ui, theme::role_color(light.role), vec2(8.0, 16.0));
-        chip.on_hover_text(format!("{} light", light.role.label()));
-        row_name(ui, item, &light.name, light_tip(light), !light.on, selection, state, out);
-        right(ui, |ui| {
-            let seen = light.visible_to_camera;
-            let name = format!("{} seen by the camera", light.name);
-            let tip =
-                if seen { "The camera sees the light itself" } else { "The camera does not see the light itself" };
-            if widgets::eye_toggle(ui, seen, &name).on_hover_text(tip).clicked() {
-                let changed = Light { visible_to_camera: !seen, ..light.clone() };
-                out.push(Command::Do(Action::SetLight(Box::new(changed))));
-            }
-            let glow = widgets::display_color(light_rgb(&light.color, document.scene().camera.white_balance_k));
-            let tip = if light.on { "On: click to switch off" } else { "Off: click to switch on" };
-            if widgets::lamp_toggle(ui, light.on, glow, &format!("{} on", light.name)).on_hover_text(tip).clicked() {
-                let changed = Light { on: !light.on, ..light.clone() };
-                out.push(Command::Do(Action::SetLight(Box::new(changed))));
+/// The rows from one to another, the other last.
+fn between(scene: &Scene, from: Item, to: Item) -> Vec<Item> {
+    let rows = listed(scene);
+    let place = |item| rows.iter().position(|row| *row == item);
+    match (place(from), place(to)) {
+        (Some(a), Some(b)) if a <= b => rows[a..=b].to_vec(),
+        (Some(a), Some(b)) => rows[b..=a].iter().rev().copied().collect(),
+        _ => vec![to],
+    }
+}
+
+impl Rows<'_> {
+    fn fixed(&mut self, ui: &mut Ui, item: Item, name: &str, tip: &str) {
+        ui.horizontal(|ui| {
+            ui.add_space(16.0);
+            let response = name_button(ui, name, self.selection.contains(item), false, 0.0).on_hover_text(tip);
+            self.clicked(ui, &response, item);
+        });
+    }
+
+    /// A click selects; with Ctrl it takes in or out, with Shift it takes in all rows from the last chosen one.
+    fn clicked(&mut self, ui: &Ui, response: &Response, item: Item) {
+        if !response.clicked() {
+            return;
+        }
+        let modifiers = ui.input(|i| i.modifiers);
+        self.out.push(match self.selection.last() {
+            Some(last) if modifiers.shift => Command::SelectAlso(between(self.document.scene(), last, item)),
+            _ if modifiers.command => Command::ToggleSelected(item),
+            _ => Command::Select(Some(item)),
+        });
+    }
+
+    fn lights_heading(&mut self, ui: &mut Ui) {
+        let scene = self.document.scene();
+        let Some(solo) = &scene.solo else {
+            heading(ui, "Lights", scene.lights.len());
+            return;
+        };
+        ui.add_space(6.0);
+        ui.horizontal(|ui| {
+            let text = format!("Lights: {} of {} alone", solo.lights.len(), scene.lights.len());
+            ui.label(RichText::new(text).color(theme::ACCENT).small());
+            let button = ui.small_button("End solo");
+            if button.on_hover_text("Bring back what was on before (O)").clicked() {
+                self.out.push(Command::Do(Action::Solo(Vec::new())));
             }
         });
-    });
+    }
+
+    fn light(&mut self, ui: &mut Ui, light: &Light) {
+        let item = Item::Light(light.id);
+        let scene = self.document.scene();
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let chip = widgets::swatch(ui, theme::role_color(light.role), vec2(8.0, 16.0));
+            chip.on_hover_text(format!("{} light", light.role.label()));
+            self.name(ui, item, &light.name, light_tip(light), !light.on, 4.0);
+            right(ui, |ui| {
+                self.lock_toggle(ui, item, &light.name, light.locked);
+                let alone = scene.solo.as_ref().is_some_and(|solo| solo.lights.contains(&light.id));
+                let tip = if alone {
+                    "Shines alone: click to bring back what was on before (O)"
+                } else {
+                    "Solo: only this light, until you click again (O)"
+                };
+                let name = format!("{} alone", light.name);
+                if widgets::letter_toggle(ui, "S", alone, theme::ACCENT, &name).on_hover_text(tip).clicked() {
+                    let lights = if alone { Vec::new() } else { vec![light.id] };
+                    self.out.push(Command::Do(Action::Solo(lights)));
+                }
+                let muted = light.muted && !light.on;
+                let tip = if muted {
+                    "Muted: click to bring it back as it was (H)"
+                } else {
+                    "Mute: dark for now, nothing about it is changed (H)"
+                };
+                let name = format!("{} muted", light.name);
+                if widgets::letter_toggle(ui, "M", muted, theme::MUTED, &name).on_hover_text(tip).clicked() {
+                    self.out.push(Command::Do(Action::Mute(vec![light.id], !muted)));
+                }
+                let glow = widgets::display_color(light_rgb(&light.color, scene.camera.white_balance_k));
+                let tip = if light.on { "On: click to switch off" } else { "Off: click to switch on" };
+                let lamp = widgets::lamp_toggle(ui, light.on, glow, &format!("{} on", light.name));
+                if lamp.on_hover_text(tip).clicked() {
+                    let changed = Light { on: !light.on, ..light.clone() };
+                    self.out.push(Command::Do(Action::SetLight(Box::new(changed))));
+                }
+            });
+        });
+    }
+
+    fn object(&mut self, ui: &mut Ui, object: &Object) {
+        let item = Item::Object(object.id);
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            ui.add_space(12.0);
+            self.name(ui, item, &object.name, object.shape.label().to_owned(), !object.visible, 2.0);
+            right(ui, |ui| {
+                self.lock_toggle(ui, item, &object.name, object.locked);
+                let tip = if object.visible { "Visible: click to hide (H)" } else { "Hidden: click to show (H)" };
+                let name = format!("{} visible", object.name);
+                if widgets::eye_toggle(ui, object.visible, &name).on_hover_text(tip).clicked() {
+                    let changed = Object { visible: !object.visible, ..object.clone() };
+                    self.out.push(Command::Do(Action::SetObject(Box::new(changed))));
+                }
+            });
+        });
+    }
+
+    fn lock_toggle(&mut self, ui: &mut Ui, item: Item, name: &str, locked: bool) {
+        let tip = if locked {
+            "Locked: cannot be moved, and clicks in the view go past it. Click to unlock (K)"
+        } else {
+            "Lock it in its place (K)"
+        };
+        if widgets::lock_toggle(ui, locked, &format!("{name} locked")).on_hover_text(tip).clicked() {
+            self.out.push(Command::Do(Action::Lock(vec![item], !locked)));
+        }
+    }
+
+    /// The name of a thing: click selects, double click renames, the other button opens the menu.
+    fn name(&mut self, ui: &mut Ui, item: Item, name: &str, tip: String, faded: bool, icons: f32) {
+        if self.state.rename.as_ref().is_some_and(|(renamed, ..)| *renamed == item) {
+            rename_ui(ui, self.state, icons, self.out);
+            return;
+        }
+        let response = name_button(ui, name, self.selection.contains(item), faded, icons);
+        self.clicked(ui, &response, item);
+        if response.double_clicked() {
+            self.out.push(Command::BeginRename(item));
+        }
+        let selection = self.selection;
+        response.context_menu(|ui| item_menu_ui(ui, self.document.scene(), item, selection, self.out));
+        response.on_hover_text(format!("{tip}. Double-click to rename; right-click for more."));
+    }
 }
 
 fn light_tip(light: &Light) -> String {
     format!("{}, {} light", light.emitter.label(), light.role.label().to_lowercase())
 }
 
-fn object_row(
-    ui: &mut Ui,
-    object: &Object,
-    selection: Option<Item>,
-    state: &mut OutlinerState,
-    out: &mut Vec<Command>,
-) {
-    let item = Item::Object(object.id);
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        ui.add_space(12.0);
-        row_name(ui, item, &object.name, object.shape.label().to_owned(), !object.visible, selection, state, out);
-        right(ui, |ui| {
-            let tip = if object.visible { "Visible: click to hide" } else { "Hidden: click to show" };
-            let name = format!("{} visible", object.name);
-            if widgets::eye_toggle(ui, object.visible, &name).on_hover_text(tip).clicked() {
-                let changed = Object { visible: !object.visible, ..object.clone() };
-                out.push(Command::Do(Action::SetObject(Box::new(changed))));
-            }
-        });
-    });
-}
-
 fn right(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), add);
 }
 
-fn name_button(ui: &mut Ui, name: &str, selected: bool, faded: bool) -> egui::Response {
+/// Width of a row's name that leaves room for so many icons.
+fn name_width(ui: &Ui, icons: f32) -> f32 {
+    (ui.available_width() - 24.0 * icons - 6.0).max(40.0)
+}
+
+fn name_button(ui: &mut Ui, name: &str, selected: bool, faded: bool, icons: f32) -> Response {
     let text = if faded { RichText::new(name).weak() } else { RichText::new(name) };
-    // Room on the right for a lamp and an eye.
-    let width = (ui.available_width() - 56.0).max(40.0);
+    let width = name_width(ui, icons);
     let button = Button::selectable(selected, text).right_text("").truncate().min_size(vec2(width, 22.0));
     let response = ui.allocate_ui(vec2(width, 22.0), |ui| ui.add(button.sense(Sense::click()))).inner;
     widgets::named(ui, &response, name);
     response
 }
 
-/// The name of a thing: click selects, double click renames, the other button opens the menu.
-#[expect(clippy::too_many_arguments, reason = "one row of the list needs all of them once")]
-fn row_name(
-    ui: &mut Ui,
-    item: Item,
-    name: &str,
-    tip: String,
-    faded: bool,
-    selection: Option<Item>,
-    state: &mut OutlinerState,
-    out: &mut Vec<Command>,
-) {
-    if state.rename.as_ref().is_some_and(|(renamed, ..)| *renamed == item) {
-        rename_ui(ui, state, out);
-        return;
-    }
-    let response = name_button(ui, name, selection == Some(item), faded);
-    if response.clicked() {
-        out.push(Command::Select(Some(item)));
-    }
-    if response.double_clicked() {
-        out.push(Command::BeginRename(item));
-    }
-    response.context_menu(|ui| item_menu_ui(ui, item, out));
-    response.on_hover_text(format!("{tip}. Double-click to rename; right-click for more."));
-}
-
-fn rename_ui(ui: &mut Ui, state: &mut OutlinerState, out: &mut Vec<Command>) {
+fn rename_ui(ui: &mut Ui, state: &mut OutlinerState, icons: f32, out: &mut Vec<Command>) {
     let Some((item, text, had_focus)) = &mut state.rename else { return };
-    let width = (ui.available_width() - 56.0).max(40.0);
+    let width = name_width(ui, icons);
     let field = ui.name_inputs("New name", |ui| ui.add(TextEdit::singleline(text).desired_width(width)));
     if !*had_focus {
         field.request_focus();
@@ -183,23 +252,5 @@ fn rename_ui(ui: &mut Ui, state: &mut OutlinerState, out: &mut Vec<Command>) {
             out.push(Command::Do(Action::Rename(*item, text.clone())));
         }
         state.rename = None;
-    }
-}
-
-/// The entries of a thing's context menu.
-pub fn item_menu_ui(ui: &mut Ui, item: Item, out: &mut Vec<Command>) {
-    if ui.button("Rename").clicked() {
-        out.push(Command::BeginRename(item));
-    }
-    if ui.add(Button::new("Duplicate").shortcut_text("Ctrl+D")).clicked() {
-        out.push(Command::Do(Action::Duplicate(item)));
-    }
-    if ui.add(Button::new("Bring into view").shortcut_text("F")).clicked() {
-        out.push(Command::Select(Some(item)));
-        out.push(Command::FrameSelection);
-    }
-    ui.separator();
-    if ui.add(Button::new("Delete").shortcut_text("Delete")).clicked() {
-        out.push(Command::Do(Action::Delete(item)));
     }
 }

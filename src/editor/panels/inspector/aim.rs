@@ -1,6 +1,6 @@
 //! What a light or the camera points at.
 
-use crate::editor::placement::aim_offset;
+use crate::editor::placement::{aim_offset, subject};
 use crate::editor::widgets::{self, DEGREES, METRES, row};
 use crate::scene::{Aim, Assets, Scene};
 use eframe::egui::{ComboBox, Ui};
@@ -33,6 +33,7 @@ pub fn aim_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, position: Vec3, aim
             }
         });
     });
+    lock_row(ui, scene, now, aim);
     match aim {
         Aim::Point(point) => {
             row(ui, "Aim point", "Where it points, in the room", |ui| widgets::vec3_ui(ui, "Aim point", METRES, point));
@@ -46,6 +47,22 @@ pub fn aim_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, position: Vec3, aim
             row(ui, "Tilt", "Upwards", |ui| DEGREES.ui(ui, pitch_deg));
         }
     }
+}
+
+/// The lock that keeps an aim on its thing while either moves.
+fn lock_row(ui: &mut Ui, scene: &Scene, now: Vec3, aim: &mut Aim) {
+    let held = if let Aim::Object { object, .. } = aim { Some(*object) } else { None };
+    let subject = held.or_else(|| subject(scene, None)).and_then(|id| scene.object(id));
+    let Some(subject) = subject else { return };
+    row(ui, "Aim lock", "Keeps it on its point of the thing, whichever of the two moves", |ui| {
+        let mut locked = held.is_some();
+        ui.checkbox(&mut locked, format!("Stays on {}", subject.name));
+        if locked == held.is_some() {
+            return;
+        }
+        let offset = subject.transform.world_from_object().inverse().transform_point3(now);
+        *aim = if locked && offset.is_finite() { Aim::Object { object: subject.id, offset } } else { Aim::Point(now) };
+    });
 }
 
 /// The angles that look along a direction; level to the back where there is none.

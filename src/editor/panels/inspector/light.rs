@@ -5,6 +5,8 @@ use super::{Context, aim, gel, modifier, text_ui, title};
 use crate::color::{light_rgb, rgb_from_kelvin};
 use crate::editor::action::Action;
 use crate::editor::command::Command;
+use crate::editor::item::Item;
+use crate::editor::swing::Swing;
 use crate::editor::widgets::{self, DEGREES, DISTANCE, METRES, Number, fact, row, section};
 use crate::editor::{readout, theme};
 use crate::photo::exposure;
@@ -21,29 +23,34 @@ pub(super) fn light_ui(ui: &mut Ui, context: &mut Context<'_>, id: LightId) {
     title(ui, &original.name, light.emitter.label());
     row(ui, "Name", "Names are unique in a studio", |ui| {
         if let Some(name) = text_ui(ui, "name", &original.name, false) {
-            context.out.push(Command::Do(Action::Rename(crate::editor::action::Item::Light(id), name)));
+            context.out.push(Command::Do(Action::Rename(Item::Light(id), name)));
         }
     });
     row(ui, "Switch", "Whether it shines", |ui| {
         widgets::choice(ui, &mut light.on, &[(true, "On", "It shines"), (false, "Off", "It is dark")])
     });
     role_row(ui, &mut light);
+    modifier::kind_rows(ui, scene, &mut light);
     ui.separator();
     section(ui, "Power", true, |ui| power_rows(ui, scene, &mut light));
     section(ui, "Colour", true, |ui| color_rows(ui, scene, &mut light));
     section(ui, "At the subject", true, |ui| readouts(ui, scene, &light));
-    section(ui, "Modifier", true, |ui| modifier::modifier_rows(ui, scene, &mut light));
     section(ui, "Place and aim", true, |ui| {
-        if !matches!(light.emitter, Emitter::Surround) {
+        if light.emitter == Emitter::Surround {
+            ui.label(RichText::new("It shines from everywhere, so it has no place.").weak());
+            return;
+        }
+        aiming_row(ui, &light, context.out);
+        // What is locked shows where it is and takes no other place.
+        ui.add_enabled_ui(!light.locked, |ui| {
             place_rows(ui, scene, &mut light);
             aim::aim_rows(ui, scene, assets, light.position, &mut light.aim);
             row(ui, "Roll", "Turn about its own axis: a strip from upright to level", |ui| {
                 DEGREES.ui(ui, &mut light.roll_deg)
             });
-        } else {
-            ui.label(RichText::new("It shines from everywhere, so it has no place.").weak());
-        }
+        });
     });
+    section(ui, "Loss, grid and flaps", true, |ui| modifier::modifier_rows(ui, &mut light));
     if light != *original {
         context.out.push(Command::Do(Action::SetLight(Box::new(light))));
     }
@@ -241,6 +248,34 @@ fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
     if !light.on {
         ui.label(RichText::new("The light is off; these are its values when it is on.").weak().small());
     }
+}
+
+/// Ways to place a light by what it does, and its lock.
+fn aiming_row(ui: &mut Ui, light: &Light, out: &mut Vec<Command>) {
+    let swing = |swing: Swing| Command::TogglePlacing(swing);
+    row(ui, "Place it by", "Keys P, L and V do the same for the selected light", |ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        ui.add_enabled_ui(!light.locked, |ui| {
+            let tip = "Drag over a face: the light swings round so that the camera sees its highlight there (P)";
+            if ui.button("Highlight").on_hover_text(tip).clicked() {
+                out.push(swing(Swing::Highlight));
+            }
+            let tip = "Drag over a face: the light swings round so that it falls there straight on (L)";
+            if ui.button("Light").on_hover_text(tip).clicked() {
+                out.push(swing(Swing::Light));
+            }
+        });
+        if ui.button("Its view").on_hover_text("Look through the light and swing it by that (V)").clicked() {
+            out.push(Command::ToggleLightView);
+        }
+    });
+    row(ui, "Lock", "Locked it cannot be moved, and clicks in the view go past it (K)", |ui| {
+        let mut locked = light.locked;
+        ui.checkbox(&mut locked, "In its place");
+        if locked != light.locked {
+            out.push(Command::Do(Action::Lock(vec![Item::Light(light.id)], locked)));
+        }
+    });
 }
 
 fn place_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {

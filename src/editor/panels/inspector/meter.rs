@@ -1,9 +1,10 @@
 //! The inspector of the light meter.
 
-use super::aim::angles_towards;
+use super::angles_towards;
 use super::{Context, title};
-use crate::editor::action::{Action, Item};
+use crate::editor::action::Action;
 use crate::editor::command::Command;
+use crate::editor::item::Item;
 use crate::editor::widgets::{self, DEGREES, METRES, row, section};
 use crate::scene::{Aim, Facing, Meter, Receptor, Role, Scene};
 use eframe::egui::Ui;
@@ -28,7 +29,7 @@ pub(super) fn meter_ui(ui: &mut Ui, context: &mut Context<'_>) {
         facing_rows(ui, scene, &mut meter);
     });
     if ui.button("Take the meter away").clicked() {
-        context.out.push(Command::Do(Action::Delete(Item::Meter)));
+        context.out.push(Command::Do(Action::Delete(vec![Item::Meter])));
     }
     if meter != before {
         context.out.push(Command::Do(Action::SetMeter(Some(meter))));

@@ -11,9 +11,15 @@ mod object;
 mod power;
 mod room;
 
-use crate::editor::action::{Action, Item};
+pub use aim::angles_towards;
+
+use crate::editor::action::Action;
 use crate::editor::command::Command;
 use crate::editor::document::Document;
+use crate::editor::item::{Item, name_of_all};
+use crate::editor::selection::Selection;
+use crate::editor::widgets::{row, small_button};
+use crate::scene::Light;
 use eframe::egui::{self, RichText, ScrollArea, TextEdit, Ui};
 
 /// What a section of the inspector reads and where it puts its requests.
@@ -23,12 +29,15 @@ struct Context<'a> {
 }
 
 /// Draws the inspector of the selection.
-pub fn inspector_ui(ui: &mut Ui, document: &Document, selection: Option<Item>, out: &mut Vec<Command>) {
+pub fn inspector_ui(ui: &mut Ui, document: &Document, selection: &Selection, out: &mut Vec<Command>) {
     ScrollArea::vertical().id_salt("inspector").auto_shrink([false, false]).show(ui, |ui| {
         ui.add_space(4.0);
         let mut context = Context { document, out };
+        if selection.len() > 1 {
+            several_ui(ui, &mut context, selection);
+        }
         // Fields keep their state for the thing that they show, not for the place on the screen.
-        ui.push_id(selection, |ui| match selection {
+        ui.push_id(selection.last(), |ui| match selection.last() {
             Some(Item::Light(id)) => light::light_ui(ui, &mut context, id),
             Some(Item::Object(id)) => object::object_ui(ui, &mut context, id),
             Some(Item::Camera) => camera::camera_ui(ui, &mut context),
@@ -36,6 +45,65 @@ pub fn inspector_ui(ui: &mut Ui, document: &Document, selection: Option<Item>, o
             Some(Item::Room) => room::room_ui(ui, &mut context),
             None => studio_ui(ui, &mut context),
         });
+    });
+}
+
+/// Shown over the values of the last thing when several are selected: what they are, and what all of them take.
+fn several_ui(ui: &mut Ui, context: &mut Context<'_>, selection: &Selection) {
+    let scene = context.document.scene();
+    title(ui, &format!("{} selected", name_of_all(selection.items(), scene)), "");
+    ui.horizontal_wrapped(|ui| {
+        let lights = !selection.lights().is_empty();
+        let all = [
+            (
+                true,
+                "Hide or mute",
+                "Hides things and mutes lights; once more brings them back (H)",
+                Command::HideSelected,
+            ),
+            (lights, "Solo", "Only these lights; once more brings back what was on before (O)", Command::SoloSelected),
+            (true, "Lock", "In their places; once more: unlock (K)", Command::LockSelected),
+            (true, "Duplicate", "Copies beside them (Ctrl+D)", Command::DuplicateSelected),
+            (true, "Mirror", "To the other side of the subject's face (X)", Command::MirrorSelected { copies: false }),
+            (true, "Delete", "Take them away (Delete)", Command::DeleteSelected),
+        ];
+        for (_, text, tip, command) in all.into_iter().filter(|(shown, ..)| *shown) {
+            if ui.button(text).on_hover_text(tip).clicked() {
+                context.out.push(command);
+            }
+        }
+    });
+    let lights: Vec<&Light> = selection.lights().iter().filter_map(|id| scene.light(*id)).collect();
+    if lights.len() > 1 {
+        several_lights_ui(ui, context.out, &lights);
+    }
+    let last = selection.last().map(|item| item.name(scene)).unwrap_or_default();
+    ui.add_space(4.0);
+    ui.label(RichText::new(format!("Below: {last} alone, which was chosen last.")).weak().small());
+    ui.separator();
+}
+
+/// The power of several lights at once: all of them go up and down together, their ratios stay.
+fn several_lights_ui(ui: &mut Ui, out: &mut Vec<Command>, lights: &[&Light]) {
+    row(ui, "Dials", "All of them together: the ratios between the lights stay", |ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        let third = 1.0 / 3.0;
+        for (text, name, stops) in [
+            ("\u{2212}1", "All a stop less", -1.0),
+            ("\u{2212}\u{2153}", "All a third of a stop less", -third),
+            ("+\u{2153}", "All a third of a stop more", third),
+            ("+1", "All a stop more", 1.0),
+        ] {
+            if small_button(ui, text, name).on_hover_text(name).clicked() {
+                let dimmed = |light: &&Light| {
+                    let mut light = (*light).clone();
+                    light.power.dial_stops += stops;
+                    Action::SetLight(Box::new(light))
+                };
+                let actions = lights.iter().map(dimmed).collect();
+                out.push(Command::Do(Action::Together { label: format!("Turn {} lights", lights.len()), actions }));
+            }
+        }
     });
 }
 

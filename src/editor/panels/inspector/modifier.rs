@@ -11,10 +11,14 @@ const CONE: Number = Number::new(0.5, 0.5, 180.0, 1, "\u{b0}");
 const FLAP: Number = Number::new(0.5, 0.0, 90.0, 0, "\u{b0}");
 const STOPS: Number = Number::new(0.02, 0.0, 10.0, 1, " stops");
 
-/// Draws them.
-pub(super) fn modifier_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
+/// What shapes the light, and its size: for the head of the inspector.
+pub(super) fn kind_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     kind_row(ui, scene, light);
     size_rows(ui, &mut light.emitter);
+}
+
+/// What is lost before the light leaves.
+pub(super) fn modifier_rows(ui: &mut Ui, light: &mut Light) {
     if light.emitter != Emitter::Surround {
         loss_rows(ui, light);
     }

@@ -2,8 +2,10 @@
 
 use super::material::{material_group, material_rows, preset_name};
 use super::{Context, text_ui, title};
-use crate::editor::action::{Action, Item};
+use crate::editor::action::Action;
 use crate::editor::command::Command;
+use crate::editor::held::wrap_deg;
+use crate::editor::item::Item;
 use crate::editor::widgets::{self, DEGREES, METRES, Number, SIZE_CM, row, section};
 use crate::mannequin;
 use crate::scene::{Assets, Figure, Mannequin, Object, ObjectId, Pose, Shape};
@@ -30,7 +32,16 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut Context<'_>, id: ObjectId) {
     });
     ui.separator();
     section(ui, "Shape and size", true, |ui| shape_rows(ui, assets, &mut object));
-    section(ui, "Place", true, |ui| place_rows(ui, &mut object));
+    section(ui, "Place", true, |ui| {
+        row(ui, "Lock", "Locked it cannot be moved, and clicks in the view go past it (K)", |ui| {
+            let mut locked = object.locked;
+            ui.checkbox(&mut locked, "In its place");
+            if locked != object.locked {
+                context.out.push(Command::Do(Action::Lock(vec![Item::Object(id)], locked)));
+            }
+        });
+        ui.add_enabled_ui(!object.locked, |ui| place_rows(ui, &mut object));
+    });
     section(ui, "Surface", true, |ui| {
         if material_rows(ui, "own", &mut object.material) {
             context.out.push(Command::ChooseTexture(Item::Object(id), None));
@@ -163,12 +174,6 @@ fn place_rows(ui: &mut Ui, object: &mut Object) {
     });
     row(ui, "Tilt", "Forwards and backwards", |ui| DEGREES.ui(ui, &mut transform.rotation_deg.x));
     row(ui, "Roll", "Sideways", |ui| DEGREES.ui(ui, &mut transform.rotation_deg.z));
-}
-
-/// The same angle in (-180, 180].
-fn wrap_deg(angle: f32) -> f32 {
-    let wrapped = angle.rem_euclid(360.0);
-    if wrapped > 180.0 { wrapped - 360.0 } else { wrapped }
 }
 
 /// Materials of named parts; returns the part for which a texture is to be chosen.

@@ -2,8 +2,9 @@
 
 use super::material::material_group;
 use super::{Context, title};
-use crate::editor::action::{Action, Item};
+use crate::editor::action::Action;
 use crate::editor::command::Command;
+use crate::editor::item::Item;
 use crate::editor::widgets::{Number, row};
 use crate::scene::Room;
 use eframe::egui::{RichText, Ui};

@@ -1,0 +1,76 @@
+//! What can be selected, moved, hidden and locked.
+
+use crate::scene::{Emitter, LightId, ObjectId, Scene};
+use glam::Vec3;
+
+/// Something that can be selected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Item {
+    /// The camera.
+    Camera,
+    /// Floor, walls and ceiling.
+    Room,
+    /// A mannequin, prop or backdrop.
+    Object(ObjectId),
+    /// A light.
+    Light(LightId),
+    /// The light meter.
+    Meter,
+}
+
+impl Item {
+    /// Whether the scene has it. The room counts as there even when it is switched off, so that it can be switched on.
+    pub fn exists_in(self, scene: &Scene) -> bool {
+        match self {
+            Item::Camera | Item::Room => true,
+            Item::Object(id) => scene.object(id).is_some(),
+            Item::Light(id) => scene.light(id).is_some(),
+            Item::Meter => scene.meter.is_some(),
+        }
+    }
+
+    /// Its name in lists and messages.
+    pub fn name(self, scene: &Scene) -> String {
+        match self {
+            Item::Camera => "Camera".to_owned(),
+            Item::Room => "Room".to_owned(),
+            Item::Object(id) => scene.object(id).map(|o| o.name.clone()).unwrap_or_default(),
+            Item::Light(id) => scene.light(id).map(|l| l.name.clone()).unwrap_or_default(),
+            Item::Meter => "Light meter".to_owned(),
+        }
+    }
+
+    /// Where it stands, metres; none for what has no place (the room, light from all round) and what is gone.
+    pub fn position(self, scene: &Scene) -> Option<Vec3> {
+        match self {
+            Item::Camera => Some(scene.camera.position),
+            Item::Room => None,
+            Item::Object(id) => scene.object(id).map(|o| o.transform.position),
+            Item::Light(id) => scene.light(id).filter(|l| l.emitter != Emitter::Surround).map(|l| l.position),
+            Item::Meter => scene.meter.map(|meter| meter.position),
+        }
+    }
+
+    /// Whether it is locked in its place.
+    pub fn is_locked(self, scene: &Scene) -> bool {
+        match self {
+            Item::Object(id) => scene.object(id).is_some_and(|o| o.locked),
+            Item::Light(id) => scene.light(id).is_some_and(|l| l.locked),
+            Item::Camera | Item::Room | Item::Meter => false,
+        }
+    }
+
+    /// Whether there may be several of its kind, so that it can be copied.
+    pub fn can_be_copied(self) -> bool {
+        matches!(self, Item::Object(_) | Item::Light(_))
+    }
+}
+
+/// `Key`, or `3 things` for several.
+pub fn name_of_all(items: &[Item], scene: &Scene) -> String {
+    match items {
+        [one] => one.name(scene),
+        several if several.iter().all(|item| matches!(item, Item::Light(_))) => format!("{} lights", several.len()),
+        several => format!("{} things", several.len()),
+    }
+}

@@ -1,0 +1,86 @@
+//! The view through a light: along its axis, with the beam that it throws.
+
+use super::overlay::text_with_shadow;
+use super::theme;
+use crate::scene::{CameraFrame, Emitter, Light, Scene};
+use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, pos2, vec2};
+use glam::Vec2;
+
+/// Half of what is seen from bottom to top, degrees, for a light that throws no cone.
+const WIDE_DEG: f32 = 35.0;
+
+/// What is seen from the light for a view of `aspect` (width / height): its cone with some room about it.
+pub fn frame(scene: &Scene, light: &Light, aspect: f32) -> CameraFrame {
+    let cone_deg = match (light.emitter, light.modifier.beam) {
+        (Emitter::Spot { outer_deg, .. }, _) => Some(outer_deg),
+        (_, beam) => beam.map(|cone| cone.outer_deg),
+    };
+    let half_deg = cone_deg.map_or(WIDE_DEG, |full| (0.5 * full * 1.15).clamp(5.0, 50.0));
+    let half_height = half_deg.to_radians().tan();
+    CameraFrame {
+        world_from_camera: scene.light_frame(light),
+        half_extent: Vec2::new(half_height * aspect.max(1e-3), half_height),
+    }
+}
+
+/// The angles that a light's beam is told by: full angle in degrees, and what it is.
+fn rings(light: &Light) -> Vec<(f32, &'static str)> {
+    let mut rings = Vec::new();
+    if let Emitter::Spot { inner_deg, outer_deg } = light.emitter {
+        rings.extend([(inner_deg, "even cone"), (outer_deg, "outer cone")]);
+    }
+    if let Some(beam) = light.modifier.beam {
+        rings.extend([(beam.inner_deg, "even beam"), (beam.outer_deg, "whole beam")]);
+    }
+    rings.extend(light.modifier.grid_deg.map(|deg| (deg, "grid")));
+    rings
+}
+
+/// Cross-hair on the axis, and rings where the beam is cut.
+pub fn paint(painter: &Painter, light: &Light, frame: &CameraFrame, rect: Rect) {
+    let color = theme::role_color(light.role);
+    let (centre, stroke) = (rect.center(), Stroke::new(1.5, color));
+    for (x, y) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
+        painter.line_segment([centre + 6.0 * vec2(x, y), centre + 16.0 * vec2(x, y)], stroke);
+    }
+    for (full_deg, what) in rings(light) {
+        // Beyond this a ring lies outside of every view.
+        if full_deg > 170.0 {
+            continue;
+        }
+        let radius = 0.5 * rect.height() * (0.5 * full_deg).to_radians().tan() / frame.half_extent.y;
+        painter.circle_stroke(centre, radius, Stroke::new(1.0, color.gamma_multiply(0.8)));
+        let place = pos2(centre.x, (centre.y - radius).max(rect.min.y + 30.0));
+        let text = format!("{what} {full_deg:.0}\u{b0}");
+        text_with_shadow(painter, place + vec2(0.0, -4.0), Align2::CENTER_BOTTOM, &text, color);
+    }
+}
+
+/// A line of help at the upper edge of the view.
+pub fn paint_banner(painter: &Painter, rect: Rect, text: &str) {
+    let galley = painter.layout_no_wrap(text.to_owned(), eframe::egui::FontId::proportional(13.0), Color32::WHITE);
+    let size = galley.size() + vec2(20.0, 10.0);
+    let place = Rect::from_min_size(Pos2::new(rect.center().x - 0.5 * size.x, rect.min.y + 8.0), size);
+    painter.rect_filled(place, 5.0, Color32::from_black_alpha(190));
+    painter.galley(place.min + vec2(10.0, 5.0), galley, Color32::WHITE);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::catalog;
+    use glam::Vec3;
+
+    #[test]
+    fn a_light_sees_what_it_is_aimed_at_in_the_middle_and_all_of_its_cone() {
+        let scene = Scene::default();
+        let mut light = catalog::light_named("Bare bulb").unwrap();
+        light.emitter = Emitter::Spot { inner_deg: 20.0, outer_deg: 50.0 };
+        let frame = frame(&scene, &light, 1.6);
+        let target = scene.aim_point(&light.aim, light.position);
+        assert!((frame.project(target).unwrap() - 0.5).length() < 1e-5);
+        let edge = frame.world_from_camera.transform_point3(Vec3::new(0.0, 25.0_f32.to_radians().tan(), -1.0));
+        let place = frame.project(edge).unwrap();
+        assert!(place.y > 0.0 && place.y < 0.1, "the cone's edge is just inside: {place}");
+    }
+}

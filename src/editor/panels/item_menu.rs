@@ -1,0 +1,73 @@
+//! What can be done to the selected things, for the context menu of the list and the Edit menu.
+
+use super::menu::entry;
+use crate::editor::command::Command;
+use crate::editor::item::Item;
+use crate::editor::selection::Selection;
+use crate::editor::swing::Swing;
+use crate::scene::Scene;
+use eframe::egui::Ui;
+
+/// The context menu of a row. It is about the whole selection where the row belongs to it, else about the row alone.
+pub fn item_menu_ui(ui: &mut Ui, scene: &Scene, item: Item, selection: &Selection, out: &mut Vec<Command>) {
+    ui.set_min_width(230.0);
+    let mut chosen = Vec::new();
+    let alone;
+    let about = if selection.contains(item) {
+        selection
+    } else {
+        alone = Selection::of([item]);
+        &alone
+    };
+    if about.len() == 1 {
+        entry(ui, true, "Rename", "Give it another name", Command::BeginRename(item), &mut chosen);
+    }
+    selection_entries(ui, scene, about, &mut chosen);
+    if !chosen.is_empty() {
+        if !selection.contains(item) {
+            out.push(Command::Select(Some(item)));
+        }
+        out.extend(chosen);
+    }
+}
+
+/// The entries that are about a selection.
+pub fn selection_entries(ui: &mut Ui, scene: &Scene, selection: &Selection, out: &mut Vec<Command>) {
+    let copyable = selection.items().iter().any(|item| item.can_be_copied());
+    let lights = !selection.lights().is_empty();
+    entry(ui, copyable, "Duplicate", "Put a copy beside it", Command::DuplicateSelected, out);
+    let tip = "To the other side of the subject's face: place, aim, turn and flaps";
+    entry(ui, copyable, "Mirror", tip, Command::MirrorSelected { copies: false }, out);
+    let tip = "A copy on the other side of the subject's face";
+    entry(ui, copyable, "Mirrored copy", tip, Command::MirrorSelected { copies: true }, out);
+    entry(ui, !selection.is_empty(), "Bring into view", "Frames it in the studio view", Command::FrameSelection, out);
+    ui.separator();
+    for swing in [Swing::Highlight, Swing::Light] {
+        let text = format!("{}\u{2026}", swing.label());
+        let tip = match swing {
+            Swing::Highlight => "Drag over a face: the light swings round so that the camera sees its highlight there",
+            Swing::Light => "Drag over a face: the light swings round so that it falls there straight on",
+        };
+        entry(ui, lights, &text, tip, Command::TogglePlacing(swing), out);
+    }
+    entry(
+        ui,
+        lights,
+        "Look through it",
+        "See what the light sees, and swing it by that",
+        Command::ToggleLightView,
+        out,
+    );
+    ui.separator();
+    let solo = if scene.solo.is_some() { "Solo, or end solo" } else { "Solo" };
+    let tip = "Only these lights; once more brings back what was on before";
+    entry(ui, lights || scene.solo.is_some(), solo, tip, Command::SoloSelected, out);
+    let tip = "Hides things and mutes lights; once more brings them back as they were";
+    entry(ui, copyable, "Hide or mute", tip, Command::HideSelected, out);
+    let locked = selection.items().iter().any(|item| item.can_be_copied() && !item.is_locked(scene));
+    let text = if locked || !copyable { "Lock in place" } else { "Unlock" };
+    let tip = "What is locked cannot be moved, and clicks in the view go past it";
+    entry(ui, copyable, text, tip, Command::LockSelected, out);
+    ui.separator();
+    entry(ui, copyable, "Delete", "Take it away", Command::DeleteSelected, out);
+}

@@ -1,0 +1,178 @@
+//! A light placed by what it does: where its highlight or its light falls on a surface.
+
+use super::surface::SurfaceHit;
+use crate::scene::{Aim, Emitter, Light, LightId, Scene};
+use glam::Vec3;
+
+/// What is put on the point of a surface that the pointer shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Swing {
+    /// The highlight: the mirror image of the light, as the camera sees it.
+    Highlight,
+    /// The light itself: it falls on the point straight on.
+    Light,
+}
+
+impl Swing {
+    /// What a menu calls it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Swing::Highlight => "Place its highlight",
+            Swing::Light => "Place its light",
+        }
+    }
+
+    /// What the mouse does, for a light of this name.
+    pub fn hint(self, light: &str) -> String {
+        let what = match self {
+            Swing::Highlight => "where the camera shall see the highlight of",
+            Swing::Light => "where straight light shall fall from",
+        };
+        format!("Press or drag on a surface {what} {light}.    Esc ends")
+    }
+}
+
+/// A light that is being placed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Placing {
+    /// The light.
+    pub light: LightId,
+    /// By what.
+    pub swing: Swing,
+}
+
+/// Why a light cannot be put so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SwingError {
+    /// The camera looks at the other side of the surface, or at its edge.
+    #[error("The camera does not see this side: no highlight can show here.")]
+    Unseen,
+    /// The light would have to stand in the floor.
+    #[error("The light would have to stand in the floor.")]
+    Floor,
+}
+
+/// Height below which no light is put, metres.
+const LOWEST_M: f32 = 0.05;
+/// Distance below which no light is put because the floor is in the way, metres.
+const NEAREST_M: f32 = 0.2;
+
+/// The light that does so, at the distance that `start` has from what it is aimed at, and aimed at the point: on its
+/// thing, so that it follows the thing. It stands nearer where it would otherwise stand in the floor.
+///
+/// With `n` the normal, `v` the direction to the camera and `l` that to the light, a mirror shows the light where
+/// `n` is the half vector: `l = 2 (n.v) n - v`. Straight light comes along the normal: `l = n`.
+pub fn swung(scene: &Scene, start: &Light, at: &SurfaceHit, swing: Swing) -> Result<Light, SwingError> {
+    let direction = match swing {
+        Swing::Light => at.normal,
+        Swing::Highlight => {
+            let view = (scene.camera.position - at.point).try_normalize().ok_or(SwingError::Unseen)?;
+            let cosine = at.normal.dot(view);
+            if cosine <= 1e-3 {
+                return Err(SwingError::Unseen);
+            }
+            2.0 * cosine * at.normal - view
+        }
+    };
+    let wanted_m = match start.aim {
+        Aim::Angles { .. } => (start.position - at.point).length(),
+        Aim::Point(_) | Aim::Object { .. } => (start.position - scene.aim_point(&start.aim, start.position)).length(),
+    };
+    let mut distance_m = wanted_m.max(NEAREST_M);
+    if !start.emitter.is_infinite() && at.point.y + direction.y * distance_m < LOWEST_M {
+        distance_m = (at.point.y - LOWEST_M) / -direction.y;
+        // A point in the floor has a distance under zero, or none.
+        if distance_m.is_nan() || distance_m < NEAREST_M {
+            return Err(SwingError::Floor);
+        }
+    }
+    Ok(Light { position: at.point + direction * distance_m, aim: aim_on(scene, at), ..start.clone() })
+}
+
+/// The aim at a point of a thing that follows the thing.
+fn aim_on(scene: &Scene, at: &SurfaceHit) -> Aim {
+    let object_from_world = scene.object(at.object).map(|object| object.transform.world_from_object().inverse());
+    match object_from_world.map(|m| m.transform_point3(at.point)).filter(|offset| offset.is_finite()) {
+        Some(offset) => Aim::Object { object: at.object, offset },
+        None => Aim::Point(at.point),
+    }
+}
+
+/// Whether a light can be placed so: it must come from somewhere.
+pub fn can_swing(light: &Light) -> bool {
+    light.emitter != Emitter::Surround
+}
+
+/// The direction in which the camera sees the highlight of a light at a point, for the lines that show it.
+pub fn normal_between(light: Vec3, camera: Vec3, point: Vec3) -> Option<Vec3> {
+    let half = (light - point).try_normalize()? + (camera - point).try_normalize()?;
+    half.try_normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::action::Action;
+    use crate::editor::catalog;
+    use crate::scene::ObjectId;
+
+    fn studio() -> (Scene, Light) {
+        let mut scene = Scene::default();
+        let mut ball = catalog::object_named("Chrome ball").unwrap();
+        ball.transform.position = Vec3::new(0.2, 1.4, -0.1);
+        ball.transform.rotation_deg.y = 33.0;
+        Action::AddObject(Box::new(ball)).apply(&mut scene).unwrap();
+        let mut light = catalog::light_named("Softbox 60 x 90").unwrap();
+        light.aim = Aim::Object { object: ObjectId(0), offset: Vec3::ZERO };
+        Action::AddLight(Box::new(light)).apply(&mut scene).unwrap();
+        let light = scene.lights[0].clone();
+        (scene, light)
+    }
+
+    /// A point of the ball in a direction from its middle.
+    fn on_ball(scene: &Scene, direction: Vec3) -> SurfaceHit {
+        let normal = direction.normalize();
+        let point = scene.objects[0].transform.position + 0.1 * normal;
+        SurfaceHit { object: ObjectId(0), point, normal, t: 1.0 }
+    }
+
+    #[test]
+    fn the_half_vector_is_the_normal_where_a_highlight_is_put() {
+        let (mut scene, start) = studio();
+        let distance = (start.position - scene.aim_point(&start.aim, start.position)).length();
+        for direction in [Vec3::new(0.1, 0.2, 1.0), Vec3::new(-0.5, 0.6, 0.7), Vec3::new(0.7, -0.1, 0.5)] {
+            let at = on_ball(&scene, direction);
+            let light = swung(&scene, &start, &at, Swing::Highlight).unwrap();
+            let half = normal_between(light.position, scene.camera.position, at.point).unwrap();
+            assert!((half - at.normal).length() < 1e-5, "{direction}: {half}, not {}", at.normal);
+            scene.lights[0] = light.clone();
+            let axis = -Vec3::from(scene.light_frame(&light).matrix3.z_axis);
+            let to_point = at.point - light.position;
+            assert!(axis.cross(to_point).length() < 1e-5 && axis.dot(to_point) > 0.0, "the axis passes the point");
+            assert!((to_point.length() - distance).abs() < 1e-5, "at the same distance");
+        }
+    }
+
+    #[test]
+    fn straight_light_comes_along_the_normal() {
+        let (scene, start) = studio();
+        let at = on_ball(&scene, Vec3::new(-0.9, 0.3, -0.2));
+        let light = swung(&scene, &start, &at, Swing::Light).unwrap();
+        let from = (light.position - at.point).normalize();
+        assert!((from - at.normal).length() < 1e-6);
+        assert!((scene.aim_point(&light.aim, light.position) - at.point).length() < 1e-6);
+    }
+
+    #[test]
+    fn no_highlight_where_the_camera_sees_nothing_and_no_light_in_the_floor() {
+        let (mut scene, start) = studio();
+        let behind = on_ball(&scene, Vec3::NEG_Z);
+        assert_eq!(swung(&scene, &start, &behind, Swing::Highlight), Err(SwingError::Unseen));
+        let below = on_ball(&scene, Vec3::new(0.0, -1.0, 0.1));
+        let nearer = swung(&scene, &start, &below, Swing::Light).unwrap();
+        assert!((nearer.position.y - LOWEST_M).abs() < 1e-5, "{}", nearer.position);
+        assert!(((nearer.position - below.point).normalize() - below.normal).length() < 1e-5, "the direction holds");
+        scene.objects[0].transform.position.y = 0.15;
+        assert_eq!(swung(&scene, &start, &on_ball(&scene, Vec3::NEG_Y), Swing::Light), Err(SwingError::Floor));
+    }
+}

@@ -1,0 +1,108 @@
+//! Lights placed by where their highlight or their light falls, and by looking through them.
+
+use super::*;
+use glam::Vec3;
+
+/// A window with a ball that is large enough to drag over, selected last the first light.
+fn with_a_ball() -> (Window, usize) {
+    let mut window = window_with_answers([]);
+    click(&mut window, "Props");
+    click(&mut window, "Add Chrome ball");
+    let Some(Item::Object(id)) = window.state().selection().last() else { panic!("the ball is selected") };
+    let mut ball = scene(&window).object(id).unwrap().clone();
+    ball.transform.position = Vec3::new(0.9, 1.2, 0.8);
+    ball.transform.scale = Vec3::splat(3.0);
+    run(&mut window, Command::Do(Action::SetObject(Box::new(ball))));
+    let light = scene(&window).lights[0].id;
+    select(&mut window, &[Item::Light(light)]);
+    let index = scene(&window).objects.iter().position(|o| o.id == id).unwrap();
+    (window, index)
+}
+
+#[test]
+fn a_highlight_is_dragged_over_a_ball_and_the_light_follows_in_one_step() {
+    if !has_adapter() {
+        return;
+    }
+    let (mut window, ball) = with_a_ball();
+    let (start, depth) = (scene(&window).lights[0].clone(), undo_depth(&window));
+    let centre = scene(&window).objects[ball].transform.position;
+    press(&mut window, Modifiers::NONE, Key::P);
+    assert!(window.state().viewport().swing.is_some());
+    let [from, to] = [Vec3::new(0.0, 0.05, 0.2), Vec3::new(-0.1, 0.12, 0.2)].map(|p| shown_at(&window, centre + p));
+    drag(&mut window, PointerButton::Primary, from, to);
+    let (scene, light) = (scene(&window), &scene(&window).lights[0]);
+    let point = scene.aim_point(&light.aim, light.position);
+    assert!((shown_at(&window, point) - to).length() < 2.0, "the light is aimed at the point under the pointer");
+    let half = ((light.position - point).normalize() + (scene.camera.position - point).normalize()).normalize();
+    // The mesh's smooth normals stray from the ball's by less than a degree.
+    assert!(half.dot((point - centre).normalize()) > 0.999_8, "{half}");
+    let distance = |l: &catchlight::scene::Light| (scene.aim_point(&l.aim, l.position) - l.position).length();
+    assert!((distance(light) - distance(&start)).abs() < 1e-3, "at its distance");
+    assert_eq!(undo_depth(&window), depth + 1);
+    press(&mut window, Modifiers::NONE, Key::Escape);
+    assert!(window.state().viewport().swing.is_none() && !window.state().selection().is_empty());
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    assert_eq!(super::scene(&window).lights[0], start);
+}
+
+#[test]
+fn light_that_is_put_on_a_point_comes_along_its_normal() {
+    if !has_adapter() {
+        return;
+    }
+    let (mut window, ball) = with_a_ball();
+    let centre = scene(&window).objects[ball].transform.position;
+    press(&mut window, Modifiers::NONE, Key::L);
+    let at = shown_at(&window, centre + Vec3::new(0.05, 0.15, 0.1));
+    drag(&mut window, PointerButton::Primary, at, at + vec2(1.0, 0.0));
+    let light = &scene(&window).lights[0];
+    let point = scene(&window).aim_point(&light.aim, light.position);
+    let from = (light.position - point).normalize();
+    assert!(from.dot((point - centre).normalize()) > 0.999_8, "{from}");
+}
+
+#[test]
+fn looking_through_a_light_orbit_swings_it_at_its_distance_and_esc_goes_back() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let light = scene(&window).lights[0].clone();
+    select(&mut window, &[Item::Light(light.id)]);
+    press(&mut window, Modifiers::NONE, Key::V);
+    assert_eq!(window.state().centre(), Centre::Light(light.id));
+    let middle = window.get_by_label("Viewport").rect().center();
+    drag(&mut window, PointerButton::Middle, middle, middle + vec2(70.0, 15.0));
+    let now = scene(&window).lights[0].clone();
+    let distance = |l: &catchlight::scene::Light| (scene(&window).aim_point(&l.aim, l.position) - l.position).length();
+    assert!((now.position - light.position).length() > 0.1);
+    assert!((distance(&now) - distance(&light)).abs() < 1e-4);
+    assert_eq!((now.aim, undo_depth(&window)), (light.aim, 1));
+    press(&mut window, Modifiers::NONE, Key::Escape);
+    assert_eq!(window.state().centre(), Centre::Studio);
+}
+
+#[test]
+fn a_light_that_is_aimed_at_its_subject_stays_on_it_while_either_moves() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let light = scene(&window).lights[0].clone();
+    select(&mut window, &[Item::Light(light.id)]);
+    let Aim::Object { object, offset } = light.aim else { panic!("the preset's key is aimed at its subject") };
+    let mut moved = scene(&window).object(object).unwrap().clone();
+    moved.transform.position += Vec3::new(0.5, 0.0, 0.3);
+    run(&mut window, Command::Do(Action::SetObject(Box::new(moved.clone()))));
+    let target = scene(&window).aim_point(&scene(&window).lights[0].aim, Vec3::ZERO);
+    assert!((target - moved.transform.world_from_object().transform_point3(offset)).length() < 1e-6);
+    // The lock is a switch in the inspector: let go, it stays where it is aimed at now; locked again, it follows.
+    window.get_by_label_contains("Stays on").click_accesskit();
+    settle(&mut window);
+    assert_eq!(scene(&window).lights[0].aim, Aim::Point(target));
+    window.get_by_label_contains("Stays on").click_accesskit();
+    settle(&mut window);
+    assert!((scene(&window).aim_point(&scene(&window).lights[0].aim, Vec3::ZERO) - target).length() < 1e-5);
+    assert!(matches!(scene(&window).lights[0].aim, Aim::Object { object: at, .. } if at == object));
+}

@@ -1,0 +1,166 @@
+//! Several things at once: chosen in the view and in the list, moved, deleted, copied, mirrored together.
+
+use super::*;
+use glam::Vec3;
+
+fn lights(window: &Window) -> Vec<Item> {
+    scene(window).lights.iter().map(|l| Item::Light(l.id)).collect()
+}
+
+#[test]
+fn lights_gathered_in_the_view_move_together_in_one_step() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let before = scene(&window).clone();
+    let both = [before.lights[0].position, before.lights[1].position];
+    let places = both.map(|point| shown_at(&window, point));
+    click_at(&mut window, places[0], Modifiers::NONE);
+    click_at(&mut window, places[1], Modifiers::SHIFT);
+    assert_eq!(window.state().selection().items(), &lights(&window)[..2]);
+    let centre = shown_at(&window, 0.5 * (both[0] + both[1]));
+    drag(&mut window, PointerButton::Primary, centre, centre + vec2(50.0, -30.0));
+    let moved = [0, 1].map(|i| scene(&window).lights[i].position - before.lights[i].position);
+    assert!(moved[0].length() > 0.1 && (moved[0] - moved[1]).length() < 1e-5, "{moved:?}");
+    assert_eq!((undo_depth(&window), scene(&window).lights[2].position), (1, before.lights[2].position));
+    assert!(window.query_all_by_label("2 lights selected").next().is_some());
+    let now = shown_at(&window, both[1] + moved[1]);
+    click_at(&mut window, now, Modifiers::COMMAND);
+    assert_eq!(window.state().selection().items(), &lights(&window)[..1]);
+    press(&mut window, Modifiers::NONE, Key::Escape);
+    assert!(window.state().selection().is_empty());
+}
+
+#[test]
+fn a_box_and_ctrl_a_select_what_is_there_and_not_locked() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let view = window.get_by_label("Viewport").rect().shrink(6.0);
+    let inside: Vec<Item> = scene(&window)
+        .lights
+        .iter()
+        .filter(|l| view.contains(shown_at(&window, l.position)))
+        .map(|l| Item::Light(l.id))
+        .collect();
+    assert!(inside.len() > 1, "the preset shows its lights");
+    run(&mut window, Command::Do(Action::Lock(vec![inside[0]], true)));
+    drag(&mut window, PointerButton::Primary, view.left_bottom(), view.right_top() - vec2(110.0, -130.0));
+    let boxed = window.state().selection().clone();
+    let by_hand = scene(&window).lights.iter().filter(|l| {
+        let place = shown_at(&window, l.position);
+        !l.locked && view.contains(place) && place.x < view.right() - 110.0 && place.y > view.top() + 130.0
+    });
+    let by_hand: Vec<_> = by_hand.map(|l| l.id).collect();
+    assert_eq!(boxed.lights(), by_hand);
+    assert!(!boxed.contains(inside[0]), "what is locked is passed over");
+    press(&mut window, Modifiers::COMMAND, Key::A);
+    let (all, things) = (window.state().selection(), scene(&window));
+    let free = things.objects.iter().filter(|o| o.visible && !o.locked).count() + things.lights.len() - 1;
+    assert_eq!(all.len(), free);
+}
+
+#[test]
+fn several_are_deleted_and_copied_in_one_step() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let before = scene(&window).clone();
+    let two = lights(&window)[..2].to_vec();
+    select(&mut window, &two);
+    press(&mut window, Modifiers::COMMAND, Key::D);
+    assert_eq!((scene(&window).lights.len(), undo_depth(&window)), (before.lights.len() + 2, 1));
+    assert_eq!(window.state().selection().len(), 2, "the copies are selected");
+    press(&mut window, Modifiers::NONE, Key::Delete);
+    assert_eq!(scene(&window).lights, before.lights);
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    assert_eq!((scene(&window), undo_depth(&window)), (&before, 0));
+}
+
+#[test]
+fn the_list_gathers_by_ctrl_and_takes_ranges_by_shift() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let names: Vec<String> = scene(&window).lights.iter().map(|l| l.name.clone()).collect();
+    assert!(names.len() >= 3);
+    let mut at = |name: &str, modifiers| {
+        let place = window.get_by_label(name).rect().center();
+        click_at(&mut window, place, modifiers);
+        window.state().selection().lights().len()
+    };
+    assert_eq!(at(&names[0], Modifiers::NONE), 1);
+    assert_eq!(at(&names[2], Modifiers::SHIFT), 3);
+    assert_eq!(at(&names[1], Modifiers::COMMAND), 2);
+    assert_eq!(at(&names[1], Modifiers::NONE), 1);
+}
+
+#[test]
+fn a_typed_number_moves_by_exactly_that_and_esc_gives_a_drag_up() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let light = scene(&window).lights[0].clone();
+    select(&mut window, &[Item::Light(light.id)]);
+    let from = shown_at(&window, light.position);
+    let button = |window: &mut Window, pos, pressed| {
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        window.event(Event::PointerButton { pos, button, pressed, modifiers });
+        window.step();
+    };
+    let begin = |window: &mut Window| {
+        window.event(Event::PointerMoved(from));
+        window.step();
+        button(window, from, true);
+        window.event(Event::PointerMoved(from + vec2(40.0, 10.0)));
+        window.step();
+    };
+    begin(&mut window);
+    for (key, letter) in [(Key::Num1, "1"), (Key::Period, "."), (Key::Num5, "5")] {
+        window.key_press(key);
+        window.event(Event::Text(letter.to_owned()));
+        window.step();
+    }
+    window.key_press(Key::Enter);
+    window.step();
+    window.event(Event::PointerMoved(from + vec2(90.0, 60.0)));
+    window.step();
+    button(&mut window, from + vec2(90.0, 60.0), false);
+    settle(&mut window);
+    let moved = (scene(&window).lights[0].position - light.position).length();
+    assert!((moved - 1.5).abs() < 1e-4, "{moved} m");
+    assert_eq!((undo_depth(&window), window.state().centre()), (1, Centre::Studio), "the 1 was no key of its own");
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    begin(&mut window);
+    assert_ne!(scene(&window).lights[0], light);
+    window.key_press(Key::Escape);
+    window.step();
+    button(&mut window, from, false);
+    settle(&mut window);
+    assert_eq!((&scene(&window).lights[0], undo_depth(&window)), (&light, 0));
+    assert!(!window.state().selection().is_empty(), "Esc ended the drag, not the selection");
+}
+
+#[test]
+fn a_mirrored_copy_stands_on_the_other_side_of_the_face() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let key = scene(&window).lights[0].clone();
+    select(&mut window, &[Item::Light(key.id)]);
+    press(&mut window, Modifiers::COMMAND | Modifiers::SHIFT, Key::D);
+    let copy = scene(&window).lights.last().unwrap().clone();
+    assert_eq!(window.state().selection().items(), [Item::Light(copy.id)]);
+    let subject = scene(&window).objects.iter().find(|o| matches!(o.shape, Shape::Mannequin(_))).unwrap();
+    let own = subject.transform.world_from_object().inverse();
+    let [original, mirrored] = [key.position, copy.position].map(|p| own.transform_point3(p));
+    let flip = Vec3::new(-1.0, 1.0, 1.0);
+    assert!((mirrored - original * flip).length() < 1e-4, "{mirrored} of {original}");
+}

@@ -1,0 +1,74 @@
+//! Solo, mute, hide and lock: in the list and by key, and what they give back.
+
+use super::*;
+
+fn on(window: &Window) -> Vec<bool> {
+    scene(window).lights.iter().map(|l| l.on).collect()
+}
+
+#[test]
+fn a_solo_in_the_list_gives_back_what_was_on() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let names: Vec<String> = scene(&window).lights.iter().map(|l| l.name.clone()).collect();
+    click(&mut window, &format!("{} on", names[1]));
+    let (before, power) = (on(&window), scene(&window).lights.iter().map(|l| l.power).collect::<Vec<_>>());
+    click(&mut window, &format!("{} alone", names[0]));
+    assert_eq!(on(&window).iter().filter(|on| **on).count(), 1);
+    click(&mut window, &format!("{} alone", names[2]));
+    assert!(on(&window)[2] && !on(&window)[0], "another takes its place");
+    assert!(window.query_by_label_contains("1 of 4 alone").is_some());
+    click(&mut window, "End solo");
+    assert_eq!(on(&window), before);
+    assert_eq!(scene(&window).lights.iter().map(|l| l.power).collect::<Vec<_>>(), power);
+    assert!(scene(&window).solo.is_none() && window.query_by_label("End solo").is_none());
+}
+
+#[test]
+fn mute_and_hide_bring_back_what_was_there_and_no_more() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let names: Vec<String> = scene(&window).lights.iter().map(|l| l.name.clone()).collect();
+    click(&mut window, &format!("{} on", names[1]));
+    let before = scene(&window).clone();
+    press(&mut window, Modifiers::COMMAND, Key::A);
+    press(&mut window, Modifiers::NONE, Key::H);
+    assert!(on(&window).iter().all(|on| !on) && scene(&window).objects.iter().all(|o| !o.visible));
+    assert!(scene(&window).lights[0].muted && !scene(&window).lights[1].muted, "what was off is not muted");
+    press(&mut window, Modifiers::NONE, Key::H);
+    assert_eq!(*scene(&window), before);
+    click(&mut window, &format!("{} muted", names[0]));
+    assert!(!on(&window)[0]);
+    click(&mut window, &format!("{} on", names[0]));
+    assert!(on(&window)[0] && !scene(&window).lights[0].muted, "the lamp's switch ends a mute");
+}
+
+#[test]
+fn what_is_locked_is_neither_picked_nor_moved_and_the_file_remembers_it() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let figure = scene(&window).objects[0].clone();
+    let at = shown_at(&window, figure.transform.position + glam::Vec3::Y);
+    click_at(&mut window, at, Modifiers::NONE);
+    assert_eq!(window.state().selection().last(), Some(Item::Object(figure.id)));
+    press(&mut window, Modifiers::NONE, Key::K);
+    let feet = shown_at(&window, figure.transform.position);
+    drag(&mut window, PointerButton::Primary, feet, feet + vec2(60.0, 10.0));
+    assert_eq!(scene(&window).objects[0].transform, figure.transform, "locked things have no handles");
+    press(&mut window, Modifiers::NONE, Key::Escape);
+    click_at(&mut window, at, Modifiers::NONE);
+    assert!(!window.state().selection().contains(Item::Object(figure.id)), "a click goes past it");
+    let written = catchlight::io::write_scene(scene(&window));
+    assert!(written.contains("locked: true"), "{written}");
+    select(&mut window, &[Item::Object(figure.id)]);
+    press(&mut window, Modifiers::NONE, Key::Delete);
+    assert_eq!((scene(&window).objects.len(), errors(&window).len()), (scene(&window).objects.len(), 1));
+    click(&mut window, &format!("{} locked", figure.name));
+    assert_eq!(scene(&window).objects[0], figure);
+}

@@ -1,0 +1,139 @@
+//! Views from a side, orbit about the selection, and windows over the view.
+
+use super::*;
+use catchlight::editor::Side;
+use catchlight::scene::Emitter;
+
+#[test]
+fn from_the_top_a_light_is_dragged_over_the_plan_and_keeps_its_height() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let light = scene(&window).lights[0].clone();
+    select(&mut window, &[Item::Light(light.id)]);
+    press(&mut window, Modifiers::NONE, Key::Num7);
+    assert_eq!(window.state().viewport().view.side, Some(Side::Top));
+    let from = shown_at(&window, light.position);
+    drag(&mut window, PointerButton::Primary, from, from + vec2(80.0, 30.0));
+    let moved = &scene(&window).lights[0];
+    let by = moved.position - light.position;
+    assert!(by.x > 0.1 && by.z > 0.02 && by.y.abs() < 1e-3, "{by}");
+    let now = shown_at(&window, moved.position);
+    assert!((now - from - vec2(80.0, 30.0)).length() < 3.0, "the light stays under the pointer: {now} from {from}");
+    assert_eq!((undo_depth(&window), window.state().viewport().view.parallel), (1, true));
+}
+
+#[test]
+fn sides_are_buttons_and_keys_and_an_orbit_leaves_them() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let view = |window: &Window| window.state().viewport().view;
+    press(&mut window, Modifiers::NONE, Key::Num8);
+    assert_eq!(view(&window).side, Some(Side::Front));
+    click(&mut window, "Look from: Right side");
+    assert_eq!(view(&window).side, Some(Side::Right));
+    let frame = view(&window).frame(1.0);
+    assert!((frame.forward() + glam::Vec3::X).length() < 1e-5);
+    let middle = window.get_by_label("Viewport").rect().center();
+    drag(&mut window, PointerButton::Middle, middle, middle + vec2(30.0, 10.0));
+    assert_eq!((view(&window).side, view(&window).parallel), (None, false));
+    press(&mut window, Modifiers::NONE, Key::Num5);
+    assert!(view(&window).parallel);
+    assert_eq!(undo_depth(&window), 0, "a view is no change of the studio");
+}
+
+#[test]
+fn a_click_selects_from_the_top_as_it_does_from_anywhere() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let figure = scene(&window).objects[0].clone();
+    press(&mut window, Modifiers::NONE, Key::Num8);
+    let at = shown_at(&window, figure.transform.position + glam::Vec3::Y);
+    click_at(&mut window, at, Modifiers::NONE);
+    assert_eq!(window.state().selection().last(), Some(Item::Object(figure.id)));
+}
+
+#[test]
+fn the_view_turns_about_what_is_selected() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let light = scene(&window).lights[0].clone();
+    select(&mut window, &[Item::Light(light.id)]);
+    let before = shown_at(&window, light.position);
+    let middle = window.get_by_label("Viewport").rect().center();
+    drag(&mut window, PointerButton::Middle, middle, middle + vec2(60.0, 20.0));
+    assert!((shown_at(&window, light.position) - before).length() < 0.5);
+}
+
+#[test]
+fn the_meter_can_be_moved_out_of_the_way_and_folded() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    click(&mut window, "Light meter");
+    // The bar of the window, at its upper edge.
+    let title = |window: &Window| window.get_by_label("Light meter, dome").rect().center_top() + vec2(0.0, 14.0);
+    let before = title(&window);
+    drag(&mut window, PointerButton::Primary, before, before + vec2(150.0, 120.0));
+    let moved = title(&window) - before;
+    assert!((moved - vec2(150.0, 120.0)).length() < 2.0, "{moved}");
+    let at = title(&window);
+    for _ in 0..2 {
+        click_at(&mut window, at, Modifiers::NONE);
+    }
+    assert!(window.query_by_label("Select the meter").is_none(), "folded");
+}
+
+#[test]
+fn what_shapes_a_light_stands_over_its_power() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let light = scene(&window).lights[0].id;
+    select(&mut window, &[Item::Light(light)]);
+    let size = window.get_by_label("Width").rect();
+    let dial = window.get_by_role_and_label(egui::accesskit::Role::Slider, "Dial").rect();
+    assert!(size.bottom() < dial.top());
+}
+
+#[test]
+fn a_length_is_typed_in_any_unit() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let light = scene(&window).lights[0].id;
+    select(&mut window, &[Item::Light(light)]);
+    window.get_by_label("Width").click();
+    settle(&mut window);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    window.event(Event::Text("1.3 m".to_owned()));
+    window.key_press(Key::Enter);
+    settle(&mut window);
+    let emitter = scene(&window).lights[0].emitter;
+    assert!(
+        matches!(emitter, Emitter::RectPanel { width_m, .. } if (width_m - 1.3).abs() < 1e-6),
+        "{emitter:?} in a field of centimetres"
+    );
+}
+
+#[test]
+fn the_list_of_keys_names_every_key() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    press(&mut window, Modifiers::NONE, Key::F1);
+    for binding in &catchlight::editor::BINDINGS {
+        assert!(window.query_all_by_label(binding.meaning).next().is_some(), "{}", binding.meaning);
+    }
+}
