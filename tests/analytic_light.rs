@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 use studio::closed_forms::{disc, polygon, vec3};
 use studio::light;
-use studio::measure::{BIAS, corners, illuminance, meter_card, square};
+use studio::measure::{BIAS, corners, film, illuminance, lux_per_value, meter_card, square, values};
 use studio::statistics::{Estimate, Numbers};
 
 fn lit(emitter: Emitter, position: Vec3, aim: Vec3, receiver: Vec3, normal: Vec3) -> Scene {
@@ -262,4 +262,44 @@ fn the_suns_cosine_and_its_disc_cut_by_the_horizon() {
     let a = 10_f64.to_radians();
     let (reading, _, _) = sun(20.0, 0.0, 5);
     check(reading, 80_000.0 / (PI * a.sin().powi(2)) * (a - a.sin() * a.cos()), 5, "half set");
+}
+
+#[test]
+fn of_many_lights_one_is_chosen_a_hit_and_each_still_gives_its_own() {
+    // Fourteen bulbs and panels of powers over six stops, near and far, one of them behind the card: more than are
+    // sampled one by one, and few enough for a layer each. A wrong chance of choice would move light between layers.
+    let (position, normal) = (Vec3::ZERO, Vec3::new(0.3, 0.9, 0.2).normalize());
+    let mut scene = meter_card(position, normal);
+    let mut numbers = Numbers::new(77);
+    let (width_m, height_m) = (0.4, 0.7);
+    for i in 0..14 {
+        let behind = i == 5;
+        let from = numbers.direction();
+        let from = if (from.dot(normal) > 0.0) == behind { -from } else { from };
+        let emitter = if i % 2 == 0 { Emitter::Point } else { Emitter::RectPanel { width_m, height_m } };
+        let output = Output::Lumens(100.0 * 1.4_f32.powi(i));
+        let id = catchlight::scene::LightId(i as u32);
+        let place = from * numbers.between(0.6, 4.0);
+        scene.lights.push(catchlight::scene::Light { id, name: format!("Light {i}"), ..light(emitter, output, place) });
+    }
+    let film = film(&scene, &square(Method::Direct, 32, 256));
+    for (i, light) in scene.lights.iter().enumerate() {
+        let mut alone = scene.clone();
+        alone.lights.iter_mut().enumerate().for_each(|(k, light)| light.on = k == i);
+        let Estimate { mean, error } = values(&film.develop(&alone));
+        let scale = lux_per_value(&scene.camera);
+        let reading = Estimate { mean: mean * scale, error: error * scale };
+        let flux = 100.0 * 1.4_f64.powi(i as i32);
+        let truth = if i == 5 {
+            0.0
+        } else if let Emitter::RectPanel { .. } = light.emitter {
+            let luminance = flux / (PI * f64::from(width_m * height_m));
+            polygon(&corners(&scene, i, width_m, height_m), luminance, DVec3::ZERO, vec3(normal))
+        } else {
+            let to = vec3(light.position);
+            flux / (4.0 * PI) * to.normalize().dot(vec3(normal)) / to.length_squared()
+        };
+        assert!(truth == 0.0 || reading.error < 0.1 * truth, "light {i} is too noisy to say anything: {reading:?}");
+        check(reading, truth, scene.lights.len(), &format!("light {i}"));
+    }
 }

@@ -4,7 +4,7 @@
 mod studio;
 
 use catchlight::photo::meter::Receptor;
-use catchlight::raytrace::{Control, Effort, Place, Probe, Probed};
+use catchlight::raytrace::{Control, Effort, Method, Place, Probe, Probed, Settings};
 use catchlight::scene::{
     Assets, Emitter, Light, LightId, Material, MaterialPreset, Object, Output, Role, Room, Scene, Shape,
 };
@@ -14,6 +14,7 @@ use std::f32::consts::PI;
 use std::path::Path;
 use std::process::{Command, Output as ProcessOutput};
 use studio::light;
+use studio::statistics::Estimate;
 
 fn probe(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor) -> Probed {
     probe_with(scene, position, facing, receptor, &Effort::default())
@@ -332,4 +333,40 @@ fn a_room_gathers_more_than_what_comes_straight() {
     let mean = sum / (n * n) as f32;
     // 208.33 lx by light_and_camera.md. The grid errs by 0.2 % in the lamp's peak, 64 x 1024 paths by 0.1 %.
     assert!((mean / 208.33 - 1.0).abs() < 0.006, "{mean}");
+}
+
+#[test]
+fn what_comes_straight_and_what_the_meter_reads_bounced_are_together_the_path_tracers_picture() {
+    // A card in a closed room with a grey ball, a softbox and a bulb. The picture by `direct`, the meter's bounced
+    // light and the picture by `path` are three estimates that share no random number.
+    let (position, normal) = (Vec3::new(0.2, 1.0, 0.1), Vec3::new(0.4, 0.3, 1.0).normalize());
+    let mut scene = studio::measure::meter_card(position, normal);
+    scene.room = Some(Room::default());
+    let mut ball =
+        studio::object("A ball nearby", Shape::Sphere { radius_m: 0.4 }, position + Vec3::new(0.5, 0.0, 0.6));
+    ball.material.base_color = [0.6; 3];
+    scene.objects.push(ball);
+    let softbox = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
+    for (i, (emitter, place)) in
+        [(softbox, Vec3::new(-1.2, 1.8, 1.4)), (Emitter::Point, Vec3::new(1.3, 2.2, 0.9))].into_iter().enumerate()
+    {
+        let light = light(emitter, Output::Lumens(4000.0), place);
+        scene.lights.push(Light { id: LightId(i as u32), name: format!("Light {i}"), ..light });
+    }
+    let picture = |method, seed| {
+        let settings = Settings { seed, ..studio::measure::square(method, 32, 64) };
+        studio::measure::illuminance(&scene, &settings)
+    };
+    let (direct, path) = (picture(Method::Direct, 1), picture(Method::Path, 2));
+    let effort = Effort { paths: Some(1 << 16), ..Effort::default() };
+    let read = probe_with(&scene, position, normal, Receptor::Flat, &effort).reading;
+    let bounced: f64 = read.lights.iter().map(|light| f64::from(light.bounced)).sum();
+    let bounced_error = read.lights.iter().map(|light| f64::from(light.standard_error).powi(2)).sum::<f64>();
+    assert!(bounced > 0.2 * direct.mean, "a room worth the test: {bounced} of {direct:?}");
+    let rest = Estimate {
+        mean: path.mean - direct.mean,
+        error: (path.error.powi(2) + direct.error.powi(2) + bounced_error).sqrt(),
+    };
+    assert!(rest.error < 0.01 * bounced, "{rest:?} for {bounced}");
+    assert!(rest.agrees(bounced, 1e-3, 1), "{rest:?} for {bounced}");
 }
