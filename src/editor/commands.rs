@@ -201,6 +201,8 @@ impl App {
         if self.viewport.is_dragging() {
             self.document.abandon(self.gesture);
             self.viewport.give_up_drag();
+        } else if self.show_help {
+            self.show_help = false;
         } else if self.viewport.swing.is_some() {
             self.viewport.swing = None;
         } else if matches!(self.centre, Centre::Light(_)) {

@@ -81,7 +81,8 @@ pub fn paint_labels(
             continue;
         }
         // One selected light's handles need the room to its right.
-        paint_light_label(painter, frame, rect, light, selected, selection.len() == 1 && selected);
+        let silent = scene.is_silenced(light);
+        paint_light_label(painter, frame, rect, light, silent, selected, selection.len() == 1 && selected);
         if selected && aims {
             paint_aim(painter, scene, frame, rect, light);
         }
@@ -93,6 +94,7 @@ fn paint_light_label(
     frame: &CameraFrame,
     rect: Rect,
     light: &Light,
+    silent: bool,
     selected: bool,
     has_handles: bool,
 ) {
@@ -100,11 +102,12 @@ fn paint_light_label(
     let color = if light.on { theme::role_color(light.role) } else { Color32::from_gray(110) };
     painter.circle_filled(place, if selected { 4.5 } else { 3.5 }, color);
     painter.circle_stroke(place, if selected { 4.5 } else { 3.5 }, Stroke::new(1.0, Color32::from_black_alpha(160)));
-    let state = match (light.on, light.muted, light.locked) {
-        (true, _, false) => "",
-        (true, _, true) => " (locked)",
+    let state = match (light.on, light.muted, silent) {
+        (true, ..) if light.locked => " (locked)",
+        (true, ..) => "",
         (false, true, _) => " (muted)",
-        (false, false, _) => " (off)",
+        (false, _, true) => " (silent)",
+        (false, false, false) => " (off)",
     };
     let text = format!("{}{state}", light.name);
     let (offset, align) = label_place(has_handles);

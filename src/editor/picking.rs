@@ -63,7 +63,7 @@ impl Band {
     /// Draws it.
     pub fn paint(&self, painter: &Painter) {
         let rect = Rect::from_two_pos(self.from, self.to);
-        painter.rect_filled(rect, 0.0, theme::ACCENT.gamma_multiply(0.12));
+        painter.rect_filled(rect, 0.0, theme::ACCENT.gamma_multiply(0.07));
         painter.rect_stroke(rect, CornerRadius::ZERO, Stroke::new(1.0, Color32::from_gray(220)), StrokeKind::Inside);
     }
 }

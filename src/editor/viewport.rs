@@ -73,6 +73,11 @@ impl Viewport {
         self.handles.is_dragging()
     }
 
+    /// Whether the pointer is on a handle.
+    pub fn is_over_handle(&self) -> bool {
+        self.handles.wants_pointer()
+    }
+
     /// Ends a drag of the handles; the button may still be held.
     pub fn give_up_drag(&mut self) {
         self.handles.give_up();

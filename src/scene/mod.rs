@@ -84,6 +84,11 @@ pub enum Aim {
 }
 
 impl Scene {
+    /// Whether a light is off only because others shine alone.
+    pub fn is_silenced(&self, light: &Light) -> bool {
+        !light.on && self.solo.as_ref().is_some_and(|solo| solo.restores.contains(&light.id))
+    }
+
     /// The object with this id.
     pub fn object(&self, id: ObjectId) -> Option<&Object> {
         self.objects.iter().find(|o| o.id == id)

@@ -137,3 +137,33 @@ fn the_list_of_keys_names_every_key() {
         assert!(window.query_all_by_label(binding.meaning).next().is_some(), "{}", binding.meaning);
     }
 }
+
+#[test]
+fn snapped_things_stand_on_tenths_of_a_metre_and_turn_by_fifteen_degrees() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let figure = scene(&window).objects[0].clone();
+    select(&mut window, &[Item::Object(figure.id)]);
+    press(&mut window, Modifiers::NONE, Key::G);
+    let feet = shown_at(&window, figure.transform.position);
+    drag(&mut window, PointerButton::Primary, feet, feet + vec2(83.0, 31.0));
+    let moved = scene(&window).objects[0].transform.position;
+    let off_grid = (moved * 10.0 - (moved * 10.0).round()).abs().max_element();
+    assert!(moved != figure.transform.position && off_grid < 1e-4, "{moved}");
+    // The outer ring of the turning handles lies 70 points about their middle and turns in the plane of the screen.
+    press(&mut window, Modifiers::NONE, Key::Num7);
+    press(&mut window, Modifiers::NONE, Key::T);
+    let middle = shown_at(&window, moved);
+    let ring = (55..100).map(|r| middle + vec2(r as f32, 0.0)).find(|at| {
+        window.event(Event::PointerMoved(*at));
+        window.step();
+        window.state().viewport().is_over_handle()
+    });
+    let ring = ring.unwrap();
+    drag(&mut window, PointerButton::Primary, ring, ring + vec2(-8.0, 41.0));
+    let turned = scene(&window).objects[0].transform.rotation_deg;
+    let steps = (turned.y - figure.transform.rotation_deg.y) / 15.0;
+    assert!(steps != 0.0 && (steps - steps.round()).abs() < 1e-3, "{turned}");
+}

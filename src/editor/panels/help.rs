@@ -1,7 +1,7 @@
 //! The list of keys and what the mouse does.
 
-use crate::editor::keys::BINDINGS;
-use eframe::egui::{self, Grid, RichText, ScrollArea, Ui};
+use crate::editor::keys::{BINDINGS, Binding};
+use eframe::egui::{self, Grid, RichText, ScrollArea, Ui, vec2};
 
 /// What the mouse does, and keys that are held.
 const MOUSE: [(&str, &str); 18] = [
@@ -27,30 +27,33 @@ const MOUSE: [(&str, &str); 18] = [
 
 /// Draws the window; `open` is cleared when it is closed.
 pub fn help_ui(ctx: &egui::Context, open: &mut bool) {
-    let height = (ctx.content_rect().height() - 120.0).max(200.0);
+    let room = ctx.content_rect().size() - vec2(60.0, 120.0);
     egui::Window::new("Keys and mouse")
         .open(open)
         .resizable(false)
         .collapsible(false)
-        .default_width(560.0)
         .pivot(egui::Align2::CENTER_CENTER)
         .default_pos(ctx.content_rect().center())
+        .default_size(room.min(vec2(1000.0, 760.0)))
         .show(ctx, |ui| {
-            ScrollArea::vertical().max_height(height).show(ui, |ui| {
-                Grid::new("keys").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
-                    for (keys, meaning) in MOUSE {
-                        line(ui, keys, meaning);
-                    }
-                    for binding in &BINDINGS {
-                        line(ui, &ui.ctx().format_shortcut(&binding.shortcut), binding.meaning);
-                    }
+            ScrollArea::both().show(ui, |ui| {
+                ui.horizontal_top(|ui| {
+                    list(ui, "mouse", MOUSE.map(|(keys, meaning)| (keys.to_owned(), meaning)));
+                    ui.add_space(28.0);
+                    let format = |binding: Binding| (ui.ctx().format_shortcut(&binding.shortcut), binding.meaning);
+                    let keys = BINDINGS.map(format);
+                    list(ui, "keys", keys);
                 });
             });
         });
 }
 
-fn line(ui: &mut Ui, keys: &str, meaning: &str) {
-    ui.label(RichText::new(keys).strong());
-    ui.label(meaning);
-    ui.end_row();
+fn list(ui: &mut Ui, name: &str, lines: impl IntoIterator<Item = (String, &'static str)>) {
+    Grid::new(name).num_columns(2).spacing([18.0, 3.0]).show(ui, |ui| {
+        for (keys, meaning) in lines {
+            ui.label(RichText::new(keys).strong());
+            ui.label(meaning);
+            ui.end_row();
+        }
+    });
 }

@@ -20,7 +20,7 @@ pub fn meter_ui(
         Receptor::Flat => "Light meter, flat",
         Receptor::Dome => "Light meter, dome",
     };
-    let window = egui::Window::new(title)
+    let window = egui::Window::new(RichText::new(title).size(14.0).strong())
         .id(Id::unique("light meter"))
         .default_pos(view.min + vec2(10.0, 44.0))
         .constrain_to(view)

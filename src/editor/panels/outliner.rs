@@ -161,7 +161,12 @@ impl Rows<'_> {
                     self.out.push(Command::Do(Action::Mute(vec![light.id], !muted)));
                 }
                 let glow = widgets::display_color(light_rgb(&light.color, scene.camera.white_balance_k));
-                let tip = if light.on { "On: click to switch off" } else { "Off: click to switch on" };
+                let tip = match (light.on, muted, scene.is_silenced(light)) {
+                    (true, ..) => "On: click to switch off",
+                    (false, true, _) => "Muted: click to switch on",
+                    (false, _, true) => "Silent while others shine alone: click to switch on",
+                    (false, false, false) => "Off: click to switch on",
+                };
                 let lamp = widgets::lamp_toggle(ui, light.on, glow, &format!("{} on", light.name));
                 if lamp.on_hover_text(tip).clicked() {
                     let changed = Light { on: !light.on, ..light.clone() };

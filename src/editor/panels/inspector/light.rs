@@ -27,7 +27,14 @@ pub(super) fn light_ui(ui: &mut Ui, context: &mut Context<'_>, id: LightId) {
         }
     });
     row(ui, "Switch", "Whether it shines", |ui| {
-        widgets::choice(ui, &mut light.on, &[(true, "On", "It shines"), (false, "Off", "It is dark")])
+        widgets::choice(ui, &mut light.on, &[(true, "On", "It shines"), (false, "Off", "It is dark")]);
+        let why = match (original.on, original.muted, scene.is_silenced(original)) {
+            (false, true, _) => "muted for now",
+            (false, _, true) => "silent: others shine alone",
+            _ => "",
+        };
+        ui.add_space(6.0);
+        ui.label(RichText::new(why).color(theme::MUTED).small());
     });
     role_row(ui, &mut light);
     modifier::kind_rows(ui, scene, &mut light);
