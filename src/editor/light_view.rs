@@ -36,13 +36,52 @@ fn rings(light: &Light) -> Vec<(f32, &'static str)> {
     rings
 }
 
-/// Cross-hair on the axis, and rings where the beam is cut.
-pub fn paint(painter: &Painter, light: &Light, frame: &CameraFrame, rect: Rect) {
+/// Half the size of what shines, metres, and whether it is round; none for what has none.
+fn half_size(emitter: &Emitter) -> Option<(Vec2, bool)> {
+    match *emitter {
+        Emitter::RectPanel { width_m, height_m } => Some((0.5 * Vec2::new(width_m, height_m), false)),
+        Emitter::RoundPanel { diameter_m } => Some((Vec2::splat(0.5 * diameter_m), true)),
+        Emitter::Sphere { radius_m } => Some((Vec2::splat(radius_m), true)),
+        Emitter::Point | Emitter::Spot { .. } | Emitter::Sun { .. } | Emitter::Surround => None,
+    }
+}
+
+/// How large a thing of this half size shows at a distance, points.
+fn shown_size(half_m: Vec2, distance_m: f32, frame: &CameraFrame, rect: Rect) -> eframe::egui::Vec2 {
+    let part = half_m / distance_m.max(1e-3) / frame.half_extent;
+    vec2(part.x * rect.width(), part.y * rect.height())
+}
+
+/// The light's own size, held up where it is aimed: how it compares with what it lights.
+fn paint_size(painter: &Painter, light: &Light, distance_m: f32, frame: &CameraFrame, rect: Rect, color: Color32) {
+    let Some((half_m, round)) = half_size(&light.emitter) else { return };
+    let size = shown_size(half_m, distance_m, frame, rect);
+    let place = Rect::from_center_size(rect.center(), size);
+    let outline: Vec<Pos2> = if round {
+        (0..=64)
+            .map(|i| i as f32 / 64.0 * std::f32::consts::TAU)
+            .map(|a| place.center() + 0.5 * vec2(size.x * a.cos(), size.y * a.sin()))
+            .collect()
+    } else {
+        [place.left_top(), place.right_top(), place.right_bottom(), place.left_bottom(), place.left_top()].to_vec()
+    };
+    let stroke = Stroke::new(1.0, color.gamma_multiply(0.6));
+    painter.extend(eframe::egui::Shape::dashed_line(&outline, stroke, 6.0, 5.0));
+    let [width, height] = (200.0 * half_m).to_array();
+    let text =
+        if round { format!("its size, {width:.0} cm") } else { format!("its size, {width:.0} \u{d7} {height:.0} cm") };
+    let at = Pos2::new(place.center().x, place.max.y.min(rect.max.y - 24.0));
+    text_with_shadow(painter, at + vec2(0.0, 4.0), Align2::CENTER_TOP, &text, color.gamma_multiply(0.8));
+}
+
+/// Cross-hair on the axis, rings where the beam is cut, and the light's own size at `distance_m`, where it is aimed.
+pub fn paint(painter: &Painter, light: &Light, distance_m: f32, frame: &CameraFrame, rect: Rect) {
     let color = theme::role_color(light.role);
     let (centre, stroke) = (rect.center(), Stroke::new(1.5, color));
     for (x, y) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
         painter.line_segment([centre + 6.0 * vec2(x, y), centre + 16.0 * vec2(x, y)], stroke);
     }
+    paint_size(painter, light, distance_m, frame, rect, color);
     for (full_deg, what) in rings(light) {
         // Beyond this a ring lies outside of every view.
         if full_deg > 170.0 {
@@ -79,6 +118,12 @@ mod tests {
         let frame = frame(&scene, &light, 1.6);
         let target = scene.aim_point(&light.aim, light.position);
         assert!((frame.project(target).unwrap() - 0.5).length() < 1e-5);
+        // A panel of 60 x 90 cm at 2 m is seen under the angles of its halves.
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(1600.0, 1000.0));
+        let size = shown_size(Vec2::new(0.3, 0.45), 2.0, &frame, rect);
+        let corner = frame.world_from_camera.transform_point3(Vec3::new(0.3, 0.45, -2.0));
+        let place = frame.project(corner).unwrap() - 0.5;
+        assert!((size - 2.0 * vec2(place.x * 1600.0, -place.y * 1000.0)).length() < 1e-2, "{size} for {place}");
         let edge = frame.world_from_camera.transform_point3(Vec3::new(0.0, 25.0_f32.to_radians().tan(), -1.0));
         let place = frame.project(edge).unwrap();
         assert!(place.y > 0.0 && place.y < 0.1, "the cone's edge is just inside: {place}");

@@ -262,7 +262,8 @@ impl Viewport {
         }
         if let Centre::Light(id) = input.centre {
             if let Some(light) = scene.light(id) {
-                light_view::paint(&painter, light, &frame, rect);
+                let distance_m = (scene.aim_point(&light.aim, light.position) - light.position).length();
+                light_view::paint(&painter, light, distance_m, &frame, rect);
                 let text =
                     format!("Through {}: orbit swings it, the wheel moves it nearer or away.    Esc ends", light.name);
                 light_view::paint_banner(&painter, rect, &text);

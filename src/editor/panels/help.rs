@@ -38,21 +38,24 @@ pub fn help_ui(ctx: &egui::Context, open: &mut bool) {
         .show(ctx, |ui| {
             ScrollArea::both().show(ui, |ui| {
                 ui.horizontal_top(|ui| {
-                    list(ui, "mouse", MOUSE.map(|(keys, meaning)| (keys.to_owned(), meaning)));
+                    let mouse = MOUSE.map(|(keys, meaning)| (keys.to_owned(), meaning));
+                    let format = |binding: &Binding| (ui.ctx().format_shortcut(&binding.shortcut), binding.meaning);
+                    let keys: Vec<_> = BINDINGS.iter().map(format).collect();
+                    // Two columns of about the same length.
+                    let (left, right) = keys.split_at((keys.len().saturating_sub(mouse.len())).div_ceil(2));
+                    list(ui, "left", mouse.iter().chain(left));
                     ui.add_space(28.0);
-                    let format = |binding: Binding| (ui.ctx().format_shortcut(&binding.shortcut), binding.meaning);
-                    let keys = BINDINGS.map(format);
-                    list(ui, "keys", keys);
+                    list(ui, "right", right);
                 });
             });
         });
 }
 
-fn list(ui: &mut Ui, name: &str, lines: impl IntoIterator<Item = (String, &'static str)>) {
+fn list<'a>(ui: &mut Ui, name: &str, lines: impl IntoIterator<Item = &'a (String, &'static str)>) {
     Grid::new(name).num_columns(2).spacing([18.0, 3.0]).show(ui, |ui| {
         for (keys, meaning) in lines {
             ui.label(RichText::new(keys).strong());
-            ui.label(meaning);
+            ui.label(*meaning);
             ui.end_row();
         }
     });

@@ -222,7 +222,7 @@ pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool,
             ui.checkbox(camera_follows, "Move the camera").on_hover_text(
                 "On: orbit, pan, wheel and W A S D move the camera itself. Off: they leave to the studio view.",
             );
-        } else {
+        } else if centre == Centre::Studio {
             let button = ui.button("Camera here");
             if button.on_hover_text("Puts the camera where you look from now").clicked() {
                 out.push(Command::CameraFromView);

@@ -13,6 +13,11 @@ pub(super) fn warn_of_lights(scene: &Scene, check: &mut Check) {
     } else if scene.lights.iter().all(|l| !l.on) && !glows {
         check.warning("lights", "all lights are off; the picture will be black".to_owned());
     }
+    match scene.lights.iter().filter(|light| scene.is_silenced(light)).count() {
+        0 => {}
+        1 => check.warning("solo", "one light is silent while others shine alone".to_owned()),
+        silent => check.warning("solo", format!("{silent} lights are silent while others shine alone")),
+    }
     for (index, light) in scene.lights.iter().enumerate() {
         check.enter(format!("lights[{index}] {:?} ", light.name));
         if light.on && is_zero(&light.power.output) {

@@ -1,5 +1,7 @@
 use super::*;
-use crate::scene::{Assets, Camera, ColorSource, Emitter, Gel, Light, Material, ObjectId, Output, Transform};
+use crate::scene::{
+    Assets, Camera, ColorSource, Emitter, Gel, Light, LightId, Material, ObjectId, Output, Solo, Transform,
+};
 
 fn object(name: &str) -> Object {
     Object {
@@ -119,6 +121,12 @@ fn odd_scenes_are_warned_of() {
     let cases: &[Odd] = &[
         ("there is no light", |s| s.lights.clear()),
         ("all lights are off", |s| s.lights[0].on = false),
+        ("one light is silent", |s| {
+            let alone = Light { id: LightId(1), name: "Alone".to_owned(), ..s.lights[0].clone() };
+            s.solo = Some(Solo { lights: vec![alone.id], restores: vec![s.lights[0].id] });
+            s.lights[0].on = false;
+            s.lights.push(alone);
+        }),
         ("gives 0", |s| s.lights[0].power.output = Output::Lumens(0.0)),
         ("looks past everything", |s| s.camera.aim = Aim::Point(Vec3::new(0.0, 1.5, 9.0))),
         ("is inside \"Box\"", |s| s.lights[0].position = Vec3::splat(0.2)),
