@@ -5,7 +5,7 @@ use super::command::Handle;
 use super::floor_handle::FloorHandle;
 use super::held::{Change, Held, pivot};
 use super::item::Item;
-use super::overlay::text_with_shadow;
+use super::overlay::paint_text;
 use super::typed::TypedNumber;
 use crate::scene::{CameraFrame, Scene};
 use eframe::egui::{self, Align2, Color32, Event, Rect, Rgba, vec2};
@@ -197,7 +197,7 @@ impl Handles {
         painter.add(mesh);
         self.floor.paint(painter);
         if let (Some(drag), Some(at)) = (&self.drag, pointer) {
-            text_with_shadow(painter, at + vec2(18.0, -18.0), Align2::LEFT_BOTTOM, &amount(drag), Color32::WHITE);
+            paint_text(painter, at + vec2(18.0, -18.0), Align2::LEFT_BOTTOM, &amount(drag), Color32::WHITE);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The view through a light: along its axis, with the beam that it throws.
 
-use super::overlay::text_with_shadow;
+use super::overlay::paint_text;
 use super::theme;
 use crate::scene::{CameraFrame, Emitter, Light, Scene};
 use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, pos2, vec2};
@@ -71,7 +71,7 @@ fn paint_size(painter: &Painter, light: &Light, distance_m: f32, frame: &CameraF
     let text =
         if round { format!("its size, {width:.0} cm") } else { format!("its size, {width:.0} \u{d7} {height:.0} cm") };
     let at = Pos2::new(place.center().x, place.max.y.min(rect.max.y - 24.0));
-    text_with_shadow(painter, at + vec2(0.0, 4.0), Align2::CENTER_TOP, &text, color.gamma_multiply(0.8));
+    paint_text(painter, at + vec2(0.0, 4.0), Align2::CENTER_TOP, &text, color.gamma_multiply(0.8));
 }
 
 /// Cross-hair on the axis, rings where the beam is cut, and the light's own size at `distance_m`, where it is aimed.
@@ -91,7 +91,7 @@ pub fn paint(painter: &Painter, light: &Light, distance_m: f32, frame: &CameraFr
         painter.circle_stroke(centre, radius, Stroke::new(1.0, color.gamma_multiply(0.8)));
         let place = pos2(centre.x, (centre.y - radius).max(rect.min.y + 30.0));
         let text = format!("{what} {full_deg:.0}\u{b0}");
-        text_with_shadow(painter, place + vec2(0.0, -4.0), Align2::CENTER_BOTTOM, &text, color);
+        paint_text(painter, place + vec2(0.0, -4.0), Align2::CENTER_BOTTOM, &text, color);
     }
 }
 

@@ -46,7 +46,7 @@ pub fn paint_meter(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: 
     }
     painter.circle_filled(place, 5.0, white);
     painter.circle_stroke(place, 5.0, Stroke::new(1.5, Color32::from_black_alpha(200)));
-    text_with_shadow(painter, place + vec2(0.0, 8.0), Align2::CENTER_TOP, "meter", white);
+    paint_text(painter, place + vec2(0.0, 8.0), Align2::CENTER_TOP, "meter", white);
 }
 
 /// Dims what the picture will not hold and draws the picture's edge.
@@ -110,13 +110,18 @@ fn paint_light_label(
         (false, false, false) => " (off)",
     };
     let text = format!("{}{state}", light.name);
-    let (offset, align) = label_place(has_handles);
-    text_with_shadow(painter, place + offset, align, &text, color);
+    let (offset, align) = label_place(place, rect, has_handles);
+    paint_text(painter, place + offset, align, &text, color);
 }
 
-/// Where a light's name stands from the light: over its handles where it has them.
-pub fn label_place(has_handles: bool) -> (eframe::egui::Vec2, Align2) {
-    if has_handles { (vec2(0.0, -84.0), Align2::CENTER_BOTTOM) } else { (vec2(9.0, 0.0), Align2::LEFT_CENTER) }
+/// Where the name of a light that shows at `place` stands from there: outwards from the middle of the view, where there
+/// is less to cover, and over its handles where it has them.
+pub fn label_place(place: Pos2, view: Rect, has_handles: bool) -> (eframe::egui::Vec2, Align2) {
+    match (has_handles, place.x < view.center().x) {
+        (true, _) => (vec2(0.0, -84.0), Align2::CENTER_BOTTOM),
+        (false, true) => (vec2(-9.0, 0.0), Align2::RIGHT_CENTER),
+        (false, false) => (vec2(9.0, 0.0), Align2::LEFT_CENTER),
+    }
 }
 
 fn paint_aim(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect, light: &Light) {
@@ -126,7 +131,7 @@ fn paint_aim(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect, 
     let (Some(from), Some(to)) = (place_of(frame, rect, light.position), place_of(frame, rect, target)) else { return };
     let text = format!("{:.2} m", (target - light.position).length());
     let place = from.lerp(to, 0.6) + vec2(8.0, 0.0);
-    text_with_shadow(painter, place, Align2::LEFT_CENTER, &text, color.gamma_multiply(0.7));
+    paint_text(painter, place, Align2::LEFT_CENTER, &text, color.gamma_multiply(0.7));
 }
 
 /// A dashed line from a light or the camera to what it is aimed at.
@@ -138,8 +143,9 @@ pub fn paint_aim_line(painter: &Painter, frame: &CameraFrame, rect: Rect, from: 
 }
 
 /// Small text that stays readable over light and dark.
-pub fn text_with_shadow(painter: &Painter, place: Pos2, align: Align2, text: &str, color: Color32) {
-    let font = FontId::proportional(11.5);
-    painter.text(place + vec2(1.0, 1.0), align, text, font.clone(), Color32::from_black_alpha(200));
-    painter.text(place, align, text, font, color);
+pub fn paint_text(painter: &Painter, place: Pos2, align: Align2, text: &str, color: Color32) {
+    let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(11.5), color);
+    let rect = align.anchor_size(place, galley.size());
+    painter.rect_filled(rect.expand2(vec2(3.0, 0.0)), CornerRadius::same(3), Color32::from_black_alpha(130));
+    painter.galley(rect.min, galley, color);
 }

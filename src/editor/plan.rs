@@ -2,7 +2,7 @@
 //! are aimed at.
 
 use super::item::Item;
-use super::overlay::{label_place, paint_aim_line, place_of, text_with_shadow};
+use super::overlay::{label_place, paint_aim_line, paint_text, place_of};
 use super::readout;
 use super::selection::Selection;
 use super::studio_view::Side;
@@ -45,11 +45,11 @@ pub fn paint_grid(painter: &Painter, frame: &CameraFrame, rect: Rect, side: Side
             if upright {
                 painter.hline(rect.x_range(), at.y, Stroke::new(1.0, color));
                 let place = rect.left_top() + vec2(6.0, at.y - rect.min.y - 1.0);
-                text_with_shadow(painter, place, Align2::LEFT_BOTTOM, &text, Color32::from_gray(170));
+                paint_text(painter, place, Align2::LEFT_BOTTOM, &text, Color32::from_gray(170));
             } else {
                 painter.vline(at.x, rect.y_range(), Stroke::new(1.0, color));
                 let place = rect.left_bottom() + vec2(at.x - rect.min.x + 3.0, -4.0);
-                text_with_shadow(painter, place, Align2::LEFT_BOTTOM, &text, Color32::from_gray(170));
+                paint_text(painter, place, Align2::LEFT_BOTTOM, &text, Color32::from_gray(170));
             }
         }
         let (place, align) = if upright {
@@ -57,7 +57,7 @@ pub fn paint_grid(painter: &Painter, frame: &CameraFrame, rect: Rect, side: Side
         } else {
             (rect.right_bottom() + vec2(-8.0, -22.0), Align2::RIGHT_BOTTOM)
         };
-        text_with_shadow(painter, place, align, &format!("{name}, m"), Color32::from_gray(210));
+        paint_text(painter, place, align, &format!("{name}, m"), Color32::from_gray(210));
     }
 }
 
@@ -81,16 +81,16 @@ pub fn paint_distances(painter: &Painter, scene: &Scene, frame: &CameraFrame, re
         paint_aim_line(painter, frame, rect, light.position, target, color);
         let Some(place) = place_of(frame, rect, light.position) else { continue };
         let has_handles = selection.items() == [Item::Light(light.id)];
-        let (offset, align) = label_place(has_handles);
+        let (offset, align) = label_place(place, rect, has_handles);
         let text = distance_label(scene, light, key, (target - light.position).length());
-        text_with_shadow(painter, place + offset + vec2(0.0, 13.0), align, &text, color.gamma_multiply(0.85));
+        paint_text(painter, place + offset + vec2(0.0, 13.0), align, &text, color.gamma_multiply(0.85));
     }
     let camera = &scene.camera;
     let target = scene.aim_point(&camera.aim, camera.position);
     paint_aim_line(painter, frame, rect, camera.position, target, Color32::from_gray(160));
     let Some(place) = place_of(frame, rect, camera.position) else { return };
     let text = format!("Camera\n{:.2} m", (target - camera.position).length());
-    text_with_shadow(painter, place + vec2(14.0, 6.0), Align2::LEFT_CENTER, &text, Color32::from_gray(200));
+    paint_text(painter, place + vec2(14.0, 6.0), Align2::LEFT_CENTER, &text, Color32::from_gray(200));
 }
 
 /// The light that others are told against: the first key that is on.

@@ -4,7 +4,7 @@ use super::action::Action;
 use super::command::Command;
 use super::document::Document;
 use super::light_view::paint_banner;
-use super::overlay::{place_of, text_with_shadow};
+use super::overlay::{paint_text, place_of};
 use super::surface::{self, SurfaceHit};
 use super::swing::{Placing, Swing, SwingError, normal_between, swung};
 use super::theme;
@@ -87,7 +87,7 @@ impl SwingDrag {
         if let Some(error) = error {
             let red = Color32::from_rgb(240, 110, 100);
             painter.circle_stroke(place, 7.0, Stroke::new(2.0, red));
-            text_with_shadow(painter, place + vec2(12.0, -12.0), Align2::LEFT_BOTTOM, &error.to_string(), red);
+            paint_text(painter, place + vec2(12.0, -12.0), Align2::LEFT_BOTTOM, &error.to_string(), red);
             return;
         }
         let color = theme::role_color(light.role);
