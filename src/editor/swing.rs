@@ -2,7 +2,6 @@
 
 use super::surface::SurfaceHit;
 use crate::scene::{Aim, Emitter, Light, LightId, Scene};
-use glam::Vec3;
 
 /// What is put on the point of a surface that the pointer shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,18 +102,13 @@ pub fn can_swing(light: &Light) -> bool {
     light.emitter != Emitter::Surround
 }
 
-/// The direction in which the camera sees the highlight of a light at a point, for the lines that show it.
-pub fn normal_between(light: Vec3, camera: Vec3, point: Vec3) -> Option<Vec3> {
-    let half = (light - point).try_normalize()? + (camera - point).try_normalize()?;
-    half.try_normalize()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::editor::action::Action;
     use crate::editor::catalog;
     use crate::scene::ObjectId;
+    use glam::Vec3;
 
     fn studio() -> (Scene, Light) {
         let mut scene = Scene::default();
@@ -143,7 +137,8 @@ mod tests {
         for direction in [Vec3::new(0.1, 0.2, 1.0), Vec3::new(-0.5, 0.6, 0.7), Vec3::new(0.7, -0.1, 0.5)] {
             let at = on_ball(&scene, direction);
             let light = swung(&scene, &start, &at, Swing::Highlight).unwrap();
-            let half = normal_between(light.position, scene.camera.position, at.point).unwrap();
+            let [to_light, to_camera] = [light.position, scene.camera.position].map(|p| (p - at.point).normalize());
+            let half = (to_light + to_camera).normalize();
             assert!((half - at.normal).length() < 1e-5, "{direction}: {half}, not {}", at.normal);
             scene.lights[0] = light.clone();
             let axis = -Vec3::from(scene.light_frame(&light).matrix3.z_axis);

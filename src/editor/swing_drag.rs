@@ -6,7 +6,7 @@ use super::document::Document;
 use super::light_view::paint_banner;
 use super::overlay::{paint_text, place_of};
 use super::surface::{self, SurfaceHit};
-use super::swing::{Placing, Swing, SwingError, normal_between, swung};
+use super::swing::{Placing, Swing, SwingError, swung};
 use super::theme;
 use crate::scene::{CameraFrame, Light, ObjectId, Scene};
 use eframe::egui::{Align2, Color32, CursorIcon, Painter, Rect, Response, Stroke, Ui, vec2};
@@ -101,9 +101,8 @@ impl SwingDrag {
         line(at.point + 0.12 * at.normal, 2.0, Color32::WHITE);
         if self.held.is_some() {
             line(light.position, 1.0, color);
-            let camera = scene.camera.position;
-            if self.placing.swing == Swing::Highlight && normal_between(light.position, camera, at.point).is_some() {
-                line(camera, 1.0, Color32::from_gray(190));
+            if self.placing.swing == Swing::Highlight {
+                line(scene.camera.position, 1.0, Color32::from_gray(190));
             }
         }
     }

@@ -8,6 +8,7 @@ use super::document::Document;
 use super::gizmo::{HandleView, Handles, Pointer};
 use super::item::Item;
 use super::navigation::{camera_as_view, light_as_view, moved_camera, moved_light, steer};
+use super::panels::item_menu::{item_menu_ui, nothing_menu_ui};
 use super::picking::Band;
 use super::preview_host::PreviewHost;
 use super::selection::{Selection, centre};
@@ -104,6 +105,7 @@ impl Viewport {
             self.handle_drag(ui, &response, rect, &frame, input, out);
             self.band(ui, &response, &frame, input, out);
             self.click(ui, &response, &frame, input, out);
+            self.context_menu(ui, &response, &frame, input, out);
         }
         self.paint(ui, rect, frame, picture, input);
         if input.centre == Centre::Studio {
@@ -213,6 +215,13 @@ impl Viewport {
         }
     }
 
+    /// The thing under a place of the view.
+    fn under(&self, ui: &Ui, rect: Rect, frame: &CameraFrame, scene: &Scene, position: Pos2) -> Option<Item> {
+        let pixel = (position - rect.min) * ui.pixels_per_point();
+        let picked = self.preview.pick((pixel.x.max(0.0) as u32, pixel.y.max(0.0) as u32));
+        super::picking::meant(scene, frame, rect, position, picked)
+    }
+
     fn click(
         &self,
         ui: &Ui,
@@ -226,15 +235,33 @@ impl Viewport {
         if self.handles.wants_pointer() || alt {
             return;
         }
-        let rect = response.rect;
-        let pixel = (position - rect.min) * ui.pixels_per_point();
-        let picked = self.preview.pick((pixel.x.max(0.0) as u32, pixel.y.max(0.0) as u32));
-        let item = super::picking::meant(input.document.scene(), frame, rect, position, picked);
+        let item = self.under(ui, response.rect, frame, input.document.scene(), position);
         out.extend(match (item, adds) {
             (Some(item), true) => Some(Command::ToggleSelected(item)),
             // A click beside with a key held keeps what was gathered.
             (None, true) => None,
             (item, false) => Some(Command::Select(item)),
+        });
+    }
+
+    /// The other button selects what is under it, unless it is selected, and opens the menu of the selection.
+    fn context_menu(
+        &self,
+        ui: &Ui,
+        response: &Response,
+        frame: &CameraFrame,
+        input: ViewportInput<'_>,
+        out: &mut Vec<Command>,
+    ) {
+        let scene = input.document.scene();
+        if let Some(position) = response.interact_pointer_pos().filter(|_| response.secondary_clicked()) {
+            let item = self.under(ui, response.rect, frame, scene, position);
+            let is_selected = item.is_some_and(|item| input.selection.contains(item));
+            out.extend((!is_selected).then_some(Command::Select(item)));
+        }
+        response.context_menu(|ui| match input.selection.last() {
+            Some(item) => item_menu_ui(ui, scene, item, input.selection, out),
+            None => nothing_menu_ui(ui, out),
         });
     }
 

@@ -164,3 +164,27 @@ fn a_mirrored_copy_stands_on_the_other_side_of_the_face() {
     let flip = Vec3::new(-1.0, 1.0, 1.0);
     assert!((mirrored - original * flip).length() < 1e-4, "{mirrored} of {original}");
 }
+
+#[test]
+fn the_other_button_on_a_light_in_the_view_opens_its_menu() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let light = scene(&window).lights[1].clone();
+    let at = shown_at(&window, light.position);
+    window.event(Event::PointerMoved(at));
+    window.step();
+    for pressed in [true, false] {
+        let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
+        window.event(Event::PointerButton { pos: at, button, pressed, modifiers });
+        window.step();
+    }
+    settle(&mut window);
+    assert_eq!(window.state().selection().items(), [Item::Light(light.id)]);
+    window.get_by_label_contains("Place its highlight").click();
+    settle(&mut window);
+    assert!(window.state().viewport().swing.is_some());
+    press(&mut window, Modifiers::NONE, Key::Escape);
+    assert!(window.state().viewport().swing.is_none());
+}

@@ -11,7 +11,7 @@ const MOUSE: [(&str, &str); 18] = [
     ("Left drag on a handle", "Move, turn or size what is selected"),
     ("\u{2026} then 1.5 and Enter", "By exactly that: metres, degrees, times"),
     ("\u{2026} then Esc", "Give the drag up"),
-    ("Right click in the list", "All that can be done to a thing"),
+    ("Right click", "All that can be done to a thing, in the view and in the list"),
     ("Middle drag, Alt + left drag", "Orbit about the selection; through a light: swing it"),
     ("Shift + middle drag", "Pan (also Shift + Alt + left drag)"),
     ("Wheel, Ctrl + middle drag", "Closer and farther; through a light: move it so"),

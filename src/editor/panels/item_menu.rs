@@ -1,4 +1,4 @@
-//! What can be done to the selected things, for the context menu of the list and the Edit menu.
+//! What can be done to the selected things, for the context menus of list and view and the Edit menu.
 
 use super::menu::entry;
 use crate::editor::command::Command;
@@ -8,7 +8,7 @@ use crate::editor::swing::Swing;
 use crate::scene::Scene;
 use eframe::egui::Ui;
 
-/// The context menu of a row. It is about the whole selection where the row belongs to it, else about the row alone.
+/// The context menu of a thing. It is about the whole selection where the thing belongs to it, else about it alone.
 pub fn item_menu_ui(ui: &mut Ui, scene: &Scene, item: Item, selection: &Selection, out: &mut Vec<Command>) {
     ui.set_min_width(230.0);
     let mut chosen = Vec::new();
@@ -19,7 +19,7 @@ pub fn item_menu_ui(ui: &mut Ui, scene: &Scene, item: Item, selection: &Selectio
         alone = Selection::of([item]);
         &alone
     };
-    if about.len() == 1 {
+    if about.len() == 1 && item.can_be_copied() {
         entry(ui, true, "Rename", "Give it another name", Command::BeginRename(item), &mut chosen);
     }
     selection_entries(ui, scene, about, &mut chosen);
@@ -29,6 +29,14 @@ pub fn item_menu_ui(ui: &mut Ui, scene: &Scene, item: Item, selection: &Selectio
         }
         out.extend(chosen);
     }
+}
+
+/// The menu of the view where nothing is selected.
+pub fn nothing_menu_ui(ui: &mut Ui, out: &mut Vec<Command>) {
+    ui.set_min_width(230.0);
+    entry(ui, true, "Select all", "All lights and things that are not locked", Command::SelectAll, out);
+    entry(ui, true, "Bring everything into view", "Figures, things and lights", Command::FrameSelection, out);
+    entry(ui, true, "Show and unmute all", "Nothing is hidden or muted any more", Command::ShowAll, out);
 }
 
 /// The entries that are about a selection.
