@@ -185,6 +185,20 @@ fn what_stands_in_the_light_is_dark_and_what_glows_is_light() {
 }
 
 #[test]
+fn what_stands_in_the_sun_is_dark() {
+    // Endless distances once made shadow rays end nowhere: suns shone through everything.
+    for angular_diameter_deg in [0.0, 0.53] {
+        let sun = light(Emitter::Sun { angular_diameter_deg }, Output::Lux(5000.0), Vec3::Z * 4.0);
+        let flag = Shape::Box { size_m: Vec3::new(1.0, 1.0, 0.1) };
+        let objects = vec![studio::object("Flag", flag, Vec3::Z)];
+        let scene = Scene { lights: vec![sun], objects, ..Scene::default() };
+        let direct = |place| probe(&scene, place, Vec3::Z, Receptor::Flat).reading.lights[0].direct;
+        assert_eq!(direct(Vec3::ZERO), 0.0, "{angular_diameter_deg}");
+        assert!((direct(Vec3::X * 2.0) / 5000.0 - 1.0).abs() < 5e-4, "{angular_diameter_deg}");
+    }
+}
+
+#[test]
 fn a_meter_laid_on_the_floor_reads_the_floor_even_far_from_the_origin() {
     for far in [0.0, 1e3, 1e5] {
         let place = Vec3::new(far, 0.0, -far);

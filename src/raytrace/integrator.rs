@@ -409,9 +409,10 @@ fn survives(throughput: &mut Vec3, eta_scale: f32, bounce: u32, u: f32) -> bool 
 /// at five metres. Emitters may lie on a surface (a panel on the wall, a lamp on the ceiling) and are seen all the same.
 const TOUCHING: f32 = 32.0 * f32::EPSILON;
 
-/// End of a ray towards an emitter that may lie on a surface.
+/// End of a ray towards an emitter that may lie on a surface; none before a sun, whose distance less a share of it would be
+/// no number.
 fn short_of(origin: Vec3, distance: f32) -> f32 {
-    distance - TOUCHING * (distance + origin.abs().max_element())
+    if distance.is_finite() { distance - TOUCHING * (distance + origin.abs().max_element()) } else { distance }
 }
 
 /// Whether an emitter at one distance is seen before a surface at another. Sun and surround are seen by rays that leave
