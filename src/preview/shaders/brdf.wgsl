@@ -1,12 +1,20 @@
 // The one material: Lambert under a GGX coat, or a GGX metal. alpha = roughness^2, height-correlated Smith masking.
 
 struct Material {
-    // Part of the base colour that is diffuse reflectance.
+    // Part of the base colour that is diffuse reflectance, under light from all round.
     matte: f32,
-    f0: vec3f,
     alpha2: f32,
-    // Light lost between facets given back, by its mean (Turquin 2019).
+    // The dielectric's reflectance at normal incidence, its root, and how much it rises to grazing incidence.
+    f0: f32,
+    root: f32,
+    rise: f32,
+    metallic: f32,
+    base: vec3f,
+    // Light lost between a metal's facets given back.
     boost: vec3f,
+    albedo: Albedo,
+    // One over what the coat lets in of light from all round.
+    entering: f32,
     // Directional albedo of the coat or metal.
     reflectance: vec3f,
 }
@@ -46,19 +54,36 @@ fn schlick(f0: vec3f, cosine: f32) -> vec3f {
     return f0 + (saturate(50.0 * f0) - f0) * (x2 * x2 * x);
 }
 
-// Directional albedo of GGX under height-correlated Smith masking with Schlick's Fresnel: factors of f0 and f90. Our fit
-// of the integral, 0.01 in the mean for cosines over 0.1.
-fn albedo_scale_bias(n_dot_v: f32, roughness: f32) -> vec2f {
-    let r = roughness;
-    let x = n_dot_v;
-    let p0 = 2.4759 + x * (-6.1760 + 2.7884 * x);
-    let p1 = -5.3802 + x * (18.1899 - 9.3620 * x);
-    let p2 = 3.0843 + x * (-11.0647 + 6.1318 * x);
-    let whole = saturate(1.0 - r * r * (p0 + r * (p1 + r * p2)));
+// Fresnel's reflectance, exact for the dielectric, Schlick's for the metal.
+fn fresnel(m: Material, cosine: f32) -> vec3f {
+    let c = saturate(cosine);
+    let ior = (1.0 + m.root) / (1.0 - m.root);
+    let g = sqrt(max(ior * ior - 1.0 + c * c, 1e-12));
+    let a = (g - c) / (g + c);
+    let b = (c * (g + c) - 1.0) / (c * (g - c) + 1.0);
+    let coat = 0.5 * a * a * (1.0 + b * b);
+    return mix(vec3f(coat), schlick(m.base, c) * m.boost, m.metallic);
+}
+
+// Directional albedo of GGX under height-correlated Smith masking with Schlick's Fresnel, as a function of the cosine x
+// at one roughness: f0 (1 - loss.x - loss.y x - loss.z x^2) + (f90 - f0) bias (1 - x)^5. Our fit of the integral, 0.01 in
+// the mean for cosines over 0.1.
+struct Albedo {
+    loss: vec3f,
+    bias: f32,
+}
+
+fn albedo_fit(r: f32) -> Albedo {
+    let r2 = r * r;
+    let loss = vec3f(2.4759, -6.1760, 2.7884) + r * vec3f(-5.3802, 18.1899, -9.3620) + r2 * vec3f(3.0843, -11.0647, 6.1318);
+    return Albedo(r2 * loss, 1.0 + r * (0.5558 + r * (-10.0677 + r * (15.4936 - 6.9515 * r))));
+}
+
+// Factors of f0 and of f90 - f0.
+fn albedo_at(a: Albedo, x: f32) -> vec2f {
     let y = 1.0 - x;
     let y2 = y * y;
-    let bias = y2 * y2 * y * (1.0 + r * (0.5558 + r * (-10.0677 + r * (15.4936 - 6.9515 * r))));
-    return vec2f(whole - bias, bias);
+    return vec2f(saturate(1.0 - a.loss.x - x * (a.loss.y + x * a.loss.z)), y2 * y2 * y * a.bias);
 }
 
 fn material(base: vec3f, gloss: vec3f, n_dot_v: f32) -> Material {
@@ -66,13 +91,33 @@ fn material(base: vec3f, gloss: vec3f, n_dot_v: f32) -> Material {
     let alpha = gloss.x * gloss.x;
     // Alpha 0.001: the sharpest highlight that still covers a pixel somewhere.
     m.alpha2 = max(alpha * alpha, 1e-6);
-    m.f0 = mix(vec3f(gloss.y * gloss.y), base, gloss.z);
-    let ab = albedo_scale_bias(n_dot_v, gloss.x);
-    let single = m.f0 * ab.x + saturate(50.0 * m.f0) * ab.y;
-    m.boost = 1.0 + m.f0 * (1.0 / max(ab.x + ab.y, LOWEST_ROUND) - 1.0);
-    m.reflectance = single * m.boost;
-    m.matte = (1.0 - gloss.z) * (1.0 - max(single.x, max(single.y, single.z)));
+    m.root = gloss.y;
+    m.metallic = gloss.z;
+    m.base = base;
+    m.albedo = albedo_fit(gloss.x);
+    let at_view = albedo_at(m.albedo, n_dot_v);
+    // A metal's light that bounces between facets, by its mean (Turquin 2019).
+    m.boost = 1.0 + base * (1.0 / max(at_view.x, 0.3) - 1.0);
+    let f0 = gloss.y * gloss.y;
+    let rise = saturate(50.0 * f0) - f0;
+    let coat = f0 * at_view.x + rise * at_view.y;
+    let metal = (base * at_view.x + (1.0 - base) * at_view.y) * m.boost;
+    m.reflectance = mix(vec3f(coat), metal, gloss.z);
+    // Mean over the hemisphere, weighted by the cosine.
+    let mean = f0 * (1.0 - dot(m.albedo.loss, vec3f(1.0, 2.0 / 3.0, 0.5))) + rise * m.albedo.bias / 21.0;
+    m.matte = (1.0 - gloss.z) * (1.0 - coat);
+    m.entering = 1.0 / max(1.0 - mean, 1e-3);
+    m.f0 = f0;
+    m.rise = rise;
     return m;
+}
+
+// The body shares energy with the coat as in the tracer (Kelemen and Szirmay-Kalos 2001): (1 - E(o))(1 - E(i)) / (1 - mean E).
+// Part of the light under this cosine that gets through the coat into the body, to the mean over the hemisphere. `wide`
+// is the part of the hemisphere that the light fills.
+fn entering(m: Material, cosine: f32, wide: f32) -> f32 {
+    let at = albedo_at(m.albedo, saturate(cosine));
+    return mix((1.0 - m.f0 * at.x - m.rise * at.y) * m.entering, 1.0, wide);
 }
 
 // Smith masking and shadowing, height-correlated, over the two cosines and 4: what D and F are multiplied by.
@@ -92,27 +137,19 @@ fn glint(s: Shading, direction: vec3f, radius: f32) -> vec3f {
     let alpha2 = s.material.alpha2 + 0.25 * radius * radius;
     let lobe = alpha2 / (alpha2 * n_dot_h * n_dot_h + dot(across, across));
     let value = lobe * lobe / (PI * alpha2) * masking(s.material.alpha2, s.n_dot_v, max(n_dot_l, 1e-4)) * n_dot_l;
-    return schlick(s.material.f0, dot(s.view, half_vector)) * s.material.boost * select(0.0, value, n_dot_l > 0.0);
+    return fresnel(s.material, dot(s.view, half_vector)) * select(0.0, value, n_dot_l > 0.0);
 }
 
 // Least height of a half vector, as a part of the distance: where emitter and viewer face each other over a grazing
-// surface, slopes run to infinity. The disc's two axes tell less than the corners of a rectangle and need more.
-const LOWEST: f32 = 0.1;
-const LOWEST_ROUND: f32 = 0.3;
+// surface, slopes run to infinity.
+const LOWEST: f32 = 0.03;
 
 // Slope of the half vector towards a point of the emitter, in the frame of the normal.
-fn slope_to(s: Shading, p: vec3f, lowest: f32) -> vec2f {
+fn slope_to(s: Shading, p: vec3f) -> vec2f {
     let distance = sqrt(dot(p, p));
     let half_vector = p + s.view * distance;
-    let height = max(dot(half_vector, s.normal), lowest * distance);
+    let height = max(dot(half_vector, s.normal), LOWEST * distance);
     return vec2f(dot(half_vector, s.tangent), dot(half_vector, s.bitangent)) / height;
-}
-
-// Part of the facets whose slopes lie in a disc of squared radius `reach2` about a slope of squared length `off2`. The
-// distribution is that of an even sphere in stereographic projection, so the disc is a cap.
-fn facets_in_disc(reach2: f32, off2: f32, alpha2: f32) -> f32 {
-    let sum = off2 + alpha2 + reach2;
-    return 0.5 - 0.5 * (off2 + alpha2 - reach2) * inverseSqrt(max(sum * sum - 4.0 * off2 * reach2, 1e-30));
 }
 
 // One edge's part of the facets whose slopes lie in a polygon. GGX over the plane of slopes is the form factor of that
@@ -135,68 +172,93 @@ fn gloss_towards(s: Shading, telling: vec3f) -> vec3f {
     let half_sum = direction + s.view;
     let half_vector = half_sum * inverseSqrt(max(dot(half_sum, half_sum), 1e-20));
     // That point may be below the horizon while others are not.
-    let n_dot_l = max(dot(s.normal, direction), 0.08);
+    let n_dot_l = max(dot(s.normal, direction), 0.02);
     let v_dot_h = dot(s.view, half_vector);
     let n_dot_h = max(dot(s.normal, half_vector), 0.05);
     let weight = masking(s.material.alpha2, s.n_dot_v, n_dot_l) * 4.0 * n_dot_l * v_dot_h / n_dot_h;
-    return schlick(s.material.f0, v_dot_h) * s.material.boost * weight;
+    return fresnel(s.material, v_dot_h) * weight;
 }
 
-// Highlight of an emitter of unit luminance with a middle and half axes: mirrored to half vectors it covers a region of
-// slopes, and as many facets as have such slopes show it.
+// Parts in which an emitter is taken: so many for each time that it is as long as it is high over the surface, for light
+// and viewer together, and at most these.
+const PARTS_PER_BEND: f32 = 3.0;
+const MOST_PARTS: f32 = 8.0;
+
+// A line across an emitter, cut at the horizon, and the slopes of its ends.
+struct CrossLine {
+    left: vec3f,
+    right: vec3f,
+    left_slope: vec2f,
+    right_slope: vec2f,
+}
+
+fn cross_line(s: Shading, middle: vec3f, across: vec3f) -> CrossLine {
+    let rise = dot(s.normal, across);
+    let part = saturate(0.5 + 0.5 * dot(s.normal, middle) / max(abs(rise), 1e-6));
+    let m = middle + across * ((1.0 - part) * sign(rise));
+    var line: CrossLine;
+    line.left = m - across * part;
+    line.right = m + across * part;
+    line.left_slope = slope_to(s, line.left);
+    line.right_slope = slope_to(s, line.right);
+    return line;
+}
+
+// Highlight of an emitter of unit luminance with a middle and half axes, a rectangle's or a disc's: mirrored to half
+// vectors it covers a region of slopes, and as many facets as have such slopes show it.
+//
+// It is cut at the horizon and taken in parts along its longer side. Straight sides are bent in the plane of slopes, most
+// where a tall strip stands behind a grazing surface, and Fresnel and masking change along them: the more, the more parts.
 fn highlight(s: Shading, a: Arrival, round: bool) -> vec3f {
-    if round {
-        return disc_highlight(s, a);
-    }
-    return rect_highlight(s, a);
-}
-
-// What a round emitter covers is a disc in the plane of slopes, stretched.
-fn disc_highlight(s: Shading, a: Arrival) -> vec3f {
-    let left = slope_to(s, a.centre - a.right, LOWEST_ROUND);
-    let right = slope_to(s, a.centre + a.right, LOWEST_ROUND);
-    let low = slope_to(s, a.centre - a.up, LOWEST_ROUND);
-    let high = slope_to(s, a.centre + a.up, LOWEST_ROUND);
-    let slope_u = 0.5 * (right - left);
-    let slope_v = 0.5 * (high - low);
-    let mirror = mirror_place(0.25 * (left + right + low + high), slope_u, slope_v);
-    let area = abs(slope_u.x * slope_v.y - slope_u.y * slope_v.x);
-    let part = facets_in_disc(area, dot(mirror, mirror) * area, s.material.alpha2);
-    let nearest = mirror * inverseSqrt(max(dot(mirror, mirror), 1.0));
-    return gloss_towards(s, a.centre + nearest.x * a.right + nearest.y * a.up) * part;
-}
-
-// A rectangle is cut at the horizon along `up`. The sides along it are bent in the plane of slopes, most where a tall
-// strip stands behind a grazing surface: two chords a side lost a tenth of a stop.
-fn rect_highlight(s: Shading, a: Arrival) -> vec3f {
-    let rise = dot(s.normal, a.up);
-    let above = saturate(0.5 + 0.5 * dot(s.normal, a.centre) / max(abs(rise), 1e-6));
-    let up = a.up * above;
-    let centre = a.centre + a.up * ((1.0 - above) * sign(rise));
-    // Five slopes up the right side, five up the left.
-    let right = centre + a.right;
-    let left = centre - a.right;
-    let r0 = slope_to(s, right - up, LOWEST);
-    let r1 = slope_to(s, right - 0.5 * up, LOWEST);
-    let r2 = slope_to(s, right, LOWEST);
-    let r3 = slope_to(s, right + 0.5 * up, LOWEST);
-    let r4 = slope_to(s, right + up, LOWEST);
-    let l0 = slope_to(s, left - up, LOWEST);
-    let l1 = slope_to(s, left - 0.5 * up, LOWEST);
-    let l2 = slope_to(s, left, LOWEST);
-    let l3 = slope_to(s, left + 0.5 * up, LOWEST);
-    let l4 = slope_to(s, left + up, LOWEST);
+    let tall = dot(a.up, a.up) >= dot(a.right, a.right);
+    let whole = select(a.right, a.up, tall);
+    let across = select(a.up, a.right, tall);
+    let rise = dot(s.normal, whole);
+    let height = dot(s.normal, a.centre);
+    let above = saturate(0.5 + 0.5 * (height + abs(dot(s.normal, across))) / max(abs(rise), 1e-6));
+    let along = whole * above;
+    let centre = a.centre + whole * ((1.0 - above) * sign(rise));
+    let distance = sqrt(dot(centre, centre));
+    let bend = sqrt(dot(along, along)) / max(max(height, 0.0) + s.n_dot_v * distance, 0.05 * distance);
+    let parts = clamp(floor(1.5 + PARTS_PER_BEND * bend), 2.0, MOST_PARTS);
+    // Corners of a regular polygon of the disc's area, two a line.
+    let step = PI / (parts + 1.0);
+    let turn = vec2f(cos(step), sin(step));
+    var corner = vec2f(sin(0.5 * step), -cos(0.5 * step)) * sqrt(step / turn.y);
     let alpha2 = s.material.alpha2;
-    let up_right = slope_edge(r0, r1, alpha2) + slope_edge(r1, r2, alpha2) + slope_edge(r2, r3, alpha2)
-        + slope_edge(r3, r4, alpha2);
-    let down_left = slope_edge(l4, l3, alpha2) + slope_edge(l3, l2, alpha2) + slope_edge(l2, l1, alpha2)
-        + slope_edge(l1, l0, alpha2);
-    let around = up_right + slope_edge(r4, l4, alpha2) + down_left + slope_edge(l0, r0, alpha2);
-    let mirror = mirror_place(0.5 * (r2 + l2), 0.5 * (r2 - l2), 0.25 * (r4 + l4 - r0 - l0));
-    let nearest = clamp(mirror, vec2f(-1.0), vec2f(1.0));
-    return gloss_towards(s, centre + nearest.x * a.right + nearest.y * up) * (abs(around) / (2.0 * PI));
+    var low = cross_line(s, centre + along * select(-1.0, corner.y, round), across * select(1.0, corner.x, round));
+    var low_edge = slope_edge(low.left_slope, low.right_slope, alpha2);
+    var sum = vec3f(0.0);
+    var k = 1.0;
+    loop {
+        corner = vec2f(turn.x * corner.x - turn.y * corner.y, turn.x * corner.y + turn.y * corner.x);
+        let at = select(2.0 * k / parts - 1.0, corner.y, round);
+        let high = cross_line(s, centre + along * at, across * select(1.0, corner.x, round));
+        let high_edge = slope_edge(high.left_slope, high.right_slope, alpha2);
+        let around = low_edge + slope_edge(low.right_slope, high.right_slope, alpha2) - high_edge
+            + slope_edge(high.left_slope, low.left_slope, alpha2);
+        let low_middle = 0.5 * (low.left_slope + low.right_slope);
+        let high_middle = 0.5 * (high.left_slope + high.right_slope);
+        let slope_u = 0.25 * (low.right_slope - low.left_slope + high.right_slope - high.left_slope);
+        let slope_v = 0.5 * (high_middle - low_middle);
+        // The telling point: the middle for a lobe that is wide beside the part, the nearest to the mirror direction for a
+        // narrow one.
+        let mirror = mirror_place(0.5 * (low_middle + high_middle), slope_u, slope_v);
+        let extent = vec2f(dot(slope_u, slope_u), dot(slope_v, slope_v));
+        let telling = clamp(mirror, vec2f(-1.0), vec2f(1.0)) * extent / (extent + alpha2);
+        let middle = 0.25 * (low.left + low.right + high.left + high.right);
+        let half_u = 0.25 * (low.right - low.left + high.right - high.left);
+        let half_v = 0.25 * (high.left - low.left + high.right - low.right);
+        sum += gloss_towards(s, middle + telling.x * half_u + telling.y * half_v) * around;
+        low = high;
+        low_edge = high_edge;
+        k += 1.0;
+        continuing {
+            break if k > parts;
+        }
+    }
+    return abs(sum) / (2.0 * PI);
 }
-
 // What a mirror shows where no light stands: the box around the subjects, the blurrier the rougher the mirror.
 fn environment(position: vec3f, direction: vec3f, roughness: f32) -> vec3f {
     let safe = select(direction, vec3f(1e-6), abs(direction) < vec3f(1e-6));

@@ -51,7 +51,7 @@ fn fragment(in: Corner) -> Pixel {
     let gloss = vec3f(surfaces[s].roughness, (surfaces[s].ior - 1.0) / (surfaces[s].ior + 1.0), 0.0);
     let coat = shading(in.world, normal, view, vec3f(0.0), gloss);
     let mirror = reflect(-view, normal);
-    let fresnel = schlick(coat.material.f0, n_dot_v);
+    let fresnel = fresnel(coat.material, n_dot_v);
     var radiance = environment(in.world, mirror, gloss.x) * fresnel;
     if HAS_DELTA {
         radiance += glints(coat, 0u, frame.light_ends.x, 0u);

@@ -23,15 +23,15 @@ fn angle_over_sine(cosine: f32) -> f32 {
 
 // Angle between two corners as seen from the receiver, times the cosine between their plane's normal and the
 // receiver's: one edge's part of Lambert's formula.
-fn edge_part(a: vec3f, b: vec3f, normal: vec3f) -> f32 {
+fn edge_part(a: vec3f, b: vec3f) -> vec3f {
     let scale = inverseSqrt(max(dot(a, a) * dot(b, b), 1e-30));
-    return dot(cross(a, b), normal) * scale * angle_over_sine(dot(a, b) * scale);
+    return cross(a, b) * (scale * angle_over_sine(dot(a, b) * scale));
 }
 
 // A polygon edge by edge, clipped at the receiver's horizon without a list of corners: a convex polygon leaves and
 // enters the upper half once, and the edge between those two points closes it.
 struct Outline {
-    sum: f32,
+    sum: vec3f,
     leaves: vec3f,
     enters: vec3f,
     clipped: bool,
@@ -51,16 +51,18 @@ fn add_edge(o: ptr<function, Outline>, a: vec3f, b: vec3f, normal: vec3f) {
         (*o).leaves = crossing;
     }
     (*o).clipped = (*o).clipped || sets;
-    let part = edge_part(select(a, crossing, rises), select(b, crossing, sets), normal);
-    (*o).sum += select(part, 0.0, max(height_a, height_b) <= 0.0);
+    let part = edge_part(select(a, crossing, rises), select(b, crossing, sets));
+    (*o).sum += select(part, vec3f(0.0), max(height_a, height_b) <= 0.0);
 }
 
 // Solid angle weighted by the cosine at the receiver, which is irradiance for unit luminance.
-fn outline_irradiance(o: Outline, normal: vec3f) -> f32 {
-    return 0.5 * abs(o.sum + select(0.0, edge_part(o.leaves, o.enters, normal), o.clipped));
+fn outline_irradiance(o: Outline, normal: vec3f) -> vec2f {
+    let v = o.sum + select(vec3f(0.0), edge_part(o.leaves, o.enters), o.clipped);
+    let across = abs(dot(v, normal));
+    return vec2f(0.5 * across, across * inverseSqrt(max(dot(v, v), 1e-30)));
 }
 
-fn rect_irradiance(centre: vec3f, right: vec3f, up: vec3f, normal: vec3f) -> f32 {
+fn rect_irradiance(centre: vec3f, right: vec3f, up: vec3f, normal: vec3f) -> vec2f {
     let a = centre - right - up;
     let b = centre + right - up;
     let c = centre + right + up;
@@ -74,7 +76,7 @@ fn rect_irradiance(centre: vec3f, right: vec3f, up: vec3f, normal: vec3f) -> f32
 }
 
 // A hexagon of the disc's area stands for it: within 0.2 % on its axis, however near.
-fn disc_irradiance(centre: vec3f, right: vec3f, up: vec3f, normal: vec3f) -> f32 {
+fn disc_irradiance(centre: vec3f, right: vec3f, up: vec3f, normal: vec3f) -> vec2f {
     const HALF_HEIGHT: f32 = 0.866025404;
     const GROW: f32 = 1.09963611;
     let along = right * GROW;
@@ -174,6 +176,8 @@ fn panel_passed(light: u32, position: vec3f, normal: vec3f, round: bool) -> f32 
 struct Arrival {
     // Irradiance, as a factor of the light's colour.
     irradiance: f32,
+    // Mean cosine under which it comes.
+    cosine: f32,
     // Part that its modifier lets pass.
     passed: f32,
     // Middle of the emitter, and its half axes: none of a size for points.
@@ -205,6 +209,8 @@ fn sphere_arrival(light: u32, position: vec3f, normal: vec3f) -> Arrival {
     let direction = out.centre * inverseSqrt(squared);
     let radius = lights[light].radius;
     out.irradiance = sphere_irradiance(dot(normal, direction), sqrt(squared), radius);
+    let part = radius * radius / squared;
+    out.cosine = out.irradiance / max(PI * part, 1e-12);
     out.passed = 1.0;
     if HAS_BEAMS {
         out.passed = passed(light, -direction);
@@ -222,12 +228,14 @@ fn panel_arrival(light: u32, position: vec3f, normal: vec3f, round: bool) -> Arr
     out.centre = lights[light].position - position;
     out.right = lights[light].right;
     out.up = lights[light].up;
+    var lit: vec2f;
     if round {
-        out.irradiance = disc_irradiance(out.centre, out.right, out.up, normal);
+        lit = disc_irradiance(out.centre, out.right, out.up, normal);
     } else {
-        out.irradiance = rect_irradiance(out.centre, out.right, out.up, normal);
+        lit = rect_irradiance(out.centre, out.right, out.up, normal);
     }
-    out.irradiance = select(0.0, out.irradiance, dot(out.centre, lights[light].axis) < 0.0);
+    out.cosine = lit.y;
+    out.irradiance = select(0.0, lit.x, dot(out.centre, lights[light].axis) < 0.0);
     out.passed = panel_passed(light, position, normal, round);
     return out;
 }

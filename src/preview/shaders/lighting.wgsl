@@ -117,7 +117,8 @@ fn lit(p: Sample) -> Lit {
             let light = listed_light(tile, k);
             let a = delta_arrival(light, position);
             let color = lights[light].color * (a.w * lit_by(light) * present(k, deltas_end(tile)));
-            matte += color * max(dot(s.normal, a.xyz), 0.0);
+            let cosine = max(dot(s.normal, a.xyz), 0.0);
+            matte += color * (cosine * entering(s.material, cosine, 0.0));
             glossy += glint(s, a.xyz, lights[light].radius) * color;
             k++;
             continuing {
@@ -131,7 +132,7 @@ fn lit(p: Sample) -> Lit {
             let light = listed_light(tile, k);
             let a = sphere_arrival(light, position, s.normal);
             let color = lights[light].color * (lit_by(light) * present(k, spheres_end(tile)) * reach(light, a.centre) * a.passed);
-            matte += color * a.irradiance;
+            matte += color * (a.irradiance * entering(s.material, a.cosine, a.irradiance / PI));
             glossy += color * seen_highlight(s, a, true);
             k++;
             continuing {
@@ -145,7 +146,7 @@ fn lit(p: Sample) -> Lit {
             let light = listed_light(tile, k);
             let a = panel_arrival(light, position, s.normal, false);
             let color = lights[light].color * (lit_by(light) * present(k, rects_end(tile)) * reach(light, a.centre) * a.passed);
-            matte += color * a.irradiance;
+            matte += color * (a.irradiance * entering(s.material, a.cosine, a.irradiance / PI));
             glossy += color * seen_highlight(s, a, false);
             k++;
             continuing {
@@ -159,7 +160,7 @@ fn lit(p: Sample) -> Lit {
             let light = listed_light(tile, k);
             let a = panel_arrival(light, position, s.normal, true);
             let color = lights[light].color * (lit_by(light) * present(k, discs_end(tile)) * reach(light, a.centre) * a.passed);
-            matte += color * a.irradiance;
+            matte += color * (a.irradiance * entering(s.material, a.cosine, a.irradiance / PI));
             glossy += color * seen_highlight(s, a, true);
             k++;
             continuing {
