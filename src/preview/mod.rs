@@ -26,6 +26,7 @@ mod scene_buffers;
 mod shaders;
 mod shadow_maps;
 mod shadow_mask;
+mod shadow_parts;
 mod shadow_views;
 mod targets;
 mod texture_cache;

@@ -185,10 +185,10 @@ impl PreviewRenderer {
         let table = LightTable::new(input.scene, input.options.bounce_estimate);
         let overlay_alone = input.options.overlay_alone;
         let casters: &[_] = if input.options.shadows && !overlay_alone { &list.casters } else { &[] };
-        let plan = ShadowPlan::new(&table.lights, casters);
+        let draft = input.options.draft && self.on_processor && output == Output::Display;
+        let plan = ShadowPlan::new(&table.lights, casters, !draft);
         let resolution = input.options.shadow_resolution;
         let stale = self.shadow_maps.stale(&self.device, &self.queue, &plan, list.caster_signature, resolution);
-        let draft = input.options.draft && self.on_processor && output == Output::Display;
         let scale = self.mask_scale(draft);
         let frame = GpuFrame { mask_scale: scale, ..self.frame(input, &table) };
         let tiles = if input.options.light_radius { light_tiles(&table, &input.frame) } else { None };
@@ -202,7 +202,8 @@ impl PreviewRenderer {
 
         let mut encoder = self.device.create_command_encoder(&Default::default());
         for view in stale {
-            let seen = |item: &&DrawItem| list.is_seen(item, &plan.views[view]);
+            let Some(clip_from_world) = plan.views[view] else { continue };
+            let seen = |item: &&DrawItem| list.is_seen(item, &clip_from_world);
             let items: Vec<&DrawItem> = list.items.iter().filter(seen).collect();
             self.shadow_pass(&mut encoder, &items, view, Side::Near);
             self.shadow_pass(&mut encoder, &items, view, Side::Far);
@@ -211,12 +212,12 @@ impl PreviewRenderer {
             self.geometry_pass(&mut encoder, &list, input.frame.position());
         }
         if !masks_drawn {
-            (0..plan.masks()).for_each(|mask| self.mask_passes(&mut encoder, mask));
+            (0..plan.masks.len()).for_each(|mask| self.mask_passes(&mut encoder, mask));
         }
         let variant = LightingVariant {
             output,
             families: table.families(),
-            masks: plan.masks(),
+            masks: plan.masks.len(),
             scale,
             listed: tiles.is_some(),
             beams: table.lights.iter().any(|light| light.has_beam != 0),
@@ -420,6 +421,6 @@ fn geometry_signature(frame: &GpuFrame, list: &DrawList) -> u64 {
 fn mask_signature(geometry: u64, plan: &ShadowPlan) -> u64 {
     let mut hasher = DefaultHasher::new();
     geometry.hash(&mut hasher);
-    bytemuck::cast_slice::<_, u8>(&plan.slots).hash(&mut hasher);
+    bytemuck::cast_slice::<_, u8>(&plan.masks).hash(&mut hasher);
     hasher.finish()
 }

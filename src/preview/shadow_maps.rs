@@ -100,7 +100,7 @@ impl ShadowMaps {
             self.resolution = resolution;
         }
         let mut stale = Vec::new();
-        for (index, &view) in plan.views.iter().enumerate() {
+        for (index, view) in plan.views.iter().enumerate().filter_map(|(index, view)| Some((index, (*view)?))) {
             let content = Some(Content { view, casters });
             if self.contents[index] != content {
                 self.contents[index] = content;

@@ -1,13 +1,13 @@
 //! The shadow masks: how much of each light reaches each pixel, four lights a layer, kept while nothing moves.
 
 use super::shadow_maps::{array_view, dynamic_uniform, dynamic_uniform_layout, layer_views};
-use super::shadow_views::{GpuShadowSlot, MAX_SLOTS, ShadowPlan};
+use super::shadow_views::{GpuShadows, MAX_SHADOWS, ShadowPlan};
 use eframe::wgpu;
 
 /// Four shadows in a word, and the depth's bits.
 pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
-/// Bytes of four slots.
-const SLOTS_BYTES: usize = 4 * size_of::<GpuShadowSlot>();
+/// Bytes of four lights' views.
+const SLOTS_BYTES: usize = size_of::<GpuShadows>();
 /// Distance between the slots of two masks: a multiple of every device's offset alignment.
 const OFFSET_STRIDE: u64 = (SLOTS_BYTES as u64).next_multiple_of(256);
 
@@ -37,7 +37,7 @@ impl ShadowMasks {
         let slots_layout = dynamic_uniform_layout(device, "shadow slots", wgpu::ShaderStages::FRAGMENT);
         let slots_buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("shadow slots"),
-            size: OFFSET_STRIDE * MAX_SLOTS as u64 / 4,
+            size: OFFSET_STRIDE * MAX_SHADOWS as u64 / 4,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
@@ -70,12 +70,13 @@ impl ShadowMasks {
 
     /// Makes masks of this size (in mask pixels) and uploads the slots. True if what the masks held is gone.
     pub fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, plan: &ShadowPlan, size: (u32, u32)) -> bool {
-        for (mask, slots) in plan.slots.chunks_exact(4).enumerate() {
-            queue.write_buffer(&self.slots_buffer, mask as u64 * OFFSET_STRIDE, bytemuck::cast_slice(slots));
+        for (mask, shadows) in plan.masks.iter().enumerate() {
+            queue.write_buffer(&self.slots_buffer, mask as u64 * OFFSET_STRIDE, bytemuck::bytes_of(shadows));
         }
-        let renew = plan.masks() > 0 && (self.textures.size != size || self.textures.layers.len() < plan.masks());
+        let renew =
+            !plan.masks.is_empty() && (self.textures.size != size || self.textures.layers.len() < plan.masks.len());
         if renew {
-            let layers = plan.masks() as u32;
+            let layers = plan.masks.len() as u32;
             self.textures = Textures::new(device, &self.raw_layout, &self.masks_layout, size, layers);
         }
         renew

@@ -1,14 +1,16 @@
-//! From where each light sees the studio: one view that covers all casters where they fit, six for a light among them.
+//! From where each light sees the studio: one view that covers all casters where they fit, six for a light among them;
+//! the same for each part of an emitter that is taken in parts.
 
 use super::draw_list::Caster;
 use super::light_table::{GpuLight, Kind};
+use super::shadow_parts::{MOST_PARTS, parts};
 use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Mat4, Quat, Vec2, Vec3, Vec4};
 
 /// Shadow maps in use at once.
-pub(super) const MAX_VIEWS: usize = 32;
+pub(super) const MAX_VIEWS: usize = 48;
 /// Lights that cast shadows, four a mask; lights beyond cast none.
-pub(super) const MAX_SLOTS: usize = 16;
+pub(super) const MAX_SHADOWS: usize = 16;
 /// Tangent of the widest half angle of one view, 75 degrees; a light whose casters reach farther gets a cube.
 const WIDEST: f32 = 3.73;
 /// Half width of a cube face at distance 1, a little over 1 so that the kernel may reach over the edge.
@@ -25,7 +27,7 @@ enum Projection {
     Cube = 3,
 }
 
-/// One light's view; twin of `Slot` in `shadow_mask.wgsl`. All zero: no shadow.
+/// View of a light or of a part of it; twin of `Slot` in `shadow_mask.wgsl`. All zero: no shadow.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(super) struct GpuShadowSlot {
@@ -46,42 +48,87 @@ pub(super) struct GpuShadowSlot {
     pub unused: [f32; 2],
 }
 
+/// Four lights' views; twin of `Shadows` in `shadow_mask.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub(super) struct GpuShadows {
+    /// Of each light, the parts in which it is taken.
+    pub counts: [u32; 4],
+    pub slots: [[GpuShadowSlot; MOST_PARTS]; 4],
+}
+
 /// The views to draw, and how each light reads them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct ShadowPlan {
-    /// Clip from world of each layer.
-    pub views: Vec<Mat4>,
-    /// One a light, in their order, filled up to a whole number of masks.
-    pub slots: Vec<GpuShadowSlot>,
+    /// Clip from world of each layer; none where this frame does not read it. Views from the emitters' middles come
+    /// first, so that a draft, which has no others, finds them where they were.
+    pub views: Vec<Option<Mat4>>,
+    /// Four lights each, in their order.
+    pub masks: Vec<GpuShadows>,
 }
 
 impl ShadowPlan {
-    pub fn new(lights: &[GpuLight], casters: &[Caster]) -> Self {
+    /// Views of the lights; `in_parts` takes wide emitters in parts.
+    pub fn new(lights: &[GpuLight], casters: &[Caster], in_parts: bool) -> Self {
         let corners: Vec<Vec3> = casters.iter().flat_map(Caster::corners).collect();
         let mut plan = ShadowPlan::default();
         if corners.is_empty() {
             return plan;
         }
-        for light in lights.iter().take(MAX_SLOTS) {
-            plan.add(light, &corners);
+        let lights = &lights[..lights.len().min(MAX_SHADOWS)];
+        plan.masks = vec![GpuShadows::zeroed(); lights.len().div_ceil(4)];
+        for (index, light) in lights.iter().enumerate() {
+            let slot = plan.add(light, &corners);
+            plan.set(index, &[slot]);
         }
-        let masks = plan.slots.len().div_ceil(4);
-        plan.slots.resize(4 * masks, GpuShadowSlot::zeroed());
+        if in_parts {
+            (0..lights.len()).for_each(|index| plan.take_in_parts(index, &lights[index], casters, &corners));
+        }
         plan
     }
 
-    /// Masks of four lights each.
-    pub fn masks(&self) -> usize {
-        self.slots.len() / 4
-    }
-
-    fn add(&mut self, light: &GpuLight, corners: &[Vec3]) {
+    /// Adds a light's views as far as there is room.
+    fn add(&mut self, light: &GpuLight, corners: &[Vec3]) -> GpuShadowSlot {
         let (mut slot, views) = views_of(light, corners, MAX_VIEWS - self.views.len());
         if !views.is_empty() {
             (slot.layer, slot.softness) = (self.views.len() as u32, light.softness().into());
         }
-        self.slots.push(slot);
-        self.views.extend(views);
+        self.views.extend(views.into_iter().map(Some));
+        slot
+    }
+
+    fn set(&mut self, light: usize, slots: &[GpuShadowSlot]) {
+        let mask = &mut self.masks[light / 4];
+        mask.counts[light % 4] = slots.len() as u32;
+        mask.slots[light % 4][..slots.len()].copy_from_slice(slots);
+    }
+
+    /// Replaces a light's one view by views of its parts, if it has any and there is room for them all.
+    fn take_in_parts(&mut self, index: usize, light: &GpuLight, casters: &[Caster], corners: &[Vec3]) {
+        let parts = parts(light, casters);
+        let middle = self.masks[index / 4].slots[index % 4][0];
+        if parts.len() == 1 || middle.kind == 0 {
+            return;
+        }
+        let before = self.views.len();
+        let slots: Vec<GpuShadowSlot> = parts
+            .iter()
+            .map(|part| {
+                let offset = part.at.x * Vec3::from(light.right) + part.at.y * Vec3::from(light.up);
+                let moved = GpuLight { position: (Vec3::from(light.position) + offset).into(), ..*light };
+                let slot = if part.at == Vec2::ZERO { middle } else { self.add(&moved, corners) };
+                GpuShadowSlot { softness: part.softness.into(), ..slot }
+            })
+            .collect();
+        if slots.iter().any(|slot| slot.kind != middle.kind) {
+            self.views.truncate(before);
+            return;
+        }
+        if parts.iter().all(|part| part.at != Vec2::ZERO) {
+            let count = if middle.kind == Projection::Cube as u32 { 6 } else { 1 };
+            self.views[middle.layer as usize..][..count].fill(None);
+        }
+        self.set(index, &slots);
     }
 }
 
@@ -243,12 +290,12 @@ mod tests {
     fn one_view_holds_every_caster_and_depth_falls_with_distance() {
         for kind in [Kind::Point, Kind::Spot, Kind::Sphere, Kind::Rect, Kind::Sun] {
             let caster = unit_box_at(Vec3::new(0.3, 1.0, 0.2));
-            let plan = ShadowPlan::new(&[light(kind)], &[caster]);
-            assert_eq!((plan.views.len(), plan.masks()), (1, 1), "{kind:?}");
+            let plan = ShadowPlan::new(&[light(kind)], &[caster], false);
+            assert_eq!((plan.views.len(), plan.masks.len()), (1, 1), "{kind:?}");
             for corner in caster.corners() {
-                let p = project(&plan.views[0], corner);
+                let p = project(&plan.views[0].unwrap(), corner);
                 assert!(p.truncate().abs().max_element() <= 1.0 && (0.0..=1.0).contains(&p.z), "{kind:?}: {p}");
-                let farther = project(&plan.views[0], corner - Vec3::Y * 0.1);
+                let farther = project(&plan.views[0].unwrap(), corner - Vec3::Y * 0.1);
                 assert!(farther.z < p.z, "{kind:?}");
             }
         }
@@ -258,11 +305,11 @@ mod tests {
     fn a_bulb_among_things_gets_a_cube_that_sees_all_round() {
         let bulb = light(Kind::Point);
         let casters = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
-        let plan = ShadowPlan::new(&[bulb], &casters);
-        assert_eq!((plan.views.len(), plan.slots[0].kind), (6, Projection::Cube as u32));
+        let plan = ShadowPlan::new(&[bulb], &casters, false);
+        assert_eq!((plan.views.len(), plan.masks[0].slots[0][0].kind), (6, Projection::Cube as u32));
         let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
         for (view, axis) in plan.views.iter().zip(axes) {
-            let p = project(view, Vec3::from(bulb.position) + axis * 2.0);
+            let p = project(&view.unwrap(), Vec3::from(bulb.position) + axis * 2.0);
             assert!(p.truncate().length() < 1e-5 && p.z > 0.0, "{axis}: {p}");
         }
     }
@@ -270,7 +317,7 @@ mod tests {
     #[test]
     fn depth_is_affine_across_a_plane() {
         // The shader's receiver plane rests on it: the middle of two points' maps lies on the plane's depth.
-        let view = ShadowPlan::new(&[light(Kind::Rect)], &[unit_box_at(Vec3::Y)]).views[0];
+        let view = ShadowPlan::new(&[light(Kind::Rect)], &[unit_box_at(Vec3::Y)], false).views[0].unwrap();
         let (a, b) = (project(&view, Vec3::new(-0.3, 0.2, 0.1)), project(&view, Vec3::new(0.4, 0.9, -0.2)));
         let on_line = project(&view, Vec3::new(-0.3, 0.2, 0.1).lerp(Vec3::new(0.4, 0.9, -0.2), 0.25));
         let along = (on_line.truncate() - a.truncate()).length() / (b.truncate() - a.truncate()).length();
@@ -279,13 +326,13 @@ mod tests {
 
     #[test]
     fn too_many_lights_go_without_shadow_and_no_caster_needs_no_map() {
-        let plan = ShadowPlan::new(&[light(Kind::Rect); 40], &[unit_box_at(Vec3::ZERO)]);
-        assert_eq!((plan.views.len(), plan.masks()), (MAX_SLOTS, MAX_SLOTS / 4));
+        let plan = ShadowPlan::new(&[light(Kind::Rect); 40], &[unit_box_at(Vec3::ZERO)], false);
+        assert_eq!((plan.views.len(), plan.masks.len()), (MAX_SHADOWS, MAX_SHADOWS / 4));
         let all_round = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
-        let plan = ShadowPlan::new(&[light(Kind::Rect); 16], &all_round);
-        // Five cubes, then single views for as long as there is room.
-        assert_eq!((plan.views.len(), plan.slots[5].kind), (MAX_VIEWS, Projection::Perspective as u32));
-        assert_eq!(plan.slots[7].kind, 0);
-        assert_eq!(ShadowPlan::new(&[light(Kind::Rect)], &[]), ShadowPlan::default());
+        let plan = ShadowPlan::new(&[light(Kind::Rect); 16], &all_round, false);
+        // Eight cubes, and no room for more.
+        let kind = |light: usize| plan.masks[light / 4].slots[light % 4][0].kind;
+        assert_eq!((plan.views.len(), kind(7), kind(8)), (MAX_VIEWS, Projection::Cube as u32, 0));
+        assert_eq!(ShadowPlan::new(&[light(Kind::Rect)], &[], false), ShadowPlan::default());
     }
 }

@@ -8,7 +8,7 @@
 // A processor that rasterises runs both sides of every branch; only a loop's end saves it work. So what the search has
 // settled ends the filter's loop, whose end must not be known when the shader is compiled, lest it be unrolled.
 
-// One light's view; twin of `GpuShadowSlot`.
+// View of a light or of a part of it; twin of `GpuShadowSlot`.
 struct Slot {
     position: vec3f,
     layer: u32,
@@ -29,10 +29,18 @@ struct Slot {
     unused: vec2f,
 }
 
+const MOST_PARTS: u32 = 4u;
+
+// Four lights, each in one part or several; twin of `GpuShadows`.
+struct Shadows {
+    counts: vec4u,
+    slots: array<Slot, 16>,
+}
+
 @group(1) @binding(0) var gbuffer: texture_2d<u32>;
 @group(1) @binding(1) var ids: texture_2d<u32>;
 @group(2) @binding(0) var shadow_maps: texture_depth_2d_array;
-@group(3) @binding(0) var<uniform> slots: array<Slot, 4>;
+@group(3) @binding(0) var<uniform> shadows: Shadows;
 
 const SEARCH_TAPS: u32 = 6u;
 const FILTER_TAPS: u32 = 10u;
@@ -70,22 +78,22 @@ fn turned(v: vec3f, by_x: bool, by_y: bool, sign: f32) -> vec3f {
 
 // Where a point falls on a light's map, and the depth of its tangent plane around.
 fn receiver(slot: u32, position: vec3f, face: vec3f, draw: f32) -> Receiver {
-    let texel = slots[slot].field.x / f32(textureDimensions(shadow_maps).x);
-    let to_light = slots[slot].position - position;
-    let distance = select(length(to_light), 1.0, slots[slot].kind == 2u);
+    let texel = shadows.slots[slot].field.x / f32(textureDimensions(shadow_maps).x);
+    let to_light = shadows.slots[slot].position - position;
+    let distance = select(length(to_light), 1.0, shadows.slots[slot].kind == 2u);
     // A step off the surface by the map's rounding: more where the light grazes, next to none where it faces.
-    let facing = select(dot(face, to_light) / max(distance, 1e-6), -dot(face, slots[slot].forward), slots[slot].kind == 2u);
+    let facing = select(dot(face, to_light) / max(distance, 1e-6), -dot(face, shadows.slots[slot].forward), shadows.slots[slot].kind == 2u);
     let offset = face * (5e-4 + 0.25 * texel * distance * (1.0 - abs(facing))) - to_light;
     var local = vec3f(
-        dot(slots[slot].right, offset),
-        dot(slots[slot].up, offset),
-        dot(slots[slot].forward, offset),
+        dot(shadows.slots[slot].right, offset),
+        dot(shadows.slots[slot].up, offset),
+        dot(shadows.slots[slot].forward, offset),
     );
-    var normal = vec3f(dot(slots[slot].right, face), dot(slots[slot].up, face), dot(slots[slot].forward, face));
-    var layer = slots[slot].layer;
+    var normal = vec3f(dot(shadows.slots[slot].right, face), dot(shadows.slots[slot].up, face), dot(shadows.slots[slot].forward, face));
+    var layer = shadows.slots[slot].layer;
     var r: Receiver;
     r.foreshortening = vec2f(1.0);
-    if slots[slot].kind == 3u {
+    if shadows.slots[slot].kind == 3u {
         // The faces in the order +X, -X, +Y, -Y, +Z, -Z, turned as `shadow_views` turns them. Forward is -Z.
         let size = abs(local);
         let by_x = size.x >= size.y && size.x >= size.z;
@@ -99,14 +107,14 @@ fn receiver(slot: u32, position: vec3f, face: vec3f, draw: f32) -> Receiver {
         layer += select(select(4u, 2u, by_y), 0u, by_x) + select(1u, 0u, positive);
     }
     let height = dot(normal, local);
-    let near = slots[slot].near_m;
-    let parallel = slots[slot].kind == 2u;
+    let near = shadows.slots[slot].near_m;
+    let parallel = shadows.slots[slot].kind == 2u;
     let resolution = f32(textureDimensions(shadow_maps).x);
-    let low = slots[slot].low;
-    let texels = resolution / slots[slot].field;
+    let low = shadows.slots[slot].low;
+    let texels = resolution / shadows.slots[slot].field;
     let plane_point = select(local.xy / local.z, local.xy, parallel);
-    r.at = vec2f(plane_point.x - low.x, slots[slot].field.y - (plane_point.y - low.y)) * texels;
-    let parallel_depth = (slots[slot].far_m + PARALLEL_BIAS_M - local.z) / near;
+    r.at = vec2f(plane_point.x - low.x, shadows.slots[slot].field.y - (plane_point.y - low.y)) * texels;
+    let parallel_depth = (shadows.slots[slot].far_m + PARALLEL_BIAS_M - local.z) / near;
     r.depth = select(near / local.z * (1.0 + RELATIVE_BIAS), parallel_depth, parallel);
     let slope = select(near * normal.xy / height, normal.xy / (normal.z * near), parallel) / texels;
     // A plane seen edge-on is dark anyway; its slope must stay finite.
@@ -137,19 +145,19 @@ fn blocker_at(r: Receiver, tap: vec2f, spread: vec2f) -> vec2f {
     return vec2f(max(gap, 0.0), select(0.0, 1.0, before && inside));
 }
 
-// Fraction of a light that passes: 1 lit, 0 in full shadow. `turn` rotates the taps, `draw` lies
+// Fraction of a light that passes, or of a part of it: 1 lit, 0 in full shadow. `turn` rotates the taps, `draw` lies
 // evenly in 0..1.
-fn visibility(slot: u32, position: vec3f, face: vec3f, turn: vec2f, draw: f32) -> f32 {
+fn part_visibility(slot: u32, position: vec3f, face: vec3f, turn: vec2f, draw: f32) -> f32 {
     let r = receiver(slot, position, face, draw);
-    let parallel = slots[slot].kind == 2u;
-    let near = slots[slot].near_m;
+    let parallel = shadows.slots[slot].kind == 2u;
+    let near = shadows.slots[slot].near_m;
     // The emitter lies wholly below the horizon of the face.
-    let to_light = slots[slot].position - position;
-    let height = select(dot(face, to_light), -dot(face, slots[slot].forward), parallel);
-    let below = height < -length(slots[slot].softness) && slots[slot].kind != 0u;
+    let to_light = shadows.slots[slot].position - position;
+    let height = select(dot(face, to_light), -dot(face, shadows.slots[slot].forward), parallel);
+    let below = height < -length(shadows.slots[slot].softness) && shadows.slots[slot].kind != 0u;
     // Nothing to look for.
-    let settled = !r.inside || slots[slot].kind == 0u || below;
-    let softness = max(slots[slot].softness * r.foreshortening, vec2f(1e-5)) * (r.resolution / slots[slot].field);
+    let settled = !r.inside || shadows.slots[slot].kind == 0u || below;
+    let softness = max(shadows.slots[slot].softness * r.foreshortening, vec2f(1e-5)) * (r.resolution / shadows.slots[slot].field);
     let spread = softness * select(1.0 / near, near, parallel);
     // Blockers are sought as far as the emitter's outline falls for one half-way to the light, and more densely near
     // the middle, where those that touch the receiver are.
@@ -189,12 +197,45 @@ fn visibility(slot: u32, position: vec3f, face: vec3f, turn: vec2f, draw: f32) -
     return select(searched, select(1.0, 0.0, below), settled);
 }
 
+// What a part of an emitter sends to a surface with this normal, as a factor. A part whose middle is below the horizon sees
+// the surface from behind and knows nothing of its shadow: next to nothing, unless no other knows more.
+fn part_weight(slot: u32, position: vec3f, normal: vec3f) -> f32 {
+    let to_part = shadows.slots[slot].position - position;
+    let squared = max(dot(to_part, to_part), 1e-6);
+    let height = dot(normal, to_part);
+    let axes = vec2f(dot(normal, shadows.slots[slot].right), dot(normal, shadows.slots[slot].up));
+    let extent = max(length(axes * shadows.slots[slot].softness), 1e-6);
+    let above = max(height, 0.0) + 1e-3 * max(height + extent, 0.0);
+    return above * max(-dot(to_part, shadows.slots[slot].forward), 0.0) / (squared * squared);
+}
+
+// Fraction of a light that passes.
+fn visibility(light: u32, position: vec3f, normal: vec3f, face: vec3f, turn: vec2f, draw: f32) -> f32 {
+    let count = shadows.counts[light];
+    var sum = 0.0;
+    var total = 0.0;
+    var part = 0u;
+    loop {
+        let slot = MOST_PARTS * light + part;
+        let weight = select(1.0, part_weight(slot, position, normal), count > 1u);
+        sum += weight * part_visibility(slot, position, face, turn, draw);
+        total += weight;
+        part++;
+        continuing {
+            break if part >= count;
+        }
+    }
+    return select(sum / total, 1.0, total <= 0.0);
+}
+
 @fragment
 fn fragment(@builtin(position) at: vec4f) -> @location(0) vec2u {
     let cell = vec2u(at.xy);
     let pixel = min(cell * frame.mask_scale, vec2u(frame.size) - 1u);
     let depth = textureLoad(ids, pixel, 0).y;
-    let face = unpack_direction(textureLoad(gbuffer, pixel, 0).z);
+    let packed = textureLoad(gbuffer, pixel, 0).xz;
+    let normal = unpack_direction(packed.x);
+    let face = unpack_direction(packed.y);
     let ray = pixel_ray(vec2f(pixel) + 0.5);
     let position = frame.eye + ray * (frame.near_m / max(bitcast<f32>(depth), 1e-9));
     // Nine rotations in every three by three pixels, which the blur that follows evens out.
@@ -204,10 +245,10 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec2u {
     let draw = (f32((u32(ninth) * 4u) % 9u) + 0.5) / 9.0;
     let turn = vec2f(cos(angle), sin(angle));
     let lit = vec4f(
-        visibility(0u, position, face, turn, draw),
-        visibility(1u, position, face, turn, draw),
-        visibility(2u, position, face, turn, draw),
-        visibility(3u, position, face, turn, draw),
+        visibility(0u, position, normal, face, turn, draw),
+        visibility(1u, position, normal, face, turn, draw),
+        visibility(2u, position, normal, face, turn, draw),
+        visibility(3u, position, normal, face, turn, draw),
     );
     return vec2u(pack4x8unorm(lit), depth);
 }

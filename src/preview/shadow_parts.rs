@@ -1,0 +1,105 @@
+//! Emitters that are wide beside their distance, in parts, each with its own view of the studio.
+//!
+//! One map sees from an emitter's middle. A surface that turns away from there may still see one end of a strip or a
+//! corner of a window: seen from the middle the body itself stands before it, and light was lost. Each part's shadow
+//! counts by the light that it sends.
+
+use super::draw_list::Caster;
+use super::light_table::{GpuLight, Kind};
+use glam::{Vec2, Vec3};
+use std::f32::consts::PI;
+
+/// Most parts of an emitter.
+pub(super) const MOST_PARTS: usize = 4;
+/// An emitter is taken in parts if its half diagonal is more than this part of the distance to what may cast a shadow.
+const WIDE: f32 = 0.4;
+/// Parts of a panel this much longer than it is wide lie in a row.
+const LONG: f32 = 2.0;
+
+/// A part of an emitter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Part {
+    /// Its middle, in half axes of the emitter.
+    pub at: Vec2,
+    /// Half axes of its penumbra, metres.
+    pub softness: Vec2,
+}
+
+/// The parts in which a light's shadow is taken; one for most lights.
+pub(super) fn parts(light: &GpuLight, casters: &[Caster]) -> Vec<Part> {
+    let softness = light.softness();
+    let whole = vec![Part { at: Vec2::ZERO, softness }];
+    let half = Vec2::new(Vec3::from(light.right).length(), Vec3::from(light.up).length());
+    let is_panel = light.kind == Kind::Rect as u32 || light.kind == Kind::Disc as u32;
+    if !is_panel || half.length() < WIDE * distance(light.position.into(), casters) {
+        return whole;
+    }
+    if half.max_element() > LONG * half.min_element() {
+        let along = if half.x > half.y { Vec2::X } else { Vec2::Y };
+        let softness = softness / (Vec2::ONE + 2.0 * along);
+        return [0.0, -2.0 / 3.0, 2.0 / 3.0].map(|step| Part { at: step * along, softness }).to_vec();
+    }
+    // Middles of the quarters: of a rectangle, or of a disc.
+    let step = if light.kind == Kind::Rect as u32 { 0.5 } else { 4.0 / (3.0 * PI) };
+    let corners = [Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0), Vec2::new(-1.0, 1.0), Vec2::ONE];
+    corners.map(|corner| Part { at: step * corner, softness: 0.5 * softness }).to_vec()
+}
+
+/// Distance from a point to the nearest box around something that casts a shadow, metres.
+fn distance(point: Vec3, casters: &[Caster]) -> f32 {
+    let to_box = |caster: &Caster| {
+        let corners = caster.corners();
+        let (low, high) =
+            corners.iter().fold((corners[0], corners[0]), |(low, high), corner| (low.min(*corner), high.max(*corner)));
+        point.clamp(low, high).distance(point)
+    };
+    casters.iter().map(to_box).fold(f32::INFINITY, f32::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bytemuck::Zeroable;
+    use glam::Affine3A;
+
+    fn panel(kind: Kind, half_width: f32, half_height: f32) -> GpuLight {
+        GpuLight {
+            kind: kind as u32,
+            right: [half_width, 0.0, 0.0],
+            up: [0.0, half_height, 0.0],
+            axis: [0.0, 0.0, -1.0],
+            ..GpuLight::zeroed()
+        }
+    }
+
+    fn caster_at(z: f32) -> Caster {
+        let world_from_object = Affine3A::from_translation(Vec3::Z * z);
+        Caster { world_from_object, low: Vec3::splat(-0.5), high: Vec3::splat(0.5) }
+    }
+
+    #[test]
+    fn only_what_is_wide_beside_its_distance_is_taken_in_parts() {
+        let (near, far) = ([caster_at(-1.5)], [caster_at(-5.5)]);
+        for (light, count) in [
+            (panel(Kind::Rect, 0.15, 0.8), 3),
+            (panel(Kind::Rect, 0.8, 0.15), 3),
+            (panel(Kind::Rect, 0.5, 0.7), 4),
+            (panel(Kind::Disc, 0.6, 0.6), 4),
+            (panel(Kind::Sphere, 0.6, 0.6), 1),
+        ] {
+            assert_eq!(parts(&light, &near).len(), count);
+            assert_eq!(parts(&light, &far).len(), 1);
+        }
+    }
+
+    #[test]
+    fn the_parts_have_the_middle_and_the_area_of_the_whole() {
+        for light in [panel(Kind::Rect, 0.15, 0.8), panel(Kind::Rect, 0.5, 0.7), panel(Kind::Disc, 0.6, 0.6)] {
+            let parts = parts(&light, &[caster_at(-1.0)]);
+            let middle: Vec2 = parts.iter().map(|part| part.at).sum();
+            assert!(middle.length() < 1e-6);
+            let area: f32 = parts.iter().map(|part| PI * part.softness.element_product()).sum();
+            assert!((area / light.area_m2() - 1.0).abs() < 1e-5, "{area}");
+        }
+    }
+}
