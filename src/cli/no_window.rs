@@ -1,7 +1,7 @@
 //! Stands in for `window.rs` where the program was built without the `gui` feature.
 
 use super::Failure;
-use super::preview::TimesReport;
+use super::preview::{Look, TimesReport};
 use crate::io::Loaded;
 use anyhow::anyhow;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ pub fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
 }
 
 /// There is no graphics-card preview in this build.
-pub fn write_preview(_loaded: &Loaded, _size: (u32, u32), _output: &Path) -> Result<(), Failure> {
+pub fn write_preview(_loaded: &Loaded, _size: (u32, u32), _output: &Path, _look: &Look) -> Result<(), Failure> {
     Err(no_preview())
 }
 

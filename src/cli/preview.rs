@@ -31,12 +31,33 @@ pub struct Arguments {
     /// without the radius beyond which a light is left out.
     #[arg(long)]
     lights: bool,
+    /// What the picture shows: lit, base-color, normal, roughness, metallic, depth, ids, or illuminance (direct light in
+    /// false colour, in stops against the camera's exposure).
+    #[arg(long, default_value = "lit", conflicts_with = "cpu")]
+    channel: String,
+    /// One light alone, by name.
+    #[arg(long, value_name = "NAME", conflicts_with = "cpu")]
+    light: Option<String>,
+    /// Highlights by Blinn and Phong instead of GGX.
+    #[arg(long, conflicts_with = "cpu")]
+    blinn_phong: bool,
     /// Draw on the processor, without a graphics adapter: no shadows.
     #[arg(long, conflicts_with = "lights")]
     cpu: bool,
     /// Print times as JSON.
     #[arg(long)]
     json: bool,
+}
+
+/// What of the studio a picture shows.
+#[derive(Clone, Debug, Default)]
+pub struct Look {
+    /// Name of the channel.
+    pub channel: String,
+    /// Name of the light that shines alone.
+    pub light: Option<String>,
+    /// Highlights by Blinn and Phong.
+    pub blinn_phong: bool,
 }
 
 /// What `--frames` and `--lights` print.
@@ -79,7 +100,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut loaded = input::load_studio(&arguments.scene)?;
     if let Some(output) = &arguments.output {
         let size = arguments.size.unwrap_or_else(|| loaded.scene.camera.picture_size(960));
-        write(&loaded, size, output, arguments.cpu)?;
+        let (channel, light) = (arguments.channel.clone(), arguments.light.clone());
+        let look = Look { channel, light, blinn_phong: arguments.blinn_phong };
+        write(&loaded, size, output, arguments.cpu, &look)?;
     }
     let size = arguments.size.unwrap_or(TIMED_SIZE);
     let frames = arguments.frames.unwrap_or(FRAMES);
@@ -104,10 +127,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Writes the preview; without an adapter, or where `cpu` asks for it, as the processor draws it.
-fn write(loaded: &Loaded, size: (u32, u32), output: &Path, cpu: bool) -> Result<(), Failure> {
+fn write(loaded: &Loaded, size: (u32, u32), output: &Path, cpu: bool, look: &Look) -> Result<(), Failure> {
     if !cpu {
-        match window::write_preview(loaded, size, output) {
-            Err(Failure::Machine(error)) => eprintln!("{error:#}; drawn on the processor instead, without shadows"),
+        let plain = look.channel == "lit" && look.light.is_none();
+        match window::write_preview(loaded, size, output, look) {
+            Err(Failure::Machine(error)) if plain => {
+                eprintln!("{error:#}; drawn on the processor instead, without shadows")
+            }
             done => return done,
         }
     }

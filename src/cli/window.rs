@@ -1,11 +1,16 @@
 //! What needs a graphics adapter: the editor and its preview.
 
 use super::Failure;
-use super::preview::TimesReport;
+use super::preview::{Look, TimesReport};
 use crate::editor;
 use crate::io::{self, Loaded, PictureInfo};
-use crate::preview::{Gpu, Options, PreviewError, PreviewInput, PreviewRenderer};
+use crate::photo::exposure;
+use crate::preview::{
+    Channel, FALSE_STOPS, Gloss, Gpu, Options, PreviewError, PreviewInput, PreviewRenderer, false_color,
+};
+use crate::scene::Camera;
 use anyhow::anyhow;
+use std::f32::consts::PI;
 use std::path::{Path, PathBuf};
 
 /// Opens the editor on a studio file, a shipped studio by name, or the first shipped one.
@@ -17,12 +22,42 @@ pub fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
     })
 }
 
-/// Renders the preview offscreen and writes it.
-pub fn write_preview(loaded: &Loaded, size: (u32, u32), output: &Path) -> Result<(), Failure> {
+/// Renders the preview offscreen and writes it. Channels go to PNG and JPEG in their colours, to EXR as values.
+pub fn write_preview(loaded: &Loaded, size: (u32, u32), output: &Path, look: &Look) -> Result<(), Failure> {
+    let options = options(loaded, look)?;
     let (_, mut renderer) = start()?;
-    let input = PreviewInput::camera_view(&loaded.scene, &loaded.assets, size);
+    let input = PreviewInput { options, ..PreviewInput::camera_view(&loaded.scene, &loaded.assets, size) };
+    if options.channel == Channel::Illuminance {
+        legend(&loaded.scene.camera);
+    }
+    if options.channel != Channel::Lit && io::PictureFormat::of(output)? != io::PictureFormat::Exr {
+        return Ok(io::export_shown(output, &renderer.picture(&input).map_err(machine)?)?);
+    }
     let picture = renderer.linear_picture(&input).map_err(machine)?;
     Ok(io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene.camera, "preview", 1, 0))?)
+}
+
+fn options(loaded: &Loaded, look: &Look) -> Result<Options, Failure> {
+    let known = Channel::ALL.map(Channel::name).join(", ");
+    let channel = Channel::ALL.into_iter().find(|channel| channel.name() == look.channel);
+    let channel =
+        channel.ok_or_else(|| Failure::Input(anyhow!("there is no channel {:?}; there are {known}", look.channel)))?;
+    let named = |name: &String| loaded.scene.lights.iter().find(|light| light.name == *name).map(|light| light.id);
+    let unknown = |name: &String| Failure::Input(anyhow!("the studio has no light named {name:?}"));
+    let only_light = look.light.as_ref().map(|name| named(name).ok_or_else(|| unknown(name))).transpose()?;
+    let gloss = if look.blinn_phong { Gloss::BlinnPhong } else { Gloss::Ggx };
+    Ok(Options { channel, only_light, gloss, ..Options::default() })
+}
+
+/// Says on stderr what the colours mean.
+fn legend(camera: &Camera) {
+    let lux_s = exposure::pixel_per_cd_s_m2(camera).recip() * PI;
+    for stops in FALSE_STOPS.0..=FALSE_STOPS.1 {
+        let [r, g, b] = false_color(stops as f32);
+        let lux_s = lux_s * (stops as f32).exp2();
+        let lux = lux_s / camera.shutter_s;
+        eprintln!("#{r:02x}{g:02x}{b:02x}  {stops:+} stops  {lux_s:.3} lx s, or {lux:.1} lx at the camera's shutter");
+    }
 }
 
 /// Times frames of the preview in motion.

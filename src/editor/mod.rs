@@ -22,6 +22,7 @@ mod history;
 mod item;
 mod keys;
 mod light_view;
+mod look_menu;
 mod meter_job;
 mod navigation;
 mod overlay;

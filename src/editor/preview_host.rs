@@ -1,8 +1,8 @@
 //! The live preview as a texture of the window: built in the background, drawn only when something changed.
 
 use super::document::Document;
-use crate::preview::{Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
-use crate::scene::CameraFrame;
+use crate::preview::{Channel, Gloss, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
+use crate::scene::{CameraFrame, LightId};
 use eframe::egui::{Context, TextureId};
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
@@ -31,8 +31,21 @@ struct Shown {
     options: Options,
 }
 
+/// What the views of the studio show of it. No part of the scene: it is neither saved nor undone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Look {
+    /// What each pixel shows.
+    pub channel: Channel,
+    /// Leaves all other lights out.
+    pub only_light: Option<LightId>,
+    /// How surfaces shine.
+    pub gloss: Gloss,
+}
+
 /// The preview and the texture it draws into.
 pub struct PreviewHost {
+    /// What it shows.
+    pub look: Look,
     stage: Stage,
     state: Option<RenderState>,
     texture: Option<(TextureId, u64)>,
@@ -58,6 +71,7 @@ impl PreviewHost {
             None => Stage::Failed("The window has no wgpu device, so there is no live view.".to_owned()),
         };
         PreviewHost {
+            look: Look::default(),
             stage,
             state: state.cloned(),
             texture: None,
@@ -117,7 +131,11 @@ impl PreviewHost {
         self.finish_start();
         let Stage::Ready(renderer) = &self.stage else { return None };
         let drafts = renderer.draws_drafts();
-        let wanted = Shown { revision: document.revision(), frame, size, overlay, options: Options::default() };
+        let Look { channel, only_light, gloss } = self.look;
+        // A light that was deleted meanwhile leaves the others as they are.
+        let only_light = only_light.filter(|id| document.scene().light(*id).is_some());
+        let options = Options { channel, only_light, gloss, ..Options::default() };
+        let wanted = Shown { revision: document.revision(), frame, size, overlay, options };
         let changed = self.shown.as_ref() != Some(&wanted);
         let settled = self.draft_since.is_some_and(|since| since.elapsed() >= SETTLED);
         if changed || settled {

@@ -7,6 +7,7 @@ use super::command::{Centre, Command, Handle};
 use super::document::Document;
 use super::gizmo::{HandleView, Handles, Pointer};
 use super::item::Item;
+use super::look_menu::look_menu_ui;
 use super::navigation::{camera_as_view, light_as_view, moved_camera, moved_light, steer};
 use super::panels::item_menu::{item_menu_ui, nothing_menu_ui};
 use super::picking::Band;
@@ -108,6 +109,7 @@ impl Viewport {
             self.context_menu(ui, &response, &frame, input, out);
         }
         self.paint(ui, rect, frame, picture, input);
+        look_menu_ui(ui, rect, scene, &mut self.preview.look);
         if input.centre == Centre::Studio {
             axis_cross_ui(ui, rect, &self.view, &frame, out);
         }

@@ -20,6 +20,6 @@ mod texture;
 pub use assets::load_assets;
 pub use error::{AssetError, LoadError, Problem, SaveError};
 pub use obj::{ImportedObj, import_obj};
-pub use picture::{PictureFormat, PictureInfo, export_layers, export_picture, read_exr};
+pub use picture::{PictureFormat, PictureInfo, export_layers, export_picture, export_shown, read_exr};
 pub use presets::{Preset, find_preset, presets};
 pub use scene_file::{FILE_LIMIT_BYTES, FORMAT, Loaded, load_scene, parse_scene, save_scene, write_scene};

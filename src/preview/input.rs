@@ -1,5 +1,6 @@
 //! What the preview is asked to show.
 
+use super::channel::{Channel, Gloss};
 use crate::scene::{Assets, CameraFrame, LightId, ObjectId, Scene};
 use glam::Vec3;
 
@@ -88,6 +89,12 @@ pub struct Options {
     /// Draws only what lies over the picture, on nothing: transparent, colour times coverage. For a picture that comes
     /// from elsewhere. Depth and ids are there all the same, so that things hide each other and can be picked.
     pub overlay_alone: bool,
+    /// What is shown at each pixel.
+    pub channel: Channel,
+    /// Leaves all other lights out.
+    pub only_light: Option<LightId>,
+    /// How surfaces shine.
+    pub gloss: Gloss,
     /// Pixels along each side of a shadow map.
     pub shadow_resolution: u32,
 }
@@ -101,6 +108,9 @@ impl Default for Options {
             light_radius: true,
             draft: false,
             overlay_alone: false,
+            channel: Channel::Lit,
+            only_light: None,
+            gloss: Gloss::Ggx,
             shadow_resolution: 1024,
         }
     }

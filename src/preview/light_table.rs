@@ -4,7 +4,7 @@
 use crate::color;
 use crate::photo::beam;
 use crate::photo::exposure::{self, Strength};
-use crate::scene::{BarnDoors, Camera, Cone, Emitter, Light, Material, Modifier, Room, Scene};
+use crate::scene::{BarnDoors, Camera, Cone, Emitter, Light, LightId, Material, Modifier, Room, Scene};
 use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Vec2, Vec3};
 use std::f32::consts::PI;
@@ -142,10 +142,11 @@ pub(super) struct LightTable {
 }
 
 impl LightTable {
-    pub fn new(scene: &Scene, bounce_estimate: bool) -> Self {
+    /// The lights of a scene, or one of them alone.
+    pub fn new(scene: &Scene, bounce_estimate: bool, only: Option<LightId>) -> Self {
         let mut table = LightTable::default();
         let mut flux = Vec3::ZERO;
-        for light in scene.lights.iter().filter(|light| light.on) {
+        for light in scene.lights.iter().filter(|light| light.on && only.is_none_or(|id| id == light.id)) {
             let scale = picture_scale(light, &scene.camera);
             if light.emitter == Emitter::Surround {
                 // A closed room keeps it out.
@@ -307,10 +308,10 @@ mod tests {
     fn lights_that_are_off_or_without_size_do_no_harm() {
         let mut scene = Scene { lights: vec![light(Emitter::Point, Output::Lumens(1000.0))], ..Scene::default() };
         scene.lights[0].on = false;
-        assert!(LightTable::new(&scene, true).lights.is_empty());
+        assert!(LightTable::new(&scene, true, None).lights.is_empty());
         scene.lights[0] = light(Emitter::RectPanel { width_m: 0.0, height_m: 0.0 }, Output::Lumens(1000.0));
-        assert_eq!(LightTable::new(&scene, true).lights.len(), 1);
+        assert_eq!(LightTable::new(&scene, true, None).lights.len(), 1);
         scene.lights[0].power.dial_stops = f32::NAN;
-        assert!(LightTable::new(&scene, true).lights.is_empty());
+        assert!(LightTable::new(&scene, true, None).lights.is_empty());
     }
 }

@@ -1,7 +1,8 @@
 //! The passes that light the G-buffer: in full, or as a draft that lights one pixel in four and spreads the light.
 
+use super::channel::Channel;
 use super::pipelines::{self, Layouts, LightingVariant};
-use super::targets::Targets;
+use super::targets::{Output, Targets};
 use eframe::wgpu;
 use std::collections::HashMap;
 
@@ -10,7 +11,9 @@ use std::collections::HashMap;
 pub(super) struct LightingPasses {
     lighting: HashMap<LightingVariant, wgpu::RenderPipeline>,
     glass: HashMap<LightingVariant, wgpu::RenderPipeline>,
-    resolve: wgpu::RenderPipeline,
+    /// Of pictures and of illuminance.
+    resolve: [wgpu::RenderPipeline; 2],
+    channels: HashMap<(Channel, Output), wgpu::RenderPipeline>,
 }
 
 /// What the lighting passes read.
@@ -22,8 +25,8 @@ pub(super) struct LightingInput<'a> {
 
 impl LightingPasses {
     pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
-        let resolve = pipelines::resolve(device, layouts);
-        LightingPasses { lighting: HashMap::new(), glass: HashMap::new(), resolve }
+        let resolve = [false, true].map(|illuminance| pipelines::resolve(device, layouts, illuminance));
+        LightingPasses { lighting: HashMap::new(), glass: HashMap::new(), resolve, channels: HashMap::new() }
     }
 
     /// The pipeline of glass over the lit picture.
@@ -49,18 +52,34 @@ impl LightingPasses {
         let target = if variant.cells { &input.targets.cells } else { &input.targets.color_view };
         fullscreen_pass(encoder, "lighting", target, lighting, [input.scene, &input.targets.lookup, input.masks]);
         if variant.cells {
+            let resolve = &self.resolve[usize::from(variant.illuminance)];
             let groups = [input.scene, &input.targets.lookup, &input.targets.cells_lookup];
-            fullscreen_pass(encoder, "resolve", &input.targets.color_view, &self.resolve, groups);
+            fullscreen_pass(encoder, "resolve", &input.targets.color_view, resolve, groups);
         }
+    }
+
+    /// Shows one channel of the G-buffer.
+    pub fn draw_channel(
+        &mut self,
+        device: &wgpu::Device,
+        layouts: &Layouts,
+        encoder: &mut wgpu::CommandEncoder,
+        (scene, targets): (&wgpu::BindGroup, &Targets),
+        channel: Channel,
+    ) {
+        let output = targets.output;
+        let make = || pipelines::channel(device, layouts, channel, output);
+        let pipeline = self.channels.entry((channel, output)).or_insert_with(make);
+        fullscreen_pass(encoder, "channel", &targets.color_view, pipeline, [scene, &targets.lookup]);
     }
 }
 
-fn fullscreen_pass(
+fn fullscreen_pass<const GROUPS: usize>(
     encoder: &mut wgpu::CommandEncoder,
     label: &str,
     view: &wgpu::TextureView,
     pipeline: &wgpu::RenderPipeline,
-    groups: [&wgpu::BindGroup; 3],
+    groups: [&wgpu::BindGroup; GROUPS],
 ) {
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(label),

@@ -6,6 +6,7 @@
 //! Lights reach the shaders in picture units, so that what a shader sums is the scene-linear pixel. What it leaves out
 //! of the tracer's picture: bounced light (estimated), true reflection and refraction, exact soft shadows.
 
+mod channel;
 mod draw_list;
 mod environment;
 mod error;
@@ -31,6 +32,7 @@ mod shadow_views;
 mod targets;
 mod texture_cache;
 
+pub use channel::{Channel, FALSE_STOPS, Gloss, false_color};
 pub use error::PreviewError;
 pub use frame_times::FrameTimes;
 pub use gpu::Gpu;

@@ -1,5 +1,6 @@
 //! The fixed list of pipelines. Constructors of pipelines are tables; they run long for that reason.
 
+use super::channel::{Channel, Gloss};
 use super::draw_list::Shadow;
 use super::gizmo::{GpuLine, GpuTint};
 use super::mesh_cache::VERTEX_LAYOUT;
@@ -79,6 +80,9 @@ pub(super) struct LightingVariant {
     pub beams: bool,
     /// One pixel in four, for a draft.
     pub cells: bool,
+    /// The light on surfaces, in false colour.
+    pub illuminance: bool,
+    pub gloss: Gloss,
 }
 
 impl GeometryPipelines {
@@ -175,6 +179,8 @@ pub(super) fn lighting(device: &wgpu::Device, layouts: &Layouts, variant: &Light
         ("SCALE", f64::from(variant.scale)),
         ("LISTED", flag(variant.listed)),
         ("HAS_BEAMS", flag(variant.beams)),
+        ("ILLUMINANCE", flag(variant.illuminance)),
+        ("BLINN_PHONG", flag(variant.gloss == Gloss::BlinnPhong)),
     ];
     let layout = pipeline_layout(device, "lighting", &[layouts.scene, layouts.gbuffer, layouts.masks]);
     let (entry, format) = if variant.cells { ("cell", CELL_FORMAT) } else { ("fragment", variant.output.format()) };
@@ -182,9 +188,23 @@ pub(super) fn lighting(device: &wgpu::Device, layouts: &Layouts, variant: &Light
 }
 
 /// Light of one pixel in four, spread over the picture as it is shown.
-pub(super) fn resolve(device: &wgpu::Device, layouts: &Layouts) -> wgpu::RenderPipeline {
+pub(super) fn resolve(device: &wgpu::Device, layouts: &Layouts, illuminance: bool) -> wgpu::RenderPipeline {
     let layout = pipeline_layout(device, "resolve", &[layouts.scene, layouts.gbuffer, layouts.cells]);
-    fullscreen(device, ("resolve", "fragment"), shaders::RESOLVE, &layout, &[], Output::Display.format())
+    let constants = [("ILLUMINANCE", f64::from(u8::from(illuminance)))];
+    fullscreen(device, ("resolve", "fragment"), shaders::RESOLVE, &layout, &constants, Output::Display.format())
+}
+
+/// One channel of the G-buffer.
+pub(super) fn channel(
+    device: &wgpu::Device,
+    layouts: &Layouts,
+    channel: Channel,
+    output: Output,
+) -> wgpu::RenderPipeline {
+    let layout = pipeline_layout(device, "channel", &[layouts.scene, layouts.gbuffer]);
+    let constants =
+        [("CHANNEL", f64::from(channel.number())), ("LINEAR", f64::from(u8::from(output == Output::Linear)))];
+    fullscreen(device, ("channel", "fragment"), shaders::CHANNEL, &layout, &constants, output.format())
 }
 
 /// Glass over the lit picture.

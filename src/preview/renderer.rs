@@ -1,5 +1,6 @@
 //! One frame, pass by pass: shadow maps, geometry, lighting.
 
+use super::channel::{Channel, Gloss};
 use super::draw_list::{DrawItem, DrawList, Pass, Uploads};
 use super::environment::Environment;
 use super::gizmo::Gizmos;
@@ -182,9 +183,11 @@ impl PreviewRenderer {
                 assets: input.assets,
             },
         );
-        let table = LightTable::new(input.scene, input.options.bounce_estimate);
+        let table = LightTable::new(input.scene, input.options.bounce_estimate, input.options.only_light);
         let overlay_alone = input.options.overlay_alone;
-        let casters: &[_] = if input.options.shadows && !overlay_alone { &list.casters } else { &[] };
+        let channel = input.options.channel;
+        let needs_light = channel.is_lit() && !overlay_alone;
+        let casters: &[_] = if input.options.shadows && needs_light { &list.casters } else { &[] };
         let draft = input.options.draft && self.on_processor && output == Output::Display;
         let plan = ShadowPlan::new(&table.lights, casters, !draft);
         let resolution = input.options.shadow_resolution;
@@ -222,13 +225,18 @@ impl PreviewRenderer {
             listed: tiles.is_some(),
             beams: table.lights.iter().any(|light| light.has_beam != 0),
             cells: draft,
+            illuminance: channel == Channel::Illuminance,
+            gloss: input.options.gloss,
         };
-        if !overlay_alone {
+        if needs_light {
             self.lighting_pass(&mut encoder, variant);
         }
         let has_glass = list.items.iter().any(|item| item.pass == Pass::Glass);
         if has_glass {
             self.glass_pass(&mut encoder, &list, &table, output);
+        }
+        if !channel.is_lit() {
+            self.channel_pass(&mut encoder, channel);
         }
         if overlay_alone {
             overlay_pass::clear(&mut encoder, &self.targets.color_view);
@@ -311,8 +319,9 @@ impl PreviewRenderer {
 
     fn glass_pass(&mut self, encoder: &mut wgpu::CommandEncoder, list: &DrawList, table: &LightTable, output: Output) {
         let families = table.families();
+        let (masks, scale, listed, cells, illuminance, gloss) = (0, 1, false, false, false, Gloss::Ggx);
         let variant =
-            LightingVariant { output, families, masks: 0, scale: 1, listed: false, beams: true, cells: false };
+            LightingVariant { output, families, masks, scale, listed, beams: true, cells, illuminance, gloss };
         let layouts =
             layouts(&self.buffers, &self.textures, &self.target_layouts, &self.shadow_maps, &self.shadow_masks);
         let pipeline = self.lighting.glass(&self.device, &layouts, variant).clone();
@@ -375,6 +384,13 @@ impl PreviewRenderer {
             masks: self.shadow_masks.lookup(),
         };
         self.lighting.draw(&self.device, &layouts, encoder, &input, variant);
+    }
+
+    fn channel_pass(&mut self, encoder: &mut wgpu::CommandEncoder, channel: Channel) {
+        let layouts =
+            layouts(&self.buffers, &self.textures, &self.target_layouts, &self.shadow_maps, &self.shadow_masks);
+        let inputs = (self.buffers.bind_group(), &self.targets);
+        self.lighting.draw_channel(&self.device, &layouts, encoder, inputs, channel);
     }
 
     fn draw_item(&self, pass: &mut wgpu::RenderPass, item: &DrawItem) {

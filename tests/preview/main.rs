@@ -17,6 +17,7 @@ use std::f32::consts::PI;
 use std::sync::Arc;
 
 mod against_tracer;
+mod channels;
 mod closed_forms;
 mod drafts;
 mod each_light;

@@ -116,12 +116,30 @@ fn check_size(name: &str, picture: &Picture) -> Result<(), SaveError> {
     Ok(())
 }
 
+/// Writes sRGB bytes as they are, as PNG or JPEG. An older file is replaced only by a whole new one.
+///
+/// # Errors
+/// For an ending that is not of these two, a missing folder, an empty picture, or a disk that refuses.
+pub fn export_shown(path: &Path, shown: &image::RgbImage) -> Result<(), SaveError> {
+    let format = PictureFormat::of(path)?;
+    let content = if format == PictureFormat::Exr || shown.is_empty() {
+        Err("bytes as they are shown go to PNG and JPEG".to_owned())
+    } else {
+        encode_rgb8(shown.width(), shown.height(), shown.as_raw(), format)
+    };
+    let content = content.map_err(|message| SaveError::Encode { message, path: path.to_owned() })?;
+    atomic::write(path, &content)
+}
+
 /// PNG or JPEG of the picture as it is shown.
 fn encode_8bit(picture: &Picture, format: PictureFormat) -> Result<Vec<u8>, String> {
+    encode_rgb8(picture.width, picture.height, picture.to_srgb8().as_flattened(), format)
+}
+
+fn encode_rgb8(width: u32, height: u32, rgb: &[u8], format: PictureFormat) -> Result<Vec<u8>, String> {
     use image::ImageEncoder;
     let mut content = Cursor::new(Vec::new());
-    let (width, height, rgb) = (picture.width, picture.height, picture.to_srgb8());
-    let (rgb, color) = (rgb.as_flattened(), image::ExtendedColorType::Rgb8);
+    let color = image::ExtendedColorType::Rgb8;
     match format {
         PictureFormat::Jpeg => image::codecs::jpeg::JpegEncoder::new_with_quality(&mut content, JPEG_QUALITY)
             .write_image(rgb, width, height, color),

@@ -144,6 +144,17 @@ fn glint(s: Shading, direction: vec3f, radius: f32) -> vec3f {
 // surface, slopes run to infinity.
 const LOWEST: f32 = 0.03;
 
+// Blinn and Phong's highlight for unit irradiance from a direction (of any length), with as much energy as its lobe of the
+// same width holds.
+fn blinn_phong(s: Shading, towards: vec3f) -> vec3f {
+    let direction = towards * inverseSqrt(max(dot(towards, towards), 1e-20));
+    let half_sum = direction + s.view;
+    let n_dot_h = max(dot(s.normal, half_sum) * inverseSqrt(max(dot(half_sum, half_sum), 1e-20)), 1e-4);
+    let exponent = clamp(2.0 / s.material.alpha2 - 2.0, 1.0, 1e4);
+    let lobe = (exponent + 8.0) / (8.0 * PI) * exp2(exponent * log2(n_dot_h));
+    return mix(vec3f(s.material.f0), s.material.base, s.material.metallic) * select(0.0, lobe, dot(s.normal, direction) > 0.0);
+}
+
 // Slope of the half vector towards a point of the emitter, in the frame of the normal.
 fn slope_to(s: Shading, p: vec3f) -> vec2f {
     let distance = sqrt(dot(p, p));

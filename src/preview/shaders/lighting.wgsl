@@ -18,6 +18,10 @@ override SCALE: u32 = 1;
 override LISTED: bool = false;
 // Whether any light's modifier narrows its beam.
 override HAS_BEAMS: bool = true;
+// Whether the picture shows the light on surfaces, as on white ones without gloss.
+override ILLUMINANCE: bool = false;
+// Whether gloss is Blinn and Phong's.
+override BLINN_PHONG: bool = false;
 
 @group(1) @binding(0) var gbuffer: texture_2d<u32>;
 @group(1) @binding(1) var ids: texture_2d<u32>;
@@ -39,7 +43,21 @@ struct Lit {
 
 // Highlight of an emitter with a size. What has none of its light above the horizon gives no highlight either.
 fn seen_highlight(s: Shading, a: Arrival, round: bool) -> vec3f {
+    if ILLUMINANCE {
+        return vec3f(0.0);
+    }
+    if BLINN_PHONG {
+        return blinn_phong(s, a.centre) * a.irradiance;
+    }
     return select(vec3f(0.0), highlight(s, a, round), a.irradiance > 0.0);
+}
+
+// Part of a light that comes to the body, to the mean over all directions; all of it where only the light is asked for.
+fn body_share(s: Shading, cosine: f32, wide: f32) -> f32 {
+    if ILLUMINANCE {
+        return 1.0;
+    }
+    return entering(s.material, cosine, wide);
 }
 
 // Shadows of four lights at a pixel. A mask of a part of the size is read at the four pixels around, as far as they lie
@@ -108,6 +126,9 @@ fn lit(p: Sample) -> Lit {
     let position = frame.eye + ray * (frame.near_m / depth);
     let s = shading(position, unpack_direction(p.packed.x), -normalize(ray), unpack_color(p.packed.y), gloss);
     var matte = ambient(s.normal);
+    if ILLUMINANCE {
+        matte = vec3f(0.0);
+    }
     var glossy = environment(position, reflect(-s.view, s.normal), gloss.x) * s.material.reflectance;
 
     let tile = tile_at(p.at);
@@ -118,8 +139,12 @@ fn lit(p: Sample) -> Lit {
             let a = delta_arrival(light, position);
             let color = lights[light].color * (a.w * lit_by(light) * present(k, deltas_end(tile)));
             let cosine = max(dot(s.normal, a.xyz), 0.0);
-            matte += color * (cosine * entering(s.material, cosine, 0.0));
-            glossy += glint(s, a.xyz, lights[light].radius) * color;
+            matte += color * (cosine * body_share(s, cosine, 0.0));
+            if BLINN_PHONG {
+                glossy += blinn_phong(s, a.xyz) * max(dot(s.normal, a.xyz), 0.0) * color;
+            } else {
+                glossy += glint(s, a.xyz, lights[light].radius) * color;
+            }
             k++;
             continuing {
                 break if k >= deltas_end(tile);
@@ -132,7 +157,7 @@ fn lit(p: Sample) -> Lit {
             let light = listed_light(tile, k);
             let a = sphere_arrival(light, position, s.normal);
             let color = lights[light].color * (lit_by(light) * present(k, spheres_end(tile)) * reach(light, a.centre) * a.passed);
-            matte += color * (a.irradiance * entering(s.material, a.cosine, a.irradiance / PI));
+            matte += color * (a.irradiance * body_share(s, a.cosine, a.irradiance / PI));
             glossy += color * seen_highlight(s, a, true);
             k++;
             continuing {
@@ -146,7 +171,7 @@ fn lit(p: Sample) -> Lit {
             let light = listed_light(tile, k);
             let a = panel_arrival(light, position, s.normal, false);
             let color = lights[light].color * (lit_by(light) * present(k, rects_end(tile)) * reach(light, a.centre) * a.passed);
-            matte += color * (a.irradiance * entering(s.material, a.cosine, a.irradiance / PI));
+            matte += color * (a.irradiance * body_share(s, a.cosine, a.irradiance / PI));
             glossy += color * seen_highlight(s, a, false);
             k++;
             continuing {
@@ -160,13 +185,16 @@ fn lit(p: Sample) -> Lit {
             let light = listed_light(tile, k);
             let a = panel_arrival(light, position, s.normal, true);
             let color = lights[light].color * (lit_by(light) * present(k, discs_end(tile)) * reach(light, a.centre) * a.passed);
-            matte += color * (a.irradiance * entering(s.material, a.cosine, a.irradiance / PI));
+            matte += color * (a.irradiance * body_share(s, a.cosine, a.irradiance / PI));
             glossy += color * seen_highlight(s, a, true);
             k++;
             continuing {
                 break if k >= discs_end(tile);
             }
         }
+    }
+    if ILLUMINANCE {
+        return Lit(matte / PI, vec3f(0.0));
     }
     matte *= s.material.matte / PI;
     // Kinds: 1 lit and glowing, 2 an emitter's front.
@@ -183,6 +211,13 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let p = sample_at(vec2u(at.xy));
     read_shadows(p);
     let out = lit(p);
+    if ILLUMINANCE {
+        let white = select(out.matte, vec3f(0.0), p.id.x == 0u);
+        if LINEAR {
+            return vec4f(white, 1.0);
+        }
+        return false_color(white);
+    }
     let radiance = select(unpack_color(p.packed.y), vec3f(0.0), p.id.x == 0u) * out.matte + out.glossy;
     if LINEAR {
         return vec4f(radiance, 1.0);

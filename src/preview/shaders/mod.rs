@@ -16,11 +16,19 @@ pub(super) const LIGHTING: &str = concat!(
     include_str!("light.wgsl"),
     include_str!("brdf.wgsl"),
     include_str!("tone.wgsl"),
+    include_str!("false_color.wgsl"),
     include_str!("lighting.wgsl")
 );
 /// Light of a quarter of the pixels, spread over all.
-pub(super) const RESOLVE: &str =
-    concat!(include_str!("scene.wgsl"), include_str!("tone.wgsl"), include_str!("resolve.wgsl"));
+pub(super) const RESOLVE: &str = concat!(
+    include_str!("scene.wgsl"),
+    include_str!("tone.wgsl"),
+    include_str!("false_color.wgsl"),
+    include_str!("resolve.wgsl")
+);
+/// One channel of the G-buffer.
+pub(super) const CHANNEL: &str =
+    concat!(include_str!("scene.wgsl"), include_str!("tone.wgsl"), include_str!("channel.wgsl"));
 /// Glass over the lit picture.
 pub(super) const GLASS: &str = concat!(
     include_str!("scene.wgsl"),
@@ -56,6 +64,7 @@ mod tests {
             ("shadow blur", SHADOW_BLUR),
             ("lighting", LIGHTING),
             ("resolve", RESOLVE),
+            ("channel", CHANNEL),
             ("glass", GLASS),
             ("overlay", OVERLAY),
             ("outline", OUTLINE),

@@ -9,6 +9,9 @@
 // Weight of a cell that lies on another surface: what is left where all four do.
 const OTHER: f32 = 1e-4;
 
+// Whether the picture shows the light on surfaces, in false colour.
+override ILLUMINANCE: bool = false;
+
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     return fullscreen_corner(index);
@@ -48,6 +51,9 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
         matte += unpack_radiance(texel.x) * weight;
         glossy += unpack_radiance(texel.y) * weight;
         total += weight;
+    }
+    if ILLUMINANCE {
+        return false_color(select(matte / total, vec3f(0.0), id.x == 0u));
     }
     let base = select(unpack_color(packed.y), vec3f(0.0), id.x == 0u);
     let radiance = select((base * matte + glossy) / total, frame.void_radiance, id.x == 0u);

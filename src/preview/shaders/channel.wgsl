@@ -1,0 +1,63 @@
+// What the G-buffer holds, channel by channel.
+
+// Numbers of `channel::Channel`.
+override CHANNEL: u32 = 1;
+// Whether values leave as they are: depth in metres, directions from -1 to 1.
+override LINEAR: bool = false;
+
+const BASE_COLOR: u32 = 1u;
+const NORMAL: u32 = 2u;
+const ROUGHNESS: u32 = 3u;
+const METALLIC: u32 = 4u;
+const DEPTH: u32 = 5u;
+const IDS: u32 = 6u;
+
+@group(1) @binding(0) var gbuffer: texture_2d<u32>;
+@group(1) @binding(1) var ids: texture_2d<u32>;
+
+@vertex
+fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return fullscreen_corner(index);
+}
+
+// A bright colour for each number, far from that of its neighbours (hues a golden turn apart).
+fn id_color(id: u32) -> vec3f {
+    let hue = fract(f32(id) * 0.618034);
+    let wheel = abs(fract(hue + vec3f(0.0, 2.0 / 3.0, 1.0 / 3.0)) * 6.0 - 3.0) - 1.0;
+    return mix(vec3f(1.0), saturate(wheel), 0.7) * (0.65 + 0.3 * fract(f32(id) * 0.381966));
+}
+
+@fragment
+fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    let pixel = vec2u(at.xy);
+    let packed = textureLoad(gbuffer, pixel, 0);
+    let id = textureLoad(ids, pixel, 0).xy;
+    let gloss = unpack_gloss(packed.w);
+    let depth_m = frame.near_m / max(bitcast<f32>(id.y), 1e-9);
+    var value = vec3f(0.0);
+    if CHANNEL == BASE_COLOR {
+        let color = unpack_color(packed.y);
+        value = color;
+        if !LINEAR {
+            value = srgb_encode(color);
+        }
+    }
+    if CHANNEL == NORMAL {
+        let normal = unpack_direction(packed.x);
+        value = select(0.5 + 0.5 * normal, normal, LINEAR);
+    }
+    if CHANNEL == ROUGHNESS {
+        value = vec3f(gloss.x);
+    }
+    if CHANNEL == METALLIC {
+        value = vec3f(gloss.z);
+    }
+    if CHANNEL == DEPTH {
+        let shade = 1.0 - log2(max(depth_m, 1e-3) / 0.5) / 6.0;
+        value = vec3f(select(saturate(shade), depth_m, LINEAR));
+    }
+    if CHANNEL == IDS {
+        value = id_color(id.x & MARK_NUMBER);
+    }
+    return vec4f(select(value, vec3f(0.0), (id.x & MARK_NUMBER) == 0u), 1.0);
+}
