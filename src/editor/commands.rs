@@ -11,7 +11,7 @@ use super::placement;
 use super::selection::Selection;
 use super::swing::{Placing, Swing, can_swing};
 use super::swing_drag::SwingDrag;
-use crate::scene::{Emitter, Object, Scene};
+use crate::scene::{Aim, Emitter, LightId, Object, Scene, Solo};
 use eframe::egui::{Context, ViewportCommand};
 
 impl App {
@@ -144,7 +144,9 @@ impl App {
     fn solo_selected(&mut self) {
         let lights = self.selection.lights();
         let current = self.document.scene().solo.as_ref();
-        let same = current.is_some_and(|solo| lights.is_empty() || solo.lights == lights);
+        let all_in = |some: &[LightId], others: &[LightId]| some.iter().all(|id| others.contains(id));
+        let equal = |solo: &Solo| all_in(&solo.lights, &lights) && all_in(&lights, &solo.lights);
+        let same = current.is_some_and(|solo| lights.is_empty() || equal(solo));
         match (same, lights.is_empty()) {
             (true, _) => self.apply(Action::Solo(Vec::new()), None),
             (false, true) => self.toasts.news("Select the lights that shall shine alone."),
@@ -244,7 +246,7 @@ fn selectable(scene: &Scene) -> Vec<Item> {
 /// Whose face halves the studio: what the last selected light is aimed at, else the subject of the set-up.
 fn mirror_subject<'a>(scene: &'a Scene, selection: &Selection) -> Option<&'a Object> {
     let aimed_at = selection.lights().last().and_then(|id| match scene.light(*id)?.aim {
-        crate::scene::Aim::Object { object, .. } => scene.object(object),
+        Aim::Object { object, .. } => scene.object(object),
         _ => None,
     });
     aimed_at.or_else(|| placement::subject(scene, None).and_then(|id| scene.object(id)))

@@ -18,6 +18,8 @@ pub struct SwingDrag {
     placing: Placing,
     /// The light when the button went down, and the thing that was under the pointer then: a drag stays on it.
     held: Option<(Light, ObjectId)>,
+    /// The drag was given up; what is left of the press does nothing.
+    spent: bool,
     /// The surface under the pointer, and whether the light can be put so.
     at: Option<(SurfaceHit, Option<SwingError>)>,
 }
@@ -25,12 +27,23 @@ pub struct SwingDrag {
 impl SwingDrag {
     /// Begins.
     pub fn new(placing: Placing) -> Self {
-        SwingDrag { placing, held: None, at: None }
+        SwingDrag { placing, held: None, spent: false, at: None }
     }
 
     /// What is placed.
     pub fn placing(&self) -> Placing {
         self.placing
+    }
+
+    /// Whether a drag is under way.
+    pub fn is_dragging(&self) -> bool {
+        self.held.is_some() || self.spent
+    }
+
+    /// Ends a drag; the button may still be held.
+    pub fn give_up(&mut self) {
+        self.spent = self.is_dragging();
+        self.held = None;
     }
 
     /// Takes the mouse in. False when the light has gone.
@@ -49,7 +62,7 @@ impl SwingDrag {
             (pointer.latest_pos(), pointer.primary_pressed(), pointer.primary_down(), i.modifiers.alt)
         });
         if !down {
-            self.held = None;
+            (self.held, self.spent) = (None, false);
         }
         let Some(position) = position.filter(|_| response.contains_pointer() || self.held.is_some()) else {
             self.at = None;

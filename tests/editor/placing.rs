@@ -106,3 +106,33 @@ fn a_light_that_is_aimed_at_its_subject_stays_on_it_while_either_moves() {
     assert!((scene(&window).aim_point(&scene(&window).lights[0].aim, Vec3::ZERO) - target).length() < 1e-5);
     assert!(matches!(scene(&window).lights[0].aim, Aim::Object { object: at, .. } if at == object));
 }
+
+#[test]
+fn esc_gives_up_a_highlight_that_is_dragged_and_then_the_mode() {
+    if !has_adapter() {
+        return;
+    }
+    let (mut window, ball) = with_a_ball();
+    let (start, depth) = (scene(&window).lights[0].clone(), undo_depth(&window));
+    let at = shown_at(&window, scene(&window).objects[ball].transform.position);
+    press(&mut window, Modifiers::NONE, Key::P);
+    let button = |window: &mut Window, pos, pressed| {
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        window.event(Event::PointerButton { pos, button, pressed, modifiers });
+        window.step();
+    };
+    window.event(Event::PointerMoved(at));
+    window.step();
+    button(&mut window, at, true);
+    assert_ne!(scene(&window).lights[0], start);
+    window.key_press(Key::Escape);
+    window.step();
+    window.event(Event::PointerMoved(at + vec2(9.0, 0.0)));
+    window.step();
+    button(&mut window, at + vec2(9.0, 0.0), false);
+    settle(&mut window);
+    assert_eq!((&scene(&window).lights[0], undo_depth(&window)), (&start, depth));
+    assert!(window.state().viewport().swing.is_some());
+    press(&mut window, Modifiers::NONE, Key::Escape);
+    assert!(window.state().viewport().swing.is_none());
+}
