@@ -37,13 +37,18 @@ const fn ctrl_shift(key: Key) -> KeyboardShortcut {
 }
 
 /// All keys with one fixed meaning, in the order of the list. Of two that match, the one with more modifiers comes first.
-pub const BINDINGS: [Binding; 36] = [
+pub const BINDINGS: [Binding; 37] = [
     bind(ctrl_shift(Key::S), || Command::SaveAs, "Save the studio to another file"),
     bind(ctrl_shift(Key::Z), || Command::Redo, "Do the last step again"),
     bind(
         ctrl_shift(Key::D),
         || Command::MirrorSelected { copies: true },
         "Mirrored copy, on the other side of the subject's face",
+    ),
+    bind(
+        shift(Key::L),
+        || Command::TogglePlacing(Swing::Shadow),
+        "Place the light by the shadow of its aim: drag to where it shall fall",
     ),
     bind(shift(Key::H), || Command::ShowAll, "Show and unmute all"),
     bind(ctrl(Key::N), || Command::New, "New from a shipped studio"),

@@ -1,4 +1,4 @@
-//! The mouse in the view while a light is placed by its highlight or its light.
+//! The mouse in the view while a light is placed by its highlight, its light or its shadow.
 
 use super::action::Action;
 use super::command::Command;
@@ -114,6 +114,11 @@ impl SwingDrag {
         line(at.point + 0.12 * at.normal, 2.0, Color32::WHITE);
         if self.held.is_some() {
             line(light.position, 1.0, color);
+            if self.placing.swing == Swing::Shadow
+                && let Some(aim) = place_of(frame, rect, scene.aim_point(&light.aim, light.position))
+            {
+                painter.circle_stroke(aim, 4.0, Stroke::new(1.5, color));
+            }
             if self.placing.swing == Swing::Highlight {
                 line(scene.camera.position, 1.0, Color32::from_gray(190));
             }

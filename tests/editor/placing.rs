@@ -136,3 +136,26 @@ fn esc_gives_up_a_highlight_that_is_dragged_and_then_the_mode() {
     press(&mut window, Modifiers::NONE, Key::Escape);
     assert!(window.state().viewport().swing.is_none());
 }
+
+#[test]
+fn the_shadow_of_what_a_light_is_aimed_at_is_dragged_over_the_paper() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let start = scene(&window).lights[0].clone();
+    select(&mut window, &[Item::Light(start.id)]);
+    let paper = scene(&window).objects.iter().find(|o| matches!(o.shape, Shape::Sweep { .. })).unwrap();
+    let wall = paper.transform.world_from_object().transform_point3(Vec3::new(0.5, 1.3, 0.0));
+    press(&mut window, Modifiers::SHIFT, Key::L);
+    let at = shown_at(&window, wall);
+    drag(&mut window, PointerButton::Primary, at + vec2(10.0, 5.0), at);
+    let light = scene(&window).lights[0].clone();
+    assert_eq!(light.aim, start.aim);
+    let aim = scene(&window).aim_point(&light.aim, light.position);
+    let (lit, before) = (aim - light.position, aim - start.position);
+    assert!((light.position - start.position).length() > 0.1 && (lit.length() - before.length()).abs() < 1e-3);
+    // The light, its aim and the point of the paper lie on a line: the paper's face is flat there.
+    let shadow = wall - light.position;
+    assert!(lit.cross(shadow).length() / shadow.length() < 0.01, "{} lights {aim} and {wall}", light.position);
+}

@@ -50,13 +50,9 @@ pub fn selection_entries(ui: &mut Ui, scene: &Scene, selection: &Selection, out:
     entry(ui, copyable, "Mirrored copy", tip, Command::MirrorSelected { copies: true }, out);
     entry(ui, !selection.is_empty(), "Bring into view", "Frames it in the studio view", Command::FrameSelection, out);
     ui.separator();
-    for swing in [Swing::Highlight, Swing::Light] {
+    for swing in Swing::ALL {
         let text = format!("{}\u{2026}", swing.label());
-        let tip = match swing {
-            Swing::Highlight => "Drag over a face: the light swings round so that the camera sees its highlight there",
-            Swing::Light => "Drag over a face: the light swings round so that it falls there straight on",
-        };
-        entry(ui, lights, &text, tip, Command::TogglePlacing(swing), out);
+        entry(ui, lights, &text, swing.tip(), Command::TogglePlacing(swing), out);
     }
     entry(
         ui,

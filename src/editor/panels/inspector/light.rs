@@ -259,17 +259,13 @@ fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
 
 /// Ways to place a light by what it does, and its lock.
 fn aiming_row(ui: &mut Ui, light: &Light, out: &mut Vec<Command>) {
-    let swing = |swing: Swing| Command::TogglePlacing(swing);
-    row(ui, "Place it by", "Keys P, L and V do the same for the selected light", |ui| {
+    row(ui, "Place it by", "Keys P, L, Shift+L and V do the same for the selected light", |ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.add_enabled_ui(!light.locked, |ui| {
-            let tip = "Drag over a face: the light swings round so that the camera sees its highlight there (P)";
-            if ui.button("Highlight").on_hover_text(tip).clicked() {
-                out.push(swing(Swing::Highlight));
-            }
-            let tip = "Drag over a face: the light swings round so that it falls there straight on (L)";
-            if ui.button("Light").on_hover_text(tip).clicked() {
-                out.push(swing(Swing::Light));
+            for (swing, text) in [(Swing::Highlight, "Highlight"), (Swing::Light, "Light"), (Swing::Shadow, "Shadow")] {
+                if ui.button(text).on_hover_text(swing.tip()).clicked() {
+                    out.push(Command::TogglePlacing(swing));
+                }
             }
         });
         if ui.button("Its view").on_hover_text("Look through the light and swing it by that (V)").clicked() {
