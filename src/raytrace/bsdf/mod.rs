@@ -38,6 +38,8 @@ pub struct Surfacing {
     pub emission: Vec3,
     gloss: AlbedoTable,
     metal: AlbedoTable,
+    /// There is a metal or a gloss on the body: light is reflected at the surface itself.
+    reflects: bool,
 }
 
 impl Surfacing {
@@ -48,6 +50,7 @@ impl Surfacing {
         let transmission = material.transmission * (1.0 - material.metallic);
         let opaque = 1.0 - transmission;
         let metallic = if opaque > 0.0 { (material.metallic / opaque).min(1.0) } else { 0.0 };
+        let gloss = AlbedoTable::dielectric(material.ior, alpha);
         Surfacing {
             base_color: material.base_color.into(),
             texture,
@@ -57,7 +60,8 @@ impl Surfacing {
             transmission,
             absorption_per_m: material.absorption_per_m.into(),
             emission: material.emission_cd_m2.into(),
-            gloss: AlbedoTable::dielectric(material.ior, alpha),
+            reflects: metallic > 0.0 || gloss.mean > 0.0,
+            gloss,
             metal: AlbedoTable::perfect_mirror(alpha),
         }
     }
@@ -95,6 +99,12 @@ impl Surfacing {
     pub fn largest_albedo(&self) -> f32 {
         let body = self.base_color.max_element();
         if self.transmission > 0.0 { 1.0_f32.max(body) } else { body + (1.0 - body) * self.gloss.mean }
+    }
+
+    /// Share of light that the gloss takes under a cosine.
+    #[inline]
+    fn gloss_albedo(&self, cos: f32) -> f32 {
+        if self.reflects { self.gloss.at(cos) } else { 0.0 }
     }
 
     /// Chance of the gloss against the body, where the gloss takes this share of the light.
@@ -139,6 +149,11 @@ pub struct BsdfSample {
 }
 
 impl BsdfSample {
+    /// A direction that other techniques can find as well.
+    pub fn wide(direction: Vec3, weight: Vec3, pdf: f32) -> Self {
+        BsdfSample { weight, pdf, specular: false, ..BsdfSample::specular(direction) }
+    }
+
     /// All light from one direction.
     fn specular(direction: Vec3) -> Self {
         BsdfSample {
@@ -197,7 +212,7 @@ impl<'a> Bsdf<'a> {
         let eta = if outside { surfacing.ior } else { 1.0 / surfacing.ior };
         let behind = Behind::Body(Interface { eta, unknown: false });
         let polarisation = Polarisation::NONE;
-        let gloss_albedo = surfacing.gloss.at(wo.z);
+        let gloss_albedo = surfacing.gloss_albedo(wo.z);
         Bsdf {
             surfacing,
             base_color,
@@ -206,7 +221,7 @@ impl<'a> Bsdf<'a> {
             normal,
             geometric_normal,
             wo,
-            lambda_o: ggx::lambda(wo, surfacing.alpha),
+            lambda_o: if surfacing.reflects { ggx::lambda(wo, surfacing.alpha) } else { 0.0 },
             gloss_choice: surfacing.gloss_choice(base_color, gloss_albedo),
             body: surfacing.body(base_color, gloss_albedo),
             wo_world,
@@ -241,9 +256,9 @@ impl<'a> Bsdf<'a> {
 
     fn eval_local(&self, wi: Vec3) -> (Vec3, f32) {
         let s = self.surfacing;
-        let mut value = self.body * ((1.0 - s.gloss.at(wi.z)) * wi.z);
+        let mut value = self.body * ((1.0 - s.gloss_albedo(wi.z)) * wi.z);
         let mut pdf = (1.0 - self.gloss_choice) * warp::cosine_hemisphere_pdf(wi.z);
-        if !s.is_smooth() {
+        if s.reflects && !s.is_smooth() {
             let m = (self.wo + wi).normalize_or(Vec3::Z);
             let cos_half = self.wo.dot(m).clamp(0.0, 1.0);
             // The density of visible normals is this times the masking of `wo`; the BSDF, times that of both.
@@ -292,8 +307,7 @@ impl<'a> Bsdf<'a> {
             return None;
         }
         let (value, pdf) = self.eval_local(wi);
-        let wide = BsdfSample { pdf, specular: false, ..BsdfSample::specular(direction) };
-        (pdf > 0.0).then(|| BsdfSample { weight: value / pdf, ..wide })
+        (pdf > 0.0).then(|| BsdfSample::wide(direction, value / pdf, pdf))
     }
 
     /// The mirror direction about the shading normal; about the triangle's where that would go below the surface.
