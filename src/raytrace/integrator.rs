@@ -26,6 +26,8 @@ pub struct Limits {
     pub wide_bounces: u32,
     /// All events, mirrors and glass too.
     pub all_bounces: u32,
+    /// Ways that are followed from the first surface that scatters widely; the way there is shared.
+    pub branches: u32,
 }
 
 /// Where contributions go: (layer, value).
@@ -36,15 +38,12 @@ pub trait Sink {
 
 impl Vertex {
     pub(super) fn new(position: Vec3, normal: Vec3) -> Self {
-        Vertex { position, normal, left_from: position, travelled: 0.0, pdf: None, total_importance: 0.0 }
+        Vertex { position, normal, left_from: position, travelled: 0.0, pdf: None, one_light: false }
     }
 }
 
 /// Surfaces that light on its straight way through glass may cross.
 const CLEAR_SURFACES: u32 = 64;
-
-/// Lights whose importances are kept while one is chosen.
-const FEW_LIGHTS: usize = 8;
 
 /// Bounces before roulette begins.
 const ROULETTE_FROM: u32 = 3;
@@ -66,10 +65,49 @@ pub(super) struct Vertex {
     /// Where the ray left, and how far it has come through thin panes since.
     left_from: Vec3,
     travelled: f32,
-    /// Density of the direction that was taken; none after a mirror, glass or at the camera.
+    /// Density of the direction that was taken, times the ways that were taken for each sample of the lights; none after
+    /// a mirror, glass or at the camera.
     pdf: Option<f32>,
-    /// Sum of the lights' importances, where one was chosen; 0 where all were sampled.
-    total_importance: f32,
+    /// One light was chosen there, if any was sampled; otherwise all were.
+    one_light: bool,
+}
+
+/// What a path carries from surface to surface.
+#[derive(Clone, Copy, Debug)]
+struct Path {
+    ray: Ray,
+    throughput: Vec3,
+    /// What of the throughput roulette must not see: glass concentrates radiance by its index squared, branches share.
+    roulette_scale: f32,
+    media: Media,
+    polarisation: Polarisation,
+    vertex: Vertex,
+    /// Surfaces so far.
+    bounce: u32,
+    /// Those of them that are neither mirror nor glass.
+    wide_bounces: u32,
+}
+
+/// Where a path scatters.
+#[derive(Clone, Copy, Debug)]
+struct Place<'a> {
+    surface: &'a Surface,
+    bsdf: &'a Bsdf<'a>,
+    /// From the surface before.
+    distance: f32,
+    /// On the side of the geometric normal.
+    outside: bool,
+}
+
+/// What is done about the lights where a path scatters.
+#[derive(Clone, Copy, Debug)]
+enum Lights {
+    /// They are sampled.
+    Sample,
+    /// That was done, once for so many ways on.
+    Sampled { ways: f32 },
+    /// None could be of use.
+    Not,
 }
 
 /// Veach's power heuristic with exponent 2.
@@ -165,88 +203,162 @@ impl<'a> Tracer<'a> {
         direction: Vec3,
         sampler: &Sampler,
         limits: Limits,
-        mut vertex: Vertex,
+        vertex: Vertex,
         sink: &mut impl Sink,
     ) {
-        let mut ray = Ray { origin, direction, t_max: f32::INFINITY };
-        let mut throughput = Vec3::ONE;
-        let mut eta_scale = 1.0;
-        let mut media = Media::default();
-        let mut polarisation = Polarisation::NONE;
-        let mut wide_bounces = 0;
-        for bounce in 0.. {
-            let hit = self.closest(&ray);
+        let path = Path {
+            ray: Ray { origin, direction, t_max: f32::INFINITY },
+            throughput: Vec3::ONE,
+            roulette_scale: 1.0,
+            media: Media::default(),
+            polarisation: Polarisation::NONE,
+            vertex,
+            bounce: 0,
+            wide_bounces: 0,
+        };
+        self.walk(path, sampler, limits, sink);
+    }
+
+    /// Follows a path to its end, and all ways on from where it branches.
+    fn walk(&mut self, mut path: Path, sampler: &Sampler, limits: Limits, sink: &mut impl Sink) {
+        let scene = self.scene;
+        loop {
+            let hit = self.closest(&path.ray);
             let distance = hit.map_or(f32::INFINITY, |h| h.triangle.t);
-            if bounce == 0 {
-                if self.camera_sees_emitter(&ray, distance, sink) {
+            if path.bounce == 0 {
+                if self.camera_sees_emitter(&path.ray, distance, sink) {
                     return;
                 }
             } else {
-                self.meet_emitters(&ray, distance, throughput, &vertex, &media, sink);
+                self.meet_emitters(&path.ray, distance, path.throughput, &path.vertex, &path.media, sink);
             }
             let Some(hit) = hit else { return };
-            let surface = self.scene.aggregate.surface(&hit);
-            let material = &self.scene.materials[surface.material as usize];
-            let wo = -ray.direction;
+            let surface = scene.aggregate.surface(&hit);
+            let material = &scene.materials[surface.material as usize];
+            let wo = -path.ray.direction;
             let outside = wo.dot(surface.geometric_normal) >= 0.0;
-            throughput *= if media.innermost().is_none() && material.transmits() && !outside && !surface.sheet {
-                // The path began inside this body.
-                material.transmittance(distance)
-            } else {
-                media.transmittance(&self.scene.materials, distance)
-            };
+            if scene.plan().refraction {
+                let begins_inside =
+                    path.media.innermost().is_none() && material.transmits() && !outside && !surface.sheet;
+                path.throughput *= if begins_inside {
+                    material.transmittance(distance)
+                } else {
+                    path.media.transmittance(&scene.materials, distance)
+                };
+            }
             if material.glows() {
-                let glow = self.scene.layers.len() - 1;
-                sink.add(glow, throughput * material.emission * self.scene.glow_time_s);
+                let glow = scene.layers.len() - 1;
+                sink.add(glow, path.throughput * material.emission * scene.glow_time_s);
             }
             // Straight through a pane a ray goes on after the last bounce, as light sampling there counts on.
-            let ends = wide_bounces >= limits.wide_bounces;
-            if bounce >= limits.all_bounces || (ends && !(surface.sheet && material.transmits())) {
+            let ends = path.wide_bounces >= limits.wide_bounces;
+            if path.bounce >= limits.all_bounces || (ends && !(surface.sheet && material.transmits())) {
                 return;
             }
-            let texture = material.texture.map_or(Vec3::ONE, |t| self.scene.textures[t as usize].at(surface.uv));
+            let texture = material.texture.map_or(Vec3::ONE, |t| scene.textures[t as usize].at(surface.uv));
             let mut bsdf = Bsdf::new(material, texture, surface.normal, surface.geometric_normal, wo);
             if material.transmits() {
-                let interface = || media.interface(&self.scene.materials, surface.material, outside);
+                let interface = || path.media.interface(&scene.materials, surface.material, outside);
                 let behind = if surface.sheet { Behind::Pane } else { Behind::Body(interface()) };
-                bsdf = bsdf.through(behind, polarisation);
+                bsdf = bsdf.through(behind, path.polarisation);
             }
-            let before = vertex;
-            vertex = Vertex::new(surface.position, bsdf.normal());
-            let [light_set, set] = sampler.pair(Purpose::Light { slot: 0, bounce }, Purpose::Bsdf { bounce });
-            if material.scatters_widely() && !ends {
-                let all = bounce == 0 && self.scene.plan().sample_all_lights;
-                vertex.total_importance =
-                    self.sample_lights(&surface, &bsdf, &media, sampler, &light_set, bounce, all, throughput, sink);
-            }
-            let Some(sample) = bsdf.sample(set[0], sampler::point(&set)) else { return };
-            if ends && !sample.straight {
+            let lit = material.scatters_widely() && !ends;
+            let place = Place { surface: &surface, bsdf: &bsdf, distance, outside };
+            let branches = if lit && path.wide_bounces == 0 { limits.branches } else { 1 };
+            if branches > 1 {
+                self.branch(path, &place, branches, sampler, limits, sink);
                 return;
             }
-            throughput *= sample.weight;
-            eta_scale *= sample.eta_scale;
-            polarisation = sample.polarisation;
-            if sample.through && !surface.sheet {
-                media.cross(surface.material, outside);
-            }
-            if sample.straight {
-                vertex = Vertex { travelled: before.travelled + distance, ..before };
-            } else if !sample.specular {
-                wide_bounces += 1;
-                vertex.pdf = Some(sample.pdf);
-                let last = wide_bounces >= limits.wide_bounces || bounce + 1 >= limits.all_bounces;
-                if last && !self.scene.plan().emitters_have_size {
-                    return;
-                }
-            }
-            if !survives(&mut throughput, eta_scale, bounce, set[1]) {
+            let lights = if lit { Lights::Sample } else { Lights::Not };
+            if !self.scatter(&mut path, &place, lights, sampler, limits, sink) {
                 return;
-            }
-            ray = Ray { origin: surface.leave(sample.direction), direction: sample.direction, t_max: f32::INFINITY };
-            if !sample.straight {
-                vertex.left_from = ray.origin;
             }
         }
+    }
+
+    /// Follows several ways on from a surface. Where all lights are sampled, once serves all ways.
+    fn branch(
+        &mut self,
+        mut path: Path,
+        place: &Place<'_>,
+        branches: u32,
+        sampler: &Sampler,
+        limits: Limits,
+        sink: &mut impl Sink,
+    ) {
+        let ways = branches as f32;
+        let lights = if self.samples_all(&path) {
+            let set = sampler.set(Purpose::Light { slot: 0, bounce: path.bounce });
+            self.sample_lights(&path, place, sampler, &set, ways, sink);
+            Lights::Sampled { ways }
+        } else {
+            Lights::Sample
+        };
+        path.throughput /= ways;
+        path.roulette_scale /= ways;
+        for branch in 0..branches {
+            let (mut path, sampler) = (path, sampler.branch(branch, branches));
+            if self.scatter(&mut path, place, lights, &sampler, limits, sink) {
+                self.walk(path, &sampler, Limits { branches: 1, ..limits }, sink);
+            }
+        }
+    }
+
+    /// Samples the lights at a surface and takes the path on from there. False where it ends.
+    #[inline(always)]
+    fn scatter(
+        &mut self,
+        path: &mut Path,
+        place: &Place<'_>,
+        lights: Lights,
+        sampler: &Sampler,
+        limits: Limits,
+        sink: &mut impl Sink,
+    ) -> bool {
+        let Place { surface, bsdf, distance, outside } = *place;
+        let bounce = path.bounce;
+        let before = path.vertex;
+        let [light_set, set] = sampler.pair(Purpose::Light { slot: 0, bounce }, Purpose::Bsdf { bounce });
+        let ways = match lights {
+            Lights::Sample => {
+                self.sample_lights(path, place, sampler, &light_set, 1.0, sink);
+                1.0
+            }
+            Lights::Sampled { ways } => ways,
+            Lights::Not => 1.0,
+        };
+        path.vertex = Vertex { one_light: !self.samples_all(path), ..Vertex::new(surface.position, bsdf.normal()) };
+        let [lobe, roulette] = sampler::rest(&set);
+        let Some(sample) = bsdf.sample(lobe, sampler::point(&set)) else { return false };
+        let ends = path.wide_bounces >= limits.wide_bounces;
+        if ends && !sample.straight {
+            return false;
+        }
+        path.throughput *= sample.weight;
+        path.roulette_scale *= sample.eta_scale;
+        path.polarisation = sample.polarisation;
+        if sample.through && !surface.sheet {
+            path.media.cross(surface.material, outside);
+        }
+        if sample.straight {
+            path.vertex = Vertex { travelled: before.travelled + distance, ..before };
+        } else if !sample.specular {
+            path.wide_bounces += 1;
+            path.vertex.pdf = Some(sample.pdf * ways);
+            let last = path.wide_bounces >= limits.wide_bounces || bounce + 1 >= limits.all_bounces;
+            if last && !self.scene.plan().emitters_have_size {
+                return false;
+            }
+        }
+        if !survives(&mut path.throughput, path.roulette_scale, bounce, roulette) {
+            return false;
+        }
+        path.ray = Ray { origin: surface.leave(sample.direction), direction: sample.direction, t_max: f32::INFINITY };
+        if !sample.straight {
+            path.vertex.left_from = path.ray.origin;
+        }
+        path.bounce += 1;
+        true
     }
 
     /// The camera sees emitters as solid from the front. True if one hides what is behind it.
@@ -275,7 +387,7 @@ impl<'a> Tracer<'a> {
 
     /// Emitters that a scattered ray crosses before it ends.
     pub(super) fn meet_emitters(
-        &self,
+        &mut self,
         ray: &Ray,
         distance: f32,
         throughput: Vec3,
@@ -283,14 +395,21 @@ impl<'a> Tracer<'a> {
         media: &Media,
         sink: &mut impl Sink,
     ) {
-        for light in &self.scene.lights {
-            let Some(seen) = light.seen_by(ray.origin, ray.direction) else { continue };
+        let scene = self.scene;
+        // What lies on the surface is met, too.
+        let end = distance + 2.0 * TOUCHING * (distance + ray.origin.abs().max_element());
+        scene.crossings.each(&scene.lights, &Ray { t_max: end, ..*ray }, &mut self.stack, |index, seen| {
             if !reaches(ray, seen.distance, distance) {
-                continue;
+                return;
             }
+            let light = &scene.lights[index as usize];
             let weight = match vertex.pdf {
                 Some(pdf) if light.is_sampled() => {
-                    let choice = self.choice_probability(light, vertex);
+                    let choice = if vertex.one_light {
+                        scene.chooser.chance(&scene.lights, index, vertex.position, vertex.normal)
+                    } else {
+                        1.0
+                    };
                     let other = light.pdf(vertex.left_from, ray.direction, vertex.travelled + seen.distance);
                     power_heuristic(pdf, choice * other)
                 }
@@ -298,98 +417,76 @@ impl<'a> Tracer<'a> {
             };
             let mut left = throughput;
             if seen.distance.is_finite() {
-                left *= media.transmittance(&self.scene.materials, seen.distance);
+                left *= media.transmittance(&scene.materials, seen.distance);
             }
             sink.add(light.layer, left * light.tint * (seen.luminance * weight));
-        }
+        });
     }
 
-    /// Chance with which light sampling at `vertex` would have chosen this light.
-    fn choice_probability(&self, light: &TracedLight, vertex: &Vertex) -> f32 {
-        if vertex.total_importance > 0.0 {
-            light.importance(vertex.position, vertex.normal) / vertex.total_importance
-        } else {
-            1.0
-        }
+    /// Whether all lights are sampled where a path is now; otherwise one is chosen.
+    fn samples_all(&self, path: &Path) -> bool {
+        self.scene.lights.len() == 1 || (path.wide_bounces == 0 && self.scene.plan().sample_all_lights)
     }
 
-    /// Light sampling at a surface: all lights, or one chosen by importance. Returns the sum of importances in the
-    /// second case, 0 in the first.
-    #[expect(clippy::too_many_arguments, reason = "one call site; the path's state is local to its loop")]
+    /// Light sampling at a surface from which so many `ways` are taken: all lights, or one chosen by what it gives.
     fn sample_lights(
         &mut self,
-        surface: &Surface,
-        bsdf: &Bsdf<'_>,
-        media: &Media,
+        path: &Path,
+        place: &Place<'_>,
         sampler: &Sampler,
         first_set: &sampler::Set,
-        bounce: u32,
-        all: bool,
-        throughput: Vec3,
+        ways: f32,
         sink: &mut impl Sink,
-    ) -> f32 {
+    ) {
         let scene = self.scene;
-        if all || scene.lights.len() == 1 {
+        if self.samples_all(path) {
             for (slot, light) in scene.lights.iter().enumerate().filter(|(_, l)| l.is_sampled()) {
                 let slot = slot as u32;
-                let set = if slot == 0 { *first_set } else { sampler.set(Purpose::Light { slot, bounce }) };
-                self.sample_light(light, 1.0, surface, bsdf, media, &set, throughput, sink);
+                let set =
+                    if slot == 0 { *first_set } else { sampler.set(Purpose::Light { slot, bounce: path.bounce }) };
+                self.sample_light(light, 1.0, path, place, &set, ways, sink);
             }
-            return 0.0;
+            return;
         }
-        // Few lights are asked once, many once more on the way to the chosen one.
-        let mut shares = [0.0; FEW_LIGHTS];
-        let importance = |light: &TracedLight| light.importance(surface.position, bsdf.normal());
-        let (few, many) = scene.lights.split_at(scene.lights.len().min(FEW_LIGHTS));
-        for (share, light) in shares.iter_mut().zip(few) {
-            *share = importance(light);
+        let choice = sampler::rest(first_set)[0];
+        let (point, normal) = (place.surface.position, place.bsdf.normal());
+        if let Some((light, chance)) = scene.chooser.choose(&scene.lights, point, normal, choice) {
+            self.sample_light(&scene.lights[light as usize], chance, path, place, first_set, ways, sink);
         }
-        let total = shares.iter().sum::<f32>() + many.iter().map(importance).sum::<f32>();
-        if !(total > 0.0 && total.is_finite()) {
-            return f32::MIN_POSITIVE;
-        }
-        let mut left = first_set[0] * total;
-        for (index, light) in scene.lights.iter().enumerate() {
-            let share = shares.get(index).copied().unwrap_or_else(|| importance(light));
-            if left < share {
-                self.sample_light(light, share / total, surface, bsdf, media, first_set, throughput, sink);
-                break;
-            }
-            left -= share;
-        }
-        total
     }
 
-    #[expect(clippy::too_many_arguments, reason = "one call site; the path's state is local to its loop")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "called in two places; what it needs of the path's state has no name"
+    )]
     fn sample_light(
         &mut self,
         light: &TracedLight,
         choice: f32,
-        surface: &Surface,
-        bsdf: &Bsdf<'_>,
-        media: &Media,
+        path: &Path,
+        place: &Place<'_>,
         set: &sampler::Set,
-        throughput: Vec3,
+        ways: f32,
         sink: &mut impl Sink,
     ) {
+        let Place { surface, bsdf, .. } = *place;
         let Some(sample) = light.sample(surface.position, sampler::point(set)) else { return };
         let (value, pdf) = bsdf.eval(sample.direction);
         if value == Vec3::ZERO {
             return;
         }
-        let weight = sample.pdf.map_or(1.0, |light_pdf| power_heuristic(light_pdf * choice, pdf));
+        let weight = sample.pdf.map_or(1.0, |light_pdf| power_heuristic(light_pdf * choice, pdf * ways));
         let origin = surface.leave(sample.direction);
-        let visible = self.visibility(origin, sample.direction, sample.distance, sample.pdf.is_some(), *media);
+        let visible = self.visibility(origin, sample.direction, sample.distance, sample.pdf.is_some(), path.media);
         if visible != Vec3::ZERO {
-            sink.add(light.layer, throughput * visible * value * light.tint * (sample.value * weight / choice));
+            sink.add(light.layer, path.throughput * visible * value * light.tint * (sample.value * weight / choice));
         }
     }
 }
 
-/// Russian roulette by what is left of the light. Glass concentrates radiance by its index squared; that is no reason
-/// to go on.
-fn survives(throughput: &mut Vec3, eta_scale: f32, bounce: u32, u: f32) -> bool {
-    let left = throughput.max_element() / eta_scale;
+/// Russian roulette by what is left of the light, without a `scale` that says nothing about it.
+fn survives(throughput: &mut Vec3, scale: f32, bounce: u32, u: f32) -> bool {
+    let left = throughput.max_element() / scale;
     // NaN ends the path, as black does.
     if left.is_nan() || left <= 0.0 {
         return false;

@@ -6,6 +6,11 @@ use std::fmt;
 
 /// Bounces are cut where what is left of the light falls under this share.
 const NEGLIGIBLE: f32 = 1.0 / 512.0;
+/// Ways on from the first surface that scatters widely, where bounced light is nearly all of the noise (points without
+/// penumbra, caustics) or each way asks a light of its own: the way to the surface is paid once.
+const MANY_WAYS: u32 = 4;
+/// The same where direct light has noise of its own.
+const FEW_WAYS: u32 = 2;
 /// Never more bounces than this, however white the room: what the whitest surface (0.999) needs. Roulette ends most paths
 /// long before; a lower limit would darken white rooms (at 64, one of 0.95 by 4 %).
 const MAX_BOUNCES: u32 = 6300;
@@ -23,13 +28,15 @@ pub struct RenderPlan {
     pub lens: bool,
     /// All lights are sampled at the first hit (otherwise one, chosen by what it gives there).
     pub sample_all_lights: bool,
+    /// Ways that are followed from the first surface that scatters widely.
+    pub branches: u32,
     /// Scattering events a path at most.
     pub max_bounces: u32,
     /// A reason a line.
     pub reasons: Vec<String>,
 }
 
-/// Something of the full model that a plan leaves out, for its reason.
+/// Something of the full model that a plan leaves out, or does in a cheaper way, for its reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shortcut {
     /// Rays do not look for emitters after the first hit.
@@ -42,16 +49,19 @@ pub enum Shortcut {
     EveryLight,
     /// Paths end at a depth that the largest reflectance gives.
     FewBounces,
+    /// Several ways share the way to the first surface.
+    SharedWay,
 }
 
 impl Shortcut {
     /// All there are.
-    pub const ALL: [Shortcut; 5] = [
+    pub const ALL: [Shortcut; 6] = [
         Shortcut::EmittersNotMet,
         Shortcut::NoRefraction,
         Shortcut::Pinhole,
         Shortcut::EveryLight,
         Shortcut::FewBounces,
+        Shortcut::SharedWay,
     ];
 
     /// Its name on the chart.
@@ -62,6 +72,7 @@ impl Shortcut {
             Shortcut::Pinhole => "no lens samples",
             Shortcut::EveryLight => "every light at the first hit",
             Shortcut::FewBounces => "depth from the largest reflectance",
+            Shortcut::SharedWay => "several ways on from the first surface",
         }
     }
 }
@@ -75,6 +86,7 @@ impl RenderPlan {
             Shortcut::Pinhole => self.lens = true,
             Shortcut::EveryLight => self.sample_all_lights = false,
             Shortcut::FewBounces => self.max_bounces = MAX_BOUNCES,
+            Shortcut::SharedWay => self.branches = 1,
         }
         self
     }
@@ -112,7 +124,11 @@ impl RenderPlan {
         let albedo = materials.iter().map(Surfacing::largest_albedo).fold(0.0, f32::max);
         let max_bounces = bounces_for(albedo) + if refraction { 8 } else { 0 };
         reasons.push(format!("largest reflectance {albedo:.2}: at most {max_bounces} bounces leave less than 1/512"));
-        RenderPlan { emitters_have_size, refraction, lens, sample_all_lights, max_bounces, reasons }
+        let caustics = sized_lights && materials.iter().any(Surfacing::bends);
+        let direct_is_noisy = sized_lights && sample_all_lights && !caustics;
+        let branches = if direct_is_noisy { FEW_WAYS } else { MANY_WAYS };
+        reasons.push(format!("bounced light is noisier than direct: {branches} ways on from the first surface"));
+        RenderPlan { emitters_have_size, refraction, lens, sample_all_lights, branches, max_bounces, reasons }
     }
 }
 
@@ -146,8 +162,8 @@ mod tests {
         Shortcut::ALL.into_iter().fold(plan.clone(), RenderPlan::without)
     }
 
-    /// A ball in a room under two lights.
-    fn studio(emitters: [Emitter; 2], ball: Material) -> Scene {
+    /// A ball in a room under lights in a row.
+    fn studio(emitters: &[Emitter], ball: Material) -> Scene {
         let ball = Object {
             id: ObjectId(1),
             name: "Ball".into(),
@@ -158,14 +174,15 @@ mod tests {
             visible: true,
             locked: false,
         };
-        let light = |(i, emitter)| Light {
+        let step = 3.0 / (emitters.len() - 1) as f32;
+        let light = |(i, &emitter)| Light {
             id: LightId(2 + i as u32),
             name: format!("Light {i}"),
-            position: Vec3::new(1.5 - 3.0 * i as f32, 2.5, 1.0),
+            position: Vec3::new(1.5 - step * i as f32, 2.5, 1.0),
             aim: Aim::Point(Vec3::Y),
             ..Light::new(emitter, Output::Lumens(8000.0))
         };
-        let lights = emitters.into_iter().enumerate().map(light).collect();
+        let lights = emitters.iter().enumerate().map(light).collect();
         let camera = Camera { position: Vec3::new(0.0, 1.4, 3.0), aim: Aim::Point(Vec3::Y), ..Camera::default() };
         Scene { camera, room: Some(Room::default()), objects: vec![ball], lights, ..Scene::default() }
     }
@@ -173,7 +190,9 @@ mod tests {
     /// Mean picture value, and its standard error from the scatter of eight seeds.
     fn mean(scene: &Scene, plan: Option<RenderPlan>) -> (f32, f32) {
         let mut prepared = prepare(scene, &Assets::default()).unwrap();
-        prepared.plan = plan.unwrap_or(prepared.plan);
+        if let Some(plan) = plan {
+            prepared.set_plan(plan);
+        }
         let value = |seed| {
             let settings = Settings { width: 24, height: 16, spp: 64, seed, ..Settings::default() };
             let film = render(&prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
@@ -186,20 +205,45 @@ mod tests {
         (mean, (variance / 8.0).sqrt())
     }
 
+    /// Holds what is rendered as the scene is planned to the mean of the full model.
+    fn keeps_the_mean(scene: &Scene, most_error: f32) -> RenderPlan {
+        let plan = prepare(scene, &Assets::default()).unwrap().plan;
+        let ((ours, error), (full, full_error)) = (mean(scene, None), mean(scene, Some(full(&plan))));
+        // What the bounces that are cut off leave, and four standard errors (one false alarm in 10 000).
+        let tolerance = NEGLIGIBLE * full + 4.0 * error.hypot(full_error);
+        assert!((ours - full).abs() < tolerance, "{ours} for {full}, within {tolerance}\n{plan}");
+        assert!(tolerance < most_error * full, "too noisy to say anything: {tolerance} of {full}");
+        plan
+    }
+
     #[test]
     fn every_shortcut_keeps_the_mean_of_the_full_model() {
         let panel = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
         let spot = Emitter::Spot { inner_deg: 40.0, outer_deg: 70.0 };
         for emitters in [[Emitter::Point, spot], [panel, Emitter::Sphere { radius_m: 0.05 }]] {
-            let scene = studio(emitters, Material::default());
-            let plan = prepare(&scene, &Assets::default()).unwrap().plan;
+            let plan = keeps_the_mean(&studio(&emitters, Material::default()), 0.02);
             assert!(!plan.refraction && plan.sample_all_lights && plan.max_bounces < MAX_BOUNCES, "{plan}");
+            assert!(plan.branches > 1);
             assert_eq!(plan.emitters_have_size, emitters[0] == panel);
-            let ((ours, error), (full, full_error)) = (mean(&scene, None), mean(&scene, Some(full(&plan))));
-            // What the bounces that are cut off leave, and four standard errors (one false alarm in 10 000).
-            let tolerance = NEGLIGIBLE * full + 4.0 * error.hypot(full_error);
-            assert!((ours - full).abs() < tolerance, "{ours} for {full}, within {tolerance}");
-            assert!(tolerance < 0.02 * full, "too noisy to say anything: {tolerance} of {full}");
+        }
+    }
+
+    #[test]
+    fn one_of_many_lights_a_way_keeps_the_mean_of_the_full_model() {
+        let panel = Emitter::RectPanel { width_m: 0.2, height_m: 0.3 };
+        let emitters: Vec<Emitter> = (0..80).map(|i| if i % 2 == 0 { panel } else { Emitter::Point }).collect();
+        let plan = keeps_the_mean(&studio(&emitters, Material::default()), 0.02);
+        assert!(!plan.sample_all_lights && plan.branches > 1);
+    }
+
+    #[test]
+    fn ways_shared_behind_glass_and_mirrors_keep_the_mean_of_the_full_model() {
+        let emitters = [Emitter::RectPanel { width_m: 0.8, height_m: 0.8 }, Emitter::Sphere { radius_m: 0.1 }];
+        let glass = Material { transmission: 1.0, roughness: 0.0, base_color: [0.9; 3], ..Material::default() };
+        let chrome = Material { metallic: 1.0, roughness: 0.0, base_color: [0.9; 3], ..Material::default() };
+        for material in [glass, chrome] {
+            let plan = keeps_the_mean(&studio(&emitters, material), 0.1);
+            assert!(plan.branches > FEW_WAYS, "{plan}");
         }
     }
 

@@ -5,7 +5,7 @@ use super::bsdf::Surfacing;
 use super::film::{self, Layer};
 use super::geometry::{Instance, MeshGeometry};
 use super::lens::Lens;
-use super::lights::TracedLight;
+use super::lights::{Chooser, Crossings, TracedLight};
 use super::plan::RenderPlan;
 use super::texture::TextureMap;
 use crate::photo::exposure;
@@ -31,6 +31,10 @@ pub struct RenderScene {
     pub(super) materials: Vec<Surfacing>,
     pub(super) textures: Vec<TextureMap>,
     pub(super) lights: Vec<TracedLight>,
+    /// Chooses between them.
+    pub(super) chooser: Chooser,
+    /// Finds those that a ray meets.
+    pub(super) crossings: Crossings,
     pub(super) layers: Vec<Layer>,
     /// Time by which a layer's luminance counts in the exposure, seconds; 1 where it is already in.
     pub(super) layer_times: Vec<f32>,
@@ -105,11 +109,14 @@ pub(super) fn prepare_around(
     let (lights, layers) = trace_lights(scene, eye, assign_layers);
     let layer_times = layer_times(&lights, &layers);
     let lens = Lens::new(scene);
+    let aggregate = Aggregate::new(instances);
     let plan = RenderPlan::new(&tables.materials, &lights, lens.has_aperture());
     Ok(RenderScene {
-        aggregate: Aggregate::new(instances),
+        aggregate,
         materials: tables.materials,
         textures: tables.textures,
+        chooser: Chooser::new(&lights),
+        crossings: Crossings::new(&lights),
         lights,
         layers,
         layer_times,

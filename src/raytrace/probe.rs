@@ -25,7 +25,7 @@ use rayon::prelude::*;
 /// Independent sequences: enough to tell their scatter to a fifth, few enough to stay well stratified each.
 const REPLICATES: u32 = 16;
 /// Bounces are left to roulette; this only ends what cannot end otherwise.
-const LIMITS: Limits = Limits { wide_bounces: 4096, all_bounces: 4096 };
+const LIMITS: Limits = Limits { wide_bounces: 4096, all_bounces: 4096, branches: 1 };
 /// First round of a sequence: emitter points of each light, and paths.
 const FIRST_ROUND: (u32, u32) = (64, 1024);
 /// Most emitter points of a light in a sequence.
@@ -452,7 +452,7 @@ impl Job<'_> {
 }
 
 /// Only what the first surface gives off.
-const NO_BOUNCE: Limits = Limits { wide_bounces: 0, all_bounces: 0 };
+const NO_BOUNCE: Limits = Limits { wide_bounces: 0, all_bounces: 0, branches: 1 };
 
 /// Adds up the light of paths; what is not finite is counted and left out.
 struct Gather<'a> {

@@ -34,7 +34,12 @@ pub enum Purpose {
 /// One sample of one pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler {
+    /// Pixel across, pixel down, seed.
+    place: [u32; 3],
+    /// Of the whole render.
+    sample: u32,
     pixel_seed: u32,
+    /// In the sequence.
     index: u32,
 }
 
@@ -53,7 +58,13 @@ impl Sampler {
         // The sequence has 2^16 points; further ones come from a fresh scramble.
         let epoch = index >> 16;
         let pixel_seed = hash(x ^ hash(y ^ hash(seed ^ hash(epoch))));
-        Sampler { pixel_seed, index: index & 0xffff }
+        Sampler { place: [x, y, seed], sample: index, pixel_seed, index: index & 0xffff }
+    }
+
+    /// One of `count` ways on from this sample. The ways of all samples of a pixel are stratified together.
+    pub fn branch(&self, branch: u32, count: u32) -> Self {
+        let [x, y, seed] = self.place;
+        Sampler::new(x, y, self.sample.wrapping_mul(count).wrapping_add(branch), seed)
     }
 
     /// The numbers for a purpose.
@@ -96,9 +107,15 @@ impl Query for Pair {
     }
 }
 
-/// The last two numbers of a set, as a point of the unit square.
+/// The first two numbers of a set, as a point of the unit square: the best pair of the sequence, with a point in each
+/// elementary interval.
 pub fn point(set: &Set) -> Vec2 {
-    Vec2::new(set[2], set[3])
+    Vec2::new(set[0], set[1])
+}
+
+/// The two numbers of a set beside its [`point`].
+pub fn rest(set: &Set) -> [f32; 2] {
+    [set[2], set[3]]
 }
 
 #[cfg(test)]

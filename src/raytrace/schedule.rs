@@ -158,8 +158,8 @@ impl TileJob<'_> {
             for sample in first_sample..first_sample + self.wave {
                 let sampler = Sampler::new(x, y, sample, self.settings.seed);
                 let set = sampler.set(Purpose::Camera);
-                let film_point = (Vec2::new(x as f32, y as f32) + Vec2::new(set[0], set[1])) / size;
-                let (origin, direction) = self.scene.lens.ray(&frame, film_point, sampler::point(&set));
+                let film_point = (Vec2::new(x as f32, y as f32) + sampler::point(&set)) / size;
+                let (origin, direction) = self.scene.lens.ray(&frame, film_point, sampler::rest(&set).into());
                 let mut gate = Gate { tile, pixel, place: (x, y, sample), luminance: 0.0, scene: self.scene };
                 match self.settings.method {
                     Method::Whitted => tracer.whitted(origin, direction, limits.all_bounces, &mut gate),
@@ -180,13 +180,20 @@ impl TileJob<'_> {
 const WHITTED_DEPTH: u32 = 10;
 
 fn limits(scene: &RenderScene, settings: &Settings) -> Limits {
-    let planned = scene.plan().max_bounces;
+    let plan = scene.plan();
     match settings.method {
-        Method::Whitted => Limits { wide_bounces: 1, all_bounces: settings.max_depth.unwrap_or(WHITTED_DEPTH) },
-        Method::Direct => Limits { wide_bounces: 1, all_bounces: settings.max_depth.unwrap_or(planned.max(16)) },
+        Method::Whitted => {
+            Limits { wide_bounces: 1, all_bounces: settings.max_depth.unwrap_or(WHITTED_DEPTH), branches: 1 }
+        }
+        Method::Direct => Limits {
+            wide_bounces: 1,
+            all_bounces: settings.max_depth.unwrap_or(plan.max_bounces.max(16)),
+            // Without emitters to meet nothing lies beyond the first surface.
+            branches: if plan.emitters_have_size { plan.branches } else { 1 },
+        },
         Method::Path => {
-            let depth = settings.max_depth.unwrap_or(planned);
-            Limits { wide_bounces: depth, all_bounces: depth }
+            let depth = settings.max_depth.unwrap_or(plan.max_bounces);
+            Limits { wide_bounces: depth, all_bounces: depth, branches: plan.branches }
         }
     }
 }

@@ -22,6 +22,9 @@ pub use glass::{Behind, pane_transmittance};
 pub use polarisation::Polarisation;
 use std::f32::consts::PI;
 
+/// A metal smoother than this throws light as a mirror does, a little blurred.
+const POLISHED_ALPHA: f32 = 0.05;
+
 /// A material made ready for tracing.
 #[derive(Clone, Debug)]
 pub struct Surfacing {
@@ -99,6 +102,11 @@ impl Surfacing {
     pub fn largest_albedo(&self) -> f32 {
         let body = self.base_color.max_element();
         if self.transmission > 0.0 { 1.0_f32.max(body) } else { body + (1.0 - body) * self.gloss.mean }
+    }
+
+    /// Whether nearly all light leaves it in one direction for each it came from: clear glass, a mirror, polished metal.
+    pub fn bends(&self) -> bool {
+        self.transmits() || (self.metallic > 0.5 && self.alpha < POLISHED_ALPHA)
     }
 
     /// Share of light that the gloss takes under a cosine.

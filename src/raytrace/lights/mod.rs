@@ -2,14 +2,18 @@
 //!
 //! Values are photometric and white (luminance of luminance 1): a light's colour is applied to its film layer.
 
+mod choice;
+mod crossing;
 mod disc;
 mod rect;
 mod sphere;
 
-use crate::math::{orthonormal_basis, safe_sqrt, warp};
+use crate::math::{orthonormal_basis, warp};
 use crate::photo::beam;
 use crate::photo::exposure::{self, Strength};
 use crate::scene::{Emitter, Light, Modifier};
+pub use choice::Chooser;
+pub use crossing::Crossings;
 use disc::Disc;
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 use rect::Rect;
@@ -160,37 +164,12 @@ impl TracedLight {
         !matches!(self.source, Source::Surround { .. })
     }
 
-    /// An unshadowed estimate of the luminous exposure at a point, up to a constant: how much this light deserves a
-    /// sample. Zero only where the light certainly gives nothing on the side of `normal`.
-    pub fn importance(&self, point: Vec3, normal: Vec3) -> f32 {
-        let estimate = match self.source {
-            Source::Point { position, intensity } => receive(point, normal, position, 0.0) * intensity,
-            Source::Spot { position, axis, intensity, inner_deg, outer_deg } => {
-                let cos = (point - position).normalize_or_zero().dot(axis);
-                let falloff = exposure::spot_falloff(cos, inner_deg, outer_deg);
-                receive(point, normal, position, 0.0) * intensity * falloff
-            }
-            Source::Rect { rect, luminance } => {
-                panel(point, normal, rect.centre, rect.normal(), rect.reach) * (luminance * rect.area())
-            }
-            Source::Disc { disc, luminance } => {
-                panel(point, normal, disc.centre, disc.normal(), disc.radius) * (luminance * disc.area())
-            }
-            Source::Ball { ball, luminance } => {
-                receive(point, normal, ball.centre, ball.radius) * (luminance * PI * ball.radius * ball.radius)
-            }
-            Source::Sun { towards, illuminance, one_minus_cos } => {
-                let slack = safe_sqrt(2.0 * one_minus_cos);
-                let cos = normal.dot(towards);
-                if cos > -slack { illuminance * cos.max(0.05) } else { 0.0 }
-            }
-            Source::Surround { .. } => 0.0,
-        };
-        let passed = match (self.beam, self.centre()) {
-            (Some(_), Some(centre)) => self.passed((point - centre).normalize_or_zero()).max(LEAST_BEAM),
+    /// Part of the light that its beam lets pass towards a point; all of it where it has none, or no place.
+    fn beam_towards(&self, point: Vec3) -> f32 {
+        match (self.beam, self.centre()) {
+            (Some(_), Some(centre)) => self.passed((point - centre).normalize_or_zero()),
             _ => 1.0,
-        };
-        estimate * passed * self.time_s
+        }
     }
 
     /// Light that reaches `point` from a chosen place of the emitter, before shadow.
@@ -334,30 +313,6 @@ fn towards(point: Vec3, target: Vec3, luminance: f32, pdf: f32) -> Option<LightS
 /// Whether a point lies before a panel.
 fn shines_on(point: Vec3, centre: Vec3, normal: Vec3) -> bool {
     (point - centre).dot(normal) > 0.0
-}
-
-/// Cosine over squared distance at the receiver, bounded from below so that no part of a light with this radius that
-/// reaches over the horizon is forgotten.
-fn receive(point: Vec3, normal: Vec3, centre: Vec3, radius: f32) -> f32 {
-    let to = centre - point;
-    let distance2 = to.length_squared().max(radius * radius).max(f32::MIN_POSITIVE);
-    let height = normal.dot(to);
-    if height <= -radius {
-        return 0.0;
-    }
-    (height / distance2.sqrt()).clamp(0.05, 1.0) / distance2
-}
-
-/// The same for a panel, times the cosine there, likewise bounded; 0 behind it.
-fn panel(point: Vec3, normal: Vec3, centre: Vec3, facing: Vec3, radius: f32) -> f32 {
-    let to = centre - point;
-    let (height, before) = (normal.dot(to), -facing.dot(to));
-    if height <= -radius || before <= 0.0 {
-        return 0.0;
-    }
-    let inverse2 = 1.0 / to.length_squared().max(radius * radius).max(f32::MIN_POSITIVE);
-    let inverse = inverse2.sqrt();
-    (height * inverse).clamp(0.05, 1.0) * (before * inverse).clamp(0.02, 1.0) * inverse2
 }
 
 #[cfg(test)]

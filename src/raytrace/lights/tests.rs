@@ -1,8 +1,10 @@
 //! Samplers of lights against their densities, and every emitter's flux over a sphere around it.
 
 use super::*;
+use crate::math::Ray;
 use crate::math::look_at;
 use crate::math::statistics::{ChiSquare, Estimate, Numbers, share};
+use crate::raytrace::bvh::Stack;
 use crate::scene::Output;
 
 /// A light at the origin that shines along -Z.
@@ -216,6 +218,124 @@ fn the_chosen_direction_meets_what_a_ray_sees() {
     }
 }
 
+/// Lights of all kinds about the origin.
+fn crowd(count: usize, numbers: &mut Numbers) -> Vec<TracedLight> {
+    let emitters = [
+        Emitter::Point,
+        Emitter::Sphere { radius_m: 0.3 },
+        Emitter::Spot { inner_deg: 20.0, outer_deg: 70.0 },
+        Emitter::Spot { inner_deg: 50.0, outer_deg: 50.0 },
+        Emitter::RectPanel { width_m: 0.6, height_m: 0.9 },
+        Emitter::RoundPanel { diameter_m: 1.5 },
+        Emitter::Sun { angular_diameter_deg: 10.0 },
+        Emitter::Surround,
+    ];
+    let light = |i: usize| {
+        let emitter = emitters[i % emitters.len()];
+        let output = if emitter.is_infinite() { Output::Lux(100.0) } else { Output::Lumens(1000.0) };
+        let mut light = Light::new(emitter, output);
+        light.modifier.grid_deg = (i % 5 == 4).then_some(60.0);
+        let position = numbers.direction() * numbers.between(0.5, 4.0);
+        let frame = look_at(position, position + numbers.direction(), 0.0);
+        TracedLight::new(&light, frame, numbers.between(0.01, 1.0)).unwrap()
+    };
+    (0..count).map(light).collect()
+}
+
+#[test]
+fn lights_are_chosen_as_often_as_they_say() {
+    let mut numbers = Numbers::new(16);
+    for count in [1, 3, 8, 40, 300, 5000] {
+        let lights = crowd(count, &mut numbers);
+        let chooser = Chooser::new(&lights);
+        for _ in 0..4 {
+            let (point, normal) = (numbers.direction() * numbers.between(0.01, 4.0), numbers.direction());
+            const GRID: usize = 20_000;
+            let mut counts = vec![0.0_f64; count];
+            for i in 0..GRID {
+                let u = (i as f32 + 0.5) / GRID as f32;
+                let Some((light, chance)) = chooser.choose(&lights, point, normal, u) else { continue };
+                let said = chooser.chance(&lights, light, point, normal);
+                assert!((chance / said - 1.0).abs() < 1e-5, "{chance} {said}");
+                counts[light as usize] += 1.0 / GRID as f64;
+            }
+            let chances = (0..count as u32).map(|light| chooser.chance(&lights, light, point, normal));
+            for (light, (chance, share)) in chances.zip(&counts).enumerate() {
+                // An even grid meets each light's piece of the unit interval to within one of its points.
+                assert!(
+                    (f64::from(chance) - share).abs() < 1.5 / GRID as f64,
+                    "{light} of {count}: {chance} for {share}"
+                );
+            }
+            let total: f64 = counts.iter().sum();
+            // A cluster may be chosen that turns out to give nothing.
+            assert!(total < 1.0 + 1e-9, "{total}");
+        }
+    }
+}
+
+#[test]
+fn one_chosen_light_stands_for_all_in_the_mean() {
+    // Illuminance at a place, by one light a sample, against the sum over all of them.
+    let mut numbers = Numbers::new(17);
+    const COUNTS: [usize; 4] = [2, 12, 100, 1000];
+    for count in COUNTS {
+        let lights = crowd(count, &mut numbers);
+        let chooser = Chooser::new(&lights);
+        let (point, normal) = (numbers.direction() * 0.5, numbers.direction());
+        let lit = |light: &TracedLight, u: Vec2| {
+            light.sample(point, u).map_or(0.0, |s| f64::from(s.value * s.direction.dot(normal).max(0.0)))
+        };
+        let truth: f64 =
+            lights.iter().map(|light| (0..4096).map(|_| lit(light, numbers.square())).sum::<f64>() / 4096.0).sum();
+        let estimate = Estimate::of((0..60_000).map(|_| {
+            let choice = chooser.choose(&lights, point, normal, numbers.square().x);
+            choice.map_or(0.0, |(light, chance)| lit(&lights[light as usize], numbers.square()) / f64::from(chance))
+        }));
+        // The sum itself is good to some 1e-3.
+        assert!(estimate.agrees(truth, 3e-3, COUNTS.len()), "{count} lights: {estimate:?} for {truth}");
+    }
+}
+
+#[test]
+fn ten_thousand_lights_lie_three_nodes_deep() {
+    let mut numbers = Numbers::new(18);
+    for (count, most) in [(60, 1), (1000, 2), (10_000, 3)] {
+        let chooser = Chooser::new(&crowd(count, &mut numbers));
+        assert!(chooser.depth() <= most, "{count} lights: {} deep", chooser.depth());
+    }
+}
+
+#[test]
+fn rays_meet_the_emitters_that_asking_each_would_find() {
+    let mut numbers = Numbers::new(19);
+    let lights = crowd(200, &mut numbers);
+    let crossings = Crossings::new(&lights);
+    let mut stack = Stack::default();
+    let mut met = 0;
+    for i in 0..20_000 {
+        let origin = numbers.direction() * numbers.between(0.0, 5.0);
+        let t_max = if i % 2 == 0 { f32::INFINITY } else { numbers.between(0.1, 4.0) };
+        let ray = Ray { origin, direction: numbers.direction(), t_max };
+        let mut found = Vec::new();
+        // The end of the ray is for the caller to judge: it lies within rounding.
+        crossings.each(&lights, &ray, &mut stack, |light, seen| {
+            if seen.distance <= t_max {
+                found.push(light);
+            }
+        });
+        found.sort_unstable();
+        let truth = |light: &u32| {
+            let light = &lights[*light as usize];
+            light.seen_by(origin, ray.direction).is_some_and(|seen| seen.distance <= t_max)
+        };
+        let truth: Vec<u32> = (0..lights.len() as u32).filter(truth).collect();
+        assert_eq!(found, truth, "{ray:?}");
+        met += truth.len();
+    }
+    assert!(met > 10_000, "only {met} emitters met: the test says little");
+}
+
 #[test]
 fn no_light_that_gives_something_is_never_chosen() {
     // Choice by importance is right only where no light with a share has none.
@@ -228,13 +348,35 @@ fn no_light_that_gives_something_is_never_chosen() {
         Emitter::RoundPanel { diameter_m: 3.0 },
     ] {
         let light = traced(emitter, Output::Lumens(1000.0));
+        let chooser = Chooser::new(std::slice::from_ref(&light));
         for _ in 0..20_000 {
             let from = numbers.direction() * numbers.between(0.01, 4.0);
             let normal = numbers.direction();
             let Some(sample) = light.sample(from, numbers.square()) else { continue };
             if sample.direction.dot(normal) > 1e-4 && sample.value > 0.0 {
-                assert!(light.importance(from, normal) > 0.0, "{emitter:?} seen from {from}, facing {normal}");
+                let chance = chooser.chance(std::slice::from_ref(&light), 0, from, normal);
+                assert!(chance > 0.0, "{emitter:?} seen from {from}, facing {normal}");
             }
         }
     }
+}
+
+#[test]
+fn no_light_of_a_crowd_that_gives_something_is_never_chosen() {
+    // Clusters must not forget members that lie aside or look elsewhere.
+    let mut numbers = Numbers::new(20);
+    let lights = crowd(600, &mut numbers);
+    let chooser = Chooser::new(&lights);
+    let mut given = 0;
+    for _ in 0..300 {
+        let (from, normal) = (numbers.direction() * numbers.between(0.01, 6.0), numbers.direction());
+        for (light, index) in lights.iter().zip(0..).step_by(7) {
+            let Some(sample) = light.sample(from, numbers.square()) else { continue };
+            if sample.direction.dot(normal) > 1e-4 && sample.value > 0.0 {
+                given += 1;
+                assert!(chooser.chance(&lights, index, from, normal) > 0.0, "{light:?} from {from}, facing {normal}");
+            }
+        }
+    }
+    assert!(given > 5000, "only {given}");
 }

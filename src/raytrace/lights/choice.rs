@@ -1,0 +1,358 @@
+//! Which light a point asks: by an estimate of what each gives there, from a tree when there are many.
+//!
+//! A node is a handful of packets of eight entries; an entry is a light, or stands for a cluster of lights with a node
+//! of its own. An entry is chosen in proportion to its estimate, and so on down (Conty Estevez and Kulla 2018,
+//! "Importance Sampling of Many Lights with Adaptive Tree Splitting", without the splitting). Estimates are bounded from
+//! below wherever a light may give something, so that each such light has a chance.
+
+use super::{LEAST_BEAM, Source, TracedLight};
+use crate::math::safe_sqrt;
+use crate::raytrace::simd::{self, Kernels, Query, WIDTH};
+use glam::Vec3;
+use std::f32::consts::PI;
+
+/// Entries of a node: so many lights are asked one by one.
+const NODE: usize = 8 * WIDTH;
+
+/// Spread of a light that shines the same all round: a cosine plus this is never under 1.
+const ALL_ROUND: f32 = 2.0;
+
+/// Eight lights or clusters. Positions are relative to the camera.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(32))]
+struct Packet {
+    centre: [[f32; WIDTH]; 3],
+    /// 1; 0 for a sun, whose `centre` is a direction.
+    near: [f32; WIDTH],
+    /// Radius of a ball that holds all of it.
+    radius: [f32; WIDTH],
+    /// Intensity on the axis times exposure time; 0 where a lane is not used.
+    power: [f32; WIDTH],
+    /// Unit direction in which it shines.
+    axis: [[f32; WIDTH]; 3],
+    /// Added to the cosine against the axis: how far members' axes differ from it.
+    spread: [f32; WIDTH],
+    /// How far members lie before or behind the centre, metres.
+    depth: [f32; WIDTH],
+    /// Cosine at which the beam ends, and one over the difference to that at which it is full.
+    beam_end: [f32; WIDTH],
+    beam_gain: [f32; WIDTH],
+}
+
+/// One lane of a packet, before it is one.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    centre: Vec3,
+    near: f32,
+    radius: f32,
+    power: f32,
+    axis: Vec3,
+    spread: f32,
+    depth: f32,
+    beam_end: f32,
+    beam_gain: f32,
+}
+
+impl Entry {
+    /// None for what is not sampled.
+    fn of(light: &TracedLight) -> Option<Self> {
+        let entry = |centre: Vec3, radius: f32, intensity: f32| Entry {
+            centre,
+            near: 1.0,
+            radius,
+            power: intensity * light.time_s,
+            axis: Vec3::Z,
+            spread: ALL_ROUND,
+            depth: 0.0,
+            beam_end: 0.0,
+            beam_gain: 1.0,
+        };
+        let panel = |centre, radius, intensity, axis| Entry { axis, spread: 0.0, ..entry(centre, radius, intensity) };
+        Some(match light.source {
+            Source::Point { position, intensity } => entry(position, 0.0, intensity),
+            Source::Spot { position, axis, intensity, inner_deg, outer_deg } => {
+                let half_cos = |full_deg: f32| (0.5 * full_deg.to_radians()).cos();
+                // Slightly wider than it is: rounding must not leave the rim without a chance.
+                let (full, end) = (half_cos(inner_deg.min(outer_deg)), half_cos(outer_deg) - 1e-4);
+                let gain = 1.0 / (full - end).max(1e-6);
+                Entry { axis, spread: 0.0, beam_end: end, beam_gain: gain, ..entry(position, 0.0, intensity) }
+            }
+            Source::Rect { rect, luminance } => panel(rect.centre, rect.reach, luminance * rect.area(), rect.normal()),
+            Source::Disc { disc, luminance } => panel(disc.centre, disc.radius, luminance * disc.area(), disc.normal()),
+            Source::Ball { ball, luminance } => {
+                entry(ball.centre, ball.radius, luminance * PI * ball.radius * ball.radius)
+            }
+            Source::Sun { towards, illuminance, one_minus_cos } => {
+                let slack = safe_sqrt(2.0 * one_minus_cos);
+                Entry { near: 0.0, ..entry(towards, slack, illuminance) }
+            }
+            Source::Surround { .. } => return None,
+        })
+    }
+
+    /// One entry for several, all of them suns or none.
+    fn cluster(leaves: &[Leaf]) -> Self {
+        let members = || leaves.iter().map(|leaf| leaf.0);
+        let power: f32 = members().map(|m| m.power).sum();
+        let (low, high) = members()
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), m| (low.min(m.centre), high.max(m.centre)));
+        let centre = (low + high) * 0.5;
+        let radius = members().map(|m| (m.centre - centre).length() + m.radius).fold(0.0, f32::max) * (1.0 + 1e-5);
+        let axis = members().map(|m| m.axis * m.power).sum::<Vec3>().normalize_or(Vec3::Z);
+        // A cosine against another axis differs by at most the distance between the axes.
+        let spread = members().map(|m| m.spread + (m.axis - axis).length()).fold(0.0, f32::max);
+        let spread = (spread * (1.0 + 1e-5)).min(ALL_ROUND);
+        let near = leaves.first().map_or(1.0, |leaf| leaf.0.near);
+        Entry { centre, near, radius, power, axis, spread, depth: radius, beam_end: 0.0, beam_gain: 1.0 }
+    }
+}
+
+impl Packet {
+    fn set(&mut self, lane: usize, entry: &Entry) {
+        for axis in 0..3 {
+            self.centre[axis][lane] = entry.centre[axis];
+            self.axis[axis][lane] = entry.axis[axis];
+        }
+        self.near[lane] = entry.near;
+        self.radius[lane] = entry.radius;
+        self.power[lane] = entry.power;
+        self.spread[lane] = entry.spread;
+        self.depth[lane] = entry.depth;
+        self.beam_end[lane] = entry.beam_end;
+        self.beam_gain[lane] = entry.beam_gain;
+    }
+
+    /// What each lane gives at a point, up to a constant: power, inverse square and both cosines, each bounded so that
+    /// no part of it that reaches over a horizon is forgotten. 0 where it certainly gives nothing on the side of
+    /// `normal`.
+    #[inline(always)]
+    fn estimates(&self, point: Vec3, normal: Vec3) -> [f32; WIDTH] {
+        std::array::from_fn(
+            #[inline(always)]
+            |i| {
+                let to: [f32; 3] = std::array::from_fn(
+                    #[inline(always)]
+                    |axis| self.centre[axis][i] - point[axis] * self.near[i],
+                );
+                let height = normal.x * to[0] + normal.y * to[1] + normal.z * to[2];
+                let before = -(self.axis[0][i] * to[0] + self.axis[1][i] * to[1] + self.axis[2][i] * to[2]);
+                let radius = self.radius[i];
+                let distance2 = larger(to[0] * to[0] + to[1] * to[1] + to[2] * to[2], radius * radius);
+                let inverse = 1.0 / larger(distance2, f32::MIN_POSITIVE).sqrt();
+                // In units of the distance: a light in the middle of which the point lies is before it and behind.
+                let cos = before * inverse + (self.spread[i] + self.depth[i] * inverse);
+                let beam = (cos - self.beam_end[i]) * self.beam_gain[i];
+                let given = self.power[i] * inverse * inverse;
+                let estimate = given * smaller(larger(height * inverse, 0.05), 1.0) * smaller(larger(beam, 0.02), 1.0);
+                if height > -radius && beam > 0.0 { estimate } else { 0.0 }
+            },
+        )
+    }
+}
+
+/// Unlike `f32::max` this is one instruction, and no NaN comes here that matters: it makes the total no number.
+#[inline(always)]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// See [`larger`].
+#[inline(always)]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// What an entry stands for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Meaning {
+    Light(u32),
+    Node(u32),
+}
+
+/// A run of packets, and where the node hangs: in which node, at which of its entries.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    first_packet: u32,
+    packets: u32,
+    parent: Option<(u32, u32)>,
+}
+
+/// All lights that are sampled, ready to be chosen from.
+#[derive(Clone, Debug, Default)]
+pub struct Chooser {
+    packets: Vec<Packet>,
+    /// By packet and lane.
+    meanings: Vec<Meaning>,
+    nodes: Vec<Node>,
+    /// Node and entry of each light; none for those that are not sampled.
+    places: Vec<Option<(u32, u32)>>,
+    /// Lights with a beam, whose estimates are cut by it.
+    has_beams: bool,
+}
+
+/// A light with its entry, while the tree is built.
+type Leaf = (Entry, u32);
+
+impl Chooser {
+    /// Over a scene's lights, in their order.
+    pub fn new(lights: &[TracedLight]) -> Self {
+        let mut leaves: Vec<Leaf> =
+            lights.iter().zip(0..).filter_map(|(light, i)| Some((Entry::of(light)?, i))).collect();
+        let has_beams = lights.iter().any(|light| light.beam.is_some());
+        let mut chooser = Chooser { places: vec![None; lights.len()], has_beams, ..Chooser::default() };
+        if !leaves.is_empty() {
+            chooser.add_node(&mut leaves, None);
+        }
+        chooser
+    }
+
+    /// Adds a node over these lights and all below it.
+    fn add_node(&mut self, leaves: &mut [Leaf], parent: Option<(u32, u32)>) -> u32 {
+        // A sun is everywhere, and shares no cluster with what is somewhere.
+        leaves.sort_by(|a, b| a.0.near.total_cmp(&b.0.near));
+        let (suns, near) = leaves.split_at_mut(leaves.partition_point(|leaf| leaf.0.near == 0.0));
+        let mut groups = Vec::with_capacity(NODE);
+        split(suns, if near.is_empty() { NODE } else { NODE / 2 }, &mut groups);
+        split(near, NODE - groups.len(), &mut groups);
+        let (index, first) = (self.nodes.len() as u32, self.packets.len());
+        let packets = groups.len().div_ceil(WIDTH);
+        self.nodes.push(Node { first_packet: first as u32, packets: packets as u32, parent });
+        self.packets.resize(first + packets, Packet::default());
+        self.meanings.resize((first + packets) * WIDTH, Meaning::Node(0));
+        for (at, mut group) in groups.into_iter().enumerate() {
+            let place = (index, at as u32);
+            let (entry, meaning) = if let [(entry, light)] = group[..] {
+                self.places[light as usize] = Some(place);
+                (entry, Meaning::Light(light))
+            } else {
+                (Entry::cluster(&group), Meaning::Node(self.add_node(&mut group, Some(place))))
+            };
+            self.packets[first + at / WIDTH].set(at % WIDTH, &entry);
+            self.meanings[first * WIDTH + at] = meaning;
+        }
+        index
+    }
+
+    /// Nodes on the longest way to a light.
+    #[cfg(test)]
+    pub fn depth(&self) -> usize {
+        let above =
+            |node: &Node| std::iter::successors(Some(*node), |n| Some(self.nodes[n.parent?.0 as usize])).count();
+        self.nodes.iter().map(above).max().unwrap_or(0)
+    }
+
+    /// Estimates of a node's entries, and their sum.
+    #[inline]
+    fn estimates(&self, lights: &[TracedLight], node: &Node, point: Vec3, normal: Vec3) -> ([f32; NODE], f32) {
+        let first = node.first_packet as usize;
+        let packets = &self.packets[first..first + node.packets as usize];
+        let mut estimates = simd::dispatch(Estimates { packets, point, normal });
+        if self.has_beams {
+            for (at, estimate) in estimates.iter_mut().enumerate().take(packets.len() * WIDTH) {
+                if let (true, Meaning::Light(light)) = (*estimate > 0.0, self.meanings[first * WIDTH + at]) {
+                    *estimate *= lights[light as usize].beam_towards(point).max(LEAST_BEAM);
+                }
+            }
+        }
+        let total = estimates[..packets.len() * WIDTH].iter().sum();
+        (estimates, total)
+    }
+
+    /// A light for a point on a surface with this normal, by a number in 0..1, and the chance it had. None where no light
+    /// gives anything.
+    pub fn choose(&self, lights: &[TracedLight], point: Vec3, normal: Vec3, mut u: f32) -> Option<(u32, f32)> {
+        let mut node = self.nodes.first()?;
+        let mut chance = 1.0;
+        loop {
+            let (estimates, total) = self.estimates(lights, node, point, normal);
+            if !(total > 0.0 && total.is_finite()) {
+                return None;
+            }
+            let mut left = u * total;
+            let mut chosen = None;
+            let entries = node.packets as usize * WIDTH;
+            for (at, &estimate) in estimates[..entries].iter().enumerate().filter(|(_, e)| **e > 0.0) {
+                chosen = Some((at, estimate, left));
+                if left < estimate {
+                    break;
+                }
+                left -= estimate;
+            }
+            let (at, estimate, left) = chosen?;
+            chance *= estimate / total;
+            match self.meanings[node.first_packet as usize * WIDTH + at] {
+                Meaning::Light(light) => return Some((light, chance)),
+                Meaning::Node(next) => {
+                    // What is left of the number is as good as a new one.
+                    u = (left / estimate).clamp(0.0, 1.0 - f32::EPSILON);
+                    node = &self.nodes[next as usize];
+                }
+            }
+        }
+    }
+
+    /// The chance that [`Chooser::choose`] gives a light.
+    pub fn chance(&self, lights: &[TracedLight], light: u32, point: Vec3, normal: Vec3) -> f32 {
+        let mut chance = 1.0;
+        let mut place = self.places[light as usize];
+        if place.is_none() {
+            return 0.0;
+        }
+        while let Some((node, at)) = place {
+            let node = &self.nodes[node as usize];
+            let (estimates, total) = self.estimates(lights, node, point, normal);
+            if !(total > 0.0 && total.is_finite()) {
+                return 0.0;
+            }
+            chance *= estimates[at as usize] / total;
+            place = node.parent;
+        }
+        chance
+    }
+}
+
+/// Halves a set of lights along its longest side until there are `groups` of about the same size.
+fn split(leaves: &mut [Leaf], groups: usize, found: &mut Vec<Vec<Leaf>>) {
+    if groups <= 1 || leaves.len() <= 1 {
+        if !leaves.is_empty() {
+            found.push(leaves.to_vec());
+        }
+        return;
+    }
+    let (low, high) = leaves
+        .iter()
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), (e, _)| (low.min(e.centre), high.max(e.centre)));
+    let size = high - low;
+    let axis = if size.x >= size.y && size.x >= size.z {
+        0
+    } else if size.y >= size.z {
+        1
+    } else {
+        2
+    };
+    leaves.sort_by(|a, b| a.0.centre[axis].total_cmp(&b.0.centre[axis]));
+    let middle = leaves.len() / 2;
+    let (lower, upper) = leaves.split_at_mut(middle);
+    split(lower, groups / 2, found);
+    split(upper, groups - groups / 2, found);
+}
+
+/// See [`Chooser::estimates`].
+struct Estimates<'a> {
+    packets: &'a [Packet],
+    point: Vec3,
+    normal: Vec3,
+}
+
+impl Query for Estimates<'_> {
+    type Answer = [f32; NODE];
+
+    #[inline(always)]
+    fn run<K: Kernels>(self) -> [f32; NODE] {
+        let mut estimates = [0.0; NODE];
+        for (packet, lanes) in self.packets.iter().zip(estimates.chunks_exact_mut(WIDTH)) {
+            lanes.copy_from_slice(&packet.estimates(self.point, self.normal));
+        }
+        estimates
+    }
+}

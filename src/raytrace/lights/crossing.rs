@@ -1,0 +1,101 @@
+//! Which emitters a ray crosses: those with a place in a tree over their boxes, sun and surround by asking them.
+
+use super::{Seen, Source, TracedLight};
+use crate::math::Ray;
+use crate::raytrace::bvh::{self, Slabs, Stack, WideBvh};
+use crate::raytrace::simd::{self, Kernels, Query};
+use glam::Vec3;
+
+/// Emitters that rays can meet.
+#[derive(Debug, Default)]
+pub struct Crossings {
+    bvh: WideBvh,
+    /// Light of each box.
+    placed: Vec<u32>,
+    /// Lights at infinity.
+    distant: Vec<u32>,
+}
+
+impl Crossings {
+    /// Over a scene's lights, in their order.
+    pub fn new(lights: &[TracedLight]) -> Self {
+        let mut crossings = Crossings::default();
+        let mut boxes = Vec::new();
+        for (light, index) in lights.iter().zip(0..) {
+            match light.bounds() {
+                Some(bounds) => {
+                    crossings.placed.push(index);
+                    boxes.push(bounds);
+                }
+                None if light.has_size() => crossings.distant.push(index),
+                None => {}
+            }
+        }
+        crossings.bvh = bvh::build(&boxes, 1);
+        crossings
+    }
+
+    /// Gives every light that the ray sees before its end, in no order, with what it sees of it.
+    #[inline]
+    pub fn each(&self, lights: &[TracedLight], ray: &Ray, stack: &mut Stack, mut found: impl FnMut(u32, Seen)) {
+        if !self.placed.is_empty() {
+            simd::dispatch(Cross { crossings: self, lights, ray, stack, found: &mut found });
+        }
+        if ray.t_max.is_infinite() {
+            for &light in &self.distant {
+                if let Some(seen) = lights[light as usize].seen_by(ray.origin, ray.direction) {
+                    found(light, seen);
+                }
+            }
+        }
+    }
+}
+
+impl TracedLight {
+    /// A box around what a ray can meet of it, a little wider than it is; none for what has no place or no size.
+    fn bounds(&self) -> Option<(Vec3, Vec3)> {
+        let (centre, reach) = match self.source {
+            Source::Rect { rect, .. } => (rect.centre, rect.right.abs() * rect.half.x + rect.up.abs() * rect.half.y),
+            Source::Disc { disc, .. } => (disc.centre, (disc.right.abs() + disc.up.abs()) * disc.radius),
+            Source::Ball { ball, .. } => (ball.centre, Vec3::splat(ball.radius)),
+            Source::Point { .. } | Source::Spot { .. } | Source::Sun { .. } | Source::Surround { .. } => return None,
+        };
+        // Rounding of the box test and of the emitter's own differ.
+        let reach = reach + Vec3::splat(1e-5 * (centre.abs() + reach).max_element());
+        Some((centre - reach, centre + reach))
+    }
+}
+
+/// See [`Crossings::each`].
+struct Cross<'a, F> {
+    crossings: &'a Crossings,
+    lights: &'a [TracedLight],
+    ray: &'a Ray,
+    stack: &'a mut Stack,
+    found: &'a mut F,
+}
+
+impl<F: FnMut(u32, Seen)> Query for Cross<'_, F> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run<K: Kernels>(self) {
+        let Cross { crossings, lights, ray, stack, found } = self;
+        let slabs = Slabs::new(ray.origin, ray.direction);
+        crossings.bvh.nearest_first::<K>(
+            &slabs,
+            ray.t_max,
+            stack,
+            #[inline(always)]
+            |leaf, t_max, _| {
+                for &place in crossings.bvh.leaf(leaf) {
+                    let light = crossings.placed[place as usize];
+                    if let Some(seen) = lights[light as usize].seen_by(ray.origin, ray.direction) {
+                        found(light, seen);
+                    }
+                }
+                t_max
+            },
+        );
+    }
+}
