@@ -17,7 +17,7 @@ pub struct SurfaceHit {
 }
 
 /// The nearest surface along a ray: of the visible things, or of one of them alone. All triangles of a thing whose box
-/// is hit are tried: at some ten thousand that takes less than a millisecond, and it is asked once a frame of a drag.
+/// is hit are tried: one ray a frame of a drag is not worth a tree.
 pub fn hit(
     scene: &Scene,
     assets: &Assets,

@@ -70,9 +70,10 @@ impl Viewport {
         }
     }
 
-    /// Whether handles or a highlight are dragged, so that keys are numbers and Esc gives the drag up.
+    /// Whether handles, a highlight or a box are dragged, so that keys are numbers and Esc gives the drag up.
     pub fn is_dragging(&self) -> bool {
-        self.handles.is_dragging() || self.swing.as_ref().is_some_and(SwingDrag::is_dragging)
+        let swings = self.swing.as_ref().is_some_and(SwingDrag::is_dragging);
+        self.handles.is_dragging() || swings || self.band.is_some()
     }
 
     /// Whether the pointer is on a handle.
@@ -80,8 +81,9 @@ impl Viewport {
         self.handles.wants_pointer()
     }
 
-    /// Ends a drag of handles or a highlight; the button may still be held.
+    /// Ends a drag of handles, a highlight or a box; the button may still be held.
     pub fn give_up_drag(&mut self) {
+        self.band = None;
         self.handles.give_up();
         if let Some(swing) = &mut self.swing {
             swing.give_up();

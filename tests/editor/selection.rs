@@ -188,3 +188,36 @@ fn the_other_button_on_a_light_in_the_view_opens_its_menu() {
     press(&mut window, Modifiers::NONE, Key::Escape);
     assert!(window.state().viewport().swing.is_none());
 }
+
+#[test]
+fn esc_gives_a_box_up_and_keys_wait_for_its_end() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    let view = window.get_by_label("Viewport").rect().shrink(6.0);
+    let button = |window: &mut Window, pos, pressed| {
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        window.event(Event::PointerButton { pos, button, pressed, modifiers });
+        window.step();
+    };
+    let to = view.right_top() + vec2(-120.0, 140.0);
+    for keys in [&[Key::Num1][..], &[Key::Num1, Key::Escape]] {
+        select(&mut window, &[]);
+        window.event(Event::PointerMoved(view.left_bottom()));
+        window.step();
+        button(&mut window, view.left_bottom(), true);
+        for part in [0.5, 1.0] {
+            window.event(Event::PointerMoved(view.left_bottom().lerp(to, part)));
+            window.step();
+        }
+        for key in keys {
+            window.key_press(*key);
+            window.step();
+        }
+        button(&mut window, to, false);
+        settle(&mut window);
+        assert_eq!(window.state().centre(), Centre::Studio);
+        assert_eq!(window.state().selection().is_empty(), keys.contains(&Key::Escape));
+    }
+}
