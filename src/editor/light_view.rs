@@ -97,7 +97,9 @@ pub fn paint(painter: &Painter, light: &Light, distance_m: f32, frame: &CameraFr
 
 /// A line of help at the upper edge of the view.
 pub fn paint_banner(painter: &Painter, rect: Rect, text: &str) {
-    let galley = painter.layout_no_wrap(text.to_owned(), eframe::egui::FontId::proportional(13.0), Color32::WHITE);
+    // Lines end before the cross of the axes in the corner, and as far from the other edge.
+    let width = (rect.width() - 260.0).max(120.0);
+    let galley = painter.layout(text.to_owned(), eframe::egui::FontId::proportional(13.0), Color32::WHITE, width);
     let size = galley.size() + vec2(20.0, 10.0);
     let place = Rect::from_min_size(Pos2::new(rect.center().x - 0.5 * size.x, rect.min.y + 8.0), size);
     painter.rect_filled(place, 5.0, Color32::from_black_alpha(190));

@@ -259,7 +259,7 @@ fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
 
 /// Ways to place a light by what it does, and its lock.
 fn aiming_row(ui: &mut Ui, light: &Light, out: &mut Vec<Command>) {
-    row(ui, "Place it by", "Keys P, L, Shift+L and V do the same for the selected light", |ui| {
+    row(ui, "Place it by", "Keys P, L and Shift+L do the same for the selected light", |ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.add_enabled_ui(!light.locked, |ui| {
             for (swing, text) in [(Swing::Highlight, "Highlight"), (Swing::Light, "Light"), (Swing::Shadow, "Shadow")] {
@@ -268,7 +268,9 @@ fn aiming_row(ui: &mut Ui, light: &Light, out: &mut Vec<Command>) {
                 }
             }
         });
-        if ui.button("Its view").on_hover_text("Look through the light and swing it by that (V)").clicked() {
+    });
+    row(ui, "Its view", "What the light sees along its axis", |ui| {
+        if ui.button("Look through it").on_hover_text("Orbit then swings the light; Esc goes back (V)").clicked() {
             out.push(Command::ToggleLightView);
         }
     });
