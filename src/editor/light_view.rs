@@ -95,13 +95,12 @@ pub fn paint(painter: &Painter, light: &Light, distance_m: f32, frame: &CameraFr
     }
 }
 
-/// A line of help at the upper edge of the view.
+/// A line of help at the lower edge of the view, clear of the menus in its upper corners.
 pub fn paint_banner(painter: &Painter, rect: Rect, text: &str) {
-    // Lines end before the cross of the axes in the corner, and as far from the other edge.
-    let width = (rect.width() - 260.0).max(120.0);
+    let width = (rect.width() - 40.0).max(120.0);
     let galley = painter.layout(text.to_owned(), eframe::egui::FontId::proportional(13.0), Color32::WHITE, width);
     let size = galley.size() + vec2(20.0, 10.0);
-    let place = Rect::from_min_size(Pos2::new(rect.center().x - 0.5 * size.x, rect.min.y + 8.0), size);
+    let place = Rect::from_min_size(Pos2::new(rect.center().x - 0.5 * size.x, rect.max.y - size.y - 28.0), size);
     painter.rect_filled(place, 5.0, Color32::from_black_alpha(190));
     painter.galley(place.min + vec2(10.0, 5.0), galley, Color32::WHITE);
 }
