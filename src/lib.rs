@@ -10,6 +10,8 @@
 //! `raytrace::render` fills a film wave by wave, `Film::develop` makes a [`photo::Picture`] of it, which a window shows
 //! or [`io::export_picture`] writes. `preview` draws the same scene on the graphics card while the user works.
 //!
+//! `live` keeps the tracer at work on a picture while the studio changes: what the window shows as *True*.
+//!
 //! `truth` sets readings of the meter and of renders beside closed forms: the README's table, and the tests' measure.
 //!
 //! Invariants:
@@ -25,6 +27,7 @@
 pub mod cli;
 pub mod color;
 pub mod io;
+pub mod live;
 pub mod mannequin;
 pub mod math;
 pub mod photo;

@@ -193,3 +193,21 @@ fn the_zbuffer_draws_without_a_graphics_adapter_in_the_same_units() {
     let times: Value = serde_json::from_str(stdout(&timed).trim()).unwrap();
     assert!(times["median_ms"].as_f64().unwrap() > 0.0 && times["triangles"].as_u64().unwrap() > 10_000);
 }
+
+#[test]
+fn the_traced_preview_tells_how_soon_it_shows_a_change_and_writes_its_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let traced = ["preview", "product_still_life", "--traced", "--size", "64x40"];
+    let output = catchlight(folder.path(), &[&traced[..], &["--frames", "3", "--json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let report: Value = serde_json::from_str(stdout(&output).trim()).unwrap();
+    for key in ["light_moved_ms", "thing_moved_ms", "dimmed_ms", "view_turned_ms"] {
+        let [median, most] = [0, 1].map(|i| report[key][i].as_f64().unwrap());
+        assert!(median > 0.0 && median <= most, "{key}: {report}");
+    }
+    assert!(report["opened_ms"].as_f64() > Some(0.0) && report["covered_s"].as_f64() > Some(0.0), "{report}");
+    assert!(report["reused"].as_f64() > Some(0.3), "a turned view knows most of what it shows: {report}");
+    let output = catchlight(folder.path(), &[&traced[..], &["-o", "t.png"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(image::open(folder.path().join("t.png")).unwrap().to_rgb8().dimensions(), (64, 40));
+}

@@ -12,6 +12,7 @@ mod meter;
 mod presets;
 mod preview;
 mod render;
+mod traced;
 mod truth;
 #[cfg_attr(not(feature = "gui"), path = "no_window.rs")]
 mod window;

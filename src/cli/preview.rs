@@ -1,6 +1,6 @@
 //! `catchlight preview SCENE`: the live preview without a window, as a picture or as the time its frames take.
 
-use super::{Failure, crowd, input, say, window, zbuffer};
+use super::{Failure, crowd, input, say, traced, window, zbuffer};
 use crate::io::Loaded;
 use anyhow::anyhow;
 use serde::Serialize;
@@ -19,7 +19,7 @@ pub struct Arguments {
     /// Studio: a .ron file, or the name of a shipped one.
     scene: PathBuf,
     /// Picture file; the ending says which kind: png, jpg, exr.
-    #[arg(short, long, required_unless_present_any = ["frames", "lights"])]
+    #[arg(short, long, required_unless_present_any = ["frames", "lights", "traced"])]
     output: Option<PathBuf>,
     /// Picture size in pixels, WIDTHxHEIGHT [default: 960 on the long edge, in the sensor's shape; 1280x720 for times].
     #[arg(long, value_parser = input::parse_size)]
@@ -44,6 +44,10 @@ pub struct Arguments {
     /// Draw on the processor, without a graphics adapter: no shadows.
     #[arg(long, conflicts_with = "lights")]
     cpu: bool,
+    /// The live view as the tracer shows it: how soon its first picture stands after opening, moving, dimming and turning,
+    /// each so many times as `--frames` says; with `-o`, its picture when it has settled.
+    #[arg(long, conflicts_with_all = ["lights", "cpu"])]
+    traced: bool,
     /// Print times as JSON.
     #[arg(long)]
     json: bool,
@@ -98,6 +102,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         crate::io::PictureFormat::of(output)?;
     }
     let mut loaded = input::load_studio(&arguments.scene)?;
+    if arguments.traced {
+        let size = arguments.size.unwrap_or(TIMED_SIZE);
+        let frames = arguments.frames.unwrap_or(FRAMES);
+        return traced::run(&loaded, size, frames, arguments.output.as_deref(), arguments.json);
+    }
     if let Some(output) = &arguments.output {
         let size = arguments.size.unwrap_or_else(|| loaded.scene.camera.picture_size(960));
         let (channel, light) = (arguments.channel.clone(), arguments.light.clone());

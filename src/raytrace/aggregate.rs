@@ -5,11 +5,13 @@
 //! quick because it is small.
 
 use super::bvh::{self, Slabs, Stack, WideBvh};
-use super::geometry::{Instance, Surface};
+use super::geometry::{Instance, MeshGeometry, Surface};
 use super::simd::{self, Kernels, Query};
 use super::triangle::TriangleHit;
 use super::triangle_tree::TriangleTree;
 use crate::math::Ray;
+use glam::Affine3A;
+use std::sync::Arc;
 
 /// Meshes with up to this many triangles are copied into the tree of small things.
 const SMALL: usize = 4096;
@@ -20,14 +22,60 @@ const COPIED: usize = 1 << 18;
 #[derive(Debug, Default)]
 pub struct Aggregate {
     instances: Vec<Instance>,
-    /// The triangles of small instances, in world space.
-    small: TriangleTree,
-    /// Instance and triangle of each triangle in `small`.
-    small_triangles: Vec<(u32, u32)>,
+    small: Arc<SmallTree>,
     /// Over the boxes of the large instances.
     bvh: WideBvh,
     /// Instance of each box in `bvh`.
     large: Vec<u32>,
+}
+
+/// The triangles of small instances in one tree, in world space.
+#[derive(Debug, Default)]
+pub struct SmallTree {
+    /// Which instances they are, and where they stand.
+    sources: Vec<Source>,
+    tree: TriangleTree,
+    /// Instance and triangle of each triangle in `tree`.
+    triangles: Vec<(u32, u32)>,
+}
+
+#[derive(Debug)]
+struct Source {
+    instance: u32,
+    geometry: Arc<MeshGeometry>,
+    world_from_object: Affine3A,
+}
+
+impl Source {
+    fn new(index: u32, instance: &Instance) -> Self {
+        let (geometry, world_from_object) = (instance.geometry.clone(), *instance.world_from_object());
+        Source { instance: index, geometry, world_from_object }
+    }
+
+    fn is_same(&self, other: &Source) -> bool {
+        self.instance == other.instance
+            && Arc::ptr_eq(&self.geometry, &other.geometry)
+            && self.world_from_object == other.world_from_object
+    }
+}
+
+impl SmallTree {
+    fn new(instances: &[Instance], sources: Vec<Source>) -> Self {
+        let of = |source: &Source| {
+            let index = source.instance;
+            (0..source.geometry.mesh().triangles.len() as u32).map(move |triangle| (index, triangle))
+        };
+        let triangles: Vec<(u32, u32)> = sources.iter().flat_map(of).collect();
+        let tree = TriangleTree::new(triangles.len(), |i| {
+            let (instance, triangle) = triangles[i];
+            instances[instance as usize].world_corners(triangle as usize)
+        });
+        SmallTree { sources, tree, triangles }
+    }
+
+    fn is_of(&self, sources: &[Source]) -> bool {
+        self.sources.len() == sources.len() && self.sources.iter().zip(sources).all(|(a, b)| a.is_same(b))
+    }
 }
 
 /// A hit of some instance.
@@ -41,23 +89,33 @@ pub struct Hit {
 
 impl Aggregate {
     /// Builds the trees. Instances without triangles are never hit.
+    #[cfg(test)]
     pub fn new(instances: Vec<Instance>) -> Self {
-        let (mut small_triangles, mut large, mut boxes) = (Vec::new(), Vec::new(), Vec::new());
+        Self::with_small(instances, None)
+    }
+
+    /// The same; the tree of small things is `kept`, where it is what it would become.
+    pub fn with_small(instances: Vec<Instance>, kept: Option<Arc<SmallTree>>) -> Self {
+        let (mut sources, mut large, mut boxes, mut copied) = (Vec::new(), Vec::new(), Vec::new(), 0);
         for (index, instance) in instances.iter().enumerate() {
             let count = instance.geometry.mesh().triangles.len();
-            if count <= SMALL && small_triangles.len() + count <= COPIED {
-                small_triangles.extend((0..count as u32).map(|triangle| (index as u32, triangle)));
+            if count <= SMALL && copied + count <= COPIED {
+                copied += count;
+                sources.push(Source::new(index as u32, instance));
             } else if let Some(bounds) = instance.world_bounds() {
                 large.push(index as u32);
                 boxes.push(bounds);
             }
         }
-        let small = TriangleTree::new(small_triangles.len(), |i| {
-            let (instance, triangle) = small_triangles[i];
-            instances[instance as usize].world_corners(triangle as usize)
-        });
+        let kept = kept.filter(|small| small.is_of(&sources));
+        let small = kept.unwrap_or_else(|| Arc::new(SmallTree::new(&instances, sources)));
         let bvh = bvh::build(&boxes, 1);
-        Aggregate { instances, small, small_triangles, bvh, large }
+        Aggregate { instances, small, bvh, large }
+    }
+
+    /// The tree of small things.
+    pub fn small(&self) -> &Arc<SmallTree> {
+        &self.small
     }
 
     /// The instances, in the order that [`Hit::instance`] counts.
@@ -95,8 +153,8 @@ impl Query for Closest<'_> {
     fn run<K: Kernels>(self) -> Option<Hit> {
         let Closest { aggregate, ray, stack } = self;
         let slabs = Slabs::new(ray.origin, ray.direction);
-        let mut best = aggregate.small.closest::<K>(ray, &slabs, stack).map(|hit| {
-            let (instance, triangle) = aggregate.small_triangles[hit.triangle as usize];
+        let mut best = aggregate.small.tree.closest::<K>(ray, &slabs, stack).map(|hit| {
+            let (instance, triangle) = aggregate.small.triangles[hit.triangle as usize];
             Hit { instance, triangle: TriangleHit { triangle, ..hit } }
         });
         let t_max = best.map_or(ray.t_max, |hit| hit.triangle.t);
@@ -137,7 +195,7 @@ impl Query for Blocked<'_> {
     fn run<K: Kernels>(self) -> bool {
         let Blocked { aggregate, ray, stack } = self;
         let slabs = Slabs::new(ray.origin, ray.direction);
-        if aggregate.small.any::<K>(ray, &slabs, stack) {
+        if aggregate.small.tree.any::<K>(ray, &slabs, stack) {
             return true;
         }
         aggregate.bvh.any::<K>(
@@ -164,8 +222,7 @@ mod tests {
     use crate::raytrace::geometry::MeshGeometry;
     use crate::raytrace::simd::Plain;
     use crate::scene::{Mesh, Shape, tessellate};
-    use glam::{Affine3A, Quat, Vec2, Vec3, Vec3Swizzles};
-    use std::sync::Arc;
+    use glam::{Quat, Vec2, Vec3, Vec3Swizzles};
 
     /// Deterministic numbers in 0..1.
     fn numbers(seed: u32) -> impl FnMut() -> f32 {
@@ -265,7 +322,7 @@ mod tests {
         let instances: Vec<Instance> =
             (0..10_000).map(|i| Instance::new(ball.clone(), place(i), i, vec![0]).unwrap()).collect();
         let aggregate = Aggregate::new(instances);
-        assert!(aggregate.small_triangles.len() <= COPIED && aggregate.large.len() > 7_000);
+        assert!(aggregate.small.triangles.len() <= COPIED && aggregate.large.len() > 7_000);
         let mut stack = Stack::default();
         for i in (0..10_000).step_by(333) {
             let (low, high) = aggregate.instances()[i].world_bounds().unwrap();

@@ -43,7 +43,7 @@ impl Layer {
     }
 
     /// Factor from the traced white luminance to time-integrated, coloured luminance (cd s/m2) as the scene is now.
-    fn weight(&self, scene: &Scene) -> Vec3 {
+    pub(super) fn weight(&self, scene: &Scene) -> Vec3 {
         if self.finished {
             return Vec3::ONE;
         }

@@ -5,7 +5,7 @@ use super::triangle_tree::TriangleTree;
 use crate::math::{self, Ray, gamma};
 use crate::scene::Mesh;
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A mesh with its tree.
 #[derive(Debug)]
@@ -15,6 +15,8 @@ pub struct MeshGeometry {
     pub tree: TriangleTree,
     /// Part of each triangle; empty when there is just one.
     part_of_triangle: Vec<u16>,
+    /// Whether the mesh encloses a space; looked at once, and only where something is clear.
+    closed: OnceLock<bool>,
 }
 
 impl MeshGeometry {
@@ -22,12 +24,17 @@ impl MeshGeometry {
     pub fn new(mesh: Arc<Mesh>) -> Self {
         let tree = TriangleTree::new(mesh.triangles.len(), |t| mesh.corners(t));
         let part_of_triangle = part_of_triangle(&mesh);
-        MeshGeometry { mesh, tree, part_of_triangle }
+        MeshGeometry { mesh, tree, part_of_triangle, closed: OnceLock::new() }
     }
 
     /// The mesh itself.
     pub fn mesh(&self) -> &Arc<Mesh> {
         &self.mesh
+    }
+
+    /// Whether the mesh encloses a space.
+    pub fn is_closed(&self) -> bool {
+        *self.closed.get_or_init(|| self.mesh.is_closed())
     }
 
     /// Index of the part that a triangle belongs to.
@@ -92,6 +99,11 @@ impl Instance {
             backward_abs: abs(&object_from_world),
             normal_matrix,
         })
+    }
+
+    /// Where the mesh stands.
+    pub fn world_from_object(&self) -> &Affine3A {
+        &self.world_from_object
     }
 
     /// World box of the eight corners of the mesh's box, rounded outwards.

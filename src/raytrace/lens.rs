@@ -4,15 +4,38 @@ use crate::math::warp;
 use crate::scene::{CameraFrame, Focus, Scene};
 use glam::{Vec2, Vec3};
 
+/// The opening of a lens and what lies sharp behind it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aperture {
+    /// Metres; 0 for a pinhole.
+    radius_m: f32,
+    /// Distance of the plane in focus, along the axis, metres.
+    focus_m: f32,
+}
+
+impl Aperture {
+    /// Everything is sharp.
+    pub const PINHOLE: Aperture = Aperture { radius_m: 0.0, focus_m: 0.0 };
+
+    /// Origin, relative to the lens centre, and unit direction of the ray through a picture point (0..1, from the top
+    /// left); `u` chooses the place on the lens.
+    pub fn ray(&self, frame: &CameraFrame, picture_point: Vec2, u: Vec2) -> (Vec3, Vec3) {
+        let direction = frame.direction(picture_point);
+        if self.radius_m <= 0.0 {
+            return (Vec3::ZERO, direction.normalize());
+        }
+        let disc = warp::concentric_disc(u) * self.radius_m;
+        let origin = frame.world_from_camera.transform_vector3(disc.extend(0.0));
+        (origin, (direction * self.focus_m - origin).normalize())
+    }
+}
+
 /// Where camera rays start and go. The camera sits at the origin of the tracer's space.
 #[derive(Clone, Debug)]
 pub struct Lens {
     scene_camera: crate::scene::Camera,
     target: Vec3,
-    /// Radius of the aperture, metres; 0 for a pinhole.
-    radius_m: f32,
-    /// Distance of the plane in focus, along the axis, metres.
-    focus_m: f32,
+    aperture: Aperture,
 }
 
 impl Lens {
@@ -29,17 +52,22 @@ impl Lens {
             }
             Focus::Distance(distance) => distance,
         };
-        let radius_m = if camera.depth_of_field && focus_m > 0.0 {
-            camera.focal_length_mm * 1e-3 / (2.0 * camera.f_number)
+        let aperture = if camera.depth_of_field && focus_m > 0.0 {
+            Aperture { radius_m: camera.focal_length_mm * 1e-3 / (2.0 * camera.f_number), focus_m }
         } else {
-            0.0
+            Aperture::PINHOLE
         };
-        Lens { scene_camera: camera.clone(), target, radius_m, focus_m }
+        Lens { scene_camera: camera.clone(), target, aperture }
     }
 
     /// Whether lens samples are used.
     pub fn has_aperture(&self) -> bool {
-        self.radius_m > 0.0
+        self.aperture != Aperture::PINHOLE
+    }
+
+    /// Opening and focus.
+    pub fn aperture(&self) -> Aperture {
+        self.aperture
     }
 
     /// The frame for a picture of this aspect.
@@ -49,13 +77,7 @@ impl Lens {
 
     /// Origin and unit direction of the ray through a picture point (0..1, from the top left), relative to the camera.
     pub fn ray(&self, frame: &CameraFrame, picture_point: Vec2, u: Vec2) -> (Vec3, Vec3) {
-        let direction = frame.direction(picture_point);
-        if self.radius_m <= 0.0 {
-            return (Vec3::ZERO, direction.normalize());
-        }
-        let disc = warp::concentric_disc(u) * self.radius_m;
-        let origin = frame.world_from_camera.transform_vector3(disc.extend(0.0));
-        (origin, (direction * self.focus_m - origin).normalize())
+        self.aperture.ray(frame, picture_point, u)
     }
 }
 

@@ -3,7 +3,8 @@
 use super::aggregate::Aggregate;
 use super::bsdf::Surfacing;
 use super::film::{self, Layer};
-use super::geometry::{Instance, MeshGeometry};
+use super::geometry::Instance;
+use super::geometry_cache::GeometryCache;
 use super::lens::Lens;
 use super::lights::{Chooser, Crossings, TracedLight};
 use super::plan::RenderPlan;
@@ -11,8 +12,7 @@ use super::texture::TextureMap;
 use crate::photo::exposure;
 use crate::scene::{self, Assets, Light, Material, Mesh, Scene, Severity, Shape};
 use glam::{Affine3A, Vec3};
-use rayon::prelude::*;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use thiserror::Error;
 
@@ -79,6 +79,11 @@ pub fn prepare(scene: &Scene, assets: &Assets) -> Result<RenderScene, PrepareErr
     prepare_around(scene, assets, scene.camera.position, film::assign_layers)
 }
 
+/// The same, with trees that an earlier call left in `cache`: meshes that did not change cost nothing.
+pub fn prepare_kept(scene: &Scene, assets: &Assets, cache: &GeometryCache) -> Result<RenderScene, PrepareError> {
+    prepare_all(scene, assets, scene.camera.position, film::assign_layers, cache)
+}
+
 /// How lights get the layers that they add to.
 pub(super) type AssignLayers = fn(&Scene, &mut [(TracedLight, &Light)]) -> Vec<Layer>;
 
@@ -89,18 +94,29 @@ pub(super) fn prepare_around(
     eye: Vec3,
     assign_layers: AssignLayers,
 ) -> Result<RenderScene, PrepareError> {
+    prepare_all(scene, assets, eye, assign_layers, &GeometryCache::default())
+}
+
+/// The whole of it: around `eye`, with what `cache` holds.
+pub(super) fn prepare_all(
+    scene: &Scene,
+    assets: &Assets,
+    eye: Vec3,
+    assign_layers: AssignLayers,
+    cache: &GeometryCache,
+) -> Result<RenderScene, PrepareError> {
     if let Some(error) = scene::validate(scene).into_iter().find(|f| f.severity == Severity::Error) {
         return Err(PrepareError::Invalid(format!("{}: {}", error.place, error.message)));
     }
-    let mut tables = Tables::default();
+    let mut tables = Tables::new(cache);
     let placed = place_everything(scene, assets, &mut tables);
-    let geometries = build_geometries(placed.iter().map(|p| &p.mesh));
-    let mut closed = Closed::default();
+    let geometries = cache.geometries(&unique(placed.iter().map(|p| &p.mesh)));
     let instances = placed
         .into_iter()
         .filter_map(|p| {
             let geometry = geometries.get(&Arc::as_ptr(&p.mesh))?.clone();
-            let sheet = closed.is_sheet(&p.mesh, &p.materials, &tables);
+            let clear = p.materials.iter().any(|&m| tables.materials[m as usize].transmits());
+            let sheet = clear && !geometry.is_closed();
             let mut placed = Instance::new(geometry, relative_to(p.world_from_object, eye), p.object, p.materials)?;
             placed.sheet = sheet;
             Some(placed)
@@ -109,8 +125,10 @@ pub(super) fn prepare_around(
     let (lights, layers) = trace_lights(scene, eye, assign_layers);
     let layer_times = layer_times(&lights, &layers);
     let lens = Lens::new(scene);
-    let aggregate = Aggregate::new(instances);
     let plan = RenderPlan::new(&tables.materials, &lights, lens.has_aperture());
+    let aggregate = Aggregate::with_small(instances, cache.small());
+    cache.keep_small(aggregate.small().clone());
+    cache.keep_surfaces(tables.known.into_iter().zip(tables.materials.iter().cloned()));
     Ok(RenderScene {
         aggregate,
         materials: tables.materials,
@@ -142,22 +160,28 @@ struct Placed {
 }
 
 /// Materials and textures, each once.
-#[derive(Default)]
-struct Tables {
+struct Tables<'a> {
+    cache: &'a GeometryCache,
     materials: Vec<Surfacing>,
     known: Vec<Material>,
     textures: Vec<TextureMap>,
     texture_index: HashMap<String, u32>,
 }
 
-impl Tables {
+impl<'a> Tables<'a> {
+    fn new(cache: &'a GeometryCache) -> Self {
+        Tables { cache, materials: vec![], known: vec![], textures: vec![], texture_index: HashMap::new() }
+    }
+
     fn material(&mut self, material: &Material, assets: &Assets) -> u32 {
         if let Some(index) = self.known.iter().position(|m| m == material) {
             return index as u32;
         }
         let texture = material.base_color_texture.as_ref().and_then(|path| self.texture(path, assets));
         self.known.push(material.clone());
-        self.materials.push(Surfacing::new(material, texture));
+        let mut surfacing = self.cache.surfacing(material).unwrap_or_else(|| Surfacing::new(material, texture));
+        surfacing.texture = texture;
+        self.materials.push(surfacing);
         self.known.len() as u32 - 1
     }
 
@@ -173,7 +197,7 @@ impl Tables {
     }
 }
 
-fn place_everything(scene: &Scene, assets: &Assets, tables: &mut Tables) -> Vec<Placed> {
+fn place_everything(scene: &Scene, assets: &Assets, tables: &mut Tables<'_>) -> Vec<Placed> {
     let mut placed = Vec::new();
     if let Some(room) = &scene.room {
         let mesh = Arc::new(scene::room_mesh(room));
@@ -215,23 +239,10 @@ impl RoundMeshes {
     }
 }
 
-/// Which meshes enclose a space, looked at once each, and only those with something clear.
-#[derive(Default)]
-struct Closed(HashMap<*const Mesh, bool>);
-
-impl Closed {
-    fn is_sheet(&mut self, mesh: &Arc<Mesh>, materials: &[u32], tables: &Tables) -> bool {
-        let clear = materials.iter().any(|&m| tables.materials[m as usize].transmits());
-        clear && !*self.0.entry(Arc::as_ptr(mesh)).or_insert_with(|| mesh.is_closed())
-    }
-}
-
-/// One geometry a mesh, built in parallel.
-fn build_geometries<'a>(meshes: impl Iterator<Item = &'a Arc<Mesh>>) -> HashMap<*const Mesh, Arc<MeshGeometry>> {
-    let unique: HashMap<*const Mesh, Arc<Mesh>> = meshes.map(|m| (Arc::as_ptr(m), m.clone())).collect();
-    let meshes: Vec<Arc<Mesh>> = unique.into_values().collect();
-    let built: Vec<Arc<MeshGeometry>> = meshes.into_par_iter().map(|m| Arc::new(MeshGeometry::new(m))).collect();
-    built.into_iter().map(|g| (Arc::as_ptr(g.mesh()), g)).collect()
+/// Each mesh once.
+fn unique<'a>(meshes: impl Iterator<Item = &'a Arc<Mesh>>) -> Vec<Arc<Mesh>> {
+    let mut known = HashSet::new();
+    meshes.filter(|mesh| known.insert(Arc::as_ptr(mesh))).cloned().collect()
 }
 
 fn trace_lights(scene: &Scene, eye: Vec3, assign_layers: AssignLayers) -> (Vec<TracedLight>, Vec<Layer>) {

@@ -89,6 +89,12 @@ impl Control {
         self.rays.load(Ordering::Relaxed)
     }
 
+    /// Books work that was done.
+    pub(super) fn count(&self, rays: u64, samples: u64) {
+        self.rays.fetch_add(rays, Ordering::Relaxed);
+        self.samples.fetch_add(samples, Ordering::Relaxed);
+    }
+
     /// Pixel samples taken so far; `width * height * spp` when done.
     pub fn samples_done(&self) -> u64 {
         self.samples.load(Ordering::Relaxed)
@@ -170,8 +176,7 @@ impl TileJob<'_> {
             }
         }
         tile.finish_wave(half, self.wave);
-        self.control.rays.fetch_add(tracer.rays, Ordering::Relaxed);
-        self.control.samples.fetch_add(tile.pixels() as u64 * u64::from(self.wave), Ordering::Relaxed);
+        self.control.count(tracer.rays, tile.pixels() as u64 * u64::from(self.wave));
         true
     }
 }

@@ -84,6 +84,11 @@ impl Surfacing {
         self.transmission
     }
 
+    /// Width of the gloss: roughness squared.
+    pub fn alpha(&self) -> f32 {
+        self.alpha
+    }
+
     /// Index of refraction.
     pub fn ior(&self) -> f32 {
         self.ior

@@ -1,0 +1,221 @@
+//! The live traced picture against the clock: how much to trace before the next look, and when a look is worth it.
+//!
+//! The first picture after an edit comes from a few short slices of work; later ones take their time, so that showing
+//! them costs little. While the user works, one core is left alone.
+
+use crate::raytrace::{Control, GeometryCache, LiveCamera, LivePicture, PrepareError};
+use crate::scene::{Assets, Scene};
+use rayon::prelude::*;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// A slice of work after an edit, and one when nothing has changed for a while.
+const SLICES: [Duration; 2] = [Duration::from_millis(25), Duration::from_millis(80)];
+/// Until then slices are short, and a first picture is shown however coarse it is.
+const FIRST_PICTURE: Duration = Duration::from_millis(70);
+/// Looks are this far apart, at first and in the end.
+const LOOKS: [Duration; 2] = [Duration::from_millis(120), Duration::from_millis(1500)];
+/// Paths a second that a thread is expected to trace before anything is measured.
+const EXPECTED_PATHS_S: f64 = 40_000.0;
+
+/// What there is to show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LiveImage {
+    /// Pixels across.
+    pub width: usize,
+    /// Pixels down.
+    pub height: usize,
+    /// sRGB bytes as shown, three a pixel, rows from the top.
+    pub rgb: Vec<u8>,
+    /// Samples that every pixel has.
+    pub spp: u32,
+    /// Nothing is left to do.
+    pub done: bool,
+}
+
+/// A live picture with its threads and its sense of time.
+#[derive(Debug)]
+pub struct LivePace {
+    picture: LivePicture,
+    scene: Arc<Scene>,
+    tone: ToneTable,
+    /// One that leaves a core alone, and one with all cores.
+    pools: [rayon::ThreadPool; 2],
+    /// Paths a second and thread, as measured.
+    paths_s: f64,
+    since_edit: Instant,
+    /// When the last look was taken; none since the edit.
+    last_look: Option<Instant>,
+    looked_at_end: bool,
+}
+
+impl LivePace {
+    /// A picture that shares its trees with others.
+    ///
+    /// # Errors
+    /// When the system gives no threads.
+    pub fn new(cache: Arc<GeometryCache>) -> Result<Self, rayon::ThreadPoolBuildError> {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let pool = |threads: usize| {
+            rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(|i| format!("live {i}")).build()
+        };
+        Ok(LivePace {
+            picture: LivePicture::new(cache),
+            scene: Arc::default(),
+            tone: ToneTable::new(),
+            pools: [pool(cores.saturating_sub(1).max(1))?, pool(cores)?],
+            paths_s: EXPECTED_PATHS_S,
+            since_edit: Instant::now(),
+            last_look: None,
+            looked_at_end: true,
+        })
+    }
+
+    /// The picture itself.
+    pub fn picture(&self) -> &LivePicture {
+        &self.picture
+    }
+
+    /// Threads that trace while the user works.
+    pub fn threads(&self) -> usize {
+        self.pools[0].current_num_threads()
+    }
+
+    /// Takes in the studio and the view as they are now.
+    ///
+    /// # Errors
+    /// When the scene cannot be rendered.
+    pub fn update(&mut self, scene: Arc<Scene>, assets: &Assets, camera: LiveCamera) -> Result<(), PrepareError> {
+        (self.since_edit, self.last_look, self.looked_at_end) = (Instant::now(), None, true);
+        let picture = &mut self.picture;
+        self.pools[0].install(|| picture.update(&scene, assets, camera))?;
+        (self.scene, self.looked_at_end) = (scene, false);
+        Ok(())
+    }
+
+    /// Whether the picture since the last edit has been looked at.
+    pub fn has_shown(&self) -> bool {
+        self.last_look.is_some()
+    }
+
+    /// Whether nothing is left to trace or to show.
+    pub fn is_idle(&self) -> bool {
+        self.picture.is_done() && self.looked_at_end
+    }
+
+    /// Works for a moment, or until `control` is cancelled. `user_is_active` leaves a core alone.
+    pub fn slice(&mut self, user_is_active: bool, control: &Control) {
+        let pool = &self.pools[usize::from(!user_is_active)];
+        let slice = SLICES[usize::from(self.since_edit.elapsed() > 4 * FIRST_PICTURE)];
+        let (began, threads) = (Instant::now(), pool.current_num_threads() as f64);
+        let paths = (self.paths_s * threads * slice.as_secs_f64()).max(64.0) as u64;
+        let picture = &mut self.picture;
+        let done = pool.install(|| picture.work(paths, control));
+        if done > 0 && !control.is_cancelled() {
+            let measured = done as f64 / began.elapsed().as_secs_f64().max(1e-6) / threads;
+            // A little at a time: a tile of glass is no sign that all are slow.
+            self.paths_s += (measured.clamp(1e3, 1e7) - self.paths_s) * 0.3;
+        }
+    }
+
+    /// The picture, if it is time for a look.
+    pub fn look(&mut self) -> Option<LiveImage> {
+        let (done, age) = (self.picture.is_done(), self.since_edit.elapsed());
+        let due = match self.last_look {
+            None => done || self.picture.steps() >= LivePicture::SEEN || age > FIRST_PICTURE,
+            Some(last) => {
+                let apart = (age / 6).clamp(LOOKS[0], LOOKS[1]);
+                last.elapsed() > apart || (done && !self.looked_at_end)
+            }
+        };
+        if self.is_idle() || !due || !(self.picture.is_begun() || done) {
+            return None;
+        }
+        self.looked_at_end = done;
+        let image = self.develop();
+        self.last_look = Some(Instant::now());
+        Some(image)
+    }
+
+    fn develop(&self) -> LiveImage {
+        let every = self.picture.coarseness();
+        self.pools[0].install(|| {
+            let picture = self.picture.develop_every(&self.scene, every);
+            let row = |row: &[[f32; 3]]| row.iter().flat_map(|rgb| self.tone.shown(*rgb)).collect::<Vec<u8>>();
+            let rgb = picture.rgb.par_chunks(picture.width.max(1) as usize).flat_map_iter(row).collect();
+            let (width, height) = (picture.width as usize, picture.height as usize);
+            LiveImage { width, height, rgb, spp: self.picture.spp(), done: self.picture.is_done() }
+        })
+    }
+}
+
+/// Tone curve and sRGB encoding by table, to one code of 255: a picture a moment, and the curve has a power in it.
+#[derive(Debug)]
+struct ToneTable(Vec<u8>);
+
+impl ToneTable {
+    /// Bits of the mantissa that are dropped: steps of 1/256 of the value.
+    const DROPPED: u32 = 15;
+    /// Everything under this shows as black, everything over `MOST` as white.
+    const LEAST: f32 = 1.0 / 16384.0;
+    const MOST: f32 = 16.0;
+
+    fn new() -> Self {
+        let (first, last) = (Self::LEAST.to_bits() >> Self::DROPPED, Self::MOST.to_bits() >> Self::DROPPED);
+        let middle = |index: u32| f32::from_bits(index << Self::DROPPED | 1 << (Self::DROPPED - 1));
+        ToneTable((first..=last).map(|index| crate::color::display_srgb8([middle(index); 3])[0]).collect())
+    }
+
+    fn shown(&self, rgb: [f32; 3]) -> [u8; 3] {
+        rgb.map(|value| {
+            // NaN is black, as in the tone curve.
+            let value = if value >= Self::LEAST { value.min(Self::MOST) } else { return 0 };
+            self.0[((value.to_bits() >> Self::DROPPED) - (Self::LEAST.to_bits() >> Self::DROPPED)) as usize]
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io;
+
+    #[test]
+    fn the_table_shows_what_the_tone_curve_shows() {
+        let table = ToneTable::new();
+        for step in 0..4000 {
+            let value = 1e-6 * 1.006_f32.powi(step);
+            let (ours, theirs) = (table.shown([value; 3])[0], crate::color::display_srgb8([value; 3])[0]);
+            assert!(ours.abs_diff(theirs) <= 1, "{value}: {ours} for {theirs}");
+        }
+        assert_eq!(table.shown([f32::NAN, -1.0, f32::INFINITY]), [0, 0, 255]);
+    }
+
+    #[test]
+    fn a_first_look_comes_soon_and_the_last_one_when_all_is_quiet() {
+        let loaded = io::find_preset("product_still_life").unwrap().load().unwrap();
+        let scene = Arc::new(loaded.scene);
+        let mut pace = LivePace::new(Arc::default()).unwrap();
+        let camera = LiveCamera::pinhole(scene.camera_frame(1.5), (48, 32));
+        pace.update(scene.clone(), &loaded.assets, camera).unwrap();
+        assert!(!pace.has_shown() && pace.look().is_none(), "there is nothing to show yet");
+        let control = Control::new();
+        let mut looks = Vec::new();
+        while !pace.is_idle() {
+            pace.slice(true, &control);
+            looks.extend(pace.look());
+        }
+        assert!(looks.len() > 1 && !looks[0].done && looks.last().is_some_and(|look| look.done));
+        assert!(looks.last().is_some_and(|look| (look.width, look.height) == (48, 32)));
+        assert!(pace.look().is_none(), "nothing new");
+        // The whole of it costs less than the most samples anyone could ask for.
+        assert!(pace.picture().spp() < 512);
+        let rays = control.rays();
+        let mut dimmed = (*scene).clone();
+        dimmed.lights[0].power.dial_stops -= 1.0;
+        pace.update(Arc::new(dimmed), &loaded.assets, camera).unwrap();
+        pace.slice(false, &control);
+        let look = pace.look();
+        assert!(look.is_some_and(|look| look.done) && control.rays() == rays, "dimming is developed, not traced");
+    }
+}

@@ -1,0 +1,280 @@
+//! Trees kept from one `prepare` to the next: where a light or an object moved, no mesh's tree is built again.
+//!
+//! A mesh is known by its address, or else by its content: shapes such as boxes are made into triangles anew each time.
+//! What the last `prepare` used is always kept; of the rest, as much as [`KEPT_TRIANGLES`].
+
+use super::aggregate::SmallTree;
+use super::bsdf::Surfacing;
+use super::geometry::MeshGeometry;
+use crate::scene::{Material, Mesh};
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Triangles whose trees are kept although the last scene did not use them: some 300 MB.
+const KEPT_TRIANGLES: usize = 2_000_000;
+
+/// Trees of the meshes that were prepared last.
+#[derive(Debug, Default)]
+pub struct GeometryCache(Mutex<Kept>);
+
+#[derive(Debug, Default)]
+struct Kept {
+    by_content: HashMap<u64, Entry>,
+    /// Content of the meshes in `by_content`, by their addresses: these stay theirs as long as the entry holds the mesh.
+    by_address: HashMap<usize, u64>,
+    small: Option<Arc<SmallTree>>,
+    /// Materials of the last scene with their tables.
+    surfaces: Vec<(Material, Surfacing)>,
+    /// Counts calls of [`GeometryCache::geometries`].
+    now: u64,
+    builds: u64,
+}
+
+#[derive(Debug)]
+struct Entry {
+    geometry: Arc<MeshGeometry>,
+    last_used: u64,
+}
+
+impl GeometryCache {
+    /// Trees of meshes that were built so far, because they were not there.
+    pub fn builds(&self) -> u64 {
+        self.lock().builds
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Kept> {
+        // Nothing in here is half done when a thread panics: at worst a tree is missing.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The geometry of each mesh, by its address; what is not there is built in parallel.
+    pub(super) fn geometries(&self, meshes: &[Arc<Mesh>]) -> HashMap<*const Mesh, Arc<MeshGeometry>> {
+        let contents: Vec<u64> = meshes.iter().map(|mesh| self.content_of(mesh)).collect();
+        let found = meshes.iter().zip(&contents).map(|(mesh, content)| self.find(mesh, *content));
+        // Boxes of the same size are one geometry: each content is built once.
+        let mut missing: HashMap<u64, Arc<Mesh>> = HashMap::new();
+        let mut geometries = HashMap::new();
+        for ((mesh, &content), found) in meshes.iter().zip(&contents).zip(found) {
+            match found {
+                Some(geometry) => drop(geometries.insert(Arc::as_ptr(mesh), geometry)),
+                None => drop(missing.entry(content).or_insert_with(|| mesh.clone())),
+            }
+        }
+        let missing: Vec<(u64, Arc<Mesh>)> = missing.into_iter().collect();
+        let build = |(content, mesh): (u64, Arc<Mesh>)| (content, Arc::new(MeshGeometry::new(mesh)));
+        let built: HashMap<u64, Arc<MeshGeometry>> = missing.into_par_iter().map(build).collect();
+        for (mesh, content) in meshes.iter().zip(&contents) {
+            let Some(geometry) = built.get(content) else { continue };
+            geometries.entry(Arc::as_ptr(mesh)).or_insert_with(|| geometry.clone());
+        }
+        self.keep(&contents, built);
+        geometries
+    }
+
+    /// A number for what a mesh holds; equal meshes have equal numbers.
+    fn content_of(&self, mesh: &Arc<Mesh>) -> u64 {
+        let known = self.lock().by_address.get(&address(mesh)).copied();
+        known.unwrap_or_else(|| hash(mesh))
+    }
+
+    fn find(&self, mesh: &Arc<Mesh>, content: u64) -> Option<Arc<MeshGeometry>> {
+        let geometry = self.lock().by_content.get(&content)?.geometry.clone();
+        (Arc::ptr_eq(geometry.mesh(), mesh) || geometry.mesh() == mesh).then_some(geometry)
+    }
+
+    fn keep(&self, used: &[u64], built: HashMap<u64, Arc<MeshGeometry>>) {
+        let mut kept = self.lock();
+        kept.now += 1;
+        kept.builds += built.len() as u64;
+        let now = kept.now;
+        for (content, geometry) in built {
+            kept.by_address.insert(address(geometry.mesh()), content);
+            kept.by_content.insert(content, Entry { geometry, last_used: now });
+        }
+        for content in used {
+            if let Some(entry) = kept.by_content.get_mut(content) {
+                entry.last_used = now;
+            }
+        }
+        kept.forget_the_oldest(KEPT_TRIANGLES);
+    }
+
+    /// A material's tables, if the last scene had it, and whatever its texture.
+    pub(super) fn surfacing(&self, material: &Material) -> Option<Surfacing> {
+        self.lock().surfaces.iter().find(|(known, _)| known == material).map(|(_, surfacing)| surfacing.clone())
+    }
+
+    /// Keeps a scene's materials for the next `prepare`.
+    pub(super) fn keep_surfaces(&self, surfaces: impl Iterator<Item = (Material, Surfacing)>) {
+        self.lock().surfaces = surfaces.collect();
+    }
+
+    /// The tree of small things that was kept last.
+    pub(super) fn small(&self) -> Option<Arc<SmallTree>> {
+        self.lock().small.clone()
+    }
+
+    /// Keeps the tree of small things for the next `prepare`.
+    pub(super) fn keep_small(&self, small: Arc<SmallTree>) {
+        self.lock().small = Some(small);
+    }
+}
+
+impl Kept {
+    /// Keeps what was used last, and of the rest the newest, `most` triangles in all.
+    fn forget_the_oldest(&mut self, most: usize) {
+        let now = self.now;
+        let mut unused: Vec<(u64, u64, usize)> = self
+            .by_content
+            .iter()
+            .filter(|(_, entry)| entry.last_used < now)
+            .map(|(content, entry)| (entry.last_used, *content, entry.geometry.mesh().triangles.len()))
+            .collect();
+        unused.sort_unstable_by_key(|(last_used, ..)| std::cmp::Reverse(*last_used));
+        let mut triangles = 0;
+        for (_, content, count) in unused {
+            triangles += count;
+            if triangles > most {
+                self.by_content.remove(&content);
+            }
+        }
+        let by_content = &self.by_content;
+        // An address that is nobody's any more may become another mesh's.
+        self.by_address.retain(|address_of, content| {
+            by_content.get(content).is_some_and(|entry| address(entry.geometry.mesh()) == *address_of)
+        });
+    }
+}
+
+fn address(mesh: &Arc<Mesh>) -> usize {
+    Arc::as_ptr(mesh) as usize
+}
+
+fn hash(mesh: &Mesh) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    let bits = |v: &glam::Vec3| [u64::from(v.x.to_bits()) << 32 | u64::from(v.y.to_bits()), v.z.to_bits().into()];
+    mesh.positions.iter().for_each(|p| bits(p).hash(&mut hasher));
+    mesh.normals.iter().for_each(|n| bits(n).hash(&mut hasher));
+    mesh.uvs.iter().for_each(|uv| [uv.x.to_bits(), uv.y.to_bits()].hash(&mut hasher));
+    mesh.triangles.hash(&mut hasher);
+    for part in &mesh.parts {
+        (&part.name, part.triangles.start, part.triangles.end).hash(&mut hasher);
+    }
+    hasher.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raytrace::{prepare, prepare_kept};
+    use crate::scene::{Assets, Emitter, Light, Object, ObjectId, Output, Room, Scene, Shape, Transform};
+    use glam::Vec3;
+
+    /// A ball, a box, a model of 20 000 triangles and a light in a room.
+    fn studio() -> (Scene, Assets) {
+        let shapes = [
+            Shape::Sphere { radius_m: 0.3 },
+            Shape::Box { size_m: Vec3::splat(0.4) },
+            Shape::MeshFile { path: "hill.obj".to_owned() },
+        ];
+        let object = |(i, shape): (usize, Shape)| Object {
+            id: ObjectId(i as u32),
+            name: format!("Thing {i}"),
+            transform: Transform { position: Vec3::X * i as f32, ..Transform::default() },
+            shape,
+            material: Default::default(),
+            part_materials: Vec::new(),
+            visible: true,
+            locked: false,
+        };
+        let objects = shapes.into_iter().enumerate().map(object).collect();
+        let lights = vec![Light::new(Emitter::Point, Output::Lumens(1000.0))];
+        let mut assets = Assets::default();
+        assets.meshes.insert("hill.obj".to_owned(), Arc::new(hill(100, 0.2)));
+        (Scene { room: Some(Room::default()), objects, lights, ..Scene::default() }, assets)
+    }
+
+    fn hill(side: u32, height: f32) -> Mesh {
+        let mut mesh = Mesh::default();
+        for i in 0..(side + 1) * (side + 1) {
+            let (x, z) = ((i % (side + 1)) as f32 / side as f32, (i / (side + 1)) as f32 / side as f32);
+            mesh.positions.push(Vec3::new(x, height * (7.0 * x).sin() * (9.0 * z).cos(), z));
+        }
+        for (x, z) in (0..side).flat_map(|x| (0..side).map(move |z| (x, z))) {
+            let corner = z * (side + 1) + x;
+            mesh.triangles.push([corner, corner + side + 1, corner + 1]);
+            mesh.triangles.push([corner + 1, corner + side + 1, corner + side + 2]);
+        }
+        mesh.with_single_part("hill")
+    }
+
+    #[test]
+    fn what_moves_builds_no_tree_and_what_changes_does() {
+        let (mut scene, mut assets) = studio();
+        let cache = GeometryCache::default();
+        let builds = |scene: &Scene, assets: &Assets| {
+            let before = cache.builds();
+            let small = cache.small();
+            prepare_kept(scene, assets, &cache).unwrap();
+            let same_small = small.zip(cache.small()).is_some_and(|(a, b)| Arc::ptr_eq(&a, &b));
+            (cache.builds() - before, same_small)
+        };
+        assert_eq!(builds(&scene, &assets), (4, false), "room, ball, box, hill");
+        scene.lights[0].position.x += 1.0;
+        assert_eq!(builds(&scene, &assets), (0, true), "a moved light re-uses everything");
+        scene.objects[2].transform.position.x += 1.0;
+        assert_eq!(builds(&scene, &assets), (0, true), "a moved model re-uses the tree of small things");
+        scene.objects[1].transform.position.x += 1.0;
+        assert_eq!(builds(&scene, &assets), (0, false), "a moved box changes the tree of small things alone");
+        scene.objects[1].shape = Shape::Box { size_m: Vec3::new(0.4, 0.5, 0.4) };
+        assert_eq!(builds(&scene, &assets).0, 1, "another box is another mesh");
+        assets.meshes.insert("hill.obj".to_owned(), Arc::new(hill(100, 0.3)));
+        assert_eq!(builds(&scene, &assets).0, 1, "a file that changed on disk");
+        assets.meshes.insert("hill.obj".to_owned(), Arc::new(hill(100, 0.3)));
+        assert_eq!(builds(&scene, &assets).0, 0, "read again and the same");
+        assets.meshes.insert("hill.obj".to_owned(), Arc::new(hill(100, 0.2)));
+        assert_eq!(builds(&scene, &assets).0, 0, "an undone change is still there");
+    }
+
+    #[test]
+    fn a_prepared_scene_is_the_same_with_and_without_what_was_kept() {
+        use crate::raytrace::{Control, Settings, render};
+        use std::ops::ControlFlow;
+        let (mut scene, assets) = studio();
+        scene.camera.position = Vec3::new(0.5, 1.0, 3.0);
+        let cache = GeometryCache::default();
+        prepare_kept(&scene, &assets, &cache).unwrap();
+        scene.objects[1].transform.position.y += 0.2;
+        scene.objects[2].transform.position.y += 0.1;
+        let settings = Settings { width: 24, height: 16, spp: 2, ..Settings::default() };
+        let picture = |prepared: &crate::raytrace::RenderScene| {
+            let film = render(prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+            film.develop(&scene)
+        };
+        let kept = picture(&prepare_kept(&scene, &assets, &cache).unwrap());
+        assert_eq!(kept, picture(&prepare(&scene, &assets).unwrap()));
+    }
+
+    #[test]
+    fn what_is_kept_beyond_need_is_bounded() {
+        let cache = GeometryCache::default();
+        let hills: Vec<Arc<Mesh>> = (0..8).map(|i| Arc::new(hill(20, 0.1 * i as f32))).collect();
+        for hill in &hills {
+            cache.geometries(std::slice::from_ref(hill));
+        }
+        let kept = |cache: &GeometryCache| {
+            let kept = cache.lock();
+            (kept.by_content.len(), kept.by_address.len())
+        };
+        assert_eq!((cache.builds(), kept(&cache)), (8, (8, 8)));
+        // Each has 800 triangles: two of those that the last call did not use fit.
+        cache.lock().forget_the_oldest(1700);
+        assert_eq!(kept(&cache), (3, 3));
+        cache.geometries(&hills[5..8]);
+        assert_eq!(cache.builds(), 8, "the newest are there");
+        cache.geometries(&hills[..1]);
+        assert_eq!(cache.builds(), 9, "the oldest went first");
+    }
+}

@@ -1,0 +1,122 @@
+//! From where a live picture is seen.
+
+use crate::raytrace::lens::{Aperture, Lens};
+use crate::scene::{CameraFrame, Room, Scene};
+use glam::{Vec2, Vec3};
+
+/// A view of the studio, at a size in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LiveCamera {
+    /// What is framed, in world space.
+    pub frame: CameraFrame,
+    /// Pixels across and down.
+    pub size: (u32, u32),
+    aperture: Aperture,
+    /// The tracer's origin in world space.
+    origin: Vec3,
+    /// Corners of the room around the tracer's origin, where the eye stands outside of it.
+    room: Option<[Vec3; 2]>,
+}
+
+/// How far inside the room rays from outside begin, metres: clear of the wall's own rounding.
+const CLEAR_OF_WALL_M: f32 = 1e-3;
+
+impl LiveCamera {
+    /// A view in which everything is sharp.
+    pub fn pinhole(frame: CameraFrame, size: (u32, u32)) -> Self {
+        LiveCamera {
+            frame,
+            size: (size.0.max(1), size.1.max(1)),
+            aperture: Aperture::PINHOLE,
+            origin: Vec3::ZERO,
+            room: None,
+        }
+    }
+
+    /// The view through the scene's camera, with its depth of field where that is on.
+    pub fn through_lens(scene: &Scene, frame: CameraFrame, size: (u32, u32)) -> Self {
+        LiveCamera { aperture: Lens::new(scene).aperture(), ..Self::pinhole(frame, size) }
+    }
+
+    /// The same view for a tracer whose origin lies elsewhere. From outside, a room's near walls are not seen.
+    pub(super) fn around(self, origin: Vec3, room: Option<&Room>) -> Self {
+        let corners = room.map(|room| corners(room).map(|corner| corner - origin));
+        let eye = self.frame.position() - origin;
+        let outside = |[low, high]: &[Vec3; 2]| eye.cmplt(*low).any() || eye.cmpgt(*high).any();
+        LiveCamera { origin, room: corners.filter(outside), ..self }
+    }
+
+    /// A good place for the tracer's origin: the eye, or where the room is nearest to it.
+    pub(super) fn natural_origin(&self, room: Option<&Room>) -> Vec3 {
+        let eye = self.frame.position();
+        room.map(corners).map_or(eye, |[low, high]| eye.max(low).min(high))
+    }
+
+    /// What counts as far where a point is seen, metres: its distance, or less where the lens is long.
+    pub(super) fn depth_scale(&self, point: Vec3) -> f32 {
+        const USUAL_HALF_HEIGHT: f32 = 0.35;
+        point.distance(self.eye()) * self.frame.half_extent.y / USUAL_HALF_HEIGHT
+    }
+
+    /// Whether things out of focus are blurred.
+    pub(super) fn has_aperture(&self) -> bool {
+        self.aperture != Aperture::PINHOLE
+    }
+
+    /// The lens centre, relative to the tracer's origin.
+    pub(super) fn eye(&self) -> Vec3 {
+        self.frame.position() - self.origin
+    }
+
+    /// Origin and unit direction of the ray through a place in the picture, in pixels from the top left; `u` chooses the
+    /// place on the lens.
+    pub(super) fn ray(&self, pixel: Vec2, u: Vec2) -> (Vec3, Vec3) {
+        let size = Vec2::new(self.size.0 as f32, self.size.1 as f32);
+        let (from, direction) = self.aperture.ray(&self.frame, pixel / size, u);
+        let from = from + self.eye();
+        (from + direction * self.room.map_or(0.0, |room| entry(from, direction, room)), direction)
+    }
+
+    /// Where a point relative to the tracer's origin is seen, in pixels from the top left; none behind the eye.
+    pub(super) fn project(&self, point: Vec3) -> Option<Vec2> {
+        let size = Vec2::new(self.size.0 as f32, self.size.1 as f32);
+        self.frame.project(point + self.origin).map(|place| place * size)
+    }
+}
+
+/// Lower and upper corner of a room in world space.
+fn corners(room: &Room) -> [Vec3; 2] {
+    let half = 0.5 * Vec3::new(room.size_m.x, 0.0, room.size_m.z);
+    [-half, half + Vec3::Y * room.size_m.y]
+}
+
+/// Distance at which a ray from outside has passed a box's near side; 0 where it misses the box.
+fn entry(from: Vec3, direction: Vec3, [low, high]: [Vec3; 2]) -> f32 {
+    let (a, b) = ((low - from) / direction, (high - from) / direction);
+    // A ray along a side has 0 / 0 there; `max_element` of the ordered pair drops it, as the other sides decide.
+    let (near, far) = (a.min(b).max_element(), a.max(b).min_element());
+    if near > 0.0 && near < far { near + CLEAR_OF_WALL_M } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rays_from_outside_begin_inside_the_near_wall() {
+        let frame = CameraFrame {
+            world_from_camera: glam::Affine3A::from_translation(Vec3::new(0.0, 1.0, 10.0)),
+            half_extent: Vec2::splat(0.3),
+        };
+        let room = Room { size_m: Vec3::new(4.0, 3.0, 6.0), ..Room::default() };
+        let camera = LiveCamera::pinhole(frame, (100, 100)).around(Vec3::ZERO, Some(&room));
+        let (start, direction) = camera.ray(Vec2::splat(50.0), Vec2::ZERO);
+        assert!((start.z - 3.0 + CLEAR_OF_WALL_M).abs() < 1e-4 && direction.z < -0.999, "{start}");
+        // Beside the room there is nothing to pass.
+        let (start, _) = camera.ray(Vec2::new(0.0, 50.0), Vec2::ZERO);
+        assert_eq!(start, Vec3::new(0.0, 1.0, 10.0));
+        assert_eq!(camera.natural_origin(Some(&room)), Vec3::new(0.0, 1.0, 3.0));
+        let inside = LiveCamera::pinhole(CameraFrame { world_from_camera: glam::Affine3A::IDENTITY, ..frame }, (9, 9));
+        assert_eq!(inside.around(Vec3::ZERO, Some(&room)).ray(Vec2::ZERO, Vec2::ZERO).0, Vec3::ZERO);
+    }
+}

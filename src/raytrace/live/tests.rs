@@ -1,0 +1,384 @@
+//! What the live picture keeps, what it drops, and that it ends at the truth.
+
+use super::*;
+use crate::raytrace::{Settings, render};
+use crate::scene::{
+    Aim, Camera, CameraFrame, Emitter, Light, Material, Object, ObjectId, Output, Room, Shape, Transform,
+};
+use glam::Affine3A;
+use std::ops::ControlFlow;
+
+const SIZE: (u32, u32) = (60, 40);
+
+fn object(id: u32, shape: Shape, position: Vec3, material: Material) -> Object {
+    let transform = Transform { position, ..Transform::default() };
+    let name = format!("Thing {id}");
+    Object { id: ObjectId(id), name, transform, shape, material, part_materials: vec![], visible: true, locked: false }
+}
+
+fn matte() -> Material {
+    Material { base_color: [0.5; 3], roughness: 0.9, ..Material::default() }
+}
+
+/// A ball of some material before a grey wall, under two lamps; no room.
+fn studio(ball: Material) -> Scene {
+    let wall = Shape::Box { size_m: Vec3::new(8.0, 6.0, 0.2) };
+    let light = |id: u32, x: f32| Light {
+        id: LightId(id),
+        name: format!("Lamp {id}"),
+        position: Vec3::new(x, 2.0, 3.0),
+        aim: Aim::Point(Vec3::ZERO),
+        ..Light::new(Emitter::RectPanel { width_m: 0.6, height_m: 0.6 }, Output::Lumens(9000.0))
+    };
+    Scene {
+        camera: Camera { position: Vec3::Z * 4.0, aim: Aim::Point(Vec3::ZERO), ..Camera::default() },
+        objects: vec![
+            object(0, wall, Vec3::Z * -1.0, matte()),
+            object(1, Shape::Sphere { radius_m: 0.5 }, Vec3::ZERO, ball),
+        ],
+        lights: vec![light(0, 2.0), light(1, -2.5)],
+        ..Scene::default()
+    }
+}
+
+/// The scene's camera, moved sideways.
+fn view(scene: &Scene, aside_m: f32) -> LiveCamera {
+    let mut frame: CameraFrame = scene.camera_frame(1.5);
+    frame.world_from_camera = Affine3A::from_translation(Vec3::X * aside_m) * frame.world_from_camera;
+    LiveCamera::pinhole(frame, SIZE)
+}
+
+fn begun(scene: &Scene) -> LivePicture {
+    let mut live = LivePicture::default();
+    live.update(scene, &Assets::default(), view(scene, 0.0)).unwrap();
+    live
+}
+
+/// Works until every tile has done so many steps.
+fn work_to(live: &mut LivePicture, steps: u32) {
+    let least = |live: &LivePicture| live.view.as_ref().unwrap().film.tiles.iter().map(|t| t.progress.next()).min();
+    while !live.is_done() && least(live) < Some(steps) {
+        live.work(1, &Control::new());
+    }
+}
+
+/// Steps until every pixel is traced or taken over, and until it is known which are taken over.
+const ALL_TRACED: u32 = 8;
+const ALL_SEEN: u32 = 5;
+
+fn finish(live: &mut LivePicture) {
+    while live.work(1 << 20, &Control::new()) > 0 {}
+    assert!(live.is_done());
+}
+
+/// The picture of an ordinary render from a view, each light's traced value.
+fn truth(scene: &Scene, camera: &LiveCamera, spp: u32) -> Picture {
+    let mut seen = scene.clone();
+    seen.camera.position = camera.frame.position();
+    seen.camera.aim = Aim::Point(camera.frame.position() + 4.0 * camera.frame.forward());
+    let settings = Settings { width: SIZE.0, height: SIZE.1, spp, ..Settings::default() };
+    let prepared = prepare::prepare(&seen, &Assets::default()).unwrap();
+    render(&prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(())).develop(&seen)
+}
+
+fn mean(picture: &Picture) -> f32 {
+    picture.rgb.iter().flatten().sum::<f32>() / (3 * picture.rgb.len()) as f32
+}
+
+/// Root mean square difference over the mean.
+fn difference(a: &Picture, b: &Picture) -> f32 {
+    let square: f32 = a.rgb.iter().flatten().zip(b.rgb.iter().flatten()).map(|(a, b)| (a - b).powi(2)).sum();
+    (square / (3 * a.rgb.len()) as f32).sqrt() / mean(b)
+}
+
+/// Asserts that two pictures differ by no more than the grain of quiet tiles: 0.06 stop, 4 %, in each pixel.
+fn assert_same(ours: &Picture, theirs: &Picture) {
+    let (off, brightness) = (difference(ours, theirs), mean(ours) / mean(theirs));
+    assert!(off < 0.045, "{off} off, {brightness} times as bright");
+}
+
+/// Pixels of an object, and how many of them were taken over. Valid after [`ALL_SEEN`] steps.
+fn pixels_of(live: &LivePicture, object: u32) -> (usize, usize) {
+    let film = &live.view.as_ref().unwrap().film;
+    let all = film.tiles.iter().flat_map(|tile| (0..tile.pixels()).map(move |pixel| (tile, pixel)));
+    // Those of the coarse grid were traced where nothing was known: their weight is that of one path.
+    let of_object = all.filter(|(tile, pixel)| tile.shown[*pixel].object == object);
+    of_object.fold((0, 0), |(count, known), (tile, pixel)| (count + 1, known + usize::from(tile.sum(0, pixel).w > 1.0)))
+}
+
+#[test]
+fn it_ends_at_the_picture_of_a_render() {
+    let scene = studio(Material::default());
+    let mut live = begun(&scene);
+    finish(&mut live);
+    let (ours, theirs) = (live.develop(&scene), truth(&scene, &view(&scene, 0.0), 256));
+    // A quiet tile is within 0.06 stop, 4 %, of the truth in each pixel; the mean of thousands of pixels much closer.
+    assert_same(&ours, &theirs);
+    assert!((mean(&ours) / mean(&theirs) - 1.0).abs() < 0.005, "{} for {}", mean(&ours), mean(&theirs));
+    assert_eq!((live.work(1000, &Control::new()), live.nonfinite()), (0, 0), "nothing is left to do");
+}
+
+#[test]
+fn a_coarse_picture_comes_first_and_has_the_light_of_the_fine_one() {
+    let scene = studio(matte());
+    let mut live = begun(&scene);
+    assert!(!live.is_begun());
+    work_to(&mut live, 2);
+    assert_eq!(live.stride(), Some(8));
+    let coarse = live.develop(&scene);
+    finish(&mut live);
+    let fine = live.develop(&scene);
+    assert!((mean(&coarse) / mean(&fine) - 1.0).abs() < 0.15, "{} for {}", mean(&coarse), mean(&fine));
+    let dark = coarse.rgb.iter().filter(|rgb| rgb[1] <= 0.0).count();
+    assert!(dark < 40, "{dark} black pixels: what is not yet traced is filled in");
+}
+
+#[test]
+fn a_small_pan_keeps_most_of_a_matte_studio_and_what_it_keeps_is_right() {
+    let scene = studio(matte());
+    let mut live = begun(&scene);
+    finish(&mut live);
+    let moved = view(&scene, 0.1);
+    live.update(&scene, &Assets::default(), moved).unwrap();
+    work_to(&mut live, ALL_SEEN);
+    assert!(live.reused() > 0.8, "{} of the pixels", live.reused());
+    work_to(&mut live, ALL_TRACED);
+    let (ours, theirs) = (live.develop(&scene), truth(&scene, &moved, 256));
+    // Grain of one path where the ball's edge was, of quiet tiles elsewhere.
+    let off = difference(&ours, &theirs);
+    assert!(off < 0.1, "{off}");
+    assert!((mean(&ours) / mean(&theirs) - 1.0).abs() < 0.01, "{} for {}", mean(&ours), mean(&theirs));
+}
+
+#[test]
+fn what_was_hidden_is_traced_anew() {
+    let scene = studio(matte());
+    let mut live = begun(&scene);
+    finish(&mut live);
+    let old_eye = view(&scene, 0.0).frame.position();
+    live.update(&scene, &Assets::default(), view(&scene, 0.4)).unwrap();
+    work_to(&mut live, ALL_SEEN);
+    let traced = live.traced.as_ref().unwrap();
+    let mut tracer = crate::raytrace::integrator::Tracer::new(&traced.full);
+    let (mut hidden, mut wrong) = (0, 0);
+    for tile in &live.view.as_ref().unwrap().film.tiles {
+        for (pixel, shown) in tile.shown.iter().enumerate().filter(|(_, shown)| shown.object == 0) {
+            let from = old_eye - traced.origin;
+            let to = shown.position - from;
+            if tracer.blocked(from, to.normalize(), 0.99 * to.length()) {
+                hidden += 1;
+                wrong += usize::from(tile.sum(0, pixel).w > 1.0);
+            }
+        }
+    }
+    assert!(hidden > 20 && wrong == 0, "{wrong} of {hidden} hidden pixels were taken over");
+    let (wall, known) = pixels_of(&live, 0);
+    assert!(known * 2 > wall, "{known} of {wall} pixels of the wall are kept");
+}
+
+#[test]
+fn mirrors_and_glass_are_traced_anew_and_gloss_counts_the_less_the_more_the_view_turns() {
+    let smooth = Material { roughness: 0.0, metallic: 1.0, base_color: [0.9; 3], ..Material::default() };
+    let glass = Material { roughness: 0.0, transmission: 1.0, ..Material::default() };
+    let glossy = Material { roughness: 0.3, ..matte() };
+    let kept = |ball: &Material, aside_m: f32| {
+        let scene = studio(ball.clone());
+        let mut live = begun(&scene);
+        work_to(&mut live, ALL_TRACED + 20);
+        live.update(&scene, &Assets::default(), view(&scene, aside_m)).unwrap();
+        work_to(&mut live, ALL_SEEN);
+        let film = &live.view.as_ref().unwrap().film;
+        let weights = film.tiles.iter().flat_map(|tile| {
+            (0..tile.pixels()).filter(|p| tile.shown[*p].object == 1).map(|p| (tile.sum(0, p).w - 1.0).max(0.0))
+        });
+        let weights: Vec<f32> = weights.collect();
+        weights.iter().sum::<f32>() / weights.len() as f32
+    };
+    assert_eq!((kept(&smooth, 0.1), kept(&glass, 0.1)), (0.0, 0.0));
+    let (near, farther, far) = (kept(&glossy, 0.05), kept(&glossy, 0.2), kept(&glossy, 0.6));
+    assert!(near > farther && farther > far && far == 0.0, "{near} {farther} {far}");
+    assert!(kept(&matte(), 0.2) > farther);
+}
+
+#[test]
+fn what_was_wrong_before_the_view_moved_fades_as_samples_come() {
+    let scene = studio(matte());
+    let mut live = begun(&scene);
+    work_to(&mut live, ALL_TRACED + 30);
+    live.update(&scene, &Assets::default(), view(&scene, 0.05)).unwrap();
+    live.history.as_mut().unwrap().distort(3.0);
+    work_to(&mut live, ALL_TRACED);
+    let theirs = truth(&scene, &view(&scene, 0.05), 64);
+    let start = mean(&live.develop(&scene)) / mean(&theirs) - 1.0;
+    assert!(start > 1.2, "three times as bright where it was known: {start}");
+    for samples in [16, 64, 240] {
+        let target = ALL_TRACED + samples;
+        while live.view.as_ref().unwrap().film.tiles.iter().any(|t| t.progress.main < target) {
+            // Quiet tiles go on, too: the past is no part of their noise.
+            live.view.as_mut().unwrap().film.tiles.iter_mut().for_each(LiveTile::wake);
+            live.work(1, &Control::new());
+        }
+        let wrong = mean(&live.develop(&scene)) / mean(&theirs) - 1.0;
+        let expected = 2.0 * history::MOST_WEIGHT / (history::MOST_WEIGHT + samples as f32);
+        assert!(wrong < 1.1 * expected + 0.01, "{wrong} after {samples} samples, {expected} expected at most");
+    }
+}
+
+#[test]
+fn a_moved_thing_drops_all_that_was_known() {
+    let mut scene = studio(matte());
+    let mut live = begun(&scene);
+    finish(&mut live);
+    scene.objects[1].transform.position.x += 0.3;
+    live.update(&scene, &Assets::default(), view(&scene, 0.0)).unwrap();
+    assert!(!live.is_begun() && live.history.is_none());
+    finish(&mut live);
+    let (ours, theirs) = (live.develop(&scene), truth(&scene, &view(&scene, 0.0), 256));
+    assert_same(&ours, &theirs);
+    assert_eq!(live.reused(), 0.0);
+}
+
+#[test]
+fn power_colour_and_switch_of_a_light_cost_no_ray() {
+    let mut scene = studio(matte());
+    let mut live = begun(&scene);
+    finish(&mut live);
+    let (control, from_here) = (Control::new(), view(&scene, 0.0));
+    let mut edited = |edit: &dyn Fn(&mut Scene)| {
+        edit(&mut scene);
+        live.update(&scene, &Assets::default(), from_here).unwrap();
+        assert_eq!((live.work(1 << 20, &control), control.rays()), (0, 0));
+        mean(&live.develop(&scene))
+    };
+    let bright = edited(&|_| {});
+    let dimmed = edited(&|scene| scene.lights.iter_mut().for_each(|light| light.power.dial_stops = -1.0));
+    assert!((dimmed / bright - 0.5).abs() < 1e-5, "a stop down: {dimmed} of {bright}");
+    let one = edited(&|scene| scene.lights[0].on = false);
+    let other = edited(&|scene| (scene.lights[0].on, scene.lights[1].on) = (true, false));
+    assert!(((one + other) / dimmed - 1.0).abs() < 1e-5, "{one} + {other} = {dimmed}");
+    edited(&|scene| scene.lights[0].color.source = crate::scene::ColorSource::Kelvin(3200.0));
+    edited(&|scene| (scene.camera.iso, scene.camera.f_number, scene.camera.shutter_s) = (400.0, 8.0, 0.1));
+    edited(&|scene| scene.camera.position.x += 1.0);
+    edited(&|scene| scene.objects[0].name = "Backdrop".to_owned());
+    // Dark lights may go anywhere, and come back as they were.
+    edited(&|scene| scene.lights[1].position.y += 1.0);
+    edited(&|scene| scene.lights[1].position.y -= 1.0);
+    let both = edited(&|scene| scene.lights[1].on = true);
+    assert!(both > 0.0);
+}
+
+#[test]
+fn a_moved_light_is_traced_alone_and_the_others_keep_what_they_have() {
+    let mut scene = studio(matte());
+    let mut live = begun(&scene);
+    finish(&mut live);
+    let sums = |live: &LivePicture, layer: usize| -> Vec<glam::Vec4> {
+        let film = &live.view.as_ref().unwrap().film;
+        film.tiles.iter().flat_map(|t| (0..t.pixels()).map(move |p| t.sum(layer, p))).collect()
+    };
+    let others = sums(&live, 1);
+    scene.lights[0].power.dial_stops = -1.0;
+    scene.lights[0].position.x -= 0.8;
+    live.update(&scene, &Assets::default(), view(&scene, 0.0)).unwrap();
+    assert_eq!(live.traced.as_ref().unwrap().lagging.as_ref().unwrap().lights, [LightId(0)]);
+    work_to(&mut live, 2);
+    // The first picture of the moved light is coarse; the other light's stays fine.
+    let first = live.develop(&scene);
+    scene.lights[0].position.x -= 0.1;
+    live.update(&scene, &Assets::default(), view(&scene, 0.0)).unwrap();
+    finish(&mut live);
+    assert!(sums(&live, 1) == others, "the other light was traced again");
+    let (ours, theirs) = (live.develop(&scene), truth(&scene, &view(&scene, 0.0), 256));
+    assert_same(&ours, &theirs);
+    assert!((mean(&first) / mean(&theirs) - 1.0).abs() < 0.2, "{} for {}", mean(&first), mean(&theirs));
+    // A light that is new, and one that is gone.
+    let mut third = scene.lights[1].clone();
+    (third.id, third.name, third.position) = (LightId(7), "Third".to_owned(), Vec3::new(0.0, 3.0, 2.0));
+    scene.lights.insert(0, third);
+    live.update(&scene, &Assets::default(), view(&scene, 0.0)).unwrap();
+    finish(&mut live);
+    assert!(sums(&live, 2) == others);
+    scene.lights.remove(1);
+    live.update(&scene, &Assets::default(), view(&scene, 0.0)).unwrap();
+    assert_eq!(live.work(1 << 20, &Control::new()), 0);
+    let (ours, theirs) = (live.develop(&scene), truth(&scene, &view(&scene, 0.0), 256));
+    assert_same(&ours, &theirs);
+}
+
+#[test]
+fn the_same_bits_for_any_number_of_threads() {
+    let scene = studio(Material::default());
+    let picture = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut live = begun(&scene);
+            work_to(&mut live, ALL_TRACED + 2);
+            live.update(&scene, &Assets::default(), view(&scene, 0.1)).unwrap();
+            work_to(&mut live, ALL_TRACED + 2);
+            live.develop(&scene)
+        })
+    };
+    assert_eq!(picture(1), picture(3));
+}
+
+#[test]
+fn nothing_breaks_it() {
+    let scene = studio(Material::default());
+    let no_assets = Assets::default();
+    let mut live = LivePicture::default();
+    assert_eq!((live.work(10, &Control::new()), live.is_done(), live.develop(&scene)), (0, true, Picture::default()));
+    let mut wrong = scene.clone();
+    wrong.camera.focal_length_mm = f32::NAN;
+    let frame = scene.camera_frame(1.5);
+    assert!(live.update(&wrong, &no_assets, LiveCamera::pinhole(frame, SIZE)).is_err());
+    for size in [(0, 0), (1, 1), (33, 1), (31, 65)] {
+        live.update(&scene, &no_assets, LiveCamera::pinhole(frame, size)).unwrap();
+        live.work(3000, &Control::new());
+        let picture = live.develop(&scene);
+        assert_eq!((picture.width, picture.height), (size.0.max(1), size.1.max(1)));
+        assert!(picture.rgb.iter().flatten().all(|value| value.is_finite()));
+    }
+    let cancelled = Control::new();
+    cancelled.cancel();
+    live.update(&scene, &no_assets, LiveCamera::pinhole(frame, SIZE)).unwrap();
+    assert_eq!((live.work(1000, &cancelled), live.is_begun()), (0, false));
+    // Dark, with many lights, with depth of field, from far away, with everything moved at once.
+    let dark = Scene { lights: Vec::new(), ..scene.clone() };
+    let mut many = scene.clone();
+    many.lights = (0..40).map(|i| Light { id: LightId(i), ..scene.lights[0].clone() }).collect();
+    for (i, light) in many.lights.iter_mut().enumerate() {
+        light.name = format!("Light {i}");
+    }
+    let mut blurred = scene.clone();
+    (blurred.camera.depth_of_field, blurred.camera.f_number) = (true, 1.4);
+    let mut far = scene.clone();
+    far.room = Some(Room::default());
+    for scene in [&dark, &many, &blurred, &many, &far, &dark, &scene] {
+        for aside_m in [0.0, 0.1, 100.0] {
+            let mut camera = view(scene, aside_m);
+            if scene.camera.depth_of_field {
+                camera = LiveCamera::through_lens(scene, camera.frame, SIZE);
+            }
+            live.update(scene, &no_assets, camera).unwrap();
+            live.work(6000, &Control::new());
+            let picture = live.develop(scene);
+            assert!(picture.rgb.iter().flatten().all(|value| value.is_finite()));
+        }
+    }
+    assert_eq!(live.nonfinite(), 0);
+}
+
+#[test]
+fn things_out_of_focus_are_blurred_and_never_taken_over() {
+    let mut scene = studio(matte());
+    (scene.camera.depth_of_field, scene.camera.f_number, scene.camera.focal_length_mm) = (true, 1.4, 135.0);
+    let camera = |aside_m: f32| LiveCamera::through_lens(&scene, view(&scene, aside_m).frame, SIZE);
+    let mut live = LivePicture::default();
+    live.update(&scene, &Assets::default(), camera(0.0)).unwrap();
+    finish(&mut live);
+    let (ours, theirs) = (live.develop(&scene), truth(&scene, &view(&scene, 0.0), 256));
+    assert!(difference(&ours, &theirs) < 0.05, "{}", difference(&ours, &theirs));
+    live.update(&scene, &Assets::default(), camera(0.05)).unwrap();
+    work_to(&mut live, ALL_SEEN);
+    assert_eq!(live.reused(), 0.0);
+}
