@@ -5,7 +5,9 @@ use super::command::{Centre, Command, Handle};
 use super::dialogs::FileDialogs;
 use super::document::Document;
 use super::files::{PresetInfo, Source, Tasks};
+use super::forecast::{Estimate, Forecast, Forecaster};
 use super::keys::{BINDINGS, Binding};
+use super::live_view::LiveView;
 use super::meter_job::MeterJob;
 use super::panels::menu::MenuState;
 use super::panels::outliner::OutlinerState;
@@ -14,14 +16,17 @@ use super::panels::{self, add, help, inspector, menu, outliner, render, status};
 use super::picture_view::PictureView;
 use super::preview_host::PreviewHost;
 use super::recent::RecentFiles;
+use super::render_job::Outcome;
 use super::rendering::Rendering;
 use super::selection::Selection;
 use super::session::Session;
 use super::toasts::Toasts;
 use super::viewport::{Viewport, ViewportInput};
 use super::{files, theme};
+use crate::raytrace::{GeometryCache, Settings};
 use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, Rect, Ui, ViewportCommand};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// How the window begins.
@@ -54,6 +59,7 @@ pub struct App {
     pub(super) handles: Handle,
     pub(super) viewport: Viewport,
     pub(super) rendering: Rendering,
+    forecaster: Forecaster,
     pub(super) session: Session,
     pub(super) tasks: Tasks,
     pub(super) recent: RecentFiles,
@@ -81,14 +87,16 @@ impl App {
         theme::install(ctx);
         let presets = files::presets();
         let preview = PreviewHost::new(creation.wgpu_render_state.as_ref(), ctx);
+        let trees: Arc<GeometryCache> = Arc::default();
         let mut app = App {
             document: Document::default(),
             selection: Selection::default(),
             centre: Centre::default(),
             before_light: Centre::default(),
             handles: Handle::default(),
-            viewport: Viewport::new(preview),
-            rendering: Rendering::default(),
+            viewport: Viewport::new(preview, LiveView::new(trees.clone())),
+            rendering: Rendering::new(trees.clone()),
+            forecaster: Forecaster::new(trees),
             session: Session::new(options.dialogs),
             tasks: Tasks::default(),
             recent: RecentFiles::load(options.settings_folder),
@@ -183,6 +191,7 @@ impl App {
         self.take_close_request(ctx);
         self.load_wanted_assets(ctx);
         self.rendering.update(self.document.scene(), ctx);
+        self.learn_from_render();
         let document = &self.document;
         self.meter.update(document.scene(), document.assets(), document.revision(), ctx);
         match self.rendering.failure() {
@@ -197,6 +206,25 @@ impl App {
         if matches!(self.centre, Centre::Light(id) if self.document.scene().light(id).is_none()) {
             self.centre = Centre::Studio;
         }
+    }
+
+    /// Lets the forecast know what a render took, if the studio is still what was rendered.
+    fn learn_from_render(&mut self) {
+        let Some(job) = self.rendering.job() else { return };
+        let Some(outcome) = job.take_outcome() else { return };
+        if *job.scene == *self.document.scene() {
+            let (Settings { width, height, method, .. }, revision) = (job.settings.clone(), self.document.revision());
+            let Outcome { build_s, trace_s, spp, noise_stops } = outcome;
+            let pixels = u64::from(width) * u64::from(height);
+            let forecast = Forecast::from_render(build_s, trace_s, pixels, spp, noise_stops);
+            let took = Estimate { seconds: build_s + trace_s, noise_stops: noise_stops.into() };
+            self.forecaster.learn(revision, method, forecast, took);
+        }
+    }
+
+    /// The forecast of renders, and what they really took.
+    pub fn forecaster(&self) -> &Forecaster {
+        &self.forecaster
     }
 
     /// Keys that mean a command, unless text is being typed or a question is open.
@@ -257,7 +285,8 @@ impl App {
         });
         Panel::right("details").frame(side).default_size(340.0).size_range(300.0..=560.0).show(ui, |ui| {
             Panel::bottom("render").frame(Frame::new()).resizable(false).show(ui, |ui| {
-                render::render_ui(ui, &mut self.rendering, self.document.scene(), self.centre, out);
+                let (rendering, forecaster) = (&mut self.rendering, &mut self.forecaster);
+                render::render_ui(ui, rendering, forecaster, &self.document, self.centre, out);
             });
             inspector::inspector_ui(ui, &self.document, &self.selection, out);
         });
@@ -273,6 +302,7 @@ impl App {
             self.viewport.camera_follows = follows;
         });
         if self.centre == Centre::Picture {
+            self.viewport.live.pause();
             self.picture_view.ui(ui, &self.rendering, self.document.scene(), out);
             return;
         }
@@ -299,6 +329,7 @@ impl App {
             centre: self.centre,
             handles: self.handles,
             snap: self.viewport.snap,
+            live: self.viewport.live.mode,
             has_picture: self.rendering.developed().is_some(),
             rendering: self.rendering.is_running(),
         }

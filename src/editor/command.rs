@@ -4,6 +4,7 @@ use super::action::Action;
 use super::dialogs::Purpose;
 use super::item::Item;
 use super::keys::BINDINGS;
+use super::live_view::LiveMode;
 use super::studio_view::Side;
 use super::swing::Swing;
 use crate::scene::LightId;
@@ -124,6 +125,10 @@ pub enum Command {
     FrameSelection,
     /// Put the camera where the studio view looks from.
     CameraFromView,
+    /// The live view by the graphics card or by the tracer.
+    Live(LiveMode),
+    /// The other one of the two.
+    ToggleLive,
     /// Choose the handles.
     Handles(Handle),
     /// Show or hide the list of keys.

@@ -89,6 +89,8 @@ impl App {
                 let camera = self.viewport.camera_from_view(self.document.scene());
                 self.apply(Action::SetCamera(Box::new(camera)), None);
             }
+            Command::Live(mode) => self.viewport.live.mode = mode,
+            Command::ToggleLive => self.viewport.live.toggle(),
             Command::Handles(handle) => self.handles = handle,
             Command::ToggleHelp => self.show_help = !self.show_help,
             Command::Open

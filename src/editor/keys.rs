@@ -37,7 +37,7 @@ const fn ctrl_shift(key: Key) -> KeyboardShortcut {
 }
 
 /// All keys with one fixed meaning, in the order of the list. Of two that match, the one with more modifiers comes first.
-pub const BINDINGS: [Binding; 37] = [
+pub const BINDINGS: [Binding; 38] = [
     bind(ctrl_shift(Key::S), || Command::SaveAs, "Save the studio to another file"),
     bind(ctrl_shift(Key::Z), || Command::Redo, "Do the last step again"),
     bind(
@@ -80,6 +80,7 @@ pub const BINDINGS: [Binding; 37] = [
     bind(key(Key::K), || Command::LockSelected, "Lock in place; again: unlock"),
     bind(key(Key::F), || Command::FrameSelection, "Bring the selection, or everything, into view"),
     bind(key(Key::Num1), || Command::ToggleCameraView, "Camera view, and back"),
+    bind(key(Key::Num2), || Command::ToggleLive, "Live view: Quick, drawn at once, or True, traced"),
     bind(key(Key::Num3), || Command::Show(Centre::Picture), "The rendered picture"),
     bind(key(Key::Num5), || Command::ToggleParallel, "Perspective on or off"),
     bind(key(Key::Num7), || Command::LookFrom(Side::Top), "Look from the top, with a metre grid"),

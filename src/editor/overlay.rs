@@ -142,6 +142,12 @@ pub fn paint_aim_line(painter: &Painter, frame: &CameraFrame, rect: Rect, from: 
     painter.circle_stroke(to, 4.0, stroke);
 }
 
+/// A line about the view, in its lower left corner.
+pub fn paint_note(painter: &Painter, view: Rect, text: &str) {
+    let place = view.left_bottom() + vec2(10.0, -8.0);
+    paint_text(painter, place, Align2::LEFT_BOTTOM, text, Color32::from_gray(200));
+}
+
 /// Small text that stays readable over light and dark.
 pub fn paint_text(painter: &Painter, place: Pos2, align: Align2, text: &str, color: Color32) {
     let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(11.5), color);

@@ -119,7 +119,7 @@ impl PreviewHost {
     }
 
     /// The picture of the studio from `frame`, drawn anew if anything of it changed: as a draft where the adapter is a
-    /// processor, and in full as soon as nothing has changed for a moment.
+    /// processor, and in full as soon as nothing has changed for a moment. With `overlay_alone`, only what lies over it.
     pub fn show(
         &mut self,
         ctx: &Context,
@@ -127,6 +127,7 @@ impl PreviewHost {
         frame: CameraFrame,
         size: (u32, u32),
         overlay: Overlay,
+        overlay_alone: bool,
     ) -> Option<TextureId> {
         self.finish_start();
         let Stage::Ready(renderer) = &self.stage else { return None };
@@ -134,13 +135,13 @@ impl PreviewHost {
         let Look { channel, only_light, gloss } = self.look;
         // A light that was deleted meanwhile leaves the others as they are.
         let only_light = only_light.filter(|id| document.scene().light(*id).is_some());
-        let options = Options { channel, only_light, gloss, ..Options::default() };
+        let options = Options { channel, only_light, gloss, overlay_alone, ..Options::default() };
         let wanted = Shown { revision: document.revision(), frame, size, overlay, options };
         let changed = self.shown.as_ref() != Some(&wanted);
         let settled = self.draft_since.is_some_and(|since| since.elapsed() >= SETTLED);
         if changed || settled {
             // The very first picture is drawn in full: there is no motion to keep up with.
-            let draft = changed && drafts && self.shown.is_some();
+            let draft = changed && drafts && self.shown.is_some() && !overlay_alone;
             self.draw(document, wanted, draft)?;
             self.draft_since = draft.then(Instant::now);
         }

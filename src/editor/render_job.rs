@@ -1,13 +1,14 @@
 //! Rendering in the background, on an immutable copy of the studio, and developing the film in a thread of its own.
 
+use super::live_job::lock;
 use crate::io;
 use crate::photo::Picture;
-use crate::raytrace::{self, Control, Film, Method, Settings};
+use crate::raytrace::{self, Control, Film, GeometryCache, Method, Settings};
 use crate::scene::{Assets, Scene};
 use eframe::egui::{ColorImage, Context};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How far a render is.
@@ -47,12 +48,26 @@ pub struct Progress {
     pub left: Option<Duration>,
 }
 
+/// What a render that ran to its end took and left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outcome {
+    /// Files, trees and tables, seconds.
+    pub build_s: f64,
+    /// Sampling, seconds.
+    pub trace_s: f64,
+    /// Samples a pixel.
+    pub spp: u32,
+    /// Estimated noise of the picture, stops.
+    pub noise_stops: f32,
+}
+
 #[derive(Debug)]
 struct Shared {
     phase: Mutex<Phase>,
     film: Mutex<Option<Arc<Film>>>,
     tracing_since: Mutex<Option<Instant>>,
     ended: Mutex<Option<Instant>>,
+    outcome: Mutex<Option<Outcome>>,
 }
 
 /// One render. Dropping it cancels it.
@@ -70,20 +85,24 @@ pub struct RenderJob {
 /// Snapshots come at most this often: each is a copy of the film.
 const SNAPSHOT_EVERY: Duration = Duration::from_millis(150);
 
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    // A panic in the tracer must not take the window down with it: the data are plain values.
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 impl RenderJob {
-    /// Starts to render a copy of the studio. Assets that are still on their way are loaded first.
-    pub fn start(scene: Scene, assets: Assets, folder: Option<PathBuf>, settings: Settings, ctx: Context) -> Self {
+    /// Starts to render a copy of the studio. Assets that are still on their way are loaded first; meshes whose trees are
+    /// there cost nothing.
+    pub fn start(
+        trees: Arc<GeometryCache>,
+        scene: Scene,
+        assets: Assets,
+        folder: Option<PathBuf>,
+        settings: Settings,
+        ctx: Context,
+    ) -> Self {
         let control = Arc::new(Control::new());
         let shared = Arc::new(Shared {
             phase: Mutex::new(Phase::Preparing),
             film: Mutex::new(None),
             tracing_since: Mutex::new(None),
             ended: Mutex::new(None),
+            outcome: Mutex::new(None),
         });
         let job = RenderJob {
             control: control.clone(),
@@ -94,7 +113,7 @@ impl RenderJob {
         };
         let scene = job.scene.clone();
         std::thread::spawn(move || {
-            let work = || trace(&scene, assets, folder, &settings, &control, &shared, &ctx);
+            let work = || trace(&trees, &scene, assets, folder, &settings, &control, &shared, &ctx);
             // The tracer does not panic; if it did, the user would get a message and keep the window.
             let end = std::panic::catch_unwind(std::panic::AssertUnwindSafe(work))
                 .unwrap_or_else(|_| Phase::Failed("The renderer stopped with an internal error.".to_owned()));
@@ -118,6 +137,11 @@ impl RenderJob {
     /// The latest snapshot.
     pub fn film(&self) -> Option<Arc<Film>> {
         lock(&self.shared.film).clone()
+    }
+
+    /// What it took and left, once, when it has ran to its end.
+    pub fn take_outcome(&self) -> Option<Outcome> {
+        lock(&self.shared.outcome).take()
     }
 
     /// Numbers for the progress bar.
@@ -146,7 +170,9 @@ impl Drop for RenderJob {
 }
 
 /// The body of the render thread.
+#[expect(clippy::too_many_arguments, reason = "one call site")]
 fn trace(
+    trees: &GeometryCache,
     scene: &Scene,
     mut assets: Assets,
     folder: Option<PathBuf>,
@@ -155,6 +181,7 @@ fn trace(
     shared: &Shared,
     ctx: &Context,
 ) -> Phase {
+    let began = Instant::now();
     io::load_assets(scene, folder.as_deref(), &mut assets);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(|i| format!("trace {i}")).build()
@@ -162,14 +189,15 @@ fn trace(
         Ok(pool) => pool,
         Err(error) => return Phase::Failed(format!("No threads to render with: {error}.")),
     };
-    let prepared = match pool.install(|| raytrace::prepare(scene, &assets)) {
+    let prepared = match pool.install(|| raytrace::prepare_kept(scene, &assets, trees)) {
         Ok(prepared) => prepared,
         Err(error) => return Phase::Failed(super::files::plain(&error)),
     };
     if control.is_cancelled() {
         return Phase::Cancelled;
     }
-    *lock(&shared.tracing_since) = Some(Instant::now());
+    let tracing = Instant::now();
+    *lock(&shared.tracing_since) = Some(tracing);
     *lock(&shared.phase) = Phase::Tracing;
     ctx.request_repaint();
     if let Some(coarse) = settings.coarse() {
@@ -189,6 +217,10 @@ fn trace(
             if control.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
     });
+    if !control.is_cancelled() {
+        let (build_s, trace_s) = ((tracing - began).as_secs_f64(), tracing.elapsed().as_secs_f64());
+        *lock(&shared.outcome) = Some(Outcome { build_s, trace_s, spp: film.spp(), noise_stops: film.noise_stops() });
+    }
     if film.spp() > 0 {
         *lock(&shared.film) = Some(Arc::new(film));
     }

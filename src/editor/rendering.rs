@@ -2,7 +2,7 @@
 
 use super::relight::{self, DevelopKey};
 use super::render_job::{Developed, Developer, Phase, RenderJob};
-use crate::raytrace::{Film, Method, Settings};
+use crate::raytrace::{Film, GeometryCache, Method, Settings};
 use crate::scene::{Assets, Camera, Scene};
 use eframe::egui::{Context, TextureHandle, TextureOptions};
 use std::path::PathBuf;
@@ -77,6 +77,8 @@ impl RenderSettings {
 pub struct Rendering {
     /// What the panel sets.
     pub settings: RenderSettings,
+    /// Meshes' trees, shared with the live view.
+    trees: Arc<GeometryCache>,
     job: Option<RenderJob>,
     film: Option<Arc<Film>>,
     developer: Developer,
@@ -93,6 +95,11 @@ impl std::fmt::Debug for Rendering {
 }
 
 impl Rendering {
+    /// No picture yet; meshes' trees are shared.
+    pub fn new(trees: Arc<GeometryCache>) -> Self {
+        Rendering { trees, ..Rendering::default() }
+    }
+
     /// Starts to render.
     pub fn start(&mut self, scene: &Scene, assets: &Assets, folder: Option<PathBuf>, ctx: &Context) {
         let (width, height) = self.settings.pixels(&scene.camera);
@@ -103,7 +110,8 @@ impl Rendering {
             spp: self.settings.samples.max(1),
             ..Settings::default()
         };
-        self.job = Some(RenderJob::start(scene.clone(), assets.clone(), folder, settings, ctx.clone()));
+        self.job =
+            Some(RenderJob::start(self.trees.clone(), scene.clone(), assets.clone(), folder, settings, ctx.clone()));
     }
 
     /// Stops the running job; what is complete is kept.
@@ -115,7 +123,7 @@ impl Rendering {
 
     /// Forgets job and picture, because another studio was opened.
     pub fn clear(&mut self) {
-        *self = Rendering { settings: self.settings, ..Rendering::default() };
+        *self = Rendering { settings: self.settings, ..Rendering::new(self.trees.clone()) };
     }
 
     /// The job, running or ended.

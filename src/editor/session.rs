@@ -244,6 +244,7 @@ impl App {
             self.toasts.warning(format!("And {more} more things are odd about this studio."));
         }
         self.rendering.clear();
+        self.viewport.live.clear();
         self.document = Document::new(opened.scene, opened.assets, opened.path);
         self.selection = Selection::default();
         self.viewport.swing = None;

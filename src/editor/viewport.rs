@@ -7,6 +7,7 @@ use super::command::{Centre, Command, Handle};
 use super::document::Document;
 use super::gizmo::{HandleView, Handles, Pointer};
 use super::item::Item;
+use super::live_view::LiveView;
 use super::look_menu::look_menu_ui;
 use super::navigation::{camera_as_view, light_as_view, moved_camera, moved_light, steer};
 use super::panels::item_menu::{item_menu_ui, nothing_menu_ui};
@@ -52,19 +53,22 @@ pub struct Viewport {
     pub swing: Option<SwingDrag>,
     /// The live preview.
     pub preview: PreviewHost,
+    /// The live view as the tracer sees it.
+    pub live: LiveView,
     handles: Handles,
     band: Option<Band>,
 }
 
 impl Viewport {
     /// A viewport with a preview to come.
-    pub fn new(preview: PreviewHost) -> Self {
+    pub fn new(preview: PreviewHost, live: LiveView) -> Self {
         Viewport {
             view: StudioView::default(),
             camera_follows: false,
             snap: false,
             swing: None,
             preview,
+            live,
             handles: Handles::default(),
             band: None,
         }
@@ -278,12 +282,18 @@ impl Viewport {
         let pixels = rect.size() * ui.pixels_per_point();
         let size = ((pixels.x.round() as u32).max(1), (pixels.y.round() as u32).max(1));
         let overlay = self.overlay_of(input);
-        match self.preview.show(ui.ctx(), input.document, frame, size, overlay) {
-            Some(texture) => {
-                let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-                painter.image(texture, rect, uv, egui::Color32::WHITE);
-            }
-            None => self.no_preview_ui(ui, rect),
+        let through_camera = input.centre == Centre::Camera;
+        let traced = self.live.show(ui.ctx(), input.document, frame, size, through_camera, self.preview.look);
+        let preview = self.preview.show(ui.ctx(), input.document, frame, size, overlay, traced.is_some());
+        for texture in [traced, preview].into_iter().flatten() {
+            let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+            painter.image(texture, rect, uv, egui::Color32::WHITE);
+        }
+        if traced.or(preview).is_none() {
+            self.no_preview_ui(ui, rect);
+        }
+        if traced.is_some() || self.live.has_failed() {
+            overlay::paint_note(&painter, rect, &self.live.status());
         }
         let scene = input.document.scene();
         if let Some(picture) = picture {

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
 
 use catchlight::editor::{
-    Action, Answer, App, Centre, Command, FileDialogs, Item, Options, PictureSize, Quality, Tone,
+    Action, Answer, App, Centre, Command, FileDialogs, Item, LiveMode, Options, PictureSize, Quality, Tone,
 };
 use catchlight::preview::Gpu;
 use catchlight::scene::{Aim, Scene, Shape};

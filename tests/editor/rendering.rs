@@ -57,3 +57,45 @@ fn a_render_can_be_cancelled_and_keeps_what_it_has() {
     assert!(!window.state().rendering().is_running());
     assert!(window.state().rendering().developed().is_some_and(|d| d.spp > 0 && d.spp < 60_000));
 }
+
+#[test]
+fn the_quality_view_foretells_time_and_grain_and_learns_from_renders() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([]);
+    assert!(window.state().forecaster().forecast().is_none(), "nothing runs for it while it is folded");
+    window.state_mut().rendering_mut().settings.size = PictureSize::Custom(60, 40);
+    settle(&mut window);
+    click(&mut window, "Time and grain");
+    let began = Instant::now();
+    while window.state().forecaster().forecast().is_none() {
+        assert!(began.elapsed() < PATIENCE);
+        window.step();
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    settle(&mut window);
+    let forecast = *window.state().forecaster().forecast().unwrap();
+    let [draft, fine] = [16, 1024].map(|samples| forecast.estimate(60 * 40, samples));
+    assert!(draft.seconds < fine.seconds && draft.noise_stops > 4.0 * fine.noise_stops);
+    // A line chooses its quality.
+    window.get_by_label_contains("Good: ").click();
+    settle(&mut window);
+    let settings = window.state().rendering().settings;
+    assert_eq!((settings.quality, settings.samples), (Quality::Good, 128));
+    assert!(window.query_by_label_contains("Grain against time; chosen: ").is_some());
+    // What a render took counts from then on.
+    window.state_mut().rendering_mut().settings.samples = 32;
+    window.state_mut().rendering_mut().settings.quality = Quality::Custom;
+    settle(&mut window);
+    // The panel has just grown by a line: a frame for the layout to settle.
+    window.run_steps(3);
+    click(&mut window, "Render the picture");
+    let took = window.state().forecaster().measured().to_vec();
+    assert_eq!(took.len(), 1);
+    let now = window.state().forecaster().forecast().unwrap().estimate(60 * 40, 32);
+    assert!(
+        (now.seconds / took[0].seconds - 1.0).abs() < 1e-3
+            && (now.noise_stops / took[0].noise_stops - 1.0).abs() < 1e-3
+    );
+}

@@ -114,3 +114,98 @@ fn nothing_is_drawn_while_nothing_changes() {
     click(&mut window, "Add Bare bulb");
     assert!(window.state().viewport().preview.draws() > draws);
 }
+
+/// A small window whose live view is traced: a picture of few pixels.
+fn traced_window() -> Window {
+    let mut window = window_with_answers([]);
+    window.set_size(vec2(900.0, 600.0));
+    settle(&mut window);
+    press(&mut window, Modifiers::NONE, Key::Num2);
+    wait_until(&mut window, |live| live.has_picture());
+    window
+}
+
+fn wait_until(window: &mut Window, enough: impl Fn(&catchlight::editor::LiveView) -> bool) {
+    let began = Instant::now();
+    while !enough(&window.state().viewport().live) {
+        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().live.status());
+        window.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn the_live_view_is_traced_on_demand_and_everything_works_on_top_of_it() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = traced_window();
+    assert_eq!(window.state().viewport().live.mode, LiveMode::True);
+    let (figure, light) = (scene(&window).objects[0].clone(), scene(&window).lights[0].clone());
+    let view = window.get_by_label("Viewport").rect();
+    let frame = window.state().viewport().view.frame(view.width() / view.height());
+    let place = |point: glam::Vec3| {
+        let place = frame.project(point).unwrap();
+        view.min + vec2(place.x * view.width(), place.y * view.height())
+    };
+    // Picking, handles and navigation are where they were.
+    let at = place(figure.transform.position + glam::Vec3::Y);
+    for pressed in [true, false] {
+        window.event(Event::PointerMoved(at));
+        window.event(Event::PointerButton {
+            pos: at,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+    }
+    settle(&mut window);
+    assert_eq!(window.state().selection().last(), Some(Item::Object(figure.id)));
+    click(&mut window, &light.name);
+    let middle = place(light.position);
+    drag(&mut window, PointerButton::Primary, middle, middle + vec2(40.0, -30.0));
+    assert!((scene(&window).lights[0].position - light.position).length() > 0.05);
+    let before = window.state().viewport().view.yaw_rad;
+    drag(&mut window, PointerButton::Middle, view.center(), view.center() + vec2(30.0, 0.0));
+    assert!(window.state().viewport().view.yaw_rad != before);
+    wait_until(&mut window, |live| live.has_picture());
+    // Another studio, and back to the estimate: nothing is traced any more.
+    click(&mut window, "Quick");
+    let rays = window.state().viewport().live.rays();
+    std::thread::sleep(Duration::from_millis(60));
+    window.run_steps(3);
+    let now = window.state().viewport().live.rays();
+    std::thread::sleep(Duration::from_millis(60));
+    window.run_steps(3);
+    assert!(rays > 0 && window.state().viewport().live.rays() == now, "it goes on behind the estimate");
+}
+
+#[test]
+fn a_dimmed_light_shows_in_the_traced_view_without_a_ray_and_the_view_comes_to_rest() {
+    if !has_adapter() {
+        return;
+    }
+    let mut window = traced_window();
+    // A view of few pixels settles soon: the window is as small as it gets, and the studio dark but for one bulb.
+    window.set_size(vec2(640.0, 190.0));
+    settle(&mut window);
+    wait_until(&mut window, |live| live.is_settled());
+    settle(&mut window);
+    let rays = window.state().viewport().live.rays();
+    let mut light = scene(&window).lights[0].clone();
+    light.power.dial_stops -= 1.0;
+    let context = egui::Context::default();
+    window.state_mut().run(Command::Do(Action::SetLight(Box::new(light))), None, &context);
+    window.step();
+    wait_until(&mut window, |live| live.is_settled());
+    settle(&mut window);
+    assert_eq!(window.state().viewport().live.rays(), rays, "dimming is developed, not traced");
+    window.step();
+    let delay = window.output().viewport_output[&ViewportId::ROOT].repaint_delay;
+    assert!(delay > Duration::from_secs(1), "asks for a frame in {delay:?}");
+    let mut light = scene(&window).lights[0].clone();
+    light.position.x += 0.2;
+    window.state_mut().run(Command::Do(Action::SetLight(Box::new(light))), None, &context);
+    window.step();
+    wait_until(&mut window, |live| live.rays() > rays);
+}

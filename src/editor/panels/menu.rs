@@ -5,6 +5,7 @@ use crate::editor::action::Action;
 use crate::editor::command::{Centre, Command, Handle};
 use crate::editor::document::Document;
 use crate::editor::item::Item;
+use crate::editor::live_view::LiveMode;
 use crate::editor::recent::RecentFiles;
 use crate::editor::selection::Selection;
 use crate::editor::studio_view::Side;
@@ -27,6 +28,8 @@ pub struct MenuState<'a> {
     pub handles: Handle,
     /// Whether the handles snap.
     pub snap: bool,
+    /// How the live view is made.
+    pub live: LiveMode,
     /// Whether there is a picture to export.
     pub has_picture: bool,
     /// Whether a render is on its way.
@@ -130,6 +133,12 @@ fn view_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
         out,
     );
     ui.separator();
+    let other = match state.live {
+        LiveMode::Quick => "Live view: trace it (True)",
+        LiveMode::True => "Live view: estimate it (Quick)",
+    };
+    entry(ui, true, other, "Quick is drawn at once; True is what the picture will be", Command::ToggleLive, out);
+    ui.separator();
     entry(ui, true, "Bring selection into view", "Everything, when nothing is selected", Command::FrameSelection, out);
     let in_studio = state.centre == Centre::Studio;
     let tip = "Puts the camera where the studio view looks from";
@@ -171,6 +180,18 @@ fn put_meter_up(scene: &Scene) -> Command {
     Command::Do(Action::SetMeter(Some(Meter { position, facing: Facing::Camera, receptor: Receptor::Dome })))
 }
 
+fn live_ui(ui: &mut Ui, mode: LiveMode, out: &mut Vec<Command>) {
+    let mut chosen = mode;
+    let modes = [
+        (LiveMode::Quick, "Quick", "Live: drawn at once; bounced light, mirrors and glass are estimated (2)"),
+        (LiveMode::True, "True", "Live: traced as the picture will be, out of grain within moments (2)"),
+    ];
+    widgets::choice(ui, &mut chosen, &modes);
+    if chosen != mode {
+        out.push(Command::Live(chosen));
+    }
+}
+
 /// The row of view buttons over the middle of the window.
 pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool, out: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
@@ -196,6 +217,8 @@ pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool,
         if centre == Centre::Picture {
             return;
         }
+        ui.separator();
+        live_ui(ui, state.live, out);
         ui.separator();
         for (handle, text, tip) in HANDLES {
             let key = Command::Handles(handle).shortcut().map(|s| ui.ctx().format_shortcut(&s)).unwrap_or_default();

@@ -9,5 +9,6 @@ pub mod meter;
 pub mod outliner;
 pub mod presets;
 pub mod prompts;
+pub mod quality;
 pub mod render;
 pub mod status;

@@ -1,20 +1,31 @@
 //! The render panel: size, quality, the button, progress and a small picture.
 
 use crate::editor::command::{Centre, Command};
+use crate::editor::document::Document;
+use crate::editor::forecast::Forecaster;
+use crate::editor::panels::quality;
 use crate::editor::render_job::{Phase, Progress, method_label};
 use crate::editor::rendering::{PictureSize, Quality, RenderSettings, Rendering};
 use crate::editor::theme;
 use crate::editor::widgets::{self, Number, row};
 use crate::raytrace::Method;
 use crate::scene::Scene;
-use eframe::egui::{self, Button, ComboBox, Image, ProgressBar, RichText, Sense, Ui, vec2};
+use eframe::egui::{self, Button, CollapsingHeader, ComboBox, Image, ProgressBar, RichText, Sense, Ui, vec2};
 use std::time::Duration;
 
 /// Longest side of a picture, pixels.
 const LARGEST: f32 = 16_384.0;
 
 /// Draws it.
-pub fn render_ui(ui: &mut Ui, rendering: &mut Rendering, scene: &Scene, centre: Centre, out: &mut Vec<Command>) {
+pub fn render_ui(
+    ui: &mut Ui,
+    rendering: &mut Rendering,
+    forecaster: &mut Forecaster,
+    document: &Document,
+    centre: Centre,
+    out: &mut Vec<Command>,
+) {
+    let scene = document.scene();
     ui.add_space(4.0);
     ui.label(RichText::new("Render").strong());
     ui.separator();
@@ -23,6 +34,7 @@ pub fn render_ui(ui: &mut Ui, rendering: &mut Rendering, scene: &Scene, centre: 
     }
     size_rows(ui, &mut rendering.settings, scene);
     quality_rows(ui, &mut rendering.settings);
+    forecast_ui(ui, rendering, forecaster, document);
     progress_ui(ui, rendering);
     ui.add_space(4.0);
     // Last, at the foot of the window: what comes and goes above does not move the buttons.
@@ -85,6 +97,17 @@ fn quality_rows(ui: &mut Ui, settings: &mut RenderSettings) {
                     ui.selectable_value(&mut settings.method, method, method_label(method));
                 }
             });
+    });
+}
+
+/// What the qualities cost here; nothing runs for it while it is folded.
+fn forecast_ui(ui: &mut Ui, rendering: &mut Rendering, forecaster: &mut Forecaster, document: &Document) {
+    let header = CollapsingHeader::new("Time and grain").id_salt("time and grain");
+    header.show_unindented(ui, |ui| {
+        let (running, method) = (rendering.is_running(), rendering.settings.method);
+        let (scene, assets) = (document.scene(), document.assets());
+        forecaster.update(scene, assets, document.revision(), method, running, ui.ctx());
+        quality::quality_ui(ui, &mut rendering.settings, &scene.camera, forecaster);
     });
 }
 

@@ -1,0 +1,143 @@
+//! The Quality view: grain against time of this studio's picture, with draft, good, final and the user's own choice.
+
+use crate::editor::forecast::{Estimate, Forecaster};
+use crate::editor::panels::render::duration_text;
+use crate::editor::rendering::{Quality, RenderSettings};
+use crate::editor::theme;
+use crate::scene::Camera;
+use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, vec2};
+use std::time::Duration;
+
+/// Height of the chart, points.
+const HEIGHT: f32 = 110.0;
+/// The presets with their words.
+const PRESETS: [(Quality, &str); 3] = [(Quality::Draft, "Draft"), (Quality::Good, "Good"), (Quality::Final, "Final")];
+
+/// Draws it: a line a preset, which chooses it, and the chart.
+pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, forecaster: &Forecaster) {
+    let (width, height) = settings.pixels(camera);
+    let pixels = u64::from(width) * u64::from(height);
+    let Some(forecast) = forecaster.forecast() else {
+        let text =
+            if forecaster.is_busy() { "A pilot picture is on its way\u{2026}" } else { "There is nothing to see yet." };
+        ui.label(RichText::new(text).weak().small());
+        return;
+    };
+    for (quality, word) in PRESETS {
+        let Some(samples) = quality.samples() else { continue };
+        let text = format!("{word}: {}", estimate_text(forecast.estimate(pixels, samples)));
+        let tip = format!("{samples} samples, estimated from a pilot picture and from what renders took");
+        if ui.selectable_label(settings.quality == quality, text).on_hover_text(tip).clicked() {
+            (settings.quality, settings.samples) = (quality, samples);
+        }
+    }
+    if settings.quality == Quality::Custom {
+        let text =
+            format!("{} samples: {}", settings.samples, estimate_text(forecast.estimate(pixels, settings.samples)));
+        ui.label(RichText::new(text).color(theme::ACCENT));
+    }
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
+    let chosen = forecast.estimate(pixels, settings.samples);
+    let label = format!("Grain against time; chosen: {}", estimate_text(chosen));
+    crate::editor::widgets::named(ui, &response, &label);
+    response.on_hover_text(
+        "Line: estimate. Rings: draft, good, final. Dot: your choice. Crosses: renders as they came out.",
+    );
+    let at = |samples: u32| forecast.estimate(pixels, samples);
+    let marks: Vec<Estimate> = PRESETS.iter().filter_map(|(quality, _)| quality.samples()).map(at).collect();
+    let line: Vec<Estimate> = (0..=14).map(|power| at(1 << power)).collect();
+    Chart::around(rect, &line[1..13]).paint(&ui.painter_at(rect), &line, &marks, chosen, forecaster.measured());
+}
+
+/// `6 s, 0.10 stops`.
+pub fn estimate_text(estimate: Estimate) -> String {
+    let duration = Duration::from_secs_f64(estimate.seconds.clamp(0.0, 1e7));
+    let digits = if estimate.noise_stops < 0.095 { 3 } else { 2 };
+    format!("{}, {:.digits$} stops", duration_text(duration), estimate.noise_stops)
+}
+
+/// Times with a line in the chart, seconds.
+const TIMES: [(f64, &str); 8] = [
+    (0.1, "0.1 s"),
+    (1.0, "1 s"),
+    (10.0, "10 s"),
+    (60.0, "1 min"),
+    (600.0, "10 min"),
+    (3600.0, "1 h"),
+    (36_000.0, "10 h"),
+    (360_000.0, "100 h"),
+];
+/// Width of the longest of them, points.
+const ROOM_FOR_A_TIME: f32 = 30.0;
+
+/// Seconds across, stops upwards, both as logarithms.
+struct Chart {
+    rect: Rect,
+    /// Of time and noise, as powers of ten: least and most.
+    time: [f32; 2],
+    noise: [f32; 2],
+}
+
+fn power_of_ten(x: f64) -> f32 {
+    x.max(1e-6).log10() as f32
+}
+
+impl Chart {
+    fn around(rect: Rect, points: &[Estimate]) -> Self {
+        let range = |of: &dyn Fn(&Estimate) -> f64| {
+            let powers = || points.iter().map(|point| power_of_ten(of(point)));
+            [powers().fold(f32::INFINITY, f32::min).floor(), powers().fold(f32::NEG_INFINITY, f32::max).ceil()]
+        };
+        Chart { rect: rect.shrink2(vec2(4.0, 4.0)), time: range(&|p| p.seconds), noise: range(&|p| p.noise_stops) }
+    }
+
+    fn place(&self, estimate: &Estimate) -> Pos2 {
+        let part = |x: f64, [least, most]: [f32; 2]| (power_of_ten(x) - least) / (most - least).max(1.0);
+        let (across, up) = (part(estimate.seconds, self.time), part(estimate.noise_stops, self.noise));
+        Pos2::new(self.rect.left() + across * self.rect.width(), self.rect.bottom() - up * self.rect.height())
+    }
+
+    fn paint(&self, painter: &Painter, line: &[Estimate], marks: &[Estimate], chosen: Estimate, real: &[Estimate]) {
+        painter.rect_filled(self.rect.expand(4.0), 3.0, theme::SURROUND);
+        self.paint_grid(painter);
+        let points: Vec<Pos2> = line.iter().map(|estimate| self.place(estimate)).collect();
+        painter.line(points, Stroke::new(1.5, Color32::from_gray(150)));
+        for mark in marks {
+            painter.circle_stroke(self.place(mark), 4.0, Stroke::new(1.5, Color32::from_gray(210)));
+        }
+        for render in real {
+            let place = self.place(render);
+            for side in [vec2(4.0, 4.0), vec2(4.0, -4.0)] {
+                painter.line_segment([place - side, place + side], Stroke::new(1.5, theme::GOOD));
+            }
+        }
+        painter.circle_filled(self.place(&chosen), 4.0, theme::ACCENT);
+    }
+
+    /// A line a power of ten of noise, and a line a usual time, with their numbers.
+    fn paint_grid(&self, painter: &Painter) {
+        let (stroke, font) = (Stroke::new(0.5, Color32::from_gray(60)), FontId::proportional(9.5));
+        let powers = |[least, most]: [f32; 2]| least as i32..=most as i32;
+        let number = |power: i32| 10_f64.powi(power);
+        for (seconds, text) in TIMES {
+            let place = self.place(&Estimate { seconds, noise_stops: 1e-6 });
+            if !self.rect.x_range().contains(place.x) {
+                continue;
+            }
+            painter.vline(place.x, self.rect.y_range(), stroke);
+            let at = Pos2::new(place.x + 2.0, self.rect.bottom());
+            if at.x + ROOM_FOR_A_TIME < self.rect.right() {
+                painter.text(at, Align2::LEFT_BOTTOM, text, font.clone(), Color32::from_gray(120));
+            }
+        }
+        for power in powers(self.noise) {
+            let place = self.place(&Estimate { seconds: 1e-6, noise_stops: number(power) });
+            painter.hline(self.rect.x_range(), place.y, stroke);
+            if power as f32 > self.noise[0] {
+                let text = format!("{} stops", number(power));
+                let at = Pos2::new(self.rect.right(), place.y);
+                painter.text(at, Align2::RIGHT_TOP, text, font.clone(), Color32::from_gray(120));
+            }
+        }
+    }
+}
