@@ -11,7 +11,7 @@ use super::aggregate::Hit;
 use super::bsdf::{Behind, Bsdf, Polarisation, pane_transmittance};
 use super::bvh::Stack;
 use super::geometry::Surface;
-use super::lights::TracedLight;
+use super::lights::{Asked, TracedLight};
 use super::media::Media;
 use super::prepare::RenderScene;
 use super::sampler::{self, Purpose, Sampler};
@@ -93,6 +93,8 @@ struct Path {
 struct Place<'a> {
     surface: &'a Surface,
     bsdf: &'a Bsdf<'a>,
+    /// What the lights give there, where they were asked already.
+    asked: Option<&'a Asked<'a>>,
     /// From the surface before.
     distance: f32,
     /// On the side of the geometric normal.
@@ -263,7 +265,7 @@ impl<'a> Tracer<'a> {
                 bsdf = bsdf.through(behind, path.polarisation);
             }
             let lit = material.scatters_widely() && !ends;
-            let place = Place { surface: &surface, bsdf: &bsdf, distance, outside };
+            let place = Place { surface: &surface, bsdf: &bsdf, asked: None, distance, outside };
             let branches = if lit && path.wide_bounces == 0 { limits.branches } else { 1 };
             if branches > 1 {
                 self.branch(path, &place, branches, sampler, limits, sink);
@@ -287,13 +289,16 @@ impl<'a> Tracer<'a> {
         sink: &mut impl Sink,
     ) {
         let ways = branches as f32;
+        let mut asked = None;
         let lights = if self.samples_all(&path) {
             let set = sampler.set(Purpose::Light { slot: 0, bounce: path.bounce });
             self.sample_lights(&path, place, sampler, &set, ways, sink);
             Lights::Sampled { ways }
         } else {
+            asked = self.ask_lights(place);
             Lights::Sample
         };
+        let place = &Place { asked: asked.as_ref(), ..*place };
         path.throughput /= ways;
         path.roulette_scale /= ways;
         for branch in 0..branches {
@@ -315,7 +320,7 @@ impl<'a> Tracer<'a> {
         limits: Limits,
         sink: &mut impl Sink,
     ) -> bool {
-        let Place { surface, bsdf, distance, outside } = *place;
+        let Place { surface, bsdf, distance, outside, .. } = *place;
         let bounce = path.bounce;
         let before = path.vertex;
         let [light_set, set] = sampler.pair(Purpose::Light { slot: 0, bounce }, Purpose::Bsdf { bounce });
@@ -449,10 +454,18 @@ impl<'a> Tracer<'a> {
             return;
         }
         let choice = sampler::rest(first_set)[0];
-        let (point, normal) = (place.surface.position, place.bsdf.normal());
-        if let Some((light, chance)) = scene.chooser.choose(&scene.lights, point, normal, choice) {
+        let chosen = match place.asked {
+            Some(asked) => asked.choose(&scene.lights, choice),
+            None => self.ask_lights(place).and_then(|asked| asked.choose(&scene.lights, choice)),
+        };
+        if let Some((light, chance)) = chosen {
             self.sample_light(&scene.lights[light as usize], chance, path, place, first_set, ways, sink);
         }
+    }
+
+    /// What the lights give at a surface.
+    fn ask_lights(&self, place: &Place<'_>) -> Option<Asked<'a>> {
+        self.scene.chooser.ask(&self.scene.lights, place.surface.position, place.bsdf.normal())
     }
 
     #[expect(

@@ -127,26 +127,25 @@ impl Packet {
     /// `normal`.
     #[inline(always)]
     fn estimates(&self, point: Vec3, normal: Vec3) -> [f32; WIDTH] {
-        std::array::from_fn(
-            #[inline(always)]
-            |i| {
-                let to: [f32; 3] = std::array::from_fn(
-                    #[inline(always)]
-                    |axis| self.centre[axis][i] - point[axis] * self.near[i],
-                );
-                let height = normal.x * to[0] + normal.y * to[1] + normal.z * to[2];
-                let before = -(self.axis[0][i] * to[0] + self.axis[1][i] * to[1] + self.axis[2][i] * to[2]);
-                let radius = self.radius[i];
-                let distance2 = larger(to[0] * to[0] + to[1] * to[1] + to[2] * to[2], radius * radius);
-                let inverse = 1.0 / larger(distance2, f32::MIN_POSITIVE).sqrt();
-                // In units of the distance: a light in the middle of which the point lies is before it and behind.
-                let cos = before * inverse + (self.spread[i] + self.depth[i] * inverse);
-                let beam = (cos - self.beam_end[i]) * self.beam_gain[i];
-                let given = self.power[i] * inverse * inverse;
-                let estimate = given * smaller(larger(height * inverse, 0.05), 1.0) * smaller(larger(beam, 0.02), 1.0);
-                if height > -radius && beam > 0.0 { estimate } else { 0.0 }
-            },
-        )
+        let mut estimates = [0.0; WIDTH];
+        // A plain loop: closures would not be compiled for wide vectors.
+        for (i, lane) in estimates.iter_mut().enumerate() {
+            let x = self.centre[0][i] - point.x * self.near[i];
+            let y = self.centre[1][i] - point.y * self.near[i];
+            let z = self.centre[2][i] - point.z * self.near[i];
+            let height = normal.x * x + normal.y * y + normal.z * z;
+            let before = -(self.axis[0][i] * x + self.axis[1][i] * y + self.axis[2][i] * z);
+            let radius = self.radius[i];
+            let distance2 = larger(x * x + y * y + z * z, radius * radius);
+            let inverse = 1.0 / larger(distance2, f32::MIN_POSITIVE).sqrt();
+            // In units of the distance: a light in the middle of which the point lies is before it and behind.
+            let cos = before * inverse + (self.spread[i] + self.depth[i] * inverse);
+            let beam = (cos - self.beam_end[i]) * self.beam_gain[i];
+            let given = self.power[i] * inverse * inverse;
+            let estimate = given * smaller(larger(height * inverse, 0.05), 1.0) * smaller(larger(beam, 0.02), 1.0);
+            *lane = if height > -radius && beam > 0.0 { estimate } else { 0.0 };
+        }
+        estimates
     }
 }
 
@@ -241,57 +240,31 @@ impl Chooser {
         self.nodes.iter().map(above).max().unwrap_or(0)
     }
 
-    /// Estimates of a node's entries, and their sum.
+    /// What a node's entries give at a point.
     #[inline]
-    fn estimates(&self, lights: &[TracedLight], node: &Node, point: Vec3, normal: Vec3) -> ([f32; NODE], f32) {
+    fn estimates(&self, lights: &[TracedLight], node: &Node, point: Vec3, normal: Vec3) -> Estimates {
         let first = node.first_packet as usize;
         let packets = &self.packets[first..first + node.packets as usize];
-        let mut estimates = simd::dispatch(Estimates { packets, point, normal });
+        let mut estimates = simd::dispatch(Ask { packets, point, normal });
         if self.has_beams {
-            for (at, estimate) in estimates.iter_mut().enumerate().take(packets.len() * WIDTH) {
-                if let (true, Meaning::Light(light)) = (*estimate > 0.0, self.meanings[first * WIDTH + at]) {
-                    *estimate *= lights[light as usize].beam_towards(point).max(LEAST_BEAM);
+            let lanes = estimates.lanes.as_flattened_mut().iter_mut();
+            for (lane, meaning) in lanes.zip(&self.meanings[first * WIDTH..]).take(packets.len() * WIDTH) {
+                if let (true, Meaning::Light(light)) = (*lane > 0.0, *meaning) {
+                    *lane *= lights[light as usize].beam_towards(point).max(LEAST_BEAM);
                 }
             }
+            estimates.add_up();
         }
-        let total = estimates[..packets.len() * WIDTH].iter().sum();
-        (estimates, total)
+        estimates
     }
 
-    /// A light for a point on a surface with this normal, by a number in 0..1, and the chance it had. None where no light
-    /// gives anything.
-    pub fn choose(&self, lights: &[TracedLight], point: Vec3, normal: Vec3, mut u: f32) -> Option<(u32, f32)> {
-        let mut node = self.nodes.first()?;
-        let mut chance = 1.0;
-        loop {
-            let (estimates, total) = self.estimates(lights, node, point, normal);
-            if !(total > 0.0 && total.is_finite()) {
-                return None;
-            }
-            let mut left = u * total;
-            let mut chosen = None;
-            let entries = node.packets as usize * WIDTH;
-            for (at, &estimate) in estimates[..entries].iter().enumerate().filter(|(_, e)| **e > 0.0) {
-                chosen = Some((at, estimate, left));
-                if left < estimate {
-                    break;
-                }
-                left -= estimate;
-            }
-            let (at, estimate, left) = chosen?;
-            chance *= estimate / total;
-            match self.meanings[node.first_packet as usize * WIDTH + at] {
-                Meaning::Light(light) => return Some((light, chance)),
-                Meaning::Node(next) => {
-                    // What is left of the number is as good as a new one.
-                    u = (left / estimate).clamp(0.0, 1.0 - f32::EPSILON);
-                    node = &self.nodes[next as usize];
-                }
-            }
-        }
+    /// What the topmost entries give at a point on a surface with this normal: asked once, it serves several choices.
+    pub fn ask(&self, lights: &[TracedLight], point: Vec3, normal: Vec3) -> Option<Asked<'_>> {
+        let node = self.nodes.first()?;
+        Some(Asked { chooser: self, point, normal, estimates: self.estimates(lights, node, point, normal) })
     }
 
-    /// The chance that [`Chooser::choose`] gives a light.
+    /// The chance that [`Asked::choose`] gives a light.
     pub fn chance(&self, lights: &[TracedLight], light: u32, point: Vec3, normal: Vec3) -> f32 {
         let mut chance = 1.0;
         let mut place = self.places[light as usize];
@@ -300,11 +273,11 @@ impl Chooser {
         }
         while let Some((node, at)) = place {
             let node = &self.nodes[node as usize];
-            let (estimates, total) = self.estimates(lights, node, point, normal);
-            if !(total > 0.0 && total.is_finite()) {
+            let estimates = self.estimates(lights, node, point, normal);
+            if !estimates.are_usable() {
                 return 0.0;
             }
-            chance *= estimates[at as usize] / total;
+            chance *= estimates.lanes.as_flattened()[at as usize] / estimates.total;
             place = node.parent;
         }
         chance
@@ -337,22 +310,105 @@ fn split(leaves: &mut [Leaf], groups: usize, found: &mut Vec<Vec<Leaf>>) {
     split(upper, groups - groups / 2, found);
 }
 
+/// What the entries of a node give.
+#[derive(Clone, Copy, Debug)]
+struct Estimates {
+    lanes: [[f32; WIDTH]; NODE / WIDTH],
+    /// Of each packet.
+    sums: [f32; NODE / WIDTH],
+    total: f32,
+}
+
+impl Estimates {
+    #[inline(always)]
+    fn add_up(&mut self) {
+        for (sum, lanes) in self.sums.iter_mut().zip(&self.lanes) {
+            *sum = lanes.iter().sum();
+        }
+        self.total = self.sums.iter().sum();
+    }
+
+    /// Whether there is something to choose from.
+    fn are_usable(&self) -> bool {
+        self.total > 0.0 && self.total.is_finite()
+    }
+
+    /// The entry at a part `u` in 0..1 of the total, what it gives, and the part of the way through it.
+    fn entry_at(&self, u: f32) -> Option<(usize, f32, f32)> {
+        let (packet, _, left) = run_at(&self.sums, u * self.total)?;
+        let (lane, estimate, left) = run_at(&self.lanes[packet], left)?;
+        Some((packet * WIDTH + lane, estimate, left / estimate))
+    }
+}
+
+/// Which of some lengths, laid end to end, a place falls on, its length, and how far into it; the last that has a length
+/// where rounding leads beyond.
+#[inline]
+fn run_at(lengths: &[f32], mut place: f32) -> Option<(usize, f32, f32)> {
+    let mut found = None;
+    for (index, &length) in lengths.iter().enumerate().filter(|(_, length)| **length > 0.0) {
+        found = Some((index, length, place.min(length)));
+        if place < length {
+            break;
+        }
+        place -= length;
+    }
+    found
+}
+
+/// Lights that were asked what they give at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<'a> {
+    chooser: &'a Chooser,
+    point: Vec3,
+    normal: Vec3,
+    estimates: Estimates,
+}
+
+impl Asked<'_> {
+    /// A light, by a number in 0..1, and the chance it had. None where no light gives anything.
+    pub fn choose(&self, lights: &[TracedLight], u: f32) -> Option<(u32, f32)> {
+        let Asked { chooser, point, normal, .. } = *self;
+        let (mut node, mut u, mut chance) = (chooser.nodes.first()?, u, 1.0);
+        let mut below;
+        let mut estimates = &self.estimates;
+        loop {
+            if !estimates.are_usable() {
+                return None;
+            }
+            let (at, estimate, into) = estimates.entry_at(u)?;
+            chance *= estimate / estimates.total;
+            match chooser.meanings[node.first_packet as usize * WIDTH + at] {
+                Meaning::Light(light) => return Some((light, chance)),
+                Meaning::Node(next) => {
+                    // What is left of the number is as good as a new one.
+                    u = into.clamp(0.0, 1.0 - f32::EPSILON);
+                    node = &chooser.nodes[next as usize];
+                    below = chooser.estimates(lights, node, point, normal);
+                    estimates = &below;
+                }
+            }
+        }
+    }
+}
+
 /// See [`Chooser::estimates`].
-struct Estimates<'a> {
+struct Ask<'a> {
     packets: &'a [Packet],
     point: Vec3,
     normal: Vec3,
 }
 
-impl Query for Estimates<'_> {
-    type Answer = [f32; NODE];
+impl Query for Ask<'_> {
+    type Answer = Estimates;
 
     #[inline(always)]
-    fn run<K: Kernels>(self) -> [f32; NODE] {
-        let mut estimates = [0.0; NODE];
-        for (packet, lanes) in self.packets.iter().zip(estimates.chunks_exact_mut(WIDTH)) {
-            lanes.copy_from_slice(&packet.estimates(self.point, self.normal));
+    fn run<K: Kernels>(self) -> Estimates {
+        let mut estimates = Estimates { lanes: [[0.0; WIDTH]; NODE / WIDTH], sums: [0.0; NODE / WIDTH], total: 0.0 };
+        for (packet, lanes) in self.packets.iter().zip(&mut estimates.lanes) {
+            *lanes = packet.estimates(self.point, self.normal);
         }
+        estimates.add_up();
         estimates
     }
 }

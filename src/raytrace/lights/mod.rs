@@ -12,7 +12,7 @@ use crate::math::{orthonormal_basis, warp};
 use crate::photo::beam;
 use crate::photo::exposure::{self, Strength};
 use crate::scene::{Emitter, Light, Modifier};
-pub use choice::Chooser;
+pub use choice::{Asked, Chooser};
 pub use crossing::Crossings;
 use disc::Disc;
 use glam::{Affine3A, Mat3, Vec2, Vec3};

@@ -252,9 +252,10 @@ fn lights_are_chosen_as_often_as_they_say() {
             let (point, normal) = (numbers.direction() * numbers.between(0.01, 4.0), numbers.direction());
             const GRID: usize = 20_000;
             let mut counts = vec![0.0_f64; count];
+            let asked = chooser.ask(&lights, point, normal).unwrap();
             for i in 0..GRID {
                 let u = (i as f32 + 0.5) / GRID as f32;
-                let Some((light, chance)) = chooser.choose(&lights, point, normal, u) else { continue };
+                let Some((light, chance)) = asked.choose(&lights, u) else { continue };
                 let said = chooser.chance(&lights, light, point, normal);
                 assert!((chance / said - 1.0).abs() < 1e-5, "{chance} {said}");
                 counts[light as usize] += 1.0 / GRID as f64;
@@ -288,8 +289,9 @@ fn one_chosen_light_stands_for_all_in_the_mean() {
         };
         let truth: f64 =
             lights.iter().map(|light| (0..4096).map(|_| lit(light, numbers.square())).sum::<f64>() / 4096.0).sum();
+        let asked = chooser.ask(&lights, point, normal).unwrap();
         let estimate = Estimate::of((0..60_000).map(|_| {
-            let choice = chooser.choose(&lights, point, normal, numbers.square().x);
+            let choice = asked.choose(&lights, numbers.number());
             choice.map_or(0.0, |(light, chance)| lit(&lights[light as usize], numbers.square()) / f64::from(chance))
         }));
         // The sum itself is good to some 1e-3.
