@@ -9,7 +9,6 @@ use crate::raytrace::{GeometryCache, LiveCamera, MAX_LIGHT_LAYERS};
 use crate::scene::{CameraFrame, LightId};
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
 use std::sync::Arc;
-use std::time::Instant;
 
 /// How the live view is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -41,8 +40,6 @@ pub struct LiveView {
     pub mode: LiveMode,
     job: LiveJob,
     asked: Option<Asked>,
-    /// When it was asked for, until a picture of it is on show.
-    asked_at: Option<Instant>,
     texture: Option<TextureHandle>,
     /// The view that the picture on show belongs to is the one that was asked for.
     shown: Option<(u32, bool)>,
@@ -113,7 +110,7 @@ impl LiveView {
                 scene.lights.iter_mut().for_each(|light| light.on &= light.id == only);
             }
             self.job.request(LiveRequest { scene: Arc::new(scene), assets, camera }, ctx);
-            (self.asked, self.asked_at) = (Some(asked), Some(Instant::now()));
+            self.asked = Some(asked);
         }
         match self.job.take() {
             Some(Ok(image)) => self.take_in(image, ctx),
@@ -125,9 +122,6 @@ impl LiveView {
 
     fn take_in(&mut self, image: LiveImage, ctx: &Context) {
         (self.shown, self.failure) = (Some((image.spp, image.done)), None);
-        if let Some(asked_at) = self.asked_at.take() {
-            log::debug!("the traced view shows what changed {} ms ago", asked_at.elapsed().as_millis());
-        }
         let pixels = ColorImage::from_rgb([image.width, image.height], &image.rgb);
         match &mut self.texture {
             Some(texture) => texture.set(pixels, TextureOptions::LINEAR),
