@@ -1,11 +1,12 @@
 //! Which lights reach which part of the picture, so that of many lights each pixel pays for few.
 //!
-//! A light's ball of reach is boxed in the camera's space and the box projected: a tile may list a light that does not
-//! reach it, never the other way round.
+//! What a light reaches is enclosed in a ball, the ball boxed in the camera's space and the box projected: a tile may list
+//! a light that does not reach it, never the other way round.
 
-use super::light_table::{GpuLight, LightTable};
+use super::light_table::{GpuLight, Kind, LightTable};
 use crate::scene::CameraFrame;
-use glam::Vec2;
+use glam::{Vec2, Vec3};
+use std::f32::consts::FRAC_PI_4;
 
 /// Tiles across the picture; repeated in `scene.wgsl`.
 const COLUMNS: usize = 16;
@@ -46,8 +47,9 @@ fn append(tile: &mut [[u32; 4]], index: u32, family: usize) {
 /// First and one past the last tile across and down that a light may reach.
 fn tiles_reached(light: &GpuLight, camera: &CameraFrame) -> ([usize; 2], [usize; 2]) {
     let whole = ([0, 0], [COLUMNS, ROWS]);
-    let centre = camera.world_from_camera.inverse().transform_point3(light.position.into());
-    let (near, far) = (-centre.z - light.reach_m, -centre.z + light.reach_m);
+    let (centre, radius_m) = ball_of_reach(light);
+    let centre = camera.world_from_camera.inverse().transform_point3(centre);
+    let (near, far) = (-centre.z - radius_m, -centre.z + radius_m);
     if light.reach_m == 0.0 || !(far - near).is_finite() {
         return whole;
     }
@@ -59,7 +61,7 @@ fn tiles_reached(light: &GpuLight, camera: &CameraFrame) -> ([usize; 2], [usize;
     }
     // Over the box's nearest and farthest face, whichever reaches out more.
     let span = |middle: f32, half_extent: f32| {
-        let (a, b) = (middle - light.reach_m, middle + light.reach_m);
+        let (a, b) = (middle - radius_m, middle + radius_m);
         Vec2::new((a / near).min(a / far), (b / near).max(b / far)) / half_extent
     };
     let (x, y) = (span(centre.x, camera.half_extent.x), span(centre.y, camera.half_extent.y));
@@ -67,6 +69,22 @@ fn tiles_reached(light: &GpuLight, camera: &CameraFrame) -> ([usize; 2], [usize;
     let low = [tile(x.x, COLUMNS).floor() as usize, tile(-y.y, ROWS).floor() as usize];
     let high = [tile(x.y, COLUMNS).ceil() as usize, tile(-y.x, ROWS).ceil() as usize];
     (low, high)
+}
+
+/// A ball around all that a light reaches: its middle and radius, metres.
+fn ball_of_reach(light: &GpuLight) -> (Vec3, f32) {
+    let (position, axis, reach_m) = (Vec3::from(light.position), Vec3::from(light.axis), light.reach_m);
+    if light.kind == Kind::Spot as u32 && light.outer_rad < FRAC_PI_4 {
+        // The ball through a cone's tip and its rim.
+        let radius_m = 0.5 * reach_m / light.outer_rad.cos();
+        return (position + axis * radius_m, radius_m);
+    }
+    if light.kind == Kind::Rect as u32 || light.kind == Kind::Disc as u32 {
+        // A panel reaches as far as the root of the cosine says: from half the way along the axis, at most 0.631 of it.
+        let size_m = Vec3::from(light.right).length() + Vec3::from(light.up).length();
+        return (position + axis * (0.5 * reach_m), 0.632 * reach_m + size_m);
+    }
+    (position, reach_m)
 }
 
 #[cfg(test)]
@@ -118,6 +136,32 @@ mod tests {
         }
         let all: usize = (0..COLUMNS * ROWS).map(|t| listed(&tiles, t % COLUMNS, t / COLUMNS).len()).sum();
         assert!(all < 40 * COLUMNS * ROWS / 3, "most tiles are spared most lights: {all}");
+    }
+
+    #[test]
+    fn the_ball_holds_all_that_panels_and_spots_reach_and_no_more_than_that() {
+        let light = |kind: Kind| GpuLight {
+            kind: kind as u32,
+            position: [1.0, 2.0, 3.0],
+            axis: [0.0, 0.0, -1.0],
+            reach_m: 4.0,
+            outer_rad: 0.4,
+            ..GpuLight::zeroed()
+        };
+        for (kind, widest, reach) in [
+            (Kind::Rect, 1.57_f32, (|angle| angle.cos().max(0.0).sqrt()) as fn(f32) -> f32),
+            (Kind::Spot, 0.4, |_| 1.0),
+            (Kind::Point, 3.0, |_| 1.0),
+        ] {
+            let (centre, radius) = ball_of_reach(&light(kind));
+            let mut farthest = 0.0_f32;
+            for i in 0..=100 {
+                let angle = widest * i as f32 / 100.0;
+                let away = Vec3::new(angle.sin(), 0.0, -angle.cos()) * 4.0 * reach(angle);
+                farthest = farthest.max((Vec3::new(1.0, 2.0, 3.0) + away).distance(centre));
+            }
+            assert!(farthest <= radius * 1.0001 && farthest > 0.99 * radius, "{kind:?}: {farthest} in {radius}");
+        }
     }
 
     #[test]

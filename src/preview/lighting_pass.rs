@@ -1,4 +1,4 @@
-//! The passes that light the G-buffer: in full, or as a draft that lights one pixel in four and spreads the light.
+//! The passes that light the G-buffer: in full, or as a draft that lights one pixel of each cell and spreads the light.
 
 use super::channel::Channel;
 use super::pipelines::{self, Layouts, LightingVariant};
@@ -21,6 +21,8 @@ pub(super) struct LightingInput<'a> {
     pub scene: &'a wgpu::BindGroup,
     pub targets: &'a Targets,
     pub masks: &'a wgpu::BindGroup,
+    /// Picture pixels a cell of a draft, along each side: at least two.
+    pub cell_scale: u32,
 }
 
 impl LightingPasses {
@@ -50,11 +52,15 @@ impl LightingPasses {
     ) {
         let lighting = self.lighting.entry(variant).or_insert_with(|| pipelines::lighting(device, layouts, &variant));
         let target = if variant.cells { &input.targets.cells } else { &input.targets.color_view };
-        fullscreen_pass(encoder, "lighting", target, lighting, [input.scene, &input.targets.lookup, input.masks]);
+        let (width, height) = input.targets.size;
+        let side = if variant.cells { input.cell_scale } else { 1 };
+        let area = (width.div_ceil(side), height.div_ceil(side));
+        let groups = [input.scene, &input.targets.lookup, input.masks];
+        fullscreen_pass(encoder, "lighting", (target, area), lighting, groups);
         if variant.cells {
             let resolve = &self.resolve[usize::from(variant.illuminance)];
             let groups = [input.scene, &input.targets.lookup, &input.targets.cells_lookup];
-            fullscreen_pass(encoder, "resolve", &input.targets.color_view, resolve, groups);
+            fullscreen_pass(encoder, "resolve", (&input.targets.color_view, input.targets.size), resolve, groups);
         }
     }
 
@@ -70,14 +76,15 @@ impl LightingPasses {
         let output = targets.output;
         let make = || pipelines::channel(device, layouts, channel, output);
         let pipeline = self.channels.entry((channel, output)).or_insert_with(make);
-        fullscreen_pass(encoder, "channel", &targets.color_view, pipeline, [scene, &targets.lookup]);
+        let whole = (&targets.color_view, targets.size);
+        fullscreen_pass(encoder, "channel", whole, pipeline, [scene, &targets.lookup]);
     }
 }
 
 fn fullscreen_pass<const GROUPS: usize>(
     encoder: &mut wgpu::CommandEncoder,
     label: &str,
-    view: &wgpu::TextureView,
+    (view, area): (&wgpu::TextureView, (u32, u32)),
     pipeline: &wgpu::RenderPipeline,
     groups: [&wgpu::BindGroup; GROUPS],
 ) {
@@ -95,5 +102,6 @@ fn fullscreen_pass<const GROUPS: usize>(
     for (index, group) in (0..).zip(groups) {
         pass.set_bind_group(index, group, &[]);
     }
+    pass.set_viewport(0.0, 0.0, area.0 as f32, area.1 as f32, 0.0, 1.0);
     pass.draw(0..3, 0..1);
 }

@@ -78,7 +78,7 @@ pub(super) struct LightingVariant {
     pub listed: bool,
     /// A light's modifier narrows its beam.
     pub beams: bool,
-    /// One pixel in four, for a draft.
+    /// One pixel of each cell, for a draft.
     pub cells: bool,
     /// The light on surfaces, in false colour.
     pub illuminance: bool,
@@ -187,7 +187,7 @@ pub(super) fn lighting(device: &wgpu::Device, layouts: &Layouts, variant: &Light
     fullscreen(device, ("lighting", entry), shaders::LIGHTING, &layout, &constants, format)
 }
 
-/// Light of one pixel in four, spread over the picture as it is shown.
+/// Light of one pixel of each cell, spread over the picture as it is shown.
 pub(super) fn resolve(device: &wgpu::Device, layouts: &Layouts, illuminance: bool) -> wgpu::RenderPipeline {
     let layout = pipeline_layout(device, "resolve", &[layouts.scene, layouts.gbuffer, layouts.cells]);
     let constants = [("ILLUMINANCE", f64::from(u8::from(illuminance)))];

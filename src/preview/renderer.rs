@@ -24,6 +24,9 @@ use eframe::wgpu;
 use glam::Vec3;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
+/// More lights than this are many: a draft is at its coarsest.
+const MANY_LIGHTS: usize = 24;
+
 /// Draws scenes on a graphics device and keeps what it uploaded between frames.
 #[derive(Debug)]
 pub struct PreviewRenderer {
@@ -137,11 +140,12 @@ impl PreviewRenderer {
     }
 
     /// Picture pixels a pixel of the shadow masks, along each side: a processor draws soft shadows at half the size, and
-    /// at a quarter while something moves.
-    fn mask_scale(&self, draft: bool) -> u32 {
+    /// at a quarter while something moves, or an eighth under lights so many that each matters little.
+    fn mask_scale(&self, draft: bool, table: &LightTable) -> u32 {
         match (self.on_processor, draft) {
             (false, _) => 1,
             (true, false) => 2,
+            (true, true) if table.lights.len() > MANY_LIGHTS => 8,
             (true, true) => 4,
         }
     }
@@ -192,8 +196,8 @@ impl PreviewRenderer {
         let plan = ShadowPlan::new(&table.lights, casters, !draft);
         let resolution = input.options.shadow_resolution;
         let stale = self.shadow_maps.stale(&self.device, &self.queue, &plan, list.caster_signature, resolution);
-        let scale = self.mask_scale(draft);
-        let frame = GpuFrame { mask_scale: scale, ..self.frame(input, &table) };
+        let scale = self.mask_scale(draft, &table);
+        let frame = GpuFrame { mask_scale: scale, cell_scale: cell_scale(&table), ..self.frame(input, &table) };
         let tiles = if input.options.light_radius { light_tiles(&table, &input.frame) } else { None };
         self.buffers.write(&self.device, &self.queue, &frame, &list.records, &table.lights, tiles.as_deref());
 
@@ -229,7 +233,7 @@ impl PreviewRenderer {
             gloss: input.options.gloss,
         };
         if needs_light {
-            self.lighting_pass(&mut encoder, variant);
+            self.lighting_pass(&mut encoder, variant, frame.cell_scale);
         }
         let has_glass = list.items.iter().any(|item| item.pass == Pass::Glass);
         if has_glass {
@@ -375,13 +379,14 @@ impl PreviewRenderer {
         pass.draw(0..3, 0..1);
     }
 
-    fn lighting_pass(&mut self, encoder: &mut wgpu::CommandEncoder, variant: LightingVariant) {
+    fn lighting_pass(&mut self, encoder: &mut wgpu::CommandEncoder, variant: LightingVariant, cell_scale: u32) {
         let layouts =
             layouts(&self.buffers, &self.textures, &self.target_layouts, &self.shadow_maps, &self.shadow_masks);
         let input = LightingInput {
             scene: self.buffers.bind_group(),
             targets: &self.targets,
             masks: self.shadow_masks.lookup(),
+            cell_scale,
         };
         self.lighting.draw(&self.device, &layouts, encoder, &input, variant);
     }
@@ -418,6 +423,15 @@ fn layouts<'a>(
         shadow_slots: shadow_masks.slots_layout(),
         raw_mask: shadow_masks.raw_layout(),
         masks: shadow_masks.masks_layout(),
+    }
+}
+
+/// Side of a draft's cells, pixels: the more lights, the larger, so that many of them stay fluid.
+fn cell_scale(table: &LightTable) -> u32 {
+    match table.lights.len() {
+        0..=8 => 2,
+        9..=MANY_LIGHTS => 3,
+        _ => 4,
     }
 }
 

@@ -23,7 +23,8 @@ pub(super) struct GpuFrame {
     /// Picture pixels a pixel of the shadow masks, along each side.
     pub mask_scale: u32,
     pub ray_right: [f32; 3],
-    pub unused_6: f32,
+    /// Picture pixels a cell of a draft, along each side.
+    pub cell_scale: u32,
     pub ray_up: [f32; 3],
     pub unused_2: f32,
     pub ambient: [f32; 3],

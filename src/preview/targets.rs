@@ -41,12 +41,12 @@ pub(super) struct Targets {
     pub color_view: wgpu::TextureView,
     /// G-buffer and ids, for reading.
     pub lookup: wgpu::BindGroup,
-    /// Light of one pixel in four, for drafts, and the same for reading.
+    /// Light of one pixel of each cell, for drafts, and the same for reading.
     pub cells: wgpu::TextureView,
     pub cells_lookup: wgpu::BindGroup,
 }
 
-/// Matte and glossy light, normal and depth of one pixel in four, packed by `scene.wgsl`.
+/// Matte and glossy light, normal and depth of one pixel of each cell, packed by `scene.wgsl`.
 pub(super) const CELL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
 impl Targets {
@@ -106,7 +106,7 @@ impl Targets {
 pub(super) struct TargetLayouts {
     /// G-buffer and ids.
     pub gbuffer: wgpu::BindGroupLayout,
-    /// Light of one pixel in four.
+    /// Light of one pixel of each cell.
     pub cells: wgpu::BindGroupLayout,
 }
 

@@ -63,3 +63,25 @@ fn a_light_beyond_its_reach_is_not_missed() {
     let brightest = all.iter().fold(0.0_f32, |a, b| a.max(*b));
     assert!(brightest > 0.01, "{brightest}");
 }
+
+#[test]
+fn a_draft_under_many_lights_is_coarser_and_still_the_same_picture() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    let mut scene = floor_under(light(0, Vec3::Y, Vec3::ZERO, Emitter::Point, Output::Candela(1.0)));
+    let ball = Shape::Sphere { radius_m: 0.8 };
+    scene.objects.push(object(1, ball, Vec3::new(0.0, 0.8, 0.0), grey_card()));
+    for count in [8, 20, 40] {
+        scene.lights = (0..count)
+            .map(|i| {
+                let turn = Vec2::from_angle(i as f32 * 2.4) * 3.0;
+                let emitter = Emitter::RectPanel { width_m: 0.3, height_m: 0.4 };
+                light(i, Vec3::new(turn.x, 2.5, turn.y), Vec3::Y, emitter, Output::Candela(60.0 / count as f32))
+            })
+            .collect();
+        let mut input = direct(&scene, (301, 201));
+        let full = renderer.picture(&input).unwrap();
+        input.options.draft = true;
+        let (mean, most) = differences(&renderer.picture(&input).unwrap(), &full);
+        assert!(mean < 2.0 && most < 40, "{count} lights: {mean} codes in the mean, {most} in the 99th percentile");
+    }
+}

@@ -250,6 +250,17 @@ fn reach(light: u32, to_light: vec3f) -> f32 {
     return select(1.0, saturate(5.0 - 5.0 * part), reach_m > 0.0);
 }
 
+// The same for a panel, which reaches less far to its sides: its intensity goes with the cosine.
+fn panel_reach(light: u32, to_light: vec3f) -> f32 {
+    if !LISTED {
+        return 1.0;
+    }
+    let squared = dot(to_light, to_light);
+    let cosine = max(-dot(to_light, lights[light].axis) * inverseSqrt(max(squared, 1e-12)), 1e-6);
+    let part = sqrt(squared / cosine) / max(lights[light].reach_m, 1e-6);
+    return saturate(5.0 - 5.0 * part);
+}
+
 fn tile_at(at: vec2f) -> u32 {
     let place = vec2u(at / frame.size * vec2f(f32(TILE_COLUMNS), f32(TILE_ROWS)));
     return (min(place.y, TILE_ROWS - 1u) * TILE_COLUMNS + min(place.x, TILE_COLUMNS - 1u)) * TILE_STRIDE;

@@ -1,6 +1,6 @@
 // The lighting pass: every pixel of the G-buffer under every light that reaches it.
 //
-// `fragment` lights each pixel. `cell` lights one pixel in four for `resolve.wgsl`, which spreads it: a draft for
+// `fragment` lights each pixel. `cell` lights one pixel in four or more for `resolve.wgsl`, which spreads it: a draft for
 // rasterisers on a processor while something moves.
 
 // Whether the picture leaves as scene-linear light or as it is shown.
@@ -170,7 +170,7 @@ fn lit(p: Sample) -> Lit {
         loop {
             let light = listed_light(tile, k);
             let a = panel_arrival(light, position, s.normal, false);
-            let color = lights[light].color * (lit_by(light) * present(k, rects_end(tile)) * reach(light, a.centre) * a.passed);
+            let color = lights[light].color * (lit_by(light) * present(k, rects_end(tile)) * panel_reach(light, a.centre) * a.passed);
             matte += color * (a.irradiance * body_share(s, a.cosine, a.irradiance / PI));
             glossy += color * seen_highlight(s, a, false);
             k++;
@@ -184,7 +184,7 @@ fn lit(p: Sample) -> Lit {
         loop {
             let light = listed_light(tile, k);
             let a = panel_arrival(light, position, s.normal, true);
-            let color = lights[light].color * (lit_by(light) * present(k, discs_end(tile)) * reach(light, a.centre) * a.passed);
+            let color = lights[light].color * (lit_by(light) * present(k, discs_end(tile)) * panel_reach(light, a.centre) * a.passed);
             matte += color * (a.irradiance * body_share(s, a.cosine, a.irradiance / PI));
             glossy += color * seen_highlight(s, a, true);
             k++;
@@ -225,10 +225,10 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     return shown(radiance, at.xy);
 }
 
-// One pixel in four: matte and glossy light, normal, depth.
+// One pixel of a cell: matte and glossy light, normal, depth.
 @fragment
 fn cell(@builtin(position) at: vec4f) -> @location(0) vec4u {
-    let p = sample_at(min(vec2u(at.xy) * 2u, vec2u(frame.size) - 1u));
+    let p = sample_at(min(vec2u(at.xy) * frame.cell_scale, vec2u(frame.size) - 1u));
     read_shadows(p);
     let out = lit(p);
     return vec4u(pack_radiance(out.matte), pack_radiance(out.glossy), p.packed.x, p.id.y);

@@ -1,4 +1,4 @@
-// Spreads light that was found at one pixel in four over the picture: each pixel takes from the four cells around as far
+// Spreads light that was found at one pixel of each cell over the picture: each pixel takes from the four cells around as far
 // as they lie on its own surface, by plane and normal, and keeps its own base colour.
 
 @group(1) @binding(0) var gbuffer: texture_2d<u32>;
@@ -30,17 +30,18 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let right = dot(face, frame.ray_right) * 2.0 / frame.size.x * scale;
     let down = -dot(face, frame.ray_up) * 2.0 / frame.size.y * scale;
     let normal = unpack2x16snorm(packed.x);
-    let last = vec2u(textureDimensions(cells)) - 1u;
-    let corner = pixel / 2u;
-    let part = vec2f(pixel & vec2u(1u)) * 0.5;
-    let from_corner = vec2f(pixel - corner * 2u);
+    let side = frame.cell_scale;
+    let last = (vec2u(frame.size) - 1u) / side;
+    let corner = pixel / side;
+    let from_corner = vec2f(pixel - corner * side);
+    let part = from_corner / f32(side);
     var matte = vec3f(0.0);
     var glossy = vec3f(0.0);
     var total = 0.0;
     for (var i = 0u; i < 4u; i++) {
         let step = vec2u(i & 1u, i >> 1u);
         let texel = textureLoad(cells, min(corner + step, last), 0);
-        let offset = vec2f(step) * 2.0 - from_corner;
+        let offset = vec2f(step) * f32(side) - from_corner;
         let expected = depth + offset.x * right + offset.y * down;
         // Half a per cent of the distance, and a turn of some ten degrees.
         let aside = abs(bitcast<f32>(texel.w) - expected) > 0.005 * depth;

@@ -11,7 +11,8 @@ struct Frame {
     // Picture pixels a pixel of the shadow masks, along each side.
     mask_scale: u32,
     ray_right: vec3f,
-    unused_6: f32,
+    // Picture pixels a cell of a draft, along each side.
+    cell_scale: u32,
     ray_up: vec3f,
     unused_2: f32,
     // Irradiance from all round, picture units.

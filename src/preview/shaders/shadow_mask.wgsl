@@ -44,6 +44,7 @@ struct Shadows {
 
 const SEARCH_TAPS: u32 = 6u;
 const FILTER_TAPS: u32 = 10u;
+const DRAFT_TAPS: u32 = 6u;
 // Turn by the golden angle, from one tap to the next.
 const GOLDEN_TURN: mat2x2f = mat2x2f(-0.737368878, 0.675490294, -0.675490294, -0.737368878);
 // Nothing blocks a light closer to the receiver than this part of the distance, and metres in a parallel view.
@@ -184,16 +185,17 @@ fn part_visibility(slot: u32, position: vec3f, face: vec3f, turn: vec2f, draw: f
     // No blocker at all, or nothing but blockers as far as the emitter's outline falls.
     let whole = hits == SEARCH_TAPS && all(radius <= search);
     let known = settled || hits == 0u || whole;
-    let filter_taps = select(FILTER_TAPS, 1u, known);
+    let taps = select(FILTER_TAPS, DRAFT_TAPS, frame.mask_scale > 2u);
+    let filter_taps = select(taps, 1u, known);
     loop {
-        blocked += blocker_at(r, tap * sqrt((f32(i) + 0.5) / f32(FILTER_TAPS)) * radius, spread).y;
+        blocked += blocker_at(r, tap * sqrt((f32(i) + 0.5) / f32(taps)) * radius, spread).y;
         tap = GOLDEN_TURN * tap;
         i++;
         continuing {
             break if i >= filter_taps;
         }
     }
-    let searched = select(1.0 - blocked / f32(FILTER_TAPS), select(1.0, 0.0, whole), known);
+    let searched = select(1.0 - blocked / f32(taps), select(1.0, 0.0, whole), known);
     return select(searched, select(1.0, 0.0, below), settled);
 }
 
