@@ -108,7 +108,8 @@ fn lights_in_hard_places_are_the_tracers_direct_light() {
     for (name, emitter, place, target) in cases {
         let output = if emitter == sun { Output::Lux(20_000.0) } else { Output::Lumens(60_000.0) };
         loaded.scene.lights = vec![light(0, place, target, emitter, output)];
-        let c = compare(&draw(&mut renderer, &loaded, LONG_EDGE, SPP));
+        // What grazes is noisier: four times the samples leave half of the noise.
+        let c = compare(&draw(&mut renderer, &loaded, LONG_EDGE, 4 * SPP));
         assert!(c.pixels > 100, "{name} lights {} pixels", c.pixels);
         wrong.extend(c.report("hard place", name));
     }
