@@ -82,8 +82,8 @@ pub struct TimesReport {
     pub lights: usize,
     /// Whether lights are left out where they fall under 1/256 of display white.
     pub light_radius: bool,
-    /// Whether frames in motion are drafts here, which light one pixel in four (fewer under many lights) and give way to the picture in full when
-    /// nothing moves: on adapters that are processors.
+    /// Whether frames in motion are drafts here, which light one pixel in four (fewer under many lights) and give way to
+    /// the picture in full when nothing moves: on adapters that are processors.
     pub draft: bool,
     /// Frames measured.
     pub frames: usize,
@@ -138,7 +138,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Writes the preview; without an adapter, or where `cpu` asks for it, as the processor draws it.
 fn write(loaded: &Loaded, size: (u32, u32), output: &Path, cpu: bool, look: &Look) -> Result<(), Failure> {
     if !cpu {
-        let plain = look.channel == "lit" && look.light.is_none();
+        let plain = look.channel == "lit" && look.light.is_none() && !look.blinn_phong;
         match window::write_preview(loaded, size, output, look) {
             Err(Failure::Machine(error)) if plain => {
                 eprintln!("{error:#}; drawn on the processor instead, without shadows")
