@@ -508,3 +508,24 @@ fn many_lights_at_the_same_place_share_it() {
     // 36 864 samples each; a pixel scatters by less than its own value.
     assert!((many / one / 40.0 - 1.0).abs() < 0.02, "{many} for 40 times {one}");
 }
+
+#[test]
+fn paper_laid_flat_on_the_rooms_floor_hides_it_and_is_not_mottled() {
+    // Floor and paper both lie at y = 0. From every side, near and far, the paper is what is seen, as bright all over.
+    let paper = Shape::Sweep { width_m: 2.7, height_m: 2.0, depth_m: 3.0, radius_m: 0.5 };
+    let mut sweep = thing(1, "Paper", paper, Vec3::new(0.0, 0.0, -1.5));
+    sweep.material = grey(0.8);
+    let mut scene = Scene { room: Some(Room::default()), objects: vec![sweep], ..Scene::default() };
+    scene.lights.push(light(Emitter::Point, Output::Lumens(8000.0), Vec3::new(0.0, 2.4, 0.4)));
+    for position in [Vec3::new(1.9, 0.4, 0.9), Vec3::new(-1.7, 2.0, 1.8), Vec3::new(0.3, 0.2, 2.2)] {
+        scene.camera = Camera { position, aim: Aim::Point(Vec3::Z * 0.4), focal_length_mm: 300.0, ..Camera::default() };
+        let prepared = raytrace::prepare(&scene, &Assets::default()).unwrap();
+        assert!(raytrace::primary_objects(&prepared, 60, 40).iter().all(|object| *object == 0), "from {position}");
+        let picture =
+            picture(&scene, &Settings { width: 60, height: 40, spp: 4, method: Method::Direct, ..Settings::default() });
+        let (low, high) =
+            picture.rgb.iter().fold((f32::MAX, 0.0_f32), |(low, high), p| (low.min(p[1]), high.max(p[1])));
+        // The lamp's distance and the cosine change by less than this over the patch; a shadow of the floor would be black.
+        assert!(low > 0.3 * high, "{low} to {high} from {position}");
+    }
+}

@@ -24,12 +24,16 @@ pub fn tessellate(shape: &Shape) -> Option<Mesh> {
     Some(mesh.with_single_part("surface"))
 }
 
+/// How far floor, walls and ceiling stand back, metres: what lies flush with them (paper on the floor, a lamp in the
+/// ceiling) is before them, and no renderer has to choose between two surfaces in one place.
+pub const ROOM_STANDS_BACK_M: f32 = 2e-4;
+
 /// The room seen from inside, with the parts `floor`, `walls` and `ceiling`.
 pub fn room_mesh(room: &Room) -> Mesh {
-    let h = room.size_m * 0.5;
-    let middle = Vec3::Y * h.y;
+    let middle = Vec3::Y * (room.size_m.y * 0.5);
+    let h = room.size_m * 0.5 + ROOM_STANDS_BACK_M;
     let (x, y, z) = (Vec3::X * h.x, Vec3::Y * h.y, Vec3::Z * h.z);
-    let mut mesh = quad(Vec3::ZERO, x, -z).with_single_part("floor");
+    let mut mesh = quad(middle - y, x, -z).with_single_part("floor");
     let mut walls = quad(middle - z, x, y);
     for wall in [quad(middle + z, -x, y), quad(middle - x, -z, y), quad(middle + x, z, y)] {
         walls.append(&wall);
@@ -217,8 +221,8 @@ mod tests {
     fn the_room_is_seen_from_inside() {
         let mesh = room_mesh(&Room::default());
         winding_agrees_with_normals(&mesh);
-        let expected = -Room::default().size_m.element_product();
-        // The volume about a point on the floor: a closed surface that faces inwards.
+        let expected = -(Room::default().size_m + 2.0 * ROOM_STANDS_BACK_M).element_product();
+        // The volume about a point of the floor: a closed surface that faces inwards.
         assert!((volume(&mesh) / expected - 1.0).abs() < 1e-5);
         assert_eq!(mesh.parts.len(), 3);
     }
