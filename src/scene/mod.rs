@@ -28,7 +28,7 @@ pub use meter::{Facing, Meter, Receptor};
 pub use modifier::{BarnDoors, Cone, HARD_GRIDS_DEG, Modifier, NamedModifier, SOFT_GRIDS_DEG};
 pub use object::{Figure, Mannequin, Object, Pose, Shape, Transform};
 pub use room::Room;
-pub use tessellate::{room_mesh, tessellate};
+pub use tessellate::{ROOM_STANDS_BACK_M, room_mesh, tessellate};
 pub use validate::{Finding, LIST_LIMIT, Severity, placement, validate};
 
 use glam::Vec3;
