@@ -7,14 +7,14 @@
 //! Light sampling goes straight through thin panes, as light does. Through bodies of glass it goes straight, too, but only
 //! for lights without a size, which no refracted ray would ever find: right for flat glass, without caustics for curved.
 
-use super::aggregate::Hit;
-use super::bsdf::{Behind, Bsdf, Polarisation, pane_transmittance};
+use super::bsdf::{Behind, Bsdf, Polarisation};
 use super::bvh::Stack;
 use super::geometry::Surface;
 use super::lights::{Asked, TracedLight};
 use super::media::Media;
 use super::prepare::RenderScene;
 use super::sampler::{self, Purpose, Sampler};
+use super::visibility::{TOUCHING, reaches};
 use crate::color::luminance;
 use crate::math::Ray;
 use glam::Vec3;
@@ -36,15 +36,6 @@ pub trait Sink {
     fn add(&mut self, layer: usize, value: Vec3);
 }
 
-impl Vertex {
-    pub(super) fn new(position: Vec3, normal: Vec3) -> Self {
-        Vertex { position, normal, left_from: position, travelled: 0.0, pdf: None, one_light: false }
-    }
-}
-
-/// Surfaces that light on its straight way through glass may cross.
-const CLEAR_SURFACES: u32 = 64;
-
 /// Bounces before roulette begins.
 const ROULETTE_FROM: u32 = 3;
 
@@ -52,7 +43,7 @@ const ROULETTE_FROM: u32 = 3;
 #[derive(Debug)]
 pub struct Tracer<'a> {
     pub(super) scene: &'a RenderScene,
-    stack: Stack,
+    pub(super) stack: Stack,
     /// Rays traced so far.
     pub rays: u64,
 }
@@ -70,6 +61,13 @@ pub(super) struct Vertex {
     pdf: Option<f32>,
     /// One light was chosen there, if any was sampled; otherwise all were.
     one_light: bool,
+}
+
+impl Vertex {
+    /// Where a ray begins whose hits have all the weight: nothing else could find them.
+    pub(super) fn new(position: Vec3, normal: Vec3) -> Self {
+        Vertex { position, normal, left_from: position, travelled: 0.0, pdf: None, one_light: false }
+    }
 }
 
 /// What a path carries from surface to surface.
@@ -128,55 +126,6 @@ impl<'a> Tracer<'a> {
     /// A tracer for one thread.
     pub fn new(scene: &'a RenderScene) -> Self {
         Tracer { scene, stack: Stack::default(), rays: 0 }
-    }
-
-    /// The closest surface.
-    pub fn closest(&mut self, ray: &Ray) -> Option<Hit> {
-        self.rays += 1;
-        self.scene.aggregate.closest(ray, &mut self.stack)
-    }
-
-    /// Whether anything but emitters lies between a point and one at `distance` from it.
-    pub fn blocked(&mut self, origin: Vec3, direction: Vec3, distance: f32) -> bool {
-        self.rays += 1;
-        let ray = Ray { origin, direction, t_max: short_of(origin, distance) };
-        self.scene.aggregate.blocked(&ray, &mut self.stack)
-    }
-
-    /// Share of a light that reaches a point inside `media`, from `distance` away along a direction. Thin panes let it
-    /// through; bodies of glass do for a light without a size.
-    pub fn visibility(&mut self, origin: Vec3, direction: Vec3, distance: f32, sized: bool, mut media: Media) -> Vec3 {
-        let scene = self.scene;
-        if !scene.plan().refraction {
-            return if self.blocked(origin, direction, distance) { Vec3::ZERO } else { Vec3::ONE };
-        }
-        let mut ray = Ray { origin, direction, t_max: short_of(origin, distance) };
-        let mut passed = Vec3::ONE;
-        for _ in 0..CLEAR_SURFACES {
-            let Some(hit) = self.closest(&ray) else {
-                // A sun beyond the last surface is not inside of anything.
-                let rest = if ray.t_max.is_finite() { ray.t_max } else { 0.0 };
-                return passed * media.transmittance(&scene.materials, rest);
-            };
-            let surface = scene.aggregate.surface(&hit);
-            let material = &scene.materials[surface.material as usize];
-            if !material.transmits() || (sized && !surface.sheet) {
-                return Vec3::ZERO;
-            }
-            let cos = direction.dot(surface.geometric_normal);
-            passed *= media.transmittance(&scene.materials, hit.triangle.t) * material.transmission();
-            if surface.sheet {
-                passed *= pane_transmittance(cos, material.ior());
-            } else {
-                // Each of two parallel faces takes its half of what the pane takes, in stops.
-                let eta = media.interface(&scene.materials, surface.material, cos < 0.0).eta;
-                passed *= pane_transmittance(cos, eta.max(1.0 / eta)).sqrt();
-                media.cross(surface.material, cos < 0.0);
-            }
-            let rest = ray.t_max - hit.triangle.t;
-            ray = Ray { origin: surface.leave(direction), direction, t_max: rest };
-        }
-        Vec3::ZERO
     }
 
     /// Follows a camera ray and gives every light's share to `sink`.
@@ -513,22 +462,6 @@ fn survives(throughput: &mut Vec3, scale: f32, bounce: u32, u: f32) -> bool {
     }
     *throughput /= chance;
     luminance(*throughput).is_finite()
-}
-
-/// A share of coordinates and distances that is more than their rounding on the way to an emitter: some 20 micrometres
-/// at five metres. Emitters may lie on a surface (a panel on the wall, a lamp on the ceiling) and are seen all the same.
-const TOUCHING: f32 = 32.0 * f32::EPSILON;
-
-/// End of a ray towards an emitter that may lie on a surface; none before a sun, whose distance less a share of it would be
-/// no number.
-fn short_of(origin: Vec3, distance: f32) -> f32 {
-    if distance.is_finite() { distance - TOUCHING * (distance + origin.abs().max_element()) } else { distance }
-}
-
-/// Whether an emitter at one distance is seen before a surface at another. Sun and surround are seen by rays that leave
-/// the studio.
-fn reaches(ray: &Ray, emitter: f32, surface: f32) -> bool {
-    if emitter.is_finite() { short_of(ray.origin, emitter) <= surface } else { surface.is_infinite() }
 }
 
 #[cfg(test)]

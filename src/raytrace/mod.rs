@@ -25,6 +25,7 @@ mod simd;
 mod texture;
 mod triangle;
 mod triangle_tree;
+mod visibility;
 mod whitted;
 
 pub use film::{Film, Layer, MAX_LIGHT_LAYERS};
