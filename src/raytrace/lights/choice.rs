@@ -412,3 +412,44 @@ impl Query for Ask<'_> {
         estimates
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::statistics::Numbers;
+    use crate::raytrace::lights::tests::crowd;
+    use crate::raytrace::simd::Plain;
+
+    /// Lanes, sums and total, to the bit.
+    fn bits(estimates: &Estimates) -> Vec<u32> {
+        let Estimates { lanes, sums, total } = estimates;
+        lanes.as_flattened().iter().chain(sums).chain([total]).map(|value| value.to_bits()).collect()
+    }
+
+    #[test]
+    fn both_sets_of_instructions_estimate_the_same() {
+        let mut numbers = Numbers::new(21);
+        let lights = crowd(700, &mut numbers);
+        let chooser = Chooser::new(&lights);
+        assert!(chooser.nodes.len() > 1, "clusters are asked, too");
+        // Among the lights, right on them, and so far away that squares overflow.
+        let mut points: Vec<Vec3> = (0..300).map(|_| numbers.direction() * numbers.between(0.0, 6.0)).collect();
+        points.extend(lights.iter().step_by(9).filter_map(TracedLight::centre));
+        points.extend((0..20).map(|_| numbers.direction() * 1e25));
+        let (mut given, mut denied) = (0, 0);
+        for point in points {
+            let normal = numbers.direction();
+            for node in &chooser.nodes {
+                let first = node.first_packet as usize;
+                let packets = &chooser.packets[first..first + node.packets as usize];
+                let ask = || Ask { packets, point, normal };
+                let (ours, plain) = (simd::dispatch(ask()), ask().run::<Plain>());
+                assert_eq!(bits(&ours), bits(&plain), "from {point}, facing {normal}");
+                let lanes = &ours.lanes.as_flattened()[..packets.len() * WIDTH];
+                given += lanes.iter().filter(|lane| **lane > 0.0).count();
+                denied += lanes.iter().filter(|lane| **lane == 0.0).count();
+            }
+        }
+        assert!(given.min(denied) > 10_000, "{given} lanes give something, {denied} nothing: the test says little");
+    }
+}

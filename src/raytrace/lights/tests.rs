@@ -219,7 +219,7 @@ fn the_chosen_direction_meets_what_a_ray_sees() {
 }
 
 /// Lights of all kinds about the origin.
-fn crowd(count: usize, numbers: &mut Numbers) -> Vec<TracedLight> {
+pub(super) fn crowd(count: usize, numbers: &mut Numbers) -> Vec<TracedLight> {
     let emitters = [
         Emitter::Point,
         Emitter::Sphere { radius_m: 0.3 },
