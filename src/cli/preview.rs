@@ -31,8 +31,8 @@ pub struct Arguments {
     /// without the radius beyond which a light is left out.
     #[arg(long)]
     lights: bool,
-    /// What the picture shows: lit, base-color, normal, roughness, metallic, depth, ids, or illuminance (direct light in
-    /// false colour, in stops against the camera's exposure).
+    /// What the picture shows: lit, base-color, normal, roughness, metallic, depth, ids, or illuminance (direct light
+    /// in false colour, in stops against the camera's exposure).
     #[arg(long, default_value = "lit", conflicts_with = "cpu")]
     channel: String,
     /// One light alone, by name.
@@ -44,8 +44,8 @@ pub struct Arguments {
     /// Draw on the processor, without a graphics adapter: no shadows.
     #[arg(long, conflicts_with = "lights")]
     cpu: bool,
-    /// The live view as the tracer shows it: how soon its first picture stands after opening, moving, dimming and turning,
-    /// each so many times as `--frames` says; with `-o`, its picture when it has settled.
+    /// The live view as the tracer shows it: how soon its first picture stands after opening, moving, dimming and
+    /// turning, each so many times as `--frames` says; with `-o`, its picture when it has settled.
     #[arg(long, conflicts_with_all = ["lights", "cpu"])]
     traced: bool,
     /// Print times as JSON.
@@ -82,8 +82,8 @@ pub struct TimesReport {
     pub lights: usize,
     /// Whether lights are left out where they fall under 1/256 of display white.
     pub light_radius: bool,
-    /// Whether frames in motion are drafts here, which light one pixel in four (fewer under many lights) and give way to
-    /// the picture in full when nothing moves: on adapters that are processors.
+    /// Whether frames in motion are drafts here, which light one pixel in four (fewer under many lights) and give way
+    /// to the picture in full when nothing moves: on adapters that are processors.
     pub draft: bool,
     /// Frames measured.
     pub frames: usize,

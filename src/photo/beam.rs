@@ -13,8 +13,8 @@ pub fn transmittance(modifier: &Modifier) -> f32 {
     (-(modifier.loss_stops + modifier.scrim_stops)).exp2()
 }
 
-/// Part that passes in a unit direction of the light's frame (right, up, back: the axis is -Z), 0 to 1. On the axis of a
-/// grid everything passes: what is lost is lost beside it.
+/// Part that passes in a unit direction of the light's frame (right, up, back: the axis is -Z), 0 to 1. On the axis of
+/// a grid everything passes: what is lost is lost beside it.
 pub fn passed(modifier: &Modifier, direction: Vec3) -> f32 {
     let cos = -direction.z;
     let beam = modifier.beam.map_or(1.0, |cone| spot_falloff(cos, cone.inner_deg, cone.outer_deg));

@@ -36,8 +36,8 @@ pub enum Strength {
     Illuminance(f32),
 }
 
-/// Strength of a light with its dial and its modifier's loss applied. What a grid or a snoot cuts off beside the axis is
-/// [`super::beam`]'s affair.
+/// Strength of a light with its dial and its modifier's loss applied. What a grid or a snoot cuts off beside the axis
+/// is [`super::beam`]'s affair.
 pub fn strength(light: &Light) -> Strength {
     let dial = light.power.dial_stops.exp2() * super::beam::transmittance(&light.modifier);
     match light.power.output {

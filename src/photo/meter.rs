@@ -128,7 +128,8 @@ impl Reading {
         exposure::f_number(self.total_lux_s(), self.iso, self.meter_constant)
     }
 
-    /// The light that the others are compared with: the strongest of the key lights, or of all where none has that role.
+    /// The light that the others are compared with: the strongest of the key lights, or of all where none has that
+    /// role.
     pub fn key(&self) -> Option<&LightReading> {
         let strongest = |lights: &mut dyn Iterator<Item = &'_ LightReading>| {
             lights

@@ -95,7 +95,8 @@ impl Dial {
     /// The next whole third from `value` in a direction (+1 or -1), kept on the scale.
     pub fn step(self, value: f32, direction: i32) -> f32 {
         let thirds = self.thirds(value);
-        // Files hold engraved numbers (5.6, 1/60), up to 0.3 thirds from the exact ones: such a value counts as its third.
+        // Files hold engraved numbers (5.6, 1/60), up to 0.3 thirds from the exact ones: such a value counts as its
+        // third.
         let near = thirds.round();
         let next = match (direction > 0, (thirds - near).abs() < 0.35) {
             (true, true) => near as i32 + 1,

@@ -1,7 +1,7 @@
 //! Which lights reach which part of the picture, so that of many lights each pixel pays for few.
 //!
-//! What a light reaches is enclosed in a ball, the ball boxed in the camera's space and the box projected: a tile may list
-//! a light that does not reach it, never the other way round.
+//! What a light reaches is enclosed in a ball, the ball boxed in the camera's space and the box projected: a tile may
+//! list a light that does not reach it, never the other way round.
 
 use super::light_table::{GpuLight, Kind, LightTable};
 use crate::scene::CameraFrame;

@@ -139,8 +139,8 @@ impl PreviewRenderer {
         self.on_processor
     }
 
-    /// Picture pixels a pixel of the shadow masks, along each side: a processor draws soft shadows at half the size, and
-    /// at a quarter while something moves, or an eighth under lights so many that each matters little.
+    /// Picture pixels a pixel of the shadow masks, along each side: a processor draws soft shadows at half the size,
+    /// and at a quarter while something moves, or an eighth under lights so many that each matters little.
     fn mask_scale(&self, draft: bool, table: &LightTable) -> u32 {
         match (self.on_processor, draft) {
             (false, _) => 1,

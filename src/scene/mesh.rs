@@ -72,9 +72,9 @@ impl Mesh {
         );
     }
 
-    /// Whether the triangles enclose a space: every edge is shared by as many triangles one way as the other. Vertices at
-    /// the same place count as one. A few open edges are forgiven (files are rarely perfect), if as many triangles look
-    /// one way as the other.
+    /// Whether the triangles enclose a space: every edge is shared by as many triangles one way as the other. Vertices
+    /// at the same place count as one. A few open edges are forgiven (files are rarely perfect), if as many triangles
+    /// look one way as the other.
     pub fn is_closed(&self) -> bool {
         let place = |i: u32| (self.positions[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
         let mut edges: HashMap<[[u32; 3]; 2], i32> = HashMap::with_capacity(self.triangles.len() * 3 / 2);

@@ -5,8 +5,8 @@
 
 use super::Emitter;
 
-/// A cone about the light's axis that passes everything inside the inner angle and falls linearly in angle to nothing at
-/// the outer one. Full (edge to edge) angles, degrees, up to 180.
+/// A cone about the light's axis that passes everything inside the inner angle and falls linearly in angle to nothing
+/// at the outer one. Full (edge to edge) angles, degrees, up to 180.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
     /// Full angle of what passes untouched.
@@ -115,9 +115,9 @@ const fn hard(name: &'static str, tip: &'static str, modifier: Modifier) -> Name
 const REFLECTOR_LOSS: Modifier = Modifier::loss(0.3);
 
 impl NamedModifier {
-    /// The whole rack, in list order. Losses are typical of what makers and testers state: 1 to 2 stops for softboxes, the
-    /// more the larger and the more cloth; half a stop for a white dish; 1 stop for a reflecting umbrella, 1.7 for one
-    /// that is shot through.
+    /// The whole rack, in list order. Losses are typical of what makers and testers state: 1 to 2 stops for softboxes,
+    /// the more the larger and the more cloth; half a stop for a white dish; 1 stop for a reflecting umbrella, 1.7 for
+    /// one that is shot through.
     pub const ALL: [NamedModifier; 32] = [
         NamedModifier {
             name: "Bare bulb",

@@ -136,7 +136,8 @@ fn disc(radius: f32, y: f32, normal: Vec3) -> Mesh {
     mesh
 }
 
-/// Profile from the front edge of the floor over the curve to the top of the wall, as (y, z, normal y, normal z, length).
+/// Profile from the front edge of the floor over the curve to the top of the wall, as (y, z, normal y, normal z,
+/// length).
 fn sweep(width: f32, height: f32, depth: f32, radius: f32) -> Mesh {
     let radius = radius.min(height).min(depth).max(0.0);
     let mut profile = vec![(Vec3::new(0.0, 0.0, depth), Vec3::Y)];

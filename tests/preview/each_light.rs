@@ -1,7 +1,7 @@
 //! Every light of every shipped studio, alone: the preview's direct light against the tracer's.
 //!
-//! Compared is what is lit and in no shadow by the preview's own account. A shadow that the preview misses counts as its
-//! error; one that it makes up is counted apart. Mirrors and glass are left out: they show what no rasteriser sees.
+//! Compared is what is lit and in no shadow by the preview's own account. A shadow that the preview misses counts as
+//! its error; one that it makes up is counted apart. Mirrors and glass are left out: they show what no rasteriser sees.
 
 use super::*;
 use catchlight::io::Loaded;
@@ -16,8 +16,8 @@ const SUPERSAMPLES: u32 = 4;
 const SPP: u32 = 48;
 /// Darker pixels count as not lit: one code of an 8-bit picture at its dark end would be a twentieth of them.
 const LIT: f32 = 0.005;
-/// Lights that draw an edge so thin that no block fits into it: their pictures are larger, with more samples, since what
-/// grazes is noisier. Those that shine from behind are seen from their own side, too, where blocks fit.
+/// Lights that draw an edge so thin that no block fits into it: their pictures are larger, with more samples, since
+/// what grazes is noisier. Those that shine from behind are seen from their own side, too, where blocks fit.
 const EDGES: &[(&str, &str)] = &[
     ("split", "Key strip"),
     ("rim_low_key", "Left strip"),
@@ -81,8 +81,8 @@ fn each_light_alone_is_the_tracers_direct_light() {
     assert!(wrong.is_empty(), "too far from the tracer:\n{}", wrong.join("\n"));
 }
 
-/// Where one shadow map or one telling point of an emitter would not do: large ones close by, behind the subject, edge-on,
-/// near a wall. The man of the split studio stands at the origin and looks along +Z.
+/// Where one shadow map or one telling point of an emitter would not do: large ones close by, behind the subject,
+/// edge-on, near a wall. The man of the split studio stands at the origin and looks along +Z.
 #[test]
 fn lights_in_hard_places_are_the_tracers_direct_light() {
     let Some((_gpu, mut renderer)) = renderer() else { return };

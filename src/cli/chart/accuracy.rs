@@ -1,9 +1,11 @@
-//! `catchlight chart [SCENE ...] -o DIR`: every method's error against its time, beside the converged path-traced picture.
+//! `catchlight chart [SCENE ...] -o DIR`: every method's error against its time, beside the converged path-traced
+//! picture.
 //!
 //! Error is the mean over pixels and colours of (x - r)^2 / (r^2 + 0.01^2), r from the reference (relative mean squared
 //! error; the small term, four stops under a grey card, keeps black pixels from counting without bound), the median and
-//! the 95th percentile over pixels of the error in stops of luminance, and the bias: how many stops the mean of the whole
-//! picture is over the reference's, where noise has nearly gone. Time is tracing alone, on all cores; trees are built once.
+//! the 95th percentile over pixels of the error in stops of luminance, and the bias: how many stops the mean of the
+//! whole picture is over the reference's, where noise has nearly gone. Time is tracing alone, on all cores; trees are
+//! built once.
 
 use super::{Arguments, drawing, reference};
 use crate::cli::{Failure, input, say, zbuffer};

@@ -1,7 +1,7 @@
 //! `catchlight chart --scaling`: how preparing, tracing and memory grow with triangles, lights and pixels.
 //!
-//! What theory says: preparing grows with the number of triangles, a ray with its logarithm; light sampling at a hit with
-//! the number of lights as long as each is asked what it gives there; a picture with its pixels.
+//! What theory says: preparing grows with the number of triangles, a ray with its logarithm; light sampling at a hit
+//! with the number of lights as long as each is asked what it gives there; a picture with its pixels.
 
 use crate::cli::{Failure, crowd, input, say};
 use crate::io;

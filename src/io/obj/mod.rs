@@ -29,8 +29,8 @@ pub struct ImportedObj {
     pub warnings: Vec<String>,
 }
 
-/// Imports an OBJ file: polygons become triangles, groups become parts, missing normals are made smooth up to hard edges. A missing MTL
-/// file is a warning.
+/// Imports an OBJ file: polygons become triangles, groups become parts, missing normals are made smooth up to hard
+/// edges. A missing MTL file is a warning.
 ///
 /// # Errors
 /// When the file can't be read, is too large, or has a mistake; the message names its line where it can.
@@ -127,7 +127,8 @@ fn assemble(models: Vec<tobj::Model>, materials: &[tobj::Material], crease_deg: 
     Ok(ImportedObj { mesh, part_materials, warnings })
 }
 
-/// A name a part: the group's, with the material's where a group has several, and the material's where there is no group.
+/// A name a part: the group's, with the material's where a group has several, and the material's where there is no
+/// group.
 fn part_names(models: &[tobj::Model], materials: &[tobj::Material]) -> Vec<String> {
     const NAMELESS: &str = "unnamed_object";
     let mut times = HashMap::new();

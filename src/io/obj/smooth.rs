@@ -5,15 +5,16 @@ use crate::scene::Mesh;
 use glam::Vec3;
 use std::collections::HashMap;
 
-/// Faces that meet at more than this, degrees, keep an edge between them. A cylinder of eight sides (45) is still smooth, a
-/// box (90) or a hexagonal prism (60) is not.
+/// Faces that meet at more than this, degrees, keep an edge between them. A cylinder of eight sides (45) is still
+/// smooth, a box (90) or a hexagonal prism (60) is not.
 pub(super) const CREASE_DEG: f32 = 50.0;
-/// Around a vertex with more corners (the tip of a fine cone) all are smoothed: comparing each with each would take long.
+/// Around a vertex with more corners (the tip of a fine cone) all are smoothed: comparing each with each would take
+/// long.
 const MOST_CORNERS: usize = 128;
 
 /// Gives every corner the angle-weighted mean of the faces around its vertex that lie within `crease_deg` of its own
-/// (Thurmer and Wuthrich 1998 for the weights). Vertices at the same place count as one, so that texture coordinates and
-/// groups leave no seams; a vertex whose corners differ is split. Corners of faces without area get +Y.
+/// (Thurmer and Wuthrich 1998 for the weights). Vertices at the same place count as one, so that texture coordinates
+/// and groups leave no seams; a vertex whose corners differ is split. Corners of faces without area get +Y.
 pub(super) fn compute_normals(mesh: &mut Mesh, crease_deg: f32) {
     let corners: Vec<Corner> = (0..mesh.triangles.len()).flat_map(|t| corners_of(mesh, t)).collect();
     let normals = corner_normals(mesh, &corners, crease_deg);

@@ -66,8 +66,8 @@ fn fresnel(m: Material, cosine: f32) -> vec3f {
 }
 
 // Directional albedo of GGX under height-correlated Smith masking with Schlick's Fresnel, as a function of the cosine x
-// at one roughness: f0 (1 - loss.x - loss.y x - loss.z x^2) + (f90 - f0) bias (1 - x)^5. Our fit of the integral, 0.01 in
-// the mean for cosines over 0.1.
+// at one roughness: f0 (1 - loss.x - loss.y x - loss.z x^2) + (f90 - f0) bias (1 - x)^5. Our fit of the integral, 0.01
+// in the mean for cosines over 0.1.
 struct Albedo {
     loss: vec3f,
     bias: f32,
@@ -112,9 +112,9 @@ fn material(base: vec3f, gloss: vec3f, n_dot_v: f32) -> Material {
     return m;
 }
 
-// The body shares energy with the coat as in the tracer (Kelemen and Szirmay-Kalos 2001): (1 - E(o))(1 - E(i)) / (1 - mean E).
-// Part of the light under this cosine that gets through the coat into the body, to the mean over the hemisphere. `wide`
-// is the part of the hemisphere that the light fills.
+// The body shares energy with the coat as in the tracer (Kelemen and Szirmay-Kalos 2001): (1 - E(o))(1 - E(i)) / (1 -
+// mean E). Part of the light under this cosine that gets through the coat into the body, to the mean over the
+// hemisphere. `wide` is the part of the hemisphere that the light fills.
 fn entering(m: Material, cosine: f32, wide: f32) -> f32 {
     let at = albedo_at(m.albedo, saturate(cosine));
     return mix((1.0 - m.f0 * at.x - m.rise * at.y) * m.entering, 1.0, wide);
@@ -144,8 +144,8 @@ fn glint(s: Shading, direction: vec3f, radius: f32) -> vec3f {
 // surface, slopes run to infinity.
 const LOWEST: f32 = 0.03;
 
-// Blinn and Phong's highlight for unit irradiance from a direction (of any length), with as much energy as its lobe of the
-// same width holds.
+// Blinn and Phong's highlight for unit irradiance from a direction (of any length), with as much energy as its lobe of
+// the same width holds.
 fn blinn_phong(s: Shading, towards: vec3f) -> vec3f {
     let direction = towards * inverseSqrt(max(dot(towards, towards), 1e-20));
     let half_sum = direction + s.view;
@@ -190,8 +190,8 @@ fn gloss_towards(s: Shading, telling: vec3f) -> vec3f {
     return fresnel(s.material, v_dot_h) * weight;
 }
 
-// Parts in which an emitter is taken: so many for each time that it is as long as it is high over the surface, for light
-// and viewer together, and at most these.
+// Parts in which an emitter is taken: so many for each time that it is as long as it is high over the surface, for
+// light and viewer together, and at most these.
 const PARTS_PER_BEND: f32 = 3.0;
 const MOST_PARTS: f32 = 8.0;
 
@@ -218,8 +218,9 @@ fn cross_line(s: Shading, middle: vec3f, across: vec3f) -> CrossLine {
 // Highlight of an emitter of unit luminance with a middle and half axes, a rectangle's or a disc's: mirrored to half
 // vectors it covers a region of slopes, and as many facets as have such slopes show it.
 //
-// It is cut at the horizon and taken in parts along its longer side. Straight sides are bent in the plane of slopes, most
-// where a tall strip stands behind a grazing surface, and Fresnel and masking change along them: the more, the more parts.
+// It is cut at the horizon and taken in parts along its longer side. Straight sides are bent in the plane of slopes,
+// most where a tall strip stands behind a grazing surface, and Fresnel and masking change along them: the more, the
+// more parts.
 fn highlight(s: Shading, a: Arrival, round: bool) -> vec3f {
     let tall = dot(a.up, a.up) >= dot(a.right, a.right);
     let whole = select(a.right, a.up, tall);
@@ -252,8 +253,8 @@ fn highlight(s: Shading, a: Arrival, round: bool) -> vec3f {
         let high_middle = 0.5 * (high.left_slope + high.right_slope);
         let slope_u = 0.25 * (low.right_slope - low.left_slope + high.right_slope - high.left_slope);
         let slope_v = 0.5 * (high_middle - low_middle);
-        // The telling point: the middle for a lobe that is wide beside the part, the nearest to the mirror direction for a
-        // narrow one.
+        // The telling point: the middle for a lobe that is wide beside the part, the nearest to the mirror direction
+        // for a narrow one.
         let mirror = mirror_place(0.5 * (low_middle + high_middle), slope_u, slope_v);
         let extent = vec2f(dot(slope_u, slope_u), dot(slope_v, slope_v));
         let telling = clamp(mirror, vec2f(-1.0), vec2f(1.0)) * extent / (extent + alpha2);

@@ -7,8 +7,8 @@ struct Corner {
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
     @location(2) uv: vec2f,
-    // Packed colour, packed gloss, mark in the id buffer, and whether the front shines. Packed a corner and not a pixel,
-    // which spares a software rasteriser a fifth of the pass.
+    // Packed colour, packed gloss, mark in the id buffer, and whether the front shines. Packed a corner and not a
+    // pixel, which spares a software rasteriser a fifth of the pass.
     @location(3) @interpolate(flat) surface: vec4u,
 }
 

@@ -98,7 +98,8 @@ fn disc_irradiance(centre: vec3f, right: vec3f, up: vec3f, normal: vec3f) -> vec
     return outline_irradiance(o, normal);
 }
 
-// Irradiance of a sphere of unit luminance, cut by the horizon (Snyder 1996, area light sources for real-time graphics).
+// Irradiance of a sphere of unit luminance, cut by the horizon (Snyder 1996, area light sources for real-time
+// graphics).
 fn sphere_irradiance(cosine: f32, distance: f32, radius: f32) -> f32 {
     let sine = min(radius / distance, 0.9999);
     let squared = sine * sine;

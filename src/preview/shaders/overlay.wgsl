@@ -69,8 +69,8 @@ fn tint_vertex(@location(0) position: vec4f, @location(1) color: vec4f) -> Corne
 @fragment
 fn fragment(in: Corner) -> @location(0) vec4f {
     let depth = bitcast<f32>(textureLoad(ids, vec2i(in.clip.xy), 0).y);
-    // Half a percent of the distance: lines that lie on a floor are not hidden by it. Five centimetres at most: a parallel
-    // view looks from two kilometres away.
+    // Half a percent of the distance: lines that lie on a floor are not hidden by it. Five centimetres at most: a
+    // parallel view looks from two kilometres away.
     let margin = min(1.005, 1.0 + 0.05 * in.clip.z / frame.near_m);
     let shown = select(in.through, 1.0, in.clip.z * margin >= depth);
     let edge = saturate(in.half_width + 0.5 - abs(in.across));

@@ -1,5 +1,5 @@
-// Spreads light that was found at one pixel of each cell over the picture: each pixel takes from the four cells around as far
-// as they lie on its own surface, by plane and normal, and keeps its own base colour.
+// Spreads light that was found at one pixel of each cell over the picture: each pixel takes from the four cells around
+// as far as they lie on its own surface, by plane and normal, and keeps its own base colour.
 
 @group(1) @binding(0) var gbuffer: texture_2d<u32>;
 @group(1) @binding(1) var ids: texture_2d<u32>;

@@ -122,18 +122,19 @@ fn receiver(slot: u32, position: vec3f, face: vec3f, draw: f32) -> Receiver {
     let steepest = 0.25 * select(abs(r.depth), 1.0, parallel);
     r.slope = clamp(vec2f(slope.x, -slope.y), vec2f(-steepest), vec2f(steepest));
     r.inside = (parallel || local.z > 0.0) && all(r.at > vec2f(0.0)) && all(r.at < vec2f(resolution));
-    // Two maps a view. Solids' far sides give dark and sharp contacts. Their near sides serve receivers that turn away from
-    // the emitter's middle and see at most its edge: for them the body itself stands in the way. Over the terminator the
-    // choice is drawn, and the blur makes it a blend.
+    // Two maps a view. Solids' far sides give dark and sharp contacts. Their near sides serve receivers that turn away
+    // from the emitter's middle and see at most its edge: for them the body itself stands in the way. Over the
+    // terminator the choice is drawn, and the blur makes it a blend.
     let near_side = draw < saturate(1.0 - 6.0 * facing);
     r.layer = i32(2u * layer + select(1u, 0u, near_side));
     r.resolution = resolution;
     return r;
 }
 
-// How far before the receiver (in depth) what stands in the light's way at a tap is (x), and whether it does (y). It does
-// if it lies before the receiver's plane and inside the cone from the receiver to the emitter's outline: what is merely
-// beside, like the rise of a hollow, takes nothing. `spread` is the cone's growth in texels for each unit of depth.
+// How far before the receiver (in depth) what stands in the light's way at a tap is (x), and whether it does (y). It
+// does if it lies before the receiver's plane and inside the cone from the receiver to the emitter's outline: what is
+// merely beside, like the rise of a hollow, takes nothing. `spread` is the cone's growth in texels for each unit of
+// depth.
 fn blocker_at(r: Receiver, tap: vec2f, spread: vec2f) -> vec2f {
     let texel = floor(r.at + tap);
     let offset = texel + 0.5 - r.at;
@@ -199,8 +200,8 @@ fn part_visibility(slot: u32, position: vec3f, face: vec3f, turn: vec2f, draw: f
     return select(searched, select(1.0, 0.0, below), settled);
 }
 
-// What a part of an emitter sends to a surface with this normal, as a factor. A part whose middle is below the horizon sees
-// the surface from behind and knows nothing of its shadow: next to nothing, unless no other knows more.
+// What a part of an emitter sends to a surface with this normal, as a factor. A part whose middle is below the horizon
+// sees the surface from behind and knows nothing of its shadow: next to nothing, unless no other knows more.
 fn part_weight(slot: u32, position: vec3f, normal: vec3f) -> f32 {
     let to_part = shadows.slots[slot].position - position;
     let squared = max(dot(to_part, to_part), 1e-6);
