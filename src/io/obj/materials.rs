@@ -2,44 +2,64 @@
 
 use super::read_limited;
 use crate::scene::{Material, path_complaint};
-use std::cell::RefCell;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// Largest MTL file, bytes.
 const FILE_LIMIT_BYTES: u64 = 16_000_000;
 
-/// Loads the material libraries that a model names. They lie in its folder.
+/// The materials that a model names, from the libraries in its folder.
+#[derive(Debug, Default)]
 pub(super) struct Library {
-    folder: PathBuf,
-    warnings: RefCell<Vec<String>>,
+    /// None where there are no libraries at all.
+    folder: Option<PathBuf>,
+    loaded: HashSet<String>,
+    materials: Vec<tobj::Material>,
+    by_name: HashMap<String, usize>,
+    warnings: Vec<String>,
 }
 
 impl Library {
     pub fn beside(model: &Path) -> Self {
-        Library { folder: model.parent().unwrap_or(Path::new("")).to_owned(), warnings: RefCell::default() }
+        Library { folder: Some(model.parent().unwrap_or(Path::new("")).to_owned()), ..Library::default() }
     }
 
     pub fn into_warnings(self) -> Vec<String> {
-        self.warnings.into_inner()
+        self.warnings
     }
 
-    /// The materials of a library; none, and a warning, where it can't be read.
-    pub fn load(&self, name: &Path) -> tobj::MTLLoadResult {
-        let text = self.read(&name.to_string_lossy());
+    /// Number of the material that now has this name.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.by_name.get(name).copied()
+    }
+
+    /// A material that was found.
+    pub fn get(&self, number: Option<usize>) -> Option<&tobj::Material> {
+        self.materials.get(number?)
+    }
+
+    /// Adds the materials of a file; none, and a warning, where it can't be read.
+    pub fn load(&mut self, name: &str) {
+        let Some(folder) = self.folder.as_ref().filter(|_| !self.loaded.contains(name)) else { return };
         let parse = |text: String| tobj::load_mtl_buf(&mut text.as_bytes()).map_err(|error| error.to_string());
-        text.and_then(parse).or_else(|reason| {
-            self.warnings.borrow_mut().push(format!("the materials {name:?} are left out: {reason}"));
-            Ok(Default::default())
-        })
-    }
-
-    fn read(&self, name: &str) -> Result<String, String> {
-        if let Some(reason) = path_complaint(name) {
-            return Err(reason.to_owned());
+        match read(folder, name).and_then(parse) {
+            Ok((materials, by_name)) => {
+                let before = self.materials.len();
+                self.materials.extend(materials);
+                self.by_name.extend(by_name.into_iter().map(|(name, number)| (name, before + number)));
+            }
+            Err(reason) => self.warnings.push(format!("the materials {name:?} are left out: {reason}")),
         }
-        let bytes = read_limited(&self.folder.join(name), FILE_LIMIT_BYTES).map_err(|error| error.to_string())?;
-        Ok(usable_lines(&String::from_utf8_lossy(&bytes)))
+        self.loaded.insert(name.to_owned());
     }
+}
+
+fn read(folder: &Path, name: &str) -> Result<String, String> {
+    if let Some(reason) = path_complaint(name) {
+        return Err(reason.to_owned());
+    }
+    let bytes = read_limited(&folder.join(name), FILE_LIMIT_BYTES).map_err(|error| error.to_string())?;
+    Ok(usable_lines(&String::from_utf8_lossy(&bytes)))
 }
 
 /// The lines that the parser can take: it expects three numbers for every colour without looking.

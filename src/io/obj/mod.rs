@@ -1,13 +1,18 @@
-//! OBJ models through tobj: one mesh, a part a group, surfaces from the MTL file where there is one.
+//! OBJ models: one mesh, a part a group, surfaces from the MTL file where there is one.
 
+mod groups;
 mod lines;
 mod materials;
+mod pieces;
 mod smooth;
+mod weld;
 
 use super::error::AssetError;
-use crate::scene::{Material, Mesh, MeshPart};
-use glam::{Vec2, Vec3};
-use std::collections::HashMap;
+use crate::scene::{Material, Mesh};
+use glam::Vec3;
+use materials::Library;
+use pieces::{Elements, Fault};
+use std::collections::HashSet;
 use std::io::ErrorKind;
 use std::path::Path;
 
@@ -36,35 +41,27 @@ pub struct ImportedObj {
 /// When the file can't be read, is too large, or has a mistake; the message names its line where it can.
 pub fn import_obj(path: &Path) -> Result<ImportedObj, AssetError> {
     let bytes = read_limited(path, FILE_LIMIT_BYTES)?;
-    let text = String::from_utf8_lossy(&bytes);
     let bad_model = |message: String| AssetError::BadModel { message, path: path.to_owned() };
-    lines::check(&text).map_err(bad_model)?;
-    let library = materials::Library::beside(path);
-    let (models, materials) =
-        tobj::load_obj_buf(&mut text.as_bytes(), &tobj::GPU_LOAD_OPTIONS, |name| library.load(name))
-            .map_err(|error| bad_model(error.to_string()))?;
-    let triangles: usize = models.iter().map(|model| model.mesh.indices.len() / 3).sum();
-    if triangles > TRIANGLE_LIMIT {
-        let (amount, limit) = (triangles as u64, TRIANGLE_LIMIT as u64);
-        return Err(AssetError::TooLarge {
+    let elements = pieces::read(&bytes).map_err(|fault| match fault {
+        Fault::Mistake(message) => bad_model(message),
+        Fault::TooManyTriangles(amount) => AssetError::TooLarge {
             what: "the model's number of triangles",
-            amount,
-            limit,
+            amount: amount as u64,
+            limit: TRIANGLE_LIMIT as u64,
             path: path.to_owned(),
-        });
-    }
-    let materials = materials.unwrap_or_default();
-    let mut imported = assemble(models, &materials, smooth::CREASE_DEG).map_err(bad_model)?;
+        },
+    })?;
+    let mut library = Library::beside(path);
+    let mut imported = assemble(&elements, &mut library, smooth::CREASE_DEG).map_err(bad_model)?;
     imported.warnings.extend(library.into_warnings());
     Ok(imported)
 }
 
-/// Reads one of the OBJ files that ship with the program, which need no checks and have no MTL file.
+/// Reads one of the OBJ files that ship with the program, which have no mistakes and no MTL file.
 pub(super) fn read_shipped(text: &[u8]) -> Option<Mesh> {
-    let no_materials = |_: &Path| Ok(Default::default());
-    let (models, _) = tobj::load_obj_buf(&mut &text[..], &tobj::GPU_LOAD_OPTIONS, no_materials).ok()?;
+    let elements = pieces::read(text).ok()?;
     // Figures are smooth all over.
-    assemble(models, &[], 180.0).ok().map(|imported| imported.mesh)
+    assemble(&elements, &mut Library::default(), 180.0).ok().map(|imported| imported.mesh)
 }
 
 /// Reads a whole file that must not be larger than `limit`.
@@ -86,35 +83,20 @@ pub(super) fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, AssetErro
     Ok(bytes)
 }
 
-/// One mesh of all groups; groups without triangles are dropped.
-fn assemble(models: Vec<tobj::Model>, materials: &[tobj::Material], crease_deg: f32) -> Result<ImportedObj, String> {
-    let mut mesh = Mesh::default();
-    let mut part_materials: Vec<(String, Material)> = Vec::new();
-    let names = part_names(&models, materials);
-    let has =
-        |field: fn(&tobj::Mesh) -> bool| models.iter().filter(|m| !m.mesh.indices.is_empty()).all(|m| field(&m.mesh));
-    let has_normals = has(|m| m.normals.len() == m.positions.len());
-    let has_uvs = has(|m| m.texcoords.len() / 2 == m.positions.len() / 3);
-    for (model, name) in models.iter().zip(names).filter(|(model, _)| !model.mesh.indices.is_empty()) {
-        let (base, first) = (mesh.positions.len() as u32, mesh.triangles.len() as u32);
-        mesh.positions.extend(triples(&model.mesh.positions));
-        if has_normals {
-            mesh.normals.extend(triples(&model.mesh.normals));
-        }
-        if has_uvs {
-            mesh.uvs.extend(model.mesh.texcoords.chunks_exact(2).map(|uv| Vec2::new(uv[0], uv[1])));
-        }
-        mesh.triangles.extend(model.mesh.indices.chunks_exact(3).map(|t| [t[0] + base, t[1] + base, t[2] + base]));
-        if let Some(material) = model.mesh.material_id.and_then(|id| materials.get(id))
-            && !part_materials.iter().any(|(part, _)| *part == name)
-        {
-            part_materials.push((name.clone(), materials::surface(material)));
-        }
-        mesh.parts.push(MeshPart { name, triangles: first..mesh.triangles.len() as u32 });
-    }
-    if mesh.triangles.is_empty() {
+/// One mesh of all groups.
+fn assemble(elements: &Elements, library: &mut Library, crease_deg: f32) -> Result<ImportedObj, String> {
+    let groups = groups::groups(&elements.faces, library);
+    if groups.is_empty() {
         return Err("it has no faces".to_owned());
     }
+    let names = groups::part_names(&groups, library);
+    let (mut part_materials, mut named) = (Vec::new(), HashSet::new());
+    for (group, name) in groups.iter().zip(&names) {
+        if let Some(material) = library.get(group.material).filter(|_| named.insert(name.clone())) {
+            part_materials.push((name.clone(), materials::surface(material)));
+        }
+    }
+    let mut mesh = groups::weld(elements, &groups, names);
     if let Some(p) = mesh.positions.iter().find(|p| !p.is_finite() || p.abs().max_element() > PLACE_LIMIT_M) {
         return Err(format!("the vertex {p} is not within {PLACE_LIMIT_M} m"));
     }
@@ -126,31 +108,6 @@ fn assemble(models: Vec<tobj::Model>, materials: &[tobj::Material], crease_deg: 
     mend_normals(&mut mesh, crease_deg, &mut warnings);
     Ok(ImportedObj { mesh, part_materials, warnings })
 }
-
-/// A name a part: the group's, with the material's where a group has several, and the material's where there is no
-/// group.
-fn part_names(models: &[tobj::Model], materials: &[tobj::Material]) -> Vec<String> {
-    const NAMELESS: &str = "unnamed_object";
-    let mut times = HashMap::new();
-    for model in models {
-        *times.entry(model.name.as_str()).or_insert(0_u32) += 1;
-    }
-    let name = |model: &tobj::Model| {
-        let material = model.mesh.material_id.and_then(|id| materials.get(id)).map(|m| m.name.as_str());
-        match material {
-            Some(material) if model.name == NAMELESS => material.to_owned(),
-            Some(material) if times[model.name.as_str()] > 1 => format!("{} {material}", model.name),
-            _ if model.name == NAMELESS => "surface".to_owned(),
-            _ => model.name.clone(),
-        }
-    };
-    models.iter().map(name).collect()
-}
-
-fn triples(values: &[f32]) -> impl Iterator<Item = Vec3> + '_ {
-    values.chunks_exact(3).map(|v| Vec3::new(v[0], v[1], v[2]))
-}
-
 /// Unit normals for every vertex. The file's where they are all usable; else computed ones.
 fn mend_normals(mesh: &mut Mesh, crease_deg: f32, warnings: &mut Vec<String>) {
     let unit: Option<Vec<Vec3>> = mesh.normals.iter().map(|n| n.try_normalize()).collect();

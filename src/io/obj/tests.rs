@@ -1,4 +1,6 @@
 use super::*;
+use crate::scene::MeshPart;
+use glam::Vec2;
 use std::path::PathBuf;
 
 fn folder_with(files: &[(&str, &str)]) -> (tempfile::TempDir, PathBuf) {
@@ -63,6 +65,11 @@ fn mistakes_are_named_with_their_line() {
         ("f 1 2 -9", "line 5: the face's corner \"-9\" points to before the first"),
         ("f 1/9223372036854775807 2 3", "line 5"),
         ("f 1/-9223372036854775808 2 3", "line 5"),
+        (
+            "f 1/-999999999999999999 2 3",
+            "line 5: the face's corner \"1/-999999999999999999\" points to before the first",
+        ),
+        ("f 1/ 2/- 3", "line 5: the face's corner \"2/-\" is no index"),
         ("f 1//5 2 3", "line 5: the face names normal 5, but there are 0"),
         ("f 0 1 2", "indices begin at 1"),
         ("f 1 2 x", "is no index"),
@@ -72,7 +79,13 @@ fn mistakes_are_named_with_their_line() {
         ("", "no faces"),
         ("v 1e20 0 0\nf 1 2 5", "not within"),
         ("v nan 0 0\nf 1 2 5", "not within"),
-        ("v 1 x 0\nf 1 2 3", "position"),
+        ("v 1 x 0\nf 1 2 3", "line 5: the position's \"x\" is no number"),
+        ("v 1 2\nf 1 2 3", "line 5: the position has fewer than 3 numbers"),
+        ("v 1 2 3 0\nf 1 2 3", "line 5: the position's fourth number"),
+        ("v 1 2 3 1 1\nf 1 2 3", "line 5: the position has neither 3, 4 nor 6 numbers"),
+        ("vt 1\nf 1 2 3", "line 5: the texture coordinate has fewer than 2 numbers"),
+        ("vn 1 0 .\nf 1 2 3", "line 5: the normal's \".\" is no number"),
+        ("usemtl\nf 1 2 3", "line 5: it names no material"),
     ] {
         let error = import(&format!("{QUAD}{faces}\n")).unwrap_err().to_string();
         assert!(error.contains(words) && error.ends_with("a.obj"), "{faces:?}: {error}");
@@ -104,4 +117,87 @@ fn a_cut_file_is_an_error_or_a_smaller_model() {
     for end in 0..whole.len() {
         let _ = import(&whole[..end]);
     }
+}
+
+/// A model of many pieces: strips of quads, every third counted back from its end, in groups that share corners.
+fn long_model(quads: u32) -> String {
+    let mut text = "# a strip\r\nv 0 0 0\r\nv 0 0 1\r\nvt 0 0\r\nvn 0 1 0\r\n".to_owned();
+    for i in 1..=quads {
+        if i % 1000 == 1 {
+            text += &format!("g group {}\r\n", i / 1000);
+        }
+        text += &format!("v {i} 0 0\r\nv {i} 0 1\r\nvt {i} 0.5\r\n");
+        let corners =
+            if i % 3 == 0 { [-4, -3, -1, -2] } else { [2 * i - 1, 2 * i, 2 * i + 2, 2 * i + 1].map(|n| n as i32) };
+        let corners = corners.map(|n| format!("{n}/{}/1", if n < 0 { -1 } else { i as i32 + 1 }));
+        text += &format!("f {}\r\n", corners.join(" "));
+    }
+    text
+}
+
+#[test]
+fn a_model_that_is_read_in_pieces_is_whole() {
+    let quads = 40_000;
+    let text = long_model(quads);
+    assert!(text.len() > 3 << 20, "no more than a piece or two");
+    let mesh = import(&text).unwrap().mesh;
+    assert_eq!(mesh.triangles.len(), 2 * quads as usize);
+    assert_eq!(mesh.parts.len(), 40);
+    assert_eq!(mesh.parts[39], MeshPart::new("group 39", 78_000..80_000));
+    // Each quad has a texture coordinate of its own, and so four vertices.
+    assert_eq!(mesh.positions.len(), 4 * quads as usize);
+    for (t, triangle) in mesh.triangles.iter().enumerate() {
+        let i = (t / 2) as f32;
+        let corners = mesh.corners(t);
+        let expected = [[i, i, i + 1.0], [i, i + 1.0, i + 1.0]][t % 2];
+        assert_eq!(corners.map(|p| p.x), expected, "triangle {t}");
+        assert!(triangle.iter().all(|&k| mesh.uvs[k as usize] == Vec2::new(i + 1.0, 0.5)), "triangle {t}");
+    }
+}
+
+#[test]
+fn a_mistake_deep_in_a_file_is_named_with_its_line_and_the_first_comes_first() {
+    let mut lines: Vec<String> = long_model(60_000).lines().map(str::to_owned).collect();
+    lines[200_000] = "f 1 2 x".to_owned();
+    lines[150_000] = "v 1 2".to_owned();
+    let error = import(&lines.join("\n")).unwrap_err().to_string();
+    assert!(error.contains("line 150001: the position"), "{error}");
+}
+
+#[test]
+fn lines_and_points_are_no_faces_and_a_polyline_is_no_polygon() {
+    let imported = import(&format!("{QUAD}l 1 2 3 4\np 1\nf 1 2\nf 1\nf 1 2 3\n")).unwrap();
+    assert_eq!(imported.mesh.triangles, [[0, 1, 2]]);
+}
+
+#[test]
+fn colours_and_weights_of_vertices_are_read_past() {
+    let text = "v 0 0 0 1 0 0\nv 2 0 0 2\nv 0 1 0\nf 1 2 3\n";
+    assert_eq!(import(text).unwrap().mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
+}
+
+#[test]
+fn a_library_that_is_named_again_and_again_is_read_once() {
+    let named = "mtllib none.mtl\n".repeat(1000);
+    let imported = import(&format!("{named}{QUAD}f 1 2 3\n")).unwrap();
+    assert_eq!(imported.warnings.len(), 1);
+}
+
+#[test]
+fn the_mesh_is_the_one_that_tobj_reads() {
+    let text = long_model(5000);
+    let (models, _) =
+        tobj::load_obj_buf(&mut text.as_bytes(), &tobj::GPU_LOAD_OPTIONS, |_| Ok(Default::default())).unwrap();
+    let mesh = import(&text).unwrap().mesh;
+    let flat =
+        |field: fn(&tobj::Mesh) -> &[f32]| models.iter().flat_map(|m| field(&m.mesh)).copied().collect::<Vec<f32>>();
+    assert_eq!(mesh.positions.iter().flat_map(|p| p.to_array()).collect::<Vec<f32>>(), flat(|m| &m.positions));
+    assert_eq!(mesh.uvs.iter().flat_map(|uv| uv.to_array()).collect::<Vec<f32>>(), flat(|m| &m.texcoords));
+    let mut base = 0;
+    let mut triangles = Vec::new();
+    for model in &models {
+        triangles.extend(model.mesh.indices.chunks_exact(3).map(|t| [t[0] + base, t[1] + base, t[2] + base]));
+        base += model.mesh.positions.len() as u32 / 3;
+    }
+    assert_eq!(mesh.triangles, triangles);
 }
