@@ -9,8 +9,9 @@ use super::targets::{CELL_FORMAT, DEPTH_FORMAT, GBUFFER_FORMAT, ID_FORMAT, Outpu
 use super::{shaders, shadow_mask};
 use eframe::wgpu;
 
-/// Moves the room back by about 1e-4 of the distance, so that paper laid on its floor lies on top.
-const BEHIND_COPLANAR: wgpu::DepthBiasState = wgpu::DepthBiasState { constant: -1024, slope_scale: -1.0, clamp: 0.0 };
+/// Factor of the room's depth, near over distance: paper laid on its floor lies on top. Not a depth bias, whose unit is
+/// that of a triangle's nearest corner: a floor that runs under the camera would sink by decimetres.
+const BEHIND_COPLANAR: f64 = 1.0 - 1e-4;
 
 /// Layouts of the bind groups that the pipelines take.
 pub(super) struct Layouts<'a> {
@@ -93,12 +94,15 @@ impl GeometryPipelines {
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("geometry"),
                 layout: Some(&layout),
-                vertex: mesh_vertices(&module),
+                vertex: wgpu::VertexState {
+                    compilation_options: wgpu::PipelineCompilationOptions {
+                        constants: &[("DEPTH_FACTOR", if sides == Sides::Room { BEHIND_COPLANAR } else { 1.0 })],
+                        ..Default::default()
+                    },
+                    ..mesh_vertices(&module)
+                },
                 primitive: wgpu::PrimitiveState { cull_mode: sides.culled(), ..Default::default() },
-                depth_stencil: Some(wgpu::DepthStencilState {
-                    bias: if sides == Sides::Room { BEHIND_COPLANAR } else { Default::default() },
-                    ..nearer(DEPTH_FORMAT)
-                }),
+                depth_stencil: Some(nearer(DEPTH_FORMAT)),
                 multisample: Default::default(),
                 fragment: Some(wgpu::FragmentState {
                     module: &module,

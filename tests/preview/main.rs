@@ -22,6 +22,7 @@ mod closed_forms;
 mod drafts;
 mod each_light;
 mod picture;
+mod room;
 
 /// A renderer, or a loud skip where the machine has no adapter and nobody insists on one.
 fn renderer() -> Option<(Gpu, PreviewRenderer)> {

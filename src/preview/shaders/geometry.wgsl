@@ -1,6 +1,8 @@
 // The geometry pass: what each pixel shows, before any light.
 
 override TEXTURED: bool = false;
+// Factor of the depth against which surfaces hide each other: a little under 1 where paper shall lie on top.
+override DEPTH_FACTOR: f32 = 1.0;
 
 struct Corner {
     @builtin(position) clip: vec4f,
@@ -23,6 +25,7 @@ fn vertex(
     out.world = world_from_object(s, position);
     out.normal = world_normal(s, normal);
     out.clip = frame.clip_from_world * vec4f(out.world, 1.0);
+    out.clip.z *= DEPTH_FACTOR;
     // Textures are stored from the top.
     out.uv = vec2f(uv.x, 1.0 - uv.y);
     let flags = surfaces[s].flags;
@@ -66,6 +69,7 @@ fn fragment(in: Corner, @builtin(front_facing) front: bool) -> Pixel {
     color = select(color, 2u << 30u, in.surface.w != 0u && front);
     var out: Pixel;
     out.gbuffer = vec4u(pack_direction(normal), color, pack_direction(face), in.surface.y);
-    out.id = vec2u(in.surface.z, bitcast<u32>(in.clip.z));
+    // By 1/w: whatever moves the depth that hides moves no point.
+    out.id = vec2u(in.surface.z, bitcast<u32>(frame.near_m * in.clip.w));
     return out;
 }

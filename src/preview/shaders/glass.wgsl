@@ -79,7 +79,7 @@ fn fragment(in: Corner) -> Pixel {
         out.color = vec4f(added + srgb_encode(tone_curve(body)) * alpha, alpha);
     }
     let marks = mark_of(surfaces[s].flags);
-    out.id = vec2u((s + 1u) | marks, bitcast<u32>(in.clip.z));
+    out.id = vec2u((s + 1u) | marks, bitcast<u32>(frame.near_m * in.clip.w));
     return out;
 }
 
