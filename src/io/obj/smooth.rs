@@ -1,9 +1,11 @@
 //! Normals for models that have none: smooth where the surface is, hard at edges.
 
+use super::lines::Corner as Named;
+use super::weld::Welder;
 use crate::math::angle_between;
 use crate::scene::Mesh;
 use glam::Vec3;
-use std::collections::HashMap;
+use rayon::prelude::*;
 
 /// Faces that meet at more than this, degrees, keep an edge between them. A cylinder of eight sides (45) is still
 /// smooth, a box (90) or a hexagonal prism (60) is not.
@@ -16,9 +18,17 @@ const MOST_CORNERS: usize = 128;
 /// (Thurmer and Wuthrich 1998 for the weights). Vertices at the same place count as one, so that texture coordinates
 /// and groups leave no seams; a vertex whose corners differ is split. Corners of faces without area get +Y.
 pub(super) fn compute_normals(mesh: &mut Mesh, crease_deg: f32) {
-    let corners: Vec<Corner> = (0..mesh.triangles.len()).flat_map(|t| corners_of(mesh, t)).collect();
-    let normals = corner_normals(mesh, &corners, crease_deg);
-    split_by_normal(mesh, &normals);
+    let corners: Vec<[Corner; 3]> = (0..mesh.triangles.len()).into_par_iter().map(|t| corners_of(mesh, t)).collect();
+    let corners = corners.as_flattened();
+    let places = Places::new(mesh);
+    let cos_crease = crease_deg.to_radians().cos();
+    let smooth = |place| smooth_place(corners, places.corners_at(place), cos_crease);
+    let smoothed: Vec<Smoothed> = (0..places.len()).into_par_iter().flat_map_iter(smooth).collect();
+    let mut by_corner = vec![(0, Vec3::ZERO); corners.len()];
+    for smoothed in smoothed {
+        by_corner[smoothed.corner as usize] = (smoothed.first_alike, smoothed.normal);
+    }
+    split_by_normal(mesh, &by_corner);
 }
 
 /// A corner of a triangle: the face's unit normal (zero without area) and the corner's angle.
@@ -34,60 +44,102 @@ fn corners_of(mesh: &Mesh, triangle: usize) -> [Corner; 3] {
     std::array::from_fn(|k| Corner { face, angle_rad: angle_between(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]) })
 }
 
-/// A normal for each corner, three a triangle.
-fn corner_normals(mesh: &Mesh, corners: &[Corner], crease_deg: f32) -> Vec<Vec3> {
-    let cos_crease = crease_deg.to_radians().cos();
-    let mut normals = vec![Vec3::ZERO; corners.len()];
-    for around in corners_by_place(mesh) {
-        let all = crease_deg >= 180.0 || around.len() > MOST_CORNERS;
-        for &own in &around {
-            let joins = |other: &Corner| all || other.face.dot(corners[own].face) >= cos_crease;
-            // Always in the same order, so that corners with the same neighbours get the same bits and stay one vertex.
-            let near = around.iter().map(|&i| corners[i]).filter(joins);
-            let sum: Vec3 = near.map(|corner| corner.face * corner.angle_rad).sum();
-            normals[own] = sum.try_normalize().unwrap_or(Vec3::Y);
-            if all {
-                around.iter().for_each(|&i| normals[i] = normals[own]);
-                break;
-            }
+/// The corners at each place. A place has the number of the first vertex that lies there.
+struct Places {
+    /// Where the corners at each place begin, and one end mark.
+    starts: Vec<u32>,
+    /// In the mesh's order at each place.
+    corners: Vec<u32>,
+}
+
+impl Places {
+    fn new(mesh: &Mesh) -> Self {
+        let place_of = places_of_vertices(&mesh.positions);
+        let mut starts = vec![0; mesh.positions.len() + 1];
+        let vertices = || mesh.triangles.as_flattened().iter().map(|&vertex| place_of[vertex as usize] as usize);
+        vertices().for_each(|place| starts[place + 1] += 1);
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let (mut next, mut corners) = (starts.clone(), vec![0; sum as usize]);
+        for (corner, place) in (0..).zip(vertices()) {
+            corners[next[place] as usize] = corner;
+            next[place] += 1;
+        }
+        Places { starts, corners }
+    }
+
+    fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    fn corners_at(&self, place: usize) -> &[u32] {
+        &self.corners[self.starts[place] as usize..self.starts[place + 1] as usize]
+    }
+}
+
+/// For each vertex the first that lies at the same place.
+fn places_of_vertices(positions: &[Vec3]) -> Vec<u32> {
+    // Adding zero makes -0 and 0 the same place.
+    let bits = |p: &Vec3| (*p + Vec3::ZERO).to_array().map(f32::to_bits);
+    let mut sorted: Vec<([u32; 3], u32)> = positions.par_iter().map(bits).zip(0..positions.len() as u32).collect();
+    sorted.par_sort_unstable();
+    let mut place_of = vec![0; positions.len()];
+    for run in sorted.chunk_by(|a, b| a.0 == b.0) {
+        for (_, vertex) in run {
+            place_of[*vertex as usize] = run[0].1;
         }
     }
-    normals
+    place_of
 }
 
-/// The corners at each place, in the mesh's order.
-fn corners_by_place(mesh: &Mesh) -> Vec<Vec<usize>> {
-    let mut place_of: HashMap<[u32; 3], usize> = HashMap::with_capacity(mesh.positions.len());
-    let mut places: Vec<Vec<usize>> = Vec::new();
-    for (corner, &vertex) in mesh.triangles.iter().flatten().enumerate() {
-        // Adding zero makes -0 and 0 the same place.
-        let bits = (mesh.positions[vertex as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
-        let place = *place_of.entry(bits).or_insert_with(|| {
-            places.push(Vec::new());
-            places.len() - 1
-        });
-        places[place].push(corner);
-    }
-    places
+/// A corner's normal, and the first corner at its place with the same.
+struct Smoothed {
+    corner: u32,
+    first_alike: u32,
+    normal: Vec3,
 }
 
-/// Makes each pair of a vertex and a normal a vertex of its own.
-fn split_by_normal(mesh: &mut Mesh, normals: &[Vec3]) {
-    let mut split: HashMap<(u32, [u32; 3]), u32> = HashMap::with_capacity(mesh.positions.len());
-    let mut parted = Mesh { parts: std::mem::take(&mut mesh.parts), ..Mesh::default() };
-    for (t, triangle) in mesh.triangles.iter().enumerate() {
-        let indices = [0, 1, 2].map(|k| {
-            let (vertex, normal) = (triangle[k], normals[3 * t + k]);
-            *split.entry((vertex, normal.to_array().map(f32::to_bits))).or_insert_with(|| {
-                parted.positions.push(mesh.positions[vertex as usize]);
-                parted.normals.push(normal);
-                parted.uvs.extend(mesh.uvs.get(vertex as usize));
-                parted.positions.len() as u32 - 1
-            })
-        });
-        parted.triangles.push(indices);
+/// The normals of the corners around a place.
+fn smooth_place(corners: &[Corner], around: &[u32], cos_crease: f32) -> Vec<Smoothed> {
+    let corner = |index: &u32| corners[*index as usize];
+    let sum = |near: &mut dyn Iterator<Item = Corner>| -> Vec3 {
+        near.map(|corner| corner.face * corner.angle_rad).sum::<Vec3>().try_normalize().unwrap_or(Vec3::Y)
+    };
+    if cos_crease <= -1.0 || around.len() > MOST_CORNERS {
+        let normal = sum(&mut around.iter().map(corner));
+        return around.iter().map(|&corner| Smoothed { corner, first_alike: around[0], normal }).collect();
     }
-    *mesh = parted;
+    let mut smoothed: Vec<Smoothed> = Vec::with_capacity(around.len());
+    for own in around {
+        let joins = |other: &Corner| other.face.dot(corner(own).face) >= cos_crease;
+        // Always in the same order, so that corners with the same neighbours get the same bits and stay one vertex.
+        let normal = sum(&mut around.iter().map(corner).filter(joins));
+        let alike =
+            smoothed.iter().find(|s| s.normal.to_array().map(f32::to_bits) == normal.to_array().map(f32::to_bits));
+        let first_alike = alike.map_or(*own, |s| s.first_alike);
+        smoothed.push(Smoothed { corner: *own, first_alike, normal });
+    }
+    smoothed
+}
+
+/// Makes each pair of a vertex and a normal a vertex of its own. Each corner has the first corner that shares its normal,
+/// and the normal.
+fn split_by_normal(mesh: &mut Mesh, by_corner: &[(u32, Vec3)]) {
+    let mut welder = Welder::new(mesh.positions.len());
+    for (triangle, by_corner) in mesh.triangles.iter_mut().zip(by_corner.chunks_exact(3)) {
+        for (vertex, (first_alike, _)) in triangle.iter_mut().zip(by_corner) {
+            *vertex = welder.vertex([*vertex, *first_alike, 0]);
+        }
+    }
+    let old = |named: &Named| named[0] as usize;
+    mesh.normals = welder.vertices.par_iter().map(|named| by_corner[named[1] as usize].1).collect();
+    mesh.positions = welder.vertices.par_iter().map(|named| mesh.positions[old(named)]).collect();
+    if !mesh.uvs.is_empty() {
+        mesh.uvs = welder.vertices.par_iter().map(|named| mesh.uvs[old(named)]).collect();
+    }
 }
 
 #[cfg(test)]
