@@ -27,14 +27,14 @@ const MANY_COPIES: usize = 64;
 /// are left out: what is in them has no area, and no ray meets it.
 pub fn build(boxes: &[(Vec3, Vec3)], max_leaf: u32) -> WideBvh {
     let aabb = |b: &(Vec3, Vec3)| Aabb::new(b.0.to_array().into(), b.1.to_array().into());
-    let primitives: Vec<u32> =
-        (0..boxes.len() as u32).filter(|&i| aabb(&boxes[i as usize]).half_area() > 0.0).collect();
+    let has_area = |&i: &u32| aabb(&boxes[i as usize]).half_area() > 0.0;
+    let primitives: Vec<u32> = (0..boxes.len() as u32).into_par_iter().filter(has_area).collect();
     let Some(&first) = primitives.first() else { return WideBvh::default() };
     let join = |(low, high): (Vec3, Vec3), &i: &u32| (low.min(boxes[i as usize].0), high.max(boxes[i as usize].1));
     let bounds = primitives.iter().fold(boxes[first as usize], join);
     let groups = has_many_copies(boxes, &primitives).then(|| group_copies(boxes, &primitives));
     let kept: Vec<u32> = groups.as_ref().map_or(primitives, |groups| groups.iter().map(|group| group[0]).collect());
-    let aabbs: Vec<Aabb> = kept.iter().map(|&i| aabb(&boxes[i as usize])).collect();
+    let aabbs: Vec<Aabb> = kept.par_iter().map(|&i| aabb(&boxes[i as usize])).collect();
     let indices = (0..kept.len() as u32).collect();
     let mut binary =
         PlocBuilder::with_capacity(aabbs.len()).build(PlocSearchDistance::Low, &aabbs, indices, SortPrecision::U64, 0);
@@ -59,13 +59,19 @@ fn bits(b: &(Vec3, Vec3)) -> [u32; 6] {
 
 /// Whether some box occurs more than [`MANY_COPIES`] times (or, with luck against us, some hash of a box).
 fn has_many_copies(boxes: &[(Vec3, Vec3)], primitives: &[u32]) -> bool {
-    let hash = |&i: &u32| {
+    let slots = (4 * primitives.len()).next_power_of_two();
+    let slot = |&i: &u32| {
         let mix = |h: u64, x: u32| (h.rotate_left(23) ^ u64::from(x)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        bits(&boxes[i as usize]).into_iter().fold(0, mix)
+        // The highest bits of a product depend on all of its factors' bits.
+        (bits(&boxes[i as usize]).into_iter().fold(0, mix) >> 32) as u32 & (slots - 1) as u32
     };
-    let mut hashes: Vec<u64> = primitives.par_iter().map(hash).collect();
-    hashes.par_sort_unstable();
-    hashes.windows(MANY_COPIES).any(|run| run[0] == run[MANY_COPIES - 1])
+    let hashes: Vec<u32> = primitives.par_iter().map(slot).collect();
+    let mut times = vec![0_u8; slots];
+    hashes.into_iter().any(|slot| {
+        let count = &mut times[slot as usize];
+        *count += 1;
+        usize::from(*count) == MANY_COPIES
+    })
 }
 
 /// Primitives with equal boxes, in the order of their first.
@@ -117,9 +123,10 @@ fn grow(binary: &mut Bvh2, index: usize, primitives: &[u32]) {
 
 /// Nodes that a random ray through the root's box meets on the mean (Goldsmith and Salmon 1987).
 fn nodes_met(binary: &Bvh2) -> f32 {
-    let area = |index: usize| binary.nodes[index].aabb().half_area();
-    let sum: f64 = (0..binary.nodes.len()).map(|index| f64::from(area(index))).sum();
-    let root = f64::from(area(0));
+    // By runs of one length, so that the sum has the same bits on any number of threads.
+    let areas = |run: &[Bvh2Node]| run.iter().map(|node| f64::from(node.aabb().half_area())).sum::<f64>();
+    let sum: f64 = binary.nodes.par_chunks(1 << 14).map(areas).collect::<Vec<f64>>().into_iter().sum();
+    let root = f64::from(binary.nodes[0].aabb().half_area());
     if root > 0.0 { (sum / root) as f32 } else { binary.nodes.len() as f32 }
 }
 

@@ -56,6 +56,27 @@ impl WideBvh {
         self.leaf_starts.len().saturating_sub(1)
     }
 
+    /// Puts another tree in the place of a node without children.
+    pub(super) fn put_in_place_of(&mut self, node: u32, tree: &WideBvh) {
+        let (leaves, primitives) = (self.leaf_count() as u32, self.primitives.len() as u32);
+        // Its root takes the node's place, so that its second node becomes the next here.
+        let nodes = self.nodes.len() as u32 - 1;
+        let moved = |mut node: Node| {
+            for child in &mut node.children {
+                *child += if *child & LEAF == 0 { nodes } else { leaves };
+            }
+            node
+        };
+        self.nodes.reserve(tree.nodes.len());
+        let mut moved = tree.nodes.iter().map(|&node| moved(node));
+        if let Some(root) = moved.next() {
+            self.nodes[node as usize] = root;
+        }
+        self.nodes.extend(moved);
+        self.leaf_starts.extend(tree.leaf_starts[1..].iter().map(|start| start + primitives));
+        self.primitives.extend(&tree.primitives);
+    }
+
     /// Primitive indices of a leaf.
     #[inline(always)]
     pub fn leaf(&self, leaf: u32) -> &[u32] {
