@@ -6,6 +6,13 @@ use super::item::Item;
 use crate::scene::{Assets, Finding, Material, Scene, Severity, Shape, validate};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A number that no document has had; the empty one has 0.
+fn next_revision() -> u64 {
+    static LAST: AtomicU64 = AtomicU64::new(0);
+    LAST.fetch_add(1, Ordering::Relaxed) + 1
+}
 
 /// A studio that is open in the window.
 #[derive(Clone, Debug, Default)]
@@ -26,7 +33,8 @@ impl Document {
     /// A studio as it was loaded.
     pub fn new(scene: Scene, assets: Assets, path: Option<PathBuf>) -> Self {
         let saved = scene.clone();
-        let mut document = Document { scene, assets, path, saved, ..Document::default() };
+        let revision = next_revision();
+        let mut document = Document { scene, assets, path, saved, revision, ..Document::default() };
         // What loading could not find has been reported by loading.
         document.failed = document.missing_assets();
         document
@@ -52,7 +60,8 @@ impl Document {
         self.path.as_deref().and_then(Path::parent)
     }
 
-    /// Grows with every change of scene or assets: what is shown is up to date when it was made from this number.
+    /// Another number after every change of scene or assets, and for every studio that is opened: what is shown is up to
+    /// date when it was made from this number.
     pub fn revision(&self) -> u64 {
         self.revision
     }
@@ -89,7 +98,7 @@ impl Document {
             self.scene = before;
         } else if self.scene != before {
             self.history.record(before, label, merge);
-            self.revision += 1;
+            self.revision = next_revision();
         }
         done
     }
@@ -97,20 +106,26 @@ impl Document {
     /// Gives up what a press has changed so far, as if it had never begun.
     pub fn abandon(&mut self, gesture: u64) {
         let abandoned = self.history.abandon(&mut self.scene, gesture);
-        self.revision += u64::from(abandoned);
+        if abandoned {
+            self.revision = next_revision();
+        }
     }
 
     /// Takes the last step back; returns what it was.
     pub fn undo(&mut self) -> Option<String> {
         let label = self.history.undo(&mut self.scene);
-        self.revision += u64::from(label.is_some());
+        if label.is_some() {
+            self.revision = next_revision();
+        }
         label
     }
 
     /// Does a step again; returns what it was.
     pub fn redo(&mut self) -> Option<String> {
         let label = self.history.redo(&mut self.scene);
-        self.revision += u64::from(label.is_some());
+        if label.is_some() {
+            self.revision = next_revision();
+        }
         label
     }
 
@@ -149,7 +164,7 @@ impl Document {
         self.assets.mannequins.extend(loaded.mannequins);
         self.assets.textures.extend(loaded.textures);
         self.failed.extend(self.missing_assets().intersection(tried).cloned());
-        self.revision += 1;
+        self.revision = next_revision();
     }
 
     /// Remembers where an imported file lies until a save puts it beside the scene.
@@ -245,6 +260,14 @@ mod tests {
         assert!(!document.is_dirty());
         document.redo();
         assert_eq!(document.scene().lights[0].position.x, 1.9);
+    }
+
+    #[test]
+    fn two_studios_are_never_at_the_same_revision() {
+        // The meter went on showing the studio that was open before: both were at their first revision.
+        let open = || Document::new(Scene::default(), Assets::default(), None);
+        assert_ne!(open().revision(), open().revision());
+        assert_ne!(open().revision(), Document::default().revision());
     }
 
     #[test]
