@@ -57,7 +57,10 @@ fn tip(channel: Channel) -> &'static str {
         Channel::Normal => "Where surfaces face: red right, green up, blue to the front",
         Channel::Roughness => "From black, a mirror, to white, matte",
         Channel::Metallic => "Metal is white",
-        Channel::Depth => "From white at 0.5 m to black at 32 m, a sixth each time it doubles",
+        Channel::Depth => {
+            "From white at 0.5 m to black at 32 m, a sixth each time it doubles; without perspective, from the nearest \
+             thing to the farthest"
+        }
         Channel::Ids => "A colour for each surface",
         Channel::Illuminance => "Direct light on surfaces, in stops against the exposure that the camera is set for",
     }

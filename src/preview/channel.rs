@@ -14,7 +14,8 @@ pub enum Channel {
     Roughness,
     /// Metal (white) or not.
     Metallic,
-    /// Distance along the camera's axis: from white at 0.5 m to black at 32 m, a sixth each time it doubles.
+    /// Distance along the camera's axis: from white at 0.5 m to black at 32 m, a sixth each time it doubles. A parallel
+    /// view, which looks from far away, shows it from white at the nearest thing to black at the farthest.
     Depth,
     /// A colour for each surface.
     Ids,

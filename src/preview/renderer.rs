@@ -1,7 +1,7 @@
 //! One frame, pass by pass: shadow maps, geometry, lighting.
 
 use super::channel::{Channel, Gloss};
-use super::draw_list::{DrawItem, DrawList, Pass, Uploads};
+use super::draw_list::{Caster, DrawItem, DrawList, Pass, Uploads};
 use super::environment::Environment;
 use super::gizmo::Gizmos;
 use super::gpu::{LossFlag, guarded};
@@ -198,6 +198,7 @@ impl PreviewRenderer {
         let stale = self.shadow_maps.stale(&self.device, &self.queue, &plan, list.caster_signature, resolution);
         let scale = self.mask_scale(draft, &table);
         let frame = GpuFrame { mask_scale: scale, cell_scale: cell_scale(&table), ..self.frame(input, &table) };
+        let frame = GpuFrame { depth_range_m: depth_range_m(&input.frame, &list.casters), ..frame };
         let tiles = if input.options.light_radius { light_tiles(&table, &input.frame) } else { None };
         self.buffers.write(&self.device, &self.queue, &frame, &list.records, &table.lights, tiles.as_deref());
 
@@ -404,6 +405,18 @@ impl PreviewRenderer {
         pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(item.indices.clone(), 0, item.record..item.record + 1);
     }
+}
+
+/// From the nearest to the farthest of what stands in the studio along the axis of a view that looks from far away, as
+/// parallel ones do, and a little more; nothing for others.
+fn depth_range_m(frame: &CameraFrame, casters: &[Caster]) -> [f32; 2] {
+    /// No perspective view of a studio looks from so far.
+    const FAR_M: f32 = 200.0;
+    const MARGIN_M: f32 = 0.25;
+    let (eye, forward) = (frame.position(), frame.forward());
+    let depths = casters.iter().flat_map(Caster::corners).map(|corner| (corner - eye).dot(forward));
+    let (near, far) = depths.fold((f32::INFINITY, 0.0_f32), |(near, far), depth| (near.min(depth), far.max(depth)));
+    if near > FAR_M && far >= near { [near - MARGIN_M, far + MARGIN_M] } else { [0.0; 2] }
 }
 
 fn layouts<'a>(

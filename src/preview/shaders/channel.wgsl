@@ -53,7 +53,11 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
         value = vec3f(gloss.z);
     }
     if CHANNEL == DEPTH {
-        let shade = 1.0 - log2(max(depth_m, 1e-3) / 0.5) / 6.0;
+        var shade = 1.0 - log2(max(depth_m, 1e-3) / 0.5) / 6.0;
+        let range = frame.depth_range_m;
+        if range.y > range.x {
+            shade = (range.y - depth_m) / (range.y - range.x);
+        }
         value = vec3f(select(saturate(shade), depth_m, LINEAR));
     }
     if CHANNEL == IDS {

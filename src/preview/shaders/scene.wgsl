@@ -31,7 +31,8 @@ struct Frame {
     // Bounced irradiance on a surface that faces each of them.
     bounce: array<vec4f, 6>,
     size: vec2f,
-    unused_4: vec2f,
+    // Distances that show as white and as black in the depth channel, metres; both 0 for a perspective view.
+    depth_range_m: vec2f,
     // One past the last light of each family: points and suns, balls, rectangles, discs. Lights are sorted so.
     light_ends: vec4u,
 }
