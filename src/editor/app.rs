@@ -12,7 +12,7 @@ use super::meter_job::MeterJob;
 use super::panels::menu::MenuState;
 use super::panels::outliner::OutlinerState;
 use super::panels::presets::PresetPicker;
-use super::panels::{self, add, help, inspector, menu, outliner, render, status};
+use super::panels::{self, add, help, inspector, menu, outliner, render, status, view_bar};
 use super::picture_view::PictureView;
 use super::preview_host::PreviewHost;
 use super::recent::RecentFiles;
@@ -298,7 +298,7 @@ impl App {
         let bar = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(8, 4));
         Panel::top("views").frame(bar).show(ui, |ui| {
             let mut follows = self.viewport.camera_follows;
-            menu::view_bar_ui(ui, self.menu_state(), &mut follows, out);
+            view_bar::view_bar_ui(ui, self.menu_state(), &mut follows, out);
             self.viewport.camera_follows = follows;
         });
         if self.centre == Centre::Picture {

@@ -12,3 +12,4 @@ pub mod prompts;
 pub mod quality;
 pub mod render;
 pub mod status;
+pub mod view_bar;

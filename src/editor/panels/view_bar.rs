@@ -1,0 +1,121 @@
+//! The row of buttons over the view: what it shows, how it is made, which handles there are.
+
+use super::menu::{HANDLES, MenuState, SNAP_TIP};
+use crate::editor::action::Action;
+use crate::editor::command::{Centre, Command};
+use crate::editor::item::Item;
+use crate::editor::live_view::LiveMode;
+use crate::editor::widgets;
+use crate::scene::{Facing, Meter, Receptor, Scene};
+use eframe::egui::{Button, Ui};
+
+/// Narrower than this, tools and actions go into a menu, points.
+const NARROW: f32 = 660.0;
+/// How far before the camera's aim a new meter stands, metres: clear of a face that is aimed at.
+const METER_CLEARANCE_M: f32 = 0.12;
+
+/// Draws it.
+pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool, out: &mut Vec<Command>) {
+    let is_narrow = ui.available_width() < NARROW;
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        centre_ui(ui, state, out);
+        if state.centre == Centre::Picture {
+            return;
+        }
+        ui.separator();
+        live_ui(ui, state.live, out);
+        ui.separator();
+        if is_narrow {
+            let tools = ui.menu_button("Tools", |ui| {
+                handles_ui(ui, state, out);
+                ui.separator();
+                actions_ui(ui, state, camera_follows, out);
+            });
+            tools.response.on_hover_text("Handles, snap, light meter, camera");
+        } else {
+            handles_ui(ui, state, out);
+            ui.separator();
+            actions_ui(ui, state, camera_follows, out);
+        }
+    });
+}
+
+/// What the middle of the window shows.
+fn centre_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
+    let mut centre = state.centre;
+    let views = [
+        (Centre::Studio, "Studio", "Look at the studio from anywhere (1 switches to the camera and back)"),
+        (Centre::Camera, "Camera", "What the picture will frame (1)"),
+        (Centre::Picture, "Picture", "The rendered picture (3)"),
+    ];
+    widgets::choice(ui, &mut centre, &views);
+    if let Centre::Light(id) = state.centre
+        && let Some(light) = state.document.scene().light(id)
+    {
+        let button = Button::selectable(true, format!("Through {}", light.name));
+        if ui.add(button).on_hover_text("What this light sees. Click to go back (V, Esc)").clicked() {
+            out.push(Command::ToggleLightView);
+        }
+    }
+    if centre != state.centre {
+        out.push(Command::Show(centre));
+    }
+}
+
+fn live_ui(ui: &mut Ui, mode: LiveMode, out: &mut Vec<Command>) {
+    let mut chosen = mode;
+    let modes = [
+        (LiveMode::Quick, "Quick", "Live: drawn at once; bounced light, mirrors and glass are estimated (2)"),
+        (LiveMode::True, "True", "Live: traced as the picture will be, out of grain within moments (2)"),
+    ];
+    widgets::choice(ui, &mut chosen, &modes);
+    if chosen != mode {
+        out.push(Command::Live(chosen));
+    }
+}
+
+fn handles_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
+    for (handle, text, tip) in HANDLES {
+        let key = Command::Handles(handle).shortcut().map(|s| ui.ctx().format_shortcut(&s)).unwrap_or_default();
+        let button = Button::selectable(state.handles == handle, text);
+        if ui.add(button).on_hover_text(format!("{tip} ({key})")).clicked() {
+            out.push(Command::Handles(handle));
+        }
+    }
+    let snap = ui.add(Button::selectable(state.snap, "Snap"));
+    if snap.on_hover_text(format!("{SNAP_TIP} (G)")).clicked() {
+        out.push(Command::ToggleSnap);
+    }
+}
+
+fn actions_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool, out: &mut Vec<Command>) {
+    if ui.button("Frame").on_hover_text("Bring the selection, or everything, into view (F)").clicked() {
+        out.push(Command::FrameSelection);
+    }
+    let meter = ui.add(Button::selectable(state.document.scene().meter.is_some(), "Light meter"));
+    if meter.on_hover_text("Puts a light meter where the camera aims, or selects it").clicked() {
+        out.push(put_meter_up(state.document.scene()));
+    }
+    ui.separator();
+    if state.centre == Centre::Camera {
+        ui.checkbox(camera_follows, "Move the camera").on_hover_text(
+            "On: orbit, pan, wheel and W A S D move the camera itself. Off: they leave to the studio view.",
+        );
+    } else if state.centre == Centre::Studio
+        && ui.button("Camera here").on_hover_text("Puts the camera where you look from now").clicked()
+    {
+        out.push(Command::CameraFromView);
+        out.push(Command::Show(Centre::Camera));
+    }
+}
+
+fn put_meter_up(scene: &Scene) -> Command {
+    if scene.meter.is_some() {
+        return Command::Select(Some(Item::Meter));
+    }
+    let target = scene.aim_point(&scene.camera.aim, scene.camera.position);
+    let towards = (scene.camera.position - target).normalize_or_zero();
+    let position = target + towards * METER_CLEARANCE_M;
+    Command::Do(Action::SetMeter(Some(Meter { position, facing: Facing::Camera, receptor: Receptor::Dome })))
+}
