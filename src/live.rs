@@ -3,6 +3,7 @@
 //! The first picture after an edit comes from a few short slices of work; later ones take their time, so that showing
 //! them costs little. While the user works, one core is left alone.
 
+use crate::color::ToneTable;
 use crate::raytrace::{Control, GeometryCache, LiveCamera, LivePicture, PrepareError};
 use crate::scene::{Assets, Scene};
 use rayon::prelude::*;
@@ -149,47 +150,10 @@ impl LivePace {
     }
 }
 
-/// Tone curve and sRGB encoding by table, to one code of 255: a picture a moment, and the curve has a power in it.
-#[derive(Debug)]
-struct ToneTable(Vec<u8>);
-
-impl ToneTable {
-    /// Bits of the mantissa that are dropped: steps of 1/256 of the value.
-    const DROPPED: u32 = 15;
-    /// Everything under this shows as black, everything over `MOST` as white.
-    const LEAST: f32 = 1.0 / 16384.0;
-    const MOST: f32 = 16.0;
-
-    fn new() -> Self {
-        let (first, last) = (Self::LEAST.to_bits() >> Self::DROPPED, Self::MOST.to_bits() >> Self::DROPPED);
-        let middle = |index: u32| f32::from_bits(index << Self::DROPPED | 1 << (Self::DROPPED - 1));
-        ToneTable((first..=last).map(|index| crate::color::display_srgb8([middle(index); 3])[0]).collect())
-    }
-
-    fn shown(&self, rgb: [f32; 3]) -> [u8; 3] {
-        rgb.map(|value| {
-            // NaN is black, as in the tone curve.
-            let value = if value >= Self::LEAST { value.min(Self::MOST) } else { return 0 };
-            self.0[((value.to_bits() >> Self::DROPPED) - (Self::LEAST.to_bits() >> Self::DROPPED)) as usize]
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::io;
-
-    #[test]
-    fn the_table_shows_what_the_tone_curve_shows() {
-        let table = ToneTable::new();
-        for step in 0..4000 {
-            let value = 1e-6 * 1.006_f32.powi(step);
-            let (ours, theirs) = (table.shown([value; 3])[0], crate::color::display_srgb8([value; 3])[0]);
-            assert!(ours.abs_diff(theirs) <= 1, "{value}: {ours} for {theirs}");
-        }
-        assert_eq!(table.shown([f32::NAN, -1.0, f32::INFINITY]), [0, 0, 255]);
-    }
 
     #[test]
     fn a_first_look_comes_soon_and_the_last_one_when_all_is_quiet() {

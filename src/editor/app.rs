@@ -24,7 +24,10 @@ use super::toasts::Toasts;
 use super::viewport::{Viewport, ViewportInput};
 use super::{files, theme};
 use crate::raytrace::{GeometryCache, Settings};
-use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, Rect, Ui, ViewportCommand};
+use eframe::egui::epaint::ImageDelta;
+use eframe::egui::{
+    self, CentralPanel, Context, Frame, Margin, Panel, Rect, TextureId, TextureOptions, Ui, ViewportCommand,
+};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -78,7 +81,14 @@ pub struct App {
     started: Instant,
     first_frame: Option<Duration>,
     told_first_view: bool,
+    /// Why the window has to be opened anew; none while it can draw.
+    lost: Option<String>,
+    /// When the last device was lost.
+    last_loss: Option<Instant>,
 }
+
+/// Two losses within this time are the preview's doing: the view is left to the processor.
+const SOON: Duration = Duration::from_secs(60);
 
 impl App {
     /// A window that begins to load its first studio.
@@ -114,10 +124,55 @@ impl App {
             started: options.started,
             first_frame: None,
             told_first_view: false,
+            lost: None,
+            last_loss: None,
         };
         let first = options.initial.map_or(Source::Preset(0), Source::named);
         app.load(first, ctx);
         app
+    }
+
+    /// Goes over to a new window, because the device of the last one was lost: with the open studio, its history and
+    /// everything else.
+    pub fn move_to(&mut self, creation: &eframe::CreationContext<'_>) {
+        let ctx = &creation.egui_ctx;
+        if ctx.cumulative_pass_nr() > 0 {
+            // A context that has drawn before believes that its letters are on the device.
+            let letters = ctx.fonts(|fonts| fonts.image());
+            let delta = ImageDelta::full(letters, TextureOptions::LINEAR);
+            ctx.tex_manager().write().set(TextureId::default(), delta);
+        } else {
+            theme::install(ctx);
+        }
+        self.viewport.preview.move_to(creation.wgpu_render_state.as_ref(), ctx);
+        self.viewport.live.move_to(ctx);
+        self.rendering.move_to(ctx);
+        let why = self.lost.take().unwrap_or_default();
+        let news = "The graphics device was lost and the window was opened anew; the studio is as you left it.";
+        if self.last_loss.replace(Instant::now()).is_some_and(|last| last.elapsed() < SOON) {
+            self.viewport.preview.give_up("The graphics device was lost twice within a minute.");
+        }
+        self.toasts.warning(if why.is_empty() { news.to_owned() } else { format!("{news} ({why})") });
+    }
+
+    /// Whether the window's device is gone, so that it closes to be opened anew.
+    pub fn has_lost_window(&self) -> bool {
+        self.lost.is_some()
+    }
+
+    /// Saves unsaved work under another name, because there is no window any more to save it from; returns the file.
+    pub fn rescue(&self) -> Option<PathBuf> {
+        files::rescue(&self.document)
+    }
+
+    /// Closes a window that cannot draw any more. It draws nothing until then: egui's painter ends the program when it
+    /// has something to draw and no device to draw it.
+    fn leave_window(&mut self, ctx: &Context, why: String) {
+        if self.lost.is_none() {
+            log::warn!("the graphics device was lost: {why}");
+            self.lost = Some(why);
+        }
+        ctx.send_viewport_cmd(ViewportCommand::Close);
     }
 
     /// The open studio.
@@ -348,6 +403,10 @@ impl App {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
+        if let Some(why) = self.viewport.preview.lost_device().map(str::to_owned) {
+            self.leave_window(&ctx, why);
+            return;
+        }
         let mut out = Vec::new();
         let gesture = self.gesture(&ctx);
         self.take_in(&ctx, &mut out);
@@ -377,6 +436,10 @@ impl eframe::App for App {
         if !self.told_first_view && self.viewport.preview.draws() > 0 && !self.tasks.is_busy() {
             log::debug!("first live view of the studio after {} ms", self.started.elapsed().as_millis());
             self.told_first_view = true;
+        }
+        if self.viewport.preview.lost_device().is_some() {
+            // It happened in this frame: the next pass draws nothing in its place.
+            ctx.request_discard("the graphics device was lost");
         }
     }
 }

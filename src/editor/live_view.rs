@@ -1,5 +1,6 @@
 //! The live view as the tracer sees it, *True*: asked for when something changed, shown while it grows.
 
+use super::canvas::Canvas;
 use super::document::Document;
 use super::live_job::{LiveJob, LiveRequest};
 use super::preview_host::Look;
@@ -7,7 +8,7 @@ use crate::live::LiveImage;
 use crate::preview::Channel;
 use crate::raytrace::{GeometryCache, LiveCamera, MAX_LIGHT_LAYERS};
 use crate::scene::{CameraFrame, LightId};
-use eframe::egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
+use eframe::egui::{ColorImage, Context, TextureId};
 use std::sync::Arc;
 
 /// How the live view is made.
@@ -34,22 +35,16 @@ struct Asked {
 }
 
 /// The thread, the picture it made last, and what it was asked for.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct LiveView {
     /// Which of the two the viewport shows.
     pub mode: LiveMode,
     job: LiveJob,
     asked: Option<Asked>,
-    texture: Option<TextureHandle>,
+    canvas: Canvas,
     /// The view that the picture on show belongs to is the one that was asked for.
     shown: Option<(u32, bool)>,
     failure: Option<String>,
-}
-
-impl std::fmt::Debug for LiveView {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("LiveView").field("mode", &self.mode).field("job", &self.job).finish_non_exhaustive()
-    }
 }
 
 impl LiveView {
@@ -68,7 +63,13 @@ impl LiveView {
 
     /// Forgets the picture, because another studio was opened.
     pub fn clear(&mut self) {
-        (self.texture, self.shown, self.asked, self.failure) = (None, None, None, None);
+        self.canvas.clear();
+        (self.shown, self.asked, self.failure) = (None, None, None);
+    }
+
+    /// Brings the picture to the device that the window has now.
+    pub fn move_to(&mut self, ctx: &Context) {
+        self.canvas.renew(ctx);
     }
 
     /// Stops the tracer while its picture is not on show.
@@ -117,16 +118,12 @@ impl LiveView {
             Some(Err(message)) => self.failure = Some(message),
             None => {}
         }
-        self.texture.as_ref().map(TextureHandle::id)
+        self.canvas.id()
     }
 
     fn take_in(&mut self, image: LiveImage, ctx: &Context) {
         (self.shown, self.failure) = (Some((image.spp, image.done)), None);
-        let pixels = ColorImage::from_rgb([image.width, image.height], &image.rgb);
-        match &mut self.texture {
-            Some(texture) => texture.set(pixels, TextureOptions::LINEAR),
-            None => self.texture = Some(ctx.load_texture("live", pixels, TextureOptions::LINEAR)),
-        }
+        self.canvas.set(ctx, ColorImage::from_rgb([image.width, image.height], &image.rgb));
     }
 
     /// What the view says of itself: how far it is, or why there is none.
@@ -151,7 +148,7 @@ impl LiveView {
 
     /// Whether there is a picture to show.
     pub fn has_picture(&self) -> bool {
-        self.texture.is_some()
+        self.canvas.id().is_some()
     }
 
     /// Rays traced so far.

@@ -5,33 +5,45 @@ use super::preview_host::Look;
 use crate::photo::exposure;
 use crate::preview::{Channel, FALSE_STOPS, Gloss, false_color};
 use crate::scene::{Camera, Scene};
-use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Ui, UiBuilder, vec2};
+use eframe::egui::{Align2, Checkbox, Color32, FontId, Painter, Pos2, RadioButton, Rect, Ui, UiBuilder, vec2};
 use std::f32::consts::PI;
 
 /// Size of a stop's colour in the legend, points.
 const SWATCH: (f32, f32) = (22.0, 18.0);
 
-/// Draws the menu over the upper left corner of the view and changes `look` as it is used.
-pub fn look_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, look: &mut Look) {
+/// Draws the menu over the upper left corner of the view and changes `look` as it is used. Where the processor draws the
+/// view (`on_processor`) it has neither channels nor a choice of highlights.
+pub fn look_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, look: &mut Look, on_processor: bool) {
+    if on_processor {
+        (look.channel, look.gloss) = (Channel::Lit, Gloss::Ggx);
+    }
     let place = Rect::from_min_size(view.min + vec2(8.0, 8.0), vec2(220.0, 24.0));
     ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
         let title = title(scene, look);
         ui.menu_button(title, |ui| {
             ui.set_min_width(210.0);
             for channel in Channel::ALL {
-                ui.radio_value(&mut look.channel, channel, channel.label()).on_hover_text(tip(channel));
+                let radio = RadioButton::new(look.channel == channel, channel.label());
+                let response = ui.add_enabled(!on_processor || channel == Channel::Lit, radio);
+                if response.on_hover_text(tip(channel)).on_disabled_hover_text(NEEDS_DEVICE).clicked() {
+                    look.channel = channel;
+                }
             }
             ui.separator();
-            ui.menu_button("One light alone", |ui| {
+            let lights = ui.menu_button("Show the light of", |ui| {
                 ui.set_min_width(160.0);
                 ui.radio_value(&mut look.only_light, None, "All lights");
                 for light in &scene.lights {
                     ui.radio_value(&mut look.only_light, Some(light.id), &light.name);
                 }
             });
+            lights.response.on_hover_text(
+                "One light's share, in this view alone: meter and pictures keep them all. Solo (O) switches the others off.",
+            );
             let mut blinn_phong = look.gloss == Gloss::BlinnPhong;
             let tip = "Quicker highlights without the emitter's shape, instead of GGX";
-            if ui.checkbox(&mut blinn_phong, "Blinn-Phong highlights").on_hover_text(tip).changed() {
+            let checkbox = Checkbox::new(&mut blinn_phong, "Blinn-Phong highlights");
+            if ui.add_enabled(!on_processor, checkbox).on_hover_text(tip).changed() {
                 look.gloss = if blinn_phong { Gloss::BlinnPhong } else { Gloss::Ggx };
             }
         })
@@ -45,10 +57,13 @@ pub fn look_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, look: &mut Look) {
 
 fn title(scene: &Scene, look: &Look) -> String {
     match look.only_light.and_then(|id| scene.light(id)) {
-        Some(light) => format!("{}: {} alone", look.channel.label(), light.name),
+        Some(light) => format!("{}: light of {} only", look.channel.label(), light.name),
         None => look.channel.label().to_owned(),
     }
 }
+
+/// Why there is nothing to choose.
+const NEEDS_DEVICE: &str = "Needs a graphics adapter: the processor draws this view";
 
 fn tip(channel: Channel) -> &'static str {
     match channel {

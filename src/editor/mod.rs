@@ -9,6 +9,7 @@ mod app;
 mod arrange;
 mod axis_cross;
 mod bounds;
+mod canvas;
 mod catalog;
 mod command;
 mod commands;
@@ -35,6 +36,7 @@ mod picture_view;
 mod placement;
 mod plan;
 mod preview_host;
+mod processor_view;
 mod readout;
 mod recent;
 mod relight;
@@ -53,6 +55,7 @@ mod typed;
 mod units;
 mod viewport;
 mod widgets;
+mod window;
 
 pub use action::{Action, ActionError};
 pub use app::{App, Options};
@@ -95,23 +98,7 @@ pub fn run(initial: Option<PathBuf>) -> Result<(), EditorError> {
     let started = Instant::now();
     check_display()?;
     let options = Options { initial, settings_folder: recent::settings_folder(), started, ..Options::default() };
-    let viewport = eframe::egui::ViewportBuilder::default()
-        .with_title("Catchlight")
-        .with_app_id("catchlight")
-        .with_inner_size([1440.0, 900.0])
-        .with_min_inner_size([900.0, 600.0])
-        .with_drag_and_drop(true);
-    let native = eframe::NativeOptions { viewport, renderer: eframe::Renderer::Wgpu, ..Default::default() };
-    let create: eframe::AppCreator<'_> = Box::new(move |creation| Ok(Box::new(App::new(creation, options))));
-    eframe::run_native("Catchlight", native, create).map_err(|error| match error {
-        eframe::Error::WinitEventLoop(error) => {
-            // The reason comes last, after places in source files.
-            let text = error.to_string();
-            EditorError::NoDisplay(text.rsplit(": ").next().unwrap_or(&text).to_owned())
-        }
-        eframe::Error::Wgpu(error) => EditorError::NoGraphics(error.to_string()),
-        other => EditorError::Window(other.to_string()),
-    })
+    window::run(options)
 }
 
 /// On Linux a window needs a Wayland or X11 display; asking winit without one gives a less helpful message.

@@ -142,9 +142,9 @@ pub fn paint_aim_line(painter: &Painter, frame: &CameraFrame, rect: Rect, from: 
     painter.circle_stroke(to, 4.0, stroke);
 }
 
-/// A line about the view, in its lower left corner.
-pub fn paint_note(painter: &Painter, view: Rect, text: &str) {
-    let place = view.left_bottom() + vec2(10.0, -8.0);
+/// A line about the view, in its lower left corner; over and beside the numbers there where it `has_rulers`.
+pub fn paint_note(painter: &Painter, view: Rect, text: &str, has_rulers: bool) {
+    let place = view.left_bottom() + if has_rulers { vec2(52.0, -28.0) } else { vec2(10.0, -8.0) };
     paint_text(painter, place, Align2::LEFT_BOTTOM, text, Color32::from_gray(200));
 }
 

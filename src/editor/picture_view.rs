@@ -41,7 +41,7 @@ impl PictureView {
         let zoom = self.zoom.unwrap_or(fit);
         let place = Rect::from_center_size(rect.center() + self.offset, pixels * zoom);
         let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-        painter.image(texture.id(), place, uv, Color32::WHITE);
+        painter.image(texture, place, uv, Color32::WHITE);
         self.bar_ui(ui, rect, rendering, scene, zoom, out);
     }
 

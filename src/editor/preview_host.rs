@@ -1,11 +1,14 @@
-//! The live preview as a texture of the window: built in the background, drawn only when something changed.
+//! The live preview as a texture of the window: built in the background, drawn only when something changed. Where the
+//! graphics device cannot draw it, the processor does.
 
 use super::document::Document;
-use crate::preview::{Channel, Gloss, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
+use super::processor_view::ProcessorView;
+use crate::preview::{Channel, Gloss, LossFlag, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
 use crate::scene::{CameraFrame, LightId};
-use eframe::egui::{Context, TextureId};
+use eframe::egui::{Context, Painter, Rect, TextureId};
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
@@ -17,7 +20,7 @@ enum Stage {
     /// The pipelines are being compiled.
     Starting(Receiver<Result<PreviewRenderer, PreviewError>>),
     Ready(Box<PreviewRenderer>),
-    /// There is no preview, and why.
+    /// The processor draws instead, and why.
     Failed(String),
 }
 
@@ -48,6 +51,9 @@ pub struct PreviewHost {
     pub look: Look,
     stage: Stage,
     state: Option<RenderState>,
+    /// Raised when the window's device is gone.
+    loss: LossFlag,
+    processor: ProcessorView,
     texture: Option<(TextureId, u64)>,
     shown: Option<Shown>,
     /// When the picture on show was drawn, if it is a draft.
@@ -66,23 +72,56 @@ impl std::fmt::Debug for PreviewHost {
 impl PreviewHost {
     /// Starts to build the preview on the window's device.
     pub fn new(state: Option<&RenderState>, ctx: &Context) -> Self {
-        let stage = match state {
-            Some(state) => start(state, ctx),
-            None => Stage::Failed("The window has no wgpu device, so there is no live view.".to_owned()),
-        };
-        PreviewHost {
+        let mut host = PreviewHost {
             look: Look::default(),
-            stage,
-            state: state.cloned(),
+            stage: Stage::Failed(String::new()),
+            state: None,
+            loss: LossFlag::default(),
+            processor: ProcessorView::default(),
             texture: None,
             shown: None,
             draft_since: None,
             draws: 0,
             last_draw: Duration::ZERO,
+        };
+        host.move_to(state, ctx);
+        host
+    }
+
+    /// Goes over to the device of another window.
+    pub fn move_to(&mut self, state: Option<&RenderState>, ctx: &Context) {
+        self.state = state.cloned();
+        self.loss = state.map(|state| LossFlag::watch(&state.device)).unwrap_or_default();
+        (self.texture, self.shown, self.draft_since) = (None, None, None);
+        self.processor.clear();
+        match state {
+            Some(state) => {
+                // What nobody waits for, such as egui's own, is no reason to end the program, as wgpu would.
+                state.device.on_uncaptured_error(Arc::new(|error| log::error!("the graphics driver: {error}")));
+                self.restart(ctx);
+            }
+            None => self.stage = Stage::Failed("There is no graphics adapter that could draw the view.".to_owned()),
         }
     }
 
-    /// Why there is no preview.
+    /// Why the window's device is gone, if it is: nothing can be drawn in this window any more.
+    pub fn lost_device(&self) -> Option<&str> {
+        // A device that was destroyed says so when it is asked.
+        self.state.as_ref().inspect(|state| drop(state.device.poll(wgpu::PollType::Poll)));
+        self.loss.reason()
+    }
+
+    /// Leaves the view to the processor until [`PreviewHost::restart`].
+    pub fn give_up(&mut self, why: &str) {
+        (self.stage, self.shown, self.draft_since) = (Stage::Failed(why.to_owned()), None, None);
+    }
+
+    /// Whether there is a device to build the preview on.
+    pub fn has_device(&self) -> bool {
+        self.state.is_some()
+    }
+
+    /// Why the processor draws the view.
     pub fn failure(&self) -> Option<&str> {
         match &self.stage {
             Stage::Failed(message) => Some(message),
@@ -113,8 +152,8 @@ impl PreviewHost {
     /// Builds the preview again after a failure.
     pub fn restart(&mut self, ctx: &Context) {
         if let Some(state) = &self.state {
-            self.stage = start(state, ctx);
-            self.shown = None;
+            self.stage = start(state, self.loss.clone(), ctx);
+            (self.shown, self.draft_since) = (None, None);
         }
     }
 
@@ -130,8 +169,11 @@ impl PreviewHost {
         overlay_alone: bool,
     ) -> Option<TextureId> {
         self.finish_start();
-        let Stage::Ready(renderer) = &self.stage else { return None };
-        let drafts = renderer.draws_drafts();
+        let drafts = match &self.stage {
+            Stage::Starting(_) => return None,
+            Stage::Ready(renderer) => renderer.draws_drafts(),
+            Stage::Failed(_) => ProcessorView::draws_drafts(size),
+        };
         let Look { channel, only_light, gloss } = self.look;
         // A light that was deleted meanwhile leaves the others as they are.
         let only_light = only_light.filter(|id| document.scene().light(*id).is_some());
@@ -142,17 +184,19 @@ impl PreviewHost {
         if changed || settled {
             // The very first picture is drawn in full: there is no motion to keep up with.
             let draft = changed && drafts && self.shown.is_some() && !overlay_alone;
-            self.draw(document, wanted, draft)?;
+            self.draw(ctx, document, wanted, draft);
             self.draft_since = draft.then(Instant::now);
         }
         if let Some(since) = self.draft_since {
             ctx.request_repaint_after(SETTLED.saturating_sub(since.elapsed()));
         }
-        self.texture.map(|(id, _)| id)
+        match self.stage {
+            Stage::Failed(_) => self.processor.texture(),
+            Stage::Starting(_) | Stage::Ready(_) => self.texture.map(|(id, _)| id),
+        }
     }
 
-    fn draw(&mut self, document: &Document, wanted: Shown, draft: bool) -> Option<()> {
-        let Stage::Ready(renderer) = &mut self.stage else { return None };
+    fn draw(&mut self, ctx: &Context, document: &Document, wanted: Shown, draft: bool) {
         let began = Instant::now();
         let input = PreviewInput {
             scene: document.scene(),
@@ -162,14 +206,23 @@ impl PreviewHost {
             overlay: wanted.overlay.clone(),
             options: Options { draft, ..wanted.options },
         };
-        if let Err(error) = renderer.render(&input) {
-            self.stage = Stage::Failed(super::files::plain(&error));
-            self.draft_since = None;
-            return None;
+        if let Stage::Ready(renderer) = &mut self.stage {
+            match renderer.render(&input).map(|_| ()) {
+                Ok(()) => self.register(),
+                Err(error) => self.give_up(&super::files::plain(&error)),
+            }
+        }
+        if let Stage::Failed(_) = self.stage {
+            self.processor.draw(ctx, &input, wanted.revision);
         }
         (self.draws, self.last_draw, self.shown) = (self.draws + 1, began.elapsed(), Some(wanted));
-        self.register();
-        Some(())
+    }
+
+    /// Lines and tints over the picture in `rect`, where the picture itself has none.
+    pub fn paint_over(&self, painter: &Painter, rect: Rect) {
+        if let Stage::Failed(_) = self.stage {
+            self.processor.paint_over(painter, rect);
+        }
     }
 
     fn finish_start(&mut self) {
@@ -207,17 +260,18 @@ impl PreviewHost {
     pub fn pick(&self, pixel: (u32, u32)) -> Option<Pick> {
         match &self.stage {
             Stage::Ready(renderer) => renderer.pick_blocking(pixel).ok().flatten(),
-            Stage::Starting(_) | Stage::Failed(_) => None,
+            Stage::Failed(_) => self.processor.pick(pixel),
+            Stage::Starting(_) => None,
         }
     }
 }
 
-fn start(state: &RenderState, ctx: &Context) -> Stage {
+fn start(state: &RenderState, loss: LossFlag, ctx: &Context) -> Stage {
     let (sender, receiver) = channel();
     let (device, queue, ctx) = (state.device.clone(), state.queue.clone(), ctx.clone());
     std::thread::spawn(move || {
         let began = Instant::now();
-        let renderer = PreviewRenderer::new(&device, &queue);
+        let renderer = PreviewRenderer::watched(&device, &queue, loss);
         log::debug!("the live view was built in {} ms", began.elapsed().as_millis());
         let _ = sender.send(renderer);
         ctx.request_repaint();

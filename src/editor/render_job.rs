@@ -233,7 +233,7 @@ pub struct Developed {
     /// Scene-linear, for export.
     pub picture: Arc<Picture>,
     /// For the screen.
-    pub image: ColorImage,
+    pub image: Arc<ColorImage>,
     /// Samples a pixel in it.
     pub spp: u32,
 }
@@ -312,7 +312,7 @@ fn develop_loop(state: &(Mutex<DeveloperState>, Condvar), ctx: &Context) {
 pub fn develop(film: &Film, scene: &Scene) -> Developed {
     let picture = film.develop(scene);
     let bytes: Vec<u8> = picture.to_srgb8().into_iter().flatten().collect();
-    let image = ColorImage::from_rgb([picture.width as usize, picture.height as usize], &bytes);
+    let image = Arc::new(ColorImage::from_rgb([picture.width as usize, picture.height as usize], &bytes));
     Developed { picture: Arc::new(picture), image, spp: film.spp() }
 }
 

@@ -1,10 +1,11 @@
 //! The render settings, the running job, and the picture it leaves behind.
 
+use super::canvas::Canvas;
 use super::relight::{self, DevelopKey};
 use super::render_job::{Developed, Developer, Phase, RenderJob};
 use crate::raytrace::{Film, GeometryCache, Method, Settings};
 use crate::scene::{Assets, Camera, Scene};
-use eframe::egui::{Context, TextureHandle, TextureOptions};
+use eframe::egui::{Context, TextureId};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -73,7 +74,7 @@ impl RenderSettings {
 }
 
 /// Everything about the rendered picture.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct Rendering {
     /// What the panel sets.
     pub settings: RenderSettings,
@@ -85,13 +86,7 @@ pub struct Rendering {
     /// What the newest requested picture is made from; the pointer is only compared.
     requested: Option<(*const Film, DevelopKey)>,
     developed: Option<Developed>,
-    texture: Option<TextureHandle>,
-}
-
-impl std::fmt::Debug for Rendering {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Rendering").field("settings", &self.settings).field("job", &self.job).finish_non_exhaustive()
-    }
+    canvas: Canvas,
 }
 
 impl Rendering {
@@ -147,8 +142,13 @@ impl Rendering {
     }
 
     /// The picture as it is shown.
-    pub fn texture(&self) -> Option<&TextureHandle> {
-        self.texture.as_ref()
+    pub fn texture(&self) -> Option<TextureId> {
+        self.canvas.id()
+    }
+
+    /// Brings the picture to the device that the window has now.
+    pub fn move_to(&mut self, ctx: &Context) {
+        self.canvas.renew(ctx);
     }
 
     /// The picture for export; not yet while only a small forerunner of a large one is on show.
@@ -183,12 +183,7 @@ impl Rendering {
             }
         }
         if let Some(developed) = self.developer.take() {
-            match &mut self.texture {
-                Some(texture) => texture.set(developed.image.clone(), TextureOptions::LINEAR),
-                None => {
-                    self.texture = Some(ctx.load_texture("picture", developed.image.clone(), TextureOptions::LINEAR))
-                }
-            }
+            self.canvas.set(ctx, developed.image.clone());
             self.developed = Some(developed);
         }
         // Progress numbers move between snapshots, too.

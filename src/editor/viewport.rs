@@ -19,7 +19,7 @@ use super::swing_drag::SwingDrag;
 use super::{light_view, overlay, plan, theme};
 use crate::preview::{Overlay, Pick};
 use crate::scene::{Camera, CameraFrame, Scene};
-use eframe::egui::{self, EventFilter, Pos2, Rect, Response, Sense, Ui, vec2};
+use eframe::egui::{self, Align2, Color32, EventFilter, FontId, Pos2, Rect, Response, RichText, Sense, Ui, vec2};
 use glam::{Vec2, Vec3};
 
 /// Room around the picture's frame in the camera view.
@@ -118,7 +118,9 @@ impl Viewport {
             self.context_menu(ui, &response, &frame, input, out);
         }
         self.paint(ui, rect, frame, picture, input);
-        look_menu_ui(ui, rect, scene, &mut self.preview.look);
+        let on_processor = self.preview.failure().is_some();
+        look_menu_ui(ui, rect, scene, &mut self.preview.look, on_processor);
+        self.processor_ui(ui, rect);
         if input.centre == Centre::Studio {
             axis_cross_ui(ui, rect, &self.view, &frame, out);
         }
@@ -287,13 +289,18 @@ impl Viewport {
         let preview = self.preview.show(ui.ctx(), input.document, frame, size, overlay, traced.is_some());
         for texture in [traced, preview].into_iter().flatten() {
             let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-            painter.image(texture, rect, uv, egui::Color32::WHITE);
+            painter.image(texture, rect, uv, Color32::WHITE);
         }
+        self.preview.paint_over(&painter, rect);
         if traced.or(preview).is_none() {
-            self.no_preview_ui(ui, rect);
-        }
-        if traced.is_some() || self.live.has_failed() {
-            overlay::paint_note(&painter, rect, &self.live.status());
+            let text = "Preparing the live view\u{2026}";
+            painter.text(
+                rect.center(),
+                Align2::CENTER_CENTER,
+                text,
+                FontId::proportional(13.0),
+                Color32::from_gray(140),
+            );
         }
         let scene = input.document.scene();
         if let Some(picture) = picture {
@@ -303,6 +310,9 @@ impl Viewport {
         if let Some(side) = side {
             plan::paint_grid(&painter, &frame, rect, side, self.view.target, self.view.half_height_m());
             plan::paint_distances(&painter, scene, &frame, rect, input.selection);
+        }
+        if traced.is_some() || self.live.has_failed() {
+            overlay::paint_note(&painter, rect, &self.live.status(), side.is_some());
         }
         if let Centre::Light(id) = input.centre {
             if let Some(light) = scene.light(id) {
@@ -328,17 +338,19 @@ impl Viewport {
         }
     }
 
-    fn no_preview_ui(&mut self, ui: &mut Ui, rect: Rect) {
-        let middle = Rect::from_center_size(rect.center(), vec2(420.0f32.min(rect.width()), 100.0));
-        ui.scope_builder(egui::UiBuilder::new().max_rect(middle), |ui| {
-            ui.vertical_centered(|ui| match self.preview.failure().map(str::to_owned) {
-                Some(message) => {
-                    ui.label(egui::RichText::new(message).weak());
-                    if ui.button("Try again").on_hover_text("Build the live view anew").clicked() {
-                        self.preview.restart(ui.ctx());
-                    }
+    /// Says that the processor draws the view, and why.
+    fn processor_ui(&mut self, ui: &mut Ui, rect: Rect) {
+        let Some(why) = self.preview.failure().map(str::to_owned) else { return };
+        let place = Rect::from_min_size(rect.min + vec2(8.0, 38.0), vec2((rect.width() - 16.0).min(420.0), 24.0));
+        ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
+            ui.horizontal(|ui| {
+                let text = RichText::new("Drawn by the processor, without shadows").small().color(theme::ACCENT);
+                ui.label(text).on_hover_text(&why);
+                let can_retry = self.preview.has_device();
+                let tip = format!("{why}\n\nBuild the view on the graphics device anew");
+                if can_retry && ui.small_button("Try again").on_hover_text(tip).clicked() {
+                    self.preview.restart(ui.ctx());
                 }
-                None => drop(ui.label(egui::RichText::new("Preparing the live view\u{2026}").weak())),
             });
         });
     }

@@ -9,9 +9,12 @@ use std::f32::consts::TAU;
 /// A line of constant width on the screen; twin of the instance in `overlay.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub(super) struct GpuLine {
+pub struct GpuLine {
+    /// Where it begins, metres.
     pub from: [f32; 3],
+    /// Pixels across.
     pub width_px: f32,
+    /// Where it ends, metres.
     pub to: [f32; 3],
     /// How much of it shows through things, 0..1.
     pub through: f32,
@@ -22,16 +25,21 @@ pub(super) struct GpuLine {
 /// A corner of a tinted triangle; twin of the vertex in `overlay.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub(super) struct GpuTint {
+pub struct GpuTint {
+    /// Metres.
     pub position: [f32; 3],
+    /// How much of it shows through things, 0..1.
     pub through: f32,
+    /// sRGB-encoded, straight alpha.
     pub color: [f32; 4],
 }
 
 /// Everything drawn over the lit picture, and what a click on the lines means.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Gizmos {
+pub struct Gizmos {
+    /// Lines of constant width.
     pub lines: Vec<GpuLine>,
+    /// Corners of triangles, three each.
     pub tints: Vec<GpuTint>,
     /// Runs of `lines` that can be clicked.
     pub handles: Vec<(Pick, std::ops::Range<usize>)>,
@@ -78,6 +86,7 @@ impl Pen {
 }
 
 impl Gizmos {
+    /// All that `overlay` asks for, as it is seen from `view`.
     pub fn new(scene: &Scene, overlay: &Overlay, view: &CameraFrame) -> Self {
         let mut gizmos = Gizmos::default();
         if overlay.grid {

@@ -48,23 +48,29 @@ impl Gpu {
     }
 }
 
-/// Whether a device is gone, and why; set by the driver's callback.
+/// Whether a device is gone, and why; set by the driver's callback. Clones watch the same device.
 #[derive(Clone, Debug, Default)]
-pub(super) struct LossFlag(Arc<OnceLock<String>>);
+pub struct LossFlag(Arc<OnceLock<String>>);
 
 impl LossFlag {
-    /// A flag that the device raises when it is lost.
+    /// A flag that the device raises when it is lost. A device has one: it raises the newest.
     pub fn watch(device: &wgpu::Device) -> Self {
         let flag = LossFlag::default();
         let raised = flag.clone();
         device.set_device_lost_callback(move |reason, message| {
-            let _ = raised.0.set(format!("{reason:?}: {message}"));
+            let message = if message.is_empty() { format!("{reason:?}") } else { format!("{reason:?}: {message}") };
+            let _ = raised.0.set(message);
         });
         flag
     }
 
+    /// Why the device is gone, if it is.
+    pub fn reason(&self) -> Option<&str> {
+        self.0.get().map(String::as_str)
+    }
+
     /// An error if the device is gone.
-    pub fn check(&self) -> Result<(), PreviewError> {
+    pub(super) fn check(&self) -> Result<(), PreviewError> {
         self.0.get().map_or(Ok(()), |why| Err(PreviewError::DeviceLost(why.clone())))
     }
 }
@@ -83,6 +89,8 @@ pub(super) fn guarded<T>(
     // On native backends the scopes are settled by the time they are popped, so nothing waits here.
     let errors = [validation.pop(), internal.pop()].map(pollster::block_on);
     let out_of_memory = pollster::block_on(memory.pop());
+    // A device that was destroyed says so when it is asked; one that the driver lost has said so already.
+    let _ = device.poll(wgpu::PollType::Poll);
     loss.check()?;
     if out_of_memory.is_some() {
         return Err(PreviewError::OutOfMemory);

@@ -14,7 +14,7 @@ const ID_BYTES: u32 = 8;
 /// The bits of a mark that number a surface; twin of `MARK_NUMBER` in `scene.wgsl`.
 const NUMBER_BITS: u32 = (1 << 30) - 1;
 /// How near to a gizmo's line a click means it, pixels.
-const REACH_PX: f32 = 5.0;
+pub const REACH_PX: f32 = 5.0;
 
 /// Which object each pixel of a picture shows, rows from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -64,8 +64,13 @@ struct Drawn {
 }
 
 impl PreviewRenderer {
-    /// Compiles the pipelines. The device may be the window's.
+    /// Compiles the pipelines for a device of its own.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, PreviewError> {
+        Self::watched(device, queue, LossFlag::watch(device))
+    }
+
+    /// Compiles the pipelines for a device that others use, too, and whose loss `loss` tells.
+    pub fn watched(device: &wgpu::Device, queue: &wgpu::Queue, loss: LossFlag) -> Result<Self, PreviewError> {
         let limits = device.limits();
         if limits.max_storage_buffers_per_shader_stage < 1
             || limits.max_color_attachment_bytes_per_sample < 24
@@ -73,7 +78,6 @@ impl PreviewRenderer {
         {
             return Err(PreviewError::Unsupported("too small buffers or too small a G-buffer".to_owned()));
         }
-        let loss = LossFlag::watch(device);
         guarded(device, &loss, || {
             let buffers = SceneBuffers::new(device);
             let textures = TextureCache::new(device, queue);

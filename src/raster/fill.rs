@@ -153,8 +153,10 @@ pub(super) fn draw(screen: Screen, triangles: &[ScreenTriangle], shader: &Shader
     let (width, height) = (screen.width as usize, screen.height as usize);
     let mut picture = Picture::new(screen.width, screen.height);
     let mut objects = vec![super::NO_OBJECT; width * height];
+    let mut inverse_depths = vec![0.0; width * height];
     let rows = picture.rgb.par_chunks_mut(width * TILE_HEIGHT).zip(objects.par_chunks_mut(width * TILE_HEIGHT));
-    rows.zip(bins.par_chunks(columns)).enumerate().for_each(|(row, ((rgb, objects), bins))| {
+    let rows = rows.zip(inverse_depths.par_chunks_mut(width * TILE_HEIGHT));
+    rows.zip(bins.par_chunks(columns)).enumerate().for_each(|(row, (((rgb, objects), depths), bins))| {
         let mut shown = Row::new(shader.nothing());
         for (column, bin) in bins.iter().enumerate() {
             let mut tile = Tile::new(screen, column, row);
@@ -162,11 +164,12 @@ pub(super) fn draw(screen: Screen, triangles: &[ScreenTriangle], shader: &Shader
             for y in 0..tile.height {
                 let pixels = y * width + tile.x..y * width + tile.x + tile.width;
                 tile.show(y, triangles, shader, &mut shown, &mut objects[pixels.clone()]);
+                depths[pixels.clone()].copy_from_slice(&tile.depth[y][..tile.width]);
                 shader.pixels(&shown, &mut rgb[pixels]);
             }
         }
     });
-    Drawing { picture, objects }
+    Drawing { picture, objects, inverse_depths }
 }
 
 /// The triangles that may touch each tile, in their order: a tile's content does not depend on threads.

@@ -45,6 +45,8 @@ pub struct Drawing {
     pub picture: Picture,
     /// Index of the object in the scene's list that each pixel shows, or [`NO_OBJECT`].
     pub objects: Vec<u32>,
+    /// One over the distance along the camera's axis of what each pixel shows, 1/m; 0 where there is nothing.
+    pub inverse_depths: Vec<f32>,
 }
 
 /// Draws what a camera sees of a studio. A size of 0 is taken as 1.

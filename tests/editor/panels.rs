@@ -4,10 +4,7 @@ use super::*;
 
 #[test]
 fn a_slider_drag_is_one_undo_step_and_the_next_one_another() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let name = scene(&window).lights[0].name.clone();
     click(&mut window, &name);
     let before = scene(&window).lights[0].power.dial_stops;
@@ -31,10 +28,7 @@ fn a_slider_drag_is_one_undo_step_and_the_next_one_another() {
 
 #[test]
 fn keys_are_letters_while_a_name_is_typed() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let name = scene(&window).lights[0].name.clone();
     let light = window.get_by_label(&name);
     light.click();
@@ -58,10 +52,7 @@ fn keys_are_letters_while_a_name_is_typed() {
 
 #[test]
 fn a_name_that_is_taken_is_refused_in_plain_words() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let (first, second) = (scene(&window).lights[0].clone(), scene(&window).lights[1].name.clone());
     let rename = Command::Do(Action::Rename(Item::Light(first.id), second));
     window.state_mut().run(rename, None, &egui::Context::default());
@@ -72,10 +63,7 @@ fn a_name_that_is_taken_is_refused_in_plain_words() {
 
 #[test]
 fn a_figure_from_the_list_comes_with_its_mesh_and_is_aimed_at() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     click(&mut window, "Figures");
     click(&mut window, "Add Child, standing");
     let Some(Item::Object(id)) = window.state().selection().last() else { panic!("the figure is selected") };
@@ -91,10 +79,7 @@ fn a_figure_from_the_list_comes_with_its_mesh_and_is_aimed_at() {
 
 #[test]
 fn every_preset_opens_and_every_panel_draws() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     for index in 0..catchlight::io::presets().len() {
         window.state_mut().run(Command::NewFromPreset(index), None, &egui::Context::default());
         settle(&mut window);
@@ -117,10 +102,7 @@ fn every_preset_opens_and_every_panel_draws() {
 
 #[test]
 fn a_typed_title_is_one_step_and_survives_a_click_elsewhere() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].name.clone();
     window.get_by_role_and_label(egui::accesskit::Role::TextInput, "Title").click();
     settle(&mut window);
@@ -136,10 +118,7 @@ fn a_typed_title_is_one_step_and_survives_a_click_elsewhere() {
 
 #[test]
 fn the_light_meter_reads_in_the_background_follows_the_dial_and_can_be_undone() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let reading = |window: &Window| window.state().meter().reading().unwrap().as_ref().unwrap().clone();
     assert!(window.state().meter().reading().is_none());
     click(&mut window, "Light meter");

@@ -4,10 +4,7 @@ use super::*;
 
 #[test]
 fn light_changes_develop_the_picture_anew_without_tracing() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     render_tiny(&mut window);
     let brightness = |window: &Window| -> f32 {
         let picture = &window.state().rendering().developed().unwrap().picture;
@@ -34,10 +31,7 @@ fn light_changes_develop_the_picture_anew_without_tracing() {
 
 #[test]
 fn a_render_can_be_cancelled_and_keeps_what_it_has() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let rendering = window.state_mut().rendering_mut();
     rendering.settings.size = PictureSize::Custom(160, 120);
     rendering.settings.samples = 60_000;
@@ -60,10 +54,7 @@ fn a_render_can_be_cancelled_and_keeps_what_it_has() {
 
 #[test]
 fn the_quality_view_foretells_time_and_grain_and_learns_from_renders() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     assert!(window.state().forecaster().forecast().is_none(), "nothing runs for it while it is folded");
     window.state_mut().rendering_mut().settings.size = PictureSize::Custom(60, 40);
     settle(&mut window);

@@ -4,10 +4,7 @@ use super::*;
 
 #[test]
 fn a_light_moves_by_its_handles_in_one_step() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].clone();
     click(&mut window, &light.name);
     let view = window.get_by_label("Viewport").rect();
@@ -25,10 +22,7 @@ fn a_light_moves_by_its_handles_in_one_step() {
 
 #[test]
 fn a_figure_slides_over_the_floor_by_the_ring_at_its_feet() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let figure = scene(&window).objects[0].clone();
     click(&mut window, &figure.name);
     let view = window.get_by_label("Viewport").rect();
@@ -43,10 +37,7 @@ fn a_figure_slides_over_the_floor_by_the_ring_at_its_feet() {
 
 #[test]
 fn a_click_selects_what_is_seen_there() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let (figure, light) = (scene(&window).objects[0].clone(), scene(&window).lights[1].clone());
     let view = window.get_by_label("Viewport").rect();
     let frame = window.state().viewport().view.frame(view.width() / view.height());
@@ -68,10 +59,7 @@ fn a_click_selects_what_is_seen_there() {
 
 #[test]
 fn the_mouse_orbits_pans_and_zooms_without_touching_the_scene() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let before = scene(&window).clone();
     let middle = window.get_by_label("Viewport").rect().center();
     let view = |window: &Window| window.state().viewport().view;
@@ -99,10 +87,7 @@ fn the_mouse_orbits_pans_and_zooms_without_touching_the_scene() {
 
 #[test]
 fn nothing_is_drawn_while_nothing_changes() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let draws = window.state().viewport().preview.draws();
     assert!(draws > 0, "{:?}", window.state().viewport().preview.failure());
     for _ in 0..10 {

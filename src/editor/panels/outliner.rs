@@ -141,9 +141,9 @@ impl Rows<'_> {
                 self.lock_toggle(ui, item, &light.name, light.locked);
                 let alone = scene.solo.as_ref().is_some_and(|solo| solo.lights.contains(&light.id));
                 let tip = if alone {
-                    "Shines alone: click to bring back what was on before (O)"
+                    "Shines alone, in pictures too: click to bring back what was on before (O)"
                 } else {
-                    "Solo: only this light, until you click again (O)"
+                    "Solo: switches the others off, in pictures too, until you click again (O)"
                 };
                 let name = format!("{} alone", light.name);
                 if widgets::letter_toggle(ui, "S", alone, theme::ACCENT, &name).on_hover_text(tip).clicked() {

@@ -179,7 +179,7 @@ fn thumbnail_ui(ui: &mut Ui, rendering: &Rendering, scene: &Scene, out: &mut Vec
     let size = vec2(width as f32, height as f32);
     let size = size * (room.x / size.x).min(room.y / size.y);
     ui.vertical_centered(|ui| {
-        let image = Image::new((texture.id(), size)).alt_text("Rendered picture").sense(Sense::click());
+        let image = Image::new((texture, size)).alt_text("Rendered picture").sense(Sense::click());
         let response =
             ui.add(image).on_hover_text("Click to see it large (3)").on_hover_cursor(egui::CursorIcon::ZoomIn);
         if response.clicked() {

@@ -1,0 +1,82 @@
+//! The menu in the corner of the view: channels, one light's share, and back to the colours.
+
+use super::*;
+use catchlight::preview::Channel;
+use image::RgbaImage;
+
+/// What the viewport shows, without what lies at its edges: menus, the cross, messages.
+fn view(window: &mut Window) -> RgbaImage {
+    let rect = window.get_by_label("Viewport").rect();
+    move_to(window, rect.center());
+    settle(window);
+    let rect = rect.shrink2(vec2(120.0, 110.0));
+    let picture = window.render().unwrap();
+    let [x, y, width, height] = [rect.min.x, rect.min.y, rect.width(), rect.height()].map(|v| v as u32);
+    image::imageops::crop_imm(&picture, x, y, width, height).to_image()
+}
+
+/// Mean of all differences of two pictures, in codes.
+fn apart(a: &RgbaImage, b: &RgbaImage) -> f64 {
+    let off = a.as_raw().iter().zip(b.as_raw()).map(|(a, b)| f64::from(a.abs_diff(*b)));
+    off.sum::<f64>() / a.as_raw().len() as f64
+}
+
+/// Opens the menu, whose button says what is shown, and clicks through it.
+fn choose(window: &mut Window, button: &str, entries: &[&str]) {
+    click(window, button);
+    for entry in entries {
+        click(window, entry);
+    }
+    press(window, Modifiers::NONE, Key::Escape);
+}
+
+#[test]
+fn each_channel_chosen_changes_the_picture_and_lit_brings_it_back() {
+    let Some(mut window) = preset_window() else { return };
+    let lit = view(&mut window);
+    let mut seen = vec![("Lit", lit.clone())];
+    for channel in Channel::ALL.into_iter().filter(|channel| *channel != Channel::Lit) {
+        let shown = seen.last().unwrap().0;
+        choose(&mut window, shown, &[channel.label()]);
+        assert_eq!(window.state().viewport().preview.look.channel, channel);
+        let picture = view(&mut window);
+        for (other, before) in &seen {
+            assert!(apart(&picture, before) > 0.5, "{} looks like {other}", channel.label());
+        }
+        seen.push((channel.label(), picture));
+    }
+    choose(&mut window, seen.last().unwrap().0, &["Lit"]);
+    assert!(apart(&view(&mut window), &lit) < 0.01);
+    assert_eq!(undo_depth(&window), 0, "a look is no change of the studio");
+}
+
+#[test]
+fn the_light_of_one_alone_is_shown_without_touching_the_studio() {
+    let Some(mut window) = preset_window() else { return };
+    let (before, lit) = (scene(&window).clone(), view(&mut window));
+    let light = before.lights[1].clone();
+    click(&mut window, "Lit");
+    click(&mut window, "Show the light of");
+    let entry = window.get_all_by_role_and_label(egui::accesskit::Role::RadioButton, &light.name).next();
+    entry.unwrap().click();
+    settle(&mut window);
+    press(&mut window, Modifiers::NONE, Key::Escape);
+    assert_eq!(window.state().viewport().preview.look.only_light, Some(light.id));
+    let alone = view(&mut window);
+    let sum = |picture: &RgbaImage| picture.pixels().map(|p| u64::from(p.0[1])).sum::<u64>();
+    assert!(sum(&alone) < sum(&lit) && apart(&alone, &lit) > 1.0);
+    assert_eq!((scene(&window), undo_depth(&window)), (&before, 0));
+    choose(&mut window, &format!("Lit: light of {} only", light.name), &["Show the light of", "All lights"]);
+    assert!(apart(&view(&mut window), &lit) < 0.01);
+}
+
+#[test]
+fn from_a_side_the_depth_channel_tells_near_from_far() {
+    let Some(mut window) = preset_window() else { return };
+    press(&mut window, Modifiers::NONE, Key::Num8);
+    choose(&mut window, "Lit", &["Depth"]);
+    let picture = view(&mut window);
+    let codes: std::collections::BTreeSet<u8> = picture.pixels().map(|p| p.0[0]).collect();
+    // A view from two kilometres away was black all over: its distances are all far.
+    assert!(codes.len() > 20 && codes.last().is_some_and(|most| *most > 120), "{codes:?}");
+}

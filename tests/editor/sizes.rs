@@ -1,0 +1,85 @@
+//! Windows of every size, one after the other: as they are dragged, minimised and moved between screens.
+
+use super::*;
+
+/// Widths and heights in points. A minimised window has none on some desktops.
+const SIZES: [(f32, f32); 14] = [
+    (900.0, 600.0),
+    (0.0, 0.0),
+    (1.0, 1.0),
+    (1440.0, 0.0),
+    (0.0, 900.0),
+    (2.0, 700.0),
+    (640.0, 3.0),
+    (333.0, 777.0),
+    (2600.0, 1500.0),
+    (1.0, 1.0),
+    (801.0, 601.0),
+    (320.0, 240.0),
+    (1023.5, 600.3),
+    (900.0, 600.0),
+];
+
+/// Goes through the sizes without waiting for anything, turning the view all the while; at the end all is as it was.
+fn storm(window: &mut Window) {
+    for (i, (width, height)) in (0_i16..).zip(SIZES.into_iter().chain(SIZES.into_iter().rev())) {
+        window.set_size(vec2(width, height));
+        window.set_pixels_per_point([1.0, 2.0, 0.75][i as usize % 3]);
+        window.step();
+        window.event(Event::PointerMoved(Pos2::new(0.4 * width, 0.4 * height)));
+        let key = [Key::Num7, Key::Num8, Key::Num5][i as usize % 3];
+        window.key_press(key);
+        window.step();
+    }
+    window.set_pixels_per_point(1.0);
+    window.set_size(vec2(900.0, 600.0));
+    settle(window);
+}
+
+#[test]
+fn a_storm_of_sizes_leaves_the_quick_view_as_it_was() {
+    let Some(mut window) = preset_window() else { return };
+    let before = scene(&window).clone();
+    storm(&mut window);
+    let draws = window.state().viewport().preview.draws();
+    press(&mut window, Modifiers::NONE, Key::Num8);
+    let preview = &window.state().viewport().preview;
+    assert!(preview.draws() > draws && preview.failure().is_none(), "{:?}", preview.failure());
+    assert_eq!((scene(&window), errors(&window).len()), (&before, 0));
+    assert!(window.render().is_ok());
+}
+
+#[test]
+fn a_storm_of_sizes_leaves_the_traced_view_at_work() {
+    let Some(mut window) = preset_window() else { return };
+    press(&mut window, Modifiers::NONE, Key::Num2);
+    storm(&mut window);
+    let began = Instant::now();
+    let rays = window.state().viewport().live.rays();
+    while !(window.state().viewport().live.has_picture() && window.state().viewport().live.rays() > rays) {
+        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().live.status());
+        window.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert!(!window.state().viewport().live.has_failed() && errors(&window).is_empty());
+}
+
+#[test]
+fn a_storm_of_sizes_without_a_device_and_while_a_picture_is_rendered() {
+    let builder = Harness::builder().with_size(vec2(900.0, 600.0)).with_max_steps(60);
+    let mut window = builder.build_eframe(|creation| App::new(creation, Options::default()));
+    settle(&mut window);
+    let settings = &mut window.state_mut().rendering_mut().settings;
+    (settings.size, settings.quality, settings.samples) = (PictureSize::Custom(96, 64), Quality::Custom, 16);
+    window.key_press(Key::R);
+    window.step();
+    press(&mut window, Modifiers::NONE, Key::Num1);
+    storm(&mut window);
+    assert!(window.state().rendering().developed().is_some() && errors(&window).is_empty());
+    // The large picture in a window of no size.
+    press(&mut window, Modifiers::NONE, Key::Num3);
+    for (width, height) in SIZES {
+        window.set_size(vec2(width, height));
+        window.step();
+    }
+}
