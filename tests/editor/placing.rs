@@ -64,10 +64,7 @@ fn light_that_is_put_on_a_point_comes_along_its_normal() {
 
 #[test]
 fn looking_through_a_light_orbit_swings_it_at_its_distance_and_esc_goes_back() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(light.id)]);
     press(&mut window, Modifiers::NONE, Key::V);
@@ -85,10 +82,7 @@ fn looking_through_a_light_orbit_swings_it_at_its_distance_and_esc_goes_back() {
 
 #[test]
 fn a_light_that_is_aimed_at_its_subject_stays_on_it_while_either_moves() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(light.id)]);
     let Aim::Object { object, offset } = light.aim else { panic!("the preset's key is aimed at its subject") };
@@ -116,19 +110,12 @@ fn esc_gives_up_a_highlight_that_is_dragged_and_then_the_mode() {
     let (start, depth) = (scene(&window).lights[0].clone(), undo_depth(&window));
     let at = shown_at(&window, scene(&window).objects[ball].transform.position);
     press(&mut window, Modifiers::NONE, Key::P);
-    let button = |window: &mut Window, pos, pressed| {
-        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-        window.event(Event::PointerButton { pos, button, pressed, modifiers });
-        window.step();
-    };
-    window.event(Event::PointerMoved(at));
-    window.step();
+    move_to(&mut window, at);
     button(&mut window, at, true);
     assert_ne!(scene(&window).lights[0], start);
     window.key_press(Key::Escape);
     window.step();
-    window.event(Event::PointerMoved(at + vec2(9.0, 0.0)));
-    window.step();
+    move_to(&mut window, at + vec2(9.0, 0.0));
     button(&mut window, at + vec2(9.0, 0.0), false);
     settle(&mut window);
     assert_eq!((&scene(&window).lights[0], undo_depth(&window)), (&start, depth));
@@ -139,10 +126,7 @@ fn esc_gives_up_a_highlight_that_is_dragged_and_then_the_mode() {
 
 #[test]
 fn the_shadow_of_what_a_light_is_aimed_at_is_dragged_over_the_paper() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let start = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(start.id)]);
     let paper = scene(&window).objects.iter().find(|o| matches!(o.shape, Shape::Sweep { .. })).unwrap();

@@ -9,10 +9,7 @@ fn lights(window: &Window) -> Vec<Item> {
 
 #[test]
 fn lights_gathered_in_the_view_move_together_in_one_step() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let before = scene(&window).clone();
     let both = [before.lights[0].position, before.lights[1].position];
     let places = both.map(|point| shown_at(&window, point));
@@ -34,10 +31,7 @@ fn lights_gathered_in_the_view_move_together_in_one_step() {
 
 #[test]
 fn a_box_and_ctrl_a_select_what_is_there_and_not_locked() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let view = window.get_by_label("Viewport").rect().shrink(6.0);
     let inside: Vec<Item> = scene(&window)
         .lights
@@ -64,10 +58,7 @@ fn a_box_and_ctrl_a_select_what_is_there_and_not_locked() {
 
 #[test]
 fn several_are_deleted_and_copied_in_one_step() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let before = scene(&window).clone();
     let two = lights(&window)[..2].to_vec();
     select(&mut window, &two);
@@ -83,10 +74,7 @@ fn several_are_deleted_and_copied_in_one_step() {
 
 #[test]
 fn the_list_gathers_by_ctrl_and_takes_ranges_by_shift() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let names: Vec<String> = scene(&window).lights.iter().map(|l| l.name.clone()).collect();
     assert!(names.len() >= 3);
     let mut at = |name: &str, modifiers| {
@@ -102,24 +90,14 @@ fn the_list_gathers_by_ctrl_and_takes_ranges_by_shift() {
 
 #[test]
 fn a_typed_number_moves_by_exactly_that_and_esc_gives_a_drag_up() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(light.id)]);
     let from = shown_at(&window, light.position);
-    let button = |window: &mut Window, pos, pressed| {
-        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-        window.event(Event::PointerButton { pos, button, pressed, modifiers });
-        window.step();
-    };
     let begin = |window: &mut Window| {
-        window.event(Event::PointerMoved(from));
-        window.step();
+        move_to(window, from);
         button(window, from, true);
-        window.event(Event::PointerMoved(from + vec2(40.0, 10.0)));
-        window.step();
+        move_to(window, from + vec2(40.0, 10.0));
     };
     begin(&mut window);
     for (key, letter) in [(Key::Num1, "1"), (Key::Period, "."), (Key::Num5, "5")] {
@@ -129,8 +107,7 @@ fn a_typed_number_moves_by_exactly_that_and_esc_gives_a_drag_up() {
     }
     window.key_press(Key::Enter);
     window.step();
-    window.event(Event::PointerMoved(from + vec2(90.0, 60.0)));
-    window.step();
+    move_to(&mut window, from + vec2(90.0, 60.0));
     button(&mut window, from + vec2(90.0, 60.0), false);
     settle(&mut window);
     let moved = (scene(&window).lights[0].position - light.position).length();
@@ -149,10 +126,7 @@ fn a_typed_number_moves_by_exactly_that_and_esc_gives_a_drag_up() {
 
 #[test]
 fn a_mirrored_copy_stands_on_the_other_side_of_the_face() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let key = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(key.id)]);
     press(&mut window, Modifiers::COMMAND | Modifiers::SHIFT, Key::D);
@@ -167,14 +141,10 @@ fn a_mirrored_copy_stands_on_the_other_side_of_the_face() {
 
 #[test]
 fn the_other_button_on_a_light_in_the_view_opens_its_menu() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[1].clone();
     let at = shown_at(&window, light.position);
-    window.event(Event::PointerMoved(at));
-    window.step();
+    move_to(&mut window, at);
     for pressed in [true, false] {
         let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
         window.event(Event::PointerButton { pos: at, button, pressed, modifiers });
@@ -191,25 +161,15 @@ fn the_other_button_on_a_light_in_the_view_opens_its_menu() {
 
 #[test]
 fn esc_gives_a_box_up_and_keys_wait_for_its_end() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let view = window.get_by_label("Viewport").rect().shrink(6.0);
-    let button = |window: &mut Window, pos, pressed| {
-        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-        window.event(Event::PointerButton { pos, button, pressed, modifiers });
-        window.step();
-    };
     let to = view.right_top() + vec2(-120.0, 140.0);
     for keys in [&[Key::Num1][..], &[Key::Num1, Key::Escape]] {
         select(&mut window, &[]);
-        window.event(Event::PointerMoved(view.left_bottom()));
-        window.step();
+        move_to(&mut window, view.left_bottom());
         button(&mut window, view.left_bottom(), true);
         for part in [0.5, 1.0] {
-            window.event(Event::PointerMoved(view.left_bottom().lerp(to, part)));
-            window.step();
+            move_to(&mut window, view.left_bottom().lerp(to, part));
         }
         for key in keys {
             window.key_press(*key);

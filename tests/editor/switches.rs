@@ -8,10 +8,7 @@ fn on(window: &Window) -> Vec<bool> {
 
 #[test]
 fn a_solo_in_the_list_gives_back_what_was_on() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let names: Vec<String> = scene(&window).lights.iter().map(|l| l.name.clone()).collect();
     click(&mut window, &format!("{} on", names[1]));
     let (before, power) = (on(&window), scene(&window).lights.iter().map(|l| l.power).collect::<Vec<_>>());
@@ -28,10 +25,7 @@ fn a_solo_in_the_list_gives_back_what_was_on() {
 
 #[test]
 fn mute_and_hide_bring_back_what_was_there_and_no_more() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let names: Vec<String> = scene(&window).lights.iter().map(|l| l.name.clone()).collect();
     click(&mut window, &format!("{} on", names[1]));
     let before = scene(&window).clone();
@@ -49,10 +43,7 @@ fn mute_and_hide_bring_back_what_was_there_and_no_more() {
 
 #[test]
 fn what_is_locked_is_neither_picked_nor_moved_and_the_file_remembers_it() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let figure = scene(&window).objects[0].clone();
     let at = shown_at(&window, figure.transform.position + glam::Vec3::Y);
     click_at(&mut window, at, Modifiers::NONE);

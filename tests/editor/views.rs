@@ -6,10 +6,7 @@ use catchlight::scene::Emitter;
 
 #[test]
 fn from_the_top_a_light_is_dragged_over_the_plan_and_keeps_its_height() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(light.id)]);
     press(&mut window, Modifiers::NONE, Key::Num7);
@@ -26,10 +23,7 @@ fn from_the_top_a_light_is_dragged_over_the_plan_and_keeps_its_height() {
 
 #[test]
 fn sides_are_buttons_and_keys_and_an_orbit_leaves_them() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let view = |window: &Window| window.state().viewport().view;
     press(&mut window, Modifiers::NONE, Key::Num8);
     assert_eq!(view(&window).side, Some(Side::Front));
@@ -47,10 +41,7 @@ fn sides_are_buttons_and_keys_and_an_orbit_leaves_them() {
 
 #[test]
 fn a_click_selects_from_the_top_as_it_does_from_anywhere() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let figure = scene(&window).objects[0].clone();
     press(&mut window, Modifiers::NONE, Key::Num8);
     let at = shown_at(&window, figure.transform.position + glam::Vec3::Y);
@@ -60,10 +51,7 @@ fn a_click_selects_from_the_top_as_it_does_from_anywhere() {
 
 #[test]
 fn the_view_turns_about_what_is_selected() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(light.id)]);
     let before = shown_at(&window, light.position);
@@ -74,10 +62,7 @@ fn the_view_turns_about_what_is_selected() {
 
 #[test]
 fn the_meter_can_be_moved_out_of_the_way_and_folded() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     click(&mut window, "Light meter");
     // The bar of the window, at its upper edge.
     let title = |window: &Window| window.get_by_label("Light meter, dome").rect().center_top() + vec2(0.0, 14.0);
@@ -94,10 +79,7 @@ fn the_meter_can_be_moved_out_of_the_way_and_folded() {
 
 #[test]
 fn what_shapes_a_light_stands_over_its_power() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].id;
     select(&mut window, &[Item::Light(light)]);
     let size = window.get_by_label("Width").rect();
@@ -107,10 +89,7 @@ fn what_shapes_a_light_stands_over_its_power() {
 
 #[test]
 fn a_length_is_typed_in_any_unit() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].id;
     select(&mut window, &[Item::Light(light)]);
     window.get_by_label("Width").click();
@@ -128,10 +107,7 @@ fn a_length_is_typed_in_any_unit() {
 
 #[test]
 fn the_list_of_keys_names_every_key() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     press(&mut window, Modifiers::NONE, Key::F1);
     for binding in &catchlight::editor::BINDINGS {
         assert!(window.query_all_by_label(binding.meaning).next().is_some(), "{}", binding.meaning);
@@ -140,10 +116,7 @@ fn the_list_of_keys_names_every_key() {
 
 #[test]
 fn snapped_things_stand_on_tenths_of_a_metre_and_turn_by_fifteen_degrees() {
-    if !has_adapter() {
-        return;
-    }
-    let mut window = window_with_answers([]);
+    let Some(mut window) = preset_window() else { return };
     let figure = scene(&window).objects[0].clone();
     select(&mut window, &[Item::Object(figure.id)]);
     press(&mut window, Modifiers::NONE, Key::G);
@@ -156,14 +129,94 @@ fn snapped_things_stand_on_tenths_of_a_metre_and_turn_by_fifteen_degrees() {
     press(&mut window, Modifiers::NONE, Key::Num7);
     press(&mut window, Modifiers::NONE, Key::T);
     let middle = shown_at(&window, moved);
-    let ring = (55..100).map(|r| middle + vec2(r as f32, 0.0)).find(|at| {
-        window.event(Event::PointerMoved(*at));
-        window.step();
-        window.state().viewport().is_over_handle()
-    });
-    let ring = ring.unwrap();
+    let ring = handle_along(&mut window, (55..100).map(|r| middle + vec2(r as f32, 0.0)));
     drag(&mut window, PointerButton::Primary, ring, ring + vec2(-8.0, 41.0));
     let turned = scene(&window).objects[0].transform.rotation_deg;
     let steps = (turned.y - figure.transform.rotation_deg.y) / 15.0;
     assert!(steps != 0.0 && (steps - steps.round()).abs() < 1e-3, "{turned}");
+}
+
+#[test]
+fn a_thing_grows_by_its_handles_and_comes_back_by_undo() {
+    let Some(mut window) = preset_window() else { return };
+    click(&mut window, "Props");
+    click(&mut window, "Add Chrome ball");
+    let Some(Item::Object(id)) = window.state().selection().last() else { panic!("the ball is selected") };
+    let ball = scene(&window).object(id).unwrap().clone();
+    let depth = undo_depth(&window);
+    press(&mut window, Modifiers::NONE, Key::Num8);
+    press(&mut window, Modifiers::NONE, Key::Z);
+    let middle = shown_at(&window, ball.transform.position);
+    let handle = handle_along(&mut window, (20..90).map(|r| middle - vec2(0.0, r as f32)));
+    drag(&mut window, PointerButton::Primary, handle, handle - vec2(0.0, 40.0));
+    let grown = scene(&window).object(id).unwrap().transform.scale;
+    assert!(grown.y > 1.2 * ball.transform.scale.y, "{grown}");
+    assert_eq!(undo_depth(&window), depth + 1);
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    assert_eq!(scene(&window).object(id), Some(&ball));
+}
+
+#[test]
+fn a_turn_is_typed_in_degrees() {
+    let Some(mut window) = preset_window() else { return };
+    let figure = scene(&window).objects[0].clone();
+    select(&mut window, &[Item::Object(figure.id)]);
+    press(&mut window, Modifiers::NONE, Key::Num7);
+    press(&mut window, Modifiers::NONE, Key::T);
+    let middle = shown_at(&window, figure.transform.position);
+    let ring = handle_along(&mut window, (55..100).map(|r| middle + vec2(r as f32, 0.0)));
+    button(&mut window, ring, true);
+    move_to(&mut window, ring + vec2(-5.0, 30.0));
+    for (key, letter) in [(Key::Num3, "3"), (Key::Num0, "0")] {
+        window.key_press(key);
+        window.event(Event::Text(letter.to_owned()));
+        window.step();
+    }
+    window.key_press(Key::Enter);
+    window.step();
+    button(&mut window, ring, false);
+    settle(&mut window);
+    let turn = scene(&window).objects[0].transform.rotation_deg.y - figure.transform.rotation_deg.y;
+    assert!((turn.abs() - 30.0).abs() < 1e-2, "{turn} degrees");
+}
+
+/// Everything that is written in the window, without the widgets' own names.
+fn painted(window: &Window) -> Vec<String> {
+    let shapes = window.output().shapes.iter().map(|clipped| &clipped.shape);
+    shapes
+        .filter_map(
+            |shape| if let egui::Shape::Text(text) = shape { Some(text.galley.text().to_owned()) } else { None },
+        )
+        .collect()
+}
+
+#[test]
+fn the_plan_writes_the_distances_of_lights_and_camera_and_follows_a_move() {
+    let Some(mut window) = preset_window() else { return };
+    press(&mut window, Modifiers::NONE, Key::Num7);
+    window.step();
+    let written = |window: &Window| {
+        let key = &scene(window).lights[0];
+        format!("{:.2} m", (scene(window).aim_point(&key.aim, key.position) - key.position).length())
+    };
+    let before = written(&window);
+    assert!(painted(&window).contains(&before), "{before} in {:?}", painted(&window));
+    assert!(painted(&window).iter().any(|text| text.starts_with("Camera\n")));
+    let mut key = scene(&window).lights[0].clone();
+    key.position.x += 0.7;
+    run(&mut window, Command::Do(Action::SetLight(Box::new(key))));
+    let after = written(&window);
+    assert!(after != before && painted(&window).contains(&after), "{after} in {:?}", painted(&window));
+}
+
+#[test]
+fn a_light_is_mirrored_to_the_other_side_and_back() {
+    let Some(mut window) = preset_window() else { return };
+    let key = scene(&window).lights[0].clone();
+    select(&mut window, &[Item::Light(key.id)]);
+    press(&mut window, Modifiers::NONE, Key::X);
+    assert!((scene(&window).lights[0].position - key.position).length() > 0.5, "it stands on the other side");
+    press(&mut window, Modifiers::NONE, Key::X);
+    assert!((scene(&window).lights[0].position - key.position).length() < 1e-4);
+    assert_eq!((scene(&window).lights.len(), undo_depth(&window)), (4, 2));
 }
