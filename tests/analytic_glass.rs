@@ -10,10 +10,13 @@ use glam::Vec3;
 use std::f64::consts::PI;
 use studio::closed_forms::{fresnel, pane};
 use studio::light;
-use studio::measure::{BIAS, illuminance, luminance_per_value, meter_card, picture, square, values};
+use studio::measure::{BIAS, illuminance, illuminance_over, luminance_per_value, meter_card, picture, square, values};
 use studio::statistics::Estimate;
 
 const LUMINANCE: f32 = 1000.0;
+
+/// A card on which photons can be counted.
+const WIDE_CARD: Shape = Shape::Plane { width_m: 0.3, depth_m: 0.3 };
 
 fn glass(ior: f32) -> Material {
     Material { transmission: 1.0, roughness: 0.0, ior, ..Material::default() }
@@ -96,6 +99,33 @@ fn a_point_light_shines_through_a_pane_as_much_as_the_pane_lets_through() {
                 "{deg} degrees, sheet {sheet}, {method:?}: {reading:?} for {truth} lx"
             );
         }
+    }
+}
+
+#[test]
+fn a_mirror_throws_light_where_its_image_would() {
+    // A card that looks up, a lamp 1 m above it and a mirror 1 m beside it, whose image of the lamp is 2 m away.
+    let mirror = Material { metallic: 1.0, roughness: 0.0, base_color: [0.999; 3], ..Material::default() };
+    let plane = Shape::Plane { width_m: 0.4, depth_m: 0.4 };
+    for emitter in [Emitter::Point, Emitter::Sphere { radius_m: 0.01 }, Emitter::Sun { angular_diameter_deg: 0.5 }] {
+        let mut scene = meter_card(Vec3::ZERO, Vec3::Y);
+        scene.objects[0].shape = WIDE_CARD;
+        scene.lights.push(light(emitter, Output::Lumens(1000.0), Vec3::Y));
+        if let Emitter::Sun { .. } = emitter {
+            scene.lights[0].power.output = Output::Lux(1000.0);
+            scene.lights[0].aim = Aim::Angles { yaw_deg: -90.0, pitch_deg: -30.0 };
+        }
+        let settings = square(Method::Direct, 8, 64);
+        let open = illuminance(&scene, &settings).mean;
+        scene.objects.push(thing("Mirror", plane.clone(), mirror.clone(), Vec3::new(1.0, 0.5, 0.0), Vec3::Z * 90.0));
+        let reading = illuminance_over(16, &scene, &settings);
+        // The image stands at (2, 1, 0): its light falls by the inverse square and the cosine. A sun's image is as bright.
+        let image = if let Emitter::Sun { .. } = emitter { 1.0 } else { 5.0_f64.powf(-1.5) };
+        assert!(
+            reading.agrees(open * (1.0 + 0.999 * image), 1e-3, 3),
+            "{emitter:?}: {reading:?} for {open} and {image} of it"
+        );
+        assert!(reading.error < 0.05 * image * open, "{emitter:?}: {reading:?} says little");
     }
 }
 

@@ -76,6 +76,24 @@ fn exr_holds_scene_linear_values_and_how_they_came_about() {
 }
 
 #[test]
+fn the_file_says_whether_photons_brought_caustics() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = |studio: &str, caustics: &str| {
+        let arguments =
+            ["render", studio, "-o", "a.exr", "--size", "24x16", "--spp", "1", "--json", "--caustics", caustics];
+        let output = catchlight(folder.path(), &arguments);
+        let report: Value = serde_json::from_str(stdout(&output).trim()).unwrap();
+        let file = std::fs::read(folder.path().join("a.exr")).unwrap();
+        let told = String::from_utf8_lossy(&file[..4000.min(file.len())]).contains("path, caustics from photons");
+        (report["photons"].as_bool().unwrap(), told)
+    };
+    assert_eq!(made("product_still_life", "photons"), (true, true));
+    assert_eq!(made("product_still_life", "paths"), (false, false));
+    // Neither glass nor a mirror in there.
+    assert_eq!(made("rembrandt", "photons"), (false, false));
+}
+
+#[test]
 fn explain_says_what_is_left_out_and_why() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["render", "three_point", "-o", "x.png", "--size", "12x18", "--spp", "1", "--explain"];

@@ -2,7 +2,7 @@
 
 use super::{Failure, input, say, zbuffer};
 use crate::io::{self, Loaded, PictureFormat, PictureInfo};
-use crate::raytrace::{self, Control, Film, Method, RenderScene, Settings};
+use crate::raytrace::{self, Control, Film, Method, RenderScene, Settings, Shortcut};
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -39,6 +39,10 @@ pub struct Arguments {
     /// Bounces at most [default: what the studio's surfaces need].
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1000))]
     max_depth: Option<u32>,
+    /// What brings the light that mirrors and glass throw on surfaces: photons are quiet and blur its edges by a pixel or
+    /// two, less the longer it renders; paths alone blur nothing and are grainy.
+    #[arg(long, value_enum, default_value_t = Caustics::Photons)]
+    caustics: Caustics,
     /// Threads [default: all cores].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -54,6 +58,12 @@ pub struct Arguments {
     /// Write one EXR layer a light beside the whole picture (exr only).
     #[arg(long)]
     layers: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum Caustics {
+    Photons,
+    Paths,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -127,6 +137,8 @@ struct Report {
     rays: u64,
     /// Millions of rays a second, all threads.
     mrays_s: f64,
+    /// Photons brought what mirrors and glass throw on surfaces.
+    photons: bool,
     /// Estimated; null before there are two samples.
     noise_stops: Option<f32>,
     nonfinite: u64,
@@ -150,7 +162,10 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
         return draw_zbuffer(arguments, &loaded, &pool, started, load_s);
     };
     let build_started = Instant::now();
-    let scene = pool.install(|| raytrace::prepare(&loaded.scene, &loaded.assets))?;
+    let mut scene = pool.install(|| raytrace::prepare(&loaded.scene, &loaded.assets))?;
+    if arguments.caustics == Caustics::Paths {
+        scene.set_plan(scene.plan().clone().without(Shortcut::Photons));
+    }
     let build_s = build_started.elapsed().as_secs_f64();
     if arguments.explain {
         say_plan(&scene, arguments.json);
@@ -194,6 +209,7 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
         first_wave_s: seconds(first_wave),
         rays: control.rays(),
         mrays_s: control.rays() as f64 / trace_s.max(1e-9) / 1e6,
+        photons: film.has_photons(),
         noise_stops: Some(film.noise_stops()).filter(|n| n.is_finite()),
         nonfinite: film.nonfinite(),
         interrupted,
@@ -284,6 +300,7 @@ fn draw_zbuffer(
         first_wave_s: first_picture_s,
         rays: 0,
         mrays_s: 0.0,
+        photons: false,
         noise_stops: None,
         nonfinite: 0,
         interrupted: false,
@@ -376,7 +393,7 @@ fn watch(
 /// Writes the picture in the size that was asked for, whatever size the film has.
 fn write(arguments: &Arguments, loaded: &Loaded, film: &Film, settings: &Settings) -> anyhow::Result<()> {
     let camera = &loaded.scene.camera;
-    let info = PictureInfo::new(camera, arguments.method.label(), film.spp(), arguments.seed.into());
+    let info = PictureInfo::new(camera, film.method(), film.spp(), arguments.seed.into());
     let (width, height) = (settings.width, settings.height);
     let picture = film.develop(&loaded.scene).resized(width, height);
     if arguments.layers {

@@ -236,6 +236,8 @@ pub struct Developed {
     pub image: Arc<ColorImage>,
     /// Samples a pixel in it.
     pub spp: u32,
+    /// How it was made, for its file.
+    pub method: &'static str,
 }
 
 #[derive(Debug, Default)]
@@ -313,7 +315,7 @@ pub fn develop(film: &Film, scene: &Scene) -> Developed {
     let picture = film.develop(scene);
     let bytes: Vec<u8> = picture.to_srgb8().into_iter().flatten().collect();
     let image = Arc::new(ColorImage::from_rgb([picture.width as usize, picture.height as usize], &bytes));
-    Developed { picture: Arc::new(picture), image, spp: film.spp() }
+    Developed { picture: Arc::new(picture), image, spp: film.spp(), method: film.method() }
 }
 
 /// Name of a method in lists.

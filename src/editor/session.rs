@@ -11,7 +11,6 @@ use super::panels::prompts::{self, GuardAnswer, PathAnswer, PathPrompt};
 use super::placement;
 use super::selection::Selection;
 use crate::io::PictureInfo;
-use crate::raytrace::{Method, Settings};
 use crate::scene::{Assets, Material, MaterialPreset, Object, ObjectId, Shape, Transform};
 use eframe::egui::{self, Align2, Color32, Context, Id, LayerId, Order, ViewportCommand};
 use std::path::{Path, PathBuf};
@@ -197,13 +196,8 @@ impl App {
     fn export_to(&mut self, path: PathBuf, ctx: &Context) {
         let (Some(developed), Some(job)) = (self.rendering.developed(), self.rendering.job()) else { return };
         let picture = developed.picture.clone();
-        let Settings { method, seed, .. } = job.settings;
-        let name = match method {
-            Method::Whitted => "whitted",
-            Method::Direct => "direct",
-            Method::Path => "path",
-        };
-        let info = PictureInfo::new(&self.document.scene().camera, name, developed.spp, seed.into());
+        let seed = job.settings.seed.into();
+        let info = PictureInfo::new(&self.document.scene().camera, developed.method, developed.spp, seed);
         let work = move || {
             let result = files::export(&path, &picture, &info);
             Done::Exported(path, result)

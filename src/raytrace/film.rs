@@ -1,6 +1,7 @@
 //! Where samples are gathered: one layer a light, so that lights can be dimmed and coloured after the render.
 
 use super::lights::TracedLight;
+use super::schedule::Method;
 use crate::color;
 use crate::photo::Picture;
 use crate::photo::exposure::{self, Strength};
@@ -202,6 +203,10 @@ pub struct Film {
     width: u32,
     height: u32,
     layers: Vec<Layer>,
+    /// How light was followed.
+    pub(super) method: Method,
+    /// Photons brought caustics.
+    pub(super) photons: bool,
     /// Rows of tiles from the top.
     pub(super) tiles: Vec<TileFilm>,
 }
@@ -215,7 +220,7 @@ impl Film {
                 tiles.push(TileFilm::new(x, y, TILE.min(width - x), TILE.min(height - y), layers.len()));
             }
         }
-        Film { width, height, layers, tiles }
+        Film { width, height, layers, method: Method::Path, photons: false, tiles }
     }
 
     /// Pixels across.
@@ -226,6 +231,22 @@ impl Film {
     /// Pixels down.
     pub fn height(&self) -> u32 {
         self.height
+    }
+
+    /// How light was followed, in words for the picture's file.
+    pub fn method(&self) -> &'static str {
+        match (self.method, self.photons) {
+            (Method::Whitted, _) => "whitted",
+            (Method::Direct, false) => "direct",
+            (Method::Direct, true) => "direct, caustics from photons",
+            (Method::Path, false) => "path",
+            (Method::Path, true) => "path, caustics from photons",
+        }
+    }
+
+    /// Whether photons brought caustics.
+    pub fn has_photons(&self) -> bool {
+        self.photons
     }
 
     /// Samples that every pixel has; some have more where noise was sought out, or where a wave was cut short.

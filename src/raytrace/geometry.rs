@@ -38,7 +38,7 @@ impl MeshGeometry {
     }
 
     /// Index of the part that a triangle belongs to.
-    fn part(&self, triangle: u32) -> usize {
+    pub fn part(&self, triangle: u32) -> usize {
         self.part_of_triangle.get(triangle as usize).copied().unwrap_or(0).into()
     }
 }

@@ -5,10 +5,12 @@
 //! through in both. Emitters neither cast shadows nor stop light: only the camera sees them as solid from the front.
 //!
 //! Light sampling goes straight through thin panes, as light does. Through bodies of glass it goes straight, too, but only
-//! for lights without a size, which no refracted ray would ever find: right for flat glass, without caustics for curved.
+//! for lights without a size, which no refracted ray would ever find: right for flat glass. What else mirrors and glass
+//! throw on surfaces is gathered from photons, where there are any; without, light goes straight through curved glass, too.
 
-use super::bsdf::{Behind, Bsdf, Polarisation};
+use super::bsdf::{Bsdf, Polarisation};
 use super::bvh::Stack;
+use super::caustics::{CausticMap, Gathered, Rival};
 use super::geometry::Surface;
 use super::lights::{Asked, TracedLight};
 use super::media::Media;
@@ -38,11 +40,20 @@ pub trait Sink {
 
 /// Bounces before roulette begins.
 const ROULETTE_FROM: u32 = 3;
+/// Surfaces of clear glass that the camera sees, one behind the other, at which both ways are followed: what shines in them
+/// is bright, and a path that chose would find it once in twenty times.
+const SPLITS: u32 = 3;
+/// The largest number that a choice can be.
+const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
+/// A way with less of the light than this does not branch any more.
+const SMALL_SHARE: f32 = 0.25;
 
 /// A thread's view of the scene with its scratch space and counters.
 #[derive(Debug)]
 pub struct Tracer<'a> {
     pub(super) scene: &'a RenderScene,
+    /// Where photons bring caustics; without, paths find them.
+    caustics: Option<&'a CausticMap>,
     pub(super) stack: Stack,
     /// Rays traced so far.
     pub rays: u64,
@@ -61,12 +72,15 @@ pub(super) struct Vertex {
     pdf: Option<f32>,
     /// One light was chosen there, if any was sampled; otherwise all were.
     one_light: bool,
+    /// Photons that bring the same light, where the path went by mirrors and glass.
+    rival: Option<Rival>,
 }
 
 impl Vertex {
     /// Where a ray begins whose hits have all the weight: nothing else could find them.
     pub(super) fn new(position: Vec3, normal: Vec3) -> Self {
-        Vertex { position, normal, left_from: position, travelled: 0.0, pdf: None, one_light: false }
+        let left_from = position;
+        Vertex { position, normal, left_from, travelled: 0.0, pdf: None, one_light: false, rival: None }
     }
 }
 
@@ -80,6 +94,10 @@ struct Path {
     media: Media,
     polarisation: Polarisation,
     vertex: Vertex,
+    /// Where the last surface that scatters widely took photons, and all since were such as photons come by.
+    gathered: Option<Gathered>,
+    /// Ways that are followed from the surface where it is.
+    ways: f32,
     /// Surfaces so far.
     bounce: u32,
     /// Those of them that are neither mirror nor glass.
@@ -93,6 +111,8 @@ struct Place<'a> {
     bsdf: &'a Bsdf<'a>,
     /// What the lights give there, where they were asked already.
     asked: Option<&'a Asked<'a>>,
+    /// The choice between ways on, where it is made already, 0..1.
+    choice: Option<f32>,
     /// From the surface before.
     distance: f32,
     /// On the side of the geometric normal.
@@ -125,7 +145,17 @@ fn power_heuristic(ours: f32, other: f32) -> f32 {
 impl<'a> Tracer<'a> {
     /// A tracer for one thread.
     pub fn new(scene: &'a RenderScene) -> Self {
-        Tracer { scene, stack: Stack::default(), rays: 0 }
+        Tracer { scene, caustics: None, stack: Stack::default(), rays: 0 }
+    }
+
+    /// The same with caustics from photons.
+    pub fn with_caustics(scene: &'a RenderScene, caustics: Option<&'a CausticMap>) -> Self {
+        Tracer { caustics, ..Tracer::new(scene) }
+    }
+
+    /// Whether photons bring caustics.
+    pub(super) fn has_caustics(&self) -> bool {
+        self.caustics.is_some()
     }
 
     /// Follows a camera ray and gives every light's share to `sink`.
@@ -164,6 +194,8 @@ impl<'a> Tracer<'a> {
             media: Media::default(),
             polarisation: Polarisation::NONE,
             vertex,
+            gathered: None,
+            ways: 1.0,
             bounce: 0,
             wide_bounces: 0,
         };
@@ -206,18 +238,25 @@ impl<'a> Tracer<'a> {
             if path.bounce >= limits.all_bounces || (ends && !(surface.sheet && material.transmits())) {
                 return;
             }
-            let texture = material.texture.map_or(Vec3::ONE, |t| scene.textures[t as usize].at(surface.uv));
-            let mut bsdf = Bsdf::new(material, texture, surface.normal, surface.geometric_normal, wo);
-            if material.transmits() {
-                let interface = || path.media.interface(&scene.materials, surface.material, outside);
-                let behind = if surface.sheet { Behind::Pane } else { Behind::Body(interface()) };
-                bsdf = bsdf.through(behind, path.polarisation);
-            }
+            let bsdf = scene.bsdf(&surface, wo, &path.media, path.polarisation);
             let lit = material.scatters_widely() && !ends;
-            let place = Place { surface: &surface, bsdf: &bsdf, asked: None, distance, outside };
+            let place = Place { surface: &surface, bsdf: &bsdf, asked: None, choice: None, distance, outside };
             let branches = if lit && path.wide_bounces == 0 { limits.branches } else { 1 };
+            path.ways = branches as f32;
+            if let (true, Some(map)) = (lit, self.caustics) {
+                let bends = limits.all_bounces - 1 - path.bounce;
+                map.of(path.wide_bounces).gather(&surface, &bsdf, path.ways, bends, |layer, value| {
+                    sink.add(layer, path.throughput * value);
+                });
+            }
             if branches > 1 {
                 self.branch(path, &place, branches, sampler, limits, sink);
+                return;
+            }
+            if let (true, Some(reflectance)) =
+                (path.bounce < SPLITS && path.wide_bounces == 0, bsdf.glass_reflectance())
+            {
+                self.split(path, &place, reflectance, sampler, limits, sink);
                 return;
             }
             let lights = if lit { Lights::Sample } else { Lights::Not };
@@ -258,6 +297,27 @@ impl<'a> Tracer<'a> {
         }
     }
 
+    /// Follows what clear glass reflects and what it lets through.
+    fn split(
+        &mut self,
+        path: Path,
+        place: &Place<'_>,
+        reflectance: f32,
+        sampler: &Sampler,
+        limits: Limits,
+        sink: &mut impl Sink,
+    ) {
+        for (choice, share) in [(0.0, reflectance), (BELOW_ONE, 1.0 - reflectance)] {
+            let branches = if share < SMALL_SHARE { 1 } else { limits.branches };
+            let mut path = Path { throughput: path.throughput * share, ..path };
+            path.roulette_scale *= share;
+            let place = &Place { choice: Some(choice), ..*place };
+            if share > 0.0 && self.scatter(&mut path, place, Lights::Not, sampler, limits, sink) {
+                self.walk(path, sampler, Limits { branches, ..limits }, sink);
+            }
+        }
+    }
+
     /// Samples the lights at a surface and takes the path on from there. False where it ends.
     #[inline(always)]
     fn scatter(
@@ -283,7 +343,7 @@ impl<'a> Tracer<'a> {
         };
         path.vertex = Vertex { one_light: !self.samples_all(path), ..Vertex::new(surface.position, bsdf.normal()) };
         let [lobe, roulette] = sampler::rest(&set);
-        let Some(sample) = bsdf.sample(lobe, sampler::point(&set)) else { return false };
+        let Some(sample) = bsdf.sample(place.choice.unwrap_or(lobe), sampler::point(&set)) else { return false };
         let ends = path.wide_bounces >= limits.wide_bounces;
         if ends && !sample.straight {
             return false;
@@ -296,9 +356,17 @@ impl<'a> Tracer<'a> {
         }
         if sample.straight {
             path.vertex = Vertex { travelled: before.travelled + distance, ..before };
-        } else if !sample.specular {
-            path.wide_bounces += 1;
+        } else if sample.specular {
+            let bends = self.scene.materials[surface.material as usize].casts_caustics();
+            path.gathered = path.gathered.filter(|_| bends);
+            path.vertex.rival = path.gathered.map(|gathered| Rival::new(gathered, surface, sample.direction));
+        } else {
             path.vertex.pdf = Some(sample.pdf * ways);
+            path.gathered = self.caustics.map(|map| {
+                let cos = sample.direction.dot(surface.geometric_normal).abs();
+                Gathered { paths: sample.pdf * path.ways, photons: map.of(path.wide_bounces).area() * cos }
+            });
+            path.wide_bounces += 1;
             let last = path.wide_bounces >= limits.wide_bounces || bounce + 1 >= limits.all_bounces;
             if last && !self.scene.plan().emitters_have_size {
                 return false;
@@ -358,6 +426,11 @@ impl<'a> Tracer<'a> {
             }
             let light = &scene.lights[index as usize];
             let weight = match vertex.pdf {
+                None if light.is_sampled() => vertex.rival.map_or(1.0, |rival| {
+                    let pdf = light.pdf(vertex.left_from, ray.direction, vertex.travelled + seen.distance);
+                    let chance = scene.chooser.chance(&scene.lights, index, vertex.position, rival.normal());
+                    rival.weight_of_path(&scene.casters, ray.direction, pdf * chance)
+                }),
                 Some(pdf) if light.is_sampled() => {
                     let choice = if vertex.one_light {
                         scene.chooser.chance(&scene.lights, index, vertex.position, vertex.normal)
@@ -447,7 +520,7 @@ impl<'a> Tracer<'a> {
 }
 
 /// Russian roulette by what is left of the light, without a `scale` that says nothing about it.
-fn survives(throughput: &mut Vec3, scale: f32, bounce: u32, u: f32) -> bool {
+pub(super) fn survives(throughput: &mut Vec3, scale: f32, bounce: u32, u: f32) -> bool {
     let left = throughput.max_element() / scale;
     // NaN ends the path, as black does.
     if left.is_nan() || left <= 0.0 {

@@ -6,6 +6,7 @@
 mod aggregate;
 mod bsdf;
 mod bvh;
+mod caustics;
 mod film;
 mod geometry;
 mod geometry_cache;

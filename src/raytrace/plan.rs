@@ -28,6 +28,8 @@ pub struct RenderPlan {
     pub lens: bool,
     /// All lights are sampled at the first hit (otherwise one, chosen by what it gives there).
     pub sample_all_lights: bool,
+    /// Photons bring the light that comes by mirrors and glass.
+    pub photons: bool,
     /// Ways that are followed from the first surface that scatters widely.
     pub branches: u32,
     /// Scattering events a path at most.
@@ -51,17 +53,20 @@ pub enum Shortcut {
     FewBounces,
     /// Several ways share the way to the first surface.
     SharedWay,
+    /// Photons bring caustics to paths that would find them by luck.
+    Photons,
 }
 
 impl Shortcut {
     /// All there are.
-    pub const ALL: [Shortcut; 6] = [
+    pub const ALL: [Shortcut; 7] = [
         Shortcut::EmittersNotMet,
         Shortcut::NoRefraction,
         Shortcut::Pinhole,
         Shortcut::EveryLight,
         Shortcut::FewBounces,
         Shortcut::SharedWay,
+        Shortcut::Photons,
     ];
 
     /// Its name on the chart.
@@ -73,6 +78,7 @@ impl Shortcut {
             Shortcut::EveryLight => "every light at the first hit",
             Shortcut::FewBounces => "depth from the largest reflectance",
             Shortcut::SharedWay => "several ways on from the first surface",
+            Shortcut::Photons => "caustics from photons",
         }
     }
 }
@@ -87,6 +93,7 @@ impl RenderPlan {
             Shortcut::EveryLight => self.sample_all_lights = false,
             Shortcut::FewBounces => self.max_bounces = MAX_BOUNCES,
             Shortcut::SharedWay => self.branches = 1,
+            Shortcut::Photons => self.photons = false,
         }
         self
     }
@@ -113,7 +120,13 @@ impl RenderPlan {
         } else {
             "pinhole: no lens samples".to_owned()
         });
-        let sampled = lights.iter().filter(|l| l.is_sampled()).count();
+        let photons = sampled_lights(lights) > 0 && materials.iter().any(Surfacing::casts_caustics);
+        reasons.push(if photons {
+            "mirrors or clear glass: what they throw on surfaces is gathered from photons".to_owned()
+        } else {
+            "neither mirror nor clear glass under a light: no photons".to_owned()
+        });
+        let sampled = sampled_lights(lights);
         let sample_all_lights = sampled <= SAMPLE_ALL;
         reasons.push(match sampled {
             0 => "no light to choose from".to_owned(),
@@ -128,8 +141,13 @@ impl RenderPlan {
         let direct_is_noisy = sized_lights && sample_all_lights && !caustics;
         let branches = if direct_is_noisy { FEW_WAYS } else { MANY_WAYS };
         reasons.push(format!("bounced light is noisier than direct: {branches} ways on from the first surface"));
-        RenderPlan { emitters_have_size, refraction, lens, sample_all_lights, branches, max_bounces, reasons }
+        RenderPlan { emitters_have_size, refraction, lens, sample_all_lights, photons, branches, max_bounces, reasons }
     }
+}
+
+/// Lights that are sampled by choosing points on them.
+fn sampled_lights(lights: &[TracedLight]) -> usize {
+    lights.iter().filter(|light| light.is_sampled()).count()
 }
 
 /// Bounces after which less than 1/512 is left at this reflectance.
@@ -237,13 +255,13 @@ mod tests {
     }
 
     #[test]
-    fn ways_shared_behind_glass_and_mirrors_keep_the_mean_of_the_full_model() {
+    fn photons_of_glass_and_mirrors_keep_the_mean_of_the_full_model() {
         let emitters = [Emitter::RectPanel { width_m: 0.8, height_m: 0.8 }, Emitter::Sphere { radius_m: 0.1 }];
         let glass = Material { transmission: 1.0, roughness: 0.0, base_color: [0.9; 3], ..Material::default() };
         let chrome = Material { metallic: 1.0, roughness: 0.0, base_color: [0.9; 3], ..Material::default() };
         for material in [glass, chrome] {
             let plan = keeps_the_mean(&studio(&emitters, material), 0.1);
-            assert!(plan.branches > FEW_WAYS, "{plan}");
+            assert!(plan.photons && plan.branches > 1, "{plan}");
         }
     }
 

@@ -1,12 +1,14 @@
 //! From the scene that the user edits to flat tables that the tracer reads.
 
 use super::aggregate::Aggregate;
-use super::bsdf::Surfacing;
+use super::bsdf::{Behind, Bsdf, Polarisation, Surfacing};
+use super::caustics::Casters;
 use super::film::{self, Layer};
-use super::geometry::Instance;
+use super::geometry::{Instance, Surface};
 use super::geometry_cache::GeometryCache;
 use super::lens::Lens;
 use super::lights::{Chooser, Crossings, TracedLight};
+use super::media::Media;
 use super::plan::RenderPlan;
 use super::texture::TextureMap;
 use crate::photo::exposure;
@@ -35,6 +37,8 @@ pub struct RenderScene {
     pub(super) chooser: Chooser,
     /// Finds those that a ray meets.
     pub(super) crossings: Crossings,
+    /// What throws caustics; empty where the plan sends no photons.
+    pub(super) casters: Casters,
     pub(super) layers: Vec<Layer>,
     /// Time by which a layer's luminance counts in the exposure, seconds; 1 where it is already in.
     pub(super) layer_times: Vec<f32>,
@@ -65,6 +69,19 @@ impl RenderScene {
     /// Lights that are on.
     pub fn light_count(&self) -> usize {
         self.lights.len()
+    }
+
+    /// How a surface scatters towards `wo` (unit), for a viewer inside `media` who accepts this polarisation.
+    pub(super) fn bsdf(&self, surface: &Surface, wo: Vec3, media: &Media, polarisation: Polarisation) -> Bsdf<'_> {
+        let material = &self.materials[surface.material as usize];
+        let texture = material.texture.map_or(Vec3::ONE, |t| self.textures[t as usize].at(surface.uv));
+        let bsdf = Bsdf::new(material, texture, surface.normal, surface.geometric_normal, wo);
+        if !material.transmits() {
+            return bsdf;
+        }
+        let outside = wo.dot(surface.geometric_normal) >= 0.0;
+        let interface = || media.interface(&self.materials, surface.material, outside);
+        bsdf.through(if surface.sheet { Behind::Pane } else { Behind::Body(interface()) }, polarisation)
     }
 
     /// What a fresh film of this scene looks like.
@@ -127,6 +144,7 @@ pub(super) fn prepare_all(
     let lens = Lens::new(scene);
     let plan = RenderPlan::new(&tables.materials, &lights, lens.has_aperture());
     let aggregate = Aggregate::with_small(instances, cache.small());
+    let casters = if plan.photons { Casters::new(&aggregate, &tables.materials) } else { Casters::default() };
     cache.keep_small(aggregate.small().clone());
     cache.keep_surfaces(tables.known.into_iter().zip(tables.materials.iter().cloned()));
     Ok(RenderScene {
@@ -135,6 +153,7 @@ pub(super) fn prepare_all(
         textures: tables.textures,
         chooser: Chooser::new(&lights),
         crossings: Crossings::new(&lights),
+        casters,
         lights,
         layers,
         layer_times,

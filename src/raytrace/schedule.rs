@@ -1,5 +1,6 @@
 //! Waves of samples over all tiles, with snapshots, cancel and progress.
 
+use super::caustics::{CausticMap, Wave};
 use super::film::{Film, TileFilm};
 use super::integrator::{Limits, Sink, Tracer};
 use super::prepare::RenderScene;
@@ -54,7 +55,7 @@ const LARGE: u64 = 150_000;
 impl Settings {
     /// One sample of a small version of a large picture, to be shown until the first wave is done.
     pub fn coarse(&self) -> Option<Settings> {
-        let is_large = u64::from(self.width) * u64::from(self.height) > LARGE;
+        let is_large = self.pixels() > LARGE;
         let small = |edge: u32| edge.div_ceil(4);
         is_large.then(|| Settings { width: small(self.width), height: small(self.height), spp: 1, ..self.clone() })
     }
@@ -117,10 +118,12 @@ pub fn render(
     on_wave: &mut dyn FnMut(&Film) -> ControlFlow<()>,
 ) -> Film {
     let mut film = Film::new(settings.width, settings.height, scene.layers());
+    (film.method, film.photons) = (settings.method, settings.takes_photons(scene));
     let mut taken = 0;
     while taken < settings.spp {
-        let wave = taken.clamp(1, LARGEST_WAVE).min(settings.spp - taken);
-        let job = TileJob { scene, settings, control, wave };
+        let wave = taken.clamp(1, settings.largest_wave(scene)).min(settings.spp - taken);
+        let caustics = settings.caustics(scene, taken, wave, control);
+        let job = TileJob { scene, caustics: caustics.as_ref(), settings, control, wave };
         let mut noisy: Vec<&mut TileFilm> = film.tiles.iter_mut().filter(|tile| !settings.is_quiet(tile)).collect();
         if noisy.is_empty() || !noisy.par_iter_mut().with_max_len(1).all(|tile| job.run(tile)) {
             break;
@@ -134,6 +137,27 @@ pub fn render(
 }
 
 impl Settings {
+    fn pixels(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+
+    fn takes_photons(&self, scene: &RenderScene) -> bool {
+        scene.plan().photons && self.method != Method::Whitted
+    }
+
+    fn largest_wave(&self, scene: &RenderScene) -> u32 {
+        let most = if self.takes_photons(scene) { Wave::most_samples(self.pixels()) } else { LARGEST_WAVE };
+        most.min(LARGEST_WAVE)
+    }
+
+    /// The photons of a wave of samples, where any are of use.
+    fn caustics(&self, scene: &RenderScene, first_sample: u32, samples: u32, control: &Control) -> Option<CausticMap> {
+        let frame = scene.lens.frame(self.width as f32 / self.height as f32);
+        let pixel_m = 2.0 * frame.half_extent.x / self.width as f32;
+        let wave = Wave { first_sample, samples, pixels: self.pixels(), pixel_m, seed: self.seed };
+        self.takes_photons(scene).then(|| CausticMap::trace(scene, &wave, control))
+    }
+
     /// Whether a tile needs no more samples.
     fn is_quiet(&self, tile: &TileFilm) -> bool {
         let within = |limit: f32| tile.noise_stops().is_none_or(|noise| noise <= limit);
@@ -144,6 +168,7 @@ impl Settings {
 /// A wave's work on one tile.
 struct TileJob<'a> {
     scene: &'a RenderScene,
+    caustics: Option<&'a CausticMap>,
     settings: &'a Settings,
     control: &'a Control,
     wave: u32,
@@ -155,7 +180,7 @@ impl TileJob<'_> {
             return false;
         }
         let (first_sample, half) = (tile.spp(), tile.next_half());
-        let mut tracer = Tracer::new(self.scene);
+        let mut tracer = Tracer::with_caustics(self.scene, self.caustics);
         let limits = limits(self.scene, self.settings);
         let size = Vec2::new(self.settings.width as f32, self.settings.height as f32);
         let frame = self.scene.lens.frame(size.x / size.y);

@@ -14,6 +14,10 @@ const CLEAR_SURFACES: u32 = 64;
 /// at five metres. Emitters may lie on a surface (a panel on the wall, a lamp on the ceiling) and are seen all the same.
 pub(super) const TOUCHING: f32 = 32.0 * f32::EPSILON;
 
+/// Cosine between directions, or between the normals of a pane's faces, that are the same: photons do not bring what goes on
+/// as it came, and light sampling nothing else.
+pub(super) const PARALLEL: f32 = 1.0 - 1e-6;
+
 impl Tracer<'_> {
     /// The closest surface.
     pub fn closest(&mut self, ray: &Ray) -> Option<Hit> {
@@ -29,7 +33,7 @@ impl Tracer<'_> {
     }
 
     /// Share of a light that reaches a point inside `media`, from `distance` away along a direction. Thin panes let it
-    /// through; bodies of glass do for a light without a size.
+    /// through; bodies of glass do for a light without a size, where photons are about only between parallel faces.
     pub fn visibility(&mut self, origin: Vec3, direction: Vec3, distance: f32, sized: bool, mut media: Media) -> Vec3 {
         let scene = self.scene;
         if !scene.plan().refraction {
@@ -37,8 +41,13 @@ impl Tracer<'_> {
         }
         let mut ray = Ray { origin, direction, t_max: short_of(origin, distance) };
         let mut passed = Vec3::ONE;
+        let outer = media.innermost();
+        let mut last_face: Option<Vec3> = None;
         for _ in 0..CLEAR_SURFACES {
             let Some(hit) = self.closest(&ray) else {
+                if self.has_caustics() && media.innermost() != outer {
+                    return Vec3::ZERO;
+                }
                 // A sun beyond the last surface is not inside of anything.
                 let rest = if ray.t_max.is_finite() { ray.t_max } else { 0.0 };
                 return passed * media.transmittance(&scene.materials, rest);
@@ -53,6 +62,10 @@ impl Tracer<'_> {
             if surface.sheet {
                 passed *= pane_transmittance(cos, material.ior());
             } else {
+                if self.has_caustics() && last_face.is_some_and(|face| face.dot(surface.normal).abs() < PARALLEL) {
+                    return Vec3::ZERO;
+                }
+                last_face = Some(surface.normal);
                 // Each of two parallel faces takes its half of what the pane takes, in stops.
                 let eta = media.interface(&scene.materials, surface.material, cos < 0.0).eta;
                 passed *= pane_transmittance(cos, eta.max(1.0 / eta)).sqrt();

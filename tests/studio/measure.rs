@@ -63,6 +63,12 @@ pub fn illuminance(scene: &Scene, settings: &Settings) -> Estimate {
     Estimate { mean: mean * scale, error: error * scale }
 }
 
+/// The same where pixels share photons: the scatter of several renders tells the error.
+pub fn illuminance_over(seeds: u32, scene: &Scene, settings: &Settings) -> Estimate {
+    let reading = |seed| illuminance(scene, &Settings { seed, ..settings.clone() }).mean;
+    Estimate::of((0..seeds).map(reading))
+}
+
 /// A card at `position` that faces `normal`, and a camera that sees 0.4 mm of it and nothing else.
 pub fn meter_card(position: Vec3, normal: Vec3) -> Scene {
     let mut card = object("Card", Shape::Plane { width_m: 2e-3, depth_m: 2e-3 }, position);

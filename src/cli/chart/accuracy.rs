@@ -102,10 +102,14 @@ struct Study<'a> {
 
 fn measure(arguments: &Arguments, folder: &Path, loaded: &Loaded) -> Result<Vec<Row>, Failure> {
     let (size, cores) = (arguments.size, std::thread::available_parallelism().map_or(1, usize::from));
-    let scene = raytrace::prepare(&loaded.scene, &loaded.assets)?;
+    let mut scene = raytrace::prepare(&loaded.scene, &loaded.assets)?;
     let reference_spp = arguments.reference_spp.unwrap_or(32 * arguments.spp);
     let converged = Settings { spp: reference_spp, seed: REFERENCE_SEED, ..settings(size, Method::Path) };
+    // What the others are held to blurs nothing.
+    let plan = scene.plan().clone();
+    scene.set_plan(plan.clone().without(Shortcut::Photons));
     let reference = reference::of(folder, loaded, &scene, &converged);
+    scene.set_plan(plan);
     let mut study = Study { name: &loaded.scene.name, loaded, scene, size, reference };
     let mut rows = Vec::new();
     for side in [1, 2, 4].into_iter().filter(|side| side * side <= arguments.spp) {

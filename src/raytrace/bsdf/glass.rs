@@ -22,6 +22,18 @@ impl Bsdf<'_> {
         }
     }
 
+    /// Share that clear glass reflects towards the viewer, by which [`Bsdf::sample`] chooses: numbers below it reflect. None
+    /// for what is more than glass.
+    pub fn glass_reflectance(&self) -> Option<f32> {
+        (self.surfacing.transmission >= 1.0).then(|| match self.behind {
+            Behind::Pane => 1.0 - pane_transmittance(self.wo_world.dot(self.geometric_normal), self.surfacing.ior),
+            Behind::Body(interface) => {
+                let wo = self.to_world(self.wo).normalize_or(self.normal);
+                self.polarisation.meet(wo, self.normal, interface.eta).reflectance
+            }
+        })
+    }
+
     fn sample_interface(&self, choice: f32, interface: Interface) -> Option<BsdfSample> {
         let eta = interface.eta;
         let wo = self.to_world(self.wo).normalize_or(self.normal);
@@ -49,7 +61,7 @@ impl Bsdf<'_> {
     fn sample_pane(&self, choice: f32) -> Option<BsdfSample> {
         let wo = self.wo_world;
         let passing = pane_transmittance(wo.dot(self.geometric_normal), self.surfacing.ior);
-        if choice >= passing {
+        if choice < 1.0 - passing {
             let direction = 2.0 * wo.dot(self.geometric_normal) * self.geometric_normal - wo;
             return Some(BsdfSample::specular(direction.normalize_or_zero()));
         }

@@ -114,6 +114,11 @@ impl Surfacing {
         self.transmits() || (self.metallic > 0.5 && self.alpha < POLISHED_ALPHA)
     }
 
+    /// Whether it throws light on where paths would find it only by luck: clear glass, a perfect mirror.
+    pub fn casts_caustics(&self) -> bool {
+        self.transmits() || (self.metallic > 0.5 && self.is_smooth())
+    }
+
     /// Share of light that the gloss takes under a cosine.
     #[inline]
     fn gloss_albedo(&self, cos: f32) -> f32 {

@@ -1,0 +1,72 @@
+//! The surfaces that cast caustics, and a choice of points on them.
+
+use crate::raytrace::aggregate::{Aggregate, Hit};
+use crate::raytrace::bsdf::Surfacing;
+use crate::raytrace::triangle::TriangleHit;
+use glam::{Vec2, Vec3};
+
+/// Triangles of mirrors and clear glass.
+#[derive(Debug, Default)]
+pub struct Casters {
+    /// Instance and triangle of each.
+    triangles: Vec<(u32, u32)>,
+    /// Areas up to and including each, square metres.
+    areas: Vec<f64>,
+}
+
+impl Casters {
+    /// All there are in a studio.
+    pub fn new(aggregate: &Aggregate, materials: &[Surfacing]) -> Self {
+        let mut casters = Casters::default();
+        let mut total = 0.0;
+        for (index, instance) in (0..).zip(aggregate.instances()) {
+            let casts: Vec<bool> = instance.materials.iter().map(|&m| materials[m as usize].casts_caustics()).collect();
+            if !casts.contains(&true) {
+                continue;
+            }
+            for triangle in 0..instance.geometry.mesh().triangles.len() as u32 {
+                if !casts.get(instance.geometry.part(triangle)).copied().unwrap_or(false) {
+                    continue;
+                }
+                let [a, b, c] = instance.world_corners(triangle as usize);
+                let area = 0.5 * f64::from((b - a).cross(c - a).length());
+                if area > 0.0 && area.is_finite() {
+                    total += area;
+                    casters.triangles.push((index, triangle));
+                    casters.areas.push(total);
+                }
+            }
+        }
+        casters
+    }
+
+    /// Of all of them, square metres.
+    pub fn area(&self) -> f32 {
+        self.areas.last().copied().unwrap_or(0.0) as f32
+    }
+
+    /// Density of photons that start uniformly on the casters and have this density of directions at `cos` to the surface:
+    /// in area square to the direction and solid angle, 1/(m2 sr).
+    pub fn density(&self, pdf: f32, cos: f32) -> f32 {
+        pdf / (self.area() * cos)
+    }
+
+    /// A point, uniform in area, for numbers in [0, 1). None where there is no caster.
+    pub fn at(&self, choice: f32, u: Vec2) -> Option<Hit> {
+        let place = f64::from(choice) * self.areas.last()?;
+        let index = self.areas.partition_point(|&area| area <= place).min(self.triangles.len() - 1);
+        let (instance, triangle) = self.triangles[index];
+        // The square folded onto the triangle along its diagonal.
+        let barycentric = if u.x + u.y < 1.0 { [u.x, u.y] } else { [1.0 - u.x, 1.0 - u.y] };
+        Some(Hit { instance, triangle: TriangleHit { t: 0.0, triangle, barycentric } })
+    }
+}
+
+/// What reflection about an interpolated normal does to a beam that the paths from the camera do not see (Veach 1997,
+/// section 5.3): `from` and `to` are the directions to the light and onwards.
+pub fn shading_correction(from: Vec3, to: Vec3, normal: Vec3, geometric_normal: Vec3) -> f32 {
+    let cosines = |normal: Vec3| (from.dot(normal).abs(), to.dot(normal).abs());
+    let ((from_s, to_s), (from_g, to_g)) = (cosines(normal), cosines(geometric_normal));
+    let denominator = from_g * to_s;
+    if denominator > 1e-6 { from_s * to_g / denominator } else { 0.0 }
+}
