@@ -1,5 +1,6 @@
 //! Vectors beyond glam: safe forms, frames, warps with their densities, rays with error bounds.
 
+mod angle;
 mod frame;
 mod ray;
 mod safe;
@@ -7,6 +8,7 @@ mod safe;
 pub mod statistics;
 pub mod warp;
 
+pub use angle::{sin_cos_eighth, sin_cos_turn};
 pub use frame::{look_at, orthonormal_basis};
 pub use ray::{Ray, gamma, offset_origin};
 pub use safe::{angle_between, safe_acos, safe_sqrt};

@@ -1,20 +1,18 @@
 //! Maps from the unit square to directions and discs, with the densities they have.
 
+use super::{sin_cos_eighth, sin_cos_turn};
 use glam::{Vec2, Vec3};
-use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
+use std::f32::consts::{FRAC_PI_4, PI, TAU};
 
 /// Uniform point of the unit disc, area preserving and continuous (Shirley and Chiu 1997). Density 1 / pi.
 pub fn concentric_disc(u: Vec2) -> Vec2 {
     let offset = 2.0 * u - Vec2::ONE;
-    if offset == Vec2::ZERO {
-        return Vec2::ZERO;
-    }
-    let (radius, angle) = if offset.x.abs() > offset.y.abs() {
-        (offset.x, FRAC_PI_4 * (offset.y / offset.x))
-    } else {
-        (offset.y, FRAC_PI_2 - FRAC_PI_4 * (offset.x / offset.y))
-    };
-    radius * Vec2::new(angle.cos(), angle.sin())
+    let wide = offset.x.abs() > offset.y.abs();
+    let (radius, other) = if wide { (offset.x, offset.y) } else { (offset.y, offset.x) };
+    let ratio = if radius == 0.0 { 0.0 } else { other / radius };
+    let (sin, cos) = sin_cos_eighth(FRAC_PI_4 * ratio);
+    let (along, across) = (radius * cos, radius * sin);
+    if wide { Vec2::new(along, across) } else { Vec2::new(across, along) }
 }
 
 /// Cosine-weighted direction about +Z. Density cos / pi in solid angle.
@@ -32,7 +30,7 @@ pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
 pub fn uniform_sphere(u: Vec2) -> Vec3 {
     let z = 1.0 - 2.0 * u.x;
     let radius = (1.0 - z * z).max(0.0).sqrt();
-    let (sin, cos) = (TAU * u.y).sin_cos();
+    let (sin, cos) = sin_cos_turn(u.y);
     Vec3::new(radius * cos, radius * sin, z)
 }
 
@@ -41,7 +39,7 @@ pub fn uniform_sphere(u: Vec2) -> Vec3 {
 pub fn uniform_cone(u: Vec2, one_minus_cos: f32) -> Vec3 {
     let drop = u.x * one_minus_cos;
     let sin_theta = (drop * (2.0 - drop)).max(0.0).sqrt();
-    let (sin, cos) = (TAU * u.y).sin_cos();
+    let (sin, cos) = sin_cos_turn(u.y);
     Vec3::new(sin_theta * cos, sin_theta * sin, 1.0 - drop)
 }
 

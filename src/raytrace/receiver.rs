@@ -1,7 +1,7 @@
 //! The light meter's receptor: where it stands, and how it answers to directions.
 
 use super::probe::Place;
-use crate::math::{orthonormal_basis, safe_sqrt, warp};
+use crate::math::{orthonormal_basis, safe_sqrt, sin_cos_turn, warp};
 use crate::photo::meter::Receptor;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
@@ -38,7 +38,7 @@ impl Receiver {
             Receptor::Dome => {
                 // Density (1 + cos) / (4 pi): the cumulated share below a cosine is ((1 + cos) / 2)^2.
                 let cos = 2.0 * safe_sqrt(u.x) - 1.0;
-                let (sin_turn, cos_turn) = (TAU * u.y).sin_cos();
+                let (sin_turn, cos_turn) = sin_cos_turn(u.y);
                 let radius = safe_sqrt(1.0 - cos * cos);
                 Vec3::new(radius * cos_turn, radius * sin_turn, cos)
             }

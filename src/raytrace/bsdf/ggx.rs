@@ -1,9 +1,9 @@
 //! The GGX microfacet distribution with Smith's height-correlated masking (Walter et al. 2007, Heitz 2014), in a frame
 //! whose +Z is the normal. Isotropic; `alpha` is the square of the roughness.
 
-use crate::math::safe_sqrt;
+use crate::math::{safe_sqrt, sin_cos_turn};
 use glam::{Vec2, Vec3};
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::PI;
 
 /// Below this a surface is a perfect mirror: single floats no longer resolve the lobe.
 pub const MIRROR_ALPHA: f32 = 1e-3;
@@ -39,7 +39,7 @@ pub fn sample_visible_normal(wo: Vec3, alpha: f32, u: Vec2) -> Vec3 {
     let stretched = Vec3::new(wo.x * alpha, wo.y * alpha, wo.z).normalize_or(Vec3::Z);
     let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
     let radius = safe_sqrt(1.0 - z * z);
-    let (sin, cos) = (TAU * u.x).sin_cos();
+    let (sin, cos) = sin_cos_turn(u.x);
     let h = Vec3::new(radius * cos, radius * sin, z) + stretched;
     Vec3::new(h.x * alpha, h.y * alpha, h.z.max(0.0)).normalize_or(Vec3::Z)
 }

@@ -25,6 +25,9 @@ use std::f32::consts::PI;
 /// A metal smoother than this throws light as a mirror does, a little blurred.
 const POLISHED_ALPHA: f32 = 0.05;
 
+/// A gloss that takes less of the light than this is none: rounding leaves 1e-13 of it to an index of refraction of 1.
+const NO_GLOSS: f32 = 1e-6;
+
 /// A material made ready for tracing.
 #[derive(Clone, Debug)]
 pub struct Surfacing {
@@ -63,7 +66,7 @@ impl Surfacing {
             transmission,
             absorption_per_m: material.absorption_per_m.into(),
             emission: material.emission_cd_m2.into(),
-            reflects: metallic > 0.0 || gloss.mean > 0.0,
+            reflects: metallic > 0.0 || gloss.mean > NO_GLOSS,
             gloss,
             metal: AlbedoTable::perfect_mirror(alpha),
         }

@@ -243,3 +243,11 @@ fn the_furnace_never_shows_more_than_one_at_any_roughness_and_angle() {
         }
     }
 }
+
+#[test]
+fn a_surface_with_the_index_of_air_has_no_gloss_at_all() {
+    let matt = Surfacing::new(&Material { ior: 1.0, roughness: 1.0, ..Material::default() }, None);
+    assert!(!matt.reflects, "rounding alone made a gloss of {}", matt.gloss.mean);
+    // Nor is a faint one forgotten: an index of 1.1 reflects 0.2 % at right angles.
+    assert!(Surfacing::new(&Material { ior: 1.1, roughness: 1.0, ..Material::default() }, None).reflects);
+}
