@@ -19,35 +19,35 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 
 @fragment
 fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
-    let pixel = vec2u(at.xy);
+    let pixel = vec2i(at.xy);
     let packed = textureLoad(gbuffer, pixel, 0).xyz;
     let id = textureLoad(ids, pixel, 0).xy;
     let depth = bitcast<f32>(id.y);
-    let face = unpack_direction(packed.z);
-    // Depth over a plane goes with the cosine between ray and normal.
-    let here = dot(face, pixel_ray(at.xy));
-    let scale = depth / select(here, 1e-6, abs(here) < 1e-6);
-    let right = dot(face, frame.ray_right) * 2.0 / frame.size.x * scale;
-    let down = -dot(face, frame.ray_up) * 2.0 / frame.size.y * scale;
+    // Depth over a plane goes with the cosine between ray and normal, whatever the normal's length.
+    let face = octahedral(packed.z);
+    let across_face = vec2f(dot(face, frame.ray_right), -dot(face, frame.ray_up));
+    let pixel_size = 2.0 / frame.size;
+    let here = dot(face, frame.ray_centre) + dot(at.xy * pixel_size - 1.0, across_face);
+    let slope = across_face * pixel_size * (depth / select(here, 1e-6, abs(here) < 1e-6));
     let normal = unpack2x16snorm(packed.x);
-    let side = frame.cell_scale;
-    let last = (vec2u(frame.size) - 1u) / side;
-    let corner = pixel / side;
-    let from_corner = vec2f(pixel - corner * side);
-    let part = from_corner / f32(side);
+    let side = f32(frame.cell_scale);
+    // A little over, so that a whole quotient does not fall short.
+    let place = floor(at.xy) * (1.0 / side) + 1e-4;
+    let corner = vec2i(place);
+    let part = fract(place);
+    let last = vec2i((frame.size - 0.5) / side);
     var matte = vec3f(0.0);
     var glossy = vec3f(0.0);
     var total = 0.0;
-    for (var i = 0u; i < 4u; i++) {
-        let step = vec2u(i & 1u, i >> 1u);
+    for (var i = 0; i < 4; i++) {
+        let step = vec2i(i & 1, i >> 1);
         let texel = textureLoad(cells, min(corner + step, last), 0);
-        let offset = vec2f(step) * f32(side) - from_corner;
-        let expected = depth + offset.x * right + offset.y * down;
+        let towards = vec2f(step) - part;
         // Half a per cent of the distance, and a turn of some ten degrees.
-        let aside = abs(bitcast<f32>(texel.w) - expected) > 0.005 * depth;
+        let aside = abs(bitcast<f32>(texel.w) - depth - side * dot(towards, slope)) > 0.005 * depth;
         let turned = unpack2x16snorm(texel.z) - normal;
         let other = aside || dot(turned, turned) > 0.015;
-        let across = mix(1.0 - part, part, vec2f(step));
+        let across = 1.0 - abs(towards);
         let weight = (across.x * across.y + OTHER) * select(1.0, OTHER, other);
         matte += unpack_radiance(texel.x) * weight;
         glossy += unpack_radiance(texel.y) * weight;

@@ -105,10 +105,15 @@ fn pack_direction(v: vec3f) -> u32 {
 }
 
 fn unpack_direction(packed: u32) -> vec3f {
+    return normalize(octahedral(packed));
+}
+
+// A packed direction, not of unit length.
+fn octahedral(packed: u32) -> vec3f {
     let p = unpack2x16snorm(packed);
     let z = 1.0 - abs(p.x) - abs(p.y);
     let fold = max(-z, 0.0);
-    return normalize(vec3f(p - select(vec2f(-fold), vec2f(fold), p >= vec2f(0.0)), z));
+    return vec3f(p - select(vec2f(-fold), vec2f(fold), p >= vec2f(0.0)), z);
 }
 
 // Colour as square roots in 10 bits each, so that black velvet keeps its digits; two bits for what the surface is.
