@@ -4,12 +4,13 @@ use super::input::{Overlay, Pick};
 use super::light_table::{emission, picture_scale};
 use super::mesh_cache::{EmitterSurface, MeshCache, MeshKey};
 use super::pipelines::Sides;
+use super::shadow_layers::View;
 use super::texture_cache::{TextureCache, WHITE};
 use crate::photo::exposure;
 use crate::scene::{Assets, Emitter, Material, MeshPart, Scene, Shape};
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu;
-use glam::{Affine3A, Mat3A, Mat4, Vec3, Vec4};
+use glam::{Affine3A, Mat3A, Vec3, Vec4};
 use std::f32::consts::PI;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -99,11 +100,21 @@ pub(super) struct Caster {
 }
 
 impl Caster {
+    /// The box around the corners in world space.
+    fn world_box(&self) -> (Vec3, Vec3) {
+        let corners = self.corners();
+        corners.iter().fold((corners[0], corners[0]), |(low, high), corner| (low.min(*corner), high.max(*corner)))
+    }
+
+    /// Distance from a point to that box, metres.
+    pub fn distance(&self, point: Vec3) -> f32 {
+        let (low, high) = self.world_box();
+        point.clamp(low, high).distance(point)
+    }
+
     /// Whether a point may lie inside: it does in the box around the corners, and a little beyond.
     fn may_hold(&self, point: Vec3) -> bool {
-        let corners = self.corners();
-        let (low, high) =
-            corners.iter().fold((corners[0], corners[0]), |(low, high), corner| (low.min(*corner), high.max(*corner)));
+        let (low, high) = self.world_box();
         let margin = Vec3::splat(0.02);
         point.cmpge(low - margin).all() && point.cmple(high + margin).all()
     }
@@ -134,10 +145,23 @@ impl DrawList {
         }
     }
 
+    /// Changes when what a view sees of all that casts shadows does.
+    pub fn seen_by(&self, view: &View) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        for item in self.items.iter().filter(|item| item.shadow != Shadow::Nothing && self.is_seen(item, view)) {
+            (item.mesh, &item.indices, item.shadow as u32).hash(&mut hasher);
+            self.casters[item.caster].world_from_object.to_cols_array().map(f32::to_bits).hash(&mut hasher);
+        }
+        hasher.finish()
+    }
+
     /// Whether a view may see something of an item's box.
-    pub fn is_seen(&self, item: &DrawItem, clip_from_world: &Mat4) -> bool {
+    pub fn is_seen(&self, item: &DrawItem, view: &View) -> bool {
         let Some(caster) = self.casters.get(item.caster) else { return false };
-        let corners = caster.corners().map(|corner| *clip_from_world * corner.extend(1.0));
+        if !view.reaches(caster.distance(view.eye)) {
+            return false;
+        }
+        let corners = caster.corners().map(|corner| view.clip_from_world * corner.extend(1.0));
         let beyond = |outside: fn(Vec4) -> bool| corners.iter().all(|corner| outside(*corner));
         !(beyond(|c| c.x > c.w) || beyond(|c| c.x < -c.w) || beyond(|c| c.y > c.w) || beyond(|c| c.y < -c.w))
     }

@@ -83,8 +83,8 @@ pub struct Options {
     pub environment_estimate: bool,
     /// Leaves a light out where it falls under 1/256 of display white: in its place many lights cost little.
     pub light_radius: bool,
-    /// While something moves: on a rasteriser that runs on the processor, lights one pixel in four (of more than eight
-    /// lights in nine, of more than 24 in sixteen) and spreads the light over the surfaces. Adapters with a card of
+    /// While something moves: on a rasteriser that runs on the processor, lights one pixel in four (under more than two
+    /// panels or eight lights in nine, under more than 24 in sixteen) and spreads the light over the surfaces. Adapters with a card of
     /// their own take no notice.
     pub draft: bool,
     /// Draws only what lies over the picture, on nothing: transparent, colour times coverage. For a picture that comes

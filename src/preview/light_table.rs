@@ -136,6 +136,8 @@ pub(super) struct Ambient {
 #[derive(Clone, Debug, Default)]
 pub(super) struct LightTable {
     pub lights: Vec<GpuLight>,
+    /// Of each of them.
+    pub ids: Vec<LightId>,
     /// One past the last light of each family.
     pub ends: [u32; 4],
     pub ambient: Ambient,
@@ -145,6 +147,7 @@ impl LightTable {
     /// The lights of a scene, or one of them alone.
     pub fn new(scene: &Scene, bounce_estimate: bool, only: Option<LightId>) -> Self {
         let mut table = LightTable::default();
+        let mut lights: Vec<(GpuLight, LightId)> = Vec::new();
         let mut flux = Vec3::ZERO;
         for light in scene.lights.iter().filter(|light| light.on && only.is_none_or(|id| id == light.id)) {
             let scale = picture_scale(light, &scene.camera);
@@ -159,13 +162,14 @@ impl LightTable {
             }
             let gpu = gpu_light(light, &scene.light_frame(light), scale);
             let outside = gpu.kind == Kind::Sun as u32 && scene.room.is_some();
-            if outside || !is_usable(&gpu) || table.lights.len() == MAX_LIGHTS {
+            if outside || !is_usable(&gpu) || lights.len() == MAX_LIGHTS {
                 continue;
             }
             flux += scale * flux_of(light);
-            table.lights.push(gpu);
+            lights.push((gpu, light.id));
         }
-        table.lights.sort_by_key(GpuLight::family);
+        lights.sort_by_key(|(light, _)| light.family());
+        (table.lights, table.ids) = lights.into_iter().unzip();
         table.ends = std::array::from_fn(|f| table.lights.partition_point(|light| light.family() <= f) as u32);
         table.ambient.surround_radiance = table.ambient.irradiance / PI;
         if let Some(room) = scene.room.as_ref().filter(|_| bounce_estimate) {

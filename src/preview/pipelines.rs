@@ -63,7 +63,8 @@ impl Sides {
 /// Pipelines of the shadow masks.
 #[derive(Debug)]
 pub(super) struct MaskPipelines {
-    pub raw: wgpu::RenderPipeline,
+    /// By whether lights are taken in parts.
+    pub raw: [wgpu::RenderPipeline; 2],
     pub blur: wgpu::RenderPipeline,
 }
 
@@ -75,6 +76,8 @@ pub(super) struct LightingVariant {
     pub families: [bool; 4],
     pub masks: usize,
     pub scale: u32,
+    /// Lights are left out where they fall under 1/256 of display white.
+    pub reach: bool,
     /// Each tile of the picture has its own list of lights.
     pub listed: bool,
     /// A light's modifier narrows its beam.
@@ -158,13 +161,14 @@ impl MaskPipelines {
     pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
         let raw_groups = [layouts.scene, layouts.gbuffer, layouts.shadow_maps, layouts.shadow_slots];
         let blur_groups = [layouts.scene, layouts.gbuffer, layouts.raw_mask];
-        let fullscreen = |label, source, groups: &[_]| {
+        let fullscreen = |label, source, groups: &[_], constants: &[_]| {
             let layout = pipeline_layout(device, label, groups);
-            fullscreen(device, (label, "fragment"), source, &layout, &[], shadow_mask::FORMAT)
+            fullscreen(device, (label, "fragment"), source, &layout, constants, shadow_mask::FORMAT)
         };
+        let raw = |in_parts| fullscreen("shadow mask", shaders::SHADOW_MASK, &raw_groups, &[("IN_PARTS", in_parts)]);
         MaskPipelines {
-            raw: fullscreen("shadow mask", shaders::SHADOW_MASK, &raw_groups),
-            blur: fullscreen("shadow blur", shaders::SHADOW_BLUR, &blur_groups),
+            raw: [raw(0.0), raw(1.0)],
+            blur: fullscreen("shadow blur", shaders::SHADOW_BLUR, &blur_groups, &[]),
         }
     }
 }
@@ -181,6 +185,7 @@ pub(super) fn lighting(device: &wgpu::Device, layouts: &Layouts, variant: &Light
         ("HAS_DISCS", discs),
         ("MASKS", variant.masks as f64),
         ("SCALE", f64::from(variant.scale)),
+        ("REACH", flag(variant.reach)),
         ("LISTED", flag(variant.listed)),
         ("HAS_BEAMS", flag(variant.beams)),
         ("ILLUMINANCE", flag(variant.illuminance)),

@@ -13,6 +13,7 @@ use super::overlay_pass::{self, OverlayPass};
 use super::pick::WaitingPick;
 use super::pipelines::{GeometryPipelines, Layouts, LightingVariant, MaskPipelines};
 use super::scene_buffers::{GpuFrame, LIGHTS_BYTES, SceneBuffers};
+use super::shadow_layers::StaleMap;
 use super::shadow_maps::{ShadowMaps, Side};
 use super::shadow_mask::ShadowMasks;
 use super::shadow_views::ShadowPlan;
@@ -46,6 +47,7 @@ pub struct PreviewRenderer {
     /// The adapter is a software rasteriser.
     on_processor: bool,
     drawn: Drawn,
+    redrawn_maps: usize,
     pub(super) targets: Targets,
     generation: u64,
     /// What each record of the last frame stands for.
@@ -110,6 +112,7 @@ impl PreviewRenderer {
                 waiting_pick: None,
                 on_processor,
                 drawn: Drawn::default(),
+                redrawn_maps: 0,
                 generation: 0,
                 owners: Vec::new(),
             })
@@ -136,6 +139,11 @@ impl PreviewRenderer {
     /// Pixels across and down of the last picture.
     pub fn size(&self) -> (u32, u32) {
         self.targets.size
+    }
+
+    /// How many shadow maps the last picture drew anew; the others still showed what they should.
+    pub fn redrawn_shadow_maps(&self) -> usize {
+        self.redrawn_maps
     }
 
     /// Whether `Options::draft` makes a difference here: the adapter is a processor.
@@ -197,9 +205,10 @@ impl PreviewRenderer {
         let needs_light = channel.is_lit() && !overlay_alone;
         let casters: &[_] = if input.options.shadows && needs_light { &list.casters } else { &[] };
         let draft = input.options.draft && self.on_processor && output == Output::Display;
-        let plan = ShadowPlan::new(&table.lights, casters, !draft);
+        let mut plan = ShadowPlan::new(&table, casters, !draft);
         let resolution = input.options.shadow_resolution;
-        let stale = self.shadow_maps.stale(&self.device, &self.queue, &plan, list.caster_signature, resolution);
+        let stale = self.shadow_maps.place(&self.device, &self.queue, &mut plan, &list, resolution);
+        self.redrawn_maps = stale.len();
         let scale = self.mask_scale(draft, &table);
         let frame = GpuFrame { mask_scale: scale, cell_scale: cell_scale(&table), ..self.frame(input, &table) };
         let frame = GpuFrame { depth_range_m: depth_range_m(&input.frame, &list.casters), ..frame };
@@ -213,24 +222,25 @@ impl PreviewRenderer {
         let masks_drawn = self.drawn.masks == Some(masks) && stale.is_empty() && !renewed;
 
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        for view in stale {
-            let Some(clip_from_world) = plan.views[view] else { continue };
-            let seen = |item: &&DrawItem| list.is_seen(item, &clip_from_world);
+        for StaleMap { layer, view } in stale {
+            let seen = |item: &&DrawItem| list.is_seen(item, &view);
             let items: Vec<&DrawItem> = list.items.iter().filter(seen).collect();
-            self.shadow_pass(&mut encoder, &items, view, Side::Near);
-            self.shadow_pass(&mut encoder, &items, view, Side::Far);
+            self.shadow_pass(&mut encoder, &items, layer, Side::Near);
+            self.shadow_pass(&mut encoder, &items, layer, Side::Far);
         }
         if !geometry_drawn {
             self.geometry_pass(&mut encoder, &list, input.frame.position());
         }
         if !masks_drawn {
-            (0..plan.masks.len()).for_each(|mask| self.mask_passes(&mut encoder, mask));
+            let raw = &self.masking.raw[usize::from(plan.is_in_parts())];
+            (0..plan.masks.len()).for_each(|mask| self.mask_passes(&mut encoder, raw, mask));
         }
         let variant = LightingVariant {
             output,
             families: table.families(),
             masks: plan.masks.len(),
             scale,
+            reach: input.options.light_radius,
             listed: tiles.is_some(),
             beams: table.lights.iter().any(|light| light.has_beam != 0),
             cells: draft,
@@ -284,8 +294,8 @@ impl PreviewRenderer {
         (width.div_ceil(scale), height.div_ceil(scale))
     }
 
-    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, items: &[&DrawItem], view: usize, side: Side) {
-        let mut pass = self.shadow_maps.begin_pass(encoder, view, side);
+    fn shadow_pass(&self, encoder: &mut wgpu::CommandEncoder, items: &[&DrawItem], layer: usize, side: Side) {
+        let mut pass = self.shadow_maps.begin_pass(encoder, layer, side);
         pass.set_bind_group(0, self.buffers.bind_group(), &[]);
         for item in items {
             if let Some(pipeline) = self.geometry.shadow(item.shadow, side) {
@@ -328,9 +338,10 @@ impl PreviewRenderer {
 
     fn glass_pass(&mut self, encoder: &mut wgpu::CommandEncoder, list: &DrawList, table: &LightTable, output: Output) {
         let families = table.families();
-        let (masks, scale, listed, cells, illuminance, gloss) = (0, 1, false, false, false, Gloss::Ggx);
+        let (masks, scale, reach, listed, beams) = (0, 1, false, false, true);
+        let (cells, illuminance, gloss) = (false, false, Gloss::Ggx);
         let variant =
-            LightingVariant { output, families, masks, scale, listed, beams: true, cells, illuminance, gloss };
+            LightingVariant { output, families, masks, scale, reach, listed, beams, cells, illuminance, gloss };
         let layouts =
             layouts(&self.buffers, &self.textures, &self.target_layouts, &self.shadow_maps, &self.shadow_masks);
         let pipeline = self.lighting.glass(&self.device, &layouts, variant).clone();
@@ -369,9 +380,9 @@ impl PreviewRenderer {
         self.gizmos = gizmos;
     }
 
-    fn mask_passes(&self, encoder: &mut wgpu::CommandEncoder, mask: usize) {
+    fn mask_passes(&self, encoder: &mut wgpu::CommandEncoder, raw: &wgpu::RenderPipeline, mask: usize) {
         let mut pass = self.shadow_masks.begin_raw(encoder, mask);
-        pass.set_pipeline(&self.masking.raw);
+        pass.set_pipeline(raw);
         pass.set_bind_group(0, self.buffers.bind_group(), &[]);
         pass.set_bind_group(1, &self.targets.lookup, &[]);
         pass.set_bind_group(2, self.shadow_maps.lookup(), &[]);
@@ -443,11 +454,13 @@ fn layouts<'a>(
     }
 }
 
-/// Side of a draft's cells, pixels: the more lights, the larger, so that many of them stay fluid.
+/// Side of a draft's cells, pixels: the more lights, the larger, so that many of them stay fluid. Panels and balls cost
+/// several times what lights without a size do.
 fn cell_scale(table: &LightTable) -> u32 {
-    match table.lights.len() {
-        0..=8 => 2,
-        9..=MANY_LIGHTS => 3,
+    let without_size = table.ends[0] as usize;
+    match (table.lights.len(), table.lights.len() - without_size) {
+        (0..=8, 0..=2) => 2,
+        (0..=MANY_LIGHTS, _) => 3,
         _ => 4,
     }
 }

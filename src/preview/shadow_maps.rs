@@ -1,7 +1,8 @@
-//! The shadow maps themselves: two layers a view, redrawn only when the view or what casts shadows has changed.
-//!
-//! The first layer of a view holds what is nearest to the light; in the second, solids show their far sides.
+//! The shadow maps themselves: two sides a view. One holds what is nearest to the light; in the other, solids show
+//! their far sides.
 
+use super::draw_list::DrawList;
+use super::shadow_layers::{ShadowLayers, StaleMap};
 use super::shadow_views::{MAX_VIEWS, ShadowPlan};
 use eframe::wgpu;
 use glam::Mat4;
@@ -11,20 +12,13 @@ pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float
 /// Dynamic uniform offsets are multiples of this on every device.
 const OFFSET_STRIDE: u64 = 256;
 
-/// Which sides of solids a layer holds.
+/// Which sides of solids a map holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     /// Whatever is nearest to the light.
     Near = 0,
     /// Their far sides.
     Far = 1,
-}
-
-/// What the layers of a view show.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Content {
-    view: Mat4,
-    casters: u64,
 }
 
 /// All shadow maps, in one array texture.
@@ -35,8 +29,8 @@ pub(super) struct ShadowMaps {
     view: wgpu::BindGroup,
     lookup_layout: wgpu::BindGroupLayout,
     lookup: wgpu::BindGroup,
-    layers: Vec<wgpu::TextureView>,
-    contents: Vec<Option<Content>>,
+    sides: Vec<wgpu::TextureView>,
+    layers: ShadowLayers,
     resolution: u32,
 }
 
@@ -63,9 +57,9 @@ impl ShadowMaps {
                 count: None,
             }],
         });
-        let (layers, lookup) = create_maps(device, &lookup_layout, 1, 2);
-        let contents = Vec::new();
-        ShadowMaps { view_layout, view_buffer, view, lookup_layout, lookup, layers, contents, resolution: 1 }
+        let (sides, lookup) = create_maps(device, &lookup_layout, 1, 2);
+        let layers = ShadowLayers::default();
+        ShadowMaps { view_layout, view_buffer, view, lookup_layout, lookup, sides, layers, resolution: 1 }
     }
 
     /// Layout of the uniform that holds the view of the shadow pass.
@@ -83,61 +77,58 @@ impl ShadowMaps {
         &self.lookup
     }
 
-    /// Makes room for the views, uploads them, and returns the indices of those that must be drawn anew.
-    pub fn stale(
+    /// Makes room for a plan's views, tells it where they are, uploads those that must be drawn and returns them.
+    pub fn place(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        plan: &ShadowPlan,
-        casters: u64,
+        plan: &mut ShadowPlan,
+        list: &DrawList,
         resolution: u32,
-    ) -> Vec<usize> {
+    ) -> Vec<StaleMap> {
         let resolution = resolution.clamp(16, device.limits().max_texture_dimension_2d);
-        let count = plan.views.len().max(1).next_power_of_two().min(MAX_VIEWS);
-        if !plan.views.is_empty() && (count > self.contents.len() || resolution != self.resolution) {
-            (self.layers, self.lookup) = create_maps(device, &self.lookup_layout, resolution, 2 * count as u32);
-            self.contents = vec![None; count];
+        let count = plan.views.max(1).next_power_of_two().min(MAX_VIEWS);
+        if !plan.runs.is_empty() && (count > self.layers.len() || resolution != self.resolution) {
+            (self.sides, self.lookup) = create_maps(device, &self.lookup_layout, resolution, 2 * count as u32);
+            self.layers = ShadowLayers::with_room(count);
             self.resolution = resolution;
         }
-        let mut stale = Vec::new();
-        for (index, view) in plan.views.iter().enumerate().filter_map(|(index, view)| Some((index, (*view)?))) {
-            let content = Some(Content { view, casters });
-            if self.contents[index] != content {
-                self.contents[index] = content;
-                queue.write_buffer(
-                    &self.view_buffer,
-                    index as u64 * OFFSET_STRIDE,
-                    bytemuck::bytes_of(&view.to_cols_array()),
-                );
-                stale.push(index);
-            }
+        let (firsts, stale) = self.layers.place(&plan.runs, list.caster_signature, |view| list.seen_by(view));
+        plan.set_layers(&firsts);
+        for map in &stale {
+            let offset = map.layer as u64 * OFFSET_STRIDE;
+            queue.write_buffer(
+                &self.view_buffer,
+                offset,
+                bytemuck::bytes_of(&map.view.clip_from_world.to_cols_array()),
+            );
         }
         stale
     }
 
     /// Forgets what the layers show, after a frame that failed.
     pub fn invalidate(&mut self) {
-        self.contents.fill(None);
+        self.layers.invalidate();
     }
 
-    /// Starts drawing into a layer of a view.
+    /// Starts drawing one side of a layer's view.
     pub fn begin_pass<'e>(
         &self,
         encoder: &'e mut wgpu::CommandEncoder,
-        index: usize,
+        layer: usize,
         side: Side,
     ) -> wgpu::RenderPass<'e> {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow map"),
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.layers[2 * index + side as usize],
+                view: &self.sides[2 * layer + side as usize],
                 // Reversed depth: 0 is infinitely far.
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
                 stencil_ops: None,
             }),
             ..Default::default()
         });
-        pass.set_bind_group(1, &self.view, &[index as u32 * OFFSET_STRIDE as u32]);
+        pass.set_bind_group(1, &self.view, &[layer as u32 * OFFSET_STRIDE as u32]);
         pass
     }
 }

@@ -30,8 +30,9 @@ pub(super) fn parts(light: &GpuLight, casters: &[Caster]) -> Vec<Part> {
     let softness = light.softness();
     let whole = vec![Part { at: Vec2::ZERO, softness }];
     let half = Vec2::new(Vec3::from(light.right).length(), Vec3::from(light.up).length());
+    let nearest = casters.iter().map(|caster| caster.distance(light.position.into())).fold(f32::INFINITY, f32::min);
     let is_panel = light.kind == Kind::Rect as u32 || light.kind == Kind::Disc as u32;
-    if !is_panel || half.length() < WIDE * distance(light.position.into(), casters) {
+    if !is_panel || half.length() < WIDE * nearest {
         return whole;
     }
     if half.max_element() > LONG * half.min_element() {
@@ -43,17 +44,6 @@ pub(super) fn parts(light: &GpuLight, casters: &[Caster]) -> Vec<Part> {
     let step = if light.kind == Kind::Rect as u32 { 0.5 } else { 4.0 / (3.0 * PI) };
     let corners = [Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0), Vec2::new(-1.0, 1.0), Vec2::ONE];
     corners.map(|corner| Part { at: step * corner, softness: 0.5 * softness }).to_vec()
-}
-
-/// Distance from a point to the nearest box around something that casts a shadow, metres.
-fn distance(point: Vec3, casters: &[Caster]) -> f32 {
-    let to_box = |caster: &Caster| {
-        let corners = caster.corners();
-        let (low, high) =
-            corners.iter().fold((corners[0], corners[0]), |(low, high), corner| (low.min(*corner), high.max(*corner)));
-        point.clamp(low, high).distance(point)
-    };
-    casters.iter().map(to_box).fold(f32::INFINITY, f32::min)
 }
 
 #[cfg(test)]

@@ -2,7 +2,8 @@
 //! the same for each part of an emitter that is taken in parts.
 
 use super::draw_list::Caster;
-use super::light_table::{GpuLight, Kind};
+use super::light_table::{GpuLight, Kind, LightTable};
+use super::shadow_layers::{Owner, Run, View};
 use super::shadow_parts::{MOST_PARTS, parts};
 use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Mat4, Quat, Vec2, Vec3, Vec4};
@@ -60,40 +61,77 @@ pub(super) struct GpuShadows {
 /// The views to draw, and how each light reads them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct ShadowPlan {
-    /// Clip from world of each layer; none where this frame does not read it. Views from the emitters' middles come
-    /// first, so that a draft, which has no others, finds them where they were.
-    pub views: Vec<Option<Mat4>>,
-    /// Four lights each, in their order.
+    /// The views that this frame reads, light by light.
+    pub runs: Vec<Run>,
+    /// Four lights each, in their order. Slots count `runs` until `set_layers` has said where those are.
     pub masks: Vec<GpuShadows>,
+    /// Views of this plan and of the draft that comes before it in motion.
+    pub views: usize,
 }
 
 impl ShadowPlan {
     /// Views of the lights; `in_parts` takes wide emitters in parts.
-    pub fn new(lights: &[GpuLight], casters: &[Caster], in_parts: bool) -> Self {
-        let corners: Vec<Vec3> = casters.iter().flat_map(Caster::corners).collect();
+    pub fn new(table: &LightTable, casters: &[Caster], in_parts: bool) -> Self {
         let mut plan = ShadowPlan::default();
-        if corners.is_empty() {
+        if casters.is_empty() {
             return plan;
         }
-        let lights = &lights[..lights.len().min(MAX_SHADOWS)];
-        plan.masks = vec![GpuShadows::zeroed(); lights.len().div_ceil(4)];
-        for (index, light) in lights.iter().enumerate() {
-            let slot = plan.add(light, &corners);
+        let count = table.lights.len().min(MAX_SHADOWS);
+        plan.masks = vec![GpuShadows::zeroed(); count.div_ceil(4)];
+        let reached: Vec<Vec<Caster>> =
+            table.lights[..count].iter().map(|light| within_reach(light, casters)).collect();
+        // The middles first, so that all lights have a shadow before one has it in parts.
+        for (index, casters) in reached.iter().enumerate() {
+            let slot = plan.add(&table.lights[index], (table.ids[index].0, 0), casters);
             plan.set(index, &[slot]);
         }
         if in_parts {
-            (0..lights.len()).for_each(|index| plan.take_in_parts(index, &lights[index], casters, &corners));
+            for (index, casters) in reached.iter().enumerate() {
+                plan.take_in_parts(index, &table.lights[index], casters);
+            }
         }
+        plan.views = plan.view_count();
+        plan.drop_unread();
         plan
     }
 
-    /// Adds a light's views as far as there is room.
-    fn add(&mut self, light: &GpuLight, corners: &[Vec3]) -> GpuShadowSlot {
-        let (mut slot, views) = views_of(light, corners, MAX_VIEWS - self.views.len());
-        if !views.is_empty() {
-            (slot.layer, slot.softness) = (self.views.len() as u32, light.softness().into());
+    /// Leaves out runs that no slot reads: the middles of lights that are taken in parts.
+    fn drop_unread(&mut self) {
+        let slots = self.masks.iter().flat_map(|mask| mask.slots.as_flattened()).filter(|slot| slot.kind != 0);
+        let mut is_read = vec![false; self.runs.len()];
+        slots.for_each(|slot| is_read[slot.layer as usize] = true);
+        let places: Vec<usize> =
+            is_read.iter().scan(0, |next, read| Some(std::mem::replace(next, *next + usize::from(*read)))).collect();
+        self.set_layers(&places);
+        let mut read = is_read.into_iter();
+        self.runs.retain(|_| read.next() == Some(true));
+    }
+
+    /// Whether a light is taken in several parts.
+    pub fn is_in_parts(&self) -> bool {
+        self.masks.iter().flat_map(|mask| mask.counts).any(|count| count > 1)
+    }
+
+    /// Tells each slot the first layer of its run.
+    pub fn set_layers(&mut self, firsts: &[usize]) {
+        for slot in self.masks.iter_mut().flat_map(|mask| mask.slots.as_flattened_mut()).filter(|slot| slot.kind != 0) {
+            slot.layer = firsts[slot.layer as usize] as u32;
         }
-        self.views.extend(views.into_iter().map(Some));
+    }
+
+    fn view_count(&self) -> usize {
+        self.runs.iter().map(|run| run.views.len()).sum()
+    }
+
+    /// Adds a light's views as far as there is room.
+    fn add(&mut self, light: &GpuLight, owner: Owner, casters: &[Caster]) -> GpuShadowSlot {
+        let (mut slot, views) = views_of(light, casters, MAX_VIEWS - self.view_count());
+        if !views.is_empty() {
+            (slot.layer, slot.softness) = (self.runs.len() as u32, light.softness().into());
+            let (eye, reach_m) = (light.position.into(), light.reach_m);
+            let view = |clip_from_world| View { clip_from_world, eye, reach_m };
+            self.runs.push(Run { owner, views: views.into_iter().map(view).collect() });
+        }
         slot
     }
 
@@ -104,36 +142,43 @@ impl ShadowPlan {
     }
 
     /// Replaces a light's one view by views of its parts, if it has any and there is room for them all.
-    fn take_in_parts(&mut self, index: usize, light: &GpuLight, casters: &[Caster], corners: &[Vec3]) {
+    fn take_in_parts(&mut self, index: usize, light: &GpuLight, casters: &[Caster]) {
         let parts = parts(light, casters);
         let middle = self.masks[index / 4].slots[index % 4][0];
         if parts.len() == 1 || middle.kind == 0 {
             return;
         }
-        let before = self.views.len();
-        let slots: Vec<GpuShadowSlot> = parts
-            .iter()
-            .map(|part| {
+        let before = self.runs.len();
+        let id = self.runs[middle.layer as usize].owner.0;
+        let slots: Vec<GpuShadowSlot> = (1..)
+            .zip(&parts)
+            .map(|(number, part)| {
                 let offset = part.at.x * Vec3::from(light.right) + part.at.y * Vec3::from(light.up);
                 let moved = GpuLight { position: (Vec3::from(light.position) + offset).into(), ..*light };
-                let slot = if part.at == Vec2::ZERO { middle } else { self.add(&moved, corners) };
+                let slot = if part.at == Vec2::ZERO { middle } else { self.add(&moved, (id, number), casters) };
                 GpuShadowSlot { softness: part.softness.into(), ..slot }
             })
             .collect();
         if slots.iter().any(|slot| slot.kind != middle.kind) {
-            self.views.truncate(before);
+            self.runs.truncate(before);
             return;
-        }
-        if parts.iter().all(|part| part.at != Vec2::ZERO) {
-            let count = if middle.kind == Projection::Cube as u32 { 6 } else { 1 };
-            self.views[middle.layer as usize..][..count].fill(None);
         }
         self.set(index, &slots);
     }
 }
 
+/// The casters whose shadow can be seen: beyond its reach a light is dark anyway.
+fn within_reach(light: &GpuLight, casters: &[Caster]) -> Vec<Caster> {
+    let reaches = |caster: &&Caster| light.reach_m == 0.0 || caster.distance(light.position.into()) < light.reach_m;
+    casters.iter().filter(reaches).copied().collect()
+}
+
 /// How a light reads its shadow, and up to `room` views; an empty slot and none if it casts no shadow.
-fn views_of(light: &GpuLight, corners: &[Vec3], room: usize) -> (GpuShadowSlot, Vec<Mat4>) {
+fn views_of(light: &GpuLight, casters: &[Caster], room: usize) -> (GpuShadowSlot, Vec<Mat4>) {
+    let corners: Vec<Vec3> = casters.iter().flat_map(Caster::corners).collect();
+    if corners.is_empty() {
+        return (GpuShadowSlot::zeroed(), Vec::new());
+    }
     let frame = Affine3A::from_mat3_translation(
         glam::Mat3::from_cols(
             Vec3::from(light.right).normalize_or(Vec3::X),
@@ -144,13 +189,13 @@ fn views_of(light: &GpuLight, corners: &[Vec3], room: usize) -> (GpuShadowSlot, 
     );
     let spot_limit = light.outer_rad.min(1.3).tan().min(WIDEST);
     let one = match light.kind {
-        kind if kind == Kind::Sun as u32 => parallel(&frame, corners),
-        kind if kind == Kind::Spot as u32 => perspective(&frame, corners, spot_limit),
+        kind if kind == Kind::Sun as u32 => parallel(&frame, &corners),
+        kind if kind == Kind::Spot as u32 => perspective(&frame, &corners, spot_limit),
         kind if kind == Kind::Rect as u32 || kind == Kind::Disc as u32 => {
             if room >= 6 && corners.iter().any(|corner| !is_within(&frame, *corner)) {
                 return cube(&frame);
             }
-            perspective(&frame, corners, WIDEST)
+            perspective(&frame, &corners, WIDEST)
         }
         _ => {
             let centre = corners.iter().sum::<Vec3>() / corners.len() as f32;
@@ -158,7 +203,7 @@ fn views_of(light: &GpuLight, corners: &[Vec3], room: usize) -> (GpuShadowSlot, 
             if room >= 6 && corners.iter().any(|corner| !is_within(&towards, *corner)) {
                 return cube(&Affine3A::from_translation(light.position.into()));
             }
-            perspective(&towards, corners, WIDEST)
+            perspective(&towards, &corners, WIDEST)
         }
     };
     match one.filter(|_| room >= 1) {
@@ -265,6 +310,7 @@ fn cube(frame: &Affine3A) -> (GpuShadowSlot, Vec<Mat4>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::LightId;
 
     fn unit_box_at(place: Vec3) -> Caster {
         Caster { world_from_object: Affine3A::from_translation(place), low: Vec3::splat(-0.5), high: Vec3::splat(0.5) }
@@ -282,6 +328,11 @@ mod tests {
         }
     }
 
+    fn table(lights: &[GpuLight]) -> LightTable {
+        let ids = (0..lights.len() as u32).map(LightId).collect();
+        LightTable { lights: lights.to_vec(), ids, ..LightTable::default() }
+    }
+
     fn project(view: &Mat4, point: Vec3) -> Vec3 {
         view.project_point3(point)
     }
@@ -290,12 +341,12 @@ mod tests {
     fn one_view_holds_every_caster_and_depth_falls_with_distance() {
         for kind in [Kind::Point, Kind::Spot, Kind::Sphere, Kind::Rect, Kind::Sun] {
             let caster = unit_box_at(Vec3::new(0.3, 1.0, 0.2));
-            let plan = ShadowPlan::new(&[light(kind)], &[caster], false);
-            assert_eq!((plan.views.len(), plan.masks.len()), (1, 1), "{kind:?}");
+            let plan = ShadowPlan::new(&table(&[light(kind)]), &[caster], false);
+            assert_eq!((plan.views, plan.masks.len()), (1, 1), "{kind:?}");
             for corner in caster.corners() {
-                let p = project(&plan.views[0].unwrap(), corner);
+                let p = project(&plan.runs[0].views[0].clip_from_world, corner);
                 assert!(p.truncate().abs().max_element() <= 1.0 && (0.0..=1.0).contains(&p.z), "{kind:?}: {p}");
-                let farther = project(&plan.views[0].unwrap(), corner - Vec3::Y * 0.1);
+                let farther = project(&plan.runs[0].views[0].clip_from_world, corner - Vec3::Y * 0.1);
                 assert!(farther.z < p.z, "{kind:?}");
             }
         }
@@ -305,11 +356,11 @@ mod tests {
     fn a_bulb_among_things_gets_a_cube_that_sees_all_round() {
         let bulb = light(Kind::Point);
         let casters = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
-        let plan = ShadowPlan::new(&[bulb], &casters, false);
-        assert_eq!((plan.views.len(), plan.masks[0].slots[0][0].kind), (6, Projection::Cube as u32));
+        let plan = ShadowPlan::new(&table(&[bulb]), &casters, false);
+        assert_eq!((plan.views, plan.masks[0].slots[0][0].kind), (6, Projection::Cube as u32));
         let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
-        for (view, axis) in plan.views.iter().zip(axes) {
-            let p = project(&view.unwrap(), Vec3::from(bulb.position) + axis * 2.0);
+        for (view, axis) in plan.runs[0].views.iter().zip(axes) {
+            let p = project(&view.clip_from_world, Vec3::from(bulb.position) + axis * 2.0);
             assert!(p.truncate().length() < 1e-5 && p.z > 0.0, "{axis}: {p}");
         }
     }
@@ -317,7 +368,8 @@ mod tests {
     #[test]
     fn depth_is_affine_across_a_plane() {
         // The shader's receiver plane rests on it: the middle of two points' maps lies on the plane's depth.
-        let view = ShadowPlan::new(&[light(Kind::Rect)], &[unit_box_at(Vec3::Y)], false).views[0].unwrap();
+        let view = ShadowPlan::new(&table(&[light(Kind::Rect)]), &[unit_box_at(Vec3::Y)], false).runs[0].views[0]
+            .clip_from_world;
         let (a, b) = (project(&view, Vec3::new(-0.3, 0.2, 0.1)), project(&view, Vec3::new(0.4, 0.9, -0.2)));
         let on_line = project(&view, Vec3::new(-0.3, 0.2, 0.1).lerp(Vec3::new(0.4, 0.9, -0.2), 0.25));
         let along = (on_line.truncate() - a.truncate()).length() / (b.truncate() - a.truncate()).length();
@@ -326,13 +378,13 @@ mod tests {
 
     #[test]
     fn too_many_lights_go_without_shadow_and_no_caster_needs_no_map() {
-        let plan = ShadowPlan::new(&[light(Kind::Rect); 40], &[unit_box_at(Vec3::ZERO)], false);
-        assert_eq!((plan.views.len(), plan.masks.len()), (MAX_SHADOWS, MAX_SHADOWS / 4));
+        let plan = ShadowPlan::new(&table(&[light(Kind::Rect); 40]), &[unit_box_at(Vec3::ZERO)], false);
+        assert_eq!((plan.views, plan.masks.len()), (MAX_SHADOWS, MAX_SHADOWS / 4));
         let all_round = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
-        let plan = ShadowPlan::new(&[light(Kind::Rect); 16], &all_round, false);
+        let plan = ShadowPlan::new(&table(&[light(Kind::Rect); 16]), &all_round, false);
         // Eight cubes, and no room for more.
         let kind = |light: usize| plan.masks[light / 4].slots[light % 4][0].kind;
-        assert_eq!((plan.views.len(), kind(7), kind(8)), (MAX_VIEWS, Projection::Cube as u32, 0));
-        assert_eq!(ShadowPlan::new(&[light(Kind::Rect)], &[], false), ShadowPlan::default());
+        assert_eq!((plan.views, kind(7), kind(8)), (MAX_VIEWS, Projection::Cube as u32, 0));
+        assert_eq!(ShadowPlan::new(&table(&[light(Kind::Rect)]), &[], false), ShadowPlan::default());
     }
 }

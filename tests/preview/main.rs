@@ -23,6 +23,7 @@ mod drafts;
 mod each_light;
 mod picture;
 mod room;
+mod shadow_cache;
 
 /// A renderer, or a loud skip where the machine has no adapter and nobody insists on one.
 fn renderer() -> Option<(Gpu, PreviewRenderer)> {

@@ -8,6 +8,7 @@ override HAS_RECTS: bool = true;
 override HAS_DISCS: bool = true;
 // Mirrors show a light however far it is.
 const LISTED: bool = false;
+const REACH: bool = false;
 const HAS_BEAMS: bool = true;
 
 struct Corner {

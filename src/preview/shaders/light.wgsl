@@ -243,7 +243,7 @@ fn panel_arrival(light: u32, position: vec3f, normal: vec3f, round: bool) -> Arr
 
 // 1 as far as a light reaches, falling to 0 over the last fifth of the way.
 fn reach(light: u32, to_light: vec3f) -> f32 {
-    if !LISTED {
+    if !REACH {
         return 1.0;
     }
     let reach_m = lights[light].reach_m;
@@ -253,7 +253,7 @@ fn reach(light: u32, to_light: vec3f) -> f32 {
 
 // The same for a panel, which reaches less far to its sides: its intensity goes with the cosine.
 fn panel_reach(light: u32, to_light: vec3f) -> f32 {
-    if !LISTED {
+    if !REACH {
         return 1.0;
     }
     let squared = dot(to_light, to_light);

@@ -16,6 +16,8 @@ override MASKS: u32 = 0;
 override SCALE: u32 = 1;
 // Whether each tile of the picture has its own list of lights.
 override LISTED: bool = false;
+// Whether a light is left out where it falls under 1/256 of display white.
+override REACH: bool = true;
 // Whether any light's modifier narrows its beam.
 override HAS_BEAMS: bool = true;
 // Whether the picture shows the light on surfaces, as on white ones without gloss.

@@ -30,6 +30,8 @@ struct Slot {
 }
 
 const MOST_PARTS: u32 = 4u;
+// Whether any light is taken in several parts: a rasteriser on a processor pays for a loop as such.
+override IN_PARTS: bool = true;
 
 // Four lights, each in one part or several; twin of `GpuShadows`.
 struct Shadows {
@@ -220,12 +222,15 @@ fn visibility(light: u32, position: vec3f, normal: vec3f, face: vec3f, turn: vec
     var part = 0u;
     loop {
         let slot = MOST_PARTS * light + part;
-        let weight = select(1.0, part_weight(slot, position, normal), count > 1u);
+        var weight = 1.0;
+        if IN_PARTS {
+            weight = select(1.0, part_weight(slot, position, normal), count > 1u);
+        }
         sum += weight * part_visibility(slot, position, face, turn, draw);
         total += weight;
         part++;
         continuing {
-            break if part >= count;
+            break if !IN_PARTS || part >= count;
         }
     }
     return select(sum / total, 1.0, total <= 0.0);
