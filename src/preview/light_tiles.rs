@@ -6,7 +6,7 @@
 use super::light_table::{GpuLight, Kind, LightTable};
 use crate::scene::CameraFrame;
 use glam::{Vec2, Vec3};
-use std::f32::consts::FRAC_PI_4;
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 /// Tiles across the picture; repeated in `scene.wgsl`.
 const COLUMNS: usize = 16;
@@ -14,19 +14,20 @@ const COLUMNS: usize = 16;
 const ROWS: usize = 9;
 /// Words of four numbers a tile: the ends of the families, then 256 indices of a byte.
 const STRIDE: usize = 17;
-/// Fewer lights than this are not worth a list, and are shown without a limit to their reach.
-const FEWEST: usize = 9;
+/// Lists that hold more than this part of all lights in all tiles are not worth looking up.
+const FULL: f32 = 0.75;
 /// Bytes of all lists.
 pub(super) const TILES_BYTES: u64 = (COLUMNS * ROWS * STRIDE * size_of::<[u32; 4]>()) as u64;
 
-/// The lists of all tiles, as `scene.wgsl` reads them.
+/// The lists of all tiles, as `scene.wgsl` reads them; none where nearly every light reaches nearly every tile.
 pub(super) fn light_tiles(table: &LightTable, camera: &CameraFrame) -> Option<Vec<[u32; 4]>> {
-    if table.lights.len() < FEWEST {
+    let reached: Vec<_> = table.lights.iter().map(|light| tiles_reached(light, camera)).collect();
+    let listed: usize = reached.iter().map(|(low, high)| (high[0] - low[0]) * (high[1] - low[1])).sum();
+    if listed as f32 >= FULL * (table.lights.len() * COLUMNS * ROWS) as f32 {
         return None;
     }
     let mut tiles = vec![[0_u32; 4]; COLUMNS * ROWS * STRIDE];
-    for (index, light) in table.lights.iter().enumerate() {
-        let (low, high) = tiles_reached(light, camera);
+    for (index, (light, (low, high))) in table.lights.iter().zip(reached).enumerate() {
         for row in low[1]..high[1] {
             for column in low[0]..high[0] {
                 let tile = &mut tiles[(row * COLUMNS + column) * STRIDE..][..STRIDE];
@@ -74,10 +75,15 @@ fn tiles_reached(light: &GpuLight, camera: &CameraFrame) -> ([usize; 2], [usize;
 /// A ball around all that a light reaches: its middle and radius, metres.
 fn ball_of_reach(light: &GpuLight) -> (Vec3, f32) {
     let (position, axis, reach_m) = (Vec3::from(light.position), Vec3::from(light.axis), light.reach_m);
-    if light.kind == Kind::Spot as u32 && light.outer_rad < FRAC_PI_4 {
+    let angle_rad = cone_rad(light);
+    if angle_rad < FRAC_PI_4 {
         // The ball through a cone's tip and its rim.
-        let radius_m = 0.5 * reach_m / light.outer_rad.cos();
+        let radius_m = 0.5 * reach_m / angle_rad.cos();
         return (position + axis * radius_m, radius_m);
+    }
+    if angle_rad < FRAC_PI_2 {
+        // The ball about its rim holds the tip, too.
+        return (position + axis * (reach_m * angle_rad.cos()), reach_m * angle_rad.sin());
     }
     if light.kind == Kind::Rect as u32 || light.kind == Kind::Disc as u32 {
         // A panel reaches as far as the root of the cosine says: from half the way along the axis, at most 0.631 of it.
@@ -85,6 +91,14 @@ fn ball_of_reach(light: &GpuLight) -> (Vec3, f32) {
         return (position + axis * (0.5 * reach_m), 0.632 * reach_m + size_m);
     }
     (position, reach_m)
+}
+
+/// Half angle of the cone in which a light shines that comes from one place; half a turn where it shines all round.
+fn cone_rad(light: &GpuLight) -> f32 {
+    let spot = if light.kind == Kind::Spot as u32 { light.outer_rad } else { PI };
+    let from_one_place = light.family() < 2 && light.kind != Kind::Sun as u32;
+    let beam = if from_one_place && light.has_beam != 0 { light.beam_rad[1].min(light.beam_rad[2]) } else { PI };
+    spot.min(beam)
 }
 
 #[cfg(test)]
@@ -151,9 +165,10 @@ mod tests {
         for (kind, widest, reach) in [
             (Kind::Rect, 1.57_f32, (|angle| angle.cos().max(0.0).sqrt()) as fn(f32) -> f32),
             (Kind::Spot, 0.4, |_| 1.0),
+            (Kind::Spot, 1.2, |_| 1.0),
             (Kind::Point, 3.0, |_| 1.0),
         ] {
-            let (centre, radius) = ball_of_reach(&light(kind));
+            let (centre, radius) = ball_of_reach(&GpuLight { outer_rad: widest, ..light(kind) });
             let mut farthest = 0.0_f32;
             for i in 0..=100 {
                 let angle = widest * i as f32 / 100.0;
@@ -165,12 +180,17 @@ mod tests {
     }
 
     #[test]
-    fn families_keep_their_order_and_few_lights_have_no_list() {
+    fn families_keep_their_order_and_lights_that_reach_all_have_no_list() {
         let mut many = table(&[(Vec3::ZERO, 0.0); 12]);
+        assert!(light_tiles(&many, &camera()).is_none());
+        let behind = GpuLight { position: [0.0, 0.0, 20.0], reach_m: 1.0, ..many.lights[0] };
+        many.lights.extend([behind; 12]);
+        many.lights.iter_mut().skip(12).for_each(|light| light.kind = Kind::Disc as u32);
         many.lights[10].kind = Kind::Rect as u32;
         many.lights[11].kind = Kind::Disc as u32;
         let tiles = light_tiles(&many, &camera()).unwrap();
         assert_eq!((tiles[0], listed(&tiles, 3, 3)), ([10, 10, 11, 12], (0..12).collect()));
-        assert!(light_tiles(&table(&[(Vec3::ZERO, 1.0); 8]), &camera()).is_none());
+        let one = light_tiles(&table(&[(Vec3::ZERO, 0.5)]), &camera()).unwrap();
+        assert_eq!((listed(&one, 8, 4), listed(&one, 0, 0)), (vec![0], vec![]), "one light has a reach, too");
     }
 }
