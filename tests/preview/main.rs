@@ -24,6 +24,7 @@ mod each_light;
 mod picture;
 mod room;
 mod shadow_cache;
+mod textures;
 
 /// A renderer, or a loud skip where the machine has no adapter and nobody insists on one.
 fn renderer() -> Option<(Gpu, PreviewRenderer)> {
@@ -121,4 +122,11 @@ fn lux_of(renderer: &mut PreviewRenderer, input: &PreviewInput, point: Vec3) -> 
 fn assert_close(actual: f32, expected: f32, tolerance: f32, what: &str) {
     let error = actual / expected - 1.0;
     assert!(error.abs() <= tolerance, "{what}: {actual} instead of {expected}, off by {:.2} %", error * 100.0);
+}
+
+/// Where a pixel's middle looks at the height of the floor; none above the horizon.
+fn floor_at(frame: &CameraFrame, size: (u32, u32), (x, y): (u32, u32)) -> Option<Vec3> {
+    let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / Vec2::new(size.0 as f32, size.1 as f32);
+    let (eye, direction) = (frame.position(), frame.direction(place));
+    (direction.y < 0.0).then(|| eye - direction * (eye.y / direction.y))
 }

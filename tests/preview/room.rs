@@ -21,13 +21,6 @@ fn paper_in_a_room() -> Scene {
     }
 }
 
-/// Where a pixel's middle looks at the height of the floor; none above the horizon.
-fn floor_at(frame: &CameraFrame, size: (u32, u32), (x, y): (u32, u32)) -> Option<Vec3> {
-    let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / Vec2::new(size.0 as f32, size.1 as f32);
-    let (eye, direction) = (frame.position(), frame.direction(place));
-    (direction.y < 0.0).then(|| eye - direction * (eye.y / direction.y))
-}
-
 #[test]
 fn the_floor_is_as_deep_as_it_is_though_it_runs_under_the_camera() {
     let Some((_gpu, mut renderer)) = renderer() else { return };
