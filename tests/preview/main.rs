@@ -24,6 +24,7 @@ mod each_light;
 mod picture;
 mod room;
 mod shadow_cache;
+mod stored;
 mod textures;
 
 /// A renderer, or a loud skip where the machine has no adapter and nobody insists on one.
