@@ -1,6 +1,6 @@
 //! Waves of samples over all tiles, with snapshots, cancel and progress.
 
-use super::caustics::{CausticMap, Wave};
+use super::caustics::{CausticMap, USUAL_PHOTONS, Wave};
 use super::film::{Film, TileFilm};
 use super::integrator::{Limits, Sink, Tracer};
 use super::prepare::RenderScene;
@@ -154,7 +154,8 @@ impl Settings {
     fn caustics(&self, scene: &RenderScene, first_sample: u32, samples: u32, control: &Control) -> Option<CausticMap> {
         let frame = scene.lens.frame(self.width as f32 / self.height as f32);
         let pixel_m = 2.0 * frame.half_extent.x / self.width as f32;
-        let wave = Wave { first_sample, samples, pixels: self.pixels(), pixel_m, seed: self.seed };
+        let photons = USUAL_PHOTONS.max(self.pixels() * u64::from(samples));
+        let wave = Wave { first_sample, samples, photons, pixel_m, eye: Vec3::ZERO, seed: self.seed };
         self.takes_photons(scene).then(|| CausticMap::trace(scene, &wave, control))
     }
 

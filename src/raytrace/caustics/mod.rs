@@ -37,10 +37,10 @@ const FIRST_RADIUS_PX: f32 = 2.0;
 /// It holds so many photons of one sample a pixel, at least in the mean, and is no wider than this, metres.
 const FEWEST: usize = 10;
 const WIDEST_M: f32 = 0.05;
-/// Photons for each sample of each pixel.
-const PHOTONS_A_SAMPLE: u64 = 1;
-/// Photons a wave, however small or large the picture (at most some 120 MB while they are sorted).
-const PHOTONS: std::ops::RangeInclusive<u64> = 1 << 14..=1 << 20;
+/// Photons a wave at most: some 120 MB while they are sorted.
+const MOST_PHOTONS: u64 = 1 << 20;
+/// A wave of a render has at least so many.
+pub const USUAL_PHOTONS: u64 = 1 << 14;
 /// For what is seen by bounced light alone, one photon of so many is taken, from a circle so many times as wide.
 const SPARSE: usize = 16;
 const SPARSE_RADIUS: f32 = 2.0;
@@ -58,10 +58,12 @@ pub struct Wave {
     pub first_sample: u32,
     /// Samples of each pixel in it.
     pub samples: u32,
-    /// Pixels of the picture.
-    pub pixels: u64,
+    /// Photons to send, about.
+    pub photons: u64,
     /// Width of a pixel at 1 m, metres.
     pub pixel_m: f32,
+    /// The lens centre, relative to the tracer's origin.
+    pub eye: Vec3,
     /// Of the render.
     pub seed: u32,
 }
@@ -84,19 +86,14 @@ pub struct Photons {
 }
 
 impl Wave {
-    /// Samples a pixel that a wave may have: all get their share of photons.
+    /// Samples a pixel that a wave may have: each gets one photon.
     pub fn most_samples(pixels: u64) -> u32 {
-        (PHOTONS.end() / (PHOTONS_A_SAMPLE * pixels).max(1)).clamp(1, 1 << 16) as u32
-    }
-
-    fn photons(&self) -> u64 {
-        let wanted = PHOTONS_A_SAMPLE * self.pixels * u64::from(self.samples);
-        wanted.clamp(*PHOTONS.start(), *PHOTONS.end())
+        (MOST_PHOTONS / pixels.max(1)).clamp(1, 1 << 16) as u32
     }
 
     /// Of the circle in which photons are gathered, metres.
     fn radius(&self, photons: &[Photon]) -> f32 {
-        let blurred = FIRST_RADIUS_PX * self.pixel_m * median_distance(photons);
+        let blurred = FIRST_RADIUS_PX * self.pixel_m * median_distance(photons, self.eye);
         let filled = neighbours_within(photons) * (self.samples as f32).sqrt();
         let shrink = ((self.first_sample + 1) as f32).powf(-1.0 / 6.0);
         (blurred.max(filled.min(WIDEST_M)) * shrink).max(f32::MIN_POSITIVE)
@@ -106,7 +103,7 @@ impl Wave {
 impl CausticMap {
     /// Sends out the photons of a wave, on rayon's current pool. Incomplete once `control` is cancelled.
     pub fn trace(scene: &RenderScene, wave: &Wave, control: &Control) -> Self {
-        let chunks = (wave.photons() as u32).div_ceil(CHUNK);
+        let chunks = (wave.photons.clamp(1, MOST_PHOTONS) as u32).div_ceil(CHUNK);
         let sent = chunks * CHUNK;
         let chunk = |chunk: u32| {
             let mut found = Vec::new();
@@ -173,9 +170,9 @@ impl Photons {
     }
 }
 
-/// Of the photons from the camera, metres.
-fn median_distance(photons: &[Photon]) -> f32 {
-    nth(photons.iter().map(|photon| photon.position.length()).collect(), photons.len() / 2)
+/// Of the photons from the eye, metres.
+fn median_distance(photons: &[Photon], eye: Vec3) -> f32 {
+    nth(photons.iter().map(|photon| photon.position.distance(eye)).collect(), photons.len() / 2)
 }
 
 /// Distance from a typical photon within which there are [`FEWEST`] others, metres. From a few of them: on surfaces, it

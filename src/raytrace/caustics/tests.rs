@@ -152,7 +152,7 @@ fn a_cancelled_wave_is_not_waited_for() {
     let scene = prepare(&still_life(), &Assets::default()).unwrap();
     let control = Control::new();
     control.cancel();
-    let wave = Wave { first_sample: 0, samples: 16, pixels: 1 << 20, pixel_m: 1e-3, seed: 0 };
+    let wave = Wave { first_sample: 0, samples: 16, photons: 1 << 20, pixel_m: 1e-3, eye: Vec3::ZERO, seed: 0 };
     let map = CausticMap::trace(&scene, &wave, &control);
     assert_eq!(control.rays(), 0);
     map.full.grid.near(Vec3::ZERO, |_, _| panic!("a photon of a cancelled wave"));

@@ -9,6 +9,7 @@ mod camera;
 mod change;
 mod history;
 mod live_film;
+mod photons;
 #[cfg(test)]
 mod tests;
 mod tile;
@@ -25,6 +26,7 @@ use change::Change;
 use glam::Vec3;
 use history::History;
 use live_film::LiveFilm;
+use photons::LivePhotons;
 use rayon::prelude::*;
 use std::sync::Arc;
 use tile::{Job, LiveTile, Step};
@@ -58,6 +60,7 @@ struct Traced {
     /// The tracer's origin in world space.
     origin: Vec3,
     full: RenderScene,
+    photons: LivePhotons,
     /// The picture's layers, as `full` has them.
     layers: Vec<Option<usize>>,
     /// Lights whose layers are behind, alone in the same studio.
@@ -68,6 +71,7 @@ struct Traced {
 struct Lagging {
     lights: Vec<LightId>,
     scene: RenderScene,
+    photons: LivePhotons,
     /// The picture's layer of each of this scene's.
     layers: Vec<Option<usize>>,
 }
@@ -117,7 +121,8 @@ impl LivePicture {
         let (film_layers, camera) = (full.layers(), camera.around(origin, scene.room.as_ref()));
         let layers = (0..film_layers.len()).map(Some).collect();
         self.view = Some(View { camera, film: LiveFilm::reusing(self.spare.take(), camera.size, film_layers) });
-        self.traced = Some(Traced { scene, assets: assets.clone(), origin, full, layers, lagging: None });
+        let (assets, photons) = (assets.clone(), LivePhotons::default());
+        self.traced = Some(Traced { scene, assets, origin, full, photons, layers, lagging: None });
         Ok(())
     }
 
@@ -138,9 +143,11 @@ impl LivePicture {
             new.iter().map(|layer| place(&view.film.layers, layer).filter(|_| !is_behind(layer))).collect();
         let of_alone = |layer: &Layer| layer.light.and_then(|_| place(&new, layer));
         let layers: Vec<Option<usize>> = alone.layers().iter().map(of_alone).collect();
-        (traced.scene, traced.full) = (wanted, full);
+        (traced.scene, traced.full, traced.photons) = (wanted, full, LivePhotons::default());
         traced.layers = (0..new.len()).map(Some).collect();
-        traced.lagging = layers.iter().any(Option::is_some).then(|| Lagging { lights: changed, scene: alone, layers });
+        let photons = LivePhotons::default();
+        let lagging = || Lagging { lights: changed, scene: alone, photons, layers: layers.clone() };
+        traced.lagging = layers.iter().any(Option::is_some).then(lagging);
         view.film.remap(new, &from);
         // The past has other layers.
         self.history = None;
@@ -157,7 +164,7 @@ impl LivePicture {
         let old_camera = std::mem::replace(&mut view.camera, camera);
         let layers = view.film.layers.clone();
         let old = std::mem::take(&mut view.film);
-        traced.lagging = None;
+        (traced.lagging, traced.photons) = (None, LivePhotons::default());
         if camera.has_aperture() || old_camera.has_aperture() {
             (self.history, self.spare) = (None, Some(old));
         } else if let Some(stride) = old.stride().filter(|stride| is_worth_keeping(&old, *stride, &self.history)) {
@@ -186,10 +193,19 @@ impl LivePicture {
                 tiles.push(tile);
             }
             let (camera, history) = (&view.camera, self.history.as_ref());
+            let sample = Step::samples(next);
+            if tiles.iter().any(|tile| !tile.progress.lags()) {
+                spent += traced.photons.prepare(&traced.full, camera, sample, control);
+            }
+            if let Some(Lagging { scene, photons, .. }) = &mut traced.lagging {
+                spent += photons.prepare(scene, camera, sample, control);
+            }
             let times = &traced.full.layer_times;
-            let job = |scene, layers| Job { scene, layers, times, camera, history, noise_stops: QUIET_STOPS, control };
-            let full = job(&traced.full, &traced.layers);
-            let alone = traced.lagging.as_ref().map(|lagging| job(&lagging.scene, &lagging.layers));
+            let noise_stops = QUIET_STOPS;
+            let job =
+                |scene, caustics, layers| Job { scene, layers, times, camera, caustics, history, noise_stops, control };
+            let full = job(&traced.full, traced.photons.map(), &traced.layers);
+            let alone = traced.lagging.as_ref().map(|l| job(&l.scene, l.photons.map(), &l.layers));
             tiles.par_iter_mut().with_max_len(1).for_each(|tile| match &alone {
                 Some(alone) if tile.progress.lags() => tile.advance(alone),
                 Some(_) | None => tile.advance(&full),

@@ -107,6 +107,31 @@ fn pixels_of(live: &LivePicture, object: u32) -> (usize, usize) {
 }
 
 #[test]
+fn a_small_lamp_throws_light_through_a_glass_ball_as_in_a_render() {
+    let mut scene = studio(Material { transmission: 1.0, roughness: 0.0, ..Material::default() });
+    scene.lights.truncate(1);
+    (scene.lights[0].emitter, scene.lights[0].power.output) = (Emitter::Point, Output::Lumens(2e6));
+    // Behind the ball as the lamp sees it.
+    scene.objects[1].transform.position = Vec3::new(0.4, 0.4, -0.2);
+    let camera = view(&scene, 0.0);
+    let mut live = begun(&scene);
+    work_to(&mut live, ALL_TRACED + 2);
+    // Another lamp: its caustics alone are traced.
+    let name = "Other".to_owned();
+    scene.lights.push(Light { id: LightId(7), name, position: Vec3::new(-2.0, 1.0, 3.0), ..scene.lights[0].clone() });
+    live.update(&scene, &Assets::default(), camera).unwrap();
+    finish(&mut live);
+    let (ours, theirs) = (live.develop(&scene), truth(&scene, &camera, 128));
+    assert!((mean(&ours) / mean(&theirs) - 1.0).abs() < 0.01, "{} for {}", mean(&ours), mean(&theirs));
+    // What outshines everything without the ball: the caustics. Their foci are as sharp as there are samples.
+    scene.objects[1].visible = false;
+    let open = truth(&scene, &camera, 16).rgb.iter().map(|rgb| rgb[1]).fold(0.0, f32::max);
+    let caustics = |picture: &Picture| picture.rgb.iter().map(|rgb| rgb[1]).filter(|g| *g > 1.5 * open).sum::<f32>();
+    let (ours, theirs) = (caustics(&ours), caustics(&theirs));
+    assert!(theirs > 20.0 * open && (ours / theirs - 1.0).abs() < 0.1, "{ours} for {theirs}, beside {open}");
+}
+
+#[test]
 fn it_ends_at_the_picture_of_a_render() {
     let scene = studio(Material::default());
     let mut live = begun(&scene);

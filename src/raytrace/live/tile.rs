@@ -8,6 +8,7 @@ use super::history::History;
 use crate::color::luminance;
 use crate::math::Ray;
 use crate::raytrace::Control;
+use crate::raytrace::caustics::CausticMap;
 use crate::raytrace::film::{MAX_LIGHT_LAYERS, TILE};
 use crate::raytrace::integrator::{Limits, Sink, Tracer};
 use crate::raytrace::prepare::RenderScene;
@@ -156,6 +157,8 @@ pub struct Job<'a> {
     /// Seconds for which the picture's layers count in the exposure.
     pub times: &'a [f32],
     pub camera: &'a LiveCamera,
+    /// The scene's photons.
+    pub caustics: Option<&'a CausticMap>,
     pub history: Option<&'a History>,
     /// A tile is done when its noise is under this, stops.
     pub noise_stops: f32,
@@ -394,7 +397,7 @@ impl<'a> Brush<'a> {
         let depth = job.scene.plan().max_bounces;
         Brush {
             job,
-            tracer: Tracer::new(job.scene),
+            tracer: Tracer::with_caustics(job.scene, job.caustics),
             limits: Limits { wide_bounces: depth, all_bounces: depth, branches: 1 },
             layers: job.layers.iter().filter_map(|layer| *layer).collect(),
             paths: 0,
