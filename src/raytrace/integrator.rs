@@ -187,7 +187,7 @@ impl<'a> Tracer<'a> {
         vertex: Vertex,
         sink: &mut impl Sink,
     ) {
-        let path = Path {
+        let mut path = Path {
             ray: Ray { origin, direction, t_max: f32::INFINITY },
             throughput: Vec3::ONE,
             roulette_scale: 1.0,
@@ -199,11 +199,11 @@ impl<'a> Tracer<'a> {
             bounce: 0,
             wide_bounces: 0,
         };
-        self.walk(path, sampler, limits, sink);
+        self.walk(&mut path, sampler, limits, sink);
     }
 
     /// Follows a path to its end, and all ways on from where it branches.
-    fn walk(&mut self, mut path: Path, sampler: &Sampler, limits: Limits, sink: &mut impl Sink) {
+    fn walk(&mut self, path: &mut Path, sampler: &Sampler, limits: Limits, sink: &mut impl Sink) {
         let scene = self.scene;
         loop {
             let hit = self.closest(&path.ray);
@@ -260,7 +260,7 @@ impl<'a> Tracer<'a> {
                 return;
             }
             let lights = if lit { Lights::Sample } else { Lights::Not };
-            if !self.scatter(&mut path, &place, lights, sampler, limits, sink) {
+            if !self.scatter(path, &place, lights, sampler, limits, sink) {
                 return;
             }
         }
@@ -269,7 +269,7 @@ impl<'a> Tracer<'a> {
     /// Follows several ways on from a surface. Where all lights are sampled, once serves all ways.
     fn branch(
         &mut self,
-        mut path: Path,
+        path: &mut Path,
         place: &Place<'_>,
         branches: u32,
         sampler: &Sampler,
@@ -278,9 +278,9 @@ impl<'a> Tracer<'a> {
     ) {
         let ways = branches as f32;
         let mut asked = None;
-        let lights = if self.samples_all(&path) {
+        let lights = if self.samples_all(path) {
             let set = sampler.set(Purpose::Light { slot: 0, bounce: path.bounce });
-            self.sample_lights(&path, place, sampler, &set, ways, sink);
+            self.sample_lights(path, place, sampler, &set, ways, sink);
             Lights::Sampled { ways }
         } else {
             asked = self.ask_lights(place);
@@ -290,9 +290,9 @@ impl<'a> Tracer<'a> {
         path.throughput /= ways;
         path.roulette_scale /= ways;
         for branch in 0..branches {
-            let (mut path, sampler) = (path, sampler.branch(branch, branches));
+            let (mut path, sampler) = (*path, sampler.branch(branch, branches));
             if self.scatter(&mut path, place, lights, &sampler, limits, sink) {
-                self.walk(path, &sampler, Limits { branches: 1, ..limits }, sink);
+                self.walk(&mut path, &sampler, Limits { branches: 1, ..limits }, sink);
             }
         }
     }
@@ -300,7 +300,7 @@ impl<'a> Tracer<'a> {
     /// Follows what clear glass reflects and what it lets through.
     fn split(
         &mut self,
-        path: Path,
+        path: &Path,
         place: &Place<'_>,
         reflectance: f32,
         sampler: &Sampler,
@@ -309,11 +309,11 @@ impl<'a> Tracer<'a> {
     ) {
         for (choice, share) in [(0.0, reflectance), (BELOW_ONE, 1.0 - reflectance)] {
             let branches = if share < SMALL_SHARE { 1 } else { limits.branches };
-            let mut path = Path { throughput: path.throughput * share, ..path };
+            let mut path = Path { throughput: path.throughput * share, ..*path };
             path.roulette_scale *= share;
             let place = &Place { choice: Some(choice), ..*place };
             if share > 0.0 && self.scatter(&mut path, place, Lights::Not, sampler, limits, sink) {
-                self.walk(path, sampler, Limits { branches, ..limits }, sink);
+                self.walk(&mut path, sampler, Limits { branches, ..limits }, sink);
             }
         }
     }
@@ -478,7 +478,7 @@ impl<'a> Tracer<'a> {
         let choice = sampler::rest(first_set)[0];
         let chosen = match place.asked {
             Some(asked) => asked.choose(&scene.lights, choice),
-            None => self.ask_lights(place).and_then(|asked| asked.choose(&scene.lights, choice)),
+            None => self.ask_lights(place).as_ref().and_then(|asked| asked.choose(&scene.lights, choice)),
         };
         if let Some((light, chance)) = chosen {
             self.sample_light(&scene.lights[light as usize], chance, path, place, first_set, ways, sink);

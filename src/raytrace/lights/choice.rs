@@ -245,7 +245,8 @@ impl Chooser {
     fn estimates(&self, lights: &[TracedLight], node: &Node, point: Vec3, normal: Vec3) -> Estimates {
         let first = node.first_packet as usize;
         let packets = &self.packets[first..first + node.packets as usize];
-        let mut estimates = simd::dispatch(Ask { packets, point, normal });
+        let mut estimates = Estimates::NOTHING;
+        simd::dispatch(Ask { packets, point, normal, estimates: &mut estimates });
         if self.has_beams {
             let lanes = estimates.lanes.as_flattened_mut().iter_mut();
             for (lane, meaning) in lanes.zip(&self.meanings[first * WIDTH..]).take(packets.len() * WIDTH) {
@@ -320,6 +321,8 @@ struct Estimates {
 }
 
 impl Estimates {
+    const NOTHING: Estimates = Estimates { lanes: [[0.0; WIDTH]; NODE / WIDTH], sums: [0.0; NODE / WIDTH], total: 0.0 };
+
     #[inline(always)]
     fn add_up(&mut self) {
         for (sum, lanes) in self.sums.iter_mut().zip(&self.lanes) {
@@ -397,19 +400,19 @@ struct Ask<'a> {
     packets: &'a [Packet],
     point: Vec3,
     normal: Vec3,
+    /// Nothing before.
+    estimates: &'a mut Estimates,
 }
 
 impl Query for Ask<'_> {
-    type Answer = Estimates;
+    type Answer = ();
 
     #[inline(always)]
-    fn run<K: Kernels>(self) -> Estimates {
-        let mut estimates = Estimates { lanes: [[0.0; WIDTH]; NODE / WIDTH], sums: [0.0; NODE / WIDTH], total: 0.0 };
-        for (packet, lanes) in self.packets.iter().zip(&mut estimates.lanes) {
+    fn run<K: Kernels>(self) {
+        for (packet, lanes) in self.packets.iter().zip(&mut self.estimates.lanes) {
             *lanes = packet.estimates(self.point, self.normal);
         }
-        estimates.add_up();
-        estimates
+        self.estimates.add_up();
     }
 }
 
@@ -442,8 +445,9 @@ mod tests {
             for node in &chooser.nodes {
                 let first = node.first_packet as usize;
                 let packets = &chooser.packets[first..first + node.packets as usize];
-                let ask = || Ask { packets, point, normal };
-                let (ours, plain) = (simd::dispatch(ask()), ask().run::<Plain>());
+                let (mut ours, mut plain) = (Estimates::NOTHING, Estimates::NOTHING);
+                simd::dispatch(Ask { packets, point, normal, estimates: &mut ours });
+                Ask { packets, point, normal, estimates: &mut plain }.run::<Plain>();
                 assert_eq!(bits(&ours), bits(&plain), "from {point}, facing {normal}");
                 let lanes = &ours.lanes.as_flattened()[..packets.len() * WIDTH];
                 given += lanes.iter().filter(|lane| **lane > 0.0).count();
