@@ -48,6 +48,8 @@ pub struct LivePace {
     /// When the last look was taken; none since the edit.
     last_look: Option<Instant>,
     looked_at_end: bool,
+    /// Pictures that are not done are shown with less grain than they have.
+    smooth: bool,
 }
 
 impl LivePace {
@@ -69,6 +71,7 @@ impl LivePace {
             since_edit: Instant::now(),
             last_look: None,
             looked_at_end: true,
+            smooth: false,
         })
     }
 
@@ -80,6 +83,11 @@ impl LivePace {
     /// Threads that trace while the user works.
     pub fn threads(&self) -> usize {
         self.pools[0].current_num_threads()
+    }
+
+    /// Whether pictures are smoothed until they are done; see [`LivePicture::develop_smooth`]. Not by itself.
+    pub fn set_smooth(&mut self, smooth: bool) {
+        self.smooth = smooth;
     }
 
     /// Takes in the studio and the view as they are now.
@@ -141,7 +149,12 @@ impl LivePace {
     fn develop(&self) -> LiveImage {
         let every = self.picture.coarseness();
         self.pools[0].install(|| {
-            let picture = self.picture.develop_every(&self.scene, every);
+            // Half as fine is what was known before the view moved: it has little grain.
+            let smooth = self.smooth && every != 2 && !self.picture.is_done();
+            let picture = match smooth {
+                true => self.picture.develop_smooth(&self.scene, every),
+                false => self.picture.develop_every(&self.scene, every),
+            };
             let row = |row: &[[f32; 3]]| row.iter().flat_map(|rgb| self.tone.shown(*rgb)).collect::<Vec<u8>>();
             let rgb = picture.rgb.par_chunks(picture.width.max(1) as usize).flat_map_iter(row).collect();
             let (width, height) = (picture.width as usize, picture.height as usize);
@@ -181,5 +194,31 @@ mod tests {
         pace.slice(false, &control);
         let look = pace.look();
         assert!(look.is_some_and(|look| look.done) && control.rays() == rays, "dimming is developed, not traced");
+    }
+
+    #[test]
+    fn smoothing_shows_less_grain_on_the_way_and_the_same_picture_in_the_end() {
+        let loaded = io::find_preset("three_point").unwrap().load().unwrap();
+        let scene = Arc::new(loaded.scene);
+        let camera = LiveCamera::pinhole(scene.camera_frame(1.5), (48, 32));
+        let looks = |smooth: bool| {
+            let mut pace = LivePace::new(Arc::default()).unwrap();
+            pace.set_smooth(smooth);
+            pace.update(scene.clone(), &loaded.assets, camera).unwrap();
+            let control = Control::new();
+            // Every pixel with one sample: the same picture, whatever the clock says.
+            while pace.picture().stride() != Some(1) {
+                pace.picture.work(1, &control);
+            }
+            let begun = pace.develop();
+            while !pace.picture().is_done() {
+                pace.picture.work(10_000, &control);
+            }
+            (begun, pace.develop())
+        };
+        let ((grainy, plain), (smooth, end)) = (looks(false), looks(true));
+        assert_eq!(plain, end, "what is done is shown as it was traced");
+        let steps = |image: &LiveImage| image.rgb.windows(4).map(|w| u64::from(w[0].abs_diff(w[3]))).sum::<u64>();
+        assert!(steps(&smooth) < steps(&grainy), "{} and {}", steps(&smooth), steps(&grainy));
     }
 }

@@ -19,6 +19,8 @@ pub struct LiveRequest {
     pub assets: Assets,
     /// From where, at which size.
     pub camera: LiveCamera,
+    /// Whether grain is smoothed until the picture is done.
+    pub smooth: bool,
 }
 
 #[derive(Debug, Default)]
@@ -136,6 +138,7 @@ fn trace(shared: &(Mutex<State>, Condvar), mut pace: LivePace, ctx: &Context) {
     while let Some(next) = next(shared, &pace) {
         match next {
             Next::Take(request) => {
+                pace.set_smooth(request.smooth);
                 if let Err(error) = pace.update(request.scene, &request.assets, request.camera) {
                     show(shared, Err(super::files::plain(&error)), ctx);
                 }

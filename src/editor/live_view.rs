@@ -32,6 +32,7 @@ struct Asked {
     revision: u64,
     camera: LiveCamera,
     only_light: Option<LightId>,
+    smooth: bool,
 }
 
 /// The thread, the picture it made last, and what it was asked for.
@@ -104,13 +105,13 @@ impl LiveView {
             LiveCamera::pinhole(frame, size)
         };
         let only_light = look.only_light.filter(|id| document.scene().light(*id).is_some());
-        let asked = Asked { revision: document.revision(), camera, only_light };
+        let asked = Asked { revision: document.revision(), camera, only_light, smooth: look.smooth };
         if self.asked.as_ref() != Some(&asked) {
             let (mut scene, assets) = (document.scene().clone(), document.assets().clone());
             if let Some(only) = only_light {
                 scene.lights.iter_mut().for_each(|light| light.on &= light.id == only);
             }
-            self.job.request(LiveRequest { scene: Arc::new(scene), assets, camera }, ctx);
+            self.job.request(LiveRequest { scene: Arc::new(scene), assets, camera, smooth: look.smooth }, ctx);
             self.asked = Some(asked);
         }
         match self.job.take() {

@@ -46,6 +46,9 @@ pub fn look_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, look: &mut Look, on_
             if ui.add_enabled(!on_processor, checkbox).on_hover_text(tip).changed() {
                 look.gloss = if blinn_phong { Gloss::BlinnPhong } else { Gloss::Ggx };
             }
+            let tip = "The traced view (True) shows smoothed light while it is worked on; settled, it is as traced. Pictures that \
+                       are rendered are never smoothed.";
+            ui.checkbox(&mut look.smooth, "Smooth grain until settled").on_hover_text(tip);
         })
         .response
         .on_hover_text("What the view shows of the studio");

@@ -43,6 +43,8 @@ pub struct Look {
     pub only_light: Option<LightId>,
     /// How surfaces shine.
     pub gloss: Gloss,
+    /// Whether the traced view shows less grain than it has until it has settled.
+    pub smooth: bool,
 }
 
 /// The preview and the texture it draws into.
@@ -174,7 +176,7 @@ impl PreviewHost {
             Stage::Ready(renderer) => renderer.draws_drafts(),
             Stage::Failed(_) => ProcessorView::draws_drafts(size),
         };
-        let Look { channel, only_light, gloss } = self.look;
+        let Look { channel, only_light, gloss, smooth: _ } = self.look;
         // A light that was deleted meanwhile leaves the others as they are.
         let only_light = only_light.filter(|id| document.scene().light(*id).is_some());
         let options = Options { channel, only_light, gloss, overlay_alone, ..Options::default() };

@@ -80,3 +80,18 @@ fn from_a_side_the_depth_channel_tells_near_from_far() {
     // A view from two kilometres away was black all over: its distances are all far.
     assert!(codes.len() > 20 && codes.last().is_some_and(|most| *most > 120), "{codes:?}");
 }
+
+#[test]
+fn grain_is_smoothed_only_when_asked_for() {
+    let Some(mut window) = preset_window() else { return };
+    assert!(!window.state().viewport().preview.look.smooth);
+    choose(&mut window, "Lit", &["Smooth grain until settled"]);
+    assert!(window.state().viewport().preview.look.smooth);
+    run(&mut window, Command::Live(LiveMode::True));
+    let began = Instant::now();
+    while !window.state().viewport().live.has_picture() {
+        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().live.status());
+        window.step();
+    }
+    assert_eq!(undo_depth(&window), 0, "a look is no change of the studio");
+}

@@ -10,6 +10,7 @@ mod change;
 mod history;
 mod live_film;
 mod photons;
+mod smooth;
 #[cfg(test)]
 mod tests;
 mod tile;
@@ -256,6 +257,15 @@ impl LivePicture {
     /// while no more of them are traced.
     pub fn develop_every(&self, scene: &Scene, every: u32) -> Picture {
         self.view.as_ref().map_or_else(Picture::default, |view| view.film.develop(scene, &view.camera, every))
+    }
+
+    /// The same with less grain, by an edge-aware filter: for the eye, while the picture settles. See [`smooth`].
+    pub fn develop_smooth(&self, scene: &Scene, every: u32) -> Picture {
+        let mut picture = self.develop_every(scene, every);
+        if let Some(view) = &self.view {
+            smooth::smooth(&mut picture, &view.film.guides(&view.camera, every));
+        }
+        picture
     }
 
     /// Steps that every tile has done: a coarse grid of paths, a finer one, surfaces at every fourth pixel, every second,

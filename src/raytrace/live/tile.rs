@@ -32,18 +32,21 @@ pub struct Shown {
     /// Width of the surface's gloss: while the view turns by less, what was seen is still about right. Negative for what
     /// another view says nothing of: glass, emitters, the void, edges.
     pub alpha: f32,
+    /// What the texture multiplies the colour by there.
+    pub texture: Vec3,
 }
 
 impl Shown {
     /// Nobody has looked yet.
     const UNKNOWN: u32 = u32::MAX - 2;
     /// The rays leave the studio.
-    const NOTHING: u32 = u32::MAX - 1;
+    pub const NOTHING: u32 = u32::MAX - 1;
     /// The [`Shown::alpha`] of what is never taken over from another view.
     pub const NEVER: f32 = -1.0;
 
     fn nothing(object: u32) -> Self {
-        Shown { position: Vec3::ZERO, normal: Vec3::ZERO, object, material: 0, alpha: Self::NEVER }
+        let (position, normal, texture) = (Vec3::ZERO, Vec3::ZERO, Vec3::ONE);
+        Shown { position, normal, object, material: 0, alpha: Self::NEVER, texture }
     }
 
     /// Whether a ray has found what the pixel shows.
@@ -445,6 +448,7 @@ impl<'a> Brush<'a> {
             object: scene.aggregate.instances()[hit.instance as usize].object,
             material: surface.material,
             alpha: if fixed { Shown::NEVER } else { material.alpha() },
+            texture: material.texture.map_or(Vec3::ONE, |t| scene.textures[t as usize].at(surface.uv)),
         }
     }
 }
