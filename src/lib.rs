@@ -12,6 +12,8 @@
 //!
 //! `live` keeps the tracer at work on a picture while the studio changes: what the window shows as *True*.
 //!
+//! `threads` lets what traces behind a window leave the window its time.
+//!
 //! `truth` sets readings of the meter and of renders beside closed forms: the README's table, and the tests' measure.
 //!
 //! Invariants:
@@ -34,6 +36,7 @@ pub mod photo;
 pub mod raster;
 pub mod raytrace;
 pub mod scene;
+pub mod threads;
 pub mod truth;
 
 #[cfg(feature = "gui")]

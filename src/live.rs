@@ -6,6 +6,7 @@
 use crate::color::ToneTable;
 use crate::raytrace::{Control, GeometryCache, LiveCamera, LivePicture, PrepareError};
 use crate::scene::{Assets, Scene};
+use crate::threads::background_pool;
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -59,9 +60,7 @@ impl LivePace {
     /// When the system gives no threads.
     pub fn new(cache: Arc<GeometryCache>) -> Result<Self, rayon::ThreadPoolBuildError> {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        let pool = |threads: usize| {
-            rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(|i| format!("live {i}")).build()
-        };
+        let pool = |threads: usize| background_pool(threads, "live");
         Ok(LivePace {
             picture: LivePicture::new(cache),
             scene: Arc::default(),

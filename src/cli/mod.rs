@@ -4,6 +4,7 @@
 //! can't, 130 interrupted.
 
 mod bake;
+mod beside;
 mod chart;
 mod check;
 mod crowd;

@@ -1,16 +1,20 @@
 //! `catchlight preview SCENE --traced`: how soon the live traced view shows something, measured without a window.
 
+use super::beside::{FrameWork, Frames};
 use super::{Failure, say};
 use crate::io::{self, Loaded, PictureInfo};
 use crate::live::LivePace;
-use crate::raytrace::{Control, LiveCamera, LivePicture};
+use crate::photo::Picture;
+use crate::raytrace::{self, Control, LiveCamera, LivePicture, Settings};
 use crate::scene::{CameraFrame, Scene};
+use crate::threads::background_pool;
 use anyhow::Context;
 use glam::{Affine3A, Quat, Vec3};
 use serde::Serialize;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Turn of the view from one picture to the next, radians: a slow drag of the mouse.
 const TURN_RAD: f32 = 0.01;
@@ -46,7 +50,17 @@ pub struct TracedReport {
     /// Seconds until every pixel has a sample, and paths a second.
     covered_s: f64,
     mpaths_s: f64,
+    /// What smoothing the grain of a picture takes, on all cores.
+    smoothing_ms: f64,
+    /// Frames of a window that works 8 ms in each, on the same cores: alone, while the view that turns is traced, and
+    /// while a picture is rendered, too.
+    frames_alone: Frames,
+    frames_beside: Frames,
+    frames_beside_render: Frames,
 }
+
+/// How long frames are counted.
+const COUNTED: Duration = Duration::from_secs(3);
 
 /// Measures and prints; with `output`, writes the settled picture.
 pub fn run(loaded: &Loaded, size: (u32, u32), frames: u32, output: Option<&Path>, json: bool) -> Result<(), Failure> {
@@ -141,6 +155,11 @@ impl<'a> Bench<'a> {
         let thing_moved_ms = self.time(frames, |bench| {
             bench.scene.objects.iter_mut().take(1).for_each(|object| object.transform.position.x += STEP_M);
         })?;
+        let smoothing_ms = self.smoothing_ms();
+        let work = FrameWork::new();
+        let frames_alone = work.timed(|| std::thread::sleep(COUNTED));
+        let frames_beside = work.timed(|| self.turn_for(COUNTED));
+        let frames_beside_render = work.timed(|| self.turn_beside_a_render());
         Ok(TracedReport {
             scene: self.scene.name.clone(),
             width: self.size.0,
@@ -157,7 +176,52 @@ impl<'a> Bench<'a> {
             reused,
             covered_s,
             mpaths_s,
+            smoothing_ms,
+            frames_alone,
+            frames_beside,
+            frames_beside_render,
         })
+    }
+
+    /// How much longer a picture takes to develop with its grain smoothed; the quickest of some.
+    fn smoothing_ms(&self) -> f64 {
+        let picture = self.pace.picture();
+        let quickest = |develop: &dyn Fn() -> Picture| {
+            let one = |_| {
+                let began = Instant::now();
+                std::hint::black_box(develop());
+                began.elapsed().as_secs_f64() * 1e3
+            };
+            (0..5).map(one).fold(f64::INFINITY, f64::min)
+        };
+        quickest(&|| picture.develop_smooth(&self.scene, 1)) - quickest(&|| picture.develop(&self.scene))
+    }
+
+    /// Turns the view as a user would, showing every picture.
+    fn turn_for(&mut self, time: Duration) {
+        let began = Instant::now();
+        while began.elapsed() < time {
+            self.frame.world_from_camera = turned(&self.frame.world_from_camera);
+            // The scene has been shown before: it can be shown again.
+            let _ = self.open();
+        }
+    }
+
+    /// The same while all cores render a picture.
+    fn turn_beside_a_render(&mut self) {
+        let control = Control::new();
+        let Ok(prepared) = raytrace::prepare(&self.scene, &self.loaded.assets) else { return };
+        let (width, height) = self.size;
+        let settings = Settings { width, height, spp: 1 << 16, ..Settings::default() };
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                // As the window renders.
+                let Ok(pool) = background_pool(0, "trace") else { return };
+                pool.install(|| raytrace::render(&prepared, &settings, &control, &mut |_| ControlFlow::Continue(())));
+            });
+            self.turn_for(COUNTED);
+            control.cancel();
+        });
     }
 }
 
@@ -178,6 +242,14 @@ impl TracedReport {
             say(format!("{what}: first picture after {median:.0} ms (median of {frames}), 90 % within {most:.0} ms"));
         }
         say(format!("of that, trees and tables {:.0} ms", self.prepared_ms[0]));
+        say(format!("smoothing the grain takes {:.0} ms a picture", self.smoothing_ms));
+        let told = |frames: Frames| format!("{:.0} frames/s, 99 % within {:.0} ms", frames.per_second, frames.most_ms);
+        say(format!(
+            "a window that works 8 ms a frame: alone {}; beside the traced view {}; beside a render, too, {}",
+            told(self.frames_alone),
+            told(self.frames_beside),
+            told(self.frames_beside_render)
+        ));
         say(format!("turned {} times, the view takes over {:.0} % of its pixels", self.frames, self.reused * 100.0));
     }
 }

@@ -6,6 +6,7 @@ use super::dialogs::FileDialogs;
 use super::document::Document;
 use super::files::{PresetInfo, Source, Tasks};
 use super::forecast::{Estimate, Forecast, Forecaster};
+use super::frame_log::FrameLog;
 use super::keys::{BINDINGS, Binding};
 use super::live_view::LiveView;
 use super::meter_job::MeterJob;
@@ -81,6 +82,7 @@ pub struct App {
     started: Instant,
     first_frame: Option<Duration>,
     told_first_view: bool,
+    frame_log: FrameLog,
     /// Why the window has to be opened anew; none while it can draw.
     lost: Option<String>,
     /// When the last device was lost.
@@ -124,6 +126,7 @@ impl App {
             started: options.started,
             first_frame: None,
             told_first_view: false,
+            frame_log: FrameLog::default(),
             lost: None,
             last_loss: None,
         };
@@ -407,6 +410,9 @@ impl eframe::App for App {
             self.leave_window(&ctx, why);
             return;
         }
+        let rendering = if self.rendering.is_running() { ", rendering" } else { "" };
+        let has_input = ctx.input(|i| !i.events.is_empty());
+        self.frame_log.frame(has_input, &format!("{:?} view{rendering}", self.viewport.live.mode));
         let mut out = Vec::new();
         let gesture = self.gesture(&ctx);
         self.take_in(&ctx, &mut out);

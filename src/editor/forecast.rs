@@ -8,6 +8,7 @@
 use super::live_job::lock;
 use crate::raytrace::{self, Control, Film, GeometryCache, Settings};
 use crate::scene::{Assets, Camera, Scene};
+use crate::threads::background_pool;
 use eframe::egui::Context;
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
@@ -195,7 +196,7 @@ fn run(
     settings: &Settings,
     control: &Control,
 ) -> Option<Forecast> {
-    let pool = rayon::ThreadPoolBuilder::new().build().ok()?;
+    let pool = background_pool(0, "pilot").ok()?;
     let began = Instant::now();
     let prepared = pool.install(|| raytrace::prepare_kept(scene, assets, trees)).ok()?;
     let build_s = began.elapsed().as_secs_f64();

@@ -18,6 +18,7 @@ mod document;
 mod files;
 mod floor_handle;
 mod forecast;
+mod frame_log;
 mod gizmo;
 mod held;
 mod history;

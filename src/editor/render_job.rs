@@ -5,6 +5,7 @@ use crate::io;
 use crate::photo::Picture;
 use crate::raytrace::{self, Control, Film, GeometryCache, Method, Settings};
 use crate::scene::{Assets, Scene};
+use crate::threads::background_pool;
 use eframe::egui::{ColorImage, Context};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -184,8 +185,7 @@ fn trace(
     let began = Instant::now();
     io::load_assets(scene, folder.as_deref(), &mut assets);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(|i| format!("trace {i}")).build()
-    {
+    let pool = match background_pool(threads, "trace") {
         Ok(pool) => pool,
         Err(error) => return Phase::Failed(format!("No threads to render with: {error}.")),
     };
