@@ -11,12 +11,12 @@
 use super::bsdf::{Bsdf, Polarisation};
 use super::bvh::Stack;
 use super::caustics::{CausticMap, Gathered, Rival};
+use super::emission::Vertex;
 use super::geometry::Surface;
-use super::lights::{Asked, TracedLight};
+use super::lights::Asked;
 use super::media::Media;
 use super::prepare::RenderScene;
 use super::sampler::{self, Purpose, Sampler};
-use super::visibility::{TOUCHING, reaches};
 use crate::color::luminance;
 use crate::math::Ray;
 use glam::Vec3;
@@ -59,39 +59,14 @@ pub struct Tracer<'a> {
     pub rays: u64,
 }
 
-/// The last vertex that sampled lights, as far as weighting a later hit needs it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Vertex {
-    position: Vec3,
-    normal: Vec3,
-    /// Where the ray left, and how far it has come through thin panes since.
-    left_from: Vec3,
-    travelled: f32,
-    /// Density of the direction that was taken, times the ways that were taken for each sample of the lights; none after
-    /// a mirror, glass or at the camera.
-    pdf: Option<f32>,
-    /// One light was chosen there, if any was sampled; otherwise all were.
-    one_light: bool,
-    /// Photons that bring the same light, where the path went by mirrors and glass.
-    rival: Option<Rival>,
-}
-
-impl Vertex {
-    /// Where a ray begins whose hits have all the weight: nothing else could find them.
-    pub(super) fn new(position: Vec3, normal: Vec3) -> Self {
-        let left_from = position;
-        Vertex { position, normal, left_from, travelled: 0.0, pdf: None, one_light: false, rival: None }
-    }
-}
-
 /// What a path carries from surface to surface.
 #[derive(Clone, Copy, Debug)]
-struct Path {
+pub(super) struct Path {
     ray: Ray,
-    throughput: Vec3,
+    pub(super) throughput: Vec3,
     /// What of the throughput roulette must not see: glass concentrates radiance by its index squared, branches share.
     roulette_scale: f32,
-    media: Media,
+    pub(super) media: Media,
     polarisation: Polarisation,
     vertex: Vertex,
     /// Where the last surface that scatters widely took photons, and all since were such as photons come by.
@@ -99,18 +74,18 @@ struct Path {
     /// Ways that are followed from the surface where it is.
     ways: f32,
     /// Surfaces so far.
-    bounce: u32,
+    pub(super) bounce: u32,
     /// Those of them that are neither mirror nor glass.
-    wide_bounces: u32,
+    pub(super) wide_bounces: u32,
 }
 
 /// Where a path scatters.
 #[derive(Clone, Copy, Debug)]
-struct Place<'a> {
-    surface: &'a Surface,
-    bsdf: &'a Bsdf<'a>,
+pub(super) struct Place<'a> {
+    pub(super) surface: &'a Surface,
+    pub(super) bsdf: &'a Bsdf<'a>,
     /// What the lights give there, where they were asked already.
-    asked: Option<&'a Asked<'a>>,
+    pub(super) asked: Option<&'a Asked<'a>>,
     /// The choice between ways on, where it is made already, 0..1.
     choice: Option<f32>,
     /// From the surface before.
@@ -128,18 +103,6 @@ enum Lights {
     Sampled { ways: f32 },
     /// None could be of use.
     Not,
-}
-
-/// Veach's power heuristic with exponent 2.
-fn power_heuristic(ours: f32, other: f32) -> f32 {
-    // Scaled first: squares of densities overflow near emitters.
-    if other > ours {
-        let r = ours / other;
-        r * r / (1.0 + r * r)
-    } else {
-        let r = other / ours;
-        1.0 / (1.0 + r * r)
-    }
 }
 
 impl<'a> Tracer<'a> {
@@ -382,141 +345,6 @@ impl<'a> Tracer<'a> {
         path.bounce += 1;
         true
     }
-
-    /// The camera sees emitters as solid from the front. True if one hides what is behind it.
-    pub(super) fn camera_sees_emitter(&mut self, ray: &Ray, distance: f32, sink: &mut impl Sink) -> bool {
-        let scene = self.scene;
-        let nearest = scene
-            .lights
-            .iter()
-            .filter(|light| light.visible_to_camera)
-            .filter_map(|light| light.seen_by(ray.origin, ray.direction).map(|seen| (light, seen)))
-            .filter(|(_, seen)| reaches(ray, seen.distance, distance))
-            .min_by(|a, b| a.1.distance.total_cmp(&b.1.distance));
-        let Some((light, seen)) = nearest else { return false };
-        if seen.distance.is_finite() {
-            sink.add(light.layer, light.tint * seen.luminance);
-            return true;
-        }
-        // Sun and surround lie behind everything, and may both be seen.
-        for light in scene.lights.iter().filter(|l| l.visible_to_camera) {
-            if let Some(seen) = light.seen_by(ray.origin, ray.direction) {
-                sink.add(light.layer, light.tint * seen.luminance);
-            }
-        }
-        true
-    }
-
-    /// Emitters that a scattered ray crosses before it ends.
-    pub(super) fn meet_emitters(
-        &mut self,
-        ray: &Ray,
-        distance: f32,
-        throughput: Vec3,
-        vertex: &Vertex,
-        media: &Media,
-        sink: &mut impl Sink,
-    ) {
-        let scene = self.scene;
-        // What lies on the surface is met, too.
-        let end = distance + 2.0 * TOUCHING * (distance + ray.origin.abs().max_element());
-        scene.crossings.each(&scene.lights, &Ray { t_max: end, ..*ray }, &mut self.stack, |index, seen| {
-            if !reaches(ray, seen.distance, distance) {
-                return;
-            }
-            let light = &scene.lights[index as usize];
-            let weight = match vertex.pdf {
-                None if light.is_sampled() => vertex.rival.map_or(1.0, |rival| {
-                    let pdf = light.pdf(vertex.left_from, ray.direction, vertex.travelled + seen.distance);
-                    let chance = scene.chooser.chance(&scene.lights, index, vertex.position, rival.normal());
-                    rival.weight_of_path(&scene.casters, ray.direction, pdf * chance)
-                }),
-                Some(pdf) if light.is_sampled() => {
-                    let choice = if vertex.one_light {
-                        scene.chooser.chance(&scene.lights, index, vertex.position, vertex.normal)
-                    } else {
-                        1.0
-                    };
-                    let other = light.pdf(vertex.left_from, ray.direction, vertex.travelled + seen.distance);
-                    power_heuristic(pdf, choice * other)
-                }
-                _ => 1.0,
-            };
-            let mut left = throughput;
-            if seen.distance.is_finite() {
-                left *= media.transmittance(&scene.materials, seen.distance);
-            }
-            sink.add(light.layer, left * light.tint * (seen.luminance * weight));
-        });
-    }
-
-    /// Whether all lights are sampled where a path is now; otherwise one is chosen.
-    fn samples_all(&self, path: &Path) -> bool {
-        self.scene.lights.len() == 1 || (path.wide_bounces == 0 && self.scene.plan().sample_all_lights)
-    }
-
-    /// Light sampling at a surface from which so many `ways` are taken: all lights, or one chosen by what it gives.
-    fn sample_lights(
-        &mut self,
-        path: &Path,
-        place: &Place<'_>,
-        sampler: &Sampler,
-        first_set: &sampler::Set,
-        ways: f32,
-        sink: &mut impl Sink,
-    ) {
-        let scene = self.scene;
-        if self.samples_all(path) {
-            for (slot, light) in scene.lights.iter().enumerate().filter(|(_, l)| l.is_sampled()) {
-                let slot = slot as u32;
-                let set =
-                    if slot == 0 { *first_set } else { sampler.set(Purpose::Light { slot, bounce: path.bounce }) };
-                self.sample_light(light, 1.0, path, place, &set, ways, sink);
-            }
-            return;
-        }
-        let choice = sampler::rest(first_set)[0];
-        let chosen = match place.asked {
-            Some(asked) => asked.choose(&scene.lights, choice),
-            None => self.ask_lights(place).as_ref().and_then(|asked| asked.choose(&scene.lights, choice)),
-        };
-        if let Some((light, chance)) = chosen {
-            self.sample_light(&scene.lights[light as usize], chance, path, place, first_set, ways, sink);
-        }
-    }
-
-    /// What the lights give at a surface.
-    fn ask_lights(&self, place: &Place<'_>) -> Option<Asked<'a>> {
-        self.scene.chooser.ask(&self.scene.lights, place.surface.position, place.bsdf.normal())
-    }
-
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "called in two places; what it needs of the path's state has no name"
-    )]
-    fn sample_light(
-        &mut self,
-        light: &TracedLight,
-        choice: f32,
-        path: &Path,
-        place: &Place<'_>,
-        set: &sampler::Set,
-        ways: f32,
-        sink: &mut impl Sink,
-    ) {
-        let Place { surface, bsdf, .. } = *place;
-        let Some(sample) = light.sample(surface.position, sampler::point(set)) else { return };
-        let (value, pdf) = bsdf.eval(sample.direction);
-        if value == Vec3::ZERO {
-            return;
-        }
-        let weight = sample.pdf.map_or(1.0, |light_pdf| power_heuristic(light_pdf * choice, pdf * ways));
-        let origin = surface.leave(sample.direction);
-        let visible = self.visibility(origin, sample.direction, sample.distance, sample.pdf.is_some(), path.media);
-        if visible != Vec3::ZERO {
-            sink.add(light.layer, path.throughput * visible * value * light.tint * (sample.value * weight / choice));
-        }
-    }
 }
 
 /// Russian roulette by what is left of the light, without a `scale` that says nothing about it.
@@ -535,18 +363,4 @@ pub(super) fn survives(throughput: &mut Vec3, scale: f32, bounce: u32, u: f32) -
     }
     *throughput /= chance;
     luminance(*throughput).is_finite()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_two_techniques_share_one_estimate() {
-        for (a, b) in [(1.0, 1.0), (1e-20, 3.0), (1e30, 1e30), (2.0, 0.0)] {
-            let sum = power_heuristic(a, b) + power_heuristic(b, a);
-            assert!((sum - 1.0).abs() < 1e-6, "{a} {b}: {sum}");
-        }
-        assert_eq!(power_heuristic(1.0, f32::INFINITY), 0.0);
-    }
 }

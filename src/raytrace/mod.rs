@@ -7,6 +7,7 @@ mod aggregate;
 mod bsdf;
 mod bvh;
 mod caustics;
+mod emission;
 mod film;
 mod geometry;
 mod geometry_cache;

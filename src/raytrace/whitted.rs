@@ -7,8 +7,9 @@
 //! The units are those of the path tracer.
 
 use super::bsdf::{fresnel, pane_transmittance};
+use super::emission::Vertex;
 use super::geometry::Surface;
-use super::integrator::{Sink, Tracer, Vertex};
+use super::integrator::{Sink, Tracer};
 use super::media::Media;
 use crate::math::Ray;
 use glam::Vec3;
