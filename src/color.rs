@@ -127,8 +127,8 @@ pub fn display_srgb8(rgb: [f32; 3]) -> [u8; 3] {
     rgb.map(|c| (srgb_encode(tone_curve(c)) * 255.0 + 0.5) as u8)
 }
 
-/// Tone curve and sRGB encoding by table, to one code of 255: for pictures that are shown while they change, as the curve
-/// has a power in it.
+/// Tone curve and sRGB encoding by table, to one code of 255: for pictures that are shown while they change, as the
+/// curve has a power in it.
 #[derive(Debug)]
 pub struct ToneTable(Vec<u8>);
 

@@ -3,8 +3,8 @@
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use thread_priority::{ThreadPriority, ThreadPriorityValue, set_current_thread_priority};
 
-/// Priority of a thread in the background, of 100: niceness 9 on Linux. Against a window's thread it gets an eighth of a
-/// core that both want, and all of one that nobody else wants.
+/// Priority of a thread in the background, of 100: niceness 9 on Linux. Against a window's thread it gets an eighth of
+/// a core that both want, and all of one that nobody else wants.
 const BACKGROUND: u8 = 25;
 
 /// A pool of so many threads whose names begin with `name`, behind those of the window.

@@ -60,8 +60,8 @@ impl Document {
         self.path.as_deref().and_then(Path::parent)
     }
 
-    /// Another number after every change of scene or assets, and for every studio that is opened: what is shown is up to
-    /// date when it was made from this number.
+    /// Another number after every change of scene or assets, and for every studio that is opened: what is shown is up
+    /// to date when it was made from this number.
     pub fn revision(&self) -> u64 {
         self.revision
     }

@@ -178,8 +178,8 @@ pub fn save(document: &Document, path: &Path) -> Result<(), String> {
     io::save_scene(document.scene(), path).map_err(|e| plain(&e))
 }
 
-/// Writes what is not saved to a new file beside the studio's own, or into the user's folder; the studio's own stays as it
-/// is. Returns the file; none if there is nothing to save, or nowhere.
+/// Writes what is not saved to a new file beside the studio's own, or into the user's folder; the studio's own stays as
+/// it is. Returns the file; none if there is nothing to save, or nowhere.
 pub fn rescue(document: &Document) -> Option<PathBuf> {
     let home = || directories::UserDirs::new().map(|dirs| dirs.home_dir().to_owned());
     let folder = document.folder().map(Path::to_owned).or_else(home).unwrap_or_else(std::env::temp_dir);

@@ -1,5 +1,5 @@
-//! The menu in the corner of the view: which channel of the preview it shows, which light alone, how things shine; and the
-//! legend of illuminance in false colour.
+//! The menu in the corner of the view: which channel of the preview it shows, the light of which lamp, how things shine;
+//! and the legend of illuminance in false colour.
 
 use super::preview_host::Look;
 use crate::photo::exposure;
@@ -11,8 +11,8 @@ use std::f32::consts::PI;
 /// Size of a stop's colour in the legend, points.
 const SWATCH: (f32, f32) = (22.0, 18.0);
 
-/// Draws the menu over the upper left corner of the view and changes `look` as it is used. Where the processor draws the
-/// view (`on_processor`) it has neither channels nor a choice of highlights.
+/// Draws the menu over the upper left corner of the view and changes `look` as it is used. Where the processor draws
+/// the view (`on_processor`) it has neither channels nor a choice of highlights.
 pub fn look_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, look: &mut Look, on_processor: bool) {
     if on_processor {
         (look.channel, look.gloss) = (Channel::Lit, Gloss::Ggx);
@@ -38,7 +38,8 @@ pub fn look_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, look: &mut Look, on_
                 }
             });
             lights.response.on_hover_text(
-                "One light's share, in this view alone: meter and pictures keep them all. Solo (O) switches the others off.",
+                "One light's share, in this view alone: meter and pictures keep them all. \
+                 Solo (O) switches the others off.",
             );
             let mut blinn_phong = look.gloss == Gloss::BlinnPhong;
             let tip = "Quicker highlights without the emitter's shape, instead of GGX";
@@ -46,8 +47,8 @@ pub fn look_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, look: &mut Look, on_
             if ui.add_enabled(!on_processor, checkbox).on_hover_text(tip).changed() {
                 look.gloss = if blinn_phong { Gloss::BlinnPhong } else { Gloss::Ggx };
             }
-            let tip = "The traced view (True) shows smoothed light while it is worked on; settled, it is as traced. Pictures that \
-                       are rendered are never smoothed.";
+            let tip = "The traced view (True) shows smoothed light while it is worked on; settled, it is as traced. \
+                       Pictures that are rendered are never smoothed.";
             ui.checkbox(&mut look.smooth, "Smooth grain until settled").on_hover_text(tip);
         })
         .response

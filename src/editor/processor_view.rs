@@ -1,5 +1,5 @@
-//! The studio as the processor draws it where there is no graphics device for that: `raster`'s picture, without shadows,
-//! with everything over it that the preview draws over its own.
+//! The studio as the processor draws it where there is no graphics device for that: `raster`'s picture, without
+//! shadows, with everything over it that the preview draws over its own.
 
 use super::canvas::Canvas;
 use crate::color::ToneTable;
