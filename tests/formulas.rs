@@ -13,7 +13,9 @@ use catchlight::scene::{
 use glam::Vec3;
 use std::f64::consts::PI;
 use studio::light;
-use studio::measure::{illuminance, luminance_per_value, meter_card, picture, square, values};
+use studio::measure::{
+    illuminance, illuminance_by_paths, illuminance_over, luminance_per_value, meter_card, picture, square, values,
+};
 use studio::statistics::Estimate;
 
 /// Ours is right, the wrong one is not, by the same limit (a share of the truth).
@@ -289,17 +291,25 @@ fn direct_leaves_out_the_bounced_light_and_nothing_else() {
 }
 
 #[test]
-fn a_point_through_a_glass_ball_has_no_caustic_and_no_black_shadow() {
-    // README, "where each method fails": light of a point goes straight through curved glass. Right behind a ball a real
-    // caustic is many times brighter than the open light; ours is what two faces let through, 4 % each.
+fn a_point_through_a_glass_ball_is_focused_by_photons_and_goes_straight_without() {
+    // README, "where each method fails": without photons, light of a point goes straight through curved glass. At the
+    // focus of a ball a real caustic is many times brighter than the open light; ours is what two faces let through, 4 %
+    // each. With them, it is what a ball lens does: f = n R / (2 (n - 1)) = 15 cm from its centre, so that the lamp in
+    // 2.6 m is sharp 15.92 cm behind it. At 40 cm the beam is 0.4 / 0.1592 - 1 = 1.513 times as wide as the ball took it
+    // in.
     let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
     scene.lights.push(light(Emitter::Point, Output::Lumens(1e4), Vec3::Z * 3.0));
     let open = illuminance(&scene, &square(Method::Path, 4, 16)).mean;
     let glass = Material { transmission: 1.0, roughness: 0.0, ior: 1.5, ..Material::default() };
     scene.objects.push(thing("Ball", Shape::Sphere { radius_m: 0.1 }, glass, Vec3::Z * 0.4, Vec3::ZERO));
-    let ours = illuminance(&scene, &square(Method::Path, 4, 64)).mean / open;
+    let ours = illuminance_by_paths(&scene, &square(Method::Path, 4, 64)).mean / open;
     let pane = studio::closed_forms::pane(0.0, 1.5);
     assert!((ours - pane).abs() < 0.01, "{ours} of the open light for {pane}");
+    scene.objects[0].shape = Shape::Plane { width_m: 0.3, depth_m: 0.3 };
+    let Estimate { mean, error } = illuminance_over(16, &scene, &square(Method::Path, 4, 64));
+    let lens = (3.0 / 2.6 / 1.513_f64).powi(2) * 0.96_f64.powi(2);
+    let ours = mean / open;
+    assert!((ours / lens - 1.0).abs() < 0.04 && error / mean < 0.01, "{ours} of the open light for {lens}, {error}");
 }
 
 #[test]

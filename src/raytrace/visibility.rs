@@ -14,9 +14,11 @@ const CLEAR_SURFACES: u32 = 64;
 /// at five metres. Emitters may lie on a surface (a panel on the wall, a lamp on the ceiling) and are seen all the same.
 pub(super) const TOUCHING: f32 = 32.0 * f32::EPSILON;
 
-/// Cosine between directions, or between the normals of a pane's faces, that are the same: photons do not bring what goes on
-/// as it came, and light sampling nothing else.
-pub(super) const PARALLEL: f32 = 1.0 - 1e-6;
+/// Whether directions, or the normals of a pane's faces, lie on one line but for rounding (3 microradians): photons do not
+/// bring what goes on as it came, and light sampling nothing else.
+pub(super) fn are_parallel(a: Vec3, b: Vec3) -> bool {
+    a.cross(b).length_squared() < 1e-11
+}
 
 impl Tracer<'_> {
     /// The closest surface.
@@ -62,7 +64,7 @@ impl Tracer<'_> {
             if surface.sheet {
                 passed *= pane_transmittance(cos, material.ior());
             } else {
-                if self.has_caustics() && last_face.is_some_and(|face| face.dot(surface.normal).abs() < PARALLEL) {
+                if self.has_caustics() && last_face.is_some_and(|face| !are_parallel(face, surface.normal)) {
                     return Vec3::ZERO;
                 }
                 last_face = Some(surface.normal);

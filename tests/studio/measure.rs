@@ -7,7 +7,7 @@ use super::closed_forms::vec3;
 use super::statistics::Estimate;
 use super::{REFLECTANCE, looking_at_card, object};
 use catchlight::photo::Picture;
-use catchlight::raytrace::{self, Control, Film, Method, Settings};
+use catchlight::raytrace::{self, Control, Film, Method, Settings, Shortcut};
 use catchlight::scene::{Assets, Camera, Scene, Shape};
 use glam::{DVec3, Quat, Vec3};
 use std::ops::ControlFlow;
@@ -59,6 +59,16 @@ pub fn values(picture: &Picture) -> Estimate {
 /// What a meter at the card reads, lux.
 pub fn illuminance(scene: &Scene, settings: &Settings) -> Estimate {
     let Estimate { mean, error } = values(&picture(scene, settings));
+    let scale = lux_per_value(&scene.camera);
+    Estimate { mean: mean * scale, error: error * scale }
+}
+
+/// The same without photons.
+pub fn illuminance_by_paths(scene: &Scene, settings: &Settings) -> Estimate {
+    let mut prepared = raytrace::prepare(scene, &Assets::default()).unwrap();
+    prepared.set_plan(prepared.plan().clone().without(Shortcut::Photons));
+    let film = raytrace::render(&prepared, settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+    let Estimate { mean, error } = values(&film.develop(scene));
     let scale = lux_per_value(&scene.camera);
     Estimate { mean: mean * scale, error: error * scale }
 }

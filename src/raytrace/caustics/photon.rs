@@ -7,7 +7,7 @@ use crate::raytrace::geometry::Surface;
 use crate::raytrace::integrator::{Tracer, survives};
 use crate::raytrace::media::Media;
 use crate::raytrace::sampler::{self, Purpose, Sampler};
-use crate::raytrace::visibility::PARALLEL;
+use crate::raytrace::visibility::are_parallel;
 use glam::Vec3;
 
 /// Light that arrives at a surface.
@@ -130,7 +130,7 @@ impl Tracer<'_> {
             surface = scene.aggregate.surface(&hit);
             from = -sample.direction;
             // Light sampling goes there by itself.
-            let is_straight = !sized && !reflected && from.dot(to_light) > PARALLEL;
+            let is_straight = !sized && !reflected && are_parallel(from, to_light);
             if !is_straight && scene.materials[surface.material as usize].scatters_widely() {
                 let cos = from.dot(surface.geometric_normal);
                 let flux = photon.flux * left / cos.abs().max(LEAST_COSINE);
