@@ -3,7 +3,7 @@
 use crate::raytrace::aggregate::{Aggregate, Hit};
 use crate::raytrace::bsdf::Surfacing;
 use crate::raytrace::triangle::TriangleHit;
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 
 /// Triangles of mirrors and clear glass.
 #[derive(Debug, Default)]
@@ -60,13 +60,4 @@ impl Casters {
         let barycentric = if u.x + u.y < 1.0 { [u.x, u.y] } else { [1.0 - u.x, 1.0 - u.y] };
         Some(Hit { instance, triangle: TriangleHit { t: 0.0, triangle, barycentric } })
     }
-}
-
-/// What reflection about an interpolated normal does to a beam that the paths from the camera do not see (Veach 1997,
-/// section 5.3): `from` and `to` are the directions to the light and onwards.
-pub fn shading_correction(from: Vec3, to: Vec3, normal: Vec3, geometric_normal: Vec3) -> f32 {
-    let cosines = |normal: Vec3| (from.dot(normal).abs(), to.dot(normal).abs());
-    let ((from_s, to_s), (from_g, to_g)) = (cosines(normal), cosines(geometric_normal));
-    let denominator = from_g * to_s;
-    if denominator > 1e-6 { from_s * to_g / denominator } else { 0.0 }
 }

@@ -1,6 +1,5 @@
 //! The way of one photon: from a lamp to a mirror or glass, and on until it comes to rest.
 
-use super::casters::shading_correction;
 use crate::math::Ray;
 use crate::raytrace::bsdf::Polarisation;
 use crate::raytrace::geometry::Surface;
@@ -131,12 +130,21 @@ impl Tracer<'_> {
             from = -sample.direction;
             // Light sampling goes there by itself.
             let is_straight = !sized && !reflected && are_parallel(from, to_light);
-            if !is_straight && scene.materials[surface.material as usize].scatters_widely() {
-                let cos = from.dot(surface.geometric_normal);
+            let cos = from.dot(surface.geometric_normal);
+            if !is_straight && cos != 0.0 && scene.materials[surface.material as usize].scatters_widely() {
                 let flux = photon.flux * left / cos.abs().max(LEAST_COSINE);
                 let normal = surface.geometric_normal * cos.signum();
                 found.push(Photon { position: surface.position, direction: from, normal, flux, bends, ..photon });
             }
         }
     }
+}
+
+/// What reflection about an interpolated normal does to a beam that the paths from the camera do not see (Veach 1997,
+/// section 5.3): `from` and `to` are the directions to the light and onwards.
+pub fn shading_correction(from: Vec3, to: Vec3, normal: Vec3, geometric_normal: Vec3) -> f32 {
+    let cosines = |normal: Vec3| (from.dot(normal).abs(), to.dot(normal).abs());
+    let ((from_s, to_s), (from_g, to_g)) = (cosines(normal), cosines(geometric_normal));
+    let denominator = from_g * to_s;
+    if denominator > 1e-6 { from_s * to_g / denominator } else { 0.0 }
 }

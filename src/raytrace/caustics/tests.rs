@@ -1,4 +1,4 @@
-use super::casters::shading_correction;
+use super::photon::shading_correction;
 use super::*;
 use crate::math::statistics::Numbers;
 use crate::raytrace::{Settings, prepare, render};
