@@ -21,6 +21,7 @@ use super::render_job::Outcome;
 use super::rendering::Rendering;
 use super::selection::Selection;
 use super::session::Session;
+use super::thumbnails::Thumbnails;
 use super::toasts::Toasts;
 use super::viewport::{Viewport, ViewportInput};
 use super::{files, theme};
@@ -74,6 +75,7 @@ pub struct App {
     pub(super) show_help: bool,
     pub(super) presets: Vec<PresetInfo>,
     shelf: Shelf,
+    thumbnails: Thumbnails,
     picture_view: PictureView,
     /// Number of the last press of mouse or key: what is dragged in one press is one undo step.
     pub(super) gesture: u64,
@@ -119,6 +121,7 @@ impl App {
             show_help: false,
             presets,
             shelf: Shelf::Lights,
+            thumbnails: Thumbnails::default(),
             picture_view: PictureView::default(),
             gesture: 0,
             told_failure: false,
@@ -150,6 +153,7 @@ impl App {
         self.viewport.preview.move_to(creation.wgpu_render_state.as_ref(), ctx);
         self.viewport.live.move_to(ctx);
         self.rendering.move_to(ctx);
+        self.thumbnails.renew(ctx);
         let why = self.lost.take().unwrap_or_default();
         let news = "The graphics device was lost and the window was opened anew; the studio is as you left it.";
         if self.last_loss.replace(Instant::now()).is_some_and(|last| last.elapsed() < SOON) {
@@ -211,6 +215,11 @@ impl App {
     /// The readings of the studio's light meter.
     pub fn meter(&self) -> &MeterJob {
         &self.meter
+    }
+
+    /// The pictures of what can be chosen.
+    pub fn thumbnails(&self) -> &Thumbnails {
+        &self.thumbnails
     }
 
     /// The title of the window.
@@ -337,7 +346,7 @@ impl App {
         Panel::left("things").frame(side).default_size(270.0).size_range(200.0..=420.0).show(ui, |ui| {
             let add_height = (ui.available_height() * 0.46).max(120.0);
             Panel::top("add").frame(Frame::new()).default_size(add_height).resizable(true).show(ui, |ui| {
-                add::add_ui(ui, &mut self.shelf, out);
+                add::add_ui(ui, &mut self.shelf, &mut self.thumbnails, out);
             });
             outliner::outliner_ui(ui, &self.document, &self.selection, &mut self.outliner, out);
         });
@@ -418,9 +427,7 @@ impl eframe::App for App {
         self.take_in(&ctx, &mut out);
         self.shortcuts(&ctx, &mut out);
         let middle = self.panels(ui, &mut out);
-        let presets = std::mem::take(&mut self.presets);
-        self.picker.ui(&ctx, &presets, &mut out);
-        self.presets = presets;
+        self.picker.ui(&ctx, &self.presets, &mut self.thumbnails, &mut out);
         help::help_ui(&ctx, &mut self.show_help);
         self.ask(&ctx, &mut out);
         self.drop_hint(&ctx);

@@ -40,6 +40,11 @@ impl Canvas {
         *self = Canvas::default();
     }
 
+    /// Pixels of the picture.
+    pub fn size(&self) -> Option<[usize; 2]> {
+        self.image.as_ref().map(|image| image.size)
+    }
+
     /// The texture, when there is a picture.
     pub fn id(&self) -> Option<TextureId> {
         self.texture.as_ref().map(TextureHandle::id)

@@ -51,6 +51,7 @@ mod swing;
 mod swing_drag;
 mod switches;
 mod theme;
+mod thumbnails;
 mod toasts;
 mod typed;
 mod units;
@@ -71,6 +72,7 @@ pub use rendering::{PictureSize, Quality, RenderSettings, Rendering};
 pub use selection::Selection;
 pub use studio_view::{Side, StudioView};
 pub use swing::Swing;
+pub use thumbnails::{Thumbnail, Thumbnails};
 pub use toasts::{Toasts, Tone};
 pub use viewport::Viewport;
 

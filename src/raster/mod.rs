@@ -1,12 +1,12 @@
 //! The software renderer: a z-buffer on the processor, the first rung of the ladder and the preview without an adapter.
 //!
 //! World -> clip space ([`world`]) -> inside the six planes ([`clip`]) -> sub-pixel screen positions and exact edges
-//! ([`fill`]) -> one shading of each pixel that is left, eight at a time ([`shade`]), all parallel over
-//! rayon. Pictures have the exposure
-//! and the scene-linear units of every other rung.
+//! ([`fill`]) -> one shading of each pixel that is left, eight at a time ([`shade`]), all parallel over rayon. Pictures
+//! have the exposure and the scene-linear units of every other rung.
 //!
-//! Models visibility and direct light. Leaves out shadows, reflections and bounces; panels shine as from their middle,
-//! with a term that keeps a disc exact on its axis, however near; emitters themselves are not drawn.
+//! Models visibility and direct light. Leaves out shadows, bounces and all reflections but an even surround's; panels
+//! shine as from their middle, with a term that keeps a disc exact on its axis, however near; emitters themselves are
+//! not drawn.
 
 mod clip;
 mod fill;

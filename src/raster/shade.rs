@@ -196,7 +196,9 @@ impl<'a> Shader<'a> {
         // The side that is seen.
         let face = points.face.towards(view);
         let normal = points.normal.towards(face).normalize_or_zero();
-        let mut lit = Lit { matte: Vec3x8::splat(self.lights.ambient), glossy: Vec3x8::ZERO };
+        // An even surround: its mirror image is as bright everywhere.
+        let surround = Vec3x8::splat(self.lights.ambient / PI);
+        let mut lit = Lit { matte: Vec3x8::splat(self.lights.ambient), glossy: finishes.f0.tinted(surround) };
         for light in &self.lights.lights {
             let (direction, factor) = light.at(points.point);
             let cos = normal.dot(direction).fast_max(f32x8::ZERO);

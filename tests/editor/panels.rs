@@ -78,6 +78,30 @@ fn a_figure_from_the_list_comes_with_its_mesh_and_is_aimed_at() {
 }
 
 #[test]
+fn shelves_and_the_list_of_studios_fill_with_pictures() {
+    let Some(mut window) = preset_window() else { return };
+    let wait_for = |window: &mut Window, count: usize| {
+        let began = Instant::now();
+        while window.state().thumbnails().drawn() < count {
+            assert!(began.elapsed() < PATIENCE, "{} of {count}", window.state().thumbnails().drawn());
+            std::thread::sleep(Duration::from_millis(5));
+            window.step();
+        }
+    };
+    assert_eq!(window.state().thumbnails().drawn(), 0, "nothing is drawn before it is looked at");
+    click(&mut window, "Figures");
+    let figures = window.query_all_by(|node| node.label().is_some_and(|l| l.starts_with("Add "))).count();
+    wait_for(&mut window, figures);
+    press(&mut window, Modifiers::COMMAND, Key::N);
+    let studios = catchlight::io::presets().len();
+    wait_for(&mut window, figures + studios);
+    let drawn = window.state().thumbnails().drawn();
+    click(&mut window, "Cancel");
+    click(&mut window, "Figures");
+    assert_eq!(window.state().thumbnails().drawn(), drawn, "what is drawn is kept");
+}
+
+#[test]
 fn every_preset_opens_and_every_panel_draws() {
     let Some(mut window) = preset_window() else { return };
     for index in 0..catchlight::io::presets().len() {

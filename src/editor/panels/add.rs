@@ -2,12 +2,13 @@
 
 use crate::editor::catalog::{Entry, Kind, Shelf, entries};
 use crate::editor::command::Command;
+use crate::editor::thumbnails::{THING_POINTS, Thumbnails};
 use crate::editor::{theme, widgets};
 use crate::scene::{Emitter, MaterialPreset};
 use eframe::egui::{self, Button, Color32, CornerRadius, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, vec2};
 
 /// Draws the list; `shelf` is the one on show.
-pub fn add_ui(ui: &mut Ui, shelf: &mut Shelf, out: &mut Vec<Command>) {
+pub fn add_ui(ui: &mut Ui, shelf: &mut Shelf, thumbnails: &mut Thumbnails, out: &mut Vec<Command>) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         ui.label(RichText::new("Add").strong());
@@ -34,7 +35,7 @@ pub fn add_ui(ui: &mut Ui, shelf: &mut Shelf, out: &mut Vec<Command>) {
     ScrollArea::vertical().id_salt("add list").auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         for entry in entries(*shelf) {
-            if entry_ui(ui, entry) {
+            if entry_ui(ui, entry, thumbnails) {
                 out.push(Command::Place(Box::new(entry.make())));
             }
         }
@@ -50,11 +51,17 @@ fn shelf_tip(shelf: Shelf) -> &'static str {
     }
 }
 
-fn entry_ui(ui: &mut Ui, entry: &Entry) -> bool {
+fn entry_ui(ui: &mut Ui, entry: &'static Entry, thumbnails: &mut Thumbnails) -> bool {
+    // Lights have a drawing: what they look like tells less of them than their shape and size.
+    let side = if matches!(entry.kind, Kind::Light(..)) { 20.0 } else { THING_POINTS };
     ui.horizontal(|ui| {
-        let (icon, _) = ui.allocate_exact_size(vec2(20.0, 20.0), Sense::hover());
-        paint_icon(ui.painter(), icon, &entry.kind);
-        let button = Button::new(entry.name).frame_when_inactive(false).min_size(vec2(ui.available_width(), 22.0));
+        let (icon, _) = ui.allocate_exact_size(vec2(side, side), Sense::hover());
+        match thumbnails.thing(ui.ctx(), entry) {
+            Some(picture) => picture.paint(ui, icon),
+            None => paint_icon(ui.painter(), icon, &entry.kind),
+        }
+        let size = vec2(ui.available_width(), side.max(22.0));
+        let button = Button::new(entry.name).frame_when_inactive(false).min_size(size);
         let button = ui.add(button.right_text(RichText::new("+").weak()));
         widgets::named(ui, &button, &format!("Add {}", entry.name));
         button.on_hover_text(format!("Add: {}", entry.tip)).clicked()

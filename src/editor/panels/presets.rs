@@ -2,8 +2,9 @@
 
 use crate::editor::command::Command;
 use crate::editor::files::PresetInfo;
+use crate::editor::thumbnails::{STUDIO_POINTS, Thumbnail, Thumbnails};
 use crate::editor::widgets;
-use eframe::egui::{self, Button, Key, Modifiers, RichText, ScrollArea, Ui};
+use eframe::egui::{self, Atom, Button, Key, Modifiers, RichText, ScrollArea, Ui, vec2};
 
 /// Which studio of the list is marked; none while the list is closed.
 #[derive(Clone, Copy, Debug, Default)]
@@ -23,7 +24,13 @@ impl PresetPicker {
     }
 
     /// Draws the list.
-    pub fn ui(&mut self, ctx: &egui::Context, presets: &[PresetInfo], out: &mut Vec<Command>) {
+    pub fn ui(
+        &mut self,
+        ctx: &egui::Context,
+        presets: &[PresetInfo],
+        thumbnails: &mut Thumbnails,
+        out: &mut Vec<Command>,
+    ) {
         let Some(mut marked) = self.marked else { return };
         let before = marked;
         let mut choice = None;
@@ -39,16 +46,16 @@ impl PresetPicker {
         }
         let by_key = marked != before;
         let modal = widgets::dialog(ctx, "presets").show(ctx, |ui| {
-            ui.set_width(520.0);
+            ui.set_width(560.0);
             ui.heading("New from preset");
             ui.label(
                 RichText::new("Each is a lit studio to start from. Your own file comes into being when you save.")
                     .weak(),
             );
             ui.separator();
-            ScrollArea::vertical().max_height(420.0).show(ui, |ui| {
+            ScrollArea::vertical().max_height(520.0).show(ui, |ui| {
                 for (i, preset) in presets.iter().enumerate() {
-                    let response = preset_row(ui, preset, i == marked);
+                    let response = preset_row(ui, preset, thumbnails.studio(ctx, i), i == marked);
                     if response.clicked() {
                         marked = i;
                     }
@@ -79,17 +86,22 @@ impl PresetPicker {
     }
 }
 
-fn preset_row(ui: &mut Ui, preset: &PresetInfo, marked: bool) -> egui::Response {
-    let mut text = egui::text::LayoutJob::default();
+/// A row with the studio's picture, its name and what it is for.
+fn preset_row(ui: &mut Ui, preset: &PresetInfo, picture: Option<Thumbnail>, marked: bool) -> egui::Response {
     let (name, line) = (egui::TextStyle::Button.resolve(ui.style()), egui::TextStyle::Small.resolve(ui.style()));
     let visuals = ui.visuals();
     let name_color = if marked { visuals.selection.stroke.color } else { visuals.strong_text_color() };
+    let mut text = egui::text::LayoutJob::default();
     text.append(&preset.name, 0.0, egui::TextFormat::simple(name, name_color));
     text.append("\n", 0.0, egui::TextFormat::default());
     text.append(&preset.description, 0.0, egui::TextFormat::simple(line, visuals.weak_text_color()));
-    text.wrap.max_width = ui.available_width() - 20.0;
-    let button = Button::selectable(marked, text).min_size(egui::vec2(ui.available_width(), 40.0)).wrap();
-    let response = ui.add(button);
+    text.wrap.max_width = ui.available_width() - STUDIO_POINTS - 40.0;
+    // Upright and wide pictures stand in squares of one size, so that the names stand under each other.
+    let picture = Atom::paint(egui::Vec2::splat(STUDIO_POINTS), move |ui, place| {
+        picture.iter().for_each(|picture| picture.paint(ui, place.rect));
+    });
+    let size = vec2(ui.available_width(), STUDIO_POINTS + 8.0);
+    let response = ui.add(Button::selectable(marked, (picture, text)).min_size(size));
     widgets::named(ui, &response, &preset.name);
     response
 }
