@@ -25,6 +25,7 @@ mod pipelines;
 mod renderer;
 mod scene_buffers;
 mod shaders;
+mod shadow_focus;
 mod shadow_layers;
 mod shadow_maps;
 mod shadow_mask;

@@ -13,6 +13,7 @@ use super::overlay_pass::{self, OverlayPass};
 use super::pick::WaitingPick;
 use super::pipelines::{GeometryPipelines, Layouts, LightingVariant, MaskPipelines};
 use super::scene_buffers::{GpuFrame, LIGHTS_BYTES, SceneBuffers};
+use super::shadow_focus::Seen;
 use super::shadow_layers::StaleMap;
 use super::shadow_maps::{ShadowMaps, Side};
 use super::shadow_mask::ShadowMasks;
@@ -205,7 +206,8 @@ impl PreviewRenderer {
         let needs_light = channel.is_lit() && !overlay_alone;
         let casters: &[_] = if input.options.shadows && needs_light { &list.casters } else { &[] };
         let draft = input.options.draft && self.on_processor && output == Output::Display;
-        let mut plan = ShadowPlan::new(&table, casters, !draft);
+        let seen = Seen::new(&input.frame, casters, input.scene.room.as_ref());
+        let mut plan = ShadowPlan::new(&table, casters, &seen, !draft);
         let resolution = input.options.shadow_resolution;
         let stale = self.shadow_maps.place(&self.device, &self.queue, &mut plan, &list, resolution);
         self.redrawn_maps = stale.len();

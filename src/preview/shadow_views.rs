@@ -3,6 +3,7 @@
 
 use super::draw_list::Caster;
 use super::light_table::{GpuLight, Kind, LightTable};
+use super::shadow_focus::Seen;
 use super::shadow_layers::{Owner, Run, View};
 use super::shadow_parts::{MOST_PARTS, parts};
 use bytemuck::{Pod, Zeroable};
@@ -16,6 +17,8 @@ pub(super) const MAX_SHADOWS: usize = 16;
 const WIDEST: f32 = 3.73;
 /// Half width of a cube face at distance 1, a little over 1 so that the kernel may reach over the edge.
 const CUBE_FACE: f32 = 1.04;
+/// The same of a face that serves alone, close up: what lies about an edge of the cube fits into one, too.
+const LONE_FACE: f32 = 1.6;
 /// Nearest caster, metres.
 const NEAR_M: f32 = 0.01;
 
@@ -70,8 +73,8 @@ pub(super) struct ShadowPlan {
 }
 
 impl ShadowPlan {
-    /// Views of the lights; `in_parts` takes wide emitters in parts.
-    pub fn new(table: &LightTable, casters: &[Caster], in_parts: bool) -> Self {
+    /// Views of the lights, as fine as what is `seen` needs them; `in_parts` takes wide emitters in parts.
+    pub fn new(table: &LightTable, casters: &[Caster], seen: &Seen, in_parts: bool) -> Self {
         let mut plan = ShadowPlan::default();
         if casters.is_empty() {
             return plan;
@@ -82,12 +85,12 @@ impl ShadowPlan {
             table.lights[..count].iter().map(|light| within_reach(light, casters)).collect();
         // The middles first, so that all lights have a shadow before one has it in parts.
         for (index, casters) in reached.iter().enumerate() {
-            let slot = plan.add(&table.lights[index], (table.ids[index].0, 0), casters);
+            let slot = plan.add(&table.lights[index], (table.ids[index].0, 0), casters, seen);
             plan.set(index, &[slot]);
         }
         if in_parts {
             for (index, casters) in reached.iter().enumerate() {
-                plan.take_in_parts(index, &table.lights[index], casters);
+                plan.take_in_parts(index, &table.lights[index], casters, seen);
             }
         }
         plan.views = plan.view_count();
@@ -124,8 +127,8 @@ impl ShadowPlan {
     }
 
     /// Adds a light's views as far as there is room.
-    fn add(&mut self, light: &GpuLight, owner: Owner, casters: &[Caster]) -> GpuShadowSlot {
-        let (mut slot, views) = views_of(light, casters, MAX_VIEWS - self.view_count());
+    fn add(&mut self, light: &GpuLight, owner: Owner, casters: &[Caster], seen: &Seen) -> GpuShadowSlot {
+        let (mut slot, views) = views_of(light, casters, seen, MAX_VIEWS - self.view_count());
         if !views.is_empty() {
             (slot.layer, slot.softness) = (self.runs.len() as u32, light.softness().into());
             let (eye, reach_m) = (light.position.into(), light.reach_m);
@@ -142,7 +145,7 @@ impl ShadowPlan {
     }
 
     /// Replaces a light's one view by views of its parts, if it has any and there is room for them all.
-    fn take_in_parts(&mut self, index: usize, light: &GpuLight, casters: &[Caster]) {
+    fn take_in_parts(&mut self, index: usize, light: &GpuLight, casters: &[Caster], seen: &Seen) {
         let parts = parts(light, casters);
         let middle = self.masks[index / 4].slots[index % 4][0];
         if parts.len() == 1 || middle.kind == 0 {
@@ -155,7 +158,7 @@ impl ShadowPlan {
             .map(|(number, part)| {
                 let offset = part.at.x * Vec3::from(light.right) + part.at.y * Vec3::from(light.up);
                 let moved = GpuLight { position: (Vec3::from(light.position) + offset).into(), ..*light };
-                let slot = if part.at == Vec2::ZERO { middle } else { self.add(&moved, (id, number), casters) };
+                let slot = if part.at == Vec2::ZERO { middle } else { self.add(&moved, (id, number), casters, seen) };
                 GpuShadowSlot { softness: part.softness.into(), ..slot }
             })
             .collect();
@@ -174,7 +177,7 @@ fn within_reach(light: &GpuLight, casters: &[Caster]) -> Vec<Caster> {
 }
 
 /// How a light reads its shadow, and up to `room` views; an empty slot and none if it casts no shadow.
-fn views_of(light: &GpuLight, casters: &[Caster], room: usize) -> (GpuShadowSlot, Vec<Mat4>) {
+fn views_of(light: &GpuLight, casters: &[Caster], seen: &Seen, room: usize) -> (GpuShadowSlot, Vec<Mat4>) {
     let corners: Vec<Vec3> = casters.iter().flat_map(Caster::corners).collect();
     if corners.is_empty() {
         return (GpuShadowSlot::zeroed(), Vec::new());
@@ -188,22 +191,25 @@ fn views_of(light: &GpuLight, casters: &[Caster], room: usize) -> (GpuShadowSlot
         light.position.into(),
     );
     let spot_limit = light.outer_rad.min(1.3).tan().min(WIDEST);
+    let nearest = casters.iter().map(|caster| caster.distance(light.position.into())).fold(f32::INFINITY, f32::min);
+    // No penumbra is wider, as tangents.
+    let focus = (light.softness() / nearest.max(NEAR_M), seen);
     let one = match light.kind {
-        kind if kind == Kind::Sun as u32 => parallel(&frame, &corners),
-        kind if kind == Kind::Spot as u32 => perspective(&frame, &corners, spot_limit),
+        kind if kind == Kind::Sun as u32 => parallel(&frame, &corners, light.softness(), seen),
+        kind if kind == Kind::Spot as u32 => perspective(&frame, &corners, spot_limit, focus),
         kind if kind == Kind::Rect as u32 || kind == Kind::Disc as u32 => {
             if room >= 6 && corners.iter().any(|corner| !is_within(&frame, *corner)) {
-                return cube(&frame);
+                return cube(&frame, focus);
             }
-            perspective(&frame, &corners, WIDEST)
+            perspective(&frame, &corners, WIDEST, focus)
         }
         _ => {
             let centre = corners.iter().sum::<Vec3>() / corners.len() as f32;
             let towards = crate::math::look_at(frame.translation.into(), centre, 0.0);
             if room >= 6 && corners.iter().any(|corner| !is_within(&towards, *corner)) {
-                return cube(&Affine3A::from_translation(light.position.into()));
+                return cube(&Affine3A::from_translation(light.position.into()), focus);
             }
-            perspective(&towards, &corners, WIDEST)
+            perspective(&towards, &corners, WIDEST, focus)
         }
     };
     match one.filter(|_| room >= 1) {
@@ -231,18 +237,21 @@ fn slot(frame: &Affine3A, kind: Projection, low: Vec2, field: Vec2) -> GpuShadow
     }
 }
 
-/// The view from `frame` along its -Z that covers the corners, no wider than `limit` (a tangent); none if it sees none.
-fn perspective(frame: &Affine3A, corners: &[Vec3], limit: f32) -> Option<(GpuShadowSlot, Mat4)> {
+/// The view from `frame` along its -Z that covers the corners, no wider than `limit` (a tangent), or what is seen of them
+/// with a margin; none if it sees none.
+fn perspective(
+    frame: &Affine3A,
+    corners: &[Vec3],
+    limit: f32,
+    (margin, seen): (Vec2, &Seen),
+) -> Option<(GpuShadowSlot, Mat4)> {
     let inverse = frame.inverse();
     let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
     let mut reaches_behind = false;
     for corner in corners {
-        let local = inverse.transform_point3(*corner);
-        if local.z < -NEAR_M {
-            let tangent = local.truncate() / -local.z;
-            (low, high) = (low.min(tangent), high.max(tangent));
-        } else {
-            reaches_behind = true;
+        match tangents(&inverse, *corner) {
+            Some(tangent) => (low, high) = (low.min(tangent), high.max(tangent)),
+            None => reaches_behind = true,
         }
     }
     if !low.is_finite() || !high.is_finite() {
@@ -251,12 +260,19 @@ fn perspective(frame: &Affine3A, corners: &[Vec3], limit: f32) -> Option<(GpuSha
     // A caster that reaches past the light's plane may reach the edge of the view anywhere.
     let reach = Vec2::splat(limit);
     let (low, high) = if reaches_behind { (-reach, reach) } else { (low, high) };
-    let margin = (high - low) * 0.01 + 1e-3;
-    let (low, high) = ((low - margin).clamp(-reach, reach), (high + margin).clamp(-reach, reach));
+    let edge = (high - low) * 0.01 + 1e-3;
+    let whole = ((low - edge).clamp(-reach, reach), (high + edge).clamp(-reach, reach));
+    let (low, high) = seen.narrowed(whole, margin, |point| tangents(&inverse, point));
     let field = high - low;
-    (field.min_element() > 1e-4).then(|| {
+    ((whole.1 - whole.0).min_element() > 1e-4).then(|| {
         (slot(frame, Projection::Perspective, low, field), perspective_matrix(low, high) * Mat4::from(inverse))
     })
+}
+
+/// Where a view sees a point, as tangents; none behind it.
+fn tangents(view_from_world: &Affine3A, point: Vec3) -> Option<Vec2> {
+    let local = view_from_world.transform_point3(point);
+    (local.z < -NEAR_M).then(|| local.truncate() / -local.z)
 }
 
 /// Clip from view for tangents from `low` to `high`, depth reversed and endless.
@@ -270,13 +286,18 @@ fn perspective_matrix(low: Vec2, high: Vec2) -> Mat4 {
     )
 }
 
-fn parallel(frame: &Affine3A, corners: &[Vec3]) -> Option<(GpuShadowSlot, Mat4)> {
+/// The view along the -Z of `frame` that covers the corners, or what is seen of them with the penumbra of a sun whose
+/// half width is `softness` (tangents).
+fn parallel(frame: &Affine3A, corners: &[Vec3], softness: Vec2, seen: &Seen) -> Option<(GpuShadowSlot, Mat4)> {
     let inverse = frame.inverse();
     let (low, high) = corners
         .iter()
         .map(|corner| inverse.transform_point3(*corner))
         .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     let (low, high) = (low - 0.01, high + 0.01);
+    let place = |point| Some(inverse.transform_point3(point).truncate());
+    let narrowed = seen.narrowed((low.truncate(), high.truncate()), softness * (high.z - low.z), place);
+    let (low, high) = (narrowed.0.extend(low.z), narrowed.1.extend(high.z));
     let size = high - low;
     size.is_finite().then(|| {
         // Depth 1 at the side of the light, 0 behind the last caster.
@@ -288,8 +309,9 @@ fn parallel(frame: &Affine3A, corners: &[Vec3]) -> Option<(GpuShadowSlot, Mat4)>
     })
 }
 
-/// Six views in the order +X, -X, +Y, -Y, +Z, -Z of the frame, turned as `shadow_mask.wgsl` repeats.
-fn cube(frame: &Affine3A) -> (GpuShadowSlot, Vec<Mat4>) {
+/// Six views in the order +X, -X, +Y, -Y, +Z, -Z of the frame, turned as `shadow_mask.wgsl` repeats; or one of them, where
+/// a part of it holds all that is seen with its margin.
+fn cube(frame: &Affine3A, (margin, seen): (Vec2, &Seen)) -> (GpuShadowSlot, Vec<Mat4>) {
     let quarter = std::f32::consts::FRAC_PI_2;
     let turns = [
         Quat::from_rotation_y(-quarter),
@@ -299,6 +321,15 @@ fn cube(frame: &Affine3A) -> (GpuShadowSlot, Vec<Mat4>) {
         Quat::from_rotation_y(2.0 * quarter),
         Quat::IDENTITY,
     ];
+    let lone = Vec2::splat(LONE_FACE);
+    for frame in turns.map(|turn| *frame * Affine3A::from_quat(turn)) {
+        let place = |point| tangents(&frame.inverse(), point);
+        let (low, high) = seen.narrowed((-lone, lone), margin, place);
+        if seen.is_within((-lone, lone), margin, place) && high - low != 2.0 * lone {
+            let view = perspective_matrix(low, high) * Mat4::from(frame.inverse());
+            return (slot(&frame, Projection::Perspective, low, high - low), vec![view]);
+        }
+    }
     let face = Vec2::splat(CUBE_FACE);
     let view = |turn| {
         let inverse = (*frame * Affine3A::from_quat(turn)).inverse();
@@ -341,7 +372,7 @@ mod tests {
     fn one_view_holds_every_caster_and_depth_falls_with_distance() {
         for kind in [Kind::Point, Kind::Spot, Kind::Sphere, Kind::Rect, Kind::Sun] {
             let caster = unit_box_at(Vec3::new(0.3, 1.0, 0.2));
-            let plan = ShadowPlan::new(&table(&[light(kind)]), &[caster], false);
+            let plan = ShadowPlan::new(&table(&[light(kind)]), &[caster], &Seen::default(), false);
             assert_eq!((plan.views, plan.masks.len()), (1, 1), "{kind:?}");
             for corner in caster.corners() {
                 let p = project(&plan.runs[0].views[0].clip_from_world, corner);
@@ -356,7 +387,7 @@ mod tests {
     fn a_bulb_among_things_gets_a_cube_that_sees_all_round() {
         let bulb = light(Kind::Point);
         let casters = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
-        let plan = ShadowPlan::new(&table(&[bulb]), &casters, false);
+        let plan = ShadowPlan::new(&table(&[bulb]), &casters, &Seen::default(), false);
         assert_eq!((plan.views, plan.masks[0].slots[0][0].kind), (6, Projection::Cube as u32));
         let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
         for (view, axis) in plan.runs[0].views.iter().zip(axes) {
@@ -368,7 +399,9 @@ mod tests {
     #[test]
     fn depth_is_affine_across_a_plane() {
         // The shader's receiver plane rests on it: the middle of two points' maps lies on the plane's depth.
-        let view = ShadowPlan::new(&table(&[light(Kind::Rect)]), &[unit_box_at(Vec3::Y)], false).runs[0].views[0]
+        let view = ShadowPlan::new(&table(&[light(Kind::Rect)]), &[unit_box_at(Vec3::Y)], &Seen::default(), false).runs
+            [0]
+        .views[0]
             .clip_from_world;
         let (a, b) = (project(&view, Vec3::new(-0.3, 0.2, 0.1)), project(&view, Vec3::new(0.4, 0.9, -0.2)));
         let on_line = project(&view, Vec3::new(-0.3, 0.2, 0.1).lerp(Vec3::new(0.4, 0.9, -0.2), 0.25));
@@ -378,13 +411,14 @@ mod tests {
 
     #[test]
     fn too_many_lights_go_without_shadow_and_no_caster_needs_no_map() {
-        let plan = ShadowPlan::new(&table(&[light(Kind::Rect); 40]), &[unit_box_at(Vec3::ZERO)], false);
+        let plan =
+            ShadowPlan::new(&table(&[light(Kind::Rect); 40]), &[unit_box_at(Vec3::ZERO)], &Seen::default(), false);
         assert_eq!((plan.views, plan.masks.len()), (MAX_SHADOWS, MAX_SHADOWS / 4));
         let all_round = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
-        let plan = ShadowPlan::new(&table(&[light(Kind::Rect); 16]), &all_round, false);
+        let plan = ShadowPlan::new(&table(&[light(Kind::Rect); 16]), &all_round, &Seen::default(), false);
         // Eight cubes, and no room for more.
         let kind = |light: usize| plan.masks[light / 4].slots[light % 4][0].kind;
         assert_eq!((plan.views, kind(7), kind(8)), (MAX_VIEWS, Projection::Cube as u32, 0));
-        assert_eq!(ShadowPlan::new(&table(&[light(Kind::Rect)]), &[], false), ShadowPlan::default());
+        assert_eq!(ShadowPlan::new(&table(&[light(Kind::Rect)]), &[], &Seen::default(), false), ShadowPlan::default());
     }
 }

@@ -29,6 +29,33 @@ fn things_cast_shadows_and_stand_on_them() {
 }
 
 #[test]
+fn close_up_a_cube_of_three_millimetres_stands_on_a_wide_floor_and_in_its_shadow() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    let lumens = Output::Lumens(5000.0);
+    let lights = [
+        (Emitter::Point, lumens),
+        (Emitter::Sphere { radius_m: 0.02 }, lumens),
+        (Emitter::Spot { inner_deg: 60.0, outer_deg: 80.0 }, lumens),
+        (Emitter::RectPanel { width_m: 0.05, height_m: 0.05 }, lumens),
+        (Emitter::Sun { angular_diameter_deg: 0.53 }, Output::Lux(50_000.0)),
+    ];
+    for (emitter, output) in lights {
+        let mut scene = floor_under(light(0, Vec3::new(1.0, 1.0, 0.0), Vec3::ZERO, emitter, output));
+        (scene.camera.position, scene.camera.focal_length_mm) = (Vec3::new(0.0, 0.12, 0.2), 100.0);
+        let places = [-0.0025, -0.003, 0.0025, -0.0065].map(|x| Vec3::X * x);
+        let free = places.map(|place| lux_at(&mut renderer, &scene, place));
+        scene.objects.push(object(1, Shape::Box { size_m: Vec3::splat(0.003) }, Vec3::Y * 0.0015, grey_card()));
+        let lit = places.map(|place| lux_at(&mut renderer, &scene, place));
+        let parts: [f32; 4] = std::array::from_fn(|i| lit[i] / free[i]);
+        // Light from 45 degrees: the shadow runs from the foot to 3 mm behind it. A texel of the sun's map, and a pixel of
+        // the mask, cover half a millimetre. It is dark 1 mm behind the foot, and there is light 1 mm before the cube and
+        // 2 mm behind the shadow.
+        assert!(parts[..2].iter().all(|part| *part < 0.2), "{emitter:?}: {parts:?} of the light");
+        assert!(parts[2..].iter().all(|part| *part > 0.9), "{emitter:?}: {parts:?} of the light");
+    }
+}
+
+#[test]
 fn a_floor_does_not_shadow_itself_however_flat_the_light() {
     let Some((_gpu, mut renderer)) = renderer() else { return };
     for height in [0.1, 0.5, 3.0] {

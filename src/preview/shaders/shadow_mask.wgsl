@@ -49,9 +49,11 @@ const FILTER_TAPS: u32 = 10u;
 const DRAFT_TAPS: u32 = 6u;
 // Turn by the golden angle, from one tap to the next.
 const GOLDEN_TURN: mat2x2f = mat2x2f(-0.737368878, 0.675490294, -0.675490294, -0.737368878);
-// Nothing blocks a light closer to the receiver than this part of the distance, and metres in a parallel view.
+// Nothing blocks a light closer to the receiver than this part of the distance; in a parallel view, than so many texels
+// and metres.
 const RELATIVE_BIAS: f32 = 5e-4;
-const PARALLEL_BIAS_M: f32 = 1e-3;
+const PARALLEL_BIAS: f32 = 0.5;
+const MOST_PARALLEL_BIAS_M: f32 = 1e-3;
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -117,7 +119,8 @@ fn receiver(slot: u32, position: vec3f, face: vec3f, draw: f32) -> Receiver {
     let texels = resolution / shadows.slots[slot].field;
     let plane_point = select(local.xy / local.z, local.xy, parallel);
     r.at = vec2f(plane_point.x - low.x, shadows.slots[slot].field.y - (plane_point.y - low.y)) * texels;
-    let parallel_depth = (shadows.slots[slot].far_m + PARALLEL_BIAS_M - local.z) / near;
+    let parallel_bias = min(PARALLEL_BIAS * texel, MOST_PARALLEL_BIAS_M);
+    let parallel_depth = (shadows.slots[slot].far_m + parallel_bias - local.z) / near;
     r.depth = select(near / local.z * (1.0 + RELATIVE_BIAS), parallel_depth, parallel);
     let slope = select(near * normal.xy / height, normal.xy / (normal.z * near), parallel) / texels;
     // A plane seen edge-on is dark anyway; its slope must stay finite.
