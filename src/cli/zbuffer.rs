@@ -4,7 +4,7 @@ use super::Failure;
 use super::preview::TimesReport;
 use crate::io::{self, Loaded, PictureInfo};
 use crate::photo::Picture;
-use crate::raster::{Rasterizer, Shading};
+use crate::raster::{Drawing, Rasterizer, Shading};
 use glam::{Affine3A, Quat, Vec3};
 use std::path::Path;
 use std::time::Instant;
@@ -17,10 +17,11 @@ const PIVOT_M: f32 = 2.0;
 /// Draws a studio with `samples` pixels along each side of every pixel of the picture; and how many triangles it has.
 pub fn picture(loaded: &Loaded, (width, height): (u32, u32), samples: u32) -> (Picture, u64) {
     let camera = loaded.scene.camera_frame(width as f32 / height as f32);
-    let rasterizer = Rasterizer::new(&loaded.scene, &loaded.assets);
+    let mut rasterizer = Rasterizer::new(&loaded.scene, &loaded.assets);
     let fine = (width * samples, height * samples);
-    let drawn = rasterizer.draw(&loaded.scene, &camera, fine, Shading::default()).picture;
-    let picture = if samples == 1 { drawn } else { reduced(&drawn, samples) };
+    let mut drawing = Drawing::default();
+    rasterizer.draw(&loaded.scene, &camera, fine, Shading::default(), &mut drawing);
+    let picture = if samples == 1 { drawing.picture } else { reduced(&drawing.picture, samples) };
     (picture, rasterizer.triangle_count())
 }
 
@@ -44,7 +45,8 @@ pub fn write(loaded: &Loaded, size: (u32, u32), output: &Path) -> Result<(), Fai
 
 /// Times frames with a camera that turns.
 pub fn time(loaded: &Loaded, (width, height): (u32, u32), frames: u32) -> TimesReport {
-    let rasterizer = Rasterizer::new(&loaded.scene, &loaded.assets);
+    let mut rasterizer = Rasterizer::new(&loaded.scene, &loaded.assets);
+    let mut drawing = Drawing::default();
     let camera = loaded.scene.camera_frame(width as f32 / height as f32);
     let pivot = camera.world_from_camera.transform_point3(Vec3::NEG_Z * PIVOT_M);
     let mut times: Vec<f64> = (0..=frames)
@@ -56,8 +58,8 @@ pub fn time(loaded: &Loaded, (width, height): (u32, u32), frames: u32) -> TimesR
                 * Affine3A::from_translation(-pivot)
                 * camera.world_from_camera;
             let began = Instant::now();
-            let drawn = rasterizer.draw(&loaded.scene, &moved, (width, height), Shading::default());
-            std::hint::black_box(&drawn);
+            rasterizer.draw(&loaded.scene, &moved, (width, height), Shading::default(), &mut drawing);
+            std::hint::black_box(&drawing);
             began.elapsed().as_secs_f64() * 1e3
         })
         .skip(1)

@@ -58,7 +58,7 @@ impl ProcessorView {
         if self.rasterizer.as_ref().is_none_or(|(of, _)| *of != revision) {
             self.rasterizer = Some((revision, Rasterizer::new(input.scene, input.assets)));
         }
-        let Some((_, rasterizer)) = &self.rasterizer else { return };
+        let Some((_, rasterizer)) = &mut self.rasterizer else { return };
         let scale = if input.options.draft { moving_scale(input.size) } else { 1 };
         let size = (input.size.0.div_ceil(scale), input.size.1.div_ceil(scale));
         let alone;
@@ -69,7 +69,8 @@ impl ProcessorView {
             }
             None => input.scene,
         };
-        let drawing = rasterizer.draw(scene, &input.frame, size, Shading::default());
+        let mut drawing = self.drawn.take().map(|drawn| drawn.drawing).unwrap_or_default();
+        rasterizer.draw(scene, &input.frame, size, Shading::default(), &mut drawing);
         let selected = |object: &ObjectId| input.overlay.selects(Pick::Object(*object));
         let objects: Vec<ObjectId> = input.scene.objects.iter().map(|object| object.id).collect();
         let selected: Vec<bool> = objects.iter().map(selected).collect();

@@ -4,6 +4,7 @@ mod angle;
 mod frame;
 mod ray;
 mod safe;
+pub mod simd;
 #[cfg(test)]
 pub mod statistics;
 pub mod warp;

@@ -1,25 +1,19 @@
 //! Lights without shadows: what each sends to a point, in picture units.
 
-use super::packet::{LANES, Vec3x8};
+use super::row::{Line, ROOM, Vectors, WIDTH};
+use super::series;
 use crate::color;
-use crate::math::safe_acos;
 use crate::photo::beam;
 use crate::photo::exposure::{self, Strength};
-use crate::scene::{Emitter, Light, Modifier, Scene};
-use glam::{Affine3A, Vec3};
+use crate::scene::{Cone, Emitter, Light, Modifier, Scene};
+use glam::{Mat3A, Vec3, Vec3A};
 use std::f32::consts::PI;
-use wide::f32x8;
 
 /// Geometry of a light as it is shaded here.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    /// Bulbs with a size, too: outside of them they are the same.
+    /// Bulbs with a size, too: outside of them they are the same. Spots, too: they have a cone.
     Point,
-    /// Half angles.
-    Spot {
-        inner_rad: f32,
-        outer_rad: f32,
-    },
     /// One-sided, with its area in m2.
     Panel {
         area_m2: f32,
@@ -28,17 +22,19 @@ enum Kind {
 }
 
 /// One light.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct PlacedLight {
     kind: Kind,
-    world_from_light: Affine3A,
     /// From the eye.
     position: Vec3,
     /// Unit direction in which it shines.
     axis: Vec3,
     /// Picture units of axial intensity, or of a sun's illuminance.
     pub strength: Vec3,
-    modifier: Option<Modifier>,
+    /// Of a spot, a dish, a snoot or a grid.
+    cones: Vec<Falloff>,
+    /// Barn doors, and the way into the light's frame.
+    doors: Option<(Modifier, Mat3A)>,
 }
 
 /// All lights that are on, as they stand about the eye.
@@ -51,6 +47,21 @@ pub(super) struct Lights {
     pub void_radiance: Vec3,
     /// Picture value of one cd/m2 of a surface that glows.
     pub glow: f32,
+}
+
+/// What a light sends to the pixels of a row.
+#[derive(Debug)]
+pub(super) struct Incident {
+    /// Unit directions to the light.
+    pub direction: Vectors,
+    /// Cosine of the angle at which it leaves the light, from its axis.
+    cos_axis: Line,
+    /// Part of its strength that arrives, for a square metre that faces it; 0 where it does not shine.
+    pub factor: Line,
+}
+
+impl Incident {
+    pub const NONE: Self = Incident { direction: Vectors::ZERO, cos_axis: [0.0; ROOM], factor: [0.0; ROOM] };
 }
 
 impl Lights {
@@ -78,11 +89,12 @@ impl Lights {
             // A closed room keeps it out.
             return;
         }
+        let mut cones = Vec::new();
         let kind = match light.emitter {
             Emitter::Point | Emitter::Sphere { .. } => Kind::Point,
             Emitter::Spot { inner_deg, outer_deg } => {
-                let half_rad = |full_deg: f32| (0.5 * full_deg).to_radians();
-                Kind::Spot { inner_rad: half_rad(inner_deg.min(outer_deg)), outer_rad: half_rad(outer_deg) }
+                cones.push(Falloff::new(Cone { inner_deg, outer_deg }));
+                Kind::Point
             }
             Emitter::RectPanel { width_m, height_m } => Kind::Panel { area_m2: width_m * height_m },
             Emitter::RoundPanel { diameter_m } => Kind::Panel { area_m2: 0.25 * PI * diameter_m * diameter_m },
@@ -96,63 +108,92 @@ impl Lights {
         let world_from_light = scene.light_frame(light);
         let strength = unit * if infinite { illuminance } else { exposure::axial_intensity(light) };
         if strength.is_finite() && world_from_light.is_finite() && strength.max_element() > 0.0 {
-            let axis = -Vec3::from(world_from_light.matrix3.z_axis);
-            let modifier = light.modifier.narrows().then_some(light.modifier);
+            let Modifier { beam, grid_deg, doors, .. } = light.modifier;
+            cones.extend(beam.map(Falloff::new));
+            cones.extend(grid_deg.map(|outer_deg| Falloff::new(Cone { inner_deg: 0.0, outer_deg })));
+            let only_doors = Modifier { doors, ..Modifier::default() };
             self.lights.push(PlacedLight {
                 kind,
-                world_from_light,
                 position: light.position - eye,
-                axis,
+                axis: -Vec3::from(world_from_light.matrix3.z_axis),
                 strength,
-                modifier,
+                cones,
+                doors: doors.map(|_| (only_doors, world_from_light.matrix3.transpose())),
             });
         }
     }
 }
 
 impl PlacedLight {
-    /// Unit directions from eight points to the light, and what part of its strength arrives there, for a square metre
-    /// that faces it; 0 where it does not shine.
-    pub fn at(&self, points: Vec3x8) -> (Vec3x8, f32x8) {
-        if let Kind::Sun = self.kind {
-            return (Vec3x8::splat(-self.axis), f32x8::ONE);
-        }
-        let to_light = Vec3x8::splat(self.position) - points;
-        let squared = to_light.dot(to_light).fast_max(f32x8::splat(1e-12));
-        let direction = to_light.times(f32x8::ONE / squared.sqrt());
-        let cos = -direction.dot(Vec3x8::splat(self.axis));
-        let factor = match self.kind {
-            Kind::Point | Kind::Sun => f32x8::ONE / squared,
-            Kind::Spot { inner_rad, outer_rad } => falloff(cos, inner_rad, outer_rad) / squared,
+    /// What arrives at points, which count from the eye.
+    #[inline(always)]
+    pub fn reach(&self, points: &Vectors, incident: &mut Incident) {
+        match self.kind {
+            Kind::Sun => {
+                incident.direction.spread(&(0..WIDTH), -self.axis);
+                incident.factor = [1.0; ROOM];
+                return;
+            }
+            Kind::Point => self.reach_by(points, incident, |squared, _| 1.0 / squared),
             // Of a disc, on its axis: L pi R2 / (R2 + h2), exactly; far away: I cos / d2.
-            Kind::Panel { area_m2 } => cos.fast_max(f32x8::ZERO) / (squared + f32x8::splat(area_m2 / PI)),
-        };
-        (direction, self.modifier.map_or(factor, |modifier| factor * self.passed(&modifier, direction, factor)))
+            Kind::Panel { area_m2 } => {
+                self.reach_by(points, incident, |squared, cos| series::at_least(cos, 0.0) / (squared + area_m2 / PI));
+            }
+        }
+        for cone in &self.cones {
+            for i in 0..WIDTH {
+                incident.factor[i] *= cone.at(incident.cos_axis[i]);
+            }
+        }
+        if let Some((doors, light_from_world)) = &self.doors {
+            // Asked only where there is light.
+            for i in 0..WIDTH {
+                if incident.factor[i] > 0.0 {
+                    let away = *light_from_world * Vec3A::from(-incident.direction.at(i));
+                    incident.factor[i] *= beam::passed(doors, away.into());
+                }
+            }
+        }
     }
 
-    /// What a modifier lets through, asked only where there is light.
-    fn passed(&self, modifier: &Modifier, direction: Vec3x8, factor: f32x8) -> f32x8 {
-        let (directions, factors) = (direction.lanes(), factor.to_array());
-        let light_from_world = self.world_from_light.matrix3.transpose();
-        let lane = |k: usize| {
-            let away = light_from_world * glam::Vec3A::from(-directions[k]);
-            if factors[k] > 0.0 { beam::passed(modifier, away.into()) } else { 0.0 }
-        };
-        let lanes: [f32; LANES] = std::array::from_fn(lane);
-        f32x8::from(lanes)
+    /// The same for a light whose strength goes by the squared distance and the cosine at its axis.
+    #[inline(always)]
+    fn reach_by(&self, points: &Vectors, incident: &mut Incident, factor: impl Fn(f32, f32) -> f32) {
+        for i in 0..WIDTH {
+            let to_light = self.position - points.at(i);
+            let squared = series::at_least(to_light.length_squared(), 1e-12);
+            let direction = to_light * (1.0 / squared.sqrt());
+            let cos = -direction.dot(self.axis);
+            incident.direction.set(i, direction);
+            incident.cos_axis[i] = cos;
+            incident.factor[i] = factor(squared, cos);
+        }
     }
 }
 
-/// [`exposure::spot_falloff`] for eight cosines.
-fn falloff(cos: f32x8, inner_rad: f32, outer_rad: f32) -> f32x8 {
-    let inside = cos.simd_ge(f32x8::splat(inner_rad.cos()));
-    let reached = cos.simd_gt(f32x8::splat(outer_rad.cos()));
-    if !(inside ^ reached).any() {
-        return inside & f32x8::ONE;
+/// [`exposure::spot_falloff`] for many cosines.
+#[derive(Clone, Copy, Debug)]
+struct Falloff {
+    cos_inner: f32,
+    cos_outer: f32,
+    outer_rad: f32,
+    per_rad: f32,
+}
+
+impl Falloff {
+    fn new(Cone { inner_deg, outer_deg }: Cone) -> Self {
+        let half_rad = |full_deg: f32| (0.5 * full_deg).to_radians();
+        let (inner_rad, outer_rad) = (half_rad(inner_deg.min(outer_deg)), half_rad(outer_deg));
+        let per_rad = 1.0 / (outer_rad - inner_rad);
+        Falloff { cos_inner: inner_rad.cos(), cos_outer: outer_rad.cos(), outer_rad, per_rad }
     }
-    let between = |cos: f32| (outer_rad - safe_acos(cos)) / (outer_rad - inner_rad);
-    let slope = f32x8::from(cos.to_array().map(between)).clamp(f32x8::ZERO, f32x8::ONE);
-    inside.bitselect(f32x8::ONE, reached & slope)
+
+    #[inline(always)]
+    fn at(&self, cos: f32) -> f32 {
+        let slope = series::at_most(series::at_least((self.outer_rad - series::acos(cos)) * self.per_rad, 0.0), 1.0);
+        let beyond = if cos > self.cos_outer { slope } else { 0.0 };
+        if cos >= self.cos_inner { 1.0 } else { beyond }
+    }
 }
 
 #[cfg(test)]
@@ -160,13 +201,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn eight_points_see_the_falloff_of_a_spot_that_one_would() {
-        for (inner_deg, outer_deg) in [(20.0, 40.0), (0.0, 60.0), (30.0, 30.0), (180.0, 180.0)] {
-            let half_rad = |full_deg: f32| (0.5 * full_deg).to_radians();
-            let cosines: [f32; LANES] = std::array::from_fn(|k| half_rad(5.0 + 8.3 * k as f32).cos());
-            let got = falloff(f32x8::from(cosines), half_rad(inner_deg), half_rad(outer_deg)).to_array();
-            for (cos, got) in cosines.into_iter().zip(got) {
-                let one = exposure::spot_falloff(cos, inner_deg, outer_deg);
+    fn a_cone_falls_off_as_everywhere_else() {
+        for (inner_deg, outer_deg) in [(20.0, 40.0), (0.0, 60.0), (30.0, 30.0), (180.0, 180.0), (100.0, 300.0)] {
+            let falloff = Falloff::new(Cone { inner_deg, outer_deg });
+            for cos in (0..=3000).map(|step| (step as f32 * 1e-3).cos()) {
+                let (got, one) = (falloff.at(cos), exposure::spot_falloff(cos, inner_deg, outer_deg));
                 assert!((got - one).abs() < 1e-5, "{inner_deg} {outer_deg} {cos}: {got} and {one}");
             }
         }

@@ -1,25 +1,35 @@
 //! The software renderer: a z-buffer on the processor, the first rung of the ladder and the preview without an adapter.
 //!
-//! World -> clip space ([`world`]) -> inside the six planes ([`clip`]) -> sub-pixel screen positions and exact edges
-//! ([`fill`]) -> one shading of each pixel that is left, eight at a time ([`shade`]), all parallel over rayon. Pictures
-//! have the exposure and the scene-linear units of every other rung.
+//! A picture takes three steps, each parallel over rayon:
+//!
+//! 1. vertices go from their meshes into clip space ([`world`]);
+//! 2. triangles are cut at the six planes ([`clip`]), placed on the screen in 1/256 of a pixel ([`triangle`]), and
+//!    sorted by the tiles that they touch ([`batch`]);
+//! 3. each tile finds the nearest triangle of every pixel ([`fill`]), collects what its rows show ([`row`]), and shades
+//!    each pixel once ([`shade`], [`lights`]).
+//!
+//! The inner loops are written for one pixel and free of jumps: they run eight pixels wide, see [`crate::math::simd`].
+//! Pictures have the exposure and the scene-linear units of every other rung.
 //!
 //! Models visibility and direct light. Leaves out shadows, bounces and all reflections but an even surround's; panels
 //! shine as from their middle, with a term that keeps a disc exact on its axis, however near; emitters themselves are
 //! not drawn.
 
+mod batch;
 mod clip;
 mod fill;
 mod lights;
-mod packet;
 mod row;
+mod series;
 mod shade;
+mod triangle;
 mod world;
 
 use crate::photo::Picture;
 use crate::scene::{Assets, CameraFrame, Scene};
-use fill::Screen;
-use world::World;
+use batch::Batch;
+use triangle::Screen;
+use world::{Vertices, World};
 
 /// How a pixel gets its light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -39,7 +49,7 @@ pub enum Shading {
 pub const NO_OBJECT: u32 = u32::MAX;
 
 /// A drawn picture.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Default)]
 pub struct Drawing {
     /// Scene-linear.
     pub picture: Picture,
@@ -49,21 +59,37 @@ pub struct Drawing {
     pub inverse_depths: Vec<f32>,
 }
 
-/// Draws what a camera sees of a studio. A size of 0 is taken as 1.
-pub fn draw(scene: &Scene, assets: &Assets, camera: &CameraFrame, size: (u32, u32), shading: Shading) -> Drawing {
-    Rasterizer::new(scene, assets).draw(scene, camera, size, shading)
+impl Drawing {
+    /// Takes a size; what it shows stays undefined until it is drawn.
+    fn resize(&mut self, Screen { width, height }: Screen) {
+        let pixels = width as usize * height as usize;
+        (self.picture.width, self.picture.height) = (width, height);
+        self.picture.rgb.resize(pixels, [0.0; 3]);
+        self.objects.resize(pixels, NO_OBJECT);
+        self.inverse_depths.resize(pixels, 0.0);
+    }
 }
 
-/// A studio whose meshes are looked up once, to be drawn from many places.
+/// Draws what a camera sees of a studio. A size of 0 is taken as 1.
+pub fn draw(scene: &Scene, assets: &Assets, camera: &CameraFrame, size: (u32, u32), shading: Shading) -> Drawing {
+    let mut drawing = Drawing::default();
+    Rasterizer::new(scene, assets).draw(scene, camera, size, shading, &mut drawing);
+    drawing
+}
+
+/// A studio whose meshes are looked up once, to be drawn from many places. Keeps its memory from one picture to the
+/// next.
 #[derive(Debug)]
 pub struct Rasterizer {
     world: World,
+    vertices: Vec<Vertices>,
+    batches: Vec<Batch>,
 }
 
 impl Rasterizer {
     /// Collects what stands in the studio.
     pub fn new(scene: &Scene, assets: &Assets) -> Self {
-        Rasterizer { world: World::new(scene, assets) }
+        Rasterizer { world: World::new(scene, assets), vertices: Vec::new(), batches: Vec::new() }
     }
 
     /// Triangles in the studio, each instance counted.
@@ -71,13 +97,23 @@ impl Rasterizer {
         self.world.triangle_count()
     }
 
-    /// Draws what a camera sees. The scene is the one that this was made of; its lights and camera may have changed.
-    pub fn draw(&self, scene: &Scene, camera: &CameraFrame, size: (u32, u32), shading: Shading) -> Drawing {
+    /// Draws what a camera sees over an older drawing, of any size. The scene is the one that this was made of; its
+    /// lights and camera may have changed.
+    pub fn draw(
+        &mut self,
+        scene: &Scene,
+        camera: &CameraFrame,
+        size: (u32, u32),
+        shading: Shading,
+        drawing: &mut Drawing,
+    ) {
+        let Rasterizer { world, vertices, batches } = self;
         let screen = Screen::new(size);
+        drawing.resize(screen);
+        world.transform(camera, screen, vertices);
+        world.set_up(vertices, screen, batches);
         let lights = lights::Lights::new(scene, camera.position());
-        let vertices = self.world.transformed(camera, screen);
-        let triangles = self.world.screen_triangles(&vertices, screen);
-        let shader = shade::Shader::new(&self.world, &vertices, &lights, shading);
-        fill::draw(screen, &triangles, &shader)
+        let shader = shade::Shader::new(world, vertices, &lights, shading);
+        fill::draw(screen, batches, &shader, drawing);
     }
 }

@@ -1,116 +1,148 @@
-//! A row of a tile: what each pixel shows, as arrays that can be shaded eight pixels at a time.
+//! A row of a tile: what each pixel shows, as arrays, so that plain loops shade eight pixels at a time.
 
-use super::packet::{LANES, Vec3x8};
 use glam::Vec3;
 use std::ops::Range;
-use wide::f32x8;
 
 /// Pixels of a row.
 pub(super) const WIDTH: usize = 64;
+/// Pixels that are written at a time.
+pub(super) const LANES: usize = 8;
+/// Pixels that a row has room for: the last eight may reach over its end.
+pub(super) const ROOM: usize = WIDTH + LANES;
 
-/// The numbers of a row's pixels.
-pub(super) const STEPS: [f32; WIDTH] = {
-    let mut steps = [0.0; WIDTH];
-    let mut i = 0;
-    while i < WIDTH {
-        steps[i] = i as f32;
-        i += 1;
+/// A number a pixel.
+pub(super) type Line = [f32; ROOM];
+
+/// A vector a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vectors(pub [Line; 3]);
+
+impl Vectors {
+    pub const ZERO: Self = Vectors([[0.0; ROOM]; 3]);
+
+    #[inline(always)]
+    pub fn at(&self, i: usize) -> Vec3 {
+        Vec3::new(self.0[0][i], self.0[1][i], self.0[2][i])
     }
-    steps
-};
+
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, vector: Vec3) {
+        let [x, y, z] = &mut self.0;
+        (x[i], y[i], z[i]) = (vector.x, vector.y, vector.z);
+    }
+
+    /// Gives a run of pixels one vector; see [`spread`].
+    #[inline(always)]
+    pub fn spread(&mut self, pixels: &Range<usize>, vector: Vec3) {
+        let [x, y, z] = &mut self.0;
+        spread(x, pixels, vector.x);
+        spread(y, pixels, vector.y);
+        spread(z, pixels, vector.z);
+    }
+}
+
+/// Gives a run of pixels one value, and up to seven behind it, which are written later or show nothing.
+#[inline(always)]
+pub(super) fn spread<T: Copy>(line: &mut [T; ROOM], pixels: &Range<usize>, value: T) {
+    for from in pixels.clone().step_by(LANES) {
+        line[from..from + LANES].fill(value);
+    }
+}
+
+/// What is blended between the corners of a triangle: two vectors, point and normal or matte and glossy light, and a
+/// place on the texture.
+pub(super) type Attributes = [f32; 8];
 
 /// Pixels in a row that show one triangle. Weights of its three corners, over distance, are affine on the screen.
 #[derive(Clone, Debug)]
 pub(super) struct Run {
-    pub first: usize,
-    pub end: usize,
+    pub pixels: Range<usize>,
     /// At the first pixel.
     pub start: Vec3,
     /// From one pixel to the next.
     pub step: Vec3,
 }
 
-impl Run {
-    pub fn pixels(&self) -> Range<usize> {
-        self.first..self.end
-    }
-
-    /// Weights of the corners at a pixel, correct in perspective.
-    pub fn weights(&self, x: usize) -> Vec3 {
-        let over_distance = self.start + self.step * (x - self.first) as f32;
-        over_distance / over_distance.element_sum()
-    }
-}
-
-/// The pixels.
+/// The pixels. Runs are noted from left to right.
 #[derive(Debug)]
 pub(super) struct Row {
-    pub surface: [u32; WIDTH],
-    /// Two blended vectors: point and normal, or matte and glossy light.
-    blended: [[f32; WIDTH]; 6],
-    face: [[f32; WIDTH]; 3],
-    /// Colour of the texture; one where there is none.
-    texel: [[f32; WIDTH]; 3],
+    pub surface: [u32; ROOM],
+    pub first: Vectors,
+    pub second: Vectors,
+    pub uv: [Line; 2],
+    /// Normal of the triangle's plane, of any length.
+    pub face: Vectors,
 }
 
 impl Row {
     /// Pixels that show nothing.
     pub fn new(nothing: u32) -> Self {
-        Row { surface: [nothing; WIDTH], blended: [[0.0; WIDTH]; 6], face: [[0.0; WIDTH]; 3], texel: [[1.0; WIDTH]; 3] }
+        let (surface, uv) = ([nothing; ROOM], [[0.0; ROOM]; 2]);
+        Row { surface, first: Vectors::ZERO, second: Vectors::ZERO, uv, face: Vectors::ZERO }
     }
 
-    /// Two vectors for every pixel of a run, blended from those at the corners.
-    pub fn blend(&mut self, run: &Run, first: [Vec3; 3], second: [Vec3; 3]) {
-        let mut distances = [0.0; WIDTH];
-        let (start, step) = (run.start.element_sum(), run.step.element_sum());
-        for (distance, i) in distances[..run.end - run.first].iter_mut().zip(&STEPS) {
-            *distance = 1.0 / (start + step * i);
-        }
-        for (component, row) in self.blended.iter_mut().enumerate() {
-            let corners = if component < 3 { first } else { second };
-            let values = Vec3::from(corners.map(|corner| corner[component % 3]));
-            let (start, step) = (run.start.dot(values), run.step.dot(values));
-            for ((value, distance), i) in row[run.pixels()].iter_mut().zip(&distances).zip(&STEPS) {
-                *value = (start + step * i) * distance;
+    /// The surfaces of the first `width` pixels, each with the pixels that show it.
+    #[inline(always)]
+    pub fn surfaces(&self, width: usize) -> impl Iterator<Item = (u32, Range<usize>)> {
+        let mut first = 0;
+        self.surface[..width].chunk_by(|a, b| a == b).map(move |same| {
+            first += same.len();
+            (same[0], first - same.len()..first)
+        })
+    }
+
+    /// Blends what stands at the corners for every pixel of a run, correct in perspective: affine on the screen are
+    /// every attribute over distance, and one over distance.
+    #[inline(always)]
+    pub fn blend(&mut self, run: &Run, [a, b, c]: [&Attributes; 3]) {
+        let blended = |w: Vec3| -> Attributes { std::array::from_fn(|k| a[k] * w.x + b[k] * w.y + c[k] * w.z) };
+        let (start, step) = (blended(run.start), blended(run.step));
+        let (nearness, nearness_step) = (run.start.element_sum(), run.step.element_sum());
+        let Row { first: Vectors([x, y, z]), second: Vectors([p, q, r]), uv: [u, v], .. } = self;
+        let mut lines = [x, y, z, p, q, r, u, v];
+        for from in run.pixels.clone().step_by(LANES) {
+            // Always so; the compiler knows it, too, and asks no more.
+            let from = from.min(WIDTH);
+            let i: [f32; LANES] = std::array::from_fn(|lane| (from - run.pixels.start + lane) as f32);
+            let distance: [f32; LANES] = std::array::from_fn(|lane| 1.0 / (nearness + nearness_step * i[lane]));
+            for (k, line) in lines.iter_mut().enumerate() {
+                for lane in 0..LANES {
+                    line[from + lane] = (start[k] + step[k] * i[lane]) * distance[lane];
+                }
             }
         }
     }
-
-    /// The triangle's plane.
-    pub fn set_face(&mut self, run: &Run, face: Vec3) {
-        for (row, value) in self.face.iter_mut().zip(face.to_array()) {
-            row[run.pixels()].fill(value);
-        }
-    }
-
-    /// No texture.
-    pub fn set_plain(&mut self, run: &Run) {
-        self.texel.iter_mut().for_each(|row| row[run.pixels()].fill(1.0));
-    }
-
-    /// The texture at a pixel.
-    pub fn set_texel(&mut self, x: usize, colour: Vec3) {
-        self.texel.iter_mut().zip(colour.to_array()).for_each(|(row, value)| row[x] = value);
-    }
-
-    /// The blended vectors of eight pixels.
-    pub fn blended(&self, start: usize) -> (Vec3x8, Vec3x8) {
-        let [a, b, c, d, e, f] = &self.blended;
-        (eight([a, b, c], start), eight([d, e, f], start))
-    }
-
-    /// The textures at eight pixels.
-    pub fn texel(&self, start: usize) -> Vec3x8 {
-        eight(self.texel.each_ref(), start)
-    }
-
-    /// The planes of eight pixels.
-    pub fn face(&self, start: usize) -> Vec3x8 {
-        eight(self.face.each_ref(), start)
-    }
 }
 
-fn eight(rows: [&[f32; WIDTH]; 3], start: usize) -> Vec3x8 {
-    let [x, y, z] = rows.map(|row| f32x8::from(std::array::from_fn::<f32, LANES, _>(|k| row[start + k])));
-    Vec3x8 { x, y, z }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_pixel_of_neighbouring_runs_has_what_its_own_run_gives_it() {
+        let corner = |k: usize| -> Attributes { std::array::from_fn(|i| (k * 10 + i) as f32) };
+        let (a, b, c) = (corner(0), corner(1), corner(2));
+        let run = |pixels: Range<usize>| {
+            let start = Vec3::new(0.2 + pixels.start as f32, 0.5, 0.3);
+            Run { pixels, start, step: Vec3::new(0.01, -0.002, 0.003) }
+        };
+        let runs = [0..1, 1..3, 3..30, 30..37, 37..64].map(run);
+        let mut row = Row::new(7);
+        for run in &runs {
+            row.blend(run, [&a, &b, &c]);
+            spread(&mut row.surface, &run.pixels, run.pixels.start as u32);
+        }
+        for run in runs {
+            for x in run.pixels.clone() {
+                let over_distance = run.start + run.step * (x - run.pixels.start) as f32;
+                let weights = over_distance / over_distance.element_sum();
+                let of = |i: usize| weights.dot(Vec3::new(a[i], b[i], c[i]));
+                assert!((row.first.at(x) - Vec3::new(of(0), of(1), of(2))).length() < 1e-4, "{x}");
+                assert!((row.second.at(x) - Vec3::new(of(3), of(4), of(5))).length() < 1e-4, "{x}");
+                assert!((row.uv[0][x] - of(6)).abs() + (row.uv[1][x] - of(7)).abs() < 1e-4, "{x}");
+                assert_eq!(row.surface[x], run.pixels.start as u32);
+            }
+        }
+        assert_eq!(row.surfaces(40).last(), Some((37, 37..40)));
+    }
 }

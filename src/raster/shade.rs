@@ -1,23 +1,23 @@
-//! From rows of pixels that show triangles to light, eight pixels at a time: Lambert, Blinn and Phong, Gouraud, flat.
+//! From rows of pixels that show triangles to light: Lambert, Blinn and Phong, Gouraud, flat. What is written for one
+//! pixel stands in a plain loop over a row, which the compiler makes eight pixels wide.
+#![expect(clippy::needless_range_loop, reason = "a pixel's place in a dozen arrays is its number")]
 
 use super::Shading;
-use super::fill::ScreenTriangle;
-use super::lights::Lights;
-use super::packet::{self, LANES, Vec3x8};
-use super::row::{Row, Run};
+use super::lights::{Incident, Lights};
+use super::row::{Attributes, Line, ROOM, Row, Run, Vectors, WIDTH, spread};
+use super::series::{self, at_least, at_most};
+use super::triangle::ScreenTriangle;
 use super::world::{Surface, Vertices, World};
 use crate::color::srgb_decode;
+use crate::math::simd::{self, Avx2, Work};
 use crate::scene::Texture;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use std::f32::consts::PI;
-use wide::f32x8;
+use std::ops::Range;
 
 /// Part of a clear surface that is shown as if it were paint, so that glass can be seen.
 const GLASS_BODY: f32 = 0.15;
-
-/// Where a highlight has fallen to 1e-6 of its middle.
-const FAR_FROM_HIGHLIGHT: f32 = 14.0;
 
 /// A material as it is shaded here.
 #[derive(Clone, Copy, Debug, Default)]
@@ -32,26 +32,59 @@ struct Finish {
     glow: Vec3,
 }
 
-/// The finishes of eight pixels.
+/// The finishes of a row's pixels.
+#[derive(Debug)]
 struct Finishes {
-    paint: Vec3x8,
-    glow: Vec3x8,
-    f0: Vec3x8,
-    exponent: f32x8,
-    scale: f32x8,
+    paint: Vectors,
+    f0: Vectors,
+    exponent: Line,
+    scale: Line,
+    glow: Vectors,
 }
 
-/// Light that leaves eight points: for each unit of their paint, and the rest.
-struct Lit {
-    matte: Vec3x8,
-    glossy: Vec3x8,
-}
-
-/// What is known of eight points. The point counts from the eye; normals may have any length.
+/// What is known of the points that a row shows.
+#[derive(Debug)]
 struct Points {
-    point: Vec3x8,
-    normal: Vec3x8,
-    face: Vec3x8,
+    /// Unit directions to the eye, of the shaded surface and of the triangle's plane, on the side that is seen. Planes
+    /// keep any length.
+    view: Vectors,
+    normal: Vectors,
+    face: Vectors,
+    /// Cosine between normal and view.
+    n_dot_v: Line,
+}
+
+/// Light that leaves the points: for each unit of their paint, and the rest.
+#[derive(Debug)]
+struct Lit {
+    matte: Vectors,
+    glossy: Vectors,
+}
+
+/// Room to shade a row in.
+#[derive(Debug)]
+pub(super) struct Scratch {
+    finishes: Finishes,
+    points: Points,
+    incident: Incident,
+    /// Cosine between a row's normals and the directions to a light, and the part of its strength that they receive.
+    n_dot_l: Line,
+    received: Line,
+    lit: Lit,
+}
+
+impl Scratch {
+    pub fn new() -> Self {
+        let (none, zero) = (Vectors::ZERO, [0.0; ROOM]);
+        Scratch {
+            finishes: Finishes { paint: none, f0: none, exponent: zero, scale: zero, glow: none },
+            points: Points { view: none, normal: none, face: none, n_dot_v: zero },
+            incident: Incident::NONE,
+            n_dot_l: zero,
+            received: zero,
+            lit: Lit { matte: none, glossy: none },
+        }
+    }
 }
 
 /// Shades pixels.
@@ -61,51 +94,42 @@ pub(super) struct Shader<'a> {
     vertices: &'a [Vertices],
     lights: &'a Lights,
     shading: Shading,
-    /// One a surface, and one for where there is nothing: it only glows.
+    /// One a surface.
     finishes: Vec<Finish>,
-    /// Matte and glossy light at the vertices of each mesh, for Gouraud's shading.
-    at_vertices: Vec<Vec<[Vec3; 2]>>,
+    /// For Gouraud's shading, matte and glossy light and texture at the vertices of each mesh.
+    lit_vertices: Vec<Vec<Attributes>>,
     /// sRGB bytes as linear light.
     linear: [f32; 256],
 }
 
 impl<'a> Shader<'a> {
     pub fn new(world: &'a World, vertices: &'a [Vertices], lights: &'a Lights, shading: Shading) -> Self {
-        let mut finishes: Vec<Finish> = world.surfaces.iter().map(|surface| finish(surface, lights.glow)).collect();
-        finishes.push(Finish { glow: lights.void_radiance, ..Finish::default() });
+        let finishes: Vec<Finish> = world.surfaces.iter().map(|surface| finish(surface, lights.glow)).collect();
         let linear = std::array::from_fn(|i| srgb_decode(i as f32 / 255.0));
-        let mut shader = Shader { world, vertices, lights, shading, finishes, at_vertices: Vec::new(), linear };
+        let mut shader = Shader { world, vertices, lights, shading, finishes, lit_vertices: Vec::new(), linear };
         if shading == Shading::Gouraud {
-            shader.at_vertices = (0..world.placed.len()).map(|placed| shader.lit_vertices(placed)).collect();
+            shader.lit_vertices = (0..world.placed.len()).map(|placed| shader.light_vertices(placed)).collect();
         }
         shader
     }
 
     /// Light at each vertex of a mesh, by its normal and the material of the last triangle that has it.
-    fn lit_vertices(&self, placed: usize) -> Vec<[Vec3; 2]> {
-        let (mesh, vertices) = (&self.world.placed[placed].mesh, &self.vertices[placed]);
-        let mut seen_as = vec![(self.nothing(), Vec3::ZERO); vertices.view.len()];
+    fn light_vertices(&self, placed: usize) -> Vec<Attributes> {
+        let (mesh, vertices) = (&self.world.placed[placed].mesh, &self.vertices[placed].attributes);
+        let mut seen_as = vec![(self.nothing(), Vec3::ZERO); vertices.len()];
         for (part, surface) in mesh.parts.iter().zip(self.world.placed[placed].first_surface..) {
             for corners in mesh.triangles.get(part.triangles.start as usize..part.triangles.end as usize).unwrap_or(&[])
             {
-                let [a, b, c] = corners.map(|i| vertices.view[i as usize]);
-                let face = (b - a).cross(c - a);
+                let face = face(corners.map(|i| &vertices[i as usize]));
                 corners.iter().for_each(|&i| seen_as[i as usize] = (surface, face));
             }
         }
-        let eight = |chunk: usize| {
-            let at = |k: usize| (chunk * LANES + k).min(seen_as.len() - 1);
-            let points = Points {
-                point: Vec3x8::from_lanes(|k| vertices.view[at(k)]),
-                normal: Vec3x8::from_lanes(|k| vertices.normals.get(at(k)).copied().unwrap_or(seen_as[at(k)].1)),
-                face: Vec3x8::from_lanes(|k| seen_as[at(k)].1),
-            };
-            let surfaces: [u32; LANES] = std::array::from_fn(|k| seen_as[at(k)].0);
-            let lit = self.lit(&self.finishes_of(&surfaces), &points);
-            let (matte, glossy) = (lit.matte.lanes(), lit.glossy.lanes());
-            (0..LANES.min(seen_as.len() - chunk * LANES)).map(move |k| [matte[k], glossy[k]])
-        };
-        (0..seen_as.len().div_ceil(LANES)).into_par_iter().flat_map_iter(eight).collect()
+        let mut lit = vertices.clone();
+        let chunks = lit.par_chunks_mut(WIDTH).zip(seen_as.par_chunks(WIDTH));
+        chunks.for_each(|(vertices, seen_as)| {
+            simd::widest(VertexRow { shader: self, has_normals: !mesh.normals.is_empty(), vertices, seen_as });
+        });
+        lit
     }
 
     /// The surface of pixels that show nothing.
@@ -113,130 +137,237 @@ impl<'a> Shader<'a> {
         self.world.surfaces.len() as u32
     }
 
-    /// The object that a triangle belongs to.
-    pub fn object(&self, triangle: &ScreenTriangle) -> u32 {
-        self.world.placed[triangle.placed as usize].object
+    /// Notes that a run of pixels shows nothing, and gives its object.
+    #[inline(always)]
+    pub fn show_nothing(&self, row: &mut Row, pixels: Range<usize>) -> u32 {
+        spread(&mut row.surface, &pixels, self.nothing());
+        super::NO_OBJECT
     }
 
-    /// Notes what a run of pixels shows of a triangle.
-    pub fn show(&self, row: &mut Row, run: &Run, triangle: &ScreenTriangle) {
-        let placed = triangle.placed as usize;
-        let mesh = &self.world.placed[placed].mesh;
-        let vertices = &self.vertices[placed];
-        let corners = mesh.triangles[triangle.triangle as usize].map(|i| i as usize);
-        let points = corners.map(|i| vertices.view[i]);
-        let face = (points[1] - points[0]).cross(points[2] - points[0]);
-        row.surface[run.pixels()].fill(triangle.surface);
-        let [first, second] = match self.shading {
-            Shading::Gouraud => {
-                let light = corners.map(|i| self.at_vertices[placed][i]);
-                [light.map(|[matte, _]| matte), light.map(|[_, glossy]| glossy)]
+    /// Notes what a run of pixels shows of a triangle, and gives its object.
+    #[inline(always)]
+    pub fn show(&self, row: &mut Row, run: &Run, triangle: &ScreenTriangle) -> u32 {
+        let surface = &self.world.surfaces[triangle.surface as usize];
+        let placed = &self.world.placed[surface.placed as usize];
+        let corners = placed.mesh.triangles[triangle.triangle as usize].map(|i| i as usize);
+        let vertices = corners.map(|i| &self.vertices[surface.placed as usize].attributes[i]);
+        let face = face(vertices);
+        row.face.spread(&run.pixels, face);
+        match self.shading {
+            Shading::Gouraud => row.blend(run, corners.map(|i| &self.lit_vertices[surface.placed as usize][i])),
+            Shading::Lambert | Shading::BlinnPhong if !placed.mesh.normals.is_empty() => row.blend(run, vertices),
+            Shading::Lambert | Shading::BlinnPhong => {
+                row.blend(run, vertices);
+                row.second.spread(&run.pixels, face);
             }
-            Shading::Flat => [[(points[0] + points[1] + points[2]) / 3.0; 3], [face; 3]],
-            Shading::Lambert | Shading::BlinnPhong if vertices.normals.is_empty() => [points, [face; 3]],
-            Shading::Lambert | Shading::BlinnPhong => [points, corners.map(|i| vertices.normals[i])],
-        };
-        row.blend(run, first, second);
-        row.set_face(run, face);
-        row.set_plain(run);
-        if let Some(texture) = &self.world.surfaces[triangle.surface as usize].texture {
-            let uvs = corners.map(|i| mesh.uvs.get(i).copied().unwrap_or(Vec2::ZERO));
-            for x in run.pixels() {
-                let w = run.weights(x);
-                let at = uvs[0] * w.x + uvs[1] * w.y + uvs[2] * w.z;
-                if let Some(rgb) = nearest_texel(texture, at) {
-                    row.set_texel(x, rgb.map(|c| self.linear[usize::from(c)]).into());
-                }
+            Shading::Flat => {
+                row.blend(run, vertices);
+                let middle = vertices.map(point).iter().sum::<Vec3>() / 3.0;
+                row.first.spread(&run.pixels, middle);
+                row.second.spread(&run.pixels, face);
             }
         }
+        spread(&mut row.surface, &run.pixels, triangle.surface);
+        placed.object
     }
 
     /// Scene-linear values of a row's pixels.
-    pub fn pixels(&self, row: &Row, rgb: &mut [[f32; 3]]) {
-        for (start, rgb) in (0..).step_by(LANES).zip(rgb.chunks_mut(LANES)) {
-            let surfaces = &row.surface[start..start + LANES];
-            let finishes = self.finishes_of(surfaces);
-            let (first, second) = row.blended(start);
-            let lit = if self.shading == Shading::Gouraud {
-                Lit { matte: first, glossy: second }
-            } else {
-                self.lit(&finishes, &Points { point: first, normal: second, face: row.face(start) })
-            };
-            let painted = finishes.paint.tinted(row.texel(start)).tinted(lit.matte);
-            let values = (painted + lit.glossy + finishes.glow).lanes();
-            rgb.iter_mut().zip(values).for_each(|(rgb, value)| *rgb = value.into());
+    #[inline(always)]
+    pub fn shade(&self, row: &Row, scratch: &mut Scratch, rgb: &mut [[f32; 3]]) {
+        let finishes = &mut scratch.finishes;
+        let mut anything = false;
+        for (surface, pixels) in row.surfaces(rgb.len()) {
+            if let Some(finish) = self.finishes.get(surface as usize) {
+                finishes.set(&pixels, finish);
+                self.paint_texture(row, surface, pixels, &mut finishes.paint);
+                anything = true;
+            }
+        }
+        if anything {
+            self.shade_surfaces(row, scratch, rgb);
+        }
+        for (_, pixels) in row.surfaces(rgb.len()).filter(|(surface, _)| *surface == self.nothing()) {
+            rgb[pixels].fill(self.lights.void_radiance.into());
         }
     }
 
-    /// The finishes of eight surfaces, which mostly are one.
-    fn finishes_of(&self, surfaces: &[u32]) -> Finishes {
-        let finish = |surface: u32| &self.finishes[surface as usize];
-        if surfaces.iter().all(|surface| *surface == surfaces[0]) {
-            let one = finish(surfaces[0]);
-            return Finishes {
-                paint: Vec3x8::splat(one.paint),
-                glow: Vec3x8::splat(one.glow),
-                f0: Vec3x8::splat(one.f0),
-                exponent: f32x8::splat(one.exponent),
-                scale: f32x8::splat(one.scale),
-            };
+    #[inline(always)]
+    fn shade_surfaces(&self, row: &Row, scratch: &mut Scratch, rgb: &mut [[f32; 3]]) {
+        if self.shading == Shading::Gouraud {
+            (scratch.lit.matte, scratch.lit.glossy) = (row.first, row.second);
+        } else {
+            self.light(row, scratch);
         }
-        let lanes: [&Finish; LANES] = std::array::from_fn(|k| finish(surfaces[k]));
-        Finishes {
-            paint: Vec3x8::from_lanes(|k| lanes[k].paint),
-            glow: Vec3x8::from_lanes(|k| lanes[k].glow),
-            f0: Vec3x8::from_lanes(|k| lanes[k].f0),
-            exponent: f32x8::from(lanes.map(|finish| finish.exponent)),
-            scale: f32x8::from(lanes.map(|finish| finish.scale)),
+        let Scratch { finishes, lit, .. } = scratch;
+        for i in 0..WIDTH {
+            let light = finishes.paint.at(i) * lit.matte.at(i) + lit.glossy.at(i) + finishes.glow.at(i);
+            lit.matte.set(i, light);
+        }
+        for (i, rgb) in rgb.iter_mut().enumerate() {
+            *rgb = lit.matte.at(i).into();
         }
     }
 
-    fn lit(&self, finishes: &Finishes, points: &Points) -> Lit {
-        let view = (-points.point).normalize_or_zero();
-        // The side that is seen.
-        let face = points.face.towards(view);
-        let normal = points.normal.towards(face).normalize_or_zero();
+    /// Multiplies the paint of a run of pixels by the texture of their surface.
+    #[inline(always)]
+    fn paint_texture(&self, row: &Row, surface: u32, pixels: Range<usize>, paint: &mut Vectors) {
+        let Some(texture) = &self.world.surfaces[surface as usize].texture else { return };
+        for i in pixels {
+            if let Some(rgb) = nearest_texel(texture, Vec2::new(row.uv[0][i], row.uv[1][i])) {
+                paint.set(i, paint.at(i) * Vec3::from(rgb.map(|c| self.linear[usize::from(c)])));
+            }
+        }
+    }
+
+    /// Light at a row's points, whose normals may have any length and either side.
+    #[inline(always)]
+    fn light(&self, row: &Row, scratch: &mut Scratch) {
+        let Scratch { finishes, points, incident, n_dot_l, received, lit } = scratch;
+        points.see(row);
+        lit.matte.spread(&(0..WIDTH), self.lights.ambient);
         // An even surround: its mirror image is as bright everywhere.
-        let surround = Vec3x8::splat(self.lights.ambient / PI);
-        let mut lit = Lit { matte: Vec3x8::splat(self.lights.ambient), glossy: finishes.f0.tinted(surround) };
+        let surround = self.lights.ambient / PI;
+        for i in 0..WIDTH {
+            lit.glossy.set(i, finishes.f0.at(i) * surround);
+        }
         for light in &self.lights.lights {
-            let (direction, factor) = light.at(points.point);
-            let cos = normal.dot(direction).fast_max(f32x8::ZERO);
-            let received = face.dot(direction).simd_gt(f32x8::ZERO) & (factor * cos);
-            if !received.simd_gt(f32x8::ZERO).any() {
+            light.reach(&row.first, incident);
+            let mut any = false;
+            for i in 0..WIDTH {
+                let direction = incident.direction.at(i);
+                n_dot_l[i] = points.normal.at(i).dot(direction);
+                // What comes from behind the triangle's plane does not shine through it.
+                let before = points.face.at(i).dot(direction) > 0.0;
+                received[i] = if before { incident.factor[i] * at_least(n_dot_l[i], 0.0) } else { 0.0 };
+                any |= received[i] > 0.0;
+            }
+            if !any {
                 continue;
             }
-            let strength = Vec3x8::splat(light.strength);
-            lit.matte = lit.matte + strength.times(received);
-            if self.shading != Shading::Lambert
-                && let Some(reflected) = highlight(finishes, direction, view, normal)
-            {
-                lit.glossy = lit.glossy + strength.times(received).tinted(reflected);
+            for i in 0..WIDTH {
+                lit.matte.set(i, lit.matte.at(i) + light.strength * received[i]);
+            }
+            if self.shading != Shading::Lambert {
+                let seen = (&*points, &incident.direction, &*n_dot_l);
+                finishes.add_highlight(light.strength, received, seen, &mut lit.glossy);
             }
         }
-        lit
     }
 }
 
-/// Blinn's lobe with Schlick's Fresnel term; none if all eight points lie far from the highlight.
-fn highlight(finishes: &Finishes, direction: Vec3x8, view: Vec3x8, normal: Vec3x8) -> Option<Vec3x8> {
-    // For unit vectors |d + v|2 = 2 + 2 d.v, and the half vector's cosines follow without the vector itself.
-    let half = f32x8::splat(0.5);
-    let squared = (f32x8::ONE + direction.dot(view)).fast_max(f32x8::splat(1e-12)) * f32x8::splat(2.0);
-    let inverse = f32x8::ONE / squared.sqrt();
-    let n_dot_h = (normal.dot(direction) + normal.dot(view)) * inverse;
-    let n_dot_h = n_dot_h.fast_max(f32x8::splat(f32::MIN_POSITIVE)).fast_min(f32x8::ONE);
-    let v_dot_h = half * squared * inverse;
-    // x^n <= exp(-n (1 - x)): far from the highlight there is none.
-    let near = (finishes.exponent * (f32x8::ONE - n_dot_h)).simd_lt(f32x8::splat(FAR_FROM_HIGHLIGHT));
-    if !near.any() {
-        return None;
+impl Points {
+    /// Takes a row's, normals and planes turned to the side that is seen.
+    #[inline(always)]
+    fn see(&mut self, row: &Row) {
+        for i in 0..WIDTH {
+            let view = normalize_or_zero(-row.first.at(i));
+            let face = towards(row.face.at(i), view);
+            let normal = normalize_or_zero(towards(row.second.at(i), face));
+            self.view.set(i, view);
+            self.face.set(i, face);
+            self.normal.set(i, normal);
+            self.n_dot_v[i] = normal.dot(view);
+        }
     }
-    let lobe = near & (finishes.scale * packet::power(n_dot_h, finishes.exponent));
-    let grazing = (f32x8::ONE - v_dot_h).fast_max(f32x8::ZERO);
-    let fifth = (grazing * grazing) * (grazing * grazing) * grazing;
-    let white = Vec3x8::splat(Vec3::ONE);
-    Some((finishes.f0 + (white - finishes.f0).times(fifth)).times(lobe))
+}
+
+/// A unit vector; zero where there is no direction.
+#[inline(always)]
+fn normalize_or_zero(v: Vec3) -> Vec3 {
+    let squared = v.length_squared();
+    v * if squared > 0.0 { 1.0 / squared.sqrt() } else { 0.0 }
+}
+
+/// Turned round where it points away from `other`.
+#[inline(always)]
+fn towards(v: Vec3, other: Vec3) -> Vec3 {
+    v * if v.dot(other) < 0.0 { -1.0 } else { 1.0 }
+}
+
+impl Finishes {
+    #[inline(always)]
+    fn set(&mut self, pixels: &Range<usize>, finish: &Finish) {
+        self.paint.spread(pixels, finish.paint);
+        self.f0.spread(pixels, finish.f0);
+        self.glow.spread(pixels, finish.glow);
+        spread(&mut self.exponent, pixels, finish.exponent);
+        spread(&mut self.scale, pixels, finish.scale);
+    }
+
+    /// Blinn's lobe with Schlick's Fresnel term. In three loops: the processor overlaps more pixels of short ones.
+    #[inline(always)]
+    fn add_highlight(
+        &self,
+        strength: Vec3,
+        received: &Line,
+        (points, directions, n_dot_l): (&Points, &Vectors, &Line),
+        glossy: &mut Vectors,
+    ) {
+        let (mut n_dot_h_squared, mut grazing) = ([0.0; ROOM], [0.0; ROOM]);
+        for i in 0..WIDTH {
+            // For unit vectors |l + v|2 = 2 + 2 l.v, and the half vector's cosines follow without the vector itself.
+            let squared = 2.0 * at_least(1.0 + directions.at(i).dot(points.view.at(i)), 1e-12);
+            let cos = at_least(n_dot_l[i] + points.n_dot_v[i], 0.0);
+            n_dot_h_squared[i] = at_most(at_least(cos * cos / squared, f32::MIN_POSITIVE), 1.0);
+            grazing[i] = at_least(1.0 - 0.5 * squared.sqrt(), 0.0);
+        }
+        let mut lobe = [0.0; ROOM];
+        for i in 0..WIDTH {
+            lobe[i] = received[i] * self.scale[i] * series::power(n_dot_h_squared[i], 0.5 * self.exponent[i]);
+        }
+        for i in 0..WIDTH {
+            let fifth = (grazing[i] * grazing[i]) * (grazing[i] * grazing[i]) * grazing[i];
+            let f0 = self.f0.at(i);
+            let reflected = (f0 + (Vec3::ONE - f0) * fifth) * lobe[i];
+            glossy.set(i, glossy.at(i) + strength * reflected);
+        }
+    }
+}
+
+/// Vertices that are shaded as if they were a row of pixels.
+struct VertexRow<'a> {
+    shader: &'a Shader<'a>,
+    has_normals: bool,
+    /// Point and normal; then matte and glossy light.
+    vertices: &'a mut [Attributes],
+    /// Surface and plane of one of the triangles around.
+    seen_as: &'a [(u32, Vec3)],
+}
+
+impl Work for VertexRow<'_> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run(self, _: Option<Avx2>) {
+        let (mut row, mut scratch) = (Row::new(self.shader.nothing()), Scratch::new());
+        for (i, (vertex, (surface, face))) in self.vertices.iter().zip(self.seen_as).enumerate() {
+            let [_, _, _, x, y, z, ..] = *vertex;
+            row.first.set(i, point(vertex));
+            row.second.set(i, if self.has_normals { Vec3::new(x, y, z) } else { *face });
+            row.face.set(i, *face);
+            // A vertex of no triangle shows nothing.
+            let finish = self.shader.finishes.get(*surface as usize).copied().unwrap_or_default();
+            scratch.finishes.set(&(i..i + 1), &finish);
+        }
+        self.shader.light(&row, &mut scratch);
+        for (i, vertex) in self.vertices.iter_mut().enumerate() {
+            let ([a, b, c], [d, e, f]) = (scratch.lit.matte.at(i).into(), scratch.lit.glossy.at(i).into());
+            let [.., u, v] = *vertex;
+            *vertex = [a, b, c, d, e, f, u, v];
+        }
+    }
+}
+
+#[inline(always)]
+fn point([x, y, z, ..]: &Attributes) -> Vec3 {
+    Vec3::new(*x, *y, *z)
+}
+
+/// Normal of a triangle's plane.
+#[inline(always)]
+fn face(corners: [&Attributes; 3]) -> Vec3 {
+    let [a, b, c] = corners.map(point);
+    (b - a).cross(c - a)
 }
 
 fn finish(surface: &Surface, glow: f32) -> Finish {

@@ -1,15 +1,18 @@
 //! What stands in the studio, and its way into clip space.
 
+use super::batch::{self, Batch};
 use super::clip::{self, Place};
-use super::fill::{Facing, OnScreen, Screen, ScreenTriangle};
+use super::row::Attributes;
+use super::triangle::{Facing, OnScreen, Screen, ScreenTriangle};
 use crate::scene::{Assets, CameraFrame, Material, Mesh, Scene, Texture, room_mesh};
 use glam::{Affine3A, Mat4, Vec3, Vec3A, Vec4};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Nearest thing shown, metres.
 const NEAR_M: f32 = 0.005;
-/// Triangles that one task takes on.
+/// Vertices that one task takes on.
 const TASK: usize = 4096;
 /// The room stands back by this much of the distance, so that paper laid on its floor lies on top.
 const BEHIND_COPLANAR: f32 = 1.0 - 1e-4;
@@ -29,6 +32,8 @@ pub(super) struct Placed {
 /// A material with its texture.
 #[derive(Debug)]
 pub(super) struct Surface {
+    /// Its mesh among the placed.
+    pub placed: u32,
     pub material: Material,
     pub texture: Option<Arc<Texture>>,
 }
@@ -38,17 +43,17 @@ pub(super) struct Surface {
 pub(super) struct World {
     pub placed: Vec<Placed>,
     pub surfaces: Vec<Surface>,
+    /// All triangles, in the order of the scene: surfaces, and a few of their triangles at a time.
+    spans: Vec<(u32, Range<usize>)>,
 }
 
 /// A mesh's vertices after the first stage.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Vertices {
     /// In clip space, and on the screen.
     corners: Vec<Corner>,
-    /// From the eye, along the axes of the world.
-    pub view: Vec<Vec3>,
-    /// Of any length; empty where the mesh has none.
-    pub normals: Vec<Vec3>,
+    /// Point from the eye, along the axes of the world; normal of any length, zero where there is none; and texture.
+    pub attributes: Vec<Attributes>,
 }
 
 /// A vertex in clip space.
@@ -93,7 +98,11 @@ impl World {
         for part in &mesh.parts {
             let material = material(&part.name);
             let texture = material.base_color_texture.as_ref().and_then(|path| assets.textures.get(path).cloned());
-            self.surfaces.push(Surface { material, texture });
+            let end = (part.triangles.end as usize).min(mesh.triangles.len());
+            let starts = (part.triangles.start as usize..end).step_by(batch::TRIANGLES);
+            let surface = self.surfaces.len() as u32;
+            self.spans.extend(starts.map(|first| (surface, first..(first + batch::TRIANGLES).min(end))));
+            self.surfaces.push(Surface { placed: self.placed.len() as u32, material, texture });
         }
         self.placed.push(Placed { mesh, world_from_object, object, first_surface, facing });
     }
@@ -103,82 +112,69 @@ impl World {
     }
 
     /// All vertices as a camera sees them.
-    pub fn transformed(&self, camera: &CameraFrame, screen: Screen) -> Vec<Vertices> {
+    pub fn transform(&self, camera: &CameraFrame, screen: Screen, vertices: &mut Vec<Vertices>) {
         let eye = Vec3A::from(camera.position());
         let clip_from_view = camera.clip_from_world(NEAR_M) * Mat4::from_translation(eye.into());
-        let transform = |placed: &Placed| {
-            let Affine3A { matrix3, translation } = placed.world_from_object;
+        vertices.resize_with(self.placed.len(), Vertices::default);
+        for (placed, Vertices { corners, attributes }) in self.placed.iter().zip(vertices) {
+            let (mesh, Affine3A { matrix3, translation }) = (&placed.mesh, placed.world_from_object);
             let view_from_object = Affine3A { matrix3, translation: translation - eye };
-            let view: Vec<Vec3> =
-                placed.mesh.positions.par_iter().map(|p| view_from_object.transform_point3(*p)).collect();
+            let clip_from_object = clip_from_view * Mat4::from(view_from_object);
             let corner = |point: &Vec3| {
-                let clip = clip_from_view * point.extend(1.0);
+                let clip = clip_from_object * point.extend(1.0);
                 Corner { clip, on_screen: screen.project(clip), beyond: clip::beyond(clip) }
             };
             // Normals go by the cofactors, which exist for every scale.
             let [x, y, z] = [0, 1, 2].map(|i| Vec3::from(matrix3.col(i)));
             let mirror = if x.dot(y.cross(z)) < 0.0 { -1.0 } else { 1.0 };
             let cofactors = glam::Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * mirror;
-            Vertices {
-                corners: view.par_iter().map(corner).collect(),
-                normals: placed.mesh.normals.par_iter().map(|n| cofactors * *n).collect(),
-                view,
-            }
-        };
-        self.placed.iter().map(transform).collect()
+            let attribute = |i: usize| {
+                let point = view_from_object.transform_point3(mesh.positions[i]);
+                let normal = mesh.normals.get(i).map_or(Vec3::ZERO, |normal| cofactors * *normal);
+                let uv = mesh.uvs.get(i).copied().unwrap_or_default();
+                [point.x, point.y, point.z, normal.x, normal.y, normal.z, uv.x, uv.y]
+            };
+            mesh.positions.par_iter().with_min_len(TASK).map(corner).collect_into_vec(corners);
+            let all = (0..mesh.positions.len()).into_par_iter().with_min_len(TASK);
+            all.map(attribute).collect_into_vec(attributes);
+        }
     }
 
     /// What of all triangles lies on the screen, in the order of the scene.
-    pub fn screen_triangles(&self, vertices: &[Vertices], screen: Screen) -> Vec<ScreenTriangle> {
-        let mut tasks = Vec::new();
-        for (index, placed) in self.placed.iter().enumerate() {
-            for (part, surface) in placed.mesh.parts.iter().zip(placed.first_surface..) {
-                let end = (part.triangles.end as usize).min(placed.mesh.triangles.len());
-                tasks.extend(
-                    (part.triangles.start as usize..end)
-                        .step_by(TASK)
-                        .map(|first| (index, surface, first..(first + TASK).min(end))),
-                );
-            }
-        }
-        let done: Vec<Vec<ScreenTriangle>> = tasks
-            .into_par_iter()
-            .map(|(index, surface, range)| {
-                let mut out = Vec::with_capacity(range.len());
-                for triangle in range {
-                    self.place(&vertices[index], (index, triangle, surface), screen, &mut out);
+    pub fn set_up(&self, vertices: &[Vertices], screen: Screen, batches: &mut Vec<Batch>) {
+        batches.resize_with(self.spans.len(), Batch::default);
+        batches.par_iter_mut().zip(&self.spans).enumerate().for_each(|(number, (batch, (surface, triangles)))| {
+            let index = self.surfaces[*surface as usize].placed as usize;
+            batch.fill(number, screen, |out| {
+                for triangle in triangles.clone() {
+                    self.place(&vertices[index], &self.placed[index], (*surface, triangle as u32), screen, out);
                 }
-                out
-            })
-            .collect();
-        done.concat()
+            });
+        });
     }
 
     fn place(
         &self,
         vertices: &Vertices,
-        (index, triangle, surface): (usize, usize, u32),
+        placed: &Placed,
+        name: (u32, u32),
         screen: Screen,
         out: &mut Vec<ScreenTriangle>,
     ) {
-        let placed = &self.placed[index];
-        let name = (index as u32, triangle as u32, surface);
-        let [Some(a), Some(b), Some(c)] = placed.mesh.triangles[triangle].map(|i| vertices.corners.get(i as usize))
-        else {
-            return;
-        };
+        let corners = placed.mesh.triangles[name.1 as usize];
+        let [Some(a), Some(b), Some(c)] = corners.map(|i| vertices.corners.get(i as usize)) else { return };
         match clip::place([a.beyond, b.beyond, c.beyond]) {
             Place::Outside => {}
             Place::Inside => {
                 let corners = [a.on_screen, b.on_screen, c.on_screen];
-                out.extend(ScreenTriangle::new(corners, [Vec3::X, Vec3::Y, Vec3::Z], placed.facing, name));
+                out.extend(ScreenTriangle::new(corners, placed.facing, name, None));
             }
             Place::Across => {
                 let polygon = clip::cut([a.clip, b.clip, c.clip]);
                 for pair in polygon.corners().windows(2).skip(1) {
                     let fan = [polygon.corners()[0], pair[0], pair[1]];
                     let (corners, weights) = (fan.map(|c| screen.project(c.clip)), fan.map(|c| c.weights));
-                    out.extend(ScreenTriangle::new(corners, weights, placed.facing, name));
+                    out.extend(ScreenTriangle::new(corners, placed.facing, name, Some(weights)));
                 }
             }
         }

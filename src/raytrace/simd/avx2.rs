@@ -1,45 +1,30 @@
-//! The kernels in AVX2, 256 bits wide. The one place with `unsafe` code.
-#![expect(unsafe_code, reason = "calls into code made for AVX2, behind the check that the processor has it")]
+//! The kernels in AVX2, 256 bits wide: with [`crate::math::simd`], which checks for it, all the `unsafe` code there is.
+#![expect(unsafe_code, reason = "intrinsics, and calls of functions made for AVX2")]
 
-use super::{Kernels, Query, WIDTH, sobol};
+use super::{Kernels, WIDTH, sobol};
 use crate::raytrace::bvh::{Node, Slabs, WIDEN};
 use crate::raytrace::triangle::{Packet, Sheared, TriangleHit, edges_in_f64};
 use std::arch::x86_64::*;
 
-/// Runs a query with these kernels; gives it back where the processor cannot.
-#[inline]
-pub fn run<Q: Query>(query: Q) -> Result<Q::Answer, Q> {
-    if !std::arch::is_x86_feature_detected!("avx2") {
-        return Err(query);
-    }
-    // SAFETY: the processor has AVX2; it was asked on the line above.
-    Ok(unsafe { compiled_for_avx2(query) })
-}
-
-#[target_feature(enable = "avx2")]
-fn compiled_for_avx2<Q: Query>(query: Q) -> Q::Answer {
-    query.run::<Avx2>()
-}
-
-/// Kernels for processors with AVX2. Private, so that only [`compiled_for_avx2`] can name them.
-struct Avx2;
+/// Kernels for processors with AVX2.
+pub struct Avx2;
 
 impl Kernels for Avx2 {
     #[inline(always)]
     fn boxes(slabs: &Slabs, node: &Node, t_max: f32, enter: &mut [f32; WIDTH]) -> u32 {
-        // SAFETY: this type is only named inside `compiled_for_avx2`.
+        // SAFETY: `dispatch` names this type only with the proof that the processor has AVX2, and nothing else can.
         unsafe { boxes(slabs, node, t_max, enter) }
     }
 
     #[inline(always)]
     fn triangles(packet: &Packet, ray: &Sheared, t_max: f32) -> Option<TriangleHit> {
-        // SAFETY: this type is only named inside `compiled_for_avx2`.
+        // SAFETY: `dispatch` names this type only with the proof that the processor has AVX2, and nothing else can.
         unsafe { triangles(packet, ray, t_max) }
     }
 
     #[inline(always)]
     fn sobol(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2] {
-        // SAFETY: this type is only named inside `compiled_for_avx2`.
+        // SAFETY: `dispatch` names this type only with the proof that the processor has AVX2, and nothing else can.
         unsafe { sobol_pair(index, seeds) }
     }
 }

@@ -2,8 +2,8 @@
 //! random numbers.
 //!
 //! [`Avx2`](avx2::Avx2) is written in intrinsics, [`Plain`] in portable Rust. Nothing is fused or reordered in either,
-//! so both give the same bits, and tests compare them. A [`Query`] is compiled once for each; [`dispatch`] asks the
-//! processor which one it can run.
+//! so both give the same bits, and tests compare them. A [`Query`] is compiled once for each; [`dispatch`] takes
+//! the one that the processor can run, by [`crate::math::simd`].
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -13,6 +13,10 @@ mod sobol;
 
 use super::bvh::{Node, Slabs};
 use super::triangle::{Packet, Sheared, TriangleHit};
+use crate::math::{
+    self,
+    simd::{Work, widest},
+};
 pub use plain::Plain;
 
 /// Boxes in a node and triangles in a packet.
@@ -42,10 +46,20 @@ pub trait Query {
 /// Runs a query with the widest instructions that the processor has.
 #[inline]
 pub fn dispatch<Q: Query>(query: Q) -> Q::Answer {
-    #[cfg(target_arch = "x86_64")]
-    let query = match avx2::run(query) {
-        Ok(answer) => return answer,
-        Err(query) => query,
-    };
-    query.run::<Plain>()
+    widest(WithKernels(query))
+}
+
+struct WithKernels<Q>(Q);
+
+impl<Q: Query> Work for WithKernels<Q> {
+    type Answer = Q::Answer;
+
+    #[inline(always)]
+    fn run(self, proof: Option<math::simd::Avx2>) -> Q::Answer {
+        match proof {
+            #[cfg(target_arch = "x86_64")]
+            Some(_) => self.0.run::<avx2::Avx2>(),
+            _ => self.0.run::<Plain>(),
+        }
+    }
 }
