@@ -82,7 +82,7 @@ pub struct TimesReport {
     pub lights: usize,
     /// Whether lights are left out where they fall under 1/256 of display white.
     pub light_radius: bool,
-    /// Whether frames in motion are drafts here, which light one pixel in four (fewer under many lights) and give way
+    /// Whether frames in motion are drafts here, which light one pixel in nine (fewer under many lights) and give way
     /// to the picture in full when nothing moves: on adapters that are processors.
     pub draft: bool,
     /// Frames measured.

@@ -1,5 +1,6 @@
 //! What there is to draw: one record a surface for the shaders, one item a run of triangles for the passes.
 
+use super::draw_uniforms::GpuDraw;
 use super::input::{Overlay, Pick};
 use super::light_table::{emission, picture_scale};
 use super::mesh_cache::{EmitterSurface, MeshCache, MeshKey};
@@ -10,7 +11,7 @@ use crate::photo::exposure;
 use crate::scene::{Assets, Emitter, Material, MeshPart, Scene, Shape};
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu;
-use glam::{Affine3A, Mat3A, Vec3, Vec4};
+use glam::{Affine3A, Vec3, Vec4};
 use std::f32::consts::PI;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -27,8 +28,6 @@ const FLAG_HOVERED: u32 = 8;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(super) struct GpuSurface {
-    /// Rows of world from object.
-    pub world_from_object: [[f32; 4]; 3],
     pub base_color: [f32; 3],
     pub roughness: f32,
     /// Picture units.
@@ -38,6 +37,22 @@ pub(super) struct GpuSurface {
     pub transmission: f32,
     pub flags: u32,
     pub unused: u32,
+}
+
+impl GpuSurface {
+    pub fn glows(&self) -> bool {
+        self.flags & FLAG_GLOWS != 0
+    }
+
+    pub fn is_emitter(&self) -> bool {
+        self.flags & FLAG_EMITTER != 0
+    }
+
+    /// Marks in the id buffer; twin of `mark_of` in `scene.wgsl`.
+    pub fn marks(&self) -> u32 {
+        let mark = |flag: u32, bit: u32| if self.flags & flag != 0 { 1 << bit } else { 0 };
+        mark(FLAG_SELECTED, 31) | mark(FLAG_HOVERED, 30)
+    }
 }
 
 /// In which pass a run of triangles is drawn.
@@ -171,6 +186,9 @@ impl DrawList {
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawList {
     pub records: Vec<GpuSurface>,
+    /// Of each record: where it stands, and what its draw reads.
+    pub places: Vec<Affine3A>,
+    pub draws: Vec<GpuDraw>,
     /// What a click on each record means.
     pub owners: Vec<Option<Pick>>,
     pub items: Vec<DrawItem>,
@@ -297,10 +315,7 @@ impl DrawList {
     ) -> u32 {
         let glow = emission(material, &scene.camera);
         let glows = glow.is_finite() && glow.max_element() > 0.0;
-        let Mat3A { x_axis: x, y_axis: y, z_axis: z } = world_from_object.matrix3;
-        let t = world_from_object.translation;
-        self.records.push(GpuSurface {
-            world_from_object: [[x.x, y.x, z.x, t.x], [x.y, y.y, z.y, t.y], [x.z, y.z, z.z, t.z]],
+        let surface = GpuSurface {
             base_color: material.base_color.map(|c| c.clamp(0.0, 1.0)),
             roughness: material.roughness.clamp(0.0, 1.0),
             emission: if glows { glow.into() } else { [0.0; 3] },
@@ -309,7 +324,10 @@ impl DrawList {
             transmission: material.transmission.clamp(0.0, 1.0),
             flags: flags | if glows { FLAG_GLOWS } else { 0 },
             unused: 0,
-        });
+        };
+        self.draws.push(GpuDraw::new(self.records.len() as u32, world_from_object, &surface));
+        self.records.push(surface);
+        self.places.push(*world_from_object);
         self.owners.push(owner);
         self.records.len() as u32 - 1
     }

@@ -83,9 +83,9 @@ pub struct Options {
     pub environment_estimate: bool,
     /// Leaves a light out where it falls under 1/256 of display white: in its place many lights cost little.
     pub light_radius: bool,
-    /// While something moves: on a rasteriser that runs on the processor, lights one pixel in four (under more than two
-    /// panels or eight lights in nine, under more than 24 in sixteen) and spreads the light over the surfaces. Adapters with a card of
-    /// their own take no notice.
+    /// While something moves: on a rasteriser that runs on the processor, lights one pixel in nine (under more than two
+    /// panels or eight lights one in sixteen, under more than 24 one in 25) and spreads the light over the surfaces.
+    /// Adapters with a card of their own take no notice.
     pub draft: bool,
     /// Draws only what lies over the picture, on nothing: transparent, colour times coverage. For a picture that comes
     /// from elsewhere. Depth and ids are there all the same, so that things hide each other and can be picked.

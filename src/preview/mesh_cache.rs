@@ -1,5 +1,6 @@
 //! Triangles on the graphics device: each mesh is uploaded once and stays while it is in use.
 
+use super::clusters::{Cluster, Clustered};
 use crate::scene::{Assets, Mesh, MeshPart, Room, Shape, room_mesh, tessellate};
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu::{self, util::DeviceExt as _};
@@ -53,11 +54,21 @@ pub(super) struct GpuMesh {
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
     pub parts: Vec<MeshPart>,
+    /// Of all triangles, in their order.
+    clusters: Vec<Cluster>,
     /// Corners in object space.
     pub bounds: (Vec3, Vec3),
     last_used: u64,
     /// Keeps the pointer in the key from being given to another mesh.
     _source: Option<Arc<Mesh>>,
+}
+
+impl GpuMesh {
+    /// The clusters of a part, whose indices these are.
+    pub fn clusters(&self, indices: &std::ops::Range<u32>) -> &[Cluster] {
+        let place = |index: u32| self.clusters.partition_point(|cluster| cluster.indices.start < index);
+        &self.clusters[place(indices.start)..place(indices.end)]
+    }
 }
 
 /// All meshes on the device.
@@ -137,7 +148,11 @@ fn upload(device: &wgpu::Device, mesh: &Mesh, frame: u64) -> Option<GpuMesh> {
     if mesh.triangles.is_empty() || !in_range || !fits {
         return None;
     }
-    let vertices: Vec<Vertex> = (0..count)
+    let clustered = Clustered::new(mesh);
+    let vertices: Vec<Vertex> = clustered
+        .vertices
+        .iter()
+        .map(|&i| i as usize)
         .map(|i| Vertex {
             position: mesh.positions[i].into(),
             normal: mesh.normals.get(i).copied().unwrap_or(Vec3::ZERO).into(),
@@ -154,8 +169,9 @@ fn upload(device: &wgpu::Device, mesh: &Mesh, frame: u64) -> Option<GpuMesh> {
     };
     Some(GpuMesh {
         vertices: buffer("vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
-        indices: buffer("indices", bytemuck::cast_slice(&mesh.triangles), wgpu::BufferUsages::INDEX),
+        indices: buffer("indices", bytemuck::cast_slice(&clustered.triangles), wgpu::BufferUsages::INDEX),
         parts: mesh.parts.iter().map(inside).filter(|part| !part.triangles.is_empty()).collect(),
+        clusters: clustered.clusters,
         bounds: mesh.bounds(),
         last_used: frame,
         _source: None,

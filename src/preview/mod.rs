@@ -7,7 +7,9 @@
 //! of the tracer's picture: bounced light (estimated), true reflection and refraction, exact soft shadows.
 
 mod channel;
+mod clusters;
 mod draw_list;
+mod draw_uniforms;
 mod environment;
 mod error;
 mod frame_times;

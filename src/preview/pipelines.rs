@@ -17,6 +17,7 @@ const BEHIND_COPLANAR: f64 = 1.0 - 1e-4;
 pub(super) struct Layouts<'a> {
     pub scene: &'a wgpu::BindGroupLayout,
     pub texture: &'a wgpu::BindGroupLayout,
+    pub draw: &'a wgpu::BindGroupLayout,
     pub gbuffer: &'a wgpu::BindGroupLayout,
     pub shadow_view: &'a wgpu::BindGroupLayout,
     pub shadow_maps: &'a wgpu::BindGroupLayout,
@@ -92,7 +93,7 @@ pub(super) struct LightingVariant {
 impl GeometryPipelines {
     pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
         let module = shaders::module(device, "geometry", shaders::GEOMETRY);
-        let layout = pipeline_layout(device, "geometry", &[layouts.scene, layouts.texture]);
+        let layout = pipeline_layout(device, "geometry", &[layouts.scene, layouts.draw, layouts.texture]);
         let geometry = |textured: bool, sides: Sides| {
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("geometry"),
@@ -121,7 +122,7 @@ impl GeometryPipelines {
             })
         };
         let shadow_module = shaders::module(device, "shadow map", shaders::SHADOW_MAP);
-        let shadow_layout = pipeline_layout(device, "shadow map", &[layouts.scene, layouts.shadow_view]);
+        let shadow_layout = pipeline_layout(device, "shadow map", &[layouts.scene, layouts.draw, layouts.shadow_view]);
         let shadow = |cull_mode| {
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("shadow map"),
@@ -228,7 +229,7 @@ pub(super) fn glass(device: &wgpu::Device, layouts: &Layouts, variant: &Lighting
         ("HAS_DISCS", discs),
     ];
     let module = shaders::module(device, "glass", shaders::GLASS);
-    let layout = pipeline_layout(device, "glass", &[layouts.scene]);
+    let layout = pipeline_layout(device, "glass", &[layouts.scene, layouts.draw]);
     let color = wgpu::ColorTargetState {
         blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
         ..variant.output.format().into()

@@ -1,18 +1,20 @@
 //! One frame, pass by pass: shadow maps, geometry, lighting.
 
 use super::channel::{Channel, Gloss};
+use super::clusters::Eye;
 use super::draw_list::{Caster, DrawItem, DrawList, Pass, Uploads};
+use super::draw_uniforms::DrawUniforms;
 use super::environment::Environment;
 use super::gizmo::Gizmos;
 use super::gpu::{LossFlag, guarded};
 use super::light_table::LightTable;
 use super::light_tiles::{TILES_BYTES, light_tiles};
 use super::lighting_pass::{LightingInput, LightingPasses};
-use super::mesh_cache::MeshCache;
+use super::mesh_cache::{GpuMesh, MeshCache};
 use super::overlay_pass::{self, OverlayPass};
 use super::pick::WaitingPick;
-use super::pipelines::{GeometryPipelines, Layouts, LightingVariant, MaskPipelines};
-use super::scene_buffers::{GpuFrame, LIGHTS_BYTES, SceneBuffers};
+use super::pipelines::{GeometryPipelines, Layouts, LightingVariant, MaskPipelines, Sides};
+use super::scene_buffers::{GpuFrame, LIGHTS_BYTES, NEAR_M, SceneBuffers};
 use super::shadow_focus::Seen;
 use super::shadow_layers::StaleMap;
 use super::shadow_maps::{ShadowMaps, Side};
@@ -23,7 +25,7 @@ use super::texture_cache::{TextureCache, WHITE};
 use super::{Options, Pick, PreviewError, PreviewInput};
 use crate::scene::CameraFrame;
 use eframe::wgpu;
-use glam::Vec3;
+use glam::Mat4;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// More lights than this are many: a draft is at its coarsest.
@@ -37,6 +39,7 @@ pub struct PreviewRenderer {
     pub(super) loss: LossFlag,
     meshes: MeshCache,
     textures: TextureCache,
+    draws: DrawUniforms,
     buffers: SceneBuffers,
     shadow_maps: ShadowMaps,
     target_layouts: TargetLayouts,
@@ -84,11 +87,12 @@ impl PreviewRenderer {
         guarded(device, &loss, || {
             let buffers = SceneBuffers::new(device);
             let textures = TextureCache::new(device, queue);
+            let draws = DrawUniforms::new(device);
             let shadow_maps = ShadowMaps::new(device);
             let target_layouts = TargetLayouts::new(device);
             let shadow_masks = ShadowMasks::new(device);
             let on_processor = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
-            let layouts = layouts(&buffers, &textures, &target_layouts, &shadow_maps, &shadow_masks);
+            let layouts = layouts(&buffers, &textures, &draws, &target_layouts, &shadow_maps, &shadow_masks);
             let geometry = GeometryPipelines::new(device, &layouts);
             let masking = MaskPipelines::new(device, &layouts);
             let lighting = LightingPasses::new(device, &layouts);
@@ -100,6 +104,7 @@ impl PreviewRenderer {
                 meshes: MeshCache::default(),
                 targets: Targets::new(device, &target_layouts, (1, 1), Output::Display),
                 textures,
+                draws,
                 buffers,
                 shadow_maps,
                 target_layouts,
@@ -153,13 +158,13 @@ impl PreviewRenderer {
     }
 
     /// Picture pixels a pixel of the shadow masks, along each side: a processor draws soft shadows at half the size,
-    /// and at a quarter while something moves, or an eighth under lights so many that each matters little.
+    /// and at a fifth while something moves, or an eighth under lights so many that each matters little.
     fn mask_scale(&self, draft: bool, table: &LightTable) -> u32 {
         match (self.on_processor, draft) {
             (false, _) => 1,
             (true, false) => 2,
             (true, true) if table.lights.len() > MANY_LIGHTS => 8,
-            (true, true) => 4,
+            (true, true) => 5,
         }
     }
 
@@ -217,6 +222,7 @@ impl PreviewRenderer {
         let tiles = if input.options.light_radius { light_tiles(&table, &input.frame) } else { None };
         self.buffers.write(&self.device, &self.queue, &frame, &list.records, &table.lights, tiles.as_deref());
 
+        self.draws.write(&self.device, &self.queue, &list.draws);
         let geometry = geometry_signature(&frame, &list);
         let masks = mask_signature(geometry, &plan);
         let renewed = self.shadow_masks.prepare(&self.device, &self.queue, &plan, self.mask_size(scale));
@@ -231,7 +237,7 @@ impl PreviewRenderer {
             self.shadow_pass(&mut encoder, &items, layer, Side::Far);
         }
         if !geometry_drawn {
-            self.geometry_pass(&mut encoder, &list, input.frame.position());
+            self.geometry_pass(&mut encoder, &list, &input.frame);
         }
         if !masks_drawn {
             let raw = &self.masking.raw[usize::from(plan.is_in_parts())];
@@ -307,21 +313,21 @@ impl PreviewRenderer {
         }
     }
 
-    fn geometry_pass(&self, encoder: &mut wgpu::CommandEncoder, list: &DrawList, eye: Vec3) {
-        let clear = |view| {
+    fn geometry_pass(&self, encoder: &mut wgpu::CommandEncoder, list: &DrawList, camera: &CameraFrame) {
+        let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
+        // Where nothing is, the id says so and nobody looks at the G-buffer: what clears bytes one by one need not.
+        let load = if self.on_processor { wgpu::LoadOp::Load } else { clear };
+        let attachment = |view, load| {
             Some(wgpu::RenderPassColorAttachment {
                 view,
                 depth_slice: None,
                 resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Store,
-                },
+                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
             })
         };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("geometry"),
-            color_attachments: &[clear(&self.targets.gbuffer), clear(&self.targets.ids_view)],
+            color_attachments: &[attachment(&self.targets.gbuffer, load), attachment(&self.targets.ids_view, clear)],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &self.targets.depth,
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store }),
@@ -330,11 +336,16 @@ impl PreviewRenderer {
             ..Default::default()
         });
         pass.set_bind_group(0, self.buffers.bind_group(), &[]);
+        let clip_from_world = camera.clip_from_world(NEAR_M);
         for item in list.items.iter().filter(|item| item.pass != Pass::Glass) {
-            let sides = list.sides(item, eye);
+            let sides = list.sides(item, camera.position());
             pass.set_pipeline(self.geometry.geometry(item.texture != WHITE, sides));
-            pass.set_bind_group(1, self.textures.get(item.texture), &[]);
-            self.draw_item(&mut pass, item);
+            pass.set_bind_group(2, self.textures.get(item.texture), &[]);
+            let world_from_object = list.places[item.record as usize];
+            let clip_from_object = clip_from_world * Mat4::from(world_from_object);
+            let position = world_from_object.inverse().transform_point3(camera.position());
+            let front_only = matches!(sides, Sides::Front | Sides::Back);
+            self.draw_seen(&mut pass, item, &Eye::new(position, clip_from_object, front_only));
         }
     }
 
@@ -344,8 +355,14 @@ impl PreviewRenderer {
         let (cells, illuminance, gloss) = (false, false, Gloss::Ggx);
         let variant =
             LightingVariant { output, families, masks, scale, reach, listed, beams, cells, illuminance, gloss };
-        let layouts =
-            layouts(&self.buffers, &self.textures, &self.target_layouts, &self.shadow_maps, &self.shadow_masks);
+        let layouts = layouts(
+            &self.buffers,
+            &self.textures,
+            &self.draws,
+            &self.target_layouts,
+            &self.shadow_maps,
+            &self.shadow_masks,
+        );
         let pipeline = self.lighting.glass(&self.device, &layouts, variant).clone();
         let keep = |view| {
             Some(wgpu::RenderPassColorAttachment {
@@ -398,8 +415,14 @@ impl PreviewRenderer {
     }
 
     fn lighting_pass(&mut self, encoder: &mut wgpu::CommandEncoder, variant: LightingVariant, cell_scale: u32) {
-        let layouts =
-            layouts(&self.buffers, &self.textures, &self.target_layouts, &self.shadow_maps, &self.shadow_masks);
+        let layouts = layouts(
+            &self.buffers,
+            &self.textures,
+            &self.draws,
+            &self.target_layouts,
+            &self.shadow_maps,
+            &self.shadow_masks,
+        );
         let input = LightingInput {
             scene: self.buffers.bind_group(),
             targets: &self.targets,
@@ -410,17 +433,38 @@ impl PreviewRenderer {
     }
 
     fn channel_pass(&mut self, encoder: &mut wgpu::CommandEncoder, channel: Channel) {
-        let layouts =
-            layouts(&self.buffers, &self.textures, &self.target_layouts, &self.shadow_maps, &self.shadow_masks);
+        let layouts = layouts(
+            &self.buffers,
+            &self.textures,
+            &self.draws,
+            &self.target_layouts,
+            &self.shadow_maps,
+            &self.shadow_masks,
+        );
         let inputs = (self.buffers.bind_group(), &self.targets);
         self.lighting.draw_channel(&self.device, &layouts, encoder, inputs, channel);
     }
 
     fn draw_item(&self, pass: &mut wgpu::RenderPass, item: &DrawItem) {
-        let Some(mesh) = self.meshes.get(item.mesh) else { return };
+        if self.bind_item(pass, item).is_some() {
+            pass.draw_indexed(item.indices.clone(), 0, 0..1);
+        }
+    }
+
+    /// The same without clusters that cannot be seen.
+    fn draw_seen(&self, pass: &mut wgpu::RenderPass, item: &DrawItem, eye: &Eye) {
+        let Some(mesh) = self.bind_item(pass, item) else { return };
+        for run in eye.visible(mesh.clusters(&item.indices)) {
+            pass.draw_indexed(run, 0, 0..1);
+        }
+    }
+
+    fn bind_item(&self, pass: &mut wgpu::RenderPass, item: &DrawItem) -> Option<&GpuMesh> {
+        let mesh = self.meshes.get(item.mesh)?;
+        self.draws.bind(pass, item.record);
         pass.set_vertex_buffer(0, mesh.vertices.slice(..));
         pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(item.indices.clone(), 0, item.record..item.record + 1);
+        Some(mesh)
     }
 }
 
@@ -439,6 +483,7 @@ fn depth_range_m(frame: &CameraFrame, casters: &[Caster]) -> [f32; 2] {
 fn layouts<'a>(
     buffers: &'a SceneBuffers,
     textures: &'a TextureCache,
+    draws: &'a DrawUniforms,
     targets: &'a TargetLayouts,
     shadow_maps: &'a ShadowMaps,
     shadow_masks: &'a ShadowMasks,
@@ -446,6 +491,7 @@ fn layouts<'a>(
     Layouts {
         scene: buffers.layout(),
         texture: textures.layout(),
+        draw: draws.layout(),
         gbuffer: &targets.gbuffer,
         cells: &targets.cells,
         shadow_view: shadow_maps.view_layout(),
@@ -461,9 +507,9 @@ fn layouts<'a>(
 fn cell_scale(table: &LightTable) -> u32 {
     let without_size = table.ends[0] as usize;
     match (table.lights.len(), table.lights.len() - without_size) {
-        (0..=8, 0..=2) => 2,
-        (0..=MANY_LIGHTS, _) => 3,
-        _ => 4,
+        (0..=8, 0..=2) => 3,
+        (0..=MANY_LIGHTS, _) => 4,
+        _ => 5,
     }
 }
 
@@ -472,9 +518,9 @@ fn geometry_signature(frame: &GpuFrame, list: &DrawList) -> u64 {
     let mut hasher = DefaultHasher::new();
     bytemuck::bytes_of(&frame.clip_from_world).hash(&mut hasher);
     bytemuck::bytes_of(&frame.size).hash(&mut hasher);
-    bytemuck::cast_slice::<_, u8>(&list.records).hash(&mut hasher);
+    bytemuck::cast_slice::<_, u8>(&list.draws).hash(&mut hasher);
     for item in &list.items {
-        (item.mesh, &item.indices, item.record, item.texture).hash(&mut hasher);
+        (item.mesh, &item.indices, item.record, item.texture, item.pass as u32).hash(&mut hasher);
     }
     hasher.finish()
 }

@@ -128,7 +128,7 @@ impl ShadowMaps {
             }),
             ..Default::default()
         });
-        pass.set_bind_group(1, &self.view, &[layer as u32 * OFFSET_STRIDE as u32]);
+        pass.set_bind_group(2, &self.view, &[layer as u32 * OFFSET_STRIDE as u32]);
         pass
     }
 }

@@ -15,20 +15,17 @@ struct Corner {
     @builtin(position) clip: vec4f,
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
-    @location(2) @interpolate(flat) surface: u32,
 }
 
 @vertex
 fn vertex(
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
-    @builtin(instance_index) surface: u32,
 ) -> Corner {
     var out: Corner;
-    out.world = world_from_object(surface, position);
-    out.normal = world_normal(surface, normal);
+    out.world = world_from_object(position);
+    out.normal = world_normal(normal);
     out.clip = frame.clip_from_world * vec4f(out.world, 1.0);
-    out.surface = surface;
     return out;
 }
 
@@ -47,7 +44,7 @@ fn fragment(in: Corner) -> Pixel {
     var normal = select(face, in.normal * inverseSqrt(max(squared, 1e-30)), squared > 1e-20);
     normal *= select(-1.0, 1.0, dot(normal, face) >= 0.0);
 
-    let s = in.surface;
+    let s = (draw.surface.z & MARK_NUMBER) - 1u;
     let n_dot_v = max(dot(normal, view), 1e-3);
     let gloss = vec3f(surfaces[s].roughness, (surfaces[s].ior - 1.0) / (surfaces[s].ior + 1.0), 0.0);
     let coat = shading(in.world, normal, view, vec3f(0.0), gloss);
@@ -79,8 +76,7 @@ fn fragment(in: Corner) -> Pixel {
         let added = srgb_encode(tone_curve(around + radiance)) - srgb_encode(tone_curve(around));
         out.color = vec4f(added + srgb_encode(tone_curve(body)) * alpha, alpha);
     }
-    let marks = mark_of(surfaces[s].flags);
-    out.id = vec2u((s + 1u) | marks, bitcast<u32>(frame.near_m * in.clip.w));
+    out.id = vec2u(draw.surface.z, bitcast<u32>(frame.near_m * in.clip.w));
     return out;
 }
 

@@ -1,6 +1,6 @@
 // The lighting pass: every pixel of the G-buffer under every light that reaches it.
 //
-// `fragment` lights each pixel. `cell` lights one pixel in four or more for `resolve.wgsl`, which spreads it: a draft
+// `fragment` lights each pixel. `cell` lights one pixel in nine or more for `resolve.wgsl`, which spreads it: a draft
 // for rasterisers on a processor while something moves.
 
 // Whether the picture leaves as scene-linear light or as it is shown.

@@ -3,9 +3,11 @@
 use eframe::wgpu;
 
 /// The geometry pass.
-pub(super) const GEOMETRY: &str = concat!(include_str!("scene.wgsl"), include_str!("geometry.wgsl"));
+pub(super) const GEOMETRY: &str =
+    concat!(include_str!("scene.wgsl"), include_str!("draw.wgsl"), include_str!("geometry.wgsl"));
 /// The shadow maps.
-pub(super) const SHADOW_MAP: &str = concat!(include_str!("scene.wgsl"), include_str!("shadow_map.wgsl"));
+pub(super) const SHADOW_MAP: &str =
+    concat!(include_str!("scene.wgsl"), include_str!("draw.wgsl"), include_str!("shadow_map.wgsl"));
 /// The shadow masks.
 pub(super) const SHADOW_MASK: &str = concat!(include_str!("scene.wgsl"), include_str!("shadow_mask.wgsl"));
 /// The blur of the shadow masks.
@@ -19,7 +21,7 @@ pub(super) const LIGHTING: &str = concat!(
     include_str!("false_color.wgsl"),
     include_str!("lighting.wgsl")
 );
-/// Light of a quarter of the pixels, spread over all.
+/// Light of one pixel of each cell, spread over all.
 pub(super) const RESOLVE: &str = concat!(
     include_str!("scene.wgsl"),
     include_str!("tone.wgsl"),
@@ -35,6 +37,7 @@ pub(super) const GLASS: &str = concat!(
     include_str!("light.wgsl"),
     include_str!("brdf.wgsl"),
     include_str!("tone.wgsl"),
+    include_str!("draw.wgsl"),
     include_str!("glass.wgsl")
 );
 /// Lines and tints.

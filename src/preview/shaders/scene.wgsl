@@ -38,9 +38,6 @@ struct Frame {
 }
 
 struct Surface {
-    world_row_0: vec4f,
-    world_row_1: vec4f,
-    world_row_2: vec4f,
     base_color: vec3f,
     roughness: f32,
     emission: vec3f,
@@ -51,20 +48,10 @@ struct Surface {
     unused: u32,
 }
 
-const FLAG_EMITTER: u32 = 1u;
-const FLAG_GLOWS: u32 = 2u;
-const FLAG_SELECTED: u32 = 4u;
-const FLAG_HOVERED: u32 = 8u;
-
 // Bits of the id buffer besides the surface's number.
 const MARK_SELECTED: u32 = 1u << 31u;
 const MARK_HOVERED: u32 = 1u << 30u;
 const MARK_NUMBER: u32 = MARK_HOVERED - 1u;
-
-fn mark_of(flags: u32) -> u32 {
-    return select(0u, MARK_SELECTED, (flags & FLAG_SELECTED) != 0u)
-        | select(0u, MARK_HOVERED, (flags & FLAG_HOVERED) != 0u);
-}
 
 struct Light {
     position: vec3f,
@@ -97,7 +84,7 @@ const TILE_ROWS: u32 = 9u;
 const TILE_STRIDE: u32 = 17u;
 const TILES_LENGTH: u32 = TILE_COLUMNS * TILE_ROWS * TILE_STRIDE;
 
-// A unit vector as a point of the octahedron folded into a square, 16 bits each way (Cigolle et al. 2014).
+// A direction, of any length, as a point of the octahedron folded into a square, 16 bits each way (Cigolle et al. 2014).
 fn pack_direction(v: vec3f) -> u32 {
     let p = v.xy / (abs(v.x) + abs(v.y) + abs(v.z));
     let sign = select(vec2f(-1.0), vec2f(1.0), p >= vec2f(0.0));
@@ -127,13 +114,7 @@ fn unpack_color(packed: u32) -> vec3f {
     return q * q;
 }
 
-// Roughness and the square root of the dielectric's reflectance at normal incidence in 12 bits, metallic in 8.
-fn pack_gloss(roughness: f32, metallic: f32, ior: f32) -> u32 {
-    let root = (ior - 1.0) / (ior + 1.0);
-    return u32(roughness * 4095.0 + 0.5) | (u32(root * 4095.0 + 0.5) << 12u) | (u32(metallic * 255.0 + 0.5) << 24u);
-}
-
-// Roughness, square root of the dielectric's reflectance, metallic.
+// Roughness, square root of the dielectric's reflectance at normal incidence, metallic, as `pack_gloss` packs them.
 fn unpack_gloss(packed: u32) -> vec3f {
     return vec3f(vec3u(packed, packed >> 12u, packed >> 24u) & vec3u(4095u, 4095u, 255u)) / vec3f(4095.0, 4095.0, 255.0);
 }
@@ -159,20 +140,6 @@ fn ldexp_24(exponent: i32) -> f32 {
 fn unpack_radiance(packed: u32) -> vec3f {
     let q = vec3f(vec3u(packed, packed >> 9u, packed >> 18u) & vec3u(511u));
     return q * bitcast<f32>(((packed >> 27u) + 103u) << 23u);
-}
-
-fn world_from_object(s: u32, p: vec3f) -> vec3f {
-    let q = vec4f(p, 1.0);
-    return vec3f(dot(surfaces[s].world_row_0, q), dot(surfaces[s].world_row_1, q), dot(surfaces[s].world_row_2, q));
-}
-
-// Normals go by the cofactors of the matrix, which exist for every scale, flat and mirrored ones too.
-fn world_normal(s: u32, n: vec3f) -> vec3f {
-    let a = surfaces[s].world_row_0.xyz;
-    let b = surfaces[s].world_row_1.xyz;
-    let c = surfaces[s].world_row_2.xyz;
-    let mirror = select(-1.0, 1.0, dot(a, cross(b, c)) >= 0.0);
-    return vec3f(dot(cross(b, c), n), dot(cross(c, a), n), dot(cross(a, b), n)) * mirror;
 }
 
 // World direction through a pixel centre, 1 m along the optical axis.

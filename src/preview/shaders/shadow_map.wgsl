@@ -4,9 +4,9 @@ struct View {
     clip_from_world: mat4x4f,
 }
 
-@group(1) @binding(0) var<uniform> view: View;
+@group(2) @binding(0) var<uniform> view: View;
 
 @vertex
-fn vertex(@location(0) position: vec3f, @builtin(instance_index) surface: u32) -> @builtin(position) vec4f {
-    return view.clip_from_world * vec4f(world_from_object(surface, position), 1.0);
+fn vertex(@location(0) position: vec3f) -> @builtin(position) vec4f {
+    return view.clip_from_world * vec4f(world_from_object(position), 1.0);
 }
