@@ -76,6 +76,8 @@ pub(super) struct DrawItem {
     pub texture: usize,
     pub pass: Pass,
     pub shadow: Shadow,
+    /// Which sides of glass are drawn, one after the other: of a solid the far ones first.
+    pub glass: &'static [Sides],
     /// Index of its box among the casters, if it casts a shadow.
     pub caster: usize,
 }
@@ -102,6 +104,17 @@ impl Shadow {
                 let mirrored = world_from_object.matrix3.determinant() < 0.0;
                 if mirrored { Shadow::MirroredSolid } else { Shadow::Solid }
             }
+        }
+    }
+}
+
+impl Shadow {
+    /// The sides in the order in which glass of such a shape is drawn.
+    fn glass(self) -> &'static [Sides] {
+        match self {
+            Shadow::Solid => &[Sides::Back, Sides::Front],
+            Shadow::MirroredSolid => &[Sides::Front, Sides::Back],
+            Shadow::Nothing | Shadow::Sheet => &[Sides::Both],
         }
     }
 }
@@ -252,9 +265,12 @@ impl DrawList {
                 let material = object.material_of(&part.name);
                 let record = self.add_record(&world_from_object, material, scene, flags, Some(pick));
                 self.add_item(mesh, part, record, material, uploads);
-                if let Some(item) = self.items.last_mut().filter(|item| item.pass == Pass::Opaque) {
-                    item.shadow = Shadow::of(&object.shape, &world_from_object);
-                    item.caster = self.casters.len();
+                let Some(item) = self.items.last_mut() else { continue };
+                let shadow = Shadow::of(&object.shape, &world_from_object);
+                if item.pass == Pass::Opaque {
+                    (item.shadow, item.caster) = (shadow, self.casters.len());
+                } else {
+                    item.glass = shadow.glass();
                 }
             }
             if self.items.iter().rev().take(parts.len()).any(|item| item.shadow != Shadow::Nothing) {
@@ -343,6 +359,7 @@ impl DrawList {
             texture,
             pass: if glass { Pass::Glass } else { Pass::Opaque },
             shadow: Shadow::Nothing,
+            glass: &[Sides::Both],
             caster: 0,
         });
     }

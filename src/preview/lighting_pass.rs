@@ -1,7 +1,7 @@
 //! The passes that light the G-buffer: in full, or as a draft that lights one pixel of each cell and spreads the light.
 
 use super::channel::Channel;
-use super::pipelines::{self, Layouts, LightingVariant};
+use super::pipelines::{self, Layouts, LightingVariant, Sides};
 use super::targets::{Output, Targets};
 use eframe::wgpu;
 use std::collections::HashMap;
@@ -10,7 +10,7 @@ use std::collections::HashMap;
 #[derive(Debug)]
 pub(super) struct LightingPasses {
     lighting: HashMap<LightingVariant, wgpu::RenderPipeline>,
-    glass: HashMap<LightingVariant, wgpu::RenderPipeline>,
+    glass: HashMap<(LightingVariant, (Sides, bool)), wgpu::RenderPipeline>,
     /// Of pictures and of illuminance.
     resolve: [wgpu::RenderPipeline; 2],
     channels: HashMap<(Channel, Output), wgpu::RenderPipeline>,
@@ -31,14 +31,17 @@ impl LightingPasses {
         LightingPasses { lighting: HashMap::new(), glass: HashMap::new(), resolve, channels: HashMap::new() }
     }
 
-    /// The pipeline of glass over the lit picture.
+    /// The pipeline that draws these sides of glass over the lit picture, as the far sides of a body or as what is seen
+    /// first.
     pub fn glass(
         &mut self,
         device: &wgpu::Device,
         layouts: &Layouts,
         variant: LightingVariant,
+        sides: (Sides, bool),
     ) -> &wgpu::RenderPipeline {
-        self.glass.entry(variant).or_insert_with(|| pipelines::glass(device, layouts, &variant))
+        let make = || pipelines::glass(device, layouts, &variant, sides);
+        self.glass.entry((variant, sides)).or_insert_with(make)
     }
 
     /// Lights the picture as the variant says.

@@ -37,7 +37,7 @@ pub(super) struct GeometryPipelines {
 }
 
 /// Which sides of a run of triangles are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Sides {
     /// Both: sheets, and solids with the camera inside.
     Both = 0,
@@ -218,7 +218,12 @@ pub(super) fn channel(
 }
 
 /// Glass over the lit picture.
-pub(super) fn glass(device: &wgpu::Device, layouts: &Layouts, variant: &LightingVariant) -> wgpu::RenderPipeline {
+pub(super) fn glass(
+    device: &wgpu::Device,
+    layouts: &Layouts,
+    variant: &LightingVariant,
+    (sides, inner): (Sides, bool),
+) -> wgpu::RenderPipeline {
     let flag = |set: bool| f64::from(u8::from(set));
     let [delta, spheres, rects, discs] = variant.families.map(flag);
     let constants = [
@@ -227,6 +232,7 @@ pub(super) fn glass(device: &wgpu::Device, layouts: &Layouts, variant: &Lighting
         ("HAS_SPHERES", spheres),
         ("HAS_RECTS", rects),
         ("HAS_DISCS", discs),
+        ("INNER", flag(inner)),
     ];
     let module = shaders::module(device, "glass", shaders::GLASS);
     let layout = pipeline_layout(device, "glass", &[layouts.scene, layouts.draw]);
@@ -238,7 +244,7 @@ pub(super) fn glass(device: &wgpu::Device, layouts: &Layouts, variant: &Lighting
         label: Some("glass"),
         layout: Some(&layout),
         vertex: mesh_vertices(&module),
-        primitive: Default::default(),
+        primitive: wgpu::PrimitiveState { cull_mode: sides.culled(), ..Default::default() },
         depth_stencil: Some(nearer(DEPTH_FORMAT)),
         multisample: Default::default(),
         fragment: Some(wgpu::FragmentState {

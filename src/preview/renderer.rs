@@ -363,7 +363,13 @@ impl PreviewRenderer {
             &self.shadow_maps,
             &self.shadow_masks,
         );
-        let pipeline = self.lighting.glass(&self.device, &layouts, variant).clone();
+        let mut draws = Vec::new();
+        for item in list.items.iter().filter(|item| item.pass == Pass::Glass) {
+            for (left, sides) in (0..item.glass.len()).rev().zip(item.glass) {
+                let pipeline = self.lighting.glass(&self.device, &layouts, variant, (*sides, left > 0));
+                draws.push((item, pipeline.clone()));
+            }
+        }
         let keep = |view| {
             Some(wgpu::RenderPassColorAttachment {
                 view,
@@ -382,9 +388,9 @@ impl PreviewRenderer {
             }),
             ..Default::default()
         });
-        pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, self.buffers.bind_group(), &[]);
-        for item in list.items.iter().filter(|item| item.pass == Pass::Glass) {
+        for (item, pipeline) in &draws {
+            pass.set_pipeline(pipeline);
             self.draw_item(&mut pass, item);
         }
     }

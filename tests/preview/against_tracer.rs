@@ -83,6 +83,40 @@ fn direct_light_on_a_figure_agrees_with_the_tracer() {
     }
 }
 
+#[test]
+fn chrome_gold_and_glass_look_about_as_the_tracer_shows_them() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    let loaded = catchlight::io::find_preset("product_still_life").unwrap().load().unwrap();
+    let (width, height) = (192, 108);
+    let input = PreviewInput::camera_view(&loaded.scene, &loaded.assets, (width, height));
+    let ours = renderer.linear_picture(&input).unwrap();
+    let mask = renderer.object_mask().unwrap();
+    let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
+    let settings = raytrace::Settings { width, height, spp: 64, ..raytrace::Settings::default() };
+    let film =
+        raytrace::render(&prepared, &settings, &raytrace::Control::new(), &mut |_| std::ops::ControlFlow::Continue(()));
+    let theirs = film.develop(&loaded.scene);
+    // Half of the pixels lie within these stops. What is left out: other things mirrored and bent, and the shadows of
+    // what is mirrored.
+    for (preset, limit) in LOOKS {
+        let object = loaded.scene.objects.iter().find(|o| o.material == preset.material()).unwrap();
+        let shown = |picture: &Picture, i: usize| {
+            // What differs above white or deep in black is not seen.
+            color::luminance(picture.rgb[i].into()).clamp(0.02, 1.0)
+        };
+        let pixels = (0..mask.objects.len()).filter(|i| mask.objects[*i] == Some(object.id));
+        let mut errors: Vec<f32> = pixels.map(|i| (shown(&ours, i) / shown(&theirs, i)).log2().abs()).collect();
+        errors.sort_by(f32::total_cmp);
+        let median = errors[errors.len() / 2];
+        println!("{preset:?}: median {median:.3} stops over {} pixels", errors.len());
+        assert!(median < limit, "{preset:?}: {median} stops");
+    }
+}
+
+/// Materials of the still life, and how far half of their pixels may be from the tracer's, stops.
+const LOOKS: [(MaterialPreset, f32); 3] =
+    [(MaterialPreset::Chrome, 0.28), (MaterialPreset::Gold, 0.36), (MaterialPreset::ClearGlass, 0.5)];
+
 /// Mean luminance of blocks of 4 x 4 pixels.
 fn blocks(picture: &Picture) -> Vec<f32> {
     let (columns, rows) = (picture.width / 4, picture.height / 4);

@@ -1,7 +1,10 @@
-// Clear glass and water over the lit picture: what mirrors in it is added, its rim darkens what lies behind. Nothing is
-// refracted; the outline and the highlights tell the shape.
+// Clear glass and water over the lit picture: what mirrors in it is added, and what shines through it covers a part of
+// what lies behind. Round bodies bend the view as a ball does and show the surroundings upside down; flat faces leave it
+// straight, and behind them walls that are met too flatly reflect everything. Other things are not seen bent, only weaker.
 
 override LINEAR: bool = false;
+// Whether it is the far side of a body that is drawn, as it is seen through the near one.
+override INNER: bool = false;
 override HAS_DELTA: bool = true;
 override HAS_SPHERES: bool = true;
 override HAS_RECTS: bool = true;
@@ -29,6 +32,25 @@ fn vertex(
     return out;
 }
 
+// How much of what lies behind a round body is covered by what it shows instead, and a flat face.
+const COVERED_ROUND: f32 = 0.65;
+const COVERED_FLAT: f32 = 0.25;
+// The same of a far wall that reflects everything.
+const COVERED_TOTAL: f32 = 0.6;
+// Part that is left of it behind a flat face and in a far wall: much of what these show is the dark beside the set.
+const LEFT_FLAT: f32 = 0.75;
+const LEFT_TOTAL: f32 = 0.5;
+// Change of the normal from one pixel to the next under which a face is flat.
+const FLAT: f32 = 1e-4;
+
+// Where a view goes on behind a ball that it meets under this normal.
+fn through_ball(view: vec3f, normal: vec3f, ior: f32) -> vec3f {
+    let inside = refract(-view, normal, 1.0 / ior);
+    // The ball's normal where the view leaves it.
+    let far = normal - 2.0 * dot(normal, inside) * inside;
+    return refract(inside, -far, ior);
+}
+
 struct Pixel {
     @location(0) color: vec4f,
     @location(1) id: vec2u,
@@ -44,6 +66,7 @@ fn fragment(in: Corner) -> Pixel {
     var normal = select(face, in.normal * inverseSqrt(max(squared, 1e-30)), squared > 1e-20);
     normal *= select(-1.0, 1.0, dot(normal, face) >= 0.0);
 
+    let is_flat = dot(fwidth(normal), vec3f(1.0)) < FLAT;
     let s = (draw.surface.z & MARK_NUMBER) - 1u;
     let n_dot_v = max(dot(normal, view), 1e-3);
     let gloss = vec3f(surfaces[s].roughness, (surfaces[s].ior - 1.0) / (surfaces[s].ior + 1.0), 0.0);
@@ -63,21 +86,36 @@ fn fragment(in: Corner) -> Pixel {
     if HAS_DISCS {
         radiance += glints(coat, frame.light_ends.z, frame.light_ends.w, 3u);
     }
-    // Glass bends light most at its rim, where it gathers what is dark around it.
+    if INNER {
+        let ior = surfaces[s].ior;
+        let total = is_flat && ior * ior * (1.0 - n_dot_v * n_dot_v) > 1.0;
+        let wall = surfaces[s].base_color * environment(in.world, mirror, 0.0) * LEFT_TOTAL;
+        return covering(wall, select(0.0, COVERED_TOTAL, total), in.clip.w);
+    }
     let rim = pow(1.0 - n_dot_v, 3.0);
-    let alpha = saturate(0.08 + 0.4 * rim + 1.0 - surfaces[s].transmission);
-    let around = frame.ambient / PI + environment(in.world, -view, 1.0);
-    let body = surfaces[s].base_color * around * 0.4;
-    var out: Pixel;
+    let cover = select(COVERED_ROUND, COVERED_FLAT, is_flat);
+    let alpha = saturate(mix(cover, 1.0, rim) + 1.0 - surfaces[s].transmission);
+    let around = environment(in.world, -view, 1.0);
+    let beyond = environment(in.world, select(through_ball(view, normal, surfaces[s].ior), -view, is_flat), 0.0);
+    // Two surfaces take their part.
+    let body = surfaces[s].base_color * beyond * ((1.0 - fresnel) * (1.0 - fresnel) * select(1.0, LEFT_FLAT, is_flat));
+    var out = covering(body, alpha, in.clip.w);
     if LINEAR {
-        out.color = vec4f(radiance + body * alpha, alpha);
+        out.color += vec4f(radiance, 0.0);
     } else {
         // The target holds encoded values: add as much as the light would add to what is likely behind.
-        let added = srgb_encode(tone_curve(around + radiance)) - srgb_encode(tone_curve(around));
-        out.color = vec4f(added + srgb_encode(tone_curve(body)) * alpha, alpha);
+        out.color += vec4f(srgb_encode(tone_curve(around + radiance)) - srgb_encode(tone_curve(around)), 0.0);
     }
-    out.id = vec2u(draw.surface.z, bitcast<u32>(frame.near_m * in.clip.w));
     return out;
+}
+
+// Something that covers a part of what lies behind.
+fn covering(radiance: vec3f, alpha: f32, inverse_distance: f32) -> Pixel {
+    var shown = radiance;
+    if !LINEAR {
+        shown = srgb_encode(tone_curve(radiance));
+    }
+    return Pixel(vec4f(shown * alpha, alpha), vec2u(draw.surface.z, bitcast<u32>(frame.near_m * inverse_distance)));
 }
 
 // Highlights of a family of lights.
