@@ -5,6 +5,7 @@ use super::app::App;
 use super::arrange::MirrorPlane;
 use super::catalog::Made;
 use super::command::{Centre, Command};
+use super::document::Document;
 use super::files::Source;
 use super::item::Item;
 use super::placement;
@@ -13,6 +14,7 @@ use super::swing::{Placing, Swing, can_swing};
 use super::swing_drag::SwingDrag;
 use crate::scene::{Aim, Emitter, LightId, Object, Scene, Solo};
 use eframe::egui::{Context, ViewportCommand};
+use std::collections::HashSet;
 
 impl App {
     /// Carries a command out. `gesture` is the press that it came from.
@@ -43,8 +45,7 @@ impl App {
                 self.with_selected(|item| item.can_be_copied(), otherwise, hide_or_show);
             }
             Command::ShowAll => {
-                let all = self.document.scene().objects.iter().map(|o| Item::Object(o.id));
-                let all = all.chain(self.document.scene().lights.iter().map(|l| Item::Light(l.id))).collect();
+                let all = all_things(self.document.scene()).collect();
                 let action = shown(self.document.scene(), all, true, "Show everything".to_owned());
                 self.apply(action, None);
             }
@@ -68,8 +69,8 @@ impl App {
             Command::ToggleLightView => self.toggle_light_view(),
             Command::TogglePlacing(swing) => self.toggle_placing(swing),
             Command::ToggleSnap => self.viewport.snap = !self.viewport.snap,
-            Command::Undo => drop(self.document.undo()),
-            Command::Redo => drop(self.document.redo()),
+            Command::Undo => self.step(Document::undo),
+            Command::Redo => self.step(Document::redo),
             Command::New => self.picker.open(),
             Command::NewFromPreset(index) => self.replace_with(Source::Preset(index), ctx),
             Command::OpenPath(path) => self.replace_with(Source::File(path), ctx),
@@ -101,6 +102,16 @@ impl App {
             | Command::ChooseTexture(..)
             | Command::ExportPicture
             | Command::PathTyped(..) => self.run_file_command(command, ctx),
+        }
+    }
+
+    /// A step back or forth. The things that it brings are selected, as they were when they were taken away or made.
+    fn step(&mut self, step: fn(&mut Document) -> Option<String>) {
+        let known: HashSet<Item> = all_things(self.document.scene()).collect();
+        step(&mut self.document);
+        let brought: Vec<Item> = all_things(self.document.scene()).filter(|item| !known.contains(item)).collect();
+        if !brought.is_empty() {
+            self.selection = Selection::of(brought);
         }
     }
 
@@ -236,6 +247,12 @@ impl App {
         self.rendering.start(self.document.scene(), self.document.assets(), folder, ctx);
         self.centre = Centre::Picture;
     }
+}
+
+/// Every thing and every light.
+fn all_things(scene: &Scene) -> impl Iterator<Item = Item> {
+    let objects = scene.objects.iter().map(|o| Item::Object(o.id));
+    objects.chain(scene.lights.iter().map(|l| Item::Light(l.id)))
 }
 
 /// Everything that Ctrl+A means: lights and visible things that are not locked.

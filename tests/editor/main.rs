@@ -102,6 +102,16 @@ fn handle_along(window: &mut Window, mut way: impl Iterator<Item = Pos2>) -> Pos
     .unwrap()
 }
 
+/// Types a number while something is dragged, as the keyboard sends it: keys and letters.
+fn type_number(window: &mut Window, number: &str) {
+    for letter in number.chars() {
+        let key = if letter == '.' { Key::Period } else { Key::from_name(&letter.to_string()).unwrap() };
+        window.key_press(key);
+        window.event(Event::Text(letter.to_string()));
+        window.step();
+    }
+}
+
 /// Presses at a point, moves in steps, lets go.
 fn drag(window: &mut Window, button: PointerButton, from: Pos2, to: Pos2) {
     move_to(window, from);

@@ -143,3 +143,64 @@ fn the_shadow_of_what_a_light_is_aimed_at_is_dragged_over_the_paper() {
     let shadow = wall - light.position;
     assert!(lit.cross(shadow).length() / shadow.length() < 0.01, "{} lights {aim} and {wall}", light.position);
 }
+
+#[test]
+fn a_light_whose_subject_is_deleted_stays_aimed_at_its_place_and_undo_locks_it_again() {
+    let Some(mut window) = preset_window() else { return };
+    let before = scene(&window).clone();
+    let light = before.lights[0].clone();
+    let Aim::Object { object, .. } = light.aim else { panic!("the preset's key is aimed at its subject") };
+    let target = before.aim_point(&light.aim, light.position);
+    select(&mut window, &[Item::Object(object)]);
+    press(&mut window, Modifiers::NONE, Key::H);
+    assert_eq!(scene(&window).lights[0].aim, light.aim, "a hidden subject is still its subject");
+    press(&mut window, Modifiers::NONE, Key::Delete);
+    let released = scene(&window).lights[0].aim;
+    assert!(matches!(released, Aim::Point(point) if (point - target).length() < 1e-6), "{released:?}");
+    assert!(errors(&window).is_empty(), "{:?}", errors(&window));
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*scene(&window), before);
+}
+
+#[test]
+fn through_a_light_the_wheel_takes_it_nearer_and_a_pan_aims_it_elsewhere() {
+    let Some(mut window) = preset_window() else { return };
+    let light = scene(&window).lights[0].clone();
+    let target = |window: &Window| scene(window).aim_point(&scene(window).lights[0].aim, Vec3::ZERO);
+    let begin = target(&window);
+    select(&mut window, &[Item::Light(light.id)]);
+    press(&mut window, Modifiers::NONE, Key::V);
+    let middle = window.get_by_label("Viewport").rect().center();
+    move_to(&mut window, middle);
+    window.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Line,
+        delta: vec2(0.0, 3.0),
+        source: egui::MouseWheelSource::Wheel,
+        phase: egui::TouchPhase::Move,
+        modifiers: Modifiers::NONE,
+    });
+    settle(&mut window);
+    let distance = (scene(&window).lights[0].position - begin).length();
+    assert!(distance < 0.95 * (light.position - begin).length() && target(&window) == begin, "{distance}");
+    assert_eq!(scene(&window).lights[0].aim, light.aim, "still locked on its subject");
+    drag(&mut window, PointerButton::Secondary, middle, middle + vec2(60.0, 0.0));
+    assert!((target(&window) - begin).length() > 0.05, "looking around aims it elsewhere");
+    press(&mut window, Modifiers::NONE, Key::V);
+    assert_eq!(window.state().centre(), Centre::Studio);
+}
+
+#[test]
+fn a_locked_light_is_not_placed_and_the_user_is_told_why() {
+    let Some(mut window) = preset_window() else { return };
+    let light = scene(&window).lights[0].clone();
+    select(&mut window, &[Item::Light(light.id)]);
+    press(&mut window, Modifiers::NONE, Key::K);
+    for key in [Key::P, Key::L] {
+        press(&mut window, Modifiers::NONE, key);
+        assert!(window.state().viewport().swing.is_none());
+    }
+    assert!(window.state().toasts().texts(Tone::News).iter().any(|text| text.contains("locked")));
+    press(&mut window, Modifiers::NONE, Key::X);
+    assert_eq!((scene(&window).lights[0].position, errors(&window).len()), (light.position, 1));
+}

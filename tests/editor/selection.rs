@@ -100,11 +100,7 @@ fn a_typed_number_moves_by_exactly_that_and_esc_gives_a_drag_up() {
         move_to(window, from + vec2(40.0, 10.0));
     };
     begin(&mut window);
-    for (key, letter) in [(Key::Num1, "1"), (Key::Period, "."), (Key::Num5, "5")] {
-        window.key_press(key);
-        window.event(Event::Text(letter.to_owned()));
-        window.step();
-    }
+    type_number(&mut window, "1.5");
     window.key_press(Key::Enter);
     window.step();
     move_to(&mut window, from + vec2(90.0, 60.0));
@@ -180,4 +176,68 @@ fn esc_gives_a_box_up_and_keys_wait_for_its_end() {
         assert_eq!(window.state().centre(), Centre::Studio);
         assert_eq!(window.state().selection().is_empty(), keys.contains(&Key::Escape));
     }
+}
+
+#[test]
+fn a_copy_stands_beside_its_original_and_comes_and_goes_with_undo_and_redo() {
+    let Some(mut window) = preset_window() else { return };
+    let before = scene(&window).clone();
+    let (figure, key) = (before.objects[0].clone(), before.lights[0].clone());
+    let originals = [Item::Object(figure.id), Item::Light(key.id)];
+    select(&mut window, &originals);
+    press(&mut window, Modifiers::COMMAND, Key::D);
+    let copies = window.state().selection().items().to_vec();
+    for (copy, original) in copies.iter().zip(originals) {
+        let apart = copy.position(scene(&window)).unwrap() - original.position(&before).unwrap();
+        assert!(apart.length() > 0.2 && apart.y == 0.0, "{apart}");
+    }
+    assert_eq!((scene(&window).objects.first(), scene(&window).lights.first()), (Some(&figure), Some(&key)));
+    let with_copies = scene(&window).clone();
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    assert_eq!((scene(&window), window.state().selection().is_empty()), (&before, true));
+    press(&mut window, Modifiers::COMMAND, Key::Y);
+    assert_eq!((scene(&window), window.state().selection().items()), (&with_copies, &copies[..]));
+}
+
+#[test]
+fn what_undo_brings_back_is_selected_and_what_stays_selected_is_what_is_there() {
+    let Some(mut window) = preset_window() else { return };
+    let two = lights(&window)[1..3].to_vec();
+    let other = lights(&window)[0];
+    select(&mut window, &two);
+    press(&mut window, Modifiers::NONE, Key::Delete);
+    assert!(window.state().selection().is_empty());
+    select(&mut window, &[other]);
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    assert_eq!(window.state().selection().items(), two);
+    // A step that neither brings nor takes things leaves the selection alone.
+    press(&mut window, Modifiers::NONE, Key::X);
+    select(&mut window, &[other]);
+    press(&mut window, Modifiers::COMMAND, Key::Z);
+    assert_eq!(window.state().selection().items(), [other]);
+    press(&mut window, Modifiers::COMMAND, Key::Y);
+    assert_eq!(window.state().selection().items(), [other]);
+}
+
+#[test]
+fn lights_are_mirrored_about_the_face_of_a_figure_that_is_turned_or_hidden() {
+    let Some(mut window) = preset_window() else { return };
+    let key = scene(&window).lights[0].clone();
+    let Aim::Object { object, .. } = key.aim else { panic!("the preset's key is aimed at its subject") };
+    let mut subject = scene(&window).object(object).unwrap().clone();
+    subject.transform.rotation_deg.y += 70.0;
+    subject.visible = false;
+    run(&mut window, Command::Do(Action::SetObject(Box::new(subject.clone()))));
+    select(&mut window, &[Item::Light(key.id)]);
+    press(&mut window, Modifiers::NONE, Key::X);
+    let own = subject.transform.world_from_object().inverse();
+    let [before, after] = [key.position, scene(&window).lights[0].position].map(|p| own.transform_point3(p));
+    assert!((after - before * Vec3::new(-1.0, 1.0, 1.0)).length() < 1e-4, "{after} of {before}");
+    // Without any figure there is no face; the user is told and nothing moves.
+    let all = scene(&window).objects.iter().map(|o| Item::Object(o.id)).collect();
+    run(&mut window, Command::Do(Action::Delete(all)));
+    let before = scene(&window).clone();
+    press(&mut window, Modifiers::NONE, Key::X);
+    assert_eq!(*scene(&window), before);
+    assert_eq!(window.state().toasts().texts(Tone::News).len(), 1);
 }

@@ -63,3 +63,42 @@ fn what_is_locked_is_neither_picked_nor_moved_and_the_file_remembers_it() {
     click(&mut window, &format!("{} locked", figure.name));
     assert_eq!(scene(&window).objects[0], figure);
 }
+
+#[test]
+fn a_solo_goes_through_the_file_and_gives_back_after_it_what_was_on() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("solo.ron");
+    let mut window = window_with_answers([file.clone(), file.clone()]);
+    let names: Vec<String> = scene(&window).lights.iter().map(|l| l.name.clone()).collect();
+    click(&mut window, &format!("{} on", names[3]));
+    click(&mut window, &format!("{} muted", names[2]));
+    let before = (on(&window), scene(&window).lights[2].muted);
+    let two = [0, 3].map(|i| Item::Light(scene(&window).lights[i].id));
+    select(&mut window, &two);
+    press(&mut window, Modifiers::NONE, Key::O);
+    assert_eq!(on(&window), [true, false, false, true], "two shine alone, one of them had been off");
+    press(&mut window, Modifiers::COMMAND, Key::S);
+    press(&mut window, Modifiers::COMMAND, Key::O);
+    assert!(undo_depth(&window) == 0 && errors(&window).is_empty(), "{:?}", errors(&window));
+    assert_eq!(on(&window), [true, false, false, true]);
+    press(&mut window, Modifiers::NONE, Key::O);
+    assert_eq!((on(&window), scene(&window).lights[2].muted), before);
+}
+
+#[test]
+fn what_of_several_was_hidden_before_is_shown_with_the_rest_by_one_key() {
+    let Some(mut window) = preset_window() else { return };
+    let before = scene(&window).clone();
+    let things: Vec<Item> = before.objects.iter().map(|o| Item::Object(o.id)).collect();
+    assert!(things.len() > 1);
+    select(&mut window, &things[..1]);
+    press(&mut window, Modifiers::NONE, Key::H);
+    select(&mut window, &things);
+    press(&mut window, Modifiers::NONE, Key::H);
+    assert!(scene(&window).objects.iter().all(|o| !o.visible));
+    press(&mut window, Modifiers::SHIFT, Key::H);
+    assert_eq!((scene(&window), undo_depth(&window)), (&before, 3));
+}

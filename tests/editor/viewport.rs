@@ -58,6 +58,38 @@ fn a_click_selects_what_is_seen_there() {
 }
 
 #[test]
+fn of_two_things_behind_each_other_a_click_means_the_nearer_at_any_scale_of_the_screen() {
+    let Some(mut window) = preset_window() else { return };
+    click(&mut window, "Props");
+    let add = |window: &mut Window, at: glam::Vec3| {
+        click(window, "Add Chrome ball");
+        let Some(Item::Object(id)) = window.state().selection().last() else { panic!("the ball is selected") };
+        let mut ball = scene(window).object(id).unwrap().clone();
+        ball.transform.position = at;
+        run(window, Command::Do(Action::SetObject(Box::new(ball))));
+        Item::Object(id)
+    };
+    let eye = window.state().viewport().view.eye();
+    let far_at = glam::Vec3::new(1.3, 0.7, 0.6);
+    let far = add(&mut window, far_at);
+    let near = add(&mut window, far_at.lerp(eye, 0.3));
+    for scale in [1.0, 2.0, 0.75] {
+        window.set_pixels_per_point(scale);
+        for (shown, expected) in [(true, near), (false, far)] {
+            let Item::Object(id) = near else { unreachable!() };
+            let mut ball = scene(&window).object(id).unwrap().clone();
+            ball.visible = shown;
+            run(&mut window, Command::Do(Action::SetObject(Box::new(ball))));
+            // Handles would take the click.
+            select(&mut window, &[]);
+            let at = shown_at(&window, far_at);
+            click_at(&mut window, at, Modifiers::NONE);
+            assert_eq!(window.state().selection().last(), Some(expected), "at {scale} pixels a point");
+        }
+    }
+}
+
+#[test]
 fn the_mouse_orbits_pans_and_zooms_without_touching_the_scene() {
     let Some(mut window) = preset_window() else { return };
     let before = scene(&window).clone();

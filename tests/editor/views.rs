@@ -3,6 +3,7 @@
 use super::*;
 use catchlight::editor::Side;
 use catchlight::scene::Emitter;
+use glam::Vec3;
 
 #[test]
 fn from_the_top_a_light_is_dragged_over_the_plan_and_keeps_its_height() {
@@ -30,7 +31,7 @@ fn sides_are_buttons_and_keys_and_an_orbit_leaves_them() {
     click(&mut window, "Look from: Right side");
     assert_eq!(view(&window).side, Some(Side::Right));
     let frame = view(&window).frame(1.0);
-    assert!((frame.forward() + glam::Vec3::X).length() < 1e-5);
+    assert!((frame.forward() + Vec3::X).length() < 1e-5);
     let middle = window.get_by_label("Viewport").rect().center();
     drag(&mut window, PointerButton::Middle, middle, middle + vec2(30.0, 10.0));
     assert_eq!((view(&window).side, view(&window).parallel), (None, false));
@@ -44,7 +45,7 @@ fn a_click_selects_from_the_top_as_it_does_from_anywhere() {
     let Some(mut window) = preset_window() else { return };
     let figure = scene(&window).objects[0].clone();
     press(&mut window, Modifiers::NONE, Key::Num8);
-    let at = shown_at(&window, figure.transform.position + glam::Vec3::Y);
+    let at = shown_at(&window, figure.transform.position + Vec3::Y);
     click_at(&mut window, at, Modifiers::NONE);
     assert_eq!(window.state().selection().last(), Some(Item::Object(figure.id)));
 }
@@ -167,17 +168,91 @@ fn a_turn_is_typed_in_degrees() {
     let ring = handle_along(&mut window, (55..100).map(|r| middle + vec2(r as f32, 0.0)));
     button(&mut window, ring, true);
     move_to(&mut window, ring + vec2(-5.0, 30.0));
-    for (key, letter) in [(Key::Num3, "3"), (Key::Num0, "0")] {
-        window.key_press(key);
-        window.event(Event::Text(letter.to_owned()));
-        window.step();
-    }
+    type_number(&mut window, "30");
     window.key_press(Key::Enter);
     window.step();
     button(&mut window, ring, false);
     settle(&mut window);
     let turn = scene(&window).objects[0].transform.rotation_deg.y - figure.transform.rotation_deg.y;
     assert!((turn.abs() - 30.0).abs() < 1e-2, "{turn} degrees");
+}
+
+#[test]
+fn a_size_is_typed_in_times_and_a_wrong_digit_is_taken_back() {
+    let Some(mut window) = preset_window() else { return };
+    click(&mut window, "Props");
+    click(&mut window, "Add Chrome ball");
+    let Some(Item::Object(id)) = window.state().selection().last() else { panic!("the ball is selected") };
+    let (ball, depth) = (scene(&window).object(id).unwrap().transform, undo_depth(&window));
+    press(&mut window, Modifiers::NONE, Key::Num8);
+    press(&mut window, Modifiers::NONE, Key::Z);
+    let middle = shown_at(&window, ball.position);
+    let handle = handle_along(&mut window, (20..90).map(|r| middle - vec2(0.0, r as f32)));
+    button(&mut window, handle, true);
+    move_to(&mut window, handle - vec2(0.0, 25.0));
+    type_number(&mut window, "2.57");
+    window.key_press(Key::Backspace);
+    window.step();
+    // Without Enter the number holds, too, as long as the button is held.
+    let scale = scene(&window).object(id).unwrap().transform.scale;
+    assert!((scale / ball.scale - Vec3::new(1.0, 2.5, 1.0)).length() < 1e-4, "{scale} of {}", ball.scale);
+    button(&mut window, handle, false);
+    settle(&mut window);
+    assert_eq!((scene(&window).object(id).unwrap().transform.scale, undo_depth(&window)), (scale, depth + 1));
+}
+
+#[test]
+fn ctrl_turns_snapping_round_for_one_drag() {
+    let Some(mut window) = preset_window() else { return };
+    let figure = scene(&window).objects[0].clone();
+    select(&mut window, &[Item::Object(figure.id)]);
+    for (snap, by) in [(false, vec2(83.0, 31.0)), (true, vec2(-47.0, 19.0))] {
+        let feet = shown_at(&window, scene(&window).objects[0].transform.position);
+        window.event(Event::ModifiersChanged(Modifiers::COMMAND));
+        drag(&mut window, PointerButton::Primary, feet, feet + by);
+        window.event(Event::ModifiersChanged(Modifiers::NONE));
+        let moved = scene(&window).objects[0].transform.position;
+        let off_grid = (moved * 10.0 - (moved * 10.0).round()).abs().max_element();
+        assert_eq!(off_grid < 1e-3, !snap, "{moved}");
+        press(&mut window, Modifiers::NONE, Key::G);
+    }
+}
+
+#[test]
+fn a_light_turned_by_its_ring_swings_round_what_it_is_aimed_at() {
+    let Some(mut window) = preset_window() else { return };
+    let light = scene(&window).lights[0].clone();
+    let target = scene(&window).aim_point(&light.aim, light.position);
+    select(&mut window, &[Item::Light(light.id)]);
+    press(&mut window, Modifiers::NONE, Key::Num7);
+    press(&mut window, Modifiers::NONE, Key::T);
+    let middle = shown_at(&window, target);
+    // Along the diagonal, where the rings that are seen from their edges do not lie.
+    let ring = handle_along(&mut window, (35..75).map(|r| middle + vec2(r as f32, r as f32)));
+    drag(&mut window, PointerButton::Primary, ring, ring + vec2(-30.0, 30.0));
+    let now = &scene(&window).lights[0];
+    let (arm, before) = (now.position - target, light.position - target);
+    assert!((now.position - light.position).length() > 0.2 && (arm.length() - before.length()).abs() < 1e-3, "{arm}");
+    // The outer ring turns about the line to the eye, which is not quite the vertical beside the middle of the view.
+    assert!((arm.y - before.y).abs() < 0.01, "from the top it turns about the vertical: {arm} from {before}");
+    assert_eq!((now.aim, undo_depth(&window)), (light.aim, 1));
+}
+
+#[test]
+fn every_end_of_the_cross_looks_from_its_side() {
+    let Some(mut window) = preset_window() else { return };
+    let free = window.state().viewport().view;
+    for side in Side::ALL {
+        click(&mut window, &format!("Look from: {}", side.label()));
+        let view = window.state().viewport().view;
+        assert_eq!((view.side, view.parallel), (Some(side), true));
+        assert!((view.frame(1.0).forward() + side.away()).length() < 1e-5, "{side:?}");
+        // Back to a view in which no end hides another.
+        let middle = window.get_by_label("Viewport").rect().center();
+        drag(&mut window, PointerButton::Middle, middle, middle + vec2(47.0, 38.0));
+        assert!(window.state().viewport().view.side.is_none());
+    }
+    assert_eq!(window.state().viewport().view.distance_m, free.distance_m);
 }
 
 /// Everything that is written in the window, without the widgets' own names.
