@@ -6,7 +6,7 @@ use crate::photo::Picture;
 use crate::raytrace::{self, Control, Film, GeometryCache, Method, Settings};
 use crate::scene::{Assets, Scene};
 use crate::threads::background_pool;
-use eframe::egui::{ColorImage, Context};
+use eframe::egui::{Color32, ColorImage, Context};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
@@ -301,7 +301,7 @@ fn develop_loop(state: &(Mutex<DeveloperState>, Condvar), ctx: &Context) {
                 guard = state.1.wait(guard).unwrap_or_else(PoisonError::into_inner);
             }
         };
-        let developed = develop(&film, &scene);
+        let developed = develop(&film, &scene, ctx.input(|i| i.max_texture_side));
         let mut guard = lock(&state.0);
         guard.result = Some(developed);
         guard.busy = false;
@@ -310,12 +310,36 @@ fn develop_loop(state: &(Mutex<DeveloperState>, Condvar), ctx: &Context) {
     }
 }
 
-/// Develops a film with the lights of a scene.
-pub fn develop(film: &Film, scene: &Scene) -> Developed {
+/// Develops a film with the lights of a scene, for textures of so many pixels a side at most.
+pub fn develop(film: &Film, scene: &Scene, most: usize) -> Developed {
     let picture = film.develop(scene);
-    let bytes: Vec<u8> = picture.to_srgb8().into_iter().flatten().collect();
-    let image = Arc::new(ColorImage::from_rgb([picture.width as usize, picture.height as usize], &bytes));
+    let image = Arc::new(shown_within(&picture, most));
     Developed { picture: Arc::new(picture), image, spp: film.spp(), method: film.method() }
+}
+
+/// The picture as it is shown: of a larger one than a texture can hold, the mean of each 2x2, 3x3 ... pixels.
+fn shown_within(picture: &Picture, most: usize) -> ColorImage {
+    let (size, codes) = ([picture.width as usize, picture.height as usize], picture.to_srgb8());
+    let times = size[0].max(size[1]).div_ceil(most.max(1)).max(1);
+    if times == 1 {
+        return ColorImage::from_rgb(size, codes.as_flattened());
+    }
+    let shown = size.map(|side| side.div_ceil(times));
+    let mut image = ColorImage::filled(shown, Color32::BLACK);
+    for (at, pixel) in image.pixels.iter_mut().enumerate() {
+        let [x, y] = [at % shown[0] * times, at / shown[0] * times];
+        let (right, bottom) = ((x + times).min(size[0]), (y + times).min(size[1]));
+        let mut sum = [0_u32; 3];
+        for row in y..bottom {
+            for code in &codes[row * size[0] + x..row * size[0] + right] {
+                sum = [0, 1, 2].map(|c| sum[c] + u32::from(code[c]));
+            }
+        }
+        let count = ((right - x) * (bottom - y)) as u32;
+        let [r, g, b] = sum.map(|sum| ((sum + count / 2) / count) as u8);
+        *pixel = Color32::from_rgb(r, g, b);
+    }
+    image
 }
 
 /// Name of a method in lists.
@@ -324,5 +348,25 @@ pub fn method_label(method: Method) -> &'static str {
         Method::Whitted => "Hard shadows, no bounced light",
         Method::Direct => "Direct light only",
         Method::Path => "With bounced light",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_larger_than_a_texture_is_shown_by_means_of_its_pixels() {
+        let rgb = (0..7 * 3).map(|i| if i % 7 < 4 { [0.0; 3] } else { [1e3; 3] }).collect();
+        let picture = Picture { width: 7, height: 3, rgb };
+        let whole = shown_within(&picture, 7);
+        assert_eq!((whole.size, whole.pixels[3], whole.pixels[6]), ([7, 3], Color32::BLACK, Color32::WHITE));
+        let shown = shown_within(&picture, 3);
+        // Of each 3x3: all black, one column of three black, and what is left at the edge.
+        assert_eq!(
+            (shown.size, &shown.pixels[..]),
+            ([3, 1], &[Color32::BLACK, Color32::from_gray(170), Color32::WHITE][..])
+        );
+        assert_eq!(shown_within(&picture, 1).size, [1, 1]);
     }
 }
