@@ -24,12 +24,9 @@ use super::session::Session;
 use super::thumbnails::Thumbnails;
 use super::toasts::Toasts;
 use super::viewport::{Viewport, ViewportInput};
-use super::{files, theme};
+use super::{files, rescue, theme};
 use crate::raytrace::{GeometryCache, Settings};
-use eframe::egui::epaint::ImageDelta;
-use eframe::egui::{
-    self, CentralPanel, Context, Frame, Margin, Panel, Rect, TextureId, TextureOptions, Ui, ViewportCommand,
-};
+use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, Rect, Ui, ViewportCommand};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -142,14 +139,7 @@ impl App {
     /// everything else.
     pub fn move_to(&mut self, creation: &eframe::CreationContext<'_>) {
         let ctx = &creation.egui_ctx;
-        if ctx.cumulative_pass_nr() > 0 {
-            // A context that has drawn before believes that its letters are on the device.
-            let letters = ctx.fonts(|fonts| fonts.image());
-            let delta = ImageDelta::full(letters, TextureOptions::LINEAR);
-            ctx.tex_manager().write().set(TextureId::default(), delta);
-        } else {
-            theme::install(ctx);
-        }
+        theme::install(ctx);
         self.viewport.preview.move_to(creation.wgpu_render_state.as_ref(), ctx);
         self.viewport.live.move_to(ctx);
         self.rendering.move_to(ctx);
@@ -167,9 +157,24 @@ impl App {
         self.lost.is_some()
     }
 
-    /// Saves unsaved work under another name, because there is no window any more to save it from; returns the file.
-    pub fn rescue(&self) -> Option<PathBuf> {
-        files::rescue(&self.document)
+    /// Lets a device go that is gone, and tells whether it is: a window can end by that before a frame notices it.
+    pub(super) fn let_lost_device_go(&mut self) -> bool {
+        if self.lost.is_none() {
+            self.lost = self.viewport.preview.lost_device().map(str::to_owned);
+        }
+        if self.lost.is_some() {
+            self.viewport.preview.let_device_go();
+        }
+        self.lost.is_some()
+    }
+
+    /// Saves unsaved work under another name, because there is no window any more to save it from: beside the studio's
+    /// own file, else in the user's folder, else with what is temporary. Returns the file, or why there is none; none
+    /// if there is nothing to save.
+    pub fn rescue(&self) -> Option<Result<PathBuf, String>> {
+        let home = directories::UserDirs::new().map(|dirs| dirs.home_dir().to_owned());
+        let elsewhere: Vec<PathBuf> = home.into_iter().chain([std::env::temp_dir()]).collect();
+        rescue::rescue(&self.document, &elsewhere)
     }
 
     /// Closes a window that cannot draw any more. It draws nothing until then: egui's painter ends the program when it
@@ -249,7 +254,7 @@ impl App {
     }
 
     /// Everything that came in from elsewhere since the last frame.
-    fn take_in(&mut self, ctx: &Context, out: &mut Vec<Command>) {
+    pub(super) fn take_in(&mut self, ctx: &Context, out: &mut Vec<Command>) {
         for done in self.tasks.finished() {
             self.take_done(done, ctx);
         }
@@ -413,6 +418,20 @@ impl App {
 }
 
 impl eframe::App for App {
+    /// All that a window does while it is minimised or covered: its frames are not drawn.
+    fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
+        if ctx.input(|i| i.viewport().visible()) != Some(false) {
+            return;
+        }
+        // Nobody looks at what would be traced.
+        self.viewport.live.pause();
+        if let Some(why) = self.viewport.preview.lost_device().map(str::to_owned) {
+            self.leave_window(ctx, why);
+        } else {
+            self.take_close_request(ctx);
+        }
+    }
+
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         if let Some(why) = self.viewport.preview.lost_device().map(str::to_owned) {

@@ -178,20 +178,8 @@ pub fn save(document: &Document, path: &Path) -> Result<(), String> {
     io::save_scene(document.scene(), path).map_err(|e| plain(&e))
 }
 
-/// Writes what is not saved to a new file beside the studio's own, or into the user's folder; the studio's own stays as
-/// it is. Returns the file; none if there is nothing to save, or nowhere.
-pub fn rescue(document: &Document) -> Option<PathBuf> {
-    let home = || directories::UserDirs::new().map(|dirs| dirs.home_dir().to_owned());
-    let folder = document.folder().map(Path::to_owned).or_else(home).unwrap_or_else(std::env::temp_dir);
-    let title = document.title();
-    let stem = title.strip_suffix(".ron").unwrap_or(&title).replace(['/', '\\', ':'], "-");
-    let names = (1..100).map(|n| folder.join(format!("{stem} (rescued {n}).ron")));
-    let path = names.into_iter().find(|path| !path.exists()).filter(|_| document.is_dirty())?;
-    save(document, &path).ok().map(|()| path)
-}
-
 /// Copies a file unless the same is there already. Another file of that name is never overwritten.
-fn copy_asset(from: &Path, to: &Path) -> Result<(), String> {
+pub fn copy_asset(from: &Path, to: &Path) -> Result<(), String> {
     let failed = |error: std::io::Error| format!("{} could not be copied beside the studio: {error}.", from.display());
     if to.exists() {
         let same = std::fs::read(from).map_err(failed)? == std::fs::read(to).map_err(failed)?;

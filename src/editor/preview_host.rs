@@ -90,27 +90,27 @@ impl PreviewHost {
         host
     }
 
+    /// Drops the window's device and all that is on it.
+    pub fn let_device_go(&mut self) {
+        (self.state, self.texture, self.loss) = (None, None, LossFlag::default());
+        self.give_up("There is no graphics adapter that could draw the view.");
+        self.processor.clear();
+    }
+
     /// Goes over to the device of another window.
     pub fn move_to(&mut self, state: Option<&RenderState>, ctx: &Context) {
-        self.state = state.cloned();
-        self.loss = state.map(|state| LossFlag::watch(&state.device)).unwrap_or_default();
-        (self.texture, self.shown, self.draft_since) = (None, None, None);
-        self.processor.clear();
-        match state {
-            Some(state) => {
-                // What nobody waits for, such as egui's own, is no reason to end the program, as wgpu would.
-                state.device.on_uncaptured_error(Arc::new(|error| log::error!("the graphics driver: {error}")));
-                self.restart(ctx);
-            }
-            None => self.stage = Stage::Failed("There is no graphics adapter that could draw the view.".to_owned()),
+        self.let_device_go();
+        if let Some(state) = state {
+            (self.state, self.loss) = (Some(state.clone()), LossFlag::watch(&state.device));
+            // What nobody waits for, such as egui's own, is no reason to end the program, as wgpu would.
+            state.device.on_uncaptured_error(Arc::new(|error| log::error!("the graphics driver: {error}")));
+            self.restart(ctx);
         }
     }
 
     /// Why the window's device is gone, if it is: nothing can be drawn in this window any more.
     pub fn lost_device(&self) -> Option<&str> {
-        // A device that was destroyed says so when it is asked.
-        self.state.as_ref().inspect(|state| drop(state.device.poll(wgpu::PollType::Poll)));
-        self.loss.reason()
+        self.state.as_ref().and_then(|state| self.loss.ask(&state.device))
     }
 
     /// Leaves the view to the processor until [`PreviewHost::restart`].

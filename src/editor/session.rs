@@ -368,6 +368,11 @@ impl App {
         if self.document.is_dirty() {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.session.guard = Some(Intent::Quit);
+            if ctx.input(|i| i.viewport().visible()) == Some(false) {
+                // A question that nobody sees would keep the window from closing for no reason.
+                ctx.send_viewport_cmd(ViewportCommand::Minimized(false));
+                ctx.send_viewport_cmd(ViewportCommand::Focus);
+            }
         }
     }
 

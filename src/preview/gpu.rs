@@ -2,6 +2,7 @@
 
 use super::PreviewError;
 use eframe::wgpu;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, OnceLock};
 
 /// Instance, adapter and device for work without a window.
@@ -69,6 +70,15 @@ impl LossFlag {
         self.0.get().map(String::as_str)
     }
 
+    /// Why the device is gone, if it is. Asks it: one that was destroyed says so only then.
+    pub fn ask(&self, device: &wgpu::Device) -> Option<&str> {
+        if self.reason().is_none() {
+            // wgpu panics where it asks a device that the driver has lost; the flag is up by then.
+            let _ = catch_unwind(AssertUnwindSafe(|| device.poll(wgpu::PollType::Poll)));
+        }
+        self.reason()
+    }
+
     /// An error if the device is gone.
     pub(super) fn check(&self) -> Result<(), PreviewError> {
         self.0.get().map_or(Ok(()), |why| Err(PreviewError::DeviceLost(why.clone())))
@@ -85,18 +95,18 @@ pub(super) fn guarded<T>(
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let done = work();
+    // wgpu panics where it waits for a device that the driver has lost.
+    let done = catch_unwind(AssertUnwindSafe(work));
     // On native backends the scopes are settled by the time they are popped, so nothing waits here.
     let errors = [validation.pop(), internal.pop()].map(pollster::block_on);
     let out_of_memory = pollster::block_on(memory.pop());
-    // A device that was destroyed says so when it is asked; one that the driver lost has said so already.
-    let _ = device.poll(wgpu::PollType::Poll);
+    loss.ask(device);
     loss.check()?;
     if out_of_memory.is_some() {
         return Err(PreviewError::OutOfMemory);
     }
     match errors.into_iter().flatten().next() {
         Some(error) => Err(PreviewError::Driver(error.to_string())),
-        None => done,
+        None => done.unwrap_or_else(|panic| resume_unwind(panic)),
     }
 }

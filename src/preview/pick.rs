@@ -88,7 +88,7 @@ impl PreviewRenderer {
 
     /// The answer to `request_pick`, once; none while it is on its way or nothing was asked.
     pub fn poll_pick(&mut self) -> Option<PickHit> {
-        let _ = self.device.poll(wgpu::PollType::Poll);
+        self.loss.ask(&self.device);
         let waiting = self.waiting_pick.take()?;
         match waiting.mapped.try_recv() {
             Ok(true) => {

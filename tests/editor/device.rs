@@ -104,6 +104,21 @@ fn a_device_that_is_lost_in_the_middle_of_a_frame_ends_that_frame() {
     panic!("the loss was not noticed");
 }
 
+#[test]
+fn a_device_that_is_lost_behind_a_minimised_window_is_noticed_there() {
+    if !has_adapter() {
+        return;
+    }
+    let (first, device) = renderer();
+    let mut window = window_on(first, |creation| App::new(creation, Options::default()));
+    click(&mut window, "Add Octa 120");
+    destroy(&device);
+    let commands = sizes::while_minimised(&mut window, Vec::new());
+    assert!(commands.contains(&ViewportCommand::Close) && window.state().has_lost_window(), "{commands:?}");
+    let commands = sizes::while_minimised(&mut window, vec![ViewportEvent::Close]);
+    assert!(!commands.contains(&ViewportCommand::CancelClose), "unsaved work is no reason to stay: it moves on");
+}
+
 /// A window whose renderer has no device at all.
 fn window_without_device() -> Window {
     let builder = Harness::builder().with_size(vec2(1200.0, 800.0)).with_max_steps(60);

@@ -83,3 +83,55 @@ fn a_storm_of_sizes_without_a_device_and_while_a_picture_is_rendered() {
         window.step();
     }
 }
+
+/// What becomes of a window that is minimised: no frame of it is drawn, only the app's logic goes on.
+pub fn while_minimised(window: &mut Window, events: Vec<ViewportEvent>) -> Vec<ViewportCommand> {
+    let mut input = window.input_mut().clone();
+    let info = input.viewports.entry(ViewportId::ROOT).or_default();
+    (info.minimized, info.events) = (Some(true), events);
+    let ctx = window.ctx.clone();
+    let output = ctx.run_logic(&input, |ctx| {
+        eframe::App::logic(window.state_mut(), ctx, &mut eframe::Frame::_new_kittest());
+    });
+    output.viewport_commands.get(&ViewportId::ROOT).cloned().unwrap_or_default()
+}
+
+#[test]
+fn a_minimised_window_comes_back_to_ask_before_unsaved_work_is_lost() {
+    let Some(mut window) = preset_window() else { return };
+    assert!(!while_minimised(&mut window, vec![ViewportEvent::Close]).contains(&ViewportCommand::CancelClose));
+    click(&mut window, "Add Octa 120");
+    let commands = while_minimised(&mut window, vec![ViewportEvent::Close]);
+    assert!(commands.contains(&ViewportCommand::CancelClose), "{commands:?}");
+    assert!(commands.contains(&ViewportCommand::Minimized(false)), "{commands:?}");
+    settle(&mut window);
+    click(&mut window, "Cancel");
+    assert!(while_minimised(&mut window, Vec::new()).is_empty(), "it stays in the dock while nothing is asked");
+}
+
+#[test]
+fn a_minimised_window_traces_nothing_and_goes_on_when_it_is_back() {
+    let Some(mut window) = preset_window() else { return };
+    press(&mut window, Modifiers::NONE, Key::Num2);
+    let rays = |window: &Window| window.state().viewport().live.rays();
+    let goes_on = |window: &mut Window, from: u64| {
+        let began = Instant::now();
+        while rays(window) <= from {
+            assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().live.status());
+            window.step();
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    };
+    goes_on(&mut window, 0);
+    assert!(!window.state().viewport().live.is_settled(), "there is work left");
+    let mut last = u64::MAX;
+    let began = Instant::now();
+    // The slice under way may end first.
+    while rays(&window) != last {
+        assert!(began.elapsed() < PATIENCE, "it goes on behind a window that nobody sees");
+        last = rays(&window);
+        while_minimised(&mut window, Vec::new());
+        std::thread::sleep(Duration::from_millis(300));
+    }
+    goes_on(&mut window, last);
+}
