@@ -21,12 +21,13 @@ use super::render_job::Outcome;
 use super::rendering::Rendering;
 use super::selection::Selection;
 use super::session::Session;
+use super::side_panel::{SidePanel, Widths};
 use super::thumbnails::Thumbnails;
 use super::toasts::Toasts;
 use super::viewport::{Viewport, ViewportInput};
 use super::{files, rescue, theme};
 use crate::raytrace::{GeometryCache, Settings};
-use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, Rect, Ui, ViewportCommand};
+use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, Rangef, Rect, Ui, ViewportCommand};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -73,6 +74,8 @@ pub struct App {
     pub(super) presets: Vec<PresetInfo>,
     shelf: Shelf,
     thumbnails: Thumbnails,
+    left: SidePanel,
+    right: SidePanel,
     picture_view: PictureView,
     /// Number of the last press of mouse or key: what is dragged in one press is one undo step.
     pub(super) gesture: u64,
@@ -90,6 +93,10 @@ pub struct App {
 
 /// Two losses within this time are the preview's doing: the view is left to the processor.
 const SOON: Duration = Duration::from_secs(60);
+
+/// In the narrowest window they leave the view its tools in one row.
+const LEFT: Widths = Widths { range: Rangef { min: 200.0, max: 420.0 }, first: 270.0, share: 0.24 };
+const RIGHT: Widths = Widths { range: Rangef { min: 300.0, max: 560.0 }, first: 340.0, share: 0.34 };
 
 impl App {
     /// A window that begins to load its first studio.
@@ -119,6 +126,8 @@ impl App {
             presets,
             shelf: Shelf::Lights,
             thumbnails: Thumbnails::default(),
+            left: SidePanel::default(),
+            right: SidePanel::default(),
             picture_view: PictureView::default(),
             gesture: 0,
             told_failure: false,
@@ -341,33 +350,36 @@ impl App {
 
     /// All panels; returns where the middle one is.
     fn panels(&mut self, ui: &mut Ui, out: &mut Vec<Command>) -> Rect {
-        let bar = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(8, 3));
-        let side = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(10, 4));
+        // The window is cleared to the panels' colour, and each view covers all of the middle. To fill them here, too,
+        // would cost a processor that draws the window most of its time.
+        let bar = Frame::new().inner_margin(Margin::symmetric(8, 3));
+        let side = Frame::new().inner_margin(Margin::symmetric(10, 4));
         Panel::top("menu").frame(bar).show(ui, |ui| menu::menu_ui(ui, self.menu_state(), out));
         Panel::bottom("status").frame(bar).exact_size(26.0).show(ui, |ui| {
             let busy = self.tasks.is_busy().then_some("Loading\u{2026}");
             status::status_ui(ui, &self.document, &self.selection, self.centre, busy);
         });
-        Panel::left("things").frame(side).default_size(270.0).size_range(200.0..=420.0).show(ui, |ui| {
+        let (mut left, mut right) = (self.left, self.right);
+        left.show(ui, "things", Panel::left("things").frame(side), LEFT, |ui| {
             let add_height = (ui.available_height() * 0.46).max(120.0);
             Panel::top("add").frame(Frame::new()).default_size(add_height).resizable(true).show(ui, |ui| {
                 add::add_ui(ui, &mut self.shelf, &mut self.thumbnails, out);
             });
             outliner::outliner_ui(ui, &self.document, &self.selection, &mut self.outliner, out);
         });
-        Panel::right("details").frame(side).default_size(340.0).size_range(300.0..=560.0).show(ui, |ui| {
+        right.show(ui, "details", Panel::right("details").frame(side), RIGHT, |ui| {
             Panel::bottom("render").frame(Frame::new()).resizable(false).show(ui, |ui| {
                 let (rendering, forecaster) = (&mut self.rendering, &mut self.forecaster);
                 render::render_ui(ui, rendering, forecaster, &self.document, self.centre, out);
             });
             inspector::inspector_ui(ui, &self.document, &self.selection, out);
         });
-        let middle = Frame::new().fill(theme::SURROUND);
-        CentralPanel::default().frame(middle).show(ui, |ui| self.middle(ui, out)).response.rect
+        (self.left, self.right) = (left, right);
+        CentralPanel::default().frame(Frame::new()).show(ui, |ui| self.middle(ui, out)).response.rect
     }
 
     fn middle(&mut self, ui: &mut Ui, out: &mut Vec<Command>) {
-        let bar = Frame::new().fill(ui.visuals().panel_fill).inner_margin(Margin::symmetric(8, 4));
+        let bar = Frame::new().inner_margin(Margin::symmetric(8, 4));
         Panel::top("views").frame(bar).show(ui, |ui| {
             let mut follows = self.viewport.camera_follows;
             view_bar::view_bar_ui(ui, self.menu_state(), &mut follows, out);
@@ -418,6 +430,11 @@ impl App {
 }
 
 impl eframe::App for App {
+    /// The colour of the panels.
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+
     /// All that a window does while it is minimised or covered: its frames are not drawn.
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
         if ctx.input(|i| i.viewport().visible()) != Some(false) {

@@ -47,6 +47,7 @@ mod rendering;
 mod rescue;
 mod selection;
 mod session;
+mod side_panel;
 mod studio_view;
 mod surface;
 mod swing;

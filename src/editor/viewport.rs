@@ -280,13 +280,15 @@ impl Viewport {
 
     fn paint(&mut self, ui: &mut Ui, rect: Rect, frame: CameraFrame, picture: Option<Rect>, input: ViewportInput<'_>) {
         let painter = ui.painter_at(rect);
-        painter.rect_filled(rect, 0.0, theme::SURROUND);
         let pixels = rect.size() * ui.pixels_per_point();
         let size = ((pixels.x.round() as u32).max(1), (pixels.y.round() as u32).max(1));
         let overlay = self.overlay_of(input);
         let through_camera = input.centre == Centre::Camera;
         let traced = self.live.show(ui.ctx(), input.document, frame, size, through_camera, self.preview.look);
         let preview = self.preview.show(ui.ctx(), input.document, frame, size, overlay, traced.is_some());
+        if traced.or(preview).is_none() {
+            painter.rect_filled(rect, 0.0, theme::SURROUND);
+        }
         for texture in [traced, preview].into_iter().flatten() {
             let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
             painter.image(texture, rect, uv, Color32::WHITE);

@@ -4,7 +4,7 @@ use super::app::{App, Options};
 use super::{EditorError, event_guard};
 use crate::preview::Gpu;
 use eframe::UserEvent;
-use eframe::egui::{Context, Ui, ViewportBuilder, ViewportInfo};
+use eframe::egui::{Context, Ui, ViewportBuilder, ViewportInfo, Visuals};
 use std::cell::RefCell;
 use std::panic::resume_unwind;
 use std::path::PathBuf;
@@ -21,6 +21,10 @@ const SHORT_LIFE: Duration = Duration::from_secs(3);
 struct Window(Rc<RefCell<App>>);
 
 impl eframe::App for Window {
+    fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {
+        self.0.borrow().clear_color(visuals)
+    }
+
     fn logic(&mut self, ctx: &Context, frame: &mut eframe::Frame) {
         self.0.borrow_mut().logic(ctx, frame);
     }
@@ -115,7 +119,8 @@ fn open(
         Some(ctx) => as_it_was(viewport, &ctx.input(|i| i.viewport().clone())),
         None => viewport,
     };
-    let native = eframe::NativeOptions { viewport, renderer, ..Default::default() };
+    // Nothing in the window is finer than its colours, so that dithering would only take time.
+    let native = eframe::NativeOptions { viewport, renderer, dithering: false, ..Default::default() };
     let outlives = outlives.clone();
     let create: eframe::AppCreator<'_> = Box::new(move |creation| {
         let mut outlives = outlives.borrow_mut();

@@ -135,3 +135,28 @@ fn a_minimised_window_traces_nothing_and_goes_on_when_it_is_back() {
     }
     goes_on(&mut window, last);
 }
+
+/// Widths of the panels beside the view, points: what is left of it and what is right.
+fn side_widths(window: &Window) -> [f32; 2] {
+    let view = window.get_by_label("Viewport").rect();
+    [view.left(), window.ctx.content_rect().right() - view.right()]
+}
+
+#[test]
+fn in_the_narrowest_window_the_tools_take_one_row_and_the_panels_come_back_with_its_width() {
+    let Some(mut window) = preset_window() else { return };
+    // Dragged by its edge, the left panel keeps that width, too.
+    let edge = Pos2::new(side_widths(&window)[0] - 2.0, 700.0);
+    drag(&mut window, PointerButton::Primary, edge, edge + vec2(40.0, 0.0));
+    let before = side_widths(&window);
+    assert!(before[0] > 300.0, "{before:?}");
+    storm(&mut window);
+    let row = |window: &Window| window.get_by_label("Quick").rect().center().y;
+    assert!((row(&window) - window.get_by_label("Tools").rect().center().y).abs() < 1.0);
+    let narrow = side_widths(&window);
+    assert!(narrow[0] < 230.0 && narrow[1] < 320.0, "{narrow:?}");
+    window.set_size(vec2(1440.0, 900.0));
+    settle(&mut window);
+    let after = side_widths(&window);
+    assert!((after[0] - before[0]).abs() < 1.0 && (after[1] - before[1]).abs() < 1.0, "{after:?}, not {before:?}");
+}
