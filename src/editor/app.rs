@@ -95,8 +95,8 @@ pub struct App {
 const SOON: Duration = Duration::from_secs(60);
 
 /// In the narrowest window they leave the view its tools in one row.
-const LEFT: Widths = Widths { range: Rangef { min: 200.0, max: 420.0 }, first: 270.0, share: 0.24 };
-const RIGHT: Widths = Widths { range: Rangef { min: 300.0, max: 560.0 }, first: 340.0, share: 0.34 };
+const LEFT: Widths = Widths { range: Rangef { min: 200.0, max: 420.0 }, first: 270.0, share: 0.26 };
+const RIGHT: Widths = Widths { range: Rangef { min: 300.0, max: 560.0 }, first: 340.0, share: 0.342 };
 
 impl App {
     /// A window that begins to load its first studio.

@@ -24,7 +24,8 @@ pub fn add_ui(ui: &mut Ui, shelf: &mut Shelf, thumbnails: &mut Thumbnails, out: 
     });
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        ui.spacing_mut().button_padding.x = 6.0;
+        // In the narrowest window, too, the last name is whole.
+        ui.spacing_mut().button_padding.x = if ui.available_width() < 228.0 { 4.0 } else { 6.0 };
         for each in Shelf::ALL {
             if ui.selectable_label(*shelf == each, each.label()).on_hover_text(shelf_tip(each)).clicked() {
                 *shelf = each;
