@@ -4,7 +4,7 @@
 //! them costs little. While the user works, one core is left alone.
 
 use crate::color::ToneTable;
-use crate::raytrace::{Control, GeometryCache, LiveCamera, LivePicture, PrepareError};
+use crate::raytrace::{Control, GeometryCache, LiveCamera, LivePicture, PrepareError, Smoother};
 use crate::scene::{Assets, Scene};
 use crate::threads::background_pool;
 use rayon::prelude::*;
@@ -49,8 +49,8 @@ pub struct LivePace {
     /// When the last look was taken; none since the edit.
     last_look: Option<Instant>,
     looked_at_end: bool,
-    /// Pictures that are not done are shown with less grain than they have.
-    smooth: bool,
+    /// Shows pictures that are not done with less grain than they have; none if that is not asked for.
+    smoother: Option<Smoother>,
 }
 
 impl LivePace {
@@ -70,7 +70,7 @@ impl LivePace {
             since_edit: Instant::now(),
             last_look: None,
             looked_at_end: true,
-            smooth: false,
+            smoother: None,
         })
     }
 
@@ -86,7 +86,7 @@ impl LivePace {
 
     /// Whether pictures are smoothed until they are done; see [`LivePicture::develop_smooth`]. Not by itself.
     pub fn set_smooth(&mut self, smooth: bool) {
-        self.smooth = smooth;
+        self.smoother = smooth.then(|| self.smoother.take().unwrap_or_default());
     }
 
     /// Takes in the studio and the view as they are now.
@@ -145,19 +145,19 @@ impl LivePace {
         Some(image)
     }
 
-    fn develop(&self) -> LiveImage {
+    fn develop(&mut self) -> LiveImage {
         let every = self.picture.coarseness();
-        self.pools[0].install(|| {
+        let Self { picture: traced, smoother, scene, tone, pools, .. } = self;
+        pools[0].install(|| {
             // Half as fine is what was known before the view moved: it has little grain.
-            let smooth = self.smooth && every != 2 && !self.picture.is_done();
-            let picture = match smooth {
-                true => self.picture.develop_smooth(&self.scene, every),
-                false => self.picture.develop_every(&self.scene, every),
+            let picture = match smoother.as_mut().filter(|_| every != 2 && !traced.is_done()) {
+                Some(smoother) => traced.develop_smooth(scene, every, smoother),
+                None => traced.develop_every(scene, every),
             };
-            let row = |row: &[[f32; 3]]| row.iter().flat_map(|rgb| self.tone.shown(*rgb)).collect::<Vec<u8>>();
+            let row = |row: &[[f32; 3]]| row.iter().flat_map(|rgb| tone.shown(*rgb)).collect::<Vec<u8>>();
             let rgb = picture.rgb.par_chunks(picture.width.max(1) as usize).flat_map_iter(row).collect();
             let (width, height) = (picture.width as usize, picture.height as usize);
-            LiveImage { width, height, rgb, spp: self.picture.spp(), done: self.picture.is_done() }
+            LiveImage { width, height, rgb, spp: traced.spp(), done: traced.is_done() }
         })
     }
 }

@@ -5,7 +5,7 @@ use super::{Failure, say};
 use crate::io::{self, Loaded, PictureInfo};
 use crate::live::LivePace;
 use crate::photo::Picture;
-use crate::raytrace::{self, Control, LiveCamera, LivePicture, Settings};
+use crate::raytrace::{self, Control, LiveCamera, LivePicture, Settings, Smoother};
 use crate::scene::{CameraFrame, Scene};
 use crate::threads::background_pool;
 use anyhow::Context;
@@ -185,8 +185,8 @@ impl<'a> Bench<'a> {
 
     /// How much longer a picture takes to develop with its grain smoothed; the quickest of some.
     fn smoothing_ms(&self) -> f64 {
-        let picture = self.pace.picture();
-        let quickest = |develop: &dyn Fn() -> Picture| {
+        let (picture, mut smoother) = (self.pace.picture(), Smoother::default());
+        let quickest = |develop: &mut dyn FnMut() -> Picture| {
             let one = |_| {
                 let began = Instant::now();
                 std::hint::black_box(develop());
@@ -194,7 +194,8 @@ impl<'a> Bench<'a> {
             };
             (0..5).map(one).fold(f64::INFINITY, f64::min)
         };
-        quickest(&|| picture.develop_smooth(&self.scene, 1)) - quickest(&|| picture.develop(&self.scene))
+        let smoothed = quickest(&mut || picture.develop_smooth(&self.scene, 1, &mut smoother));
+        smoothed - quickest(&mut || picture.develop(&self.scene))
     }
 
     /// Turns the view as a user would, showing every picture.

@@ -33,7 +33,7 @@ mod whitted;
 pub use film::{Film, Layer, MAX_LIGHT_LAYERS};
 pub use geometry_cache::GeometryCache;
 pub use intersectors::{Intersection, Intersector};
-pub use live::{LiveCamera, LivePicture};
+pub use live::{LiveCamera, LivePicture, Smoother};
 pub use plan::{RenderPlan, Shortcut};
 pub use prepare::{PrepareError, RenderScene, prepare, prepare_kept};
 pub use probe::{Effort, Place, Probe, Probed};

@@ -103,23 +103,15 @@ impl LiveFilm {
         picture
     }
 
-    /// What each pixel of [`LiveFilm::develop`]'s picture says of its surface.
-    pub fn guides(&self, camera: &LiveCamera, every: u32) -> Vec<Guide> {
-        let row = |y: u32| {
-            (0..self.size.0).step_by(every as usize).filter_map(move |x| self.at(Vec2::new(x as f32, y as f32)))
-        };
-        let guide = |(tile, pixel): (&LiveTile, usize)| {
-            let layers = 0..self.layers.len();
-            let samples = layers.map(|layer| tile.sum(layer, pixel).w).fold(f32::INFINITY, f32::min);
-            let shown = tile.shown[pixel];
-            Guide {
-                shown,
-                scale: camera.depth_scale(shown.position),
-                samples: if samples.is_finite() { samples } else { 0.0 },
-            }
-        };
-        let rows: Vec<u32> = (0..self.size.1).step_by(every as usize).collect();
-        rows.par_iter().flat_map_iter(|y| row(*y).map(guide)).collect()
+    /// What pixel (x, y) of [`LiveFilm::develop`]'s picture says of its surface.
+    pub fn guide(&self, camera: &LiveCamera, every: u32, (x, y): (usize, usize)) -> Guide {
+        let place = Vec2::new((x as u32 * every) as f32, (y as u32 * every) as f32);
+        let Some((tile, pixel)) = self.at(place) else { return Guide::NONE };
+        let layers = 0..self.layers.len();
+        let samples = layers.map(|layer| tile.sum(layer, pixel).w).fold(f32::INFINITY, f32::min);
+        let shown = tile.shown[pixel];
+        let samples = if samples.is_finite() { samples } else { 0.0 };
+        Guide { shown, scale: camera.depth_scale(shown.position), samples }
     }
 
     fn develop_tile(&self, tile: &LiveTile, weights: &[Vec3], camera: &LiveCamera, every: u32) -> Vec<[f32; 3]> {

@@ -16,6 +16,7 @@ mod tests;
 mod tile;
 
 pub use camera::LiveCamera;
+pub use smooth::Smoother;
 
 use super::film::{Layer, assign_layers};
 use super::geometry_cache::GeometryCache;
@@ -260,10 +261,10 @@ impl LivePicture {
     }
 
     /// The same with less grain, by an edge-aware filter: for the eye, while the picture settles. See [`smooth`].
-    pub fn develop_smooth(&self, scene: &Scene, every: u32) -> Picture {
+    pub fn develop_smooth(&self, scene: &Scene, every: u32, smoother: &mut Smoother) -> Picture {
         let mut picture = self.develop_every(scene, every);
         if let Some(view) = &self.view {
-            smooth::smooth(&mut picture, &view.film.guides(&view.camera, every));
+            smoother.smooth(&mut picture, |x, y| view.film.guide(&view.camera, every, (x, y)));
         }
         picture
     }

@@ -44,10 +44,13 @@ impl Shown {
     /// The [`Shown::alpha`] of what is never taken over from another view.
     pub const NEVER: f32 = -1.0;
 
-    fn nothing(object: u32) -> Self {
+    const fn nothing(object: u32) -> Self {
         let (position, normal, texture) = (Vec3::ZERO, Vec3::ZERO, Vec3::ONE);
         Shown { position, normal, object, material: 0, alpha: Self::NEVER, texture }
     }
+
+    /// What lies outside of a picture.
+    pub const VOID: Self = Self::nothing(Self::NOTHING);
 
     /// Whether a ray has found what the pixel shows.
     pub fn is_known(&self) -> bool {
