@@ -159,13 +159,13 @@ impl PreviewRenderer {
     }
 
     /// Picture pixels a pixel of the shadow masks, along each side: a processor draws soft shadows at half the size,
-    /// and at a fifth while something moves, or an eighth under lights so many that each matters little.
+    /// and at a quarter while something moves, or an eighth under lights so many that each matters little.
     fn mask_scale(&self, draft: bool, table: &LightTable) -> u32 {
         match (self.on_processor, draft) {
             (false, _) => 1,
             (true, false) => 2,
             (true, true) if table.lights.len() > MANY_LIGHTS => 8,
-            (true, true) => 5,
+            (true, true) => 4,
         }
     }
 
