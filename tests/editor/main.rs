@@ -93,6 +93,19 @@ fn move_to(window: &mut Window, at: Pos2) {
     window.step();
 }
 
+/// Turns the wheel by three clicks, away from the user.
+fn wheel_closer(window: &mut Window, at: Pos2) {
+    move_to(window, at);
+    window.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Line,
+        delta: vec2(0.0, 3.0),
+        source: egui::MouseWheelSource::Wheel,
+        phase: egui::TouchPhase::Move,
+        modifiers: Modifiers::NONE,
+    });
+    settle(window);
+}
+
 /// The first place of a way at which the pointer is on a handle.
 fn handle_along(window: &mut Window, mut way: impl Iterator<Item = Pos2>) -> Pos2 {
     way.find(|at| {

@@ -172,15 +172,7 @@ fn through_a_light_the_wheel_takes_it_nearer_and_a_pan_aims_it_elsewhere() {
     select(&mut window, &[Item::Light(light.id)]);
     press(&mut window, Modifiers::NONE, Key::V);
     let middle = window.get_by_label("Viewport").rect().center();
-    move_to(&mut window, middle);
-    window.event(Event::MouseWheel {
-        unit: egui::MouseWheelUnit::Line,
-        delta: vec2(0.0, 3.0),
-        source: egui::MouseWheelSource::Wheel,
-        phase: egui::TouchPhase::Move,
-        modifiers: Modifiers::NONE,
-    });
-    settle(&mut window);
+    wheel_closer(&mut window, middle);
     let distance = (scene(&window).lights[0].position - begin).length();
     assert!(distance < 0.95 * (light.position - begin).length() && target(&window) == begin, "{distance}");
     assert_eq!(scene(&window).lights[0].aim, light.aim, "still locked on its subject");

@@ -98,15 +98,7 @@ fn the_mouse_orbits_pans_and_zooms_without_touching_the_scene() {
     let start = view(&window);
     drag(&mut window, PointerButton::Middle, middle, middle + vec2(80.0, 20.0));
     assert!(view(&window).yaw_rad != start.yaw_rad && view(&window).target == start.target);
-    window.event(Event::PointerMoved(middle));
-    window.event(Event::MouseWheel {
-        unit: egui::MouseWheelUnit::Line,
-        delta: vec2(0.0, 3.0),
-        source: egui::MouseWheelSource::Wheel,
-        phase: egui::TouchPhase::Move,
-        modifiers: Modifiers::NONE,
-    });
-    settle(&mut window);
+    wheel_closer(&mut window, middle);
     assert!(view(&window).distance_m < start.distance_m);
     let eye = view(&window).eye();
     window.key_down(Key::W);

@@ -20,6 +20,13 @@ use crate::scene::CameraFrame;
 use eframe::wgpu;
 use glam::Mat4;
 
+/// The layouts of a renderer's resources. A method would borrow all of it, and its pipelines could not be added to.
+macro_rules! layouts_of {
+    ($of:ident) => {
+        layouts(&$of.buffers, &$of.textures, &$of.draws, &$of.target_layouts, &$of.shadow_maps, &$of.shadow_masks)
+    };
+}
+
 impl PreviewRenderer {
     pub(super) fn shadow_pass(
         &self,
@@ -86,14 +93,7 @@ impl PreviewRenderer {
         let (cells, illuminance, gloss) = (false, false, Gloss::Ggx);
         let variant =
             LightingVariant { output, families, masks, scale, reach, listed, beams, cells, illuminance, gloss };
-        let layouts = layouts(
-            &self.buffers,
-            &self.textures,
-            &self.draws,
-            &self.target_layouts,
-            &self.shadow_maps,
-            &self.shadow_masks,
-        );
+        let layouts = layouts_of!(self);
         let mut draws = Vec::new();
         for item in list.items.iter().filter(|item| item.pass == Pass::Glass) {
             for (left, sides) in (0..item.glass.len()).rev().zip(item.glass) {
@@ -157,14 +157,7 @@ impl PreviewRenderer {
         variant: LightingVariant,
         cell_scale: u32,
     ) {
-        let layouts = layouts(
-            &self.buffers,
-            &self.textures,
-            &self.draws,
-            &self.target_layouts,
-            &self.shadow_maps,
-            &self.shadow_masks,
-        );
+        let layouts = layouts_of!(self);
         let input = LightingInput {
             scene: self.buffers.bind_group(),
             targets: &self.targets,
@@ -175,14 +168,7 @@ impl PreviewRenderer {
     }
 
     pub(super) fn channel_pass(&mut self, encoder: &mut wgpu::CommandEncoder, channel: Channel) {
-        let layouts = layouts(
-            &self.buffers,
-            &self.textures,
-            &self.draws,
-            &self.target_layouts,
-            &self.shadow_maps,
-            &self.shadow_masks,
-        );
+        let layouts = layouts_of!(self);
         let inputs = (self.buffers.bind_group(), &self.targets);
         self.lighting.draw_channel(&self.device, &layouts, encoder, inputs, channel);
     }
