@@ -3,7 +3,7 @@
 //! Data flows one way, and so do imports:
 //!
 //! ```text
-//! math, color  <-  scene  <-  photo  <-  { io, mannequin, raytrace, raster, preview }  <-  { editor, cli }  <-  main
+//! math, color  <-  scene  <-  photo  <-  { io, figures, raytrace, raster, preview }  <-  { editor, cli }  <-  main
 //! ```
 //!
 //! A [`scene::Scene`] is what the user edits and what a file holds. `raytrace::prepare` turns it into flat tables,
@@ -28,9 +28,9 @@
 
 pub mod cli;
 pub mod color;
+pub mod figures;
 pub mod io;
 pub mod live;
-pub mod mannequin;
 pub mod math;
 pub mod photo;
 pub mod raster;

@@ -1,7 +1,7 @@
 //! `catchlight bake-mannequins -o DIR`: makes the figures in `assets/mannequins` again. For developers; hidden.
 
 use super::{Failure, say};
-use crate::mannequin;
+use crate::figures;
 use std::path::PathBuf;
 
 /// Arguments of `bake-mannequins`.
@@ -14,7 +14,7 @@ pub struct Arguments {
 
 /// Bakes every figure and prints the file names.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    for name in mannequin::bake(&arguments.output)? {
+    for name in figures::bake(&arguments.output)? {
         say(name);
     }
     Ok(())

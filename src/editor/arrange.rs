@@ -3,7 +3,7 @@
 use super::action::{ActionError, add_light, add_object};
 use super::item::Item;
 use super::panels::inspector::angles_towards;
-use crate::mannequin;
+use crate::figures;
 use crate::scene::{Aim, BarnDoors, Emitter, Facing, Focus, Light, Object, ObjectId, Scene, Shape};
 use glam::{Quat, Vec3};
 use std::collections::HashMap;
@@ -116,11 +116,11 @@ impl MirrorPlane {
     /// looks along its own +Z. None for what looks straight up or down.
     pub fn of_subject(subject: &Object) -> Option<MirrorPlane> {
         let own = match subject.shape {
-            Shape::Mannequin(figure) => mannequin::face_direction(mannequin::resolve(figure)),
+            Shape::Mannequin(figure) => figures::face_direction(figures::resolve(figure)),
             _ => Vec3::Z,
         };
         let face = match subject.shape {
-            Shape::Mannequin(figure) => mannequin::face_point(mannequin::resolve(figure)),
+            Shape::Mannequin(figure) => figures::face_point(figures::resolve(figure)),
             _ => Vec3::ZERO,
         };
         let looks = subject.transform.rotation() * own;

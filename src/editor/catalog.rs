@@ -1,6 +1,6 @@
 //! The list of things that can be put into the studio, by the names a photographer knows.
 
-use crate::mannequin;
+use crate::figures;
 use crate::scene::{
     Aim, ColorSource, Emitter, Figure, Gel, Light, LightColor, Mannequin, Material, MaterialPreset, Modifier,
     NamedModifier, Object, ObjectId, Output, Pose, Power, Shape, Transform,
@@ -292,7 +292,7 @@ fn blank_object(name: &str) -> Object {
 
 fn new_figure(name: &str, figure: Mannequin) -> Object {
     let material = MaterialPreset::SkinLight.material();
-    let part_materials = mannequin::default_parts(&material);
+    let part_materials = figures::default_parts(&material);
     Object { shape: Shape::Mannequin(figure), material, part_materials, ..blank_object(name) }
 }
 

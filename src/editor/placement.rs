@@ -2,7 +2,7 @@
 
 use super::item::Item;
 use super::readout;
-use crate::mannequin;
+use crate::figures;
 use crate::scene::{Aim, Assets, Light, Object, ObjectId, Role, Scene, Shape};
 use glam::{Quat, Vec3};
 
@@ -13,7 +13,7 @@ const NOTHING_HEIGHT_M: f32 = 1.3;
 /// anything else.
 pub fn aim_offset(object: &Object, assets: &Assets) -> Vec3 {
     match &object.shape {
-        Shape::Mannequin(figure) => mannequin::face_point(mannequin::resolve(*figure)),
+        Shape::Mannequin(figure) => figures::face_point(figures::resolve(*figure)),
         Shape::Sweep { height_m, depth_m, .. } => Vec3::new(0.0, 0.5 * height_m, 0.2 * depth_m),
         _ => assets.mesh_of(&object.shape).map_or(Vec3::ZERO, |mesh| {
             let (low, high) = mesh.bounds();

@@ -2,13 +2,13 @@
 
 use super::error::AssetError;
 use super::obj;
-use crate::mannequin;
+use crate::figures;
 use crate::scene::{Mannequin, Mesh};
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-/// The baked figures, in the order of [`mannequin::ALL`].
-const FILES: [&[u8]; mannequin::ALL.len()] = [
+/// The baked figures, in the order of [`figures::ALL`].
+const FILES: [&[u8]; figures::ALL.len()] = [
     include_bytes!("../../assets/mannequins/woman_standing.obj"),
     include_bytes!("../../assets/mannequins/woman_contrapposto.obj"),
     include_bytes!("../../assets/mannequins/woman_seated.obj"),
@@ -36,8 +36,8 @@ pub(super) fn mesh(figure: Mannequin) -> Result<Arc<Mesh>, AssetError> {
         return Ok(Arc::clone(mesh));
     }
     // The lock is not held here, so that several figures are read at once.
-    let wanted = mannequin::resolve(figure);
-    let file = mannequin::ALL.iter().position(|baked| *baked == wanted).map(|i| FILES[i]);
+    let wanted = figures::resolve(figure);
+    let file = figures::ALL.iter().position(|baked| *baked == wanted).map(|i| FILES[i]);
     let mesh = file.and_then(obj::read_shipped).map(Arc::new).ok_or_else(|| AssetError::BadModel {
         message: "this version has no such figure".to_owned(),
         path: format!("{:?} {:?}", figure.figure, figure.pose).into(),

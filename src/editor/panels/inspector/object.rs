@@ -7,7 +7,7 @@ use crate::editor::command::Command;
 use crate::editor::held::wrap_deg;
 use crate::editor::item::Item;
 use crate::editor::widgets::{self, DEGREES, METRES, Number, SIZE_CM, row, section};
-use crate::mannequin;
+use crate::figures;
 use crate::scene::{Assets, Figure, Mannequin, Object, ObjectId, Pose, Shape};
 use eframe::egui::{Button, ComboBox, RichText, Ui};
 use glam::Vec3;
@@ -110,13 +110,13 @@ fn mannequin_rows(ui: &mut Ui, figure: &mut Mannequin) {
     row(ui, "Pose", "How", |ui| {
         let current = POSES.iter().find(|(each, _)| *each == figure.pose).map_or("", |(_, name)| name);
         ComboBox::from_id_salt("pose").selected_text(current).show_ui(ui, |ui| {
-            let has = |pose| mannequin::ALL.contains(&Mannequin { pose, ..*figure });
+            let has = |pose| figures::ALL.contains(&Mannequin { pose, ..*figure });
             for (pose, name) in POSES.into_iter().filter(|(pose, _)| has(*pose)) {
                 ui.selectable_value(&mut figure.pose, pose, name);
             }
         });
     });
-    *figure = mannequin::resolve(*figure);
+    *figure = figures::resolve(*figure);
 }
 
 fn centimetres(ui: &mut Ui, sizes: &mut [(&str, &mut f32, f32)]) {
