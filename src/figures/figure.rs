@@ -3,7 +3,7 @@
 use super::cubes::Cubes;
 use super::field::{Field, Group, Join};
 use super::garment::Garment;
-use super::head::{HEAD_UNITS, head, v};
+use super::head::{HEAD_UNITS, head};
 use super::pose::PoseAngles;
 use super::proportions::Build;
 use super::shape::Shape;
@@ -11,7 +11,7 @@ use super::skeleton::Skeleton;
 use super::surface::Grid;
 use super::{eyes, limbs, surface, torso};
 use crate::scene::Mesh;
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Vec3, vec3};
 
 /// How much of a figure is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,7 +72,7 @@ impl Sculpture {
     /// The middle of the face, between the eyes and the tip of the nose, on the finished sculpture; metres.
     pub fn face_point(&self) -> Vec3 {
         let scale = self.build.head / HEAD_UNITS;
-        self.head().transform_point3(v(0.0, -18.0, 101.0) * scale)
+        self.head().transform_point3(vec3(0.0, -18.0, 101.0) * scale)
     }
 
     /// The whole shape, still at its standing height.
@@ -115,7 +115,8 @@ impl Sculpture {
         let (unit, scale) = (self.skeleton.unit, self.build.head / HEAD_UNITS);
         let head = scale * head_edge_length(head_from_world.transform_point3(p) / scale);
         let hands = self.skeleton.arms.iter().map(|a| (p - a.wrist - a.fingers * 0.09 * unit).length());
-        let feet = self.skeleton.legs.iter().map(|l| (p - l.foot.transform_point3(v(0.0, 0.03, 0.08) * unit)).length());
+        let feet =
+            self.skeleton.legs.iter().map(|l| (p - l.foot.transform_point3(vec3(0.0, 0.03, 0.08) * unit)).length());
         let hand = ramp(hands.fold(f32::INFINITY, f32::min) / unit, 0.11, 0.2, 0.006, 0.02);
         let foot = ramp(feet.fold(f32::INFINITY, f32::min) / unit, 0.13, 0.25, 0.0075, 0.02);
         head.min(hand * unit).min(foot * unit)
@@ -127,7 +128,7 @@ impl Sculpture {
         let low = low.with_y(low.y.max(self.base() - 0.03));
         let cubes = Cubes::new(&self.field(), low, high);
         let scale = self.build.head / HEAD_UNITS;
-        let focus = self.skeleton.head.transform_point3(v(0.0, -32.0, 80.0) * scale);
+        let focus = self.skeleton.head.transform_point3(vec3(0.0, -32.0, 80.0) * scale);
         let grid = Grid { focus, cell_m: 0.001_5 * detail.coarseness, core_m: 0.1 };
         let head_from_world = self.skeleton.head.inverse();
         let target = |p: Vec3| detail.coarseness * self.edge_length(p, &head_from_world);
@@ -160,16 +161,16 @@ fn ramp(x: f32, x0: f32, x1: f32, y0: f32, y1: f32) -> f32 {
 /// Wanted length of edges on and around a head, all in head units.
 fn head_edge_length(p: Vec3) -> f32 {
     let p = p.with_x(p.x.abs());
-    let from_face = p.distance(v(0.0, -32.0, 80.0));
+    let from_face = p.distance(vec3(0.0, -32.0, 80.0));
     let general = ramp(from_face, 55.0, 140.0, 2.2, 5.2) + ramp(from_face, 160.0, 450.0, 0.0, 13.0);
     // Line of the mouth, lids, nostrils, ears: middle, radius, length of edges in it.
-    let mouth = p.distance(v(p.x.min(27.0), -71.0, 98.0 - 0.4 * p.x.min(27.0)));
+    let mouth = p.distance(vec3(p.x.min(27.0), -71.0, 98.0 - 0.4 * p.x.min(27.0)));
     let fine = [
         (mouth, 5.0, 1.1),
-        (p.distance(v(31.5, 0.0, 82.0)), 16.0, 1.1),
-        (p.distance(v(p.x.min(9.0), -50.0, 101.0)), 9.0, 1.3),
-        (p.distance(v(0.0, -56.0, 101.0)), 8.0, 1.2),
-        (p.distance(v(78.0, -18.0, -14.0)), 28.0, 2.2),
+        (p.distance(vec3(31.5, 0.0, 82.0)), 16.0, 1.1),
+        (p.distance(vec3(p.x.min(9.0), -50.0, 101.0)), 9.0, 1.3),
+        (p.distance(vec3(0.0, -56.0, 101.0)), 8.0, 1.2),
+        (p.distance(vec3(78.0, -18.0, -14.0)), 28.0, 2.2),
     ];
     fine.iter()
         .fold(general, |length, &(d, radius, wanted)| length.min(ramp(d, radius, radius + 14.0, wanted, general)))

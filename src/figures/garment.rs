@@ -4,13 +4,12 @@
 //! skin comes out of the hems' flat ends, so the seam between cloth and skin is clean from every side.
 
 use super::field::{Field, Group};
-use super::head::v;
 use super::limbs;
 use super::proportions::Build;
 use super::shape::Shape;
 use super::skeleton::Skeleton;
 use super::torso;
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Vec3, vec3};
 
 /// Thickness of the cloth, body units.
 const CLOTH: f32 = 0.004;
@@ -35,14 +34,14 @@ impl Garment {
         let mut hems = Vec::new();
         let mut trunk = torso::torso(s, b);
         let neckline = Shape::Ellipsoid {
-            center: s.chest.transform_point3(v(0.0, 1.565, -0.01) * s.unit),
+            center: s.chest.transform_point3(vec3(0.0, 1.565, -0.01) * s.unit),
             axes: Mat3::from(s.chest.matrix3),
-            radii: v(0.082 + 0.3 * b.neck / s.unit, 0.155, 0.125) * s.unit,
+            radii: vec3(0.082 + 0.3 * b.neck / s.unit, 0.155, 0.125) * s.unit,
         };
         trunk.cut(neckline.clone(), 0.003 * s.unit);
         // Nothing of the neck is left above it.
         let up = s.chest.transform_vector3(Vec3::Y);
-        let collar = s.chest.transform_point3(v(0.0, 1.527, 0.0) * s.unit);
+        let collar = s.chest.transform_point3(vec3(0.0, 1.527, 0.0) * s.unit);
         trunk.cut(Shape::HalfSpace { normal: -up, offset: -up.dot(collar) }, 0.003 * s.unit);
         let mut groups = vec![trunk];
         for leg in &s.legs {

@@ -5,14 +5,10 @@ use super::face::add_face;
 use super::field::{Group, Join};
 use super::proportions::FaceShape;
 use super::shape::Shape;
-use glam::{Affine3A, Mat3, Vec3};
+use glam::{Affine3A, Mat3, Vec3, vec3};
 
 /// Height of the modelled head, chin to crown, in its own units.
 pub const HEAD_UNITS: f32 = 230.0;
-
-pub(super) fn v(x: f32, y: f32, z: f32) -> Vec3 {
-    Vec3::new(x, y, z)
-}
 
 /// Builds the head group. `height_m` is chin to crown.
 pub fn head(world_from_head: Affine3A, height_m: f32, face: &FaceShape) -> Group {
@@ -26,44 +22,44 @@ pub fn head(world_from_head: Affine3A, height_m: f32, face: &FaceShape) -> Group
 
 fn add_skull(g: &mut Group, f: &FaceShape) {
     // Cranium: a broad back, a narrower forehead.
-    g.ball(v(0.0, 36.0, -18.0), v(75.0 * f.skull, 79.0, 80.0), 0.0);
-    g.ball(v(0.0, 32.0, 28.0), v(63.0 * f.skull, 72.0, 66.0), 40.0);
+    g.ball(vec3(0.0, 36.0, -18.0), vec3(75.0 * f.skull, 79.0, 80.0), 0.0);
+    g.ball(vec3(0.0, 32.0, 28.0), vec3(63.0 * f.skull, 72.0, 66.0), 40.0);
     // The face below it, down to the upper jaw.
-    g.ball(v(0.0, -28.0, 36.0), v(56.0, 66.0, 56.0), 34.0);
-    g.ball(v(0.0, -66.0, 52.0), v(37.0, 42.0, 43.0), 26.0);
+    g.ball(vec3(0.0, -28.0, 36.0), vec3(56.0, 66.0, 56.0), 34.0);
+    g.ball(vec3(0.0, -66.0, 52.0), vec3(37.0, 42.0, 43.0), 26.0);
     // Lower jaw: from its angle under the ear to the chin, and the rising branch behind the cheek.
-    let angle = v(50.0 * f.jaw, -68.0, 4.0);
-    g.cone(angle, 10.0, v(17.0 * f.jaw, -97.0 + f.chin_lift, 72.0), 14.0, 24.0);
-    g.cone(angle, 10.0, v(58.0, -22.0, 2.0), 12.0, 24.0);
-    g.ball(v(0.0, -98.0 + f.chin_lift, 77.0 + f.chin), v(21.0 * f.jaw, 16.0, 18.0), 20.0);
+    let angle = vec3(50.0 * f.jaw, -68.0, 4.0);
+    g.cone(angle, 10.0, vec3(17.0 * f.jaw, -97.0 + f.chin_lift, 72.0), 14.0, 24.0);
+    g.cone(angle, 10.0, vec3(58.0, -22.0, 2.0), 12.0, 24.0);
+    g.ball(vec3(0.0, -98.0 + f.chin_lift, 77.0 + f.chin), vec3(21.0 * f.jaw, 16.0, 18.0), 20.0);
     // The floor of the mouth, so that jaw and neck meet in a plane and not in a pit.
-    g.cone(v(0.0, -88.0, 52.0), 14.0, v(0.0, -78.0, 5.0), 34.0, 24.0);
+    g.cone(vec3(0.0, -88.0, 52.0), 14.0, vec3(0.0, -78.0, 5.0), 34.0, 24.0);
     // Cheeks.
-    g.ball(v(36.0, -52.0, 38.0), v(21.0, 30.0, 30.0) * f.fullness, 24.0);
-    g.cone(v(57.0, -26.0, 20.0), 9.0, angle + v(-4.0, 4.0, 6.0), 9.0, 20.0);
+    g.ball(vec3(36.0, -52.0, 38.0), vec3(21.0, 30.0, 30.0) * f.fullness, 24.0);
+    g.cone(vec3(57.0, -26.0, 20.0), 9.0, angle + vec3(-4.0, 4.0, 6.0), 9.0, 20.0);
     // Temples.
-    g.brush(&[v(66.0, 30.0, 42.0), v(68.0, 12.0, 36.0)], 34.0, -2.5, Vec3::ONE);
+    g.brush(&[vec3(66.0, 30.0, 42.0), vec3(68.0, 12.0, 36.0)], 34.0, -2.5, Vec3::ONE);
 }
 
 /// Ear: a shell in its own plane, the back edge standing off the head.
 fn add_ear(g: &mut Group, f: &FaceShape) {
     // Columns: towards the back of the head, up along the ear, out of its plane.
     let (flare, lean) = (0.42_f32, 0.2_f32);
-    let out = v(flare.cos(), 0.0, flare.sin());
-    let back = v(flare.sin(), 0.0, -flare.cos());
-    let up = v(0.0, lean.cos(), 0.0) + back * lean.sin();
+    let out = vec3(flare.cos(), 0.0, flare.sin());
+    let back = vec3(flare.sin(), 0.0, -flare.cos());
+    let up = vec3(0.0, lean.cos(), 0.0) + back * lean.sin();
     let back = up.cross(out).normalize() * -1.0;
     let back = if back.z > 0.0 { -back } else { back };
     let size = f.ear;
-    let place = |u: f32, w: f32, n: f32| v(71.0 * f.skull, -19.0, -9.0) + (back * u + up * w + out * n) * size;
+    let place = |u: f32, w: f32, n: f32| vec3(71.0 * f.skull, -19.0, -9.0) + (back * u + up * w + out * n) * size;
     let axes = Mat3::from_cols(back, up, back.cross(up));
     let ball = |c: Vec3, r: Vec3| Shape::Ellipsoid { center: c, axes, radii: r * size };
     // Plate and lobe.
     let tilt = 0.3_f32;
     let (plate_back, plate_out) = (back * tilt.cos() + out * tilt.sin(), out * tilt.cos() - back * tilt.sin());
     let plate = Mat3::from_cols(plate_back, up, plate_out);
-    g.add(Shape::Ellipsoid { center: place(5.0, 6.0, 3.2), axes: plate, radii: v(17.0, 27.0, 4.2) * size }, 5.0);
-    g.add(ball(place(-1.0, -23.0, 2.5), v(7.5, 9.0, 3.8)), 5.0);
+    g.add(Shape::Ellipsoid { center: place(5.0, 6.0, 3.2), axes: plate, radii: vec3(17.0, 27.0, 4.2) * size }, 5.0);
+    g.add(ball(place(-1.0, -23.0, 2.5), vec3(7.5, 9.0, 3.8)), 5.0);
     // Helix: the rolled rim, from the crus round the top to the lobe.
     let rim: Vec<(Vec3, f32)> = [
         (-5.0, 0.0, 3.5, 2.0),
@@ -83,7 +79,7 @@ fn add_ear(g: &mut Group, f: &FaceShape) {
     .collect();
     g.add(Shape::Tube(rim), 3.0);
     // The bowl in front of the canal, then the ridge between bowl and rim.
-    g.cut(ball(place(0.5, -4.0, 10.0), v(8.5, 11.5, 8.0)), 3.0);
+    g.cut(ball(place(0.5, -4.0, 10.0), vec3(8.5, 11.5, 8.0)), 3.0);
     let ridge: Vec<(Vec3, f32)> = [
         (3.0, -16.0, 4.5, 2.6),
         (9.5, -9.0, 6.0, 2.4),
@@ -96,6 +92,6 @@ fn add_ear(g: &mut Group, f: &FaceShape) {
     .collect();
     g.add(Shape::Tube(ridge), 3.0);
     // Tragus, and the knob across from it.
-    g.add(ball(place(-10.0, -5.5, 4.5), v(3.2, 5.5, 3.6)), 4.0);
-    g.add(ball(place(1.0, -16.5, 5.5), v(4.0, 3.0, 3.0)), 3.0);
+    g.add(ball(place(-10.0, -5.5, 4.5), vec3(3.2, 5.5, 3.6)), 4.0);
+    g.add(ball(place(1.0, -16.5, 5.5), vec3(4.0, 3.0, 3.0)), 3.0);
 }

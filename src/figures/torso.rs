@@ -1,11 +1,10 @@
 //! Trunk and neck. Shapes are placed where they are on a standing figure and carried along by their bone.
 
 use super::field::{Group, Join};
-use super::head::v;
 use super::proportions::Build;
 use super::shape::Shape;
 use super::skeleton::{Skeleton, rest};
-use glam::{Affine3A, Mat3, Vec3};
+use glam::{Affine3A, Mat3, Vec3, vec3};
 
 /// Puts shapes given in standing coordinates (body units) on a bone, on both sides.
 struct Sculptor<'a> {
@@ -27,12 +26,12 @@ impl Sculptor<'_> {
     /// A pair of ellipsoids, the left one turned by `turn`.
     fn pair(&mut self, bone: &Affine3A, center: Vec3, radii: Vec3, turn: Mat3, width: f32) {
         self.tilted(bone, center, radii, turn, width);
-        let flip = Mat3::from_diagonal(v(-1.0, 1.0, 1.0));
-        self.tilted(bone, center * v(-1.0, 1.0, 1.0), radii, flip * turn * flip, width);
+        let flip = Mat3::from_diagonal(vec3(-1.0, 1.0, 1.0));
+        self.tilted(bone, center * vec3(-1.0, 1.0, 1.0), radii, flip * turn * flip, width);
     }
 
     fn cones(&mut self, a: (&Affine3A, Vec3, f32), b: (&Affine3A, Vec3, f32), width: f32) {
-        for mirror in [v(1.0, 1.0, 1.0), v(-1.0, 1.0, 1.0)] {
+        for mirror in [vec3(1.0, 1.0, 1.0), vec3(-1.0, 1.0, 1.0)] {
             let start = a.0.transform_point3(a.1 * mirror * self.unit);
             let end = b.0.transform_point3(b.1 * mirror * self.unit);
             self.group.cone(start, a.2 * self.unit, end, b.2 * self.unit, width * self.unit);
@@ -46,7 +45,7 @@ impl Sculptor<'_> {
 
     fn brush_pair(&mut self, bone: &Affine3A, path: &[Vec3], radius: f32, height: f32) {
         self.brush(bone, path, radius, height);
-        let mirrored: Vec<Vec3> = path.iter().map(|p| *p * v(-1.0, 1.0, 1.0)).collect();
+        let mirrored: Vec<Vec3> = path.iter().map(|p| *p * vec3(-1.0, 1.0, 1.0)).collect();
         self.brush(bone, &mirrored, radius, height);
     }
 }
@@ -68,26 +67,26 @@ fn add_trunk(clay: &mut Sculptor, s: &Skeleton, b: &Build) {
     let (ww, wd) = (0.5 * b.waist_width / u, 0.5 * b.waist_depth / u);
     let hw = 0.5 * b.hip_width / u;
     // Pelvis, and the width of the hips over the leg's joints.
-    clay.ball(&s.pelvis, v(0.0, 0.975, -0.005), v(hw * 0.9, 0.105, wd * 1.0), 0.0);
-    clay.pair(&s.pelvis, v(hw * 0.52, 0.925, -0.005), v(hw * 0.47, 0.105, wd * 0.92), Mat3::IDENTITY, 0.06);
+    clay.ball(&s.pelvis, vec3(0.0, 0.975, -0.005), vec3(hw * 0.9, 0.105, wd * 1.0), 0.0);
+    clay.pair(&s.pelvis, vec3(hw * 0.52, 0.925, -0.005), vec3(hw * 0.47, 0.105, wd * 0.92), Mat3::IDENTITY, 0.06);
     // Seat.
     let seat = 0.95 + 0.05 * (1.0 - b.muscle);
     clay.pair(
         &s.pelvis,
-        v(hw * 0.45, 0.9, -0.062),
-        v(hw * 0.46, 0.085, 0.075) * seat,
+        vec3(hw * 0.45, 0.9, -0.062),
+        vec3(hw * 0.46, 0.085, 0.075) * seat,
         Mat3::from_rotation_x(0.25),
         0.035,
     );
     // Belly, then the cage.
-    clay.ball(&s.waist, v(0.0, 1.10, 0.004), v(ww, 0.15, wd), 0.11);
-    clay.ball(&s.waist, v(0.0, 1.03, 0.022), v(ww * 0.8, 0.10, wd * 0.88), 0.06);
-    clay.ball(&s.chest, v(0.0, 1.275, -0.008), v(cw, 0.185, cd), 0.10);
-    clay.ball(&s.chest, v(0.0, 1.38, -0.02), v(cw * 0.96, 0.085, cd * 0.78), 0.05);
+    clay.ball(&s.waist, vec3(0.0, 1.10, 0.004), vec3(ww, 0.15, wd), 0.11);
+    clay.ball(&s.waist, vec3(0.0, 1.03, 0.022), vec3(ww * 0.8, 0.10, wd * 0.88), 0.06);
+    clay.ball(&s.chest, vec3(0.0, 1.275, -0.008), vec3(cw, 0.185, cd), 0.10);
+    clay.ball(&s.chest, vec3(0.0, 1.38, -0.02), vec3(cw * 0.96, 0.085, cd * 0.78), 0.05);
     // Broad back muscles.
     clay.cones(
-        (&s.chest, v(cw * 0.92, 1.33, -0.045), 0.035 + 0.012 * b.muscle),
-        (&s.waist, v(ww * 0.68, 1.09, -0.03), 0.035),
+        (&s.chest, vec3(cw * 0.92, 1.33, -0.045), 0.035 + 0.012 * b.muscle),
+        (&s.waist, vec3(ww * 0.68, 1.09, -0.03), 0.035),
         0.05,
     );
 }
@@ -98,26 +97,26 @@ fn add_chest(clay: &mut Sculptor, s: &Skeleton, b: &Build) {
     let shoulder = 0.5 * b.shoulder_width / u;
     // Root of the shoulder.
     clay.cones(
-        (&s.chest, v(shoulder * 0.45, 1.425, -0.02), 0.052),
-        (&s.chest, v(shoulder * 0.92, 1.425, -0.012), 0.046),
+        (&s.chest, vec3(shoulder * 0.45, 1.425, -0.02), 0.052),
+        (&s.chest, vec3(shoulder * 0.92, 1.425, -0.012), 0.046),
         0.05,
     );
     // Shoulder blades.
     let blade = Mat3::from_rotation_y(0.4);
-    clay.pair(&s.chest, v(cw * 0.58, 1.345, -cd * 0.83), v(0.055, 0.075, 0.025), blade, 0.04);
+    clay.pair(&s.chest, vec3(cw * 0.58, 1.345, -cd * 0.83), vec3(0.055, 0.075, 0.025), blade, 0.04);
     // Chest muscles.
     if b.muscle > 0.5 {
         let pec = Mat3::from_rotation_y(0.35) * Mat3::from_rotation_z(0.25);
         let depth = 0.016 + 0.008 * b.muscle;
-        clay.pair(&s.chest, v(cw * 0.46, 1.345, cd * 0.76), v(0.08, 0.058, depth), pec, 0.06);
+        clay.pair(&s.chest, vec3(cw * 0.46, 1.345, cd * 0.76), vec3(0.08, 0.058, depth), pec, 0.06);
     }
     if b.bust > 0.0 {
         let r = b.bust / u;
         let turn = Mat3::from_rotation_y(0.3);
-        clay.pair(&s.chest, v(cw * 0.54, 1.285, cd * 0.78), v(r, r * 1.02, r * 0.95), turn, 0.03);
+        clay.pair(&s.chest, vec3(cw * 0.54, 1.285, cd * 0.78), vec3(r, r * 1.02, r * 0.95), turn, 0.03);
         clay.cones(
-            (&s.chest, v(cw * 0.5, 1.36, cd * 0.66), 0.03),
-            (&s.chest, v(cw * 0.55, 1.295, cd * 0.85), 0.04),
+            (&s.chest, vec3(cw * 0.5, 1.36, cd * 0.66), 0.03),
+            (&s.chest, vec3(cw * 0.55, 1.295, cd * 0.85), 0.04),
             0.04,
         );
     }
@@ -134,28 +133,28 @@ fn add_neck(clay: &mut Sculptor, s: &Skeleton, b: &Build) {
     let mut column = |a: Vec3, ra: f32, b: Vec3, rb: f32, k: f32| {
         group.cone(a * u, ra * u, b * u, rb * u, k * u);
     };
-    column(root(v(0.0, rest::NECK - 0.03, -0.03)), n * 1.12, on_head(v(0.0, -58.0, -20.0)), n, 0.05);
-    column(root(v(0.0, rest::NECK - 0.005, -0.036)), n * 0.7, on_head(v(0.0, -34.0, -37.0)), n * 0.7, 0.03);
-    column(root(v(0.0, rest::NECK - 0.03, -0.005)), n * 0.72, on_head(v(0.0, -80.0, 8.0)), n * 0.62, 0.03);
+    column(root(vec3(0.0, rest::NECK - 0.03, -0.03)), n * 1.12, on_head(vec3(0.0, -58.0, -20.0)), n, 0.05);
+    column(root(vec3(0.0, rest::NECK - 0.005, -0.036)), n * 0.7, on_head(vec3(0.0, -34.0, -37.0)), n * 0.7, 0.03);
+    column(root(vec3(0.0, rest::NECK - 0.03, -0.005)), n * 0.72, on_head(vec3(0.0, -80.0, 8.0)), n * 0.62, 0.03);
     // The muscle from behind the ear to the pit of the throat.
     let shoulder = 0.5 * b.shoulder_width / u;
     for side in [1.0, -1.0] {
-        let ear = on_head(v(58.0 * side, -42.0, -22.0));
-        let pit = s.chest.transform_point3(v(0.016 * side, 1.455, 0.035) * u) / u;
+        let ear = on_head(vec3(58.0 * side, -42.0, -22.0));
+        let pit = s.chest.transform_point3(vec3(0.016 * side, 1.455, 0.035) * u) / u;
         let strap = 0.008 + 0.006 * n / 0.058;
         clay.group.cone(ear * u, strap * 1.2 * u, pit * u, strap * 0.72 * u, 0.022 * u);
     }
     // Slope from neck to shoulder.
     let thick = 0.022 + 0.008 * b.muscle;
     clay.cones(
-        (&s.neck, v(0.01, 1.54, -0.045), thick),
-        (&s.chest, v(shoulder * 0.9, 1.448, -0.028), thick * 0.72),
+        (&s.neck, vec3(0.01, 1.54, -0.045), thick),
+        (&s.chest, vec3(shoulder * 0.9, 1.448, -0.028), thick * 0.72),
         0.045,
     );
-    clay.cones((&s.neck, v(0.018, 1.50, -0.052), 0.03), (&s.chest, v(0.05, 1.36, -0.08), 0.03), 0.05);
+    clay.cones((&s.neck, vec3(0.018, 1.50, -0.052), 0.03), (&s.chest, vec3(0.05, 1.36, -0.08), 0.03), 0.05);
     if b.muscle > 0.6 {
         // Larynx.
-        let apple = on_head(v(0.0, -128.0, 30.0));
+        let apple = on_head(vec3(0.0, -128.0, 30.0));
         clay.group.ball(apple * u, Vec3::splat(0.014 * u), 0.022 * u);
     }
 }
@@ -165,17 +164,21 @@ fn add_relief(clay: &mut Sculptor, s: &Skeleton, b: &Build) {
     let u = s.unit;
     let (cd, wd) = (0.5 * b.chest_depth / u, 0.5 * b.waist_depth / u);
     let shoulder = 0.5 * b.shoulder_width / u;
-    clay.cones((&s.chest, v(0.022, 1.448, 0.04), 0.0085), (&s.chest, v(shoulder * 0.5, 1.456, 0.016), 0.0065), 0.022);
     clay.cones(
-        (&s.chest, v(shoulder * 0.5, 1.456, 0.016), 0.0065),
-        (&s.chest, v(shoulder * 0.93, 1.458, -0.01), 0.008),
+        (&s.chest, vec3(0.022, 1.448, 0.04), 0.0085),
+        (&s.chest, vec3(shoulder * 0.5, 1.456, 0.016), 0.0065),
         0.022,
     );
-    clay.brush(&s.chest, &[v(0.0, 1.46, 0.05), v(0.0, 1.45, 0.06)], 0.03, -0.008);
+    clay.cones(
+        (&s.chest, vec3(shoulder * 0.5, 1.456, 0.016), 0.0065),
+        (&s.chest, vec3(shoulder * 0.93, 1.458, -0.01), 0.008),
+        0.022,
+    );
+    clay.brush(&s.chest, &[vec3(0.0, 1.46, 0.05), vec3(0.0, 1.45, 0.06)], 0.03, -0.008);
     let m = 0.2 + 0.8 * b.muscle;
-    clay.brush(&s.chest, &[v(0.0, 1.42, cd * 0.85), v(0.0, 1.26, cd)], 0.035, -0.006 * m);
-    clay.brush(&s.waist, &[v(0.0, 1.19, wd * 1.05), v(0.0, 1.06, wd * 1.05)], 0.03, -0.004 * m);
-    clay.brush(&s.chest, &[v(0.0, 1.43, -cd * 0.9), v(0.0, 1.2, -cd)], 0.035, -0.004 - 0.003 * m);
-    clay.brush(&s.waist, &[v(0.0, 1.2, -cd), v(0.0, 1.0, -wd)], 0.04, -0.005 - 0.004 * m);
-    clay.brush_pair(&s.pelvis, &[v(0.14, 0.99, wd * 0.7), v(0.06, 0.915, wd * 0.95)], 0.03, -0.005 * m);
+    clay.brush(&s.chest, &[vec3(0.0, 1.42, cd * 0.85), vec3(0.0, 1.26, cd)], 0.035, -0.006 * m);
+    clay.brush(&s.waist, &[vec3(0.0, 1.19, wd * 1.05), vec3(0.0, 1.06, wd * 1.05)], 0.03, -0.004 * m);
+    clay.brush(&s.chest, &[vec3(0.0, 1.43, -cd * 0.9), vec3(0.0, 1.2, -cd)], 0.035, -0.004 - 0.003 * m);
+    clay.brush(&s.waist, &[vec3(0.0, 1.2, -cd), vec3(0.0, 1.0, -wd)], 0.04, -0.005 - 0.004 * m);
+    clay.brush_pair(&s.pelvis, &[vec3(0.14, 0.99, wd * 0.7), vec3(0.06, 0.915, wd * 0.95)], 0.03, -0.005 * m);
 }

@@ -13,6 +13,7 @@ mod mannequins;
 mod obj;
 mod picture;
 mod presets;
+mod read;
 mod ron_v1;
 mod scene_file;
 mod texture;

@@ -1,7 +1,7 @@
 //! Textures: PNG and JPEG through `image`, with limits.
 
 use super::error::AssetError;
-use super::obj::read_limited;
+use super::read::read_limited;
 use crate::scene::Texture;
 use std::io::Cursor;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! Surfaces from the MTL file of an OBJ model.
 
-use super::read_limited;
+use crate::io::read::read_limited;
 use crate::scene::{Material, path_complaint};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};

@@ -8,12 +8,12 @@ mod smooth;
 mod weld;
 
 use super::error::AssetError;
+use super::read::read_limited;
 use crate::scene::{Material, Mesh};
 use glam::Vec3;
 use materials::Library;
 use pieces::{Elements, Fault};
 use std::collections::HashSet;
-use std::io::ErrorKind;
 use std::path::Path;
 
 /// Largest OBJ file, bytes.
@@ -42,7 +42,7 @@ pub struct ImportedObj {
 pub fn import_obj(path: &Path) -> Result<ImportedObj, AssetError> {
     let bytes = read_limited(path, FILE_LIMIT_BYTES)?;
     let bad_model = |message: String| AssetError::BadModel { message, path: path.to_owned() };
-    let elements = pieces::read(&bytes).map_err(|fault| match fault {
+    let elements = pieces::read(&bytes, TRIANGLE_LIMIT).map_err(|fault| match fault {
         Fault::Mistake(message) => bad_model(message),
         Fault::TooManyTriangles(amount) => AssetError::TooLarge {
             what: "the model's number of triangles",
@@ -59,28 +59,9 @@ pub fn import_obj(path: &Path) -> Result<ImportedObj, AssetError> {
 
 /// Reads one of the OBJ files that ship with the program, which have no mistakes and no MTL file.
 pub(super) fn read_shipped(text: &[u8]) -> Option<Mesh> {
-    let elements = pieces::read(text).ok()?;
+    let elements = pieces::read(text, TRIANGLE_LIMIT).ok()?;
     // Figures are smooth all over.
     assemble(&elements, &mut Library::default(), 180.0).ok().map(|imported| imported.mesh)
-}
-
-/// Reads a whole file that must not be larger than `limit`.
-pub(super) fn read_limited(path: &Path, limit: u64) -> Result<Vec<u8>, AssetError> {
-    use std::io::Read;
-    let read_error = |source| AssetError::Read { source, path: path.to_owned() };
-    // A pipe would keep us waiting for as long as nobody writes to it.
-    let metadata = std::fs::metadata(path).map_err(read_error)?;
-    if !metadata.is_file() {
-        return Err(read_error(std::io::Error::new(ErrorKind::InvalidInput, "it is no regular file")));
-    }
-    let file = std::fs::File::open(path).map_err(read_error)?;
-    let mut bytes = Vec::with_capacity(metadata.len().min(limit) as usize);
-    file.take(limit + 1).read_to_end(&mut bytes).map_err(read_error)?;
-    if bytes.len() as u64 > limit {
-        let amount = metadata.len().max(bytes.len() as u64);
-        return Err(AssetError::TooLarge { what: "the file's number of bytes", amount, limit, path: path.to_owned() });
-    }
-    Ok(bytes)
 }
 
 /// One mesh of all groups.

@@ -1,6 +1,5 @@
 //! Reads an OBJ file on all cores: it is cut at line ends, and its pieces are read side by side and joined.
 
-use super::TRIANGLE_LIMIT;
 use super::lines::{Counts, Faces, Mistake, Piece, lines};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -24,12 +23,12 @@ pub(super) struct Elements {
 pub(super) enum Fault {
     /// A mistake, with its line.
     Mistake(String),
-    /// At least so many triangles, which is more than [`TRIANGLE_LIMIT`].
+    /// At least so many triangles, more than the limit.
     TooManyTriangles(usize),
 }
 
 /// Reads a whole file. Of several mistakes the first in the file is told.
-pub(super) fn read(bytes: &[u8]) -> Result<Elements, Fault> {
+pub(super) fn read(bytes: &[u8], triangle_limit: usize) -> Result<Elements, Fault> {
     let pieces = cut(bytes, PIECE_BYTES);
     let counts: Vec<Counts> = pieces.par_iter().map(|piece| Counts::of(piece)).collect();
     let mut total = Counts::default();
@@ -41,7 +40,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Elements, Fault> {
     let made = AtomicUsize::new(0);
     let read_piece = |(bytes, before): (&&[u8], Counts)| {
         // Over the limit the file is refused, whatever else it says.
-        if made.load(Ordering::Relaxed) > TRIANGLE_LIMIT {
+        if made.load(Ordering::Relaxed) > triangle_limit {
             return Ok(Piece::default());
         }
         let piece = Piece::read(bytes, before, total)?;
@@ -50,7 +49,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Elements, Fault> {
     };
     let read: Vec<Result<Piece, Mistake>> = pieces.par_iter().zip(starts).map(read_piece).collect();
     let made = made.into_inner();
-    if made > TRIANGLE_LIMIT {
+    if made > triangle_limit {
         return Err(Fault::TooManyTriangles(made));
     }
     let mut elements = Elements::with_room(&total);

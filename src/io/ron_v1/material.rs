@@ -1,6 +1,6 @@
 //! Materials in format 1: `Preset(Chrome)`, or `Custom(...)` with what differs from the plain one.
 
-use super::{Triple, is};
+use super::defaults::{Triple, default_ior, default_roughness, is_default, is_default_ior};
 use crate::scene::{Material, MaterialPreset};
 use serde::{Deserialize, Serialize};
 
@@ -12,29 +12,19 @@ pub(super) enum MaterialV1 {
         base_color: Triple,
         #[serde(default, skip_serializing_if = "Option::is_none")]
         base_color_texture: Option<String>,
-        #[serde(default, skip_serializing_if = "is")]
+        #[serde(default, skip_serializing_if = "is_default")]
         metallic: f32,
-        #[serde(default = "usual_roughness")]
+        #[serde(default = "default_roughness")]
         roughness: f32,
-        #[serde(default = "usual_ior", skip_serializing_if = "is_usual_ior")]
+        #[serde(default = "default_ior", skip_serializing_if = "is_default_ior")]
         ior: f32,
-        #[serde(default, skip_serializing_if = "is")]
+        #[serde(default, skip_serializing_if = "is_default")]
         transmission: f32,
-        #[serde(default, skip_serializing_if = "is")]
+        #[serde(default, skip_serializing_if = "is_default")]
         absorption_per_m: Triple,
-        #[serde(default, skip_serializing_if = "is")]
+        #[serde(default, skip_serializing_if = "is_default")]
         emission_cd_m2: Triple,
     },
-}
-
-fn usual_roughness() -> f32 {
-    Material::default().roughness
-}
-fn usual_ior() -> f32 {
-    Material::default().ior
-}
-fn is_usual_ior(value: &f32) -> bool {
-    *value == usual_ior()
 }
 
 /// Declares the shelf's names in the file and both conversions.

@@ -5,41 +5,16 @@
 //! a light that is on); [`convert`] says how names become ids.
 
 mod convert;
+mod defaults;
 mod material;
 
 pub(super) use convert::{UnknownName, scene_from_v1, v1_from_scene};
 
-use crate::scene::Camera;
+use defaults::{
+    Triple, default_efficacy, default_meter_constant, is_default, is_default_meter_constant, is_one, is_true, one, yes,
+};
 use material::MaterialV1;
 use serde::{Deserialize, Serialize};
-
-/// Three numbers, written `(x, y, z)`.
-type Triple = [f32; 3];
-
-fn is<T: PartialEq + Default>(value: &T) -> bool {
-    *value == T::default()
-}
-fn yes() -> bool {
-    true
-}
-fn is_yes(value: &bool) -> bool {
-    *value
-}
-fn one() -> Triple {
-    [1.0; 3]
-}
-fn is_one(value: &Triple) -> bool {
-    *value == one()
-}
-fn usual_meter() -> f32 {
-    Camera::default().meter_constant
-}
-fn is_usual_meter(value: &f32) -> bool {
-    *value == usual_meter()
-}
-fn usual_efficacy() -> f32 {
-    crate::scene::Output::DEFAULT_EFFICACY
-}
 
 /// The whole file.
 #[derive(Debug, Serialize, Deserialize)]
@@ -76,7 +51,7 @@ struct SoloV1 {
 #[serde(rename = "Meter", deny_unknown_fields)]
 struct MeterV1 {
     position: Triple,
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     facing: FacingV1,
     #[serde(default)]
     receptor: ReceptorV1,
@@ -106,7 +81,7 @@ enum ReceptorV1 {
 struct CameraV1 {
     position: Triple,
     aim: AimV1,
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     roll_deg: f32,
     #[serde(default)]
     sensor: SensorV1,
@@ -117,11 +92,11 @@ struct CameraV1 {
     shutter_s: f32,
     iso: f32,
     white_balance_k: f32,
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     focus: FocusV1,
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     depth_of_field: bool,
-    #[serde(default = "usual_meter", skip_serializing_if = "is_usual_meter")]
+    #[serde(default = "default_meter_constant", skip_serializing_if = "is_default_meter_constant")]
     meter_constant: f32,
 }
 
@@ -156,7 +131,7 @@ enum FocusV1 {
     OnAim,
     OnObject {
         name: String,
-        #[serde(default, skip_serializing_if = "is")]
+        #[serde(default, skip_serializing_if = "is_default")]
         offset: Triple,
     },
     Distance(f32),
@@ -169,7 +144,7 @@ enum AimV1 {
     Point(f32, f32, f32),
     Object {
         name: String,
-        #[serde(default, skip_serializing_if = "is")]
+        #[serde(default, skip_serializing_if = "is_default")]
         offset: Triple,
     },
     Angles {
@@ -194,16 +169,16 @@ struct ObjectV1 {
     shape: ShapeV1,
     #[serde(default)]
     position: Triple,
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     rotation_deg: Triple,
     #[serde(default = "one", skip_serializing_if = "is_one")]
     scale: Triple,
     material: MaterialV1,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     part_materials: Vec<PartMaterialV1>,
-    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    #[serde(default = "yes", skip_serializing_if = "is_true")]
     visible: bool,
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     locked: bool,
 }
 
@@ -252,22 +227,22 @@ struct LightV1 {
     #[serde(default)]
     position: Triple,
     aim: AimV1,
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     roll_deg: f32,
     emitter: EmitterV1,
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     modifier: ModifierV1,
     power: PowerV1,
     color: ColorV1,
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     gel: GelV1,
-    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    #[serde(default = "yes", skip_serializing_if = "is_true")]
     on: bool,
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     visible_to_camera: bool,
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     muted: bool,
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     locked: bool,
 }
 
@@ -298,9 +273,9 @@ enum EmitterV1 {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Modifier", deny_unknown_fields)]
 struct ModifierV1 {
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     loss_stops: f32,
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     scrim_stops: f32,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     beam: Option<ConeV1>,
@@ -330,7 +305,7 @@ struct BarnDoorsV1 {
 #[serde(rename = "Power", deny_unknown_fields)]
 struct PowerV1 {
     output: OutputV1,
-    #[serde(default, skip_serializing_if = "is")]
+    #[serde(default, skip_serializing_if = "is_default")]
     dial_stops: f32,
 }
 
@@ -346,7 +321,7 @@ enum OutputV1 {
     Lux(f32),
     FlashWs {
         energy_ws: f32,
-        #[serde(default = "usual_efficacy")]
+        #[serde(default = "default_efficacy")]
         efficacy_lm_s_per_ws: f32,
     },
     FlashGuideNumber(f32),
