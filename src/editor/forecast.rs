@@ -5,7 +5,7 @@
 //! Time grows with samples and pixels. The pilot is the picture at the size of a thumbnail: a pixel of it costs about what
 //! a pixel of the large one does, and scatters a little more, because it holds more edges.
 
-use super::live_job::lock;
+use crate::editor::live_job::lock;
 use crate::raytrace::{self, Control, Film, GeometryCache, Settings};
 use crate::scene::{Assets, Camera, Scene};
 use crate::threads::background_pool;

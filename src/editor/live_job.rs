@@ -140,7 +140,7 @@ fn trace(shared: &(Mutex<State>, Condvar), mut pace: LivePace, ctx: &Context) {
             Next::Take(request) => {
                 pace.set_smooth(request.smooth);
                 if let Err(error) = pace.update(request.scene, &request.assets, request.camera) {
-                    show(shared, Err(super::files::plain(&error)), ctx);
+                    show(shared, Err(crate::editor::document::files::plain(&error)), ctx);
                 }
             }
             Next::Work { user_is_active, control } => {

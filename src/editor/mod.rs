@@ -4,80 +4,36 @@
 //! the scene is an [`Action`] inside a command, so menus, shortcuts, handles, undo and tests all take the same way.
 //! Files, renders and file dialogs work in threads of their own; their results are taken in at the start of a frame.
 
-mod action;
-mod app;
-mod arrange;
-mod axis_cross;
-mod bounds;
-mod canvas;
-mod catalog;
-mod command;
 mod commands;
-mod dialogs;
 mod document;
-mod event_guard;
-mod files;
-mod floor_handle;
 mod forecast;
-mod frame_log;
-mod gizmo;
-mod held;
-mod history;
-mod item;
-mod keys;
-mod light_view;
 mod live_job;
-mod live_view;
-mod look_menu;
 mod meter_job;
-mod navigation;
-mod overlay;
 mod panels;
-mod picking;
-mod picture_view;
-mod placement;
-mod plan;
-mod preview_host;
-mod processor_view;
-mod readout;
-mod recent;
+mod picture;
 mod relight;
 mod render_job;
-mod rendering;
-mod rescue;
-mod selection;
-mod session;
-mod side_panel;
-mod studio_view;
-mod surface;
-mod swing;
-mod swing_drag;
-mod switches;
-mod theme;
 mod thumbnails;
-mod toasts;
-mod typed;
-mod units;
+mod ui;
 mod viewport;
-mod widgets;
 mod window;
 
-pub use action::{Action, ActionError};
-pub use app::{App, Options};
-pub use command::{Centre, Command, Handle};
-pub use dialogs::{Answer, FileDialogs, Purpose};
-pub use document::Document;
+pub use commands::command::{Centre, Command, Handle};
+pub use commands::shortcuts::{BINDINGS, Binding};
+pub use document::action::{Action, ActionError};
+pub use document::item::Item;
+pub use document::selection::Selection;
+pub use document::studio_document::Document;
 pub use forecast::{Estimate, Forecast, Forecaster};
-pub use item::Item;
-pub use keys::{BINDINGS, Binding};
-pub use live_view::{LiveMode, LiveView};
-pub use rendering::{PictureSize, Quality, RenderSettings, Rendering};
-pub use selection::Selection;
-pub use studio_view::{Side, StudioView};
-pub use swing::Swing;
+pub use picture::rendering::{PictureSize, Quality, RenderSettings, Rendering};
 pub use thumbnails::{Thumbnail, Thumbnails};
-pub use toasts::{Toasts, Tone};
-pub use viewport::Viewport;
+pub use ui::toasts::{Toasts, Tone};
+pub use viewport::live::traced_view::{LiveMode, LiveView};
+pub use viewport::studio_view::{Side, StudioView};
+pub use viewport::tools::place_light::Swing;
+pub use viewport::viewport_area::Viewport;
+pub use window::app::{App, Options};
+pub use window::dialogs::{Answer, FileDialogs, Purpose};
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -103,8 +59,9 @@ pub enum EditorError {
 pub fn run(initial: Option<PathBuf>) -> Result<(), EditorError> {
     let started = Instant::now();
     check_display()?;
-    let options = Options { initial, settings_folder: recent::settings_folder(), started, ..Options::default() };
-    window::run(options)
+    let options =
+        Options { initial, settings_folder: window::recent::settings_folder(), started, ..Options::default() };
+    window::native_window::run(options)
 }
 
 /// On Linux a window needs a Wayland or X11 display; asking winit without one gives a less helpful message.

@@ -1,6 +1,6 @@
 //! Rendering in the background, on an immutable copy of the studio, and developing the film in a thread of its own.
 
-use super::live_job::lock;
+use crate::editor::live_job::lock;
 use crate::io;
 use crate::photo::Picture;
 use crate::raytrace::{self, Control, Film, GeometryCache, Method, Settings};
@@ -191,7 +191,7 @@ fn trace(
     };
     let prepared = match pool.install(|| raytrace::prepare_kept(scene, &assets, trees)) {
         Ok(prepared) => prepared,
-        Err(error) => return Phase::Failed(super::files::plain(&error)),
+        Err(error) => return Phase::Failed(crate::editor::document::files::plain(&error)),
     };
     if control.is_cancelled() {
         return Phase::Cancelled;

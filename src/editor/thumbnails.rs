@@ -3,10 +3,10 @@
 //! The processor draws them (`raster`, so without shadows), one by one in the background, each when it is first asked
 //! for: a list opens at once and fills while one looks at it.
 
-use super::bounds;
-use super::canvas::Canvas;
-use super::catalog::{Entry, Made};
 use crate::color::ToneTable;
+use crate::editor::document::bounds;
+use crate::editor::document::catalog::{Entry, Made};
+use crate::editor::ui::image_texture::Canvas;
 use crate::io;
 use crate::math;
 use crate::raster::{self, Drawing, NO_OBJECT, Shading};
@@ -192,7 +192,7 @@ fn image(drawing: &Drawing, is_tile: impl Fn(u32) -> bool) -> ColorImage {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::editor::catalog::{Shelf, entries};
+    use crate::editor::document::catalog::{Shelf, entries};
 
     #[test]
     fn everything_on_the_shelf_fills_its_picture_and_can_be_seen() {

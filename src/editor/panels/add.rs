@@ -1,9 +1,10 @@
 //! The list of things that can be added.
 
-use crate::editor::catalog::{Entry, Kind, Shelf, entries};
-use crate::editor::command::Command;
+use crate::editor::commands::command::Command;
+use crate::editor::document::catalog::{Entry, Kind, Shelf, entries};
 use crate::editor::thumbnails::{THING_POINTS, Thumbnails};
-use crate::editor::{theme, widgets};
+use crate::editor::ui::theme;
+use crate::editor::ui::widgets;
 use crate::scene::{Emitter, MaterialPreset};
 use eframe::egui::{self, Button, Color32, CornerRadius, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, vec2};
 

@@ -1,6 +1,6 @@
 //! The list of keys and what the mouse does.
 
-use crate::editor::keys::{BINDINGS, Binding};
+use crate::editor::commands::shortcuts::{BINDINGS, Binding};
 use eframe::egui::{self, Grid, RichText, ScrollArea, Ui, vec2};
 
 /// What the mouse does, and keys that are held.

@@ -1,12 +1,12 @@
 //! The menu bar.
 
-use super::item_menu::selection_entries;
-use crate::editor::command::{Centre, Command, Handle};
-use crate::editor::document::Document;
-use crate::editor::live_view::LiveMode;
-use crate::editor::recent::RecentFiles;
-use crate::editor::selection::Selection;
-use crate::editor::studio_view::Side;
+use crate::editor::commands::command::{Centre, Command, Handle};
+use crate::editor::commands::item_menu::selection_entries;
+use crate::editor::document::selection::Selection;
+use crate::editor::document::studio_document::Document;
+use crate::editor::viewport::live::traced_view::LiveMode;
+use crate::editor::viewport::studio_view::Side;
+use crate::editor::window::recent::RecentFiles;
 use eframe::egui::{Button, MenuBar, Ui};
 
 /// What the menus show beside the document.

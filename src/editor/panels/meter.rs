@@ -1,8 +1,9 @@
 //! The read-out of the studio's light meter, over the view.
 
-use crate::editor::command::Command;
-use crate::editor::item::Item;
-use crate::editor::{theme, widgets};
+use crate::editor::commands::command::Command;
+use crate::editor::document::item::Item;
+use crate::editor::ui::theme;
+use crate::editor::ui::widgets;
 use crate::photo::meter::{LUX_PER_FOOT_CANDLE, LightReading, Reading, nearest_third};
 use crate::photo::thirds::Dial;
 use crate::scene::{Meter, Receptor};

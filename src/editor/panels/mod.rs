@@ -3,7 +3,6 @@
 pub mod add;
 pub mod help;
 pub mod inspector;
-pub mod item_menu;
 pub mod menu;
 pub mod meter;
 pub mod outliner;

@@ -1,13 +1,14 @@
 //! The list of everything in the studio, with names, switches and a context menu.
 
-use super::item_menu::item_menu_ui;
 use crate::color::light_rgb;
-use crate::editor::action::Action;
-use crate::editor::command::Command;
-use crate::editor::document::Document;
-use crate::editor::item::Item;
-use crate::editor::selection::Selection;
-use crate::editor::{theme, widgets};
+use crate::editor::commands::command::Command;
+use crate::editor::commands::item_menu::item_menu_ui;
+use crate::editor::document::action::Action;
+use crate::editor::document::item::Item;
+use crate::editor::document::selection::Selection;
+use crate::editor::document::studio_document::Document;
+use crate::editor::ui::theme;
+use crate::editor::ui::widgets;
 use crate::scene::{Light, Object, Scene};
 use eframe::egui::{self, Button, Key, Response, RichText, ScrollArea, Sense, TextEdit, Ui, vec2};
 

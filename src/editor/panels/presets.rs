@@ -1,9 +1,9 @@
 //! The list of shipped studios.
 
-use crate::editor::command::Command;
-use crate::editor::files::PresetInfo;
+use crate::editor::commands::command::Command;
+use crate::editor::document::files::PresetInfo;
 use crate::editor::thumbnails::{STUDIO_POINTS, Thumbnail, Thumbnails};
-use crate::editor::widgets;
+use crate::editor::ui::widgets;
 use eframe::egui::{self, Atom, Button, Key, Modifiers, RichText, ScrollArea, Ui, vec2};
 
 /// Which studio of the list is marked; none while the list is closed.

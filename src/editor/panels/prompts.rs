@@ -1,7 +1,7 @@
 //! Questions in the middle of the window: unsaved changes, and a path where the desktop has no dialog.
 
-use crate::editor::dialogs::Purpose;
-use crate::editor::widgets;
+use crate::editor::ui::widgets;
+use crate::editor::window::dialogs::Purpose;
 use eframe::egui::{self, Button, Key, RichText, TextEdit};
 use std::path::{Path, PathBuf};
 

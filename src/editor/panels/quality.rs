@@ -2,8 +2,8 @@
 
 use crate::editor::forecast::{Estimate, Forecaster};
 use crate::editor::panels::render::duration_text;
-use crate::editor::rendering::{Quality, RenderSettings};
-use crate::editor::theme;
+use crate::editor::picture::rendering::{Quality, RenderSettings};
+use crate::editor::ui::theme;
 use crate::scene::Camera;
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, vec2};
 use std::time::Duration;
@@ -39,7 +39,7 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     let chosen = forecast.estimate(pixels, settings.samples);
     let label = format!("Grain against time; chosen: {}", estimate_text(chosen));
-    crate::editor::widgets::named(ui, &response, &label);
+    crate::editor::ui::widgets::named(ui, &response, &label);
     response.on_hover_text(
         "Line: estimate. Rings: draft, good, final. Dot: your choice. Crosses: renders as they came out.",
     );

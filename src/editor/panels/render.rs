@@ -1,13 +1,13 @@
 //! The render panel: size, quality, the button, progress and a small picture.
 
-use crate::editor::command::{Centre, Command};
-use crate::editor::document::Document;
+use crate::editor::commands::command::{Centre, Command};
+use crate::editor::document::studio_document::Document;
 use crate::editor::forecast::Forecaster;
 use crate::editor::panels::quality;
+use crate::editor::picture::rendering::{PictureSize, Quality, RenderSettings, Rendering};
 use crate::editor::render_job::{Phase, Progress, method_label};
-use crate::editor::rendering::{PictureSize, Quality, RenderSettings, Rendering};
-use crate::editor::theme;
-use crate::editor::widgets::{self, Number, row};
+use crate::editor::ui::theme;
+use crate::editor::ui::widgets::{self, Number, row};
 use crate::raytrace::Method;
 use crate::scene::Scene;
 use eframe::egui::{self, Button, CollapsingHeader, ComboBox, Image, ProgressBar, RichText, Sense, Ui, vec2};

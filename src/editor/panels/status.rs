@@ -1,9 +1,9 @@
 //! The line at the foot of the window: what is selected, what the mouse does here.
 
-use crate::editor::command::Centre;
-use crate::editor::document::Document;
-use crate::editor::item::{Item, name_of_all};
-use crate::editor::selection::Selection;
+use crate::editor::commands::command::Centre;
+use crate::editor::document::item::{Item, name_of_all};
+use crate::editor::document::selection::Selection;
+use crate::editor::document::studio_document::Document;
 use crate::scene::Scene;
 use eframe::egui::{self, RichText, Ui};
 

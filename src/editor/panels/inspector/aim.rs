@@ -1,7 +1,7 @@
 //! What a light or the camera points at.
 
-use crate::editor::placement::{aim_offset, subject};
-use crate::editor::widgets::{self, DEGREES, METRES, row};
+use crate::editor::document::placement::{aim_offset, subject};
+use crate::editor::ui::widgets::{self, DEGREES, METRES, row};
 use crate::scene::{Aim, Assets, Scene};
 use eframe::egui::{ComboBox, Ui};
 use glam::Vec3;

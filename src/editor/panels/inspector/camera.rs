@@ -2,10 +2,10 @@
 
 use super::light::kelvin_row;
 use super::{Context, aim, title};
-use crate::editor::action::Action;
-use crate::editor::command::Command;
-use crate::editor::placement::aim_offset;
-use crate::editor::widgets::{self, DEGREES, DISTANCE, METRES, Number, dial_ui, fact, row, section};
+use crate::editor::commands::command::Command;
+use crate::editor::document::action::Action;
+use crate::editor::document::placement::aim_offset;
+use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, Number, dial_ui, fact, row, section};
 use crate::photo::exposure;
 use crate::photo::thirds::Dial;
 use crate::scene::{Assets, Camera, Focus, Orientation, Scene, Sensor};

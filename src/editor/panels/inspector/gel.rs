@@ -1,6 +1,6 @@
 //! The gel rows of a light's inspector.
 
-use crate::editor::widgets::{self, Number, fact, row};
+use crate::editor::ui::widgets::{self, Number, fact, row};
 use crate::scene::{Gel, GelFamily};
 use eframe::egui::{ComboBox, Ui};
 

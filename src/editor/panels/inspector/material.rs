@@ -1,6 +1,6 @@
 //! The fields of a surface.
 
-use crate::editor::widgets::{self, Number, row};
+use crate::editor::ui::widgets::{self, Number, row};
 use crate::scene::{Material, MaterialPreset};
 use eframe::egui::{ComboBox, Slider, SliderClamping, Ui};
 

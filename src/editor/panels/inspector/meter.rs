@@ -2,10 +2,10 @@
 
 use super::angles_towards;
 use super::{Context, title};
-use crate::editor::action::Action;
-use crate::editor::command::Command;
-use crate::editor::item::Item;
-use crate::editor::widgets::{self, DEGREES, METRES, row, section};
+use crate::editor::commands::command::Command;
+use crate::editor::document::action::Action;
+use crate::editor::document::item::Item;
+use crate::editor::ui::widgets::{self, DEGREES, METRES, row, section};
 use crate::scene::{Aim, Facing, Meter, Receptor, Role, Scene};
 use eframe::egui::Ui;
 

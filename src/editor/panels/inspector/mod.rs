@@ -13,12 +13,12 @@ mod room;
 
 pub use aim::angles_towards;
 
-use crate::editor::action::Action;
-use crate::editor::command::Command;
-use crate::editor::document::Document;
-use crate::editor::item::{Item, name_of_all};
-use crate::editor::selection::Selection;
-use crate::editor::widgets::{row, small_button};
+use crate::editor::commands::command::Command;
+use crate::editor::document::action::Action;
+use crate::editor::document::item::{Item, name_of_all};
+use crate::editor::document::selection::Selection;
+use crate::editor::document::studio_document::Document;
+use crate::editor::ui::widgets::{row, small_button};
 use crate::scene::Light;
 use eframe::egui::{self, RichText, ScrollArea, TextEdit, Ui};
 

@@ -1,8 +1,8 @@
 //! The modifier rows of a light's inspector: what shines, how large, what is lost.
 
 use super::power;
-use crate::editor::catalog::{self, Kind, Shelf};
-use crate::editor::widgets::{Number, SIZE_CM, fact, row};
+use crate::editor::document::catalog::{self, Kind, Shelf};
+use crate::editor::ui::widgets::{Number, SIZE_CM, fact, row};
 use crate::photo::beam;
 use crate::scene::{BarnDoors, Cone, Emitter, HARD_GRIDS_DEG, Light, Modifier, NamedModifier, SOFT_GRIDS_DEG, Scene};
 use eframe::egui::{ComboBox, Ui};

@@ -2,11 +2,11 @@
 
 use super::material::{material_group, material_rows, preset_name};
 use super::{Context, text_ui, title};
-use crate::editor::action::Action;
-use crate::editor::command::Command;
-use crate::editor::held::wrap_deg;
-use crate::editor::item::Item;
-use crate::editor::widgets::{self, DEGREES, METRES, Number, SIZE_CM, row, section};
+use crate::editor::commands::command::Command;
+use crate::editor::document::action::Action;
+use crate::editor::document::item::Item;
+use crate::editor::ui::widgets::{self, DEGREES, METRES, Number, SIZE_CM, row, section};
+use crate::editor::viewport::tools::transform_selection::wrap_deg;
 use crate::figures;
 use crate::scene::{Assets, Figure, Mannequin, Object, ObjectId, Pose, Shape};
 use eframe::egui::{Button, ComboBox, RichText, Ui};

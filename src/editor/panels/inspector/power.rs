@@ -1,6 +1,6 @@
 //! Units of power, and the change from one to another without a change of the picture.
 
-use crate::editor::readout;
+use crate::editor::document::readout;
 use crate::photo::{beam, exposure};
 use crate::scene::{Camera, Emitter, Light, Modifier, Output, Scene};
 
@@ -113,7 +113,7 @@ pub fn change_emitter(scene: &Scene, light: &mut Light, emitter: Emitter, modifi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::editor::catalog;
+    use crate::editor::document::catalog;
 
     #[test]
     fn every_unit_says_the_same_exposure() {

@@ -2,10 +2,10 @@
 
 use super::material::material_group;
 use super::{Context, title};
-use crate::editor::action::Action;
-use crate::editor::command::Command;
-use crate::editor::item::Item;
-use crate::editor::widgets::{Number, row};
+use crate::editor::commands::command::Command;
+use crate::editor::document::action::Action;
+use crate::editor::document::item::Item;
+use crate::editor::ui::widgets::{Number, row};
 use crate::scene::Room;
 use eframe::egui::{RichText, Ui};
 

@@ -1,0 +1,77 @@
+//! What can be done to the selected things, for the context menus of list and view and the Edit menu.
+
+use crate::editor::commands::command::Command;
+use crate::editor::document::item::Item;
+use crate::editor::document::selection::Selection;
+use crate::editor::panels::menu::entry;
+use crate::editor::viewport::tools::place_light::Swing;
+use crate::scene::Scene;
+use eframe::egui::Ui;
+
+/// The context menu of a thing. It is about the whole selection where the thing belongs to it, else about it alone.
+pub fn item_menu_ui(ui: &mut Ui, scene: &Scene, item: Item, selection: &Selection, out: &mut Vec<Command>) {
+    ui.set_min_width(230.0);
+    let mut chosen = Vec::new();
+    let alone;
+    let about = if selection.contains(item) {
+        selection
+    } else {
+        alone = Selection::of([item]);
+        &alone
+    };
+    if about.len() == 1 && item.can_be_copied() {
+        entry(ui, true, "Rename", "Give it another name", Command::BeginRename(item), &mut chosen);
+    }
+    selection_entries(ui, scene, about, &mut chosen);
+    if !chosen.is_empty() {
+        if !selection.contains(item) {
+            out.push(Command::Select(Some(item)));
+        }
+        out.extend(chosen);
+    }
+}
+
+/// The menu of the view where nothing is selected.
+pub fn nothing_menu_ui(ui: &mut Ui, out: &mut Vec<Command>) {
+    ui.set_min_width(230.0);
+    entry(ui, true, "Select all", "All lights and things that are not locked", Command::SelectAll, out);
+    entry(ui, true, "Bring everything into view", "Figures, things and lights", Command::FrameSelection, out);
+    entry(ui, true, "Show and unmute all", "Nothing is hidden or muted any more", Command::ShowAll, out);
+}
+
+/// The entries that are about a selection.
+pub fn selection_entries(ui: &mut Ui, scene: &Scene, selection: &Selection, out: &mut Vec<Command>) {
+    let copyable = selection.items().iter().any(|item| item.can_be_copied());
+    let lights = !selection.lights().is_empty();
+    entry(ui, copyable, "Duplicate", "Put a copy beside it", Command::DuplicateSelected, out);
+    let tip = "To the other side of the subject's face: place, aim, turn and flaps";
+    entry(ui, copyable, "Mirror", tip, Command::MirrorSelected { copies: false }, out);
+    let tip = "A copy on the other side of the subject's face";
+    entry(ui, copyable, "Mirrored copy", tip, Command::MirrorSelected { copies: true }, out);
+    entry(ui, !selection.is_empty(), "Bring into view", "Frames it in the studio view", Command::FrameSelection, out);
+    ui.separator();
+    for swing in Swing::ALL {
+        let text = format!("{}\u{2026}", swing.label());
+        entry(ui, lights, &text, swing.tip(), Command::TogglePlacing(swing), out);
+    }
+    entry(
+        ui,
+        lights,
+        "Look through it",
+        "See what the light sees, and swing it by that",
+        Command::ToggleLightView,
+        out,
+    );
+    ui.separator();
+    let solo = if scene.solo.is_some() { "Solo, or end solo" } else { "Solo" };
+    let tip = "Only these lights; once more brings back what was on before";
+    entry(ui, lights || scene.solo.is_some(), solo, tip, Command::SoloSelected, out);
+    let tip = "Hides things and mutes lights; once more brings them back as they were";
+    entry(ui, copyable, "Hide or mute", tip, Command::HideSelected, out);
+    let locked = selection.items().iter().any(|item| item.can_be_copied() && !item.is_locked(scene));
+    let text = if locked || !copyable { "Lock in place" } else { "Unlock" };
+    let tip = "What is locked cannot be moved, and clicks in the view go past it";
+    entry(ui, copyable, text, tip, Command::LockSelected, out);
+    ui.separator();
+    entry(ui, copyable, "Delete", "Take it away", Command::DeleteSelected, out);
+}

@@ -1,0 +1,123 @@
+//! The keys: what each means, for the window and for the list of keys alike.
+
+use crate::editor::commands::command::{Centre, Command, Handle};
+use crate::editor::viewport::studio_view::Side;
+use crate::editor::viewport::tools::place_light::Swing;
+use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+
+/// A key, the command it gives, and what that does.
+#[derive(Clone, Copy, Debug)]
+pub struct Binding {
+    /// The key with what is held beside it.
+    pub shortcut: KeyboardShortcut,
+    /// What it gives.
+    pub command: fn() -> Command,
+    /// In the list of keys.
+    pub meaning: &'static str,
+}
+
+const fn bind(shortcut: KeyboardShortcut, command: fn() -> Command, meaning: &'static str) -> Binding {
+    Binding { shortcut, command, meaning }
+}
+
+const fn key(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::NONE, key)
+}
+
+const fn shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::SHIFT, key)
+}
+
+const fn ctrl(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND, key)
+}
+
+const fn ctrl_shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
+}
+
+/// All keys with one fixed meaning, in the order of the list. Of two that match, the one with more modifiers comes first.
+pub const BINDINGS: [Binding; 38] = [
+    bind(ctrl_shift(Key::S), || Command::SaveAs, "Save the studio to another file"),
+    bind(ctrl_shift(Key::Z), || Command::Redo, "Do the last step again"),
+    bind(
+        ctrl_shift(Key::D),
+        || Command::MirrorSelected { copies: true },
+        "Mirrored copy, on the other side of the subject's face",
+    ),
+    bind(
+        shift(Key::L),
+        || Command::TogglePlacing(Swing::Shadow),
+        "Place the light by the shadow of its aim: drag to where it shall fall",
+    ),
+    bind(shift(Key::H), || Command::ShowAll, "Show and unmute all"),
+    bind(ctrl(Key::N), || Command::New, "New from a shipped studio"),
+    bind(ctrl(Key::O), || Command::Open, "Open a studio"),
+    bind(ctrl(Key::S), || Command::Save, "Save the studio"),
+    bind(ctrl(Key::I), || Command::Import, "Import a model (OBJ)"),
+    bind(ctrl(Key::E), || Command::ExportPicture, "Export the rendered picture"),
+    bind(ctrl(Key::Q), || Command::Quit, "Quit"),
+    bind(ctrl(Key::Z), || Command::Undo, "Take the last step back"),
+    bind(ctrl(Key::Y), || Command::Redo, "Do the last step again"),
+    bind(ctrl(Key::A), || Command::SelectAll, "Select all that is not locked"),
+    bind(key(Key::Escape), || Command::Escape, "Give up a drag, leave a mode, deselect"),
+    bind(ctrl(Key::D), || Command::DuplicateSelected, "Duplicate"),
+    bind(key(Key::Delete), || Command::DeleteSelected, "Delete"),
+    bind(key(Key::M), || Command::Handles(Handle::Move), "Handles that move"),
+    bind(key(Key::T), || Command::Handles(Handle::Turn), "Handles that turn"),
+    bind(key(Key::Z), || Command::Handles(Handle::Size), "Handles that size"),
+    bind(key(Key::G), || Command::ToggleSnap, "Snap handles to 0.1 m and 15\u{b0} (Ctrl: the other way round)"),
+    bind(
+        key(Key::P),
+        || Command::TogglePlacing(Swing::Highlight),
+        "Place the light by its highlight: drag over a face",
+    ),
+    bind(key(Key::L), || Command::TogglePlacing(Swing::Light), "Place the light by where it falls: drag over a face"),
+    bind(key(Key::V), || Command::ToggleLightView, "Look through the light, and back"),
+    bind(key(Key::X), || Command::MirrorSelected { copies: false }, "Mirror to the other side of the subject's face"),
+    bind(key(Key::O), || Command::SoloSelected, "Solo: only the selected lights; again: as before"),
+    bind(key(Key::H), || Command::HideSelected, "Hide things, mute lights; again: bring them back"),
+    bind(key(Key::K), || Command::LockSelected, "Lock in place; again: unlock"),
+    bind(key(Key::F), || Command::FrameSelection, "Bring the selection, or everything, into view"),
+    bind(key(Key::Num1), || Command::ToggleCameraView, "Camera view, and back"),
+    bind(key(Key::Num2), || Command::ToggleLive, "Live view: Quick, drawn at once, or True, traced"),
+    bind(key(Key::Num3), || Command::Show(Centre::Picture), "The rendered picture"),
+    bind(key(Key::Num5), || Command::ToggleParallel, "Perspective on or off"),
+    bind(key(Key::Num7), || Command::LookFrom(Side::Top), "Look from the top, with a metre grid"),
+    bind(key(Key::Num8), || Command::LookFrom(Side::Front), "Look from the front"),
+    bind(key(Key::Num9), || Command::LookFrom(Side::Right), "Look from the right"),
+    bind(key(Key::R), || Command::Render, "Render"),
+    bind(key(Key::F1), || Command::ToggleHelp, "This list"),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn no_key_means_two_things() {
+        let keys: HashSet<String> = BINDINGS.iter().map(|binding| format!("{:?}", binding.shortcut)).collect();
+        assert_eq!(keys.len(), BINDINGS.len());
+    }
+
+    #[test]
+    fn a_key_with_more_held_comes_before_the_key_alone() {
+        let held = |binding: &Binding| {
+            u8::from(binding.shortcut.modifiers.shift) + u8::from(binding.shortcut.modifiers.command)
+        };
+        for (i, later) in BINDINGS.iter().enumerate() {
+            let same_key = |earlier: &&Binding| earlier.shortcut.logical_key == later.shortcut.logical_key;
+            let weaker = BINDINGS[..i].iter().filter(same_key).find(|earlier| held(earlier) < held(later));
+            assert!(weaker.is_none(), "{:?} hides {:?}", weaker, later);
+        }
+    }
+
+    #[test]
+    fn the_contract_of_keys_holds() {
+        assert_eq!(Command::Render.shortcut(), Some(key(Key::R)));
+        assert_eq!(Command::ToggleCameraView.shortcut(), Some(key(Key::Num1)));
+        assert_eq!(Command::SaveAs.shortcut(), Some(ctrl_shift(Key::S)));
+        assert_eq!(Command::DuplicateSelected.shortcut(), Some(ctrl(Key::D)));
+    }
+}

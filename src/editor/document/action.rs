@@ -1,0 +1,303 @@
+//! Every change to the scene. Menus, shortcuts, panels, gizmos, undo and tests all go through [`Action`].
+
+use crate::editor::document::arrange::{self, MirrorPlane};
+use crate::editor::document::item::{Item, name_of_all};
+use crate::editor::document::switches;
+use crate::scene::{Camera, Light, LightId, Meter, Object, Room, Scene};
+
+/// A change to the scene. New objects and lights get their id and a unique name when the action is applied.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// Puts a mannequin, prop or backdrop into the studio.
+    AddObject(Box<Object>),
+    /// Puts a light into the studio.
+    AddLight(Box<Light>),
+    /// Replaces the object of the same id.
+    SetObject(Box<Object>),
+    /// Replaces the light of the same id.
+    SetLight(Box<Light>),
+    /// Replaces the camera.
+    SetCamera(Box<Camera>),
+    /// Replaces the room; none takes it away.
+    SetRoom(Option<Box<Room>>),
+    /// Puts the light meter up or elsewhere; none takes it away.
+    SetMeter(Option<Meter>),
+    /// Title and description of the studio.
+    SetNotes {
+        /// Title.
+        name: String,
+        /// One line.
+        description: String,
+    },
+    /// Gives an object or a light another name.
+    Rename(Item, String),
+    /// Takes objects, lights or the meter away. What aimed at an object keeps aiming at where it was.
+    Delete(Vec<Item>),
+    /// Puts copies of objects and lights beside them.
+    Duplicate(Vec<Item>),
+    /// Puts things, or copies of them, on the other side of a plane.
+    Mirror {
+        /// What is mirrored.
+        items: Vec<Item>,
+        /// Where.
+        plane: MirrorPlane,
+        /// Whether the originals stay.
+        copies: bool,
+    },
+    /// Mutes lights, or brings those back that were muted.
+    Mute(Vec<LightId>, bool),
+    /// Lets lights shine alone; none brings back what was on before.
+    Solo(Vec<LightId>),
+    /// Locks things in their places, or lets them go.
+    Lock(Vec<Item>, bool),
+    /// Several changes as one step, all or none.
+    Together {
+        /// What the undo menu calls it.
+        label: String,
+        /// The changes, in order.
+        actions: Vec<Action>,
+    },
+}
+
+/// Why an action cannot be done, in words for the user.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ActionError {
+    /// A name that is empty.
+    #[error("A name cannot be empty.")]
+    EmptyName,
+    /// A name that something else bears.
+    #[error("\"{0}\" is taken. Names are unique, so that aims and the file can use them.")]
+    NameTaken(String),
+    /// The camera and the room are always there, once.
+    #[error("The {0} cannot be deleted, duplicated or renamed.")]
+    Fixed(&'static str),
+    /// There is one meter, and it has no name.
+    #[error("There is one light meter in a studio: move it to where you want to read.")]
+    Single,
+    /// What is locked does not move.
+    #[error("{0} is locked in its place: unlock it first (K, or the padlock in the list).")]
+    Locked(String),
+    /// What the action is about has gone.
+    #[error("That is no longer in the studio.")]
+    Gone,
+    /// The result would be a scene that no renderer can take.
+    #[error("{0}")]
+    Invalid(String),
+}
+
+impl Action {
+    /// What the undo menu calls it.
+    pub fn label(&self, scene: &Scene) -> String {
+        match self {
+            Action::AddObject(object) => format!("Add {}", object.name),
+            Action::AddLight(light) => format!("Add {}", light.name),
+            Action::SetObject(object) => format!("Change {}", object.name),
+            Action::SetLight(light) => light_change_label(scene, light),
+            Action::SetCamera(_) => "Change camera".to_owned(),
+            Action::SetRoom(_) => "Change room".to_owned(),
+            Action::SetMeter(None) => "Take the meter away".to_owned(),
+            Action::SetMeter(Some(_)) if scene.meter.is_none() => "Put a meter up".to_owned(),
+            Action::SetMeter(Some(_)) => "Change light meter".to_owned(),
+            Action::SetNotes { .. } => "Change notes".to_owned(),
+            Action::Rename(_, name) => format!("Rename to {name}"),
+            Action::Delete(items) => format!("Delete {}", name_of_all(items, scene)),
+            Action::Duplicate(items) => format!("Duplicate {}", name_of_all(items, scene)),
+            Action::Mirror { items, copies: false, .. } => format!("Mirror {}", name_of_all(items, scene)),
+            Action::Mirror { items, copies: true, .. } => format!("Mirrored copy of {}", name_of_all(items, scene)),
+            Action::Mute(lights, true) => format!("Mute {}", name_of_all(&as_items(lights), scene)),
+            Action::Mute(lights, false) => format!("Unmute {}", name_of_all(&as_items(lights), scene)),
+            Action::Solo(lights) if lights.is_empty() => "End solo".to_owned(),
+            Action::Solo(lights) => format!("Solo {}", name_of_all(&as_items(lights), scene)),
+            Action::Lock(items, true) => format!("Lock {}", name_of_all(items, scene)),
+            Action::Lock(items, false) => format!("Unlock {}", name_of_all(items, scene)),
+            Action::Together { label, .. } => label.clone(),
+        }
+    }
+
+    /// What a drag of this action keeps changing; steps of one drag on the same things are one undo step.
+    pub fn targets(&self) -> Vec<Item> {
+        match self {
+            Action::SetObject(object) => vec![Item::Object(object.id)],
+            Action::SetLight(light) => vec![Item::Light(light.id)],
+            Action::SetCamera(_) => vec![Item::Camera],
+            Action::SetRoom(_) => vec![Item::Room],
+            Action::SetMeter(_) => vec![Item::Meter],
+            Action::Together { actions, .. } => actions.iter().flat_map(Action::targets).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Changes the scene. Returns what should be selected afterwards; empty where the selection stays. On an error the
+    /// scene may be half changed: the caller keeps a copy.
+    pub fn apply(self, scene: &mut Scene) -> Result<Vec<Item>, ActionError> {
+        match self {
+            Action::AddObject(object) => return Ok(vec![add_object(scene, *object)]),
+            Action::AddLight(light) => return Ok(vec![add_light(scene, *light)]),
+            Action::SetObject(new) => set_object(scene, *new)?,
+            Action::SetLight(new) => set_light(scene, *new)?,
+            Action::SetCamera(camera) => scene.camera = *camera,
+            Action::SetRoom(room) => scene.room = room.map(|room| *room),
+            Action::SetMeter(meter) => {
+                let is_new = scene.meter.is_none() && meter.is_some();
+                scene.meter = meter;
+                return Ok(if is_new { vec![Item::Meter] } else { Vec::new() });
+            }
+            Action::SetNotes { name, description } => (scene.name, scene.description) = (name, description),
+            Action::Rename(item, name) => rename(scene, item, &name)?,
+            Action::Delete(items) => arrange::delete(scene, &items)?,
+            Action::Duplicate(items) => return arrange::duplicate(scene, &items),
+            Action::Mirror { items, plane, copies } => return arrange::mirror(scene, &items, &plane, copies),
+            Action::Mute(lights, mute) => switches::mute(scene, &lights, mute)?,
+            Action::Solo(lights) => switches::solo(scene, lights)?,
+            Action::Lock(items, locked) => switches::lock(scene, &items, locked)?,
+            Action::Together { actions, .. } => {
+                let mut selected = Vec::new();
+                for action in actions {
+                    selected.extend(action.apply(scene)?);
+                }
+                return Ok(selected);
+            }
+        }
+        Ok(Vec::new())
+    }
+}
+
+fn as_items(lights: &[LightId]) -> Vec<Item> {
+    lights.iter().copied().map(Item::Light).collect()
+}
+
+fn set_object(scene: &mut Scene, new: Object) -> Result<(), ActionError> {
+    check_name(scene, Item::Object(new.id), &new.name)?;
+    let old = scene.object_mut(new.id).ok_or(ActionError::Gone)?;
+    if old.locked && old.transform != new.transform {
+        return Err(ActionError::Locked(new.name));
+    }
+    *old = new;
+    Ok(())
+}
+
+fn set_light(scene: &mut Scene, new: Light) -> Result<(), ActionError> {
+    check_name(scene, Item::Light(new.id), &new.name)?;
+    let (id, old) = (new.id, scene.light_mut(new.id).ok_or(ActionError::Gone)?);
+    if old.locked && (old.position, old.aim, old.roll_deg) != (new.position, new.aim, new.roll_deg) {
+        return Err(ActionError::Locked(new.name));
+    }
+    let switched = old.on != new.on;
+    *old = new;
+    if switched {
+        switches::switched_by_hand(scene, id);
+    }
+    Ok(())
+}
+
+fn light_change_label(scene: &Scene, new: &Light) -> String {
+    match scene.light(new.id) {
+        Some(old) if old.on != new.on => format!("Switch {} {}", new.name, if new.on { "on" } else { "off" }),
+        Some(old) if old.position != new.position => format!("Move {}", new.name),
+        _ => format!("Change {}", new.name),
+    }
+}
+
+/// Adds an object under an id and a name of its own.
+pub fn add_object(scene: &mut Scene, mut object: Object) -> Item {
+    object.id = scene.fresh_object_id();
+    object.name = scene.unique_name(&object.name);
+    let item = Item::Object(object.id);
+    scene.objects.push(object);
+    item
+}
+
+/// Adds a light under an id and a name of its own.
+pub fn add_light(scene: &mut Scene, mut light: Light) -> Item {
+    light.id = scene.fresh_light_id();
+    light.name = scene.unique_name(&light.name);
+    let item = Item::Light(light.id);
+    scene.lights.push(light);
+    item
+}
+
+fn check_name(scene: &Scene, item: Item, name: &str) -> Result<(), ActionError> {
+    if name.trim().is_empty() {
+        return Err(ActionError::EmptyName);
+    }
+    let object_has_it = scene.objects.iter().any(|o| o.name == name && item != Item::Object(o.id));
+    let light_has_it = scene.lights.iter().any(|l| l.name == name && item != Item::Light(l.id));
+    if object_has_it || light_has_it { Err(ActionError::NameTaken(name.to_owned())) } else { Ok(()) }
+}
+
+fn rename(scene: &mut Scene, item: Item, name: &str) -> Result<(), ActionError> {
+    let name = name.trim();
+    check_name(scene, item, name)?;
+    match item {
+        Item::Object(id) => scene.object_mut(id).ok_or(ActionError::Gone)?.name = name.to_owned(),
+        Item::Light(id) => scene.light_mut(id).ok_or(ActionError::Gone)?.name = name.to_owned(),
+        Item::Camera => return Err(ActionError::Fixed("camera")),
+        Item::Room => return Err(ActionError::Fixed("room")),
+        Item::Meter => return Err(ActionError::Single),
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::document::catalog;
+    use crate::scene::{Aim, Focus, ObjectId};
+    use glam::Vec3;
+
+    fn studio() -> (Scene, ObjectId, LightId) {
+        let mut scene = Scene::default();
+        let object = add_object(&mut scene, catalog::object_named("Box").unwrap());
+        let light = add_light(&mut scene, catalog::light_named("Softbox 60 x 90").unwrap());
+        match (object, light) {
+            (Item::Object(object), Item::Light(light)) => (scene, object, light),
+            _ => unreachable!(),
+        }
+    }
+
+    #[test]
+    fn deleting_an_object_leaves_its_lights_aimed_where_it_was() {
+        let (mut scene, object, light) = studio();
+        scene.object_mut(object).unwrap().transform.position = Vec3::new(1.0, 2.0, 3.0);
+        scene.light_mut(light).unwrap().aim = Aim::Object { object, offset: Vec3::Y };
+        scene.camera.focus = Focus::OnObject { object, offset: Vec3::ZERO };
+        Action::Delete(vec![Item::Object(object)]).apply(&mut scene).unwrap();
+        assert_eq!(scene.light(light).unwrap().aim, Aim::Point(Vec3::new(1.0, 3.0, 3.0)));
+        assert_eq!(scene.camera.focus, Focus::OnAim);
+        assert!(scene.objects.is_empty());
+    }
+
+    #[test]
+    fn names_stay_unique() {
+        let (mut scene, object, light) = studio();
+        let light_name = scene.light(light).unwrap().name.clone();
+        let error = Action::Rename(Item::Object(object), light_name.clone()).apply(&mut scene).unwrap_err();
+        assert_eq!(error, ActionError::NameTaken(light_name));
+        assert_eq!(Action::Rename(Item::Object(object), "  ".into()).apply(&mut scene), Err(ActionError::EmptyName));
+        let copy = Action::Duplicate(vec![Item::Light(light)]).apply(&mut scene).unwrap()[0];
+        assert_ne!(copy, Item::Light(light));
+        assert_ne!(copy.name(&scene), Item::Light(light).name(&scene));
+    }
+
+    #[test]
+    fn the_camera_cannot_be_deleted() {
+        let (mut scene, ..) = studio();
+        assert_eq!(Action::Delete(vec![Item::Camera]).apply(&mut scene), Err(ActionError::Fixed("camera")));
+    }
+
+    #[test]
+    fn what_is_locked_keeps_its_place_and_can_still_be_dimmed() {
+        let (mut scene, object, light) = studio();
+        Action::Lock(vec![Item::Object(object), Item::Light(light)], true).apply(&mut scene).unwrap();
+        let mut changed = scene.light(light).unwrap().clone();
+        changed.power.dial_stops -= 1.0;
+        Action::SetLight(Box::new(changed.clone())).apply(&mut scene).unwrap();
+        changed.position.x += 1.0;
+        let name = changed.name.clone();
+        assert_eq!(Action::SetLight(Box::new(changed)).apply(&mut scene), Err(ActionError::Locked(name)));
+        let mut changed = scene.object(object).unwrap().clone();
+        changed.transform.rotation_deg.y += 1.0;
+        let name = changed.name.clone();
+        assert_eq!(Action::SetObject(Box::new(changed)).apply(&mut scene), Err(ActionError::Locked(name)));
+    }
+}

@@ -1,0 +1,297 @@
+//! Several things at once: taken away, copied, mirrored.
+
+use crate::editor::document::action::{ActionError, add_light, add_object};
+use crate::editor::document::item::Item;
+use crate::editor::panels::inspector::angles_towards;
+use crate::figures;
+use crate::scene::{Aim, BarnDoors, Emitter, Facing, Focus, Light, Object, ObjectId, Scene, Shape};
+use glam::{Quat, Vec3};
+use std::collections::HashMap;
+
+/// How far a copy stands from its original, metres.
+const COPY_OFFSET: Vec3 = Vec3::new(0.4, 0.0, 0.0);
+
+/// Takes things away. What aimed at an object keeps aiming at where it was.
+pub fn delete(scene: &mut Scene, items: &[Item]) -> Result<(), ActionError> {
+    for &item in items {
+        if item.is_locked(scene) {
+            return Err(ActionError::Locked(item.name(scene)));
+        }
+        match item {
+            Item::Object(id) => {
+                scene.object(id).ok_or(ActionError::Gone)?;
+                release_aims(scene, id);
+                scene.objects.retain(|o| o.id != id);
+            }
+            Item::Light(id) => {
+                scene.light(id).ok_or(ActionError::Gone)?;
+                scene.lights.retain(|l| l.id != id);
+            }
+            Item::Meter => scene.meter = None,
+            Item::Camera => return Err(ActionError::Fixed("camera")),
+            Item::Room => return Err(ActionError::Fixed("room")),
+        }
+    }
+    crate::editor::document::switches::forget_gone(scene);
+    Ok(())
+}
+
+/// Turns every aim and focus on an object into one at the same point of the studio.
+fn release_aims(scene: &mut Scene, id: ObjectId) {
+    let fixed = |scene: &Scene, aim: Aim| match aim {
+        Aim::Object { object, .. } if object == id => Aim::Point(scene.aim_point(&aim, Vec3::ZERO)),
+        other => other,
+    };
+    scene.camera.aim = fixed(scene, scene.camera.aim);
+    for i in 0..scene.lights.len() {
+        scene.lights[i].aim = fixed(scene, scene.lights[i].aim);
+    }
+    if matches!(scene.camera.focus, Focus::OnObject { object, .. } if object == id) {
+        scene.camera.focus = Focus::OnAim;
+    }
+}
+
+/// Puts copies beside things; copied lights aim at the copies of what they aimed at. Returns the copies.
+pub fn duplicate(scene: &mut Scene, items: &[Item]) -> Result<Vec<Item>, ActionError> {
+    let copies = copy(scene, items)?;
+    for &item in &copies {
+        match item {
+            Item::Object(id) => {
+                scene.object_mut(id).ok_or(ActionError::Gone)?.transform.position += COPY_OFFSET;
+            }
+            Item::Light(id) => scene.light_mut(id).ok_or(ActionError::Gone)?.position += COPY_OFFSET,
+            Item::Camera | Item::Room | Item::Meter => {}
+        }
+    }
+    Ok(copies)
+}
+
+/// Copies in the same places, in the order of the originals. They are not locked.
+fn copy(scene: &mut Scene, items: &[Item]) -> Result<Vec<Item>, ActionError> {
+    let mut copy_of: HashMap<ObjectId, ObjectId> = HashMap::new();
+    let mut copies = vec![Item::Room; items.len()];
+    for (&item, place) in items.iter().zip(&mut copies) {
+        match item {
+            Item::Object(id) => {
+                let copied = Object { locked: false, ..scene.object(id).ok_or(ActionError::Gone)?.clone() };
+                *place = add_object(scene, copied);
+                if let Item::Object(new) = *place {
+                    copy_of.insert(id, new);
+                }
+            }
+            Item::Light(_) => {}
+            Item::Camera => return Err(ActionError::Fixed("camera")),
+            Item::Room => return Err(ActionError::Fixed("room")),
+            Item::Meter => return Err(ActionError::Single),
+        }
+    }
+    for (&item, place) in items.iter().zip(&mut copies) {
+        let Item::Light(id) = item else { continue };
+        let mut copied = Light { locked: false, ..scene.light(id).ok_or(ActionError::Gone)?.clone() };
+        if let Aim::Object { object, .. } = &mut copied.aim {
+            *object = copy_of.get(object).copied().unwrap_or(*object);
+        }
+        *place = add_light(scene, copied);
+        if let (Some(solo), Item::Light(new)) = (&mut scene.solo, *place) {
+            let shines_alone = solo.lights.contains(&id);
+            solo.lights.extend(shines_alone.then_some(new));
+            let restored = solo.restores.contains(&id);
+            solo.restores.extend(restored.then_some(new));
+        }
+    }
+    Ok(copies)
+}
+
+/// A plane through which things are mirrored.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MirrorPlane {
+    /// A point of it, metres.
+    pub point: Vec3,
+    /// Its unit normal, level.
+    pub normal: Vec3,
+}
+
+impl MirrorPlane {
+    /// The upright plane that halves a subject's face: through its place, along the way it looks. What is no figure
+    /// looks along its own +Z. None for what looks straight up or down.
+    pub fn of_subject(subject: &Object) -> Option<MirrorPlane> {
+        let own = match subject.shape {
+            Shape::Mannequin(figure) => figures::face_direction(figures::resolve(figure)),
+            _ => Vec3::Z,
+        };
+        let face = match subject.shape {
+            Shape::Mannequin(figure) => figures::face_point(figures::resolve(figure)),
+            _ => Vec3::ZERO,
+        };
+        let looks = subject.transform.rotation() * own;
+        let normal = Vec3::Y.cross(looks).try_normalize()?;
+        Some(MirrorPlane { point: subject.transform.world_from_object().transform_point3(face), normal })
+    }
+
+    /// A point on the other side.
+    pub fn mirror_point(&self, point: Vec3) -> Vec3 {
+        point - 2.0 * (point - self.point).dot(self.normal) * self.normal
+    }
+
+    /// A direction as the mirror shows it.
+    pub fn mirror_direction(&self, direction: Vec3) -> Vec3 {
+        direction - 2.0 * direction.dot(self.normal) * self.normal
+    }
+
+    /// The rotation of a mirrored thing that is its own mirror image in its X = 0 plane, as figures, panels and papers
+    /// are (but for their poses).
+    fn mirror_rotation(&self, rotation: Quat) -> Quat {
+        // Reflecting both the room and the thing's own X makes a rotation again.
+        let [x, y, z] = [-Vec3::X, Vec3::Y, Vec3::Z].map(|axis| self.mirror_direction(rotation * axis));
+        Quat::from_mat3(&glam::Mat3::from_cols(x, y, z)).normalize()
+    }
+}
+
+/// Puts things on the other side of a plane, position and aim, or copies of them. Returns what was put there.
+pub fn mirror(scene: &mut Scene, items: &[Item], plane: &MirrorPlane, copies: bool) -> Result<Vec<Item>, ActionError> {
+    let items = if copies { copy(scene, items)? } else { items.to_vec() };
+    let before = scene.clone();
+    for &item in &items {
+        if item.is_locked(scene) {
+            return Err(ActionError::Locked(item.name(scene)));
+        }
+        match item {
+            Item::Object(id) => {
+                let object = scene.object_mut(id).ok_or(ActionError::Gone)?;
+                let rotation = plane.mirror_rotation(object.transform.rotation());
+                object.transform.set_rotation(rotation);
+                object.transform.position = plane.mirror_point(object.transform.position);
+            }
+            Item::Light(id) => {
+                let mirrored = mirrored_light(&before, before.light(id).ok_or(ActionError::Gone)?, &items, plane);
+                *scene.light_mut(id).ok_or(ActionError::Gone)? = mirrored;
+            }
+            Item::Meter => {
+                let meter = scene.meter.as_mut().ok_or(ActionError::Gone)?;
+                let direction = plane.mirror_direction(meter.direction(&before));
+                meter.position = plane.mirror_point(meter.position);
+                if let (Facing::Angles { .. }, Aim::Angles { yaw_deg, pitch_deg }) =
+                    (meter.facing, angles_towards(direction))
+                {
+                    meter.facing = Facing::Angles { yaw_deg, pitch_deg };
+                }
+            }
+            Item::Camera => return Err(ActionError::Fixed("camera")),
+            Item::Room => return Err(ActionError::Fixed("room")),
+        }
+    }
+    Ok(items)
+}
+
+/// A light's mirror image. Its aim at a thing that is mirrored with it stays; any other aim is mirrored itself.
+fn mirrored_light(scene: &Scene, light: &Light, together: &[Item], plane: &MirrorPlane) -> Light {
+    let target = plane.mirror_point(scene.aim_point(&light.aim, light.position));
+    let aim = match light.aim {
+        Aim::Point(_) => Aim::Point(target),
+        Aim::Angles { .. } => {
+            let direction = scene.aim_point(&light.aim, light.position) - light.position;
+            angles_towards(plane.mirror_direction(direction))
+        }
+        // Mirrored with its subject, it keeps its point on it but for the side.
+        Aim::Object { object, offset } if together.contains(&Item::Object(object)) => {
+            Aim::Object { object, offset: offset * Vec3::new(-1.0, 1.0, 1.0) }
+        }
+        Aim::Object { object, offset } => {
+            let world_from_object = scene.object(object).map(|o| o.transform.world_from_object());
+            let inverse = world_from_object.map(|m| m.inverse()).filter(|m| m.is_finite());
+            Aim::Object { object, offset: inverse.map_or(offset, |m| m.transform_point3(target)) }
+        }
+    };
+    let mut mirrored = Light {
+        position: plane.mirror_point(light.position),
+        aim,
+        roll_deg: if light.roll_deg == 0.0 { 0.0 } else { -light.roll_deg },
+        ..light.clone()
+    };
+    if let Some(doors) = &mut mirrored.modifier.doors {
+        let BarnDoors { left_deg, right_deg, .. } = *doors;
+        (doors.left_deg, doors.right_deg) = (right_deg, left_deg);
+    }
+    if mirrored.emitter == Emitter::Surround {
+        return light.clone();
+    }
+    mirrored
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::document::catalog;
+    use crate::scene::LightId;
+
+    /// A man who looks 30 degrees to his left, and a strip on his right.
+    fn studio() -> (Scene, ObjectId, LightId) {
+        let mut scene = Scene::default();
+        let mut man = catalog::object_named("Man, standing").unwrap();
+        man.transform.position = Vec3::new(0.5, 0.0, -0.3);
+        man.transform.rotation_deg.y = 30.0;
+        let Item::Object(man) = add_object(&mut scene, man) else { unreachable!() };
+        let mut strip = catalog::light_named("Strip 30 x 120").unwrap();
+        strip.position = Vec3::new(-1.3, 1.9, 1.1);
+        strip.aim = Aim::Object { object: man, offset: Vec3::new(0.04, 1.6, 0.1) };
+        strip.roll_deg = 20.0;
+        strip.modifier.doors = Some(BarnDoors { left_deg: 10.0, right_deg: 40.0, top_deg: 90.0, bottom_deg: 90.0 });
+        let Item::Light(strip) = add_light(&mut scene, strip) else { unreachable!() };
+        (scene, man, strip)
+    }
+
+    #[test]
+    fn a_mirrored_light_does_to_one_cheek_what_it_did_to_the_other() {
+        let (mut scene, man, strip) = studio();
+        let plane = MirrorPlane::of_subject(scene.object(man).unwrap()).unwrap();
+        let face = |scene: &Scene| scene.object(man).unwrap().transform.world_from_object().inverse();
+        let (before, seen_before) = (scene.clone(), face(&scene).transform_point3(scene.lights[0].position));
+        mirror(&mut scene, &[Item::Light(strip)], &plane, false).unwrap();
+        // In the man's own space only x changes its sign: for place, aim, and the panel's axes.
+        let flip = Vec3::new(-1.0, 1.0, 1.0);
+        let seen = face(&scene).transform_point3(scene.lights[0].position);
+        assert!((seen - seen_before * flip).length() < 1e-5, "{seen} of {seen_before}");
+        let aim = |scene: &Scene| scene.aim_point(&scene.lights[0].aim, Vec3::ZERO);
+        let aims = [&scene, &before].map(|s| face(s).transform_point3(aim(s)));
+        assert!((aims[0] - aims[1] * flip).length() < 1e-5, "{aims:?}");
+        let upright = [&scene, &before].map(|s| Vec3::from(s.light_frame(&s.lights[0]).matrix3.y_axis));
+        assert!((upright[0] - plane.mirror_direction(upright[1])).length() < 1e-5, "the strip leans to the other side");
+        let doors = scene.lights[0].modifier.doors.unwrap();
+        assert_eq!((doors.left_deg, doors.right_deg), (40.0, 10.0));
+        mirror(&mut scene, &[Item::Light(strip)], &plane, false).unwrap();
+        assert!((scene.lights[0].position - before.lights[0].position).length() < 1e-5, "twice is back");
+    }
+
+    #[test]
+    fn a_mirrored_copy_leaves_the_original() {
+        let (mut scene, man, strip) = studio();
+        let plane = MirrorPlane::of_subject(scene.object(man).unwrap()).unwrap();
+        let original = scene.lights[0].clone();
+        let made = mirror(&mut scene, &[Item::Light(strip)], &plane, true).unwrap();
+        assert_eq!((scene.lights.len(), &scene.lights[0]), (2, &original));
+        assert_eq!(made, [Item::Light(scene.lights[1].id)]);
+        assert!((scene.lights[1].position - plane.mirror_point(original.position)).length() < 1e-6);
+    }
+
+    #[test]
+    fn a_copied_light_aims_at_the_copy_of_its_subject() {
+        let (mut scene, man, strip) = studio();
+        let copies = duplicate(&mut scene, &[Item::Light(strip), Item::Object(man)]).unwrap();
+        let [Item::Light(light), Item::Object(object)] = copies[..] else { panic!("{copies:?}") };
+        assert!(matches!(scene.light(light).unwrap().aim, Aim::Object { object: at, .. } if at == object && at != man));
+        let alone = duplicate(&mut scene, &[Item::Light(strip)]).unwrap();
+        let [Item::Light(light)] = alone[..] else { panic!("{alone:?}") };
+        assert!(matches!(scene.light(light).unwrap().aim, Aim::Object { object: at, .. } if at == man));
+    }
+
+    #[test]
+    fn locked_things_are_neither_deleted_nor_mirrored() {
+        let (mut scene, man, strip) = studio();
+        scene.lights[0].locked = true;
+        let plane = MirrorPlane::of_subject(scene.object(man).unwrap()).unwrap();
+        let name = scene.lights[0].name.clone();
+        assert_eq!(delete(&mut scene, &[Item::Light(strip)]), Err(ActionError::Locked(name.clone())));
+        assert_eq!(mirror(&mut scene, &[Item::Light(strip)], &plane, false), Err(ActionError::Locked(name)));
+        assert!(!scene.light(strip).unwrap().position.x.is_sign_positive());
+    }
+}

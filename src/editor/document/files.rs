@@ -1,0 +1,209 @@
+//! Files for the window: what `io` reads and writes, with errors in plain words, in threads of their own.
+
+use crate::editor::document::studio_document::Document;
+use crate::io::{self, PictureInfo};
+use crate::photo::Picture;
+use crate::scene::{Assets, Material, Mesh, Room, Scene, Texture};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+/// A shipped studio in the list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PresetInfo {
+    /// Its name.
+    pub name: String,
+    /// One line on what it is for.
+    pub description: String,
+}
+
+/// The shipped studios, in list order.
+pub fn presets() -> Vec<PresetInfo> {
+    let info = |p: &io::Preset| PresetInfo { name: p.name.to_string(), description: p.description.to_string() };
+    io::presets().iter().map(info).collect()
+}
+
+/// A studio as it comes from a file or from the shelf.
+#[derive(Clone, Debug)]
+pub struct Opened {
+    /// The studio.
+    pub scene: Scene,
+    /// Its meshes and textures.
+    pub assets: Assets,
+    /// What is odd about it.
+    pub warnings: Vec<String>,
+    /// Its file; none for a shipped studio.
+    pub path: Option<PathBuf>,
+}
+
+/// A model that was brought in.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// Its file.
+    pub file: PathBuf,
+    /// Its triangles.
+    pub mesh: Arc<Mesh>,
+    /// Its surfaces.
+    pub part_materials: Vec<(String, Material)>,
+    /// What was missing or mended.
+    pub warnings: Vec<String>,
+}
+
+/// What came out of a background task.
+#[derive(Debug)]
+pub enum Done {
+    /// A studio was read, or not; with what was asked for.
+    Opened(Source, Result<Box<Opened>, String>),
+    /// A model was read, or not.
+    Imported(Result<Box<Imported>, String>),
+    /// Assets of the scene were read: what was loaded, what was asked for, what is odd.
+    Assets(Assets, BTreeSet<String>, Vec<String>),
+    /// A picture was written, or not.
+    Exported(PathBuf, Result<(), String>),
+}
+
+/// Where a studio comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A file.
+    File(PathBuf),
+    /// The shelf, by place in the list.
+    Preset(usize),
+}
+
+impl Source {
+    /// A file where there is one, else the shipped studio of that name.
+    pub fn named(path: PathBuf) -> Self {
+        let shipped = path.to_str().filter(|_| !path.exists()).and_then(io::find_preset);
+        let place = shipped.and_then(|preset| io::presets().iter().position(|p| p.file_name == preset.file_name));
+        place.map_or(Source::File(path), Source::Preset)
+    }
+}
+
+/// Background tasks and the channel their results come through.
+#[derive(Debug)]
+pub struct Tasks {
+    sender: Sender<Done>,
+    receiver: Receiver<Done>,
+    running: usize,
+}
+
+impl Default for Tasks {
+    fn default() -> Self {
+        let (sender, receiver) = channel();
+        Tasks { sender, receiver, running: 0 }
+    }
+}
+
+impl Tasks {
+    /// Runs `work` in a thread; `wake` is called when its result is there.
+    pub fn start(&mut self, work: impl FnOnce() -> Done + Send + 'static, wake: impl FnOnce() + Send + 'static) {
+        let sender = self.sender.clone();
+        self.running += 1;
+        std::thread::spawn(move || {
+            let _ = sender.send(work());
+            wake();
+        });
+    }
+
+    /// Results that have come in.
+    pub fn finished(&mut self) -> Vec<Done> {
+        let done: Vec<Done> = self.receiver.try_iter().collect();
+        self.running -= done.len();
+        done
+    }
+
+    /// Whether something is on its way.
+    pub fn is_busy(&self) -> bool {
+        self.running > 0
+    }
+}
+
+/// Reads a studio with everything it needs.
+pub fn open(source: &Source) -> Result<Box<Opened>, String> {
+    let (loaded, path) = match source {
+        Source::File(path) => (io::load_scene(path).map_err(|e| plain(&e))?, Some(path.clone())),
+        Source::Preset(index) => {
+            let preset = io::presets().get(*index).ok_or("There is no such studio on the shelf.")?;
+            (preset.load().map_err(|e| plain(&e))?, None)
+        }
+    };
+    let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
+    Ok(Box::new(Opened { scene: loaded.scene, assets: loaded.assets, warnings, path }))
+}
+
+/// Reads a model.
+pub fn import(file: PathBuf) -> Result<Box<Imported>, String> {
+    let model = io::import_obj(&file).map_err(|e| plain(&e))?;
+    let (mesh, part_materials, warnings) = (Arc::new(model.mesh), model.part_materials, model.warnings);
+    Ok(Box::new(Imported { file, mesh, part_materials, warnings }))
+}
+
+/// Reads the assets that a scene needs and that are not loaded yet. `moved` are files that do not lie beside the scene
+/// yet, by the path the scene names.
+pub fn load_assets(
+    scene: &Scene,
+    folder: Option<&Path>,
+    known: &Assets,
+    moved: &[(String, PathBuf)],
+) -> (Assets, Vec<String>) {
+    let mut assets = known.clone();
+    let mut warnings = Vec::new();
+    for (path, file) in moved.iter().filter(|(path, _)| !known.textures.contains_key(path)) {
+        let (texture, odd) = load_texture(file);
+        assets.textures.extend(texture.map(|texture| (path.clone(), texture)));
+        warnings.extend(odd);
+    }
+    warnings.extend(io::load_assets(scene, folder, &mut assets).iter().map(ToString::to_string));
+    (assets, warnings)
+}
+
+/// A texture that does not lie beside the scene: loaded as if its own folder were the scene's.
+fn load_texture(file: &Path) -> (Option<Arc<Texture>>, Vec<String>) {
+    let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let floor = Material { base_color_texture: Some(name.clone()), ..Material::default() };
+    let scene = Scene { room: Some(Room { floor, ..Room::default() }), ..Scene::default() };
+    let mut assets = Assets::default();
+    let warnings = io::load_assets(&scene, file.parent(), &mut assets);
+    (assets.textures.remove(&name), warnings.iter().map(ToString::to_string).collect())
+}
+
+/// Writes the studio and puts the files it needs beside it.
+pub fn save(document: &Document, path: &Path) -> Result<(), String> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    for (from, to) in document.files_to_copy(folder) {
+        copy_asset(&from, &to)?;
+    }
+    io::save_scene(document.scene(), path).map_err(|e| plain(&e))
+}
+
+/// Copies a file unless the same is there already. Another file of that name is never overwritten.
+pub fn copy_asset(from: &Path, to: &Path) -> Result<(), String> {
+    let failed = |error: std::io::Error| format!("{} could not be copied beside the studio: {error}.", from.display());
+    if to.exists() {
+        let same = std::fs::read(from).map_err(failed)? == std::fs::read(to).map_err(failed)?;
+        let message = || {
+            format!("{} is another file of the same name; it was left as it is. Save to another folder.", to.display())
+        };
+        return if same { Ok(()) } else { Err(message()) };
+    }
+    if let Some(folder) = to.parent() {
+        std::fs::create_dir_all(folder).map_err(failed)?;
+    }
+    std::fs::copy(from, to).map(|_| ()).map_err(failed)
+}
+
+/// Writes a picture, in the format of its ending.
+pub fn export(path: &Path, picture: &Picture, info: &PictureInfo) -> Result<(), String> {
+    io::export_picture(path, picture, info).map_err(|e| plain(&e))
+}
+
+/// An error as a sentence.
+pub fn plain(error: &dyn std::error::Error) -> String {
+    let text = error.to_string();
+    let mut chars = text.chars();
+    let first = chars.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
+    let rest = chars.as_str();
+    if rest.ends_with(['.', '!', '?']) { format!("{first}{rest}") } else { format!("{first}{rest}.") }
+}

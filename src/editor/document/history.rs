@@ -1,0 +1,140 @@
+//! Undo and redo as snapshots: a scene is plain data and small, meshes and pictures live in the shared assets.
+
+use crate::editor::document::item::Item;
+use crate::scene::Scene;
+
+/// Steps kept; the oldest are dropped.
+const CAPACITY: usize = 300;
+
+/// Tells the steps of one drag: the press of the mouse that began it, and what it changes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MergeKey {
+    /// Number of the press.
+    pub gesture: u64,
+    /// What is dragged.
+    pub targets: Vec<Item>,
+}
+
+#[derive(Clone, Debug)]
+struct Step {
+    label: String,
+    /// The scene on the other side of the step: before it in the undo list, after it in the redo list.
+    scene: Scene,
+    merge: Option<MergeKey>,
+}
+
+/// The undo and redo lists.
+#[derive(Clone, Debug, Default)]
+pub struct History {
+    undo: Vec<Step>,
+    redo: Vec<Step>,
+}
+
+impl History {
+    /// Records that the scene was `before`. A step with the same merge key as the last one joins it. Forgets what was
+    /// undone.
+    pub fn record(&mut self, before: Scene, label: String, merge: Option<MergeKey>) {
+        self.redo.clear();
+        let joins = merge.is_some() && self.undo.last().is_some_and(|last| last.merge == merge);
+        if joins {
+            return;
+        }
+        if self.undo.len() == CAPACITY {
+            self.undo.remove(0);
+        }
+        self.undo.push(Step { label, scene: before, merge });
+    }
+
+    /// Takes the last step back; returns its label.
+    pub fn undo(&mut self, scene: &mut Scene) -> Option<String> {
+        let step = self.undo.pop()?;
+        let after = std::mem::replace(scene, step.scene);
+        self.redo.push(Step { label: step.label.clone(), scene: after, merge: None });
+        Some(step.label)
+    }
+
+    /// Does the last step taken back again; returns its label.
+    pub fn redo(&mut self, scene: &mut Scene) -> Option<String> {
+        let step = self.redo.pop()?;
+        let before = std::mem::replace(scene, step.scene);
+        self.undo.push(Step { label: step.label.clone(), scene: before, merge: None });
+        Some(step.label)
+    }
+
+    /// Takes the last step back for good if it belongs to this press; whether it did.
+    pub fn abandon(&mut self, scene: &mut Scene, gesture: u64) -> bool {
+        let belongs = self.undo.last().and_then(|step| step.merge.as_ref()).is_some_and(|key| key.gesture == gesture);
+        if belongs {
+            self.undo(scene);
+            self.redo.pop();
+        }
+        belongs
+    }
+
+    /// What undo would take back.
+    pub fn undo_label(&self) -> Option<&str> {
+        self.undo.last().map(|step| step.label.as_str())
+    }
+
+    /// What redo would do again.
+    pub fn redo_label(&self) -> Option<&str> {
+        self.redo.last().map(|step| step.label.as_str())
+    }
+
+    /// Number of steps that can be undone.
+    pub fn depth(&self) -> usize {
+        self.undo.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(name: &str) -> Scene {
+        Scene { name: name.to_owned(), ..Scene::default() }
+    }
+
+    #[test]
+    fn undo_and_redo_walk_the_same_path() {
+        let (mut history, mut scene) = (History::default(), named("c"));
+        history.record(named("a"), "first".into(), None);
+        history.record(named("b"), "second".into(), None);
+        assert_eq!(history.undo(&mut scene).as_deref(), Some("second"));
+        assert_eq!(scene.name, "b");
+        history.undo(&mut scene);
+        assert_eq!((history.undo(&mut scene), scene.name.as_str()), (None, "a"));
+        history.redo(&mut scene);
+        history.redo(&mut scene);
+        assert_eq!((history.redo(&mut scene), scene.name.as_str()), (None, "c"));
+    }
+
+    #[test]
+    fn one_drag_is_one_step_and_the_next_drag_another() {
+        let mut history = History::default();
+        let key = |gesture, target| Some(MergeKey { gesture, targets: vec![target] });
+        for name in ["a", "b", "c"] {
+            history.record(named(name), "drag".into(), key(1, Item::Camera));
+        }
+        assert_eq!(history.depth(), 1);
+        history.record(named("d"), "drag".into(), key(2, Item::Camera));
+        history.record(named("e"), "drag".into(), key(2, Item::Room));
+        assert_eq!(history.depth(), 3);
+        let mut scene = named("f");
+        (0..3).for_each(|_| drop(history.undo(&mut scene)));
+        assert_eq!(scene.name, "a");
+    }
+
+    #[test]
+    fn a_new_step_forgets_what_was_undone_and_the_list_ends() {
+        let (mut history, mut scene) = (History::default(), Scene::default());
+        for _ in 0..CAPACITY + 10 {
+            history.record(Scene::default(), "step".into(), None);
+        }
+        assert_eq!(history.depth(), CAPACITY);
+        history.undo(&mut scene);
+        assert!(history.redo_label().is_some());
+        history.record(Scene::default(), "other".into(), None);
+        assert!(history.redo_label().is_none());
+    }
+}

@@ -1,0 +1,14 @@
+//! The open studio and every change of it: the document, its undo history, the selection and the [`action::Action`]s.
+
+pub mod action;
+pub mod arrange;
+pub mod bounds;
+pub mod catalog;
+pub mod files;
+pub mod history;
+pub mod item;
+pub mod placement;
+pub mod readout;
+pub mod selection;
+pub mod studio_document;
+pub mod switches;

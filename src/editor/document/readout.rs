@@ -1,0 +1,162 @@
+//! What a light gives where it aims: the read-outs of the inspector. Closed forms for free light, without bounce and
+//! without what stands in the way.
+
+use crate::photo::beam;
+use crate::photo::exposure::{self, Strength, strength};
+use crate::scene::{Camera, Emitter, Light, Scene};
+use glam::Vec2;
+use std::f32::consts::PI;
+
+/// A light at its aim point, on a surface that faces it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtAim {
+    /// Distance to the aim point, metres; none for sun and surround.
+    pub distance_m: Option<f32>,
+    /// Illuminance in lux for continuous light; luminous exposure in lux seconds for flash.
+    pub illuminance: f32,
+    /// What it adds to the film in one exposure, lux seconds.
+    pub lux_s: f32,
+}
+
+/// The light at its own aim point, whether it is on or off.
+pub fn at_aim(scene: &Scene, light: &Light) -> AtAim {
+    let distance = (scene.aim_point(&light.aim, light.position) - light.position).length();
+    let illuminance = on_axis(light, distance);
+    AtAim {
+        distance_m: (!light.emitter.is_infinite()).then_some(distance),
+        illuminance,
+        lux_s: illuminance * exposure::integration_time_s(&light.power.output, &scene.camera),
+    }
+}
+
+/// Illuminance (lux, or lux seconds for flash) on a surface that faces the light, on its axis.
+pub fn on_axis(light: &Light, distance_m: f32) -> f32 {
+    let intensity = match strength(light) {
+        Strength::Illuminance(lux) => return lux,
+        Strength::Flux(_) | Strength::AxialIntensity(_) => exposure::axial_intensity(light),
+    };
+    let h = distance_m.max(1e-3);
+    if light.modifier.narrows() && matches!(light.emitter, Emitter::RectPanel { .. } | Emitter::RoundPanel { .. }) {
+        return narrowed_panel(light, intensity, h);
+    }
+    match light.emitter {
+        Emitter::RectPanel { width_m, height_m } => {
+            let (a, b) = (0.5 * width_m.max(1e-4), 0.5 * height_m.max(1e-4));
+            let luminance = intensity / (4.0 * a * b);
+            let (ha, hb) = (h.hypot(a), h.hypot(b));
+            // Lambert's polygon formula for a rectangle over its own centre.
+            2.0 * luminance * (a / ha * (b / ha).atan() + b / hb * (a / hb).atan())
+        }
+        Emitter::RoundPanel { diameter_m } => {
+            let radius = 0.5 * diameter_m.max(1e-4);
+            let luminance = intensity / (PI * radius * radius);
+            PI * luminance * radius * radius / (radius * radius + h * h)
+        }
+        Emitter::Point | Emitter::Sphere { .. } | Emitter::Spot { .. } => intensity / (h * h),
+        Emitter::Sun { .. } | Emitter::Surround => 0.0,
+    }
+}
+
+/// A panel behind a grid or in a dish, on its axis: from its rim less arrives than Lambert's law says. Midpoints of a
+/// grid over the panel.
+fn narrowed_panel(light: &Light, intensity: f32, h: f32) -> f32 {
+    const CELLS: i32 = 24;
+    let (half, round) = match light.emitter {
+        Emitter::RectPanel { width_m, height_m } => (0.5 * Vec2::new(width_m, height_m), false),
+        Emitter::RoundPanel { diameter_m } => (Vec2::splat(0.5 * diameter_m), true),
+        _ => return 0.0,
+    };
+    let (mut sum, mut cells) = (0.0, 0);
+    for i in 0..CELLS * CELLS {
+        let unit = (Vec2::new((i % CELLS) as f32, (i / CELLS) as f32) + 0.5) * (2.0 / CELLS as f32) - 1.0;
+        if round && unit.length_squared() > 1.0 {
+            continue;
+        }
+        // From the cell to the receiver on the axis, in the light's frame.
+        let to = (-(unit * half)).extend(-h);
+        let squared = to.length_squared();
+        sum += beam::passed(&light.modifier, to / squared.sqrt()) * h * h / (squared * squared);
+        cells += 1;
+    }
+    intensity * sum / cells.max(1) as f32
+}
+
+/// The f-number a meter at the aim point asks for, from this light alone, at the camera's ISO and shutter.
+pub fn f_number(camera: &Camera, lux_s: f32) -> f32 {
+    exposure::f_number(lux_s, camera.iso, camera.meter_constant)
+}
+
+/// How far that is from the camera's aperture, stops: positive is brighter than a metered grey card.
+pub fn stops_over_camera(camera: &Camera, lux_s: f32) -> f32 {
+    2.0 * (f_number(camera, lux_s) / camera.f_number).log2()
+}
+
+/// The dial, in whole thirds of a stop, that puts this light `stops` over the camera's setting at its aim.
+pub fn dial_for(scene: &Scene, light: &Light, stops: f32) -> f32 {
+    let over = stops_over_camera(&scene.camera, at_aim(scene, light).lux_s);
+    if over.is_finite() {
+        ((light.power.dial_stops + stops - over) * 3.0).round() / 3.0
+    } else {
+        light.power.dial_stops
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::document::catalog;
+    use crate::scene::{Aim, Modifier, Output, Power};
+    use glam::Vec3;
+
+    fn light(emitter: Emitter) -> Light {
+        let modifier = Modifier::default();
+        let power = Power { output: Output::Lumens(1000.0), dial_stops: 0.0 };
+        Light { emitter, modifier, power, ..catalog::light_named("Bare bulb").unwrap() }
+    }
+
+    #[test]
+    fn panels_give_what_the_tables_say() {
+        // light_and_camera.md: 1000 lm on the axis at 0.5, 1 and 3 m.
+        let tables = [
+            (Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, [729.52, 267.05, 34.62]),
+            (Emitter::RectPanel { width_m: 0.9, height_m: 1.2 }, [523.91, 232.79, 33.96]),
+            (Emitter::RoundPanel { diameter_m: 1.2 }, [521.82, 234.05, 34.01]),
+        ];
+        for (emitter, expected) in tables {
+            for (distance, lux) in [0.5, 1.0, 3.0].into_iter().zip(expected) {
+                let ours = on_axis(&light(emitter), distance);
+                assert!((ours / lux - 1.0).abs() < 3e-4, "{emitter:?} at {distance}: {ours}, not {lux}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_panel_whose_beam_cuts_nothing_is_a_panel_and_one_with_a_grid_is_less() {
+        for emitter in [Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, Emitter::RoundPanel { diameter_m: 1.2 }] {
+            for distance in [0.5, 1.0, 3.0] {
+                let bare = light(emitter);
+                let open = crate::scene::Cone { inner_deg: 180.0, outer_deg: 180.0 };
+                let cut = |modifier| on_axis(&Light { modifier, ..bare.clone() }, distance);
+                let same = cut(Modifier { beam: Some(open), ..Modifier::default() });
+                // Midpoints of 24 x 24 cells; a disc's rim has steps.
+                assert!((same / on_axis(&bare, distance) - 1.0).abs() < 0.01, "{emitter:?} at {distance}: {same}");
+                let grid = cut(Modifier { grid_deg: Some(40.0), ..Modifier::default() });
+                assert!(grid < 0.9 * same, "{emitter:?} at {distance}: {grid} of {same}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_dial_that_is_asked_for_meters_at_the_camera() {
+        let mut scene = Scene::default();
+        let mut light = light(Emitter::RectPanel { width_m: 0.6, height_m: 0.9 });
+        light.aim = Aim::Point(Vec3::ZERO);
+        for stops in [0.0, -1.0, 1.5] {
+            light.power.dial_stops = dial_for(&scene, &light, stops);
+            let over = stops_over_camera(&scene.camera, at_aim(&scene, &light).lux_s);
+            assert!((over - stops).abs() < 1.0 / 6.0 + 1e-3, "{over} for {stops}");
+        }
+        scene.camera.f_number = 0.0;
+        assert!(dial_for(&scene, &light, 0.0).is_finite());
+    }
+}

@@ -1,0 +1,123 @@
+//! The rendered picture, large: fit to the window or at its own pixels, with zoom and pan.
+
+use crate::editor::commands::command::Command;
+use crate::editor::panels::render::OUT_OF_DATE;
+use crate::editor::picture::rendering::Rendering;
+use crate::editor::ui::theme;
+use crate::scene::Scene;
+use eframe::egui::{self, Color32, Pos2, Rect, RichText, Sense, Ui, Vec2, vec2};
+
+/// How the picture lies in the view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PictureView {
+    /// Screen pixels a picture pixel; none fits the picture to the view.
+    zoom: Option<f32>,
+    /// The picture's middle from the view's middle, points.
+    offset: Vec2,
+}
+
+impl Default for PictureView {
+    fn default() -> Self {
+        PictureView { zoom: None, offset: Vec2::ZERO }
+    }
+}
+
+const ZOOM_RANGE: std::ops::RangeInclusive<f32> = 0.05..=16.0;
+
+impl PictureView {
+    /// Draws picture and buttons.
+    pub fn ui(&mut self, ui: &mut Ui, rendering: &Rendering, scene: &Scene, out: &mut Vec<Command>) {
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        crate::editor::ui::widgets::named(ui, &response, "Picture view");
+        let painter = ui.painter_at(rect);
+        painter.rect_filled(rect, 0.0, theme::SURROUND);
+        let (Some(texture), Some(size)) = (rendering.texture(), rendering.size()) else {
+            self.empty_ui(ui, rect, rendering, out);
+            return;
+        };
+        let pixels = vec2(size.0 as f32, size.1 as f32) / ui.pixels_per_point();
+        let fit = (rect.width() / pixels.x).min(rect.height() / pixels.y) * 0.97;
+        self.interact(ui, rect, &response, fit);
+        let zoom = self.zoom.unwrap_or(fit);
+        let place = Rect::from_center_size(rect.center() + self.offset, pixels * zoom);
+        let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+        painter.image(texture, place, uv, Color32::WHITE);
+        self.bar_ui(ui, rect, rendering, scene, zoom, out);
+    }
+
+    fn empty_ui(&self, ui: &mut Ui, rect: Rect, rendering: &Rendering, out: &mut Vec<Command>) {
+        let middle = Rect::from_center_size(rect.center(), vec2(320.0, 90.0));
+        ui.scope_builder(egui::UiBuilder::new().max_rect(middle), |ui| {
+            ui.vertical_centered(|ui| {
+                if rendering.is_running() {
+                    ui.label(RichText::new("The first samples are on their way\u{2026}").weak());
+                } else {
+                    ui.label(RichText::new("There is no picture yet.").weak());
+                    ui.add_space(6.0);
+                    if crate::editor::ui::widgets::primary_button(ui, "Render now", 140.0).on_hover_text("R").clicked()
+                    {
+                        out.push(Command::Render);
+                    }
+                }
+            });
+        });
+    }
+
+    fn interact(&mut self, ui: &Ui, rect: Rect, response: &egui::Response, fit: f32) {
+        if response.dragged() {
+            self.zoom.get_or_insert(fit);
+            self.offset += response.drag_delta();
+        }
+        if response.double_clicked() {
+            *self =
+                if self.zoom.is_some() { Self::default() } else { PictureView { zoom: Some(1.0), offset: Vec2::ZERO } };
+        }
+        let scroll = ui.input(|i| i.smooth_scroll_delta().y);
+        if let Some(pointer) = response.hover_pos().filter(|_| scroll != 0.0) {
+            let old = self.zoom.unwrap_or(fit);
+            let new = (old * (scroll * 0.003).exp()).clamp(*ZOOM_RANGE.start(), *ZOOM_RANGE.end());
+            // What is under the pointer stays there.
+            let from_middle = pointer - rect.center() - self.offset;
+            self.offset -= from_middle * (new / old - 1.0);
+            self.zoom = Some(new);
+        }
+    }
+
+    fn bar_ui(
+        &mut self,
+        ui: &mut Ui,
+        rect: Rect,
+        rendering: &Rendering,
+        scene: &Scene,
+        zoom: f32,
+        out: &mut Vec<Command>,
+    ) {
+        let bar =
+            Rect::from_min_max(rect.left_top() + vec2(8.0, 8.0), Pos2::new(rect.right() - 8.0, rect.top() + 40.0));
+        ui.scope_builder(egui::UiBuilder::new().max_rect(bar), |ui| {
+            ui.horizontal(|ui| {
+                if ui
+                    .selectable_label(self.zoom.is_none(), "Fit")
+                    .on_hover_text("The whole picture (double-click)")
+                    .clicked()
+                {
+                    *self = Self::default();
+                }
+                if ui
+                    .selectable_label(self.zoom == Some(1.0), "100 %")
+                    .on_hover_text("One to one (double-click)")
+                    .clicked()
+                {
+                    *self = PictureView { zoom: Some(1.0), offset: Vec2::ZERO };
+                }
+                ui.label(RichText::new(format!("{:.0} %", zoom * 100.0)).weak());
+                if rendering.is_out_of_date(scene) && !rendering.is_running() {
+                    ui.label(RichText::new("Out of date").color(theme::ACCENT)).on_hover_text(OUT_OF_DATE);
+                    if ui.button("Render again").on_hover_text("R").clicked() {
+                        out.push(Command::Render);
+                    }
+                }
+            });
+        });
+    }
+}

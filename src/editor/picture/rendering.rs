@@ -1,0 +1,202 @@
+//! The render settings, the running job, and the picture it leaves behind.
+
+use crate::editor::relight::{self, DevelopKey};
+use crate::editor::render_job::{Developed, Developer, Phase, RenderJob};
+use crate::editor::ui::image_texture::Canvas;
+use crate::raytrace::{Film, GeometryCache, Method, Settings};
+use crate::scene::{Assets, Camera, Scene};
+use eframe::egui::{Context, TextureId};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// How good a render is to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quality {
+    /// To judge the light: seconds.
+    Draft,
+    /// To show around.
+    Good,
+    /// To deliver.
+    Final,
+    /// As many samples as typed.
+    Custom,
+}
+
+impl Quality {
+    /// Samples a pixel; none for custom.
+    pub fn samples(self) -> Option<u32> {
+        match self {
+            Quality::Draft => Some(16),
+            Quality::Good => Some(128),
+            Quality::Final => Some(1024),
+            Quality::Custom => None,
+        }
+    }
+}
+
+/// Size of the picture, by its longer side or freely.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureSize {
+    /// The sensor's shape, with this longer side in pixels.
+    LongEdge(u32),
+    /// Any size; a crop of the sensor where the shape differs.
+    Custom(u32, u32),
+}
+
+/// What the render panel sets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RenderSettings {
+    /// Size of the picture.
+    pub size: PictureSize,
+    /// How good it is to be.
+    pub quality: Quality,
+    /// Samples a pixel.
+    pub samples: u32,
+    /// How light is followed.
+    pub method: Method,
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        RenderSettings { size: PictureSize::LongEdge(1080), quality: Quality::Draft, samples: 16, method: Method::Path }
+    }
+}
+
+impl RenderSettings {
+    /// Pixels across and down.
+    pub fn pixels(&self, camera: &Camera) -> (u32, u32) {
+        match self.size {
+            PictureSize::LongEdge(edge) => camera.picture_size(edge),
+            PictureSize::Custom(width, height) => (width.max(1), height.max(1)),
+        }
+    }
+}
+
+/// Everything about the rendered picture.
+#[derive(Debug, Default)]
+pub struct Rendering {
+    /// What the panel sets.
+    pub settings: RenderSettings,
+    /// Meshes' trees, shared with the live view.
+    trees: Arc<GeometryCache>,
+    job: Option<RenderJob>,
+    film: Option<Arc<Film>>,
+    developer: Developer,
+    /// What the newest requested picture is made from; the pointer is only compared.
+    requested: Option<(*const Film, DevelopKey)>,
+    developed: Option<Developed>,
+    canvas: Canvas,
+}
+
+impl Rendering {
+    /// No picture yet; meshes' trees are shared.
+    pub fn new(trees: Arc<GeometryCache>) -> Self {
+        Rendering { trees, ..Rendering::default() }
+    }
+
+    /// Starts to render.
+    pub fn start(&mut self, scene: &Scene, assets: &Assets, folder: Option<PathBuf>, ctx: &Context) {
+        let (width, height) = self.settings.pixels(&scene.camera);
+        let settings = Settings {
+            width,
+            height,
+            method: self.settings.method,
+            spp: self.settings.samples.max(1),
+            ..Settings::default()
+        };
+        self.job =
+            Some(RenderJob::start(self.trees.clone(), scene.clone(), assets.clone(), folder, settings, ctx.clone()));
+    }
+
+    /// Stops the running job; what is complete is kept.
+    pub fn cancel(&self) {
+        if let Some(job) = &self.job {
+            job.cancel();
+        }
+    }
+
+    /// Forgets job and picture, because another studio was opened.
+    pub fn clear(&mut self) {
+        *self = Rendering { settings: self.settings, ..Rendering::new(self.trees.clone()) };
+    }
+
+    /// The job, running or ended.
+    pub fn job(&self) -> Option<&RenderJob> {
+        self.job.as_ref()
+    }
+
+    /// Whether a render is on its way.
+    pub fn is_running(&self) -> bool {
+        self.job.as_ref().is_some_and(|job| job.phase().is_running())
+    }
+
+    /// Whether a render or the development of its film is on its way.
+    pub fn is_busy(&self) -> bool {
+        self.is_running() || self.developer.is_busy() || self.has_new_film()
+    }
+
+    fn has_new_film(&self) -> bool {
+        let newest = self.job.as_ref().and_then(RenderJob::film);
+        newest.is_some_and(|film| self.film.as_ref().is_none_or(|known| !Arc::ptr_eq(&film, known)))
+    }
+
+    /// The picture as it is shown.
+    pub fn texture(&self) -> Option<TextureId> {
+        self.canvas.id()
+    }
+
+    /// Brings the picture to the device that the window has now.
+    pub fn move_to(&mut self, ctx: &Context) {
+        self.canvas.renew(ctx);
+    }
+
+    /// The picture for export; not yet while only a small forerunner of a large one is on show.
+    pub fn developed(&self) -> Option<&Developed> {
+        let (width, height) = self.size()?;
+        self.developed.as_ref().filter(|d| (d.picture.width, d.picture.height) == (width, height))
+    }
+
+    /// Pixels across and down of the picture that is on show or on its way.
+    pub fn size(&self) -> Option<(u32, u32)> {
+        self.job.as_ref().map(|job| (job.settings.width, job.settings.height))
+    }
+
+    /// Whether the picture is not what a render would show now.
+    pub fn is_out_of_date(&self, now: &Scene) -> bool {
+        match (&self.film, &self.job) {
+            (Some(film), Some(job)) => !relight::is_up_to_date(film, &job.scene, now),
+            _ => false,
+        }
+    }
+
+    /// Takes in what the threads have made and asks for what the scene needs now. Call once a frame.
+    pub fn update(&mut self, scene: &Scene, ctx: &Context) {
+        if let Some(film) = self.job.as_ref().and_then(RenderJob::film) {
+            self.film = Some(film);
+        }
+        if let Some(film) = &self.film {
+            let key = (Arc::as_ptr(film), DevelopKey::of(scene));
+            if self.requested.as_ref() != Some(&key) {
+                self.developer.request(film.clone(), scene.clone(), ctx);
+                self.requested = Some(key);
+            }
+        }
+        if let Some(developed) = self.developer.take() {
+            self.canvas.set(ctx, developed.image.clone());
+            self.developed = Some(developed);
+        }
+        // Progress numbers move between snapshots, too.
+        if self.is_running() {
+            ctx.request_repaint_after(Duration::from_millis(250));
+        }
+    }
+
+    /// The message of a job that failed.
+    pub fn failure(&self) -> Option<String> {
+        match self.job.as_ref()?.phase() {
+            Phase::Failed(message) => Some(message),
+            _ => None,
+        }
+    }
+}

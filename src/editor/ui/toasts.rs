@@ -1,0 +1,122 @@
+//! Messages to the user, at the lower edge of the window: errors stay until they are dismissed, news go by themselves.
+
+use crate::editor::ui::theme;
+use eframe::egui::{self, Align2, Area, Frame, Id, Label, RichText};
+use std::time::Duration;
+
+/// How long news stay, seconds.
+const NEWS_S: f64 = 5.0;
+/// Messages shown at once; older ones make room.
+const SHOWN: usize = 5;
+
+/// What kind of message it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// Something was done.
+    News,
+    /// Something is odd but usable.
+    Warning,
+    /// Something could not be done.
+    Error,
+}
+
+#[derive(Clone, Debug)]
+struct Toast {
+    tone: Tone,
+    text: String,
+    /// When news go, in egui's time; set when it is first shown.
+    gone_at: Option<f64>,
+}
+
+/// The messages on show.
+#[derive(Clone, Debug, Default)]
+pub struct Toasts {
+    toasts: Vec<Toast>,
+}
+
+impl Toasts {
+    /// Something was done.
+    pub fn news(&mut self, text: impl Into<String>) {
+        self.push(Tone::News, text.into());
+    }
+
+    /// Something is odd but usable.
+    pub fn warning(&mut self, text: impl Into<String>) {
+        self.push(Tone::Warning, text.into());
+    }
+
+    /// Something could not be done.
+    pub fn error(&mut self, text: impl Into<String>) {
+        let text = text.into();
+        log::error!("{text}");
+        self.push(Tone::Error, text);
+    }
+
+    fn push(&mut self, tone: Tone, text: String) {
+        // The same message again replaces the old one.
+        self.toasts.retain(|toast| toast.text != text);
+        self.toasts.push(Toast { tone, text, gone_at: None });
+        if self.toasts.len() > SHOWN {
+            self.toasts.remove(0);
+        }
+    }
+
+    /// The texts on show of one tone, oldest first.
+    pub fn texts(&self, tone: Tone) -> Vec<&str> {
+        self.toasts.iter().filter(|t| t.tone == tone).map(|t| t.text.as_str()).collect()
+    }
+
+    /// Draws the messages over everything else, at the foot of a part of the window.
+    pub fn ui(&mut self, ctx: &egui::Context, over: egui::Rect) {
+        let now = ctx.time();
+        for toast in self.toasts.iter_mut().filter(|t| t.tone == Tone::News) {
+            let gone_at = *toast.gone_at.get_or_insert(now + NEWS_S);
+            ctx.request_repaint_after(Duration::from_secs_f64((gone_at - now).max(0.01)));
+        }
+        self.toasts.retain(|toast| toast.gone_at.is_none_or(|gone_at| now < gone_at));
+        if self.toasts.is_empty() {
+            return;
+        }
+        let mut dismissed = None;
+        let foot = over.center_bottom() - egui::vec2(0.0, 12.0);
+        let width = (over.width() - 140.0).clamp(160.0, 560.0);
+        Area::new(Id::unique("toasts"))
+            .fixed_pos(foot)
+            .pivot(Align2::CENTER_BOTTOM)
+            .order(egui::Order::Foreground)
+            .show(ctx, |ui| {
+                for (i, toast) in self.toasts.iter().enumerate() {
+                    if toast_ui(ui, toast, width) {
+                        dismissed = Some(i);
+                    }
+                }
+            });
+        if let Some(i) = dismissed {
+            self.toasts.remove(i);
+        }
+    }
+}
+
+/// One message; true when it is dismissed.
+fn toast_ui(ui: &mut egui::Ui, toast: &Toast, width: f32) -> bool {
+    let color = match toast.tone {
+        Tone::News => theme::GOOD,
+        Tone::Warning => theme::ACCENT,
+        Tone::Error => theme::BAD,
+    };
+    let frame = Frame::popup(ui.style()).stroke(egui::Stroke::new(1.0, color)).inner_margin(10);
+    frame
+        .show(ui, |ui| {
+            ui.horizontal(|ui| {
+                let (dot, _) = ui.allocate_exact_size(egui::vec2(10.0, 10.0), egui::Sense::hover());
+                ui.painter().circle_filled(dot.center(), 4.0, color);
+                ui.vertical(|ui| {
+                    ui.set_max_width(width);
+                    ui.add(Label::new(RichText::new(&toast.text)).wrap());
+                });
+                ui.button("Dismiss").on_hover_text("Take this message away").clicked()
+            })
+            .inner
+        })
+        .inner
+}

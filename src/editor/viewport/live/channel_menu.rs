@@ -1,0 +1,137 @@
+//! The menu in the corner of the view: which channel of the preview it shows, the light of which lamp, how things shine;
+//! and the legend of illuminance in false colour.
+
+use crate::editor::viewport::live::preview_host::Look;
+use crate::photo::exposure;
+use crate::preview::{Channel, FALSE_STOPS, Gloss, false_color};
+use crate::scene::{Camera, Scene};
+use eframe::egui::{Align2, Checkbox, Color32, FontId, Painter, Pos2, RadioButton, Rect, Ui, UiBuilder, vec2};
+use std::f32::consts::PI;
+
+/// Size of a stop's colour in the legend, points.
+const SWATCH: (f32, f32) = (22.0, 18.0);
+
+/// Draws the menu over the upper left corner of the view and changes `look` as it is used. Where the processor draws
+/// the view (`on_processor`) it has neither channels nor a choice of highlights.
+pub fn look_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, look: &mut Look, on_processor: bool) {
+    if on_processor {
+        (look.channel, look.gloss) = (Channel::Lit, Gloss::Ggx);
+    }
+    let place = Rect::from_min_size(view.min + vec2(8.0, 8.0), vec2(220.0, 24.0));
+    ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
+        let title = title(scene, look);
+        ui.menu_button(title, |ui| {
+            ui.set_min_width(210.0);
+            for channel in Channel::ALL {
+                let radio = RadioButton::new(look.channel == channel, channel.label());
+                let response = ui.add_enabled(!on_processor || channel == Channel::Lit, radio);
+                if response.on_hover_text(tip(channel)).on_disabled_hover_text(NEEDS_DEVICE).clicked() {
+                    look.channel = channel;
+                }
+            }
+            ui.separator();
+            let lights = ui.menu_button("Show the light of", |ui| {
+                ui.set_min_width(160.0);
+                ui.radio_value(&mut look.only_light, None, "All lights");
+                for light in &scene.lights {
+                    ui.radio_value(&mut look.only_light, Some(light.id), &light.name);
+                }
+            });
+            lights.response.on_hover_text(
+                "One light's share, in this view alone: meter and pictures keep them all. \
+                 Solo (O) switches the others off.",
+            );
+            let mut blinn_phong = look.gloss == Gloss::BlinnPhong;
+            let tip = "Quicker highlights without the emitter's shape, instead of GGX";
+            let checkbox = Checkbox::new(&mut blinn_phong, "Blinn-Phong highlights");
+            if ui.add_enabled(!on_processor, checkbox).on_hover_text(tip).changed() {
+                look.gloss = if blinn_phong { Gloss::BlinnPhong } else { Gloss::Ggx };
+            }
+            let tip = "The traced view (True) shows smoothed light while it is worked on; settled, it is as traced. \
+                       Pictures that are rendered are never smoothed.";
+            ui.checkbox(&mut look.smooth, "Smooth grain until settled").on_hover_text(tip);
+        })
+        .response
+        .on_hover_text("What the view shows of the studio");
+    });
+    if look.channel == Channel::Illuminance {
+        paint_legend(&ui.painter_at(view), view, &scene.camera);
+    }
+}
+
+fn title(scene: &Scene, look: &Look) -> String {
+    match look.only_light.and_then(|id| scene.light(id)) {
+        Some(light) => format!("{}: light of {} only", look.channel.label(), light.name),
+        None => look.channel.label().to_owned(),
+    }
+}
+
+/// Why there is nothing to choose.
+const NEEDS_DEVICE: &str = "Needs a graphics adapter: the processor draws this view";
+
+fn tip(channel: Channel) -> &'static str {
+    match channel {
+        Channel::Lit => "The studio as it is lit",
+        Channel::BaseColor => "What surfaces reflect, without any light",
+        Channel::Normal => "Where surfaces face: red right, green up, blue to the front",
+        Channel::Roughness => "From black, a mirror, to white, matte",
+        Channel::Metallic => "Metal is white",
+        Channel::Depth => {
+            "From white at 0.5 m to black at 32 m, a sixth each time it doubles; without perspective, from the nearest \
+             thing to the farthest"
+        }
+        Channel::Ids => "A colour for each surface",
+        Channel::Illuminance => "Direct light on surfaces, in stops against the exposure that the camera is set for",
+    }
+}
+
+/// Stops against the camera's exposure, and the light that they are: lux seconds, and lux at the camera's shutter.
+fn legend_lines(camera: &Camera) -> Vec<([u8; 3], String)> {
+    let lux_s = PI / exposure::pixel_per_cd_s_m2(camera);
+    let line = |stops: i32| {
+        let lux_s = lux_s * (stops as f32).exp2();
+        let text = format!("{stops:+}   {} lx s   {} lx", rounded(lux_s), rounded(lux_s / camera.shutter_s));
+        (false_color(stops as f32), text)
+    };
+    (FALSE_STOPS.0..=FALSE_STOPS.1).rev().map(line).collect()
+}
+
+/// Two or three digits that matter.
+fn rounded(value: f32) -> String {
+    match value {
+        v if v < 1.0 => format!("{v:.2}"),
+        v if v < 100.0 => format!("{v:.1}"),
+        v => format!("{v:.0}"),
+    }
+}
+
+fn paint_legend(painter: &Painter, view: Rect, camera: &Camera) {
+    let lines = legend_lines(camera);
+    let size = vec2(SWATCH.0 + 168.0, SWATCH.1 * lines.len() as f32 + 30.0);
+    let place = Rect::from_min_size(view.left_bottom() + vec2(8.0, -size.y - 8.0), size);
+    painter.rect_filled(place, 4.0, Color32::from_black_alpha(190));
+    let font = FontId::proportional(12.0);
+    let text =
+        |at: Pos2, text: &str| painter.text(at, Align2::LEFT_CENTER, text, font.clone(), Color32::from_gray(230));
+    text(place.min + vec2(8.0, 12.0), "Stops against the exposure set");
+    for (row, ([r, g, b], line)) in lines.iter().enumerate() {
+        let corner = place.min + vec2(8.0, 24.0 + SWATCH.1 * row as f32);
+        painter.rect_filled(Rect::from_min_size(corner, SWATCH.into()), 0.0, Color32::from_rgb(*r, *g, *b));
+        text(corner + vec2(SWATCH.0 + 8.0, 0.5 * SWATCH.1), line);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_legend_names_the_light_that_the_camera_is_set_for() {
+        // ISO 100, f/8: 160 lx s (light_and_camera.md), at 1/125 s 20 000 lx.
+        let camera = Camera { iso: 100.0, f_number: 8.0, shutter_s: 0.008, ..Camera::default() };
+        let lines = legend_lines(&camera);
+        let set = lines.iter().find(|(_, line)| line.starts_with("+0")).unwrap();
+        assert_eq!(set.1, "+0   160 lx s   20000 lx");
+        assert_eq!(lines.len(), 10);
+    }
+}

@@ -1,0 +1,82 @@
+//! What a click in the view means, and what a box that is drawn there holds.
+
+use crate::editor::document::bounds::object_bounds;
+use crate::editor::document::item::Item;
+use crate::editor::document::studio_document::Document;
+use crate::editor::ui::theme;
+use crate::editor::viewport::overlay::{light_at, meter_at, place_of};
+use crate::preview::Pick;
+use crate::scene::{CameraFrame, Scene};
+use eframe::egui::{Color32, CornerRadius, Painter, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui};
+
+/// The thing that a click at `position` means, when the id buffer shows `picked` there. What is locked is passed over.
+pub fn meant(scene: &Scene, frame: &CameraFrame, rect: Rect, position: Pos2, picked: Option<Pick>) -> Option<Item> {
+    if meter_at(scene, frame, rect, position) {
+        return Some(Item::Meter);
+    }
+    let item = match picked {
+        Some(Pick::Light(id)) => Some(Item::Light(id)),
+        Some(Pick::Camera) => Some(Item::Camera),
+        Some(Pick::Object(id)) => Some(light_at(scene, frame, rect, position).unwrap_or(Item::Object(id))),
+        None => light_at(scene, frame, rect, position),
+    };
+    item.filter(|item| !item.is_locked(scene))
+}
+
+/// A box that is drawn with the left button.
+#[derive(Clone, Copy, Debug)]
+pub struct Band {
+    from: Pos2,
+    to: Pos2,
+}
+
+impl Band {
+    /// Takes the mouse in: begins, widens and ends the box. Returns what an ended one holds. `taken` is whether a handle
+    /// has the button.
+    pub fn drag(
+        band: &mut Option<Band>,
+        ui: &Ui,
+        response: &Response,
+        taken: bool,
+        frame: &CameraFrame,
+        document: &Document,
+    ) -> Option<Vec<Item>> {
+        let (alt, origin, position) =
+            ui.input(|i| (i.modifiers.alt, i.pointer.press_origin(), i.pointer.interact_pos()));
+        if response.drag_started_by(PointerButton::Primary)
+            && !taken
+            && !alt
+            && let Some(from) = origin
+        {
+            *band = Some(Band { from, to: from });
+        }
+        let drawn = band.as_mut()?;
+        drawn.to = position.unwrap_or(drawn.to);
+        if response.dragged_by(PointerButton::Primary) {
+            return None;
+        }
+        let ended = Rect::from_two_pos(drawn.from, drawn.to);
+        *band = None;
+        Some(held_by(document, frame, response.rect, ended))
+    }
+
+    /// Draws it.
+    pub fn paint(&self, painter: &Painter) {
+        let rect = Rect::from_two_pos(self.from, self.to);
+        painter.rect_filled(rect, 0.0, theme::ACCENT.gamma_multiply(0.07));
+        painter.rect_stroke(rect, CornerRadius::ZERO, Stroke::new(1.0, Color32::from_gray(220)), StrokeKind::Inside);
+    }
+}
+
+/// Things whose middle lies in a box on the screen: visible, and not locked.
+fn held_by(document: &Document, frame: &CameraFrame, view: Rect, band: Rect) -> Vec<Item> {
+    let scene = document.scene();
+    let objects = scene.objects.iter().filter(|o| o.visible).filter_map(|object| {
+        let (low, high) = object_bounds(object, document.assets())?;
+        Some((Item::Object(object.id), 0.5 * (low + high)))
+    });
+    let lights = scene.lights.iter().filter(|l| !l.emitter.is_infinite()).map(|l| (Item::Light(l.id), l.position));
+    let inside = |point| place_of(frame, view, point).is_some_and(|place| band.contains(place));
+    let held = objects.chain(lights).filter(|(item, middle)| inside(*middle) && !item.is_locked(scene));
+    held.map(|(item, _)| item).collect()
+}

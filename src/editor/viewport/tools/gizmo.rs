@@ -1,0 +1,346 @@
+//! Handles for moving, turning and sizing the selected things, over the viewport.
+
+use crate::editor::commands::command::Handle;
+use crate::editor::document::action::Action;
+use crate::editor::document::item::Item;
+use crate::editor::viewport::overlay::paint_text;
+use crate::editor::viewport::tools::floor_handle::FloorHandle;
+use crate::editor::viewport::tools::transform_selection::{Change, Held, pivot};
+use crate::editor::viewport::tools::typed_number::TypedNumber;
+use crate::scene::{CameraFrame, Scene};
+use eframe::egui::{self, Align2, Color32, Event, Rect, Rgba, vec2};
+use glam::{DVec3, Quat, Vec3};
+use transform_gizmo::math::{Pos2, Transform};
+use transform_gizmo::{
+    EnumSet, Gizmo, GizmoConfig, GizmoInteraction, GizmoMode, GizmoOrientation, GizmoResult, GizmoVisuals, mint,
+};
+
+/// Snapping steps: metres, degrees, part of the scale.
+pub const STEP_M: f32 = 0.1;
+/// Degrees of a snapped turn.
+pub const STEP_DEG: f32 = 15.0;
+const STEP_SCALE: f32 = 0.1;
+/// The nearest that handles can be to the eye, metres.
+const NEAR_M: f64 = 0.02;
+/// Below this sine of the view's tilt the floor is seen too much from its edge to slide things over it.
+const LEAST_TILT: f32 = 0.1;
+
+/// What the mouse does over the handles.
+#[derive(Clone, Copy, Debug)]
+pub struct Pointer {
+    /// Where it is, points.
+    pub position: egui::Pos2,
+    /// Nothing covers the viewport there, and the mouse is not navigating.
+    pub is_over: bool,
+    /// The left button went down just now.
+    pub pressed: bool,
+    /// The left button is down.
+    pub down: bool,
+    /// In steps.
+    pub snap: bool,
+}
+
+/// Where the handles are seen from.
+#[derive(Clone, Copy, Debug)]
+pub struct HandleView<'a> {
+    /// What the view frames.
+    pub frame: &'a CameraFrame,
+    /// The view on the screen, points.
+    pub rect: Rect,
+}
+
+/// A drag under way.
+#[derive(Clone, Debug)]
+struct Drag {
+    held: Held,
+    change: Change,
+    typed: TypedNumber,
+}
+
+impl Drag {
+    /// The change with the typed amount, where one is typed: it goes the way that the drag goes.
+    fn told(&self) -> Change {
+        let Some(amount) = self.typed.value() else { return self.change };
+        match self.change {
+            Change::Move(by) => Change::Move(by.normalize_or_zero() * amount),
+            Change::Turn(axis, angle) => Change::Turn(axis, amount.to_radians() * if angle < 0.0 { -1.0 } else { 1.0 }),
+            Change::Size(factor) => {
+                let by = (factor - Vec3::ONE).abs();
+                Change::Size(Vec3::ONE + by / by.max_element().max(1e-6) * (amount - 1.0))
+            }
+        }
+    }
+}
+
+/// The handles of the selection.
+#[derive(Debug, Default)]
+pub struct Handles {
+    gizmo: Gizmo,
+    drag: Option<Drag>,
+    /// The drag was ended by a key; what is left of the press does nothing.
+    spent: bool,
+    /// Whether the selection has handles of the kind on show.
+    shown: bool,
+    floor: FloorHandle,
+}
+
+impl Handles {
+    /// Whether the pointer is on a handle or drags one.
+    pub fn wants_pointer(&self) -> bool {
+        self.is_dragging() || (self.shown && (self.gizmo.is_focused() || self.floor.wants_pointer()))
+    }
+
+    /// Whether something is dragged by them, so that keys are numbers.
+    pub fn is_dragging(&self) -> bool {
+        self.drag.is_some() || self.spent
+    }
+
+    /// Takes the pointer and keys in; returns the change that a drag makes of the things.
+    pub fn update(
+        &mut self,
+        scene: &Scene,
+        items: &[Item],
+        handle: Handle,
+        view: HandleView<'_>,
+        pointer: Pointer,
+        keys: &[Event],
+    ) -> Option<Action> {
+        let place = pivot(scene, items, handle);
+        self.shown = place.is_some();
+        let Some(place) = place else {
+            self.reset();
+            return None;
+        };
+        self.spent &= pointer.down;
+        let change = self.dragged(scene, items, handle, place, view, pointer).filter(|_| !self.spent);
+        let Some(change) = change else {
+            self.drag = None;
+            return None;
+        };
+        if self.drag.is_none() {
+            let held = Held::new(scene, items, handle)?;
+            self.drag = Some(Drag { held, change, typed: TypedNumber::default() });
+        }
+        let drag = self.drag.as_mut()?;
+        drag.change = change;
+        drag.typed.take(keys);
+        let action = drag.held.changed(drag.told());
+        if drag.typed.is_finished() {
+            self.give_up();
+        }
+        action
+    }
+
+    /// What the pointer has done to the things since the drag began.
+    fn dragged(
+        &mut self,
+        scene: &Scene,
+        items: &[Item],
+        handle: Handle,
+        place: Vec3,
+        HandleView { frame, rect }: HandleView<'_>,
+        pointer: Pointer,
+    ) -> Option<Change> {
+        let mut config = config(handle, frame, rect, pointer.snap, place);
+        let on_floor = handle == Handle::Move
+            && items.iter().any(|item| matches!(item, Item::Object(_)))
+            && frame.forward().y.abs() > LEAST_TILT;
+        if on_floor {
+            config.modes.remove(GizmoMode::TranslateView);
+        }
+        self.gizmo.update_config(config);
+        let target = target(scene, items, handle, place);
+        if on_floor {
+            // The ring in the middle slides things over the floor; the library's own would lift them off it.
+            if !self.gizmo.is_focused() || self.floor.is_dragged() {
+                let moved = self.floor.update(place, frame, rect, pointer);
+                if self.floor.wants_pointer() {
+                    self.gizmo.update(GizmoInteraction::default(), &[target]);
+                    return moved.map(Change::Move);
+                }
+            }
+        } else {
+            self.floor = FloorHandle::default();
+        }
+        let interaction = GizmoInteraction {
+            cursor_pos: (pointer.position.x, pointer.position.y),
+            hovered: pointer.is_over,
+            drag_started: pointer.is_over && pointer.pressed,
+            dragging: pointer.down,
+        };
+        self.gizmo.update(interaction, &[target]).map(|(result, _)| change_of(result))
+    }
+
+    /// Ends the drag; the button may still be held.
+    pub fn give_up(&mut self) {
+        self.spent = self.is_dragging();
+        self.drag = None;
+    }
+
+    /// Forgets a drag, because there is nothing selected that has handles.
+    pub fn reset(&mut self) {
+        *self = Handles::default();
+    }
+
+    /// Draws them, and how far a drag has come.
+    pub fn paint(&self, painter: &egui::Painter, pointer: Option<egui::Pos2>) {
+        if !self.shown {
+            return;
+        }
+        let data = self.gizmo.draw();
+        let vertices = data.vertices.iter().zip(&data.colors).map(|(pos, [r, g, b, a])| egui::epaint::Vertex {
+            pos: egui::pos2(pos[0], pos[1]),
+            uv: egui::epaint::WHITE_UV,
+            color: Color32::from(Rgba::from_rgba_premultiplied(*r, *g, *b, *a)),
+        });
+        let mesh = egui::Mesh { indices: data.indices.clone(), vertices: vertices.collect(), ..egui::Mesh::default() };
+        painter.add(mesh);
+        self.floor.paint(painter);
+        if let (Some(drag), Some(at)) = (&self.drag, pointer) {
+            paint_text(painter, at + vec2(18.0, -18.0), Align2::LEFT_BOTTOM, &amount(drag), Color32::WHITE);
+        }
+    }
+}
+
+/// How far a drag has come: as typed, or as measured with a hint that it can be typed.
+fn amount(drag: &Drag) -> String {
+    let unit = match drag.change {
+        Change::Move(_) => " m",
+        Change::Turn(..) => "\u{b0}",
+        Change::Size(_) => " times",
+    };
+    let number = match drag.change {
+        _ if !drag.typed.text().is_empty() => return format!("{}{unit}    Enter sets it", drag.typed.text()),
+        Change::Move(by) => format!("{:.2}", by.length()),
+        Change::Turn(_, angle) => format!("{:.1}", angle.to_degrees().abs()),
+        Change::Size(factor) => {
+            let most = factor.to_array().into_iter().max_by(|a, b| (a - 1.0).abs().total_cmp(&(b - 1.0).abs()));
+            format!("{:.2}", most.unwrap_or(1.0))
+        }
+    };
+    format!("{number}{unit}")
+}
+
+fn change_of(result: GizmoResult) -> Change {
+    let vector = |v: mint::Vector3<f64>| DVec3::new(v.x, v.y, v.z).as_vec3();
+    match result {
+        GizmoResult::Translation { total, .. } => Change::Move(vector(total)),
+        // The library tells the angle on the screen, which runs the other way.
+        GizmoResult::Rotation { axis, total, .. } => Change::Turn(vector(axis).normalize_or(Vec3::Y), -total as f32),
+        GizmoResult::Scale { total } => Change::Size(vector(total)),
+        GizmoResult::Arcball { total, .. } => {
+            let turn = Quat::from_xyzw(total.v.x as f32, total.v.y as f32, total.v.z as f32, total.s as f32);
+            let (axis, angle) = turn.normalize().to_axis_angle();
+            Change::Turn(axis, angle)
+        }
+    }
+}
+
+/// The things as the handles see them: a place, and the axes of what is sized.
+fn target(scene: &Scene, items: &[Item], handle: Handle, place: Vec3) -> Transform {
+    let rotation = match (handle, items) {
+        (Handle::Size, [Item::Object(id)]) => scene.object(*id).map(|object| object.transform.rotation()),
+        (Handle::Size, [Item::Light(id)]) => {
+            scene.light(*id).map(|light| Quat::from_mat3a(&scene.light_frame(light).matrix3))
+        }
+        _ => None,
+    };
+    let (q, [x, y, z]) = (rotation.unwrap_or(Quat::IDENTITY).as_dquat(), place.as_dvec3().to_array());
+    Transform::from_scale_rotation_translation(
+        mint::Vector3 { x: 1.0, y: 1.0, z: 1.0 },
+        mint::Quaternion { s: q.w, v: mint::Vector3 { x: q.x, y: q.y, z: q.z } },
+        mint::Vector3 { x, y, z },
+    )
+}
+
+fn config(handle: Handle, frame: &CameraFrame, rect: Rect, snap: bool, place: Vec3) -> GizmoConfig {
+    let modes: EnumSet<GizmoMode> = match handle {
+        Handle::Move => GizmoMode::all_translate(),
+        Handle::Turn => GizmoMode::all_rotate(),
+        Handle::Size => GizmoMode::all_scale(),
+    };
+    GizmoConfig {
+        view_matrix: rows(frame.world_from_camera.inverse()),
+        projection_matrix: projection(frame, f64::from((place - frame.position()).length())),
+        viewport: transform_gizmo::Rect::from_min_max(
+            Pos2::new(rect.min.x, rect.min.y),
+            Pos2::new(rect.max.x, rect.max.y),
+        ),
+        modes,
+        orientation: if handle == Handle::Size { GizmoOrientation::Local } else { GizmoOrientation::Global },
+        snapping: snap,
+        snap_angle: STEP_DEG.to_radians(),
+        snap_distance: STEP_M,
+        snap_scale: STEP_SCALE,
+        visuals: GizmoVisuals { gizmo_size: 70.0, stroke_width: 3.5, ..GizmoVisuals::default() },
+        ..GizmoConfig::default()
+    }
+}
+
+fn rows(affine: glam::Affine3A) -> mint::RowMatrix4<f64> {
+    let m = glam::Mat4::from(affine).as_dmat4();
+    [m.row(0).to_array(), m.row(1).to_array(), m.row(2).to_array(), m.row(3).to_array()].into()
+}
+
+/// The frame's projection with depth from -1 to 1, which the handles' library expects, for handles so far away.
+fn projection(frame: &CameraFrame, distance_m: f64) -> mint::RowMatrix4<f64> {
+    let (x, y) = (1.0 / f64::from(frame.half_extent.x), 1.0 / f64::from(frame.half_extent.y));
+    let far = 2.0 * distance_m + 100.0;
+    let (a, b) = ((far + NEAR_M) / (NEAR_M - far), 2.0 * far * NEAR_M / (NEAR_M - far));
+    [[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, a, b], [0.0, 0.0, -1.0, 0.0]].into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::document::catalog;
+    use crate::editor::viewport::studio_view::StudioView;
+    use crate::scene::Aim;
+
+    fn scene_with_light() -> (Scene, Item) {
+        let mut scene = Scene::default();
+        let mut light = catalog::light_named("Softbox 60 x 90").unwrap();
+        light.position = Vec3::new(0.0, 1.1, 0.0);
+        light.aim = Aim::Point(Vec3::new(0.0, 1.1, -2.0));
+        let item = Action::AddLight(Box::new(light)).apply(&mut scene).unwrap()[0];
+        (scene, item)
+    }
+
+    #[test]
+    fn dragging_the_middle_of_the_handles_moves_a_light_with_the_pointer() {
+        let (mut scene, item) = scene_with_light();
+        let view = StudioView::default();
+        let rect = Rect::from_min_size(egui::pos2(100.0, 50.0), vec2(800.0, 600.0));
+        let frame = view.frame(800.0 / 600.0);
+        let mut handles = Handles::default();
+        let start = rect.center();
+        let mut pointer = Pointer { position: start, is_over: true, pressed: false, down: false, snap: false };
+        let view = HandleView { frame: &frame, rect };
+        handles.update(&scene, &[item], Handle::Move, view, pointer, &[]);
+        assert!(handles.wants_pointer(), "the pointer is on the middle handle");
+        for (pressed, x) in [(true, 0.0), (false, 30.0), (false, 60.0)] {
+            pointer = Pointer { position: start + vec2(x, 0.0), pressed, down: true, ..pointer };
+            if let Some(action) = handles.update(&scene, &[item], Handle::Move, view, pointer, &[]) {
+                action.apply(&mut scene).unwrap();
+            }
+        }
+        let place = frame.project(scene.lights[0].position).unwrap();
+        assert!((place - glam::Vec2::new(0.5 + 60.0 / 800.0, 0.5)).length() < 5e-3, "{place}");
+    }
+
+    #[test]
+    fn a_typed_number_goes_the_way_of_the_drag() {
+        let (scene, item) = scene_with_light();
+        let held = Held::new(&scene, &[item], Handle::Move).unwrap();
+        let mut drag = Drag { held, change: Change::Move(Vec3::new(0.0, -0.2, 0.0)), typed: TypedNumber::default() };
+        assert_eq!(drag.told(), drag.change);
+        drag.typed.take(&[Event::Text("1.5".into())]);
+        assert_eq!(drag.told(), Change::Move(Vec3::new(0.0, -1.5, 0.0)));
+        drag.change = Change::Turn(Vec3::Y, -0.1);
+        assert_eq!(drag.told(), Change::Turn(Vec3::Y, -1.5_f32.to_radians()));
+        drag.change = Change::Size(Vec3::new(1.0, 0.8, 1.0));
+        assert_eq!(drag.told(), Change::Size(Vec3::new(1.0, 1.5, 1.0)));
+        drag.change = Change::Size(Vec3::splat(1.2));
+        assert_eq!(drag.told(), Change::Size(Vec3::splat(1.5)));
+    }
+}

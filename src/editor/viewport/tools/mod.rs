@@ -1,0 +1,9 @@
+//! Tools that move things in the viewport: transform handles, typed amounts, placing a light by its highlight or light.
+
+pub mod floor_handle;
+pub mod gizmo;
+pub mod place_light;
+pub mod place_light_drag;
+pub mod surface_pick;
+pub mod transform_selection;
+pub mod typed_number;

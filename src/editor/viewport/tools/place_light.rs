@@ -1,0 +1,242 @@
+//! A light placed by what it does: where its highlight, its light, or the shadow of what it is aimed at falls on a
+//! surface.
+
+use crate::editor::viewport::tools::surface_pick::SurfaceHit;
+use crate::scene::{Aim, Emitter, Light, LightId, Scene};
+
+/// What is put on the point of a surface that the pointer shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Swing {
+    /// The highlight: the mirror image of the light, as the camera sees it.
+    Highlight,
+    /// The light itself: it falls on the point straight on.
+    Light,
+    /// The shadow of the point that it is aimed at: of a nose on a cheek, of a head on the paper.
+    Shadow,
+}
+
+impl Swing {
+    /// All of them, in menu order.
+    pub const ALL: [Swing; 3] = [Swing::Highlight, Swing::Light, Swing::Shadow];
+
+    /// What a menu calls it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Swing::Highlight => "Place its highlight",
+            Swing::Light => "Place its light",
+            Swing::Shadow => "Place its shadow",
+        }
+    }
+
+    /// What a tip says of it.
+    pub fn tip(self) -> &'static str {
+        match self {
+            Swing::Highlight => "Drag over a face: the light swings round so that the camera sees its highlight there",
+            Swing::Light => "Drag over a face: the light swings round so that it falls there straight on",
+            Swing::Shadow => {
+                "Drag to where the shadow of the point that it is aimed at shall fall: of a nose on a cheek, of a head on \
+                 the paper"
+            }
+        }
+    }
+
+    /// What the mouse does, for a light of this name.
+    pub fn hint(self, light: &str) -> String {
+        let what = match self {
+            Swing::Highlight => "where the camera shall see the highlight of",
+            Swing::Light => "where straight light shall fall from",
+            Swing::Shadow => "where the shadow of its aim shall fall from",
+        };
+        format!("Press or drag on a surface {what} {light}.    Esc ends")
+    }
+}
+
+/// A light that is being placed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Placing {
+    /// The light.
+    pub light: LightId,
+    /// By what.
+    pub swing: Swing,
+}
+
+/// Why a light cannot be put so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SwingError {
+    /// The camera looks at the other side of the surface, or at its edge.
+    #[error("The camera does not see this side: no highlight can show here.")]
+    Unseen,
+    /// The surface faces away from where the light would stand.
+    #[error("The light would stand behind this surface.")]
+    Behind,
+    /// The point is the one that the light is aimed at.
+    #[error("This is what the light is aimed at: its shadow falls farther behind.")]
+    AtAim,
+    /// The light would have to stand in the floor.
+    #[error("The light would have to stand in the floor.")]
+    Floor,
+}
+
+/// Height below which no light is put, metres.
+const LOWEST_M: f32 = 0.05;
+/// Distance below which no light is put because the floor is in the way, metres.
+const NEAREST_M: f32 = 0.2;
+
+/// Nearer than this a point is the one that a light is aimed at, metres.
+const SAME_POINT_M: f32 = 0.002;
+
+/// The light that does so, at the distance that `start` has from what it is aimed at. For highlight and light it is then
+/// aimed at the point: on its thing, so that it follows the thing. It stands nearer where it would otherwise stand in the
+/// floor.
+///
+/// With `n` the normal, `v` the direction to the camera and `l` that to the light, a mirror shows the light where
+/// `n` is the half vector: `l = 2 (n.v) n - v`. Straight light comes along the normal: `l = n`. The shadow of the aim `a`
+/// falls on the point `p` where the light lies beyond it: `l = a - p`.
+pub fn swung(scene: &Scene, start: &Light, at: &SurfaceHit, swing: Swing) -> Result<Light, SwingError> {
+    let aimed_at = scene.aim_point(&start.aim, start.position);
+    let (centre, direction) = match swing {
+        Swing::Light => (at.point, at.normal),
+        Swing::Highlight => {
+            let view = (scene.camera.position - at.point).try_normalize().ok_or(SwingError::Unseen)?;
+            let cosine = at.normal.dot(view);
+            if cosine <= 1e-3 {
+                return Err(SwingError::Unseen);
+            }
+            (at.point, 2.0 * cosine * at.normal - view)
+        }
+        Swing::Shadow => {
+            let ray = aimed_at - at.point;
+            if ray.length() < SAME_POINT_M {
+                return Err(SwingError::AtAim);
+            }
+            let direction = ray.try_normalize().ok_or(SwingError::AtAim)?;
+            if direction.dot(at.normal) <= 0.0 {
+                return Err(SwingError::Behind);
+            }
+            (aimed_at, direction)
+        }
+    };
+    let wanted_m = match start.aim {
+        Aim::Angles { .. } => (start.position - at.point).length(),
+        Aim::Point(_) | Aim::Object { .. } => (start.position - aimed_at).length(),
+    };
+    let mut distance_m = wanted_m.max(NEAREST_M);
+    if !start.emitter.is_infinite() && centre.y + direction.y * distance_m < LOWEST_M {
+        distance_m = (centre.y - LOWEST_M) / -direction.y;
+        // A point in the floor has a distance under zero, or none.
+        if distance_m.is_nan() || distance_m < NEAREST_M {
+            return Err(SwingError::Floor);
+        }
+    }
+    let aim = match (swing, start.aim) {
+        (Swing::Highlight | Swing::Light, _) => aim_on(scene, at),
+        (Swing::Shadow, Aim::Angles { .. }) => Aim::Point(aimed_at),
+        (Swing::Shadow, aim) => aim,
+    };
+    Ok(Light { position: centre + direction * distance_m, aim, ..start.clone() })
+}
+
+/// The aim at a point of a thing that follows the thing.
+fn aim_on(scene: &Scene, at: &SurfaceHit) -> Aim {
+    let object_from_world = scene.object(at.object).map(|object| object.transform.world_from_object().inverse());
+    match object_from_world.map(|m| m.transform_point3(at.point)).filter(|offset| offset.is_finite()) {
+        Some(offset) => Aim::Object { object: at.object, offset },
+        None => Aim::Point(at.point),
+    }
+}
+
+/// Whether a light can be placed so: it must come from somewhere.
+pub fn can_swing(light: &Light) -> bool {
+    light.emitter != Emitter::Surround
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::document::action::Action;
+    use crate::editor::document::catalog;
+    use crate::scene::ObjectId;
+    use glam::Vec3;
+
+    fn studio() -> (Scene, Light) {
+        let mut scene = Scene::default();
+        let mut ball = catalog::object_named("Chrome ball").unwrap();
+        ball.transform.position = Vec3::new(0.2, 1.4, -0.1);
+        ball.transform.rotation_deg.y = 33.0;
+        Action::AddObject(Box::new(ball)).apply(&mut scene).unwrap();
+        let mut light = catalog::light_named("Softbox 60 x 90").unwrap();
+        light.aim = Aim::Object { object: ObjectId(0), offset: Vec3::ZERO };
+        Action::AddLight(Box::new(light)).apply(&mut scene).unwrap();
+        let light = scene.lights[0].clone();
+        (scene, light)
+    }
+
+    /// A point of the ball in a direction from its middle.
+    fn on_ball(scene: &Scene, direction: Vec3) -> SurfaceHit {
+        let normal = direction.normalize();
+        let point = scene.objects[0].transform.position + 0.1 * normal;
+        SurfaceHit { object: ObjectId(0), point, normal, t: 1.0 }
+    }
+
+    #[test]
+    fn the_half_vector_is_the_normal_where_a_highlight_is_put() {
+        let (mut scene, start) = studio();
+        let distance = (start.position - scene.aim_point(&start.aim, start.position)).length();
+        for direction in [Vec3::new(0.1, 0.2, 1.0), Vec3::new(-0.5, 0.6, 0.7), Vec3::new(0.7, -0.1, 0.5)] {
+            let at = on_ball(&scene, direction);
+            let light = swung(&scene, &start, &at, Swing::Highlight).unwrap();
+            let [to_light, to_camera] = [light.position, scene.camera.position].map(|p| (p - at.point).normalize());
+            let half = (to_light + to_camera).normalize();
+            assert!((half - at.normal).length() < 1e-5, "{direction}: {half}, not {}", at.normal);
+            scene.lights[0] = light.clone();
+            let axis = -Vec3::from(scene.light_frame(&light).matrix3.z_axis);
+            let to_point = at.point - light.position;
+            assert!(axis.cross(to_point).length() < 1e-5 && axis.dot(to_point) > 0.0, "the axis passes the point");
+            assert!((to_point.length() - distance).abs() < 1e-5, "at the same distance");
+        }
+    }
+
+    #[test]
+    fn straight_light_comes_along_the_normal() {
+        let (scene, start) = studio();
+        let at = on_ball(&scene, Vec3::new(-0.9, 0.3, -0.2));
+        let light = swung(&scene, &start, &at, Swing::Light).unwrap();
+        let from = (light.position - at.point).normalize();
+        assert!((from - at.normal).length() < 1e-6);
+        assert!((scene.aim_point(&light.aim, light.position) - at.point).length() < 1e-6);
+    }
+
+    #[test]
+    fn the_aim_lies_between_the_light_and_its_shadow() {
+        let (scene, mut start) = studio();
+        start.aim = Aim::Object { object: ObjectId(0), offset: Vec3::new(0.0, 0.0, 0.1) };
+        let nose = scene.aim_point(&start.aim, start.position);
+        let distance = (start.position - nose).length();
+        // On a paper behind, and on a cheek beside.
+        for (point, normal) in [(Vec3::new(0.8, 1.1, -2.0), Vec3::Z), (nose + Vec3::new(0.02, -0.02, -0.01), Vec3::Z)] {
+            let at = SurfaceHit { object: ObjectId(0), point, normal, t: 1.0 };
+            let light = swung(&scene, &start, &at, Swing::Shadow).unwrap();
+            let (to_nose, to_shadow) = (nose - light.position, point - light.position);
+            assert!(to_nose.cross(to_shadow).length() < 1e-4 && to_nose.dot(to_shadow) > 0.0, "{}", light.position);
+            assert!((to_nose.length() - distance).abs() < 1e-5 && to_shadow.length() > distance);
+            assert_eq!(light.aim, start.aim);
+        }
+        let cap = SurfaceHit { object: ObjectId(0), point: nose, normal: Vec3::Z, t: 1.0 };
+        assert_eq!(swung(&scene, &start, &cap, Swing::Shadow), Err(SwingError::AtAim));
+        let back = SurfaceHit { point: Vec3::new(0.2, 1.4, -2.0), normal: Vec3::NEG_Z, ..cap };
+        assert_eq!(swung(&scene, &start, &back, Swing::Shadow), Err(SwingError::Behind));
+    }
+
+    #[test]
+    fn no_highlight_where_the_camera_sees_nothing_and_no_light_in_the_floor() {
+        let (mut scene, start) = studio();
+        let behind = on_ball(&scene, Vec3::NEG_Z);
+        assert_eq!(swung(&scene, &start, &behind, Swing::Highlight), Err(SwingError::Unseen));
+        let below = on_ball(&scene, Vec3::new(0.0, -1.0, 0.1));
+        let nearer = swung(&scene, &start, &below, Swing::Light).unwrap();
+        assert!((nearer.position.y - LOWEST_M).abs() < 1e-5, "{}", nearer.position);
+        assert!(((nearer.position - below.point).normalize() - below.normal).length() < 1e-5, "the direction holds");
+        scene.objects[0].transform.position.y = 0.15;
+        assert_eq!(swung(&scene, &start, &on_ball(&scene, Vec3::NEG_Y), Swing::Light), Err(SwingError::Floor));
+    }
+}

@@ -1,0 +1,413 @@
+//! The middle of the window: the live preview with navigation, selection and handles.
+
+use crate::editor::commands::command::{Centre, Command, Handle};
+use crate::editor::commands::item_menu::{item_menu_ui, nothing_menu_ui};
+use crate::editor::document::action::Action;
+use crate::editor::document::bounds::bounds;
+use crate::editor::document::item::Item;
+use crate::editor::document::selection::{Selection, centre};
+use crate::editor::document::studio_document::Document;
+use crate::editor::ui::theme;
+use crate::editor::viewport::axis_widget::{self, axis_cross_ui};
+use crate::editor::viewport::floor_plan;
+use crate::editor::viewport::light_view;
+use crate::editor::viewport::live::channel_menu::look_menu_ui;
+use crate::editor::viewport::live::preview_host::PreviewHost;
+use crate::editor::viewport::live::traced_view::LiveView;
+use crate::editor::viewport::navigation::{camera_as_view, light_as_view, moved_camera, moved_light, steer};
+use crate::editor::viewport::overlay;
+use crate::editor::viewport::picking::Band;
+use crate::editor::viewport::studio_view::StudioView;
+use crate::editor::viewport::tools::gizmo::{HandleView, Handles, Pointer};
+use crate::editor::viewport::tools::place_light_drag::SwingDrag;
+use crate::preview::{Overlay, Pick};
+use crate::scene::{Camera, CameraFrame, Scene};
+use eframe::egui::{self, Align2, Color32, EventFilter, FontId, Pos2, Rect, Response, RichText, Sense, Ui, vec2};
+use glam::{Vec2, Vec3};
+
+/// Room around the picture's frame in the camera view.
+const FRAME_MARGIN: f32 = 0.92;
+
+/// What the viewport is told for one frame.
+#[derive(Clone, Copy, Debug)]
+pub struct ViewportInput<'a> {
+    /// The open studio.
+    pub document: &'a Document,
+    /// What is selected.
+    pub selection: &'a Selection,
+    /// What is looked through: the studio's eye, the camera or a light.
+    pub centre: Centre,
+    /// The handles to show.
+    pub handles: Handle,
+    /// Width over height of the picture to be rendered.
+    pub picture_aspect: f32,
+}
+
+/// The viewport's own state.
+#[derive(Debug)]
+pub struct Viewport {
+    /// The free view.
+    pub view: StudioView,
+    /// Whether navigation in the camera view moves the camera.
+    pub camera_follows: bool,
+    /// Whether handles go in steps; Ctrl turns it round.
+    pub snap: bool,
+    /// The light that is placed by its highlight or its light, if one is.
+    pub swing: Option<SwingDrag>,
+    /// The live preview.
+    pub preview: PreviewHost,
+    /// The live view as the tracer sees it.
+    pub live: LiveView,
+    handles: Handles,
+    band: Option<Band>,
+}
+
+impl Viewport {
+    /// A viewport with a preview to come.
+    pub fn new(preview: PreviewHost, live: LiveView) -> Self {
+        Viewport {
+            view: StudioView::default(),
+            camera_follows: false,
+            snap: false,
+            swing: None,
+            preview,
+            live,
+            handles: Handles::default(),
+            band: None,
+        }
+    }
+
+    /// Whether handles, a highlight or a box are dragged, so that keys are numbers and Esc gives the drag up.
+    pub fn is_dragging(&self) -> bool {
+        let swings = self.swing.as_ref().is_some_and(SwingDrag::is_dragging);
+        self.handles.is_dragging() || swings || self.band.is_some()
+    }
+
+    /// Whether the pointer is on a handle.
+    pub fn is_over_handle(&self) -> bool {
+        self.handles.wants_pointer()
+    }
+
+    /// Ends a drag of handles, a highlight or a box; the button may still be held.
+    pub fn give_up_drag(&mut self) {
+        self.band = None;
+        self.handles.give_up();
+        if let Some(swing) = &mut self.swing {
+            swing.give_up();
+        }
+    }
+
+    /// Draws it and takes mouse and keys in.
+    pub fn ui(&mut self, ui: &mut Ui, input: ViewportInput<'_>, out: &mut Vec<Command>) {
+        let size = ui.available_size().max(vec2(8.0, 8.0));
+        let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+        crate::editor::ui::widgets::named(ui, &response, "Viewport");
+        self.navigate(ui, &response, input, out);
+        let scene = input.document.scene();
+        let (frame, picture) = self.frame(scene, input, rect);
+        // Another choice ends what was about the light.
+        let chosen = input.selection.lights().last().copied();
+        self.swing = self.swing.take().filter(|swing| Some(swing.placing().light) == chosen);
+        if let Some(swing) = &mut self.swing {
+            self.handles.reset();
+            self.band = None;
+            if !swing.drag(ui, &response, input.document, &frame, out) {
+                self.swing = None;
+            }
+        } else {
+            self.handle_drag(ui, &response, rect, &frame, input, out);
+            self.band(ui, &response, &frame, input, out);
+            self.click(ui, &response, &frame, input, out);
+            self.context_menu(ui, &response, &frame, input, out);
+        }
+        self.paint(ui, rect, frame, picture, input);
+        let on_processor = self.preview.failure().is_some();
+        look_menu_ui(ui, rect, scene, &mut self.preview.look, on_processor);
+        self.processor_ui(ui, rect);
+        if input.centre == Centre::Studio {
+            axis_cross_ui(ui, rect, &self.view, &frame, out);
+        }
+    }
+
+    /// What the view frames, and where the picture's frame lies in it (camera view only).
+    fn frame(&self, scene: &Scene, input: ViewportInput<'_>, rect: Rect) -> (CameraFrame, Option<Rect>) {
+        let aspect = rect.width() / rect.height();
+        match input.centre {
+            Centre::Camera => {
+                let mut frame = scene.camera_frame(input.picture_aspect);
+                let height = (rect.width() / input.picture_aspect).min(rect.height()) * FRAME_MARGIN;
+                let picture = Rect::from_center_size(rect.center(), vec2(height * input.picture_aspect, height));
+                frame.half_extent *= Vec2::new(rect.width() / picture.width(), rect.height() / picture.height());
+                (frame, Some(picture))
+            }
+            Centre::Light(id) => {
+                let frame = scene.light(id).map(|light| light_view::frame(scene, light, aspect));
+                (frame.unwrap_or_else(|| self.view.frame(aspect)), None)
+            }
+            Centre::Studio | Centre::Picture => (self.view.frame(aspect), None),
+        }
+    }
+
+    fn navigate(&mut self, ui: &Ui, response: &Response, input: ViewportInput<'_>, out: &mut Vec<Command>) {
+        if response.clicked() || response.drag_started() {
+            response.request_focus();
+        }
+        if response.has_focus() {
+            // Esc is a command of its own here, not the way to leave the view.
+            let filter =
+                EventFilter { horizontal_arrows: true, vertical_arrows: true, escape: true, ..EventFilter::default() };
+            ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
+        }
+        let scene = input.document.scene();
+        let light = if let Centre::Light(id) = input.centre { scene.light(id) } else { None };
+        let (mut view, pivot) = match (input.centre, light) {
+            (Centre::Camera, _) => (camera_as_view(scene), None),
+            (_, Some(light)) => (light_as_view(scene, light), None),
+            _ => (self.view, input.selection.centre(scene)),
+        };
+        let before = view;
+        let kept_aim = steer(ui, response, &mut view, pivot, self.handles.wants_pointer());
+        if view == before {
+            return;
+        }
+        if let Some(light) = light {
+            out.push(Command::Do(Action::SetLight(Box::new(moved_light(light, &view, kept_aim)))));
+        } else if input.centre == Centre::Camera && self.camera_follows {
+            out.push(Command::Do(Action::SetCamera(Box::new(moved_camera(scene, &view, kept_aim)))));
+        } else {
+            if input.centre == Centre::Camera {
+                out.push(Command::Show(Centre::Studio));
+            }
+            self.view = view;
+        }
+    }
+
+    fn handle_drag(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        rect: Rect,
+        frame: &CameraFrame,
+        input: ViewportInput<'_>,
+        out: &mut Vec<Command>,
+    ) {
+        let scene = input.document.scene();
+        let items = handled(scene, input);
+        let Some(position) = ui.input(|i| i.pointer.latest_pos()).filter(|_| !items.is_empty()) else {
+            self.handles.reset();
+            return;
+        };
+        let on_cross = input.centre == Centre::Studio && axis_widget::place(rect).contains(position);
+        let pointer = ui.input(|i| Pointer {
+            position,
+            is_over: response.contains_pointer() && !on_cross && !i.modifiers.alt,
+            pressed: i.pointer.primary_pressed(),
+            down: i.pointer.primary_down(),
+            snap: i.modifiers.command != self.snap,
+        });
+        let keys = if self.handles.is_dragging() { ui.input(|i| i.events.clone()) } else { Vec::new() };
+        let view = HandleView { frame, rect };
+        if let Some(action) = self.handles.update(scene, &items, input.handles, view, pointer, &keys) {
+            out.push(Command::Do(action));
+        }
+    }
+
+    /// Draws and ends a box that selects what lies in it.
+    fn band(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        frame: &CameraFrame,
+        input: ViewportInput<'_>,
+        out: &mut Vec<Command>,
+    ) {
+        let taken = self.handles.wants_pointer();
+        if let Some(chosen) = Band::drag(&mut self.band, ui, response, taken, frame, input.document) {
+            let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
+            if !adds {
+                out.push(Command::Select(None));
+            }
+            out.push(Command::SelectAlso(chosen));
+        }
+    }
+
+    /// The thing under a place of the view.
+    fn under(&self, ui: &Ui, rect: Rect, frame: &CameraFrame, scene: &Scene, position: Pos2) -> Option<Item> {
+        let pixel = (position - rect.min) * ui.pixels_per_point();
+        let picked = self.preview.pick((pixel.x.max(0.0) as u32, pixel.y.max(0.0) as u32));
+        crate::editor::viewport::picking::meant(scene, frame, rect, position, picked)
+    }
+
+    fn click(
+        &self,
+        ui: &Ui,
+        response: &Response,
+        frame: &CameraFrame,
+        input: ViewportInput<'_>,
+        out: &mut Vec<Command>,
+    ) {
+        let Some(position) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return };
+        let (alt, adds) = ui.input(|i| (i.modifiers.alt, i.modifiers.shift || i.modifiers.command));
+        if self.handles.wants_pointer() || alt {
+            return;
+        }
+        let item = self.under(ui, response.rect, frame, input.document.scene(), position);
+        out.extend(match (item, adds) {
+            (Some(item), true) => Some(Command::ToggleSelected(item)),
+            // A click beside with a key held keeps what was gathered.
+            (None, true) => None,
+            (item, false) => Some(Command::Select(item)),
+        });
+    }
+
+    /// The other button selects what is under it, unless it is selected, and opens the menu of the selection.
+    fn context_menu(
+        &self,
+        ui: &Ui,
+        response: &Response,
+        frame: &CameraFrame,
+        input: ViewportInput<'_>,
+        out: &mut Vec<Command>,
+    ) {
+        let scene = input.document.scene();
+        if let Some(position) = response.interact_pointer_pos().filter(|_| response.secondary_clicked()) {
+            let item = self.under(ui, response.rect, frame, scene, position);
+            let is_selected = item.is_some_and(|item| input.selection.contains(item));
+            out.extend((!is_selected).then_some(Command::Select(item)));
+        }
+        response.context_menu(|ui| match input.selection.last() {
+            Some(item) => item_menu_ui(ui, scene, item, input.selection, out),
+            None => nothing_menu_ui(ui, out),
+        });
+    }
+
+    fn paint(&mut self, ui: &mut Ui, rect: Rect, frame: CameraFrame, picture: Option<Rect>, input: ViewportInput<'_>) {
+        let painter = ui.painter_at(rect);
+        let pixels = rect.size() * ui.pixels_per_point();
+        let size = ((pixels.x.round() as u32).max(1), (pixels.y.round() as u32).max(1));
+        let overlay = self.overlay_of(input);
+        let through_camera = input.centre == Centre::Camera;
+        let traced = self.live.show(ui.ctx(), input.document, frame, size, through_camera, self.preview.look);
+        let preview = self.preview.show(ui.ctx(), input.document, frame, size, overlay, traced.is_some());
+        if traced.or(preview).is_none() {
+            painter.rect_filled(rect, 0.0, theme::SURROUND);
+        }
+        for texture in [traced, preview].into_iter().flatten() {
+            let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+            painter.image(texture, rect, uv, Color32::WHITE);
+        }
+        self.preview.paint_over(&painter, rect);
+        if traced.or(preview).is_none() {
+            let text = "Preparing the live view\u{2026}";
+            painter.text(
+                rect.center(),
+                Align2::CENTER_CENTER,
+                text,
+                FontId::proportional(13.0),
+                Color32::from_gray(140),
+            );
+        }
+        let scene = input.document.scene();
+        if let Some(picture) = picture {
+            overlay::paint_picture_frame(&painter, rect, picture);
+        }
+        let side = self.view.side.filter(|_| input.centre == Centre::Studio);
+        if let Some(side) = side {
+            floor_plan::paint_grid(&painter, &frame, rect, side, self.view.target, self.view.half_height_m());
+            floor_plan::paint_distances(&painter, scene, &frame, rect, input.selection);
+        }
+        if traced.is_some() || self.live.has_failed() {
+            overlay::paint_note(&painter, rect, &self.live.status(), side.is_some());
+        }
+        if let Centre::Light(id) = input.centre {
+            if let Some(light) = scene.light(id) {
+                let distance_m = (scene.aim_point(&light.aim, light.position) - light.position).length();
+                light_view::paint(&painter, light, distance_m, &frame, rect);
+                let text =
+                    format!("Through {}: orbit swings it, the wheel moves it nearer or away.    Esc ends", light.name);
+                light_view::paint_banner(&painter, rect, &text);
+            }
+        } else {
+            let all = input.centre == Centre::Studio;
+            overlay::paint_labels(&painter, scene, &frame, rect, input.selection, all, side.is_none());
+        }
+        overlay::paint_meter(&painter, scene, &frame, rect);
+        if let Some(swing) = &self.swing {
+            swing.paint(&painter, scene, &frame, rect);
+        } else if !handled(scene, input).is_empty() {
+            let pointer = ui.input(|i| i.pointer.latest_pos());
+            self.handles.paint(&painter, pointer);
+        }
+        if let Some(band) = &self.band {
+            band.paint(&painter);
+        }
+    }
+
+    /// Says that the processor draws the view, and why.
+    fn processor_ui(&mut self, ui: &mut Ui, rect: Rect) {
+        let Some(why) = self.preview.failure().map(str::to_owned) else { return };
+        let place = Rect::from_min_size(rect.min + vec2(8.0, 38.0), vec2((rect.width() - 16.0).min(420.0), 24.0));
+        ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
+            ui.horizontal(|ui| {
+                let text = RichText::new("Drawn by the processor, without shadows").small().color(theme::ACCENT);
+                ui.label(text).on_hover_text(&why);
+                let can_retry = self.preview.has_device();
+                let tip = format!("{why}\n\nBuild the view on the graphics device anew");
+                if can_retry && ui.small_button("Try again").on_hover_text(tip).clicked() {
+                    self.preview.restart(ui.ctx());
+                }
+            });
+        });
+    }
+
+    /// Brings the selection, or everything that stands in the studio, into view.
+    pub fn frame_selection(&mut self, document: &Document, selection: &Selection) {
+        let (low, high) = bounds(document, selection).unwrap_or((Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 2.0, 1.0)));
+        self.view.frame_box(low, high);
+    }
+
+    /// The camera at the studio view's eye, aimed the same way.
+    pub fn camera_from_view(&self, scene: &Scene) -> Camera {
+        moved_camera(scene, &self.view, false)
+    }
+
+    fn overlay_of(&self, input: ViewportInput<'_>) -> Overlay {
+        let studio = input.centre == Centre::Studio;
+        let pick = |item: &Item| match *item {
+            Item::Object(id) => Some(Pick::Object(id)),
+            Item::Light(id) => Some(Pick::Light(id)),
+            Item::Camera if studio => Some(Pick::Camera),
+            Item::Camera | Item::Room | Item::Meter => None,
+        };
+        // In the camera view the picture counts: only a light that is being worked on shows itself.
+        let lights = match input.centre {
+            Centre::Studio => true,
+            Centre::Camera => !input.selection.lights().is_empty(),
+            Centre::Light(_) | Centre::Picture => false,
+        };
+        Overlay {
+            // From a side the grid with numbers takes its place.
+            grid: studio && self.view.side.is_none(),
+            light_gizmos: lights,
+            camera_gizmo: studio.then_some(input.picture_aspect),
+            selection: input.selection.items().iter().filter_map(pick).collect(),
+            void_color: Vec3::splat(0.012),
+            ..Overlay::default()
+        }
+    }
+}
+
+/// What of the selection the handles hold: what has a place and is not locked there. From the camera's own view its
+/// handles would sit on the lens, and a light that is looked through is steered by the view.
+fn handled(scene: &Scene, input: ViewportInput<'_>) -> Vec<Item> {
+    let mut items = input.selection.movable(scene);
+    match input.centre {
+        Centre::Camera => items.retain(|item| *item != Item::Camera),
+        Centre::Light(_) => items.clear(),
+        Centre::Studio | Centre::Picture => {}
+    }
+    if centre(&items, scene).is_none() {
+        items.clear();
+    }
+    items
+}

@@ -1,0 +1,11 @@
+//! The window: application state, execution of commands, sessions, files and recovery.
+
+pub mod app;
+pub mod dialogs;
+pub mod event_guard;
+pub mod frame_log;
+pub mod native_window;
+pub mod recent;
+pub mod rescue;
+pub mod run_command;
+pub mod session;

@@ -1,0 +1,258 @@
+//! The window that shows the app. The app outlives it: when its graphics device is lost, the window is opened anew.
+
+use crate::editor::EditorError;
+use crate::editor::window::app::{App, Options};
+use crate::editor::window::event_guard;
+use crate::preview::Gpu;
+use eframe::UserEvent;
+use eframe::egui::{Context, Ui, ViewportBuilder, ViewportInfo, Visuals};
+use std::cell::RefCell;
+use std::panic::resume_unwind;
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+use winit::error::EventLoopError;
+use winit::event_loop::EventLoop;
+
+/// A window that lasted less was lost to something that a new one alone does not mend.
+const SHORT_LIFE: Duration = Duration::from_secs(3);
+
+/// A window onto an app that others hold, too.
+#[derive(Debug)]
+struct Window(Rc<RefCell<App>>);
+
+impl eframe::App for Window {
+    fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {
+        self.0.borrow().clear_color(visuals)
+    }
+
+    fn logic(&mut self, ctx: &Context, frame: &mut eframe::Frame) {
+        self.0.borrow_mut().logic(ctx, frame);
+    }
+
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        self.0.borrow_mut().ui(ui, frame);
+    }
+}
+
+/// What outlives a window.
+#[derive(Default)]
+struct Outlives {
+    app: Option<Rc<RefCell<App>>>,
+    /// What the first window begins with.
+    options: Option<Options>,
+    ctx: Option<Context>,
+    /// Windows that were opened.
+    opened: u32,
+}
+
+impl Drop for Outlives {
+    /// A window that ends by a panic leaves the work in a file.
+    fn drop(&mut self) {
+        if std::thread::panicking()
+            && let Some(rescued) = self.rescue()
+        {
+            eprintln!("{}", told(&rescued));
+        }
+    }
+}
+
+impl Outlives {
+    /// Saves unsaved work, if there is any; returns the file, or why there is none.
+    fn rescue(&self) -> Option<Result<PathBuf, String>> {
+        self.app.as_ref()?.try_borrow().ok()?.rescue()
+    }
+
+    /// Whether the last window was lost. What is left of its device goes before another window is made: OpenGL cannot
+    /// take it apart while a window draws with OpenGL.
+    fn is_lost(&self) -> bool {
+        self.app.as_ref().is_some_and(|app| app.borrow_mut().let_lost_device_go())
+    }
+}
+
+/// Opens windows until one is closed by the user.
+pub(in crate::editor) fn run(options: Options) -> Result<(), EditorError> {
+    let mut events = EventLoop::with_user_event().build().map_err(no_display)?;
+    let outlives: Rc<RefCell<Outlives>> = Rc::default();
+    outlives.borrow_mut().options = Some(options);
+    let mut renderer = eframe::Renderer::Wgpu;
+    let mut no_adapter = None;
+    loop {
+        let began = Instant::now();
+        let opened = outlives.borrow().opened;
+        let ended = open(&outlives, &mut events, renderer);
+        if outlives.borrow().opened == opened {
+            // What kept it from opening stands in the log.
+            if renderer == eframe::Renderer::Glow {
+                return Err(no_graphics(no_adapter, outlives.borrow().rescue()));
+            }
+            no_adapter = Gpu::headless().err().map(|error| error.to_string());
+            log::warn!("no graphics adapter draws the window: OpenGL draws it, and the processor the view");
+            renderer = eframe::Renderer::Glow;
+        } else if outlives.borrow().is_lost() {
+            // Lost within moments: to something that another window of the kind does not mend.
+            if began.elapsed() < SHORT_LIFE {
+                renderer = eframe::Renderer::Glow;
+            }
+        } else {
+            match ended {
+                Ok(Ok(())) => return Ok(()),
+                Ok(Err(panic)) => resume_unwind(panic),
+                Err(error) => return Err(broken(&error.to_string(), outlives.borrow().rescue())),
+            }
+        }
+    }
+}
+
+fn open(
+    outlives: &Rc<RefCell<Outlives>>,
+    events: &mut EventLoop<UserEvent>,
+    renderer: eframe::Renderer,
+) -> Result<Result<(), event_guard::Panic>, EventLoopError> {
+    let last = outlives.borrow().ctx.clone();
+    let viewport = ViewportBuilder::default()
+        .with_title("Catchlight")
+        .with_app_id("catchlight")
+        .with_inner_size([1440.0, 900.0])
+        .with_min_inner_size([900.0, 600.0])
+        .with_drag_and_drop(true);
+    let viewport = match &last {
+        Some(ctx) => as_it_was(viewport, &ctx.input(|i| i.viewport().clone())),
+        None => viewport,
+    };
+    // Nothing in the window is finer than its colours, so that dithering would only take time.
+    let native = eframe::NativeOptions { viewport, renderer, dithering: false, ..Default::default() };
+    let outlives = outlives.clone();
+    let create: eframe::AppCreator<'_> = Box::new(move |creation| {
+        let mut outlives = outlives.borrow_mut();
+        let app = match outlives.app.clone() {
+            Some(app) => {
+                app.borrow_mut().move_to(creation);
+                app
+            }
+            None => Rc::new(RefCell::new(App::new(creation, outlives.options.take().unwrap_or_default()))),
+        };
+        if let Some(last) = outlives.ctx.replace(creation.egui_ctx.clone()) {
+            inherit(&last, &creation.egui_ctx);
+        }
+        outlives.app = Some(app.clone());
+        outlives.opened += 1;
+        Ok(Box::new(Window(app)))
+    });
+    let window = eframe::create_native("Catchlight", native, create, events);
+    event_guard::run(events, window)
+}
+
+/// Panels as wide as they were, and threads that wake the last window wake this one.
+fn inherit(last: &Context, ctx: &Context) {
+    let memory = last.memory(Clone::clone);
+    ctx.memory_mut(|new| *new = memory);
+    let ctx = ctx.clone();
+    last.set_request_repaint_callback(move |_| ctx.request_repaint());
+}
+
+/// Where and as large as the last window was.
+fn as_it_was(mut builder: ViewportBuilder, last: &ViewportInfo) -> ViewportBuilder {
+    if let Some(rect) = last.inner_rect {
+        builder = builder.with_inner_size(rect.size());
+    }
+    if let Some(rect) = last.outer_rect {
+        builder = builder.with_position(rect.min);
+    }
+    builder.with_maximized(last.maximized == Some(true)).with_fullscreen(last.fullscreen == Some(true))
+}
+
+/// What became of unsaved work, for the user who has no window any more.
+fn told(rescued: &Result<PathBuf, String>) -> String {
+    match rescued {
+        Ok(path) => format!("the studio was saved as {}", path.display()),
+        Err(why) => format!("the studio's changes are lost, they could not be saved: {why}"),
+    }
+}
+
+fn no_display(error: EventLoopError) -> EditorError {
+    // The reason comes last, after places in source files.
+    let text = error.to_string();
+    EditorError::NoDisplay(text.rsplit(": ").next().unwrap_or(&text).to_owned())
+}
+
+/// `no_adapter` is why wgpu had nothing to draw with, if it was that.
+fn no_graphics(no_adapter: Option<String>, rescued: Option<Result<PathBuf, String>>) -> EditorError {
+    let why = no_adapter.unwrap_or_else(|| "neither Vulkan nor OpenGL can".to_owned());
+    EditorError::NoGraphics(with_rescued(&why, rescued))
+}
+
+fn broken(why: &str, rescued: Option<Result<PathBuf, String>>) -> EditorError {
+    EditorError::Window(with_rescued(why, rescued))
+}
+
+fn with_rescued(why: &str, rescued: Option<Result<PathBuf, String>>) -> String {
+    rescued.map_or_else(|| why.to_owned(), |rescued| format!("{why}; {}", told(&rescued)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::{Action, Command};
+    use crate::io;
+    use eframe::egui::Id;
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    /// An app with a studio from this file and a change that is not saved.
+    fn changed_app(file: &std::path::Path) -> App {
+        std::fs::write(file, io::presets()[0].text).unwrap();
+        let ctx = Context::default();
+        let creation = eframe::CreationContext::_new_kittest(ctx.clone());
+        let mut app = App::new(&creation, Options { initial: Some(file.to_owned()), ..Options::default() });
+        let began = Instant::now();
+        while app.document().path().is_none() {
+            assert!(began.elapsed() < Duration::from_secs(60));
+            app.take_in(&ctx, &mut Vec::new());
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        let notes = Action::SetNotes { name: "Changed".to_owned(), description: String::new() };
+        app.run(Command::Do(notes), None, &ctx);
+        app
+    }
+
+    #[test]
+    fn a_window_that_panics_leaves_the_work_in_a_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let app = Rc::new(RefCell::new(changed_app(&folder.path().join("a.ron"))));
+        let mut outlives = Outlives::default();
+        outlives.app = Some(app.clone());
+        let ended = catch_unwind(AssertUnwindSafe(move || {
+            let _outlives = outlives;
+            // Windows hold the app while they draw.
+            let _drawing = app.borrow_mut();
+            resume_unwind(Box::new("a panic without its message"));
+        }));
+        assert!(ended.is_err());
+        let rescued = io::load_scene(&folder.path().join("a (rescued 1).ron")).unwrap();
+        assert_eq!(rescued.scene.name, "Changed");
+    }
+
+    #[test]
+    fn the_last_words_of_a_lost_window_name_the_file_or_the_loss() {
+        let words = |rescued| broken("no device is left", rescued).to_string();
+        let saved = words(Some(Ok("home/a (rescued 1).ron".into())));
+        assert!(saved.contains("saved as home/a (rescued 1).ron") && saved.contains("no device is left"), "{saved}");
+        assert!(words(Some(Err("the disk is full".to_owned()))).contains("could not be saved: the disk is full"));
+        assert!(!words(None).contains("saved"));
+    }
+
+    #[test]
+    fn another_window_has_the_last_ones_panels_and_is_woken_in_its_place() {
+        let (last, ctx) = (Context::default(), Context::default());
+        last.memory_mut(|memory| memory.data.insert_temp(Id::unique("width"), 321.0_f32));
+        inherit(&last, &ctx);
+        assert_eq!(ctx.memory(|memory| memory.data.get_temp(Id::unique("width"))), Some(321.0_f32));
+        let woken = Arc::new(AtomicBool::new(false));
+        let raised = woken.clone();
+        ctx.set_request_repaint_callback(move |_| raised.store(true, Ordering::Relaxed));
+        last.request_repaint();
+        assert!(woken.load(Ordering::Relaxed));
+    }
+}

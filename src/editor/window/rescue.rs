@@ -1,0 +1,141 @@
+//! What is not saved goes to a file of its own when no window is left to save it from.
+
+use crate::editor::document::files;
+use crate::editor::document::studio_document::Document;
+use crate::io;
+use std::path::{Path, PathBuf};
+
+/// Names that are tried in a folder before it counts as full.
+const MOST_NAMES: u32 = 1000;
+
+/// Writes what is not saved to a new file beside the studio's own, which stays as it is; where that cannot be, into a
+/// new folder in the first of `elsewhere` that takes it, with the files that the studio needs. Returns the file, or why
+/// there is none. None when there is nothing to save.
+pub fn rescue(document: &Document, elsewhere: &[PathBuf]) -> Option<Result<PathBuf, String>> {
+    if !document.is_dirty() {
+        return None;
+    }
+    let mut failure = "there is no folder to save it in".to_owned();
+    for path in places(document, elsewhere) {
+        match write(document, &path) {
+            Ok(()) => return Some(Ok(path)),
+            Err(error) => failure = error,
+        }
+    }
+    Some(Err(failure))
+}
+
+/// A new name in each folder, the best place first.
+fn places(document: &Document, elsewhere: &[PathBuf]) -> Vec<PathBuf> {
+    let title = document.title();
+    let stem = title.strip_suffix(".ron").unwrap_or(&title).replace(['/', '\\', ':'], "-");
+    let name = |n: u32| format!("{stem} (rescued {n})");
+    let new_in = |folder: &Path, place: &dyn Fn(String) -> PathBuf| {
+        (1..=MOST_NAMES).map(|n| folder.join(place(name(n)))).find(|path| !path.exists())
+    };
+    let beside = document.folder().and_then(|folder| new_in(folder, &|name| PathBuf::from(name + ".ron")));
+    // Models and textures come along, and must not meet others of their names.
+    let own_folders = elsewhere.iter().filter_map(|folder| new_in(folder, &PathBuf::from));
+    beside.into_iter().chain(own_folders.map(|folder| folder.join(format!("{stem}.ron")))).collect()
+}
+
+fn write(document: &Document, path: &Path) -> Result<(), String> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    if document.folder() != Some(folder) {
+        std::fs::create_dir(folder).map_err(|error| format!("{} could not be made: {error}", folder.display()))?;
+    }
+    for (from, to) in document.files_to_copy(folder) {
+        // A model that cannot be copied can be brought in again; the light cannot.
+        if let Err(error) = files::copy_asset(&from, &to) {
+            log::warn!("{error}");
+        }
+    }
+    io::save_scene(document.scene(), path).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::document::action::Action;
+    use crate::editor::document::catalog;
+    use crate::scene::{Assets, Object, Shape};
+
+    const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+    /// A shipped studio with a light more and a model from elsewhere, which no save has put beside it yet.
+    fn changed_studio(path: Option<PathBuf>, model: &Path) -> Document {
+        let loaded = io::presets()[0].load().unwrap();
+        let mut document = Document::new(loaded.scene, loaded.assets, path);
+        let light = catalog::light_named("Octa 120").unwrap();
+        document.apply(Action::AddLight(Box::new(light)), None).unwrap();
+        std::fs::write(model, TRIANGLE).unwrap();
+        let name = document.asset_path_for(model, "models");
+        let mut assets = Assets::default();
+        assets.meshes.insert(name.clone(), io::import_obj(model).unwrap().mesh.into());
+        document.insert_assets(assets, &Default::default());
+        document.note_import(name.clone(), model.to_owned());
+        let object = Object { shape: Shape::MeshFile { path: name }, ..catalog::object_named("Box").unwrap() };
+        document.apply(Action::AddObject(Box::new(object)), None).unwrap();
+        document
+    }
+
+    /// Whether the file holds the studio with all that it needs.
+    fn holds(path: &Path, document: &Document) -> bool {
+        let loaded = io::load_scene(path).unwrap();
+        assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+        io::write_scene(&loaded.scene) == io::write_scene(document.scene())
+            && loaded.assets.meshes.values().any(|mesh| mesh.triangles.len() == 1)
+    }
+
+    #[test]
+    fn unsaved_work_is_written_beside_its_file_which_stays_as_it_is() {
+        let (home, desktop) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let file = home.path().join("studio.ron");
+        std::fs::write(&file, "as it was").unwrap();
+        let document = changed_studio(Some(file.clone()), &desktop.path().join("cup.obj"));
+        for n in 1..=2 {
+            let rescued = rescue(&document, &[desktop.path().to_owned()]).unwrap().unwrap();
+            assert_eq!(rescued, home.path().join(format!("studio (rescued {n}).ron")), "no file is written twice");
+            assert!(holds(&rescued, &document));
+        }
+        assert_eq!(std::fs::read_to_string(&file).unwrap(), "as it was");
+    }
+
+    #[test]
+    fn a_folder_that_takes_no_file_sends_the_work_to_the_next_one_with_its_models() {
+        let (home, desktop) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        // A file where a folder was takes no file from any user, as a disk that is full or was taken out does.
+        let no_folder = desktop.path().join("a file");
+        std::fs::write(&no_folder, "").unwrap();
+        let document = changed_studio(Some(no_folder.join("studio.ron")), &desktop.path().join("cup.obj"));
+        std::fs::create_dir(home.path().join("models")).unwrap();
+        let other_cup = home.path().join("models/cup.obj");
+        std::fs::write(&other_cup, "another cup").unwrap();
+        let rescued = rescue(&document, &[no_folder.clone(), home.path().to_owned()]).unwrap().unwrap();
+        assert_eq!(rescued, home.path().join("studio (rescued 1)/studio.ron"));
+        assert!(holds(&rescued, &document));
+        assert_eq!(std::fs::read_to_string(&other_cup).unwrap(), "another cup");
+        let failure = rescue(&document, std::slice::from_ref(&no_folder)).unwrap().unwrap_err();
+        assert!(failure.contains("a file"), "{failure}");
+        assert!(rescue(&document, &[]).unwrap().is_err());
+    }
+
+    #[test]
+    fn a_model_that_is_gone_costs_the_model_alone() {
+        let (home, desktop) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let model = desktop.path().join("cup.obj");
+        let document = changed_studio(None, &model);
+        std::fs::remove_file(&model).unwrap();
+        let rescued = rescue(&document, &[home.path().to_owned()]).unwrap().unwrap();
+        let loaded = io::load_scene(&rescued).unwrap();
+        assert_eq!(io::write_scene(&loaded.scene), io::write_scene(document.scene()));
+    }
+
+    #[test]
+    fn what_is_saved_needs_no_rescue() {
+        let home = tempfile::tempdir().unwrap();
+        let mut document = changed_studio(None, &home.path().join("cup.obj"));
+        document.mark_saved(home.path().join("studio.ron"));
+        assert_eq!(rescue(&document, &[home.path().to_owned()]), None);
+    }
+}

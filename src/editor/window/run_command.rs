@@ -1,0 +1,307 @@
+//! Commands carried out.
+
+use crate::editor::commands::command::{Centre, Command};
+use crate::editor::document::action::{Action, ActionError};
+use crate::editor::document::arrange::MirrorPlane;
+use crate::editor::document::catalog::Made;
+use crate::editor::document::files::Source;
+use crate::editor::document::item::Item;
+use crate::editor::document::placement;
+use crate::editor::document::selection::Selection;
+use crate::editor::document::studio_document::Document;
+use crate::editor::viewport::tools::place_light::{Placing, Swing, can_swing};
+use crate::editor::viewport::tools::place_light_drag::SwingDrag;
+use crate::editor::window::app::App;
+use crate::scene::{Aim, Emitter, LightId, Object, Scene, Solo};
+use eframe::egui::{Context, ViewportCommand};
+use std::collections::HashSet;
+
+impl App {
+    /// Carries a command out. `gesture` is the press that it came from.
+    pub fn run(&mut self, command: Command, gesture: Option<u64>, ctx: &Context) {
+        match command {
+            Command::Do(action) => self.apply(action, gesture),
+            Command::Place(made) => self.place(*made),
+            Command::Select(item) => self.selection = Selection::of(item),
+            Command::ToggleSelected(item) => self.selection.toggle(item),
+            Command::SelectAlso(items) => self.selection.add(items),
+            Command::SelectAll => self.selection = Selection::of(selectable(self.document.scene())),
+            Command::Escape => self.escape(),
+            Command::BeginRename(item) => {
+                self.selection = Selection::of([item]);
+                self.outliner.begin_rename(item, item.name(self.document.scene()));
+            }
+            Command::DeleteSelected => {
+                let can_go = |item: &Item| item.can_be_copied() || *item == Item::Meter;
+                self.with_selected(can_go, "Select a light or a thing to delete.", |_, items| Action::Delete(items));
+            }
+            Command::DuplicateSelected => {
+                let otherwise = "Select a light or a thing to duplicate.";
+                self.with_selected(|item| item.can_be_copied(), otherwise, |_, items| Action::Duplicate(items));
+            }
+            Command::MirrorSelected { copies } => self.mirror_selected(copies),
+            Command::HideSelected => {
+                let otherwise = "Select things to hide or lights to mute.";
+                self.with_selected(|item| item.can_be_copied(), otherwise, hide_or_show);
+            }
+            Command::ShowAll => {
+                let all = all_things(self.document.scene()).collect();
+                let action = shown(self.document.scene(), all, true, "Show everything".to_owned());
+                self.apply(action, None);
+            }
+            Command::SoloSelected => self.solo_selected(),
+            Command::LockSelected => {
+                let otherwise = "Select lights or things to lock in their places.";
+                self.with_selected(
+                    |item| item.can_be_copied(),
+                    otherwise,
+                    |scene, items| {
+                        let lock = items.iter().any(|item| !item.is_locked(scene));
+                        Action::Lock(items, lock)
+                    },
+                );
+            }
+            Command::LookFrom(side) => {
+                self.centre = Centre::Studio;
+                self.viewport.view.look_from(side);
+            }
+            Command::ToggleParallel => self.viewport.view.toggle_parallel(),
+            Command::ToggleLightView => self.toggle_light_view(),
+            Command::TogglePlacing(swing) => self.toggle_placing(swing),
+            Command::ToggleSnap => self.viewport.snap = !self.viewport.snap,
+            Command::Undo => self.step(Document::undo),
+            Command::Redo => self.step(Document::redo),
+            Command::New => self.picker.open(),
+            Command::NewFromPreset(index) => self.replace_with(Source::Preset(index), ctx),
+            Command::OpenPath(path) => self.replace_with(Source::File(path), ctx),
+            Command::ClearRecent => self.recent.clear(),
+            Command::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
+            Command::Render => self.render(ctx),
+            Command::CancelRender => self.rendering.cancel(),
+            Command::Show(centre) => self.centre = centre,
+            Command::ToggleCameraView => {
+                self.centre = if self.centre == Centre::Camera { Centre::Studio } else { Centre::Camera };
+            }
+            Command::FrameSelection => {
+                self.centre = Centre::Studio;
+                self.viewport.frame_selection(&self.document, &self.selection);
+            }
+            Command::CameraFromView => {
+                let camera = self.viewport.camera_from_view(self.document.scene());
+                self.apply(Action::SetCamera(Box::new(camera)), None);
+            }
+            Command::Live(mode) => self.viewport.live.mode = mode,
+            Command::ToggleLive => self.viewport.live.toggle(),
+            Command::Handles(handle) => self.handles = handle,
+            Command::ToggleHelp => self.show_help = !self.show_help,
+            Command::Open
+            | Command::Save
+            | Command::SaveAs
+            | Command::Import
+            | Command::ImportPath(_)
+            | Command::ChooseTexture(..)
+            | Command::ExportPicture
+            | Command::PathTyped(..) => self.run_file_command(command, ctx),
+        }
+    }
+
+    /// A step back or forth. The things that it brings are selected, as they were when they were taken away or made.
+    fn step(&mut self, step: fn(&mut Document) -> Option<String>) {
+        let known: HashSet<Item> = all_things(self.document.scene()).collect();
+        step(&mut self.document);
+        let brought: Vec<Item> = all_things(self.document.scene()).filter(|item| !known.contains(item)).collect();
+        if !brought.is_empty() {
+            self.selection = Selection::of(brought);
+        }
+    }
+
+    /// Changes the scene; what cannot be done is said.
+    pub(super) fn apply(&mut self, action: Action, gesture: Option<u64>) {
+        match self.document.apply(action, gesture) {
+            Ok(items) if items.is_empty() => {}
+            Ok(items) => self.selection = Selection::of(items),
+            Err(error) => self.toasts.error(error.to_string()),
+        }
+    }
+
+    /// Does something to what of the selection it can be done to.
+    fn with_selected(
+        &mut self,
+        can: impl Fn(&Item) -> bool,
+        otherwise: &str,
+        action: impl FnOnce(&Scene, Vec<Item>) -> Action,
+    ) {
+        let items: Vec<Item> = self.selection.items().iter().copied().filter(can).collect();
+        if items.is_empty() {
+            self.toasts.news(otherwise);
+        } else {
+            self.apply(action(self.document.scene(), items), None);
+        }
+    }
+
+    fn mirror_selected(&mut self, copies: bool) {
+        let scene = self.document.scene();
+        let Some(subject) = mirror_subject(scene, &self.selection) else {
+            self.toasts.news("There is nothing that lights could be mirrored about: put a figure up first.");
+            return;
+        };
+        let Some(plane) = MirrorPlane::of_subject(subject) else {
+            self.toasts.news(format!("{} looks straight up or down: it has no left and right.", subject.name));
+            return;
+        };
+        let can = |item: &Item| item.can_be_copied() || (*item == Item::Meter && !copies);
+        let otherwise = "Select the lights to mirror to the other side of the face.";
+        self.with_selected(can, otherwise, |_, items| Action::Mirror { items, plane, copies });
+    }
+
+    fn solo_selected(&mut self) {
+        let lights = self.selection.lights();
+        let current = self.document.scene().solo.as_ref();
+        let all_in = |some: &[LightId], others: &[LightId]| some.iter().all(|id| others.contains(id));
+        let equal = |solo: &Solo| all_in(&solo.lights, &lights) && all_in(&lights, &solo.lights);
+        let same = current.is_some_and(|solo| lights.is_empty() || equal(solo));
+        match (same, lights.is_empty()) {
+            (true, _) => self.apply(Action::Solo(Vec::new()), None),
+            (false, true) => self.toasts.news("Select the lights that shall shine alone."),
+            (false, false) => self.apply(Action::Solo(lights), None),
+        }
+    }
+
+    fn toggle_light_view(&mut self) {
+        let scene = self.document.scene();
+        let light = self
+            .selection
+            .lights()
+            .last()
+            .copied()
+            .filter(|id| scene.light(*id).is_some_and(|light| light.emitter != Emitter::Surround));
+        match (self.centre, light) {
+            (Centre::Light(_), _) => self.leave_light(),
+            (_, Some(id)) => {
+                self.before_light = self.centre;
+                (self.centre, self.viewport.swing) = (Centre::Light(id), None);
+            }
+            (_, None) => self.toasts.news("Select the light to look through."),
+        }
+    }
+
+    /// From a light's view back to what was looked at before.
+    fn leave_light(&mut self) {
+        self.centre = std::mem::take(&mut self.before_light);
+    }
+
+    fn toggle_placing(&mut self, swing: Swing) {
+        if self.viewport.swing.take().is_some_and(|drag| drag.placing().swing == swing) {
+            return;
+        }
+        let scene = self.document.scene();
+        let Some(light) = self.selection.lights().last().and_then(|id| scene.light(*id)) else {
+            self.toasts.news("Select the light to place.");
+            return;
+        };
+        if light.locked {
+            self.toasts.news(ActionError::Locked(light.name.clone()).to_string());
+        } else if !can_swing(light) {
+            self.toasts.news("Light from all round has no place.");
+        } else {
+            self.viewport.swing = Some(SwingDrag::new(Placing { light: light.id, swing }));
+            if !matches!(self.centre, Centre::Studio | Centre::Camera) {
+                self.centre = Centre::Studio;
+            }
+        }
+    }
+
+    /// The innermost thing under way ends; with nothing under way, nothing stays selected.
+    fn escape(&mut self) {
+        if self.viewport.is_dragging() {
+            self.document.abandon(self.gesture);
+            self.viewport.give_up_drag();
+        } else if self.show_help {
+            self.show_help = false;
+        } else if self.viewport.swing.is_some() {
+            self.viewport.swing = None;
+        } else if matches!(self.centre, Centre::Light(_)) {
+            self.leave_light();
+        } else {
+            self.selection = Selection::default();
+        }
+    }
+
+    fn place(&mut self, made: Made) {
+        let (scene, assets) = (self.document.scene(), self.document.assets());
+        let action = match made {
+            Made::Light(mut light) => {
+                placement::place_light(scene, assets, self.selection.last(), &mut light);
+                Action::AddLight(Box::new(light))
+            }
+            Made::Object(mut object) => {
+                placement::place_object(scene, self.selection.last(), &mut object);
+                Action::AddObject(Box::new(object))
+            }
+        };
+        self.apply(action, None);
+    }
+
+    fn render(&mut self, ctx: &Context) {
+        let folder = self.document.folder().map(std::path::Path::to_owned);
+        self.rendering.start(self.document.scene(), self.document.assets(), folder, ctx);
+        self.centre = Centre::Picture;
+    }
+}
+
+/// Every thing and every light.
+fn all_things(scene: &Scene) -> impl Iterator<Item = Item> {
+    let objects = scene.objects.iter().map(|o| Item::Object(o.id));
+    objects.chain(scene.lights.iter().map(|l| Item::Light(l.id)))
+}
+
+/// Everything that Ctrl+A means: lights and visible things that are not locked.
+fn selectable(scene: &Scene) -> Vec<Item> {
+    let objects = scene.objects.iter().filter(|o| o.visible && !o.locked).map(|o| Item::Object(o.id));
+    let lights = scene.lights.iter().filter(|l| !l.locked).map(|l| Item::Light(l.id));
+    objects.chain(lights).collect()
+}
+
+/// Whose face halves the studio: what the last selected light is aimed at, else the subject of the set-up.
+fn mirror_subject<'a>(scene: &'a Scene, selection: &Selection) -> Option<&'a Object> {
+    let aimed_at = selection.lights().last().and_then(|id| match scene.light(*id)?.aim {
+        Aim::Object { object, .. } => scene.object(object),
+        _ => None,
+    });
+    aimed_at.or_else(|| placement::subject(scene, None).and_then(|id| scene.object(id)))
+}
+
+/// Hides things and mutes lights; brings them back if none of them is there.
+fn hide_or_show(scene: &Scene, items: Vec<Item>) -> Action {
+    let is_there = |item: &Item| match item {
+        Item::Object(id) => scene.object(*id).is_some_and(|o| o.visible),
+        Item::Light(id) => scene.light(*id).is_some_and(|l| l.on),
+        Item::Camera | Item::Room | Item::Meter => false,
+    };
+    let show = !items.iter().any(is_there);
+    let label =
+        format!("{} {}", if show { "Show" } else { "Hide" }, crate::editor::document::item::name_of_all(&items, scene));
+    shown(scene, items, show, label)
+}
+
+fn shown(scene: &Scene, items: Vec<Item>, show: bool, label: String) -> Action {
+    let (mut actions, mut lights) = (Vec::new(), Vec::new());
+    for item in items {
+        match item {
+            Item::Object(id) => {
+                let object = scene.object(id).map(|object| Object { visible: show, ..object.clone() });
+                actions.extend(object.map(|object| Action::SetObject(Box::new(object))));
+            }
+            Item::Light(id) => lights.push(id),
+            Item::Camera | Item::Room | Item::Meter => {}
+        }
+    }
+    if !lights.is_empty() {
+        actions.push(Action::Mute(lights, !show));
+    }
+    match <[Action; 1]>::try_from(actions) {
+        Ok([only]) if matches!(only, Action::Mute(..)) => only,
+        Ok(only) => Action::Together { label, actions: only.into() },
+        Err(actions) => Action::Together { label, actions },
+    }
+}
