@@ -8,19 +8,19 @@
 #[derive(Clone, Copy, Debug)]
 pub struct Avx2(());
 
-/// Work that is compiled for each set of instructions. `run` and all it calls must be `#[inline(always)]`, or closures
+/// SimdTask that is compiled for each set of instructions. `run` and all it calls must be `#[inline(always)]`, or closures
 /// that are called where they stand: what is called in the common way is compiled for every processor.
-pub trait Work {
+pub trait SimdTask {
     /// What comes out.
-    type Answer;
+    type Output;
 
     /// Does the work. What is written in intrinsics can ask for the proof; loops need not.
-    fn run(self, avx2: Option<Avx2>) -> Self::Answer;
+    fn run(self, avx2: Option<Avx2>) -> Self::Output;
 }
 
-/// Does the work with the widest registers that the processor has.
+/// Does the work with the dispatch registers that the processor has.
 #[inline]
-pub fn widest<W: Work>(work: W) -> W::Answer {
+pub fn dispatch<W: SimdTask>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {
         #[expect(unsafe_code, reason = "a call into code made for AVX2, behind the check that the processor has it")]
@@ -32,7 +32,7 @@ pub fn widest<W: Work>(work: W) -> W::Answer {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn compiled_for_avx2<W: Work>(work: W) -> W::Answer {
+fn compiled_for_avx2<W: SimdTask>(work: W) -> W::Output {
     work.run(Some(Avx2(())))
 }
 
@@ -43,8 +43,8 @@ mod tests {
     /// Sums, quotients, roots and products that a fused multiply-add would round otherwise.
     struct Lengths<'a>(&'a [[f32; 64]; 3]);
 
-    impl Work for Lengths<'_> {
-        type Answer = [f32; 64];
+    impl SimdTask for Lengths<'_> {
+        type Output = [f32; 64];
 
         #[inline(always)]
         fn run(self, _: Option<Avx2>) -> [f32; 64] {
@@ -56,6 +56,6 @@ mod tests {
     #[test]
     fn wide_registers_give_the_bits_of_narrow_ones() {
         let numbers = [0.1_f32, 0.7, -0.3].map(|a| std::array::from_fn(|i| (a * i as f32).sin()));
-        assert_eq!(widest(Lengths(&numbers)), Lengths(&numbers).run(None));
+        assert_eq!(dispatch(Lengths(&numbers)), Lengths(&numbers).run(None));
     }
 }

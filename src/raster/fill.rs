@@ -9,7 +9,7 @@ use super::row::{LANES, ROOM, Row, WIDTH};
 use super::series::at_least;
 use super::shade::{Scratch, Shader};
 use super::triangle::{Screen, ScreenTriangle, centre, edge};
-use crate::math::simd::{self, Avx2, Work};
+use crate::math::simd::{self, Avx2, SimdTask};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -31,7 +31,7 @@ pub(super) fn draw(screen: Screen, batches: &[Batch], shader: &Shader, drawing: 
     let pixels = drawing.picture.rgb.par_chunks_mut(row).zip(drawing.objects.par_chunks_mut(row));
     let pixels = pixels.zip(drawing.inverse_depths.par_chunks_mut(row));
     pixels.enumerate().for_each(|(row, ((rgb, objects), inverse_depths))| {
-        simd::widest(TileRow { screen, row, batches, shader, rgb, objects, inverse_depths });
+        simd::dispatch(TileRow { screen, row, batches, shader, rgb, objects, inverse_depths });
     });
 }
 
@@ -46,8 +46,8 @@ struct TileRow<'a> {
     inverse_depths: &'a mut [f32],
 }
 
-impl Work for TileRow<'_> {
-    type Answer = ();
+impl SimdTask for TileRow<'_> {
+    type Output = ();
 
     #[inline(always)]
     fn run(self, _: Option<Avx2>) {

@@ -9,7 +9,7 @@ use super::series::{self, at_least, at_most};
 use super::triangle::ScreenTriangle;
 use super::world::{Surface, Vertices, World};
 use crate::color::srgb_decode;
-use crate::math::simd::{self, Avx2, Work};
+use crate::math::simd::{self, Avx2, SimdTask};
 use crate::scene::Texture;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -127,7 +127,7 @@ impl<'a> Shader<'a> {
         let mut lit = vertices.clone();
         let chunks = lit.par_chunks_mut(WIDTH).zip(seen_as.par_chunks(WIDTH));
         chunks.for_each(|(vertices, seen_as)| {
-            simd::widest(VertexRow { shader: self, has_normals: !mesh.normals.is_empty(), vertices, seen_as });
+            simd::dispatch(VertexRow { shader: self, has_normals: !mesh.normals.is_empty(), vertices, seen_as });
         });
         lit
     }
@@ -334,8 +334,8 @@ struct VertexRow<'a> {
     seen_as: &'a [(u32, Vec3)],
 }
 
-impl Work for VertexRow<'_> {
-    type Answer = ();
+impl SimdTask for VertexRow<'_> {
+    type Output = ();
 
     #[inline(always)]
     fn run(self, _: Option<Avx2>) {

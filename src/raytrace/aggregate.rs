@@ -4,11 +4,11 @@
 //! triangles are copied into one tree, where they stand; moving one of them costs building that tree anew, which is
 //! quick because it is small.
 
-use super::bvh::{self, Slabs, Stack, WideBvh};
-use super::geometry::{Instance, MeshGeometry, Surface};
-use super::simd::{self, Kernels, Query};
+use super::blas::Blas;
+use super::bvh::{self, Slabs, TraversalStack, WideBvh};
+use super::geometry::{Instance, MeshGeometry, SurfaceInteraction};
+use super::simd::{self, KernelTask, Kernels};
 use super::triangle::TriangleHit;
-use super::triangle_tree::TriangleTree;
 use crate::math::Ray;
 use glam::Affine3A;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ const COPIED: usize = 1 << 18;
 #[derive(Debug, Default)]
 pub struct Aggregate {
     instances: Vec<Instance>,
-    small: Arc<SmallTree>,
+    merged: Arc<MergedBlas>,
     /// Over the boxes of the large instances.
     bvh: WideBvh,
     /// Instance of each box in `bvh`.
@@ -31,10 +31,10 @@ pub struct Aggregate {
 
 /// The triangles of small instances in one tree, in world space.
 #[derive(Debug, Default)]
-pub struct SmallTree {
+pub struct MergedBlas {
     /// Which instances they are, and where they stand.
     sources: Vec<Source>,
-    tree: TriangleTree,
+    blas: Blas,
     /// Instance and triangle of each triangle in `tree`.
     triangles: Vec<(u32, u32)>,
 }
@@ -59,18 +59,18 @@ impl Source {
     }
 }
 
-impl SmallTree {
+impl MergedBlas {
     fn new(instances: &[Instance], sources: Vec<Source>) -> Self {
         let of = |source: &Source| {
             let index = source.instance;
             (0..source.geometry.mesh().triangles.len() as u32).map(move |triangle| (index, triangle))
         };
         let triangles: Vec<(u32, u32)> = sources.iter().flat_map(of).collect();
-        let tree = TriangleTree::new(triangles.len(), |i| {
+        let blas = Blas::new(triangles.len(), |i| {
             let (instance, triangle) = triangles[i];
             instances[instance as usize].world_corners(triangle as usize)
         });
-        SmallTree { sources, tree, triangles }
+        MergedBlas { sources, blas, triangles }
     }
 
     fn is_of(&self, sources: &[Source]) -> bool {
@@ -91,11 +91,11 @@ impl Aggregate {
     /// Builds the trees. Instances without triangles are never hit.
     #[cfg(test)]
     pub fn new(instances: Vec<Instance>) -> Self {
-        Self::with_small(instances, None)
+        Self::with_merged(instances, None)
     }
 
     /// The same; the tree of small things is `kept`, where it is what it would become.
-    pub fn with_small(instances: Vec<Instance>, kept: Option<Arc<SmallTree>>) -> Self {
+    pub fn with_merged(instances: Vec<Instance>, kept: Option<Arc<MergedBlas>>) -> Self {
         let (mut sources, mut large, mut boxes, mut copied) = (Vec::new(), Vec::new(), Vec::new(), 0);
         for (index, instance) in instances.iter().enumerate() {
             let count = instance.geometry.mesh().triangles.len();
@@ -108,14 +108,14 @@ impl Aggregate {
             }
         }
         let kept = kept.filter(|small| small.is_of(&sources));
-        let small = kept.unwrap_or_else(|| Arc::new(SmallTree::new(&instances, sources)));
+        let merged = kept.unwrap_or_else(|| Arc::new(MergedBlas::new(&instances, sources)));
         let bvh = bvh::build(&boxes, 1);
-        Aggregate { instances, small, bvh, large }
+        Aggregate { instances, merged, bvh, large }
     }
 
     /// The tree of small things.
-    pub fn small(&self) -> &Arc<SmallTree> {
-        &self.small
+    pub fn merged(&self) -> &Arc<MergedBlas> {
+        &self.merged
     }
 
     /// The instances, in the order that [`Hit::instance`] counts.
@@ -124,41 +124,41 @@ impl Aggregate {
     }
 
     /// The closest hit.
-    pub fn closest(&self, ray: &Ray, stack: &mut Stack) -> Option<Hit> {
-        simd::dispatch(Closest { aggregate: self, ray, stack })
+    pub fn intersect(&self, ray: &Ray, stack: &mut TraversalStack) -> Option<Hit> {
+        simd::dispatch(Intersect { aggregate: self, ray, stack })
     }
 
     /// Whether anything lies on the ray before its end.
-    pub fn blocked(&self, ray: &Ray, stack: &mut Stack) -> bool {
-        simd::dispatch(Blocked { aggregate: self, ray, stack })
+    pub fn occluded(&self, ray: &Ray, stack: &mut TraversalStack) -> bool {
+        simd::dispatch(Occluded { aggregate: self, ray, stack })
     }
 
     /// The surface at a hit.
-    pub fn surface(&self, hit: &Hit) -> Surface {
+    pub fn surface(&self, hit: &Hit) -> SurfaceInteraction {
         self.instances[hit.instance as usize].surface(&hit.triangle)
     }
 }
 
 /// See [`Aggregate::closest`].
-struct Closest<'a> {
+struct Intersect<'a> {
     aggregate: &'a Aggregate,
     ray: &'a Ray,
-    stack: &'a mut Stack,
+    stack: &'a mut TraversalStack,
 }
 
-impl Query for Closest<'_> {
-    type Answer = Option<Hit>;
+impl KernelTask for Intersect<'_> {
+    type Output = Option<Hit>;
 
     #[inline(always)]
     fn run<K: Kernels>(self) -> Option<Hit> {
-        let Closest { aggregate, ray, stack } = self;
+        let Intersect { aggregate, ray, stack } = self;
         let slabs = Slabs::new(ray.origin, ray.direction);
-        let mut best = aggregate.small.tree.closest::<K>(ray, &slabs, stack).map(|hit| {
-            let (instance, triangle) = aggregate.small.triangles[hit.triangle as usize];
+        let mut best = aggregate.merged.blas.intersect::<K>(ray, &slabs, stack).map(|hit| {
+            let (instance, triangle) = aggregate.merged.triangles[hit.triangle as usize];
             Hit { instance, triangle: TriangleHit { triangle, ..hit } }
         });
         let t_max = best.map_or(ray.t_max, |hit| hit.triangle.t);
-        aggregate.bvh.nearest_first::<K>(
+        aggregate.bvh.traverse_front_to_back::<K>(
             &slabs,
             t_max,
             stack,
@@ -169,7 +169,7 @@ impl Query for Closest<'_> {
                     let placed = &aggregate.instances[instance as usize];
                     let local = placed.to_object(&Ray { t_max, ..*ray });
                     let slabs = Slabs::new(local.origin, local.direction);
-                    if let Some(triangle) = placed.geometry.tree.closest::<K>(&local, &slabs, stack) {
+                    if let Some(triangle) = placed.geometry.blas.intersect::<K>(&local, &slabs, stack) {
                         t_max = triangle.t;
                         best = Some(Hit { instance, triangle });
                     }
@@ -182,23 +182,23 @@ impl Query for Closest<'_> {
 }
 
 /// See [`Aggregate::blocked`].
-struct Blocked<'a> {
+struct Occluded<'a> {
     aggregate: &'a Aggregate,
     ray: &'a Ray,
-    stack: &'a mut Stack,
+    stack: &'a mut TraversalStack,
 }
 
-impl Query for Blocked<'_> {
-    type Answer = bool;
+impl KernelTask for Occluded<'_> {
+    type Output = bool;
 
     #[inline(always)]
     fn run<K: Kernels>(self) -> bool {
-        let Blocked { aggregate, ray, stack } = self;
+        let Occluded { aggregate, ray, stack } = self;
         let slabs = Slabs::new(ray.origin, ray.direction);
-        if aggregate.small.tree.any::<K>(ray, &slabs, stack) {
+        if aggregate.merged.blas.occluded::<K>(ray, &slabs, stack) {
             return true;
         }
-        aggregate.bvh.any::<K>(
+        aggregate.bvh.traverse_any::<K>(
             &slabs,
             ray.t_max,
             stack,
@@ -208,7 +208,7 @@ impl Query for Blocked<'_> {
                     let placed = &aggregate.instances[aggregate.large[index as usize] as usize];
                     let local = placed.to_object(ray);
                     let slabs = Slabs::new(local.origin, local.direction);
-                    placed.geometry.tree.any::<K>(&local, &slabs, stack)
+                    placed.geometry.blas.occluded::<K>(&local, &slabs, stack)
                 })
             },
         )
@@ -220,7 +220,7 @@ mod tests {
     use super::*;
     use crate::math::warp;
     use crate::raytrace::geometry::MeshGeometry;
-    use crate::raytrace::simd::Plain;
+    use crate::raytrace::simd::Scalar;
     use crate::scene::{Mesh, Shape, tessellate};
     use glam::{Quat, Vec2, Vec3, Vec3Swizzles};
 
@@ -266,13 +266,13 @@ mod tests {
 
     /// Every triangle of every instance, with the same triangle test in the same space.
     fn brute_force(instances: &[Instance], ray: &Ray) -> Option<(u32, TriangleHit)> {
-        use crate::raytrace::triangle::{Packet, Sheared};
+        use crate::raytrace::triangle::{Packet, ShearedRay};
         let mut best: Option<(u32, TriangleHit)> = None;
         for (index, instance) in instances.iter().enumerate() {
             let mesh = instance.geometry.mesh();
             let small = mesh.triangles.len() <= SMALL;
             let local = if small { *ray } else { instance.to_object(ray) };
-            let sheared = Sheared::new(local.origin, local.direction);
+            let sheared = ShearedRay::new(local.origin, local.direction);
             for t in 0..mesh.triangles.len() {
                 let end = best.as_ref().map_or(ray.t_max, |b| b.1.t);
                 let corners = if small { instance.world_corners(t) } else { mesh.corners(t) };
@@ -297,18 +297,18 @@ mod tests {
             instance(soup(300), turned, 1),
             instance(sphere, Affine3A::from_translation(Vec3::Y), 2),
         ]);
-        let mut stack = Stack::default();
+        let mut stack = TraversalStack::default();
         let mut hits = 0;
         for (i, ray) in some_rays(6000).iter().enumerate() {
-            let ours = aggregate.closest(ray, &mut stack);
+            let ours = aggregate.intersect(ray, &mut stack);
             let truth = brute_force(aggregate.instances(), ray);
             // Two triangles at the very same distance may be named in either order; the distance is the same to the bit.
             assert_eq!(ours.map(|h| h.triangle.t), truth.map(|(_, h)| h.t), "ray {i}: {ray:?}");
-            assert_eq!(aggregate.blocked(ray, &mut stack), truth.is_some(), "ray {i}: {ray:?}");
+            assert_eq!(aggregate.occluded(ray, &mut stack), truth.is_some(), "ray {i}: {ray:?}");
             // The twin without wide vectors gives the same bits.
-            let plain = Closest { aggregate: &aggregate, ray, stack: &mut stack }.run::<Plain>();
+            let plain = Intersect { aggregate: &aggregate, ray, stack: &mut stack }.run::<Scalar>();
             assert_eq!(plain.map(|h| h.triangle), ours.map(|h| h.triangle), "ray {i}: {ray:?}");
-            let plain = Blocked { aggregate: &aggregate, ray, stack: &mut stack }.run::<Plain>();
+            let plain = Occluded { aggregate: &aggregate, ray, stack: &mut stack }.run::<Scalar>();
             assert_eq!(plain, truth.is_some(), "ray {i}: {ray:?}");
             hits += usize::from(truth.is_some());
         }
@@ -322,15 +322,15 @@ mod tests {
         let instances: Vec<Instance> =
             (0..10_000).map(|i| Instance::new(ball.clone(), place(i), i, vec![0]).unwrap()).collect();
         let aggregate = Aggregate::new(instances);
-        assert!(aggregate.small.triangles.len() <= COPIED && aggregate.large.len() > 7_000);
-        let mut stack = Stack::default();
+        assert!(aggregate.merged.triangles.len() <= COPIED && aggregate.large.len() > 7_000);
+        let mut stack = TraversalStack::default();
         for i in (0..10_000).step_by(333) {
             let (low, high) = aggregate.instances()[i].world_bounds().unwrap();
             let count = (0..64).filter(|&k| {
                 let aside = Vec3::new(((k % 8) as f32 + 0.5) / 8.0, ((k / 8) as f32 + 0.5) / 8.0, 0.0);
                 let origin = low + (high - low) * aside - Vec3::Z;
                 let ray = Ray { origin, direction: Vec3::Z, t_max: f32::INFINITY };
-                aggregate.closest(&ray, &mut stack).is_some_and(|hit| hit.instance as usize == i)
+                aggregate.intersect(&ray, &mut stack).is_some_and(|hit| hit.instance as usize == i)
             });
             assert!(count.count() > 10, "ball {i}");
         }
@@ -340,7 +340,7 @@ mod tests {
     fn an_empty_studio_is_missed() {
         let aggregate = Aggregate::new(vec![instance(Mesh::default().with_single_part("none"), Affine3A::IDENTITY, 0)]);
         let ray = Ray { origin: Vec3::ZERO, direction: Vec3::Z, t_max: f32::INFINITY };
-        assert!(aggregate.closest(&ray, &mut Stack::default()).is_none());
+        assert!(aggregate.intersect(&ray, &mut TraversalStack::default()).is_none());
     }
 
     #[test]
@@ -349,17 +349,17 @@ mod tests {
         // the floor they left, and a white room lost a fourteenth of its light.
         let floor = tessellate(&Shape::Plane { width_m: 4.0, depth_m: 4.0 }).unwrap();
         let aggregate = Aggregate::new(vec![instance(floor, Affine3A::IDENTITY, 0)]);
-        let mut stack = Stack::default();
+        let mut stack = TraversalStack::default();
         let mut next = numbers(7);
         for _ in 0..100_000 {
             let origin = Vec3::new(next() * 4.0 - 2.0, 2.0 * next(), next() * 4.0 - 2.0);
             let direction = -warp::cosine_hemisphere(Vec2::new(next(), next())).xzy();
             let ray = Ray { origin, direction, t_max: f32::INFINITY };
-            let Some(hit) = aggregate.closest(&ray, &mut stack) else { continue };
+            let Some(hit) = aggregate.intersect(&ray, &mut stack) else { continue };
             let surface = aggregate.surface(&hit);
             let away = warp::cosine_hemisphere(Vec2::new(next(), next())).xzy();
-            let away = Ray { origin: surface.leave(away), direction: away, t_max: f32::INFINITY };
-            assert!(aggregate.closest(&away, &mut stack).is_none(), "left the floor and met it: {ray:?} {away:?}");
+            let away = Ray { origin: surface.spawn_origin(away), direction: away, t_max: f32::INFINITY };
+            assert!(aggregate.intersect(&away, &mut stack).is_none(), "left the floor and met it: {ray:?} {away:?}");
         }
     }
 
@@ -370,26 +370,27 @@ mod tests {
         for far in [0.0, 1e3, 1e5] {
             let place = Affine3A::from_translation(Vec3::new(far, -far, far));
             let aggregate = Aggregate::new(vec![instance(ball.clone(), place, 0)]);
-            let mut stack = Stack::default();
+            let mut stack = TraversalStack::default();
             let mut next = numbers(5);
             for _ in 0..340_000 {
                 let origin = Vec3::new(far, -far, far);
                 let out = warp::uniform_sphere(Vec2::new(next(), next()));
                 let inside = Ray { origin, direction: out, t_max: f32::INFINITY };
-                let hit = aggregate.closest(&inside, &mut stack).expect("a ray from the centre leaked");
+                let hit = aggregate.intersect(&inside, &mut stack).expect("a ray from the centre leaked");
                 let surface = aggregate.surface(&hit);
                 // Outwards again: a convex ball is never met from its own surface.
                 let local = warp::cosine_hemisphere(Vec2::new(next(), next()));
                 let (t, b) = crate::math::orthonormal_basis(surface.geometric_normal);
                 let direction = t * local.x + b * local.y + surface.geometric_normal * local.z.max(1e-3);
-                let away = Ray { origin: surface.leave(direction), direction, t_max: f32::INFINITY };
-                if let Some(again) = aggregate.closest(&away, &mut stack) {
+                let away = Ray { origin: surface.spawn_origin(direction), direction, t_max: f32::INFINITY };
+                if let Some(again) = aggregate.intersect(&away, &mut stack) {
                     // The tessellated ball is convex only up to rounding: grazing rays may touch a neighbour.
                     assert_ne!(again.triangle.triangle, hit.triangle.triangle, "left and hit the same triangle");
                 }
                 // Inwards: the other side must be found.
-                let inwards = Ray { origin: surface.leave(-direction), direction: -direction, t_max: f32::INFINITY };
-                assert!(aggregate.closest(&inwards, &mut stack).is_some(), "a ray leaked at {far}");
+                let inwards =
+                    Ray { origin: surface.spawn_origin(-direction), direction: -direction, t_max: f32::INFINITY };
+                assert!(aggregate.intersect(&inwards, &mut stack).is_some(), "a ray leaked at {far}");
             }
         }
     }

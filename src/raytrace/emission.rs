@@ -3,8 +3,8 @@
 
 use super::caustics::Rival;
 use super::integrator::{Path, Place, Sink, Tracer};
-use super::lights::{Asked, TracedLight};
-use super::media::Media;
+use super::lights::{LightImportances, TracedLight};
+use super::medium_stack::MediumStack;
 use super::sampler::{self, Purpose, Sampler};
 use super::visibility::{TOUCHING, reaches};
 use crate::math::Ray;
@@ -55,7 +55,7 @@ impl<'a> Tracer<'a> {
             .lights
             .iter()
             .filter(|light| light.visible_to_camera)
-            .filter_map(|light| light.seen_by(ray.origin, ray.direction).map(|seen| (light, seen)))
+            .filter_map(|light| light.intersect(ray.origin, ray.direction).map(|seen| (light, seen)))
             .filter(|(_, seen)| reaches(ray, seen.distance, distance))
             .min_by(|a, b| a.1.distance.total_cmp(&b.1.distance));
         let Some((light, seen)) = nearest else { return false };
@@ -65,7 +65,7 @@ impl<'a> Tracer<'a> {
         }
         // Sun and surround lie behind everything, and may both be seen.
         for light in scene.lights.iter().filter(|l| l.visible_to_camera) {
-            if let Some(seen) = light.seen_by(ray.origin, ray.direction) {
+            if let Some(seen) = light.intersect(ray.origin, ray.direction) {
                 sink.add(light.layer, light.tint * seen.luminance);
             }
         }
@@ -79,13 +79,13 @@ impl<'a> Tracer<'a> {
         distance: f32,
         throughput: Vec3,
         vertex: &Vertex,
-        media: &Media,
+        media: &MediumStack,
         sink: &mut impl Sink,
     ) {
         let scene = self.scene;
         // What lies on the surface is met, too.
         let end = distance + 2.0 * TOUCHING * (distance + ray.origin.abs().max_element());
-        scene.crossings.each(&scene.lights, &Ray { t_max: end, ..*ray }, &mut self.stack, |index, seen| {
+        scene.emitter_bvh.for_each_hit(&scene.lights, &Ray { t_max: end, ..*ray }, &mut self.stack, |index, seen| {
             if !reaches(ray, seen.distance, distance) {
                 return;
             }
@@ -93,12 +93,12 @@ impl<'a> Tracer<'a> {
             let weight = match vertex.pdf {
                 None if light.is_sampled() => vertex.rival.map_or(1.0, |rival| {
                     let pdf = light.pdf(vertex.left_from, ray.direction, vertex.travelled + seen.distance);
-                    let chance = scene.chooser.chance(&scene.lights, index, vertex.position, rival.normal());
+                    let chance = scene.light_sampler.pmf(&scene.lights, index, vertex.position, rival.normal());
                     rival.weight_of_path(&scene.casters, ray.direction, pdf * chance)
                 }),
                 Some(pdf) if light.is_sampled() => {
                     let choice = if vertex.one_light {
-                        scene.chooser.chance(&scene.lights, index, vertex.position, vertex.normal)
+                        scene.light_sampler.pmf(&scene.lights, index, vertex.position, vertex.normal)
                     } else {
                         1.0
                     };
@@ -141,9 +141,11 @@ impl<'a> Tracer<'a> {
             return;
         }
         let choice = sampler::rest(first_set)[0];
-        let chosen = match place.asked {
-            Some(asked) => asked.choose(&scene.lights, choice),
-            None => self.ask_lights(place).as_ref().and_then(|asked| asked.choose(&scene.lights, choice)),
+        let chosen = match place.importances {
+            Some(importances) => importances.sample(&scene.lights, choice),
+            None => {
+                self.light_importances(place).as_ref().and_then(|importances| importances.sample(&scene.lights, choice))
+            }
         };
         if let Some((light, chance)) = chosen {
             self.sample_light(&scene.lights[light as usize], chance, path, place, first_set, ways, sink);
@@ -151,8 +153,8 @@ impl<'a> Tracer<'a> {
     }
 
     /// What the lights give at a surface.
-    pub fn ask_lights(&self, place: &Place<'_>) -> Option<Asked<'a>> {
-        self.scene.chooser.ask(&self.scene.lights, place.surface.position, place.bsdf.normal())
+    pub fn light_importances(&self, place: &Place<'_>) -> Option<LightImportances<'a>> {
+        self.scene.light_sampler.importances(&self.scene.lights, place.surface.position, place.bsdf.normal())
     }
 
     #[expect(
@@ -176,7 +178,7 @@ impl<'a> Tracer<'a> {
             return;
         }
         let weight = sample.pdf.map_or(1.0, |light_pdf| power_heuristic(light_pdf * choice, pdf * ways));
-        let origin = surface.leave(sample.direction);
+        let origin = surface.spawn_origin(sample.direction);
         let visible = self.visibility(origin, sample.direction, sample.distance, sample.pdf.is_some(), path.media);
         if visible != Vec3::ZERO {
             sink.add(light.layer, path.throughput * visible * value * light.tint * (sample.value * weight / choice));

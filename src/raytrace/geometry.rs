@@ -1,7 +1,7 @@
 //! Meshes ready for tracing, their instances, and what a hit says about the surface.
 
+use super::blas::Blas;
 use super::triangle::TriangleHit;
-use super::triangle_tree::TriangleTree;
 use crate::math::{self, Ray, gamma};
 use crate::scene::Mesh;
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
@@ -12,7 +12,7 @@ use std::sync::{Arc, OnceLock};
 pub struct MeshGeometry {
     mesh: Arc<Mesh>,
     /// In object space.
-    pub tree: TriangleTree,
+    pub blas: Blas,
     /// Part of each triangle; empty when there is just one.
     part_of_triangle: Vec<u16>,
     /// Whether the mesh encloses a space; looked at once, and only where something is clear.
@@ -22,9 +22,9 @@ pub struct MeshGeometry {
 impl MeshGeometry {
     /// Builds the tree over all triangles.
     pub fn new(mesh: Arc<Mesh>) -> Self {
-        let tree = TriangleTree::new(mesh.triangles.len(), |t| mesh.corners(t));
+        let blas = Blas::new(mesh.triangles.len(), |t| mesh.corners(t));
         let part_of_triangle = part_of_triangle(&mesh);
-        MeshGeometry { mesh, tree, part_of_triangle, closed: OnceLock::new() }
+        MeshGeometry { mesh, blas, part_of_triangle, closed: OnceLock::new() }
     }
 
     /// The mesh itself.
@@ -66,7 +66,7 @@ pub struct Instance {
     /// Material of each part, as an index into the scene's material table.
     pub materials: Vec<u32>,
     /// The mesh encloses no space: where it is clear, it is a thin pane.
-    pub sheet: bool,
+    pub is_thin: bool,
     world_from_object: Affine3A,
     object_from_world: Affine3A,
     /// Both ways in absolute values, for error bounds.
@@ -92,7 +92,7 @@ impl Instance {
             geometry,
             object,
             materials,
-            sheet: false,
+            is_thin: false,
             world_from_object,
             object_from_world,
             forward_abs: abs(&world_from_object),
@@ -108,7 +108,7 @@ impl Instance {
 
     /// World box of the eight corners of the mesh's box, rounded outwards.
     pub fn world_bounds(&self) -> Option<(Vec3, Vec3)> {
-        let (low, high) = self.geometry.tree.bounds()?;
+        let (low, high) = self.geometry.blas.bounds()?;
         let centre = (low + high) * 0.5;
         let half = (high - low) * 0.5;
         let matrix = self.world_from_object.matrix3;
@@ -136,7 +136,7 @@ impl Instance {
     }
 
     /// All about the surface at a hit, in world space.
-    pub fn surface(&self, hit: &TriangleHit) -> Surface {
+    pub fn surface(&self, hit: &TriangleHit) -> SurfaceInteraction {
         let mesh = &*self.geometry.mesh;
         let indices = mesh.triangles[hit.triangle as usize].map(|i| i as usize);
         let corners = indices.map(|i| Vec3A::from(mesh.positions[i]));
@@ -168,7 +168,7 @@ impl Instance {
             uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2]
         };
         let part = self.geometry.part(hit.triangle);
-        Surface {
+        SurfaceInteraction {
             position: self.world_from_object.transform_point3a(local).into(),
             position_error: self.world_error(local, error).into(),
             smooth_offset: self.world_from_object.transform_vector3a(bulge).into(),
@@ -176,7 +176,7 @@ impl Instance {
             normal: normal.into(),
             uv,
             material: self.materials.get(part).copied().unwrap_or(0),
-            sheet: self.sheet,
+            is_thin: self.is_thin,
         }
     }
 
@@ -207,7 +207,7 @@ fn bulge(local: Vec3A, corners: [Vec3A; 3], normals: [Vec3A; 3], weights: [f32; 
 
 /// What a hit says about the surface, in world space.
 #[derive(Clone, Copy, Debug)]
-pub struct Surface {
+pub struct SurfaceInteraction {
     /// On the flat triangle.
     pub position: Vec3,
     /// Absolute error of `position`, an axis each.
@@ -223,12 +223,12 @@ pub struct Surface {
     /// Index into the material table.
     pub material: u32,
     /// Of a mesh that encloses no space.
-    pub sheet: bool,
+    pub is_thin: bool,
 }
 
-impl Surface {
+impl SurfaceInteraction {
     /// Start of a ray that leaves in `direction`, off the surface by its error bound.
-    pub fn leave(&self, direction: Vec3) -> Vec3 {
+    pub fn spawn_origin(&self, direction: Vec3) -> Vec3 {
         let outside = direction.dot(self.geometric_normal) > 0.0;
         let from = if outside { self.position + self.smooth_offset } else { self.position };
         math::offset_origin(from, self.position_error, self.geometric_normal, direction)

@@ -3,8 +3,8 @@
 //! A mesh is known by its address, or else by its content: shapes such as boxes are made into triangles anew each time.
 //! What the last `prepare` used is always kept; of the rest, as much as [`KEPT_TRIANGLES`].
 
-use super::aggregate::SmallTree;
-use super::bsdf::Surfacing;
+use super::aggregate::MergedBlas;
+use super::bsdf::TracedMaterial;
 use super::geometry::MeshGeometry;
 use crate::scene::{Material, Mesh};
 use rayon::prelude::*;
@@ -24,9 +24,9 @@ struct Kept {
     by_content: HashMap<u64, Entry>,
     /// Content of the meshes in `by_content`, by their addresses: these stay theirs as long as the entry holds the mesh.
     by_address: HashMap<usize, u64>,
-    small: Option<Arc<SmallTree>>,
+    merged: Option<Arc<MergedBlas>>,
     /// Materials of the last scene with their tables.
-    surfaces: Vec<(Material, Surfacing)>,
+    materials: Vec<(Material, TracedMaterial)>,
     /// Counts calls of [`GeometryCache::geometries`].
     now: u64,
     builds: u64,
@@ -102,23 +102,23 @@ impl GeometryCache {
     }
 
     /// A material's tables, if the last scene had it, and whatever its texture.
-    pub(super) fn surfacing(&self, material: &Material) -> Option<Surfacing> {
-        self.lock().surfaces.iter().find(|(known, _)| known == material).map(|(_, surfacing)| surfacing.clone())
+    pub(super) fn material(&self, material: &Material) -> Option<TracedMaterial> {
+        self.lock().materials.iter().find(|(known, _)| known == material).map(|(_, traced)| traced.clone())
     }
 
     /// Keeps a scene's materials for the next `prepare`.
-    pub(super) fn keep_surfaces(&self, surfaces: impl Iterator<Item = (Material, Surfacing)>) {
-        self.lock().surfaces = surfaces.collect();
+    pub(super) fn store_materials(&self, materials: impl Iterator<Item = (Material, TracedMaterial)>) {
+        self.lock().materials = materials.collect();
     }
 
     /// The tree of small things that was kept last.
-    pub(super) fn small(&self) -> Option<Arc<SmallTree>> {
-        self.lock().small.clone()
+    pub(super) fn merged(&self) -> Option<Arc<MergedBlas>> {
+        self.lock().merged.clone()
     }
 
     /// Keeps the tree of small things for the next `prepare`.
-    pub(super) fn keep_small(&self, small: Arc<SmallTree>) {
-        self.lock().small = Some(small);
+    pub(super) fn store_merged(&self, merged: Arc<MergedBlas>) {
+        self.lock().merged = Some(merged);
     }
 }
 
@@ -216,9 +216,9 @@ mod tests {
         let cache = GeometryCache::default();
         let builds = |scene: &Scene, assets: &Assets| {
             let before = cache.builds();
-            let small = cache.small();
+            let small = cache.merged();
             prepare_kept(scene, assets, &cache).unwrap();
-            let same_small = small.zip(cache.small()).is_some_and(|(a, b)| Arc::ptr_eq(&a, &b));
+            let same_small = small.zip(cache.merged()).is_some_and(|(a, b)| Arc::ptr_eq(&a, &b));
             (cache.builds() - before, same_small)
         };
         assert_eq!(builds(&scene, &assets), (4, false), "room, ball, box, hill");

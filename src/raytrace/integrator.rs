@@ -9,12 +9,12 @@
 //! throw on surfaces is gathered from photons, where there are any; without, light goes straight through curved glass, too.
 
 use super::bsdf::{Bsdf, Polarisation};
-use super::bvh::Stack;
+use super::bvh::TraversalStack;
 use super::caustics::{CausticMap, Gathered, Rival};
 use super::emission::Vertex;
-use super::geometry::Surface;
-use super::lights::Asked;
-use super::media::Media;
+use super::geometry::SurfaceInteraction;
+use super::lights::LightImportances;
+use super::medium_stack::MediumStack;
 use super::prepare::RenderScene;
 use super::sampler::{self, Purpose, Sampler};
 use crate::color::luminance;
@@ -54,7 +54,7 @@ pub struct Tracer<'a> {
     pub(super) scene: &'a RenderScene,
     /// Where photons bring caustics; without, paths find them.
     caustics: Option<&'a CausticMap>,
-    pub(super) stack: Stack,
+    pub(super) stack: TraversalStack,
     /// Rays traced so far.
     pub rays: u64,
 }
@@ -66,7 +66,7 @@ pub(super) struct Path {
     pub(super) throughput: Vec3,
     /// What of the throughput roulette must not see: glass concentrates radiance by its index squared, branches share.
     roulette_scale: f32,
-    pub(super) media: Media,
+    pub(super) media: MediumStack,
     polarisation: Polarisation,
     vertex: Vertex,
     /// Where the last surface that scatters widely took photons, and all since were such as photons come by.
@@ -82,10 +82,10 @@ pub(super) struct Path {
 /// Where a path scatters.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place<'a> {
-    pub(super) surface: &'a Surface,
+    pub(super) surface: &'a SurfaceInteraction,
     pub(super) bsdf: &'a Bsdf<'a>,
-    /// What the lights give there, where they were asked already.
-    pub(super) asked: Option<&'a Asked<'a>>,
+    /// What the lights give there, where they were computed already.
+    pub(super) importances: Option<&'a LightImportances<'a>>,
     /// The choice between ways on, where it is made already, 0..1.
     choice: Option<f32>,
     /// From the surface before.
@@ -108,7 +108,7 @@ enum Lights {
 impl<'a> Tracer<'a> {
     /// A tracer for one thread.
     pub fn new(scene: &'a RenderScene) -> Self {
-        Tracer { scene, caustics: None, stack: Stack::default(), rays: 0 }
+        Tracer { scene, caustics: None, stack: TraversalStack::default(), rays: 0 }
     }
 
     /// The same with caustics from photons.
@@ -154,7 +154,7 @@ impl<'a> Tracer<'a> {
             ray: Ray { origin, direction, t_max: f32::INFINITY },
             throughput: Vec3::ONE,
             roulette_scale: 1.0,
-            media: Media::default(),
+            media: MediumStack::default(),
             polarisation: Polarisation::NONE,
             vertex,
             gathered: None,
@@ -185,25 +185,25 @@ impl<'a> Tracer<'a> {
             let outside = wo.dot(surface.geometric_normal) >= 0.0;
             if scene.plan().refraction {
                 let begins_inside =
-                    path.media.innermost().is_none() && material.transmits() && !outside && !surface.sheet;
+                    path.media.innermost().is_none() && material.transmits() && !outside && !surface.is_thin;
                 path.throughput *= if begins_inside {
                     material.transmittance(distance)
                 } else {
                     path.media.transmittance(&scene.materials, distance)
                 };
             }
-            if material.glows() {
+            if material.is_emissive() {
                 let glow = scene.layers.len() - 1;
                 sink.add(glow, path.throughput * material.emission * scene.glow_time_s);
             }
             // Straight through a pane a ray goes on after the last bounce, as light sampling there counts on.
             let ends = path.wide_bounces >= limits.wide_bounces;
-            if path.bounce >= limits.all_bounces || (ends && !(surface.sheet && material.transmits())) {
+            if path.bounce >= limits.all_bounces || (ends && !(surface.is_thin && material.transmits())) {
                 return;
             }
             let bsdf = scene.bsdf(&surface, wo, &path.media, path.polarisation);
-            let lit = material.scatters_widely() && !ends;
-            let place = Place { surface: &surface, bsdf: &bsdf, asked: None, choice: None, distance, outside };
+            let lit = material.has_non_specular_lobe() && !ends;
+            let place = Place { surface: &surface, bsdf: &bsdf, importances: None, choice: None, distance, outside };
             let branches = if lit && path.wide_bounces == 0 { limits.branches } else { 1 };
             path.ways = branches as f32;
             if let (true, Some(map)) = (lit, self.caustics) {
@@ -217,7 +217,7 @@ impl<'a> Tracer<'a> {
                 return;
             }
             if let (true, Some(reflectance)) =
-                (path.bounce < SPLITS && path.wide_bounces == 0, bsdf.glass_reflectance())
+                (path.bounce < SPLITS && path.wide_bounces == 0, bsdf.dielectric_reflectance())
             {
                 self.split(path, &place, reflectance, sampler, limits, sink);
                 return;
@@ -240,16 +240,16 @@ impl<'a> Tracer<'a> {
         sink: &mut impl Sink,
     ) {
         let ways = branches as f32;
-        let mut asked = None;
+        let mut importances = None;
         let lights = if self.samples_all(path) {
             let set = sampler.set(Purpose::Light { slot: 0, bounce: path.bounce });
             self.sample_lights(path, place, sampler, &set, ways, sink);
             Lights::Sampled { ways }
         } else {
-            asked = self.ask_lights(place);
+            importances = self.light_importances(place);
             Lights::Sample
         };
-        let place = &Place { asked: asked.as_ref(), ..*place };
+        let place = &Place { importances: importances.as_ref(), ..*place };
         path.throughput /= ways;
         path.roulette_scale /= ways;
         for branch in 0..branches {
@@ -308,19 +308,19 @@ impl<'a> Tracer<'a> {
         let [lobe, roulette] = sampler::rest(&set);
         let Some(sample) = bsdf.sample(place.choice.unwrap_or(lobe), sampler::point(&set)) else { return false };
         let ends = path.wide_bounces >= limits.wide_bounces;
-        if ends && !sample.straight {
+        if ends && !sample.is_undeviated {
             return false;
         }
         path.throughput *= sample.weight;
         path.roulette_scale *= sample.eta_scale;
         path.polarisation = sample.polarisation;
-        if sample.through && !surface.sheet {
+        if sample.is_transmission && !surface.is_thin {
             path.media.cross(surface.material, outside);
         }
-        if sample.straight {
+        if sample.is_undeviated {
             path.vertex = Vertex { travelled: before.travelled + distance, ..before };
         } else if sample.specular {
-            let bends = self.scene.materials[surface.material as usize].casts_caustics();
+            let bends = self.scene.materials[surface.material as usize].is_caustic_caster();
             path.gathered = path.gathered.filter(|_| bends);
             path.vertex.rival = path.gathered.map(|gathered| Rival::new(gathered, surface, sample.direction));
         } else {
@@ -338,8 +338,9 @@ impl<'a> Tracer<'a> {
         if !survives(&mut path.throughput, path.roulette_scale, bounce, roulette) {
             return false;
         }
-        path.ray = Ray { origin: surface.leave(sample.direction), direction: sample.direction, t_max: f32::INFINITY };
-        if !sample.straight {
+        path.ray =
+            Ray { origin: surface.spawn_origin(sample.direction), direction: sample.direction, t_max: f32::INFINITY };
+        if !sample.is_undeviated {
             path.vertex.left_from = path.ray.origin;
         }
         path.bounce += 1;

@@ -3,10 +3,10 @@
 //! All use the same watertight triangle kernel, so they find the same distances to the bit; they differ only in how many
 //! triangles they test.
 
-use super::bvh::{Slabs, Stack};
-use super::simd::{self, Kernels, Query, WIDTH};
-use super::triangle::{Packet, Sheared};
-use super::triangle_tree::TriangleTree;
+use super::blas::Blas;
+use super::bvh::{Slabs, TraversalStack};
+use super::simd::{self, KernelTask, Kernels, WIDTH};
+use super::triangle::{Packet, ShearedRay};
 use crate::math::Ray;
 use crate::scene::Mesh;
 use glam::Vec3;
@@ -14,9 +14,9 @@ use std::sync::Arc;
 
 /// How the closest hit is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Intersection {
+pub enum IntersectionMethod {
     /// Every triangle of the mesh.
-    EveryTriangle,
+    BruteForce,
     /// A box around each part of the mesh, tested by dividing by the direction; then every triangle of the part.
     Box,
     /// The same with the inverse direction and its signs computed once a ray.
@@ -25,18 +25,22 @@ pub enum Intersection {
     Bvh,
 }
 
-impl Intersection {
+impl IntersectionMethod {
     /// All, slowest first.
-    pub const ALL: [Intersection; 4] =
-        [Intersection::EveryTriangle, Intersection::Box, Intersection::BoxPrecomputed, Intersection::Bvh];
+    pub const ALL: [IntersectionMethod; 4] = [
+        IntersectionMethod::BruteForce,
+        IntersectionMethod::Box,
+        IntersectionMethod::BoxPrecomputed,
+        IntersectionMethod::Bvh,
+    ];
 
     /// Its name in tables.
     pub fn label(self) -> &'static str {
         match self {
-            Intersection::EveryTriangle => "brute",
-            Intersection::Box => "box",
-            Intersection::BoxPrecomputed => "box-precomputed",
-            Intersection::Bvh => "bvh",
+            IntersectionMethod::BruteForce => "brute",
+            IntersectionMethod::Box => "box",
+            IntersectionMethod::BoxPrecomputed => "box-precomputed",
+            IntersectionMethod::Bvh => "bvh",
         }
     }
 }
@@ -44,9 +48,9 @@ impl Intersection {
 /// A mesh prepared for one of the ways.
 #[derive(Debug)]
 pub struct Intersector {
-    method: Intersection,
+    method: IntersectionMethod,
     parts: Vec<Part>,
-    tree: Option<TriangleTree>,
+    blas: Option<Blas>,
 }
 
 /// Triangles with a box around them.
@@ -95,17 +99,17 @@ impl Part {
 
 impl Intersector {
     /// Prepares a mesh.
-    pub fn new(mesh: &Arc<Mesh>, method: Intersection) -> Self {
+    pub fn new(mesh: &Arc<Mesh>, method: IntersectionMethod) -> Self {
         let whole: Vec<_> = std::iter::once(0..mesh.triangles.len() as u32).collect();
-        let (ranges, tree) = match method {
-            Intersection::EveryTriangle => (whole, None),
-            Intersection::Box | Intersection::BoxPrecomputed => {
+        let (ranges, blas) = match method {
+            IntersectionMethod::BruteForce => (whole, None),
+            IntersectionMethod::Box | IntersectionMethod::BoxPrecomputed => {
                 (mesh.parts.iter().map(|part| part.triangles.clone()).collect(), None)
             }
-            Intersection::Bvh => (Vec::new(), Some(TriangleTree::new(mesh.triangles.len(), |t| mesh.corners(t)))),
+            IntersectionMethod::Bvh => (Vec::new(), Some(Blas::new(mesh.triangles.len(), |t| mesh.corners(t)))),
         };
         let parts = ranges.into_iter().map(|range| Part::new(mesh, range)).collect();
-        Intersector { method, parts, tree }
+        Intersector { method, parts, blas }
     }
 
     /// Distances of the closest hits, in multiples of each ray's direction; infinite for a miss.
@@ -114,20 +118,20 @@ impl Intersector {
     }
 
     #[inline(always)]
-    fn closest<K: Kernels>(&self, ray: &Ray, stack: &mut Stack) -> Option<f32> {
-        if let Some(tree) = &self.tree {
-            return tree.closest::<K>(ray, &Slabs::new(ray.origin, ray.direction), stack).map(|hit| hit.t);
+    fn closest<K: Kernels>(&self, ray: &Ray, stack: &mut TraversalStack) -> Option<f32> {
+        if let Some(blas) = &self.blas {
+            return blas.intersect::<K>(ray, &Slabs::new(ray.origin, ray.direction), stack).map(|hit| hit.t);
         }
-        let sheared = Sheared::new(ray.origin, ray.direction);
+        let sheared = ShearedRay::new(ray.origin, ray.direction);
         let inverse = ray.direction.recip();
         let negative = inverse.to_array().map(f32::is_sign_negative);
         let mut nearest = None;
         let mut ray = *ray;
         for part in &self.parts {
             let met = match self.method {
-                Intersection::Box => part.is_met_by_division(&ray),
-                Intersection::BoxPrecomputed => part.is_met(&ray, inverse, negative),
-                Intersection::EveryTriangle | Intersection::Bvh => true,
+                IntersectionMethod::Box => part.is_met_by_division(&ray),
+                IntersectionMethod::BoxPrecomputed => part.is_met(&ray, inverse, negative),
+                IntersectionMethod::BruteForce | IntersectionMethod::Bvh => true,
             };
             for packet in part.packets.iter().filter(|_| met) {
                 if let Some(hit) = K::triangles(packet, &sheared, ray.t_max) {
@@ -146,12 +150,12 @@ struct Distances<'a> {
     rays: &'a [Ray],
 }
 
-impl Query for Distances<'_> {
-    type Answer = Vec<f32>;
+impl KernelTask for Distances<'_> {
+    type Output = Vec<f32>;
 
     #[inline(always)]
     fn run<K: Kernels>(self) -> Vec<f32> {
-        let mut stack = Stack::default();
+        let mut stack = TraversalStack::default();
         let distance = |ray: &Ray| self.intersector.closest::<K>(ray, &mut stack).unwrap_or(f32::INFINITY);
         self.rays.iter().map(distance).collect()
     }
@@ -176,9 +180,9 @@ mod tests {
             Ray { origin, direction: warp::uniform_sphere(Vec2::new(c, d)), t_max: f32::INFINITY }
         };
         let rays: Vec<Ray> = (0..4096).map(ray).collect();
-        let truth = Intersector::new(&mesh, Intersection::EveryTriangle).distances(&rays);
+        let truth = Intersector::new(&mesh, IntersectionMethod::BruteForce).distances(&rays);
         assert!(truth.iter().filter(|t| t.is_finite()).count() > 150);
-        for method in Intersection::ALL {
+        for method in IntersectionMethod::ALL {
             assert_eq!(Intersector::new(&mesh, method).distances(&rays), truth, "{}", method.label());
         }
     }

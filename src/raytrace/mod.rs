@@ -4,6 +4,7 @@
 //! same bits for any number of threads.
 
 mod aggregate;
+mod blas;
 mod bsdf;
 mod bvh;
 mod caustics;
@@ -16,7 +17,7 @@ mod intersectors;
 mod lens;
 mod lights;
 mod live;
-mod media;
+mod medium_stack;
 mod plan;
 mod prepare;
 mod probe;
@@ -26,13 +27,12 @@ mod schedule;
 mod simd;
 mod texture;
 mod triangle;
-mod triangle_tree;
 mod visibility;
 mod whitted;
 
 pub use film::{Film, Layer, MAX_LIGHT_LAYERS};
 pub use geometry_cache::GeometryCache;
-pub use intersectors::{Intersection, Intersector};
+pub use intersectors::{IntersectionMethod, Intersector};
 pub use live::{LiveCamera, LivePicture, Smoother};
 pub use plan::{RenderPlan, Shortcut};
 pub use prepare::{PrepareError, RenderScene, prepare, prepare_kept};

@@ -1,6 +1,6 @@
 //! What a scene needs of the tracer, and why: "model no more than a scene needs".
 
-use super::bsdf::Surfacing;
+use super::bsdf::TracedMaterial;
 use super::lights::TracedLight;
 use std::fmt;
 
@@ -99,17 +99,17 @@ impl RenderPlan {
     }
 
     /// Looks at what is there.
-    pub fn new(materials: &[Surfacing], lights: &[TracedLight], lens: bool) -> Self {
+    pub fn new(materials: &[TracedMaterial], lights: &[TracedLight], lens: bool) -> Self {
         let mut reasons = Vec::new();
-        let glow = materials.iter().any(Surfacing::glows);
-        let sized_lights = lights.iter().any(TracedLight::has_size);
+        let glow = materials.iter().any(TracedMaterial::is_emissive);
+        let sized_lights = lights.iter().any(|light| !light.is_delta());
         let emitters_have_size = sized_lights || glow;
         reasons.push(match (lights.is_empty(), sized_lights) {
             (true, _) => "no light is on: only glowing surfaces are traced".to_owned(),
             (false, true) => "some light has a size: lights are met by rays as well as sampled (MIS)".to_owned(),
             (false, false) => "point, spot and sharp sun only: no rays towards emitters, no MIS".to_owned(),
         });
-        let refraction = materials.iter().any(Surfacing::transmits);
+        let refraction = materials.iter().any(TracedMaterial::transmits);
         reasons.push(if refraction {
             "glass: paths refract, and go on through it".to_owned()
         } else {
@@ -120,7 +120,7 @@ impl RenderPlan {
         } else {
             "pinhole: no lens samples".to_owned()
         });
-        let photons = sampled_lights(lights) > 0 && materials.iter().any(Surfacing::casts_caustics);
+        let photons = sampled_lights(lights) > 0 && materials.iter().any(TracedMaterial::is_caustic_caster);
         reasons.push(if photons {
             "mirrors or clear glass: what they throw on surfaces is gathered from photons".to_owned()
         } else {
@@ -134,10 +134,10 @@ impl RenderPlan {
             n if sample_all_lights => format!("{n} lights: each is sampled at the first hit, one after it"),
             n => format!("{n} lights: one is chosen a hit, by what it gives there"),
         });
-        let albedo = materials.iter().map(Surfacing::largest_albedo).fold(0.0, f32::max);
+        let albedo = materials.iter().map(TracedMaterial::max_albedo).fold(0.0, f32::max);
         let max_bounces = bounces_for(albedo) + if refraction { 8 } else { 0 };
         reasons.push(format!("largest reflectance {albedo:.2}: at most {max_bounces} bounces leave less than 1/512"));
-        let caustics = sized_lights && materials.iter().any(Surfacing::bends);
+        let caustics = sized_lights && materials.iter().any(TracedMaterial::is_nearly_specular);
         let direct_is_noisy = sized_lights && sample_all_lights && !caustics;
         let branches = if direct_is_noisy { FEW_WAYS } else { MANY_WAYS };
         reasons.push(format!("bounced light is noisier than direct: {branches} ways on from the first surface"));

@@ -1,14 +1,14 @@
 //! From the scene that the user edits to flat tables that the tracer reads.
 
 use super::aggregate::Aggregate;
-use super::bsdf::{Behind, Bsdf, Polarisation, Surfacing};
+use super::bsdf::{Boundary, Bsdf, Polarisation, TracedMaterial};
 use super::caustics::Casters;
 use super::film::{self, Layer};
-use super::geometry::{Instance, Surface};
+use super::geometry::{Instance, SurfaceInteraction};
 use super::geometry_cache::GeometryCache;
 use super::lens::Lens;
-use super::lights::{Chooser, Crossings, TracedLight};
-use super::media::Media;
+use super::lights::{EmitterBvh, LightSampler, TracedLight};
+use super::medium_stack::MediumStack;
 use super::plan::RenderPlan;
 use super::texture::TextureMap;
 use crate::photo::exposure;
@@ -30,13 +30,13 @@ pub enum PrepareError {
 #[derive(Debug)]
 pub struct RenderScene {
     pub(super) aggregate: Aggregate,
-    pub(super) materials: Vec<Surfacing>,
+    pub(super) materials: Vec<TracedMaterial>,
     pub(super) textures: Vec<TextureMap>,
     pub(super) lights: Vec<TracedLight>,
     /// Chooses between them.
-    pub(super) chooser: Chooser,
+    pub(super) light_sampler: LightSampler,
     /// Finds those that a ray meets.
-    pub(super) crossings: Crossings,
+    pub(super) emitter_bvh: EmitterBvh,
     /// What throws caustics; empty where the plan sends no photons.
     pub(super) casters: Casters,
     pub(super) layers: Vec<Layer>,
@@ -72,7 +72,13 @@ impl RenderScene {
     }
 
     /// How a surface scatters towards `wo` (unit), for a viewer inside `media` who accepts this polarisation.
-    pub(super) fn bsdf(&self, surface: &Surface, wo: Vec3, media: &Media, polarisation: Polarisation) -> Bsdf<'_> {
+    pub(super) fn bsdf(
+        &self,
+        surface: &SurfaceInteraction,
+        wo: Vec3,
+        media: &MediumStack,
+        polarisation: Polarisation,
+    ) -> Bsdf<'_> {
         let material = &self.materials[surface.material as usize];
         let texture = material.texture.map_or(Vec3::ONE, |t| self.textures[t as usize].at(surface.uv));
         let bsdf = Bsdf::new(material, texture, surface.normal, surface.geometric_normal, wo);
@@ -81,7 +87,10 @@ impl RenderScene {
         }
         let outside = wo.dot(surface.geometric_normal) >= 0.0;
         let interface = || media.interface(&self.materials, surface.material, outside);
-        bsdf.through(if surface.sheet { Behind::Pane } else { Behind::Body(interface()) }, polarisation)
+        bsdf.with_boundary(
+            if surface.is_thin { Boundary::ThinPane } else { Boundary::Interface(interface()) },
+            polarisation,
+        )
     }
 
     /// What a fresh film of this scene looks like.
@@ -133,9 +142,9 @@ pub(super) fn prepare_all(
         .filter_map(|p| {
             let geometry = geometries.get(&Arc::as_ptr(&p.mesh))?.clone();
             let clear = p.materials.iter().any(|&m| tables.materials[m as usize].transmits());
-            let sheet = clear && !geometry.is_closed();
+            let is_thin = clear && !geometry.is_closed();
             let mut placed = Instance::new(geometry, relative_to(p.world_from_object, eye), p.object, p.materials)?;
-            placed.sheet = sheet;
+            placed.is_thin = is_thin;
             Some(placed)
         })
         .collect();
@@ -143,16 +152,16 @@ pub(super) fn prepare_all(
     let layer_times = layer_times(&lights, &layers);
     let lens = Lens::new(scene);
     let plan = RenderPlan::new(&tables.materials, &lights, lens.has_aperture());
-    let aggregate = Aggregate::with_small(instances, cache.small());
+    let aggregate = Aggregate::with_merged(instances, cache.merged());
     let casters = if plan.photons { Casters::new(&aggregate, &tables.materials) } else { Casters::default() };
-    cache.keep_small(aggregate.small().clone());
-    cache.keep_surfaces(tables.known.into_iter().zip(tables.materials.iter().cloned()));
+    cache.store_merged(aggregate.merged().clone());
+    cache.store_materials(tables.known.into_iter().zip(tables.materials.iter().cloned()));
     Ok(RenderScene {
         aggregate,
         materials: tables.materials,
         textures: tables.textures,
-        chooser: Chooser::new(&lights),
-        crossings: Crossings::new(&lights),
+        light_sampler: LightSampler::new(&lights),
+        emitter_bvh: EmitterBvh::new(&lights),
         casters,
         lights,
         layers,
@@ -181,7 +190,7 @@ struct Placed {
 /// Materials and textures, each once.
 struct Tables<'a> {
     cache: &'a GeometryCache,
-    materials: Vec<Surfacing>,
+    materials: Vec<TracedMaterial>,
     known: Vec<Material>,
     textures: Vec<TextureMap>,
     texture_index: HashMap<String, u32>,
@@ -198,9 +207,9 @@ impl<'a> Tables<'a> {
         }
         let texture = material.base_color_texture.as_ref().and_then(|path| self.texture(path, assets));
         self.known.push(material.clone());
-        let mut surfacing = self.cache.surfacing(material).unwrap_or_else(|| Surfacing::new(material, texture));
-        surfacing.texture = texture;
-        self.materials.push(surfacing);
+        let mut traced = self.cache.material(material).unwrap_or_else(|| TracedMaterial::new(material, texture));
+        traced.texture = texture;
+        self.materials.push(traced);
         self.known.len() as u32 - 1
     }
 

@@ -9,7 +9,7 @@
 use super::film::Layer;
 use super::integrator::{Limits, Sink, Tracer};
 use super::lights::TracedLight;
-use super::media::Media;
+use super::medium_stack::MediumStack;
 use super::prepare::{PrepareError, RenderScene, prepare_around};
 use super::receiver::Receiver;
 use super::sampler::{self, Purpose, Sampler};
@@ -135,7 +135,7 @@ impl Probe {
         let lights: Vec<MeteredLight> = prepared.layers.iter().filter_map(metered).collect();
         let layer_of = |light: &Light| lights.iter().position(|metered| metered.id == light.id);
         let order = scene.lights.iter().filter(|l| l.on).map(|light| (blank(light), layer_of(light))).collect();
-        let glows = prepared.materials.iter().any(|m| m.glows());
+        let glows = prepared.materials.iter().any(|m| m.is_emissive());
         Ok(Probe { scene: prepared, eye: around, lights, order, camera: scene.camera.clone(), glows })
     }
 
@@ -388,7 +388,7 @@ impl Job<'_> {
         let (from, to) = self.round.points[layer];
         for i in from..to {
             // One point says all about a light without size, and the first round asks for it.
-            if !light.is_sampled() || (!light.has_size() && i > 0) {
+            if !light.is_sampled() || (light.is_delta() && i > 0) {
                 return;
             }
             let set = Sampler::new(sequence.index, 1 + layer as u32, i, self.seed).set(Purpose::Camera);
@@ -401,7 +401,14 @@ impl Job<'_> {
                 }
                 let (origin, direction, distance) = (receiver.origin, sample.direction, sample.distance);
                 // What bodies of glass let through of a light with a size is found by the paths.
-                value * luminance(tracer.visibility(origin, direction, distance, light.has_size(), Media::default()))
+                value
+                    * luminance(tracer.visibility(
+                        origin,
+                        direction,
+                        distance,
+                        !light.is_delta(),
+                        MediumStack::default(),
+                    ))
             });
             let (sum, points) = &mut sequence.direct[layer];
             *points += 1;
@@ -444,7 +451,7 @@ impl Job<'_> {
             return;
         }
         for light in unsampled() {
-            if let Some(seen) = light.seen_by(origin, direction) {
+            if let Some(seen) = light.intersect(origin, direction) {
                 gather.add(light.layer, Vec3::splat(seen.luminance));
             }
         }

@@ -6,7 +6,7 @@
 //!
 //! The sequence is the one of the crate `sobol_burley`, bit by bit; here two sets come at once, in eight lanes.
 
-use super::simd::{self, Kernels, Query};
+use super::simd::{self, KernelTask, Kernels};
 use glam::Vec2;
 
 /// Four stratified numbers in [0, 1).
@@ -98,8 +98,8 @@ struct Pair {
     seeds: [u32; 2],
 }
 
-impl Query for Pair {
-    type Answer = [Set; 2];
+impl KernelTask for Pair {
+    type Output = [Set; 2];
 
     #[inline(always)]
     fn run<K: Kernels>(self) -> [Set; 2] {

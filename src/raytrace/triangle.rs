@@ -1,6 +1,6 @@
 //! Ray against triangles, eight at a time, watertight along shared edges. The arithmetic is in [`super::simd`].
 //!
-//! Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection": the ray is sheared onto an axis; edge functions
+//! Woop, Benthin and Wald 2013, "Watertight Ray/Triangle IntersectionMethod": the ray is sheared onto an axis; edge functions
 //! are then evaluated alike for both neighbours of an edge, so no ray slips between them. Edge functions that come out
 //! exactly 0 are computed again in f64.
 
@@ -18,7 +18,7 @@ pub struct Packet {
 
 /// A ray made ready for the test: permuted so that its largest direction component is Z, and sheared onto it.
 #[derive(Clone, Copy, Debug)]
-pub struct Sheared {
+pub struct ShearedRay {
     pub(super) origin: [f32; 3],
     pub(super) axes: [usize; 3],
     pub(super) shear: [f32; 3],
@@ -35,7 +35,7 @@ pub struct TriangleHit {
     pub barycentric: [f32; 2],
 }
 
-impl Sheared {
+impl ShearedRay {
     /// Prepares a ray. The direction must not be zero.
     #[inline(always)]
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
@@ -52,7 +52,7 @@ impl Sheared {
         let (x, y) = if direction[z] < 0.0 { (BEFORE[z], AFTER[z]) } else { (AFTER[z], BEFORE[z]) };
         let inverse = 1.0 / direction[z];
         let shear = [direction[x] * inverse, direction[y] * inverse, inverse];
-        Sheared { origin: origin.to_array(), axes: [x, y, z], shear }
+        ShearedRay { origin: origin.to_array(), axes: [x, y, z], shear }
     }
 }
 
@@ -102,24 +102,24 @@ pub(super) fn edges_in_f64(e: &mut [[f32; WIDTH]; 3], x: &[[f32; WIDTH]; 3], y: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raytrace::simd::{Kernels, Plain, Query, dispatch};
+    use crate::raytrace::simd::{KernelTask, Kernels, Scalar, dispatch};
 
     /// The test with the kernels of this processor.
-    struct Test<'a>(&'a Packet, &'a Sheared, f32);
+    struct Test<'a>(&'a Packet, &'a ShearedRay, f32);
 
-    impl Query for Test<'_> {
-        type Answer = Option<TriangleHit>;
+    impl KernelTask for Test<'_> {
+        type Output = Option<TriangleHit>;
 
         #[inline(always)]
-        fn run<K: Kernels>(self) -> Self::Answer {
+        fn run<K: Kernels>(self) -> Self::Output {
             K::triangles(self.0, self.1, self.2)
         }
     }
 
     impl Packet {
-        pub(in crate::raytrace) fn intersect(&self, ray: &Sheared, t_max: f32) -> Option<TriangleHit> {
+        pub(in crate::raytrace) fn intersect(&self, ray: &ShearedRay, t_max: f32) -> Option<TriangleHit> {
             let hit = dispatch(Test(self, ray, t_max));
-            assert_eq!(hit, Plain::triangles(self, ray, t_max), "the twins differ");
+            assert_eq!(hit, Scalar::triangles(self, ray, t_max), "the twins differ");
             hit
         }
     }
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn hits_carry_distance_and_barycentrics() {
-        let ray = Sheared::new(Vec3::new(0.2, 0.3, 2.0), Vec3::new(0.0, 0.0, -2.0));
+        let ray = ShearedRay::new(Vec3::new(0.2, 0.3, 2.0), Vec3::new(0.0, 0.0, -2.0));
         let hit = unit_triangle().intersect(&ray, f32::INFINITY).unwrap();
         assert_eq!((hit.t, hit.triangle), (1.0, 7));
         assert!((hit.barycentric[0] - 0.2).abs() < 1e-6 && (hit.barycentric[1] - 0.3).abs() < 1e-6);
@@ -140,8 +140,8 @@ mod tests {
     #[test]
     fn both_sides_are_hit_and_behind_is_not() {
         for z in [1.0, -1.0] {
-            let towards = Sheared::new(Vec3::new(0.2, 0.2, z), Vec3::new(0.0, 0.0, -z));
-            let away = Sheared::new(Vec3::new(0.2, 0.2, z), Vec3::new(0.0, 0.0, z));
+            let towards = ShearedRay::new(Vec3::new(0.2, 0.2, z), Vec3::new(0.0, 0.0, -z));
+            let away = ShearedRay::new(Vec3::new(0.2, 0.2, z), Vec3::new(0.0, 0.0, z));
             assert!(unit_triangle().intersect(&towards, f32::INFINITY).is_some());
             assert!(unit_triangle().intersect(&away, f32::INFINITY).is_none());
         }
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn triangles_of_no_area_are_never_hit() {
-        let ray = Sheared::new(Vec3::new(0.5, 0.0, 1.0), Vec3::NEG_Z);
+        let ray = ShearedRay::new(Vec3::new(0.5, 0.0, 1.0), Vec3::NEG_Z);
         for corners in [[Vec3::ZERO, Vec3::X, Vec3::X * 2.0], [Vec3::X * 0.5; 3], [Vec3::ZERO, Vec3::ZERO, Vec3::X]] {
             assert!(Packet::new([(0, corners)]).intersect(&ray, f32::INFINITY).is_none());
         }
@@ -169,7 +169,7 @@ mod tests {
             let along = (k / 7) as f32 / (20_000.0 / 7.0) * 0.9;
             let target = edge[0] + (edge[1] - edge[0]) * along;
             let origin = Vec3::new((k as f32).sin() * 2.0, (k as f32 * 1.3).cos() * 2.0, 5.0);
-            let ray = Sheared::new(origin, target - origin);
+            let ray = ShearedRay::new(origin, target - origin);
             assert!(packets.iter().any(|p| p.intersect(&ray, f32::INFINITY).is_some()), "ray {k} slipped through");
         }
     }

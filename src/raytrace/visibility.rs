@@ -3,7 +3,7 @@
 use super::aggregate::Hit;
 use super::bsdf::pane_transmittance;
 use super::integrator::Tracer;
-use super::media::Media;
+use super::medium_stack::MediumStack;
 use crate::math::Ray;
 use glam::Vec3;
 
@@ -24,19 +24,26 @@ impl Tracer<'_> {
     /// The closest surface.
     pub fn closest(&mut self, ray: &Ray) -> Option<Hit> {
         self.rays += 1;
-        self.scene.aggregate.closest(ray, &mut self.stack)
+        self.scene.aggregate.intersect(ray, &mut self.stack)
     }
 
     /// Whether anything but emitters lies between a point and one at `distance` from it.
     pub fn blocked(&mut self, origin: Vec3, direction: Vec3, distance: f32) -> bool {
         self.rays += 1;
         let ray = Ray { origin, direction, t_max: short_of(origin, distance) };
-        self.scene.aggregate.blocked(&ray, &mut self.stack)
+        self.scene.aggregate.occluded(&ray, &mut self.stack)
     }
 
     /// Share of a light that reaches a point inside `media`, from `distance` away along a direction. Thin panes let it
     /// through; bodies of glass do for a light without a size, where photons are about only between parallel faces.
-    pub fn visibility(&mut self, origin: Vec3, direction: Vec3, distance: f32, sized: bool, mut media: Media) -> Vec3 {
+    pub fn visibility(
+        &mut self,
+        origin: Vec3,
+        direction: Vec3,
+        distance: f32,
+        sized: bool,
+        mut media: MediumStack,
+    ) -> Vec3 {
         let scene = self.scene;
         if !scene.plan().refraction {
             return if self.blocked(origin, direction, distance) { Vec3::ZERO } else { Vec3::ONE };
@@ -56,12 +63,12 @@ impl Tracer<'_> {
             };
             let surface = scene.aggregate.surface(&hit);
             let material = &scene.materials[surface.material as usize];
-            if !material.transmits() || (sized && !surface.sheet) {
+            if !material.transmits() || (sized && !surface.is_thin) {
                 return Vec3::ZERO;
             }
             let cos = direction.dot(surface.geometric_normal);
             passed *= media.transmittance(&scene.materials, hit.triangle.t) * material.transmission();
-            if surface.sheet {
+            if surface.is_thin {
                 passed *= pane_transmittance(cos, material.ior());
             } else {
                 if self.has_caustics() && last_face.is_some_and(|face| !are_parallel(face, surface.normal)) {
@@ -74,7 +81,7 @@ impl Tracer<'_> {
                 media.cross(surface.material, cos < 0.0);
             }
             let rest = ray.t_max - hit.triangle.t;
-            ray = Ray { origin: surface.leave(direction), direction, t_max: rest };
+            ray = Ray { origin: surface.spawn_origin(direction), direction, t_max: rest };
         }
         Vec3::ZERO
     }

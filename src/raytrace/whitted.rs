@@ -8,9 +8,9 @@
 
 use super::bsdf::{fresnel, pane_transmittance};
 use super::emission::Vertex;
-use super::geometry::Surface;
+use super::geometry::SurfaceInteraction;
 use super::integrator::{Sink, Tracer};
-use super::media::Media;
+use super::medium_stack::MediumStack;
 use crate::math::Ray;
 use glam::Vec3;
 
@@ -18,7 +18,7 @@ use glam::Vec3;
 struct Branch {
     ray: Ray,
     share: Vec3,
-    media: Media,
+    media: MediumStack,
     depth: u32,
 }
 
@@ -29,7 +29,7 @@ impl Tracer<'_> {
     /// Follows a camera ray and gives every light's share to `sink`. Mirrors and glass are followed `depth` times.
     pub fn whitted(&mut self, origin: Vec3, direction: Vec3, depth: u32, sink: &mut impl Sink) {
         let ray = Ray { origin, direction, t_max: f32::INFINITY };
-        let mut open = vec![Branch { ray, share: Vec3::ONE, media: Media::default(), depth: 0 }];
+        let mut open = vec![Branch { ray, share: Vec3::ONE, media: MediumStack::default(), depth: 0 }];
         while let Some(branch) = open.pop() {
             self.follow(branch, depth, &mut open, sink);
         }
@@ -49,7 +49,7 @@ impl Tracer<'_> {
         share *= media.transmittance(&scene.materials, distance);
         let surface = scene.aggregate.surface(&hit);
         let material = &scene.materials[surface.material as usize];
-        if material.glows() {
+        if material.is_emissive() {
             sink.add(scene.layers.len() - 1, share * material.emission * scene.glow_time_s);
         }
         let view_dir = -ray.direction;
@@ -64,9 +64,9 @@ impl Tracer<'_> {
             if above { phong.eval(light_dir, view_dir, normal) * light_dir.dot(normal) } else { Vec3::ZERO }
         });
         self.ambient(share * phong.albedo, sink);
-        let mut branch_to = |direction: Vec3, part: Vec3, media: Media| {
+        let mut branch_to = |direction: Vec3, part: Vec3, media: MediumStack| {
             if branch.depth < depth && part.max_element() > NEGLIGIBLE && direction != Vec3::ZERO {
-                let ray = Ray { origin: surface.leave(direction), direction, t_max: f32::INFINITY };
+                let ray = Ray { origin: surface.spawn_origin(direction), direction, t_max: f32::INFINITY };
                 open.push(Branch { ray, share: part, media, depth: branch.depth + 1 });
             }
         };
@@ -75,7 +75,7 @@ impl Tracer<'_> {
             branch_to(mirrored, share * phong.mirror, media);
             return;
         }
-        if surface.sheet {
+        if surface.is_thin {
             let passing = pane_transmittance(view_dir.dot(normal), material.ior());
             branch_to(mirrored, share * (phong.mirror + phong.clear * (1.0 - passing)), media);
             branch_to(ray.direction, share * (phong.clear * passing), media);
@@ -94,8 +94,8 @@ impl Tracer<'_> {
     /// Every light from its centre, with a hard shadow. `scatter` is BSDF times cosine.
     fn light(
         &mut self,
-        surface: &Surface,
-        media: &Media,
+        surface: &SurfaceInteraction,
+        media: &MediumStack,
         share: Vec3,
         sink: &mut impl Sink,
         scatter: impl Fn(Vec3) -> Vec3,
@@ -106,8 +106,8 @@ impl Tracer<'_> {
             if value == Vec3::ZERO {
                 continue;
             }
-            let origin = surface.leave(sample.direction);
-            let visible = self.visibility(origin, sample.direction, sample.distance, light.has_size(), *media);
+            let origin = surface.spawn_origin(sample.direction);
+            let visible = self.visibility(origin, sample.direction, sample.distance, !light.is_delta(), *media);
             sink.add(light.layer, share * visible * value * light.tint * sample.value);
         }
     }

@@ -7,7 +7,7 @@ mod scaling;
 mod traversal;
 
 use super::{Failure, input};
-use crate::raytrace::Intersection;
+use crate::raytrace::IntersectionMethod;
 use std::path::PathBuf;
 
 /// Arguments of `chart`.
@@ -40,7 +40,7 @@ pub struct Arguments {
     ray_kind: traversal::RayKind,
     /// Measure only this way of --traversal; may be given several times.
     #[arg(long, value_parser = traversal::parse_method, requires = "traversal")]
-    way: Vec<Intersection>,
+    way: Vec<IntersectionMethod>,
     /// Show how build time, tracing and memory grow with triangles, lights and pixels.
     #[arg(long, conflicts_with_all = ["traversal", "scenes"])]
     scaling: bool,
@@ -59,7 +59,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     match (&arguments.traversal, &arguments.output) {
         (Some(model), _) => {
-            let methods = if arguments.way.is_empty() { &Intersection::ALL[..] } else { &arguments.way };
+            let methods = if arguments.way.is_empty() { &IntersectionMethod::ALL[..] } else { &arguments.way };
             traversal::run(model, arguments.rays.as_deref(), arguments.ray_kind, methods, arguments.json)
         }
         (None, Some(folder)) => accuracy::run(arguments, folder),

@@ -3,7 +3,7 @@
 use crate::cli::{Failure, say};
 use crate::io;
 use crate::math::{Ray, orthonormal_basis, warp};
-use crate::raytrace::{Intersection, Intersector};
+use crate::raytrace::{IntersectionMethod, Intersector};
 use crate::scene::Mesh;
 use anyhow::{Context, anyhow, ensure};
 use clap::ValueEnum;
@@ -52,9 +52,9 @@ struct Row {
 }
 
 /// A way to find hits, by the name that the result gives it.
-pub fn parse_method(name: &str) -> Result<Intersection, String> {
-    let known = Intersection::ALL.map(Intersection::label);
-    let found = Intersection::ALL.into_iter().find(|method| method.label() == name);
+pub fn parse_method(name: &str) -> Result<IntersectionMethod, String> {
+    let known = IntersectionMethod::ALL.map(IntersectionMethod::label);
+    let found = IntersectionMethod::ALL.into_iter().find(|method| method.label() == name);
     found.ok_or_else(|| format!("there is no `{name}`, only {}", known.join(", ")))
 }
 
@@ -63,7 +63,7 @@ pub fn run(
     model: &Path,
     rays: Option<&Path>,
     kind: RayKind,
-    methods: &[Intersection],
+    methods: &[IntersectionMethod],
     json: bool,
 ) -> Result<(), Failure> {
     let mesh = Arc::new(io::import_obj(model)?.mesh);
@@ -93,7 +93,7 @@ pub fn run(
     Ok(())
 }
 
-fn measure(mesh: &Arc<Mesh>, method: Intersection, threads: usize, rays: &[Ray]) -> Result<Row, Failure> {
+fn measure(mesh: &Arc<Mesh>, method: IntersectionMethod, threads: usize, rays: &[Ray]) -> Result<Row, Failure> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
@@ -101,7 +101,7 @@ fn measure(mesh: &Arc<Mesh>, method: Intersection, threads: usize, rays: &[Ray])
     let started = Instant::now();
     let intersector = pool.install(|| Intersector::new(mesh, method));
     let build_s = started.elapsed().as_secs_f64();
-    let tests_a_ray = if method == Intersection::Bvh { 1 } else { mesh.triangles.len() as u64 };
+    let tests_a_ray = if method == IntersectionMethod::Bvh { 1 } else { mesh.triangles.len() as u64 };
     let step = (rays.len() as u64 * tests_a_ray).div_ceil(MOST_TESTS).max(1) as usize;
     let rays: Vec<Ray> = rays.iter().step_by(step).copied().collect();
     let pass = || -> (Vec<f32>, f64) {
@@ -187,7 +187,7 @@ fn camera_rays(mesh: &Mesh) -> Vec<Ray> {
 
 /// From the hits of `rays`, diffusely about the direction they came from, a hair off the surface.
 fn bounced(mesh: &Arc<Mesh>, rays: &[Ray]) -> Vec<Ray> {
-    let distances = Intersector::new(mesh, Intersection::Bvh).distances(rays);
+    let distances = Intersector::new(mesh, IntersectionMethod::Bvh).distances(rays);
     let hits = rays.iter().zip(distances).enumerate().filter(|(_, (_, t))| t.is_finite());
     hits.map(|(i, (ray, t))| {
         let [a, b, ..] = sobol_burley::sample_4d(i as u32 & 0xffff, 0, i as u32 >> 16);

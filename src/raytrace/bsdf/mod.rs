@@ -6,19 +6,18 @@
 //! gives back all light; metals are scaled by 1 + F0 (1 / E - 1) for light that bounces between facets (Turquin 2019).
 
 mod albedo;
+mod dielectric;
 pub mod fresnel;
 mod ggx;
-mod glass;
 mod phong;
 mod polarisation;
 
-use super::media::Interface;
 use crate::color::luminance;
 use crate::math::{orthonormal_basis, warp};
 use crate::scene::Material;
 use albedo::AlbedoTable;
+pub use dielectric::{Boundary, DielectricInterface, pane_transmittance};
 use glam::{Vec2, Vec3};
-pub use glass::{Behind, pane_transmittance};
 pub use polarisation::Polarisation;
 use std::f32::consts::PI;
 
@@ -30,7 +29,7 @@ const NO_GLOSS: f32 = 1e-6;
 
 /// A material made ready for tracing.
 #[derive(Clone, Debug)]
-pub struct Surfacing {
+pub struct TracedMaterial {
     base_color: Vec3,
     /// Index into the scene's textures.
     pub texture: Option<u32>,
@@ -48,7 +47,7 @@ pub struct Surfacing {
     reflects: bool,
 }
 
-impl Surfacing {
+impl TracedMaterial {
     /// Tabulates what the material needs.
     pub fn new(material: &Material, texture: Option<u32>) -> Self {
         let alpha = material.roughness * material.roughness;
@@ -57,7 +56,7 @@ impl Surfacing {
         let opaque = 1.0 - transmission;
         let metallic = if opaque > 0.0 { (material.metallic / opaque).min(1.0) } else { 0.0 };
         let gloss = AlbedoTable::dielectric(material.ior, alpha);
-        Surfacing {
+        TracedMaterial {
             base_color: material.base_color.into(),
             texture,
             metallic,
@@ -73,7 +72,7 @@ impl Surfacing {
     }
 
     /// Whether the surface gives off light.
-    pub fn glows(&self) -> bool {
+    pub fn is_emissive(&self) -> bool {
         self.emission != Vec3::ZERO
     }
 
@@ -107,18 +106,18 @@ impl Surfacing {
     }
 
     /// Largest share of light that a bounce can keep. Textures only darken.
-    pub fn largest_albedo(&self) -> f32 {
+    pub fn max_albedo(&self) -> f32 {
         let body = self.base_color.max_element();
         if self.transmission > 0.0 { 1.0_f32.max(body) } else { body + (1.0 - body) * self.gloss.mean }
     }
 
     /// Whether nearly all light leaves it in one direction for each it came from: clear glass, a mirror, polished metal.
-    pub fn bends(&self) -> bool {
+    pub fn is_nearly_specular(&self) -> bool {
         self.transmits() || (self.metallic > 0.5 && self.alpha < POLISHED_ALPHA)
     }
 
     /// Whether it throws light on where paths would find it only by luck: clear glass, a perfect mirror.
-    pub fn casts_caustics(&self) -> bool {
+    pub fn is_caustic_caster(&self) -> bool {
         self.transmits() || (self.metallic > 0.5 && self.is_smooth())
     }
 
@@ -142,7 +141,7 @@ impl Surfacing {
     }
 
     /// Whether light sampling is of use: there is something besides perfect reflection and refraction.
-    pub fn scatters_widely(&self) -> bool {
+    pub fn has_non_specular_lobe(&self) -> bool {
         let body = self.metallic < 1.0 && self.base_color.max_element() > 0.0;
         self.transmission < 1.0 && (body || !self.is_smooth())
     }
@@ -164,14 +163,14 @@ pub struct BsdfSample {
     /// Polarisation that is accepted from there on.
     pub polarisation: Polarisation,
     /// To the other side of the surface.
-    pub through: bool,
+    pub is_transmission: bool,
     /// Through a thin pane, straight on: other techniques can find it as if the pane were not there.
-    pub straight: bool,
+    pub is_undeviated: bool,
 }
 
 impl BsdfSample {
     /// A direction that other techniques can find as well.
-    pub fn wide(direction: Vec3, weight: Vec3, pdf: f32) -> Self {
+    pub fn non_specular(direction: Vec3, weight: Vec3, pdf: f32) -> Self {
         BsdfSample { weight, pdf, specular: false, ..BsdfSample::specular(direction) }
     }
 
@@ -184,8 +183,8 @@ impl BsdfSample {
             specular: true,
             eta_scale: 1.0,
             polarisation: Polarisation::NONE,
-            through: false,
-            straight: false,
+            is_transmission: false,
+            is_undeviated: false,
         }
     }
 }
@@ -193,7 +192,7 @@ impl BsdfSample {
 /// The scattering at one point for one outgoing direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Bsdf<'a> {
-    surfacing: &'a Surfacing,
+    material: &'a TracedMaterial,
     base_color: Vec3,
     /// Shading frame; `normal` is on the side of `wo`.
     tangent: Vec3,
@@ -212,14 +211,14 @@ pub struct Bsdf<'a> {
     /// The same, world space.
     wo_world: Vec3,
     /// What light that goes through comes to.
-    behind: Behind,
+    boundary: Boundary,
     /// Polarisation that the viewer accepts.
     polarisation: Polarisation,
 }
 
 impl<'a> Bsdf<'a> {
     /// Scattering towards `wo` (unit, world) of a surface with these normals (outward) and texture value.
-    pub fn new(surfacing: &'a Surfacing, texture: Vec3, normal: Vec3, geometric_normal: Vec3, wo: Vec3) -> Self {
+    pub fn new(material: &'a TracedMaterial, texture: Vec3, normal: Vec3, geometric_normal: Vec3, wo: Vec3) -> Self {
         let outside = wo.dot(geometric_normal) >= 0.0;
         let side = if outside { 1.0 } else { -1.0 };
         let geometric_normal = geometric_normal * side;
@@ -228,32 +227,32 @@ impl<'a> Bsdf<'a> {
         let (tangent, bitangent) = orthonormal_basis(normal);
         let wo_world = wo;
         let wo = Vec3::new(wo.dot(tangent), wo.dot(bitangent), wo.dot(normal).max(1e-6));
-        let base_color = surfacing.base_color * texture;
+        let base_color = material.base_color * texture;
         // A body in air, unless `through` says otherwise.
-        let eta = if outside { surfacing.ior } else { 1.0 / surfacing.ior };
-        let behind = Behind::Body(Interface { eta, unknown: false });
+        let eta = if outside { material.ior } else { 1.0 / material.ior };
+        let boundary = Boundary::Interface(DielectricInterface { eta, starts_inside: false });
         let polarisation = Polarisation::NONE;
-        let gloss_albedo = surfacing.gloss_albedo(wo.z);
+        let gloss_albedo = material.gloss_albedo(wo.z);
         Bsdf {
-            surfacing,
+            material,
             base_color,
             tangent,
             bitangent,
             normal,
             geometric_normal,
             wo,
-            lambda_o: if surfacing.reflects { ggx::lambda(wo, surfacing.alpha) } else { 0.0 },
-            gloss_choice: surfacing.gloss_choice(base_color, gloss_albedo),
-            body: surfacing.body(base_color, gloss_albedo),
+            lambda_o: if material.reflects { ggx::lambda(wo, material.alpha) } else { 0.0 },
+            gloss_choice: material.gloss_choice(base_color, gloss_albedo),
+            body: material.body(base_color, gloss_albedo),
             wo_world,
-            behind,
+            boundary,
             polarisation,
         }
     }
 
     /// The same surface with this behind it, for a viewer who accepts this polarisation.
-    pub fn through(self, behind: Behind, polarisation: Polarisation) -> Self {
-        Bsdf { behind, polarisation, ..self }
+    pub fn with_boundary(self, boundary: Boundary, polarisation: Polarisation) -> Self {
+        Bsdf { boundary, polarisation, ..self }
     }
 
     /// Normal on the viewer's side.
@@ -269,14 +268,14 @@ impl<'a> Bsdf<'a> {
     /// left out of both.
     pub fn eval(&self, direction: Vec3) -> (Vec3, f32) {
         let wi = Vec3::new(direction.dot(self.tangent), direction.dot(self.bitangent), direction.dot(self.normal));
-        if wi.z <= 0.0 || direction.dot(self.geometric_normal) <= 0.0 || self.surfacing.transmission >= 1.0 {
+        if wi.z <= 0.0 || direction.dot(self.geometric_normal) <= 0.0 || self.material.transmission >= 1.0 {
             return (Vec3::ZERO, 0.0);
         }
         self.eval_local(wi)
     }
 
     fn eval_local(&self, wi: Vec3) -> (Vec3, f32) {
-        let s = self.surfacing;
+        let s = self.material;
         let mut value = self.body * ((1.0 - s.gloss_albedo(wi.z)) * wi.z);
         let mut pdf = (1.0 - self.gloss_choice) * warp::cosine_hemisphere_pdf(wi.z);
         if s.reflects && !s.is_smooth() {
@@ -293,7 +292,7 @@ impl<'a> Bsdf<'a> {
 
     /// Fresnel colour of the gloss, metal and dielectric mixed.
     fn gloss_color(&self, cos_half: f32) -> Vec3 {
-        let s = self.surfacing;
+        let s = self.material;
         let mut color = Vec3::ZERO;
         if s.metallic < 1.0 {
             color += Vec3::splat((1.0 - s.metallic) * fresnel::dielectric(cos_half, s.ior));
@@ -308,7 +307,7 @@ impl<'a> Bsdf<'a> {
 
     /// Chooses a direction. None where the choice fell on one that carries nothing.
     pub fn sample(&self, lobe: f32, u: Vec2) -> Option<BsdfSample> {
-        let s = self.surfacing;
+        let s = self.material;
         if lobe < s.transmission {
             return self.sample_glass(lobe / s.transmission);
         }
@@ -328,7 +327,7 @@ impl<'a> Bsdf<'a> {
             return None;
         }
         let (value, pdf) = self.eval_local(wi);
-        (pdf > 0.0).then(|| BsdfSample::wide(direction, value / pdf, pdf))
+        (pdf > 0.0).then(|| BsdfSample::non_specular(direction, value / pdf, pdf))
     }
 
     /// The mirror direction about the shading normal; about the triangle's where that would go below the surface.

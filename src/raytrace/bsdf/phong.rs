@@ -3,7 +3,7 @@
 //! The lobe's exponent comes from the roughness by 2 / alpha^2 - 2 (the width of Beckmann's and GGX's middle), its colour
 //! is the reflectance at normal incidence. Body and lobe do not share their energy: that is what the method leaves out.
 
-use super::{Surfacing, ggx};
+use super::{TracedMaterial, ggx};
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -21,7 +21,7 @@ pub struct Phong {
     pub clear: f32,
 }
 
-impl Surfacing {
+impl TracedMaterial {
     /// What is left of the material, with a texture value.
     pub fn phong(&self, texture: Vec3) -> Phong {
         let base = self.base_color * texture;

@@ -32,7 +32,7 @@ impl Polarisation {
 
     /// Reflectance of a face for this polarisation, and the polarisations after reflection and transmission. `wo` points
     /// back along the path, `normal` is on its side, `eta` is the index behind over the one before.
-    pub fn meet(self, wo: Vec3, normal: Vec3, eta: f32) -> Meeting {
+    pub fn at_interface(self, wo: Vec3, normal: Vec3, eta: f32) -> InterfaceReflection {
         // Straight on there is no plane of incidence, and any will do.
         let across = wo.cross(normal).try_normalize().unwrap_or_else(|| wo.any_orthonormal_vector());
         let Polarisation { q, u, .. } = self.along(across, -wo);
@@ -46,13 +46,13 @@ impl Polarisation {
         };
         let (reflectance, reflected) = mix(rs, rp, s * p);
         let (_, transmitted) = mix(1.0 - rs, 1.0 - rp, ((1.0 - rs) * (1.0 - rp)).max(0.0).sqrt());
-        Meeting { reflectance: reflectance.clamp(0.0, 1.0), reflected, transmitted }
+        InterfaceReflection { reflectance: reflectance.clamp(0.0, 1.0), reflected, transmitted }
     }
 }
 
 /// What happens at a face.
 #[derive(Clone, Copy, Debug)]
-pub struct Meeting {
+pub struct InterfaceReflection {
     /// Share that is reflected.
     pub reflectance: f32,
     /// Polarisation of the reflected path.
@@ -73,7 +73,7 @@ mod tests {
     fn unpolarised_light_sees_fresnels_mean() {
         for deg in [0.0, 30.0, 56.0, 80.0] {
             let wo = incoming(deg);
-            let ours = Polarisation::NONE.meet(wo, Vec3::Z, 1.5).reflectance;
+            let ours = Polarisation::NONE.at_interface(wo, Vec3::Z, 1.5).reflectance;
             assert!((ours - fresnel::dielectric(wo.z, 1.5)).abs() < 1e-6, "{deg}: {ours}");
         }
     }
@@ -82,25 +82,25 @@ mod tests {
     fn brewsters_angle_polarises_fully_and_crossed_panes_do_not_reflect() {
         let brewster = 1.5_f32.atan().to_degrees();
         let wo = incoming(brewster);
-        let after = Polarisation::NONE.meet(wo, Vec3::Z, 1.5).reflected;
+        let after = Polarisation::NONE.at_interface(wo, Vec3::Z, 1.5).reflected;
         assert!((after.q - 1.0).abs() < 1e-4, "{after:?}");
         // A second plate at Brewster's angle, turned by 90 degrees about the ray, gives nothing back (Malus 1808).
         let path = wo;
         let normal = (path * brewster.to_radians().cos() + after.across * brewster.to_radians().sin()).normalize();
-        assert!(after.meet(path, normal, 1.5).reflectance < 1e-4);
+        assert!(after.at_interface(path, normal, 1.5).reflectance < 1e-4);
         // Not turned, it gives back all of the s reflectance.
         let same =
             (path * brewster.to_radians().cos() + path.cross(after.across) * brewster.to_radians().sin()).normalize();
         let (s, _) = fresnel::amplitudes(wo.z, 1.5);
-        assert!((after.meet(path, same, 1.5).reflectance - s * s).abs() < 1e-4);
+        assert!((after.at_interface(path, same, 1.5).reflectance - s * s).abs() < 1e-4);
     }
 
     #[test]
     fn two_faces_of_a_pane_pass_what_each_polarisation_passes() {
         let (wo, n) = (incoming(80.0), 1.52_f32);
-        let first = Polarisation::NONE.meet(wo, Vec3::Z, n);
+        let first = Polarisation::NONE.at_interface(wo, Vec3::Z, n);
         let inside = Vec3::new(wo.x / n, 0.0, (1.0 - (wo.x / n).powi(2)).sqrt());
-        let second = first.transmitted.meet(inside, Vec3::Z, 1.0 / n);
+        let second = first.transmitted.at_interface(inside, Vec3::Z, 1.0 / n);
         let once = (1.0 - first.reflectance) * (1.0 - second.reflectance);
         let (s, p) = fresnel::amplitudes(wo.z, n);
         let expected = 0.5 * ((1.0 - s * s).powi(2) + (1.0 - p * p).powi(2));

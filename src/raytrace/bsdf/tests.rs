@@ -7,9 +7,9 @@ use std::f32::consts::TAU;
 
 /// Mean weight of many stratified samples: the share of light that comes back from a white furnace.
 fn furnace(material: &Material, cos: f32) -> Vec3 {
-    let surfacing = Surfacing::new(material, None);
+    let material = TracedMaterial::new(material, None);
     let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
-    let bsdf = Bsdf::new(&surfacing, Vec3::ONE, Vec3::Z, Vec3::Z, wo);
+    let bsdf = Bsdf::new(&material, Vec3::ONE, Vec3::Z, Vec3::Z, wo);
     let n = 128;
     let mut sum = Vec3::ZERO;
     for i in 0..n * n {
@@ -49,8 +49,8 @@ fn no_material_of_the_shelf_makes_light() {
 
 #[test]
 fn sample_and_eval_agree() {
-    let surfacing = Surfacing::new(&MaterialPreset::GlossyPlastic.material(), None);
-    let bsdf = Bsdf::new(&surfacing, Vec3::ONE, Vec3::Z, Vec3::Z, Vec3::new(0.6, 0.0, 0.8));
+    let material = TracedMaterial::new(&MaterialPreset::GlossyPlastic.material(), None);
+    let bsdf = Bsdf::new(&material, Vec3::ONE, Vec3::Z, Vec3::Z, Vec3::new(0.6, 0.0, 0.8));
     for i in 0..256 {
         let set = sobol_burley::sample_4d(i, 0, 3);
         let Some(sample) = bsdf.sample(set[0], Vec2::new(set[2], set[3])) else { continue };
@@ -63,8 +63,8 @@ fn sample_and_eval_agree() {
 #[test]
 fn densities_integrate_to_one() {
     for preset in [MaterialPreset::GlossyPlastic, MaterialPreset::BrushedAluminium, MaterialPreset::SkinLight] {
-        let surfacing = Surfacing::new(&preset.material(), None);
-        let bsdf = Bsdf::new(&surfacing, Vec3::ONE, Vec3::Z, Vec3::Z, Vec3::new(0.6, 0.0, 0.8));
+        let material = TracedMaterial::new(&preset.material(), None);
+        let bsdf = Bsdf::new(&material, Vec3::ONE, Vec3::Z, Vec3::Z, Vec3::new(0.6, 0.0, 0.8));
         let n = 400;
         let mut sum = 0.0_f64;
         for i in 0..n * n {
@@ -147,10 +147,10 @@ fn directions_follow_their_density_for_every_lobe_roughness_and_angle() {
     let mut numbers = Numbers::new(21);
     for (material, cos) in &cases {
         const SAMPLES: usize = 40_000;
-        let surfacing = Surfacing::new(material, None);
-        let bsdf = Bsdf::new(&surfacing, Vec3::ONE, Vec3::Z, Vec3::Z, view(*cos));
+        let material = TracedMaterial::new(material, None);
+        let bsdf = Bsdf::new(&material, Vec3::ONE, Vec3::Z, Vec3::Z, view(*cos));
         // Towards grazing angles the lobe gets narrower by the cosine, one way.
-        let width = f64::from(surfacing.alpha.max(1e-3) * cos);
+        let width = f64::from(material.alpha.max(1e-3) * cos);
         let cells = Cells::about(Vec3::new(-view(*cos).x, 0.0, *cos), 2.0 * width * width);
         let expected = cells.integrate(|direction| f64::from(bsdf.eval(direction).1));
         let mut counts = vec![0.0; expected.len()];
@@ -172,7 +172,7 @@ fn directions_follow_their_density_for_every_lobe_roughness_and_angle() {
 
 #[test]
 fn glass_reflects_as_often_as_fresnel_says_and_refracts_as_snell_says() {
-    let glass = Surfacing::new(&Material { transmission: 1.0, ior: 1.52, ..Material::default() }, None);
+    let glass = TracedMaterial::new(&Material { transmission: 1.0, ior: 1.52, ..Material::default() }, None);
     let mut numbers = Numbers::new(22);
     let angles = [0.0_f64, 20.0, 41.0, 42.0, 60.0, 80.0, 89.0];
     for (deg, outside) in angles.into_iter().flat_map(|deg| [(deg, true), (deg, false)]) {
@@ -231,8 +231,8 @@ fn the_furnace_never_shows_more_than_one_at_any_roughness_and_angle() {
             (Material { transmission: 0.5, ior: 2.4, ..white.clone() }, true),
             (Material { metallic: 1.0, base_color: [0.9, 0.5, 0.1], ..white.clone() }, false),
         ] {
-            let surfacing = Surfacing::new(&material, None);
-            let bsdf = Bsdf::new(&surfacing, Vec3::ONE, Vec3::Z, Vec3::Z, view(cos));
+            let material = TracedMaterial::new(&material, None);
+            let bsdf = Bsdf::new(&material, Vec3::ONE, Vec3::Z, Vec3::Z, view(cos));
             let albedo = Estimate::of((0..8000).map(|_| {
                 let sample = bsdf.sample(numbers.number(), numbers.square());
                 sample.map_or(0.0, |s| f64::from(s.weight.x / s.eta_scale))
@@ -246,8 +246,8 @@ fn the_furnace_never_shows_more_than_one_at_any_roughness_and_angle() {
 
 #[test]
 fn a_surface_with_the_index_of_air_has_no_gloss_at_all() {
-    let matt = Surfacing::new(&Material { ior: 1.0, roughness: 1.0, ..Material::default() }, None);
+    let matt = TracedMaterial::new(&Material { ior: 1.0, roughness: 1.0, ..Material::default() }, None);
     assert!(!matt.reflects, "rounding alone made a gloss of {}", matt.gloss.mean);
     // Nor is a faint one forgotten: an index of 1.1 reflects 0.2 % at right angles.
-    assert!(Surfacing::new(&Material { ior: 1.1, roughness: 1.0, ..Material::default() }, None).reflects);
+    assert!(TracedMaterial::new(&Material { ior: 1.1, roughness: 1.0, ..Material::default() }, None).reflects);
 }

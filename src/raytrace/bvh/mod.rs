@@ -7,5 +7,5 @@ mod traverse;
 mod wide;
 
 pub use build::build;
-pub use traverse::{Slabs, Stack, WIDEN};
+pub use traverse::{Slabs, TraversalStack, WIDEN};
 pub use wide::{Node, WideBvh};

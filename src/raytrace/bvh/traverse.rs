@@ -34,7 +34,7 @@ impl Slabs {
 /// Open nodes of a traversal. Kept between rays so that the inner loop allocates nothing; nested traversals (a mesh
 /// inside an instance) use the same one above a mark.
 #[derive(Clone, Debug, Default)]
-pub struct Stack {
+pub struct TraversalStack {
     /// Entry distance in the upper half (as bits, which sort like the distance because it is not negative), child
     /// below.
     open: Vec<u64>,
@@ -42,7 +42,7 @@ pub struct Stack {
     top: usize,
 }
 
-impl Stack {
+impl TraversalStack {
     /// Room for all children of a node above `top`.
     #[inline(always)]
     fn room(&mut self, top: usize) -> &mut [u64] {
@@ -72,12 +72,12 @@ impl WideBvh {
     /// Visits the leaves that a ray meets before `t_max`, roughly from near to far. `visit` gets the leaf's number and
     /// the current end of the ray and returns the new one (smaller after a hit).
     #[inline(always)]
-    pub fn nearest_first<K: Kernels>(
+    pub fn traverse_front_to_back<K: Kernels>(
         &self,
         slabs: &Slabs,
         mut t_max: f32,
-        stack: &mut Stack,
-        mut visit: impl FnMut(u32, f32, &mut Stack) -> f32,
+        stack: &mut TraversalStack,
+        mut visit: impl FnMut(u32, f32, &mut TraversalStack) -> f32,
     ) {
         if self.nodes.is_empty() {
             return;
@@ -115,12 +115,12 @@ impl WideBvh {
 
     /// Whether `visit` says yes for some leaf that a ray meets before `t_max`, in no order.
     #[inline(always)]
-    pub fn any<K: Kernels>(
+    pub fn traverse_any<K: Kernels>(
         &self,
         slabs: &Slabs,
         t_max: f32,
-        stack: &mut Stack,
-        mut visit: impl FnMut(u32, &mut Stack) -> bool,
+        stack: &mut TraversalStack,
+        mut visit: impl FnMut(u32, &mut TraversalStack) -> bool,
     ) -> bool {
         if self.nodes.is_empty() {
             return false;

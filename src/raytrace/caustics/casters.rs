@@ -1,7 +1,7 @@
 //! The surfaces that cast caustics, and a choice of points on them.
 
 use crate::raytrace::aggregate::{Aggregate, Hit};
-use crate::raytrace::bsdf::Surfacing;
+use crate::raytrace::bsdf::TracedMaterial;
 use crate::raytrace::triangle::TriangleHit;
 use glam::Vec2;
 
@@ -16,11 +16,12 @@ pub struct Casters {
 
 impl Casters {
     /// All there are in a studio.
-    pub fn new(aggregate: &Aggregate, materials: &[Surfacing]) -> Self {
+    pub fn new(aggregate: &Aggregate, materials: &[TracedMaterial]) -> Self {
         let mut casters = Casters::default();
         let mut total = 0.0;
         for (index, instance) in (0..).zip(aggregate.instances()) {
-            let casts: Vec<bool> = instance.materials.iter().map(|&m| materials[m as usize].casts_caustics()).collect();
+            let casts: Vec<bool> =
+                instance.materials.iter().map(|&m| materials[m as usize].is_caustic_caster()).collect();
             if !casts.contains(&true) {
                 continue;
             }

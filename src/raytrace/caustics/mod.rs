@@ -19,7 +19,7 @@ mod tests;
 mod weights;
 
 use super::bsdf::Bsdf;
-use super::geometry::Surface;
+use super::geometry::SurfaceInteraction;
 use super::integrator::Tracer;
 use super::prepare::RenderScene;
 use super::sampler::Sampler;
@@ -143,7 +143,14 @@ impl Photons {
 
     /// Gives `sink` what comes by at most so many `bends` from a surface, layer by layer, less what `ways` that are followed
     /// from it find by themselves.
-    pub fn gather(&self, surface: &Surface, bsdf: &Bsdf<'_>, ways: f32, bends: u32, mut sink: impl FnMut(usize, Vec3)) {
+    pub fn gather(
+        &self,
+        surface: &SurfaceInteraction,
+        bsdf: &Bsdf<'_>,
+        ways: f32,
+        bends: u32,
+        mut sink: impl FnMut(usize, Vec3),
+    ) {
         let radius2 = self.grid.radius() * self.grid.radius();
         let peak = 2.0 / (PI * radius2);
         let (mut layer, mut sum) = (0, Vec3::ZERO);

@@ -2,9 +2,9 @@
 
 use crate::math::Ray;
 use crate::raytrace::bsdf::Polarisation;
-use crate::raytrace::geometry::Surface;
+use crate::raytrace::geometry::SurfaceInteraction;
 use crate::raytrace::integrator::{Tracer, survives};
-use crate::raytrace::media::Media;
+use crate::raytrace::medium_stack::MediumStack;
 use crate::raytrace::sampler::{self, Purpose, Sampler};
 use crate::raytrace::visibility::are_parallel;
 use glam::Vec3;
@@ -35,14 +35,14 @@ const INSIDE: f32 = 0.1;
 const LEAST_COSINE: f32 = 0.01;
 
 /// Chance that a photon begins on the inner side of a surface.
-pub fn inside(surface: &Surface) -> f32 {
-    if surface.sheet { 0.5 } else { INSIDE }
+pub fn inside(surface: &SurfaceInteraction) -> f32 {
+    if surface.is_thin { 0.5 } else { INSIDE }
 }
 
 /// A photon that meets its first mirror or glass.
 struct Start {
     /// Where it does.
-    surface: Surface,
+    surface: SurfaceInteraction,
     /// Unit direction towards the light.
     to_light: Vec3,
     /// Whether some path may meet that light.
@@ -68,16 +68,16 @@ impl Tracer<'_> {
         let inside = inside(&surface);
         let (normal, side) =
             if side < inside { (-surface.geometric_normal, inside) } else { (surface.geometric_normal, 1.0 - inside) };
-        let asked = scene.chooser.ask(&scene.lights, surface.position, normal)?;
-        let (light, chance) = asked.choose(&scene.lights, sampler::rest(&lamp)[0])?;
+        let importances = scene.light_sampler.importances(&scene.lights, surface.position, normal)?;
+        let (light, chance) = importances.sample(&scene.lights, sampler::rest(&lamp)[0])?;
         let light = &scene.lights[light as usize];
         let sample = light.sample(surface.position, sampler::point(&lamp))?;
         let (to_light, cos) = (sample.direction, sample.direction.dot(normal));
         if cos <= 0.0 {
             return None;
         }
-        let origin = surface.leave(to_light);
-        let visible = self.visibility(origin, to_light, sample.distance, true, Media::default());
+        let origin = surface.spawn_origin(to_light);
+        let visible = self.visibility(origin, to_light, sample.distance, true, MediumStack::default());
         let area = scene.casters.area() / (sent as f32 * side * chance);
         let photon = Photon {
             position: surface.position,
@@ -97,7 +97,7 @@ impl Tracer<'_> {
         let Start { mut surface, to_light, sized, photon } = start;
         let mut from = to_light;
         let (mut bends, mut reflected) = (0, false);
-        let (mut media, mut polarisation, mut left) = (Media::default(), Polarisation::NONE, Vec3::ONE);
+        let (mut media, mut polarisation, mut left) = (MediumStack::default(), Polarisation::NONE, Vec3::ONE);
         for bounce in 0..scene.plan().max_bounces {
             let material = &scene.materials[surface.material as usize];
             let set = sampler.set(Purpose::Bsdf { bounce });
@@ -105,25 +105,28 @@ impl Tracer<'_> {
             let bsdf = scene.bsdf(&surface, from, &media, polarisation);
             let Some(sample) = bsdf.sample(lobe, sampler::point(&set)) else { return };
             // What goes straight through a first pane is found by sampling the lights.
-            if !sample.specular || !material.casts_caustics() || (sample.straight && bends == 0) {
+            if !sample.specular || !material.is_caustic_caster() || (sample.is_undeviated && bends == 0) {
                 return;
             }
             // Flux is not concentrated in glass as radiance is.
             left *= sample.weight / sample.eta_scale;
-            if !sample.straight {
+            if !sample.is_undeviated {
                 bends += 1;
-                reflected |= !sample.through;
+                reflected |= !sample.is_transmission;
                 left *= shading_correction(from, sample.direction, surface.normal, surface.geometric_normal);
             }
             if !survives(&mut left, 1.0, bounce, roulette) {
                 return;
             }
-            if sample.through && !surface.sheet {
+            if sample.is_transmission && !surface.is_thin {
                 media.cross(surface.material, from.dot(surface.geometric_normal) >= 0.0);
             }
             polarisation = sample.polarisation;
-            let ray =
-                Ray { origin: surface.leave(sample.direction), direction: sample.direction, t_max: f32::INFINITY };
+            let ray = Ray {
+                origin: surface.spawn_origin(sample.direction),
+                direction: sample.direction,
+                t_max: f32::INFINITY,
+            };
             let Some(hit) = self.closest(&ray) else { return };
             left *= media.transmittance(&scene.materials, hit.triangle.t);
             surface = scene.aggregate.surface(&hit);
@@ -131,7 +134,7 @@ impl Tracer<'_> {
             // Light sampling goes there by itself.
             let is_straight = !sized && !reflected && are_parallel(from, to_light);
             let cos = from.dot(surface.geometric_normal);
-            if !is_straight && cos != 0.0 && scene.materials[surface.material as usize].scatters_widely() {
+            if !is_straight && cos != 0.0 && scene.materials[surface.material as usize].has_non_specular_lobe() {
                 let flux = photon.flux * left / cos.abs().max(LEAST_COSINE);
                 let normal = surface.geometric_normal * cos.signum();
                 found.push(Photon { position: surface.position, direction: from, normal, flux, bends, ..photon });

@@ -2,7 +2,7 @@
 
 use super::casters::Casters;
 use super::photon::inside;
-use crate::raytrace::geometry::Surface;
+use crate::raytrace::geometry::SurfaceInteraction;
 use glam::Vec3;
 
 /// How well both techniques find light from a direction at a surface.
@@ -35,7 +35,7 @@ pub struct Rival {
 
 impl Rival {
     /// For a path that leaves a mirror or glass in this direction.
-    pub fn new(gathered: Gathered, surface: &Surface, direction: Vec3) -> Self {
+    pub fn new(gathered: Gathered, surface: &SurfaceInteraction, direction: Vec3) -> Self {
         let outside = direction.dot(surface.geometric_normal) > 0.0;
         let normal = if outside { surface.geometric_normal } else { -surface.geometric_normal };
         let inside = inside(surface);

@@ -2,9 +2,9 @@
 //!
 //! Values are photometric and white (luminance of luminance 1): a light's colour is applied to its film layer.
 
-mod choice;
-mod crossing;
 mod disc;
+mod emitter_bvh;
+mod light_sampler;
 mod rect;
 mod sphere;
 
@@ -12,10 +12,10 @@ use crate::math::{orthonormal_basis, warp};
 use crate::photo::beam;
 use crate::photo::exposure::{self, Strength};
 use crate::scene::{Emitter, Light, Modifier};
-pub use choice::{Asked, Chooser};
-pub use crossing::Crossings;
 use disc::Disc;
+pub use emitter_bvh::EmitterBvh;
 use glam::{Affine3A, Mat3, Vec2, Vec3};
+pub use light_sampler::{LightImportances, LightSampler};
 use rect::Rect;
 use sphere::Ball;
 use std::f32::consts::PI;
@@ -81,7 +81,7 @@ pub struct LightSample {
 
 /// What a ray sees of an emitter it crosses.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct EmitterHit {
     /// Distance, in multiples of the unit direction; infinite for sun and surround.
     pub distance: f32,
     /// Luminance, cd/m2.
@@ -153,10 +153,10 @@ impl TracedLight {
         }
     }
 
-    /// Whether rays can meet it: it has a size.
-    pub fn has_size(&self) -> bool {
-        !matches!(self.source, Source::Point { .. } | Source::Spot { .. })
-            && !matches!(self.source, Source::Sun { one_minus_cos, .. } if one_minus_cos <= 0.0)
+    /// Returns true for a delta light: it has no extent, so no ray hits it.
+    pub fn is_delta(&self) -> bool {
+        matches!(self.source, Source::Point { .. } | Source::Spot { .. })
+            || matches!(self.source, Source::Sun { one_minus_cos, .. } if one_minus_cos <= 0.0)
     }
 
     /// Whether choosing directions towards it helps. Not for a surround: the surface's own choice is as good.
@@ -251,32 +251,40 @@ impl TracedLight {
     }
 
     /// What a ray (unit direction) sees of the emitter if nothing is in between.
-    pub fn seen_by(&self, origin: Vec3, direction: Vec3) -> Option<Seen> {
-        let seen = self.source_seen_by(origin, direction)?;
-        Some(Seen { luminance: seen.luminance * self.passed(-direction), ..seen })
+    pub fn intersect(&self, origin: Vec3, direction: Vec3) -> Option<EmitterHit> {
+        let seen = self.intersect_source(origin, direction)?;
+        Some(EmitterHit { luminance: seen.luminance * self.passed(-direction), ..seen })
     }
 
-    fn source_seen_by(&self, origin: Vec3, direction: Vec3) -> Option<Seen> {
+    fn intersect_source(&self, origin: Vec3, direction: Vec3) -> Option<EmitterHit> {
         match self.source {
             Source::Point { .. } | Source::Spot { .. } => None,
             Source::Rect { rect, luminance } => {
                 let front = direction.dot(rect.normal()) < 0.0;
-                front.then(|| rect.intersect(origin, direction)).flatten().map(|distance| Seen { distance, luminance })
+                front
+                    .then(|| rect.intersect(origin, direction))
+                    .flatten()
+                    .map(|distance| EmitterHit { distance, luminance })
             }
             Source::Disc { disc, luminance } => {
                 let front = direction.dot(disc.normal()) < 0.0;
-                front.then(|| disc.intersect(origin, direction)).flatten().map(|distance| Seen { distance, luminance })
+                front
+                    .then(|| disc.intersect(origin, direction))
+                    .flatten()
+                    .map(|distance| EmitterHit { distance, luminance })
             }
             Source::Ball { ball, luminance } => {
-                ball.intersect(origin, direction).map(|distance| Seen { distance, luminance })
+                ball.intersect(origin, direction).map(|distance| EmitterHit { distance, luminance })
             }
             Source::Sun { towards, illuminance, one_minus_cos } => {
                 // |d - t|2 / 2 is 1 - cos without cancellation.
                 let inside = 0.5 * (direction - towards).length_squared() <= one_minus_cos;
-                (inside && one_minus_cos > 0.0)
-                    .then(|| Seen { distance: f32::INFINITY, luminance: sun_luminance(illuminance, one_minus_cos) })
+                (inside && one_minus_cos > 0.0).then(|| EmitterHit {
+                    distance: f32::INFINITY,
+                    luminance: sun_luminance(illuminance, one_minus_cos),
+                })
             }
-            Source::Surround { luminance } => Some(Seen { distance: f32::INFINITY, luminance }),
+            Source::Surround { luminance } => Some(EmitterHit { distance: f32::INFINITY, luminance }),
         }
     }
 

@@ -4,7 +4,7 @@ use super::*;
 use crate::math::Ray;
 use crate::math::look_at;
 use crate::math::statistics::{ChiSquare, Estimate, Numbers, share};
-use crate::raytrace::bvh::Stack;
+use crate::raytrace::bvh::TraversalStack;
 use crate::scene::Output;
 
 /// A light at the origin that shines along -Z.
@@ -205,7 +205,7 @@ fn the_chosen_direction_meets_what_a_ray_sees() {
                 let Some(sample) = light.sample(from, numbers.square()) else { continue };
                 let pdf = sample.pdf.unwrap();
                 // At the very rim rounding may miss it.
-                let Some(seen) = light.seen_by(from, sample.direction) else { continue };
+                let Some(seen) = light.intersect(from, sample.direction) else { continue };
                 met += 1;
                 assert!((seen.luminance / pdf / sample.value - 1.0).abs() < 1e-4, "{emitter:?} from {from}");
                 assert!((seen.distance / sample.distance - 1.0).abs() < 2e-3, "{emitter:?} from {from}");
@@ -247,20 +247,20 @@ fn lights_are_chosen_as_often_as_they_say() {
     let mut numbers = Numbers::new(16);
     for count in [1, 3, 8, 40, 300, 5000] {
         let lights = crowd(count, &mut numbers);
-        let chooser = Chooser::new(&lights);
+        let light_sampler = LightSampler::new(&lights);
         for _ in 0..4 {
             let (point, normal) = (numbers.direction() * numbers.between(0.01, 4.0), numbers.direction());
             const GRID: usize = 20_000;
             let mut counts = vec![0.0_f64; count];
-            let asked = chooser.ask(&lights, point, normal).unwrap();
+            let importances = light_sampler.importances(&lights, point, normal).unwrap();
             for i in 0..GRID {
                 let u = (i as f32 + 0.5) / GRID as f32;
-                let Some((light, chance)) = asked.choose(&lights, u) else { continue };
-                let said = chooser.chance(&lights, light, point, normal);
+                let Some((light, chance)) = importances.sample(&lights, u) else { continue };
+                let said = light_sampler.pmf(&lights, light, point, normal);
                 assert!((chance / said - 1.0).abs() < 1e-5, "{chance} {said}");
                 counts[light as usize] += 1.0 / GRID as f64;
             }
-            let chances = (0..count as u32).map(|light| chooser.chance(&lights, light, point, normal));
+            let chances = (0..count as u32).map(|light| light_sampler.pmf(&lights, light, point, normal));
             for (light, (chance, share)) in chances.zip(&counts).enumerate() {
                 // An even grid meets each light's piece of the unit interval to within one of its points.
                 assert!(
@@ -282,16 +282,16 @@ fn one_chosen_light_stands_for_all_in_the_mean() {
     const COUNTS: [usize; 4] = [2, 12, 100, 1000];
     for count in COUNTS {
         let lights = crowd(count, &mut numbers);
-        let chooser = Chooser::new(&lights);
+        let light_sampler = LightSampler::new(&lights);
         let (point, normal) = (numbers.direction() * 0.5, numbers.direction());
         let lit = |light: &TracedLight, u: Vec2| {
             light.sample(point, u).map_or(0.0, |s| f64::from(s.value * s.direction.dot(normal).max(0.0)))
         };
         let truth: f64 =
             lights.iter().map(|light| (0..4096).map(|_| lit(light, numbers.square())).sum::<f64>() / 4096.0).sum();
-        let asked = chooser.ask(&lights, point, normal).unwrap();
+        let importances = light_sampler.importances(&lights, point, normal).unwrap();
         let estimate = Estimate::of((0..60_000).map(|_| {
-            let choice = asked.choose(&lights, numbers.number());
+            let choice = importances.sample(&lights, numbers.number());
             choice.map_or(0.0, |(light, chance)| lit(&lights[light as usize], numbers.square()) / f64::from(chance))
         }));
         // The sum itself is good to some 1e-3.
@@ -303,8 +303,8 @@ fn one_chosen_light_stands_for_all_in_the_mean() {
 fn ten_thousand_lights_lie_three_nodes_deep() {
     let mut numbers = Numbers::new(18);
     for (count, most) in [(60, 1), (1000, 2), (10_000, 3)] {
-        let chooser = Chooser::new(&crowd(count, &mut numbers));
-        assert!(chooser.depth() <= most, "{count} lights: {} deep", chooser.depth());
+        let light_sampler = LightSampler::new(&crowd(count, &mut numbers));
+        assert!(light_sampler.depth() <= most, "{count} lights: {} deep", light_sampler.depth());
     }
 }
 
@@ -312,8 +312,8 @@ fn ten_thousand_lights_lie_three_nodes_deep() {
 fn rays_meet_the_emitters_that_asking_each_would_find() {
     let mut numbers = Numbers::new(19);
     let lights = crowd(200, &mut numbers);
-    let crossings = Crossings::new(&lights);
-    let mut stack = Stack::default();
+    let emitter_bvh = EmitterBvh::new(&lights);
+    let mut stack = TraversalStack::default();
     let mut met = 0;
     for i in 0..20_000 {
         let origin = numbers.direction() * numbers.between(0.0, 5.0);
@@ -321,7 +321,7 @@ fn rays_meet_the_emitters_that_asking_each_would_find() {
         let ray = Ray { origin, direction: numbers.direction(), t_max };
         let mut found = Vec::new();
         // The end of the ray is for the caller to judge: it lies within rounding.
-        crossings.each(&lights, &ray, &mut stack, |light, seen| {
+        emitter_bvh.for_each_hit(&lights, &ray, &mut stack, |light, seen| {
             if seen.distance <= t_max {
                 found.push(light);
             }
@@ -329,7 +329,7 @@ fn rays_meet_the_emitters_that_asking_each_would_find() {
         found.sort_unstable();
         let truth = |light: &u32| {
             let light = &lights[*light as usize];
-            light.seen_by(origin, ray.direction).is_some_and(|seen| seen.distance <= t_max)
+            light.intersect(origin, ray.direction).is_some_and(|seen| seen.distance <= t_max)
         };
         let truth: Vec<u32> = (0..lights.len() as u32).filter(truth).collect();
         assert_eq!(found, truth, "{ray:?}");
@@ -350,13 +350,13 @@ fn no_light_that_gives_something_is_never_chosen() {
         Emitter::RoundPanel { diameter_m: 3.0 },
     ] {
         let light = traced(emitter, Output::Lumens(1000.0));
-        let chooser = Chooser::new(std::slice::from_ref(&light));
+        let light_sampler = LightSampler::new(std::slice::from_ref(&light));
         for _ in 0..20_000 {
             let from = numbers.direction() * numbers.between(0.01, 4.0);
             let normal = numbers.direction();
             let Some(sample) = light.sample(from, numbers.square()) else { continue };
             if sample.direction.dot(normal) > 1e-4 && sample.value > 0.0 {
-                let chance = chooser.chance(std::slice::from_ref(&light), 0, from, normal);
+                let chance = light_sampler.pmf(std::slice::from_ref(&light), 0, from, normal);
                 assert!(chance > 0.0, "{emitter:?} seen from {from}, facing {normal}");
             }
         }
@@ -368,7 +368,7 @@ fn no_light_of_a_crowd_that_gives_something_is_never_chosen() {
     // Clusters must not forget members that lie aside or look elsewhere.
     let mut numbers = Numbers::new(20);
     let lights = crowd(600, &mut numbers);
-    let chooser = Chooser::new(&lights);
+    let light_sampler = LightSampler::new(&lights);
     let mut given = 0;
     for _ in 0..300 {
         let (from, normal) = (numbers.direction() * numbers.between(0.01, 6.0), numbers.direction());
@@ -376,7 +376,10 @@ fn no_light_of_a_crowd_that_gives_something_is_never_chosen() {
             let Some(sample) = light.sample(from, numbers.square()) else { continue };
             if sample.direction.dot(normal) > 1e-4 && sample.value > 0.0 {
                 given += 1;
-                assert!(chooser.chance(&lights, index, from, normal) > 0.0, "{light:?} from {from}, facing {normal}");
+                assert!(
+                    light_sampler.pmf(&lights, index, from, normal) > 0.0,
+                    "{light:?} from {from}, facing {normal}"
+                );
             }
         }
     }

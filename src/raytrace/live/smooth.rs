@@ -8,7 +8,7 @@
 //! glass and polished things, whose pictures lie elsewhere than their surfaces, are left as they are.
 
 use super::tile::Shown;
-use crate::math::simd::{self, Avx2, Work};
+use crate::math::simd::{self, Avx2, SimdTask};
 use crate::photo::Picture;
 use glam::Vec3;
 use rayon::prelude::*;
@@ -190,7 +190,7 @@ impl Smoother {
     fn pass(&mut self, sides: &[[isize; 2]; 4], part: Option<f32>) {
         let Smoother { surfaces, lights, next } = self;
         next.each_mut().enumerate().for_each(|(y, out)| {
-            simd::widest(RowMeans { surfaces, lights, y, sides, part, out });
+            simd::dispatch(RowMeans { surfaces, lights, y, sides, part, out });
         });
     }
 }
@@ -215,8 +215,8 @@ struct RowMeans<'a> {
     out: &'a mut [f32],
 }
 
-impl Work for RowMeans<'_> {
-    type Answer = ();
+impl SimdTask for RowMeans<'_> {
+    type Output = ();
 
     #[inline(always)]
     fn run(self, _: Option<Avx2>) {

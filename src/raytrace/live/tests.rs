@@ -111,7 +111,7 @@ fn a_small_lamp_throws_light_through_a_glass_ball_as_in_a_render() {
     let mut scene = studio(Material { transmission: 1.0, roughness: 0.0, ..Material::default() });
     scene.lights.truncate(1);
     (scene.lights[0].emitter, scene.lights[0].power.output) = (Emitter::Point, Output::Lumens(2e6));
-    // Behind the ball as the lamp sees it.
+    // Boundary the ball as the lamp sees it.
     scene.objects[1].transform.position = Vec3::new(0.4, 0.4, -0.2);
     let camera = view(&scene, 0.0);
     let mut live = begun(&scene);

@@ -442,7 +442,7 @@ impl<'a> Brush<'a> {
         let surface = scene.aggregate.surface(&hit);
         let material = &scene.materials[surface.material as usize];
         let seen = |light: &crate::raytrace::lights::TracedLight| {
-            light.seen_by(origin, direction).is_some_and(|seen| seen.distance < hit.triangle.t)
+            light.intersect(origin, direction).is_some_and(|seen| seen.distance < hit.triangle.t)
         };
         let fixed = material.transmits() || scene.lights.iter().any(|light| light.visible_to_camera && seen(light));
         Shown {

@@ -3,7 +3,7 @@
 
 use super::{Kernels, WIDTH, sobol};
 use crate::raytrace::bvh::{Node, Slabs, WIDEN};
-use crate::raytrace::triangle::{Packet, Sheared, TriangleHit, edges_in_f64};
+use crate::raytrace::triangle::{Packet, ShearedRay, TriangleHit, edges_in_f64};
 use std::arch::x86_64::*;
 
 /// Kernels for processors with AVX2.
@@ -17,7 +17,7 @@ impl Kernels for Avx2 {
     }
 
     #[inline(always)]
-    fn triangles(packet: &Packet, ray: &Sheared, t_max: f32) -> Option<TriangleHit> {
+    fn triangles(packet: &Packet, ray: &ShearedRay, t_max: f32) -> Option<TriangleHit> {
         // SAFETY: `dispatch` names this type only with the proof that the processor has AVX2, and nothing else can.
         unsafe { triangles(packet, ray, t_max) }
     }
@@ -68,7 +68,7 @@ fn boxes(slabs: &Slabs, node: &Node, t_max: f32, enter: &mut [f32; WIDTH]) -> u3
 
 #[inline]
 #[target_feature(enable = "avx2")]
-fn triangles(packet: &Packet, ray: &Sheared, t_max: f32) -> Option<TriangleHit> {
+fn triangles(packet: &Packet, ray: &ShearedRay, t_max: f32) -> Option<TriangleHit> {
     let corner =
         |v: usize, axis: usize| _mm256_sub_ps(load(&packet.corners[v][axis]), _mm256_set1_ps(ray.origin[axis]));
     let [kx, ky, kz] = ray.axes;

@@ -96,15 +96,15 @@ pub fn scramble(mut n: u32, by: u32) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use crate::raytrace::simd::{Kernels, Plain, Query, dispatch};
+    use crate::raytrace::simd::{KernelTask, Kernels, Scalar, dispatch};
 
     struct Point(u32, [u32; 2]);
 
-    impl Query for Point {
-        type Answer = [[f32; 4]; 2];
+    impl KernelTask for Point {
+        type Output = [[f32; 4]; 2];
 
         #[inline(always)]
-        fn run<K: Kernels>(self) -> Self::Answer {
+        fn run<K: Kernels>(self) -> Self::Output {
             K::sobol(self.0, self.1)
         }
     }
@@ -114,7 +114,7 @@ mod tests {
         for index in (0..256_u32).chain((256..65_536).step_by(97)) {
             for seed in [0, 1, 0xffff_ffff, index.wrapping_mul(0x9e37_79b9)] {
                 let seeds = [seed, !seed];
-                assert_eq!(dispatch(Point(index, seeds)), Plain::sobol(index, seeds), "{index} {seed}");
+                assert_eq!(dispatch(Point(index, seeds)), Scalar::sobol(index, seeds), "{index} {seed}");
             }
         }
     }

@@ -7,7 +7,7 @@
 
 use super::{LEAST_BEAM, Source, TracedLight};
 use crate::math::safe_sqrt;
-use crate::raytrace::simd::{self, Kernels, Query, WIDTH};
+use crate::raytrace::simd::{self, KernelTask, Kernels, WIDTH};
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -178,7 +178,7 @@ struct Node {
 
 /// All lights that are sampled, ready to be chosen from.
 #[derive(Clone, Debug, Default)]
-pub struct Chooser {
+pub struct LightSampler {
     packets: Vec<Packet>,
     /// By packet and lane.
     meanings: Vec<Meaning>,
@@ -192,17 +192,17 @@ pub struct Chooser {
 /// A light with its entry, while the tree is built.
 type Leaf = (Entry, u32);
 
-impl Chooser {
+impl LightSampler {
     /// Over a scene's lights, in their order.
     pub fn new(lights: &[TracedLight]) -> Self {
         let mut leaves: Vec<Leaf> =
             lights.iter().zip(0..).filter_map(|(light, i)| Some((Entry::of(light)?, i))).collect();
         let has_beams = lights.iter().any(|light| light.beam.is_some());
-        let mut chooser = Chooser { places: vec![None; lights.len()], has_beams, ..Chooser::default() };
+        let mut light_sampler = LightSampler { places: vec![None; lights.len()], has_beams, ..LightSampler::default() };
         if !leaves.is_empty() {
-            chooser.add_node(&mut leaves, None);
+            light_sampler.add_node(&mut leaves, None);
         }
-        chooser
+        light_sampler
     }
 
     /// Adds a node over these lights and all below it.
@@ -260,13 +260,18 @@ impl Chooser {
     }
 
     /// What the topmost entries give at a point on a surface with this normal: asked once, it serves several choices.
-    pub fn ask(&self, lights: &[TracedLight], point: Vec3, normal: Vec3) -> Option<Asked<'_>> {
+    pub fn importances(&self, lights: &[TracedLight], point: Vec3, normal: Vec3) -> Option<LightImportances<'_>> {
         let node = self.nodes.first()?;
-        Some(Asked { chooser: self, point, normal, estimates: self.estimates(lights, node, point, normal) })
+        Some(LightImportances {
+            light_sampler: self,
+            point,
+            normal,
+            estimates: self.estimates(lights, node, point, normal),
+        })
     }
 
-    /// The chance that [`Asked::choose`] gives a light.
-    pub fn chance(&self, lights: &[TracedLight], light: u32, point: Vec3, normal: Vec3) -> f32 {
+    /// The chance that [`LightImportances::sample`] gives a light.
+    pub fn pmf(&self, lights: &[TracedLight], light: u32, point: Vec3, normal: Vec3) -> f32 {
         let mut chance = 1.0;
         let mut place = self.places[light as usize];
         if place.is_none() {
@@ -361,18 +366,18 @@ fn run_at(lengths: &[f32], mut place: f32) -> Option<(usize, f32, f32)> {
 
 /// Lights that were asked what they give at a point.
 #[derive(Clone, Copy, Debug)]
-pub struct Asked<'a> {
-    chooser: &'a Chooser,
+pub struct LightImportances<'a> {
+    light_sampler: &'a LightSampler,
     point: Vec3,
     normal: Vec3,
     estimates: Estimates,
 }
 
-impl Asked<'_> {
+impl LightImportances<'_> {
     /// A light, by a number in 0..1, and the chance it had. None where no light gives anything.
-    pub fn choose(&self, lights: &[TracedLight], u: f32) -> Option<(u32, f32)> {
-        let Asked { chooser, point, normal, .. } = *self;
-        let (mut node, mut u, mut chance) = (chooser.nodes.first()?, u, 1.0);
+    pub fn sample(&self, lights: &[TracedLight], u: f32) -> Option<(u32, f32)> {
+        let LightImportances { light_sampler, point, normal, .. } = *self;
+        let (mut node, mut u, mut chance) = (light_sampler.nodes.first()?, u, 1.0);
         let mut below;
         let mut estimates = &self.estimates;
         loop {
@@ -381,13 +386,13 @@ impl Asked<'_> {
             }
             let (at, estimate, into) = estimates.entry_at(u)?;
             chance *= estimate / estimates.total;
-            match chooser.meanings[node.first_packet as usize * WIDTH + at] {
+            match light_sampler.meanings[node.first_packet as usize * WIDTH + at] {
                 Meaning::Light(light) => return Some((light, chance)),
                 Meaning::Node(next) => {
                     // What is left of the number is as good as a new one.
                     u = into.clamp(0.0, 1.0 - f32::EPSILON);
-                    node = &chooser.nodes[next as usize];
-                    below = chooser.estimates(lights, node, point, normal);
+                    node = &light_sampler.nodes[next as usize];
+                    below = light_sampler.estimates(lights, node, point, normal);
                     estimates = &below;
                 }
             }
@@ -395,7 +400,7 @@ impl Asked<'_> {
     }
 }
 
-/// See [`Chooser::estimates`].
+/// See [`LightSampler::estimates`].
 struct Ask<'a> {
     packets: &'a [Packet],
     point: Vec3,
@@ -404,8 +409,8 @@ struct Ask<'a> {
     estimates: &'a mut Estimates,
 }
 
-impl Query for Ask<'_> {
-    type Answer = ();
+impl KernelTask for Ask<'_> {
+    type Output = ();
 
     #[inline(always)]
     fn run<K: Kernels>(self) {
@@ -421,7 +426,7 @@ mod tests {
     use super::*;
     use crate::math::statistics::Numbers;
     use crate::raytrace::lights::tests::crowd;
-    use crate::raytrace::simd::Plain;
+    use crate::raytrace::simd::Scalar;
 
     /// Lanes, sums and total, to the bit.
     fn bits(estimates: &Estimates) -> Vec<u32> {
@@ -433,8 +438,8 @@ mod tests {
     fn both_sets_of_instructions_estimate_the_same() {
         let mut numbers = Numbers::new(21);
         let lights = crowd(700, &mut numbers);
-        let chooser = Chooser::new(&lights);
-        assert!(chooser.nodes.len() > 1, "clusters are asked, too");
+        let light_sampler = LightSampler::new(&lights);
+        assert!(light_sampler.nodes.len() > 1, "clusters are asked, too");
         // Among the lights, right on them, and so far away that squares overflow.
         let mut points: Vec<Vec3> = (0..300).map(|_| numbers.direction() * numbers.between(0.0, 6.0)).collect();
         points.extend(lights.iter().step_by(9).filter_map(TracedLight::centre));
@@ -442,12 +447,12 @@ mod tests {
         let (mut given, mut denied) = (0, 0);
         for point in points {
             let normal = numbers.direction();
-            for node in &chooser.nodes {
+            for node in &light_sampler.nodes {
                 let first = node.first_packet as usize;
-                let packets = &chooser.packets[first..first + node.packets as usize];
+                let packets = &light_sampler.packets[first..first + node.packets as usize];
                 let (mut ours, mut plain) = (Estimates::NOTHING, Estimates::NOTHING);
                 simd::dispatch(Ask { packets, point, normal, estimates: &mut ours });
-                Ask { packets, point, normal, estimates: &mut plain }.run::<Plain>();
+                Ask { packets, point, normal, estimates: &mut plain }.run::<Scalar>();
                 assert_eq!(bits(&ours), bits(&plain), "from {point}, facing {normal}");
                 let lanes = &ours.lanes.as_flattened()[..packets.len() * WIDTH];
                 given += lanes.iter().filter(|lane| **lane > 0.0).count();

@@ -2,12 +2,12 @@
 
 use super::{Kernels, WIDTH};
 use crate::raytrace::bvh::{Node, Slabs, WIDEN};
-use crate::raytrace::triangle::{Packet, Sheared, TriangleHit, edges_in_f64};
+use crate::raytrace::triangle::{Packet, ShearedRay, TriangleHit, edges_in_f64};
 use std::array::from_fn;
 
 /// Kernels that every processor can run.
 #[derive(Clone, Copy, Debug)]
-pub struct Plain;
+pub struct Scalar;
 
 /// `a` where it is larger than `b`; else `b`, also when `a` is NaN.
 #[inline(always)]
@@ -21,7 +21,7 @@ fn min_or(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-impl Kernels for Plain {
+impl Kernels for Scalar {
     #[inline(always)]
     fn boxes(slabs: &Slabs, node: &Node, t_max: f32, enter: &mut [f32; WIDTH]) -> u32 {
         *enter = [0.0; WIDTH];
@@ -38,7 +38,7 @@ impl Kernels for Plain {
     }
 
     #[inline(always)]
-    fn triangles(packet: &Packet, ray: &Sheared, t_max: f32) -> Option<TriangleHit> {
+    fn triangles(packet: &Packet, ray: &ShearedRay, t_max: f32) -> Option<TriangleHit> {
         let [kx, ky, kz] = ray.axes;
         let corner =
             |v: usize, axis: usize| -> [f32; WIDTH] { from_fn(|i| packet.corners[v][axis][i] - ray.origin[axis]) };

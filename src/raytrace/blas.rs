@@ -1,21 +1,21 @@
 //! A tree over triangles, the lowest level of every ray's way.
 
-use super::bvh::{self, Slabs, Stack, WideBvh};
+use super::bvh::{self, Slabs, TraversalStack, WideBvh};
 use super::simd::{Kernels, WIDTH};
-use super::triangle::{Packet, Sheared, TriangleHit};
+use super::triangle::{Packet, ShearedRay, TriangleHit};
 use crate::math::Ray;
 use glam::Vec3;
 use rayon::prelude::*;
 
 /// Triangles with their tree, in whatever space they were given.
 #[derive(Debug, Default)]
-pub struct TriangleTree {
+pub struct Blas {
     bvh: WideBvh,
     /// One packet a leaf.
     packets: Vec<Packet>,
 }
 
-impl TriangleTree {
+impl Blas {
     /// Builds the tree over triangles 0 to `count`.
     pub fn new(count: usize, corners: impl Fn(usize) -> [Vec3; 3] + Sync) -> Self {
         let bounds = |t: usize| {
@@ -28,7 +28,7 @@ impl TriangleTree {
             .into_par_iter()
             .map(|leaf| Packet::new(bvh.leaf(leaf).iter().map(|&t| (t, corners(t as usize)))))
             .collect();
-        TriangleTree { bvh, packets }
+        Blas { bvh, packets }
     }
 
     /// Smallest box around everything; none when there is nothing.
@@ -38,10 +38,10 @@ impl TriangleTree {
 
     /// The closest hit of a ray, whose slabs these are.
     #[inline(always)]
-    pub fn closest<K: Kernels>(&self, ray: &Ray, slabs: &Slabs, stack: &mut Stack) -> Option<TriangleHit> {
-        let sheared = Sheared::new(ray.origin, ray.direction);
+    pub fn intersect<K: Kernels>(&self, ray: &Ray, slabs: &Slabs, stack: &mut TraversalStack) -> Option<TriangleHit> {
+        let sheared = ShearedRay::new(ray.origin, ray.direction);
         let mut best = None;
-        self.bvh.nearest_first::<K>(
+        self.bvh.traverse_front_to_back::<K>(
             slabs,
             ray.t_max,
             stack,
@@ -59,9 +59,9 @@ impl TriangleTree {
 
     /// Whether anything lies on the ray, whose slabs these are.
     #[inline(always)]
-    pub fn any<K: Kernels>(&self, ray: &Ray, slabs: &Slabs, stack: &mut Stack) -> bool {
-        let sheared = Sheared::new(ray.origin, ray.direction);
-        self.bvh.any::<K>(
+    pub fn occluded<K: Kernels>(&self, ray: &Ray, slabs: &Slabs, stack: &mut TraversalStack) -> bool {
+        let sheared = ShearedRay::new(ray.origin, ray.direction);
+        self.bvh.traverse_any::<K>(
             slabs,
             ray.t_max,
             stack,

@@ -1,14 +1,14 @@
 //! Which emitters a ray crosses: those with a place in a tree over their boxes, sun and surround by asking them.
 
-use super::{Seen, Source, TracedLight};
+use super::{EmitterHit, Source, TracedLight};
 use crate::math::Ray;
-use crate::raytrace::bvh::{self, Slabs, Stack, WideBvh};
-use crate::raytrace::simd::{self, Kernels, Query};
+use crate::raytrace::bvh::{self, Slabs, TraversalStack, WideBvh};
+use crate::raytrace::simd::{self, KernelTask, Kernels};
 use glam::Vec3;
 
 /// Emitters that rays can meet.
 #[derive(Debug, Default)]
-pub struct Crossings {
+pub struct EmitterBvh {
     bvh: WideBvh,
     /// Light of each box.
     placed: Vec<u32>,
@@ -16,34 +16,40 @@ pub struct Crossings {
     distant: Vec<u32>,
 }
 
-impl Crossings {
+impl EmitterBvh {
     /// Over a scene's lights, in their order.
     pub fn new(lights: &[TracedLight]) -> Self {
-        let mut crossings = Crossings::default();
+        let mut emitter_bvh = EmitterBvh::default();
         let mut boxes = Vec::new();
         for (light, index) in lights.iter().zip(0..) {
             match light.bounds() {
                 Some(bounds) => {
-                    crossings.placed.push(index);
+                    emitter_bvh.placed.push(index);
                     boxes.push(bounds);
                 }
-                None if light.has_size() => crossings.distant.push(index),
+                None if !light.is_delta() => emitter_bvh.distant.push(index),
                 None => {}
             }
         }
-        crossings.bvh = bvh::build(&boxes, 1);
-        crossings
+        emitter_bvh.bvh = bvh::build(&boxes, 1);
+        emitter_bvh
     }
 
     /// Gives every light that the ray sees before its end, in no order, with what it sees of it.
     #[inline]
-    pub fn each(&self, lights: &[TracedLight], ray: &Ray, stack: &mut Stack, mut found: impl FnMut(u32, Seen)) {
+    pub fn for_each_hit(
+        &self,
+        lights: &[TracedLight],
+        ray: &Ray,
+        stack: &mut TraversalStack,
+        mut found: impl FnMut(u32, EmitterHit),
+    ) {
         if !self.placed.is_empty() {
-            simd::dispatch(Cross { crossings: self, lights, ray, stack, found: &mut found });
+            simd::dispatch(Cross { emitter_bvh: self, lights, ray, stack, found: &mut found });
         }
         if ray.t_max.is_infinite() {
             for &light in &self.distant {
-                if let Some(seen) = lights[light as usize].seen_by(ray.origin, ray.direction) {
+                if let Some(seen) = lights[light as usize].intersect(ray.origin, ray.direction) {
                     found(light, seen);
                 }
             }
@@ -66,31 +72,31 @@ impl TracedLight {
     }
 }
 
-/// See [`Crossings::each`].
+/// See [`EmitterBvh::for_each_hit`].
 struct Cross<'a, F> {
-    crossings: &'a Crossings,
+    emitter_bvh: &'a EmitterBvh,
     lights: &'a [TracedLight],
     ray: &'a Ray,
-    stack: &'a mut Stack,
+    stack: &'a mut TraversalStack,
     found: &'a mut F,
 }
 
-impl<F: FnMut(u32, Seen)> Query for Cross<'_, F> {
-    type Answer = ();
+impl<F: FnMut(u32, EmitterHit)> KernelTask for Cross<'_, F> {
+    type Output = ();
 
     #[inline(always)]
     fn run<K: Kernels>(self) {
-        let Cross { crossings, lights, ray, stack, found } = self;
+        let Cross { emitter_bvh, lights, ray, stack, found } = self;
         let slabs = Slabs::new(ray.origin, ray.direction);
-        crossings.bvh.nearest_first::<K>(
+        emitter_bvh.bvh.traverse_front_to_back::<K>(
             &slabs,
             ray.t_max,
             stack,
             #[inline(always)]
             |leaf, t_max, _| {
-                for &place in crossings.bvh.leaf(leaf) {
-                    let light = crossings.placed[place as usize];
-                    if let Some(seen) = lights[light as usize].seen_by(ray.origin, ray.direction) {
+                for &place in emitter_bvh.bvh.leaf(leaf) {
+                    let light = emitter_bvh.placed[place as usize];
+                    if let Some(seen) = lights[light as usize].intersect(ray.origin, ray.direction) {
                         found(light, seen);
                     }
                 }

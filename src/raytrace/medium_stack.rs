@@ -3,7 +3,7 @@
 //! The body that was entered last fills the space. Where two overlap (a drink drawn a little wider than the hollow of
 //! its tumbler, as it should be, so that no air is between them), leaving the other one changes nothing.
 
-use super::bsdf::Surfacing;
+use super::bsdf::{DielectricInterface, TracedMaterial};
 use glam::Vec3;
 
 /// Bodies that a path can be inside of at once; beyond, the innermost is replaced.
@@ -11,37 +11,28 @@ const DEPTH: usize = 8;
 
 /// Bodies by their material, the innermost last.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Media {
+pub struct MediumStack {
     inside: [u32; DEPTH],
     count: u8,
 }
 
-/// The clear substances on both sides of a surface, as a path comes to it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interface {
-    /// Index of refraction behind over the one before.
-    pub eta: f32,
-    /// The path began inside this body: it is the camera's own air that ends here, and radiance is not scaled.
-    pub unknown: bool,
-}
-
-impl Media {
+impl MediumStack {
     /// The innermost body's material.
     pub fn innermost(&self) -> Option<u32> {
         self.count.checked_sub(1).map(|last| self.inside[usize::from(last)])
     }
 
     /// What a path meets at the surface of a body, coming from its outside or inside.
-    pub fn interface(&self, materials: &[Surfacing], material: u32, outside: bool) -> Interface {
+    pub fn interface(&self, materials: &[TracedMaterial], material: u32, outside: bool) -> DielectricInterface {
         let ior = |body: Option<u32>| body.map_or(1.0, |m| materials[m as usize].ior());
         let this = materials[material as usize].ior();
         if outside {
-            return Interface { eta: this / ior(self.innermost()), unknown: false };
+            return DielectricInterface { eta: this / ior(self.innermost()), starts_inside: false };
         }
         let mut after = *self;
-        let known = after.leave(material);
+        let known = after.exit(material);
         let before = if known { ior(self.innermost()) } else { this };
-        Interface { eta: ior(after.innermost()) / before, unknown: !known }
+        DielectricInterface { eta: ior(after.innermost()) / before, starts_inside: !known }
     }
 
     /// Goes through the surface of a body.
@@ -51,12 +42,12 @@ impl Media {
             self.inside[slot] = material;
             self.count = slot as u8 + 1;
         } else {
-            self.leave(material);
+            self.exit(material);
         }
     }
 
     /// Leaves the body of this material that was entered last; false when there is none.
-    fn leave(&mut self, material: u32) -> bool {
+    fn exit(&mut self, material: u32) -> bool {
         let count = usize::from(self.count);
         let Some(at) = self.inside[..count].iter().rposition(|&m| m == material) else { return false };
         self.inside.copy_within(at + 1..count, at);
@@ -65,7 +56,7 @@ impl Media {
     }
 
     /// Share of light left after a distance in the innermost body (Beer and Lambert); all of it in air.
-    pub fn transmittance(&self, materials: &[Surfacing], distance: f32) -> Vec3 {
+    pub fn transmittance(&self, materials: &[TracedMaterial], distance: f32) -> Vec3 {
         self.innermost().map_or(Vec3::ONE, |m| materials[m as usize].transmittance(distance))
     }
 }
@@ -75,8 +66,8 @@ mod tests {
     use super::*;
     use crate::scene::Material;
 
-    fn materials() -> [Surfacing; 2] {
-        [1.5, 1.33].map(|ior| Surfacing::new(&Material { ior, transmission: 1.0, ..Material::default() }, None))
+    fn materials() -> [TracedMaterial; 2] {
+        [1.5, 1.33].map(|ior| TracedMaterial::new(&Material { ior, transmission: 1.0, ..Material::default() }, None))
     }
 
     const GLASS: u32 = 0;
@@ -85,14 +76,14 @@ mod tests {
     #[test]
     fn water_in_glass_meets_glass_and_not_air() {
         let materials = materials();
-        let mut media = Media::default();
+        let mut media = MediumStack::default();
         assert_eq!(media.interface(&materials, GLASS, true).eta, 1.5);
         media.cross(GLASS, true);
         // The drink is a little wider than the hollow: entered inside the wall.
         assert_eq!(media.interface(&materials, WATER, true).eta, 1.33 / 1.5);
         media.cross(WATER, true);
         // The wall's inner face lies in the water and is no interface.
-        assert_eq!(media.interface(&materials, GLASS, false), Interface { eta: 1.0, unknown: false });
+        assert_eq!(media.interface(&materials, GLASS, false), DielectricInterface { eta: 1.0, starts_inside: false });
         media.cross(GLASS, false);
         assert_eq!(media.innermost(), Some(WATER));
         // Out through the top.
@@ -104,16 +95,16 @@ mod tests {
     #[test]
     fn a_body_that_was_never_entered_ends_in_air() {
         let materials = materials();
-        let mut media = Media::default();
+        let mut media = MediumStack::default();
         let interface = media.interface(&materials, WATER, false);
-        assert!(interface.unknown && interface.eta == 1.0 / 1.33);
+        assert!(interface.starts_inside && interface.eta == 1.0 / 1.33);
         media.cross(WATER, false);
         assert_eq!(media.innermost(), None);
     }
 
     #[test]
     fn too_many_bodies_are_no_reason_to_fail() {
-        let mut media = Media::default();
+        let mut media = MediumStack::default();
         (0..100).for_each(|body| media.cross(body, true));
         assert_eq!(media.innermost(), Some(99));
         (0..100).rev().for_each(|body| media.cross(body, false));
