@@ -62,7 +62,5 @@ pub fn is_up_to_date(film: &Film, rendered: &Scene, now: &Scene) -> bool {
 fn has_shared_layers(film: &Film, rendered: &Scene) -> bool {
     let own_layers = film.layers().iter().filter(|layer| layer.light.is_some()).count();
     let lights_on = rendered.lights.iter().filter(|light| light.on).count();
-    let room = rendered.room.iter().flat_map(|room| [&room.floor, &room.walls, &room.ceiling]);
-    let objects = rendered.objects.iter().flat_map(|o| o.part_materials.iter().map(|(_, m)| m).chain([&o.material]));
-    own_layers < lights_on || room.chain(objects).any(|material| material.emission_cd_m2 != [0.0; 3])
+    own_layers < lights_on || rendered.has_emissive_material()
 }

@@ -2,7 +2,7 @@
 
 use super::error::AssetError;
 use super::{mannequins, obj, texture};
-use crate::scene::{Assets, Finding, Mannequin, Material, Mesh, Scene, Shape, Texture, path_complaint};
+use crate::scene::{AssetRef, Assets, Finding, Mannequin, Mesh, Scene, Texture, path_complaint};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -51,40 +51,14 @@ fn complaint(wanted: &Wanted, place: String, error: &AssetError) -> Finding {
 
 /// Everything that is missing, each once.
 fn wanted(scene: &Scene, assets: &Assets) -> Vec<(Wanted, String)> {
-    let mut list = Vec::new();
-    let mut asked = std::collections::HashSet::new();
-    let mut want_texture = |material: &Material, place: String, list: &mut Vec<(Wanted, String)>| {
-        if let Some(path) = &material.base_color_texture
-            && !assets.textures.contains_key(path)
-            && asked.insert(path.clone())
-        {
-            list.push((Wanted::Texture(path.clone()), place));
-        }
+    let mut listed = std::collections::HashSet::new();
+    let missing = scene.assets().filter(|(_, asset)| !assets.contains(asset) && listed.insert(asset.clone()));
+    let wanted = |asset| match asset {
+        AssetRef::Mesh(path) => Wanted::Mesh(path.into_owned()),
+        AssetRef::Figure(figure) => Wanted::Mannequin(figure),
+        AssetRef::Texture(path) => Wanted::Texture(path.into_owned()),
     };
-    if let Some(room) = &scene.room {
-        for (part, material) in [("floor", &room.floor), ("walls", &room.walls), ("ceiling", &room.ceiling)] {
-            want_texture(material, format!("room.{part}.base_color_texture"), &mut list);
-        }
-    }
-    let (mut paths, mut mannequins) = (std::collections::HashSet::new(), std::collections::HashSet::new());
-    for (index, object) in scene.objects.iter().enumerate() {
-        let place = |field: &str| format!("objects[{index}] {:?} {field}", object.name);
-        match &object.shape {
-            Shape::MeshFile { path } if !assets.meshes.contains_key(path) && paths.insert(path) => {
-                list.push((Wanted::Mesh(path.clone()), place("shape.path")));
-            }
-            Shape::Mannequin(m) if !assets.mannequins.contains_key(m) && mannequins.insert(*m) => {
-                list.push((Wanted::Mannequin(*m), place("shape")));
-            }
-            _ => {}
-        }
-        want_texture(&object.material, place("material.base_color_texture"), &mut list);
-        for (part, (_, material)) in object.part_materials.iter().enumerate() {
-            let field = format!("part_materials[{part}].material.base_color_texture");
-            want_texture(material, place(&field), &mut list);
-        }
-    }
-    list
+    missing.map(|(field, asset)| (wanted(asset), scene.place_of(field))).collect()
 }
 
 fn load(wanted: &Wanted, folder: Option<&Path>) -> Result<Asset, AssetError> {

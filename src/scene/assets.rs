@@ -1,6 +1,6 @@
 //! Meshes and pictures that a scene refers to, already in memory. `io` fills it; renderers only read.
 
-use super::{Mannequin, Mesh, Shape, tessellate};
+use super::{AssetRef, Mannequin, Mesh, Shape, tessellate};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -45,6 +45,15 @@ pub fn path_complaint(path: &str) -> Option<&'static str> {
 }
 
 impl Assets {
+    /// Returns true if the asset is loaded.
+    pub fn contains(&self, asset: &AssetRef<'_>) -> bool {
+        match asset {
+            AssetRef::Mesh(path) => self.meshes.contains_key(path.as_ref()),
+            AssetRef::Figure(figure) => self.mannequins.contains_key(figure),
+            AssetRef::Texture(path) => self.textures.contains_key(path.as_ref()),
+        }
+    }
+
     /// The triangles of a shape; none where its file is missing (loading has warned of it).
     pub fn mesh_of(&self, shape: &Shape) -> Option<Arc<Mesh>> {
         match shape {

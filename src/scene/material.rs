@@ -36,6 +36,18 @@ impl Default for Material {
     }
 }
 
+impl Material {
+    /// Returns the path of each texture with the name of its field in the scene file.
+    pub fn textures(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        self.base_color_texture.iter().map(|path| ("base_color_texture", path.as_str()))
+    }
+
+    /// Returns true if the surface emits light.
+    pub fn is_emissive(&self) -> bool {
+        self.emission_cd_m2 != [0.0; 3]
+    }
+}
+
 /// A material of the shelf, by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaterialPreset {

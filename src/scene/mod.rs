@@ -8,6 +8,7 @@
 mod assets;
 mod camera;
 mod gel;
+mod inventory;
 mod light;
 mod material;
 mod mesh;
@@ -21,6 +22,7 @@ mod validate;
 pub use assets::{Assets, Texture, path_complaint};
 pub use camera::{Camera, CameraFrame, Focus, Orientation, Sensor};
 pub use gel::{Gel, GelFamily, NamedGel};
+pub use inventory::{AssetField, AssetRef, MaterialSlot};
 pub use light::{ColorSource, Emitter, Light, LightColor, Output, Power, Role, Solo};
 pub use material::{Material, MaterialPreset};
 pub use mesh::{Mesh, MeshPart};

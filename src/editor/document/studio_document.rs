@@ -3,7 +3,7 @@
 use crate::editor::document::action::{Action, ActionError};
 use crate::editor::document::history::{History, MergeKey};
 use crate::editor::document::item::Item;
-use crate::scene::{Assets, Finding, Material, Scene, Severity, Shape, validate};
+use crate::scene::{AssetRef, Assets, Finding, Scene, Severity, validate};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -135,27 +135,8 @@ impl Document {
     }
 
     fn missing_assets(&self) -> BTreeSet<String> {
-        let mut missing = BTreeSet::new();
-        for object in &self.scene.objects {
-            match &object.shape {
-                Shape::MeshFile { path } if !self.assets.meshes.contains_key(path) => {
-                    missing.insert(path.clone());
-                }
-                Shape::Mannequin(mannequin) if !self.assets.mannequins.contains_key(mannequin) => {
-                    missing.insert(format!("{mannequin:?}"));
-                }
-                _ => {}
-            }
-        }
-        let textures = self.materials().filter_map(|m| m.base_color_texture.clone());
-        missing.extend(textures.filter(|path| !self.assets.textures.contains_key(path)));
-        missing
-    }
-
-    fn materials(&self) -> impl Iterator<Item = &Material> {
-        let objects = self.scene.objects.iter();
-        let surfaces = objects.flat_map(|o| o.part_materials.iter().map(|(_, m)| m).chain([&o.material]));
-        surfaces.chain(self.scene.room.iter().flat_map(|room| [&room.floor, &room.walls, &room.ceiling]))
+        let missing = self.scene.assets().filter(|(_, asset)| !self.assets.contains(asset));
+        missing.map(|(_, asset)| asset_label(&asset)).collect()
     }
 
     /// Takes in assets that were loaded in the background. What is still missing of `tried` has failed.
@@ -206,12 +187,8 @@ impl Document {
 
     /// The files that must be copied so that a scene in `folder` finds its assets: (from, to).
     pub fn files_to_copy(&self, folder: &Path) -> Vec<(PathBuf, PathBuf)> {
-        let meshes = self.scene.objects.iter().filter_map(|o| match &o.shape {
-            Shape::MeshFile { path } => Some(path.clone()),
-            _ => None,
-        });
-        let textures = self.materials().filter_map(|m| m.base_color_texture.clone());
-        let used: BTreeSet<String> = meshes.chain(textures).collect();
+        let used: BTreeSet<String> =
+            self.scene.assets().filter_map(|(_, asset)| asset.path().map(str::to_owned)).collect();
         let source = |path: &String| self.imported.get(path).cloned().or_else(|| Some(self.folder()?.join(path)));
         used.iter()
             .filter_map(|path| Some((source(path)?, folder.join(path))))
@@ -224,6 +201,14 @@ impl Document {
         self.imported.clear();
         self.saved = self.scene.clone();
         self.path = Some(path);
+    }
+}
+
+/// A name for an asset: its path, or the figure and its pose.
+fn asset_label(asset: &AssetRef<'_>) -> String {
+    match asset {
+        AssetRef::Mesh(path) | AssetRef::Texture(path) => path.to_string(),
+        AssetRef::Figure(figure) => format!("{figure:?}"),
     }
 }
 

@@ -27,7 +27,7 @@ pub fn between(traced: &Scene, layers: &[Layer], now: &Scene) -> (Scene, Change)
     }
     let mut wanted = without_words(now, traced);
     wanted.camera = traced.camera.clone();
-    let glows = has_glow(traced);
+    let glows = traced.has_emissive_material();
     if wanted.room != traced.room
         || wanted.objects != traced.objects
         || (glows && now.camera.shutter_s != traced.camera.shutter_s)
@@ -101,12 +101,6 @@ fn is_same_picture(traced: &Scene, now: &Scene) -> bool {
     // Roles choose the layers that many lights share.
     let roles = now.lights.iter().map(|l| l.role).eq(traced.lights.iter().map(|l| l.role));
     roles && scene == *traced && held == (traced.camera.shutter_s, traced.camera.white_balance_k)
-}
-
-fn has_glow(scene: &Scene) -> bool {
-    let room = scene.room.iter().flat_map(|room| [&room.floor, &room.walls, &room.ceiling]);
-    let objects = scene.objects.iter().flat_map(|o| o.part_materials.iter().map(|(_, m)| m).chain([&o.material]));
-    room.chain(objects).any(|material| material.emission_cd_m2 != [0.0; 3])
 }
 
 /// Whether two collections hold the very same meshes and textures.

@@ -4,10 +4,11 @@ use super::check::Check;
 use crate::scene::{Output, Scene};
 
 pub(super) fn warn_of_lights(scene: &Scene, check: &mut Check) {
-    let glows = scene.objects.iter().filter(|o| o.visible).any(|o| {
-        let materials = std::iter::once(&o.material).chain(o.part_materials.iter().map(|(_, m)| m));
-        materials.into_iter().any(|m| m.emission_cd_m2 != [0.0; 3])
-    });
+    let glows = scene
+        .objects
+        .iter()
+        .filter(|o| o.visible)
+        .any(|object| object.materials().any(|material| material.is_emissive()));
     if scene.lights.is_empty() && !glows {
         check.warning("lights", "there is no light; the picture will be black".to_owned());
     } else if scene.lights.iter().all(|l| !l.on) && !glows {
