@@ -1,7 +1,7 @@
 //! The files that a scene names, and its mannequins, into memory. What can't be loaded is left out with a warning.
 
 use super::error::AssetError;
-use super::{mannequins, obj, texture};
+use super::{importers, mannequins, texture};
 use crate::scene::{AssetRef, Assets, Finding, Mannequin, Mesh, Scene, Texture, path_complaint};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -64,7 +64,7 @@ fn wanted(scene: &Scene, assets: &Assets) -> Vec<(Wanted, String)> {
 fn load(wanted: &Wanted, folder: Option<&Path>) -> Result<Asset, AssetError> {
     Ok(match wanted {
         Wanted::Mesh(path) => {
-            let mesh = obj::import_obj(&resolve(path, folder)?)?.mesh;
+            let mesh = importers::import_model(&resolve(path, folder)?)?.mesh;
             Asset::Mesh(path.clone(), Arc::new(mesh))
         }
         Wanted::Mannequin(mannequin) => Asset::Mannequin(*mannequin, mannequins::mesh(*mannequin)?),

@@ -1,6 +1,6 @@
 //! What can go wrong with files. Messages say what first and where last.
 
-use crate::scene::Finding;
+use crate::scene::{Figure, Finding, Pose};
 use std::fmt;
 use std::path::PathBuf;
 
@@ -166,13 +166,43 @@ pub enum AssetError {
         /// The file.
         path: PathBuf,
     },
-    /// The OBJ file has a mistake.
-    #[error("not a usable OBJ model: {message}: {}", path.display())]
+    /// The extension belongs to no format that is read.
+    #[error("Catchlight reads models of the type {known}, not {extension:?}: {}", path.display())]
+    UnknownModelFormat {
+        /// The extensions that are read, with dots.
+        known: String,
+        /// The file's extension, in lower case.
+        extension: String,
+        /// The file.
+        path: PathBuf,
+    },
+    /// The model file has a mistake.
+    #[error("not a usable {format} model: {message}: {}", path.display())]
     BadModel {
+        /// Name of the format.
+        format: &'static str,
         /// The mistake, with its line where known.
         message: String,
         /// The file.
         path: PathBuf,
+    },
+    /// A texture refers to an image inside a model whose format has none.
+    #[error("{format} files hold no images, so there is no image {image}: {}", path.display())]
+    NoEmbeddedImage {
+        /// Name of the format.
+        format: &'static str,
+        /// Index of the image.
+        image: u32,
+        /// The model file.
+        path: PathBuf,
+    },
+    /// No mesh of this figure in this pose is embedded in the program.
+    #[error("this version has no such figure: {figure:?} {pose:?}")]
+    NoFigure {
+        /// The figure.
+        figure: Figure,
+        /// Its pose.
+        pose: Pose,
     },
     /// The texture could not be decoded.
     #[error("not a usable PNG or JPEG: {message}: {}", path.display())]

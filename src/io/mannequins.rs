@@ -38,10 +38,10 @@ pub(super) fn mesh(figure: Mannequin) -> Result<Arc<Mesh>, AssetError> {
     // The lock is not held here, so that several figures are read at once.
     let wanted = figures::resolve(figure);
     let file = figures::ALL.iter().position(|baked| *baked == wanted).map(|i| FILES[i]);
-    let mesh = file.and_then(obj::read_shipped).map(Arc::new).ok_or_else(|| AssetError::BadModel {
-        message: "this version has no such figure".to_owned(),
-        path: format!("{:?} {:?}", figure.figure, figure.pose).into(),
-    })?;
+    let mesh = file
+        .and_then(obj::read_shipped)
+        .map(Arc::new)
+        .ok_or(AssetError::NoFigure { figure: figure.figure, pose: figure.pose })?;
     read().insert(figure, Arc::clone(&mesh));
     Ok(mesh)
 }

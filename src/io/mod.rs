@@ -7,9 +7,11 @@
 mod assets;
 mod atomic;
 mod error;
+mod importers;
 mod layout;
 mod locate;
 mod mannequins;
+mod model;
 mod obj;
 mod picture;
 mod presets;
@@ -20,7 +22,11 @@ mod texture;
 
 pub use assets::load_assets;
 pub use error::{AssetError, LoadError, Problem, SaveError};
-pub use obj::{ImportedObj, import_obj};
+pub use importers::{
+    MODEL_FORMATS, ModelFormat, import_model, model_extension_list, model_extensions, model_format_names,
+};
+pub use model::{ImportedModel, ModelLimits};
 pub use picture::{PictureFormat, PictureInfo, export_layers, export_picture, export_shown, read_exr};
 pub use presets::{Preset, find_preset, presets};
 pub use scene_file::{FILE_LIMIT_BYTES, FORMAT, Loaded, load_scene, parse_scene, save_scene, write_scene};
+pub use texture::TEXTURE_EXTENSIONS;

@@ -6,6 +6,9 @@ use crate::scene::Texture;
 use std::io::Cursor;
 use std::path::Path;
 
+/// Extensions of texture files, without the dot.
+pub const TEXTURE_EXTENSIONS: &[&str] = &["png", "jpg", "jpeg"];
+
 /// Largest texture file, bytes.
 const FILE_LIMIT_BYTES: u64 = 512 << 20;
 /// Most pixels along a side.

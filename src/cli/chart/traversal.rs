@@ -66,7 +66,7 @@ pub fn run(
     methods: &[IntersectionMethod],
     json: bool,
 ) -> Result<(), Failure> {
-    let mesh = Arc::new(io::import_obj(model)?.mesh);
+    let mesh = Arc::new(io::import_model(model)?.mesh);
     let rays = match rays {
         Some(path) => read_rays(path)?,
         None => made_rays(&mesh, kind),

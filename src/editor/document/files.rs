@@ -135,7 +135,7 @@ pub fn open(source: &Source) -> Result<Box<Opened>, String> {
 
 /// Reads a model.
 pub fn import(file: PathBuf) -> Result<Box<Imported>, String> {
-    let model = io::import_obj(&file).map_err(|e| plain(&e))?;
+    let model = io::import_model(&file).map_err(|e| plain(&e))?;
     let (mesh, part_materials, warnings) = (Arc::new(model.mesh), model.part_materials, model.warnings);
     Ok(Box::new(Imported { file, mesh, part_materials, warnings }))
 }

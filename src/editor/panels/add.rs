@@ -5,6 +5,7 @@ use crate::editor::document::catalog::{Entry, Kind, Shelf, entries};
 use crate::editor::thumbnails::{THING_POINTS, Thumbnails};
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets;
+use crate::io;
 use crate::scene::{Emitter, MaterialPreset};
 use eframe::egui::{self, Button, Color32, CornerRadius, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, vec2};
 
@@ -14,9 +15,12 @@ pub fn add_ui(ui: &mut Ui, shelf: &mut Shelf, thumbnails: &mut Thumbnails, out: 
     ui.horizontal(|ui| {
         ui.label(RichText::new("Add").strong());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let import = ui.add(Button::new("Import OBJ\u{2026}").small());
+            let formats = io::model_format_names();
+            let import = ui.add(Button::new(format!("Import {formats}\u{2026}")).small());
             if import
-                .on_hover_text("Bring in a model from an OBJ file (Ctrl+I), or drop the file on the window")
+                .on_hover_text(format!(
+                    "Bring in a model from an {formats} file (Ctrl+I), or drop the file on the window"
+                ))
                 .clicked()
             {
                 out.push(Command::Import);

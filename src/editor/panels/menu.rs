@@ -7,6 +7,7 @@ use crate::editor::document::studio_document::Document;
 use crate::editor::viewport::live::traced_view::LiveMode;
 use crate::editor::viewport::studio_view::Side;
 use crate::editor::window::recent::RecentFiles;
+use crate::io;
 use eframe::egui::{Button, MenuBar, Ui};
 
 /// What the menus show beside the document.
@@ -61,7 +62,8 @@ fn file_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     entry(ui, true, "Save", "Write the studio to its file", Command::Save, out);
     entry(ui, true, "Save as\u{2026}", "Write the studio to another file", Command::SaveAs, out);
     ui.separator();
-    entry(ui, true, "Import OBJ\u{2026}", "Bring in a model", Command::Import, out);
+    let import = format!("Import {}\u{2026}", io::model_format_names());
+    entry(ui, true, &import, "Bring in a model", Command::Import, out);
     entry(
         ui,
         state.has_picture,

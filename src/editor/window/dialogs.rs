@@ -1,5 +1,6 @@
 //! Asking for a file name: the desktop's dialog in a thread of its own, or a list of answers in tests.
 
+use crate::io;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
@@ -13,7 +14,7 @@ pub enum Purpose {
     /// Where to save the scene.
     SaveScene,
     /// A model to bring in.
-    ImportObj,
+    ImportModel,
     /// A texture for a material.
     OpenTexture,
     /// Where to write the finished picture.
@@ -22,13 +23,13 @@ pub enum Purpose {
 
 impl Purpose {
     /// Title of the dialog.
-    pub fn title(self) -> &'static str {
+    pub fn title(self) -> String {
         match self {
-            Purpose::OpenScene => "Open studio",
-            Purpose::SaveScene => "Save studio",
-            Purpose::ImportObj => "Import OBJ model",
-            Purpose::OpenTexture => "Choose texture",
-            Purpose::ExportPicture => "Export picture",
+            Purpose::OpenScene => "Open studio".to_owned(),
+            Purpose::SaveScene => "Save studio".to_owned(),
+            Purpose::ImportModel => format!("Import {} model", io::model_format_names()),
+            Purpose::OpenTexture => "Choose texture".to_owned(),
+            Purpose::ExportPicture => "Export picture".to_owned(),
         }
     }
 
@@ -38,12 +39,12 @@ impl Purpose {
     }
 
     /// Name and endings of the files.
-    pub fn filter(self) -> (&'static str, &'static [&'static str]) {
+    pub fn filter(self) -> (String, &'static [&'static str]) {
         match self {
-            Purpose::OpenScene | Purpose::SaveScene => ("Catchlight studio", &["ron"]),
-            Purpose::ImportObj => ("OBJ model", &["obj"]),
-            Purpose::OpenTexture => ("Picture", &["png", "jpg", "jpeg"]),
-            Purpose::ExportPicture => ("Picture", &["png", "jpg", "exr"]),
+            Purpose::OpenScene | Purpose::SaveScene => ("Catchlight studio".to_owned(), &["ron"]),
+            Purpose::ImportModel => (format!("{} model", io::model_format_names()), io::model_extensions()),
+            Purpose::OpenTexture => ("Picture".to_owned(), io::TEXTURE_EXTENSIONS),
+            Purpose::ExportPicture => ("Picture".to_owned(), &["png", "jpg", "exr"]),
         }
     }
 

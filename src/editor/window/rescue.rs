@@ -71,7 +71,7 @@ mod tests {
         std::fs::write(model, TRIANGLE).unwrap();
         let name = document.asset_path_for(model, "models");
         let mut assets = Assets::default();
-        assets.meshes.insert(name.clone(), io::import_obj(model).unwrap().mesh.into());
+        assets.meshes.insert(name.clone(), io::import_model(model).unwrap().mesh.into());
         document.insert_assets(assets, &Default::default());
         document.note_import(name.clone(), model.to_owned());
         let object = Object { shape: Shape::MeshFile { path: name }, ..catalog::object_named("Box").unwrap() };

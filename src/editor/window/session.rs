@@ -10,7 +10,7 @@ use crate::editor::document::studio_document::Document;
 use crate::editor::panels::prompts::{self, GuardAnswer, PathAnswer, PathPrompt};
 use crate::editor::window::app::App;
 use crate::editor::window::dialogs::{Answer, FileDialogs, Purpose};
-use crate::io::PictureInfo;
+use crate::io::{self, ModelFormat, PictureInfo};
 use crate::scene::{Assets, Material, MaterialPreset, Object, ObjectId, Shape, Transform};
 use eframe::egui::{self, Align2, Color32, Context, Id, LayerId, Order, ViewportCommand};
 use std::path::{Path, PathBuf};
@@ -80,7 +80,7 @@ impl App {
                 None => self.ask_for_path(Purpose::SaveScene, ctx),
             },
             Command::SaveAs => self.ask_for_path(Purpose::SaveScene, ctx),
-            Command::Import => self.ask_for_path(Purpose::ImportObj, ctx),
+            Command::Import => self.ask_for_path(Purpose::ImportModel, ctx),
             Command::ImportPath(path) => {
                 self.tasks.start(move || Done::Imported(files::import(path)), waker(ctx));
             }
@@ -173,7 +173,7 @@ impl App {
         match purpose {
             Purpose::OpenScene => self.replace_with(Source::File(path), ctx),
             Purpose::SaveScene => self.save_to(path, ctx),
-            Purpose::ImportObj => self.run_file_command(Command::ImportPath(path), ctx),
+            Purpose::ImportModel => self.run_file_command(Command::ImportPath(path), ctx),
             Purpose::OpenTexture => self.use_texture(&path),
             Purpose::ExportPicture => self.export_to(path, ctx),
         }
@@ -339,9 +339,10 @@ impl App {
             let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
             match ending.as_str() {
                 "ron" => out.push(Command::OpenPath(path)),
-                "obj" => out.push(Command::ImportPath(path)),
+                _ if ModelFormat::of(&path).is_some() => out.push(Command::ImportPath(path)),
                 _ => self.toasts.error(format!(
-                    "Only studios (.ron) and models (.obj) can be dropped here, not {}.",
+                    "Only studios (.ron) and models ({}) can be dropped here, not {}.",
+                    io::model_extension_list(),
                     path.display()
                 )),
             }
@@ -356,7 +357,8 @@ impl App {
         let painter = ctx.layer_painter(LayerId::new(Order::Foreground, Id::unique("drop hint")));
         let rect = ctx.content_rect();
         painter.rect_filled(rect, 0.0, Color32::from_black_alpha(170));
-        let text = "Drop a studio (.ron) to open it, a model (.obj) to bring it in";
+        let models = io::model_extension_list();
+        let text = format!("Drop a studio (.ron) to open it, a model ({models}) to bring it in");
         painter.text(rect.center(), Align2::CENTER_CENTER, text, egui::FontId::proportional(20.0), Color32::WHITE);
     }
 

@@ -8,46 +8,32 @@ mod smooth;
 mod weld;
 
 use super::error::AssetError;
+use super::model::{ImportedModel, ModelLimits};
 use super::read::read_limited;
-use crate::scene::{Material, Mesh};
+use crate::scene::Mesh;
 use glam::Vec3;
 use materials::Library;
 use pieces::{Elements, Fault};
 use std::collections::HashSet;
 use std::path::Path;
 
-/// Largest OBJ file, bytes.
-const FILE_LIMIT_BYTES: u64 = 1 << 30;
-/// Most triangles of a model.
-const TRIANGLE_LIMIT: usize = 20_000_000;
 /// Farthest vertex from the model's origin, metres.
 const PLACE_LIMIT_M: f32 = 1e6;
-
-/// A model and what its files say about its surfaces.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ImportedObj {
-    /// All groups as parts of one mesh, metres, with normals.
-    pub mesh: Mesh,
-    /// Surfaces for parts, from the MTL file. Texture paths are relative to the model's folder.
-    pub part_materials: Vec<(String, Material)>,
-    /// What was missing or mended.
-    pub warnings: Vec<String>,
-}
 
 /// Imports an OBJ file: polygons become triangles, groups become parts, missing normals are made smooth up to hard
 /// edges. A missing MTL file is a warning.
 ///
 /// # Errors
 /// When the file can't be read, is too large, or has a mistake; the message names its line where it can.
-pub fn import_obj(path: &Path) -> Result<ImportedObj, AssetError> {
-    let bytes = read_limited(path, FILE_LIMIT_BYTES)?;
-    let bad_model = |message: String| AssetError::BadModel { message, path: path.to_owned() };
-    let elements = pieces::read(&bytes, TRIANGLE_LIMIT).map_err(|fault| match fault {
+pub(super) fn import(path: &Path, limits: &ModelLimits) -> Result<ImportedModel, AssetError> {
+    let bytes = read_limited(path, limits.file_bytes)?;
+    let bad_model = |message: String| AssetError::BadModel { format: "OBJ", message, path: path.to_owned() };
+    let elements = pieces::read(&bytes, limits.triangles).map_err(|fault| match fault {
         Fault::Mistake(message) => bad_model(message),
         Fault::TooManyTriangles(amount) => AssetError::TooLarge {
             what: "the model's number of triangles",
             amount: amount as u64,
-            limit: TRIANGLE_LIMIT as u64,
+            limit: limits.triangles as u64,
             path: path.to_owned(),
         },
     })?;
@@ -59,13 +45,13 @@ pub fn import_obj(path: &Path) -> Result<ImportedObj, AssetError> {
 
 /// Reads one of the OBJ files that ship with the program, which have no mistakes and no MTL file.
 pub(super) fn read_shipped(text: &[u8]) -> Option<Mesh> {
-    let elements = pieces::read(text, TRIANGLE_LIMIT).ok()?;
+    let elements = pieces::read(text, usize::MAX).ok()?;
     // Figures are smooth all over.
     assemble(&elements, &mut Library::default(), 180.0).ok().map(|imported| imported.mesh)
 }
 
 /// One mesh of all groups.
-fn assemble(elements: &Elements, library: &mut Library, crease_deg: f32) -> Result<ImportedObj, String> {
+fn assemble(elements: &Elements, library: &mut Library, crease_deg: f32) -> Result<ImportedModel, String> {
     let groups = groups::groups(&elements.faces, library);
     if groups.is_empty() {
         return Err("it has no faces".to_owned());
@@ -87,7 +73,7 @@ fn assemble(elements: &Elements, library: &mut Library, crease_deg: f32) -> Resu
         mesh.uvs.clear();
     }
     mend_normals(&mut mesh, crease_deg, &mut warnings);
-    Ok(ImportedObj { mesh, part_materials, warnings })
+    Ok(ImportedModel { mesh, part_materials, warnings })
 }
 /// Unit normals for every vertex. The file's where they are all usable; else computed ones.
 fn mend_normals(mesh: &mut Mesh, crease_deg: f32, warnings: &mut Vec<String>) {

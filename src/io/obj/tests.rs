@@ -1,4 +1,5 @@
 use super::*;
+use crate::io::importers::import_model;
 use crate::scene::MeshPart;
 use glam::Vec2;
 use std::path::PathBuf;
@@ -12,9 +13,9 @@ fn folder_with(files: &[(&str, &str)]) -> (tempfile::TempDir, PathBuf) {
     (folder, path)
 }
 
-fn import(text: &str) -> Result<ImportedObj, AssetError> {
+fn import(text: &str) -> Result<ImportedModel, AssetError> {
     let (_folder, path) = folder_with(&[("a.obj", text)]);
-    import_obj(&path)
+    import_model(&path)
 }
 
 const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -39,7 +40,7 @@ fn groups_become_parts_and_materials_follow() {
         format!("mtllib a.mtl\n{QUAD}vt 0 0\no body\nusemtl red\nf 1/1 2/1 3/1\no eyes\nusemtl glass\nf 1/1 3/1 4/1\n");
     let mtl = "newmtl red\nKd 1 0 0\nmap_Kd -s 1 1 1 red.png\nNs 98\nnewmtl glass\nKd 0.5\nd 0.1\nNi 1.52\n";
     let (_folder, path) = folder_with(&[("a.obj", &obj), ("a.mtl", mtl)]);
-    let imported = import_obj(&path).unwrap();
+    let imported = import_model(&path).unwrap();
     let names: Vec<&str> = imported.mesh.parts.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["body", "eyes"]);
     assert_eq!(imported.mesh.uvs.len(), imported.mesh.positions.len());

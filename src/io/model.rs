@@ -1,0 +1,23 @@
+//! The result of a model importer, and the limits that importers hold.
+
+use crate::scene::{Material, Mesh};
+
+/// The largest model that an importer accepts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ModelLimits {
+    /// Size of the file, bytes.
+    pub file_bytes: u64,
+    /// Triangles of the mesh.
+    pub triangles: usize,
+}
+
+/// A model and the materials that its files give to its parts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImportedModel {
+    /// All groups as parts of one mesh. Positions in metres, Y up; unit normals.
+    pub mesh: Mesh,
+    /// Materials by the name of a part. Texture paths are relative to the model's folder.
+    pub part_materials: Vec<(String, Material)>,
+    /// Missing files and repaired data, one sentence each.
+    pub warnings: Vec<String>,
+}
