@@ -3,16 +3,14 @@
 //! Data flows one way, and so do imports:
 //!
 //! ```text
-//! math, color  <-  scene  <-  photo  <-  { io, figures, raytrace, raster, preview }  <-  { editor, cli }  <-  main
+//! math, color  <-  scene  <-  photo  <-  { io, figures, raytrace, raster, preview }  <-  jobs  <-  { editor, cli }  <-  main
 //! ```
 //!
 //! A [`scene::Scene`] is what the user edits and what a file holds. `raytrace::prepare` turns it into flat tables,
 //! `raytrace::render` fills a film wave by wave, `Film::develop` makes a [`photo::Picture`] of it, which a window shows
 //! or [`io::export_picture`] writes. `preview` draws the same scene on the graphics card while the user works.
 //!
-//! `live` keeps the tracer at work on a picture while the studio changes: what the window shows as *True*.
-//!
-//! `threads` lets what traces behind a window leave the window its time.
+//! `jobs` renders, meters and traces the live view in the background, for the window and the command line alike.
 //!
 //! `truth` sets readings of the meter and of renders beside closed forms: the README's table, and the tests' measure.
 //!
@@ -30,13 +28,12 @@ pub mod cli;
 pub mod color;
 pub mod figures;
 pub mod io;
-pub mod live;
+pub mod jobs;
 pub mod math;
 pub mod photo;
 pub mod raster;
 pub mod raytrace;
 pub mod scene;
-pub mod threads;
 pub mod truth;
 
 #[cfg(feature = "gui")]

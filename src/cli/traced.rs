@@ -3,11 +3,10 @@
 use super::beside::{FrameWork, Frames};
 use super::{Failure, say};
 use crate::io::{self, Loaded, PictureInfo};
-use crate::live::LivePace;
+use crate::jobs::{LivePace, background_pool};
 use crate::photo::Picture;
 use crate::raytrace::{self, Control, LiveCamera, LivePicture, Settings, Smoother};
 use crate::scene::{CameraFrame, Scene};
-use crate::threads::background_pool;
 use anyhow::Context;
 use glam::{Affine3A, Quat, Vec3};
 use serde::Serialize;

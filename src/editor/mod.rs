@@ -6,13 +6,9 @@
 
 mod commands;
 mod document;
-mod forecast;
-mod live_job;
-mod meter_job;
 mod panels;
 mod picture;
 mod relight;
-mod render_job;
 mod thumbnails;
 mod ui;
 mod viewport;
@@ -24,7 +20,6 @@ pub use document::action::{Action, ActionError};
 pub use document::item::Item;
 pub use document::selection::Selection;
 pub use document::studio_document::Document;
-pub use forecast::{Estimate, Forecast, Forecaster};
 pub use picture::rendering::{PictureSize, Quality, RenderSettings, Rendering};
 pub use thumbnails::{Thumbnail, Thumbnails};
 pub use ui::toasts::{Toasts, Tone};

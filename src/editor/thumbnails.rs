@@ -8,12 +8,12 @@ use crate::editor::document::bounds;
 use crate::editor::document::catalog::{Entry, Made};
 use crate::editor::ui::image_texture::Canvas;
 use crate::io;
+use crate::jobs::background_pool;
 use crate::math;
 use crate::raster::{self, Drawing, NO_OBJECT, Shading};
 use crate::scene::{
     Aim, Assets, Camera, CameraFrame, ColorSource, Emitter, Gel, Light, LightColor, Object, Output, Scene,
 };
-use crate::threads;
 use eframe::egui::{self, Color32, ColorImage, Context, Pos2, Rect, TextureId, pos2};
 use glam::{Vec2, Vec3};
 use rayon::ThreadPool;
@@ -109,7 +109,7 @@ impl Thumbnails {
         }
         self.pictures.insert(subject, Canvas::default());
         if self.pool.is_none() {
-            self.pool = threads::background_pool(1, "thumbnails").ok();
+            self.pool = background_pool(1, "thumbnails").ok();
         }
         let (sender, ctx) = (self.sender.clone(), ctx.clone());
         self.pool.as_ref()?.spawn_fifo(move || {

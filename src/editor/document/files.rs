@@ -2,6 +2,7 @@
 
 use crate::editor::document::studio_document::Document;
 use crate::io::{self, PictureInfo};
+use crate::jobs::sentence;
 use crate::photo::Picture;
 use crate::scene::{Assets, Material, Mesh, Room, Scene, Texture};
 use std::collections::BTreeSet;
@@ -123,10 +124,10 @@ impl Tasks {
 /// Reads a studio with everything it needs.
 pub fn open(source: &Source) -> Result<Box<Opened>, String> {
     let (loaded, path) = match source {
-        Source::File(path) => (io::load_scene(path).map_err(|e| plain(&e))?, Some(path.clone())),
+        Source::File(path) => (io::load_scene(path).map_err(|e| sentence(&e))?, Some(path.clone())),
         Source::Preset(index) => {
             let preset = io::presets().get(*index).ok_or("There is no such studio on the shelf.")?;
-            (preset.load().map_err(|e| plain(&e))?, None)
+            (preset.load().map_err(|e| sentence(&e))?, None)
         }
     };
     let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
@@ -135,7 +136,7 @@ pub fn open(source: &Source) -> Result<Box<Opened>, String> {
 
 /// Reads a model.
 pub fn import(file: PathBuf) -> Result<Box<Imported>, String> {
-    let model = io::import_model(&file).map_err(|e| plain(&e))?;
+    let model = io::import_model(&file).map_err(|e| sentence(&e))?;
     let (mesh, part_materials, warnings) = (Arc::new(model.mesh), model.part_materials, model.warnings);
     Ok(Box::new(Imported { file, mesh, part_materials, warnings }))
 }
@@ -175,7 +176,7 @@ pub fn save(document: &Document, path: &Path) -> Result<(), String> {
     for (from, to) in document.files_to_copy(folder) {
         copy_asset(&from, &to)?;
     }
-    io::save_scene(document.scene(), path).map_err(|e| plain(&e))
+    io::save_scene(document.scene(), path).map_err(|e| sentence(&e))
 }
 
 /// Copies a file unless the same is there already. Another file of that name is never overwritten.
@@ -196,14 +197,5 @@ pub fn copy_asset(from: &Path, to: &Path) -> Result<(), String> {
 
 /// Writes a picture, in the format of its ending.
 pub fn export(path: &Path, picture: &Picture, info: &PictureInfo) -> Result<(), String> {
-    io::export_picture(path, picture, info).map_err(|e| plain(&e))
-}
-
-/// An error as a sentence.
-pub fn plain(error: &dyn std::error::Error) -> String {
-    let text = error.to_string();
-    let mut chars = text.chars();
-    let first = chars.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
-    let rest = chars.as_str();
-    if rest.ends_with(['.', '!', '?']) { format!("{first}{rest}") } else { format!("{first}{rest}.") }
+    io::export_picture(path, picture, info).map_err(|e| sentence(&e))
 }

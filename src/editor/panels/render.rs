@@ -2,12 +2,12 @@
 
 use crate::editor::commands::command::{Centre, Command};
 use crate::editor::document::studio_document::Document;
-use crate::editor::forecast::Forecaster;
 use crate::editor::panels::quality;
-use crate::editor::picture::rendering::{PictureSize, Quality, RenderSettings, Rendering};
-use crate::editor::render_job::{Phase, Progress, method_label};
+use crate::editor::picture::rendering::{PictureSize, Quality, RenderSettings, Rendering, method_label};
 use crate::editor::ui::theme;
+use crate::editor::ui::wake::wake;
 use crate::editor::ui::widgets::{self, Number, row};
+use crate::jobs::{Forecaster, Phase, Progress};
 use crate::raytrace::Method;
 use crate::scene::Scene;
 use eframe::egui::{self, Button, CollapsingHeader, ComboBox, Image, ProgressBar, RichText, Sense, Ui, vec2};
@@ -106,7 +106,10 @@ fn forecast_ui(ui: &mut Ui, rendering: &mut Rendering, forecaster: &mut Forecast
     header.show_unindented(ui, |ui| {
         let (running, method) = (rendering.is_running(), rendering.settings.method);
         let (scene, assets) = (document.scene(), document.assets());
-        forecaster.update(scene, assets, document.revision(), method, running, ui.ctx());
+        let wake = wake(ui.ctx());
+        if let Some(wait) = forecaster.update(scene, assets, document.revision(), method, running, &wake) {
+            ui.ctx().request_repaint_after(wait);
+        }
         quality::quality_ui(ui, &mut rendering.settings, &scene.camera, forecaster);
     });
 }

@@ -1,11 +1,13 @@
 //! The render settings, the running job, and the picture it leaves behind.
 
 use crate::editor::relight::{self, DevelopKey};
-use crate::editor::render_job::{Developed, Developer, Phase, RenderJob};
 use crate::editor::ui::image_texture::Canvas;
+use crate::editor::ui::wake::wake;
+use crate::jobs::{Developed, Developer, Phase, RenderJob};
+use crate::photo::Picture;
 use crate::raytrace::{Film, GeometryCache, Method, Settings};
 use crate::scene::{Assets, Camera, Scene};
-use eframe::egui::{Context, TextureId};
+use eframe::egui::{Color32, ColorImage, Context, TextureId};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -74,7 +76,7 @@ impl RenderSettings {
 }
 
 /// Everything about the rendered picture.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Rendering {
     /// What the panel sets.
     pub settings: RenderSettings,
@@ -82,17 +84,26 @@ pub struct Rendering {
     trees: Arc<GeometryCache>,
     job: Option<RenderJob>,
     film: Option<Arc<Film>>,
-    developer: Developer,
+    developer: Developer<Arc<ColorImage>>,
     /// What the newest requested picture is made from; the pointer is only compared.
     requested: Option<(*const Film, DevelopKey)>,
-    developed: Option<Developed>,
+    developed: Option<Developed<Arc<ColorImage>>>,
     canvas: Canvas,
 }
 
 impl Rendering {
     /// No picture yet; meshes' trees are shared.
     pub fn new(trees: Arc<GeometryCache>) -> Self {
-        Rendering { trees, ..Rendering::default() }
+        Rendering {
+            settings: RenderSettings::default(),
+            trees,
+            job: None,
+            film: None,
+            developer: Developer::new(|picture, most| Arc::new(shown_within(picture, most))),
+            requested: None,
+            developed: None,
+            canvas: Canvas::default(),
+        }
     }
 
     /// Starts to render.
@@ -106,7 +117,7 @@ impl Rendering {
             ..Settings::default()
         };
         self.job =
-            Some(RenderJob::start(self.trees.clone(), scene.clone(), assets.clone(), folder, settings, ctx.clone()));
+            Some(RenderJob::start(self.trees.clone(), scene.clone(), assets.clone(), folder, settings, wake(ctx)));
     }
 
     /// Stops the running job; what is complete is kept.
@@ -152,7 +163,7 @@ impl Rendering {
     }
 
     /// The picture for export; not yet while only a small forerunner of a large one is on show.
-    pub fn developed(&self) -> Option<&Developed> {
+    pub fn developed(&self) -> Option<&Developed<Arc<ColorImage>>> {
         let (width, height) = self.size()?;
         self.developed.as_ref().filter(|d| (d.picture.width, d.picture.height) == (width, height))
     }
@@ -178,7 +189,8 @@ impl Rendering {
         if let Some(film) = &self.film {
             let key = (Arc::as_ptr(film), DevelopKey::of(scene));
             if self.requested.as_ref() != Some(&key) {
-                self.developer.request(film.clone(), scene.clone(), ctx);
+                let most = ctx.input(|i| i.max_texture_side);
+                self.developer.request(film.clone(), scene.clone(), most, &wake(ctx));
                 self.requested = Some(key);
             }
         }
@@ -198,5 +210,59 @@ impl Rendering {
             Phase::Failed(message) => Some(message),
             _ => None,
         }
+    }
+}
+
+/// The picture as it is shown: of a larger one than a texture can hold, the mean of each 2x2, 3x3 ... pixels.
+fn shown_within(picture: &Picture, most: usize) -> ColorImage {
+    let (size, codes) = ([picture.width as usize, picture.height as usize], picture.to_srgb8());
+    let times = size[0].max(size[1]).div_ceil(most.max(1)).max(1);
+    if times == 1 {
+        return ColorImage::from_rgb(size, codes.as_flattened());
+    }
+    let shown = size.map(|side| side.div_ceil(times));
+    let mut image = ColorImage::filled(shown, Color32::BLACK);
+    for (at, pixel) in image.pixels.iter_mut().enumerate() {
+        let [x, y] = [at % shown[0] * times, at / shown[0] * times];
+        let (right, bottom) = ((x + times).min(size[0]), (y + times).min(size[1]));
+        let mut sum = [0_u32; 3];
+        for row in y..bottom {
+            for code in &codes[row * size[0] + x..row * size[0] + right] {
+                sum = [0, 1, 2].map(|c| sum[c] + u32::from(code[c]));
+            }
+        }
+        let count = ((right - x) * (bottom - y)) as u32;
+        let [r, g, b] = sum.map(|sum| ((sum + count / 2) / count) as u8);
+        *pixel = Color32::from_rgb(r, g, b);
+    }
+    image
+}
+
+/// Name of a method in lists.
+pub fn method_label(method: Method) -> &'static str {
+    match method {
+        Method::Whitted => "Hard shadows, no bounced light",
+        Method::Direct => "Direct light only",
+        Method::Path => "With bounced light",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_larger_than_a_texture_is_shown_by_means_of_its_pixels() {
+        let rgb = (0..7 * 3).map(|i| if i % 7 < 4 { [0.0; 3] } else { [1e3; 3] }).collect();
+        let picture = Picture { width: 7, height: 3, rgb };
+        let whole = shown_within(&picture, 7);
+        assert_eq!((whole.size, whole.pixels[3], whole.pixels[6]), ([7, 3], Color32::BLACK, Color32::WHITE));
+        let shown = shown_within(&picture, 3);
+        // Of each 3x3: all black, one column of three black, and what is left at the edge.
+        assert_eq!(
+            (shown.size, &shown.pixels[..]),
+            ([3, 1], &[Color32::BLACK, Color32::from_gray(170), Color32::WHITE][..])
+        );
+        assert_eq!(shown_within(&picture, 1).size, [1, 1]);
     }
 }

@@ -5,4 +5,5 @@ pub mod side_panel;
 pub mod theme;
 pub mod toasts;
 pub mod units;
+pub mod wake;
 pub mod widgets;

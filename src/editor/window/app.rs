@@ -7,19 +7,17 @@ use crate::editor::document::files;
 use crate::editor::document::files::{PresetInfo, Source, Tasks};
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
-use crate::editor::forecast::{Estimate, Forecast, Forecaster};
-use crate::editor::meter_job::MeterJob;
 use crate::editor::panels::menu::MenuState;
 use crate::editor::panels::outliner::OutlinerState;
 use crate::editor::panels::presets::PresetPicker;
 use crate::editor::panels::{self, add, help, inspector, menu, outliner, render, status, view_bar};
 use crate::editor::picture::picture_view::PictureView;
 use crate::editor::picture::rendering::Rendering;
-use crate::editor::render_job::Outcome;
 use crate::editor::thumbnails::Thumbnails;
 use crate::editor::ui::side_panel::{SidePanel, Widths};
 use crate::editor::ui::theme;
 use crate::editor::ui::toasts::Toasts;
+use crate::editor::ui::wake::wake;
 use crate::editor::viewport::live::preview_host::PreviewHost;
 use crate::editor::viewport::live::traced_view::LiveView;
 use crate::editor::viewport::viewport_area::{Viewport, ViewportInput};
@@ -28,6 +26,7 @@ use crate::editor::window::frame_log::FrameLog;
 use crate::editor::window::recent::RecentFiles;
 use crate::editor::window::rescue;
 use crate::editor::window::session::Session;
+use crate::jobs::{Estimate, Forecast, Forecaster, MeterJob, Outcome};
 use crate::raytrace::{GeometryCache, Settings};
 use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, Rangef, Rect, Ui, ViewportCommand};
 use std::path::PathBuf;
@@ -276,7 +275,7 @@ impl App {
         self.rendering.update(self.document.scene(), ctx);
         self.learn_from_render();
         let document = &self.document;
-        self.meter.update(document.scene(), document.assets(), document.revision(), ctx);
+        self.meter.update(document.scene(), document.assets(), document.revision(), &wake(ctx));
         match self.rendering.failure() {
             Some(message) if !self.told_failure => {
                 self.toasts.error(format!("The render failed. {message}"));

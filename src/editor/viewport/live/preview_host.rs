@@ -211,7 +211,7 @@ impl PreviewHost {
         if let Stage::Ready(renderer) = &mut self.stage {
             match renderer.render(&input).map(|_| ()) {
                 Ok(()) => self.register(),
-                Err(error) => self.give_up(&crate::editor::document::files::plain(&error)),
+                Err(error) => self.give_up(&crate::jobs::sentence(&error)),
             }
         }
         if let Stage::Failed(_) = self.stage {
@@ -231,7 +231,7 @@ impl PreviewHost {
         let Stage::Starting(receiver) = &self.stage else { return };
         match receiver.try_recv() {
             Ok(Ok(renderer)) => self.stage = Stage::Ready(Box::new(renderer)),
-            Ok(Err(error)) => self.stage = Stage::Failed(crate::editor::document::files::plain(&error)),
+            Ok(Err(error)) => self.stage = Stage::Failed(crate::jobs::sentence(&error)),
             Err(TryRecvError::Disconnected) => {
                 self.stage = Stage::Failed("The live view could not be built.".to_owned())
             }

@@ -1,10 +1,10 @@
 //! The live view as the tracer sees it, *True*: asked for when something changed, shown while it grows.
 
 use crate::editor::document::studio_document::Document;
-use crate::editor::live_job::{LiveJob, LiveRequest};
 use crate::editor::ui::image_texture::Canvas;
+use crate::editor::ui::wake::wake;
 use crate::editor::viewport::live::preview_host::Look;
-use crate::live::LiveImage;
+use crate::jobs::{LiveImage, LiveJob, LiveRequest};
 use crate::preview::Channel;
 use crate::raytrace::{GeometryCache, LiveCamera, MAX_LIGHT_LAYERS};
 use crate::scene::{CameraFrame, LightId};
@@ -111,7 +111,7 @@ impl LiveView {
             if let Some(only) = only_light {
                 scene.lights.iter_mut().for_each(|light| light.on &= light.id == only);
             }
-            self.job.request(LiveRequest { scene: Arc::new(scene), assets, camera, smooth: look.smooth }, ctx);
+            self.job.request(LiveRequest { scene: Arc::new(scene), assets, camera, smooth: look.smooth }, &wake(ctx));
             self.asked = Some(asked);
         }
         match self.job.take() {

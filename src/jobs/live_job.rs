@@ -1,10 +1,9 @@
 //! The live traced view's thread: traces what it was asked for last, and hands pictures over while they grow.
 
-use crate::live::{LiveImage, LivePace};
+use super::{LiveImage, LivePace, Wake, lock, sentence};
 use crate::raytrace::{Control, GeometryCache, LiveCamera};
 use crate::scene::{Assets, Scene};
-use eframe::egui::Context;
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How long after the last press of mouse or key the user counts as being at work.
@@ -47,11 +46,6 @@ pub struct LiveJob {
     running: bool,
 }
 
-/// Locks; what a thread that panicked has left are plain values.
-pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 impl LiveJob {
     /// A job that shares meshes' trees with the renders.
     pub fn new(cache: Arc<GeometryCache>) -> Self {
@@ -59,11 +53,11 @@ impl LiveJob {
     }
 
     /// Asks for a picture; what was asked before is shown once and then given up.
-    pub fn request(&mut self, request: LiveRequest, ctx: &Context) {
+    pub fn request(&mut self, request: LiveRequest, wake: &Wake) {
         if !self.running {
             self.running = true;
-            let (shared, cache, ctx) = (self.shared.clone(), self.cache.clone(), ctx.clone());
-            std::thread::spawn(move || live_loop(&shared, cache, &ctx));
+            let (shared, cache, wake) = (self.shared.clone(), self.cache.clone(), wake.clone());
+            std::thread::spawn(move || live_loop(&shared, cache, &wake));
         }
         let mut state = lock(&self.shared.0);
         state.wanted = Some(request);
@@ -117,14 +111,14 @@ impl Drop for LiveJob {
     }
 }
 
-fn live_loop(shared: &(Mutex<State>, Condvar), cache: Arc<GeometryCache>, ctx: &Context) {
+fn live_loop(shared: &(Mutex<State>, Condvar), cache: Arc<GeometryCache>, wake: &Wake) {
     let work = || match LivePace::new(cache) {
-        Ok(pace) => trace(shared, pace, ctx),
-        Err(error) => show(shared, Err(format!("No threads to trace with: {error}.")), ctx),
+        Ok(pace) => trace(shared, pace, wake),
+        Err(error) => show(shared, Err(format!("No threads to trace with: {error}.")), wake),
     };
     // The tracer does not panic; if it did, the user would get a message and keep the window.
     if std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).is_err() {
-        show(shared, Err("The live view stopped with an internal error.".to_owned()), ctx);
+        show(shared, Err("The live view stopped with an internal error.".to_owned()), wake);
     }
 }
 
@@ -134,13 +128,13 @@ enum Next {
     Work { user_is_active: bool, control: Arc<Control> },
 }
 
-fn trace(shared: &(Mutex<State>, Condvar), mut pace: LivePace, ctx: &Context) {
+fn trace(shared: &(Mutex<State>, Condvar), mut pace: LivePace, wake: &Wake) {
     while let Some(next) = next(shared, &pace) {
         match next {
             Next::Take(request) => {
                 pace.set_smooth(request.smooth);
                 if let Err(error) = pace.update(request.scene, &request.assets, request.camera) {
-                    show(shared, Err(crate::editor::document::files::plain(&error)), ctx);
+                    show(shared, Err(sentence(&error)), wake);
                 }
             }
             Next::Work { user_is_active, control } => {
@@ -148,7 +142,7 @@ fn trace(shared: &(Mutex<State>, Condvar), mut pace: LivePace, ctx: &Context) {
                 pace.slice(user_is_active, &control);
                 lock(&shared.0).rays += control.rays() - before;
                 if let Some(image) = pace.look() {
-                    show(shared, Ok(image), ctx);
+                    show(shared, Ok(image), wake);
                 }
             }
         }
@@ -180,10 +174,10 @@ fn next(shared: &(Mutex<State>, Condvar), pace: &LivePace) -> Option<Next> {
     }
 }
 
-fn show(shared: &(Mutex<State>, Condvar), result: Result<LiveImage, String>, ctx: &Context) {
+fn show(shared: &(Mutex<State>, Condvar), result: Result<LiveImage, String>, wake: &Wake) {
     let mut state = lock(&shared.0);
     state.result = Some(result);
     state.has_shown = true;
     drop(state);
-    ctx.request_repaint();
+    wake();
 }

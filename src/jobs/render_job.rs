@@ -1,12 +1,11 @@
 //! Rendering in the background, on an immutable copy of the studio, and developing the film in a thread of its own.
 
-use crate::editor::live_job::lock;
+use super::threads::background_pool;
+use super::{Wake, lock, sentence};
 use crate::io;
 use crate::photo::Picture;
-use crate::raytrace::{self, Control, Film, GeometryCache, Method, Settings};
+use crate::raytrace::{self, Control, Film, GeometryCache, Settings};
 use crate::scene::{Assets, Scene};
-use crate::threads::background_pool;
-use eframe::egui::{Color32, ColorImage, Context};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
@@ -95,7 +94,7 @@ impl RenderJob {
         assets: Assets,
         folder: Option<PathBuf>,
         settings: Settings,
-        ctx: Context,
+        wake: Wake,
     ) -> Self {
         let control = Arc::new(Control::new());
         let shared = Arc::new(Shared {
@@ -114,13 +113,13 @@ impl RenderJob {
         };
         let scene = job.scene.clone();
         std::thread::spawn(move || {
-            let work = || trace(&trees, &scene, assets, folder, &settings, &control, &shared, &ctx);
+            let work = || trace(&trees, &scene, assets, folder, &settings, &control, &shared, &wake);
             // The tracer does not panic; if it did, the user would get a message and keep the window.
             let end = std::panic::catch_unwind(std::panic::AssertUnwindSafe(work))
                 .unwrap_or_else(|_| Phase::Failed("The renderer stopped with an internal error.".to_owned()));
             *lock(&shared.ended) = Some(Instant::now());
             *lock(&shared.phase) = end;
-            ctx.request_repaint();
+            wake();
         });
         job
     }
@@ -180,7 +179,7 @@ fn trace(
     settings: &Settings,
     control: &Control,
     shared: &Shared,
-    ctx: &Context,
+    wake: &Wake,
 ) -> Phase {
     let began = Instant::now();
     io::load_assets(scene, folder.as_deref(), &mut assets);
@@ -191,7 +190,7 @@ fn trace(
     };
     let prepared = match pool.install(|| raytrace::prepare_kept(scene, &assets, trees)) {
         Ok(prepared) => prepared,
-        Err(error) => return Phase::Failed(crate::editor::document::files::plain(&error)),
+        Err(error) => return Phase::Failed(sentence(&error)),
     };
     if control.is_cancelled() {
         return Phase::Cancelled;
@@ -199,12 +198,12 @@ fn trace(
     let tracing = Instant::now();
     *lock(&shared.tracing_since) = Some(tracing);
     *lock(&shared.phase) = Phase::Tracing;
-    ctx.request_repaint();
+    wake();
     if let Some(coarse) = settings.coarse() {
         let film =
             pool.install(|| raytrace::render(&prepared, &coarse, &Control::new(), &mut |_| ControlFlow::Break(())));
         *lock(&shared.film) = Some(Arc::new(film));
-        ctx.request_repaint();
+        wake();
     }
     let mut last_snapshot: Option<Instant> = None;
     let film = pool.install(|| {
@@ -212,7 +211,7 @@ fn trace(
             if last_snapshot.is_none_or(|last| last.elapsed() >= SNAPSHOT_EVERY) {
                 *lock(&shared.film) = Some(Arc::new(film.clone()));
                 last_snapshot = Some(Instant::now());
-                ctx.request_repaint();
+                wake();
             }
             if control.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
@@ -229,46 +228,58 @@ fn trace(
 
 /// A developed film, ready to be shown and exported.
 #[derive(Debug)]
-pub struct Developed {
+pub struct Developed<I> {
     /// Scene-linear, for export.
     pub picture: Arc<Picture>,
     /// For the screen.
-    pub image: Arc<ColorImage>,
+    pub image: I,
     /// Samples a pixel in it.
     pub spp: u32,
     /// How it was made, for its file.
     pub method: &'static str,
 }
 
-#[derive(Debug, Default)]
-struct DeveloperState {
-    wanted: Option<(Arc<Film>, Scene)>,
-    result: Option<Developed>,
+#[derive(Debug)]
+struct DeveloperState<I> {
+    wanted: Option<(Arc<Film>, Scene, usize)>,
+    result: Option<Developed<I>>,
     busy: bool,
     closed: bool,
 }
 
 /// A thread that develops films; of several requests only the last one counts.
-#[derive(Debug, Default)]
-pub struct Developer {
-    state: Arc<(Mutex<DeveloperState>, Condvar)>,
+pub struct Developer<I> {
+    state: Arc<(Mutex<DeveloperState<I>>, Condvar)>,
+    present: fn(&Picture, usize) -> I,
     running: bool,
 }
 
-impl Developer {
+impl<I> std::fmt::Debug for Developer<I> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Developer").field("running", &self.running).finish_non_exhaustive()
+    }
+}
+
+impl<I: Send + 'static> Developer<I> {
+    /// Creates a developer whose pictures are made ready for the screen by `present`, for a longest side in pixels.
+    pub fn new(present: fn(&Picture, usize) -> I) -> Self {
+        let state = DeveloperState { wanted: None, result: None, busy: false, closed: false };
+        Developer { state: Arc::new((Mutex::new(state), Condvar::new())), present, running: false }
+    }
+
     /// Asks for a picture with the lights as they are in `scene`.
-    pub fn request(&mut self, film: Arc<Film>, scene: Scene, ctx: &Context) {
+    pub fn request(&mut self, film: Arc<Film>, scene: Scene, most: usize, wake: &Wake) {
         if !self.running {
             self.running = true;
-            let (state, ctx) = (self.state.clone(), ctx.clone());
-            std::thread::spawn(move || develop_loop(&state, &ctx));
+            let (state, present, wake) = (self.state.clone(), self.present, wake.clone());
+            std::thread::spawn(move || develop_loop(&state, present, &wake));
         }
-        lock(&self.state.0).wanted = Some((film, scene));
+        lock(&self.state.0).wanted = Some((film, scene, most));
         self.state.1.notify_one();
     }
 
     /// The newest picture, once.
-    pub fn take(&self) -> Option<Developed> {
+    pub fn take(&self) -> Option<Developed<I>> {
         lock(&self.state.0).result.take()
     }
 
@@ -279,16 +290,16 @@ impl Developer {
     }
 }
 
-impl Drop for Developer {
+impl<I> Drop for Developer<I> {
     fn drop(&mut self) {
         lock(&self.state.0).closed = true;
         self.state.1.notify_one();
     }
 }
 
-fn develop_loop(state: &(Mutex<DeveloperState>, Condvar), ctx: &Context) {
+fn develop_loop<I>(state: &(Mutex<DeveloperState<I>>, Condvar), present: fn(&Picture, usize) -> I, wake: &Wake) {
     loop {
-        let (film, scene) = {
+        let (film, scene, most) = {
             let mut guard = lock(&state.0);
             loop {
                 if guard.closed {
@@ -301,72 +312,18 @@ fn develop_loop(state: &(Mutex<DeveloperState>, Condvar), ctx: &Context) {
                 guard = state.1.wait(guard).unwrap_or_else(PoisonError::into_inner);
             }
         };
-        let developed = develop(&film, &scene, ctx.input(|i| i.max_texture_side));
+        let developed = develop(&film, &scene, |picture| present(picture, most));
         let mut guard = lock(&state.0);
         guard.result = Some(developed);
         guard.busy = false;
         drop(guard);
-        ctx.request_repaint();
+        wake();
     }
 }
 
-/// Develops a film with the lights of a scene, for textures of so many pixels a side at most.
-pub fn develop(film: &Film, scene: &Scene, most: usize) -> Developed {
+/// Develops a film with the lights of a scene.
+fn develop<I>(film: &Film, scene: &Scene, present: impl FnOnce(&Picture) -> I) -> Developed<I> {
     let picture = film.develop(scene);
-    let image = Arc::new(shown_within(&picture, most));
+    let image = present(&picture);
     Developed { picture: Arc::new(picture), image, spp: film.spp(), method: film.method() }
-}
-
-/// The picture as it is shown: of a larger one than a texture can hold, the mean of each 2x2, 3x3 ... pixels.
-fn shown_within(picture: &Picture, most: usize) -> ColorImage {
-    let (size, codes) = ([picture.width as usize, picture.height as usize], picture.to_srgb8());
-    let times = size[0].max(size[1]).div_ceil(most.max(1)).max(1);
-    if times == 1 {
-        return ColorImage::from_rgb(size, codes.as_flattened());
-    }
-    let shown = size.map(|side| side.div_ceil(times));
-    let mut image = ColorImage::filled(shown, Color32::BLACK);
-    for (at, pixel) in image.pixels.iter_mut().enumerate() {
-        let [x, y] = [at % shown[0] * times, at / shown[0] * times];
-        let (right, bottom) = ((x + times).min(size[0]), (y + times).min(size[1]));
-        let mut sum = [0_u32; 3];
-        for row in y..bottom {
-            for code in &codes[row * size[0] + x..row * size[0] + right] {
-                sum = [0, 1, 2].map(|c| sum[c] + u32::from(code[c]));
-            }
-        }
-        let count = ((right - x) * (bottom - y)) as u32;
-        let [r, g, b] = sum.map(|sum| ((sum + count / 2) / count) as u8);
-        *pixel = Color32::from_rgb(r, g, b);
-    }
-    image
-}
-
-/// Name of a method in lists.
-pub fn method_label(method: Method) -> &'static str {
-    match method {
-        Method::Whitted => "Hard shadows, no bounced light",
-        Method::Direct => "Direct light only",
-        Method::Path => "With bounced light",
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_picture_larger_than_a_texture_is_shown_by_means_of_its_pixels() {
-        let rgb = (0..7 * 3).map(|i| if i % 7 < 4 { [0.0; 3] } else { [1e3; 3] }).collect();
-        let picture = Picture { width: 7, height: 3, rgb };
-        let whole = shown_within(&picture, 7);
-        assert_eq!((whole.size, whole.pixels[3], whole.pixels[6]), ([7, 3], Color32::BLACK, Color32::WHITE));
-        let shown = shown_within(&picture, 3);
-        // Of each 3x3: all black, one column of three black, and what is left at the edge.
-        assert_eq!(
-            (shown.size, &shown.pixels[..]),
-            ([3, 1], &[Color32::BLACK, Color32::from_gray(170), Color32::WHITE][..])
-        );
-        assert_eq!(shown_within(&picture, 1).size, [1, 1]);
-    }
 }

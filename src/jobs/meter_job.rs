@@ -1,10 +1,10 @@
 //! The meter of the studio, read in the background: first roughly, then well. Of several requests the last one counts.
 
+use super::{Wake, lock};
 use crate::photo::meter::Reading;
 use crate::raytrace::{Control, Effort, Place, Probe};
 use crate::scene::{Assets, Meter, Scene};
-use eframe::egui::Context;
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 
 #[derive(Debug)]
 struct Request {
@@ -34,13 +34,9 @@ pub struct MeterJob {
     shown: Option<Result<Reading, String>>,
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 impl MeterJob {
     /// Asks for a reading when the studio has changed, and takes in what is ready.
-    pub fn update(&mut self, scene: &Scene, assets: &Assets, revision: u64, ctx: &Context) {
+    pub fn update(&mut self, scene: &Scene, assets: &Assets, revision: u64, wake: &Wake) {
         let Some(meter) = scene.meter else {
             (self.asked, self.shown) = (None, None);
             return;
@@ -50,15 +46,18 @@ impl MeterJob {
         }
         if self.asked != Some(revision) {
             self.asked = Some(revision);
-            self.request(Request { scene: scene.clone(), assets: assets.clone(), meter, control: Arc::default() }, ctx);
+            self.request(
+                Request { scene: scene.clone(), assets: assets.clone(), meter, control: Arc::default() },
+                wake,
+            );
         }
     }
 
-    fn request(&mut self, request: Request, ctx: &Context) {
+    fn request(&mut self, request: Request, wake: &Wake) {
         if !self.running {
             self.running = true;
-            let (state, ctx) = (self.state.clone(), ctx.clone());
-            std::thread::spawn(move || read_loop(&state, &ctx));
+            let (state, wake) = (self.state.clone(), wake.clone());
+            std::thread::spawn(move || read_loop(&state, &wake));
         }
         let mut state = lock(&self.state.0);
         if let Some(refining) = &state.refining {
@@ -91,17 +90,17 @@ impl Drop for MeterJob {
     }
 }
 
-fn read_loop(state: &(Mutex<State>, Condvar), ctx: &Context) {
+fn read_loop(state: &(Mutex<State>, Condvar), wake: &Wake) {
     while let Some(request) = next(state) {
-        let work = || read(state, &request, ctx);
+        let work = || read(state, &request, wake);
         // The tracer does not panic; if it did, the user would get a message and keep the window.
         if std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).is_err() {
-            show(state, Err("The meter failed. This is an error in Catchlight.".to_owned()), ctx);
+            show(state, Err("The meter failed. This is an error in Catchlight.".to_owned()), wake);
         }
         let mut guard = lock(&state.0);
         (guard.busy, guard.refining) = (false, None);
         drop(guard);
-        ctx.request_repaint();
+        wake();
     }
 }
 
@@ -121,22 +120,22 @@ fn next(state: &(Mutex<State>, Condvar)) -> Option<Request> {
     }
 }
 
-fn read(state: &(Mutex<State>, Condvar), request: &Request, ctx: &Context) {
+fn read(state: &(Mutex<State>, Condvar), request: &Request, wake: &Wake) {
     let Request { scene, assets, meter, control } = request;
     let probe = match Probe::new(scene, assets, meter.position) {
         Ok(probe) => probe,
-        Err(error) => return show(state, Err(error.to_string()), ctx),
+        Err(error) => return show(state, Err(error.to_string()), wake),
     };
     let place = Place { position: meter.position, facing: meter.direction(scene), receptor: meter.receptor };
     // The rough reading is always finished: in a drag the numbers follow the mouse.
     for (effort, control) in [(Effort::quick(), &Arc::default()), (Effort::default(), control)] {
         if let Some(probed) = probe.read(&place, &effort, control) {
-            show(state, Ok(probed.reading), ctx);
+            show(state, Ok(probed.reading), wake);
         }
     }
 }
 
-fn show(state: &(Mutex<State>, Condvar), result: Result<Reading, String>, ctx: &Context) {
+fn show(state: &(Mutex<State>, Condvar), result: Result<Reading, String>, wake: &Wake) {
     lock(&state.0).result = Some(result);
-    ctx.request_repaint();
+    wake();
 }

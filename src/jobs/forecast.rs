@@ -5,11 +5,10 @@
 //! Time grows with samples and pixels. The pilot is the picture at the size of a thumbnail: a pixel of it costs about what
 //! a pixel of the large one does, and scatters a little more, because it holds more edges.
 
-use crate::editor::live_job::lock;
+use super::threads::background_pool;
+use super::{Wake, lock};
 use crate::raytrace::{self, Control, Film, GeometryCache, Settings};
 use crate::scene::{Assets, Camera, Scene};
-use crate::threads::background_pool;
-use eframe::egui::Context;
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -113,7 +112,7 @@ impl Forecaster {
     }
 
     /// Runs a pilot when the studio has changed and come to rest. Call each frame while the forecast is on show; a render
-    /// on its way has the processor for itself.
+    /// on its way has the CPU for itself. Returns the time after which it is to be called again, where there is one.
     pub fn update(
         &mut self,
         scene: &Scene,
@@ -121,24 +120,26 @@ impl Forecaster {
         revision: u64,
         method: raytrace::Method,
         rendering: bool,
-        ctx: &Context,
-    ) {
+        wake: &Wake,
+    ) -> Option<Duration> {
         let subject = Subject { revision, method };
         if self.subject.as_ref() != Some(&subject) {
             (self.subject, self.since, self.pilot) = (Some(subject), Some(Instant::now()), None);
             self.measured.clear();
         }
+        let mut wait = None;
         if let Some(since) = self.since.filter(|_| !rendering) {
             if since.elapsed() >= AT_REST {
                 self.since = None;
-                self.pilot = Some(start(self.trees.clone(), scene.clone(), assets.clone(), method, ctx.clone()));
+                self.pilot = Some(start(self.trees.clone(), scene.clone(), assets.clone(), method, wake.clone()));
             } else {
-                ctx.request_repaint_after(AT_REST.saturating_sub(since.elapsed()));
+                wait = Some(AT_REST.saturating_sub(since.elapsed()));
             }
         }
         if let Some(forecast) = self.pilot.as_ref().and_then(|pilot| lock(&pilot.result).take()) {
             (self.pilot, self.forecast) = (None, forecast);
         }
+        wait
     }
 
     /// Learns from a render of the studio at this revision.
@@ -177,13 +178,13 @@ fn pilot_settings(camera: &Camera, method: raytrace::Method) -> Settings {
     Settings { width, height, method, spp: PILOT_SPP, ..Settings::default() }
 }
 
-fn start(trees: Arc<GeometryCache>, scene: Scene, assets: Assets, method: raytrace::Method, ctx: Context) -> Pilot {
+fn start(trees: Arc<GeometryCache>, scene: Scene, assets: Assets, method: raytrace::Method, wake: Wake) -> Pilot {
     let pilot = Pilot { control: Arc::new(Control::new()), result: Arc::default() };
     let (control, result) = (pilot.control.clone(), pilot.result.clone());
     std::thread::spawn(move || {
         let forecast = run(&trees, &scene, &assets, &pilot_settings(&scene.camera, method), &control);
         *lock(&result) = Some(forecast);
-        ctx.request_repaint();
+        wake();
     });
     pilot
 }

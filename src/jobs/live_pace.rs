@@ -3,10 +3,10 @@
 //! The first picture after an edit comes from a few short slices of work; later ones take their time, so that showing
 //! them costs little. While the user works, one core is left alone.
 
+use super::threads::background_pool;
 use crate::color::ToneTable;
 use crate::raytrace::{Control, GeometryCache, LiveCamera, LivePicture, PrepareError, Smoother};
 use crate::scene::{Assets, Scene};
-use crate::threads::background_pool;
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
