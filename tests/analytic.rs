@@ -4,7 +4,7 @@
 mod studio;
 
 use catchlight::photo::Picture;
-use catchlight::raytrace::{self, Control, Method, Settings};
+use catchlight::raytrace::{self, Method, RenderControl, Settings};
 use catchlight::scene::{Aim, Assets, Emitter, Light, Material, Object, Output, Room, Scene, Shape};
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -13,7 +13,7 @@ use studio::{REFLECTANCE, card_at, light, looking_at_card};
 
 fn render(scene: &Scene, settings: &Settings) -> Picture {
     let prepared = raytrace::prepare(scene, &Assets::default()).unwrap();
-    let film = raytrace::render(&prepared, settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+    let film = raytrace::render(&prepared, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
     assert_eq!(film.nonfinite(), 0);
     film.develop(scene)
 }
@@ -206,7 +206,7 @@ fn relighting_the_film_is_rendering_anew() {
     scene.lights.push(Light { position: Vec3::new(1.0, 0.5, 1.0), ..fill });
     let settings = Settings { width: 8, height: 8, spp: 64, ..Settings::default() };
     let prepared = raytrace::prepare(&scene, &Assets::default()).unwrap();
-    let film = raytrace::render(&prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+    let film = raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
     let whole = film.develop(&scene);
     let layers = film.develop_layers(&scene);
     for (i, pixel) in whole.rgb.iter().enumerate() {
@@ -249,7 +249,7 @@ fn a_texture_is_upright_on_a_card() {
     assets.textures.insert("quarters.png".into(), std::sync::Arc::new(Texture { width: 2, height: 2, rgb }));
     let prepared = raytrace::prepare(&scene, &assets).unwrap();
     let settings = Settings { width: 8, height: 8, method: Method::Direct, spp: 4, ..Settings::default() };
-    let film = raytrace::render(&prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+    let film = raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
     let picture = film.develop(&scene);
     let strongest = |x, y| {
         let p = picture.at(x, y);

@@ -4,7 +4,7 @@
 mod studio;
 
 use catchlight::photo::meter::Receptor;
-use catchlight::raytrace::{Control, Effort, Method, Place, Probe, Probed, Settings};
+use catchlight::raytrace::{LightMeter, MeterEffort, MeterPoint, MeterResult, Method, RenderControl, Settings};
 use catchlight::scene::{
     Assets, Emitter, Light, LightId, Material, MaterialPreset, Object, Output, Role, Room, Scene, Shape,
 };
@@ -16,13 +16,13 @@ use std::process::{Command, Output as ProcessOutput};
 use studio::light;
 use studio::statistics::Estimate;
 
-fn probe(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor) -> Probed {
-    probe_with(scene, position, facing, receptor, &Effort::default())
+fn probe(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor) -> MeterResult {
+    probe_with(scene, position, facing, receptor, &MeterEffort::default())
 }
 
-fn probe_with(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor, effort: &Effort) -> Probed {
-    let probe = Probe::new(scene, &Assets::default(), position).unwrap();
-    let probed = probe.read(&Place { position, facing, receptor }, effort, &Control::new()).unwrap();
+fn probe_with(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor, effort: &MeterEffort) -> MeterResult {
+    let probe = LightMeter::new(scene, &Assets::default(), position).unwrap();
+    let probed = probe.read(&MeterPoint { position, facing, receptor }, effort, &RenderControl::new()).unwrap();
     assert_eq!(probed.nonfinite, 0);
     probed
 }
@@ -111,11 +111,11 @@ fn the_standard_error_is_as_large_as_the_readings_scatter() {
     // Twenty readings with few paths each: their scatter is what each claims, to the chi-square of 19 degrees of freedom
     // (0.4 to 2.1 times the variance at a false alarm rate under 1 %; the claims' own mean adds little).
     let scene = hollow_ball(0.8);
-    let probe = Probe::new(&scene, &Assets::default(), Vec3::NEG_Y).unwrap();
-    let place = Place { position: Vec3::Y * -1.999, facing: Vec3::Y, receptor: Receptor::Flat };
+    let probe = LightMeter::new(&scene, &Assets::default(), Vec3::NEG_Y).unwrap();
+    let place = MeterPoint { position: Vec3::Y * -1.999, facing: Vec3::Y, receptor: Receptor::Flat };
     let read = |seed| {
-        let effort = Effort { paths: Some(512), seed, ..Effort::default() };
-        let reading = probe.read(&place, &effort, &Control::new()).unwrap().reading;
+        let effort = MeterEffort { paths: Some(512), seed, ..MeterEffort::default() };
+        let reading = probe.read(&place, &effort, &RenderControl::new()).unwrap().reading;
         (reading.lights[0].sum(), reading.lights[0].standard_error)
     };
     let readings: Vec<(f32, f32)> = (0..20).map(read).collect();
@@ -145,7 +145,7 @@ fn every_light_is_read_apart_and_all_threads_read_the_same() {
     scene.lights.push(named(20, Role::Key, Output::FlashWs { energy_ws: 10.0, efficacy_lm_s_per_ws: 40.0 }, -1.0));
     scene.lights.push(Light { on: false, ..named(21, Role::Fill, Output::Lumens(1e6), 0.5) });
     scene.lights.push(named(22, Role::Fill, Output::Lumens(0.0), 0.5));
-    let effort = Effort { paths: Some(2048), ..Effort::default() };
+    let effort = MeterEffort { paths: Some(2048), ..MeterEffort::default() };
     let read = || probe_with(&scene, Vec3::ZERO, Vec3::Y, Receptor::Dome, &effort);
     let all = read();
     let names: Vec<&str> = all.reading.lights.iter().map(|l| l.name.as_str()).collect();
@@ -335,14 +335,15 @@ fn a_room_gathers_more_than_what_comes_straight() {
     let mut scene = Scene { room: Some(room), lights: vec![lamp], ..Scene::default() };
     scene.lights[0].aim = catchlight::scene::Aim::Point(Vec3::Y);
     // Mean over a wall by a 4 x 4 grid: every wall is alike, and the mean is F / (S (1 - r)).
-    let probe = Probe::new(&scene, &Assets::default(), Vec3::ZERO).unwrap();
+    let probe = LightMeter::new(&scene, &Assets::default(), Vec3::ZERO).unwrap();
     let (mut sum, n) = (0.0, 8);
     for i in 0..n * n {
         let at = |k: i32| (k as f32 + 0.5) / n as f32 * 4.0 - 2.0;
-        let place = Place { position: Vec3::new(at(i % n), 0.0, at(i / n)), facing: Vec3::Y, receptor: Receptor::Flat };
+        let place =
+            MeterPoint { position: Vec3::new(at(i % n), 0.0, at(i / n)), facing: Vec3::Y, receptor: Receptor::Flat };
         // A seed each: with one for all, the errors of the places would be alike.
-        let effort = Effort { paths: Some(1024), seed: i as u32, ..Effort::default() };
-        sum += probe.read(&place, &effort, &Control::new()).unwrap().reading.total_lux_s() * 125.0;
+        let effort = MeterEffort { paths: Some(1024), seed: i as u32, ..MeterEffort::default() };
+        sum += probe.read(&place, &effort, &RenderControl::new()).unwrap().reading.total_lux_s() * 125.0;
     }
     let mean = sum / (n * n) as f32;
     // 208.33 lx by light_and_camera.md. The grid errs by 0.2 % in the lamp's peak, 64 x 1024 paths by 0.1 %.
@@ -372,7 +373,7 @@ fn what_comes_straight_and_what_the_meter_reads_bounced_are_together_the_path_tr
         studio::measure::illuminance(&scene, &settings)
     };
     let (direct, path) = (picture(Method::Direct, 1), picture(Method::Path, 2));
-    let effort = Effort { paths: Some(1 << 16), ..Effort::default() };
+    let effort = MeterEffort { paths: Some(1 << 16), ..MeterEffort::default() };
     let read = probe_with(&scene, position, normal, Receptor::Flat, &effort).reading;
     let bounced: f64 = read.lights.iter().map(|light| f64::from(light.bounced)).sum();
     let bounced_error = read.lights.iter().map(|light| f64::from(light.standard_error).powi(2)).sum::<f64>();

@@ -6,7 +6,7 @@ mod studio;
 
 use catchlight::photo::beam;
 use catchlight::photo::meter::Receptor;
-use catchlight::raytrace::{Control, Effort, Place, Probe};
+use catchlight::raytrace::{LightMeter, MeterEffort, MeterPoint, RenderControl};
 use catchlight::scene::{
     Aim, Assets, BarnDoors, Cone, Emitter, Light, Modifier, NamedModifier, Output, Scene, Severity, validate,
 };
@@ -24,12 +24,12 @@ fn modified(emitter: Emitter, modifier: Modifier) -> Scene {
 
 /// Illuminance at places that face `towards`, 4096 points of the emitter each.
 fn lux(scene: &Scene, places: &[Vec3], towards: Vec3) -> Vec<f32> {
-    let probe = Probe::new(scene, &Assets::default(), Vec3::ZERO).unwrap();
-    let effort = Effort { paths: Some(4096), ..Effort::default() };
+    let probe = LightMeter::new(scene, &Assets::default(), Vec3::ZERO).unwrap();
+    let effort = MeterEffort { paths: Some(4096), ..MeterEffort::default() };
     let read = |&position: &Vec3| {
         let facing = (towards - position).normalize();
-        let place = Place { position, facing, receptor: Receptor::Flat };
-        probe.read(&place, &effort, &Control::new()).unwrap().reading.total_lux().0
+        let place = MeterPoint { position, facing, receptor: Receptor::Flat };
+        probe.read(&place, &effort, &RenderControl::new()).unwrap().reading.total_lux().0
     };
     places.iter().map(read).collect()
 }
@@ -207,11 +207,11 @@ mod preview {
             let per_lux = exposure::pixel_per_cd_s_m2(&scene.camera) * scene.camera.shutter_s * 0.18 / PI;
             let places: Vec<Vec3> =
                 (0..25).map(|i| Vec3::new((i % 5 - 2) as f32 * 0.4, 0.0, (i / 5 - 2) as f32 * 0.4)).collect();
-            let probe = Probe::new(&scene, &assets, Vec3::ZERO).unwrap();
+            let probe = LightMeter::new(&scene, &assets, Vec3::ZERO).unwrap();
             let read = |position: Vec3| {
-                let place = Place { position, facing: Vec3::Y, receptor: Receptor::Flat };
-                let effort = Effort { paths: Some(4096), ..Effort::default() };
-                probe.read(&place, &effort, &Control::new()).unwrap().reading.total_lux().0
+                let place = MeterPoint { position, facing: Vec3::Y, receptor: Receptor::Flat };
+                let effort = MeterEffort { paths: Some(4096), ..MeterEffort::default() };
+                probe.read(&place, &effort, &RenderControl::new()).unwrap().reading.total_lux().0
             };
             let brightest = places.iter().map(|p| read(*p)).fold(0.0, f32::max);
             for place in places {

@@ -2,12 +2,12 @@
 #![allow(clippy::unwrap_used)]
 
 use catchlight::io;
-use catchlight::raytrace::{self, Control, Film, Method, RenderScene, Settings};
+use catchlight::raytrace::{self, Film, Method, RenderControl, RenderScene, Settings};
 use std::ops::ControlFlow;
 
 fn render(scene: &RenderScene, settings: &Settings, threads: usize) -> Film {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| raytrace::render(scene, settings, &Control::new(), &mut |_| ControlFlow::Continue(())))
+    pool.install(|| raytrace::render(scene, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(())))
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn a_cancelled_render_keeps_its_complete_waves() {
     let loaded = io::find_preset("three_point").unwrap().load().unwrap();
     let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
     let settings = Settings { width: 40, height: 40, spp: 64, ..Settings::default() };
-    let control = Control::new();
+    let control = RenderControl::new();
     let film = raytrace::render(&prepared, &settings, &control, &mut |film| {
         if film.spp() == 4 {
             control.cancel();

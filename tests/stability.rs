@@ -4,7 +4,7 @@
 mod studio;
 
 use catchlight::photo::Picture;
-use catchlight::raytrace::{self, Control, Method, Settings};
+use catchlight::raytrace::{self, Method, RenderControl, Settings};
 use catchlight::scene::{
     Aim, Assets, Camera, Emitter, Light, LightId, Material, Mesh, Object, ObjectId, Output, Room, Scene, Sensor, Shape,
     Transform,
@@ -57,8 +57,9 @@ fn holds(scene: &Scene, assets: &Assets) -> Picture {
     let with = |threads: usize, method: Method| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let settings = Settings { method, ..settings.clone() };
-        let film = pool
-            .install(|| raytrace::render(&prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(())));
+        let film = pool.install(|| {
+            raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()))
+        });
         assert_eq!(film.nonfinite(), 0, "{method:?}: {:?}", film.first_nonfinite());
         film.develop(scene)
     };
@@ -456,7 +457,7 @@ fn odd_sizes_down_to_a_single_pixel() {
     let prepared = raytrace::prepare(&plain(), &Assets::default()).unwrap();
     for (width, height) in [(1, 1), (1, 100), (100, 1), (33, 31), (65, 1), (32, 32)] {
         let settings = Settings { width, height, spp: 3, ..Settings::default() };
-        let film = raytrace::render(&prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+        let film = raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
         let picture = film.develop(&plain());
         assert_eq!(picture.rgb.len(), (width * height) as usize);
         assert!(picture.rgb.iter().flatten().all(|v| v.is_finite()));

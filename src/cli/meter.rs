@@ -4,7 +4,7 @@ use super::{Failure, input, say};
 use crate::io::Loaded;
 use crate::photo::meter::{LUX_PER_FOOT_CANDLE, LightReading, Reading, Receptor, nearest_third};
 use crate::photo::thirds::Dial;
-use crate::raytrace::{Control, Effort, Place, Probe, Probed};
+use crate::raytrace::{LightMeter, MeterEffort, MeterPoint, MeterResult, RenderControl};
 use crate::scene::Scene;
 use anyhow::{Context, anyhow};
 use glam::Vec3;
@@ -119,7 +119,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-fn place(arguments: &Arguments, scene: &Scene) -> anyhow::Result<Place> {
+fn place(arguments: &Arguments, scene: &Scene) -> anyhow::Result<MeterPoint> {
     let own = scene.meter.filter(|_| arguments.at.is_none());
     let position = arguments.at.or(own.map(|meter| meter.position));
     let position = position.context("say where the meter is with --at X,Y,Z, or put one up in the editor")?;
@@ -140,17 +140,17 @@ fn place(arguments: &Arguments, scene: &Scene) -> anyhow::Result<Place> {
     };
     let dome = arguments.dome || own.is_some_and(|meter| meter.receptor == Receptor::Dome);
     let receptor = if dome { Receptor::Dome } else { Receptor::Flat };
-    Ok(Place { position, facing, receptor })
+    Ok(MeterPoint { position, facing, receptor })
 }
 
-fn read(arguments: &Arguments, loaded: &Loaded, place: &Place) -> anyhow::Result<Probed> {
-    let probe = Probe::new(&loaded.scene, &loaded.assets, place.position)?;
-    let effort = Effort { paths: arguments.spp, seed: arguments.seed, ..Effort::default() };
-    probe.read(place, &effort, &Control::new()).ok_or_else(|| anyhow!("the reading was cancelled"))
+fn read(arguments: &Arguments, loaded: &Loaded, place: &MeterPoint) -> anyhow::Result<MeterResult> {
+    let probe = LightMeter::new(&loaded.scene, &loaded.assets, place.position)?;
+    let effort = MeterEffort { paths: arguments.spp, seed: arguments.seed, ..MeterEffort::default() };
+    probe.read(place, &effort, &RenderControl::new()).ok_or_else(|| anyhow!("the reading was cancelled"))
 }
 
 /// What a photographer hardly meant.
-fn warn(scene: &Scene, place: &Place, probed: &Probed) {
+fn warn(scene: &Scene, place: &MeterPoint, probed: &MeterResult) {
     if let Some(object) = probed.inside.and_then(|index| scene.objects.get(index as usize)) {
         eprintln!("warning: the meter is inside of {:?}", object.name);
     }
@@ -170,7 +170,7 @@ fn warn(scene: &Scene, place: &Place, probed: &Probed) {
     }
 }
 
-fn report(place: &Place, probed: &Probed) -> Report {
+fn report(place: &MeterPoint, probed: &MeterResult) -> Report {
     let reading = &probed.reading;
     let (direct_lux, bounced_lux) = reading.total_lux();
     let lux = direct_lux + bounced_lux;
@@ -216,7 +216,7 @@ fn light_report(reading: &Reading, light: &LightReading) -> LightReport {
 }
 
 /// The reading for a reader: a line a light, then what to set.
-fn table(arguments: &Arguments, place: &Place, probed: &Probed) -> String {
+fn table(arguments: &Arguments, place: &MeterPoint, probed: &MeterResult) -> String {
     let reading = &probed.reading;
     let [p, d] = [place.position, place.facing];
     let to_camera = arguments.facing.is_none() && arguments.at.is_some();

@@ -2,7 +2,7 @@
 
 use super::{Failure, input, say, zbuffer};
 use crate::io::{self, Loaded, PictureFormat, PictureInfo};
-use crate::raytrace::{self, Control, Film, Method, RenderScene, Settings, Shortcut};
+use crate::raytrace::{self, Film, Method, RenderControl, RenderScene, Settings, Shortcut};
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -149,7 +149,7 @@ struct Report {
 /// Renders and writes.
 pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
     check_output(arguments)?;
-    let control = Arc::new(Control::new());
+    let control = Arc::new(RenderControl::new());
     let interrupted = stop_on_ctrl_c(&control)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.unwrap_or(0).into())
@@ -250,7 +250,7 @@ fn check_output(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 /// The first Ctrl+C ends the render and keeps its picture; the second ends the program.
-fn stop_on_ctrl_c(control: &Arc<Control>) -> Result<Arc<AtomicBool>, Failure> {
+fn stop_on_ctrl_c(control: &Arc<RenderControl>) -> Result<Arc<AtomicBool>, Failure> {
     let interrupted = Arc::new(AtomicBool::new(false));
     let (flag, control) = (interrupted.clone(), control.clone());
     ctrlc::set_handler(move || {
@@ -335,7 +335,7 @@ fn trace(
     pool: &rayon::ThreadPool,
     scene: &RenderScene,
     settings: &Settings,
-    control: &Control,
+    control: &RenderControl,
 ) -> (Film, Option<Instant>) {
     let started = Instant::now();
     let limit = arguments.time.map(Duration::from_secs_f32);
@@ -361,7 +361,7 @@ fn trace(
 /// Draws the progress bar, and ends the render when its time is over (but not before there is a picture).
 fn watch(
     settings: &Settings,
-    control: &Control,
+    control: &RenderControl,
     started: Instant,
     limit: Option<Duration>,
     first_done: &AtomicBool,

@@ -5,7 +5,7 @@ use super::{Failure, say};
 use crate::io::{self, Loaded, PictureInfo};
 use crate::jobs::{LivePace, background_pool};
 use crate::photo::Picture;
-use crate::raytrace::{self, Control, LiveCamera, LivePicture, Settings, Smoother};
+use crate::raytrace::{self, LiveCamera, LivePicture, RenderControl, Settings, Smoother};
 use crate::scene::{CameraFrame, Scene};
 use anyhow::Context;
 use glam::{Affine3A, Quat, Vec3};
@@ -87,7 +87,7 @@ struct Bench<'a> {
     scene: Scene,
     frame: CameraFrame,
     size: (u32, u32),
-    control: Control,
+    control: RenderControl,
     /// Milliseconds that each update took, the pictures' own time left out.
     updates: Vec<f64>,
 }
@@ -102,7 +102,7 @@ impl<'a> Bench<'a> {
             scene: loaded.scene.clone(),
             frame,
             size,
-            control: Control::new(),
+            control: RenderControl::new(),
             updates: Vec::new(),
         })
     }
@@ -209,7 +209,7 @@ impl<'a> Bench<'a> {
 
     /// The same while all cores render a picture.
     fn turn_beside_a_render(&mut self) {
-        let control = Control::new();
+        let control = RenderControl::new();
         let Ok(prepared) = raytrace::prepare(&self.scene, &self.loaded.assets) else { return };
         let (width, height) = self.size;
         let settings = Settings { width, height, spp: 1 << 16, ..Settings::default() };

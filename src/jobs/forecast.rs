@@ -7,7 +7,7 @@
 
 use super::threads::background_pool;
 use super::{Wake, lock};
-use crate::raytrace::{self, Control, Film, GeometryCache, Settings};
+use crate::raytrace::{self, Film, GeometryCache, RenderControl, Settings};
 use crate::scene::{Assets, Camera, Scene};
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
@@ -95,7 +95,7 @@ pub struct Forecaster {
 
 #[derive(Debug)]
 struct Pilot {
-    control: Arc<Control>,
+    control: Arc<RenderControl>,
     result: Arc<Mutex<Option<Option<Forecast>>>>,
 }
 
@@ -179,7 +179,7 @@ fn pilot_settings(camera: &Camera, method: raytrace::Method) -> Settings {
 }
 
 fn start(trees: Arc<GeometryCache>, scene: Scene, assets: Assets, method: raytrace::Method, wake: Wake) -> Pilot {
-    let pilot = Pilot { control: Arc::new(Control::new()), result: Arc::default() };
+    let pilot = Pilot { control: Arc::new(RenderControl::new()), result: Arc::default() };
     let (control, result) = (pilot.control.clone(), pilot.result.clone());
     std::thread::spawn(move || {
         let forecast = run(&trees, &scene, &assets, &pilot_settings(&scene.camera, method), &control);
@@ -195,7 +195,7 @@ fn run(
     scene: &Scene,
     assets: &Assets,
     settings: &Settings,
-    control: &Control,
+    control: &RenderControl,
 ) -> Option<Forecast> {
     let pool = background_pool(0, "pilot").ok()?;
     let began = Instant::now();
@@ -247,11 +247,11 @@ mod tests {
         let (scene, trees) = (loaded.scene, GeometryCache::default());
         let method = raytrace::Method::Path;
         let pilot = pilot_settings(&scene.camera, method);
-        let forecast = run(&trees, &scene, &loaded.assets, &pilot, &Control::new()).unwrap();
+        let forecast = run(&trees, &scene, &loaded.assets, &pilot, &RenderControl::new()).unwrap();
         let (width, height) = scene.camera.picture_size(200);
         let settings = Settings { width, height, spp: 48, ..pilot };
         let prepared = raytrace::prepare_kept(&scene, &loaded.assets, &trees).unwrap();
-        let film = raytrace::render(&prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+        let film = raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
         let foretold = forecast.estimate(u64::from(width) * u64::from(height), 48).noise_stops;
         let ratio = foretold / f64::from(film.noise_stops());
         // Smaller pixels hold fewer edges, and stratified samples do better the more there are.

@@ -1,7 +1,7 @@
 //! The live traced view's thread: traces what it was asked for last, and hands pictures over while they grow.
 
 use super::{LiveImage, LivePace, Wake, lock, sentence};
-use crate::raytrace::{Control, GeometryCache, LiveCamera};
+use crate::raytrace::{GeometryCache, LiveCamera, RenderControl};
 use crate::scene::{Assets, Scene};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -27,7 +27,7 @@ struct State {
     wanted: Option<LiveRequest>,
     result: Option<Result<LiveImage, String>>,
     /// Lets the slice of work that is under way be given up.
-    control: Arc<Control>,
+    control: Arc<RenderControl>,
     /// The picture of the last request has been handed over once, so that it may be given up.
     has_shown: bool,
     is_idle: bool,
@@ -125,7 +125,7 @@ fn live_loop(shared: &(Mutex<State>, Condvar), cache: Arc<GeometryCache>, wake: 
 /// What the thread does next.
 enum Next {
     Take(Box<LiveRequest>),
-    Work { user_is_active: bool, control: Arc<Control> },
+    Work { user_is_active: bool, control: Arc<RenderControl> },
 }
 
 fn trace(shared: &(Mutex<State>, Condvar), mut pace: LivePace, wake: &Wake) {

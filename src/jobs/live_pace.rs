@@ -5,7 +5,7 @@
 
 use super::threads::background_pool;
 use crate::color::ToneTable;
-use crate::raytrace::{Control, GeometryCache, LiveCamera, LivePicture, PrepareError, Smoother};
+use crate::raytrace::{GeometryCache, LiveCamera, LivePicture, PrepareError, RenderControl, Smoother};
 use crate::scene::{Assets, Scene};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -112,7 +112,7 @@ impl LivePace {
     }
 
     /// Works for a moment, or until `control` is cancelled. `user_is_active` leaves a core alone.
-    pub fn slice(&mut self, user_is_active: bool, control: &Control) {
+    pub fn slice(&mut self, user_is_active: bool, control: &RenderControl) {
         let pool = &self.pools[usize::from(!user_is_active)];
         let slice = SLICES[usize::from(self.since_edit.elapsed() > 4 * FIRST_PICTURE)];
         let (began, threads) = (Instant::now(), pool.current_num_threads() as f64);
@@ -175,7 +175,7 @@ mod tests {
         let camera = LiveCamera::pinhole(scene.camera_frame(1.5), (48, 32));
         pace.update(scene.clone(), &loaded.assets, camera).unwrap();
         assert!(!pace.has_shown() && pace.look().is_none(), "there is nothing to show yet");
-        let control = Control::new();
+        let control = RenderControl::new();
         let mut looks = Vec::new();
         while !pace.is_idle() {
             pace.slice(true, &control);
@@ -204,7 +204,7 @@ mod tests {
             let mut pace = LivePace::new(Arc::default()).unwrap();
             pace.set_smooth(smooth);
             pace.update(scene.clone(), &loaded.assets, camera).unwrap();
-            let control = Control::new();
+            let control = RenderControl::new();
             // Every pixel with one sample: the same picture, whatever the clock says.
             while pace.picture().stride() != Some(1) {
                 pace.picture.work(1, &control);

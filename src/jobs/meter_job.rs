@@ -2,7 +2,7 @@
 
 use super::{Wake, lock};
 use crate::photo::meter::Reading;
-use crate::raytrace::{Control, Effort, Place, Probe};
+use crate::raytrace::{LightMeter, MeterEffort, MeterPoint, RenderControl};
 use crate::scene::{Assets, Meter, Scene};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 
@@ -11,14 +11,14 @@ struct Request {
     scene: Scene,
     assets: Assets,
     meter: Meter,
-    control: Arc<Control>,
+    control: Arc<RenderControl>,
 }
 
 #[derive(Debug, Default)]
 struct State {
     wanted: Option<Request>,
     /// Lets the thorough reading that is under way be given up.
-    refining: Option<Arc<Control>>,
+    refining: Option<Arc<RenderControl>>,
     result: Option<Result<Reading, String>>,
     busy: bool,
     closed: bool,
@@ -122,13 +122,13 @@ fn next(state: &(Mutex<State>, Condvar)) -> Option<Request> {
 
 fn read(state: &(Mutex<State>, Condvar), request: &Request, wake: &Wake) {
     let Request { scene, assets, meter, control } = request;
-    let probe = match Probe::new(scene, assets, meter.position) {
+    let probe = match LightMeter::new(scene, assets, meter.position) {
         Ok(probe) => probe,
         Err(error) => return show(state, Err(error.to_string()), wake),
     };
-    let place = Place { position: meter.position, facing: meter.direction(scene), receptor: meter.receptor };
+    let place = MeterPoint { position: meter.position, facing: meter.direction(scene), receptor: meter.receptor };
     // The rough reading is always finished: in a drag the numbers follow the mouse.
-    for (effort, control) in [(Effort::quick(), &Arc::default()), (Effort::default(), control)] {
+    for (effort, control) in [(MeterEffort::quick(), &Arc::default()), (MeterEffort::default(), control)] {
         if let Some(probed) = probe.read(&place, &effort, control) {
             show(state, Ok(probed.reading), wake);
         }

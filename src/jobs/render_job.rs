@@ -4,7 +4,7 @@ use super::threads::background_pool;
 use super::{Wake, lock, sentence};
 use crate::io;
 use crate::photo::Picture;
-use crate::raytrace::{self, Control, Film, GeometryCache, Settings};
+use crate::raytrace::{self, Film, GeometryCache, RenderControl, Settings};
 use crate::scene::{Assets, Scene};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -73,7 +73,7 @@ struct Shared {
 /// One render. Dropping it cancels it.
 #[derive(Debug)]
 pub struct RenderJob {
-    control: Arc<Control>,
+    control: Arc<RenderControl>,
     shared: Arc<Shared>,
     /// The studio as it is being rendered.
     pub scene: Arc<Scene>,
@@ -96,7 +96,7 @@ impl RenderJob {
         settings: Settings,
         wake: Wake,
     ) -> Self {
-        let control = Arc::new(Control::new());
+        let control = Arc::new(RenderControl::new());
         let shared = Arc::new(Shared {
             phase: Mutex::new(Phase::Preparing),
             film: Mutex::new(None),
@@ -177,7 +177,7 @@ fn trace(
     mut assets: Assets,
     folder: Option<PathBuf>,
     settings: &Settings,
-    control: &Control,
+    control: &RenderControl,
     shared: &Shared,
     wake: &Wake,
 ) -> Phase {
@@ -200,8 +200,8 @@ fn trace(
     *lock(&shared.phase) = Phase::Tracing;
     wake();
     if let Some(coarse) = settings.coarse() {
-        let film =
-            pool.install(|| raytrace::render(&prepared, &coarse, &Control::new(), &mut |_| ControlFlow::Break(())));
+        let film = pool
+            .install(|| raytrace::render(&prepared, &coarse, &RenderControl::new(), &mut |_| ControlFlow::Break(())));
         *lock(&shared.film) = Some(Arc::new(film));
         wake();
     }

@@ -240,7 +240,7 @@ mod tests {
 
     #[test]
     fn a_prepared_scene_is_the_same_with_and_without_what_was_kept() {
-        use crate::raytrace::{Control, Settings, render};
+        use crate::raytrace::{RenderControl, Settings, render};
         use std::ops::ControlFlow;
         let (mut scene, assets) = studio();
         scene.camera.position = Vec3::new(0.5, 1.0, 3.0);
@@ -250,7 +250,7 @@ mod tests {
         scene.objects[2].transform.position.y += 0.1;
         let settings = Settings { width: 24, height: 16, spp: 2, ..Settings::default() };
         let picture = |prepared: &crate::raytrace::RenderScene| {
-            let film = render(prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+            let film = render(prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
             film.develop(&scene)
         };
         let kept = picture(&prepare_kept(&scene, &assets, &cache).unwrap());

@@ -168,7 +168,7 @@ impl fmt::Display for RenderPlan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raytrace::{Control, Settings, prepare, render};
+    use crate::raytrace::{RenderControl, Settings, prepare, render};
     use crate::scene::{
         Aim, Assets, Camera, Emitter, Light, LightId, Material, Object, ObjectId, Output, Room, Scene, Shape, Transform,
     };
@@ -213,7 +213,7 @@ mod tests {
         }
         let value = |seed| {
             let settings = Settings { width: 24, height: 16, spp: 64, seed, ..Settings::default() };
-            let film = render(&prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+            let film = render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
             let picture = film.develop(scene);
             picture.rgb.iter().flatten().sum::<f32>() / (3 * picture.rgb.len()) as f32
         };

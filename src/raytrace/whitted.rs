@@ -7,10 +7,10 @@
 //! The units are those of the path tracer.
 
 use super::bsdf::{fresnel, pane_transmittance};
-use super::emission::Vertex;
+use super::emitters::Vertex;
 use super::geometry::SurfaceInteraction;
-use super::integrator::{Sink, Tracer};
 use super::medium_stack::MediumStack;
+use super::path_tracer::{RadianceSink, Tracer};
 use crate::math::Ray;
 use glam::Vec3;
 
@@ -27,7 +27,7 @@ const NEGLIGIBLE: f32 = 1.0 / 512.0;
 
 impl Tracer<'_> {
     /// Follows a camera ray and gives every light's share to `sink`. Mirrors and glass are followed `depth` times.
-    pub fn whitted(&mut self, origin: Vec3, direction: Vec3, depth: u32, sink: &mut impl Sink) {
+    pub fn whitted(&mut self, origin: Vec3, direction: Vec3, depth: u32, sink: &mut impl RadianceSink) {
         let ray = Ray { origin, direction, t_max: f32::INFINITY };
         let mut open = vec![Branch { ray, share: Vec3::ONE, media: MediumStack::default(), depth: 0 }];
         while let Some(branch) = open.pop() {
@@ -35,7 +35,7 @@ impl Tracer<'_> {
         }
     }
 
-    fn follow(&mut self, branch: Branch, depth: u32, open: &mut Vec<Branch>, sink: &mut impl Sink) {
+    fn follow(&mut self, branch: Branch, depth: u32, open: &mut Vec<Branch>, sink: &mut impl RadianceSink) {
         let scene = self.scene;
         let Branch { ray, mut share, media, .. } = branch;
         let hit = self.closest(&ray);
@@ -97,7 +97,7 @@ impl Tracer<'_> {
         surface: &SurfaceInteraction,
         media: &MediumStack,
         share: Vec3,
-        sink: &mut impl Sink,
+        sink: &mut impl RadianceSink,
         scatter: impl Fn(Vec3) -> Vec3,
     ) {
         for light in &self.scene.lights {
@@ -113,7 +113,7 @@ impl Tracer<'_> {
     }
 
     /// Surrounds, unshaded.
-    fn ambient(&self, reflected: Vec3, sink: &mut impl Sink) {
+    fn ambient(&self, reflected: Vec3, sink: &mut impl RadianceSink) {
         for light in &self.scene.lights {
             if let Some(luminance) = light.surround_luminance() {
                 sink.add(light.layer, reflected * light.tint * luminance);

@@ -3,7 +3,7 @@
 use super::{Row, forms};
 use crate::photo::exposure;
 use crate::photo::meter::Receptor;
-use crate::raytrace::{self, Control, Effort, Place, Probe, Settings};
+use crate::raytrace::{self, LightMeter, MeterEffort, MeterPoint, RenderControl, Settings};
 use crate::scene::{
     Aim, Assets, Camera, Emitter, Light, LightId, Material, MaterialPreset, Object, ObjectId, Output, Room, Scene,
     Sensor, Shape, Transform,
@@ -54,15 +54,15 @@ fn lit_by(light: Light) -> Scene {
 }
 
 /// What the meter reads, in lux of all light; nothing where the scene cannot be traced.
-fn lux(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor, effort: &Effort) -> f64 {
-    let reading = Probe::new(scene, &Assets::default(), position)
+fn lux(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor, effort: &MeterEffort) -> f64 {
+    let reading = LightMeter::new(scene, &Assets::default(), position)
         .ok()
-        .and_then(|probe| probe.read(&Place { position, facing, receptor }, effort, &Control::new()));
+        .and_then(|probe| probe.read(&MeterPoint { position, facing, receptor }, effort, &RenderControl::new()));
     reading.map_or(f64::NAN, |probed| f64::from(probed.reading.total_lux_s() / scene.camera.shutter_s))
 }
 
 fn flat(scene: &Scene, position: Vec3, facing: Vec3) -> f64 {
-    lux(scene, position, facing, Receptor::Flat, &Effort::default())
+    lux(scene, position, facing, Receptor::Flat, &MeterEffort::default())
 }
 
 fn bulbs() -> Vec<Row> {
@@ -147,7 +147,7 @@ fn far_lights() -> Vec<Row> {
 fn receptors() -> Vec<Row> {
     let scene = lit_by(light(Emitter::Point, Output::Candela(1000.0), Vec3::Z, Vec3::ZERO));
     let aside = Vec3::new(0.75_f32.sqrt(), 0.0, 0.5);
-    let dome = lux(&scene, Vec3::ZERO, aside, Receptor::Dome, &Effort::default());
+    let dome = lux(&scene, Vec3::ZERO, aside, Receptor::Dome, &MeterEffort::default());
     vec![row("dome at 60\u{b0} from 1000 lx", "lx", 750.0, dome, 1e-4)]
 }
 
@@ -177,7 +177,7 @@ fn cube(reflectance: f32) -> Row {
     let at = |k: i32| (k as f32 + 0.5) / n as f32 * 4.0 - 2.0;
     // A seed each: with one for all, the errors of the cells would be alike.
     let read = |i: i32| {
-        let effort = Effort { paths: Some(2048), seed: i as u32, ..Effort::default() };
+        let effort = MeterEffort { paths: Some(2048), seed: i as u32, ..MeterEffort::default() };
         lux(&scene, Vec3::new(at(i % n), 0.0, at(i / n)), Vec3::Y, Receptor::Flat, &effort)
     };
     let mean = (0..n * n).map(read).sum::<f64>() / f64::from(n * n);
@@ -271,7 +271,7 @@ fn pictures() -> Vec<Row> {
 fn mean_pixel(scene: &Scene) -> f64 {
     let Ok(prepared) = raytrace::prepare(scene, &Assets::default()) else { return f64::NAN };
     let settings = Settings { width: 16, height: 16, spp: 64, ..Settings::default() };
-    let film = raytrace::render(&prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+    let film = raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
     let picture = film.develop(scene);
     picture.rgb.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>() / picture.rgb.len() as f64
 }

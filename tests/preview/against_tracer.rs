@@ -66,7 +66,7 @@ fn direct_light_on_a_figure_agrees_with_the_tracer() {
             method: raytrace::Method::Direct,
             ..raytrace::Settings::default()
         };
-        let film = raytrace::render(&prepared, &settings, &raytrace::Control::new(), &mut |_| {
+        let film = raytrace::render(&prepared, &settings, &raytrace::RenderControl::new(), &mut |_| {
             std::ops::ControlFlow::Continue(())
         });
         let theirs = blocks(&film.develop(&loaded.scene));
@@ -93,8 +93,9 @@ fn chrome_gold_and_glass_look_about_as_the_tracer_shows_them() {
     let mask = renderer.object_mask().unwrap();
     let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
     let settings = raytrace::Settings { width, height, spp: 64, ..raytrace::Settings::default() };
-    let film =
-        raytrace::render(&prepared, &settings, &raytrace::Control::new(), &mut |_| std::ops::ControlFlow::Continue(()));
+    let film = raytrace::render(&prepared, &settings, &raytrace::RenderControl::new(), &mut |_| {
+        std::ops::ControlFlow::Continue(())
+    });
     let theirs = film.develop(&loaded.scene);
     // Half of the pixels lie within these stops. What is left out: other things mirrored and bent, and the shadows of
     // what is mirrored.

@@ -179,7 +179,8 @@ fn traced(loaded: &Loaded, width: u32, height: u32, spp: u32) -> Vec<f32> {
     let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
     let method = raytrace::Method::Direct;
     let settings = raytrace::Settings { width, height, spp, method, ..raytrace::Settings::default() };
-    let film = raytrace::render(&prepared, &settings, &raytrace::Control::new(), &mut |_| ControlFlow::Continue(()));
+    let film =
+        raytrace::render(&prepared, &settings, &raytrace::RenderControl::new(), &mut |_| ControlFlow::Continue(()));
     film.develop(&loaded.scene).rgb.iter().map(|rgb| color::luminance((*rgb).into())).collect()
 }
 

@@ -7,7 +7,7 @@ use super::closed_forms::vec3;
 use super::statistics::Estimate;
 use super::{REFLECTANCE, looking_at_card, object};
 use catchlight::photo::Picture;
-use catchlight::raytrace::{self, Control, Film, Method, Settings, Shortcut};
+use catchlight::raytrace::{self, Film, Method, RenderControl, Settings, Shortcut};
 use catchlight::scene::{Assets, Camera, Scene, Shape};
 use glam::{DVec3, Quat, Vec3};
 use std::ops::ControlFlow;
@@ -23,7 +23,7 @@ pub fn film(scene: &Scene, settings: &Settings) -> Film {
 /// The same, of a scene with models.
 pub fn film_with(scene: &Scene, assets: &Assets, settings: &Settings) -> Film {
     let prepared = raytrace::prepare(scene, assets).unwrap();
-    let film = raytrace::render(&prepared, settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+    let film = raytrace::render(&prepared, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
     assert_eq!(film.nonfinite(), 0, "{:?}", film.first_nonfinite());
     film
 }
@@ -67,7 +67,7 @@ pub fn illuminance(scene: &Scene, settings: &Settings) -> Estimate {
 pub fn illuminance_by_paths(scene: &Scene, settings: &Settings) -> Estimate {
     let mut prepared = raytrace::prepare(scene, &Assets::default()).unwrap();
     prepared.set_plan(prepared.plan().clone().without(Shortcut::Photons));
-    let film = raytrace::render(&prepared, settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+    let film = raytrace::render(&prepared, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
     let Estimate { mean, error } = values(&film.develop(scene));
     let scale = lux_per_value(&scene.camera);
     Estimate { mean: mean * scale, error: error * scale }

@@ -12,7 +12,7 @@ use crate::cli::{Failure, input, say, zbuffer};
 use crate::color::luminance;
 use crate::io::Loaded;
 use crate::photo::Picture;
-use crate::raytrace::{self, Control, Method, RenderScene, Settings, Shortcut};
+use crate::raytrace::{self, Method, RenderControl, RenderScene, Settings, Shortcut};
 use anyhow::Context;
 use glam::Vec3;
 use serde::Serialize;
@@ -161,7 +161,7 @@ impl Study<'_> {
             .num_threads(threads)
             .build()
             .map_err(|error| Failure::Machine(anyhow::anyhow!(error).context("can't start the threads")))?;
-        let control = Control::new();
+        let control = RenderControl::new();
         let started = Instant::now();
         let film =
             pool.install(|| raytrace::render(&self.scene, &settings, &control, &mut |_| ControlFlow::Continue(())));

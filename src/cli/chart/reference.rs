@@ -2,7 +2,7 @@
 
 use crate::io::{self, Loaded, PictureInfo};
 use crate::photo::Picture;
-use crate::raytrace::{self, Control, RenderScene, Settings};
+use crate::raytrace::{self, RenderControl, RenderScene, Settings};
 use crate::scene::Mesh;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::ops::ControlFlow;
@@ -20,7 +20,7 @@ pub fn of(folder: &Path, loaded: &Loaded, scene: &RenderScene, settings: &Settin
         return picture;
     }
     eprintln!("{}: reference of {spp} samples a pixel ...", loaded.scene.name);
-    let film = raytrace::render(scene, settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+    let film = raytrace::render(scene, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
     let picture = film.develop(&loaded.scene);
     let info = PictureInfo::new(&loaded.scene.camera, "path", spp, u64::from(settings.seed));
     if let Err(error) = io::export_picture(&path, &picture, &info) {

@@ -5,7 +5,7 @@
 
 use crate::cli::{Failure, crowd, input, say};
 use crate::io;
-use crate::raytrace::{self, Control, Settings};
+use crate::raytrace::{self, RenderControl, Settings};
 use crate::scene::{
     Aim, Assets, Camera, Emitter, Light, LightId, Material, Mesh, Object, ObjectId, Output, Room, Scene, Shape,
     Transform,
@@ -96,7 +96,7 @@ fn measure(
     let prepared = raytrace::prepare(scene, assets)?;
     let prepare_s = started.elapsed().as_secs_f64();
     let memory_mb = resident_mb().zip(before).map(|(after, before)| (after - before).max(0.0));
-    let control = Control::new();
+    let control = RenderControl::new();
     let settings = Settings { width, height, spp, ..Settings::default() };
     let started = Instant::now();
     let film = raytrace::render(&prepared, &settings, &control, &mut |_| ControlFlow::Continue(()));

@@ -20,10 +20,10 @@ mod weights;
 
 use super::bsdf::Bsdf;
 use super::geometry::SurfaceInteraction;
-use super::integrator::Tracer;
+use super::path_tracer::Tracer;
 use super::prepare::RenderScene;
+use super::render::RenderControl;
 use super::sampler::Sampler;
-use super::schedule::Control;
 pub use casters::Casters;
 use glam::Vec3;
 use grid::Grid;
@@ -70,7 +70,7 @@ pub struct Wave {
 
 /// Photons where they arrived.
 #[derive(Debug)]
-pub struct CausticMap {
+pub struct PhotonMap {
     /// For what the camera sees, directly or in mirrors and glass.
     full: Photons,
     /// A few from a wider circle, for what is seen by bounced light alone.
@@ -100,9 +100,9 @@ impl Wave {
     }
 }
 
-impl CausticMap {
+impl PhotonMap {
     /// Sends out the photons of a wave, on rayon's current pool. Incomplete once `control` is cancelled.
-    pub fn trace(scene: &RenderScene, wave: &Wave, control: &Control) -> Self {
+    pub fn trace(scene: &RenderScene, wave: &Wave, control: &RenderControl) -> Self {
         let chunks = (wave.photons.clamp(1, MOST_PHOTONS) as u32).div_ceil(CHUNK);
         let sent = chunks * CHUNK;
         let chunk = |chunk: u32| {
@@ -122,7 +122,7 @@ impl CausticMap {
         let radius = wave.radius(&photons);
         let few = photons.iter().step_by(SPARSE).map(|photon| Photon { flux: photon.flux * SPARSE as f32, ..*photon });
         let sparse = Photons::new(few.collect(), SPARSE_RADIUS * radius, sent as f32 / SPARSE as f32);
-        CausticMap { full: Photons::new(photons, radius, sent as f32), sparse }
+        PhotonMap { full: Photons::new(photons, radius, sent as f32), sparse }
     }
 
     /// The photons for a surface after so many that scatter widely.

@@ -3,10 +3,10 @@
 use crate::math::Ray;
 use crate::raytrace::bsdf::Polarisation;
 use crate::raytrace::geometry::SurfaceInteraction;
-use crate::raytrace::integrator::{Tracer, survives};
 use crate::raytrace::medium_stack::MediumStack;
+use crate::raytrace::path_tracer::{Tracer, survives};
+use crate::raytrace::ray_caster::are_parallel;
 use crate::raytrace::sampler::{self, Purpose, Sampler};
-use crate::raytrace::visibility::are_parallel;
 use glam::Vec3;
 
 /// Light that arrives at a surface.

@@ -118,7 +118,7 @@ fn caustics_have_the_same_bits_for_any_number_of_threads() {
     let settings = Settings { width: 40, height: 30, spp: 4, ..Settings::default() };
     let picture = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let go = || render(&scene, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+        let go = || render(&scene, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
         pool.install(go).develop(&still_life())
     };
     let one = picture(1);
@@ -132,7 +132,7 @@ fn every_light_casts_its_caustics_on_its_own_layer() {
     let layers = |lights: &[Light]| {
         let studio = Scene { lights: lights.to_vec(), ..studio.clone() };
         let prepared = prepare(&studio, &Assets::default()).unwrap();
-        let film = render(&prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(()));
+        let film = render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
         film.develop_layers(&studio)
     };
     let sum = |layers: &[(String, crate::photo::Picture)], name: &str| -> f32 {
@@ -150,10 +150,10 @@ fn every_light_casts_its_caustics_on_its_own_layer() {
 #[test]
 fn a_cancelled_wave_is_not_waited_for() {
     let scene = prepare(&still_life(), &Assets::default()).unwrap();
-    let control = Control::new();
+    let control = RenderControl::new();
     control.cancel();
     let wave = Wave { first_sample: 0, samples: 16, photons: 1 << 20, pixel_m: 1e-3, eye: Vec3::ZERO, seed: 0 };
-    let map = CausticMap::trace(&scene, &wave, &control);
+    let map = PhotonMap::trace(&scene, &wave, &control);
     assert_eq!(control.rays(), 0);
     map.full.grid.near(Vec3::ZERO, |_, _| panic!("a photon of a cancelled wave"));
 }

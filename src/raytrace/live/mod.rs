@@ -21,7 +21,7 @@ pub use smooth::Smoother;
 use super::film::{Layer, assign_layers};
 use super::geometry_cache::GeometryCache;
 use super::prepare::{self, PrepareError, RenderScene};
-use super::schedule::Control;
+use super::render::RenderControl;
 use crate::photo::Picture;
 use crate::scene::{Assets, LightId, Scene};
 use change::Change;
@@ -180,7 +180,7 @@ impl LivePicture {
 
     /// Traces about `paths` paths, or until `control` is cancelled, on rayon's current pool; the coarsest tiles first.
     /// Returns how many it did; 0 when nothing is left to do.
-    pub fn work(&mut self, paths: u64, control: &Control) -> u64 {
+    pub fn work(&mut self, paths: u64, control: &RenderControl) -> u64 {
         let (Some(traced), Some(view)) = (&mut self.traced, &mut self.view) else { return 0 };
         let mut spent = 0;
         while spent < paths && !control.is_cancelled() {

@@ -1,8 +1,8 @@
 //! The photons of a live picture: few at once, more and others for every wave of samples.
 
 use super::camera::LiveCamera;
-use crate::raytrace::Control;
-use crate::raytrace::caustics::{CausticMap, USUAL_PHOTONS, Wave};
+use crate::raytrace::RenderControl;
+use crate::raytrace::caustics::{PhotonMap, USUAL_PHOTONS, Wave};
 use crate::raytrace::prepare::RenderScene;
 
 /// Pixels for each photon of a wave.
@@ -15,12 +15,12 @@ const PHOTONS_A_PATH: u64 = 4;
 pub struct LivePhotons {
     /// The sample that they are for.
     sample: u32,
-    map: Option<CausticMap>,
+    map: Option<PhotonMap>,
 }
 
 impl LivePhotons {
     /// Sends out the photons of a sample, if they are not there yet and of any use. What it took is returned in paths.
-    pub fn prepare(&mut self, scene: &RenderScene, camera: &LiveCamera, sample: u32, control: &Control) -> u64 {
+    pub fn prepare(&mut self, scene: &RenderScene, camera: &LiveCamera, sample: u32, control: &RenderControl) -> u64 {
         if !scene.plan().photons || (self.map.is_some() && self.sample == sample) {
             return 0;
         }
@@ -29,7 +29,7 @@ impl LivePhotons {
         let photons = if sample == 0 { USUAL_PHOTONS } else { pixels / PIXELS_A_PHOTON };
         let pixel_m = 2.0 * camera.frame.half_extent.x / camera.size.0 as f32;
         let wave = Wave { first_sample: sample, samples: 1, photons, pixel_m, eye: camera.eye(), seed: 0 };
-        let map = CausticMap::trace(scene, &wave, control);
+        let map = PhotonMap::trace(scene, &wave, control);
         // Cancelled, it is not whole.
         self.map = (!control.is_cancelled()).then_some(map);
         self.sample = sample;
@@ -37,7 +37,7 @@ impl LivePhotons {
     }
 
     /// What was prepared last.
-    pub fn map(&self) -> Option<&CausticMap> {
+    pub fn map(&self) -> Option<&PhotonMap> {
         self.map.as_ref()
     }
 }

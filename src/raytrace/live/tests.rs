@@ -58,7 +58,7 @@ fn begun(scene: &Scene) -> LivePicture {
 fn work_to(live: &mut LivePicture, steps: u32) {
     let least = |live: &LivePicture| live.view.as_ref().unwrap().film.tiles.iter().map(|t| t.progress.next()).min();
     while !live.is_done() && least(live) < Some(steps) {
-        live.work(1, &Control::new());
+        live.work(1, &RenderControl::new());
     }
 }
 
@@ -67,7 +67,7 @@ const ALL_TRACED: u32 = 8;
 const ALL_SEEN: u32 = 5;
 
 fn finish(live: &mut LivePicture) {
-    while live.work(1 << 20, &Control::new()) > 0 {}
+    while live.work(1 << 20, &RenderControl::new()) > 0 {}
     assert!(live.is_done());
 }
 
@@ -78,7 +78,7 @@ fn truth(scene: &Scene, camera: &LiveCamera, spp: u32) -> Picture {
     seen.camera.aim = Aim::Point(camera.frame.position() + 4.0 * camera.frame.forward());
     let settings = Settings { width: SIZE.0, height: SIZE.1, spp, ..Settings::default() };
     let prepared = prepare::prepare(&seen, &Assets::default()).unwrap();
-    render(&prepared, &settings, &Control::new(), &mut |_| ControlFlow::Continue(())).develop(&seen)
+    render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(())).develop(&seen)
 }
 
 fn mean(picture: &Picture) -> f32 {
@@ -140,7 +140,7 @@ fn it_ends_at_the_picture_of_a_render() {
     // A quiet tile is within 0.06 stop, 4 %, of the truth in each pixel; the mean of thousands of pixels much closer.
     assert_same(&ours, &theirs);
     assert!((mean(&ours) / mean(&theirs) - 1.0).abs() < 0.005, "{} for {}", mean(&ours), mean(&theirs));
-    assert_eq!((live.work(1000, &Control::new()), live.nonfinite()), (0, 0), "nothing is left to do");
+    assert_eq!((live.work(1000, &RenderControl::new()), live.nonfinite()), (0, 0), "nothing is left to do");
 }
 
 #[test]
@@ -184,7 +184,7 @@ fn what_was_hidden_is_traced_anew() {
     live.update(&scene, &Assets::default(), view(&scene, 0.4)).unwrap();
     work_to(&mut live, ALL_SEEN);
     let traced = live.traced.as_ref().unwrap();
-    let mut tracer = crate::raytrace::integrator::Tracer::new(&traced.full);
+    let mut tracer = crate::raytrace::path_tracer::Tracer::new(&traced.full);
     let (mut hidden, mut wrong) = (0, 0);
     for tile in &live.view.as_ref().unwrap().film.tiles {
         for (pixel, shown) in tile.shown.iter().enumerate().filter(|(_, shown)| shown.object == 0) {
@@ -241,7 +241,7 @@ fn what_was_wrong_before_the_view_moved_fades_as_samples_come() {
         while live.view.as_ref().unwrap().film.tiles.iter().any(|t| t.progress.main < target) {
             // Quiet tiles go on, too: the past is no part of their noise.
             live.view.as_mut().unwrap().film.tiles.iter_mut().for_each(LiveTile::wake);
-            live.work(1, &Control::new());
+            live.work(1, &RenderControl::new());
         }
         let wrong = mean(&live.develop(&scene)) / mean(&theirs) - 1.0;
         let expected = 2.0 * history::MOST_WEIGHT / (history::MOST_WEIGHT + samples as f32);
@@ -268,7 +268,7 @@ fn power_colour_and_switch_of_a_light_cost_no_ray() {
     let mut scene = studio(matte());
     let mut live = begun(&scene);
     finish(&mut live);
-    let (control, from_here) = (Control::new(), view(&scene, 0.0));
+    let (control, from_here) = (RenderControl::new(), view(&scene, 0.0));
     let mut edited = |edit: &dyn Fn(&mut Scene)| {
         edit(&mut scene);
         live.update(&scene, &Assets::default(), from_here).unwrap();
@@ -325,7 +325,7 @@ fn a_moved_light_is_traced_alone_and_the_others_keep_what_they_have() {
     assert!(sums(&live, 2) == others);
     scene.lights.remove(1);
     live.update(&scene, &Assets::default(), view(&scene, 0.0)).unwrap();
-    assert_eq!(live.work(1 << 20, &Control::new()), 0);
+    assert_eq!(live.work(1 << 20, &RenderControl::new()), 0);
     let (ours, theirs) = (live.develop(&scene), truth(&scene, &view(&scene, 0.0), 256));
     assert_same(&ours, &theirs);
 }
@@ -351,19 +351,22 @@ fn nothing_breaks_it() {
     let scene = studio(Material::default());
     let no_assets = Assets::default();
     let mut live = LivePicture::default();
-    assert_eq!((live.work(10, &Control::new()), live.is_done(), live.develop(&scene)), (0, true, Picture::default()));
+    assert_eq!(
+        (live.work(10, &RenderControl::new()), live.is_done(), live.develop(&scene)),
+        (0, true, Picture::default())
+    );
     let mut wrong = scene.clone();
     wrong.camera.focal_length_mm = f32::NAN;
     let frame = scene.camera_frame(1.5);
     assert!(live.update(&wrong, &no_assets, LiveCamera::pinhole(frame, SIZE)).is_err());
     for size in [(0, 0), (1, 1), (33, 1), (31, 65)] {
         live.update(&scene, &no_assets, LiveCamera::pinhole(frame, size)).unwrap();
-        live.work(3000, &Control::new());
+        live.work(3000, &RenderControl::new());
         let picture = live.develop(&scene);
         assert_eq!((picture.width, picture.height), (size.0.max(1), size.1.max(1)));
         assert!(picture.rgb.iter().flatten().all(|value| value.is_finite()));
     }
-    let cancelled = Control::new();
+    let cancelled = RenderControl::new();
     cancelled.cancel();
     live.update(&scene, &no_assets, LiveCamera::pinhole(frame, SIZE)).unwrap();
     assert_eq!((live.work(1000, &cancelled), live.is_begun()), (0, false));
@@ -385,7 +388,7 @@ fn nothing_breaks_it() {
                 camera = LiveCamera::through_lens(scene, camera.frame, SIZE);
             }
             live.update(scene, &no_assets, camera).unwrap();
-            live.work(6000, &Control::new());
+            live.work(6000, &RenderControl::new());
             let picture = live.develop(scene);
             assert!(picture.rgb.iter().flatten().all(|value| value.is_finite()));
         }

@@ -7,10 +7,10 @@ use super::camera::LiveCamera;
 use super::history::History;
 use crate::color::luminance;
 use crate::math::Ray;
-use crate::raytrace::Control;
-use crate::raytrace::caustics::CausticMap;
+use crate::raytrace::RenderControl;
+use crate::raytrace::caustics::PhotonMap;
 use crate::raytrace::film::{MAX_LIGHT_LAYERS, TILE};
-use crate::raytrace::integrator::{Limits, Sink, Tracer};
+use crate::raytrace::path_tracer::{Limits, RadianceSink, Tracer};
 use crate::raytrace::prepare::RenderScene;
 use crate::raytrace::sampler::{self, Purpose, Sampler};
 use glam::{Vec2, Vec3, Vec4};
@@ -164,11 +164,11 @@ pub struct Job<'a> {
     pub times: &'a [f32],
     pub camera: &'a LiveCamera,
     /// The scene's photons.
-    pub caustics: Option<&'a CausticMap>,
+    pub caustics: Option<&'a PhotonMap>,
     pub history: Option<&'a History>,
     /// A tile is done when its noise is under this, stops.
     pub noise_stops: f32,
-    pub control: &'a Control,
+    pub control: &'a RenderControl,
 }
 
 /// Sums and progress.
@@ -464,7 +464,7 @@ struct Gate<'a> {
     luminance: f32,
 }
 
-impl Sink for Gate<'_> {
+impl RadianceSink for Gate<'_> {
     fn add(&mut self, layer: usize, value: Vec3) {
         let Some(own) = self.job.layers.get(layer).copied().flatten() else { return };
         if value.is_finite() {

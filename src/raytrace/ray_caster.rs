@@ -2,8 +2,8 @@
 
 use super::aggregate::Hit;
 use super::bsdf::pane_transmittance;
-use super::integrator::Tracer;
 use super::medium_stack::MediumStack;
+use super::path_tracer::Tracer;
 use crate::math::Ray;
 use glam::Vec3;
 

@@ -2,11 +2,11 @@
 //! they share it by multiple importance sampling.
 
 use super::caustics::Rival;
-use super::integrator::{Path, Place, Sink, Tracer};
 use super::lights::{LightImportances, TracedLight};
 use super::medium_stack::MediumStack;
+use super::path_tracer::{Path, Place, RadianceSink, Tracer};
+use super::ray_caster::{TOUCHING, reaches};
 use super::sampler::{self, Purpose, Sampler};
-use super::visibility::{TOUCHING, reaches};
 use crate::math::Ray;
 use glam::Vec3;
 
@@ -49,7 +49,7 @@ fn power_heuristic(ours: f32, other: f32) -> f32 {
 
 impl<'a> Tracer<'a> {
     /// The camera sees emitters as solid from the front. True if one hides what is behind it.
-    pub fn camera_sees_emitter(&mut self, ray: &Ray, distance: f32, sink: &mut impl Sink) -> bool {
+    pub fn camera_sees_emitter(&mut self, ray: &Ray, distance: f32, sink: &mut impl RadianceSink) -> bool {
         let scene = self.scene;
         let nearest = scene
             .lights
@@ -80,7 +80,7 @@ impl<'a> Tracer<'a> {
         throughput: Vec3,
         vertex: &Vertex,
         media: &MediumStack,
-        sink: &mut impl Sink,
+        sink: &mut impl RadianceSink,
     ) {
         let scene = self.scene;
         // What lies on the surface is met, too.
@@ -128,7 +128,7 @@ impl<'a> Tracer<'a> {
         sampler: &Sampler,
         first_set: &sampler::Set,
         ways: f32,
-        sink: &mut impl Sink,
+        sink: &mut impl RadianceSink,
     ) {
         let scene = self.scene;
         if self.samples_all(path) {
@@ -169,7 +169,7 @@ impl<'a> Tracer<'a> {
         place: &Place<'_>,
         set: &sampler::Set,
         ways: f32,
-        sink: &mut impl Sink,
+        sink: &mut impl RadianceSink,
     ) {
         let Place { surface, bsdf, .. } = *place;
         let Some(sample) = light.sample(surface.position, sampler::point(set)) else { return };

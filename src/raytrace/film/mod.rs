@@ -1,10 +1,10 @@
 //! Where samples are gathered: one layer a light, so that lights can be dimmed and coloured after the render.
 
-use super::lights::TracedLight;
-use super::schedule::Method;
 use crate::color;
 use crate::photo::Picture;
 use crate::photo::exposure::{self, Strength};
+use crate::raytrace::lights::TracedLight;
+use crate::raytrace::render::Method;
 use crate::scene::{Light, LightId, Scene};
 use glam::Vec3;
 

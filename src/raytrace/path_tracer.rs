@@ -10,8 +10,8 @@
 
 use super::bsdf::{Bsdf, Polarisation};
 use super::bvh::TraversalStack;
-use super::caustics::{CausticMap, Gathered, Rival};
-use super::emission::Vertex;
+use super::caustics::{Gathered, PhotonMap, Rival};
+use super::emitters::Vertex;
 use super::geometry::SurfaceInteraction;
 use super::lights::LightImportances;
 use super::medium_stack::MediumStack;
@@ -33,7 +33,7 @@ pub struct Limits {
 }
 
 /// Where contributions go: (layer, value).
-pub trait Sink {
+pub trait RadianceSink {
     /// Adds white luminance (or finished colour, in shared layers) to a layer.
     fn add(&mut self, layer: usize, value: Vec3);
 }
@@ -53,7 +53,7 @@ const SMALL_SHARE: f32 = 0.25;
 pub struct Tracer<'a> {
     pub(super) scene: &'a RenderScene,
     /// Where photons bring caustics; without, paths find them.
-    caustics: Option<&'a CausticMap>,
+    caustics: Option<&'a PhotonMap>,
     pub(super) stack: TraversalStack,
     /// Rays traced so far.
     pub rays: u64,
@@ -112,7 +112,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// The same with caustics from photons.
-    pub fn with_caustics(scene: &'a RenderScene, caustics: Option<&'a CausticMap>) -> Self {
+    pub fn with_caustics(scene: &'a RenderScene, caustics: Option<&'a PhotonMap>) -> Self {
         Tracer { caustics, ..Tracer::new(scene) }
     }
 
@@ -122,7 +122,14 @@ impl<'a> Tracer<'a> {
     }
 
     /// Follows a camera ray and gives every light's share to `sink`.
-    pub fn trace(&mut self, origin: Vec3, direction: Vec3, sampler: &Sampler, limits: Limits, sink: &mut impl Sink) {
+    pub fn trace(
+        &mut self,
+        origin: Vec3,
+        direction: Vec3,
+        sampler: &Sampler,
+        limits: Limits,
+        sink: &mut impl RadianceSink,
+    ) {
         self.follow_path(origin, direction, sampler, limits, Vertex::new(origin, direction), sink);
     }
 
@@ -134,7 +141,7 @@ impl<'a> Tracer<'a> {
         direction: Vec3,
         sampler: &Sampler,
         limits: Limits,
-        sink: &mut impl Sink,
+        sink: &mut impl RadianceSink,
     ) {
         // A density of next to nothing: the other technique has all the weight.
         let vertex = Vertex { pdf: Some(f32::MIN_POSITIVE), ..Vertex::new(origin, direction) };
@@ -148,7 +155,7 @@ impl<'a> Tracer<'a> {
         sampler: &Sampler,
         limits: Limits,
         vertex: Vertex,
-        sink: &mut impl Sink,
+        sink: &mut impl RadianceSink,
     ) {
         let mut path = Path {
             ray: Ray { origin, direction, t_max: f32::INFINITY },
@@ -166,7 +173,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// Follows a path to its end, and all ways on from where it branches.
-    fn walk(&mut self, path: &mut Path, sampler: &Sampler, limits: Limits, sink: &mut impl Sink) {
+    fn walk(&mut self, path: &mut Path, sampler: &Sampler, limits: Limits, sink: &mut impl RadianceSink) {
         let scene = self.scene;
         loop {
             let hit = self.closest(&path.ray);
@@ -237,7 +244,7 @@ impl<'a> Tracer<'a> {
         branches: u32,
         sampler: &Sampler,
         limits: Limits,
-        sink: &mut impl Sink,
+        sink: &mut impl RadianceSink,
     ) {
         let ways = branches as f32;
         let mut importances = None;
@@ -268,7 +275,7 @@ impl<'a> Tracer<'a> {
         reflectance: f32,
         sampler: &Sampler,
         limits: Limits,
-        sink: &mut impl Sink,
+        sink: &mut impl RadianceSink,
     ) {
         for (choice, share) in [(0.0, reflectance), (BELOW_ONE, 1.0 - reflectance)] {
             let branches = if share < SMALL_SHARE { 1 } else { limits.branches };
@@ -290,7 +297,7 @@ impl<'a> Tracer<'a> {
         lights: Lights,
         sampler: &Sampler,
         limits: Limits,
-        sink: &mut impl Sink,
+        sink: &mut impl RadianceSink,
     ) -> bool {
         let Place { surface, bsdf, distance, outside, .. } = *place;
         let bounce = path.bounce;

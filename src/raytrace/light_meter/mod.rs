@@ -6,21 +6,23 @@
 //! it is small or the rays are spent. Thin panes let direct light through. What mirrors show counts as bounced, and so
 //! does what bodies of glass let through of a light with a size; it is the noisiest part.
 
-use super::film::Layer;
-use super::integrator::{Limits, Sink, Tracer};
-use super::lights::TracedLight;
-use super::medium_stack::MediumStack;
-use super::prepare::{PrepareError, RenderScene, prepare_around};
-use super::receiver::Receiver;
-use super::sampler::{self, Purpose, Sampler};
-use super::schedule::Control;
+mod receptor;
+
 use crate::color::{self, luminance};
 use crate::math::{Ray, warp};
 use crate::photo::exposure::{self, Strength};
 use crate::photo::meter::{LightReading, Reading, Receptor};
+use crate::raytrace::film::Layer;
+use crate::raytrace::lights::TracedLight;
+use crate::raytrace::medium_stack::MediumStack;
+use crate::raytrace::path_tracer::{Limits, RadianceSink, Tracer};
+use crate::raytrace::prepare::{PrepareError, RenderScene, prepare_around};
+use crate::raytrace::render::RenderControl;
+use crate::raytrace::sampler::{self, Purpose, Sampler};
 use crate::scene::{Assets, Camera, Light, LightId, Scene};
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
+use receptor::Receiver;
 
 /// Independent sequences: enough to tell their scatter to a fifth, few enough to stay well stratified each.
 const REPLICATES: u32 = 16;
@@ -33,7 +35,7 @@ const MOST_POINTS: u32 = 16_384;
 
 /// Where and how the receptor stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct MeterPoint {
     /// Position, metres.
     pub position: Vec3,
     /// Unit direction that the receptor faces.
@@ -44,7 +46,7 @@ pub struct Place {
 
 /// When to stop. A result depends on this, on the scene and on the place alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Effort {
+pub struct MeterEffort {
     /// Paths, rounded up to sixteenths; none samples until the error is small.
     pub paths: Option<u32>,
     /// Standard error of each light to stop at, relative to it. Lights under 1 % of all are held to 1 % of all.
@@ -55,23 +57,23 @@ pub struct Effort {
     pub seed: u32,
 }
 
-impl Default for Effort {
+impl Default for MeterEffort {
     /// Good to 0.15 % where that can be had within a few seconds.
     fn default() -> Self {
-        Effort { paths: None, tolerance: 0.0015, rays: 1_500_000, seed: 0 }
+        MeterEffort { paths: None, tolerance: 0.0015, rays: 1_500_000, seed: 0 }
     }
 }
 
-impl Effort {
+impl MeterEffort {
     /// For a readout that follows the mouse.
     pub fn quick() -> Self {
-        Effort { tolerance: 0.01, rays: 100_000, ..Effort::default() }
+        MeterEffort { tolerance: 0.01, rays: 100_000, ..MeterEffort::default() }
     }
 }
 
 /// A reading with what it cost.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Probed {
+pub struct MeterResult {
     /// What the meter shows.
     pub reading: Reading,
     /// Paths traced for the bounced light.
@@ -86,7 +88,7 @@ pub struct Probed {
 
 /// A studio made ready for the meter.
 #[derive(Debug)]
-pub struct Probe {
+pub struct LightMeter {
     scene: RenderScene,
     /// World place of the tracer's origin.
     eye: Vec3,
@@ -121,7 +123,7 @@ fn a_layer_each(_scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<Lay
     lights.iter().map(|(_, light)| Layer::of_light(light)).chain([Layer::shared("Glow")]).collect()
 }
 
-impl Probe {
+impl LightMeter {
     /// Builds trees and tables; places near `around` are read most exactly.
     pub fn new(scene: &Scene, assets: &Assets, around: Vec3) -> Result<Self, PrepareError> {
         let mut prepared = prepare_around(scene, assets, around, a_layer_each)?;
@@ -136,11 +138,11 @@ impl Probe {
         let layer_of = |light: &Light| lights.iter().position(|metered| metered.id == light.id);
         let order = scene.lights.iter().filter(|l| l.on).map(|light| (blank(light), layer_of(light))).collect();
         let glows = prepared.materials.iter().any(|m| m.is_emissive());
-        Ok(Probe { scene: prepared, eye: around, lights, order, camera: scene.camera.clone(), glows })
+        Ok(LightMeter { scene: prepared, eye: around, lights, order, camera: scene.camera.clone(), glows })
     }
 
     /// Reads the meter. None when cancelled.
-    pub fn read(&self, place: &Place, effort: &Effort, control: &Control) -> Option<Probed> {
+    pub fn read(&self, place: &MeterPoint, effort: &MeterEffort, control: &RenderControl) -> Option<MeterResult> {
         let receiver = Receiver::new(place, self.eye);
         let mut sequences: Vec<Sequence> = (0..REPLICATES).map(|i| Sequence::new(i, self.lights.len())).collect();
         let mut round = Round::first(effort, self.lights.len());
@@ -153,7 +155,7 @@ impl Probe {
             let rays: u64 = sequences.iter().map(|s| s.rays).sum();
             let lights = self.readings(&sequences);
             if !round.next(self, &sequences, &lights, effort, rays) {
-                return Some(Probed {
+                return Some(MeterResult {
                     reading: Reading::new(self.in_order(lights), &self.camera),
                     paths: sequences.iter().map(|s| u64::from(s.paths)).sum(),
                     rays,
@@ -290,7 +292,7 @@ struct Round {
 }
 
 impl Round {
-    fn first(effort: &Effort, lights: usize) -> Self {
+    fn first(effort: &MeterEffort, lights: usize) -> Self {
         let (points, paths) = match effort.paths {
             Some(paths) => {
                 let each = paths.div_ceil(REPLICATES).max(1);
@@ -304,10 +306,10 @@ impl Round {
     /// Doubles what is not good enough; false when nothing is left to do.
     fn next(
         &mut self,
-        probe: &Probe,
+        probe: &LightMeter,
         sequences: &[Sequence],
         lights: &[LightReading],
-        effort: &Effort,
+        effort: &MeterEffort,
         rays: u64,
     ) -> bool {
         let seconds = |light: &LightReading| if light.flash { 1.0 } else { probe.camera.shutter_s };
@@ -354,11 +356,11 @@ fn path_error(sequences: &[Sequence], layer: usize, rgb: Vec3) -> (f64, f64) {
 
 /// A round's work on one sequence.
 struct Job<'a> {
-    probe: &'a Probe,
+    probe: &'a LightMeter,
     receiver: Receiver,
     round: &'a Round,
     seed: u32,
-    control: &'a Control,
+    control: &'a RenderControl,
 }
 
 /// Samples between two looks at whether the user has cancelled.
@@ -468,7 +470,7 @@ struct Gather<'a> {
     nonfinite: &'a mut u64,
 }
 
-impl Sink for Gather<'_> {
+impl RadianceSink for Gather<'_> {
     fn add(&mut self, layer: usize, value: Vec3) {
         let value = value * self.weight;
         if value.is_finite() {

@@ -1,6 +1,6 @@
 //! The light meter's receptor: where it stands, and how it answers to directions.
 
-use super::probe::Place;
+use super::MeterPoint;
 use crate::math::{orthonormal_basis, safe_sqrt, sin_cos_turn, warp};
 use crate::photo::meter::Receptor;
 use glam::{Vec2, Vec3};
@@ -25,7 +25,7 @@ pub struct Receiver {
 
 impl Receiver {
     /// At a place, with the tracer's origin at `eye`.
-    pub fn new(place: &Place, eye: Vec3) -> Self {
+    pub fn new(place: &MeterPoint, eye: Vec3) -> Self {
         let (tangent, bitangent) = orthonormal_basis(place.facing);
         let origin = (place.position - eye) + place.facing * LIFT_M;
         Receiver { origin, facing: place.facing, tangent, bitangent, receptor: place.receptor }

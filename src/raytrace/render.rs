@@ -1,8 +1,8 @@
 //! Waves of samples over all tiles, with snapshots, cancel and progress.
 
-use super::caustics::{CausticMap, USUAL_PHOTONS, Wave};
+use super::caustics::{PhotonMap, USUAL_PHOTONS, Wave};
 use super::film::{Film, TileFilm};
-use super::integrator::{Limits, Sink, Tracer};
+use super::path_tracer::{Limits, RadianceSink, Tracer};
 use super::prepare::RenderScene;
 use super::sampler::{self, Purpose, Sampler};
 use crate::color::luminance;
@@ -63,16 +63,16 @@ impl Settings {
 
 /// Shared between a render and whoever watches it.
 #[derive(Debug, Default)]
-pub struct Control {
+pub struct RenderControl {
     cancelled: AtomicBool,
     rays: AtomicU64,
     samples: AtomicU64,
 }
 
-impl Control {
+impl RenderControl {
     /// A control that nobody has cancelled yet.
     pub fn new() -> Self {
-        Control::default()
+        RenderControl::default()
     }
 
     /// Asks the render to stop; it ends within a tile's time.
@@ -114,7 +114,7 @@ const JUDGED_FROM: u32 = 8;
 pub fn render(
     scene: &RenderScene,
     settings: &Settings,
-    control: &Control,
+    control: &RenderControl,
     on_wave: &mut dyn FnMut(&Film) -> ControlFlow<()>,
 ) -> Film {
     let mut film = Film::new(settings.width, settings.height, scene.layers());
@@ -151,12 +151,18 @@ impl Settings {
     }
 
     /// The photons of a wave of samples, where any are of use.
-    fn caustics(&self, scene: &RenderScene, first_sample: u32, samples: u32, control: &Control) -> Option<CausticMap> {
+    fn caustics(
+        &self,
+        scene: &RenderScene,
+        first_sample: u32,
+        samples: u32,
+        control: &RenderControl,
+    ) -> Option<PhotonMap> {
         let frame = scene.lens.frame(self.width as f32 / self.height as f32);
         let pixel_m = 2.0 * frame.half_extent.x / self.width as f32;
         let photons = USUAL_PHOTONS.max(self.pixels() * u64::from(samples));
         let wave = Wave { first_sample, samples, photons, pixel_m, eye: Vec3::ZERO, seed: self.seed };
-        self.takes_photons(scene).then(|| CausticMap::trace(scene, &wave, control))
+        self.takes_photons(scene).then(|| PhotonMap::trace(scene, &wave, control))
     }
 
     /// Whether a tile needs no more samples.
@@ -169,9 +175,9 @@ impl Settings {
 /// A wave's work on one tile.
 struct TileJob<'a> {
     scene: &'a RenderScene,
-    caustics: Option<&'a CausticMap>,
+    caustics: Option<&'a PhotonMap>,
     settings: &'a Settings,
-    control: &'a Control,
+    control: &'a RenderControl,
     wave: u32,
 }
 
@@ -238,7 +244,7 @@ struct Gate<'a> {
     luminance: f32,
 }
 
-impl Sink for Gate<'_> {
+impl RadianceSink for Gate<'_> {
     fn add(&mut self, layer: usize, value: Vec3) {
         if value.is_finite() {
             self.tile.add(layer, self.pixel, value);
