@@ -1,6 +1,6 @@
 //! Frame times in motion, each frame waited for: what somebody gets who orbits about the studio.
 
-use super::gpu::guarded;
+use super::gpu::device::guarded;
 use super::{PreviewError, PreviewInput, PreviewRenderer};
 use eframe::wgpu;
 use glam::{Affine3A, Quat, Vec3};

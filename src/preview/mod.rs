@@ -7,40 +7,27 @@
 //! of the tracer's picture: bounced light (estimated), true reflection and refraction, exact soft shadows.
 
 mod channel;
-mod clusters;
-mod draw_list;
-mod draw_uniforms;
-mod environment;
 mod error;
 mod frame_times;
-mod gizmo;
+mod geometry;
 mod gpu;
 mod input;
-mod light_table;
-mod light_tiles;
-mod lighting_pass;
-mod mesh_cache;
+mod lights;
 pub mod offscreen;
-mod overlay_pass;
+mod overlay;
 mod pick;
 mod pipelines;
 mod renderer;
 mod scene_buffers;
 mod shaders;
-mod shadow_focus;
-mod shadow_layers;
-mod shadow_maps;
-mod shadow_mask;
-mod shadow_parts;
-mod shadow_views;
+mod shadows;
 mod targets;
-mod texture_cache;
 
 pub use channel::{Channel, FALSE_STOPS, Gloss, false_color};
 pub use error::PreviewError;
 pub use frame_times::FrameTimes;
-pub use gizmo::{Gizmos, GpuLine, GpuTint};
-pub use gpu::{Gpu, LossFlag};
+pub use gpu::device::{Gpu, LossFlag};
 pub use input::{Options, Overlay, Pick, PreviewInput};
+pub use overlay::gizmo::{Gizmos, GpuLine, GpuTint};
 pub use pick::{ObjectMask, PickHit, REACH_PX};
 pub use renderer::PreviewRenderer;

@@ -1,6 +1,6 @@
 //! Pictures without a window.
 
-use super::gpu::guarded;
+use super::gpu::device::guarded;
 use super::targets::{Output, read_back};
 use super::{Gpu, ObjectMask, PreviewError, PreviewInput, PreviewRenderer};
 use crate::photo::Picture;

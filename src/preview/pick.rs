@@ -1,6 +1,6 @@
 //! What stands at a pixel, from the id buffer and the gizmos' lines.
 
-use super::gpu::guarded;
+use super::gpu::device::guarded;
 use super::scene_buffers::NEAR_M;
 use super::targets::{copy_to, read_back};
 use super::{Pick, PreviewError, PreviewRenderer};

@@ -1,12 +1,13 @@
 //! The fixed list of pipelines. Constructors of pipelines are tables; they run long for that reason.
 
 use super::channel::{Channel, Gloss};
-use super::draw_list::Shadow;
-use super::gizmo::{GpuLine, GpuTint};
-use super::mesh_cache::VERTEX_LAYOUT;
-use super::shadow_maps::{self, Side};
+use super::geometry::draw_list::Shadow;
+use super::geometry::mesh_cache::VERTEX_LAYOUT;
+use super::overlay::gizmo::{GpuLine, GpuTint};
+use super::shaders;
+use super::shadows::maps::{self as shadow_maps, Side};
+use super::shadows::mask as shadow_mask;
 use super::targets::{CELL_FORMAT, DEPTH_FORMAT, GBUFFER_FORMAT, ID_FORMAT, Output};
-use super::{shaders, shadow_mask};
 use eframe::wgpu;
 
 /// Factor of the room's depth, near over distance: paper laid on its floor lies on top. Not a depth bias, whose unit is

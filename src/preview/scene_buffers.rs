@@ -1,9 +1,9 @@
 //! The buffers that every pass reads: frame, surfaces, lights.
 
-use super::draw_list::GpuSurface;
-use super::environment::Environment;
-use super::light_table::{Ambient, GpuLight, MAX_LIGHTS};
-use super::light_tiles::TILES_BYTES;
+use super::geometry::draw_list::GpuSurface;
+use super::lights::environment::Environment;
+use super::lights::light_table::{Ambient, GpuLight, MAX_LIGHTS};
+use super::lights::light_tiles::TILES_BYTES;
 use crate::scene::CameraFrame;
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu;

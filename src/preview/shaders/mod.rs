@@ -3,17 +3,17 @@
 use eframe::wgpu;
 
 /// The geometry pass.
-pub(super) const GEOMETRY: &str =
+pub(crate) const GEOMETRY: &str =
     concat!(include_str!("scene.wgsl"), include_str!("draw.wgsl"), include_str!("geometry.wgsl"));
 /// The shadow maps.
-pub(super) const SHADOW_MAP: &str =
+pub(crate) const SHADOW_MAP: &str =
     concat!(include_str!("scene.wgsl"), include_str!("draw.wgsl"), include_str!("shadow_map.wgsl"));
 /// The shadow masks.
-pub(super) const SHADOW_MASK: &str = concat!(include_str!("scene.wgsl"), include_str!("shadow_mask.wgsl"));
+pub(crate) const SHADOW_MASK: &str = concat!(include_str!("scene.wgsl"), include_str!("shadow_mask.wgsl"));
 /// The blur of the shadow masks.
-pub(super) const SHADOW_BLUR: &str = concat!(include_str!("scene.wgsl"), include_str!("shadow_blur.wgsl"));
+pub(crate) const SHADOW_BLUR: &str = concat!(include_str!("scene.wgsl"), include_str!("shadow_blur.wgsl"));
 /// The lighting pass.
-pub(super) const LIGHTING: &str = concat!(
+pub(crate) const LIGHTING: &str = concat!(
     include_str!("scene.wgsl"),
     include_str!("light.wgsl"),
     include_str!("brdf.wgsl"),
@@ -22,17 +22,17 @@ pub(super) const LIGHTING: &str = concat!(
     include_str!("lighting.wgsl")
 );
 /// Light of one pixel of each cell, spread over all.
-pub(super) const RESOLVE: &str = concat!(
+pub(crate) const RESOLVE: &str = concat!(
     include_str!("scene.wgsl"),
     include_str!("tone.wgsl"),
     include_str!("false_color.wgsl"),
     include_str!("resolve.wgsl")
 );
 /// One channel of the G-buffer.
-pub(super) const CHANNEL: &str =
+pub(crate) const CHANNEL: &str =
     concat!(include_str!("scene.wgsl"), include_str!("tone.wgsl"), include_str!("channel.wgsl"));
 /// Glass over the lit picture.
-pub(super) const GLASS: &str = concat!(
+pub(crate) const GLASS: &str = concat!(
     include_str!("scene.wgsl"),
     include_str!("light.wgsl"),
     include_str!("brdf.wgsl"),
@@ -41,12 +41,12 @@ pub(super) const GLASS: &str = concat!(
     include_str!("glass.wgsl")
 );
 /// Lines and tints.
-pub(super) const OVERLAY: &str = concat!(include_str!("scene.wgsl"), include_str!("overlay.wgsl"));
+pub(crate) const OVERLAY: &str = concat!(include_str!("scene.wgsl"), include_str!("overlay.wgsl"));
 /// The outline of the selection.
-pub(super) const OUTLINE: &str = concat!(include_str!("scene.wgsl"), include_str!("outline.wgsl"));
+pub(crate) const OUTLINE: &str = concat!(include_str!("scene.wgsl"), include_str!("outline.wgsl"));
 
 /// Compiles a module.
-pub(super) fn module(device: &wgpu::Device, label: &str, source: &str) -> wgpu::ShaderModule {
+pub(crate) fn module(device: &wgpu::Device, label: &str, source: &str) -> wgpu::ShaderModule {
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),
         source: wgpu::ShaderSource::Wgsl(source.into()),

@@ -1,6 +1,6 @@
 //! A graphics device without a window, and the guard that turns driver errors into ours.
 
-use super::PreviewError;
+use crate::preview::PreviewError;
 use eframe::wgpu;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, OnceLock};
@@ -80,13 +80,13 @@ impl LossFlag {
     }
 
     /// An error if the device is gone.
-    pub(super) fn check(&self) -> Result<(), PreviewError> {
+    pub(crate) fn check(&self) -> Result<(), PreviewError> {
         self.0.get().map_or(Ok(()), |why| Err(PreviewError::DeviceLost(why.clone())))
     }
 }
 
 /// Runs GPU work so that an error of the driver comes back as a value; left alone, wgpu would panic.
-pub(super) fn guarded<T>(
+pub(crate) fn guarded<T>(
     device: &wgpu::Device,
     loss: &LossFlag,
     work: impl FnOnce() -> Result<T, PreviewError>,

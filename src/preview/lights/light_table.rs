@@ -10,7 +10,7 @@ use glam::{Affine3A, Vec2, Vec3};
 use std::f32::consts::PI;
 
 /// Lights beyond this number are not shown.
-pub(super) const MAX_LIGHTS: usize = 256;
+pub(crate) const MAX_LIGHTS: usize = 256;
 /// What is left out of the picture of many lights: 1/256 of display white.
 const LEAST_SHOWN: f32 = 1.0 / 256.0;
 /// Smallest side of a panel and radius of a bulb, metres: a light of no size keeps a finite luminance.
@@ -19,7 +19,7 @@ const SMALLEST_M: f32 = 1e-3;
 /// What a `GpuLight` is; the numbers are repeated in `light.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Point = 0,
     Spot = 1,
     Sphere = 2,
@@ -31,7 +31,7 @@ pub(super) enum Kind {
 /// One light in a storage buffer; twin of `Light` in `scene.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub(super) struct GpuLight {
+pub(crate) struct GpuLight {
     pub position: [f32; 3],
     pub kind: u32,
     /// Half width vector of a panel; unit otherwise.
@@ -123,7 +123,7 @@ impl GpuLight {
 
 /// Light that has no direction here, in picture units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Ambient {
+pub(crate) struct Ambient {
     /// Irradiance from all round: surround and the bounce estimate.
     pub irradiance: Vec3,
     /// Luminance of a surround.
@@ -134,7 +134,7 @@ pub(super) struct Ambient {
 
 /// The lights that are on, sorted by family.
 #[derive(Clone, Debug, Default)]
-pub(super) struct LightTable {
+pub(crate) struct LightTable {
     pub lights: Vec<GpuLight>,
     /// Of each of them.
     pub ids: Vec<LightId>,
@@ -188,13 +188,13 @@ impl LightTable {
 }
 
 /// Picture value for each unit of a light, per channel.
-pub(super) fn picture_scale(light: &Light, camera: &Camera) -> Vec3 {
+pub(crate) fn picture_scale(light: &Light, camera: &Camera) -> Vec3 {
     let seconds = exposure::integration_time_s(&light.power.output, camera);
     color::light_rgb(&light.color, camera.white_balance_k) * exposure::pixel_per_cd_s_m2(camera) * seconds
 }
 
 /// Picture value of a surface's own glow.
-pub(super) fn emission(material: &Material, camera: &Camera) -> Vec3 {
+pub(crate) fn emission(material: &Material, camera: &Camera) -> Vec3 {
     Vec3::from(material.emission_cd_m2) * exposure::pixel_per_cd_s_m2(camera) * camera.shutter_s
 }
 

@@ -16,7 +16,7 @@ const FAR_M: f32 = 20.0;
 
 /// The surroundings of the subjects.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Environment {
+pub(crate) struct Environment {
     /// Corners of the box, metres.
     pub low: Vec3,
     pub high: Vec3,

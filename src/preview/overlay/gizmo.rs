@@ -1,6 +1,6 @@
 //! Lines and tints that stand for what has no surface: lights, their beams and aims, the camera, the floor's grid.
 
-use super::input::{Overlay, Pick};
+use crate::preview::input::{Overlay, Pick};
 use crate::scene::{Camera, CameraFrame, Emitter, Light, Role, Scene};
 use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Vec2, Vec3};

@@ -1,11 +1,11 @@
 //! The shadow masks: how much of each light reaches each pixel, four lights a layer, kept while nothing moves.
 
-use super::shadow_maps::{array_view, dynamic_uniform, dynamic_uniform_layout, layer_views};
-use super::shadow_views::{GpuShadows, MAX_SHADOWS, ShadowPlan};
+use super::maps::{array_view, dynamic_uniform, dynamic_uniform_layout, layer_views};
+use super::views::{GpuShadows, MAX_SHADOWS, ShadowPlan};
 use eframe::wgpu;
 
 /// Four shadows in a word, and the depth's bits.
-pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
+pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// Bytes of four lights' views.
 const SLOTS_BYTES: usize = size_of::<GpuShadows>();
 /// Distance between the slots of two masks: a multiple of every device's offset alignment.
@@ -13,7 +13,7 @@ const OFFSET_STRIDE: u64 = (SLOTS_BYTES as u64).next_multiple_of(256);
 
 /// Masks of a picture's size and the uniforms that fill them.
 #[derive(Debug)]
-pub(super) struct ShadowMasks {
+pub(crate) struct ShadowMasks {
     slots_layout: wgpu::BindGroupLayout,
     slots_buffer: wgpu::Buffer,
     slots: wgpu::BindGroup,

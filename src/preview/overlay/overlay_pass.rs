@@ -1,19 +1,19 @@
 //! The forward pass over the finished picture: outline of the selection, tints, lines.
 
-use super::draw_list::Caster;
 use super::gizmo::Gizmos;
-use super::pipelines::{Layouts, OverlayPipelines};
-use super::targets::Targets;
+use crate::preview::geometry::draw_list::Caster;
+use crate::preview::pipelines::{Layouts, OverlayPipelines};
+use crate::preview::targets::Targets;
 use crate::scene::CameraFrame;
 use eframe::wgpu;
 use glam::{UVec2, Vec2};
 
 /// Part of a picture in pixels: corner and size.
-pub(super) type Area = (UVec2, UVec2);
+pub(crate) type Area = (UVec2, UVec2);
 
 /// Pipelines and buffers of the overlay.
 #[derive(Debug)]
-pub(super) struct OverlayPass {
+pub(crate) struct OverlayPass {
     pipelines: OverlayPipelines,
     lines: Vertices,
     tints: Vertices,
@@ -118,7 +118,7 @@ impl OverlayPass {
 }
 
 /// Takes the picture away, so that what is drawn next stands alone.
-pub(super) fn clear(encoder: &mut wgpu::CommandEncoder, view: &wgpu::TextureView) {
+pub(crate) fn clear(encoder: &mut wgpu::CommandEncoder, view: &wgpu::TextureView) {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("clear for the overlay"),
         color_attachments: &[Some(wgpu::RenderPassColorAttachment {

@@ -1,14 +1,14 @@
 //! The passes that light the G-buffer: in full, or as a draft that lights one pixel of each cell and spreads the light.
 
-use super::channel::Channel;
-use super::pipelines::{self, Layouts, LightingVariant, Sides};
-use super::targets::{Output, Targets};
+use crate::preview::channel::Channel;
+use crate::preview::pipelines::{self, Layouts, LightingVariant, Sides};
+use crate::preview::targets::{Output, Targets};
 use eframe::wgpu;
 use std::collections::HashMap;
 
 /// Pipelines of the lighting passes, compiled when a scene first needs them.
 #[derive(Debug)]
-pub(super) struct LightingPasses {
+pub(crate) struct LightingPasses {
     lighting: HashMap<LightingVariant, wgpu::RenderPipeline>,
     glass: HashMap<(LightingVariant, (Sides, bool)), wgpu::RenderPipeline>,
     /// Of pictures and of illuminance.
@@ -17,7 +17,7 @@ pub(super) struct LightingPasses {
 }
 
 /// What the lighting passes read.
-pub(super) struct LightingInput<'a> {
+pub(crate) struct LightingInput<'a> {
     pub scene: &'a wgpu::BindGroup,
     pub targets: &'a Targets,
     pub masks: &'a wgpu::BindGroup,

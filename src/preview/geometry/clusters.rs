@@ -17,7 +17,7 @@ const WIDEST_CONE: f32 = 0.1;
 
 /// A run of neighbouring triangles.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Cluster {
+pub(crate) struct Cluster {
     /// Its indices, three a triangle.
     pub indices: Range<u32>,
     /// Ball around it, object space.
@@ -30,7 +30,7 @@ pub(super) struct Cluster {
 
 /// A mesh in the order of its clusters.
 #[derive(Debug)]
-pub(super) struct Clustered {
+pub(crate) struct Clustered {
     /// Indices into `vertices`; each part keeps its run.
     pub triangles: Vec<[u32; 3]>,
     /// The mesh's own number of each vertex, in the order in which triangles first use them.
@@ -41,7 +41,7 @@ pub(super) struct Clustered {
 
 /// From where a mesh is seen, in its own space.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Eye {
+pub(crate) struct Eye {
     position: Vec3,
     /// The picture's four sides: points inside are on the positive side of each.
     sides: [Vec4; 4],

@@ -1,20 +1,20 @@
 //! The shadow maps themselves: two sides a view. One holds what is nearest to the light; in the other, solids show
 //! their far sides.
 
-use super::draw_list::DrawList;
-use super::shadow_layers::{ShadowLayers, StaleMap};
-use super::shadow_views::{MAX_VIEWS, ShadowPlan};
+use super::layers::{ShadowLayers, StaleMap};
+use super::views::{MAX_VIEWS, ShadowPlan};
+use crate::preview::geometry::draw_list::DrawList;
 use eframe::wgpu;
 use glam::Mat4;
 
 /// Depth of all maps.
-pub(super) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Dynamic uniform offsets are multiples of this on every device.
 const OFFSET_STRIDE: u64 = 256;
 
 /// Which sides of solids a map holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub(crate) enum Side {
     /// Whatever is nearest to the light.
     Near = 0,
     /// Their far sides.
@@ -23,7 +23,7 @@ pub(super) enum Side {
 
 /// All shadow maps, in one array texture.
 #[derive(Debug)]
-pub(super) struct ShadowMaps {
+pub(crate) struct ShadowMaps {
     view_layout: wgpu::BindGroupLayout,
     view_buffer: wgpu::Buffer,
     view: wgpu::BindGroup,
@@ -134,7 +134,7 @@ impl ShadowMaps {
 }
 
 /// Layout of one uniform buffer whose offset is given at each use.
-pub(super) fn dynamic_uniform_layout(
+pub(crate) fn dynamic_uniform_layout(
     device: &wgpu::Device,
     label: &str,
     visibility: wgpu::ShaderStages,
@@ -155,7 +155,7 @@ pub(super) fn dynamic_uniform_layout(
 }
 
 /// Bind group of such a buffer, `size` bytes at each use.
-pub(super) fn dynamic_uniform(
+pub(crate) fn dynamic_uniform(
     device: &wgpu::Device,
     label: &str,
     layout: &wgpu::BindGroupLayout,
@@ -204,7 +204,7 @@ fn create_maps(
 }
 
 /// All layers of a texture as an array.
-pub(super) fn array_view(texture: &wgpu::Texture) -> wgpu::TextureView {
+pub(crate) fn array_view(texture: &wgpu::Texture) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),
         ..Default::default()
@@ -212,7 +212,7 @@ pub(super) fn array_view(texture: &wgpu::Texture) -> wgpu::TextureView {
 }
 
 /// Each layer of a texture by itself.
-pub(super) fn layer_views(texture: &wgpu::Texture) -> Vec<wgpu::TextureView> {
+pub(crate) fn layer_views(texture: &wgpu::Texture) -> Vec<wgpu::TextureView> {
     let layer = |layer| {
         texture.create_view(&wgpu::TextureViewDescriptor {
             dimension: Some(wgpu::TextureViewDimension::D2),

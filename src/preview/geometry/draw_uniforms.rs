@@ -4,7 +4,7 @@
 //! read it once for all vertices, which takes a quarter off their work before the first pixel.
 
 use super::draw_list::GpuSurface;
-use super::shadow_maps::{dynamic_uniform, dynamic_uniform_layout};
+use crate::preview::shadows::maps::{dynamic_uniform, dynamic_uniform_layout};
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu;
 use glam::{Affine3A, Vec3};
@@ -17,7 +17,7 @@ const FIRST_ROOM: usize = 64;
 /// One draw; twin of `Draw` in `draw.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub(super) struct GpuDraw {
+pub(crate) struct GpuDraw {
     /// Rows of world from object.
     world_from_object: [[f32; 4]; 3],
     /// Rows that take normals to the world, to any length.
@@ -64,7 +64,7 @@ fn pack_gloss(roughness: f32, metallic: f32, ior: f32) -> u32 {
 
 /// The draws of a frame, one for each surface.
 #[derive(Debug)]
-pub(super) struct DrawUniforms {
+pub(crate) struct DrawUniforms {
     layout: wgpu::BindGroupLayout,
     buffer: wgpu::Buffer,
     bind_group: wgpu::BindGroup,

@@ -1,13 +1,13 @@
 //! What there is to draw: one record a surface for the shaders, one item a run of triangles for the passes.
 
 use super::draw_uniforms::GpuDraw;
-use super::input::{Overlay, Pick};
-use super::light_table::{emission, picture_scale};
 use super::mesh_cache::{EmitterSurface, MeshCache, MeshKey};
-use super::pipelines::Sides;
-use super::shadow_layers::View;
 use super::texture_cache::{TextureCache, WHITE};
 use crate::photo::exposure;
+use crate::preview::input::{Overlay, Pick};
+use crate::preview::lights::light_table::{emission, picture_scale};
+use crate::preview::pipelines::Sides;
+use crate::preview::shadows::layers::View;
 use crate::scene::{Assets, Emitter, Material, MeshPart, Scene, Shape};
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu;
@@ -27,7 +27,7 @@ const FLAG_HOVERED: u32 = 8;
 /// One surface in a storage buffer; twin of `Surface` in `scene.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub(super) struct GpuSurface {
+pub(crate) struct GpuSurface {
     pub base_color: [f32; 3],
     pub roughness: f32,
     /// Picture units.
@@ -57,7 +57,7 @@ impl GpuSurface {
 
 /// In which pass a run of triangles is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Pass {
+pub(crate) enum Pass {
     /// Opaque, seen from both sides.
     Opaque,
     /// Opaque, seen from the front only: a camera outside looks into the room.
@@ -68,7 +68,7 @@ pub(super) enum Pass {
 
 /// A run of triangles.
 #[derive(Clone, Debug)]
-pub(super) struct DrawItem {
+pub(crate) struct DrawItem {
     pub mesh: MeshKey,
     pub indices: std::ops::Range<u32>,
     /// Index of its record, which is also its mark in the id buffer (plus one).
@@ -84,7 +84,7 @@ pub(super) struct DrawItem {
 
 /// What of a run of triangles casts shadows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shadow {
+pub(crate) enum Shadow {
     /// Nothing.
     Nothing,
     /// All of it: a sheet.
@@ -121,7 +121,7 @@ impl Shadow {
 
 /// Corners of something that casts a shadow: its box in object space and its place.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Caster {
+pub(crate) struct Caster {
     pub world_from_object: Affine3A,
     pub low: Vec3,
     pub high: Vec3,
@@ -197,7 +197,7 @@ impl DrawList {
 
 /// Everything a frame draws.
 #[derive(Clone, Debug, Default)]
-pub(super) struct DrawList {
+pub(crate) struct DrawList {
     pub records: Vec<GpuSurface>,
     /// Of each record: where it stands, and what its draw reads.
     pub places: Vec<Affine3A>,
@@ -213,7 +213,7 @@ pub(super) struct DrawList {
 }
 
 /// The device and the caches that a draw list fills.
-pub(super) struct Uploads<'a> {
+pub(crate) struct Uploads<'a> {
     pub device: &'a wgpu::Device,
     pub queue: &'a wgpu::Queue,
     pub meshes: &'a mut MeshCache,

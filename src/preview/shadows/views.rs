@@ -1,18 +1,18 @@
 //! From where each light sees the studio: one view that covers all casters where they fit, six for a light among them;
 //! the same for each part of an emitter that is taken in parts.
 
-use super::draw_list::Caster;
-use super::light_table::{GpuLight, Kind, LightTable};
-use super::shadow_focus::Seen;
-use super::shadow_layers::{Owner, Run, View};
-use super::shadow_parts::{MOST_PARTS, parts};
+use super::focus::Seen;
+use super::layers::{Owner, Run, View};
+use super::parts::{MOST_PARTS, parts};
+use crate::preview::geometry::draw_list::Caster;
+use crate::preview::lights::light_table::{GpuLight, Kind, LightTable};
 use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Mat4, Quat, Vec2, Vec3, Vec4};
 
 /// Shadow maps in use at once.
-pub(super) const MAX_VIEWS: usize = 48;
+pub(crate) const MAX_VIEWS: usize = 48;
 /// Lights that cast shadows, four a mask; lights beyond cast none.
-pub(super) const MAX_SHADOWS: usize = 16;
+pub(crate) const MAX_SHADOWS: usize = 16;
 /// Tangent of the widest half angle of one view, 75 degrees; a light whose casters reach farther gets a cube.
 const WIDEST: f32 = 3.73;
 /// Half width of a cube face at distance 1, a little over 1 so that the kernel may reach over the edge.
@@ -34,7 +34,7 @@ enum Projection {
 /// View of a light or of a part of it; twin of `Slot` in `shadow_mask.wgsl`. All zero: no shadow.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub(super) struct GpuShadowSlot {
+pub(crate) struct GpuShadowSlot {
     pub position: [f32; 3],
     pub layer: u32,
     pub right: [f32; 3],
@@ -55,7 +55,7 @@ pub(super) struct GpuShadowSlot {
 /// Four lights' views; twin of `Shadows` in `shadow_mask.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub(super) struct GpuShadows {
+pub(crate) struct GpuShadows {
     /// Of each light, the parts in which it is taken.
     pub counts: [u32; 4],
     pub slots: [[GpuShadowSlot; MOST_PARTS]; 4],
@@ -63,7 +63,7 @@ pub(super) struct GpuShadows {
 
 /// The views to draw, and how each light reads them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct ShadowPlan {
+pub(crate) struct ShadowPlan {
     /// The views that this frame reads, light by light.
     pub runs: Vec<Run>,
     /// Four lights each, in their order. Slots count `runs` until `set_layers` has said where those are.

@@ -4,13 +4,13 @@
 //! corner of a window: seen from the middle the body itself stands before it, and light was lost. Each part's shadow
 //! counts by the light that it sends.
 
-use super::draw_list::Caster;
-use super::light_table::{GpuLight, Kind};
+use crate::preview::geometry::draw_list::Caster;
+use crate::preview::lights::light_table::{GpuLight, Kind};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
 /// Most parts of an emitter.
-pub(super) const MOST_PARTS: usize = 4;
+pub(crate) const MOST_PARTS: usize = 4;
 /// An emitter is taken in parts if its half diagonal is more than this part of the distance to what may cast a shadow.
 const WIDE: f32 = 0.4;
 /// Parts of a panel this much longer than it is wide lie in a row.
@@ -18,7 +18,7 @@ const LONG: f32 = 2.0;
 
 /// A part of an emitter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Part {
+pub(crate) struct Part {
     /// Its middle, in half axes of the emitter.
     pub at: Vec2,
     /// Half axes of its penumbra, metres.
@@ -26,7 +26,7 @@ pub(super) struct Part {
 }
 
 /// The parts in which a light's shadow is taken; one for most lights.
-pub(super) fn parts(light: &GpuLight, casters: &[Caster]) -> Vec<Part> {
+pub(crate) fn parts(light: &GpuLight, casters: &[Caster]) -> Vec<Part> {
     let softness = light.softness();
     let whole = vec![Part { at: Vec2::ZERO, softness }];
     let half = Vec2::new(Vec3::from(light.right).length(), Vec3::from(light.up).length());

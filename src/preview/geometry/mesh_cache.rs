@@ -22,7 +22,7 @@ struct Vertex {
 }
 
 /// Layout of the vertex buffer.
-pub(super) const VERTEX_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
+pub(crate) const VERTEX_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: size_of::<Vertex>() as u64,
     step_mode: wgpu::VertexStepMode::Vertex,
     attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x2],
@@ -30,7 +30,7 @@ pub(super) const VERTEX_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::Vertex
 
 /// Surface of an emitter that the camera sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum EmitterSurface {
+pub(crate) enum EmitterSurface {
     /// Square from -1 to 1 in XY, facing -Z.
     Square,
     /// Unit disc in XY, facing -Z.
@@ -41,7 +41,7 @@ pub(super) enum EmitterSurface {
 
 /// What identifies a mesh: the pointer of shared triangles, the numbers of a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum MeshKey {
+pub(crate) enum MeshKey {
     Shared(usize),
     Formula(u8, [u32; 4]),
     Room([u32; 3]),
@@ -50,7 +50,7 @@ pub(super) enum MeshKey {
 
 /// A mesh on the device.
 #[derive(Debug)]
-pub(super) struct GpuMesh {
+pub(crate) struct GpuMesh {
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
     pub parts: Vec<MeshPart>,
@@ -73,7 +73,7 @@ impl GpuMesh {
 
 /// All meshes on the device.
 #[derive(Debug, Default)]
-pub(super) struct MeshCache {
+pub(crate) struct MeshCache {
     meshes: HashMap<MeshKey, GpuMesh>,
     frame: u64,
 }

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Key of the white texture that untextured surfaces read.
-pub(super) const WHITE: usize = 0;
+pub(crate) const WHITE: usize = 0;
 
 /// One level: width, height, RGBA rows.
 type Level = (u32, u32, Vec<[u8; 4]>);
@@ -21,7 +21,7 @@ struct Entry {
 
 /// All textures on the device, by pointer.
 #[derive(Debug)]
-pub(super) struct TextureCache {
+pub(crate) struct TextureCache {
     layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
     entries: HashMap<usize, Entry>,

@@ -17,10 +17,10 @@ const STRIDE: usize = 17;
 /// Lists that hold more than this part of all lights in all tiles are not worth looking up.
 const FULL: f32 = 0.75;
 /// Bytes of all lists.
-pub(super) const TILES_BYTES: u64 = (COLUMNS * ROWS * STRIDE * size_of::<[u32; 4]>()) as u64;
+pub(crate) const TILES_BYTES: u64 = (COLUMNS * ROWS * STRIDE * size_of::<[u32; 4]>()) as u64;
 
 /// The lists of all tiles, as `scene.wgsl` reads them; none where nearly every light reaches nearly every tile.
-pub(super) fn light_tiles(table: &LightTable, camera: &CameraFrame) -> Option<Vec<[u32; 4]>> {
+pub(crate) fn light_tiles(table: &LightTable, camera: &CameraFrame) -> Option<Vec<[u32; 4]>> {
     let reached: Vec<_> = table.lights.iter().map(|light| tiles_reached(light, camera)).collect();
     let listed: usize = reached.iter().map(|(low, high)| (high[0] - low[0]) * (high[1] - low[1])).sum();
     if listed as f32 >= FULL * (table.lights.len() * COLUMNS * ROWS) as f32 {
@@ -104,7 +104,7 @@ fn cone_rad(light: &GpuLight) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preview::light_table::Kind;
+    use crate::preview::lights::light_table::Kind;
     use bytemuck::Zeroable;
     use glam::{Affine3A, Vec3};
 

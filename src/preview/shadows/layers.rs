@@ -4,18 +4,18 @@
 use glam::{Mat4, Vec3};
 
 /// A light's number, and which part of its emitter the maps are seen from: 0 the middle.
-pub(super) type Owner = (u32, u32);
+pub(crate) type Owner = (u32, u32);
 
 /// The maps of one owner: one view, or a cube's six, in layers that follow each other.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Run {
+pub(crate) struct Run {
     pub owner: Owner,
     pub views: Vec<View>,
 }
 
 /// What a map sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct View {
+pub(crate) struct View {
     pub clip_from_world: Mat4,
     /// Where the light is.
     pub eye: Vec3,
@@ -52,14 +52,14 @@ struct Layer {
 
 /// The owners and contents of all layers.
 #[derive(Debug, Default)]
-pub(super) struct ShadowLayers {
+pub(crate) struct ShadowLayers {
     layers: Vec<Layer>,
     frame: u64,
 }
 
 /// A map that must be drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct StaleMap {
+pub(crate) struct StaleMap {
     pub layer: usize,
     pub view: View,
 }

@@ -4,7 +4,7 @@
 //! A narrower field is a cell of a fixed grid over the whole one, so that a camera that moves a little finds the maps
 //! that are there.
 
-use super::draw_list::Caster;
+use crate::preview::geometry::draw_list::Caster;
 use crate::scene::{CameraFrame, ROOM_STANDS_BACK_M, Room};
 use glam::{Affine3A, Vec2, Vec3};
 
@@ -16,7 +16,7 @@ const NEAR_M: f32 = 1e-3;
 /// Corners of the surfaces that a view may show, cut at the edges of its picture. Without any, the view is unknown and
 /// needs everything.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Seen {
+pub(crate) struct Seen {
     points: Vec<Vec3>,
 }
 

@@ -1,0 +1,3 @@
+//! The wgpu device and its loss.
+
+pub mod device;

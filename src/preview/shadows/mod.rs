@@ -1,0 +1,8 @@
+//! Shadow maps and screen-space shadow masks: view fitting, the cached layers of the map array, and filtering.
+
+pub mod focus;
+pub mod layers;
+pub mod maps;
+pub mod mask;
+pub mod parts;
+pub mod views;
