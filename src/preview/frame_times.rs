@@ -1,6 +1,5 @@
 //! Frame times in motion, each frame waited for: what somebody gets who orbits about the studio.
 
-use super::gpu::device::guarded;
 use super::{PreviewError, PreviewInput, PreviewRenderer};
 use eframe::wgpu;
 use glam::{Affine3A, Quat, Vec3};
@@ -46,8 +45,8 @@ impl PreviewRenderer {
 
     /// Waits until all submitted work is done.
     fn wait(&self) -> Result<(), PreviewError> {
-        guarded(&self.device, &self.loss, || {
-            let done = self.device.poll(wgpu::PollType::wait_indefinitely());
+        self.gpu.guarded(|| {
+            let done = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
             done.map(|_| ()).map_err(|error| PreviewError::Driver(error.to_string()))
         })
     }

@@ -8,15 +8,15 @@
 
 mod channel;
 mod error;
+mod frame_resources;
 mod frame_times;
 mod geometry;
 mod gpu;
 mod input;
+mod lighting;
 mod lights;
 pub mod offscreen;
 mod overlay;
-mod pick;
-mod pipelines;
 mod renderer;
 mod scene_buffers;
 mod shaders;
@@ -29,5 +29,5 @@ pub use frame_times::FrameTimes;
 pub use gpu::device::{Gpu, LossFlag};
 pub use input::{Options, Overlay, Pick, PreviewInput};
 pub use overlay::gizmo::{Gizmos, GpuLine, GpuTint};
-pub use pick::{ObjectMask, PickHit, REACH_PX};
+pub use overlay::pick::{ObjectMask, PickHit, REACH_PX};
 pub use renderer::PreviewRenderer;

@@ -1,7 +1,7 @@
 //! Pictures without a window.
 
-use super::gpu::device::guarded;
-use super::targets::{Output, read_back};
+use super::gpu::readback::read_back;
+use super::targets::Output;
 use super::{Gpu, ObjectMask, PreviewError, PreviewInput, PreviewRenderer};
 use crate::photo::Picture;
 use crate::scene::{Assets, Scene};
@@ -47,10 +47,9 @@ impl PreviewRenderer {
     }
 
     fn read_color(&self, bytes_per_pixel: u32) -> Result<Vec<u8>, PreviewError> {
-        let (device, size) = (&self.device, self.size());
-        guarded(device, &self.loss, || {
-            read_back(device, &self.queue, &self.targets.color, (0, 0), size, bytes_per_pixel)
-        })
+        let (gpu, size) = (&self.gpu, self.size());
+        let color = &self.targets.current.color;
+        gpu.guarded(|| read_back(&gpu.device, &gpu.queue, color, (0, 0), size, bytes_per_pixel))
     }
 }
 

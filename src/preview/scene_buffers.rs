@@ -1,6 +1,6 @@
 //! The buffers that every pass reads: frame, surfaces, lights.
 
-use super::geometry::draw_list::GpuSurface;
+use super::geometry::surface::GpuSurface;
 use super::lights::environment::Environment;
 use super::lights::light_table::{Ambient, GpuLight, MAX_LIGHTS};
 use super::lights::light_tiles::TILES_BYTES;
@@ -10,12 +10,12 @@ use eframe::wgpu;
 use glam::Vec3;
 
 /// Nearest thing the preview shows, metres. Reversed float depth makes so small a value free.
-pub(super) const NEAR_M: f32 = 0.005;
+pub(crate) const NEAR_M: f32 = 0.005;
 
 /// One frame's constants; twin of `Frame` in `scene.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(super) struct GpuFrame {
+pub(crate) struct GpuFrame {
     pub clip_from_world: [[f32; 4]; 4],
     pub eye: [f32; 3],
     pub near_m: f32,
@@ -24,7 +24,7 @@ pub(super) struct GpuFrame {
     pub mask_scale: u32,
     pub ray_right: [f32; 3],
     /// Picture pixels a cell of a draft, along each side.
-    pub cell_scale: u32,
+    pub coarse_scale: u32,
     pub ray_up: [f32; 3],
     pub unused_2: f32,
     pub ambient: [f32; 3],
@@ -85,7 +85,7 @@ impl GpuFrame {
 }
 
 /// Bytes of the table of lights.
-pub(super) const LIGHTS_BYTES: u64 = (MAX_LIGHTS * size_of::<GpuLight>()) as u64;
+pub(crate) const LIGHTS_BYTES: u64 = (MAX_LIGHTS * size_of::<GpuLight>()) as u64;
 
 /// A storage buffer that grows.
 #[derive(Debug)]
@@ -119,7 +119,7 @@ fn storage(device: &wgpu::Device, label: &str, size: u64) -> wgpu::Buffer {
 
 /// Bind group 0 of all pipelines.
 #[derive(Debug)]
-pub(super) struct SceneBuffers {
+pub(crate) struct SceneBuffers {
     layout: wgpu::BindGroupLayout,
     bind_group: wgpu::BindGroup,
     frame: wgpu::Buffer,

@@ -1,18 +1,20 @@
-//! The textures of a picture's size.
+//! The render targets of a frame, which have the picture's size.
 
-use super::PreviewError;
+use super::gpu::bindings::{texture_group, texture_layout};
 use eframe::wgpu;
 
-/// Normal, colour, face normal and gloss, packed by `scene.wgsl`.
-pub(super) const GBUFFER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-/// Surface number plus one, and the bits of the depth.
-pub(super) const ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
-/// Reversed: 1 near, 0 infinitely far.
-pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// G-buffer: normal, base colour, geometric normal, roughness and metallic, packed by `scene.wgsl`.
+pub(crate) const GBUFFER_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+/// Id buffer: surface index plus one with outline flags, and the bits of the depth.
+pub(crate) const ID_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
+/// Depth buffer, reversed: 1 at the near plane, 0 at infinity.
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// Coarse lighting: diffuse and specular light, normal and depth, packed by `scene.wgsl`.
+pub(crate) const COARSE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
-/// What the lighting pass writes.
+/// The encoding of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Output {
+pub(crate) enum Output {
     /// sRGB-encoded 8 bits in a plain unorm texture, which is what egui samples.
     Display,
     /// Scene-linear half floats.
@@ -20,6 +22,7 @@ pub(super) enum Output {
 }
 
 impl Output {
+    /// Returns the format of the colour texture.
     pub fn format(self) -> wgpu::TextureFormat {
         match self {
             Output::Display => wgpu::TextureFormat::Rgba8Unorm,
@@ -28,9 +31,26 @@ impl Output {
     }
 }
 
-/// Everything of a picture's size.
+/// Layouts of the bind groups through which passes read the targets.
+#[derive(Clone, Debug)]
+pub(crate) struct TargetLayouts {
+    /// G-buffer and id buffer.
+    pub gbuffer: wgpu::BindGroupLayout,
+    pub coarse: wgpu::BindGroupLayout,
+}
+
+impl TargetLayouts {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let layout = |label, count| {
+            texture_layout(device, label, wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2, count)
+        };
+        TargetLayouts { gbuffer: layout("G-buffer", 2), coarse: layout("coarse lighting", 1) }
+    }
+}
+
+/// The textures of one picture size and the bind groups that read them.
 #[derive(Debug)]
-pub(super) struct Targets {
+pub(crate) struct Targets {
     pub size: (u32, u32),
     pub output: Output,
     pub gbuffer: wgpu::TextureView,
@@ -39,15 +59,12 @@ pub(super) struct Targets {
     pub depth: wgpu::TextureView,
     pub color: wgpu::Texture,
     pub color_view: wgpu::TextureView,
-    /// G-buffer and ids, for reading.
-    pub lookup: wgpu::BindGroup,
-    /// Light of one pixel of each cell, for drafts, and the same for reading.
-    pub cells: wgpu::TextureView,
-    pub cells_lookup: wgpu::BindGroup,
+    /// Reads the G-buffer and the id buffer.
+    pub gbuffer_group: wgpu::BindGroup,
+    pub coarse: wgpu::TextureView,
+    /// Reads the coarse lighting.
+    pub coarse_group: wgpu::BindGroup,
 }
-
-/// Matte and glossy light, normal and depth of one pixel of each cell, packed by `scene.wgsl`.
-pub(super) const CELL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
 impl Targets {
     pub fn new(device: &wgpu::Device, layouts: &TargetLayouts, size: (u32, u32), output: Output) -> Self {
@@ -70,120 +87,51 @@ impl Targets {
         let ids = texture("ids", ID_FORMAT, read | copy);
         let ids_view = view(&ids);
         let color = texture("preview", output.format(), read | copy);
-        let lookup = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("G-buffer"),
-            layout: &layouts.gbuffer,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&gbuffer) },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&ids_view) },
-            ],
-        });
+        // Drafts shade at most one pixel in 2 x 2.
         let half = (size.0.div_ceil(2), size.1.div_ceil(2));
-        let cells = view(&sized("light cells", half, CELL_FORMAT, read));
-        let cells_lookup = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("light cells"),
-            layout: &layouts.cells,
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&cells) }],
-        });
+        let coarse = view(&sized("coarse lighting", half, COARSE_FORMAT, read));
         Targets {
-            cells,
-            cells_lookup,
             size,
             output,
+            gbuffer_group: texture_group(device, "G-buffer", &layouts.gbuffer, &[&gbuffer, &ids_view]),
             gbuffer,
             ids_view,
             ids,
             depth: view(&texture("depth", DEPTH_FORMAT, wgpu::TextureUsages::empty())),
             color_view: view(&color),
             color,
-            lookup,
+            coarse_group: texture_group(device, "coarse lighting", &layouts.coarse, &[&coarse]),
+            coarse,
         }
     }
 }
 
-/// Layouts with which passes read the targets.
+/// The render targets of a renderer, recreated when size or output change.
 #[derive(Debug)]
-pub(super) struct TargetLayouts {
-    /// G-buffer and ids.
-    pub gbuffer: wgpu::BindGroupLayout,
-    /// Light of one pixel of each cell.
-    pub cells: wgpu::BindGroupLayout,
+pub(crate) struct RenderTargets {
+    layouts: TargetLayouts,
+    pub current: Targets,
+    /// Number of times that the textures have been replaced.
+    pub generation: u64,
 }
 
-impl TargetLayouts {
-    pub fn new(device: &wgpu::Device) -> Self {
-        TargetLayouts { gbuffer: uint_layout(device, "G-buffer", 2), cells: uint_layout(device, "light cells", 1) }
+impl RenderTargets {
+    /// Targets of one pixel.
+    pub fn new(device: &wgpu::Device, layouts: TargetLayouts) -> Self {
+        let current = Targets::new(device, &layouts, (1, 1), Output::Display);
+        RenderTargets { layouts, current, generation: 0 }
     }
-}
 
-fn uint_layout(device: &wgpu::Device, label: &str, textures: u32) -> wgpu::BindGroupLayout {
-    let entry = |binding| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty: wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Uint,
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        },
-        count: None,
-    };
-    let entries: Vec<_> = (0..textures).map(entry).collect();
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
-}
-
-/// Copies a part of a texture to memory: `bytes_per_pixel` times width bytes a row, without padding.
-pub(super) fn read_back(
-    device: &wgpu::Device,
-    queue: &wgpu::Queue,
-    texture: &wgpu::Texture,
-    origin: (u32, u32),
-    size: (u32, u32),
-    bytes_per_pixel: u32,
-) -> Result<Vec<u8>, PreviewError> {
-    let row = size.0 * bytes_per_pixel;
-    let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("read back"),
-        size: u64::from(padded) * u64::from(size.1),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    copy_to(device, queue, texture, origin, size, &buffer, padded);
-    let slice = buffer.slice(..);
-    let (sender, receiver) = std::sync::mpsc::channel();
-    slice.map_async(wgpu::MapMode::Read, move |result| {
-        let _ = sender.send(result);
-    });
-    device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| PreviewError::Driver(error.to_string()))?;
-    match receiver.try_recv() {
-        Ok(Ok(())) => {}
-        _ => return Err(PreviewError::Driver("the picture could not be read back".to_owned())),
+    /// Recreates the targets if size or output differ from the current ones; returns true if it did. The size is clamped
+    /// to what the device supports, and to at least one pixel.
+    pub fn resize(&mut self, device: &wgpu::Device, size: (u32, u32), output: Output) -> bool {
+        let largest = device.limits().max_texture_dimension_2d;
+        let size = (size.0.clamp(1, largest), size.1.clamp(1, largest));
+        let stale = self.current.size != size || self.current.output != output;
+        if stale {
+            self.current = Targets::new(device, &self.layouts, size, output);
+            self.generation += 1;
+        }
+        stale
     }
-    let mapped = slice.get_mapped_range().map_err(|error| PreviewError::Driver(error.to_string()))?;
-    Ok(mapped.chunks_exact(padded as usize).flat_map(|line| &line[..row as usize]).copied().collect())
-}
-
-/// Submits a copy of a part of a texture to a buffer with `padded` bytes a row.
-pub(super) fn copy_to(
-    device: &wgpu::Device,
-    queue: &wgpu::Queue,
-    texture: &wgpu::Texture,
-    origin: (u32, u32),
-    size: (u32, u32),
-    buffer: &wgpu::Buffer,
-    padded: u32,
-) {
-    let mut encoder = device.create_command_encoder(&Default::default());
-    encoder.copy_texture_to_buffer(
-        wgpu::TexelCopyTextureInfo {
-            origin: wgpu::Origin3d { x: origin.0, y: origin.1, z: 0 },
-            ..texture.as_image_copy()
-        },
-        wgpu::TexelCopyBufferInfo {
-            buffer,
-            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
-        },
-        wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
-    );
-    queue.submit([encoder.finish()]);
 }

@@ -41,7 +41,7 @@ pub(crate) struct Clustered {
 
 /// From where a mesh is seen, in its own space.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Eye {
+pub(crate) struct ObjectFrustum {
     position: Vec3,
     /// The picture's four sides: points inside are on the positive side of each.
     sides: [Vec4; 4],
@@ -49,12 +49,12 @@ pub(crate) struct Eye {
     front_only: bool,
 }
 
-impl Eye {
+impl ObjectFrustum {
     /// The eye at `position` in the object's space that sees what `clip_from_object` puts into the picture.
     pub fn new(position: Vec3, clip_from_object: Mat4, front_only: bool) -> Self {
         let row = |i| clip_from_object.row(i);
         let sides = [row(3) + row(0), row(3) - row(0), row(3) + row(1), row(3) - row(1)];
-        Eye { position, sides, front_only }
+        ObjectFrustum { position, sides, front_only }
     }
 
     /// Whether something of a cluster may be seen. Not a number is seen.
@@ -240,7 +240,7 @@ mod tests {
             // The ball stands half outside of the picture.
             let world_from_camera = look_at(eye, Vec3::new(0.3, 0.0, 0.0), 0.0);
             let camera = CameraFrame { world_from_camera, half_extent: Vec2::splat(0.3) };
-            let runs = Eye::new(eye, camera.clip_from_world(0.01), true).visible(&clustered.clusters);
+            let runs = ObjectFrustum::new(eye, camera.clip_from_world(0.01), true).visible(&clustered.clusters);
             let is_drawn = |index: u32| runs.iter().any(|run| run.contains(&index));
             for triangle in (0..mesh.triangles.len()).filter(|t| !is_drawn(3 * *t as u32)) {
                 let corners = corners_of(&clustered, &mesh, triangle);

@@ -1,6 +1,5 @@
-//! Lights and lighting: the light buffer, light culling by tiles, the environment estimate, the lighting pass.
+//! Lights on the CPU side: the light buffer, light culling by screen tiles, the environment estimate.
 
 pub mod environment;
 pub mod light_table;
 pub mod light_tiles;
-pub mod lighting_pass;

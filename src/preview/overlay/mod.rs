@@ -1,4 +1,6 @@
-//! What is drawn over the lit picture: light and camera gizmos, grid, selection outline.
+//! What is drawn over the lit picture, light and camera gizmos, grid, selection outline, and picking.
 
 pub mod gizmo;
 pub mod overlay_pass;
+pub mod pick;
+pub mod pipelines;

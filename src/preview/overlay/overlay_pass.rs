@@ -1,14 +1,16 @@
-//! The forward pass over the finished picture: outline of the selection, tints, lines.
+//! The overlay pass over the finished picture: selection outline, tinted triangles, lines.
 
 use super::gizmo::Gizmos;
-use crate::preview::geometry::draw_list::Caster;
-use crate::preview::pipelines::{Layouts, OverlayPipelines};
+use super::pipelines::OverlayPipelines;
+use crate::preview::geometry::oriented_box::OrientedBox;
+use crate::preview::gpu::bindings::color_attachment;
+use crate::preview::gpu::pipeline::BindGroupLayouts;
 use crate::preview::targets::Targets;
 use crate::scene::CameraFrame;
 use eframe::wgpu;
 use glam::{UVec2, Vec2};
 
-/// Part of a picture in pixels: corner and size.
+/// A rectangle of the picture in pixels: corner and size.
 pub(crate) type Area = (UVec2, UVec2);
 
 /// Pipelines and buffers of the overlay.
@@ -19,7 +21,7 @@ pub(crate) struct OverlayPass {
     tints: Vertices,
 }
 
-/// A vertex buffer that grows, and how much of it is in use.
+/// A growing vertex buffer and the number of its items in use.
 #[derive(Debug)]
 struct Vertices {
     buffer: wgpu::Buffer,
@@ -46,7 +48,7 @@ impl Vertices {
 }
 
 impl OverlayPass {
-    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
+    pub fn new(device: &wgpu::Device, layouts: &BindGroupLayouts) -> Self {
         OverlayPass {
             pipelines: OverlayPipelines::new(device, layouts),
             lines: Vertices::new(device, 1 << 16),
@@ -54,14 +56,14 @@ impl OverlayPass {
         }
     }
 
-    /// The part of the picture in which outlined boxes can show; none if there are none.
-    pub fn outlined_area(&self, frame: &CameraFrame, size: (u32, u32), outlined: &[Caster]) -> Option<Area> {
+    /// Returns the rectangle of the picture that encloses the outlined boxes; none if they are off screen.
+    pub fn outlined_area(&self, frame: &CameraFrame, size: (u32, u32), outlined: &[OrientedBox]) -> Option<Area> {
         let scale = Vec2::new(size.0 as f32, size.1 as f32);
         let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
-        for corner in outlined.iter().flat_map(Caster::corners) {
+        for corner in outlined.iter().flat_map(OrientedBox::corners) {
             match frame.project(corner) {
-                Some(place) => (low, high) = (low.min(place * scale), high.max(place * scale)),
-                // A corner behind the eye may show anywhere.
+                Some(uv) => (low, high) = (low.min(uv * scale), high.max(uv * scale)),
+                // A corner behind the eye has no projection: take the whole picture.
                 None => (low, high) = (Vec2::ZERO, scale),
             }
         }
@@ -78,7 +80,7 @@ impl OverlayPass {
         self.tints.write(device, queue, &gizmos.tints);
     }
 
-    /// Draws over the picture.
+    /// Draws over the picture; `outlined` is the rectangle that holds the selection outline.
     pub fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -88,16 +90,11 @@ impl OverlayPass {
     ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("overlay"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &targets.color_view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-            })],
+            color_attachments: &[color_attachment(&targets.color_view, wgpu::LoadOp::Load)],
             ..Default::default()
         });
         pass.set_bind_group(0, scene, &[]);
-        pass.set_bind_group(1, &targets.lookup, &[]);
+        pass.set_bind_group(1, &targets.gbuffer_group, &[]);
         if let Some((corner, size)) = outlined {
             pass.set_pipeline(&self.pipelines.outline);
             pass.set_scissor_rect(corner.x, corner.y, size.x, size.y);
@@ -117,16 +114,11 @@ impl OverlayPass {
     }
 }
 
-/// Takes the picture away, so that what is drawn next stands alone.
+/// Clears the picture to transparent, for an overlay without a picture below.
 pub(crate) fn clear(encoder: &mut wgpu::CommandEncoder, view: &wgpu::TextureView) {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some("clear for the overlay"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
-        })],
+        color_attachments: &[color_attachment(view, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT))],
         ..Default::default()
     });
 }

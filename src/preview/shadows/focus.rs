@@ -4,7 +4,7 @@
 //! A narrower field is a cell of a fixed grid over the whole one, so that a camera that moves a little finds the maps
 //! that are there.
 
-use crate::preview::geometry::draw_list::Caster;
+use crate::preview::geometry::oriented_box::{FACES, OrientedBox};
 use crate::scene::{CameraFrame, ROOM_STANDS_BACK_M, Room};
 use glam::{Affine3A, Vec2, Vec3};
 
@@ -16,20 +16,20 @@ const NEAR_M: f32 = 1e-3;
 /// Corners of the surfaces that a view may show, cut at the edges of its picture. Without any, the view is unknown and
 /// needs everything.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Seen {
+pub(crate) struct VisibleReceivers {
     points: Vec<Vec3>,
 }
 
-impl Seen {
+impl VisibleReceivers {
     /// Of the boxes around things, and of the room.
-    pub fn new(frame: &CameraFrame, casters: &[Caster], room: Option<&Room>) -> Self {
+    pub fn new(frame: &CameraFrame, casters: &[OrientedBox], room: Option<&Room>) -> Self {
         let camera_from_world = frame.world_from_camera.inverse();
-        let things = casters.iter().map(Caster::corners);
+        let things = casters.iter().map(OrientedBox::corners);
         let points = things.chain(room.map(room_corners)).flat_map(|corners| {
             let corners = corners.map(|corner| camera_from_world.transform_point3(corner));
             FACES.iter().flat_map(move |face| in_picture(face.map(|i| corners[i]), frame.half_extent))
         });
-        Seen { points: points.map(|point| frame.world_from_camera.transform_point3(point)).collect() }
+        VisibleReceivers { points: points.map(|point| frame.world_from_camera.transform_point3(point)).collect() }
     }
 
     /// The cell of a field from `low` to `high` that holds what is seen, with so much margin on each side; the whole
@@ -77,13 +77,10 @@ impl Seen {
     }
 }
 
-/// Corners of a box's faces, by the numbers of [`Caster::corners`].
-const FACES: [[usize; 4]; 6] = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]];
-
 fn room_corners(room: &Room) -> [Vec3; 8] {
     let half = 0.5 * room.size_m + ROOM_STANDS_BACK_M;
     let middle = Vec3::Y * (0.5 * room.size_m.y);
-    Caster { world_from_object: Affine3A::from_translation(middle), low: -half, high: half }.corners()
+    OrientedBox { world_from_object: Affine3A::from_translation(middle), low: -half, high: half }.corners()
 }
 
 /// What is left of a polygon in the camera's space inside the picture's edges (Sutherland and Hodgman 1974).
@@ -115,8 +112,8 @@ mod tests {
     use super::*;
     use crate::math::look_at;
 
-    fn table() -> Caster {
-        Caster {
+    fn table() -> OrientedBox {
+        OrientedBox {
             world_from_object: Affine3A::IDENTITY,
             low: Vec3::new(-1.0, -0.1, -1.0),
             high: Vec3::new(1.0, 0.0, 1.0),
@@ -130,7 +127,7 @@ mod tests {
     }
 
     /// The field of a map that looks straight down.
-    fn from_above(seen: &Seen, margin_m: f32) -> (Vec2, Vec2) {
+    fn from_above(seen: &VisibleReceivers, margin_m: f32) -> (Vec2, Vec2) {
         let place = |point: Vec3| Some(Vec2::new(point.x, -point.z));
         seen.narrowed((Vec2::NEG_ONE, Vec2::ONE), Vec2::splat(margin_m), place)
     }
@@ -138,7 +135,7 @@ mod tests {
     #[test]
     fn a_close_up_gets_a_small_field_that_holds_all_it_shows() {
         let frame = close_up(0.3);
-        let (low, high) = from_above(&Seen::new(&frame, &[table()], None), 0.0);
+        let (low, high) = from_above(&VisibleReceivers::new(&frame, &[table()], None), 0.0);
         assert!((high - low).max_element() <= 0.5, "{low} {high}");
         for corner in [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE] {
             let direction = frame.direction(corner);
@@ -150,7 +147,8 @@ mod tests {
 
     #[test]
     fn a_step_aside_mostly_finds_the_field_that_is_there() {
-        let field = |step: i32| from_above(&Seen::new(&close_up(step as f32 * 1e-3), &[table()], None), 0.0);
+        let field =
+            |step: i32| from_above(&VisibleReceivers::new(&close_up(step as f32 * 1e-3), &[table()], None), 0.0);
         let changes = (0..100).filter(|step| field(*step) != field(step + 1)).count();
         assert!(changes <= 3, "{changes} of 100 millimetres");
     }
@@ -162,13 +160,13 @@ mod tests {
             world_from_camera: look_at(Vec3::new(0.0, 3.0, 3.0), Vec3::ZERO, 0.0),
             half_extent: Vec2::splat(0.5),
         };
-        assert_eq!(from_above(&Seen::new(&far, &[table()], None), 0.0), whole);
-        let near = Seen::new(&close_up(0.0), &[table()], None);
+        assert_eq!(from_above(&VisibleReceivers::new(&far, &[table()], None), 0.0), whole);
+        let near = VisibleReceivers::new(&close_up(0.0), &[table()], None);
         assert_eq!(from_above(&near, 0.3), whole);
         assert_eq!(near.narrowed(whole, Vec2::ZERO, |_| None), whole);
-        assert_eq!(from_above(&Seen::default(), 0.0), whole);
+        assert_eq!(from_above(&VisibleReceivers::default(), 0.0), whole);
         let room = Room { size_m: Vec3::splat(3.0), ..Room::default() };
-        assert_ne!(from_above(&Seen::new(&close_up(0.0), &[], Some(&room)), 0.0), whole);
+        assert_ne!(from_above(&VisibleReceivers::new(&close_up(0.0), &[], Some(&room)), 0.0), whole);
     }
 
     #[test]
@@ -177,7 +175,7 @@ mod tests {
             world_from_camera: look_at(Vec3::Y * -0.05, Vec3::new(0.0, -0.05, -1.0), 0.0),
             half_extent: Vec2::splat(0.1),
         };
-        let seen = Seen::new(&inside, &[table()], None);
+        let seen = VisibleReceivers::new(&inside, &[table()], None);
         assert!(!seen.points.is_empty() && seen.points.iter().all(|point| point.z < 0.0), "{seen:?}");
     }
 }

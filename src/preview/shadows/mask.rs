@@ -1,35 +1,40 @@
-//! The shadow masks: how much of each light reaches each pixel, four lights a layer, kept while nothing moves.
+//! The shadow masks: the visibility of each light from each pixel, four lights a layer, kept while nothing moves.
 
-use super::maps::{array_view, dynamic_uniform, dynamic_uniform_layout, layer_views};
-use super::views::{GpuShadows, MAX_SHADOWS, ShadowPlan};
+use super::plan::{MAX_SHADOWS, ShadowPlan};
+use super::slots::GpuShadows;
+use crate::preview::gpu::bindings::{
+    UNIFORM_OFFSET_ALIGNMENT, array_view, color_attachment, dynamic_uniform, dynamic_uniform_layout, layer_views,
+    texture_group, texture_layout,
+};
+use crate::preview::gpu::context::GpuContext;
 use eframe::wgpu;
 
-/// Four shadows in a word, and the depth's bits.
+/// Four 8-bit visibilities in the first word, the bits of the depth in the second.
 pub(crate) const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
-/// Bytes of four lights' views.
+/// Bytes of the slots of one mask.
 const SLOTS_BYTES: usize = size_of::<GpuShadows>();
-/// Distance between the slots of two masks: a multiple of every device's offset alignment.
-const OFFSET_STRIDE: u64 = (SLOTS_BYTES as u64).next_multiple_of(256);
+/// Stride between the slots of two masks, bytes.
+const SLOTS_STRIDE: u64 = (SLOTS_BYTES as u64).next_multiple_of(UNIFORM_OFFSET_ALIGNMENT);
 
-/// Masks of a picture's size and the uniforms that fill them.
+/// The mask textures and the uniforms of the passes that fill them.
 #[derive(Debug)]
 pub(crate) struct ShadowMasks {
     slots_layout: wgpu::BindGroupLayout,
     slots_buffer: wgpu::Buffer,
-    slots: wgpu::BindGroup,
+    slots_group: wgpu::BindGroup,
     raw_layout: wgpu::BindGroupLayout,
     masks_layout: wgpu::BindGroupLayout,
-    textures: Textures,
+    textures: MaskTextures,
 }
 
-/// What depends on size and number of masks.
+/// The textures, which depend on the size and number of masks.
 #[derive(Debug)]
-struct Textures {
+struct MaskTextures {
     size: (u32, u32),
     raw: wgpu::TextureView,
-    raw_lookup: wgpu::BindGroup,
+    raw_group: wgpu::BindGroup,
     layers: Vec<wgpu::TextureView>,
-    masks_lookup: wgpu::BindGroup,
+    masks_group: wgpu::BindGroup,
 }
 
 impl ShadowMasks {
@@ -37,67 +42,69 @@ impl ShadowMasks {
         let slots_layout = dynamic_uniform_layout(device, "shadow slots", wgpu::ShaderStages::FRAGMENT);
         let slots_buffer = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("shadow slots"),
-            size: OFFSET_STRIDE * MAX_SHADOWS as u64 / 4,
+            size: SLOTS_STRIDE * MAX_SHADOWS as u64 / 4,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let slots = dynamic_uniform(device, "shadow slots", &slots_layout, &slots_buffer, SLOTS_BYTES);
-        let raw_layout = uint_layout(device, "raw shadow mask", wgpu::TextureViewDimension::D2);
-        let masks_layout = uint_layout(device, "shadow masks", wgpu::TextureViewDimension::D2Array);
-        let textures = Textures::new(device, &raw_layout, &masks_layout, (1, 1), 1);
-        ShadowMasks { slots_layout, slots_buffer, slots, raw_layout, masks_layout, textures }
+        let slots_group = dynamic_uniform(device, "shadow slots", &slots_layout, &slots_buffer, SLOTS_BYTES);
+        let layout = |label, dimension| texture_layout(device, label, wgpu::TextureSampleType::Uint, dimension, 1);
+        let raw_layout = layout("raw shadow mask", wgpu::TextureViewDimension::D2);
+        let masks_layout = layout("shadow masks", wgpu::TextureViewDimension::D2Array);
+        let textures = MaskTextures::new(device, &raw_layout, &masks_layout, (1, 1), 1);
+        ShadowMasks { slots_layout, slots_buffer, slots_group, raw_layout, masks_layout, textures }
     }
 
-    /// Layout of the slots' uniform.
+    /// The layout of the slots' uniform.
     pub fn slots_layout(&self) -> &wgpu::BindGroupLayout {
         &self.slots_layout
     }
 
-    /// Layout with which the blur reads a mask.
+    /// The layout through which the blur reads the raw mask.
     pub fn raw_layout(&self) -> &wgpu::BindGroupLayout {
         &self.raw_layout
     }
 
-    /// Layout with which the lighting pass reads the masks.
+    /// The layout through which the lighting pass reads the masks.
     pub fn masks_layout(&self) -> &wgpu::BindGroupLayout {
         &self.masks_layout
     }
 
-    /// The finished masks, for reading.
-    pub fn lookup(&self) -> &wgpu::BindGroup {
-        &self.textures.masks_lookup
+    /// The bind group through which the lighting pass reads the masks.
+    pub fn masks_group(&self) -> &wgpu::BindGroup {
+        &self.textures.masks_group
     }
 
-    /// Makes masks of this size (in mask pixels) and uploads the slots. True if what the masks held is gone.
-    pub fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, plan: &ShadowPlan, size: (u32, u32)) -> bool {
+    /// Uploads a plan's slots and recreates the textures if the masks' size (mask pixels) or number need it. Returns true
+    /// if the textures are new and hold nothing.
+    pub fn prepare(&mut self, gpu: &GpuContext, plan: &ShadowPlan, size: (u32, u32)) -> bool {
         for (mask, shadows) in plan.masks.iter().enumerate() {
-            queue.write_buffer(&self.slots_buffer, mask as u64 * OFFSET_STRIDE, bytemuck::bytes_of(shadows));
+            gpu.queue.write_buffer(&self.slots_buffer, mask as u64 * SLOTS_STRIDE, bytemuck::bytes_of(shadows));
         }
-        let renew =
+        let stale =
             !plan.masks.is_empty() && (self.textures.size != size || self.textures.layers.len() < plan.masks.len());
-        if renew {
+        if stale {
             let layers = plan.masks.len() as u32;
-            self.textures = Textures::new(device, &self.raw_layout, &self.masks_layout, size, layers);
+            self.textures = MaskTextures::new(&gpu.device, &self.raw_layout, &self.masks_layout, size, layers);
         }
-        renew
+        stale
     }
 
-    /// Starts the pass that fills the raw mask; bind groups 0 to 2 are the caller's.
+    /// Begins the pass that fills the raw mask; bind groups 0 to 2 are the caller's.
     pub fn begin_raw<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, mask: usize) -> wgpu::RenderPass<'e> {
         let mut pass = begin(encoder, "shadow mask", &self.textures.raw);
-        pass.set_bind_group(3, &self.slots, &[mask as u32 * OFFSET_STRIDE as u32]);
+        pass.set_bind_group(3, &self.slots_group, &[mask as u32 * SLOTS_STRIDE as u32]);
         pass
     }
 
-    /// Starts the pass that evens the raw mask out; bind groups 0 and 1 are the caller's.
+    /// Begins the pass that blurs the raw mask into a layer; bind groups 0 and 1 are the caller's.
     pub fn begin_blur<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, mask: usize) -> wgpu::RenderPass<'e> {
         let mut pass = begin(encoder, "shadow blur", &self.textures.layers[mask]);
-        pass.set_bind_group(2, &self.textures.raw_lookup, &[]);
+        pass.set_bind_group(2, &self.textures.raw_group, &[]);
         pass
     }
 }
 
-impl Textures {
+impl MaskTextures {
     fn new(
         device: &wgpu::Device,
         raw_layout: &wgpu::BindGroupLayout,
@@ -117,21 +124,14 @@ impl Textures {
                 view_formats: &[],
             })
         };
-        let lookup = |label, layout, view: &wgpu::TextureView| {
-            device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some(label),
-                layout,
-                entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(view) }],
-            })
-        };
         let raw = texture("raw shadow mask", 1).create_view(&Default::default());
         let masks = texture("shadow masks", layers);
-        Textures {
+        MaskTextures {
             size,
-            raw_lookup: lookup("raw shadow mask", raw_layout, &raw),
+            raw_group: texture_group(device, "raw shadow mask", raw_layout, &[&raw]),
             raw,
             layers: layer_views(&masks),
-            masks_lookup: lookup("shadow masks", masks_layout, &array_view(&masks)),
+            masks_group: texture_group(device, "shadow masks", masks_layout, &[&array_view(&masks)]),
         }
     }
 }
@@ -143,32 +143,7 @@ fn begin<'e>(
 ) -> wgpu::RenderPass<'e> {
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(label),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
-        })],
+        color_attachments: &[color_attachment(view, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT))],
         ..Default::default()
-    })
-}
-
-fn uint_layout(
-    device: &wgpu::Device,
-    label: &str,
-    view_dimension: wgpu::TextureViewDimension,
-) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(label),
-        entries: &[wgpu::BindGroupLayoutEntry {
-            binding: 0,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Uint,
-                view_dimension,
-                multisampled: false,
-            },
-            count: None,
-        }],
     })
 }

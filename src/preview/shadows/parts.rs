@@ -4,13 +4,13 @@
 //! corner of a window: seen from the middle the body itself stands before it, and light was lost. Each part's shadow
 //! counts by the light that it sends.
 
-use crate::preview::geometry::draw_list::Caster;
+use crate::preview::geometry::oriented_box::OrientedBox;
 use crate::preview::lights::light_table::{GpuLight, Kind};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
 /// Most parts of an emitter.
-pub(crate) const MOST_PARTS: usize = 4;
+pub(crate) const MAX_PARTS: usize = 4;
 /// An emitter is taken in parts if its half diagonal is more than this part of the distance to what may cast a shadow.
 const WIDE: f32 = 0.4;
 /// Parts of a panel this much longer than it is wide lie in a row.
@@ -18,7 +18,7 @@ const LONG: f32 = 2.0;
 
 /// A part of an emitter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Part {
+pub(crate) struct EmitterPart {
     /// Its middle, in half axes of the emitter.
     pub at: Vec2,
     /// Half axes of its penumbra, metres.
@@ -26,9 +26,9 @@ pub(crate) struct Part {
 }
 
 /// The parts in which a light's shadow is taken; one for most lights.
-pub(crate) fn parts(light: &GpuLight, casters: &[Caster]) -> Vec<Part> {
+pub(crate) fn emitter_parts(light: &GpuLight, casters: &[OrientedBox]) -> Vec<EmitterPart> {
     let softness = light.softness();
-    let whole = vec![Part { at: Vec2::ZERO, softness }];
+    let whole = vec![EmitterPart { at: Vec2::ZERO, softness }];
     let half = Vec2::new(Vec3::from(light.right).length(), Vec3::from(light.up).length());
     let nearest = casters.iter().map(|caster| caster.distance(light.position.into())).fold(f32::INFINITY, f32::min);
     let is_panel = light.kind == Kind::Rect as u32 || light.kind == Kind::Disc as u32;
@@ -38,12 +38,12 @@ pub(crate) fn parts(light: &GpuLight, casters: &[Caster]) -> Vec<Part> {
     if half.max_element() > LONG * half.min_element() {
         let along = if half.x > half.y { Vec2::X } else { Vec2::Y };
         let softness = softness / (Vec2::ONE + 2.0 * along);
-        return [0.0, -2.0 / 3.0, 2.0 / 3.0].map(|step| Part { at: step * along, softness }).to_vec();
+        return [0.0, -2.0 / 3.0, 2.0 / 3.0].map(|step| EmitterPart { at: step * along, softness }).to_vec();
     }
     // Middles of the quarters: of a rectangle, or of a disc.
     let step = if light.kind == Kind::Rect as u32 { 0.5 } else { 4.0 / (3.0 * PI) };
     let corners = [Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0), Vec2::new(-1.0, 1.0), Vec2::ONE];
-    corners.map(|corner| Part { at: step * corner, softness: 0.5 * softness }).to_vec()
+    corners.map(|corner| EmitterPart { at: step * corner, softness: 0.5 * softness }).to_vec()
 }
 
 #[cfg(test)]
@@ -62,9 +62,9 @@ mod tests {
         }
     }
 
-    fn caster_at(z: f32) -> Caster {
+    fn caster_at(z: f32) -> OrientedBox {
         let world_from_object = Affine3A::from_translation(Vec3::Z * z);
-        Caster { world_from_object, low: Vec3::splat(-0.5), high: Vec3::splat(0.5) }
+        OrientedBox { world_from_object, low: Vec3::splat(-0.5), high: Vec3::splat(0.5) }
     }
 
     #[test]
@@ -77,15 +77,15 @@ mod tests {
             (panel(Kind::Disc, 0.6, 0.6), 4),
             (panel(Kind::Sphere, 0.6, 0.6), 1),
         ] {
-            assert_eq!(parts(&light, &near).len(), count);
-            assert_eq!(parts(&light, &far).len(), 1);
+            assert_eq!(emitter_parts(&light, &near).len(), count);
+            assert_eq!(emitter_parts(&light, &far).len(), 1);
         }
     }
 
     #[test]
     fn the_parts_have_the_middle_and_the_area_of_the_whole() {
         for light in [panel(Kind::Rect, 0.15, 0.8), panel(Kind::Rect, 0.5, 0.7), panel(Kind::Disc, 0.6, 0.6)] {
-            let parts = parts(&light, &[caster_at(-1.0)]);
+            let parts = emitter_parts(&light, &[caster_at(-1.0)]);
             let middle: Vec2 = parts.iter().map(|part| part.at).sum();
             assert!(middle.length() < 1e-6);
             let area: f32 = parts.iter().map(|part| PI * part.softness.element_product()).sum();

@@ -1,0 +1,96 @@
+//! Draw items: a run of a mesh's triangles with its surface, its pass and its face culling.
+
+use super::mesh_cache::MeshKey;
+use crate::scene::Shape;
+use eframe::wgpu;
+use glam::Affine3A;
+
+/// A run of triangles of one surface.
+#[derive(Clone, Debug)]
+pub(crate) struct DrawItem {
+    pub mesh: MeshKey,
+    pub indices: std::ops::Range<u32>,
+    /// Index of its surface record; the id buffer stores it plus one.
+    pub surface: u32,
+    pub texture: usize,
+    pub pass: DrawPass,
+    pub shadow: ShadowCasting,
+    /// Sides of glass in drawing order: the far side of a solid first.
+    pub glass_sides: &'static [Sides],
+    /// Index of its box among the casters, if it casts a shadow.
+    pub caster: usize,
+}
+
+/// The pass in which a run of triangles is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum DrawPass {
+    /// The geometry pass, two-sided.
+    Opaque,
+    /// The geometry pass with back faces culled: a camera outside looks into the room.
+    OneSided,
+    /// The glass pass over the lit picture: clear glass or water.
+    Glass,
+}
+
+/// The sides of triangles that are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Sides {
+    /// Both: sheets, and solids that contain the camera.
+    Both = 0,
+    /// The front, of a room that is seen into from outside.
+    Room = 1,
+    /// The front, of a solid, whose far side is hidden.
+    Front = 2,
+    /// The back, of a solid that is mirrored by its scale.
+    Back = 3,
+}
+
+impl Sides {
+    /// All variants, in the order of their values.
+    pub const ALL: [Sides; 4] = [Sides::Both, Sides::Room, Sides::Front, Sides::Back];
+
+    /// Returns the face that the rasteriser culls.
+    pub fn cull_mode(self) -> Option<wgpu::Face> {
+        match self {
+            Sides::Both => None,
+            Sides::Room | Sides::Front => Some(wgpu::Face::Back),
+            Sides::Back => Some(wgpu::Face::Front),
+        }
+    }
+}
+
+/// The kind of shadow caster that a run of triangles is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ShadowCasting {
+    /// Casts no shadow.
+    None,
+    /// An open sheet: both sides cast.
+    Sheet,
+    /// A closed body: the sides that face away from the light cast. The far side is nearest to the receiver that the
+    /// body touches, so that contact shadows do not leak.
+    Solid,
+    /// A closed body that is mirrored by its scale.
+    MirroredSolid,
+}
+
+impl ShadowCasting {
+    /// Returns the kind of caster of a shape under a transform.
+    pub fn of(shape: &Shape, world_from_object: &Affine3A) -> Self {
+        match shape {
+            Shape::Plane { .. } | Shape::Sweep { .. } | Shape::MeshFile { .. } => ShadowCasting::Sheet,
+            Shape::Mannequin(_) | Shape::Box { .. } | Shape::Sphere { .. } | Shape::Cylinder { .. } => {
+                let mirrored = world_from_object.matrix3.determinant() < 0.0;
+                if mirrored { ShadowCasting::MirroredSolid } else { ShadowCasting::Solid }
+            }
+        }
+    }
+
+    /// Returns the sides in the order in which glass of such a shape is drawn.
+    pub fn glass_sides(self) -> &'static [Sides] {
+        match self {
+            ShadowCasting::Solid => &[Sides::Back, Sides::Front],
+            ShadowCasting::MirroredSolid => &[Sides::Front, Sides::Back],
+            ShadowCasting::None | ShadowCasting::Sheet => &[Sides::Both],
+        }
+    }
+}

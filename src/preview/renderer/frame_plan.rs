@@ -1,0 +1,165 @@
+//! The plan of a frame: everything that is decided on the CPU before a pass is encoded.
+
+use crate::preview::channel::Channel;
+use crate::preview::geometry::draw_item::DrawPass;
+use crate::preview::geometry::draw_list::{DrawList, Uploads};
+use crate::preview::geometry::oriented_box::OrientedBox;
+use crate::preview::input::{Options, PreviewInput};
+use crate::preview::lighting::pipelines::LightingVariant;
+use crate::preview::lights::environment::Environment;
+use crate::preview::lights::light_table::LightTable;
+use crate::preview::lights::light_tiles::light_tiles;
+use crate::preview::scene_buffers::GpuFrame;
+use crate::preview::shadows::focus::VisibleReceivers;
+use crate::preview::shadows::plan::ShadowPlan;
+use crate::preview::targets::Output;
+use crate::scene::CameraFrame;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// With more lights than this, a draft uses its coarsest resolutions.
+const MANY_LIGHTS: usize = 24;
+
+/// The draw calls, lights, shadow views and constants of a frame.
+#[derive(Debug)]
+pub(super) struct FramePlan {
+    pub list: DrawList,
+    pub lights: LightTable,
+    pub shadows: ShadowPlan,
+    /// Lights per tile; none where every tile reads all lights.
+    pub tiles: Option<Vec<[u32; 4]>>,
+    pub constants: GpuFrame,
+    pub output: Output,
+    /// Lighting at reduced resolution.
+    pub is_draft: bool,
+}
+
+impl FramePlan {
+    /// Plans a frame of `size` pixels, uploading meshes and textures that the caches do not hold yet.
+    pub fn new(input: &PreviewInput, size: (u32, u32), output: Output, uploads: &mut Uploads) -> Self {
+        // Collect the scene's draw calls and lights
+        let options = input.options;
+        let list = DrawList::new(input.scene, &input.overlay, uploads);
+        let lights = LightTable::new(input.scene, options.bounce_estimate, options.only_light);
+        let is_cpu = uploads.gpu.is_cpu;
+        let is_draft = options.draft && is_cpu && output == Output::Display;
+
+        // Fit the shadow map views to the casters and to the visible receivers
+        let casters: &[_] = if options.shadows && needs_lighting(&options) { &list.casters } else { &[] };
+        let receivers = VisibleReceivers::new(&input.frame, casters, input.scene.room.as_ref());
+        let shadows = ShadowPlan::new(&lights, casters, &receivers, !is_draft);
+
+        // Assign lights to screen tiles
+        let tiles = if options.light_radius { light_tiles(&lights, &input.frame) } else { None };
+
+        // Fill the frame constants
+        let mut constants = frame_constants(input, size, &lights);
+        constants.mask_scale = mask_scale(is_cpu, is_draft, lights.lights.len());
+        constants.coarse_scale = coarse_scale(&lights);
+        constants.depth_range_m = depth_range_m(&input.frame, &list.casters);
+        FramePlan { list, lights, shadows, tiles, constants, output, is_draft }
+    }
+
+    /// Returns the specialisation of the lighting pass.
+    pub fn lighting_variant(&self, options: &Options) -> LightingVariant {
+        LightingVariant {
+            output: self.output,
+            light_kinds: self.lights.families(),
+            masks: self.shadows.masks.len(),
+            mask_scale: self.constants.mask_scale,
+            light_radius: options.light_radius,
+            tiled: self.tiles.is_some(),
+            has_beams: self.lights.lights.iter().any(|light| light.has_beam != 0),
+            coarse: self.is_draft,
+            illuminance: options.channel == Channel::Illuminance,
+            gloss: options.gloss,
+        }
+    }
+
+    /// Returns true if the list has items for the glass pass.
+    pub fn has_glass(&self) -> bool {
+        self.list.items.iter().any(|item| item.pass == DrawPass::Glass)
+    }
+
+    /// Returns the size of the shadow masks in pixels.
+    pub fn mask_size(&self, (width, height): (u32, u32)) -> (u32, u32) {
+        let scale = self.constants.mask_scale;
+        (width.div_ceil(scale), height.div_ceil(scale))
+    }
+
+    /// Returns a hash of everything that the G-buffer depends on.
+    pub fn gbuffer_signature(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        bytemuck::bytes_of(&self.constants.clip_from_world).hash(&mut hasher);
+        bytemuck::bytes_of(&self.constants.size).hash(&mut hasher);
+        bytemuck::cast_slice::<_, u8>(&self.list.draws).hash(&mut hasher);
+        for item in &self.list.items {
+            (item.mesh, &item.indices, item.surface, item.texture, item.pass as u32).hash(&mut hasher);
+        }
+        hasher.finish()
+    }
+
+    /// Returns a hash of everything that the shadow masks depend on besides the shadow maps. The layers must be assigned.
+    pub fn mask_signature(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        self.gbuffer_signature().hash(&mut hasher);
+        bytemuck::cast_slice::<_, u8>(&self.shadows.masks).hash(&mut hasher);
+        hasher.finish()
+    }
+}
+
+/// Returns true if the lighting pass and its shadows are drawn.
+pub(super) fn needs_lighting(options: &Options) -> bool {
+    options.channel.is_lit() && !options.overlay_alone
+}
+
+/// Returns the constants that depend on camera, lights and room alone.
+fn frame_constants(input: &PreviewInput, size: (u32, u32), lights: &LightTable) -> GpuFrame {
+    let mut frame = GpuFrame::new(&input.frame, size);
+    frame.light_ends = lights.ends;
+    frame.set_ambient(&lights.ambient, input.overlay.void_color);
+    let Options { bounce_estimate, environment_estimate, .. } = input.options;
+    if let Some(environment) = Environment::new(input.scene, lights) {
+        if environment_estimate {
+            frame.set_environment(&environment);
+        }
+        // A room's ambient light already includes all bounces.
+        if bounce_estimate && input.scene.room.is_none() {
+            frame.set_bounce(&environment);
+        }
+    }
+    frame
+}
+
+/// Returns the picture pixels per shadow mask pixel along each axis: 1 on a GPU; on a CPU rasteriser 2, in drafts 4, and
+/// 8 under many lights, each of which contributes little.
+fn mask_scale(is_cpu: bool, is_draft: bool, light_count: usize) -> u32 {
+    match (is_cpu, is_draft) {
+        (false, _) => 1,
+        (true, false) => 2,
+        (true, true) if light_count > MANY_LIGHTS => 8,
+        (true, true) => 4,
+    }
+}
+
+/// Returns the picture pixels per coarse pixel along each axis of a draft: the more lights, the larger. Panels and spheres
+/// cost several times what lights without a size do.
+fn coarse_scale(table: &LightTable) -> u32 {
+    let without_size = table.ends[0] as usize;
+    match (table.lights.len(), table.lights.len() - without_size) {
+        (0..=8, 0..=2) => 3,
+        (0..=MANY_LIGHTS, _) => 4,
+        _ => 5,
+    }
+}
+
+/// Returns the depths of the nearest and the farthest object along the axis of a camera that is far away, as parallel
+/// views are, with a margin; zeros for other cameras.
+fn depth_range_m(frame: &CameraFrame, casters: &[OrientedBox]) -> [f32; 2] {
+    /// Perspective views of a studio are closer than this.
+    const FAR_M: f32 = 200.0;
+    const MARGIN_M: f32 = 0.25;
+    let (eye, forward) = (frame.position(), frame.forward());
+    let depths = casters.iter().flat_map(OrientedBox::corners).map(|corner| (corner - eye).dot(forward));
+    let (near, far) = depths.fold((f32::INFINITY, 0.0_f32), |(near, far), depth| (near.min(depth), far.max(depth)));
+    if near > FAR_M && far >= near { [near - MARGIN_M, far + MARGIN_M] } else { [0.0; 2] }
+}

@@ -1,0 +1,238 @@
+//! The shadow plan of a frame: the shadow map views of each light and the slots through which they are read.
+
+use super::focus::VisibleReceivers;
+use super::layers::{LightViews, ShadowView, ViewOwner};
+use super::parts::emitter_parts;
+use super::slots::{GpuShadowSlot, GpuShadows};
+use super::views::fit_views;
+use crate::preview::geometry::oriented_box::OrientedBox;
+use crate::preview::lights::light_table::{GpuLight, LightTable};
+use bytemuck::Zeroable;
+use glam::{Vec2, Vec3};
+
+/// Shadow maps in use at once.
+pub(crate) const MAX_VIEWS: usize = 48;
+/// Lights that cast shadows, four a mask; lights beyond cast none.
+pub(crate) const MAX_SHADOWS: usize = 16;
+/// The views to draw, and how each light reads them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct ShadowPlan {
+    /// The views that this frame reads, light by light.
+    pub lights: Vec<LightViews>,
+    /// Four lights each, in their order. Slots count `lights` until `set_layers` has said where those are.
+    pub masks: Vec<GpuShadows>,
+    /// Views of this plan and of the draft that comes before it in motion.
+    pub views: usize,
+}
+
+impl ShadowPlan {
+    /// Views of the lights, as fine as what is `seen` needs them; `subdivide` takes wide emitters in parts.
+    pub fn new(table: &LightTable, casters: &[OrientedBox], receivers: &VisibleReceivers, subdivide: bool) -> Self {
+        let mut plan = ShadowPlan::default();
+        if casters.is_empty() {
+            return plan;
+        }
+        let count = table.lights.len().min(MAX_SHADOWS);
+        plan.masks = vec![GpuShadows::zeroed(); count.div_ceil(4)];
+        let reached: Vec<Vec<OrientedBox>> =
+            table.lights[..count].iter().map(|light| casters_in_radius(light, casters)).collect();
+        // The middles first, so that all lights have a shadow before one has it in parts.
+        for (index, casters) in reached.iter().enumerate() {
+            let slot = plan.add(&table.lights[index], (table.ids[index].0, 0), casters, receivers);
+            plan.set(index, &[slot]);
+        }
+        if subdivide {
+            for (index, casters) in reached.iter().enumerate() {
+                plan.subdivide(index, &table.lights[index], casters, receivers);
+            }
+        }
+        plan.views = plan.view_count();
+        plan.drop_unread();
+        plan
+    }
+
+    /// Leaves out runs that no slot reads: the middles of lights that are taken in parts.
+    fn drop_unread(&mut self) {
+        let slots = self.masks.iter().flat_map(|mask| mask.slots.as_flattened()).filter(|slot| slot.kind != 0);
+        let mut is_read = vec![false; self.lights.len()];
+        slots.for_each(|slot| is_read[slot.layer as usize] = true);
+        let places: Vec<usize> =
+            is_read.iter().scan(0, |next, read| Some(std::mem::replace(next, *next + usize::from(*read)))).collect();
+        self.set_layers(&places);
+        let mut read = is_read.into_iter();
+        self.lights.retain(|_| read.next() == Some(true));
+    }
+
+    /// Whether a light is taken in several parts.
+    pub fn is_subdivided(&self) -> bool {
+        self.masks.iter().flat_map(|mask| mask.counts).any(|count| count > 1)
+    }
+
+    /// Tells each slot the first layer of its run.
+    pub fn set_layers(&mut self, firsts: &[usize]) {
+        for slot in self.masks.iter_mut().flat_map(|mask| mask.slots.as_flattened_mut()).filter(|slot| slot.kind != 0) {
+            slot.layer = firsts[slot.layer as usize] as u32;
+        }
+    }
+
+    fn view_count(&self) -> usize {
+        self.lights.iter().map(|run| run.views.len()).sum()
+    }
+
+    /// Adds a light's views as far as there is room.
+    fn add(
+        &mut self,
+        light: &GpuLight,
+        owner: ViewOwner,
+        casters: &[OrientedBox],
+        receivers: &VisibleReceivers,
+    ) -> GpuShadowSlot {
+        let (mut slot, views) = fit_views(light, casters, receivers, MAX_VIEWS - self.view_count());
+        if !views.is_empty() {
+            (slot.layer, slot.softness) = (self.lights.len() as u32, light.softness().into());
+            let (eye, reach_m) = (light.position.into(), light.reach_m);
+            let view = |clip_from_world| ShadowView { clip_from_world, eye, reach_m };
+            self.lights.push(LightViews { owner, views: views.into_iter().map(view).collect() });
+        }
+        slot
+    }
+
+    fn set(&mut self, light: usize, slots: &[GpuShadowSlot]) {
+        let mask = &mut self.masks[light / 4];
+        mask.counts[light % 4] = slots.len() as u32;
+        mask.slots[light % 4][..slots.len()].copy_from_slice(slots);
+    }
+
+    /// Replaces a light's one view by views of its parts, if it has any and there is room for them all.
+    fn subdivide(&mut self, index: usize, light: &GpuLight, casters: &[OrientedBox], receivers: &VisibleReceivers) {
+        let parts = emitter_parts(light, casters);
+        let middle = self.masks[index / 4].slots[index % 4][0];
+        if parts.len() == 1 || middle.kind == 0 {
+            return;
+        }
+        let before = self.lights.len();
+        let id = self.lights[middle.layer as usize].owner.0;
+        let slots: Vec<GpuShadowSlot> = (1..)
+            .zip(&parts)
+            .map(|(number, part)| {
+                let offset = part.at.x * Vec3::from(light.right) + part.at.y * Vec3::from(light.up);
+                let moved = GpuLight { position: (Vec3::from(light.position) + offset).into(), ..*light };
+                let slot =
+                    if part.at == Vec2::ZERO { middle } else { self.add(&moved, (id, number), casters, receivers) };
+                GpuShadowSlot { softness: part.softness.into(), ..slot }
+            })
+            .collect();
+        if slots.iter().any(|slot| slot.kind != middle.kind) {
+            self.lights.truncate(before);
+            return;
+        }
+        self.set(index, &slots);
+    }
+}
+
+/// The casters whose shadow can be seen: beyond its reach a light is dark anyway.
+fn casters_in_radius(light: &GpuLight, casters: &[OrientedBox]) -> Vec<OrientedBox> {
+    let reaches =
+        |caster: &&OrientedBox| light.reach_m == 0.0 || caster.distance(light.position.into()) < light.reach_m;
+    casters.iter().filter(reaches).copied().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::preview::lights::light_table::Kind;
+    use crate::preview::shadows::slots::Projection;
+    use crate::scene::LightId;
+    use glam::{Affine3A, Mat4};
+
+    fn unit_box_at(place: Vec3) -> OrientedBox {
+        OrientedBox {
+            world_from_object: Affine3A::from_translation(place),
+            low: Vec3::splat(-0.5),
+            high: Vec3::splat(0.5),
+        }
+    }
+
+    fn light(kind: Kind) -> GpuLight {
+        GpuLight {
+            kind: kind as u32,
+            position: [0.0, 4.0, 0.0],
+            right: [1.0, 0.0, 0.0],
+            up: [0.0, 0.0, -1.0],
+            axis: [0.0, -1.0, 0.0],
+            outer_rad: 0.7,
+            ..GpuLight::zeroed()
+        }
+    }
+
+    fn table(lights: &[GpuLight]) -> LightTable {
+        let ids = (0..lights.len() as u32).map(LightId).collect();
+        LightTable { lights: lights.to_vec(), ids, ..LightTable::default() }
+    }
+
+    fn project(view: &Mat4, point: Vec3) -> Vec3 {
+        view.project_point3(point)
+    }
+
+    #[test]
+    fn one_view_holds_every_caster_and_depth_falls_with_distance() {
+        for kind in [Kind::Point, Kind::Spot, Kind::Sphere, Kind::Rect, Kind::Sun] {
+            let caster = unit_box_at(Vec3::new(0.3, 1.0, 0.2));
+            let plan = ShadowPlan::new(&table(&[light(kind)]), &[caster], &VisibleReceivers::default(), false);
+            assert_eq!((plan.views, plan.masks.len()), (1, 1), "{kind:?}");
+            for corner in caster.corners() {
+                let p = project(&plan.lights[0].views[0].clip_from_world, corner);
+                assert!(p.truncate().abs().max_element() <= 1.0 && (0.0..=1.0).contains(&p.z), "{kind:?}: {p}");
+                let farther = project(&plan.lights[0].views[0].clip_from_world, corner - Vec3::Y * 0.1);
+                assert!(farther.z < p.z, "{kind:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_bulb_among_things_gets_a_cube_that_sees_all_round() {
+        let bulb = light(Kind::Point);
+        let casters = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
+        let plan = ShadowPlan::new(&table(&[bulb]), &casters, &VisibleReceivers::default(), false);
+        assert_eq!((plan.views, plan.masks[0].slots[0][0].kind), (6, Projection::Cube as u32));
+        let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+        for (view, axis) in plan.lights[0].views.iter().zip(axes) {
+            let p = project(&view.clip_from_world, Vec3::from(bulb.position) + axis * 2.0);
+            assert!(p.truncate().length() < 1e-5 && p.z > 0.0, "{axis}: {p}");
+        }
+    }
+
+    #[test]
+    fn depth_is_affine_across_a_plane() {
+        // The shader's receiver plane rests on it: the middle of two points' maps lies on the plane's depth.
+        let view =
+            ShadowPlan::new(&table(&[light(Kind::Rect)]), &[unit_box_at(Vec3::Y)], &VisibleReceivers::default(), false)
+                .lights[0]
+                .views[0]
+                .clip_from_world;
+        let (a, b) = (project(&view, Vec3::new(-0.3, 0.2, 0.1)), project(&view, Vec3::new(0.4, 0.9, -0.2)));
+        let on_line = project(&view, Vec3::new(-0.3, 0.2, 0.1).lerp(Vec3::new(0.4, 0.9, -0.2), 0.25));
+        let along = (on_line.truncate() - a.truncate()).length() / (b.truncate() - a.truncate()).length();
+        assert!((a.z + (b.z - a.z) * along - on_line.z).abs() < 1e-6);
+    }
+
+    #[test]
+    fn too_many_lights_go_without_shadow_and_no_caster_needs_no_map() {
+        let plan = ShadowPlan::new(
+            &table(&[light(Kind::Rect); 40]),
+            &[unit_box_at(Vec3::ZERO)],
+            &VisibleReceivers::default(),
+            false,
+        );
+        assert_eq!((plan.views, plan.masks.len()), (MAX_SHADOWS, MAX_SHADOWS / 4));
+        let all_round = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
+        let plan = ShadowPlan::new(&table(&[light(Kind::Rect); 16]), &all_round, &VisibleReceivers::default(), false);
+        // Eight cubes, and no room for more.
+        let kind = |light: usize| plan.masks[light / 4].slots[light % 4][0].kind;
+        assert_eq!((plan.views, kind(7), kind(8)), (MAX_VIEWS, Projection::Cube as u32, 0));
+        assert_eq!(
+            ShadowPlan::new(&table(&[light(Kind::Rect)]), &[], &VisibleReceivers::default(), false),
+            ShadowPlan::default()
+        );
+    }
+}
