@@ -14,7 +14,7 @@ use studio::{REFLECTANCE, card_at, light, looking_at_card};
 fn render(scene: &Scene, settings: &Settings) -> Picture {
     let prepared = raytrace::prepare(scene, &Assets::default()).unwrap();
     let film = raytrace::render(&prepared, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
-    assert_eq!(film.nonfinite(), 0);
+    assert_eq!(film.nonfinite().count, 0);
     film.develop(scene)
 }
 

@@ -23,7 +23,7 @@ fn probe(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor) -> Met
 fn probe_with(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor, effort: &MeterEffort) -> MeterResult {
     let probe = LightMeter::new(scene, &Assets::default(), position).unwrap();
     let probed = probe.read(&MeterPoint { position, facing, receptor }, effort, &RenderControl::new()).unwrap();
-    assert_eq!(probed.nonfinite, 0);
+    assert_eq!(probed.nonfinite.count, 0);
     probed
 }
 

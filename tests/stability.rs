@@ -60,7 +60,7 @@ fn holds(scene: &Scene, assets: &Assets) -> Picture {
         let film = pool.install(|| {
             raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()))
         });
-        assert_eq!(film.nonfinite(), 0, "{method:?}: {:?}", film.first_nonfinite());
+        assert_eq!(film.nonfinite().count, 0, "{method:?}: {:?}", film.nonfinite().first);
         film.develop(scene)
     };
     for method in [Method::Whitted, Method::Direct, Method::Path] {

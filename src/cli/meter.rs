@@ -165,8 +165,8 @@ fn warn(scene: &Scene, place: &MeterPoint, probed: &MeterResult) {
     if !scene.lights.iter().any(|light| light.on) {
         eprintln!("warning: no light is on");
     }
-    if probed.nonfinite > 0 {
-        eprintln!("warning: {} non-finite contributions were left out", probed.nonfinite);
+    if probed.nonfinite.count > 0 {
+        eprintln!("warning: {} non-finite contributions were left out", probed.nonfinite.count);
     }
 }
 
@@ -198,7 +198,7 @@ fn report(place: &MeterPoint, probed: &MeterResult) -> Report {
         noise_percent: reading.relative_error().map(|error| error * 100.0),
         paths: probed.paths,
         rays: probed.rays,
-        nonfinite: probed.nonfinite,
+        nonfinite: probed.nonfinite.count,
     }
 }
 

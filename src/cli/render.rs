@@ -2,7 +2,7 @@
 
 use super::{Failure, input, say, zbuffer};
 use crate::io::{self, Loaded, PictureFormat, PictureInfo};
-use crate::raytrace::{self, Film, Method, RenderControl, RenderScene, Settings, Shortcut};
+use crate::raytrace::{self, Film, Method, RenderControl, RenderScene, SampleId, Settings, Shortcut};
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -181,11 +181,11 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
     if film.spp() == 0 {
         return keep_coarse(arguments, &loaded, coarse.as_ref(), &settings);
     }
-    if let Some((x, y, sample)) = film.first_nonfinite() {
+    let nonfinite = film.nonfinite();
+    if let Some(SampleId { x, y, index, seed }) = nonfinite.first {
         eprintln!(
-            "warning: {} non-finite contributions shown black; the first at pixel {x},{y}, sample {sample}, seed {}",
-            film.nonfinite(),
-            arguments.seed
+            "warning: {} non-finite contributions shown black; the first at pixel {x},{y}, sample {index}, seed {seed}",
+            nonfinite.count
         );
     }
     write(arguments, &loaded, &film, &settings)?;
@@ -211,7 +211,7 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
         mrays_s: control.rays() as f64 / trace_s.max(1e-9) / 1e6,
         photons: film.has_photons(),
         noise_stops: Some(film.noise_stops()).filter(|n| n.is_finite()),
-        nonfinite: film.nonfinite(),
+        nonfinite: nonfinite.count,
         interrupted,
         output: arguments.output.display().to_string(),
     };

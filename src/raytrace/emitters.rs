@@ -4,9 +4,10 @@
 use super::caustics::Rival;
 use super::lights::{LightImportances, TracedLight};
 use super::medium_stack::MediumStack;
-use super::path_tracer::{Path, Place, RadianceSink, Tracer};
+use super::path_tracer::{Path, Place, Tracer};
 use super::ray_caster::{TOUCHING, reaches};
 use super::sampler::{self, Purpose, Sampler};
+use super::sink::RadianceSink;
 use crate::math::Ray;
 use glam::Vec3;
 

@@ -17,6 +17,7 @@ use super::lights::LightImportances;
 use super::medium_stack::MediumStack;
 use super::prepare::RenderScene;
 use super::sampler::{self, Purpose, Sampler};
+use super::sink::RadianceSink;
 use crate::color::luminance;
 use crate::math::Ray;
 use glam::Vec3;
@@ -30,12 +31,6 @@ pub struct Limits {
     pub all_bounces: u32,
     /// Ways that are followed from the first surface that scatters widely; the way there is shared.
     pub branches: u32,
-}
-
-/// Where contributions go: (layer, value).
-pub trait RadianceSink {
-    /// Adds white luminance (or finished colour, in shared layers) to a layer.
-    fn add(&mut self, layer: usize, value: Vec3);
 }
 
 /// Bounces before roulette begins.

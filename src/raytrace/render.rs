@@ -1,106 +1,17 @@
 //! Waves of samples over all tiles, with snapshots, cancel and progress.
 
 use super::caustics::{PhotonMap, USUAL_PHOTONS, Wave};
-use super::film::{Film, TileFilm};
-use super::path_tracer::{Limits, RadianceSink, Tracer};
+use super::control::RenderControl;
+use super::film::{Film, FilmTile};
+use super::path_tracer::{Limits, Tracer};
 use super::prepare::RenderScene;
 use super::sampler::{self, Purpose, Sampler};
-use crate::color::luminance;
+use super::settings::{Method, Settings};
 use crate::math::Ray;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-
-/// How light is followed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Method {
-    /// Phong lobes, hard shadows, mirrors and glass: Whitted's recursion, to compare with.
-    Whitted,
-    /// One scattering event: soft shadows and gloss, no bounce light. Mirrors and glass are passed through.
-    Direct,
-    /// Everything: the reference.
-    #[default]
-    Path,
-}
-
-/// What to render.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
-    /// Pixels across.
-    pub width: u32,
-    /// Pixels down.
-    pub height: u32,
-    /// How light is followed.
-    pub method: Method,
-    /// Samples a pixel at most.
-    pub spp: u32,
-    /// Bounces at most; none takes what the plan says.
-    pub max_depth: Option<u32>,
-    /// Another seed gives other noise.
-    pub seed: u32,
-    /// Stop where the estimated noise of a tile is under this many stops.
-    pub noise_stops: Option<f32>,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Settings { width: 960, height: 640, method: Method::Path, spp: 64, max_depth: None, seed: 0, noise_stops: None }
-    }
-}
-
-/// Pixels from which on a small picture comes first: the first wave of a large one takes its time.
-const LARGE: u64 = 150_000;
-
-impl Settings {
-    /// One sample of a small version of a large picture, to be shown until the first wave is done.
-    pub fn coarse(&self) -> Option<Settings> {
-        let is_large = self.pixels() > LARGE;
-        let small = |edge: u32| edge.div_ceil(4);
-        is_large.then(|| Settings { width: small(self.width), height: small(self.height), spp: 1, ..self.clone() })
-    }
-}
-
-/// Shared between a render and whoever watches it.
-#[derive(Debug, Default)]
-pub struct RenderControl {
-    cancelled: AtomicBool,
-    rays: AtomicU64,
-    samples: AtomicU64,
-}
-
-impl RenderControl {
-    /// A control that nobody has cancelled yet.
-    pub fn new() -> Self {
-        RenderControl::default()
-    }
-
-    /// Asks the render to stop; it ends within a tile's time.
-    pub fn cancel(&self) {
-        self.cancelled.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether a stop was asked for.
-    pub fn is_cancelled(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed)
-    }
-
-    /// Rays traced so far.
-    pub fn rays(&self) -> u64 {
-        self.rays.load(Ordering::Relaxed)
-    }
-
-    /// Books work that was done.
-    pub(super) fn count(&self, rays: u64, samples: u64) {
-        self.rays.fetch_add(rays, Ordering::Relaxed);
-        self.samples.fetch_add(samples, Ordering::Relaxed);
-    }
-
-    /// Pixel samples taken so far; `width * height * spp` when done.
-    pub fn samples_done(&self) -> u64 {
-        self.samples.load(Ordering::Relaxed)
-    }
-}
+use std::sync::Arc;
 
 /// Waves grow 1, 1, 2, 4 ... up to this many samples.
 const LARGEST_WAVE: u32 = 16;
@@ -117,15 +28,16 @@ pub fn render(
     control: &RenderControl,
     on_wave: &mut dyn FnMut(&Film) -> ControlFlow<()>,
 ) -> Film {
-    let mut film = Film::new(settings.width, settings.height, scene.layers());
-    (film.method, film.photons) = (settings.method, settings.takes_photons(scene));
+    let photons = settings.takes_photons(scene);
+    let mut film = Film::new(settings.width, settings.height, scene.layers(), settings.method, photons);
     let mut taken = 0;
     while taken < settings.spp {
         let wave = taken.clamp(1, settings.largest_wave(scene)).min(settings.spp - taken);
         let caustics = settings.caustics(scene, taken, wave, control);
         let job = TileJob { scene, caustics: caustics.as_ref(), settings, control, wave };
-        let mut noisy: Vec<&mut TileFilm> = film.tiles.iter_mut().filter(|tile| !settings.is_quiet(tile)).collect();
-        if noisy.is_empty() || !noisy.par_iter_mut().with_max_len(1).all(|tile| job.run(tile)) {
+        let mut noisy: Vec<&mut Arc<FilmTile>> =
+            film.tiles_mut().iter_mut().filter(|tile| !settings.is_quiet(tile)).collect();
+        if noisy.is_empty() || !noisy.par_iter_mut().with_max_len(1).all(|tile| job.run(Arc::make_mut(tile))) {
             break;
         }
         taken += wave;
@@ -137,10 +49,6 @@ pub fn render(
 }
 
 impl Settings {
-    fn pixels(&self) -> u64 {
-        u64::from(self.width) * u64::from(self.height)
-    }
-
     fn takes_photons(&self, scene: &RenderScene) -> bool {
         scene.plan().photons && self.method != Method::Whitted
     }
@@ -166,7 +74,7 @@ impl Settings {
     }
 
     /// Whether a tile needs no more samples.
-    fn is_quiet(&self, tile: &TileFilm) -> bool {
+    fn is_quiet(&self, tile: &FilmTile) -> bool {
         let within = |limit: f32| tile.noise_stops().is_none_or(|noise| noise <= limit);
         tile.spp() >= JUDGED_FROM && self.noise_stops.is_some_and(within)
     }
@@ -182,32 +90,32 @@ struct TileJob<'a> {
 }
 
 impl TileJob<'_> {
-    fn run(&self, tile: &mut TileFilm) -> bool {
+    fn run(&self, tile: &mut FilmTile) -> bool {
         if self.control.is_cancelled() {
             return false;
         }
-        let (first_sample, half) = (tile.spp(), tile.next_half());
+        let (first_sample, half) = (tile.spp(), tile.halves.next_half());
         let mut tracer = Tracer::with_caustics(self.scene, self.caustics);
         let limits = limits(self.scene, self.settings);
         let size = Vec2::new(self.settings.width as f32, self.settings.height as f32);
         let frame = self.scene.lens.frame(size.x / size.y);
         for pixel in 0..tile.pixels() {
-            let (x, y) = (tile.x + pixel as u32 % tile.width, tile.y + pixel as u32 / tile.width);
+            let (x, y) = tile.position(pixel);
             for sample in first_sample..first_sample + self.wave {
                 let sampler = Sampler::new(x, y, sample, self.settings.seed);
                 let set = sampler.set(Purpose::Camera);
                 let film_point = (Vec2::new(x as f32, y as f32) + sampler::point(&set)) / size;
                 let (origin, direction) = self.scene.lens.ray(&frame, film_point, sampler::rest(&set).into());
-                let mut gate = Gate { tile, pixel, place: (x, y, sample), luminance: 0.0, scene: self.scene };
+                let mut gate = tile.sample_sink(pixel, sampler.id(), &self.scene.layer_times);
                 match self.settings.method {
                     Method::Whitted => tracer.whitted(origin, direction, limits.all_bounces, &mut gate),
                     Method::Direct | Method::Path => tracer.trace(origin, direction, &sampler, limits, &mut gate),
                 }
-                let value = gate.luminance * self.scene.exposure;
-                tile.add_luminance(half, pixel, value);
+                let luminance = gate.sink.luminance * self.scene.exposure;
+                tile.halves.add(half, pixel, luminance);
             }
         }
-        tile.finish_wave(half, self.wave);
+        tile.halves.finish_pass(half, self.wave);
         self.control.count(tracer.rays, tile.pixels() as u64 * u64::from(self.wave));
         true
     }
@@ -231,27 +139,6 @@ fn limits(scene: &RenderScene, settings: &Settings) -> Limits {
         Method::Path => {
             let depth = settings.max_depth.unwrap_or(plan.max_bounces);
             Limits { wide_bounces: depth, all_bounces: depth, branches: plan.branches }
-        }
-    }
-}
-
-/// The one place where non-finite values are stopped: counted, reported with pixel and sample, shown black.
-struct Gate<'a> {
-    scene: &'a RenderScene,
-    tile: &'a mut TileFilm,
-    pixel: usize,
-    place: (u32, u32, u32),
-    luminance: f32,
-}
-
-impl RadianceSink for Gate<'_> {
-    fn add(&mut self, layer: usize, value: Vec3) {
-        if value.is_finite() {
-            self.tile.add(layer, self.pixel, value);
-            self.luminance += luminance(value) * self.scene.layer_times[layer];
-        } else {
-            let (x, y, sample) = self.place;
-            self.tile.report_nonfinite(x, y, sample);
         }
     }
 }

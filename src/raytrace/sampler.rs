@@ -34,13 +34,23 @@ pub enum Purpose {
 /// One sample of one pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler {
-    /// Pixel across, pixel down, seed.
-    place: [u32; 3],
-    /// Of the whole render.
-    sample: u32,
+    id: SampleId,
     pixel_seed: u32,
-    /// In the sequence.
+    /// Index within the sequence.
     index: u32,
+}
+
+/// The identity of a sample; all its random numbers are a function of it and their dimension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SampleId {
+    /// Pixel across.
+    pub x: u32,
+    /// Pixel down.
+    pub y: u32,
+    /// Index among the pixel's samples.
+    pub index: u32,
+    /// Seed of the render.
+    pub seed: u32,
 }
 
 /// Mixes the bits of a number (Wellons' lowbias32).
@@ -58,13 +68,18 @@ impl Sampler {
         // The sequence has 2^16 points; further ones come from a fresh scramble.
         let epoch = index >> 16;
         let pixel_seed = hash(x ^ hash(y ^ hash(seed ^ hash(epoch))));
-        Sampler { place: [x, y, seed], sample: index, pixel_seed, index: index & 0xffff }
+        Sampler { id: SampleId { x, y, index, seed }, pixel_seed, index: index & 0xffff }
+    }
+
+    /// The sample.
+    pub fn id(&self) -> SampleId {
+        self.id
     }
 
     /// One of `count` ways on from this sample. The ways of all samples of a pixel are stratified together.
     pub fn branch(&self, branch: u32, count: u32) -> Self {
-        let [x, y, seed] = self.place;
-        Sampler::new(x, y, self.sample.wrapping_mul(count).wrapping_add(branch), seed)
+        let SampleId { x, y, index, seed } = self.id;
+        Sampler::new(x, y, index.wrapping_mul(count).wrapping_add(branch), seed)
     }
 
     /// The numbers for a purpose.

@@ -10,7 +10,8 @@ use super::bsdf::{fresnel, pane_transmittance};
 use super::emitters::Vertex;
 use super::geometry::SurfaceInteraction;
 use super::medium_stack::MediumStack;
-use super::path_tracer::{RadianceSink, Tracer};
+use super::path_tracer::Tracer;
+use super::sink::RadianceSink;
 use crate::math::Ray;
 use glam::Vec3;
 

@@ -24,7 +24,7 @@ pub fn film(scene: &Scene, settings: &Settings) -> Film {
 pub fn film_with(scene: &Scene, assets: &Assets, settings: &Settings) -> Film {
     let prepared = raytrace::prepare(scene, assets).unwrap();
     let film = raytrace::render(&prepared, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
-    assert_eq!(film.nonfinite(), 0, "{:?}", film.first_nonfinite());
+    assert_eq!(film.nonfinite().count, 0, "{:?}", film.nonfinite().first);
     film
 }
 

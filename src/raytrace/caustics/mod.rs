@@ -19,10 +19,10 @@ mod tests;
 mod weights;
 
 use super::bsdf::Bsdf;
+use super::control::RenderControl;
 use super::geometry::SurfaceInteraction;
 use super::path_tracer::Tracer;
 use super::prepare::RenderScene;
-use super::render::RenderControl;
 use super::sampler::Sampler;
 pub use casters::Casters;
 use glam::Vec3;

@@ -12,13 +12,14 @@ use crate::color::{self, luminance};
 use crate::math::{Ray, warp};
 use crate::photo::exposure::{self, Strength};
 use crate::photo::meter::{LightReading, Reading, Receptor};
-use crate::raytrace::film::Layer;
+use crate::raytrace::control::RenderControl;
+use crate::raytrace::film::{Layer, NonFiniteGate, NonFiniteReport};
 use crate::raytrace::lights::TracedLight;
 use crate::raytrace::medium_stack::MediumStack;
-use crate::raytrace::path_tracer::{Limits, RadianceSink, Tracer};
+use crate::raytrace::path_tracer::{Limits, Tracer};
 use crate::raytrace::prepare::{PrepareError, RenderScene, prepare_around};
-use crate::raytrace::render::RenderControl;
-use crate::raytrace::sampler::{self, Purpose, Sampler};
+use crate::raytrace::sampler::{self, Purpose, SampleId, Sampler};
+use crate::raytrace::sink::RadianceSink;
 use crate::scene::{Assets, Camera, Light, LightId, Scene};
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
@@ -80,8 +81,8 @@ pub struct MeterResult {
     pub paths: u64,
     /// Rays traced.
     pub rays: u64,
-    /// Non-finite contributions that were dropped.
-    pub nonfinite: u64,
+    /// Discarded non-finite contributions.
+    pub nonfinite: NonFiniteReport,
     /// Index into the scene's objects of a closed object that the receptor is inside of.
     pub inside: Option<u32>,
 }
@@ -159,7 +160,7 @@ impl LightMeter {
                     reading: Reading::new(self.in_order(lights), &self.camera),
                     paths: sequences.iter().map(|s| u64::from(s.paths)).sum(),
                     rays,
-                    nonfinite: sequences.iter().map(|s| s.nonfinite).sum(),
+                    nonfinite: sequences.iter().map(|s| &s.nonfinite).collect(),
                     inside: self.enclosing(receiver.origin),
                 });
             }
@@ -237,7 +238,7 @@ struct Sequence {
     straight: Vec<DVec3>,
     paths: u32,
     rays: u64,
-    nonfinite: u64,
+    nonfinite: NonFiniteReport,
 }
 
 impl Sequence {
@@ -250,7 +251,7 @@ impl Sequence {
             straight: none,
             paths: 0,
             rays: 0,
-            nonfinite: 0,
+            nonfinite: NonFiniteReport::default(),
         }
     }
 
@@ -393,7 +394,8 @@ impl Job<'_> {
             if !light.is_sampled() || (light.is_delta() && i > 0) {
                 return;
             }
-            let set = Sampler::new(sequence.index, 1 + layer as u32, i, self.seed).set(Purpose::Camera);
+            let sampler = Sampler::new(sequence.index, 1 + layer as u32, i, self.seed);
+            let set = sampler.set(Purpose::Camera);
             let sample = light.sample(receiver.origin, sampler::point(&set));
             let lit = sample.map_or(0.0, |sample| {
                 let response = receiver.receptor.response(sample.direction.dot(receiver.facing));
@@ -414,10 +416,8 @@ impl Job<'_> {
             });
             let (sum, points) = &mut sequence.direct[layer];
             *points += 1;
-            if lit.is_finite() {
-                *sum += f64::from(lit);
-            } else {
-                sequence.nonfinite += 1;
+            if let Some(lit) = sequence.nonfinite.admit(sampler.id(), Vec3::splat(lit)) {
+                *sum += f64::from(lit.x);
             }
         }
     }
@@ -429,24 +429,24 @@ impl Job<'_> {
         let direction = receiver.direction(sampler::point(&sampler.set(Purpose::Camera)));
         let weight = receiver.weight();
         sequence.paths += 1;
-        let nonfinite = &mut sequence.nonfinite;
-        self.straight(tracer, direction, &mut Gather { sums: &mut sequence.straight, weight, nonfinite });
-        let nonfinite = &mut sequence.nonfinite;
-        let mut gather = Gather { sums: &mut sequence.bounced, weight, nonfinite };
-        tracer.trace_past_lights(receiver.origin, direction, &sampler, LIMITS, &mut gather);
+        let report = &mut sequence.nonfinite;
+        let mut sink = WeightedSink::new(&mut sequence.straight, weight, sampler.id(), report);
+        self.straight(tracer, direction, &mut sink);
+        let mut sink = WeightedSink::new(&mut sequence.bounced, weight, sampler.id(), report);
+        tracer.trace_past_lights(receiver.origin, direction, &sampler, LIMITS, &mut sink);
         if self.probe.glows {
             // The path has counted the glow of the first surface, too, which is direct light.
             let glow = self.probe.lights.len();
             let mut first = vec![DVec3::ZERO; glow + 1];
-            let mut gather = Gather { sums: &mut first, weight, nonfinite };
-            tracer.trace(receiver.origin, direction, &sampler, NO_BOUNCE, &mut gather);
+            let mut sink = WeightedSink::new(&mut first, weight, sampler.id(), report);
+            tracer.trace(receiver.origin, direction, &sampler, NO_BOUNCE, &mut sink);
             sequence.bounced[glow] -= first[glow];
             sequence.straight[glow] += first[glow];
         }
     }
 
     /// Surrounds are met by the receptor's own choice of direction.
-    fn straight(&self, tracer: &mut Tracer<'_>, direction: Vec3, gather: &mut Gather<'_>) {
+    fn straight(&self, tracer: &mut Tracer<'_>, direction: Vec3, sink: &mut impl RadianceSink) {
         let origin = self.receiver.origin;
         let unsampled = || self.probe.scene.lights.iter().filter(|light| !light.is_sampled());
         if unsampled().next().is_none() || tracer.blocked(origin, direction, f32::INFINITY) {
@@ -454,7 +454,7 @@ impl Job<'_> {
         }
         for light in unsampled() {
             if let Some(seen) = light.intersect(origin, direction) {
-                gather.add(light.layer, Vec3::splat(seen.luminance));
+                sink.add(light.layer, Vec3::splat(seen.luminance));
             }
         }
     }
@@ -463,20 +463,30 @@ impl Job<'_> {
 /// Only what the first surface gives off.
 const NO_BOUNCE: Limits = Limits { wide_bounces: 0, all_bounces: 0, branches: 1 };
 
-/// Adds up the light of paths; what is not finite is counted and left out.
-struct Gather<'a> {
-    sums: &'a mut [DVec3],
+/// Weights the contributions of a path for the receptor, and adds the finite ones to the layers' sums.
+struct WeightedSink<'a> {
+    gate: NonFiniteGate<'a, LayerTotals<'a>>,
+    /// Solid angle of the receptor's response, sr.
     weight: f32,
-    nonfinite: &'a mut u64,
 }
 
-impl RadianceSink for Gather<'_> {
+impl<'a> WeightedSink<'a> {
+    fn new(sums: &'a mut [DVec3], weight: f32, sample: SampleId, report: &'a mut NonFiniteReport) -> Self {
+        WeightedSink { gate: NonFiniteGate { sink: LayerTotals(sums), sample, report }, weight }
+    }
+}
+
+impl RadianceSink for WeightedSink<'_> {
     fn add(&mut self, layer: usize, value: Vec3) {
-        let value = value * self.weight;
-        if value.is_finite() {
-            self.sums[layer] += value.as_dvec3();
-        } else {
-            *self.nonfinite += 1;
-        }
+        self.gate.add(layer, value * self.weight);
+    }
+}
+
+/// One sum per layer, in double precision.
+struct LayerTotals<'a>(&'a mut [DVec3]);
+
+impl RadianceSink for LayerTotals<'_> {
+    fn add(&mut self, layer: usize, value: Vec3) {
+        self.0[layer] += value.as_dvec3();
     }
 }

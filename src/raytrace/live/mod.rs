@@ -18,10 +18,10 @@ mod tile;
 pub use camera::LiveCamera;
 pub use smooth::Smoother;
 
+use super::control::RenderControl;
 use super::film::{Layer, assign_layers};
 use super::geometry_cache::GeometryCache;
 use super::prepare::{self, PrepareError, RenderScene};
-use super::render::RenderControl;
 use crate::photo::Picture;
 use crate::scene::{Assets, LightId, Scene};
 use change::Change;

@@ -10,9 +10,10 @@ use crate::math::Ray;
 use crate::raytrace::RenderControl;
 use crate::raytrace::caustics::PhotonMap;
 use crate::raytrace::film::{MAX_LIGHT_LAYERS, TILE};
-use crate::raytrace::path_tracer::{Limits, RadianceSink, Tracer};
+use crate::raytrace::path_tracer::{Limits, Tracer};
 use crate::raytrace::prepare::RenderScene;
 use crate::raytrace::sampler::{self, Purpose, Sampler};
+use crate::raytrace::sink::RadianceSink;
 use glam::{Vec2, Vec3, Vec4};
 
 /// Layers of a live picture at most: one a light, and the glow.

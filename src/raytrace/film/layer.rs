@@ -1,0 +1,92 @@
+//! Film layers: one per light, so that lights can be dimmed and coloured after the render.
+
+use crate::color;
+use crate::photo::exposure::{self, Strength};
+use crate::raytrace::lights::TracedLight;
+use crate::scene::{Light, LightId, Scene};
+use glam::Vec3;
+
+/// The largest number of lights with a layer each; above it, lights of one role share a layer.
+pub const MAX_LIGHT_LAYERS: usize = 16;
+
+/// The source of a film layer's light, and its output when it was traced.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layer {
+    /// The light's name, the role of a group, or `Glow` for emissive surfaces.
+    pub name: String,
+    /// The light of a layer that holds a single one.
+    pub light: Option<LightId>,
+    /// Output that was traced; the layer scales by it when the light is changed later.
+    traced: Option<Strength>,
+    /// Colours and times are included in the sums (shared layers).
+    finished: bool,
+}
+
+impl Layer {
+    /// The layer of one light.
+    pub fn of_light(light: &Light) -> Self {
+        Layer {
+            name: light.name.clone(),
+            light: Some(light.id),
+            traced: Some(exposure::strength(light)),
+            finished: false,
+        }
+    }
+
+    /// A layer that several sources share.
+    pub fn shared(name: &str) -> Self {
+        Layer { name: name.to_owned(), light: None, traced: None, finished: true }
+    }
+
+    /// Factor from the traced white luminance to time-integrated, coloured luminance (cd s/m2) with the light's power,
+    /// colour and switch in `scene`.
+    pub(in crate::raytrace) fn weight(&self, scene: &Scene) -> Vec3 {
+        if self.finished {
+            return Vec3::ONE;
+        }
+        let light = self.light.and_then(|id| scene.light(id)).filter(|light| light.on);
+        let (Some(light), Some(traced)) = (light, self.traced) else { return Vec3::ZERO };
+        let rgb = color::light_rgb(&light.color, scene.camera.white_balance_k);
+        rgb * (output_ratio(light, traced) * exposure::integration_time_s(&light.power.output, &scene.camera))
+    }
+}
+
+/// Ratio of a light's present output to the output that was traced; 1 exactly when nothing changed.
+fn output_ratio(light: &Light, traced: Strength) -> f32 {
+    let per_flux = exposure::intensity_per_flux(&light.emitter).unwrap_or(0.0);
+    let axial = |strength| match strength {
+        Strength::Flux(flux) => flux * per_flux,
+        Strength::AxialIntensity(value) | Strength::Illuminance(value) => value,
+    };
+    let now = exposure::strength(light);
+    if now == traced { 1.0 } else { axial(now) / axial(traced) }
+}
+
+/// Colour times exposure time of a light in a shared layer.
+fn shared_layer_tint(light: &Light, scene: &Scene) -> Vec3 {
+    color::light_rgb(&light.color, scene.camera.white_balance_k)
+        * exposure::integration_time_s(&light.power.output, &scene.camera)
+}
+
+/// Assigns each light its layer: one per light, or one per role above [`MAX_LIGHT_LAYERS`]. The last layer holds emissive
+/// surfaces.
+pub fn assign_layers(scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<Layer> {
+    let mut layers: Vec<Layer> = Vec::new();
+    let grouped = lights.len() > MAX_LIGHT_LAYERS;
+    for (traced, light) in lights {
+        if grouped {
+            let name = format!("{} lights", light.role.label());
+            let known = layers.iter().position(|layer| layer.name == name);
+            traced.layer = known.unwrap_or(layers.len());
+            traced.tint = shared_layer_tint(light, scene);
+            if known.is_none() {
+                layers.push(Layer::shared(&name));
+            }
+        } else {
+            traced.layer = layers.len();
+            layers.push(Layer::of_light(light));
+        }
+    }
+    layers.push(Layer::shared("Glow"));
+    layers
+}

@@ -1,0 +1,98 @@
+//! One tile of a film.
+
+use super::{HalfBuffers, LayerSums, NonFiniteGate, NonFiniteReport};
+use crate::color::luminance;
+use crate::raytrace::sampler::SampleId;
+use crate::raytrace::sink::RadianceSink;
+use glam::Vec3;
+
+/// Edge length of a tile, pixels. Each tile is written by one thread, without locks.
+pub const TILE: u32 = 32;
+
+/// The samples of a square of pixels.
+#[derive(Clone, Debug)]
+pub struct FilmTile {
+    /// Left edge, pixels.
+    pub x: u32,
+    /// Upper edge, pixels.
+    pub y: u32,
+    /// Pixels across; less than [`TILE`] at the right edge.
+    pub width: u32,
+    /// Sums of the contributions.
+    pub sums: LayerSums<Vec3>,
+    /// Halves of the samples, for the noise estimate.
+    pub halves: HalfBuffers,
+    /// Discarded non-finite contributions.
+    pub nonfinite: NonFiniteReport,
+}
+
+impl FilmTile {
+    /// An empty tile.
+    pub fn new(x: u32, y: u32, width: u32, height: u32, layers: usize) -> Self {
+        let pixels = (width * height) as usize;
+        FilmTile {
+            x,
+            y,
+            width,
+            sums: LayerSums::new(pixels, layers),
+            halves: HalfBuffers::new(pixels),
+            nonfinite: NonFiniteReport::default(),
+        }
+    }
+
+    /// Number of pixels.
+    pub fn pixels(&self) -> usize {
+        self.sums.pixels()
+    }
+
+    /// Picture coordinates of a pixel of the tile.
+    pub fn position(&self, pixel: usize) -> (u32, u32) {
+        (self.x + pixel as u32 % self.width, self.y + pixel as u32 / self.width)
+    }
+
+    /// Samples per pixel.
+    pub fn spp(&self) -> u32 {
+        let [a, b] = self.halves.samples();
+        a + b
+    }
+
+    /// Factor from sums to means.
+    pub fn per_sample(&self) -> f32 {
+        1.0 / self.spp().max(1) as f32
+    }
+
+    /// Estimated noise, see [`HalfBuffers::noise_stops`].
+    pub fn noise_stops(&self) -> Option<f32> {
+        self.halves.noise_stops(self.halves.mean())
+    }
+
+    /// The sink of one sample of a pixel, behind the non-finite gate. `layer_times` are the seconds for which each layer
+    /// counts in the exposure.
+    pub fn sample_sink<'a>(
+        &'a mut self,
+        pixel: usize,
+        sample: SampleId,
+        layer_times: &'a [f32],
+    ) -> NonFiniteGate<'a, PixelSink<'a>> {
+        let sink = PixelSink { sums: &mut self.sums, pixel, layer_times, luminance: 0.0 };
+        NonFiniteGate { sink, sample, report: &mut self.nonfinite }
+    }
+}
+
+/// Adds the contributions of one sample to a pixel.
+#[derive(Debug)]
+pub struct PixelSink<'a> {
+    sums: &'a mut LayerSums<Vec3>,
+    pixel: usize,
+    layer_times: &'a [f32],
+    /// Time-integrated luminance of the sample, cd s/m2.
+    pub luminance: f32,
+}
+
+impl RadianceSink for PixelSink<'_> {
+    #[inline]
+    fn add(&mut self, layer: usize, value: Vec3) {
+        self.sums.add(layer, self.pixel, value);
+        self.luminance += luminance(value) * self.layer_times[layer];
+    }
+}

@@ -1,0 +1,56 @@
+//! The settings of a render.
+
+/// The rendering method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Method {
+    /// Whitted's recursion, for comparison: Phong lobes, hard shadows, mirrors and glass.
+    Whitted,
+    /// Path tracing with one non-specular scattering event: soft shadows and gloss, no indirect light. Specular surfaces
+    /// are followed.
+    Direct,
+    /// Path tracing with all indirect light: the reference.
+    #[default]
+    Path,
+}
+
+/// The parameters of a render.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Rendering method.
+    pub method: Method,
+    /// Samples per pixel at most.
+    pub spp: u32,
+    /// Maximum path depth; none takes the plan's.
+    pub max_depth: Option<u32>,
+    /// Seed of the random numbers.
+    pub seed: u32,
+    /// Noise of a tile, in stops, at which it takes no more samples.
+    pub noise_stops: Option<f32>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings { width: 960, height: 640, method: Method::Path, spp: 64, max_depth: None, seed: 0, noise_stops: None }
+    }
+}
+
+/// Pixels above which a coarse picture is rendered first: the first pass of a large one takes its time.
+const LARGE: u64 = 150_000;
+
+impl Settings {
+    /// One sample of a quarter-size version of a large picture, to be shown until the first pass is done.
+    pub fn coarse(&self) -> Option<Settings> {
+        let is_large = self.pixels() > LARGE;
+        let small = |edge: u32| edge.div_ceil(4);
+        is_large.then(|| Settings { width: small(self.width), height: small(self.height), spp: 1, ..self.clone() })
+    }
+
+    /// Number of pixels.
+    pub fn pixels(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+}
