@@ -5,7 +5,7 @@
 
 mod studio;
 
-use catchlight::photo::exposure;
+use catchlight::photo::emitter::{cone_falloff, cone_solid_angle_sr};
 use catchlight::raytrace::{Method, Settings};
 use catchlight::scene::{
     Aim, Camera, Emitter, Light, LightId, Material, Object, Output, Room, Scene, Sensor, Shape, Transform,
@@ -67,9 +67,9 @@ fn equal_cones_are_a_hard_edge_and_not_a_division_by_zero() {
     let wrong = |angle_deg: f32| (angle_deg * 2.0 - outer) / (inner - outer);
     assert!(!wrong(20.0).is_finite() && !wrong(10.0).is_finite());
     for (angle_deg, share) in [(0.0_f32, 1.0), (19.9, 1.0), (20.1, 0.0), (90.0, 0.0), (180.0, 0.0)] {
-        assert_eq!(exposure::spot_falloff(angle_deg.to_radians().cos(), inner, outer), share, "{angle_deg} degrees");
+        assert_eq!(cone_falloff(angle_deg.to_radians().cos(), inner, outer), share, "{angle_deg} degrees");
     }
-    let solid_angle = f64::from(exposure::spot_solid_angle(inner, outer));
+    let solid_angle = f64::from(cone_solid_angle_sr(inner, outer));
     assert!((solid_angle - 2.0 * PI * (1.0 - 20_f64.to_radians().cos())).abs() < 1e-6, "{solid_angle}");
 }
 

@@ -4,7 +4,8 @@
 
 mod studio;
 
-use catchlight::photo::beam;
+use catchlight::photo::beam::{Beam, transmitted_flux_fraction};
+use catchlight::photo::emitter::EmitterShape;
 use catchlight::photo::meter::Receptor;
 use catchlight::raytrace::{LightMeter, MeterEffort, MeterPoint, RenderControl};
 use catchlight::scene::{
@@ -76,7 +77,7 @@ fn flux_beside_the_beam_is_lost_and_the_axis_keeps_its_light() {
         let flux_through = |scene: &Scene| lux(scene, &places, Vec3::ZERO);
         let (with, without) = (flux_through(&scene), flux_through(&modified(emitter, Modifier::default())));
         let flux: f32 = with.iter().zip(&areas).map(|(lux, area)| lux * area).sum();
-        let share = beam::passed_share(&emitter, &modifier);
+        let share = transmitted_flux_fraction(&EmitterShape::new(&emitter), Beam::new(&modifier).as_ref());
         // Doors have edges of 4 degrees between midpoints of 15 degrees of turn.
         let allowed = if modifier.doors.is_some() { 0.02 } else { 0.006 };
         assert!((flux / (1000.0 * share) - 1.0).abs() < allowed, "{emitter:?}: {flux} lm of {share}");

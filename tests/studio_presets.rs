@@ -2,7 +2,7 @@
 //! The illuminances here are closed forms, apart from every renderer.
 
 use catchlight::io::presets;
-use catchlight::photo::exposure;
+use catchlight::photo::{PhotometricLight, exposure};
 use catchlight::scene::{Emitter, Light, Role, Scene};
 use std::f32::consts::PI;
 
@@ -20,8 +20,8 @@ fn metered_lux_s(scene: &Scene, light: &Light) -> f32 {
         Emitter::Point | Emitter::Sphere { .. } | Emitter::Spot { .. } => 1.0 / (distance * distance),
         Emitter::Sun { .. } | Emitter::Surround => return f32::NAN,
     };
-    let time_s = exposure::integration_time_s(&light.power.output, &scene.camera);
-    exposure::axial_intensity(light) * per_axial_intensity * time_s
+    let light = PhotometricLight::new(scene, light);
+    light.axial_intensity() * per_axial_intensity * light.exposure_time_s
 }
 
 /// Stops of a light over what the camera's settings ask for.

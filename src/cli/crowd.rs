@@ -72,7 +72,7 @@ fn small_light(index: usize, count: usize) -> Light {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::photo::exposure;
+    use crate::photo::light::axial_intensity;
 
     #[test]
     fn five_figures_under_lights_that_add_up_to_the_same() {
@@ -82,7 +82,7 @@ mod tests {
         assert_eq!(figures, FIGURES);
         for count in [1, 4, 60] {
             let scene = lit_by(&crowd, count);
-            let total: f32 = scene.lights.iter().map(exposure::axial_intensity).sum();
+            let total: f32 = scene.lights.iter().map(axial_intensity).sum();
             assert!((total / (EXPOSURE_LUX_S * RING_M * RING_M) - 1.0).abs() < 1e-3, "{count}: {total}");
             assert_eq!((scene.lights.len(), crate::scene::validate(&scene).len()), (count, 0));
         }

@@ -1,9 +1,12 @@
 //! Arithmetic of exposure, light meter and set-ups: what a photographer's own tools compute.
 
 pub mod beam;
+pub mod emitter;
 pub mod exposure;
+pub mod light;
 pub mod meter;
 mod picture;
 pub mod thirds;
 
+pub use light::{PhotometricLight, Strength};
 pub use picture::Picture;

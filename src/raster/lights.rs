@@ -2,10 +2,10 @@
 
 use super::row::{Line, ROOM, Vectors, WIDTH};
 use super::series;
-use crate::color;
-use crate::photo::beam;
-use crate::photo::exposure::{self, Strength};
-use crate::scene::{Cone, Emitter, Light, Modifier, Scene};
+use crate::photo::beam::{Beam, doors_transmission};
+use crate::photo::emitter::{EmitterShape, IntensityDistribution};
+use crate::photo::{PhotometricLight, exposure};
+use crate::scene::{BarnDoors, Cone, Scene};
 use glam::{Mat3A, Vec3, Vec3A};
 use std::f32::consts::PI;
 
@@ -32,9 +32,9 @@ pub(super) struct PlacedLight {
     /// Picture units of axial intensity, or of a sun's illuminance.
     pub strength: Vec3,
     /// Of a spot, a dish, a snoot or a grid.
-    cones: Vec<Falloff>,
+    cones: Vec<ConeFalloff>,
     /// Barn doors, and the way into the light's frame.
-    doors: Option<(Modifier, Mat3A)>,
+    doors: Option<(BarnDoors, Mat3A)>,
 }
 
 /// All lights that are on, as they stand about the eye.
@@ -75,50 +75,45 @@ impl Lights {
             glow: per_unit * camera.shutter_s,
         };
         for light in scene.lights.iter().filter(|light| light.on) {
-            let seconds = exposure::integration_time_s(&light.power.output, camera);
-            let unit = color::light_rgb(&light.color, camera.white_balance_k) * per_unit * seconds;
-            all.add(scene, light, unit, eye);
+            let light = PhotometricLight::new(scene, light);
+            let unit = light.tint * per_unit * light.exposure_time_s;
+            all.add(scene, &light, unit, eye);
         }
         all
     }
 
-    fn add(&mut self, scene: &Scene, light: &Light, unit: Vec3, eye: Vec3) {
-        let illuminance = if let Strength::Illuminance(lux) = exposure::strength(light) { lux } else { 0.0 };
-        let infinite = light.emitter.is_infinite();
-        if infinite && scene.room.is_some() {
+    fn add(&mut self, scene: &Scene, light: &PhotometricLight, unit: Vec3, eye: Vec3) {
+        if light.shape.is_distant() && scene.room.is_some() {
             // A closed room keeps it out.
             return;
         }
         let mut cones = Vec::new();
-        let kind = match light.emitter {
-            Emitter::Point | Emitter::Sphere { .. } => Kind::Point,
-            Emitter::Spot { inner_deg, outer_deg } => {
-                cones.push(Falloff::new(Cone { inner_deg, outer_deg }));
+        let strength = unit * light.axial_intensity_or_illuminance();
+        let kind = match light.shape {
+            EmitterShape::Point(IntensityDistribution::Isotropic) | EmitterShape::Sphere { .. } => Kind::Point,
+            EmitterShape::Point(IntensityDistribution::Cone(cone)) => {
+                cones.push(ConeFalloff::new(cone));
                 Kind::Point
             }
-            Emitter::RectPanel { width_m, height_m } => Kind::Panel { area_m2: width_m * height_m },
-            Emitter::RoundPanel { diameter_m } => Kind::Panel { area_m2: 0.25 * PI * diameter_m * diameter_m },
-            Emitter::Sun { .. } => Kind::Sun,
-            Emitter::Surround => {
-                self.ambient += unit * illuminance;
-                self.void_radiance += if light.visible_to_camera { unit * illuminance / PI } else { Vec3::ZERO };
+            EmitterShape::Rect { half_size_m } => Kind::Panel { area_m2: 4.0 * half_size_m.x * half_size_m.y },
+            EmitterShape::Disc { radius_m } => Kind::Panel { area_m2: PI * radius_m * radius_m },
+            EmitterShape::Sun { .. } => Kind::Sun,
+            EmitterShape::Surround => {
+                self.ambient += strength;
+                self.void_radiance += if light.visible_to_camera { strength / PI } else { Vec3::ZERO };
                 return;
             }
         };
-        let world_from_light = scene.light_frame(light);
-        let strength = unit * if infinite { illuminance } else { exposure::axial_intensity(light) };
-        if strength.is_finite() && world_from_light.is_finite() && strength.max_element() > 0.0 {
-            let Modifier { beam, grid_deg, doors, .. } = light.modifier;
-            cones.extend(beam.map(Falloff::new));
-            cones.extend(grid_deg.map(|outer_deg| Falloff::new(Cone { inner_deg: 0.0, outer_deg })));
-            let only_doors = Modifier { doors, ..Modifier::default() };
+        if strength.is_finite() && light.world_from_light.is_finite() && strength.max_element() > 0.0 {
+            cones.extend(light.beam.iter().flat_map(Beam::cones).map(ConeFalloff::new));
+            let light_from_world = light.world_from_light.matrix3.transpose();
             self.lights.push(PlacedLight {
                 kind,
-                position: light.position - eye,
-                axis: -Vec3::from(world_from_light.matrix3.z_axis),
+                position: light.position() - eye,
+                axis: light.axis(),
                 strength,
                 cones,
-                doors: doors.map(|_| (only_doors, world_from_light.matrix3.transpose())),
+                doors: light.beam.as_ref().and_then(|beam| beam.doors).map(|doors| (doors, light_from_world)),
             });
         }
     }
@@ -150,7 +145,7 @@ impl PlacedLight {
             for i in 0..WIDTH {
                 if incident.factor[i] > 0.0 {
                     let away = *light_from_world * Vec3A::from(-incident.direction.at(i));
-                    incident.factor[i] *= beam::passed(doors, away.into());
+                    incident.factor[i] *= doors_transmission(doors, away.into());
                 }
             }
         }
@@ -171,21 +166,21 @@ impl PlacedLight {
     }
 }
 
-/// [`exposure::spot_falloff`] for many cosines.
+/// [`crate::photo::emitter::cone_falloff`] for many cosines.
 #[derive(Clone, Copy, Debug)]
-struct Falloff {
+struct ConeFalloff {
     cos_inner: f32,
     cos_outer: f32,
     outer_rad: f32,
     per_rad: f32,
 }
 
-impl Falloff {
+impl ConeFalloff {
     fn new(Cone { inner_deg, outer_deg }: Cone) -> Self {
         let half_rad = |full_deg: f32| (0.5 * full_deg).to_radians();
         let (inner_rad, outer_rad) = (half_rad(inner_deg.min(outer_deg)), half_rad(outer_deg));
         let per_rad = 1.0 / (outer_rad - inner_rad);
-        Falloff { cos_inner: inner_rad.cos(), cos_outer: outer_rad.cos(), outer_rad, per_rad }
+        ConeFalloff { cos_inner: inner_rad.cos(), cos_outer: outer_rad.cos(), outer_rad, per_rad }
     }
 
     #[inline(always)]
@@ -199,13 +194,14 @@ impl Falloff {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::photo::emitter::cone_falloff;
 
     #[test]
     fn a_cone_falls_off_as_everywhere_else() {
         for (inner_deg, outer_deg) in [(20.0, 40.0), (0.0, 60.0), (30.0, 30.0), (180.0, 180.0), (100.0, 300.0)] {
-            let falloff = Falloff::new(Cone { inner_deg, outer_deg });
+            let falloff = ConeFalloff::new(Cone { inner_deg, outer_deg });
             for cos in (0..=3000).map(|step| (step as f32 * 1e-3).cos()) {
-                let (got, one) = (falloff.at(cos), exposure::spot_falloff(cos, inner_deg, outer_deg));
+                let (got, one) = (falloff.at(cos), cone_falloff(cos, inner_deg, outer_deg));
                 assert!((got - one).abs() < 1e-5, "{inner_deg} {outer_deg} {cos}: {got} and {one}");
             }
         }

@@ -11,7 +11,7 @@ use super::lights::{EmitterBvh, LightSampler, TracedLight};
 use super::medium_stack::MediumStack;
 use super::plan::RenderPlan;
 use super::texture::TextureMap;
-use crate::photo::exposure;
+use crate::photo::{PhotometricLight, exposure};
 use crate::scene::{self, Assets, Light, Material, Mesh, Scene, Severity, Shape};
 use glam::{Affine3A, Vec3};
 use std::collections::{HashMap, HashSet};
@@ -274,11 +274,7 @@ fn unique<'a>(meshes: impl Iterator<Item = &'a Arc<Mesh>>) -> Vec<Arc<Mesh>> {
 }
 
 fn trace_lights(scene: &Scene, eye: Vec3, assign_layers: AssignLayers) -> (Vec<TracedLight>, Vec<Layer>) {
-    let traced = |light| {
-        let frame = relative_to(scene.light_frame(light), eye);
-        let time_s = exposure::integration_time_s(&light.power.output, &scene.camera);
-        Some((TracedLight::new(light, frame, time_s)?, light))
-    };
+    let traced = |light| Some((TracedLight::new(&PhotometricLight::new(scene, light), eye)?, light));
     let mut lights: Vec<(TracedLight, &Light)> = scene.lights.iter().filter(|l| l.on).filter_map(traced).collect();
     let layers = assign_layers(scene, &mut lights);
     (lights.into_iter().map(|(light, _)| light).collect(), layers)

@@ -1,6 +1,8 @@
 //! Light on a floor against tables and integrals.
 
 use super::*;
+use catchlight::photo::emitter::cone_falloff;
+use catchlight::photo::light::axial_intensity;
 
 #[test]
 fn a_point_light_over_a_floor_falls_off_as_tabulated() {
@@ -51,7 +53,7 @@ fn integrate_panel(light: &Light, point: Vec3) -> f32 {
         Emitter::RoundPanel { diameter_m } => (Vec2::splat(diameter_m * 0.5), PI * diameter_m * diameter_m / 4.0, true),
         _ => unreachable!("only panels are integrated here"),
     };
-    let (luminance, steps) = (exposure::axial_intensity(light) / area, 400);
+    let (luminance, steps) = (axial_intensity(light) / area, 400);
     let mut sum = 0.0;
     for i in 0..steps * steps {
         let cell = Vec2::new((i % steps) as f32 + 0.5, (i / steps) as f32 + 0.5) * 2.0 / steps as f32 - 1.0;
@@ -74,7 +76,7 @@ fn a_bulb_is_cut_by_the_horizon_too() {
         let lamp = light(0, place, Vec3::ZERO, Emitter::Sphere { radius_m }, Output::Lumens(1000.0));
         let scene = floor_under(lamp);
         let point = Vec3::new(1.2, 0.0, 0.0);
-        let luminance = exposure::axial_intensity(&scene.lights[0]) / (PI * radius_m * radius_m);
+        let luminance = axial_intensity(&scene.lights[0]) / (PI * radius_m * radius_m);
         let expected = luminance * cosine_weighted_cap(place - point, radius_m);
         // Where the floor cuts the bulb, its middle is in the floor's own shadow.
         assert_close(unshadowed_lux_at(&mut renderer, &scene, point), expected, 0.015, &format!("{height} m up"));
@@ -107,7 +109,7 @@ fn a_spot_falls_linearly_in_angle_and_ends() {
         let scene = floor_under(light(0, Vec3::Y * 2.0, Vec3::ZERO, emitter, Output::Candela(4000.0)));
         for angle_deg in [0.0_f32, 10.0, 20.0, 30.0, 40.0] {
             let (sine, cosine) = angle_deg.to_radians().sin_cos();
-            let expected = 1000.0 * exposure::spot_falloff(cosine, inner_deg, outer_deg) * cosine.powi(3);
+            let expected = 1000.0 * cone_falloff(cosine, inner_deg, outer_deg) * cosine.powi(3);
             let actual = lux_at(&mut renderer, &scene, Vec3::new(2.0 * sine / cosine, 0.0, 0.0));
             assert!((actual - expected).abs() < 15.0, "{emitter:?} at {angle_deg}: {actual} instead of {expected}");
         }

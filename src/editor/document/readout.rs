@@ -1,9 +1,10 @@
 //! What a light gives where it aims: the read-outs of the inspector. Closed forms for free light, without bounce and
 //! without what stands in the way.
 
-use crate::photo::beam;
-use crate::photo::exposure::{self, Strength, strength};
-use crate::scene::{Camera, Emitter, Light, Scene};
+use crate::photo::beam::Beam;
+use crate::photo::emitter::EmitterShape;
+use crate::photo::{PhotometricLight, Strength, exposure};
+use crate::scene::{Camera, Light, Scene};
 use glam::Vec2;
 use std::f32::consts::PI;
 
@@ -18,67 +19,66 @@ pub struct AtAim {
     pub lux_s: f32,
 }
 
-/// The light at its own aim point, whether it is on or off.
+/// Returns the reading of a light at its own aim point, on or off.
 pub fn at_aim(scene: &Scene, light: &Light) -> AtAim {
     let distance = (scene.aim_point(&light.aim, light.position) - light.position).length();
-    let illuminance = on_axis(light, distance);
+    let light = PhotometricLight::new(scene, light);
+    let illuminance = on_axis(&light, distance);
     AtAim {
-        distance_m: (!light.emitter.is_infinite()).then_some(distance),
+        distance_m: (!light.shape.is_distant()).then_some(distance),
         illuminance,
-        lux_s: illuminance * exposure::integration_time_s(&light.power.output, &scene.camera),
+        lux_s: illuminance * light.exposure_time_s,
     }
 }
 
-/// Illuminance (lux, or lux seconds for flash) on a surface that faces the light, on its axis.
-pub fn on_axis(light: &Light, distance_m: f32) -> f32 {
-    let intensity = match strength(light) {
-        Strength::Illuminance(lux) => return lux,
-        Strength::Flux(_) | Strength::AxialIntensity(_) => exposure::axial_intensity(light),
-    };
+/// Returns the illuminance (lux, or lux seconds for flash) on a surface that faces the light, on its axis.
+fn on_axis(light: &PhotometricLight, distance_m: f32) -> f32 {
+    if let Strength::Illuminance(lux) = light.strength {
+        return lux;
+    }
+    let intensity = light.axial_intensity();
     let h = distance_m.max(1e-3);
-    if light.modifier.narrows() && matches!(light.emitter, Emitter::RectPanel { .. } | Emitter::RoundPanel { .. }) {
-        return narrowed_panel(light, intensity, h);
-    }
-    match light.emitter {
-        Emitter::RectPanel { width_m, height_m } => {
-            let (a, b) = (0.5 * width_m.max(1e-4), 0.5 * height_m.max(1e-4));
-            let luminance = intensity / (4.0 * a * b);
-            let (ha, hb) = (h.hypot(a), h.hypot(b));
-            // Lambert's polygon formula for a rectangle over its own centre.
-            2.0 * luminance * (a / ha * (b / ha).atan() + b / hb * (a / hb).atan())
-        }
-        Emitter::RoundPanel { diameter_m } => {
-            let radius = 0.5 * diameter_m.max(1e-4);
-            let luminance = intensity / (PI * radius * radius);
-            PI * luminance * radius * radius / (radius * radius + h * h)
-        }
-        Emitter::Point | Emitter::Sphere { .. } | Emitter::Spot { .. } => intensity / (h * h),
-        Emitter::Sun { .. } | Emitter::Surround => 0.0,
+    match light.shape {
+        EmitterShape::Point(_) | EmitterShape::Sphere { .. } => intensity / (h * h),
+        EmitterShape::Rect { half_size_m } => match &light.beam {
+            Some(beam) => intensity * beamed_panel(beam, half_size_m, false, h),
+            None => {
+                let [a, b] = half_size_m.max(Vec2::splat(0.5e-4)).to_array();
+                let luminance = intensity / (4.0 * a * b);
+                let (ha, hb) = (h.hypot(a), h.hypot(b));
+                // Lambert's polygon formula for a rectangle over its own centre.
+                2.0 * luminance * (a / ha * (b / ha).atan() + b / hb * (a / hb).atan())
+            }
+        },
+        EmitterShape::Disc { radius_m } => match &light.beam {
+            Some(beam) => intensity * beamed_panel(beam, Vec2::splat(radius_m), true, h),
+            None => {
+                let radius = radius_m.max(0.5e-4);
+                let luminance = intensity / (PI * radius * radius);
+                PI * luminance * radius * radius / (radius * radius + h * h)
+            }
+        },
+        EmitterShape::Sun { .. } | EmitterShape::Surround => 0.0,
     }
 }
 
-/// A panel behind a grid or in a dish, on its axis: from its rim less arrives than Lambert's law says. Midpoints of a
-/// grid over the panel.
-fn narrowed_panel(light: &Light, intensity: f32, h: f32) -> f32 {
+/// Returns the illuminance on the axis of a panel behind a grid or in a dish, for each candela on the axis. Midpoint
+/// rule over the panel: the beam cuts more of the light of its rim.
+fn beamed_panel(beam: &Beam, half_size_m: Vec2, is_disc: bool, h: f32) -> f32 {
     const CELLS: i32 = 24;
-    let (half, round) = match light.emitter {
-        Emitter::RectPanel { width_m, height_m } => (0.5 * Vec2::new(width_m, height_m), false),
-        Emitter::RoundPanel { diameter_m } => (Vec2::splat(0.5 * diameter_m), true),
-        _ => return 0.0,
-    };
     let (mut sum, mut cells) = (0.0, 0);
     for i in 0..CELLS * CELLS {
         let unit = (Vec2::new((i % CELLS) as f32, (i / CELLS) as f32) + 0.5) * (2.0 / CELLS as f32) - 1.0;
-        if round && unit.length_squared() > 1.0 {
+        if is_disc && unit.length_squared() > 1.0 {
             continue;
         }
         // From the cell to the receiver on the axis, in the light's frame.
-        let to = (-(unit * half)).extend(-h);
-        let squared = to.length_squared();
-        sum += beam::passed(&light.modifier, to / squared.sqrt()) * h * h / (squared * squared);
+        let to_receiver = (-(unit * half_size_m)).extend(-h);
+        let squared = to_receiver.length_squared();
+        sum += beam.transmission(to_receiver / squared.sqrt()) * h * h / (squared * squared);
         cells += 1;
     }
-    intensity * sum / cells.max(1) as f32
+    sum / cells.max(1) as f32
 }
 
 /// The f-number a meter at the aim point asks for, from this light alone, at the camera's ISO and shutter.
@@ -105,13 +105,17 @@ pub fn dial_for(scene: &Scene, light: &Light, stops: f32) -> f32 {
 mod tests {
     use super::*;
     use crate::editor::document::catalog;
-    use crate::scene::{Aim, Modifier, Output, Power};
+    use crate::scene::{Aim, Emitter, Modifier, Output, Power};
     use glam::Vec3;
 
     fn light(emitter: Emitter) -> Light {
         let modifier = Modifier::default();
         let power = Power { output: Output::Lumens(1000.0), dial_stops: 0.0 };
         Light { emitter, modifier, power, ..catalog::light_named("Bare bulb").unwrap() }
+    }
+
+    fn on_axis(light: &Light, distance_m: f32) -> f32 {
+        super::on_axis(&PhotometricLight::new(&Scene::default(), light), distance_m)
     }
 
     #[test]

@@ -6,13 +6,13 @@ use super::mesh_cache::{EmitterSurface, MeshKey};
 use super::oriented_box::OrientedBox;
 use super::surface::{FLAG_EMITTER, FLAG_GLOWS, FLAG_HOVERED, FLAG_SELECTED, GpuDraw, GpuSurface};
 use super::texture_cache::WHITE;
-use crate::photo::exposure;
+use crate::photo::PhotometricLight;
+use crate::photo::emitter::EmitterShape;
 use crate::preview::gpu::context::GpuContext;
 use crate::preview::input::{Overlay, Pick};
 use crate::preview::lights::light_table::{emission, picture_scale};
-use crate::scene::{Assets, Emitter, Material, MeshPart, Scene};
+use crate::scene::{Assets, Material, MeshPart, Scene};
 use glam::{Affine3A, Vec3};
-use std::f32::consts::PI;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// Everything that a frame draws. `surfaces`, `transforms`, `draws` and `picks` are indexed by surface.
@@ -120,29 +120,23 @@ impl DrawList {
 
     fn add_emitters(&mut self, scene: &Scene, uploads: &mut Uploads) {
         for light in scene.lights.iter().filter(|light| light.on && light.visible_to_camera) {
-            let (emitter, scale, area_m2) = match light.emitter {
-                Emitter::Sphere { radius_m } => {
-                    (EmitterSurface::Sphere, Vec3::splat(radius_m), PI * radius_m * radius_m)
-                }
-                Emitter::RectPanel { width_m, height_m } => {
-                    let half = Vec3::new(0.5 * width_m, 0.5 * height_m, 1.0);
-                    (EmitterSurface::Square, half, width_m * height_m)
-                }
-                Emitter::RoundPanel { diameter_m } => {
-                    let half = Vec3::new(0.5 * diameter_m, 0.5 * diameter_m, 1.0);
-                    (EmitterSurface::Disc, half, 0.25 * PI * diameter_m * diameter_m)
-                }
-                Emitter::Point | Emitter::Spot { .. } | Emitter::Sun { .. } | Emitter::Surround => continue,
+            let (id, light) = (light.id, PhotometricLight::new(scene, light));
+            let (emitter, scale) = match light.shape {
+                EmitterShape::Sphere { radius_m } => (EmitterSurface::Sphere, Vec3::splat(radius_m)),
+                EmitterShape::Rect { half_size_m } => (EmitterSurface::Square, half_size_m.extend(1.0)),
+                EmitterShape::Disc { radius_m } => (EmitterSurface::Disc, Vec3::new(radius_m, radius_m, 1.0)),
+                EmitterShape::Point(_) | EmitterShape::Sun { .. } | EmitterShape::Surround => continue,
             };
-            let world_from_emitter = scene.light_frame(light) * Affine3A::from_scale(scale);
-            let luminance = picture_scale(light, &scene.camera) * exposure::axial_intensity(light) / area_m2;
+            let Some(area_m2) = light.shape.projected_area_m2() else { continue };
+            let world_from_emitter = light.world_from_light * Affine3A::from_scale(scale);
+            let luminance = picture_scale(&light, &scene.camera) * light.axial_intensity() / area_m2;
             if !world_from_emitter.is_finite() || !luminance.is_finite() {
                 continue;
             }
             let Some(mesh) = uploads.caches.meshes.emitter(&uploads.gpu.device, emitter) else { continue };
             let Some(parts) = uploads.caches.meshes.get(mesh).map(|m| m.parts.clone()) else { continue };
             let black = Material { base_color: [0.0; 3], ..Material::default() };
-            let pick = Some(Pick::Light(light.id));
+            let pick = Some(Pick::Light(id));
             let surface = self.add_surface(&world_from_emitter, &black, scene, FLAG_EMITTER, pick);
             self.surfaces[surface as usize].emission = luminance.into();
             for part in &parts {

@@ -1,10 +1,11 @@
 //! What surrounds the subjects, as an estimate: a box of six even faces for mirrors, and the light that backdrops throw
 //! back. Computed on the processor from a few rays against walls, papers and boxes, lit without shadows.
 
-use super::light_table::{GpuLight, Kind, LightTable};
-use crate::photo::exposure;
+use super::light_table::{GpuLight, LightTable};
+use crate::photo::PhotometricLight;
+use crate::photo::emitter::EmitterShape;
 use crate::scene::{Mesh, Scene, Shape, room_mesh, tessellate};
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Vec3, Vec3A};
 use std::f32::consts::{PI, TAU};
 
 /// Directions of the six faces.
@@ -44,7 +45,7 @@ impl Environment {
             let [a, b, c] = sheet.corners;
             let normal = (b - a).cross(c - a).normalize_or_zero();
             let facing = if normal.dot(direction) > 0.0 { -normal } else { normal };
-            let lit = irradiance(&table.lights, probe + distance * direction, facing) + table.ambient.irradiance;
+            let lit = irradiance(table, probe + distance * direction, facing) + table.ambient.irradiance;
             (distance, sheet.albedo * lit / PI)
         };
         let faces = FACES.map(radiance);
@@ -127,33 +128,31 @@ fn first_hit(sheets: &[Sheet], origin: Vec3, direction: Vec3) -> Option<(f32, &S
         .filter(|(distance, _)| *distance < FAR_M)
 }
 
-/// Irradiance without shadows, panels taken from their middle.
-fn irradiance(lights: &[GpuLight], point: Vec3, normal: Vec3) -> Vec3 {
-    lights.iter().map(|light| Vec3::from(light.color) * light_factor(light, point, normal)).sum()
+/// Returns the unshadowed irradiance of all lights, panels taken from their centre, picture units.
+fn irradiance(table: &LightTable, point: Vec3, normal: Vec3) -> Vec3 {
+    let lights = table.lights.iter().zip(&table.photometric);
+    lights.map(|(gpu, light)| Vec3::from(gpu.color) * irradiance_per_color(gpu, light, point, normal)).sum()
 }
 
-fn light_factor(light: &GpuLight, point: Vec3, normal: Vec3) -> f32 {
-    let axis = Vec3::from(light.axis);
-    if light.kind == Kind::Sun as u32 {
-        return normal.dot(-axis).max(0.0);
-    }
-    let to_light = Vec3::from(light.position) - point;
+/// Returns the irradiance for each unit of a light's packed colour (intensity, luminance or illuminance).
+fn irradiance_per_color(gpu: &GpuLight, light: &PhotometricLight, point: Vec3, normal: Vec3) -> f32 {
+    let axis = light.axis();
+    let to_light = light.position() - point;
     let squared = to_light.length_squared().max(1e-6);
     let direction = to_light / squared.sqrt();
-    let (cosine, facing) = (normal.dot(direction).max(0.0), -axis.dot(direction));
-    let factor = match light.kind {
-        kind if kind == Kind::Point as u32 => cosine / squared,
-        kind if kind == Kind::Spot as u32 => {
-            let (inner, outer) = (2.0 * light.inner_rad.to_degrees(), 2.0 * light.outer_rad.to_degrees());
-            exposure::spot_falloff(facing, inner, outer) * cosine / squared
+    let (cosine, cos_axis) = (normal.dot(direction).max(0.0), -axis.dot(direction));
+    let factor = match &light.shape {
+        EmitterShape::Point(distribution) => distribution.relative_intensity(cos_axis) * cosine / squared,
+        EmitterShape::Sphere { .. } => gpu.area_m2() * cosine / squared.max(gpu.radius * gpu.radius),
+        // Exact on the axis of a disc: E = pi L R^2 / (R^2 + d^2).
+        EmitterShape::Rect { .. } | EmitterShape::Disc { .. } => {
+            gpu.area_m2() * cosine * cos_axis.max(0.0) / (squared + gpu.area_m2() / PI)
         }
-        kind if kind == Kind::Sphere as u32 => {
-            let area = PI * light.radius * light.radius;
-            area * cosine / squared.max(light.radius * light.radius)
-        }
-        _ => light.area_m2() * cosine * facing.max(0.0) / (squared + light.area_m2() / PI),
+        EmitterShape::Sun { .. } => return normal.dot(-axis).max(0.0),
+        EmitterShape::Surround => return 0.0,
     };
-    factor * light.passed(-direction)
+    let away_light = light.world_from_light.matrix3.transpose() * Vec3A::from(-direction);
+    factor * light.beam.as_ref().map_or(1.0, |beam| beam.transmission(away_light.into()))
 }
 
 /// Even directions over the sphere (golden spiral).

@@ -1,12 +1,12 @@
 //! Lights as the shaders read them: in picture units (exposure, shutter and white balance folded in), so that a
 //! shader's sum is the scene-linear pixel.
 
-use crate::color;
-use crate::photo::beam;
-use crate::photo::exposure::{self, Strength};
-use crate::scene::{BarnDoors, Camera, Cone, Emitter, Light, LightId, Material, Modifier, Room, Scene};
+use crate::photo::beam::Beam;
+use crate::photo::emitter::{EmitterShape, IntensityDistribution};
+use crate::photo::{PhotometricLight, exposure};
+use crate::scene::{Camera, Cone, LightId, Material, Room, Scene};
 use bytemuck::{Pod, Zeroable};
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
 /// Lights beyond this number are not shown.
@@ -61,13 +61,13 @@ pub(crate) struct GpuLight {
 /// An angle that cuts nothing, radians: beyond half a turn, and for a grid so far that its slope is nothing either.
 const OPEN_RAD: f32 = 1e9;
 
-fn set_beam(gpu: &mut GpuLight, modifier: &Modifier) {
+fn set_beam(gpu: &mut GpuLight, beam: &Beam) {
     let half = |full_deg: f32| (0.5 * full_deg).to_radians();
-    let cone = modifier.beam.map(|cone| [half(cone.inner_deg.min(cone.outer_deg)), half(cone.outer_deg)]);
+    let cone = beam.cone.map(|cone| [half(cone.inner_deg.min(cone.outer_deg)), half(cone.outer_deg)]);
     let [inner, outer] = cone.unwrap_or([OPEN_RAD; 2]);
-    gpu.beam_rad = [inner, outer, modifier.grid_deg.map_or(OPEN_RAD, half)];
-    gpu.has_beam = u32::from(modifier.narrows());
-    gpu.doors_rad = modifier.doors.map_or([OPEN_RAD; 4], |doors| {
+    gpu.has_beam = 1;
+    gpu.beam_rad = [inner, outer, beam.grid_deg.map_or(OPEN_RAD, half)];
+    gpu.doors_rad = beam.doors.map_or([OPEN_RAD; 4], |doors| {
         [doors.left_deg, doors.right_deg, doors.top_deg, doors.bottom_deg].map(f32::to_radians)
     });
 }
@@ -81,24 +81,6 @@ impl GpuLight {
             kind if kind == Kind::Disc as u32 => 3,
             _ => 0,
         }
-    }
-
-    /// Part that its modifier lets pass in a unit direction away from it.
-    pub fn passed(&self, away: Vec3) -> f32 {
-        if self.has_beam == 0 {
-            return 1.0;
-        }
-        let full = |half_rad: f32| (2.0 * half_rad).to_degrees();
-        let [inner, outer, grid] = self.beam_rad;
-        let [left_deg, right_deg, top_deg, bottom_deg] = self.doors_rad.map(f32::to_degrees);
-        let modifier = Modifier {
-            beam: (outer < PI).then(|| Cone { inner_deg: full(inner), outer_deg: full(outer) }),
-            grid_deg: (grid < PI).then(|| full(grid)),
-            doors: Some(BarnDoors { left_deg, right_deg, top_deg, bottom_deg }).filter(|_| self.doors_rad[0] < PI),
-            ..Modifier::default()
-        };
-        let across = |axis: [f32; 3]| away.dot(Vec3::from(axis).normalize_or_zero());
-        beam::passed(&modifier, Vec3::new(across(self.right), across(self.up), -away.dot(Vec3::from(self.axis))))
     }
 
     /// Area of a panel, m2; that of a ball's disc.
@@ -138,6 +120,8 @@ pub(crate) struct LightTable {
     pub lights: Vec<GpuLight>,
     /// Of each of them.
     pub ids: Vec<LightId>,
+    /// What each was packed from.
+    pub photometric: Vec<PhotometricLight>,
     /// One past the last light of each family.
     pub ends: [u32; 4],
     pub ambient: Ambient,
@@ -147,29 +131,33 @@ impl LightTable {
     /// The lights of a scene, or one of them alone.
     pub fn new(scene: &Scene, bounce_estimate: bool, only: Option<LightId>) -> Self {
         let mut table = LightTable::default();
-        let mut lights: Vec<(GpuLight, LightId)> = Vec::new();
+        let mut lights: Vec<(GpuLight, LightId, PhotometricLight)> = Vec::new();
         let mut flux = Vec3::ZERO;
         for light in scene.lights.iter().filter(|light| light.on && only.is_none_or(|id| id == light.id)) {
-            let scale = picture_scale(light, &scene.camera);
-            if light.emitter == Emitter::Surround {
+            let (id, light) = (light.id, PhotometricLight::new(scene, light));
+            if light.shape.is_distant() && scene.room.is_some() {
                 // A closed room keeps it out.
-                if scene.room.is_none() {
-                    let lit = scale * illuminance(light);
-                    table.ambient.irradiance += lit;
-                    table.ambient.void_radiance += if light.visible_to_camera { lit / PI } else { Vec3::ZERO };
-                }
                 continue;
             }
-            let gpu = gpu_light(light, &scene.light_frame(light), scale);
-            let outside = gpu.kind == Kind::Sun as u32 && scene.room.is_some();
-            if outside || !is_usable(&gpu) || lights.len() == MAX_LIGHTS {
+            let scale = picture_scale(&light, &scene.camera);
+            let Some(gpu) = gpu_light(&light, scale) else {
+                let irradiance = scale * light.illuminance();
+                table.ambient.irradiance += irradiance;
+                table.ambient.void_radiance += if light.visible_to_camera { irradiance / PI } else { Vec3::ZERO };
+                continue;
+            };
+            if !is_usable(&gpu) || lights.len() == MAX_LIGHTS {
                 continue;
             }
-            flux += scale * flux_of(light);
-            lights.push((gpu, light.id));
+            flux += scale * light.flux();
+            lights.push((gpu, id, light));
         }
-        lights.sort_by_key(|(light, _)| light.family());
-        (table.lights, table.ids) = lights.into_iter().unzip();
+        lights.sort_by_key(|(light, _, _)| light.family());
+        for (gpu, id, light) in lights {
+            table.lights.push(gpu);
+            table.ids.push(id);
+            table.photometric.push(light);
+        }
         table.ends = std::array::from_fn(|f| table.lights.partition_point(|light| light.family() <= f) as u32);
         table.ambient.surround_radiance = table.ambient.irradiance / PI;
         if let Some(room) = scene.room.as_ref().filter(|_| bounce_estimate) {
@@ -187,10 +175,9 @@ impl LightTable {
     }
 }
 
-/// Picture value for each unit of a light, per channel.
-pub(crate) fn picture_scale(light: &Light, camera: &Camera) -> Vec3 {
-    let seconds = exposure::integration_time_s(&light.power.output, camera);
-    color::light_rgb(&light.color, camera.white_balance_k) * exposure::pixel_per_cd_s_m2(camera) * seconds
+/// Returns the picture value of one unit of a light, per channel.
+pub(crate) fn picture_scale(light: &PhotometricLight, camera: &Camera) -> Vec3 {
+    light.tint * exposure::pixel_per_cd_s_m2(camera) * light.exposure_time_s
 }
 
 /// Picture value of a surface's own glow.
@@ -198,65 +185,57 @@ pub(crate) fn emission(material: &Material, camera: &Camera) -> Vec3 {
     Vec3::from(material.emission_cd_m2) * exposure::pixel_per_cd_s_m2(camera) * camera.shutter_s
 }
 
-fn illuminance(light: &Light) -> f32 {
-    if let Strength::Illuminance(lux) = exposure::strength(light) { lux } else { 0.0 }
-}
-
-fn flux_of(light: &Light) -> f32 {
-    let bare =
-        exposure::intensity_per_flux(&light.emitter).map_or(0.0, |per_lm| exposure::axial_intensity(light) / per_lm);
-    bare * beam::passed_share(&light.emitter, &light.modifier)
-}
-
 fn is_usable(light: &GpuLight) -> bool {
     bytemuck::cast_slice::<GpuLight, f32>(std::slice::from_ref(light)).iter().all(|x| x.is_finite())
         && light.color.iter().any(|c| *c > 0.0)
 }
 
-fn gpu_light(light: &Light, world_from_light: &Affine3A, scale: Vec3) -> GpuLight {
-    let axes = world_from_light.matrix3;
-    let (right, up, axis) = (Vec3::from(axes.x_axis), Vec3::from(axes.y_axis), -Vec3::from(axes.z_axis));
-    let intensity = exposure::axial_intensity(light);
+/// Packs a light, with the picture value of each unit of it; none for a surround.
+fn gpu_light(light: &PhotometricLight, scale: Vec3) -> Option<GpuLight> {
+    let axes = light.world_from_light.matrix3;
+    let intensity = light.axial_intensity();
     let mut gpu = GpuLight {
-        position: light.position.into(),
-        right: right.into(),
-        up: up.into(),
-        axis: axis.into(),
+        position: light.position().into(),
+        right: Vec3::from(axes.x_axis).into(),
+        up: Vec3::from(axes.y_axis).into(),
+        axis: light.axis().into(),
         color: (scale * intensity).into(),
+        beam_rad: [OPEN_RAD; 3],
+        doors_rad: [OPEN_RAD; 4],
         ..GpuLight::zeroed()
     };
     gpu.reach_m = (scale.max_element() * intensity / (PI * LEAST_SHOWN)).max(0.0).sqrt();
-    match light.emitter {
-        Emitter::Point => gpu.kind = Kind::Point as u32,
-        Emitter::Spot { inner_deg, outer_deg } => {
+    match light.shape {
+        EmitterShape::Point(IntensityDistribution::Isotropic) => gpu.kind = Kind::Point as u32,
+        EmitterShape::Point(IntensityDistribution::Cone(Cone { inner_deg, outer_deg })) => {
             gpu.kind = Kind::Spot as u32;
             gpu.outer_rad = (0.5 * outer_deg).to_radians();
             gpu.inner_rad = (0.5 * inner_deg.min(outer_deg)).to_radians();
         }
-        Emitter::Sphere { radius_m } => {
+        EmitterShape::Sphere { radius_m } => {
             let radius = radius_m.max(SMALLEST_M);
             gpu.kind = Kind::Sphere as u32;
             gpu.radius = radius;
             gpu.color = (scale * intensity / (PI * radius * radius)).into();
         }
-        Emitter::RectPanel { width_m, height_m } => {
-            let half = 0.5 * Vec2::new(width_m, height_m).max(Vec2::splat(SMALLEST_M));
-            panel(&mut gpu, Kind::Rect, half, scale * intensity);
+        EmitterShape::Rect { half_size_m } => {
+            panel(&mut gpu, Kind::Rect, half_size_m.max(Vec2::splat(0.5 * SMALLEST_M)), scale * intensity);
         }
-        Emitter::RoundPanel { diameter_m } => {
-            let radius = 0.5 * diameter_m.max(SMALLEST_M);
-            panel(&mut gpu, Kind::Disc, Vec2::splat(radius), scale * intensity);
+        EmitterShape::Disc { radius_m } => {
+            panel(&mut gpu, Kind::Disc, Vec2::splat(radius_m.max(0.5 * SMALLEST_M)), scale * intensity);
         }
-        Emitter::Sun { angular_diameter_deg } => {
+        EmitterShape::Sun { half_angle_rad } => {
             gpu.kind = Kind::Sun as u32;
-            gpu.radius = (0.5 * angular_diameter_deg.clamp(0.0, 90.0)).to_radians().tan();
-            gpu.color = (scale * illuminance(light)).into();
+            gpu.radius = half_angle_rad.clamp(0.0, 0.25 * PI).tan();
+            gpu.color = (scale * light.illuminance()).into();
             gpu.reach_m = 0.0;
         }
-        Emitter::Surround => gpu.color = [0.0; 3],
+        EmitterShape::Surround => return None,
     }
-    set_beam(&mut gpu, &light.modifier);
-    gpu
+    if let Some(beam) = &light.beam {
+        set_beam(&mut gpu, beam);
+    }
+    Some(gpu)
 }
 
 fn panel(gpu: &mut GpuLight, kind: Kind, half: Vec2, intensity: Vec3) {
@@ -280,7 +259,8 @@ fn bounced_irradiance(room: &Room, flux: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Aim, Output};
+    use crate::scene::{Aim, Emitter, Light, Output};
+    use glam::Affine3A;
 
     fn light(emitter: Emitter, output: Output) -> Light {
         Light { position: Vec3::Y * 2.0, aim: Aim::Point(Vec3::ZERO), ..Light::new(emitter, output) }
@@ -290,10 +270,13 @@ mod tests {
     fn the_shutter_moves_continuous_light_and_not_flash() {
         let flash = light(Emitter::Point, Output::FlashWs { energy_ws: 100.0, efficacy_lm_s_per_ws: 40.0 });
         let lamp = light(Emitter::Point, Output::Lumens(1000.0));
+        let scale = |light: &Light, camera: &Camera| {
+            picture_scale(&PhotometricLight::in_frame(light, Affine3A::IDENTITY, camera), camera)
+        };
         let slow = Camera { shutter_s: 1.0 / 60.0, ..Camera::default() };
         let fast = Camera { shutter_s: 1.0 / 120.0, ..Camera::default() };
-        assert_eq!(picture_scale(&flash, &slow), picture_scale(&flash, &fast));
-        assert!((picture_scale(&lamp, &slow) / picture_scale(&lamp, &fast) - 2.0).abs().max_element() < 1e-6);
+        assert_eq!(scale(&flash, &slow), scale(&flash, &fast));
+        assert!((scale(&lamp, &slow) / scale(&lamp, &fast) - 2.0).abs().max_element() < 1e-6);
     }
 
     #[test]

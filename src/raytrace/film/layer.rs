@@ -1,7 +1,6 @@
 //! Film layers: one per light, so that lights can be dimmed and coloured after the render.
 
-use crate::color;
-use crate::photo::exposure::{self, Strength};
+use crate::photo::{PhotometricLight, Strength};
 use crate::raytrace::lights::TracedLight;
 use crate::scene::{Light, LightId, Scene};
 use glam::Vec3;
@@ -25,12 +24,7 @@ pub struct Layer {
 impl Layer {
     /// The layer of one light.
     pub fn of_light(light: &Light) -> Self {
-        Layer {
-            name: light.name.clone(),
-            light: Some(light.id),
-            traced: Some(exposure::strength(light)),
-            finished: false,
-        }
+        Layer { name: light.name.clone(), light: Some(light.id), traced: Some(Strength::new(light)), finished: false }
     }
 
     /// A layer that several sources share.
@@ -46,26 +40,15 @@ impl Layer {
         }
         let light = self.light.and_then(|id| scene.light(id)).filter(|light| light.on);
         let (Some(light), Some(traced)) = (light, self.traced) else { return Vec3::ZERO };
-        let rgb = color::light_rgb(&light.color, scene.camera.white_balance_k);
-        rgb * (output_ratio(light, traced) * exposure::integration_time_s(&light.power.output, &scene.camera))
+        let light = PhotometricLight::new(scene, light);
+        light.tint * (light.output_ratio(traced) * light.exposure_time_s)
     }
-}
-
-/// Ratio of a light's present output to the output that was traced; 1 exactly when nothing changed.
-fn output_ratio(light: &Light, traced: Strength) -> f32 {
-    let per_flux = exposure::intensity_per_flux(&light.emitter).unwrap_or(0.0);
-    let axial = |strength| match strength {
-        Strength::Flux(flux) => flux * per_flux,
-        Strength::AxialIntensity(value) | Strength::Illuminance(value) => value,
-    };
-    let now = exposure::strength(light);
-    if now == traced { 1.0 } else { axial(now) / axial(traced) }
 }
 
 /// Colour times exposure time of a light in a shared layer.
 fn shared_layer_tint(light: &Light, scene: &Scene) -> Vec3 {
-    color::light_rgb(&light.color, scene.camera.white_balance_k)
-        * exposure::integration_time_s(&light.power.output, &scene.camera)
+    let light = PhotometricLight::new(scene, light);
+    light.tint * light.exposure_time_s
 }
 
 /// Assigns each light its layer: one per light, or one per role above [`MAX_LIGHT_LAYERS`]. The last layer holds emissive

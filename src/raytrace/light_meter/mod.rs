@@ -8,9 +8,9 @@
 
 mod receptor;
 
-use crate::color::{self, luminance};
+use crate::color::luminance;
 use crate::math::{Ray, warp};
-use crate::photo::exposure::{self, Strength};
+use crate::photo::PhotometricLight;
 use crate::photo::meter::{LightReading, Reading, Receptor};
 use crate::raytrace::control::RenderControl;
 use crate::raytrace::film::{Layer, NonFiniteGate, NonFiniteReport};
@@ -109,14 +109,11 @@ struct MeteredLight {
 }
 
 /// One layer a light, however many there are, and nothing but the light in it.
-fn a_layer_each(_scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<Layer> {
+fn a_layer_each(scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<Layer> {
     for (layer, (traced, light)) in lights.iter_mut().enumerate() {
         traced.layer = layer;
         // Where one light of many is chosen, weak ones get more than their share of the choice: each is read for itself.
-        let strength = match exposure::strength(light) {
-            Strength::Illuminance(lux) => lux,
-            Strength::Flux(_) | Strength::AxialIntensity(_) => exposure::axial_intensity(light),
-        };
+        let strength = PhotometricLight::new(scene, light).axial_intensity_or_illuminance();
         traced.time_s = (traced.time_s / strength).sqrt();
         // The path tracer shows emitters only to the camera's ray: here, they are met by light sampling.
         traced.visible_to_camera = false;
@@ -132,7 +129,7 @@ impl LightMeter {
         prepared.glow_time_s = 1.0;
         let metered = |layer: &Layer| {
             let light = layer.light.and_then(|id| scene.light(id))?;
-            let rgb = color::light_rgb(&light.color, scene.camera.white_balance_k);
+            let rgb = PhotometricLight::new(scene, light).tint;
             Some(MeteredLight { id: light.id, blank: blank(light), rgb })
         };
         let lights: Vec<MeteredLight> = prepared.layers.iter().filter_map(metered).collect();

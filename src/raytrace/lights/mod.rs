@@ -9,12 +9,13 @@ mod rect;
 mod sphere;
 
 use crate::math::{orthonormal_basis, warp};
-use crate::photo::beam;
-use crate::photo::exposure::{self, Strength};
-use crate::scene::{Emitter, Light, Modifier};
+use crate::photo::PhotometricLight;
+use crate::photo::beam::Beam;
+use crate::photo::emitter::{EmitterShape, IntensityDistribution, cone_falloff};
+use crate::scene::Cone;
 use disc::Disc;
 pub use emitter_bvh::EmitterBvh;
-use glam::{Affine3A, Mat3, Vec2, Vec3};
+use glam::{Mat3, Vec2, Vec3, Vec3A};
 pub use light_sampler::{LightImportances, LightSampler};
 use rect::Rect;
 use sphere::Ball;
@@ -53,13 +54,13 @@ pub struct TracedLight {
     /// Whether camera rays see the emitter.
     pub visible_to_camera: bool,
     /// What a grid, a snoot or flaps leave of it, by direction.
-    beam: Option<Beam>,
+    beam: Option<PlacedBeam>,
 }
 
-/// A modifier that keeps light from some directions, in the light's frame.
-#[derive(Clone, Copy, Debug)]
-struct Beam {
-    modifier: Modifier,
+/// The angular transmission of a modifier, with the rotation into the light's frame.
+#[derive(Clone, Debug)]
+struct PlacedBeam {
+    beam: Beam,
     light_from_world: Mat3,
 }
 
@@ -89,57 +90,54 @@ pub struct EmitterHit {
 }
 
 impl TracedLight {
-    /// Converts a scene light; `frame` is its frame relative to the camera. None for a light without any output.
-    pub fn new(light: &Light, frame: Affine3A, time_s: f32) -> Option<Self> {
-        let position = Vec3::from(frame.translation);
-        let (right, up) = (Vec3::from(frame.matrix3.x_axis), Vec3::from(frame.matrix3.y_axis));
-        let back = Vec3::from(frame.matrix3.z_axis);
-        let intensity = exposure::axial_intensity(light);
-        let illuminance = if let Strength::Illuminance(lux) = exposure::strength(light) { lux } else { 0.0 };
-        let source = match light.emitter {
-            Emitter::Point => Source::Point { position, intensity },
-            Emitter::Sphere { radius_m } if radius_m > 0.0 => {
+    /// Converts a photometric light, with positions relative to `origin`. Returns none for a light without any output.
+    pub fn new(light: &PhotometricLight, origin: Vec3) -> Option<Self> {
+        let PhotometricLight { world_from_light, .. } = *light;
+        let position = Vec3::from(world_from_light.translation - Vec3A::from(origin));
+        let [right, up, back] = [0, 1, 2].map(|i| Vec3::from(world_from_light.matrix3.col(i)));
+        let (intensity, illuminance) = (light.axial_intensity(), light.illuminance());
+        let source = match light.shape {
+            EmitterShape::Point(IntensityDistribution::Isotropic) => Source::Point { position, intensity },
+            EmitterShape::Point(IntensityDistribution::Cone(Cone { inner_deg, outer_deg })) => {
+                Source::Spot { position, axis: -back, intensity, inner_deg, outer_deg }
+            }
+            EmitterShape::Sphere { radius_m } if radius_m > 0.0 => {
                 let ball = Ball { centre: position, radius: radius_m };
                 Source::Ball { ball, luminance: intensity / (PI * radius_m * radius_m) }
             }
-            Emitter::Sphere { .. } => Source::Point { position, intensity },
-            Emitter::Spot { inner_deg, outer_deg } => {
-                Source::Spot { position, axis: -back, intensity, inner_deg, outer_deg }
-            }
-            // The panel shines along -Z: right x up is +Z, so the width axis is turned round.
-            Emitter::RectPanel { width_m, height_m } => {
-                let rect = Rect::new(position, -right, up, Vec2::new(width_m, height_m) * 0.5);
+            EmitterShape::Sphere { .. } => Source::Point { position, intensity },
+            // A panel emits along -Z: right x up is +Z, so its width axis is reversed.
+            EmitterShape::Rect { half_size_m } => {
+                let rect = Rect::new(position, -right, up, half_size_m);
                 Source::Rect { rect, luminance: intensity / rect.area() }
             }
-            Emitter::RoundPanel { diameter_m } => {
-                let disc = Disc::new(position, -right, up, diameter_m * 0.5);
+            EmitterShape::Disc { radius_m } => {
+                let disc = Disc::new(position, -right, up, radius_m);
                 Source::Disc { disc, luminance: intensity / disc.area() }
             }
-            Emitter::Sun { angular_diameter_deg } => {
-                let half_rad = (angular_diameter_deg * 0.5).to_radians();
+            EmitterShape::Sun { half_angle_rad } => {
                 // 1 - cos a = 2 sin2(a / 2).
-                let one_minus_cos = 2.0 * (half_rad * 0.5).sin().powi(2);
+                let one_minus_cos = 2.0 * (half_angle_rad * 0.5).sin().powi(2);
                 Source::Sun { towards: back, illuminance, one_minus_cos }
             }
-            Emitter::Surround => Source::Surround { luminance: illuminance / PI },
+            EmitterShape::Surround => Source::Surround { luminance: illuminance / PI },
         };
         let output = intensity.max(illuminance);
-        (output > 0.0 && output.is_finite() && frame.is_finite()).then_some(TracedLight {
+        let is_finite = output.is_finite() && world_from_light.matrix3.is_finite() && position.is_finite();
+        let light_from_world = Mat3::from(world_from_light.matrix3).transpose();
+        (output > 0.0 && is_finite).then(|| TracedLight {
             source,
             layer: 0,
             tint: Vec3::ONE,
-            time_s,
+            time_s: light.exposure_time_s,
             visible_to_camera: light.visible_to_camera,
-            beam: light
-                .modifier
-                .narrows()
-                .then(|| Beam { modifier: light.modifier, light_from_world: Mat3::from(frame.matrix3).transpose() }),
+            beam: light.beam.clone().map(|beam| PlacedBeam { beam, light_from_world }),
         })
     }
 
     /// Part of the light that its modifier lets pass in a unit direction away from it.
     fn passed(&self, away: Vec3) -> f32 {
-        self.beam.map_or(1.0, |beam| beam::passed(&beam.modifier, beam.light_from_world * away))
+        self.beam.as_ref().map_or(1.0, |placed| placed.beam.transmission(placed.light_from_world * away))
     }
 
     /// Where it is, if it is anywhere.
@@ -166,7 +164,7 @@ impl TracedLight {
 
     /// Part of the light that its beam lets pass towards a point; all of it where it has none, or no place.
     fn beam_towards(&self, point: Vec3) -> f32 {
-        match (self.beam, self.centre()) {
+        match (&self.beam, self.centre()) {
             (Some(_), Some(centre)) => self.passed((point - centre).normalize_or_zero()),
             _ => 1.0,
         }
@@ -209,7 +207,7 @@ impl TracedLight {
             Source::Point { position, intensity } => from_point(point, position, intensity),
             Source::Spot { position, axis, intensity, inner_deg, outer_deg } => {
                 let cos = (point - position).normalize_or_zero().dot(axis);
-                let falloff = exposure::spot_falloff(cos, inner_deg, outer_deg);
+                let falloff = cone_falloff(cos, inner_deg, outer_deg);
                 if falloff > 0.0 { from_point(point, position, intensity * falloff) } else { None }
             }
             Source::Rect { rect, luminance } => {

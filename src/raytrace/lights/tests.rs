@@ -5,12 +5,13 @@ use crate::math::Ray;
 use crate::math::look_at;
 use crate::math::statistics::{ChiSquare, Estimate, Numbers, share};
 use crate::raytrace::bvh::TraversalStack;
-use crate::scene::Output;
+use crate::scene::{Camera, Emitter, Light, Output};
 
 /// A light at the origin that shines along -Z.
 fn traced(emitter: Emitter, output: Output) -> TracedLight {
     let light = Light::new(emitter, output);
-    TracedLight::new(&light, look_at(Vec3::ZERO, Vec3::NEG_Z, 0.0), 1.0).unwrap()
+    let light = PhotometricLight::in_frame(&light, look_at(Vec3::ZERO, Vec3::NEG_Z, 0.0), &Camera::default());
+    TracedLight::new(&light, Vec3::ZERO).unwrap()
 }
 
 /// Places before a panel of 0.6 x 0.9 m: on the axis, aside, grazing, close to its middle, edge and corner, far away.
@@ -237,7 +238,8 @@ pub(super) fn crowd(count: usize, numbers: &mut Numbers) -> Vec<TracedLight> {
         light.modifier.grid_deg = (i % 5 == 4).then_some(60.0);
         let position = numbers.direction() * numbers.between(0.5, 4.0);
         let frame = look_at(position, position + numbers.direction(), 0.0);
-        TracedLight::new(&light, frame, numbers.between(0.01, 1.0)).unwrap()
+        let camera = Camera { shutter_s: numbers.between(0.01, 1.0), ..Camera::default() };
+        TracedLight::new(&PhotometricLight::in_frame(&light, frame, &camera), Vec3::ZERO).unwrap()
     };
     (0..count).map(light).collect()
 }

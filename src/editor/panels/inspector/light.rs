@@ -10,7 +10,7 @@ use crate::editor::document::readout;
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, Number, fact, row, section};
 use crate::editor::viewport::tools::place_light::Swing;
-use crate::photo::exposure;
+use crate::photo::light::axial_intensity;
 use crate::photo::thirds::Dial;
 use crate::scene::{ColorSource, Emitter, Light, LightId, Output, Role, Scene};
 use eframe::egui::{ComboBox, Label, RichText, Slider, SliderClamping, Ui, vec2};
@@ -247,7 +247,7 @@ fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
     );
     if !light.emitter.is_infinite() {
         let unit = if flash { "cd s" } else { "cd" };
-        let intensity = widgets::three_digits(exposure::axial_intensity(light));
+        let intensity = widgets::three_digits(axial_intensity(light));
         fact(ui, "Intensity", "On the light's axis, dial included", format!("{intensity} {unit}"));
     }
     if let Some(distance) = at.distance_m {

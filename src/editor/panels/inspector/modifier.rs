@@ -3,7 +3,8 @@
 use super::power;
 use crate::editor::document::catalog::{self, Kind, Shelf};
 use crate::editor::ui::widgets::{Number, SIZE_CM, fact, row};
-use crate::photo::beam;
+use crate::photo::beam::{Beam, beam_loss_stops};
+use crate::photo::emitter::EmitterShape;
 use crate::scene::{BarnDoors, Cone, Emitter, HARD_GRIDS_DEG, Light, Modifier, NamedModifier, SOFT_GRIDS_DEG, Scene};
 use eframe::egui::{ComboBox, Ui};
 
@@ -116,8 +117,8 @@ fn loss_rows(ui: &mut Ui, light: &mut Light) {
         *inner_deg = inner_deg.min(*outer_deg);
     }
     doors_rows(ui, &mut light.modifier);
-    let lost = beam::beam_loss_stops(&light.emitter, &light.modifier);
-    if light.modifier.narrows() {
+    if let Some(beam) = Beam::new(&light.modifier) {
+        let lost = beam_loss_stops(&EmitterShape::new(&light.emitter), Some(&beam));
         let tip = "Light that grid, dish or flaps keep from the sides. The axis is as bright as without them.";
         fact(ui, "Beside it", tip, format!("{lost:.1} stops of the light are lost"));
     }

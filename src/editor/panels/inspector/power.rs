@@ -1,7 +1,8 @@
 //! Units of power, and the change from one to another without a change of the picture.
 
 use crate::editor::document::readout;
-use crate::photo::{beam, exposure};
+use crate::photo::emitter::EmitterShape;
+use crate::photo::light::{axial_intensity, transmittance};
 use crate::scene::{Camera, Emitter, Light, Modifier, Output, Scene};
 
 /// The units a power can be given in.
@@ -61,7 +62,7 @@ pub fn convert(light: &Light, camera: &Camera, unit: Unit) -> Output {
         modifier: Modifier::default(),
         ..light.clone()
     };
-    let per_flux = exposure::intensity_per_flux(&light.emitter).unwrap_or(1.0);
+    let per_flux = EmitterShape::new(&light.emitter).intensity_per_flux().unwrap_or(1.0);
     let was_flash = light.power.output.is_flash();
     let is_flash = matches!(unit, Unit::FlashWs | Unit::GuideNumber);
     let time = match (was_flash, is_flash) {
@@ -69,7 +70,7 @@ pub fn convert(light: &Light, camera: &Camera, unit: Unit) -> Output {
         (false, true) => camera.shutter_s,
         _ => 1.0,
     };
-    let intensity = exposure::axial_intensity(&full) * time;
+    let intensity = axial_intensity(&full) * time;
     match unit {
         Unit::Lumens => Output::Lumens(intensity / per_flux),
         Unit::Candela => Output::Candela(intensity),
@@ -93,7 +94,7 @@ pub fn change_emitter(scene: &Scene, light: &mut Light, emitter: Emitter, modifi
     if was == is {
         return;
     }
-    let passed = light.power.dial_stops.exp2() * beam::transmittance(&modifier);
+    let passed = light.power.dial_stops.exp2() * transmittance(&modifier);
     let full = before.lux_s / scene.camera.shutter_s / passed;
     light.power.output = if is {
         Output::Lux(full)

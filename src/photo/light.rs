@@ -1,0 +1,194 @@
+//! Photometric lights: a light of the scene in physical units.
+//!
+//! [`PhotometricLight`] is the only conversion from a [`Light`] to physics; the path tracer, the z-buffer renderer, the
+//! preview, the light meter and the editor's read-outs repack it.
+//!
+//! To add an emitter: a variant of [`EmitterShape`] and its arms in `photo/emitter.rs`. To add a luminous intensity
+//! distribution (an IES table): a variant of [`super::emitter::IntensityDistribution`] in the same file. Either takes one
+//! more arm a renderer, where the compiler reports the missing match: `TracedLight::new` (`raytrace/lights`),
+//! `Lights::add` (`raster/lights`), `gpu_light` and `illuminance_factor` (`preview`), `on_axis` (`editor/readout`).
+
+use super::beam::{self, Beam};
+use super::emitter::EmitterShape;
+use crate::color;
+use crate::scene::{Camera, Light, Modifier, Output, Scene};
+use glam::{Affine3A, Vec3};
+
+/// The output of a light with its dial and its modifier's loss, in the quantity in which it is stated. The unit is a
+/// photometric one for continuous light and the same with seconds for flash.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Strength {
+    /// Luminous flux of the bare emitter, lm; or lm s.
+    Flux(f32),
+    /// Luminous intensity on the axis, cd; or cd s.
+    AxialIntensity(f32),
+    /// Illuminance normal to a sun's direction, or on a plane that faces half of a surround, lx.
+    Illuminance(f32),
+}
+
+impl Strength {
+    /// Converts a light's power. The flux that a grid or a snoot cuts off beside the axis is not subtracted.
+    pub fn new(light: &Light) -> Self {
+        let dial = light.power.dial_stops.exp2() * transmittance(&light.modifier);
+        match light.power.output {
+            Output::Lumens(flux) => Strength::Flux(flux * dial),
+            Output::Candela(intensity) => Strength::AxialIntensity(intensity * dial),
+            Output::LuxAt { lux, distance_m } => Strength::AxialIntensity(lux * distance_m * distance_m * dial),
+            Output::Lux(lux) => Strength::Illuminance(lux * dial),
+            Output::FlashWs { energy_ws, efficacy_lm_s_per_ws } => {
+                Strength::Flux(energy_ws * efficacy_lm_s_per_ws * dial)
+            }
+            // A guide number is stated for C = 250 lux s at ISO 100: H(1 m) = 2.5 GN^2.
+            Output::FlashGuideNumber(guide_number) => {
+                Strength::AxialIntensity(2.5 * guide_number * guide_number * dial)
+            }
+        }
+    }
+}
+
+/// A light of the scene in physical units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PhotometricLight {
+    /// Shape of the emitter, with the luminous intensity distribution of a point source.
+    pub shape: EmitterShape,
+    /// Rigid frame: right, up, back (the light shines along -Z), and the centre of the emitter.
+    pub world_from_light: Affine3A,
+    /// Angular transmission of the modifier; none where it passes all directions alike.
+    pub beam: Option<Beam>,
+    /// Output.
+    pub strength: Strength,
+    /// Linear RGB of luminance 1, relative to the camera's white balance.
+    pub tint: Vec3,
+    /// Time by which its luminance counts in the exposure, seconds: the shutter for continuous light, 1 for flash.
+    pub exposure_time_s: f32,
+    /// Flash; continuous light otherwise.
+    pub is_flash: bool,
+    /// True if camera rays see the emitter.
+    pub visible_to_camera: bool,
+    /// Switched on.
+    pub on: bool,
+}
+
+impl PhotometricLight {
+    /// Converts a light of a scene.
+    pub fn new(scene: &Scene, light: &Light) -> Self {
+        Self::in_frame(light, scene.light_frame(light), &scene.camera)
+    }
+
+    /// Converts a light with a given frame.
+    pub fn in_frame(light: &Light, world_from_light: Affine3A, camera: &Camera) -> Self {
+        PhotometricLight {
+            shape: EmitterShape::new(&light.emitter),
+            world_from_light,
+            beam: Beam::new(&light.modifier),
+            strength: Strength::new(light),
+            tint: color::light_rgb(&light.color, camera.white_balance_k),
+            exposure_time_s: integration_time_s(&light.power.output, camera),
+            is_flash: light.power.output.is_flash(),
+            visible_to_camera: light.visible_to_camera,
+            on: light.on,
+        }
+    }
+
+    /// Returns the centre of the emitter, metres.
+    pub fn position(&self) -> Vec3 {
+        self.world_from_light.translation.into()
+    }
+
+    /// Returns the unit direction in which it shines, in world space.
+    pub fn axis(&self) -> Vec3 {
+        -Vec3::from(self.world_from_light.matrix3.z_axis)
+    }
+
+    /// Returns the luminous intensity on the axis, cd (cd s for flash); 0 for distant lights.
+    pub fn axial_intensity(&self) -> f32 {
+        self.axial(self.strength)
+    }
+
+    /// Returns the illuminance of a distant light, lx; 0 for others.
+    pub fn illuminance(&self) -> f32 {
+        if let Strength::Illuminance(lux) = self.strength { lux } else { 0.0 }
+    }
+
+    /// Returns the axial intensity, cd, or the illuminance of a distant light, lx; with seconds for flash.
+    pub fn axial_intensity_or_illuminance(&self) -> f32 {
+        if self.shape.is_distant() { self.illuminance() } else { self.axial_intensity() }
+    }
+
+    /// Returns the luminous flux that leaves the modifier, lm (lm s for flash); 0 for distant lights.
+    pub fn flux(&self) -> f32 {
+        let bare = self.shape.intensity_per_flux().map_or(0.0, |per_flux| self.axial_intensity() / per_flux);
+        bare * beam::transmitted_flux_fraction(&self.shape, self.beam.as_ref())
+    }
+
+    /// Returns the output over an earlier output of the same light; exactly 1 where it did not change.
+    pub fn output_ratio(&self, earlier: Strength) -> f32 {
+        let axial = |strength| match strength {
+            Strength::Illuminance(lux) => lux,
+            Strength::Flux(_) | Strength::AxialIntensity(_) => self.axial(strength),
+        };
+        if self.strength == earlier { 1.0 } else { axial(self.strength) / axial(earlier) }
+    }
+
+    fn axial(&self, strength: Strength) -> f32 {
+        match strength {
+            Strength::Flux(flux) => flux * self.shape.intensity_per_flux().unwrap_or(0.0),
+            Strength::AxialIntensity(intensity) => intensity,
+            Strength::Illuminance(_) => 0.0,
+        }
+    }
+}
+
+/// Returns the luminous intensity of a light on its axis, cd (cd s for flash), dial and modifier included; 0 for distant
+/// lights.
+pub fn axial_intensity(light: &Light) -> f32 {
+    PhotometricLight::in_frame(light, Affine3A::IDENTITY, &Camera::default()).axial_intensity()
+}
+
+/// Returns the transmittance of a modifier's cloth, dish and scrim, the same in all directions, 0 to 1.
+pub fn transmittance(modifier: &Modifier) -> f32 {
+    (-(modifier.loss_stops + modifier.scrim_stops)).exp2()
+}
+
+/// Returns the time by which a light counts in the exposure, seconds: the shutter for continuous light, 1 for flash
+/// (whose unit holds the seconds: lm s, cd s, lux s).
+pub fn integration_time_s(output: &Output, camera: &Camera) -> f32 {
+    if output.is_flash() { 1.0 } else { camera.shutter_s }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Cone, Emitter};
+
+    #[test]
+    fn the_output_ratio_follows_the_dial_in_every_unit() {
+        let (cone, scene) = (Cone { inner_deg: 20.0, outer_deg: 40.0 }, Scene::default());
+        let spot = Emitter::Spot { inner_deg: cone.inner_deg, outer_deg: cone.outer_deg };
+        let cases = [
+            (spot, Output::Lumens(800.0)),
+            (Emitter::RoundPanel { diameter_m: 0.9 }, Output::FlashGuideNumber(40.0)),
+            (Emitter::Sun { angular_diameter_deg: 0.5 }, Output::Lux(20_000.0)),
+        ];
+        for (emitter, output) in cases {
+            let mut light = Light::new(emitter, output);
+            let before = PhotometricLight::new(&scene, &light);
+            assert_eq!(before.output_ratio(before.strength), 1.0);
+            light.power.dial_stops = -1.0;
+            let after = PhotometricLight::new(&scene, &light);
+            assert!((after.output_ratio(before.strength) - 0.5).abs() < 1e-6, "{emitter:?}");
+        }
+    }
+
+    #[test]
+    fn a_beam_cuts_flux_and_leaves_the_axis() {
+        let scene = Scene::default();
+        let mut light = Light::new(Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, Output::Lumens(1000.0));
+        let bare = PhotometricLight::new(&scene, &light);
+        assert!((bare.flux() - 1000.0).abs() < 0.01 && bare.beam.is_none());
+        light.modifier.grid_deg = Some(40.0);
+        let gridded = PhotometricLight::new(&scene, &light);
+        assert_eq!(gridded.axial_intensity(), bare.axial_intensity());
+        assert!(gridded.flux() < 0.2 * bare.flux(), "{} lm", gridded.flux());
+    }
+}
