@@ -1,46 +1,52 @@
-//! Plain loops over arrays, compiled once for every processor of a kind and once for those with wider registers.
+//! Runtime dispatch of loops that are compiled twice: for the baseline CPU, and for CPUs with AVX2.
 //!
-//! The compiler turns loops without jumps into vector instructions of what it may assume: four numbers at a time on
-//! any x86-64, eight with AVX2. [`widest`] asks the processor which of the two it can run. Nothing is fused or
-//! reordered in either, so both give the same bits.
+//! The compiler turns branch-free loops over arrays into vector instructions: four f32 at a time on any x86-64, eight
+//! with AVX2. [`dispatch`] checks which of the two the CPU supports. Neither version fuses or reorders operations, so
+//! both return the same bits.
 
-/// Proof that the processor has AVX2: only [`widest`] gives it out.
+/// Elements that loops process together: the f32 lanes of one AVX2 register.
+pub const LANES: usize = 8;
+
+/// Proof that the CPU supports AVX2. Only [`dispatch`] creates it.
 #[derive(Clone, Copy, Debug)]
 pub struct Avx2(());
 
-/// SimdTask that is compiled for each set of instructions. `run` and all it calls must be `#[inline(always)]`, or closures
-/// that are called where they stand: what is called in the common way is compiled for every processor.
+/// A loop that is compiled for each instruction set. `run` and every function it calls must be `#[inline(always)]` or a
+/// closure defined in it: other functions are compiled for the baseline CPU only.
 pub trait SimdTask {
-    /// What comes out.
+    /// The result of the loop.
     type Output;
 
-    /// Does the work. What is written in intrinsics can ask for the proof; loops need not.
+    /// Runs the loop. Code in AVX2 intrinsics requires the proof; loops ignore it.
     fn run(self, avx2: Option<Avx2>) -> Self::Output;
 }
 
-/// Does the work with the dispatch registers that the processor has.
+/// Runs a task with the widest registers that the CPU supports.
 #[inline]
-pub fn dispatch<W: SimdTask>(work: W) -> W::Output {
+pub fn dispatch<T: SimdTask>(task: T) -> T::Output {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {
-        #[expect(unsafe_code, reason = "a call into code made for AVX2, behind the check that the processor has it")]
-        // SAFETY: the processor has AVX2; it was asked on the line above.
-        return unsafe { compiled_for_avx2(work) };
+        #[expect(
+            unsafe_code,
+            reason = "a call into code compiled for AVX2, after the check that the CPU supports it"
+        )]
+        // SAFETY: the line above has detected AVX2.
+        return unsafe { compiled_for_avx2(task) };
     }
-    work.run(None)
+    task.run(None)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn compiled_for_avx2<W: SimdTask>(work: W) -> W::Output {
-    work.run(Some(Avx2(())))
+fn compiled_for_avx2<T: SimdTask>(task: T) -> T::Output {
+    task.run(Some(Avx2(())))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Sums, quotients, roots and products that a fused multiply-add would round otherwise.
+    /// Sums, quotients, roots and products that a fused multiply-add would round differently.
     struct Lengths<'a>(&'a [[f32; 64]; 3]);
 
     impl SimdTask for Lengths<'_> {
@@ -54,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn wide_registers_give_the_bits_of_narrow_ones() {
+    fn avx2_and_baseline_code_return_the_same_bits() {
         let numbers = [0.1_f32, 0.7, -0.3].map(|a| std::array::from_fn(|i| (a * i as f32).sin()));
         assert_eq!(dispatch(Lengths(&numbers)), Lengths(&numbers).run(None));
     }

@@ -1,7 +1,7 @@
 //! Meshes ready for tracing, their instances, and what a hit says about the surface.
 
 use super::blas::Blas;
-use super::triangle::TriangleHit;
+use super::simd::TriangleHit;
 use crate::math::{self, Ray, gamma};
 use crate::scene::Mesh;
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};

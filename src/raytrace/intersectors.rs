@@ -4,9 +4,8 @@
 //! triangles they test.
 
 use super::blas::Blas;
-use super::bvh::{Slabs, TraversalStack};
-use super::simd::{self, KernelTask, Kernels, WIDTH};
-use super::triangle::{Packet, ShearedRay};
+use super::bvh::TraversalStack;
+use super::simd::{self, KernelTask, Kernels, LANES, ShearedRay, SlabRay, TrianglePacket};
 use crate::math::Ray;
 use crate::scene::Mesh;
 use glam::Vec3;
@@ -58,7 +57,7 @@ pub struct Intersector {
 struct Part {
     low: Vec3,
     high: Vec3,
-    packets: Vec<Packet>,
+    packets: Vec<TrianglePacket>,
 }
 
 impl Part {
@@ -67,8 +66,8 @@ impl Part {
         let corners = all.iter().flat_map(|&t| mesh.corners(t as usize));
         let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let (low, high) = corners.fold(start, |(low, high), p| (low.min(p), high.max(p)));
-        let pack = |chunk: &[u32]| Packet::new(chunk.iter().map(|&t| (t, mesh.corners(t as usize))));
-        Part { low, high, packets: all.chunks(WIDTH).map(pack).collect() }
+        let pack = |chunk: &[u32]| TrianglePacket::new(chunk.iter().map(|&t| (t, mesh.corners(t as usize))));
+        Part { low, high, packets: all.chunks(LANES).map(pack).collect() }
     }
 
     /// Slabs by division, each axis ordered by comparison.
@@ -120,7 +119,7 @@ impl Intersector {
     #[inline(always)]
     fn closest<K: Kernels>(&self, ray: &Ray, stack: &mut TraversalStack) -> Option<f32> {
         if let Some(blas) = &self.blas {
-            return blas.intersect::<K>(ray, &Slabs::new(ray.origin, ray.direction), stack).map(|hit| hit.t);
+            return blas.intersect::<K>(ray, &SlabRay::new(ray.origin, ray.direction), stack).map(|hit| hit.t);
         }
         let sheared = ShearedRay::new(ray.origin, ray.direction);
         let inverse = ray.direction.recip();
@@ -134,7 +133,7 @@ impl Intersector {
                 IntersectionMethod::BruteForce | IntersectionMethod::Bvh => true,
             };
             for packet in part.packets.iter().filter(|_| met) {
-                if let Some(hit) = K::triangles(packet, &sheared, ray.t_max) {
+                if let Some(hit) = K::intersect_triangles(&sheared, packet, ray.t_max) {
                     ray.t_max = hit.t;
                     nearest = Some(hit.t);
                 }

@@ -29,7 +29,6 @@ mod settings;
 mod simd;
 mod sink;
 mod texture;
-mod triangle;
 mod whitted;
 
 pub use control::RenderControl;

@@ -118,7 +118,7 @@ impl KernelTask for Pair {
 
     #[inline(always)]
     fn run<K: Kernels>(self) -> [Set; 2] {
-        K::sobol(self.index, self.seeds)
+        K::sobol_4d(self.index, self.seeds)
     }
 }
 

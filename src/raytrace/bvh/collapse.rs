@@ -1,80 +1,119 @@
-//! From the binary tree to the eight-wide one that costs a ray least.
+//! Conversion of a binary BVH to the wide BVH of least expected traversal cost.
 //!
-//! By the surface area heuristic, with dynamic programming over the ways to cover each binary subtree by up to eight
-//! wide nodes (Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs",
-//! section 3.1). A packet of triangles costs the same however few it holds, so leaves come out full.
+//! The cost is the surface area heuristic. Dynamic programming finds, for each binary subtree, the cheapest cover by one
+//! to eight wide nodes or leaves (Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through
+//! Compressed Wide BVHs", section 3.1). A packet test costs the same for any number of triangles, so that leaves come
+//! out full.
 //!
-//! Subtrees are worked on side by side. Which they are depends on the tree alone, and so does what comes out.
+//! Subtrees are processed in parallel. Their choice depends on the BVH alone, so that the result is deterministic.
 
-use super::wide::{LEAF, Node, WideBvh};
-use crate::raytrace::simd::WIDTH;
+use super::wide::{LEAF_BIT, WideBvh, WideNode};
+use crate::raytrace::simd::LANES;
 use obvhs::bvh2::Bvh2;
 use rayon::prelude::*;
 use std::collections::{HashMap, VecDeque};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Time of a packet test against a node test, measured.
+/// Cost of a packet test relative to a node test, measured.
 const LEAF_COST: f32 = 1.2;
 
-/// Subtrees that are worked on side by side: enough that all cores are busy to the end.
-const SUBTREES: usize = 256;
+/// Number of subtrees that are processed in parallel: enough to keep all cores busy to the end.
+const PARALLEL_SUBTREES: usize = 256;
 
-/// With `i + 1` nodes, how many of them cover the left child; 0: no more than `i` are of use. Entry 0 is 1 where the
-/// subtree becomes a leaf.
-type Split = [u8; WIDTH];
+/// The cheapest distribution of `i + 1` wide nodes over the children of a binary node: entry `i` is the number for the left
+/// child; 0 where `i` nodes are as cheap. Entry 0 is 1 where the subtree becomes a leaf.
+type Split = [u8; LANES];
 
-/// How a binary subtree is covered at least cost.
+/// The cheapest covers of a binary subtree.
 #[derive(Clone, Copy, Debug)]
-struct Cover {
+struct SubtreeCover {
     primitives: u32,
-    /// `cost[i]`: by at most `i + 1` wide nodes or leaves; the last entry by the children of one wide node.
-    cost: [f32; WIDTH],
+    /// `cost[i]`: SAH cost of a cover by at most `i + 1` wide nodes or leaves; the last entry covers the subtree by the
+    /// children of one wide node.
+    cost: [f32; LANES],
     split: Split,
 }
 
-impl Cover {
-    const NOTHING: Cover = Cover { primitives: 0, cost: [0.0; WIDTH], split: [0; WIDTH] };
+impl SubtreeCover {
+    const EMPTY: SubtreeCover = SubtreeCover { primitives: 0, cost: [0.0; LANES], split: [0; LANES] };
 
     fn leaf(area: f32, primitives: u32) -> Self {
-        let mut split = [0; WIDTH];
+        let mut split = [0; LANES];
         split[0] = 1;
-        Cover { primitives, cost: [area * LEAF_COST; WIDTH], split }
+        SubtreeCover { primitives, cost: [area * LEAF_COST; LANES], split }
+    }
+
+    /// Combines the covers of two children into those of their parent (equations 1 to 4 of the paper).
+    fn parent(area: f32, left: &SubtreeCover, right: &SubtreeCover, max_leaf: u32) -> Self {
+        let mut cover = SubtreeCover { primitives: left.primitives + right.primitives, ..SubtreeCover::EMPTY };
+        // Find the cheapest distribution of `i + 1` nodes over both children. The right child's costs are padded with
+        // infinity, so that one vector loop serves all `i`.
+        let mut padded = [f32::INFINITY; 2 * LANES];
+        padded[LANES..].copy_from_slice(&right.cost);
+        let (mut distributed, mut left_nodes) = ([f32::INFINITY; LANES], [0_u32; LANES]);
+        for k in 1..LANES {
+            for i in 0..LANES {
+                let cost = left.cost[k - 1] + padded[LANES - k + i];
+                let better = cost < distributed[i];
+                distributed[i] = if better { cost } else { distributed[i] };
+                left_nodes[i] = if better { k as u32 } else { left_nodes[i] };
+            }
+        }
+        // Cover the subtree by one node: an inner node or a leaf
+        let last = LANES - 1;
+        let inner = area + distributed[last];
+        let leaf = if cover.primitives <= max_leaf { area * LEAF_COST } else { f32::INFINITY };
+        cover.cost[0] = inner.min(leaf);
+        cover.split[0] = u8::from(leaf <= inner);
+        // Cover it by up to `i + 1` nodes
+        for i in 1..last {
+            let better = distributed[i] < cover.cost[i - 1];
+            cover.cost[i] = if better { distributed[i] } else { cover.cost[i - 1] };
+            cover.split[i] = if better { left_nodes[i] as u8 } else { 0 };
+        }
+        cover.cost[last] = distributed[last];
+        cover.split[last] = left_nodes[last] as u8;
+        cover
     }
 }
 
-/// Makes the tree, with at most `max_leaf` primitives a leaf.
+/// Converts a binary BVH, with at most `max_leaf` primitives a leaf.
 pub fn to_wide(binary: &Bvh2, max_leaf: u32) -> WideBvh {
+    // Find the cheapest splits bottom up
     let splits = Splits::new(binary, max_leaf);
-    let mut top = Emitter::new(binary, &splits, 0);
-    while let Some((subtree, node)) = top.open.pop_front() {
+    // Write the upper nodes breadth first, until there are enough subtrees for all threads
+    let mut top = WideBvhWriter::new(binary, &splits, 0);
+    while let Some((subtree, node)) = top.queue.pop_front() {
         top.add_children(subtree, node);
-        if top.open.len() >= SUBTREES {
+        if top.queue.len() >= PARALLEL_SUBTREES {
             break;
         }
     }
-    let below = |&(subtree, _): &(usize, u32)| {
-        let mut emitter = Emitter::new(binary, &splits, subtree);
-        while let Some((subtree, node)) = emitter.open.pop_back() {
-            emitter.add_children(subtree, node);
+    // Write the subtrees in parallel, depth first
+    let write_subtree = |&(subtree, _): &(usize, u32)| {
+        let mut writer = WideBvhWriter::new(binary, &splits, subtree);
+        while let Some((subtree, node)) = writer.queue.pop_back() {
+            writer.add_children(subtree, node);
         }
-        emitter.wide
+        writer.wide
     };
-    let (mut wide, open) = (top.wide, Vec::from(top.open));
-    let below: Vec<WideBvh> = open.par_iter().map(below).collect();
-    for (below, (_, node)) in below.iter().zip(open) {
-        wide.put_in_place_of(node, below);
+    let (mut wide, queue) = (top.wide, Vec::from(top.queue));
+    let subtrees: Vec<WideBvh> = queue.par_iter().map(write_subtree).collect();
+    // Append them in a fixed order
+    for (subtree, (_, node)) in subtrees.iter().zip(queue) {
+        wide.graft(node, subtree);
     }
     wide
 }
 
-/// The best split of every binary subtree, packed into eight bytes.
+/// The cheapest split of every binary subtree, packed into eight bytes.
 struct Splits(Vec<AtomicU64>);
 
 impl Splits {
     fn new(binary: &Bvh2, max_leaf: u32) -> Self {
         let splits = Splits((0..binary.nodes.len()).into_par_iter().map(|_| AtomicU64::new(0)).collect());
-        let roots = subtrees(binary);
-        let covers: Vec<Cover> =
+        let roots = disjoint_subtrees(binary);
+        let covers: Vec<SubtreeCover> =
             roots.par_iter().map(|&root| splits.fill(binary, root, max_leaf, &HashMap::new())).collect();
         splits.fill(binary, 0, max_leaf, &roots.into_iter().zip(covers).collect());
         splits
@@ -88,117 +127,87 @@ impl Splits {
         self.get(index)[0] == 1
     }
 
-    /// Finds the best splits in a subtree, from the leaves up, down to where they are known already.
-    fn fill(&self, binary: &Bvh2, root: usize, max_leaf: u32, known: &HashMap<usize, Cover>) -> Cover {
-        let mut finished: Vec<Cover> = Vec::new();
-        for index in top_down(binary, root, known).into_iter().rev() {
+    /// Computes the cheapest splits of a subtree bottom up. The subtrees in `known` are not descended into.
+    fn fill(&self, binary: &Bvh2, root: usize, max_leaf: u32, known: &HashMap<usize, SubtreeCover>) -> SubtreeCover {
+        let mut finished: Vec<SubtreeCover> = Vec::new();
+        for index in preorder(binary, root, known).into_iter().rev() {
             let node = &binary.nodes[index];
             let area = node.aabb().half_area();
             let cover = if let Some(cover) = known.get(&index) {
                 *cover
             } else if node.is_leaf() {
-                Cover::leaf(area, node.prim_count)
+                SubtreeCover::leaf(area, node.prim_count)
             } else {
-                // Both children were finished before, the right one last.
-                let [right, left] = [(); 2].map(|()| finished.pop().unwrap_or(Cover::NOTHING));
-                cover(area, &left, &right, max_leaf)
+                // Both children are finished, the right one last.
+                let [right, left] = [(); 2].map(|()| finished.pop().unwrap_or(SubtreeCover::EMPTY));
+                SubtreeCover::parent(area, &left, &right, max_leaf)
             };
             self.0[index].store(u64::from_le_bytes(cover.split), Ordering::Relaxed);
             finished.push(cover);
         }
-        finished.pop().unwrap_or(Cover::NOTHING)
+        finished.pop().unwrap_or(SubtreeCover::EMPTY)
     }
 }
 
-/// Disjoint subtrees that together hold all leaves.
-fn subtrees(binary: &Bvh2) -> Vec<usize> {
-    let (mut found, mut open) = (Vec::new(), VecDeque::from([0]));
-    while let Some(index) = open.pop_front() {
+/// Returns the roots of disjoint subtrees that together hold all leaves.
+fn disjoint_subtrees(binary: &Bvh2) -> Vec<usize> {
+    let (mut found, mut queue) = (Vec::new(), VecDeque::from([0]));
+    while let Some(index) = queue.pop_front() {
         let node = &binary.nodes[index];
-        if node.is_leaf() || found.len() + open.len() >= SUBTREES {
+        if node.is_leaf() || found.len() + queue.len() >= PARALLEL_SUBTREES {
             found.push(index);
         } else {
-            open.extend([node.first_index as usize, node.first_index as usize + 1]);
+            queue.extend([node.first_index as usize, node.first_index as usize + 1]);
         }
     }
     found
 }
 
-fn cover(area: f32, left: &Cover, right: &Cover, max_leaf: u32) -> Cover {
-    let mut cover = Cover { primitives: left.primitives + right.primitives, ..Cover::NOTHING };
-    // The best way to share `i + 1` nodes between the two children, and the left one's nodes in it. The right one's costs
-    // lie behind as many infinite ones, so that all `i` are asked at once.
-    let mut padded = [f32::INFINITY; 2 * WIDTH];
-    padded[WIDTH..].copy_from_slice(&right.cost);
-    let (mut shared, mut ways) = ([f32::INFINITY; WIDTH], [0_u32; WIDTH]);
-    for k in 1..WIDTH {
-        for i in 0..WIDTH {
-            let cost = left.cost[k - 1] + padded[WIDTH - k + i];
-            let better = cost < shared[i];
-            shared[i] = if better { cost } else { shared[i] };
-            ways[i] = if better { k as u32 } else { ways[i] };
-        }
-    }
-    let last = WIDTH - 1;
-    let inner = area + shared[last];
-    let leaf = if cover.primitives <= max_leaf { area * LEAF_COST } else { f32::INFINITY };
-    cover.cost[0] = inner.min(leaf);
-    cover.split[0] = u8::from(leaf <= inner);
-    for i in 1..last {
-        let better = shared[i] < cover.cost[i - 1];
-        cover.cost[i] = if better { shared[i] } else { cover.cost[i - 1] };
-        cover.split[i] = if better { ways[i] as u8 } else { 0 };
-    }
-    cover.cost[last] = shared[last];
-    cover.split[last] = ways[last] as u8;
-    cover
-}
-
-/// The nodes of a subtree, parents before their children and the right child's before the left one's, without those below
-/// what is known.
-fn top_down(binary: &Bvh2, root: usize, known: &HashMap<usize, Cover>) -> Vec<usize> {
+/// Returns the nodes of a subtree, parents before children and right children before left ones. Nodes below those in
+/// `known` are left out.
+fn preorder(binary: &Bvh2, root: usize, known: &HashMap<usize, SubtreeCover>) -> Vec<usize> {
     let mut order = Vec::new();
-    let mut open = vec![root];
-    while let Some(index) = open.pop() {
+    let mut stack = vec![root];
+    while let Some(index) = stack.pop() {
         order.push(index);
         let node = &binary.nodes[index];
         if !node.is_leaf() && !known.contains_key(&index) {
-            open.extend([node.first_index as usize, node.first_index as usize + 1]);
+            stack.extend([node.first_index as usize, node.first_index as usize + 1]);
         }
     }
     order
 }
 
-/// Writes a wide tree.
-struct Emitter<'a> {
+/// Writes the nodes of a wide BVH.
+struct WideBvhWriter<'a> {
     binary: &'a Bvh2,
     splits: &'a Splits,
     wide: WideBvh,
-    /// Binary subtrees whose wide nodes have no children yet.
-    open: VecDeque<(usize, u32)>,
+    /// Binary subtrees and their wide nodes, which have no children yet.
+    queue: VecDeque<(usize, u32)>,
 }
 
-impl<'a> Emitter<'a> {
+impl<'a> WideBvhWriter<'a> {
     fn new(binary: &'a Bvh2, splits: &'a Splits, root: usize) -> Self {
-        let wide = WideBvh { nodes: vec![Node::EMPTY], leaf_starts: vec![0], ..WideBvh::default() };
-        Emitter { binary, splits, wide, open: VecDeque::from([(root, 0)]) }
+        let wide = WideBvh { nodes: vec![WideNode::EMPTY], leaf_starts: vec![0], ..WideBvh::default() };
+        WideBvhWriter { binary, splits, wide, queue: VecDeque::from([(root, 0)]) }
     }
 
-    /// Gives a wide node its children.
+    /// Adds the children of a wide node.
     fn add_children(&mut self, subtree: usize, node: u32) {
-        let (mut children, mut count) = ([0; WIDTH], 0);
+        let (mut children, mut count) = ([0; LANES], 0);
         if self.splits.is_leaf(subtree) {
             (children[0], count) = (subtree, 1);
         } else {
-            self.gather(subtree, WIDTH, &mut children, &mut count);
+            self.collect_children(subtree, LANES, &mut children, &mut count);
         }
         for (slot, &child) in children[..count].iter().enumerate() {
             let reference = if self.splits.is_leaf(child) {
                 self.push_leaf(child)
             } else {
                 let new = self.wide.nodes.len() as u32;
-                self.wide.nodes.push(Node::EMPTY);
-                self.open.push_back((child, new));
+                self.wide.nodes.push(WideNode::EMPTY);
+                self.queue.push_back((child, new));
                 new
             };
             let aabb = self.binary.nodes[child].aabb();
@@ -206,8 +215,8 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// Finds the binary nodes that `nodes` wide ones cover a subtree by.
-    fn gather(&self, index: usize, nodes: usize, children: &mut [usize; WIDTH], count: &mut usize) {
+    /// Collects the roots of the binary subtrees that `nodes` wide nodes cover.
+    fn collect_children(&self, index: usize, nodes: usize, children: &mut [usize; LANES], count: &mut usize) {
         let split = self.splits.get(index);
         let mut i = nodes - 1;
         while i > 0 && split[i] == 0 {
@@ -219,24 +228,24 @@ impl<'a> Emitter<'a> {
             return;
         }
         let (first, left) = (self.binary.nodes[index].first_index as usize, usize::from(split[i]));
-        self.gather(first, left, children, count);
-        self.gather(first + 1, i + 1 - left, children, count);
+        self.collect_children(first, left, children, count);
+        self.collect_children(first + 1, i + 1 - left, children, count);
     }
 
-    /// Adds all primitives of a subtree as a leaf and returns the reference to it.
+    /// Adds all primitives of a subtree as one leaf and returns the reference to it.
     fn push_leaf(&mut self, root: usize) -> u32 {
         let wide = &mut self.wide;
-        let mut open = vec![root];
-        while let Some(index) = open.pop() {
+        let mut stack = vec![root];
+        while let Some(index) = stack.pop() {
             let node = &self.binary.nodes[index];
             let first = node.first_index as usize;
             if node.is_leaf() {
                 wide.primitives.extend(&self.binary.primitive_indices[first..first + node.prim_count as usize]);
             } else {
-                open.extend([first, first + 1]);
+                stack.extend([first, first + 1]);
             }
         }
         wide.leaf_starts.push(wide.primitives.len() as u32);
-        LEAF | (wide.leaf_starts.len() as u32 - 2)
+        LEAF_BIT | (wide.leaf_starts.len() as u32 - 2)
     }
 }

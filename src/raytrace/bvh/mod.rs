@@ -1,5 +1,8 @@
-//! Bounding volume hierarchies: built as binary trees by obvhs, collapsed to eight children a node, traversed by our
-//! own code. One traversal serves triangles in a mesh and instances in the studio.
+//! Bounding volume hierarchies with eight children a node.
+//!
+//! `build` builds a binary BVH with obvhs, `collapse` converts it to eight children a node, `wide` stores it, `traverse`
+//! intersects rays with it. One traversal serves the triangles of a mesh (BLAS), the instances of the studio (TLAS) and
+//! the emitters.
 
 mod build;
 mod collapse;
@@ -7,5 +10,5 @@ mod traverse;
 mod wide;
 
 pub use build::build;
-pub use traverse::{Slabs, TraversalStack, WIDEN};
-pub use wide::{Node, WideBvh};
+pub use traverse::TraversalStack;
+pub use wide::WideBvh;

@@ -1,80 +1,52 @@
-//! Walking a ray through the tree.
+//! Traversal of the wide BVH: front to back for the closest hit, in any order for occlusion.
 
-use super::wide::{LEAF, Node, WideBvh};
-use crate::math::gamma;
-use crate::raytrace::simd::{Kernels, WIDTH};
-use glam::Vec3;
+use super::wide::{LEAF_BIT, WideBvh, WideNode};
+use crate::raytrace::simd::{Kernels, LANES, SlabRay};
 
-/// What the box test wants of a ray: origin, inverse direction, and which side of each box is near.
-///
-/// A direction component of zero gives an infinite inverse; `0 * inf` is NaN, and the kernels drop it, so that a ray
-/// along a box's face is tested by the other axes alone.
-#[derive(Clone, Copy, Debug)]
-pub struct Slabs {
-    pub(in crate::raytrace) origin: [f32; 3],
-    /// One over the direction, negated: kernels take the planes from the origin.
-    pub(in crate::raytrace) minus_inverse: [f32; 3],
-    /// 0 where the lower side is near, 1 where the upper is.
-    pub(in crate::raytrace) near: [usize; 3],
-}
-
-/// Far sides are widened by this, to cover the rounding of both products (Ize 2013).
-pub const WIDEN: f32 = 1.0 + 2.0 * gamma(3);
-
-impl Slabs {
-    /// Prepares a ray.
-    #[inline(always)]
-    pub fn new(origin: Vec3, direction: Vec3) -> Self {
-        let inverse = direction.recip();
-        let near = inverse.to_array().map(|x| usize::from(x.is_sign_negative()));
-        Slabs { origin: origin.to_array(), minus_inverse: (-inverse).to_array(), near }
-    }
-}
-
-/// Open nodes of a traversal. Kept between rays so that the inner loop allocates nothing; nested traversals (a mesh
-/// inside an instance) use the same one above a mark.
+/// The stack of nodes still to visit. It is kept between rays, so that the inner loop does not allocate. A nested traversal
+/// (a BLAS inside the TLAS) uses the same stack above the entries of the outer one.
 #[derive(Clone, Debug, Default)]
 pub struct TraversalStack {
-    /// Entry distance in the upper half (as bits, which sort like the distance because it is not negative), child
-    /// below.
-    open: Vec<u64>,
+    /// Entry distance in the upper half (the bits of non-negative floats sort like their values), child reference in the
+    /// lower half.
+    entries: Vec<u64>,
     /// Entries in use.
     top: usize,
 }
 
 impl TraversalStack {
-    /// Room for all children of a node above `top`.
+    /// Returns room above `top` for all children of a node.
     #[inline(always)]
     fn room(&mut self, top: usize) -> &mut [u64] {
-        if self.open.len() < top + WIDTH {
+        if self.entries.len() < top + LANES {
             self.grow(top);
         }
-        &mut self.open[top..top + WIDTH]
+        &mut self.entries[top..top + LANES]
     }
 
     #[cold]
     fn grow(&mut self, top: usize) {
-        self.open.resize(2 * (top + WIDTH).max(128), 0);
+        self.entries.resize(2 * (top + LANES).max(128), 0);
     }
 }
 
 #[inline(always)]
-fn entry(enter: f32, child: u32) -> u64 {
+fn stack_entry(enter: f32, child: u32) -> u64 {
     u64::from(enter.to_bits()) << 32 | u64::from(child)
 }
 
 #[inline(always)]
-fn enter_of(entry: u64) -> f32 {
+fn enter_distance(entry: u64) -> f32 {
     f32::from_bits((entry >> 32) as u32)
 }
 
 impl WideBvh {
-    /// Visits the leaves that a ray meets before `t_max`, roughly from near to far. `visit` gets the leaf's number and
-    /// the current end of the ray and returns the new one (smaller after a hit).
+    /// Visits the leaves whose boxes a ray enters before `t_max`, roughly front to back. `visit` takes the leaf index and
+    /// the current `t_max`, and returns the new `t_max` (smaller after a hit).
     #[inline(always)]
     pub fn traverse_front_to_back<K: Kernels>(
         &self,
-        slabs: &Slabs,
+        ray: &SlabRay,
         mut t_max: f32,
         stack: &mut TraversalStack,
         mut visit: impl FnMut(u32, f32, &mut TraversalStack) -> f32,
@@ -82,30 +54,33 @@ impl WideBvh {
         if self.nodes.is_empty() {
             return;
         }
-        let mark = stack.top;
-        let mut top = mark;
+        let base = stack.top;
+        let mut top = base;
         let mut current = 0;
         loop {
-            let mut met = None;
-            if current & LEAF == 0 {
+            let mut nearest_child = None;
+            if current & LEAF_BIT == 0 {
+                // Intersect the ray with the children's boxes and push those that it enters
                 let node = &self.nodes[current as usize];
-                let mut enter = [0.0; WIDTH];
-                let mask = K::boxes(slabs, node, t_max, &mut enter);
-                met = nearest_on_top(node, &enter, mask, stack.room(top), &mut top);
+                let mut enter = [0.0; LANES];
+                let mask = K::intersect_boxes(ray, &node.boxes, t_max, &mut enter);
+                nearest_child = push_all_but_nearest(node, &enter, mask, stack.room(top), &mut top);
             } else {
+                // Visit the leaf and shorten the ray
                 stack.top = top;
-                t_max = visit(current & !LEAF, t_max, stack);
+                t_max = visit(current & !LEAF_BIT, t_max, stack);
             }
-            current = match met {
+            // Continue with the nearest child, or pop the next entry that is closer than the last hit
+            current = match nearest_child {
                 Some(nearest) => nearest,
                 None => loop {
-                    if top == mark {
-                        stack.top = mark;
+                    if top == base {
+                        stack.top = base;
                         return;
                     }
                     top -= 1;
-                    let entry = stack.open[top];
-                    if enter_of(entry) < t_max {
+                    let entry = stack.entries[top];
+                    if enter_distance(entry) < t_max {
                         break entry as u32;
                     }
                 },
@@ -113,11 +88,11 @@ impl WideBvh {
         }
     }
 
-    /// Whether `visit` says yes for some leaf that a ray meets before `t_max`, in no order.
+    /// Returns true as soon as `visit` does for a leaf whose box a ray enters before `t_max`, in no order.
     #[inline(always)]
     pub fn traverse_any<K: Kernels>(
         &self,
-        slabs: &Slabs,
+        ray: &SlabRay,
         t_max: f32,
         stack: &mut TraversalStack,
         mut visit: impl FnMut(u32, &mut TraversalStack) -> bool,
@@ -125,58 +100,67 @@ impl WideBvh {
         if self.nodes.is_empty() {
             return false;
         }
-        let mark = stack.top;
-        let mut top = mark;
+        let base = stack.top;
+        let mut top = base;
         let mut current = 0;
         loop {
-            if current & LEAF == 0 {
+            if current & LEAF_BIT == 0 {
+                // Push every child whose box the ray enters
                 let node = &self.nodes[current as usize];
-                let mut mask = K::boxes(slabs, node, t_max, &mut [0.0; WIDTH]);
+                let mut mask = K::intersect_boxes(ray, &node.boxes, t_max, &mut [0.0; LANES]);
                 let room = stack.room(top);
                 let mut count = 0;
                 while mask != 0 {
-                    room[count % WIDTH] = u64::from(node.children[mask.trailing_zeros() as usize % WIDTH]);
+                    room[count % LANES] = u64::from(node.children[mask.trailing_zeros() as usize % LANES]);
                     mask &= mask - 1;
                     count += 1;
                 }
                 top += count;
             } else {
+                // Visit the leaf; the first hit ends the traversal
                 stack.top = top;
-                if visit(current & !LEAF, stack) {
-                    stack.top = mark;
+                if visit(current & !LEAF_BIT, stack) {
+                    stack.top = base;
                     return true;
                 }
             }
-            if top == mark {
-                stack.top = mark;
+            // Pop the next entry
+            if top == base {
+                stack.top = base;
                 return false;
             }
             top -= 1;
-            current = stack.open[top] as u32;
+            current = stack.entries[top] as u32;
         }
     }
 }
 
-/// Puts the children of the mask on the stack, all but the nearest, which is returned. The others lie in no order:
-/// those that a hit has overtaken by the time they are taken up cost one comparison.
+/// Pushes the children of the mask, except the nearest, which is returned. They are not sorted: an entry beyond a later
+/// hit costs one comparison when it is popped.
 #[inline(always)]
-fn nearest_on_top(node: &Node, enter: &[f32; WIDTH], mut mask: u32, room: &mut [u64], top: &mut usize) -> Option<u32> {
+fn push_all_but_nearest(
+    node: &WideNode,
+    enter: &[f32; LANES],
+    mut mask: u32,
+    room: &mut [u64],
+    top: &mut usize,
+) -> Option<u32> {
     if mask == 0 {
         return None;
     }
     let mut next = || {
-        let slot = mask.trailing_zeros() as usize % WIDTH;
+        let slot = mask.trailing_zeros() as usize % LANES;
         mask &= mask - 1;
-        (entry(enter[slot], node.children[slot]), mask)
+        (stack_entry(enter[slot], node.children[slot]), mask)
     };
-    let (mut nearest, mut left) = next();
+    let (mut nearest, mut remaining) = next();
     let mut count = 0;
-    while left != 0 {
+    while remaining != 0 {
         let (other, rest) = next();
-        room[count % WIDTH] = nearest.max(other);
+        room[count % LANES] = nearest.max(other);
         nearest = nearest.min(other);
         count += 1;
-        left = rest;
+        remaining = rest;
     }
     *top += count;
     Some(nearest as u32)

@@ -2,7 +2,7 @@
 
 use crate::raytrace::aggregate::{Aggregate, Hit};
 use crate::raytrace::bsdf::TracedMaterial;
-use crate::raytrace::triangle::TriangleHit;
+use crate::raytrace::simd::TriangleHit;
 use glam::Vec2;
 
 /// Triangles of mirrors and clear glass.

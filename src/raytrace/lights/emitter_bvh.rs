@@ -2,8 +2,8 @@
 
 use super::{EmitterHit, Source, TracedLight};
 use crate::math::Ray;
-use crate::raytrace::bvh::{self, Slabs, TraversalStack, WideBvh};
-use crate::raytrace::simd::{self, KernelTask, Kernels};
+use crate::raytrace::bvh::{self, TraversalStack, WideBvh};
+use crate::raytrace::simd::{self, KernelTask, Kernels, SlabRay};
 use glam::Vec3;
 
 /// Emitters that rays can meet.
@@ -87,9 +87,9 @@ impl<F: FnMut(u32, EmitterHit)> KernelTask for Cross<'_, F> {
     #[inline(always)]
     fn run<K: Kernels>(self) {
         let Cross { emitter_bvh, lights, ray, stack, found } = self;
-        let slabs = Slabs::new(ray.origin, ray.direction);
+        let slab_ray = SlabRay::new(ray.origin, ray.direction);
         emitter_bvh.bvh.traverse_front_to_back::<K>(
-            &slabs,
+            &slab_ray,
             ray.t_max,
             stack,
             #[inline(always)]

@@ -7,12 +7,12 @@
 
 use super::{LEAST_BEAM, Source, TracedLight};
 use crate::math::safe_sqrt;
-use crate::raytrace::simd::{self, KernelTask, Kernels, WIDTH};
+use crate::raytrace::simd::{self, KernelTask, Kernels, LANES};
 use glam::Vec3;
 use std::f32::consts::PI;
 
 /// Entries of a node: so many lights are asked one by one.
-const NODE: usize = 8 * WIDTH;
+const NODE: usize = 8 * LANES;
 
 /// Spread of a light that shines the same all round: a cosine plus this is never under 1.
 const ALL_ROUND: f32 = 2.0;
@@ -21,22 +21,22 @@ const ALL_ROUND: f32 = 2.0;
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(32))]
 struct Packet {
-    centre: [[f32; WIDTH]; 3],
+    centre: [[f32; LANES]; 3],
     /// 1; 0 for a sun, whose `centre` is a direction.
-    near: [f32; WIDTH],
+    near: [f32; LANES],
     /// Radius of a ball that holds all of it.
-    radius: [f32; WIDTH],
+    radius: [f32; LANES],
     /// Intensity on the axis times exposure time; 0 where a lane is not used.
-    power: [f32; WIDTH],
+    power: [f32; LANES],
     /// Unit direction in which it shines.
-    axis: [[f32; WIDTH]; 3],
+    axis: [[f32; LANES]; 3],
     /// Added to the cosine against the axis: how far members' axes differ from it.
-    spread: [f32; WIDTH],
+    spread: [f32; LANES],
     /// How far members lie before or behind the centre, metres.
-    depth: [f32; WIDTH],
+    depth: [f32; LANES],
     /// Cosine at which the beam ends, and one over the difference to that at which it is full.
-    beam_end: [f32; WIDTH],
-    beam_gain: [f32; WIDTH],
+    beam_end: [f32; LANES],
+    beam_gain: [f32; LANES],
 }
 
 /// One lane of a packet, before it is one.
@@ -126,8 +126,8 @@ impl Packet {
     /// no part of it that reaches over a horizon is forgotten. 0 where it certainly gives nothing on the side of
     /// `normal`.
     #[inline(always)]
-    fn estimates(&self, point: Vec3, normal: Vec3) -> [f32; WIDTH] {
-        let mut estimates = [0.0; WIDTH];
+    fn estimates(&self, point: Vec3, normal: Vec3) -> [f32; LANES] {
+        let mut estimates = [0.0; LANES];
         // A plain loop: closures would not be compiled for wide vectors.
         for (i, lane) in estimates.iter_mut().enumerate() {
             let x = self.centre[0][i] - point.x * self.near[i];
@@ -214,10 +214,10 @@ impl LightSampler {
         split(suns, if near.is_empty() { NODE } else { NODE / 2 }, &mut groups);
         split(near, NODE - groups.len(), &mut groups);
         let (index, first) = (self.nodes.len() as u32, self.packets.len());
-        let packets = groups.len().div_ceil(WIDTH);
+        let packets = groups.len().div_ceil(LANES);
         self.nodes.push(Node { first_packet: first as u32, packets: packets as u32, parent });
         self.packets.resize(first + packets, Packet::default());
-        self.meanings.resize((first + packets) * WIDTH, Meaning::Node(0));
+        self.meanings.resize((first + packets) * LANES, Meaning::Node(0));
         for (at, mut group) in groups.into_iter().enumerate() {
             let place = (index, at as u32);
             let (entry, meaning) = if let [(entry, light)] = group[..] {
@@ -226,8 +226,8 @@ impl LightSampler {
             } else {
                 (Entry::cluster(&group), Meaning::Node(self.add_node(&mut group, Some(place))))
             };
-            self.packets[first + at / WIDTH].set(at % WIDTH, &entry);
-            self.meanings[first * WIDTH + at] = meaning;
+            self.packets[first + at / LANES].set(at % LANES, &entry);
+            self.meanings[first * LANES + at] = meaning;
         }
         index
     }
@@ -249,7 +249,7 @@ impl LightSampler {
         simd::dispatch(Ask { packets, point, normal, estimates: &mut estimates });
         if self.has_beams {
             let lanes = estimates.lanes.as_flattened_mut().iter_mut();
-            for (lane, meaning) in lanes.zip(&self.meanings[first * WIDTH..]).take(packets.len() * WIDTH) {
+            for (lane, meaning) in lanes.zip(&self.meanings[first * LANES..]).take(packets.len() * LANES) {
                 if let (true, Meaning::Light(light)) = (*lane > 0.0, *meaning) {
                     *lane *= lights[light as usize].beam_towards(point).max(LEAST_BEAM);
                 }
@@ -319,14 +319,14 @@ fn split(leaves: &mut [Leaf], groups: usize, found: &mut Vec<Vec<Leaf>>) {
 /// What the entries of a node give.
 #[derive(Clone, Copy, Debug)]
 struct Estimates {
-    lanes: [[f32; WIDTH]; NODE / WIDTH],
+    lanes: [[f32; LANES]; NODE / LANES],
     /// Of each packet.
-    sums: [f32; NODE / WIDTH],
+    sums: [f32; NODE / LANES],
     total: f32,
 }
 
 impl Estimates {
-    const NOTHING: Estimates = Estimates { lanes: [[0.0; WIDTH]; NODE / WIDTH], sums: [0.0; NODE / WIDTH], total: 0.0 };
+    const NOTHING: Estimates = Estimates { lanes: [[0.0; LANES]; NODE / LANES], sums: [0.0; NODE / LANES], total: 0.0 };
 
     #[inline(always)]
     fn add_up(&mut self) {
@@ -345,7 +345,7 @@ impl Estimates {
     fn entry_at(&self, u: f32) -> Option<(usize, f32, f32)> {
         let (packet, _, left) = run_at(&self.sums, u * self.total)?;
         let (lane, estimate, left) = run_at(&self.lanes[packet], left)?;
-        Some((packet * WIDTH + lane, estimate, left / estimate))
+        Some((packet * LANES + lane, estimate, left / estimate))
     }
 }
 
@@ -386,7 +386,7 @@ impl LightImportances<'_> {
             }
             let (at, estimate, into) = estimates.entry_at(u)?;
             chance *= estimate / estimates.total;
-            match light_sampler.meanings[node.first_packet as usize * WIDTH + at] {
+            match light_sampler.meanings[node.first_packet as usize * LANES + at] {
                 Meaning::Light(light) => return Some((light, chance)),
                 Meaning::Node(next) => {
                     // What is left of the number is as good as a new one.
@@ -454,7 +454,7 @@ mod tests {
                 simd::dispatch(Ask { packets, point, normal, estimates: &mut ours });
                 Ask { packets, point, normal, estimates: &mut plain }.run::<Scalar>();
                 assert_eq!(bits(&ours), bits(&plain), "from {point}, facing {normal}");
-                let lanes = &ours.lanes.as_flattened()[..packets.len() * WIDTH];
+                let lanes = &ours.lanes.as_flattened()[..packets.len() * LANES];
                 given += lanes.iter().filter(|lane| **lane > 0.0).count();
                 denied += lanes.iter().filter(|lane| **lane == 0.0).count();
             }

@@ -1,48 +1,50 @@
-//! The kernels in AVX2, 256 bits wide: with [`crate::math::simd`], which checks for it, all the `unsafe` code there is.
-#![expect(unsafe_code, reason = "intrinsics, and calls of functions made for AVX2")]
+//! The kernels in AVX2 intrinsics. All `unsafe` code of the crate is here and in [`crate::math::simd`], which detects AVX2.
+#![expect(unsafe_code, reason = "intrinsics, and calls of functions compiled for AVX2")]
 
-use super::{Kernels, WIDTH, sobol};
-use crate::raytrace::bvh::{Node, Slabs, WIDEN};
-use crate::raytrace::triangle::{Packet, ShearedRay, TriangleHit, edges_in_f64};
+use super::box_packet::{BoxPacket, SLAB_EXIT_SCALE, SlabRay};
+use super::kernels::Kernels;
+use super::sobol;
+use super::triangle_packet::{ShearedRay, TriangleHit, TrianglePacket, edges_in_f64};
+use crate::math::simd::LANES;
 use std::arch::x86_64::*;
 
-/// Kernels for processors with AVX2.
+/// Kernels for CPUs with AVX2.
 pub struct Avx2;
 
 impl Kernels for Avx2 {
     #[inline(always)]
-    fn boxes(slabs: &Slabs, node: &Node, t_max: f32, enter: &mut [f32; WIDTH]) -> u32 {
-        // SAFETY: `dispatch` names this type only with the proof that the processor has AVX2, and nothing else can.
-        unsafe { boxes(slabs, node, t_max, enter) }
+    fn intersect_boxes(ray: &SlabRay, boxes: &BoxPacket, t_max: f32, enter: &mut [f32; LANES]) -> u32 {
+        // SAFETY: `dispatch` uses this type only with the proof that the CPU supports AVX2, and no other code can name it.
+        unsafe { intersect_boxes(ray, boxes, t_max, enter) }
     }
 
     #[inline(always)]
-    fn triangles(packet: &Packet, ray: &ShearedRay, t_max: f32) -> Option<TriangleHit> {
-        // SAFETY: `dispatch` names this type only with the proof that the processor has AVX2, and nothing else can.
-        unsafe { triangles(packet, ray, t_max) }
+    fn intersect_triangles(ray: &ShearedRay, triangles: &TrianglePacket, t_max: f32) -> Option<TriangleHit> {
+        // SAFETY: `dispatch` uses this type only with the proof that the CPU supports AVX2, and no other code can name it.
+        unsafe { intersect_triangles(ray, triangles, t_max) }
     }
 
     #[inline(always)]
-    fn sobol(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2] {
-        // SAFETY: `dispatch` names this type only with the proof that the processor has AVX2, and nothing else can.
-        unsafe { sobol_pair(index, seeds) }
+    fn sobol_4d(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2] {
+        // SAFETY: `dispatch` uses this type only with the proof that the CPU supports AVX2, and no other code can name it.
+        unsafe { sobol_4d(index, seeds) }
     }
 }
 
-/// Bit-reverses each byte's half: the reversed value of four bits, by value.
+/// Bit-reversed values of four bits.
 const REVERSED_NIBBLE: [i8; 16] = [0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15];
 
 #[inline]
 #[target_feature(enable = "avx2")]
-fn load(values: &[f32; WIDTH]) -> __m256 {
+fn load(values: &[f32; LANES]) -> __m256 {
     // SAFETY: eight floats are read from an array of eight.
     unsafe { _mm256_loadu_ps(values.as_ptr()) }
 }
 
 #[inline]
 #[target_feature(enable = "avx2")]
-fn store(values: __m256) -> [f32; WIDTH] {
-    let mut array = [0.0; WIDTH];
+fn store(values: __m256) -> [f32; LANES] {
+    let mut array = [0.0; LANES];
     // SAFETY: eight floats are written to an array of eight.
     unsafe { _mm256_storeu_ps(array.as_mut_ptr(), values) };
     array
@@ -50,33 +52,36 @@ fn store(values: __m256) -> [f32; WIDTH] {
 
 #[inline]
 #[target_feature(enable = "avx2")]
-fn boxes(slabs: &Slabs, node: &Node, t_max: f32, enter: &mut [f32; WIDTH]) -> u32 {
-    let mut entered = _mm256_setzero_ps();
-    let mut left = _mm256_set1_ps(t_max);
+fn intersect_boxes(ray: &SlabRay, boxes: &BoxPacket, t_max: f32, enter: &mut [f32; LANES]) -> u32 {
+    let mut entry = _mm256_setzero_ps();
+    let mut exit = _mm256_set1_ps(t_max);
     for axis in 0..3 {
-        let (near, far) = node.sides(slabs, axis);
-        let origin = _mm256_set1_ps(slabs.origin[axis]);
-        let minus_inverse = _mm256_set1_ps(slabs.minus_inverse[axis]);
-        // These give their second operand when the first is NaN.
-        entered = _mm256_max_ps(_mm256_mul_ps(_mm256_sub_ps(origin, load(near)), minus_inverse), entered);
-        left = _mm256_min_ps(_mm256_mul_ps(_mm256_sub_ps(origin, load(far)), minus_inverse), left);
+        let (near, far) = boxes.slabs(ray, axis);
+        let origin = _mm256_set1_ps(ray.origin[axis]);
+        let minus_inverse = _mm256_set1_ps(ray.minus_inverse[axis]);
+        // Both instructions return their second operand when the first is NaN.
+        entry = _mm256_max_ps(_mm256_mul_ps(_mm256_sub_ps(origin, load(near)), minus_inverse), entry);
+        exit = _mm256_min_ps(_mm256_mul_ps(_mm256_sub_ps(origin, load(far)), minus_inverse), exit);
     }
-    *enter = store(entered);
-    let widened = _mm256_mul_ps(left, _mm256_set1_ps(WIDEN));
-    _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entered, widened)) as u32
+    *enter = store(entry);
+    let widened = _mm256_mul_ps(exit, _mm256_set1_ps(SLAB_EXIT_SCALE));
+    _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(entry, widened)) as u32
 }
 
 #[inline]
 #[target_feature(enable = "avx2")]
-fn triangles(packet: &Packet, ray: &ShearedRay, t_max: f32) -> Option<TriangleHit> {
+fn intersect_triangles(ray: &ShearedRay, triangles: &TrianglePacket, t_max: f32) -> Option<TriangleHit> {
+    // Translate the corners to the ray's origin
     let corner =
-        |v: usize, axis: usize| _mm256_sub_ps(load(&packet.corners[v][axis]), _mm256_set1_ps(ray.origin[axis]));
+        |v: usize, axis: usize| _mm256_sub_ps(load(&triangles.corners[v][axis]), _mm256_set1_ps(ray.origin[axis]));
     let [kx, ky, kz] = ray.axes;
     let depth = [corner(0, kz), corner(1, kz), corner(2, kz)];
+    // Shear them, so that the ray points along +Z
     let shear =
         |v: usize, axis: usize, by: f32| _mm256_sub_ps(corner(v, axis), _mm256_mul_ps(_mm256_set1_ps(by), depth[v]));
     let x = [shear(0, kx, ray.shear[0]), shear(1, kx, ray.shear[0]), shear(2, kx, ray.shear[0])];
     let y = [shear(0, ky, ray.shear[1]), shear(1, ky, ray.shear[1]), shear(2, ky, ray.shear[1])];
+    // Evaluate the edge functions, in f64 where one is 0
     let edge = |a: usize, b: usize| _mm256_sub_ps(_mm256_mul_ps(x[b], y[a]), _mm256_mul_ps(y[b], x[a]));
     let mut e = [edge(1, 2), edge(2, 0), edge(0, 1)];
     let zero = _mm256_setzero_ps();
@@ -87,18 +92,19 @@ fn triangles(packet: &Packet, ray: &ShearedRay, t_max: f32) -> Option<TriangleHi
         edges_in_f64(&mut exact, &x.map(|x| store(x)), &y.map(|y| store(y)));
         e = [load(&exact[0]), load(&exact[1]), load(&exact[2])];
     }
-    // Unused lanes are NaN in all three, and pass neither test.
+    // Test whether all edge functions have one sign; unused lanes are NaN and pass neither comparison
     let smallest = _mm256_min_ps(_mm256_min_ps(e[0], e[1]), e[2]);
     let largest = _mm256_max_ps(_mm256_max_ps(e[0], e[1]), e[2]);
     let inside = _mm256_or_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(smallest, zero), _mm256_cmp_ps::<_CMP_LE_OQ>(largest, zero));
     if _mm256_movemask_ps(inside) == 0 {
         return None;
     }
+    // Interpolate the hit distance
     let z = depth.map(|d| _mm256_mul_ps(_mm256_set1_ps(ray.shear[2]), d));
     let determinant = _mm256_add_ps(_mm256_add_ps(e[0], e[1]), e[2]);
     let weighted =
         _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(e[0], z[0]), _mm256_mul_ps(e[1], z[1])), _mm256_mul_ps(e[2], z[2]));
-    // A determinant of zero gives infinity or NaN, which the comparisons refuse.
+    // A determinant of 0 gives infinity or NaN, which fail the comparisons.
     let t = _mm256_div_ps(weighted, determinant);
     let in_range =
         _mm256_and_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(t, zero), _mm256_cmp_ps::<_CMP_LT_OQ>(t, _mm256_set1_ps(t_max)));
@@ -106,42 +112,45 @@ fn triangles(packet: &Packet, ray: &ShearedRay, t_max: f32) -> Option<TriangleHi
     if hits == 0 {
         return None;
     }
+    // Select the nearest hit
     let t = store(t);
-    let mut nearest = hits.trailing_zeros() as usize % WIDTH;
+    let mut nearest = hits.trailing_zeros() as usize % LANES;
     hits &= hits - 1;
     while hits != 0 {
-        let other = hits.trailing_zeros() as usize % WIDTH;
+        let other = hits.trailing_zeros() as usize % LANES;
         hits &= hits - 1;
         if t[other] < t[nearest] {
             nearest = other;
         }
     }
-    Some(packet.hit(nearest, t[nearest], e.map(|e| store(e)[nearest])))
+    Some(triangles.hit(nearest, t[nearest], e.map(|e| store(e)[nearest])))
 }
 
 #[inline]
 #[target_feature(enable = "avx2")]
-fn sobol_pair(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2] {
+fn sobol_4d(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2] {
     let splat = |n: u32| _mm256_set1_epi32(n as i32);
     let times = |n, factor: u32| _mm256_mullo_epi32(n, splat(factor));
+    // Shuffle the index and look up the unscrambled points
     let [low, high] = seeds.map(|seed| {
         let shuffled = sobol::scramble(index.reverse_bits(), sobol::hash(seed ^ sobol::SHUFFLE)) >> 16;
         let part = |i: usize| four(&sobol::NIBBLES[i][(shuffled >> (4 * i)) as usize % 16]);
         _mm_xor_si128(_mm_xor_si128(part(0), part(1)), _mm_xor_si128(part(2), part(3)))
     });
     let point = _mm256_set_m128i(high, low);
-    // The scrambles of the eight dimensions.
+    // Hash the seeds of the eight dimensions
     let [low, high] = seeds.map(|seed| _mm_set1_epi32(seed.wrapping_mul(sobol::SEED_FACTOR) as i32));
     let dimensions = _mm256_broadcastsi128_si256(four(&sobol::DIMENSION_SEEDS));
     let mut by = _mm256_xor_si256(_mm256_xor_si256(_mm256_set_m128i(high, low), dimensions), splat(sobol::HASH_START));
     by = times(_mm256_xor_si256(by, _mm256_srli_epi32::<16>(by)), sobol::HASH_FACTORS[0]);
     by = times(_mm256_xor_si256(by, _mm256_srli_epi32::<15>(by)), sobol::HASH_FACTORS[1]);
     by = _mm256_xor_si256(by, _mm256_srli_epi32::<16>(by));
+    // Owen-scramble the points
     let mut n = _mm256_xor_si256(point, times(point, sobol::SCRAMBLE_FACTORS[0]));
     n = _mm256_mullo_epi32(_mm256_add_epi32(n, by), _mm256_or_si256(_mm256_srli_epi32::<16>(by), splat(1)));
     n = _mm256_xor_si256(n, times(n, sobol::SCRAMBLE_FACTORS[1]));
     n = _mm256_xor_si256(n, times(n, sobol::SCRAMBLE_FACTORS[2]));
-    // The highest 23 bits are the mantissa of a number in [1, 2).
+    // Use the highest 23 bits as the mantissa of a number in [1, 2)
     let mantissa = _mm256_srli_epi32::<9>(reverse_bits(n));
     let one_to_two = _mm256_castsi256_ps(_mm256_or_si256(mantissa, splat(1.0_f32.to_bits())));
     let [a, b, c, d, e, f, g, h] = store(_mm256_sub_ps(one_to_two, _mm256_set1_ps(1.0)));
