@@ -1,10 +1,34 @@
-//! The live preview on wgpu: deferred shading with the scene's real lights, shadow maps, picking.
+//! The live preview on wgpu: deferred shading with the scene's lights, soft shadow maps and picking.
 //!
-//! Scene -> `DrawList` and `LightTable` (plain structs, one record a surface and a light) -> shadow maps (cached)
-//! -> geometry pass into a G-buffer -> lighting pass -> glass and overlay over the lit picture.
+//! A frame, as `renderer/` encodes it. Passes in brackets are skipped while their inputs have not changed:
 //!
-//! Lights reach the shaders in picture units, so that what a shader sums is the scene-linear pixel. What it leaves out
-//! of the tracer's picture: bounced light (estimated), true reflection and refraction, exact soft shadows.
+//! ```text
+//! Scene, CameraFrame, Options
+//!   |  renderer/frame_plan.rs: DrawList (geometry/), LightTable and light tiles (lights/), ShadowPlan (shadows/)
+//!   |  uploads: meshes, textures, draw records, frame constants, surfaces, lights, tiles, shadow slots
+//!   v
+//! [shadow map pass]     one per stale view and side  -> shadow map array (Depth32Float)
+//! [geometry pass]       opaque items, culled clusters-> G-buffer (Rgba32Uint), ids (Rg32Uint), depth (Depth32Float)
+//! [shadow mask + blur]  four lights per mask         -> mask array (Rg32Uint), from G-buffer, ids, shadow maps
+//! lighting pass         full-screen, lights per tile -> picture; in a draft -> coarse lighting (Rgba32Uint)
+//!   resolve pass        drafts: joint bilateral upsampling of the coarse lighting -> picture
+//! glass pass            forward, blended             -> picture, ids, depth
+//! channel pass          instead of lighting, for views of the G-buffer -> picture
+//! overlay pass          outline, tints, lines; depth from ids -> picture (Rgba8Unorm, or Rgba16Float without overlay)
+//! ```
+//!
+//! Light reaches the shaders in picture units (exposure, shutter and white balance folded in), so that a shader's sum is
+//! the scene-linear pixel. Unlike the path tracer, the preview estimates bounced light, filters soft shadows, and has no
+//! true reflection and refraction.
+//!
+//! Where to extend it:
+//! - A pass: a pipeline constructor in the `pipelines.rs` of its room, a WGSL file joined in `shaders/mod.rs`, a `draw`
+//!   function that takes `FrameResources`, one step in `PreviewRenderer::encode`.
+//! - A light shape: the conversion in `lights/light_table.rs`, its irradiance in `shaders/light.wgsl`, a loop in
+//!   `shaders/lighting.wgsl`, its view in `shadows/views.rs`, its emitter mesh in `geometry/draw_list.rs`.
+//! - A channel: a variant of `Channel` and a branch in `shaders/channel.wgsl`.
+//!
+//! Rooms import in this order: gpu, lights, geometry, shadows, lighting, overlay, renderer.
 
 mod channel;
 mod error;

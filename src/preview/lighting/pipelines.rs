@@ -46,15 +46,16 @@ pub(crate) fn lighting(
         ("HAS_RECTS", rects),
         ("HAS_DISCS", discs),
         ("MASKS", variant.masks as f64),
-        ("SCALE", f64::from(variant.mask_scale)),
-        ("REACH", flag(variant.light_radius)),
-        ("LISTED", flag(variant.tiled)),
+        ("MASK_SCALE", f64::from(variant.mask_scale)),
+        ("LIGHT_CULLING", flag(variant.light_radius)),
+        ("TILED", flag(variant.tiled)),
         ("HAS_BEAMS", flag(variant.has_beams)),
         ("ILLUMINANCE", flag(variant.illuminance)),
         ("BLINN_PHONG", flag(variant.gloss == Gloss::BlinnPhong)),
     ];
     let layout = pipeline_layout(device, "lighting", &[&layouts.scene, &layouts.gbuffer, &layouts.masks]);
-    let (entry, format) = if variant.coarse { ("cell", COARSE_FORMAT) } else { ("fragment", variant.output.format()) };
+    let (entry, format) =
+        if variant.coarse { ("coarse_fragment", COARSE_FORMAT) } else { ("fragment", variant.output.format()) };
     fullscreen(device, ("lighting", entry), shaders::LIGHTING, &layout, &constants, format)
 }
 

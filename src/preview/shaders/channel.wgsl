@@ -1,8 +1,8 @@
-// What the G-buffer holds, channel by channel.
+// The channel pass: one channel of the G-buffer as a picture.
 
-// Numbers of `channel::Channel`.
+// The values of `channel::Channel`.
 override CHANNEL: u32 = 1;
-// Whether values leave as they are: depth in metres, directions from -1 to 1.
+// Writes raw values: depth in metres, normals from -1 to 1.
 override LINEAR: bool = false;
 
 const BASE_COLOR: u32 = 1u;
@@ -20,7 +20,7 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     return fullscreen_corner(index);
 }
 
-// A bright colour for each number, far from that of its neighbours (hues a golden turn apart).
+// Returns a bright colour per id; hues of consecutive ids differ by the golden angle.
 fn id_color(id: u32) -> vec3f {
     let hue = fract(f32(id) * 0.618034);
     let wheel = abs(fract(hue + vec3f(0.0, 2.0 / 3.0, 1.0 / 3.0)) * 6.0 - 3.0) - 1.0;
@@ -61,7 +61,7 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
         value = vec3f(select(saturate(shade), depth_m, LINEAR));
     }
     if CHANNEL == IDS {
-        value = id_color(id.x & MARK_NUMBER);
+        value = id_color(id.x & ID_INDEX_MASK);
     }
-    return vec4f(select(value, vec3f(0.0), (id.x & MARK_NUMBER) == 0u), 1.0);
+    return vec4f(select(value, vec3f(0.0), (id.x & ID_INDEX_MASK) == 0u), 1.0);
 }

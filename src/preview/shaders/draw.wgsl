@@ -1,4 +1,4 @@
-// What one draw reads: where its triangles stand and what they are made of; twin of `GpuDraw`.
+// The record of one draw call: transforms and packed surface; twin of `GpuDraw`.
 
 struct Draw {
     world_row_0: vec4f,
@@ -7,7 +7,7 @@ struct Draw {
     normal_row_0: vec4f,
     normal_row_1: vec4f,
     normal_row_2: vec4f,
-    // Packed colour, packed gloss, mark in the id buffer, and whether the front shines.
+    // Packed colour, packed gloss, id with outline flags, and 1 for an emitter.
     surface: vec4u,
 }
 
@@ -18,7 +18,7 @@ fn world_from_object(p: vec3f) -> vec3f {
     return vec3f(dot(draw.world_row_0, q), dot(draw.world_row_1, q), dot(draw.world_row_2, q));
 }
 
-// Not of unit length.
+// Returns the world normal, not normalised.
 fn world_normal(n: vec3f) -> vec3f {
     return vec3f(dot(draw.normal_row_0.xyz, n), dot(draw.normal_row_1.xyz, n), dot(draw.normal_row_2.xyz, n));
 }

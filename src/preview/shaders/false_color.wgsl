@@ -1,4 +1,4 @@
-// Illuminance in colours that change in thirds of a stop; twin of `channel::false_color`.
+// False colour of illuminance in thirds of a stop; twin of `channel::false_color`.
 
 const FALSE_LOW: f32 = -6.0;
 const FALSE_COLORS: array<vec3f, 10> = array<vec3f, 10>(
@@ -14,7 +14,7 @@ const FALSE_COLORS: array<vec3f, 10> = array<vec3f, 10>(
     vec3f(0.85, 0.15, 0.16),
 );
 
-// The colour of light that makes a white surface so bright; 1 is the exposure that the camera is set for.
+// Returns the false colour for the radiance of a white surface; 1 is the exposure that the camera is set for.
 fn false_color(white: vec3f) -> vec4f {
     let stops = log2(max(dot(white, vec3f(0.2126, 0.7152, 0.0722)), 1e-6));
     let thirds = clamp(round(3.0 * stops) / 3.0 - FALSE_LOW, 0.0, 9.0);

@@ -1,28 +1,28 @@
-// The lighting pass: every pixel of the G-buffer under every light that reaches it.
+// The lighting pass: shades the G-buffer with the lights of each pixel's tile.
 //
-// `fragment` lights each pixel. `cell` lights one pixel in nine or more for `resolve.wgsl`, which spreads it: a draft
-// for rasterisers on a processor while something moves.
+// `fragment` shades each pixel. `coarse_fragment` shades one pixel of each coarse pixel, which `resolve.wgsl`
+// upsamples: the draft of CPU rasterisers while something moves.
 
-// Whether the picture leaves as scene-linear light or as it is shown.
+// Writes scene-linear radiance instead of display values.
 override LINEAR: bool = false;
-// Which families of lights there are: code for the others is left out.
+// The kinds of lights that are present; code for the others is compiled out.
 override HAS_DELTA: bool = true;
 override HAS_SPHERES: bool = true;
 override HAS_RECTS: bool = true;
 override HAS_DISCS: bool = true;
-// Textures of the shadow mask in use, four lights each; 0 without shadows.
+// Layers of the shadow mask in use, four lights each; 0 without shadows.
 override MASKS: u32 = 0;
-// Picture pixels a mask pixel, along each side.
-override SCALE: u32 = 1;
-// Whether each tile of the picture has its own list of lights.
-override LISTED: bool = false;
-// Whether a light is left out where it falls under 1/256 of display white.
-override REACH: bool = true;
-// Whether any light's modifier narrows its beam.
+// Picture pixels per mask pixel along each axis.
+override MASK_SCALE: u32 = 1;
+// Reads the list of lights of each screen tile instead of all lights.
+override TILED: bool = false;
+// Skips a light beyond its radius, where it falls under 1/256 of display white.
+override LIGHT_CULLING: bool = true;
+// A modifier narrows the beam of at least one light.
 override HAS_BEAMS: bool = true;
-// Whether the picture shows the light on surfaces, as on white ones without gloss.
+// Writes the irradiance, as reflected by a white Lambertian surface.
 override ILLUMINANCE: bool = false;
-// Whether gloss is Blinn and Phong's.
+// Uses Blinn-Phong highlights instead of GGX.
 override BLINN_PHONG: bool = false;
 
 @group(1) @binding(0) var gbuffer: texture_2d<u32>;
@@ -34,17 +34,17 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     return fullscreen_corner(index);
 }
 
-// Of each light at the pixel: how much passes.
-var<private> shadows: array<vec4f, 4>;
+// Visibility of each shadowed light at the pixel.
+var<private> visibilities: array<vec4f, 4>;
 
-// Light that leaves a pixel: for each unit of its base colour, and the rest.
-struct Lit {
-    matte: vec3f,
-    glossy: vec3f,
+// Outgoing radiance of a pixel: diffuse for unit base colour, and everything else.
+struct ShadedLight {
+    diffuse: vec3f,
+    specular: vec3f,
 }
 
-// Highlight of an emitter with a size. What has none of its light above the horizon gives no highlight either.
-fn seen_highlight(s: Shading, a: Arrival, round: bool) -> vec3f {
+// Returns the highlight of an emitter with a size; none for an emitter below the horizon.
+fn emitter_highlight(s: Shading, a: IncidentLight, round: bool) -> vec3f {
     if ILLUMINANCE {
         return vec3f(0.0);
     }
@@ -54,98 +54,101 @@ fn seen_highlight(s: Shading, a: Arrival, round: bool) -> vec3f {
     return select(vec3f(0.0), highlight(s, a, round), a.irradiance > 0.0);
 }
 
-// Part of a light that comes to the body, to the mean over all directions; all of it where only the light is asked for.
-fn body_share(s: Shading, cosine: f32, wide: f32) -> f32 {
+// Returns the relative transmission of the coat; 1 in the illuminance channel.
+fn coat_factor(s: Shading, cosine: f32, hemisphere_fraction: f32) -> f32 {
     if ILLUMINANCE {
         return 1.0;
     }
-    return entering(s.material, cosine, wide);
+    return coat_transmission(s.material, cosine, hemisphere_fraction);
 }
 
-// Shadows of four lights at a pixel. A mask of a part of the size is read at the four pixels around, as far as they lie
-// on the pixel's own plane.
-fn shadow(mask: u32, at: vec2f, depth: f32, face: vec3f) -> vec4f {
-    if SCALE == 1u {
+// Returns the visibility of four lights at a pixel. Masks at reduced resolution are upsampled bilaterally: bilinear
+// weights, restricted to mask pixels on the pixel's plane.
+fn mask_visibility(mask: u32, at: vec2f, depth: f32, geometric_normal: vec3f) -> vec4f {
+    if MASK_SCALE == 1u {
         return unpack4x8unorm(textureLoad(masks, vec2i(at), mask, 0).x);
     }
     let last = vec2i(textureDimensions(masks)) - 1;
-    let place = floor(at) / f32(SCALE);
-    let corner = vec2i(place);
-    let part = fract(place);
-    let here = dot(face, pixel_ray(at));
+    let mask_uv = floor(at) / f32(MASK_SCALE);
+    let corner = vec2i(mask_uv);
+    let part = fract(mask_uv);
+    let here = dot(geometric_normal, pixel_ray(at));
     let scale = depth / select(here, 1e-6, abs(here) < 1e-6);
     var sum = vec4f(0.0);
     var total = 0.0;
     for (var i = 0; i < 4; i++) {
         let step = vec2i(i & 1, i >> 1);
-        let cell = min(corner + step, last);
-        let texel = textureLoad(masks, cell, mask, 0).xy;
-        let expected = dot(face, pixel_ray(vec2f(cell * i32(SCALE)) + 0.5)) * scale;
-        let same = abs(bitcast<f32>(texel.y) - expected) <= 0.01 * expected;
+        let texel_at = min(corner + step, last);
+        let texel = textureLoad(masks, texel_at, mask, 0).xy;
+        let expected = dot(geometric_normal, pixel_ray(vec2f(texel_at * i32(MASK_SCALE)) + 0.5)) * scale;
+        let on_plane = abs(bitcast<f32>(texel.y) - expected) <= 0.01 * expected;
         let across = mix(1.0 - part, part, vec2f(step));
-        let weight = (across.x * across.y + 1e-3) * select(1e-3, 1.0, same);
+        let weight = (across.x * across.y + 1e-3) * select(1e-3, 1.0, on_plane);
         sum += unpack4x8unorm(texel.x) * weight;
         total += weight;
     }
     return sum / total;
 }
 
-// Shadow of a light: four lights a mask, the rest are lit.
-fn lit_by(light: u32) -> f32 {
+// Returns the visibility of a light: four lights per mask, lights beyond the masks are unshadowed.
+fn light_visibility(light: u32) -> f32 {
     if MASKS == 0u {
         return 1.0;
     }
     if MASKS == 1u {
-        return select(1.0, shadows[0][light & 3u], light < 4u);
+        return select(1.0, visibilities[0][light & 3u], light < 4u);
     }
-    return select(1.0, shadows[(light >> 2u) & 3u][light & 3u], light < 4u * MASKS);
+    return select(1.0, visibilities[(light >> 2u) & 3u][light & 3u], light < 4u * MASKS);
 }
 
-// The G-buffer at a pixel, and where it stands.
-struct Sample {
+// The G-buffer and id buffer at a pixel, and its position.
+struct GBufferSample {
     packed: vec4u,
     id: vec2u,
     at: vec2f,
 }
 
-fn sample_at(pixel: vec2u) -> Sample {
-    return Sample(textureLoad(gbuffer, pixel, 0), textureLoad(ids, pixel, 0).xy, vec2f(pixel) + 0.5);
+fn sample_at(pixel: vec2u) -> GBufferSample {
+    return GBufferSample(textureLoad(gbuffer, pixel, 0), textureLoad(ids, pixel, 0).xy, vec2f(pixel) + 0.5);
 }
 
-fn read_shadows(p: Sample) {
-    let face = unpack_direction(p.packed.z);
+fn load_visibility(p: GBufferSample) {
+    let geometric_normal = unpack_direction(p.packed.z);
     for (var mask = 0u; mask < MASKS; mask++) {
-        shadows[mask] = shadow(mask, p.at, max(bitcast<f32>(p.id.y), 1e-9), face);
+        visibilities[mask] = mask_visibility(mask, p.at, max(bitcast<f32>(p.id.y), 1e-9), geometric_normal);
     }
 }
 
-// The loops test at their end: there is at least one light of a family, and a rasteriser on a processor pays for the
-// turn that a test at the start would leave at once.
-fn lit(p: Sample) -> Lit {
+// Shades a pixel. The loops test at their end: there is at least one light of each kind, and a CPU rasteriser would pay
+// for the extra iteration that a test at the start costs.
+fn shade(p: GBufferSample) -> ShadedLight {
+    // Reconstruct the shading point from the G-buffer
     let depth = max(bitcast<f32>(p.id.y), 1e-9);
     let ray = pixel_ray(p.at);
     let gloss = unpack_gloss(p.packed.w);
     let position = frame.eye + ray * (frame.near_m / depth);
     let s = shading(position, unpack_direction(p.packed.x), -normalize(ray), unpack_color(p.packed.y), gloss);
-    var matte = ambient(s.normal);
+    // Ambient and environment light
+    var diffuse = ambient(s.normal);
     if ILLUMINANCE {
-        matte = vec3f(0.0);
+        diffuse = vec3f(0.0);
     }
-    var glossy = environment(position, reflect(-s.view, s.normal), gloss.x) * s.material.reflectance;
+    var specular = environment(position, reflect(-s.view, s.normal), gloss.x) * s.material.reflectance;
 
-    let tile = tile_at(p.at);
+    let tile = tile_offset(p.at);
+    // Points, spots and suns
     if HAS_DELTA {
         var k = 0u;
         loop {
-            let light = listed_light(tile, k);
-            let a = delta_arrival(light, position);
-            let color = lights[light].color * (a.w * lit_by(light) * present(k, deltas_end(tile)));
+            let light = tile_light(tile, k);
+            let a = delta_light(light, position);
+            let color = lights[light].color * (a.w * light_visibility(light) * present(k, deltas_end(tile)));
             let cosine = max(dot(s.normal, a.xyz), 0.0);
-            matte += color * (cosine * body_share(s, cosine, 0.0));
+            diffuse += color * (cosine * coat_factor(s, cosine, 0.0));
             if BLINN_PHONG {
-                glossy += blinn_phong(s, a.xyz) * max(dot(s.normal, a.xyz), 0.0) * color;
+                specular += blinn_phong(s, a.xyz) * max(dot(s.normal, a.xyz), 0.0) * color;
             } else {
-                glossy += glint(s, a.xyz, lights[light].radius) * color;
+                specular += delta_highlight(s, a.xyz, lights[light].radius) * color;
             }
             k++;
             continuing {
@@ -153,42 +156,48 @@ fn lit(p: Sample) -> Lit {
             }
         }
     }
+    // Spheres
     if HAS_SPHERES {
         var k = deltas_end(tile);
         loop {
-            let light = listed_light(tile, k);
-            let a = sphere_arrival(light, position, s.normal);
-            let color = lights[light].color * (lit_by(light) * present(k, spheres_end(tile)) * reach(light, a.centre) * a.passed);
-            matte += color * (a.irradiance * body_share(s, a.cosine, a.irradiance / PI));
-            glossy += color * seen_highlight(s, a, true);
+            let light = tile_light(tile, k);
+            let a = sphere_light(light, position, s.normal);
+            let color = lights[light].color
+                * (light_visibility(light) * present(k, spheres_end(tile)) * radius_window(light, a.centre) * a.transmission);
+            diffuse += color * (a.irradiance * coat_factor(s, a.cosine, a.irradiance / PI));
+            specular += color * emitter_highlight(s, a, true);
             k++;
             continuing {
                 break if k >= spheres_end(tile);
             }
         }
     }
+    // Rectangular panels
     if HAS_RECTS {
         var k = spheres_end(tile);
         loop {
-            let light = listed_light(tile, k);
-            let a = panel_arrival(light, position, s.normal, false);
-            let color = lights[light].color * (lit_by(light) * present(k, rects_end(tile)) * panel_reach(light, a.centre) * a.passed);
-            matte += color * (a.irradiance * body_share(s, a.cosine, a.irradiance / PI));
-            glossy += color * seen_highlight(s, a, false);
+            let light = tile_light(tile, k);
+            let a = panel_light(light, position, s.normal, false);
+            let color = lights[light].color
+                * (light_visibility(light) * present(k, rects_end(tile)) * panel_radius_window(light, a.centre) * a.transmission);
+            diffuse += color * (a.irradiance * coat_factor(s, a.cosine, a.irradiance / PI));
+            specular += color * emitter_highlight(s, a, false);
             k++;
             continuing {
                 break if k >= rects_end(tile);
             }
         }
     }
+    // Discs
     if HAS_DISCS {
         var k = rects_end(tile);
         loop {
-            let light = listed_light(tile, k);
-            let a = panel_arrival(light, position, s.normal, true);
-            let color = lights[light].color * (lit_by(light) * present(k, discs_end(tile)) * panel_reach(light, a.centre) * a.passed);
-            matte += color * (a.irradiance * body_share(s, a.cosine, a.irradiance / PI));
-            glossy += color * seen_highlight(s, a, true);
+            let light = tile_light(tile, k);
+            let a = panel_light(light, position, s.normal, true);
+            let color = lights[light].color
+                * (light_visibility(light) * present(k, discs_end(tile)) * panel_radius_window(light, a.centre) * a.transmission);
+            diffuse += color * (a.irradiance * coat_factor(s, a.cosine, a.irradiance / PI));
+            specular += color * emitter_highlight(s, a, true);
             k++;
             continuing {
                 break if k >= discs_end(tile);
@@ -196,42 +205,42 @@ fn lit(p: Sample) -> Lit {
         }
     }
     if ILLUMINANCE {
-        return Lit(matte / PI, vec3f(0.0));
+        return ShadedLight(diffuse / PI, vec3f(0.0));
     }
-    matte *= s.material.matte / PI;
-    // Kinds: 1 lit and glowing, 2 an emitter's front.
+    diffuse *= s.material.diffuse / PI;
+    // Add emission. Surface kinds: 1 lit and emissive, 2 the front of an emitter
     let kind = p.packed.y >> 30u;
     if kind != 0u {
-        glossy = select(glossy, vec3f(0.0), kind == 2u) + surfaces[(p.id.x & MARK_NUMBER) - 1u].emission;
+        specular = select(specular, vec3f(0.0), kind == 2u) + surfaces[(p.id.x & ID_INDEX_MASK) - 1u].emission;
     }
-    glossy = select(glossy, frame.void_radiance, p.id.x == 0u);
-    return Lit(matte, glossy);
+    specular = select(specular, frame.void_radiance, p.id.x == 0u);
+    return ShadedLight(diffuse, specular);
 }
 
 @fragment
 fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let p = sample_at(vec2u(at.xy));
-    read_shadows(p);
-    let out = lit(p);
+    load_visibility(p);
+    let out = shade(p);
     if ILLUMINANCE {
-        let white = select(out.matte, vec3f(0.0), p.id.x == 0u);
+        let white = select(out.diffuse, vec3f(0.0), p.id.x == 0u);
         if LINEAR {
             return vec4f(white, 1.0);
         }
         return false_color(white);
     }
-    let radiance = select(unpack_color(p.packed.y), vec3f(0.0), p.id.x == 0u) * out.matte + out.glossy;
+    let radiance = select(unpack_color(p.packed.y), vec3f(0.0), p.id.x == 0u) * out.diffuse + out.specular;
     if LINEAR {
         return vec4f(radiance, 1.0);
     }
-    return shown(radiance, at.xy);
+    return encode_display(radiance, at.xy);
 }
 
-// One pixel of a cell: matte and glossy light, normal, depth.
+// Shades one pixel of a coarse pixel: diffuse and specular light, normal, depth.
 @fragment
-fn cell(@builtin(position) at: vec4f) -> @location(0) vec4u {
-    let p = sample_at(min(vec2u(at.xy) * frame.cell_scale, vec2u(frame.size) - 1u));
-    read_shadows(p);
-    let out = lit(p);
-    return vec4u(pack_radiance(out.matte), pack_radiance(out.glossy), p.packed.x, p.id.y);
+fn coarse_fragment(@builtin(position) at: vec4f) -> @location(0) vec4u {
+    let p = sample_at(min(vec2u(at.xy) * frame.coarse_scale, vec2u(frame.size) - 1u));
+    load_visibility(p);
+    let out = shade(p);
+    return vec4u(pack_radiance(out.diffuse), pack_radiance(out.specular), p.packed.x, p.id.y);
 }

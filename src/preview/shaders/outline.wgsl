@@ -1,4 +1,4 @@
-// Two pixels around what is selected, in the selection's colour; what is hovered gets a paler one.
+// The selection outline: two pixels around selected surfaces, paler around the hovered one.
 
 @group(1) @binding(0) var gbuffer: texture_2d<u32>;
 @group(1) @binding(1) var ids: texture_2d<u32>;
@@ -20,13 +20,13 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     var cover = vec2f(0.0);
     for (var y = -2; y <= 2; y++) {
         for (var x = -2; x <= 2; x++) {
-            let mark = textureLoad(ids, clamp(pixel + vec2i(x, y), vec2i(0), last), 0).x;
+            let id = textureLoad(ids, clamp(pixel + vec2i(x, y), vec2i(0), last), 0).x;
             let near = saturate(2.6 - length(vec2f(f32(x), f32(y))));
-            let is_marked = vec2f(f32((mark & MARK_SELECTED) != 0u), f32((mark & MARK_HOVERED) != 0u));
-            cover = max(cover, is_marked * near);
+            let is_outlined = vec2f(f32((id & ID_SELECTED) != 0u), f32((id & ID_HOVERED) != 0u));
+            cover = max(cover, is_outlined * near);
         }
     }
-    let inside = vec2f(f32((own & MARK_SELECTED) != 0u), f32((own & MARK_HOVERED) != 0u));
+    let inside = vec2f(f32((own & ID_SELECTED) != 0u), f32((own & ID_HOVERED) != 0u));
     cover *= 1.0 - inside;
     let hovered = cover.y * 0.6 * (1.0 - cover.x);
     let alpha = cover.x + hovered;

@@ -1,4 +1,4 @@
-// What all passes share: the frame, the surfaces, the lights, and how a surface is packed into the G-buffer.
+// Bindings that all passes share (frame constants, surfaces, lights, light tiles) and the packing of the G-buffer.
 
 const PI: f32 = 3.14159265;
 
@@ -6,34 +6,36 @@ struct Frame {
     clip_from_world: mat4x4f,
     eye: vec3f,
     near_m: f32,
-    // World directions: ray through the picture's middle (1 m along the axis) and half the picture to the right and up.
+    // World directions: through the picture's centre (1 m along the optical axis), half a picture right, half a picture
+    // up.
     ray_centre: vec3f,
-    // Picture pixels a pixel of the shadow masks, along each side.
+    // Picture pixels per shadow mask pixel along each axis.
     mask_scale: u32,
     ray_right: vec3f,
-    // Picture pixels a cell of a draft, along each side.
-    cell_scale: u32,
+    // Picture pixels per coarse pixel along each axis, in drafts.
+    coarse_scale: u32,
     ray_up: vec3f,
     unused_2: f32,
-    // Irradiance from all round, picture units.
+    // Ambient irradiance, picture units.
     ambient: vec3f,
     // Half width of a pixel at distance 1 m.
     pixel_angle: f32,
-    // Luminance where there is nothing.
+    // Radiance of the background.
     void_radiance: vec3f,
     unused_3: f32,
-    // The box around the subjects, and the radiance of its faces +X, -X, +Y, -Y, +Z, -Z as mirrors show them.
+    // The environment box around the subjects, and the radiance of its faces +X, -X, +Y, -Y, +Z, -Z in reflections.
     environment_low: vec3f,
     unused_0: f32,
     environment_high: vec3f,
     unused_1: f32,
     environment_radiance: array<vec4f, 6>,
-    // Bounced irradiance on a surface that faces each of them.
+    // Bounced irradiance on a surface that faces +X, -X, +Y, -Y, +Z, -Z.
     bounce: array<vec4f, 6>,
     size: vec2f,
-    // Distances that show as white and as black in the depth channel, metres; both 0 for a perspective view.
+    // Distances shown as white and as black by the depth channel, metres; both 0 for a perspective view.
     depth_range_m: vec2f,
-    // One past the last light of each family: points and suns, balls, rectangles, discs. Lights are sorted so.
+    // One past the last light of each kind: points, spots and suns; spheres; rectangles; discs. Lights are sorted by
+    // kind.
     light_ends: vec4u,
 }
 
@@ -48,10 +50,10 @@ struct Surface {
     unused: u32,
 }
 
-// Bits of the id buffer besides the surface's number.
-const MARK_SELECTED: u32 = 1u << 31u;
-const MARK_HOVERED: u32 = 1u << 30u;
-const MARK_NUMBER: u32 = MARK_HOVERED - 1u;
+// Outline flags in the id buffer; the other bits hold the surface index plus one, 0 for the background.
+const ID_SELECTED: u32 = 1u << 31u;
+const ID_HOVERED: u32 = 1u << 30u;
+const ID_INDEX_MASK: u32 = ID_HOVERED - 1u;
 
 struct Light {
     position: vec3f,
@@ -63,20 +65,20 @@ struct Light {
     axis: vec3f,
     radius: f32,
     color: vec3f,
-    // Distance at which it falls under 1/256 of display white, metres; none where 0.
+    // Distance at which the light falls under 1/256 of display white, metres; 0 for a sun, which has none.
     reach_m: f32,
-    // Half angles of its beam: even, whole, where a grid ends; and whether any of these or doors cut anything.
+    // Half angles of the beam, radians: inner, outer, and the cutoff of a grid. `has_beam` is 1 if a modifier narrows
+    // it.
     beam_rad: vec3f,
     has_beam: u32,
-    // Barn doors, open so far from the axis: left, right, top, bottom.
+    // Angles of the barn doors from the axis, radians: left, right, top, bottom.
     doors_rad: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<storage, read> surfaces: array<Surface>;
 @group(0) @binding(2) var<uniform> lights: array<Light, 256>;
-// Lights that reach each tile of the picture, a row of tiles after the other: one past the last of each family, then
-// their indices, four a word.
+// The lights of each screen tile, row by row: one past the last light of each kind, then light indices, four per word.
 @group(0) @binding(3) var<uniform> tiles: array<vec4u, TILES_LENGTH>;
 
 const TILE_COLUMNS: u32 = 16u;
@@ -84,7 +86,7 @@ const TILE_ROWS: u32 = 9u;
 const TILE_STRIDE: u32 = 17u;
 const TILES_LENGTH: u32 = TILE_COLUMNS * TILE_ROWS * TILE_STRIDE;
 
-// A direction, of any length, as a point of the octahedron folded into a square, 16 bits each way (Cigolle et al. 2014).
+// Packs a direction of any length by the octahedral map, 16 bits per axis (Cigolle et al. 2014).
 fn pack_direction(v: vec3f) -> u32 {
     let p = v.xy / (abs(v.x) + abs(v.y) + abs(v.z));
     let sign = select(vec2f(-1.0), vec2f(1.0), p >= vec2f(0.0));
@@ -95,7 +97,7 @@ fn unpack_direction(packed: u32) -> vec3f {
     return normalize(octahedral(packed));
 }
 
-// A packed direction, not of unit length.
+// Unpacks a direction without normalising it.
 fn octahedral(packed: u32) -> vec3f {
     let p = unpack2x16snorm(packed);
     let z = 1.0 - abs(p.x) - abs(p.y);
@@ -103,7 +105,7 @@ fn octahedral(packed: u32) -> vec3f {
     return vec3f(p - select(vec2f(-fold), vec2f(fold), p >= vec2f(0.0)), z);
 }
 
-// Colour as square roots in 10 bits each, so that black velvet keeps its digits; two bits for what the surface is.
+// Packs a colour as square roots, 10 bits each, which preserves dark albedos, and a surface kind in two bits.
 fn pack_color(color: vec3f, kind: u32) -> u32 {
     let q = vec3u(sqrt(saturate(color)) * 1023.0 + 0.5);
     return q.x | (q.y << 10u) | (q.z << 20u) | (kind << 30u);
@@ -114,17 +116,16 @@ fn unpack_color(packed: u32) -> vec3f {
     return q * q;
 }
 
-// Roughness, square root of the dielectric's reflectance at normal incidence, metallic, as `pack_gloss` packs them.
+// Returns roughness, the square root of the dielectric F0, and metallic; the inverse of `pack_gloss` in `surface.rs`.
 fn unpack_gloss(packed: u32) -> vec3f {
     return vec3f(vec3u(packed, packed >> 12u, packed >> 24u) & vec3u(4095u, 4095u, 255u)) / vec3f(4095.0, 4095.0, 255.0);
 }
 
-// Radiance or irradiance as three mantissas of nine bits and one exponent of five (the RGB9E5 of graphics interfaces):
-// 0.2 % of the largest channel, from 2^-24 to 65408.
+// Packs radiance or irradiance as RGB9E5 (shared exponent): precise to 0.2 % of the largest channel, 2^-24 to 65408.
 fn pack_radiance(value: vec3f) -> u32 {
     let color = clamp(value, vec3f(0.0), vec3f(65408.0));
     let largest = max(max(color.x, color.y), max(color.z, 1.5258789e-5));
-    // The exponent of the largest channel; one more where its mantissa rounds up to 512.
+    // The exponent of the largest channel, plus one where its mantissa rounds up to 512
     let least = i32(bitcast<u32>(largest) >> 23u) - 111;
     let fits = u32(largest * ldexp_24(least) + 0.5) < 512u;
     let exponent = select(least + 1, least, fits);
@@ -132,7 +133,7 @@ fn pack_radiance(value: vec3f) -> u32 {
     return q.x | (q.y << 9u) | (q.z << 18u) | (u32(exponent) << 27u);
 }
 
-// 2^(24 - exponent): mantissas for each unit.
+// Returns 2^(24 - exponent), the scale of the mantissas.
 fn ldexp_24(exponent: i32) -> f32 {
     return bitcast<f32>(u32(151 - exponent) << 23u);
 }
@@ -142,13 +143,13 @@ fn unpack_radiance(packed: u32) -> vec3f {
     return q * bitcast<f32>(((packed >> 27u) + 103u) << 23u);
 }
 
-// World direction through a pixel centre, 1 m along the optical axis.
+// Returns the world direction through a pixel position, 1 m long along the optical axis.
 fn pixel_ray(pixel: vec2f) -> vec3f {
     let ndc = pixel / frame.size * 2.0 - 1.0;
     return frame.ray_centre + ndc.x * frame.ray_right - ndc.y * frame.ray_up;
 }
 
-// A triangle that covers the picture.
+// Returns the clip position of a corner of a triangle that covers the picture.
 fn fullscreen_corner(index: u32) -> vec4f {
     return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }

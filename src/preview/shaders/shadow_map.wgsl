@@ -1,4 +1,4 @@
-// Depth as a light sees it.
+// The shadow map pass: depth from a light.
 
 struct View {
     clip_from_world: mat4x4f,

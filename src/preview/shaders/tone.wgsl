@@ -1,4 +1,4 @@
-// Twin of `color::tone_curve` and `color::srgb_encode`; a test holds the two together.
+// Tone curve and sRGB encoding; twin of `color::tone_curve` and `color::srgb_encode`, which a test compares.
 
 const SHOULDER: f32 = 0.6;
 
@@ -14,9 +14,9 @@ fn srgb_encode(linear: vec3f) -> vec3f {
     return select(curved, 12.92 * linear, linear <= vec3f(0.0031308));
 }
 
-// A pixel as it is shown, with less than one code of noise (Jimenez 2014, interleaved gradient noise), so that soft
-// backdrops show no bands.
-fn shown(radiance: vec3f, at: vec2f) -> vec4f {
+// Returns the display value of a pixel, dithered by less than one code with interleaved gradient noise (Jimenez 2014)
+// against banding.
+fn encode_display(radiance: vec3f, at: vec2f) -> vec4f {
     let noise = fract(52.9829189 * fract(dot(at, vec2f(0.06711056, 0.00583715)))) - 0.5;
     return vec4f(srgb_encode(tone_curve(radiance)) + noise * (0.9 / 255.0), 1.0);
 }

@@ -41,7 +41,8 @@ impl ShadowPipelines {
             let layout = pipeline_layout(device, label, groups);
             fullscreen(device, (label, "fragment"), source, &layout, constants, mask::FORMAT)
         };
-        let raw = |subdivide| fullscreen("shadow mask", shaders::SHADOW_MASK, &raw_groups, &[("IN_PARTS", subdivide)]);
+        let raw =
+            |subdivided| fullscreen("shadow mask", shaders::SHADOW_MASK, &raw_groups, &[("SUBDIVIDED", subdivided)]);
         ShadowPipelines {
             map: [map(None), map(Some(wgpu::Face::Front)), map(Some(wgpu::Face::Back))],
             raw_mask: [raw(0.0), raw(1.0)],
