@@ -8,7 +8,6 @@ mod commands;
 mod document;
 mod panels;
 mod picture;
-mod relight;
 mod thumbnails;
 mod ui;
 mod viewport;

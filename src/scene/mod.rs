@@ -5,43 +5,45 @@
 //! renderers convert once, when they prepare). Axes are right-handed with Y up; cameras and lights look along their
 //! local -Z.
 
+mod aim;
 mod assets;
 mod camera;
+mod change;
+mod emitter;
 mod gel;
+mod id;
 mod inventory;
 mod light;
 mod material;
 mod mesh;
 mod meter;
 mod modifier;
+mod named_modifier;
 mod object;
 mod room;
 mod tessellate;
 mod validate;
 
+pub use aim::Aim;
 pub use assets::{Assets, Texture, path_complaint};
 pub use camera::{Camera, CameraFrame, Focus, Orientation, Sensor};
+pub use change::{LightChange, SceneChange};
+pub use emitter::Emitter;
 pub use gel::{Gel, GelFamily, NamedGel};
+pub use id::{LightId, ObjectId};
 pub use inventory::{AssetField, AssetRef, MaterialSlot};
-pub use light::{ColorSource, Emitter, Light, LightColor, Output, Power, Role, Solo};
+pub use light::{ColorSource, Light, LightColor, Output, Power, Role, Solo};
 pub use material::{Material, MaterialPreset};
 pub use mesh::{Mesh, MeshPart};
 pub use meter::{Facing, Meter, Receptor};
-pub use modifier::{BarnDoors, Cone, HARD_GRIDS_DEG, Modifier, NamedModifier, SOFT_GRIDS_DEG};
+pub use modifier::{BarnDoors, Cone, Modifier};
+pub use named_modifier::{HARD_GRIDS_DEG, NamedModifier, SOFT_GRIDS_DEG};
 pub use object::{Figure, Mannequin, Object, Pose, Shape, Transform};
 pub use room::Room;
 pub use tessellate::{ROOM_STANDS_BACK_M, room_mesh, tessellate};
 pub use validate::{Finding, LIST_LIMIT, Severity, placement, validate};
 
 use glam::Vec3;
-
-/// Names an object for as long as the scene is open; files name objects by their unique `name` instead.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ObjectId(pub u32);
-
-/// Names a light for as long as the scene is open; files name lights by their unique `name` instead.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct LightId(pub u32);
 
 /// A whole studio.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -62,27 +64,6 @@ pub struct Scene {
     pub meter: Option<Meter>,
     /// While some lights shine alone: which, and what was on before.
     pub solo: Option<Solo>,
-}
-
-/// Where a camera or a light looks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Aim {
-    /// At a point of the studio, metres.
-    Point(Vec3),
-    /// At an object, and with it when it moves.
-    Object {
-        /// The object aimed at.
-        object: ObjectId,
-        /// Point of the object in its own space, metres before its scale (a mannequin's face, say).
-        offset: Vec3,
-    },
-    /// Fixed angles, degrees: yaw 0 looks along -Z and grows to the left (counter-clockwise from above), pitch is up.
-    Angles {
-        /// Turn about the vertical axis.
-        yaw_deg: f32,
-        /// Tilt, positive upwards.
-        pitch_deg: f32,
-    },
 }
 
 impl Scene {

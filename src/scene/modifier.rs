@@ -1,9 +1,7 @@
 //! What sits before a light's source: how much light it swallows, and to which directions it lets the rest pass.
 //!
-//! The shape and size of what shines is the [`Emitter`]; a modifier takes from its light and never adds or moves any.
-//! Named modifiers of the trade are pairs of both, in [`NamedModifier::ALL`].
-
-use super::Emitter;
+//! The shape and size of what shines is the [`super::Emitter`]; a modifier takes from its light and never adds or moves any.
+//! Named modifiers of the trade are pairs of both, in [`super::NamedModifier::ALL`].
 
 /// A cone about the light's axis that passes everything inside the inner angle and falls linearly in angle to nothing
 /// at the outer one. Full (edge to edge) angles, degrees, up to 180.
@@ -56,146 +54,20 @@ impl Modifier {
         Modifier { loss_stops, scrim_stops: 0.0, beam: None, grid_deg: None, doors: None }
     }
 
-    const fn beam(self, inner_deg: f32, outer_deg: f32) -> Self {
+    pub(super) const fn beam(self, inner_deg: f32, outer_deg: f32) -> Self {
         Modifier { beam: Some(Cone { inner_deg, outer_deg }), ..self }
     }
 
-    const fn grid(self, deg: f32) -> Self {
+    pub(super) const fn grid(self, deg: f32) -> Self {
         Modifier { grid_deg: Some(deg), ..self }
     }
 
-    const fn doors(self, doors: BarnDoors) -> Self {
+    pub(super) const fn doors(self, doors: BarnDoors) -> Self {
         Modifier { doors: Some(doors), ..self }
     }
 
     /// Whether it keeps light from some directions.
     pub fn narrows(&self) -> bool {
         self.beam.is_some() || self.grid_deg.is_some() || self.doors.is_some()
-    }
-}
-
-/// Full angles in which grids for softboxes and octas are sold.
-pub const SOFT_GRIDS_DEG: [f32; 5] = [20.0, 30.0, 40.0, 50.0, 60.0];
-/// Full angles in which honeycombs for reflectors are sold.
-pub const HARD_GRIDS_DEG: [f32; 4] = [10.0, 20.0, 30.0, 40.0];
-
-/// A modifier by the name on its bag.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NamedModifier {
-    /// Its name, sizes in centimetres.
-    pub name: &'static str,
-    /// One line on what it is for.
-    pub tip: &'static str,
-    /// What shines.
-    pub emitter: Emitter,
-    /// What it takes away.
-    pub modifier: Modifier,
-}
-
-const fn soft(name: &'static str, tip: &'static str, width_m: f32, height_m: f32, loss_stops: f32) -> NamedModifier {
-    NamedModifier { name, tip, emitter: Emitter::RectPanel { width_m, height_m }, modifier: Modifier::loss(loss_stops) }
-}
-
-const fn round(name: &'static str, tip: &'static str, diameter_m: f32, loss_stops: f32) -> NamedModifier {
-    NamedModifier { name, tip, emitter: Emitter::RoundPanel { diameter_m }, modifier: Modifier::loss(loss_stops) }
-}
-
-const fn dish(name: &'static str, tip: &'static str, diameter_m: f32) -> NamedModifier {
-    let modifier = Modifier::loss(0.5).beam(50.0, 130.0);
-    NamedModifier { name, tip, emitter: Emitter::RoundPanel { diameter_m }, modifier }
-}
-
-/// A standard reflector of 18 cm: hard light in a broad cone. Its polish loses a third of a stop.
-const REFLECTOR: Emitter = Emitter::Spot { inner_deg: 40.0, outer_deg: 70.0 };
-
-const fn hard(name: &'static str, tip: &'static str, modifier: Modifier) -> NamedModifier {
-    NamedModifier { name, tip, emitter: REFLECTOR, modifier }
-}
-
-const REFLECTOR_LOSS: Modifier = Modifier::loss(0.3);
-
-impl NamedModifier {
-    /// The whole rack, in list order. Losses are typical of what makers and testers state: 1 to 2 stops for softboxes,
-    /// the more the larger and the more cloth; half a stop for a white dish; 1 stop for a reflecting umbrella, 1.7 for
-    /// one that is shot through.
-    pub const ALL: [NamedModifier; 32] = [
-        NamedModifier {
-            name: "Bare bulb",
-            tip: "A head without modifier: light in all directions, hard shadows.",
-            emitter: Emitter::Sphere { radius_m: 0.04 },
-            modifier: Modifier::loss(0.0),
-        },
-        hard("Reflector", "A standard reflector: a hard, broad cone.", REFLECTOR_LOSS),
-        soft("Softbox 60 x 90", "The everyday softbox: soft edges on a face from 1 to 1.5 m.", 0.6, 0.9, 1.3),
-        soft("Softbox 90 x 120", "A large, very soft key or a broad fill.", 0.9, 1.2, 1.6),
-        soft("Softbox 60 x 60", "A small square softbox, for heads and products.", 0.6, 0.6, 1.1),
-        soft("Softbox 120 x 120", "A large square softbox, for groups and full figures.", 1.2, 1.2, 1.7),
-        soft("Strip 30 x 120", "A narrow softbox: rim light along a body, clean lines on products.", 0.3, 1.2, 1.6),
-        soft("Strip 30 x 160", "A tall strip for full figures.", 0.3, 1.6, 1.8),
-        round("Octa 90", "A small octabox: round catchlights from close by.", 0.9, 1.2),
-        round("Octa 120", "An octabox: round catchlights, soft wrapping light.", 1.2, 1.4),
-        round("Octa 150", "A large octabox, for heads and half figures.", 1.5, 1.6),
-        round("Octa 180", "A huge octabox, soft even for a full figure.", 1.8, 1.8),
-        dish("Beauty dish 42", "A small dish: crisp light with a round catchlight.", 0.42),
-        dish("Beauty dish 55", "A dish: crisper than a softbox, with a smooth fall to shadow.", 0.55),
-        dish("Beauty dish 70", "A large dish: a little softer, for half figures.", 0.7),
-        round("Umbrella 85", "A white umbrella that reflects: broad, soft, spills everywhere before it.", 0.85, 1.0),
-        round("Umbrella 105", "A white umbrella that reflects, for heads and half figures.", 1.05, 1.0),
-        round("Umbrella 165", "A huge white umbrella: an even fill for a whole room.", 1.65, 1.0),
-        round("Shoot-through 105", "A translucent umbrella: half of its light goes back and is lost.", 1.05, 1.7),
-        hard("Reflector, 40\u{b0} grid", "A honeycomb: a hard pool that fades out.", REFLECTOR_LOSS.grid(40.0)),
-        hard(
-            "Reflector, 30\u{b0} grid",
-            "A honeycomb: a hard pool, for backgrounds and hair.",
-            REFLECTOR_LOSS.grid(30.0),
-        ),
-        hard("Reflector, 20\u{b0} grid", "A honeycomb: a small hard pool, for hair.", REFLECTOR_LOSS.grid(20.0)),
-        hard("Reflector, 10\u{b0} grid", "A honeycomb: a spot of light, for an accent.", REFLECTOR_LOSS.grid(10.0)),
-        hard("Barn doors", "A reflector with four flaps.", REFLECTOR_LOSS.doors(BarnDoors::HALF_OPEN)),
-        hard("Snoot", "A tube on a reflector: a small round pool with a soft edge.", REFLECTOR_LOSS.beam(12.0, 18.0)),
-        hard("Reflector, 1 stop scrim", "A wire net: a reflector at half the light.", Modifier::loss(1.3)),
-        NamedModifier {
-            name: "Spot",
-            tip: "A projector with a lens: a cone with a nearly hard edge.",
-            emitter: Emitter::Spot { inner_deg: 20.0, outer_deg: 26.0 },
-            modifier: Modifier::loss(1.0),
-        },
-        NamedModifier {
-            name: "Softbox 60 x 90, 40\u{b0} grid",
-            tip: "A softbox with a fabric grid: soft, and off the background.",
-            emitter: Emitter::RectPanel { width_m: 0.6, height_m: 0.9 },
-            modifier: Modifier::loss(1.3).grid(40.0),
-        },
-        NamedModifier {
-            name: "Strip 30 x 120, 30\u{b0} grid",
-            tip: "A rim light that neither flares nor spills.",
-            emitter: Emitter::RectPanel { width_m: 0.3, height_m: 1.2 },
-            modifier: Modifier::loss(1.6).grid(30.0),
-        },
-        NamedModifier {
-            name: "Octa 120, 40\u{b0} grid",
-            tip: "An octabox with a fabric grid.",
-            emitter: Emitter::RoundPanel { diameter_m: 1.2 },
-            modifier: Modifier::loss(1.4).grid(40.0),
-        },
-        NamedModifier {
-            name: "Beauty dish 55, 30\u{b0} grid",
-            tip: "A dish with a honeycomb: a glow that falls off fast.",
-            emitter: Emitter::RoundPanel { diameter_m: 0.55 },
-            modifier: Modifier::loss(0.5).beam(50.0, 130.0).grid(30.0),
-        },
-        soft("Scrim 120 x 180", "A frame of silk, lit from behind through its whole area.", 1.2, 1.8, 1.0),
-    ];
-
-    /// The one that this emitter and modifier are.
-    pub fn of(emitter: &Emitter, modifier: &Modifier) -> Option<&'static NamedModifier> {
-        const ALL: &[NamedModifier] = &NamedModifier::ALL;
-        ALL.iter().find(|named| named.emitter == *emitter && named.modifier == *modifier)
-    }
-
-    /// By its name.
-    pub fn named(name: &str) -> Option<&'static NamedModifier> {
-        const ALL: &[NamedModifier] = &NamedModifier::ALL;
-        ALL.iter().find(|named| named.name == name)
     }
 }

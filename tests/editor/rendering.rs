@@ -30,6 +30,37 @@ fn light_changes_develop_the_picture_anew_without_tracing() {
 }
 
 #[test]
+fn muting_soloing_and_locking_after_a_render_show_no_out_of_date_mark() {
+    // All three marked the picture "Out of date", although it had just been relit rightly.
+    let Some(mut window) = preset_window() else { return };
+    render_tiny(&mut window);
+    let lights: Vec<_> = scene(&window).lights.iter().map(|light| light.id).collect();
+    let object = scene(&window).objects[0].id;
+    let is_marked = |window: &Window| {
+        let label = window.query_all_by_label_contains("Out of date").next().is_some();
+        assert_eq!(label, window.state().rendering().is_out_of_date(scene(window)));
+        label
+    };
+    let steps = [
+        Action::Mute(vec![lights[0]], true),
+        Action::Solo(vec![lights[1]]),
+        Action::Solo(Vec::new()),
+        Action::Lock(vec![Item::Object(object), Item::Light(lights[2])], true),
+    ];
+    for action in steps {
+        let name = format!("{action:?}");
+        window.state_mut().run(Command::Do(action), None, &egui::Context::default());
+        settle(&mut window);
+        assert!(!is_marked(&window), "{name}");
+    }
+    let mut light = scene(&window).lights[1].clone();
+    light.position.x += 0.5;
+    window.state_mut().run(Command::Do(Action::SetLight(Box::new(light))), None, &egui::Context::default());
+    settle(&mut window);
+    assert!(is_marked(&window), "a moved light needs a render");
+}
+
+#[test]
 fn a_render_can_be_cancelled_and_keeps_what_it_has() {
     let Some(mut window) = preset_window() else { return };
     let rendering = window.state_mut().rendering_mut();

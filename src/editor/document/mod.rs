@@ -9,6 +9,7 @@ pub mod history;
 pub mod item;
 pub mod placement;
 pub mod readout;
+pub mod revisions;
 pub mod selection;
 pub mod studio_document;
 pub mod switches;

@@ -3,16 +3,10 @@
 use crate::editor::document::action::{Action, ActionError};
 use crate::editor::document::history::{History, MergeKey};
 use crate::editor::document::item::Item;
-use crate::scene::{AssetRef, Assets, Finding, Scene, Severity, validate};
+use crate::editor::document::revisions::Revisions;
+use crate::scene::{AssetRef, Assets, Finding, Scene, SceneChange, Severity, validate};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
-
-/// A number that no document has had; the empty one has 0.
-fn next_revision() -> u64 {
-    static LAST: AtomicU64 = AtomicU64::new(0);
-    LAST.fetch_add(1, Ordering::Relaxed) + 1
-}
 
 /// A studio that is open in the window.
 #[derive(Clone, Debug, Default)]
@@ -22,7 +16,7 @@ pub struct Document {
     path: Option<PathBuf>,
     saved: Scene,
     history: History,
-    revision: u64,
+    revisions: Revisions,
     /// Where the files behind asset paths lie, when they were imported and not yet saved beside the scene.
     imported: BTreeMap<String, PathBuf>,
     /// Asset paths that could not be loaded; they are not tried again until the scene is opened again.
@@ -33,8 +27,8 @@ impl Document {
     /// A studio as it was loaded.
     pub fn new(scene: Scene, assets: Assets, path: Option<PathBuf>) -> Self {
         let saved = scene.clone();
-        let revision = next_revision();
-        let mut document = Document { scene, assets, path, saved, revision, ..Document::default() };
+        let revisions = Revisions::new();
+        let mut document = Document { scene, assets, path, saved, revisions, ..Document::default() };
         // What loading could not find has been reported by loading.
         document.failed = document.missing_assets();
         document
@@ -63,7 +57,12 @@ impl Document {
     /// Another number after every change of scene or assets, and for every studio that is opened: what is shown is up
     /// to date when it was made from this number.
     pub fn revision(&self) -> u64 {
-        self.revision
+        self.revisions.document
+    }
+
+    /// Revision numbers by what a change makes stale.
+    pub fn revisions(&self) -> Revisions {
+        self.revisions
     }
 
     /// Whether there is something to save.
@@ -97,36 +96,35 @@ impl Document {
         if done.is_err() {
             self.scene = before;
         } else if self.scene != before {
+            self.revisions.note(&SceneChange::between(&before, &self.scene));
             self.history.record(before, label, merge);
-            self.revision = next_revision();
         }
         done
     }
 
     /// Gives up what a press has changed so far, as if it had never begun.
     pub fn abandon(&mut self, gesture: u64) {
-        let abandoned = self.history.abandon(&mut self.scene, gesture);
-        if abandoned {
-            self.revision = next_revision();
-        }
+        self.step_history(|history, scene| history.abandon(scene, gesture).then_some(()));
     }
 
     /// Takes the last step back; returns what it was.
     pub fn undo(&mut self) -> Option<String> {
-        let label = self.history.undo(&mut self.scene);
-        if label.is_some() {
-            self.revision = next_revision();
-        }
-        label
+        self.step_history(History::undo)
     }
 
     /// Does a step again; returns what it was.
     pub fn redo(&mut self) -> Option<String> {
-        let label = self.history.redo(&mut self.scene);
-        if label.is_some() {
-            self.revision = next_revision();
+        self.step_history(History::redo)
+    }
+
+    /// Replaces the scene by one of the history, if there is one.
+    fn step_history<T>(&mut self, step: impl FnOnce(&mut History, &mut Scene) -> Option<T>) -> Option<T> {
+        let before = self.scene.clone();
+        let done = step(&mut self.history, &mut self.scene);
+        if done.is_some() {
+            self.revisions.note(&SceneChange::between(&before, &self.scene));
         }
-        label
+        done
     }
 
     /// Asset paths and mannequins that the scene needs and that are neither loaded nor known to fail.
@@ -145,7 +143,7 @@ impl Document {
         self.assets.mannequins.extend(loaded.mannequins);
         self.assets.textures.extend(loaded.textures);
         self.failed.extend(self.missing_assets().intersection(tried).cloned());
-        self.revision = next_revision();
+        self.revisions = Revisions::new();
     }
 
     /// Remembers where an imported file lies until a save puts it beside the scene.

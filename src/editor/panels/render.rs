@@ -107,7 +107,7 @@ fn forecast_ui(ui: &mut Ui, rendering: &mut Rendering, forecaster: &mut Forecast
         let (running, method) = (rendering.is_running(), rendering.settings.method);
         let (scene, assets) = (document.scene(), document.assets());
         let wake = wake(ui.ctx());
-        if let Some(wait) = forecaster.update(scene, assets, document.revision(), method, running, &wake) {
+        if let Some(wait) = forecaster.update(scene, assets, document.revisions().image, method, running, &wake) {
             ui.ctx().request_repaint_after(wait);
         }
         quality::quality_ui(ui, &mut rendering.settings, &scene.camera, forecaster);

@@ -1,12 +1,11 @@
 //! The render settings, the running job, and the picture it leaves behind.
 
-use crate::editor::relight::{self, DevelopKey};
 use crate::editor::ui::image_texture::Canvas;
 use crate::editor::ui::wake::wake;
 use crate::jobs::{Developed, Developer, Phase, RenderJob};
 use crate::photo::Picture;
-use crate::raytrace::{Film, GeometryCache, Method, Settings};
-use crate::scene::{Assets, Camera, Scene};
+use crate::raytrace::{self, Film, GeometryCache, Method, Settings};
+use crate::scene::{Assets, Camera, Scene, SceneChange};
 use eframe::egui::{Color32, ColorImage, Context, TextureId};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -85,8 +84,8 @@ pub struct Rendering {
     job: Option<RenderJob>,
     film: Option<Arc<Film>>,
     developer: Developer<Arc<ColorImage>>,
-    /// What the newest requested picture is made from; the pointer is only compared.
-    requested: Option<(*const Film, DevelopKey)>,
+    /// Film and scene of the newest requested picture; the pointer is only compared.
+    requested: Option<(*const Film, Scene)>,
     developed: Option<Developed<Arc<ColorImage>>>,
     canvas: Canvas,
 }
@@ -176,7 +175,7 @@ impl Rendering {
     /// Whether the picture is not what a render would show now.
     pub fn is_out_of_date(&self, now: &Scene) -> bool {
         match (&self.film, &self.job) {
-            (Some(film), Some(job)) => !relight::is_up_to_date(film, &job.scene, now),
+            (Some(film), Some(job)) => !raytrace::is_up_to_date(film.layers(), &job.scene, now),
             _ => false,
         }
     }
@@ -187,11 +186,13 @@ impl Rendering {
             self.film = Some(film);
         }
         if let Some(film) = &self.film {
-            let key = (Arc::as_ptr(film), DevelopKey::of(scene));
-            if self.requested.as_ref() != Some(&key) {
+            let is_requested = self.requested.as_ref().is_some_and(|(requested, developed)| {
+                *requested == Arc::as_ptr(film) && !SceneChange::between(developed, scene).needs_development()
+            });
+            if !is_requested {
                 let most = ctx.input(|i| i.max_texture_side);
                 self.developer.request(film.clone(), scene.clone(), most, &wake(ctx));
-                self.requested = Some(key);
+                self.requested = Some((Arc::as_ptr(film), scene.clone()));
             }
         }
         if let Some(developed) = self.developer.take() {

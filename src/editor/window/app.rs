@@ -28,6 +28,7 @@ use crate::editor::window::rescue;
 use crate::editor::window::session::Session;
 use crate::jobs::{Estimate, Forecast, Forecaster, MeterJob, Outcome};
 use crate::raytrace::{GeometryCache, Settings};
+use crate::scene::SceneChange;
 use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, Rangef, Rect, Ui, ViewportCommand};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -294,8 +295,9 @@ impl App {
     fn learn_from_render(&mut self) {
         let Some(job) = self.rendering.job() else { return };
         let Some(outcome) = job.take_outcome() else { return };
-        if *job.scene == *self.document.scene() {
-            let (Settings { width, height, method, .. }, revision) = (job.settings.clone(), self.document.revision());
+        if !SceneChange::between(&job.scene, self.document.scene()).needs_redraw() {
+            let Settings { width, height, method, .. } = job.settings.clone();
+            let revision = self.document.revisions().image;
             let Outcome { build_s, trace_s, spp, noise_stops } = outcome;
             let pixels = u64::from(width) * u64::from(height);
             let forecast = Forecast::from_render(build_s, trace_s, pixels, spp, noise_stops);

@@ -22,9 +22,9 @@ use super::control::RenderControl;
 use super::film::{Layer, assign_layers};
 use super::geometry_cache::GeometryCache;
 use super::prepare::{self, PrepareError, RenderScene};
+use super::retrace::Retrace;
 use crate::photo::Picture;
 use crate::scene::{Assets, LightId, Scene};
-use change::Change;
 use glam::Vec3;
 use history::History;
 use live_film::LiveFilm;
@@ -101,14 +101,14 @@ impl LivePicture {
         };
         let kept = self.traced.as_ref().zip(self.view.as_ref());
         let kept = kept.filter(|(traced, _)| !far(traced) && change::same_assets(&traced.assets, assets));
-        let (wanted, change) = match kept {
+        let (wanted, retrace) = match kept {
             Some((traced, view)) => change::between(&traced.scene, &view.film.layers, scene),
-            None => (scene.clone(), Change::Everything),
+            None => (scene.clone(), Retrace::Everything),
         };
-        match change {
-            Change::Nothing => {}
-            Change::Lights(changed) => self.take_lights(wanted, changed)?,
-            Change::Everything => return self.begin(wanted, assets, camera),
+        match retrace {
+            Retrace::Nothing => {}
+            Retrace::Lights(changed) => self.take_lights(wanted, changed)?,
+            Retrace::Everything => return self.begin(wanted, assets, camera),
         }
         self.look_from(camera);
         Ok(())

@@ -1,6 +1,7 @@
 //! The checks of single values that all others are made of.
 
-use super::{Finding, Severity};
+use super::finding::{Finding, Severity};
+use crate::scene::path_complaint;
 use glam::Vec3;
 
 /// The values that a field may have.
@@ -30,6 +31,13 @@ impl Allowed {
         }
     }
 }
+
+/// Positions and aims, metres from the origin.
+pub(super) const POSITION: Allowed = Allowed::between(-1e6, 1e6, "m");
+/// Sizes, metres.
+pub(super) const SIZE: Allowed = Allowed::between(1e-5, 1e5, "m");
+/// Rotations, degrees.
+pub(super) const TURN: Allowed = Allowed::between(-1e5, 1e5, "degrees");
 
 /// Collects findings about the thing whose place it was told.
 #[derive(Debug, Default)]
@@ -101,7 +109,7 @@ impl Check {
 
     /// A path to a file of the scene: relative, `/` between folders, never out of the scene's folder.
     pub fn asset_path(&mut self, field: &str, path: &str) {
-        if let Some(reason) = super::super::assets::path_complaint(path) {
+        if let Some(reason) = path_complaint(path) {
             self.error(field, format!("{path:?}: {reason}"));
         }
     }

@@ -1,7 +1,7 @@
 //! Lights: emitter, power, colour, and which of them go together.
 
-use super::check::{Allowed, Check};
-use super::{PLACE, SIZE, TURN, check_aim};
+use super::aim::check_aim;
+use super::check::{Allowed, Check, POSITION, SIZE, TURN};
 use crate::scene::{BarnDoors, ColorSource, Cone, Emitter, Gel, Light, Modifier, Output, Power, Scene};
 
 const AMOUNT: Allowed = Allowed::between(0.0, 1e9, "");
@@ -9,7 +9,7 @@ const AMOUNT: Allowed = Allowed::between(0.0, 1e9, "");
 const EFFICACY: Allowed = Allowed::between(0.0, 683.0, "lm s per Ws");
 
 pub(super) fn check_light(scene: &Scene, light: &Light, check: &mut Check) {
-    check.vector("position", light.position, PLACE);
+    check.vector("position", light.position, POSITION);
     let has_direction = !matches!(light.emitter, Emitter::Point | Emitter::Sphere { .. } | Emitter::Surround);
     check_aim(scene, &light.aim, light.position, has_direction, check);
     check.number("roll_deg", light.roll_deg, TURN);

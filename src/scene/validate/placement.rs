@@ -1,6 +1,6 @@
 //! Things that stand where they were hardly meant to: a light inside a body, a camera behind the wall.
 
-use super::Finding;
+use super::finding::Finding;
 use crate::scene::{Assets, Object, Room, Scene, Shape};
 use glam::{Affine3A, Vec2, Vec3};
 

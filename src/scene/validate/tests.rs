@@ -1,7 +1,9 @@
 use super::*;
 use crate::scene::{
-    Assets, Camera, ColorSource, Emitter, Gel, Light, LightId, Material, ObjectId, Output, Solo, Transform,
+    Aim, Assets, Camera, ColorSource, Emitter, Focus, Gel, Light, LightId, Material, Object, ObjectId, Output, Room,
+    Sensor, Shape, Solo, Transform,
 };
+use glam::Vec3;
 
 fn object(name: &str) -> Object {
     Object {

@@ -25,7 +25,7 @@ const ASKED_PX: f32 = 4.0;
 #[derive(Debug, Default)]
 pub struct ProcessorView {
     tone: ToneTable,
-    /// What stands in the studio, and the revision that it is of.
+    /// The studio's surfaces and their revision.
     rasterizer: Option<(u64, Rasterizer)>,
     drawn: Option<Drawn>,
     canvas: Canvas,
@@ -53,7 +53,7 @@ impl ProcessorView {
         moving_scale(size) > 1
     }
 
-    /// Draws a picture; `revision` tells when something else stands in the studio.
+    /// Draws a picture; `revision` is that of the studio's surfaces.
     pub fn draw(&mut self, ctx: &Context, input: &PreviewInput, revision: u64) {
         if self.rasterizer.as_ref().is_none_or(|(of, _)| *of != revision) {
             self.rasterizer = Some((revision, Rasterizer::new(input.scene, input.assets)));

@@ -1,6 +1,7 @@
 //! The live preview as a texture of the window: built in the background, drawn only when something changed. Where the
 //! graphics device cannot draw it, the processor does.
 
+use crate::editor::document::revisions::Revisions;
 use crate::editor::document::studio_document::Document;
 use crate::editor::viewport::live::cpu_preview::ProcessorView;
 use crate::preview::{Channel, Gloss, LossFlag, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
@@ -27,7 +28,7 @@ enum Stage {
 /// Everything that the picture depends on.
 #[derive(Clone, Debug, PartialEq)]
 struct Shown {
-    revision: u64,
+    revisions: Revisions,
     frame: CameraFrame,
     size: (u32, u32),
     overlay: Overlay,
@@ -180,7 +181,9 @@ impl PreviewHost {
         // A light that was deleted meanwhile leaves the others as they are.
         let only_light = only_light.filter(|id| document.scene().light(*id).is_some());
         let options = Options { channel, only_light, gloss, overlay_alone, ..Options::default() };
-        let wanted = Shown { revision: document.revision(), frame, size, overlay, options };
+        // Names and locks show in no picture.
+        let revisions = Revisions { document: 0, ..document.revisions() };
+        let wanted = Shown { revisions, frame, size, overlay, options };
         let changed = self.shown.as_ref() != Some(&wanted);
         let settled = self.draft_since.is_some_and(|since| since.elapsed() >= SETTLED);
         if changed || settled {
@@ -215,7 +218,7 @@ impl PreviewHost {
             }
         }
         if let Stage::Failed(_) = self.stage {
-            self.processor.draw(ctx, &input, wanted.revision);
+            self.processor.draw(ctx, &input, wanted.revisions.surfaces);
         }
         (self.draws, self.last_draw, self.shown) = (self.draws + 1, began.elapsed(), Some(wanted));
     }

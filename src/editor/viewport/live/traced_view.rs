@@ -105,7 +105,7 @@ impl LiveView {
             LiveCamera::pinhole(frame, size)
         };
         let only_light = look.only_light.filter(|id| document.scene().light(*id).is_some());
-        let asked = Asked { revision: document.revision(), camera, only_light, smooth: look.smooth };
+        let asked = Asked { revision: document.revisions().image, camera, only_light, smooth: look.smooth };
         if self.asked.as_ref() != Some(&asked) {
             let (mut scene, assets) = (document.scene().clone(), document.assets().clone());
             if let Some(only) = only_light {
