@@ -68,8 +68,8 @@ impl Tracer<'_> {
         let inside = inside(&surface);
         let (normal, side) =
             if side < inside { (-surface.geometric_normal, inside) } else { (surface.geometric_normal, 1.0 - inside) };
-        let importances = scene.light_sampler.importances(&scene.lights, surface.position, normal)?;
-        let (light, chance) = importances.sample(&scene.lights, sampler::rest(&lamp)[0])?;
+        let choice = sampler::rest(&lamp)[0];
+        let (light, chance) = scene.light_sampler.sample(&scene.lights, surface.position, normal, choice)?;
         let light = &scene.lights[light as usize];
         let sample = light.sample(surface.position, sampler::point(&lamp))?;
         let (to_light, cos) = (sample.direction, sample.direction.dot(normal));

@@ -1,11 +1,11 @@
-//! Directions to a rectangle, uniform in solid angle (Urena, Fajardo and King 2013, "An Area-Preserving
+//! A rectangular emitter, sampled uniformly in solid angle (Urena, Fajardo and King 2013, "An Area-Preserving
 //! Parametrization for Spherical Rectangles").
 
 use crate::math::safe_sqrt;
 use glam::{Vec2, Vec3};
 use std::f32::consts::TAU;
 
-/// A flat rectangle: centre, unit axes, half sizes. It shines along `right x up`.
+/// A flat rectangle. It emits along `right x up`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rect {
     /// Centre.
@@ -17,53 +17,53 @@ pub struct Rect {
     /// Half width and half height, metres.
     pub half: Vec2,
     /// Half the diagonal, metres.
-    pub reach: f32,
-    /// The direction it faces.
+    pub half_diagonal: f32,
+    /// Unit normal of the emitting side.
     normal: Vec3,
 }
 
-/// Below this solid angle (sr) the spherical formulas lose their digits (1e-4 of the light here), and sampling by area is
-/// as good.
-const SMALL: f32 = 4e-3;
+/// Solid angle (sr) below which the rectangle is sampled by area: the spherical formulas lose precision (1e-4 of the light
+/// here), and the variance is the same.
+const MIN_SOLID_ANGLE: f32 = 4e-3;
 
-/// From farther than so many half diagonals off its plane, too: its points are about as far, and seen under about the same
-/// angle (within 20 % at the corners), so that the spherical formulas buy less than they cost.
-const FAR: f32 = 2.5;
+/// Distance from the plane, in half diagonals, beyond which the rectangle is sampled by area: distances and angles of its
+/// points differ by less than 20 %, so that the spherical formulas cost more than they save.
+const MAX_SPHERICAL_DISTANCE: f32 = 2.5;
 
-/// The rectangle as seen from a point.
+/// The spherical rectangle that a rectangle subtends at a point.
 #[derive(Clone, Copy, Debug)]
 pub struct SphericalRect<'a> {
     rect: &'a Rect,
-    /// Corner and opposite corner in the local frame; `z` is minus the distance to the plane.
+    /// Opposite corners in the local frame; `z` is minus the distance to the plane.
     low: Vec2,
     high: Vec2,
     z: f32,
     axis_z: Vec3,
-    /// Cosines of the lower and upper edge planes.
+    /// Cosines between the normals of the lower and upper edge planes and the rectangle's.
     b0: f32,
     b1: f32,
     k: f32,
-    /// Solid angle, sr; 0 where it is not needed.
+    /// Solid angle, sr; 0 where the rectangle is sampled by area.
     pub solid_angle: f32,
 }
 
 impl Rect {
-    /// From its centre, unit axes and half sizes.
+    /// Returns the rectangle of a centre, unit axes and half sizes.
     pub fn new(centre: Vec3, right: Vec3, up: Vec3, half: Vec2) -> Self {
-        Rect { centre, right, up, half, reach: half.length(), normal: right.cross(up) }
+        Rect { centre, right, up, half, half_diagonal: half.length(), normal: right.cross(up) }
     }
 
-    /// The direction it faces.
+    /// Returns the unit normal of the emitting side.
     pub fn normal(&self) -> Vec3 {
         self.normal
     }
 
-    /// Area, m2.
+    /// Returns the area, m2.
     pub fn area(&self) -> f32 {
         4.0 * self.half.x * self.half.y
     }
 
-    /// Distance at which a ray crosses it, in multiples of `direction`.
+    /// Returns the distance at which a ray hits the rectangle, in multiples of `direction`.
     pub fn intersect(&self, origin: Vec3, direction: Vec3) -> Option<f32> {
         let normal = self.normal();
         let slope = direction.dot(normal);
@@ -73,8 +73,9 @@ impl Rect {
         (slope != 0.0 && t > 0.0 && inside).then_some(t)
     }
 
-    /// How the rectangle looks from `point`.
+    /// Returns the spherical rectangle that is subtended at `point`.
     pub fn seen_from(&self, point: Vec3) -> SphericalRect<'_> {
+        // Transform the rectangle to a frame at `point` with Z away from its plane
         let d = self.centre - point;
         let mut axis_z = self.normal();
         let mut z = d.dot(axis_z);
@@ -84,12 +85,12 @@ impl Rect {
         }
         let middle = Vec2::new(d.dot(self.right), d.dot(self.up));
         let (low, high) = (middle - self.half, middle + self.half);
-        if -z > FAR * self.reach {
+        if -z > MAX_SPHERICAL_DISTANCE * self.half_diagonal {
             return SphericalRect { rect: self, low, high, z, axis_z, b0: 0.0, b1: 0.0, k: 0.0, solid_angle: 0.0 };
         }
-        // The angles add up to 2 pi and the solid angle. Each pair is known but for a full turn, which k can do
-        // without. From closer than some micrometres the whole half space may be taken for nothing: it is then sampled
-        // by area, as anything small.
+        // Compute the solid angle: the sum of the four corner angles less 2 pi. The sums of pairs are known modulo 2 pi,
+        // which does not matter for k. From closer than some micrometres, the half space may come out as solid angle 0,
+        // and is then sampled by area.
         let (edge0, edge1) = (EdgePlane::new(-low.y, z), EdgePlane::new(high.x, z));
         let (edge2, edge3) = (EdgePlane::new(high.y, z), EdgePlane::new(-low.x, z));
         let upper = sum_of_angles(edge2.corner(edge3), edge3.corner(edge0));
@@ -101,8 +102,8 @@ impl Rect {
     }
 }
 
-/// The plane through the viewer and an edge of the rectangle: cosine between its normal and the rectangle's, and the
-/// square of the sine, which keeps its digits where the rectangle is seen edge-on.
+/// The plane through the reference point and an edge of the rectangle: cosine between its normal and the rectangle's, and the
+/// squared sine, which keeps its precision where the rectangle is seen edge-on.
 #[derive(Clone, Copy, Debug)]
 struct EdgePlane {
     cos: f32,
@@ -110,38 +111,42 @@ struct EdgePlane {
 }
 
 impl EdgePlane {
-    /// Of the edge at `offset` in the rectangle's plane, `z` away.
+    /// Returns the plane of the edge at `offset` in the rectangle's plane, at the distance `z`.
     fn new(offset: f32, z: f32) -> Self {
         let inverse = 1.0 / (z * z + offset * offset).max(f32::MIN_POSITIVE);
         EdgePlane { cos: offset * safe_sqrt(inverse), sin2: z * z * inverse }
     }
 
-    /// Cosine and sine of the corner that it makes with the plane of the next edge, which stands at right angles.
+    /// Returns cosine and sine of the corner angle with the next edge's plane. The edges are perpendicular.
     fn corner(self, next: EdgePlane) -> (f32, f32) {
         (-self.cos * next.cos, safe_sqrt(self.sin2 + self.cos * self.cos * next.sin2))
     }
 }
 
-/// Sum of two angles given by cosine and sine, but for a full turn: by one arc tangent, where arc cosines are slow and
-/// lose their digits near zero.
+/// Returns the sum of two angles, given by cosine and sine, modulo 2 pi. One arc tangent is faster than two arc cosines, and
+/// precise near zero.
 fn sum_of_angles((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> f32 {
     (sin_a * cos_b + cos_a * sin_b).atan2(cos_a * cos_b - sin_a * sin_b)
 }
 
 impl SphericalRect<'_> {
-    /// A point of the rectangle and the density of its direction, 1/sr. None when the rectangle is seen edge-on.
+    /// Samples a point of the rectangle. Returns it with the density of its direction, 1/sr; none for a rectangle seen
+    /// edge-on.
     pub fn sample(&self, from: Vec3, u: Vec2) -> Option<(Vec3, f32)> {
-        if self.solid_angle < SMALL {
+        if self.solid_angle < MIN_SOLID_ANGLE {
+            // Sample uniformly by area
             let offset = (2.0 * u - Vec2::ONE) * self.rect.half;
             let target = self.rect.centre + self.rect.right * offset.x + self.rect.up * offset.y;
             let pdf = self.area_pdf(from, target);
             return (pdf > 0.0 && pdf.is_finite()).then_some((target, pdf));
         }
+        // Sample x: the cumulative solid angle is inverted for u.x (equations 8 to 10)
         let angle = u.x * self.solid_angle + self.k;
         let (sin, cos) = angle.sin_cos();
         let f = (cos * self.b0 - self.b1) / sin;
         let cu = (1.0_f32.copysign(f) / safe_sqrt(f * f + self.b0 * self.b0)).clamp(-1.0, 1.0);
         let x = (-(cu * self.z) / safe_sqrt(1.0 - cu * cu).max(1e-7)).clamp(self.low.x, self.high.x);
+        // Sample y for u.y (equations 11 to 13)
         let distance = safe_sqrt(x * x + self.z * self.z);
         let h0 = self.low.y / safe_sqrt(distance * distance + self.low.y * self.low.y);
         let h1 = self.high.y / safe_sqrt(distance * distance + self.high.y * self.high.y);
@@ -153,9 +158,9 @@ impl SphericalRect<'_> {
         Some((target, 1.0 / self.solid_angle))
     }
 
-    /// Density of a direction towards `target` on the rectangle, 1/sr.
+    /// Returns the density of a direction towards `target` on the rectangle, 1/sr.
     pub fn pdf(&self, from: Vec3, target: Vec3) -> f32 {
-        if self.solid_angle < SMALL { self.area_pdf(from, target) } else { 1.0 / self.solid_angle }
+        if self.solid_angle < MIN_SOLID_ANGLE { self.area_pdf(from, target) } else { 1.0 / self.solid_angle }
     }
 
     fn area_pdf(&self, from: Vec3, target: Vec3) -> f32 {
@@ -174,13 +179,13 @@ mod tests {
     }
 
     #[test]
-    fn a_square_seen_from_its_cubes_centre_is_a_sixth_of_the_sphere() {
+    fn the_face_of_a_cube_subtends_a_sixth_of_the_sphere_at_its_centre() {
         let face = Rect::new(Vec3::Z, Vec3::X, Vec3::Y, Vec2::ONE);
         assert!((face.seen_from(Vec3::ZERO).solid_angle - TAU / 3.0).abs() < 1e-5);
     }
 
     #[test]
-    fn samples_lie_on_the_rectangle_and_their_density_matches() {
+    fn samples_lie_on_the_rectangle_and_agree_with_the_pdf() {
         for from in [Vec3::new(0.0, 0.5, 1.0), Vec3::new(3.0, 0.2, 5.0), Vec3::new(0.2, 1.0, -0.29), Vec3::ZERO] {
             let rect = rect();
             let seen = rect.seen_from(from);
@@ -213,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn edge_on_and_touching_are_finite() {
+    fn samples_from_edge_on_and_on_the_rectangle_are_finite() {
         for from in [Vec3::new(2.0, 1.0, -0.3), Vec3::new(0.2, 1.0, -0.3), Vec3::new(0.5, 1.0, -0.3)] {
             let rect = rect();
             let seen = rect.seen_from(from);

@@ -1,21 +1,25 @@
-//! Samplers of lights against their densities, and every emitter's flux over a sphere around it.
+//! Statistical tests of light sampling: densities, flux, the light sampler and the emitter BVH.
 
+use super::traced_light::LightSource;
 use super::*;
-use crate::math::Ray;
-use crate::math::look_at;
 use crate::math::statistics::{ChiSquare, Estimate, Numbers, share};
+use crate::math::{Ray, look_at, orthonormal_basis};
+use crate::photo::PhotometricLight;
 use crate::raytrace::bvh::TraversalStack;
 use crate::scene::{Camera, Emitter, Light, Output};
+use glam::{Vec2, Vec3};
+use std::f32::consts::PI;
 
-/// A light at the origin that shines along -Z.
+/// Returns a light at the origin that emits along -Z.
 fn traced(emitter: Emitter, output: Output) -> TracedLight {
     let light = Light::new(emitter, output);
     let light = PhotometricLight::in_frame(&light, look_at(Vec3::ZERO, Vec3::NEG_Z, 0.0), &Camera::default());
     TracedLight::new(&light, Vec3::ZERO).unwrap()
 }
 
-/// Places before a panel of 0.6 x 0.9 m: on the axis, aside, grazing, close to its middle, edge and corner, far away.
-const PLACES: [Vec3; 10] = [
+/// Points in front of a panel of 0.6 x 0.9 m: on the axis, off axis, grazing, close to its centre, edge and corner, far
+/// away.
+const POINTS: [Vec3; 10] = [
     Vec3::new(0.0, 0.0, -1.0),
     Vec3::new(1.2, 0.3, -0.7),
     Vec3::new(2.0, -1.0, -0.05),
@@ -30,19 +34,19 @@ const PLACES: [Vec3; 10] = [
 
 const CELLS: usize = 10;
 
-/// Chi-square of a flat emitter's sampler on a grid of its surface. `place(u, v)` maps the grid's unit square to the
-/// surface with a constant area density, `cell` back.
-fn flat_sampler_p(
+/// Returns the p-value of a chi-square test of a flat emitter's sampling on a grid of its surface. `surface_point(u, v)` maps
+/// the unit square to the surface with a constant area density, `cell` inverts it.
+fn flat_sampling_p_value(
     light: &TracedLight,
     from: Vec3,
     area: f32,
-    place: impl Fn(f64, f64) -> Vec3,
+    surface_point: impl Fn(f64, f64) -> Vec3,
     cell: impl Fn(Vec3) -> (f32, f32),
     numbers: &mut Numbers,
 ) -> f64 {
     const SAMPLES: usize = 40_000;
-    // The density over a cell, on a finer grid: near places make it vary over a cell by orders of magnitude. A point
-    // every millimetre or two for places that are some millimetres away.
+    // Integrate the density over a cell on a finer grid: from near by it varies over a cell by orders of magnitude. Grid
+    // points are one or two millimetres apart for points that are some millimetres away.
     let fine = if from.z.abs() < 0.01 { 100 } else { 40 };
     let mut counts = vec![0.0; CELLS * CELLS];
     let mut drawn = 0.0;
@@ -57,7 +61,7 @@ fn flat_sampler_p(
     let steps = CELLS * fine;
     for i in 0..steps {
         for j in 0..steps {
-            let target = place((i as f64 + 0.5) / steps as f64, (j as f64 + 0.5) / steps as f64);
+            let target = surface_point((i as f64 + 0.5) / steps as f64, (j as f64 + 0.5) / steps as f64);
             let to = target - from;
             let (distance, direction) = (to.length(), to.normalize());
             let cos = f64::from(direction.z.abs());
@@ -66,11 +70,10 @@ fn flat_sampler_p(
             expected[j / fine * CELLS + i / fine] += pdf * solid_angle;
         }
     }
-    // The density is that of all samples, those beside the emitter too, which are lost. Midpoints integrate
-    // it to better than half a percent.
-    let (total, share): (f64, f64) = (expected.iter().sum(), drawn / SAMPLES as f64);
-    let lost = (share * (1.0 - share) / SAMPLES as f64).sqrt();
-    assert!((total - share).abs() < 5e-3 + 4.0 * lost, "density {total}, samples {share} seen from {from}");
+    // The density includes rejected samples. The midpoint rule integrates it to better than half a percent.
+    let (total, accepted): (f64, f64) = (expected.iter().sum(), drawn / SAMPLES as f64);
+    let error = (accepted * (1.0 - accepted) / SAMPLES as f64).sqrt();
+    assert!((total - accepted).abs() < 5e-3 + 4.0 * error, "density {total}, accepted samples {accepted} from {from}");
     let mut test = ChiSquare::default();
     counts.iter().zip(&expected).for_each(|(&c, &e)| test.cell(c, e / total * drawn));
     test.p_value()
@@ -81,11 +84,11 @@ fn directions_to_rectangles_follow_their_density() {
     let (width_m, height_m) = (0.6, 0.9);
     let light = traced(Emitter::RectPanel { width_m, height_m }, Output::Lumens(1000.0));
     let mut numbers = Numbers::new(11);
-    for from in PLACES {
-        let place = |u: f64, v: f64| Vec3::new((u as f32 - 0.5) * width_m, (v as f32 - 0.5) * height_m, 0.0);
+    for from in POINTS {
+        let surface_point = |u: f64, v: f64| Vec3::new((u as f32 - 0.5) * width_m, (v as f32 - 0.5) * height_m, 0.0);
         let cell = |p: Vec3| (p.x / width_m + 0.5, p.y / height_m + 0.5);
-        let p = flat_sampler_p(&light, from, width_m * height_m, place, cell, &mut numbers);
-        assert!(p > share(PLACES.len()), "from {from}: p = {p}");
+        let p = flat_sampling_p_value(&light, from, width_m * height_m, surface_point, cell, &mut numbers);
+        assert!(p > share(POINTS.len()), "from {from}: p = {p}");
     }
 }
 
@@ -94,9 +97,9 @@ fn directions_to_discs_follow_their_density() {
     let radius = 0.6_f32;
     let light = traced(Emitter::RoundPanel { diameter_m: 2.0 * radius }, Output::Lumens(1000.0));
     let mut numbers = Numbers::new(12);
-    for from in PLACES {
+    for from in POINTS {
         // Equal areas: radius by the root, angle.
-        let place = |u: f64, v: f64| {
+        let surface_point = |u: f64, v: f64| {
             let (r, angle) = (f64::from(radius) * u.sqrt(), std::f64::consts::TAU * v);
             Vec3::new((r * angle.cos()) as f32, (r * angle.sin()) as f32, 0.0)
         };
@@ -104,30 +107,30 @@ fn directions_to_discs_follow_their_density() {
             let turn = p.y.atan2(p.x) / std::f32::consts::TAU;
             ((p.x * p.x + p.y * p.y) / (radius * radius), turn - turn.floor())
         };
-        let p = flat_sampler_p(&light, from, light_area(&light), place, cell, &mut numbers);
-        assert!(p > share(PLACES.len()), "from {from}: p = {p}");
+        let p = flat_sampling_p_value(&light, from, light_area(&light), surface_point, cell, &mut numbers);
+        assert!(p > share(POINTS.len()), "from {from}: p = {p}");
     }
 }
 
 fn light_area(light: &TracedLight) -> f32 {
     match light.source {
-        Source::Rect { rect, .. } => rect.area(),
-        Source::Disc { disc, .. } => disc.area(),
+        LightSource::Rect { rect, .. } => rect.area(),
+        LightSource::Disc { disc, .. } => disc.area(),
         _ => 0.0,
     }
 }
 
 #[test]
-fn directions_to_balls_and_suns_fill_their_cones_evenly() {
+fn directions_to_spheres_and_suns_are_uniform_in_their_cones() {
     let mut numbers = Numbers::new(13);
-    let ball = |radius_m| traced(Emitter::Sphere { radius_m }, Output::Lumens(1000.0));
+    let sphere = |radius_m| traced(Emitter::Sphere { radius_m }, Output::Lumens(1000.0));
     let sun = |angular_diameter_deg| traced(Emitter::Sun { angular_diameter_deg }, Output::Lux(1000.0));
     let far = Vec3::new(0.4, -0.3, 2.0);
     let lights = [
-        (ball(0.5), far),
-        (ball(1e-3), far),
-        (ball(1.0), Vec3::new(0.0, 1.0001, 0.0)),
-        (ball(1e-5), Vec3::X * 100.0),
+        (sphere(0.5), far),
+        (sphere(1e-3), far),
+        (sphere(1.0), Vec3::new(0.0, 1.0001, 0.0)),
+        (sphere(1e-5), Vec3::X * 100.0),
         (sun(0.53), far),
         (sun(90.0), far),
         (sun(0.01), far),
@@ -135,7 +138,7 @@ fn directions_to_balls_and_suns_fill_their_cones_evenly() {
     for (light, from) in &lights {
         const SAMPLES: usize = 40_000;
         let axis = match light.source {
-            Source::Sun { towards, .. } => towards,
+            LightSource::Sun(sun) => sun.towards,
             _ => -from.normalize(),
         };
         let first = light.sample(*from, Vec2::splat(0.5)).unwrap();
@@ -160,8 +163,8 @@ fn directions_to_balls_and_suns_fill_their_cones_evenly() {
 
 #[test]
 fn a_sphere_around_any_emitter_receives_its_whole_flux() {
-    // 1000 lm in each; the illuminance normal to the sphere, at random places of a sphere of 1.5 m, with one light
-    // sample each. The tolerance is the sampling error; single precision adds 1e-5.
+    // Each emits 1000 lm. The illuminance is estimated at random points of a sphere of 1.5 m, with one light sample each.
+    // The tolerance is the sampling error; single precision adds 1e-5.
     let emitters = [
         Emitter::Point,
         Emitter::Sphere { radius_m: 0.01 },
@@ -183,7 +186,7 @@ fn a_sphere_around_any_emitter_receives_its_whole_flux() {
         let flux = Estimate::of((0..200_000).map(|_| {
             let outwards = numbers.direction();
             let sample = light.sample(outwards * RADIUS, numbers.square());
-            // Inside the sphere everything is before the receiver, which looks to the centre.
+            // The receiver faces the centre: every emitter in the sphere is in front of it.
             sample.map_or(0.0, |s| f64::from(s.value * s.direction.dot(-outwards).max(0.0)) * area)
         }));
         assert!(flux.agrees(1000.0, 1e-5, emitters.len()), "{emitter:?}: {flux:?} lm");
@@ -191,8 +194,7 @@ fn a_sphere_around_any_emitter_receives_its_whole_flux() {
 }
 
 #[test]
-fn the_chosen_direction_meets_what_a_ray_sees() {
-    // Light sampling and rays that happen to meet the emitter must speak of the same luminance and density.
+fn light_sampling_agrees_with_the_intersection_of_rays() {
     let mut numbers = Numbers::new(15);
     for emitter in [
         Emitter::Sphere { radius_m: 0.2 },
@@ -200,27 +202,27 @@ fn the_chosen_direction_meets_what_a_ray_sees() {
         Emitter::RoundPanel { diameter_m: 1.2 },
     ] {
         let light = traced(emitter, Output::Lumens(1000.0));
-        for from in PLACES {
-            let mut met = 0;
+        for from in POINTS {
+            let mut hits = 0;
             for _ in 0..200 {
                 let Some(sample) = light.sample(from, numbers.square()) else { continue };
                 let pdf = sample.pdf.unwrap();
-                // At the very rim rounding may miss it.
-                let Some(seen) = light.intersect(from, sample.direction) else { continue };
-                met += 1;
-                assert!((seen.luminance / pdf / sample.value - 1.0).abs() < 1e-4, "{emitter:?} from {from}");
-                assert!((seen.distance / sample.distance - 1.0).abs() < 2e-3, "{emitter:?} from {from}");
-                let again = light.pdf(from, sample.direction, seen.distance);
-                // The distance to a plane met at a grazing angle keeps few digits.
+                // At the rim, rounding may make the ray miss.
+                let Some(hit) = light.intersect(from, sample.direction) else { continue };
+                hits += 1;
+                assert!((hit.luminance / pdf / sample.value - 1.0).abs() < 1e-4, "{emitter:?} from {from}");
+                assert!((hit.distance / sample.distance - 1.0).abs() < 2e-3, "{emitter:?} from {from}");
+                let again = light.pdf(from, sample.direction, hit.distance);
+                // The distance to a plane at a grazing angle keeps few digits.
                 assert!((again / pdf - 1.0).abs() < 2e-2, "{emitter:?} from {from}: {again} for {pdf}");
             }
-            assert!(met > 150 || (met == 0 && from.length() < 0.2), "{emitter:?} from {from}: {met} of 200 met");
+            assert!(hits > 150 || (hits == 0 && from.length() < 0.2), "{emitter:?} from {from}: {hits} of 200 hit");
         }
     }
 }
 
-/// Lights of all kinds about the origin.
-pub(super) fn crowd(count: usize, numbers: &mut Numbers) -> Vec<TracedLight> {
+/// Returns lights of all kinds around the origin.
+pub(super) fn random_lights(count: usize, numbers: &mut Numbers) -> Vec<TracedLight> {
     let emitters = [
         Emitter::Point,
         Emitter::Sphere { radius_m: 0.3 },
@@ -245,10 +247,10 @@ pub(super) fn crowd(count: usize, numbers: &mut Numbers) -> Vec<TracedLight> {
 }
 
 #[test]
-fn lights_are_chosen_as_often_as_they_say() {
+fn the_light_sampler_samples_by_its_pmf() {
     let mut numbers = Numbers::new(16);
     for count in [1, 3, 8, 40, 300, 5000] {
-        let lights = crowd(count, &mut numbers);
+        let lights = random_lights(count, &mut numbers);
         let light_sampler = LightSampler::new(&lights);
         for _ in 0..4 {
             let (point, normal) = (numbers.direction() * numbers.between(0.01, 4.0), numbers.direction());
@@ -257,92 +259,94 @@ fn lights_are_chosen_as_often_as_they_say() {
             let importances = light_sampler.importances(&lights, point, normal).unwrap();
             for i in 0..GRID {
                 let u = (i as f32 + 0.5) / GRID as f32;
-                let Some((light, chance)) = importances.sample(&lights, u) else { continue };
-                let said = light_sampler.pmf(&lights, light, point, normal);
-                assert!((chance / said - 1.0).abs() < 1e-5, "{chance} {said}");
+                let Some((light, pmf)) = importances.sample(&lights, u) else { continue };
+                let evaluated = light_sampler.pmf(&lights, light, point, normal);
+                assert!((pmf / evaluated - 1.0).abs() < 1e-5, "{pmf} {evaluated}");
                 counts[light as usize] += 1.0 / GRID as f64;
             }
-            let chances = (0..count as u32).map(|light| light_sampler.pmf(&lights, light, point, normal));
-            for (light, (chance, share)) in chances.zip(&counts).enumerate() {
-                // An even grid meets each light's piece of the unit interval to within one of its points.
+            let pmfs = (0..count as u32).map(|light| light_sampler.pmf(&lights, light, point, normal));
+            for (light, (pmf, frequency)) in pmfs.zip(&counts).enumerate() {
+                // A uniform grid hits each light's part of the unit interval to within one point.
                 assert!(
-                    (f64::from(chance) - share).abs() < 1.5 / GRID as f64,
-                    "{light} of {count}: {chance} for {share}"
+                    (f64::from(pmf) - frequency).abs() < 1.5 / GRID as f64,
+                    "{light} of {count}: pmf {pmf}, frequency {frequency}"
                 );
             }
             let total: f64 = counts.iter().sum();
-            // A cluster may be chosen that turns out to give nothing.
+            // The sum is smaller than 1 where the members of a sampled cluster have no importance.
             assert!(total < 1.0 + 1e-9, "{total}");
         }
     }
 }
 
 #[test]
-fn one_chosen_light_stands_for_all_in_the_mean() {
-    // Illuminance at a place, by one light a sample, against the sum over all of them.
+fn one_sampled_light_estimates_the_illuminance_of_all() {
+    // The illuminance at a point by one sampled light, against the sum over all lights.
     let mut numbers = Numbers::new(17);
     const COUNTS: [usize; 4] = [2, 12, 100, 1000];
     for count in COUNTS {
-        let lights = crowd(count, &mut numbers);
+        let lights = random_lights(count, &mut numbers);
         let light_sampler = LightSampler::new(&lights);
         let (point, normal) = (numbers.direction() * 0.5, numbers.direction());
-        let lit = |light: &TracedLight, u: Vec2| {
+        let illuminance = |light: &TracedLight, u: Vec2| {
             light.sample(point, u).map_or(0.0, |s| f64::from(s.value * s.direction.dot(normal).max(0.0)))
         };
-        let truth: f64 =
-            lights.iter().map(|light| (0..4096).map(|_| lit(light, numbers.square())).sum::<f64>() / 4096.0).sum();
+        let truth: f64 = lights
+            .iter()
+            .map(|light| (0..4096).map(|_| illuminance(light, numbers.square())).sum::<f64>() / 4096.0)
+            .sum();
         let importances = light_sampler.importances(&lights, point, normal).unwrap();
         let estimate = Estimate::of((0..60_000).map(|_| {
-            let choice = importances.sample(&lights, numbers.number());
-            choice.map_or(0.0, |(light, chance)| lit(&lights[light as usize], numbers.square()) / f64::from(chance))
+            let sampled = importances.sample(&lights, numbers.number());
+            sampled.map_or(0.0, |(light, pmf)| illuminance(&lights[light as usize], numbers.square()) / f64::from(pmf))
         }));
-        // The sum itself is good to some 1e-3.
+        // The sum itself has an error of some 1e-3.
         assert!(estimate.agrees(truth, 3e-3, COUNTS.len()), "{count} lights: {estimate:?} for {truth}");
     }
 }
 
 #[test]
-fn ten_thousand_lights_lie_three_nodes_deep() {
+fn the_light_bvh_of_ten_thousand_lights_is_three_nodes_deep() {
     let mut numbers = Numbers::new(18);
-    for (count, most) in [(60, 1), (1000, 2), (10_000, 3)] {
-        let light_sampler = LightSampler::new(&crowd(count, &mut numbers));
-        assert!(light_sampler.depth() <= most, "{count} lights: {} deep", light_sampler.depth());
+    for (count, max_depth) in [(60, 1), (1000, 2), (10_000, 3)] {
+        let light_sampler = LightSampler::new(&random_lights(count, &mut numbers));
+        assert!(light_sampler.depth() <= max_depth, "{count} lights: {} deep", light_sampler.depth());
     }
 }
 
 #[test]
-fn rays_meet_the_emitters_that_asking_each_would_find() {
+fn the_emitter_bvh_finds_the_hits_of_brute_force() {
     let mut numbers = Numbers::new(19);
-    let lights = crowd(200, &mut numbers);
+    let lights = random_lights(200, &mut numbers);
     let emitter_bvh = EmitterBvh::new(&lights);
     let mut stack = TraversalStack::default();
-    let mut met = 0;
+    let mut hits = 0;
     for i in 0..20_000 {
         let origin = numbers.direction() * numbers.between(0.0, 5.0);
         let t_max = if i % 2 == 0 { f32::INFINITY } else { numbers.between(0.1, 4.0) };
         let ray = Ray { origin, direction: numbers.direction(), t_max };
         let mut found = Vec::new();
-        // The end of the ray is for the caller to judge: it lies within rounding.
-        emitter_bvh.for_each_hit(&lights, &ray, &mut stack, |light, seen| {
-            if seen.distance <= t_max {
+        // The caller compares with t_max.
+        emitter_bvh.for_each_hit(&lights, &ray, &mut stack, |light, hit| {
+            if hit.distance <= t_max {
                 found.push(light);
             }
         });
         found.sort_unstable();
         let truth = |light: &u32| {
             let light = &lights[*light as usize];
-            light.intersect(origin, ray.direction).is_some_and(|seen| seen.distance <= t_max)
+            light.intersect(origin, ray.direction).is_some_and(|hit| hit.distance <= t_max)
         };
         let truth: Vec<u32> = (0..lights.len() as u32).filter(truth).collect();
         assert_eq!(found, truth, "{ray:?}");
-        met += truth.len();
+        hits += truth.len();
     }
-    assert!(met > 10_000, "only {met} emitters met: the test says little");
+    assert!(hits > 10_000, "only {hits} hits: too few for the test");
 }
 
 #[test]
-fn no_light_that_gives_something_is_never_chosen() {
-    // Choice by importance is right only where no light with a share has none.
+fn a_light_that_contributes_has_a_positive_pmf() {
+    // Importance sampling is unbiased only if every light that contributes can be sampled.
     let mut numbers = Numbers::new(16);
     for emitter in [
         Emitter::Point,
@@ -358,32 +362,32 @@ fn no_light_that_gives_something_is_never_chosen() {
             let normal = numbers.direction();
             let Some(sample) = light.sample(from, numbers.square()) else { continue };
             if sample.direction.dot(normal) > 1e-4 && sample.value > 0.0 {
-                let chance = light_sampler.pmf(std::slice::from_ref(&light), 0, from, normal);
-                assert!(chance > 0.0, "{emitter:?} seen from {from}, facing {normal}");
+                let pmf = light_sampler.pmf(std::slice::from_ref(&light), 0, from, normal);
+                assert!(pmf > 0.0, "{emitter:?} from {from}, normal {normal}");
             }
         }
     }
 }
 
 #[test]
-fn no_light_of_a_crowd_that_gives_something_is_never_chosen() {
-    // Clusters must not forget members that lie aside or look elsewhere.
+fn a_light_that_contributes_has_a_positive_pmf_in_any_cluster() {
+    // The bounds of a cluster include members that are off centre or face another way.
     let mut numbers = Numbers::new(20);
-    let lights = crowd(600, &mut numbers);
+    let lights = random_lights(600, &mut numbers);
     let light_sampler = LightSampler::new(&lights);
-    let mut given = 0;
+    let mut contributing = 0;
     for _ in 0..300 {
         let (from, normal) = (numbers.direction() * numbers.between(0.01, 6.0), numbers.direction());
         for (light, index) in lights.iter().zip(0..).step_by(7) {
             let Some(sample) = light.sample(from, numbers.square()) else { continue };
             if sample.direction.dot(normal) > 1e-4 && sample.value > 0.0 {
-                given += 1;
+                contributing += 1;
                 assert!(
                     light_sampler.pmf(&lights, index, from, normal) > 0.0,
-                    "{light:?} from {from}, facing {normal}"
+                    "{light:?} from {from}, normal {normal}"
                 );
             }
         }
     }
-    assert!(given > 5000, "only {given}");
+    assert!(contributing > 5000, "only {contributing}");
 }

@@ -1,0 +1,331 @@
+//! A light prepared for tracing: light sampling with its density, and intersection of rays with its emitter.
+
+use super::disc::Disc;
+use super::rect::Rect;
+use super::sphere::Sphere;
+use super::sun::SunDisc;
+use crate::photo::PhotometricLight;
+use crate::photo::beam::Beam;
+use crate::photo::emitter::{EmitterShape, IntensityDistribution, cone_falloff};
+use crate::scene::Cone;
+use glam::{Mat3, Vec2, Vec3, Vec3A};
+use std::f32::consts::PI;
+
+/// Geometry and output of a light. Positions are relative to the camera, as everywhere in the ray tracer.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum LightSource {
+    /// Intensity, cd.
+    Point { position: Vec3, intensity: f32 },
+    /// Axial intensity, cd; unit axis; full angles.
+    Spot { position: Vec3, axis: Vec3, intensity: f32, inner_deg: f32, outer_deg: f32 },
+    /// Luminance, cd/m2.
+    Rect { rect: Rect, luminance: f32 },
+    /// Luminance, cd/m2.
+    Disc { disc: Disc, luminance: f32 },
+    /// Luminance, cd/m2.
+    Sphere { sphere: Sphere, luminance: f32 },
+    /// The sun, a cone of directions.
+    Sun(SunDisc),
+    /// Luminance, cd/m2, from every direction.
+    Surround { luminance: f32 },
+}
+
+/// A light prepared for tracing.
+#[derive(Clone, Debug)]
+pub struct TracedLight {
+    pub(super) source: LightSource,
+    /// Film layer that the light contributes to.
+    pub layer: usize,
+    /// Factor on its contributions: white in a layer of one light (its colour is applied later), the light's colour and
+    /// exposure time in a layer that several lights share.
+    pub tint: Vec3,
+    /// Time for which the light contributes to the exposure, seconds (1 for flash). Part of the importance.
+    pub time_s: f32,
+    /// True if camera rays hit the emitter.
+    pub visible_to_camera: bool,
+    /// Angular transmission of a grid, snoot or barn doors.
+    beam: Option<OrientedBeam>,
+}
+
+/// The angular transmission of a modifier, with the rotation into the light's frame.
+#[derive(Clone, Debug)]
+struct OrientedBeam {
+    beam: Beam,
+    light_from_world: Mat3,
+}
+
+/// A direction towards a light, sampled at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// Unit direction towards the light.
+    pub direction: Vec3,
+    /// Distance to the emitter, metres; infinite for the sun.
+    pub distance: f32,
+    /// Luminance over pdf (lights with extent), or illuminance normal to the direction (delta lights).
+    pub value: f32,
+    /// Solid angle density, 1/sr; none for delta lights.
+    pub pdf: Option<f32>,
+}
+
+/// The intersection of a ray with an emitter.
+#[derive(Clone, Copy, Debug)]
+pub struct EmitterHit {
+    /// Distance along the unit direction, metres; infinite for sun and surround.
+    pub distance: f32,
+    /// Luminance towards the ray's origin, cd/m2.
+    pub luminance: f32,
+}
+
+impl EmitterHit {
+    fn at(distance: f32, luminance: f32) -> Self {
+        EmitterHit { distance, luminance }
+    }
+}
+
+impl TracedLight {
+    /// Converts a photometric light, with positions relative to `origin`. Returns none for a light without any output.
+    pub fn new(light: &PhotometricLight, origin: Vec3) -> Option<Self> {
+        let PhotometricLight { world_from_light, .. } = *light;
+        let position = Vec3::from(world_from_light.translation - Vec3A::from(origin));
+        let [right, up, back] = [0, 1, 2].map(|i| Vec3::from(world_from_light.matrix3.col(i)));
+        let (intensity, illuminance) = (light.axial_intensity(), light.illuminance());
+        let source = match light.shape {
+            EmitterShape::Point(IntensityDistribution::Isotropic) => LightSource::Point { position, intensity },
+            EmitterShape::Point(IntensityDistribution::Cone(Cone { inner_deg, outer_deg })) => {
+                LightSource::Spot { position, axis: -back, intensity, inner_deg, outer_deg }
+            }
+            EmitterShape::Sphere { radius_m } if radius_m > 0.0 => {
+                let sphere = Sphere { centre: position, radius: radius_m };
+                LightSource::Sphere { sphere, luminance: intensity / (PI * radius_m * radius_m) }
+            }
+            EmitterShape::Sphere { .. } => LightSource::Point { position, intensity },
+            // A panel emits along -Z: right x up is +Z, so its width axis is reversed.
+            EmitterShape::Rect { half_size_m } => {
+                let rect = Rect::new(position, -right, up, half_size_m);
+                LightSource::Rect { rect, luminance: intensity / rect.area() }
+            }
+            EmitterShape::Disc { radius_m } => {
+                let disc = Disc::new(position, -right, up, radius_m);
+                LightSource::Disc { disc, luminance: intensity / disc.area() }
+            }
+            EmitterShape::Sun { half_angle_rad } => LightSource::Sun(SunDisc::new(back, illuminance, half_angle_rad)),
+            EmitterShape::Surround => LightSource::Surround { luminance: illuminance / PI },
+        };
+        let output = intensity.max(illuminance);
+        let is_finite = output.is_finite() && world_from_light.matrix3.is_finite() && position.is_finite();
+        let light_from_world = Mat3::from(world_from_light.matrix3).transpose();
+        (output > 0.0 && is_finite).then(|| TracedLight {
+            source,
+            layer: 0,
+            tint: Vec3::ONE,
+            time_s: light.exposure_time_s,
+            visible_to_camera: light.visible_to_camera,
+            beam: light.beam.clone().map(|beam| OrientedBeam { beam, light_from_world }),
+        })
+    }
+
+    /// Returns true if a modifier limits the light's directions.
+    pub(super) fn has_beam(&self) -> bool {
+        self.beam.is_some()
+    }
+
+    /// Returns the transmission of the modifier in a unit direction away from the light.
+    fn beam_transmission(&self, away: Vec3) -> f32 {
+        self.beam.as_ref().map_or(1.0, |oriented| oriented.beam.transmission(oriented.light_from_world * away))
+    }
+
+    /// Returns the transmission of the modifier from the light's centre towards a point; 1 without a modifier, and for
+    /// lights at infinity.
+    pub(super) fn beam_transmission_towards(&self, point: Vec3) -> f32 {
+        match (&self.beam, self.centre()) {
+            (Some(_), Some(centre)) => self.beam_transmission((point - centre).normalize_or_zero()),
+            _ => 1.0,
+        }
+    }
+
+    /// Returns the centre of the emitter; none for lights at infinity.
+    pub(super) fn centre(&self) -> Option<Vec3> {
+        match self.source {
+            LightSource::Point { position, .. } | LightSource::Spot { position, .. } => Some(position),
+            LightSource::Rect { rect, .. } => Some(rect.centre),
+            LightSource::Disc { disc, .. } => Some(disc.centre),
+            LightSource::Sphere { sphere, .. } => Some(sphere.centre),
+            LightSource::Sun(_) | LightSource::Surround { .. } => None,
+        }
+    }
+
+    /// Returns the bounding box of the emitter, slightly enlarged; none for delta lights and lights at infinity.
+    pub(super) fn bounds(&self) -> Option<(Vec3, Vec3)> {
+        let (centre, extent) = match self.source {
+            LightSource::Rect { rect, .. } => {
+                (rect.centre, rect.right.abs() * rect.half.x + rect.up.abs() * rect.half.y)
+            }
+            LightSource::Disc { disc, .. } => (disc.centre, (disc.right.abs() + disc.up.abs()) * disc.radius),
+            LightSource::Sphere { sphere, .. } => (sphere.centre, Vec3::splat(sphere.radius)),
+            LightSource::Point { .. }
+            | LightSource::Spot { .. }
+            | LightSource::Sun(_)
+            | LightSource::Surround { .. } => return None,
+        };
+        // The slab test and the emitter's intersection round differently.
+        let extent = extent + Vec3::splat(1e-5 * (centre.abs() + extent).max_element());
+        Some((centre - extent, centre + extent))
+    }
+
+    /// Returns true for a delta light: it has no extent, so no ray hits it.
+    pub fn is_delta(&self) -> bool {
+        match self.source {
+            LightSource::Point { .. } | LightSource::Spot { .. } => true,
+            LightSource::Sun(sun) => sun.is_delta(),
+            LightSource::Rect { .. }
+            | LightSource::Disc { .. }
+            | LightSource::Sphere { .. }
+            | LightSource::Surround { .. } => false,
+        }
+    }
+
+    /// Returns true if next-event estimation samples the light. A surround is left to BSDF sampling, which has as little
+    /// variance.
+    pub fn is_sampled(&self) -> bool {
+        !matches!(self.source, LightSource::Surround { .. })
+    }
+
+    /// Samples a direction from `point` towards the light. Visibility is not tested.
+    pub fn sample(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
+        let sample = self.sample_source(point, u)?;
+        Some(LightSample { value: sample.value * self.beam_transmission(-sample.direction), ..sample })
+    }
+
+    /// Returns the light that reaches `point` if the whole emitter is concentrated in its centre. Visibility is not
+    /// tested. Returns none for a surround.
+    pub fn sample_centre(&self, point: Vec3) -> Option<LightSample> {
+        let concentrated = |centre: Vec3, intensity: f32, normal: Option<Vec3>| {
+            let sample = sample_position(point, centre, intensity)?;
+            let cos = normal.map_or(1.0, |normal| -sample.direction.dot(normal));
+            (cos > 0.0).then_some(LightSample { value: sample.value * cos, ..sample })
+        };
+        let sample = match self.source {
+            LightSource::Point { .. } | LightSource::Spot { .. } => self.sample_source(point, Vec2::splat(0.5)),
+            LightSource::Rect { rect, luminance } => {
+                concentrated(rect.centre, luminance * rect.area(), Some(rect.normal()))
+            }
+            LightSource::Disc { disc, luminance } => {
+                concentrated(disc.centre, luminance * disc.area(), Some(disc.normal()))
+            }
+            LightSource::Sphere { sphere, luminance } => {
+                concentrated(sphere.centre, luminance * PI * sphere.radius * sphere.radius, None)
+            }
+            LightSource::Sun(sun) => Some(sample_delta_sun(&sun)),
+            LightSource::Surround { .. } => None,
+        }?;
+        Some(LightSample { value: sample.value * self.beam_transmission(-sample.direction), ..sample })
+    }
+
+    /// Returns the luminance of a surround, cd/m2; none for other lights.
+    pub fn surround_luminance(&self) -> Option<f32> {
+        if let LightSource::Surround { luminance } = self.source { Some(luminance) } else { None }
+    }
+
+    /// Samples a direction towards the light, without its modifier.
+    fn sample_source(&self, point: Vec3, u: Vec2) -> Option<LightSample> {
+        match self.source {
+            LightSource::Point { position, intensity } => sample_position(point, position, intensity),
+            LightSource::Spot { position, axis, intensity, inner_deg, outer_deg } => {
+                let cos = (point - position).normalize_or_zero().dot(axis);
+                let falloff = cone_falloff(cos, inner_deg, outer_deg);
+                if falloff > 0.0 { sample_position(point, position, intensity * falloff) } else { None }
+            }
+            LightSource::Rect { rect, luminance } => {
+                if !is_in_front(point, rect.centre, rect.normal()) {
+                    return None;
+                }
+                let (target, pdf) = rect.seen_from(point).sample(point, u)?;
+                sample_target(point, target, luminance, pdf)
+            }
+            LightSource::Disc { disc, luminance } => {
+                if !is_in_front(point, disc.centre, disc.normal()) {
+                    return None;
+                }
+                let (target, pdf) = disc.sample(point, u)?;
+                sample_target(point, target, luminance, pdf)
+            }
+            LightSource::Sphere { sphere, luminance } => {
+                let (direction, distance, pdf) = sphere.sample(point, u)?;
+                Some(LightSample { direction, distance, value: luminance / pdf, pdf: Some(pdf) })
+            }
+            LightSource::Sun(sun) => {
+                if sun.is_delta() {
+                    return Some(sample_delta_sun(&sun));
+                }
+                let (direction, pdf) = sun.sample(u);
+                let value = sun.luminance() / pdf;
+                Some(LightSample { direction, distance: f32::INFINITY, value, pdf: Some(pdf) })
+            }
+            LightSource::Surround { .. } => None,
+        }
+    }
+
+    /// Intersects a ray of unit direction with the emitter.
+    pub fn intersect(&self, origin: Vec3, direction: Vec3) -> Option<EmitterHit> {
+        let hit = self.intersect_source(origin, direction)?;
+        Some(EmitterHit { luminance: hit.luminance * self.beam_transmission(-direction), ..hit })
+    }
+
+    /// Intersects a ray with the emitter, without its modifier. Panels emit to the front only.
+    fn intersect_source(&self, origin: Vec3, direction: Vec3) -> Option<EmitterHit> {
+        match self.source {
+            LightSource::Point { .. } | LightSource::Spot { .. } => None,
+            LightSource::Rect { rect, luminance } => {
+                let is_front = direction.dot(rect.normal()) < 0.0;
+                let distance = is_front.then(|| rect.intersect(origin, direction)).flatten();
+                distance.map(|distance| EmitterHit::at(distance, luminance))
+            }
+            LightSource::Disc { disc, luminance } => {
+                let is_front = direction.dot(disc.normal()) < 0.0;
+                let distance = is_front.then(|| disc.intersect(origin, direction)).flatten();
+                distance.map(|distance| EmitterHit::at(distance, luminance))
+            }
+            LightSource::Sphere { sphere, luminance } => {
+                sphere.intersect(origin, direction).map(|distance| EmitterHit::at(distance, luminance))
+            }
+            LightSource::Sun(sun) => sun.contains(direction).then(|| EmitterHit::at(f32::INFINITY, sun.luminance())),
+            LightSource::Surround { luminance } => Some(EmitterHit::at(f32::INFINITY, luminance)),
+        }
+    }
+
+    /// Returns the density with which [`TracedLight::sample`] samples a direction that hits the emitter at `distance`, 1/sr.
+    pub fn pdf(&self, point: Vec3, direction: Vec3, distance: f32) -> f32 {
+        match self.source {
+            LightSource::Rect { rect, .. } => rect.seen_from(point).pdf(point, point + direction * distance),
+            LightSource::Disc { disc, .. } => disc.pdf(point, point + direction * distance),
+            LightSource::Sphere { sphere, .. } => sphere.pdf(point),
+            LightSource::Sun(sun) => sun.pdf(),
+            LightSource::Point { .. } | LightSource::Spot { .. } | LightSource::Surround { .. } => 0.0,
+        }
+    }
+}
+
+/// Returns the sample of a point light: I / d2.
+fn sample_position(point: Vec3, position: Vec3, intensity: f32) -> Option<LightSample> {
+    let to = position - point;
+    let distance = to.length();
+    let value = intensity / (distance * distance);
+    (distance > 0.0 && value.is_finite()).then(|| LightSample { direction: to / distance, distance, value, pdf: None })
+}
+
+/// Returns the sample of a point on an area light.
+fn sample_target(point: Vec3, target: Vec3, luminance: f32, pdf: f32) -> Option<LightSample> {
+    let to = target - point;
+    let distance = to.length();
+    (distance > 0.0).then(|| LightSample { direction: to / distance, distance, value: luminance / pdf, pdf: Some(pdf) })
+}
+
+/// Returns the sample of a sun without extent.
+fn sample_delta_sun(sun: &SunDisc) -> LightSample {
+    LightSample { direction: sun.towards, distance: f32::INFINITY, value: sun.illuminance, pdf: None }
+}
+
+/// Returns true if a point is in front of a panel.
+fn is_in_front(point: Vec3, centre: Vec3, normal: Vec3) -> bool {
+    (point - centre).dot(normal) > 0.0
+}
