@@ -74,8 +74,8 @@ impl ShadowMasks {
         &self.textures.masks_group
     }
 
-    /// Uploads a plan's slots and recreates the textures if the masks' size (mask pixels) or number need it. Returns true
-    /// if the textures are new and hold nothing.
+    /// Uploads a plan's slots and recreates the textures if the masks' size (mask pixels) or number need it. Returns
+    /// true if the textures are new and hold nothing.
     pub fn prepare(&mut self, gpu: &GpuContext, plan: &ShadowPlan, size: (u32, u32)) -> bool {
         for (mask, shadows) in plan.masks.iter().enumerate() {
             gpu.queue.write_buffer(&self.slots_buffer, mask as u64 * SLOTS_STRIDE, bytemuck::bytes_of(shadows));

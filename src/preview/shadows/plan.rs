@@ -10,23 +10,24 @@ use crate::preview::lights::light_table::{GpuLight, LightTable};
 use bytemuck::Zeroable;
 use glam::{Vec2, Vec3};
 
-/// Shadow maps in use at once.
+/// Maximum number of shadow map views in a frame.
 pub(crate) const MAX_VIEWS: usize = 48;
-/// Lights that cast shadows, four a mask; lights beyond cast none.
+/// Maximum number of lights with shadows, four per mask; further lights cast none.
 pub(crate) const MAX_SHADOWS: usize = 16;
-/// The views to draw, and how each light reads them.
+/// The shadow map views of a frame and the slots of each light.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ShadowPlan {
-    /// The views that this frame reads, light by light.
+    /// Views of the lights and emitter parts that this frame reads.
     pub lights: Vec<LightViews>,
-    /// Four lights each, in their order. Slots count `lights` until `set_layers` has said where those are.
+    /// Four lights each, in the order of the light table. A slot's layer is an index into `lights` until `set_layers`
+    /// replaces it by the first layer of those views.
     pub masks: Vec<GpuShadows>,
-    /// Views of this plan and of the draft that comes before it in motion.
+    /// Number of views including the unsubdivided ones that a draft of this frame would read.
     pub views: usize,
 }
 
 impl ShadowPlan {
-    /// Views of the lights, as fine as what is `seen` needs them; `subdivide` takes wide emitters in parts.
+    /// Plans the shadows of a table's lights. `subdivide` splits large emitters into parts.
     pub fn new(table: &LightTable, casters: &[OrientedBox], receivers: &VisibleReceivers, subdivide: bool) -> Self {
         let mut plan = ShadowPlan::default();
         if casters.is_empty() {
@@ -34,13 +35,15 @@ impl ShadowPlan {
         }
         let count = table.lights.len().min(MAX_SHADOWS);
         plan.masks = vec![GpuShadows::zeroed(); count.div_ceil(4)];
+        // Cull casters by light radius
         let reached: Vec<Vec<OrientedBox>> =
             table.lights[..count].iter().map(|light| casters_in_radius(light, casters)).collect();
-        // The middles first, so that all lights have a shadow before one has it in parts.
+        // Fit a view at the centre of each emitter first, so that every light has a shadow before one is subdivided
         for (index, casters) in reached.iter().enumerate() {
             let slot = plan.add(&table.lights[index], (table.ids[index].0, 0), casters, receivers);
             plan.set(index, &[slot]);
         }
+        // Replace the views of large emitters by views of their parts
         if subdivide {
             for (index, casters) in reached.iter().enumerate() {
                 plan.subdivide(index, &table.lights[index], casters, receivers);
@@ -51,24 +54,24 @@ impl ShadowPlan {
         plan
     }
 
-    /// Leaves out runs that no slot reads: the middles of lights that are taken in parts.
+    /// Removes views that no slot reads: those at the centres of subdivided emitters.
     fn drop_unread(&mut self) {
         let slots = self.masks.iter().flat_map(|mask| mask.slots.as_flattened()).filter(|slot| slot.kind != 0);
         let mut is_read = vec![false; self.lights.len()];
         slots.for_each(|slot| is_read[slot.layer as usize] = true);
-        let places: Vec<usize> =
+        let new_indices: Vec<usize> =
             is_read.iter().scan(0, |next, read| Some(std::mem::replace(next, *next + usize::from(*read)))).collect();
-        self.set_layers(&places);
+        self.set_layers(&new_indices);
         let mut read = is_read.into_iter();
         self.lights.retain(|_| read.next() == Some(true));
     }
 
-    /// Whether a light is taken in several parts.
+    /// Returns true if an emitter is subdivided.
     pub fn is_subdivided(&self) -> bool {
         self.masks.iter().flat_map(|mask| mask.counts).any(|count| count > 1)
     }
 
-    /// Tells each slot the first layer of its run.
+    /// Replaces each slot's index into `lights` by `firsts` at that index.
     pub fn set_layers(&mut self, firsts: &[usize]) {
         for slot in self.masks.iter_mut().flat_map(|mask| mask.slots.as_flattened_mut()).filter(|slot| slot.kind != 0) {
             slot.layer = firsts[slot.layer as usize] as u32;
@@ -76,10 +79,10 @@ impl ShadowPlan {
     }
 
     fn view_count(&self) -> usize {
-        self.lights.iter().map(|run| run.views.len()).sum()
+        self.lights.iter().map(|light| light.views.len()).sum()
     }
 
-    /// Adds a light's views as far as there is room.
+    /// Adds a light's views and returns its slot; the slot is empty if the light casts no shadow or the views are full.
     fn add(
         &mut self,
         light: &GpuLight,
@@ -97,40 +100,41 @@ impl ShadowPlan {
         slot
     }
 
+    /// Stores the slots of a light.
     fn set(&mut self, light: usize, slots: &[GpuShadowSlot]) {
         let mask = &mut self.masks[light / 4];
         mask.counts[light % 4] = slots.len() as u32;
         mask.slots[light % 4][..slots.len()].copy_from_slice(slots);
     }
 
-    /// Replaces a light's one view by views of its parts, if it has any and there is room for them all.
+    /// Replaces the view of a light by views of its emitter's parts, if it has several and all fit.
     fn subdivide(&mut self, index: usize, light: &GpuLight, casters: &[OrientedBox], receivers: &VisibleReceivers) {
         let parts = emitter_parts(light, casters);
-        let middle = self.masks[index / 4].slots[index % 4][0];
-        if parts.len() == 1 || middle.kind == 0 {
+        let centre = self.masks[index / 4].slots[index % 4][0];
+        if parts.len() == 1 || centre.kind == 0 {
             return;
         }
-        let before = self.lights.len();
-        let id = self.lights[middle.layer as usize].owner.0;
+        let len_before = self.lights.len();
+        let id = self.lights[centre.layer as usize].owner.0;
         let slots: Vec<GpuShadowSlot> = (1..)
             .zip(&parts)
             .map(|(number, part)| {
                 let offset = part.at.x * Vec3::from(light.right) + part.at.y * Vec3::from(light.up);
                 let moved = GpuLight { position: (Vec3::from(light.position) + offset).into(), ..*light };
                 let slot =
-                    if part.at == Vec2::ZERO { middle } else { self.add(&moved, (id, number), casters, receivers) };
+                    if part.at == Vec2::ZERO { centre } else { self.add(&moved, (id, number), casters, receivers) };
                 GpuShadowSlot { softness: part.softness.into(), ..slot }
             })
             .collect();
-        if slots.iter().any(|slot| slot.kind != middle.kind) {
-            self.lights.truncate(before);
+        if slots.iter().any(|slot| slot.kind != centre.kind) {
+            self.lights.truncate(len_before);
             return;
         }
         self.set(index, &slots);
     }
 }
 
-/// The casters whose shadow can be seen: beyond its reach a light is dark anyway.
+/// Returns the casters within the light radius.
 fn casters_in_radius(light: &GpuLight, casters: &[OrientedBox]) -> Vec<OrientedBox> {
     let reaches =
         |caster: &&OrientedBox| light.reach_m == 0.0 || caster.distance(light.position.into()) < light.reach_m;
@@ -145,9 +149,9 @@ mod tests {
     use crate::scene::LightId;
     use glam::{Affine3A, Mat4};
 
-    fn unit_box_at(place: Vec3) -> OrientedBox {
+    fn unit_box_at(centre: Vec3) -> OrientedBox {
         OrientedBox {
-            world_from_object: Affine3A::from_translation(place),
+            world_from_object: Affine3A::from_translation(centre),
             low: Vec3::splat(-0.5),
             high: Vec3::splat(0.5),
         }
@@ -175,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn one_view_holds_every_caster_and_depth_falls_with_distance() {
+    fn one_view_contains_every_caster_and_depth_falls_with_distance() {
         for kind in [Kind::Point, Kind::Spot, Kind::Sphere, Kind::Rect, Kind::Sun] {
             let caster = unit_box_at(Vec3::new(0.3, 1.0, 0.2));
             let plan = ShadowPlan::new(&table(&[light(kind)]), &[caster], &VisibleReceivers::default(), false);
@@ -190,21 +194,21 @@ mod tests {
     }
 
     #[test]
-    fn a_bulb_among_things_gets_a_cube_that_sees_all_round() {
-        let bulb = light(Kind::Point);
+    fn a_point_light_among_casters_gets_a_cube_map() {
+        let point = light(Kind::Point);
         let casters = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
-        let plan = ShadowPlan::new(&table(&[bulb]), &casters, &VisibleReceivers::default(), false);
+        let plan = ShadowPlan::new(&table(&[point]), &casters, &VisibleReceivers::default(), false);
         assert_eq!((plan.views, plan.masks[0].slots[0][0].kind), (6, Projection::Cube as u32));
         let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
         for (view, axis) in plan.lights[0].views.iter().zip(axes) {
-            let p = project(&view.clip_from_world, Vec3::from(bulb.position) + axis * 2.0);
+            let p = project(&view.clip_from_world, Vec3::from(point.position) + axis * 2.0);
             assert!(p.truncate().length() < 1e-5 && p.z > 0.0, "{axis}: {p}");
         }
     }
 
     #[test]
     fn depth_is_affine_across_a_plane() {
-        // The shader's receiver plane rests on it: the middle of two points' maps lies on the plane's depth.
+        // The shader's receiver plane depth requires that depth is linear along a line on the map
         let view =
             ShadowPlan::new(&table(&[light(Kind::Rect)]), &[unit_box_at(Vec3::Y)], &VisibleReceivers::default(), false)
                 .lights[0]
@@ -217,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn too_many_lights_go_without_shadow_and_no_caster_needs_no_map() {
+    fn lights_beyond_the_limit_have_no_shadow_and_no_caster_needs_no_map() {
         let plan = ShadowPlan::new(
             &table(&[light(Kind::Rect); 40]),
             &[unit_box_at(Vec3::ZERO)],
@@ -227,7 +231,7 @@ mod tests {
         assert_eq!((plan.views, plan.masks.len()), (MAX_SHADOWS, MAX_SHADOWS / 4));
         let all_round = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
         let plan = ShadowPlan::new(&table(&[light(Kind::Rect); 16]), &all_round, &VisibleReceivers::default(), false);
-        // Eight cubes, and no room for more.
+        // Eight cubes use up all views
         let kind = |light: usize| plan.masks[light / 4].slots[light % 4][0].kind;
         assert_eq!((plan.views, kind(7), kind(8)), (MAX_VIEWS, Projection::Cube as u32, 0));
         assert_eq!(

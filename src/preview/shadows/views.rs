@@ -1,4 +1,4 @@
-//! Shadow view fitting: one view that covers all casters where they fit into it, six for a light among them.
+//! Fitting of shadow map views: one view that contains all casters where they fit, a cube map for a light among them.
 
 use super::focus::VisibleReceivers;
 use super::slots::{GpuShadowSlot, Projection};
@@ -7,26 +7,28 @@ use crate::preview::lights::light_table::{GpuLight, Kind};
 use bytemuck::Zeroable;
 use glam::{Affine3A, Mat4, Quat, Vec2, Vec3, Vec4};
 
-/// Tangent of the widest half angle of one view, 75 degrees; a light whose casters reach farther gets a cube.
-const WIDEST: f32 = 3.73;
-/// Half width of a cube face at distance 1, a little over 1 so that the kernel may reach over the edge.
+/// Tangent of the largest half angle of a single view, 75 degrees; a light with casters beyond it gets a cube map.
+const MAX_TANGENT: f32 = 3.73;
+/// Tangent of the half angle of a cube face, slightly over 1 so that the filter kernel may cross the edge.
 const CUBE_FACE: f32 = 1.04;
-/// The same of a face that serves alone, close up: what lies about an edge of the cube fits into one, too.
-const LONE_FACE: f32 = 1.6;
-/// Nearest caster, metres.
+/// Tangent of the half angle of a cube face that is used alone, in close-ups: receivers near a cube edge fit into it.
+const SINGLE_FACE: f32 = 1.6;
+/// Near plane, metres.
 const NEAR_M: f32 = 0.01;
 
-/// How a light reads its shadow, and up to `room` views; an empty slot and none if it casts no shadow.
+/// Returns a light's slot and the clip-from-world matrices of its views, at most `max_views`; an empty slot and none if
+/// it casts no shadow.
 pub(crate) fn fit_views(
     light: &GpuLight,
     casters: &[OrientedBox],
     receivers: &VisibleReceivers,
-    room: usize,
+    max_views: usize,
 ) -> (GpuShadowSlot, Vec<Mat4>) {
     let corners: Vec<Vec3> = casters.iter().flat_map(OrientedBox::corners).collect();
     if corners.is_empty() {
         return (GpuShadowSlot::zeroed(), Vec::new());
     }
+    // Bound the casters and the penumbra
     let frame = Affine3A::from_mat3_translation(
         glam::Mat3::from_cols(
             Vec3::from(light.right).normalize_or(Vec3::X),
@@ -35,39 +37,42 @@ pub(crate) fn fit_views(
         ),
         light.position.into(),
     );
-    let spot_limit = light.outer_rad.min(1.3).tan().min(WIDEST);
+    let spot_limit = light.outer_rad.min(1.3).tan().min(MAX_TANGENT);
     let nearest = casters.iter().map(|caster| caster.distance(light.position.into())).fold(f32::INFINITY, f32::min);
-    // No penumbra is wider, as tangents.
+    // The largest penumbra, as tangents, is the margin around visible receivers
     let focus = (light.softness() / nearest.max(NEAR_M), receivers);
-    let one = match light.kind {
+    // Fit one view by the kind of light, or a cube if some casters do not fit
+    let single = match light.kind {
         kind if kind == Kind::Sun as u32 => parallel(&frame, &corners, light.softness(), receivers),
         kind if kind == Kind::Spot as u32 => perspective(&frame, &corners, spot_limit, focus),
         kind if kind == Kind::Rect as u32 || kind == Kind::Disc as u32 => {
-            if room >= 6 && corners.iter().any(|corner| !is_within(&frame, *corner)) {
+            if max_views >= 6 && corners.iter().any(|corner| !is_within(&frame, *corner)) {
                 return cube(&frame, focus);
             }
-            perspective(&frame, &corners, WIDEST, focus)
+            perspective(&frame, &corners, MAX_TANGENT, focus)
         }
         _ => {
             let centre = corners.iter().sum::<Vec3>() / corners.len() as f32;
             let towards = crate::math::look_at(frame.translation.into(), centre, 0.0);
-            if room >= 6 && corners.iter().any(|corner| !is_within(&towards, *corner)) {
+            if max_views >= 6 && corners.iter().any(|corner| !is_within(&towards, *corner)) {
                 return cube(&Affine3A::from_translation(light.position.into()), focus);
             }
-            perspective(&towards, &corners, WIDEST, focus)
+            perspective(&towards, &corners, MAX_TANGENT, focus)
         }
     };
-    match one.filter(|_| room >= 1) {
+    match single.filter(|_| max_views >= 1) {
         Some((slot, view)) => (slot, vec![view]),
         None => (GpuShadowSlot::zeroed(), Vec::new()),
     }
 }
 
+/// Returns true if a point is inside of the largest single view of a frame.
 fn is_within(frame: &Affine3A, point: Vec3) -> bool {
     let local = frame.inverse().transform_point3(point);
-    local.z < -NEAR_M && local.x.abs().max(local.y.abs()) < -local.z * WIDEST
+    local.z < -NEAR_M && local.x.abs().max(local.y.abs()) < -local.z * MAX_TANGENT
 }
 
+/// Returns a slot with a frame, a projection and an image plane extent.
 fn slot(frame: &Affine3A, kind: Projection, low: Vec2, field: Vec2) -> GpuShadowSlot {
     GpuShadowSlot {
         position: frame.translation.into(),
@@ -82,8 +87,8 @@ fn slot(frame: &Affine3A, kind: Projection, low: Vec2, field: Vec2) -> GpuShadow
     }
 }
 
-/// The view from `frame` along its -Z that covers the corners, no wider than `limit` (a tangent), or what is seen of them
-/// with a margin; none if it sees none.
+/// Fits a perspective view along the -Z of `frame` to the corners, up to a half angle of tangent `limit`, and focuses
+/// it on the receivers with a margin; none if all corners are behind it.
 fn perspective(
     frame: &Affine3A,
     corners: &[Vec3],
@@ -91,6 +96,7 @@ fn perspective(
     (margin, receivers): (Vec2, &VisibleReceivers),
 ) -> Option<(GpuShadowSlot, Mat4)> {
     let inverse = frame.inverse();
+    // Compute the tangents of the corners
     let (mut low, mut high) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
     let mut reaches_behind = false;
     for corner in corners {
@@ -102,25 +108,26 @@ fn perspective(
     if !low.is_finite() || !high.is_finite() {
         return None;
     }
-    // A caster that reaches past the light's plane may reach the edge of the view anywhere.
-    let reach = Vec2::splat(limit);
-    let (low, high) = if reaches_behind { (-reach, reach) } else { (low, high) };
+    // A caster that extends behind the light may cover any part of the view
+    let limit = Vec2::splat(limit);
+    let (low, high) = if reaches_behind { (-limit, limit) } else { (low, high) };
     let edge = (high - low) * 0.01 + 1e-3;
-    let whole = ((low - edge).clamp(-reach, reach), (high + edge).clamp(-reach, reach));
-    let (low, high) = receivers.narrowed(whole, margin, |point| tangents(&inverse, point));
+    let whole = ((low - edge).clamp(-limit, limit), (high + edge).clamp(-limit, limit));
+    // Focus on the visible receivers
+    let (low, high) = receivers.focused(whole, margin, |point| tangents(&inverse, point));
     let field = high - low;
     ((whole.1 - whole.0).min_element() > 1e-4).then(|| {
         (slot(frame, Projection::Perspective, low, field), perspective_matrix(low, high) * Mat4::from(inverse))
     })
 }
 
-/// Where a view sees a point, as tangents; none behind it.
+/// Projects a point to tangents in a view; none behind the near plane.
 fn tangents(view_from_world: &Affine3A, point: Vec3) -> Option<Vec2> {
     let local = view_from_world.transform_point3(point);
     (local.z < -NEAR_M).then(|| local.truncate() / -local.z)
 }
 
-/// Clip from view for tangents from `low` to `high`, depth reversed and endless.
+/// Returns clip from view for tangents from `low` to `high`, with reversed infinite depth.
 fn perspective_matrix(low: Vec2, high: Vec2) -> Mat4 {
     let (size, sum) = (high - low, high + low);
     Mat4::from_cols(
@@ -131,8 +138,8 @@ fn perspective_matrix(low: Vec2, high: Vec2) -> Mat4 {
     )
 }
 
-/// The view along the -Z of `frame` that covers the corners, or what is seen of them with the penumbra of a sun whose
-/// half width is `softness` (tangents).
+/// Fits a parallel view along the -Z of `frame` to the corners and focuses it on the receivers, with the penumbra of a
+/// sun of angular radius `softness` (tangents) as margin.
 fn parallel(
     frame: &Affine3A,
     corners: &[Vec3],
@@ -145,12 +152,12 @@ fn parallel(
         .map(|corner| inverse.transform_point3(*corner))
         .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     let (low, high) = (low - 0.01, high + 0.01);
-    let place = |point| Some(inverse.transform_point3(point).truncate());
-    let narrowed = receivers.narrowed((low.truncate(), high.truncate()), softness * (high.z - low.z), place);
-    let (low, high) = (narrowed.0.extend(low.z), narrowed.1.extend(high.z));
+    let project = |point| Some(inverse.transform_point3(point).truncate());
+    let focused = receivers.focused((low.truncate(), high.truncate()), softness * (high.z - low.z), project);
+    let (low, high) = (focused.0.extend(low.z), focused.1.extend(high.z));
     let size = high - low;
     size.is_finite().then(|| {
-        // Depth 1 at the side of the light, 0 behind the last caster.
+        // Depth is 1 towards the light and 0 behind the last caster
         let scale = Vec3::new(2.0 / size.x, 2.0 / size.y, 1.0 / size.z);
         let offset = Vec3::new(-(low.x + high.x) / size.x, -(low.y + high.y) / size.y, -low.z / size.z);
         let projection = Mat4::from_translation(offset) * Mat4::from_scale(scale);
@@ -159,10 +166,11 @@ fn parallel(
     })
 }
 
-/// Six views in the order +X, -X, +Y, -Y, +Z, -Z of the frame, turned as `shadow_mask.wgsl` repeats; or one of them, where
-/// a part of it holds all that is seen with its margin.
+/// Returns the views of a cube map in the order +X, -X, +Y, -Y, +Z, -Z of the frame, oriented as in `shadow_mask.wgsl`;
+/// or a single face where a focused part of it contains all receivers with their margin.
 fn cube(frame: &Affine3A, (margin, receivers): (Vec2, &VisibleReceivers)) -> (GpuShadowSlot, Vec<Mat4>) {
     let quarter = std::f32::consts::FRAC_PI_2;
+    // Rotations of the faces
     let turns = [
         Quat::from_rotation_y(-quarter),
         Quat::from_rotation_y(quarter),
@@ -171,15 +179,17 @@ fn cube(frame: &Affine3A, (margin, receivers): (Vec2, &VisibleReceivers)) -> (Gp
         Quat::from_rotation_y(2.0 * quarter),
         Quat::IDENTITY,
     ];
-    let lone = Vec2::splat(LONE_FACE);
+    let single = Vec2::splat(SINGLE_FACE);
+    // Use a single face if it contains all receivers
     for frame in turns.map(|turn| *frame * Affine3A::from_quat(turn)) {
-        let place = |point| tangents(&frame.inverse(), point);
-        let (low, high) = receivers.narrowed((-lone, lone), margin, place);
-        if receivers.is_within((-lone, lone), margin, place) && high - low != 2.0 * lone {
+        let project = |point| tangents(&frame.inverse(), point);
+        let (low, high) = receivers.focused((-single, single), margin, project);
+        if receivers.is_within((-single, single), margin, project) && high - low != 2.0 * single {
             let view = perspective_matrix(low, high) * Mat4::from(frame.inverse());
             return (slot(&frame, Projection::Perspective, low, high - low), vec![view]);
         }
     }
+    // Otherwise all six faces
     let face = Vec2::splat(CUBE_FACE);
     let view = |turn| {
         let inverse = (*frame * Affine3A::from_quat(turn)).inverse();
