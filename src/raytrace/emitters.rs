@@ -1,189 +1,139 @@
-//! What emitters give along a path: by sampling them at a surface, and by rays that meet them. Where both can find a light,
-//! they share it by multiple importance sampling.
+//! Emitter hits: light of emitters that rays cross, weighted against light sampling and photons.
+//!
+//! Emitters neither cast shadows nor stop light; the camera alone sees their front as solid.
 
-use super::caustics::Rival;
-use super::lights::{LightImportances, TracedLight};
+use super::caustics::CausticMis;
+use super::events::PathEvent;
 use super::medium_stack::MediumStack;
-use super::path_tracer::{Path, Place, Tracer};
-use super::ray_caster::{TOUCHING, reaches};
-use super::sampler::{self, Purpose, Sampler};
-use super::sink::RadianceSink;
+use super::ray_caster::{EMITTER_CONTACT, RayCaster, is_before};
+use super::sink::{FirstHit, FirstObject, RadianceSink};
 use crate::math::Ray;
 use glam::Vec3;
 
-/// The last vertex that sampled lights, as far as weighting a later hit needs it.
+/// The last vertex that sampled lights, as far as the MIS weight of a later emitter hit needs it.
 #[derive(Clone, Copy, Debug)]
-pub struct Vertex {
+pub struct MisVertex {
+    /// Position of the surface.
     pub position: Vec3,
+    /// Shading normal.
     pub normal: Vec3,
-    /// Where the ray left, and how far it has come through thin panes since.
-    pub left_from: Vec3,
+    /// Origin of the ray that left the vertex.
+    pub ray_origin: Vec3,
+    /// Distance from there through thin panes to the origin of the present ray, metres.
     pub travelled: f32,
-    /// Density of the direction that was taken, times the ways that were taken for each sample of the lights; none after
-    /// a mirror, glass or at the camera.
+    /// Density of the sampled direction times the number of paths per light sample, 1/sr; none after specular scattering
+    /// and at the camera.
     pub pdf: Option<f32>,
-    /// One light was chosen there, if any was sampled; otherwise all were.
-    pub one_light: bool,
-    /// Photons that bring the same light, where the path went by mirrors and glass.
-    pub rival: Option<Rival>,
+    /// One light is sampled at the vertex rather than all of them.
+    pub samples_one_light: bool,
+    /// Photons that carry the same light, for a path that left through specular surfaces.
+    pub photons: Option<CausticMis>,
 }
 
-impl Vertex {
-    /// Where a ray begins whose hits have all the weight: nothing else could find them.
+impl MisVertex {
+    /// A vertex whose rays' emitter hits have the weight 1, as no other technique finds them.
     pub fn new(position: Vec3, normal: Vec3) -> Self {
-        let left_from = position;
-        Vertex { position, normal, left_from, travelled: 0.0, pdf: None, one_light: false, rival: None }
+        MisVertex {
+            position,
+            normal,
+            ray_origin: position,
+            travelled: 0.0,
+            pdf: None,
+            samples_one_light: false,
+            photons: None,
+        }
     }
 }
 
-/// Veach's power heuristic with exponent 2.
-fn power_heuristic(ours: f32, other: f32) -> f32 {
-    // Scaled first: squares of densities overflow near emitters.
-    if other > ours {
-        let r = ours / other;
+/// The power heuristic with exponent 2 (Veach 1997, section 9.2.2).
+pub fn power_heuristic(pdf: f32, other_pdf: f32) -> f32 {
+    // The ratio first: squares of densities overflow near emitters.
+    if other_pdf > pdf {
+        let r = pdf / other_pdf;
         r * r / (1.0 + r * r)
     } else {
-        let r = other / ours;
+        let r = other_pdf / pdf;
         1.0 / (1.0 + r * r)
     }
 }
 
-impl<'a> Tracer<'a> {
-    /// The camera sees emitters as solid from the front. True if one hides what is behind it.
-    pub fn camera_sees_emitter(&mut self, ray: &Ray, distance: f32, sink: &mut impl RadianceSink) -> bool {
-        let scene = self.scene;
-        let nearest = scene
-            .lights
-            .iter()
-            .filter(|light| light.visible_to_camera)
-            .filter_map(|light| light.intersect(ray.origin, ray.direction).map(|seen| (light, seen)))
-            .filter(|(_, seen)| reaches(ray, seen.distance, distance))
-            .min_by(|a, b| a.1.distance.total_cmp(&b.1.distance));
-        let Some((light, seen)) = nearest else { return false };
-        if seen.distance.is_finite() {
-            sink.add(light.layer, light.tint * seen.luminance);
-            return true;
-        }
-        // Sun and surround lie behind everything, and may both be seen.
-        for light in scene.lights.iter().filter(|l| l.visible_to_camera) {
-            if let Some(seen) = light.intersect(ray.origin, ray.direction) {
-                sink.add(light.layer, light.tint * seen.luminance);
-            }
+impl RayCaster<'_> {
+    /// Adds the nearest emitter that the camera sees in front of a surface at `distance`. Returns true if there is one,
+    /// which hides what is behind it.
+    pub fn add_visible_emitter(&mut self, ray: &Ray, distance: f32, sink: &mut impl RadianceSink) -> bool {
+        let visible = || {
+            self.scene
+                .lights
+                .iter()
+                .zip(0..)
+                .filter(|(light, _)| light.visible_to_camera)
+                .filter_map(|(light, i)| light.intersect(ray.origin, ray.direction).map(|hit| (light, i, hit)))
+        };
+        let nearest = visible()
+            .filter(|(_, _, hit)| is_before(ray, hit.distance, distance))
+            .min_by(|a, b| a.2.distance.total_cmp(&b.2.distance));
+        let Some((_, nearest, nearest_hit)) = nearest else { return false };
+        let distance = nearest_hit.distance;
+        sink.first_hit(|| FirstHit {
+            ray: *ray,
+            distance,
+            normal: Vec3::ZERO,
+            albedo: Vec3::ONE,
+            object: FirstObject::Emitter,
+        });
+        // Sun and surround lie behind everything, and may both be visible.
+        for (light, index, hit) in visible().filter(|(_, i, _)| distance.is_infinite() || *i == nearest) {
+            sink.record(|| PathEvent::VisibleEmitter { light: index, distance: hit.distance });
+            sink.add(light.layer, light.tint * hit.luminance);
         }
         true
     }
 
-    /// Emitters that a scattered ray crosses before it ends.
-    pub fn meet_emitters(
+    /// Adds the emitters that a scattered ray crosses before a surface at `distance`, weighted against light sampling
+    /// and photons at `vertex`.
+    pub fn add_emitter_hits(
         &mut self,
         ray: &Ray,
         distance: f32,
         throughput: Vec3,
-        vertex: &Vertex,
+        vertex: &MisVertex,
         media: &MediumStack,
         sink: &mut impl RadianceSink,
     ) {
         let scene = self.scene;
-        // What lies on the surface is met, too.
-        let end = distance + 2.0 * TOUCHING * (distance + ray.origin.abs().max_element());
-        scene.emitter_bvh.for_each_hit(&scene.lights, &Ray { t_max: end, ..*ray }, &mut self.stack, |index, seen| {
-            if !reaches(ray, seen.distance, distance) {
+        // An emitter may lie on the surface.
+        let t_max = distance + 2.0 * EMITTER_CONTACT * (distance + ray.origin.abs().max_element());
+        scene.emitter_bvh.for_each_hit(&scene.lights, &Ray { t_max, ..*ray }, &mut self.stack, |index, hit| {
+            if !is_before(ray, hit.distance, distance) {
                 return;
             }
             let light = &scene.lights[index as usize];
-            let weight = match vertex.pdf {
-                None if light.is_sampled() => vertex.rival.map_or(1.0, |rival| {
-                    let pdf = light.pdf(vertex.left_from, ray.direction, vertex.travelled + seen.distance);
-                    let chance = scene.light_sampler.pmf(&scene.lights, index, vertex.position, rival.normal());
-                    rival.weight_of_path(&scene.casters, ray.direction, pdf * chance)
+            let light_pdf = || light.pdf(vertex.ray_origin, ray.direction, vertex.travelled + hit.distance);
+            let mis_weight = match vertex.pdf {
+                // After specular scattering: against photons.
+                None if light.is_sampled() => vertex.photons.map_or(1.0, |photons| {
+                    let pdf = light_pdf();
+                    let pmf = scene.light_sampler.pmf(&scene.lights, index, vertex.position, photons.normal());
+                    photons.path_weight(&scene.casters, ray.direction, pdf * pmf)
                 }),
+                // After non-specular scattering: against light sampling.
                 Some(pdf) if light.is_sampled() => {
-                    let choice = if vertex.one_light {
+                    let pmf = if vertex.samples_one_light {
                         scene.light_sampler.pmf(&scene.lights, index, vertex.position, vertex.normal)
                     } else {
                         1.0
                     };
-                    let other = light.pdf(vertex.left_from, ray.direction, vertex.travelled + seen.distance);
-                    power_heuristic(pdf, choice * other)
+                    power_heuristic(pdf, pmf * light_pdf())
                 }
                 _ => 1.0,
             };
-            let mut left = throughput;
-            if seen.distance.is_finite() {
-                left *= media.transmittance(&scene.materials, seen.distance);
+            let mut throughput = throughput;
+            if hit.distance.is_finite() {
+                throughput *= media.transmittance(&scene.materials, hit.distance);
             }
-            sink.add(light.layer, left * light.tint * (seen.luminance * weight));
+            sink.record(|| PathEvent::EmitterHit { light: index, distance: hit.distance, mis_weight });
+            sink.add(light.layer, throughput * light.tint * (hit.luminance * mis_weight));
         });
-    }
-
-    /// Whether all lights are sampled where a path is now; otherwise one is chosen.
-    pub fn samples_all(&self, path: &Path) -> bool {
-        self.scene.lights.len() == 1 || (path.wide_bounces == 0 && self.scene.plan().sample_all_lights)
-    }
-
-    /// Light sampling at a surface from which so many `ways` are taken: all lights, or one chosen by what it gives.
-    pub fn sample_lights(
-        &mut self,
-        path: &Path,
-        place: &Place<'_>,
-        sampler: &Sampler,
-        first_set: &sampler::Set,
-        ways: f32,
-        sink: &mut impl RadianceSink,
-    ) {
-        let scene = self.scene;
-        if self.samples_all(path) {
-            for (slot, light) in scene.lights.iter().enumerate().filter(|(_, l)| l.is_sampled()) {
-                let slot = slot as u32;
-                let set =
-                    if slot == 0 { *first_set } else { sampler.set(Purpose::Light { slot, bounce: path.bounce }) };
-                self.sample_light(light, 1.0, path, place, &set, ways, sink);
-            }
-            return;
-        }
-        let choice = sampler::rest(first_set)[0];
-        let chosen = match place.importances {
-            Some(importances) => importances.sample(&scene.lights, choice),
-            None => {
-                self.light_importances(place).as_ref().and_then(|importances| importances.sample(&scene.lights, choice))
-            }
-        };
-        if let Some((light, chance)) = chosen {
-            self.sample_light(&scene.lights[light as usize], chance, path, place, first_set, ways, sink);
-        }
-    }
-
-    /// What the lights give at a surface.
-    pub fn light_importances(&self, place: &Place<'_>) -> Option<LightImportances<'a>> {
-        self.scene.light_sampler.importances(&self.scene.lights, place.surface.position, place.bsdf.normal())
-    }
-
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "called in two places; what it needs of the path's state has no name"
-    )]
-    fn sample_light(
-        &mut self,
-        light: &TracedLight,
-        choice: f32,
-        path: &Path,
-        place: &Place<'_>,
-        set: &sampler::Set,
-        ways: f32,
-        sink: &mut impl RadianceSink,
-    ) {
-        let Place { surface, bsdf, .. } = *place;
-        let Some(sample) = light.sample(surface.position, sampler::point(set)) else { return };
-        let (value, pdf) = bsdf.eval(sample.direction);
-        if value == Vec3::ZERO {
-            return;
-        }
-        let weight = sample.pdf.map_or(1.0, |light_pdf| power_heuristic(light_pdf * choice, pdf * ways));
-        let origin = surface.spawn_origin(sample.direction);
-        let visible = self.visibility(origin, sample.direction, sample.distance, sample.pdf.is_some(), path.media);
-        if visible != Vec3::ZERO {
-            sink.add(light.layer, path.throughput * visible * value * light.tint * (sample.value * weight / choice));
-        }
     }
 }
 
@@ -192,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_two_techniques_share_one_estimate() {
+    fn the_weights_of_two_techniques_add_up_to_one() {
         for (a, b) in [(1.0, 1.0), (1e-20, 3.0), (1e30, 1e30), (2.0, 0.0)] {
             let sum = power_heuristic(a, b) + power_heuristic(b, a);
             assert!((sum - 1.0).abs() < 1e-6, "{a} {b}: {sum}");

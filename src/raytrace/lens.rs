@@ -30,6 +30,39 @@ impl Aperture {
     }
 }
 
+/// A source of camera rays.
+pub trait PixelCamera {
+    /// Origin and unit direction of the ray through a point of the picture, in pixels from the top left; `u` samples the
+    /// lens.
+    fn ray(&self, point_px: Vec2, u: Vec2) -> (Vec3, Vec3);
+}
+
+/// The scene's camera at a picture size.
+#[derive(Clone, Debug)]
+pub struct FilmCamera {
+    aperture: Aperture,
+    frame: CameraFrame,
+    size: Vec2,
+}
+
+impl FilmCamera {
+    /// Unit optical axis, world space.
+    pub fn forward(&self) -> Vec3 {
+        self.frame.forward()
+    }
+
+    /// Width of a pixel at 1 m, metres.
+    pub fn pixel_m(&self) -> f32 {
+        2.0 * self.frame.half_extent.x / self.size.x
+    }
+}
+
+impl PixelCamera for FilmCamera {
+    fn ray(&self, point_px: Vec2, u: Vec2) -> (Vec3, Vec3) {
+        self.aperture.ray(&self.frame, point_px / self.size, u)
+    }
+}
+
 /// Where camera rays start and go. The camera sits at the origin of the tracer's space.
 #[derive(Clone, Debug)]
 pub struct Lens {
@@ -75,9 +108,10 @@ impl Lens {
         self.scene_camera.frame(self.target, aspect)
     }
 
-    /// Origin and unit direction of the ray through a picture point (0..1, from the top left), relative to the camera.
-    pub fn ray(&self, frame: &CameraFrame, picture_point: Vec2, u: Vec2) -> (Vec3, Vec3) {
-        self.aperture.ray(frame, picture_point, u)
+    /// The camera for a picture of so many pixels.
+    pub fn film_camera(&self, width: u32, height: u32) -> FilmCamera {
+        let size = Vec2::new(width as f32, height as f32);
+        FilmCamera { aperture: self.aperture, frame: self.frame(size.x / size.y), size }
     }
 }
 
@@ -104,7 +138,7 @@ mod tests {
         let mut counts = vec![0.0; CELLS * CELLS];
         let picture_point = Vec2::new(0.2, 0.7);
         for _ in 0..SAMPLES {
-            let (origin, direction) = lens.ray(&frame, picture_point, numbers.square());
+            let (origin, direction) = lens.aperture().ray(&frame, picture_point, numbers.square());
             assert!(origin.z.abs() < 1e-7 && (direction.length() - 1.0).abs() < 1e-5);
             let focus = origin + direction * ((-2.0 - origin.z) / direction.z);
             assert!((focus - frame.direction(picture_point) * 2.0).length() < 2e-6);

@@ -1,369 +1,502 @@
-//! The path tracer: light at a camera ray, sample by sample, light by light.
+//! The path tracer.
 //!
-//! Unidirectional, with light sampling at every vertex and multiple importance sampling (Veach 1997, power heuristic)
-//! where both techniques can find a light. `direct` is the same with one scattering event; mirrors and glass are passed
-//! through in both. Emitters neither cast shadows nor stop light: only the camera sees them as solid from the front.
+//! Unidirectional path tracing with light sampling at every non-specular vertex, and multiple importance sampling (Veach
+//! 1997, power heuristic) where both techniques can find a light. The method `direct` is the same with one non-specular
+//! scattering event; specular surfaces are followed in both.
 //!
-//! Light sampling goes straight through thin panes, as light does. Through bodies of glass it goes straight, too, but only
-//! for lights without a size, which no refracted ray would ever find: right for flat glass. What else mirrors and glass
-//! throw on surfaces is gathered from photons, where there are any; without, light goes straight through curved glass, too.
+//! Light sampling crosses thin panes on the straight line. It crosses bodies of glass only towards delta lights, which no
+//! refracted ray would ever hit: exact for flat glass. All other light that mirrors and glass throw on surfaces comes
+//! from the photon map, where there is one; without one, delta lights also shine straight through curved glass.
 
-use super::bsdf::{Bsdf, Polarisation};
-use super::bvh::TraversalStack;
-use super::caustics::{Gathered, PhotonMap, Rival};
-use super::emitters::Vertex;
+use super::bsdf::{Bsdf, BsdfSample, Polarisation};
+use super::caustics::{CausticMis, GatherDensities, PhotonMap};
+use super::emitters::{MisVertex, power_heuristic};
+use super::events::{Lobe, PathEnd, PathEvent, PathVertex};
 use super::geometry::SurfaceInteraction;
 use super::lights::LightImportances;
+use super::limits::PathLimits;
 use super::medium_stack::MediumStack;
-use super::prepare::RenderScene;
+use super::ray_caster::RayCaster;
+use super::render_scene::RenderScene;
+use super::roulette::{survival_probability, survives};
 use super::sampler::{self, Purpose, Sampler};
 use super::sink::RadianceSink;
-use crate::color::luminance;
 use crate::math::Ray;
 use glam::Vec3;
 
-/// Which bounces are followed.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits {
-    /// Scattering events at surfaces that are neither mirror nor glass.
-    pub wide_bounces: u32,
-    /// All events, mirrors and glass too.
-    pub all_bounces: u32,
-    /// Ways that are followed from the first surface that scatters widely; the way there is shared.
-    pub branches: u32,
-}
-
-/// Bounces before roulette begins.
-const ROULETTE_FROM: u32 = 3;
-/// Surfaces of clear glass that the camera sees, one behind the other, at which both ways are followed: what shines in them
-/// is bright, and a path that chose would find it once in twenty times.
-const SPLITS: u32 = 3;
-/// The largest number that a choice can be.
+/// Faces of clear glass in front of the camera, one behind the other, at which both reflection and transmission are
+/// followed: what shines in them is bright, and a path that chose one would find it once in twenty times.
+const DIELECTRIC_SPLITS: u32 = 3;
+/// Part of the throughput below which a path after a dielectric split is not split again.
+const MIN_SPLIT_THROUGHPUT: f32 = 0.25;
+/// The largest lobe choice below 1.
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
-/// A way with less of the light than this does not branch any more.
-const SMALL_SHARE: f32 = 0.25;
 
-/// A thread's view of the scene with its scratch space and counters.
+/// Traces paths for one thread.
 #[derive(Debug)]
-pub struct Tracer<'a> {
-    pub(super) scene: &'a RenderScene,
-    /// Where photons bring caustics; without, paths find them.
-    caustics: Option<&'a PhotonMap>,
-    pub(super) stack: TraversalStack,
-    /// Rays traced so far.
-    pub rays: u64,
+pub struct PathTracer<'a> {
+    /// Casts the rays.
+    pub caster: RayCaster<'a>,
+    /// Caustics; without a map, paths find them.
+    photon_map: Option<&'a PhotonMap>,
 }
 
-/// What a path carries from surface to surface.
+/// The state of a path between two vertices.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Path {
+struct PathState {
     ray: Ray,
-    pub(super) throughput: Vec3,
-    /// What of the throughput roulette must not see: glass concentrates radiance by its index squared, branches share.
+    throughput: Vec3,
+    /// Part of the throughput that Russian roulette ignores: the squared index of refraction by which glass scales
+    /// radiance, and the division among split paths.
     roulette_scale: f32,
-    pub(super) media: MediumStack,
+    media: MediumStack,
     polarisation: Polarisation,
-    vertex: Vertex,
-    /// Where the last surface that scatters widely took photons, and all since were such as photons come by.
-    gathered: Option<Gathered>,
-    /// Ways that are followed from the surface where it is.
-    ways: f32,
-    /// Surfaces so far.
-    pub(super) bounce: u32,
-    /// Those of them that are neither mirror nor glass.
-    pub(super) wide_bounces: u32,
+    /// The last vertex that sampled lights.
+    mis_vertex: MisVertex,
+    /// Densities of paths and photons at the last non-specular vertex, if all vertices since were caustic casters.
+    gather: Option<GatherDensities>,
+    /// Number of paths that leave the present vertex.
+    split_factor: f32,
+    /// Vertices so far.
+    depth: u32,
+    /// Non-specular vertices so far.
+    non_specular_depth: u32,
 }
 
-/// Where a path scatters.
+/// A path vertex at which light scatters.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place<'a> {
-    pub(super) surface: &'a SurfaceInteraction,
-    pub(super) bsdf: &'a Bsdf<'a>,
-    /// What the lights give there, where they were computed already.
-    pub(super) importances: Option<&'a LightImportances<'a>>,
-    /// The choice between ways on, where it is made already, 0..1.
-    choice: Option<f32>,
-    /// From the surface before.
+struct ShadingPoint<'a> {
+    surface: &'a SurfaceInteraction,
+    bsdf: &'a Bsdf<'a>,
+    /// Importances of the lights at the point, if they are known already.
+    importances: Option<&'a LightImportances<'a>>,
+    /// Lobe choice in [0, 1), where it is not random.
+    lobe_choice: Option<f32>,
+    /// Distance from the last vertex, metres.
     distance: f32,
-    /// On the side of the geometric normal.
+    /// The ray arrives on the side of the geometric normal.
     outside: bool,
 }
 
-/// What is done about the lights where a path scatters.
+/// The light sampling at a vertex.
 #[derive(Clone, Copy, Debug)]
-enum Lights {
-    /// They are sampled.
+enum LightSampling {
+    /// Lights are sampled for this path.
     Sample,
-    /// That was done, once for so many ways on.
-    Sampled { ways: f32 },
-    /// None could be of use.
-    Not,
+    /// Lights were sampled once for so many paths.
+    Shared { paths: f32 },
+    /// No lobe can use light samples.
+    Skip,
 }
 
-impl<'a> Tracer<'a> {
-    /// A tracer for one thread.
-    pub fn new(scene: &'a RenderScene) -> Self {
-        Tracer { scene, caustics: None, stack: TraversalStack::default(), rays: 0 }
+impl<'a> PathTracer<'a> {
+    /// A tracer for a scene, with caustics from a photon map or without.
+    pub fn new(scene: &'a RenderScene, photon_map: Option<&'a PhotonMap>) -> Self {
+        PathTracer { caster: RayCaster::with_photon_caustics(scene, photon_map.is_some()), photon_map }
     }
 
-    /// The same with caustics from photons.
-    pub fn with_caustics(scene: &'a RenderScene, caustics: Option<&'a PhotonMap>) -> Self {
-        Tracer { caustics, ..Tracer::new(scene) }
-    }
-
-    /// Whether photons bring caustics.
-    pub(super) fn has_caustics(&self) -> bool {
-        self.caustics.is_some()
-    }
-
-    /// Follows a camera ray and gives every light's share to `sink`.
+    /// Traces a path along a camera ray and adds its contributions to `sink`.
     pub fn trace(
         &mut self,
         origin: Vec3,
         direction: Vec3,
         sampler: &Sampler,
-        limits: Limits,
+        limits: PathLimits,
         sink: &mut impl RadianceSink,
     ) {
-        self.follow_path(origin, direction, sampler, limits, Vertex::new(origin, direction), sink);
+        self.trace_from(origin, direction, sampler, limits, MisVertex::new(origin, direction), sink);
     }
 
-    /// The same for a receptor that has sampled the lights by itself: what of them is met straight on, through thin panes
-    /// as well, is left out.
-    pub fn trace_past_lights(
+    /// Traces a path from a receptor that samples the lights by itself: emitters that are hit on the straight line, also
+    /// through thin panes, do not contribute.
+    pub fn trace_without_direct_light(
         &mut self,
         origin: Vec3,
         direction: Vec3,
         sampler: &Sampler,
-        limits: Limits,
+        limits: PathLimits,
         sink: &mut impl RadianceSink,
     ) {
-        // A density of next to nothing: the other technique has all the weight.
-        let vertex = Vertex { pdf: Some(f32::MIN_POSITIVE), ..Vertex::new(origin, direction) };
-        self.follow_path(origin, direction, sampler, limits, vertex, sink);
+        // With the least density, light sampling has all the MIS weight.
+        let vertex = MisVertex { pdf: Some(f32::MIN_POSITIVE), ..MisVertex::new(origin, direction) };
+        self.trace_from(origin, direction, sampler, limits, vertex, sink);
     }
 
-    fn follow_path(
+    fn trace_from(
         &mut self,
         origin: Vec3,
         direction: Vec3,
         sampler: &Sampler,
-        limits: Limits,
-        vertex: Vertex,
+        limits: PathLimits,
+        mis_vertex: MisVertex,
         sink: &mut impl RadianceSink,
     ) {
-        let mut path = Path {
+        sink.record(|| PathEvent::CameraRay { origin, direction });
+        let mut path = PathState {
             ray: Ray { origin, direction, t_max: f32::INFINITY },
             throughput: Vec3::ONE,
             roulette_scale: 1.0,
             media: MediumStack::default(),
             polarisation: Polarisation::NONE,
-            vertex,
-            gathered: None,
-            ways: 1.0,
-            bounce: 0,
-            wide_bounces: 0,
+            mis_vertex,
+            gather: None,
+            split_factor: 1.0,
+            depth: 0,
+            non_specular_depth: 0,
         };
-        self.walk(&mut path, sampler, limits, sink);
+        self.extend(&mut path, sampler, limits, sink);
     }
 
-    /// Follows a path to its end, and all ways on from where it branches.
-    fn walk(&mut self, path: &mut Path, sampler: &Sampler, limits: Limits, sink: &mut impl RadianceSink) {
-        let scene = self.scene;
+    /// Extends a path, vertex by vertex, to its end, and all paths into which it splits.
+    fn extend(&mut self, path: &mut PathState, sampler: &Sampler, limits: PathLimits, sink: &mut impl RadianceSink) {
+        let scene = self.caster.scene;
         loop {
-            let hit = self.closest(&path.ray);
-            let distance = hit.map_or(f32::INFINITY, |h| h.triangle.t);
-            if path.bounce == 0 {
-                if self.camera_sees_emitter(&path.ray, distance, sink) {
+            // Intersect the ray with the studio
+            let hit = self.caster.intersect(&path.ray);
+            let distance = hit.map_or(f32::INFINITY, |hit| hit.triangle.t);
+
+            // Add the light of emitters in front of the surface
+            if path.depth == 0 {
+                if self.caster.add_visible_emitter(&path.ray, distance, sink) {
                     return;
                 }
             } else {
-                self.meet_emitters(&path.ray, distance, path.throughput, &path.vertex, &path.media, sink);
+                let PathState { ray, throughput, mis_vertex, media, .. } = &*path;
+                self.caster.add_emitter_hits(ray, distance, *throughput, mis_vertex, media, sink);
             }
-            let Some(hit) = hit else { return };
+            let Some(hit) = hit else {
+                sink.record(|| PathEvent::Miss);
+                return;
+            };
             let surface = scene.aggregate.surface(&hit);
             let material = &scene.materials[surface.material as usize];
             let wo = -path.ray.direction;
             let outside = wo.dot(surface.geometric_normal) >= 0.0;
+            if path.depth == 0 {
+                sink.first_hit(|| scene.first_hit(&path.ray, &hit, &surface));
+            }
+
+            // Absorb light along the ray (Beer-Lambert)
             if scene.plan().refraction {
-                let begins_inside =
+                let starts_inside =
                     path.media.innermost().is_none() && material.transmits() && !outside && !surface.is_thin;
-                path.throughput *= if begins_inside {
+                path.throughput *= if starts_inside {
                     material.transmittance(distance)
                 } else {
                     path.media.transmittance(&scene.materials, distance)
                 };
             }
+            sink.record(|| {
+                let (object, part) = scene.object_and_part(&hit);
+                PathEvent::Vertex(PathVertex {
+                    depth: path.depth,
+                    position: surface.position,
+                    distance,
+                    normal: surface.normal,
+                    object,
+                    part: part.to_owned(),
+                    material: surface.material,
+                    throughput: path.throughput,
+                })
+            });
+
+            // Add the surface's emission
             if material.is_emissive() {
-                let glow = scene.layers.len() - 1;
-                sink.add(glow, path.throughput * material.emission * scene.glow_time_s);
+                sink.record(|| PathEvent::Emission);
+                sink.add(scene.emission_layer(), path.throughput * material.emission * scene.emission_time_s);
             }
-            // Straight through a pane a ray goes on after the last bounce, as light sampling there counts on.
-            let ends = path.wide_bounces >= limits.wide_bounces;
-            if path.bounce >= limits.all_bounces || (ends && !(surface.is_thin && material.transmits())) {
+
+            // End the path at its maximum depth, after thin panes, which light sampling at the last vertex crosses, too
+            let is_last = path.non_specular_depth >= limits.max_non_specular_depth;
+            if path.depth >= limits.max_depth || (is_last && !(surface.is_thin && material.transmits())) {
+                sink.record(|| PathEvent::End(PathEnd::Depth));
                 return;
             }
             let bsdf = scene.bsdf(&surface, wo, &path.media, path.polarisation);
-            let lit = material.has_non_specular_lobe() && !ends;
-            let place = Place { surface: &surface, bsdf: &bsdf, importances: None, choice: None, distance, outside };
-            let branches = if lit && path.wide_bounces == 0 { limits.branches } else { 1 };
-            path.ways = branches as f32;
-            if let (true, Some(map)) = (lit, self.caustics) {
-                let bends = limits.all_bounces - 1 - path.bounce;
-                map.of(path.wide_bounces).gather(&surface, &bsdf, path.ways, bends, |layer, value| {
+            let point = ShadingPoint {
+                surface: &surface,
+                bsdf: &bsdf,
+                importances: None,
+                lobe_choice: None,
+                distance,
+                outside,
+            };
+            let samples_lights = material.has_non_specular_lobe() && !is_last;
+            let paths = if samples_lights && path.non_specular_depth == 0 { limits.split_factor } else { 1 };
+            path.split_factor = paths as f32;
+
+            // Gather the photons of caustics
+            if let (true, Some(map)) = (samples_lights, self.photon_map) {
+                let max_specular_depth = limits.max_depth - 1 - path.depth;
+                let photons = map.for_depth(path.non_specular_depth);
+                sink.record(|| PathEvent::PhotonGather { radius: photons.radius() });
+                photons.gather(&surface, &bsdf, path.split_factor, max_specular_depth, |layer, value| {
                     sink.add(layer, path.throughput * value);
                 });
             }
-            if branches > 1 {
-                self.branch(path, &place, branches, sampler, limits, sink);
+
+            // Continue with several paths, or with both lobes of clear glass
+            if paths > 1 {
+                self.split_path(path, &point, paths, sampler, limits, sink);
                 return;
             }
-            if let (true, Some(reflectance)) =
-                (path.bounce < SPLITS && path.wide_bounces == 0, bsdf.dielectric_reflectance())
+            if path.depth < DIELECTRIC_SPLITS
+                && path.non_specular_depth == 0
+                && let Some(reflectance) = bsdf.dielectric_reflectance()
             {
-                self.split(path, &place, reflectance, sampler, limits, sink);
+                self.split_dielectric(path, &point, reflectance, sampler, limits, sink);
                 return;
             }
-            let lights = if lit { Lights::Sample } else { Lights::Not };
-            if !self.scatter(path, &place, lights, sampler, limits, sink) {
+
+            // Continue with one path
+            let lights = if samples_lights { LightSampling::Sample } else { LightSampling::Skip };
+            if !self.scatter(path, &point, lights, sampler, limits, sink) {
                 return;
             }
         }
     }
 
-    /// Follows several ways on from a surface. Where all lights are sampled, once serves all ways.
-    fn branch(
+    /// Continues with several paths from a vertex. Where all lights are sampled, one light sample serves all paths.
+    fn split_path(
         &mut self,
-        path: &mut Path,
-        place: &Place<'_>,
-        branches: u32,
+        path: &mut PathState,
+        point: &ShadingPoint<'_>,
+        paths: u32,
         sampler: &Sampler,
-        limits: Limits,
+        limits: PathLimits,
         sink: &mut impl RadianceSink,
     ) {
-        let ways = branches as f32;
+        sink.record(|| PathEvent::PathSplit { paths });
+        let split_factor = paths as f32;
+
+        // Sample all lights once, or compute their importances once
         let mut importances = None;
-        let lights = if self.samples_all(path) {
-            let set = sampler.set(Purpose::Light { slot: 0, bounce: path.bounce });
-            self.sample_lights(path, place, sampler, &set, ways, sink);
-            Lights::Sampled { ways }
+        let lights = if self.samples_all_lights(path) {
+            let set = sampler.set(Purpose::Light { slot: 0, bounce: path.depth });
+            self.sample_lights(path, point, sampler, &set, split_factor, sink);
+            LightSampling::Shared { paths: split_factor }
         } else {
-            importances = self.light_importances(place);
-            Lights::Sample
+            importances = self.light_importances(point);
+            LightSampling::Sample
         };
-        let place = &Place { importances: importances.as_ref(), ..*place };
-        path.throughput /= ways;
-        path.roulette_scale /= ways;
-        for branch in 0..branches {
-            let (mut path, sampler) = (*path, sampler.branch(branch, branches));
-            if self.scatter(&mut path, place, lights, &sampler, limits, sink) {
-                self.walk(&mut path, &sampler, Limits { branches: 1, ..limits }, sink);
+
+        // Divide the throughput among the paths
+        let point = &ShadingPoint { importances: importances.as_ref(), ..*point };
+        path.throughput /= split_factor;
+        path.roulette_scale /= split_factor;
+        for index in 0..paths {
+            sink.record(|| PathEvent::Branch { index });
+            let (mut path, sampler) = (*path, sampler.branch(index, paths));
+            if self.scatter(&mut path, point, lights, &sampler, limits, sink) {
+                self.extend(&mut path, &sampler, PathLimits { split_factor: 1, ..limits }, sink);
             }
         }
     }
 
-    /// Follows what clear glass reflects and what it lets through.
-    fn split(
+    /// Continues with both reflection and transmission at clear glass.
+    fn split_dielectric(
         &mut self,
-        path: &Path,
-        place: &Place<'_>,
+        path: &PathState,
+        point: &ShadingPoint<'_>,
         reflectance: f32,
         sampler: &Sampler,
-        limits: Limits,
+        limits: PathLimits,
         sink: &mut impl RadianceSink,
     ) {
-        for (choice, share) in [(0.0, reflectance), (BELOW_ONE, 1.0 - reflectance)] {
-            let branches = if share < SMALL_SHARE { 1 } else { limits.branches };
-            let mut path = Path { throughput: path.throughput * share, ..*path };
-            path.roulette_scale *= share;
-            let place = &Place { choice: Some(choice), ..*place };
-            if share > 0.0 && self.scatter(&mut path, place, Lights::Not, sampler, limits, sink) {
-                self.walk(&mut path, sampler, Limits { branches, ..limits }, sink);
+        sink.record(|| PathEvent::DielectricSplit { reflectance });
+        for (index, (lobe_choice, part)) in [(0.0, reflectance), (BELOW_ONE, 1.0 - reflectance)].into_iter().enumerate()
+        {
+            sink.record(|| PathEvent::Branch { index: index as u32 });
+            let split_factor = if part < MIN_SPLIT_THROUGHPUT { 1 } else { limits.split_factor };
+            let mut path = PathState { throughput: path.throughput * part, ..*path };
+            path.roulette_scale *= part;
+            let point = &ShadingPoint { lobe_choice: Some(lobe_choice), ..*point };
+            if part > 0.0 && self.scatter(&mut path, point, LightSampling::Skip, sampler, limits, sink) {
+                self.extend(&mut path, sampler, PathLimits { split_factor, ..limits }, sink);
             }
         }
     }
 
-    /// Samples the lights at a surface and takes the path on from there. False where it ends.
+    /// Samples the lights and the BSDF at a vertex and updates the path to leave it. Returns false if the path ends.
     #[inline(always)]
     fn scatter(
         &mut self,
-        path: &mut Path,
-        place: &Place<'_>,
-        lights: Lights,
+        path: &mut PathState,
+        point: &ShadingPoint<'_>,
+        lights: LightSampling,
         sampler: &Sampler,
-        limits: Limits,
+        limits: PathLimits,
         sink: &mut impl RadianceSink,
     ) -> bool {
-        let Place { surface, bsdf, distance, outside, .. } = *place;
-        let bounce = path.bounce;
-        let before = path.vertex;
-        let [light_set, set] = sampler.pair(Purpose::Light { slot: 0, bounce }, Purpose::Bsdf { bounce });
-        let ways = match lights {
-            Lights::Sample => {
-                self.sample_lights(path, place, sampler, &light_set, 1.0, sink);
+        let ShadingPoint { surface, bsdf, distance, outside, .. } = *point;
+        let depth = path.depth;
+        let last_mis_vertex = path.mis_vertex;
+
+        // Sample the lights
+        let [light_set, bsdf_set] =
+            sampler.pair(Purpose::Light { slot: 0, bounce: depth }, Purpose::Bsdf { bounce: depth });
+        let paths_per_light_sample = match lights {
+            LightSampling::Sample => {
+                self.sample_lights(path, point, sampler, &light_set, 1.0, sink);
                 1.0
             }
-            Lights::Sampled { ways } => ways,
-            Lights::Not => 1.0,
+            LightSampling::Shared { paths } => paths,
+            LightSampling::Skip => 1.0,
         };
-        path.vertex = Vertex { one_light: !self.samples_all(path), ..Vertex::new(surface.position, bsdf.normal()) };
-        let [lobe, roulette] = sampler::rest(&set);
-        let Some(sample) = bsdf.sample(place.choice.unwrap_or(lobe), sampler::point(&set)) else { return false };
-        let ends = path.wide_bounces >= limits.wide_bounces;
-        if ends && !sample.is_undeviated {
+        path.mis_vertex = MisVertex {
+            samples_one_light: !self.samples_all_lights(path),
+            ..MisVertex::new(surface.position, bsdf.normal())
+        };
+
+        // Sample the BSDF
+        let [lobe, roulette] = sampler::rest(&bsdf_set);
+        let Some(sample) = bsdf.sample(point.lobe_choice.unwrap_or(lobe), sampler::point(&bsdf_set)) else {
+            sink.record(|| PathEvent::End(PathEnd::Absorbed));
+            return false;
+        };
+        let is_last = path.non_specular_depth >= limits.max_non_specular_depth;
+        if is_last && !sample.is_undeviated {
+            sink.record(|| PathEvent::End(PathEnd::Depth));
             return false;
         }
+
+        // Update the throughput, the polarisation and the media
         path.throughput *= sample.weight;
         path.roulette_scale *= sample.eta_scale;
         path.polarisation = sample.polarisation;
         if sample.is_transmission && !surface.is_thin {
             path.media.cross(surface.material, outside);
         }
+        sink.record(|| PathEvent::BsdfSample {
+            lobe: lobe_of(&sample),
+            direction: sample.direction,
+            pdf: (!sample.specular).then_some(sample.pdf),
+            weight: sample.weight,
+            throughput: path.throughput,
+        });
+
+        // Update the densities for later MIS weights
         if sample.is_undeviated {
-            path.vertex = Vertex { travelled: before.travelled + distance, ..before };
+            path.mis_vertex = MisVertex { travelled: last_mis_vertex.travelled + distance, ..last_mis_vertex };
         } else if sample.specular {
-            let bends = self.scene.materials[surface.material as usize].is_caustic_caster();
-            path.gathered = path.gathered.filter(|_| bends);
-            path.vertex.rival = path.gathered.map(|gathered| Rival::new(gathered, surface, sample.direction));
+            let is_caster = self.caster.scene.materials[surface.material as usize].is_caustic_caster();
+            path.gather = path.gather.filter(|_| is_caster);
+            path.mis_vertex.photons = path.gather.map(|gather| CausticMis::new(gather, surface, sample.direction));
         } else {
-            path.vertex.pdf = Some(sample.pdf * ways);
-            path.gathered = self.caustics.map(|map| {
+            path.mis_vertex.pdf = Some(sample.pdf * paths_per_light_sample);
+            path.gather = self.photon_map.map(|map| {
                 let cos = sample.direction.dot(surface.geometric_normal).abs();
-                Gathered { paths: sample.pdf * path.ways, photons: map.of(path.wide_bounces).area() * cos }
+                let photons = map.for_depth(path.non_specular_depth);
+                GatherDensities { path_pdf: sample.pdf * path.split_factor, photon_area: photons.area() * cos }
             });
-            path.wide_bounces += 1;
-            let last = path.wide_bounces >= limits.wide_bounces || bounce + 1 >= limits.all_bounces;
-            if last && !self.scene.plan().emitters_have_size {
+            path.non_specular_depth += 1;
+            let is_last = path.non_specular_depth >= limits.max_non_specular_depth || depth + 1 >= limits.max_depth;
+            if is_last && !self.caster.scene.plan().emitters_have_size {
+                sink.record(|| PathEvent::End(PathEnd::Depth));
                 return false;
             }
         }
-        if !survives(&mut path.throughput, path.roulette_scale, bounce, roulette) {
+
+        // Play Russian roulette
+        let survival = survival_probability(path.throughput, path.roulette_scale, depth);
+        sink.record(|| PathEvent::Roulette { survival, u: roulette });
+        if !survives(&mut path.throughput, survival, roulette) {
+            sink.record(|| PathEvent::End(PathEnd::Roulette));
             return false;
         }
-        path.ray =
-            Ray { origin: surface.spawn_origin(sample.direction), direction: sample.direction, t_max: f32::INFINITY };
+
+        // Spawn the next ray
+        let origin = surface.spawn_origin(sample.direction);
+        path.ray = Ray { origin, direction: sample.direction, t_max: f32::INFINITY };
         if !sample.is_undeviated {
-            path.vertex.left_from = path.ray.origin;
+            path.mis_vertex.ray_origin = origin;
         }
-        path.bounce += 1;
+        path.depth += 1;
         true
+    }
+
+    /// Returns true if all lights are sampled at the path's vertex rather than one of them.
+    fn samples_all_lights(&self, path: &PathState) -> bool {
+        let scene = self.caster.scene;
+        scene.lights.len() == 1 || (path.non_specular_depth == 0 && scene.plan().sample_all_lights)
+    }
+
+    /// Samples all lights, or one by its importance, at a vertex from which so many paths continue.
+    fn sample_lights(
+        &mut self,
+        path: &PathState,
+        point: &ShadingPoint<'_>,
+        sampler: &Sampler,
+        first_set: &sampler::Set,
+        paths: f32,
+        sink: &mut impl RadianceSink,
+    ) {
+        let scene = self.caster.scene;
+        if self.samples_all_lights(path) {
+            for (slot, _) in (0..).zip(&scene.lights).filter(|(_, light)| light.is_sampled()) {
+                let bounce = path.depth;
+                let set = if slot == 0 { *first_set } else { sampler.set(Purpose::Light { slot, bounce }) };
+                self.sample_light(slot, 1.0, path, point, &set, paths, sink);
+            }
+            return;
+        }
+        let u = sampler::rest(first_set)[0];
+        let chosen = match point.importances {
+            Some(importances) => importances.sample(&scene.lights, u),
+            None => self.light_importances(point).as_ref().and_then(|importances| importances.sample(&scene.lights, u)),
+        };
+        if let Some((light, pmf)) = chosen {
+            self.sample_light(light, pmf, path, point, first_set, paths, sink);
+        }
+    }
+
+    /// Importances of the lights at a vertex.
+    fn light_importances(&self, point: &ShadingPoint<'_>) -> Option<LightImportances<'a>> {
+        let scene = self.caster.scene;
+        scene.light_sampler.importances(&scene.lights, point.surface.position, point.bsdf.normal())
+    }
+
+    /// Samples a light that was chosen with probability `pmf`, and adds its contribution.
+    #[expect(clippy::too_many_arguments, reason = "called in two places; no two of them belong together")]
+    fn sample_light(
+        &mut self,
+        index: u32,
+        pmf: f32,
+        path: &PathState,
+        point: &ShadingPoint<'_>,
+        set: &sampler::Set,
+        paths: f32,
+        sink: &mut impl RadianceSink,
+    ) {
+        let light = &self.caster.scene.lights[index as usize];
+        let ShadingPoint { surface, bsdf, .. } = *point;
+
+        // Sample a direction towards the light and evaluate the BSDF
+        let Some(sample) = light.sample(surface.position, sampler::point(set)) else { return };
+        let (value, bsdf_pdf) = bsdf.eval(sample.direction);
+        if value == Vec3::ZERO {
+            return;
+        }
+
+        // Weight against emitter hits, trace the shadow ray and add the contribution
+        let mis_weight = sample.pdf.map_or(1.0, |light_pdf| power_heuristic(light_pdf * pmf, bsdf_pdf * paths));
+        let (origin, is_delta) = (surface.spawn_origin(sample.direction), sample.pdf.is_none());
+        let visibility = self.caster.visibility(origin, sample.direction, sample.distance, is_delta, path.media);
+        let pdf = sample.pdf;
+        sink.record(|| PathEvent::LightSample { light: index, pmf, pdf, bsdf_pdf, visibility, mis_weight });
+        if visibility != Vec3::ZERO {
+            let value = path.throughput * visibility * value * light.tint * (sample.value * mis_weight / pmf);
+            sink.add(light.layer, value);
+        }
     }
 }
 
-/// Russian roulette by what is left of the light, without a `scale` that says nothing about it.
-pub(super) fn survives(throughput: &mut Vec3, scale: f32, bounce: u32, u: f32) -> bool {
-    let left = throughput.max_element() / scale;
-    // NaN ends the path, as black does.
-    if left.is_nan() || left <= 0.0 {
-        return false;
+/// The kind of scattering of a sample.
+fn lobe_of(sample: &BsdfSample) -> Lobe {
+    match sample {
+        BsdfSample { is_undeviated: true, .. } => Lobe::Pane,
+        BsdfSample { specular: true, is_transmission: true, .. } => Lobe::SpecularTransmission,
+        BsdfSample { specular: true, .. } => Lobe::SpecularReflection,
+        _ => Lobe::NonSpecular,
     }
-    if bounce < ROULETTE_FROM {
-        return true;
-    }
-    let chance = left.min(0.95);
-    if u >= chance {
-        return false;
-    }
-    *throughput /= chance;
-    luminance(*throughput).is_finite()
 }

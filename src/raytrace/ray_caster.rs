@@ -1,83 +1,101 @@
-//! Straight ways through the studio: what a ray meets first, and how much of a light comes through to a point.
+//! Ray casting against the surfaces of a studio: closest hits, shadow rays and transmittance towards a light.
 
 use super::aggregate::Hit;
 use super::bsdf::pane_transmittance;
+use super::bvh::TraversalStack;
 use super::medium_stack::MediumStack;
-use super::path_tracer::Tracer;
+use super::render_scene::RenderScene;
 use crate::math::Ray;
 use glam::Vec3;
 
-/// Surfaces that light on its straight way through glass may cross.
-const CLEAR_SURFACES: u32 = 64;
+/// Maximum number of clear surfaces on the straight line to a light.
+const MAX_CLEAR_SURFACES: u32 = 64;
 
-/// A share of coordinates and distances that is more than their rounding on the way to an emitter: some 20 micrometres
-/// at five metres. Emitters may lie on a surface (a panel on the wall, a lamp on the ceiling) and are seen all the same.
-pub(super) const TOUCHING: f32 = 32.0 * f32::EPSILON;
+/// Relative tolerance of coordinates and distances to an emitter, larger than their rounding: some 20 micrometres at five
+/// metres. An emitter may lie on a surface (a panel on the wall, a lamp on the ceiling) and is visible all the same.
+pub(super) const EMITTER_CONTACT: f32 = 32.0 * f32::EPSILON;
 
-/// Whether directions, or the normals of a pane's faces, lie on one line but for rounding (3 microradians): photons do not
-/// bring what goes on as it came, and light sampling nothing else.
-pub(super) fn are_parallel(a: Vec3, b: Vec3) -> bool {
-    a.cross(b).length_squared() < 1e-11
+/// Casts rays for one thread.
+#[derive(Debug)]
+pub struct RayCaster<'a> {
+    /// The scene.
+    pub scene: &'a RenderScene,
+    /// Caustics come from photons, so that light sampling must not cross curved glass.
+    photon_caustics: bool,
+    /// Scratch space of traversals.
+    pub stack: TraversalStack,
+    /// Rays traced so far.
+    pub rays: u64,
 }
 
-impl Tracer<'_> {
-    /// The closest surface.
-    pub fn closest(&mut self, ray: &Ray) -> Option<Hit> {
+impl<'a> RayCaster<'a> {
+    /// A caster for a scene without photons.
+    pub fn new(scene: &'a RenderScene) -> Self {
+        Self::with_photon_caustics(scene, false)
+    }
+
+    /// A caster for a scene whose caustics come from photons, or do not.
+    pub fn with_photon_caustics(scene: &'a RenderScene, photon_caustics: bool) -> Self {
+        RayCaster { scene, photon_caustics, stack: TraversalStack::default(), rays: 0 }
+    }
+
+    /// Returns the closest hit.
+    pub fn intersect(&mut self, ray: &Ray) -> Option<Hit> {
         self.rays += 1;
         self.scene.aggregate.intersect(ray, &mut self.stack)
     }
 
-    /// Whether anything but emitters lies between a point and one at `distance` from it.
-    pub fn blocked(&mut self, origin: Vec3, direction: Vec3, distance: f32) -> bool {
+    /// Returns true if a surface lies between a point and an emitter at `distance` from it.
+    pub fn occluded(&mut self, origin: Vec3, direction: Vec3, distance: f32) -> bool {
         self.rays += 1;
-        let ray = Ray { origin, direction, t_max: short_of(origin, distance) };
+        let ray = Ray { origin, direction, t_max: shadow_ray_end(origin, distance) };
         self.scene.aggregate.occluded(&ray, &mut self.stack)
     }
 
-    /// Share of a light that reaches a point inside `media`, from `distance` away along a direction. Thin panes let it
-    /// through; bodies of glass do for a light without a size, where photons are about only between parallel faces.
+    /// Transmittance from a light at `distance` along a direction to a point inside `media`. Thin panes transmit.
+    /// Bodies of glass transmit to a delta light alone; where caustics come from photons, only between parallel faces.
     pub fn visibility(
         &mut self,
         origin: Vec3,
         direction: Vec3,
         distance: f32,
-        sized: bool,
+        is_delta: bool,
         mut media: MediumStack,
     ) -> Vec3 {
         let scene = self.scene;
         if !scene.plan().refraction {
-            return if self.blocked(origin, direction, distance) { Vec3::ZERO } else { Vec3::ONE };
+            return if self.occluded(origin, direction, distance) { Vec3::ZERO } else { Vec3::ONE };
         }
-        let mut ray = Ray { origin, direction, t_max: short_of(origin, distance) };
-        let mut passed = Vec3::ONE;
+        let mut ray = Ray { origin, direction, t_max: shadow_ray_end(origin, distance) };
+        let mut transmittance = Vec3::ONE;
         let outer = media.innermost();
         let mut last_face: Option<Vec3> = None;
-        for _ in 0..CLEAR_SURFACES {
-            let Some(hit) = self.closest(&ray) else {
-                if self.has_caustics() && media.innermost() != outer {
+        for _ in 0..MAX_CLEAR_SURFACES {
+            let Some(hit) = self.intersect(&ray) else {
+                if self.photon_caustics && media.innermost() != outer {
                     return Vec3::ZERO;
                 }
-                // A sun beyond the last surface is not inside of anything.
+                // The space beyond the last surface, up to the sun, is not inside of anything.
                 let rest = if ray.t_max.is_finite() { ray.t_max } else { 0.0 };
-                return passed * media.transmittance(&scene.materials, rest);
+                return transmittance * media.transmittance(&scene.materials, rest);
             };
             let surface = scene.aggregate.surface(&hit);
             let material = &scene.materials[surface.material as usize];
-            if !material.transmits() || (sized && !surface.is_thin) {
+            if !material.transmits() || !(is_delta || surface.is_thin) {
                 return Vec3::ZERO;
             }
             let cos = direction.dot(surface.geometric_normal);
-            passed *= media.transmittance(&scene.materials, hit.triangle.t) * material.transmission();
+            transmittance *= media.transmittance(&scene.materials, hit.triangle.t) * material.transmission();
             if surface.is_thin {
-                passed *= pane_transmittance(cos, material.ior());
+                transmittance *= pane_transmittance(cos, material.ior());
             } else {
-                if self.has_caustics() && last_face.is_some_and(|face| !are_parallel(face, surface.normal)) {
+                if self.photon_caustics && last_face.is_some_and(|face| !are_parallel(face, surface.normal)) {
                     return Vec3::ZERO;
                 }
                 last_face = Some(surface.normal);
-                // Each of two parallel faces takes its half of what the pane takes, in stops.
+                // Each of two parallel faces has the square root of the pane's transmittance.
                 let eta = media.interface(&scene.materials, surface.material, cos < 0.0).eta;
-                passed *= pane_transmittance(cos, eta.max(1.0 / eta)).sqrt();
+                transmittance *= pane_transmittance(cos, eta.max(1.0 / eta)).sqrt();
                 media.cross(surface.material, cos < 0.0);
             }
             let rest = ray.t_max - hit.triangle.t;
@@ -87,14 +105,23 @@ impl Tracer<'_> {
     }
 }
 
-/// End of a ray towards an emitter that may lie on a surface; none before a sun, whose distance less a share of it would be
-/// no number.
-fn short_of(origin: Vec3, distance: f32) -> f32 {
-    if distance.is_finite() { distance - TOUCHING * (distance + origin.abs().max_element()) } else { distance }
+/// Returns true if directions, or the normals of a pane's faces, are parallel but for rounding (3 microradians). Light
+/// that passes without a change of direction is found by light sampling, all other light through glass by photons.
+pub(super) fn are_parallel(a: Vec3, b: Vec3) -> bool {
+    a.cross(b).length_squared() < 1e-11
 }
 
-/// Whether an emitter at one distance is seen before a surface at another. Sun and surround are seen by rays that leave
-/// the studio.
-pub(super) fn reaches(ray: &Ray, emitter: f32, surface: f32) -> bool {
-    if emitter.is_finite() { short_of(ray.origin, emitter) <= surface } else { surface.is_infinite() }
+/// End of a ray towards an emitter that may lie on a surface; infinite towards a sun.
+fn shadow_ray_end(origin: Vec3, distance: f32) -> f32 {
+    if distance.is_finite() { distance - EMITTER_CONTACT * (distance + origin.abs().max_element()) } else { distance }
+}
+
+/// Returns true if an emitter at one distance is not hidden by a surface at another. Sun and surround are met by rays
+/// that leave the studio.
+pub(super) fn is_before(ray: &Ray, emitter_distance: f32, surface_distance: f32) -> bool {
+    if emitter_distance.is_finite() {
+        shadow_ray_end(ray.origin, emitter_distance) <= surface_distance
+    } else {
+        surface_distance.is_infinite()
+    }
 }

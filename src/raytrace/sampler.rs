@@ -63,7 +63,12 @@ fn hash(mut x: u32) -> u32 {
 }
 
 impl Sampler {
-    /// The sample `index` of a pixel.
+    /// The random numbers of a sample.
+    pub fn of(sample: SampleId) -> Self {
+        Sampler::new(sample.x, sample.y, sample.index, sample.seed)
+    }
+
+    /// The random numbers of the sample `index` of a pixel.
     pub fn new(x: u32, y: u32, index: u32, seed: u32) -> Self {
         // The sequence has 2^16 points; further ones come from a fresh scramble.
         let epoch = index >> 16;

@@ -1,9 +1,45 @@
-//! The destination of radiance that a sample collects.
+//! The destination of what a sample finds.
 
+use super::events::PathEvent;
+use crate::math::Ray;
 use glam::Vec3;
 
-/// Receives the contributions of one sample.
+/// Receives the contributions of one sample, and optionally its first hit and the steps of its computation.
 pub trait RadianceSink {
     /// Adds white luminance (coloured, time-integrated luminance in shared layers) to a film layer.
     fn add(&mut self, layer: usize, value: Vec3);
+
+    /// Receives the first surface or emitter on the camera ray. The default ignores it, at no cost.
+    #[inline]
+    fn first_hit(&mut self, _hit: impl FnOnce() -> FirstHit) {}
+
+    /// Receives a step of the computation. The default ignores it, at no cost.
+    #[inline]
+    fn record(&mut self, _event: impl FnOnce() -> PathEvent) {}
+}
+
+/// The first surface or emitter that a camera ray meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstHit {
+    /// The camera ray.
+    pub ray: Ray,
+    /// Distance along the ray, metres; infinite for sun and surround.
+    pub distance: f32,
+    /// Unit shading normal towards the viewer, world space; zero for an emitter.
+    pub normal: Vec3,
+    /// Reflectance at normal incidence; white for clear glass and emitters.
+    pub albedo: Vec3,
+    /// The object.
+    pub object: FirstObject,
+}
+
+/// The object that a camera ray meets first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FirstObject {
+    /// An emitter that the camera sees.
+    Emitter,
+    /// The room.
+    Room,
+    /// Index into the scene's objects.
+    Object(u32),
 }

@@ -86,6 +86,11 @@ impl TracedMaterial {
         self.transmission
     }
 
+    /// Reflectance at normal incidence, for the albedo AOV: the base colour; white as far as the material transmits.
+    pub fn albedo(&self, texture: Vec3) -> Vec3 {
+        (self.base_color * texture).lerp(Vec3::ONE, self.transmission)
+    }
+
     /// Width of the gloss: roughness squared.
     pub fn alpha(&self) -> f32 {
         self.alpha

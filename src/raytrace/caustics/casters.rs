@@ -1,23 +1,23 @@
-//! The surfaces that cast caustics, and a choice of points on them.
+//! The surfaces that cast caustics.
 
 use crate::raytrace::aggregate::{Aggregate, Hit};
 use crate::raytrace::bsdf::TracedMaterial;
 use crate::raytrace::simd::TriangleHit;
 use glam::Vec2;
 
-/// Triangles of mirrors and clear glass.
+/// The triangles of mirrors and clear glass, with their distribution by area.
 #[derive(Debug, Default)]
-pub struct Casters {
+pub struct CausticCasters {
     /// Instance and triangle of each.
     triangles: Vec<(u32, u32)>,
-    /// Areas up to and including each, square metres.
+    /// Cumulative areas, square metres.
     areas: Vec<f64>,
 }
 
-impl Casters {
-    /// All there are in a studio.
+impl CausticCasters {
+    /// All casters of a studio.
     pub fn new(aggregate: &Aggregate, materials: &[TracedMaterial]) -> Self {
-        let mut casters = Casters::default();
+        let mut casters = CausticCasters::default();
         let mut total = 0.0;
         for (index, instance) in (0..).zip(aggregate.instances()) {
             let casts: Vec<bool> =
@@ -41,21 +41,21 @@ impl Casters {
         casters
     }
 
-    /// Of all of them, square metres.
+    /// Total area, square metres.
     pub fn area(&self) -> f32 {
         self.areas.last().copied().unwrap_or(0.0) as f32
     }
 
-    /// Density of photons that start uniformly on the casters and have this density of directions at `cos` to the surface:
-    /// in area square to the direction and solid angle, 1/(m2 sr).
+    /// Density of photons that start uniformly on the casters with directions of density `pdf`, at `cos` to the surface:
+    /// in perpendicular area and solid angle, 1/(m2 sr).
     pub fn density(&self, pdf: f32, cos: f32) -> f32 {
         pdf / (self.area() * cos)
     }
 
-    /// A point, uniform in area, for numbers in [0, 1). None where there is no caster.
-    pub fn at(&self, choice: f32, u: Vec2) -> Option<Hit> {
-        let place = f64::from(choice) * self.areas.last()?;
-        let index = self.areas.partition_point(|&area| area <= place).min(self.triangles.len() - 1);
+    /// Samples a point, uniform in area, by numbers in [0, 1). None where there is no caster.
+    pub fn sample(&self, choice: f32, u: Vec2) -> Option<Hit> {
+        let area = f64::from(choice) * self.areas.last()?;
+        let index = self.areas.partition_point(|&cumulative| cumulative <= area).min(self.triangles.len() - 1);
         let (instance, triangle) = self.triangles[index];
         // The square folded onto the triangle along its diagonal.
         let barycentric = if u.x + u.y < 1.0 { [u.x, u.y] } else { [1.0 - u.x, 1.0 - u.y] };

@@ -1,64 +1,64 @@
-//! Photons in cells of space, found by a hash of the cell.
+//! A hash grid over photons.
 
 use super::photon::Photon;
 use glam::{IVec3, Vec3};
 
-/// Photons in the order of their cells' hashes.
+/// Photons sorted by the hash of their cell.
 #[derive(Debug)]
-pub struct Grid {
+pub struct PhotonGrid {
     photons: Vec<Photon>,
     /// First photon of each hash; one more at the end.
     starts: Vec<u32>,
-    /// Of the circle that is asked for, metres.
+    /// Gather radius, metres.
     radius: f32,
-    /// Cells a metre.
-    per_m: f32,
+    cells_per_m: f32,
 }
 
-impl Grid {
-    /// Sorts photons for questions within `radius`.
+impl PhotonGrid {
+    /// Sorts photons for queries within `radius` (metres), by counting.
     pub fn new(unsorted: Vec<Photon>, radius: f32) -> Self {
         let size = unsorted.len().max(1).next_power_of_two();
-        let per_m = 0.5 / radius;
-        let slots: Vec<u32> = unsorted.iter().map(|photon| slot(cell(photon.position * per_m), size) as u32).collect();
+        let cells_per_m = 0.5 / radius;
+        let hash_of = |photon: &Photon| hash(cell(photon.position * cells_per_m), size) as u32;
+        let hashes: Vec<u32> = unsorted.iter().map(hash_of).collect();
         let mut starts = vec![0_u32; size + 1];
-        slots.iter().for_each(|&slot| starts[slot as usize + 1] += 1);
-        for slot in 0..size {
-            starts[slot + 1] += starts[slot];
+        hashes.iter().for_each(|&hash| starts[hash as usize + 1] += 1);
+        for hash in 0..size {
+            starts[hash + 1] += starts[hash];
         }
         let mut next = starts.clone();
         let mut order = vec![0_u32; unsorted.len()];
-        for (index, &slot) in (0..).zip(&slots) {
-            order[next[slot as usize] as usize] = index;
-            next[slot as usize] += 1;
+        for (index, &hash) in (0..).zip(&hashes) {
+            order[next[hash as usize] as usize] = index;
+            next[hash as usize] += 1;
         }
         let photons = order.iter().map(|&index| unsorted[index as usize]).collect();
-        Grid { photons, starts, radius, per_m }
+        PhotonGrid { photons, starts, radius, cells_per_m }
     }
 
-    /// The radius that it was made for, metres.
+    /// Gather radius, metres.
     pub fn radius(&self) -> f32 {
         self.radius
     }
 
-    /// Gives every photon within the radius, with the square of its distance.
-    pub fn near(&self, position: Vec3, mut found: impl FnMut(&Photon, f32)) {
+    /// Calls `found` for every photon within the radius, with its squared distance.
+    pub fn for_each_near(&self, position: Vec3, mut found: impl FnMut(&Photon, f32)) {
         if self.photons.is_empty() {
             return;
         }
         let radius = self.radius;
-        // A circle no wider than a cell reaches into one neighbour along each axis.
-        let low = cell((position - Vec3::splat(radius)) * self.per_m);
-        let mut slots = [usize::MAX; 8];
+        // The query's diameter is one cell: it overlaps at most two cells along each axis.
+        let low = cell((position - Vec3::splat(radius)) * self.cells_per_m);
+        let mut hashes = [usize::MAX; 8];
         for corner in 0..8 {
             let step = IVec3::new(corner & 1, (corner >> 1) & 1, corner >> 2);
-            let slot = slot(low.wrapping_add(step), self.starts.len() - 1);
-            // Two cells may have one hash.
-            if slots.contains(&slot) {
+            let hash = hash(low.wrapping_add(step), self.starts.len() - 1);
+            // Two cells may have the same hash.
+            if hashes.contains(&hash) {
                 continue;
             }
-            slots[corner as usize] = slot;
-            for photon in &self.photons[self.starts[slot] as usize..self.starts[slot + 1] as usize] {
+            hashes[corner as usize] = hash;
+            for photon in &self.photons[self.starts[hash] as usize..self.starts[hash + 1] as usize] {
                 let distance2 = photon.position.distance_squared(position);
                 if distance2 < radius * radius {
                     found(photon, distance2);
@@ -68,13 +68,14 @@ impl Grid {
     }
 }
 
-fn cell(place: Vec3) -> IVec3 {
-    place.floor().as_ivec3()
+/// The cell of a position in cell widths.
+fn cell(position: Vec3) -> IVec3 {
+    position.floor().as_ivec3()
 }
 
-/// Mixes a cell's numbers (Teschner et al. 2003, "Optimized Spatial Hashing for Collision Detection of Deformable
-/// Objects") into one of `size`, a power of two.
-fn slot(cell: IVec3, size: usize) -> usize {
+/// Hashes a cell (Teschner et al. 2003, "Optimized Spatial Hashing for Collision Detection of Deformable Objects") to
+/// less than `size`, a power of two.
+fn hash(cell: IVec3, size: usize) -> usize {
     let mixed = (cell.x as u32).wrapping_mul(73_856_093)
         ^ (cell.y as u32).wrapping_mul(19_349_663)
         ^ (cell.z as u32).wrapping_mul(83_492_791);

@@ -1,14 +1,17 @@
-use super::photon::shading_correction;
+use super::grid::PhotonGrid;
+use super::photon::Photon;
+use super::photon_tracer::shading_correction;
 use super::*;
 use crate::math::statistics::Numbers;
-use crate::raytrace::{Settings, prepare, render};
+use crate::raytrace::{RenderControl, Settings, prepare, render};
 use crate::scene::{Aim, Assets, Camera, Emitter, Light, LightId, Material, Object, ObjectId, Output, Scene, Shape};
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use std::collections::HashMap;
+use std::f32::consts::PI;
 use std::ops::ControlFlow;
 
 fn photon(position: Vec3) -> Photon {
-    Photon { position, direction: Vec3::Y, normal: Vec3::Y, flux: Vec3::ONE, layer: 0, density: 1.0, bends: 1 }
+    Photon { position, direction: Vec3::Y, normal: Vec3::Y, flux: Vec3::ONE, layer: 0, density: 1.0, specular_depth: 1 }
 }
 
 #[test]
@@ -17,12 +20,12 @@ fn the_grid_finds_what_looking_at_every_photon_finds() {
     // Around the origin, where cells change sign, and so many that cells share hashes.
     let photons: Vec<Photon> = (0..3000).map(|_| photon(numbers.direction() * numbers.between(0.0, 2.0))).collect();
     for radius in [0.01, 0.2, 5.0] {
-        let grid = Grid::new(photons.clone(), radius);
+        let grid = PhotonGrid::new(photons.clone(), radius);
         let mut most = 0;
         for _ in 0..300 {
             let place = numbers.direction() * numbers.between(0.0, 2.1);
             let mut found = Vec::new();
-            grid.near(place, |photon, distance2| found.push((photon.position.to_array(), distance2)));
+            grid.for_each_near(place, |photon, distance2| found.push((photon.position.to_array(), distance2)));
             let near = |p: &&Photon| p.position.distance_squared(place) < radius * radius;
             let mut all: Vec<_> = photons
                 .iter()
@@ -37,7 +40,7 @@ fn the_grid_finds_what_looking_at_every_photon_finds() {
         }
         assert!(most > 0, "nothing to find within {radius}");
     }
-    Grid::new(Vec::new(), 0.1).near(Vec3::ZERO, |_, _| panic!("found in nothing"));
+    PhotonGrid::new(Vec::new(), 0.1).for_each_near(Vec3::ZERO, |_, _| panic!("found in nothing"));
 }
 
 #[test]
@@ -99,7 +102,7 @@ fn casters_are_chosen_by_their_area() {
     let mut counts: HashMap<u32, u32> = HashMap::new();
     let mut above = 0;
     for _ in 0..20_000 {
-        let hit = scene.casters.at(numbers.number(), numbers.square()).unwrap();
+        let hit = scene.casters.sample(numbers.number(), numbers.square()).unwrap();
         let [b, c] = hit.triangle.barycentric;
         assert!(b >= 0.0 && c >= 0.0 && b + c <= 1.0);
         *counts.entry(scene.aggregate.instances()[hit.instance as usize].object).or_default() += 1;
@@ -108,7 +111,7 @@ fn casters_are_chosen_by_their_area() {
     // Two balls of one size; the upper halves of both. Six standard errors of 71.
     assert_eq!(counts.len(), 2, "{counts:?}");
     assert!(counts.values().chain([&above]).all(|count| count.abs_diff(10_000) < 430), "{counts:?}, {above} above");
-    assert!(Casters::default().at(0.5, Vec2::splat(0.5)).is_none());
+    assert!(CausticCasters::default().sample(0.5, Vec2::splat(0.5)).is_none());
 }
 
 #[test]
@@ -152,8 +155,8 @@ fn a_cancelled_wave_is_not_waited_for() {
     let scene = prepare(&still_life(), &Assets::default()).unwrap();
     let control = RenderControl::new();
     control.cancel();
-    let wave = Wave { first_sample: 0, samples: 16, photons: 1 << 20, pixel_m: 1e-3, eye: Vec3::ZERO, seed: 0 };
-    let map = PhotonMap::trace(&scene, &wave, &control);
+    let pass = PhotonPass { first_sample: 0, samples: 16, photons: 1 << 20, pixel_m: 1e-3, eye: Vec3::ZERO, seed: 0 };
+    let map = PhotonMap::trace(&scene, &pass, &control);
     assert_eq!(control.rays(), 0);
-    map.full.grid.near(Vec3::ZERO, |_, _| panic!("a photon of a cancelled wave"));
+    map.full.grid.for_each_near(Vec3::ZERO, |_, _| panic!("a photon of a cancelled pass"));
 }

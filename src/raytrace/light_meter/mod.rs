@@ -15,9 +15,12 @@ use crate::photo::meter::{LightReading, Reading, Receptor};
 use crate::raytrace::control::RenderControl;
 use crate::raytrace::film::{Layer, NonFiniteGate, NonFiniteReport};
 use crate::raytrace::lights::TracedLight;
+use crate::raytrace::limits::PathLimits;
 use crate::raytrace::medium_stack::MediumStack;
-use crate::raytrace::path_tracer::{Limits, Tracer};
-use crate::raytrace::prepare::{PrepareError, RenderScene, prepare_around};
+use crate::raytrace::path_tracer::PathTracer;
+use crate::raytrace::prepare::{PrepareError, prepare_around};
+use crate::raytrace::ray_caster::RayCaster;
+use crate::raytrace::render_scene::{ROOM, RenderScene};
 use crate::raytrace::sampler::{self, Purpose, SampleId, Sampler};
 use crate::raytrace::sink::RadianceSink;
 use crate::scene::{Assets, Camera, Light, LightId, Scene};
@@ -28,7 +31,7 @@ use receptor::Receiver;
 /// Independent sequences: enough to tell their scatter to a fifth, few enough to stay well stratified each.
 const REPLICATES: u32 = 16;
 /// Bounces are left to roulette; this only ends what cannot end otherwise.
-const LIMITS: Limits = Limits { wide_bounces: 4096, all_bounces: 4096, branches: 1 };
+const LIMITS: PathLimits = PathLimits { max_non_specular_depth: 4096, max_depth: 4096, split_factor: 1 };
 /// First round of a sequence: emitter points of each light, and paths.
 const FIRST_ROUND: (u32, u32) = (64, 1024);
 /// Most emitter points of a light in a sequence.
@@ -126,7 +129,7 @@ impl LightMeter {
     pub fn new(scene: &Scene, assets: &Assets, around: Vec3) -> Result<Self, PrepareError> {
         let mut prepared = prepare_around(scene, assets, around, a_layer_each)?;
         // Glowing surfaces are read in lux, like any continuous light.
-        prepared.glow_time_s = 1.0;
+        prepared.emission_time_s = 1.0;
         let metered = |layer: &Layer| {
             let light = layer.light.and_then(|id| scene.light(id))?;
             let rgb = PhotometricLight::new(scene, light).tint;
@@ -195,15 +198,15 @@ impl LightMeter {
     /// The closed object around a point: nearly every ray from there meets a back face of an object first.
     fn enclosing(&self, origin: Vec3) -> Option<u32> {
         const RAYS: u32 = 64;
-        let mut tracer = Tracer::new(&self.scene);
+        let mut caster = RayCaster::new(&self.scene);
         let mut backs = 0;
         let mut object = None;
         for i in 0..RAYS {
             let u = Vec2::new((i as f32 + 0.5) / RAYS as f32, (i as f32 * 0.618_034).fract());
             let direction = warp::uniform_sphere(u);
-            let hit = tracer.closest(&Ray { origin, direction, t_max: f32::INFINITY })?;
+            let hit = caster.intersect(&Ray { origin, direction, t_max: f32::INFINITY })?;
             let index = self.scene.aggregate.instances()[hit.instance as usize].object;
-            if index != u32::MAX && self.scene.aggregate.surface(&hit).geometric_normal.dot(direction) > 0.0 {
+            if index != ROOM && self.scene.aggregate.surface(&hit).geometric_normal.dot(direction) > 0.0 {
                 backs += 1;
                 object = Some(index);
             }
@@ -366,7 +369,7 @@ const CHECK_EVERY: u32 = 256;
 
 impl Job<'_> {
     fn run(&self, sequence: &mut Sequence) {
-        let mut tracer = Tracer::new(&self.probe.scene);
+        let mut tracer = PathTracer::new(&self.probe.scene, None);
         for (layer, light) in self.probe.scene.lights.iter().enumerate() {
             if self.control.is_cancelled() {
                 return;
@@ -379,11 +382,11 @@ impl Job<'_> {
             }
             self.path(sequence, &mut tracer, i);
         }
-        sequence.rays += tracer.rays;
+        sequence.rays += tracer.caster.rays;
     }
 
     /// Next points of an emitter.
-    fn direct(&self, sequence: &mut Sequence, tracer: &mut Tracer<'_>, layer: usize, light: &TracedLight) {
+    fn direct(&self, sequence: &mut Sequence, tracer: &mut PathTracer<'_>, layer: usize, light: &TracedLight) {
         let receiver = &self.receiver;
         let (from, to) = self.round.points[layer];
         for i in from..to {
@@ -403,11 +406,11 @@ impl Job<'_> {
                 let (origin, direction, distance) = (receiver.origin, sample.direction, sample.distance);
                 // What bodies of glass let through of a light with a size is found by the paths.
                 value
-                    * luminance(tracer.visibility(
+                    * luminance(tracer.caster.visibility(
                         origin,
                         direction,
                         distance,
-                        !light.is_delta(),
+                        light.is_delta(),
                         MediumStack::default(),
                     ))
             });
@@ -420,7 +423,7 @@ impl Job<'_> {
     }
 
     /// One path for all lights.
-    fn path(&self, sequence: &mut Sequence, tracer: &mut Tracer<'_>, index: u32) {
+    fn path(&self, sequence: &mut Sequence, tracer: &mut PathTracer<'_>, index: u32) {
         let receiver = &self.receiver;
         let sampler = Sampler::new(sequence.index, 0, index, self.seed);
         let direction = receiver.direction(sampler::point(&sampler.set(Purpose::Camera)));
@@ -430,7 +433,7 @@ impl Job<'_> {
         let mut sink = WeightedSink::new(&mut sequence.straight, weight, sampler.id(), report);
         self.straight(tracer, direction, &mut sink);
         let mut sink = WeightedSink::new(&mut sequence.bounced, weight, sampler.id(), report);
-        tracer.trace_past_lights(receiver.origin, direction, &sampler, LIMITS, &mut sink);
+        tracer.trace_without_direct_light(receiver.origin, direction, &sampler, LIMITS, &mut sink);
         if self.probe.glows {
             // The path has counted the glow of the first surface, too, which is direct light.
             let glow = self.probe.lights.len();
@@ -443,10 +446,10 @@ impl Job<'_> {
     }
 
     /// Surrounds are met by the receptor's own choice of direction.
-    fn straight(&self, tracer: &mut Tracer<'_>, direction: Vec3, sink: &mut impl RadianceSink) {
+    fn straight(&self, tracer: &mut PathTracer<'_>, direction: Vec3, sink: &mut impl RadianceSink) {
         let origin = self.receiver.origin;
         let unsampled = || self.probe.scene.lights.iter().filter(|light| !light.is_sampled());
-        if unsampled().next().is_none() || tracer.blocked(origin, direction, f32::INFINITY) {
+        if unsampled().next().is_none() || tracer.caster.occluded(origin, direction, f32::INFINITY) {
             return;
         }
         for light in unsampled() {
@@ -458,7 +461,7 @@ impl Job<'_> {
 }
 
 /// Only what the first surface gives off.
-const NO_BOUNCE: Limits = Limits { wide_bounces: 0, all_bounces: 0, branches: 1 };
+const NO_BOUNCE: PathLimits = PathLimits { max_non_specular_depth: 0, max_depth: 0, split_factor: 1 };
 
 /// Weights the contributions of a path for the receptor, and adds the finite ones to the layers' sums.
 struct WeightedSink<'a> {

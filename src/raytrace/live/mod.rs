@@ -21,7 +21,8 @@ pub use smooth::Smoother;
 use super::control::RenderControl;
 use super::film::{Layer, assign_layers};
 use super::geometry_cache::GeometryCache;
-use super::prepare::{self, PrepareError, RenderScene};
+use super::prepare::{self, PrepareError};
+use super::render_scene::RenderScene;
 use super::retrace::Retrace;
 use crate::photo::Picture;
 use crate::scene::{Assets, LightId, Scene};
@@ -120,7 +121,7 @@ impl LivePicture {
         (self.traced, self.history) = (None, None);
         let origin = camera.natural_origin(scene.room.as_ref());
         let full = prepare::prepare_all(&scene, assets, origin, assign_layers, &self.cache)?;
-        let (film_layers, camera) = (full.layers(), camera.around(origin, scene.room.as_ref()));
+        let (film_layers, camera) = (full.layers.clone(), camera.around(origin, scene.room.as_ref()));
         let layers = (0..film_layers.len()).map(Some).collect();
         self.view = Some(View { camera, film: LiveFilm::reusing(self.spare.take(), camera.size, film_layers) });
         let (assets, photons) = (assets.clone(), LivePhotons::default());
@@ -138,13 +139,13 @@ impl LivePicture {
         let mut alone = wanted.clone();
         alone.lights.retain(|light| changed.contains(&light.id));
         let alone = prepared(&alone)?;
-        let new = full.layers();
+        let new = full.layers.clone();
         let place = |layers: &[Layer], layer: &Layer| layers.iter().position(|l| l.light == layer.light);
         let is_behind = |layer: &Layer| layer.light.is_some_and(|id| changed.contains(&id));
         let from: Vec<Option<usize>> =
             new.iter().map(|layer| place(&view.film.layers, layer).filter(|_| !is_behind(layer))).collect();
         let of_alone = |layer: &Layer| layer.light.and_then(|_| place(&new, layer));
-        let layers: Vec<Option<usize>> = alone.layers().iter().map(of_alone).collect();
+        let layers: Vec<Option<usize>> = alone.layers.iter().map(of_alone).collect();
         (traced.scene, traced.full, traced.photons) = (wanted, full, LivePhotons::default());
         traced.layers = (0..new.len()).map(Some).collect();
         let photons = LivePhotons::default();

@@ -2,8 +2,8 @@
 
 use super::camera::LiveCamera;
 use crate::raytrace::RenderControl;
-use crate::raytrace::caustics::{PhotonMap, USUAL_PHOTONS, Wave};
-use crate::raytrace::prepare::RenderScene;
+use crate::raytrace::caustics::{MIN_PHOTONS, PhotonMap, PhotonPass};
+use crate::raytrace::render_scene::RenderScene;
 
 /// Pixels for each photon of a wave.
 const PIXELS_A_PHOTON: u64 = 4;
@@ -26,10 +26,10 @@ impl LivePhotons {
         }
         let pixels = u64::from(camera.size.0) * u64::from(camera.size.1);
         // The first picture has some 20 ms for them, on one thread.
-        let photons = if sample == 0 { USUAL_PHOTONS } else { pixels / PIXELS_A_PHOTON };
+        let photons = if sample == 0 { MIN_PHOTONS } else { pixels / PIXELS_A_PHOTON };
         let pixel_m = 2.0 * camera.frame.half_extent.x / camera.size.0 as f32;
-        let wave = Wave { first_sample: sample, samples: 1, photons, pixel_m, eye: camera.eye(), seed: 0 };
-        let map = PhotonMap::trace(scene, &wave, control);
+        let pass = PhotonPass { first_sample: sample, samples: 1, photons, pixel_m, eye: camera.eye(), seed: 0 };
+        let map = PhotonMap::trace(scene, &pass, control);
         // Cancelled, it is not whole.
         self.map = (!control.is_cancelled()).then_some(map);
         self.sample = sample;

@@ -184,13 +184,13 @@ fn what_was_hidden_is_traced_anew() {
     live.update(&scene, &Assets::default(), view(&scene, 0.4)).unwrap();
     work_to(&mut live, ALL_SEEN);
     let traced = live.traced.as_ref().unwrap();
-    let mut tracer = crate::raytrace::path_tracer::Tracer::new(&traced.full);
+    let mut caster = crate::raytrace::ray_caster::RayCaster::new(&traced.full);
     let (mut hidden, mut wrong) = (0, 0);
     for tile in &live.view.as_ref().unwrap().film.tiles {
         for (pixel, shown) in tile.shown.iter().enumerate().filter(|(_, shown)| shown.object == 0) {
             let from = old_eye - traced.origin;
             let to = shown.position - from;
-            if tracer.blocked(from, to.normalize(), 0.99 * to.length()) {
+            if caster.occluded(from, to.normalize(), 0.99 * to.length()) {
                 hidden += 1;
                 wrong += usize::from(tile.sum(0, pixel).w > 1.0);
             }

@@ -10,8 +10,9 @@ use crate::math::Ray;
 use crate::raytrace::RenderControl;
 use crate::raytrace::caustics::PhotonMap;
 use crate::raytrace::film::{MAX_LIGHT_LAYERS, TILE};
-use crate::raytrace::path_tracer::{Limits, Tracer};
-use crate::raytrace::prepare::RenderScene;
+use crate::raytrace::limits::PathLimits;
+use crate::raytrace::path_tracer::PathTracer;
+use crate::raytrace::render_scene::RenderScene;
 use crate::raytrace::sampler::{self, Purpose, Sampler};
 use crate::raytrace::sink::RadianceSink;
 use glam::{Vec2, Vec3, Vec4};
@@ -292,7 +293,7 @@ impl LiveTile {
             Step::Surfaces { stride } => self.grid(stride, |tile, pixel| tile.look(&mut brush, pixel)),
             Step::Wave { sample } => self.wave(&mut brush, sample, lags),
         }
-        job.control.count(brush.tracer.rays, brush.paths);
+        job.control.count(brush.tracer.caster.rays, brush.paths);
         self.step_done(job, lags);
     }
 
@@ -392,8 +393,8 @@ impl LiveTile {
 /// What puts paths on a tile.
 struct Brush<'a> {
     job: &'a Job<'a>,
-    tracer: Tracer<'a>,
-    limits: Limits,
+    tracer: PathTracer<'a>,
+    limits: PathLimits,
     /// The picture's layers that a path adds to.
     layers: Vec<usize>,
     paths: u64,
@@ -404,8 +405,8 @@ impl<'a> Brush<'a> {
         let depth = job.scene.plan().max_bounces;
         Brush {
             job,
-            tracer: Tracer::with_caustics(job.scene, job.caustics),
-            limits: Limits { wide_bounces: depth, all_bounces: depth, branches: 1 },
+            tracer: PathTracer::new(job.scene, job.caustics),
+            limits: PathLimits { max_non_specular_depth: depth, max_depth: depth, split_factor: 1 },
             layers: job.layers.iter().filter_map(|layer| *layer).collect(),
             paths: 0,
         }
@@ -427,8 +428,8 @@ impl<'a> Brush<'a> {
         }
         let mut gate = Gate { tile, pixel, job: self.job, luminance: 0.0 };
         // The first sample is soon there; those after it share the way to the surface, which is less noise for the time.
-        let branches = if sample == 0 { 1 } else { self.job.scene.plan().branches };
-        self.tracer.trace(origin, direction, &sampler, Limits { branches, ..self.limits }, &mut gate);
+        let split_factor = if sample == 0 { 1 } else { self.job.scene.plan().branches };
+        self.tracer.trace(origin, direction, &sampler, PathLimits { split_factor, ..self.limits }, &mut gate);
         self.paths += 1;
         gate.luminance * self.job.scene.exposure
     }
@@ -437,7 +438,7 @@ impl<'a> Brush<'a> {
     fn look(&mut self, (x, y): (u32, u32)) -> Shown {
         let scene = self.job.scene;
         let (origin, direction) = self.ray((x, y), &Sampler::new(x, y, 0, SEED));
-        let Some(hit) = self.tracer.closest(&Ray { origin, direction, t_max: f32::INFINITY }) else {
+        let Some(hit) = self.tracer.caster.intersect(&Ray { origin, direction, t_max: f32::INFINITY }) else {
             return Shown::nothing(Shown::NOTHING);
         };
         let surface = scene.aggregate.surface(&hit);

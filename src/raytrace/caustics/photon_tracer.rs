@@ -1,0 +1,158 @@
+//! The photon tracer: light that mirrors and clear glass throw on non-specular surfaces.
+
+use super::photon::{Photon, inner_side_probability};
+use crate::math::Ray;
+use crate::raytrace::bsdf::Polarisation;
+use crate::raytrace::geometry::SurfaceInteraction;
+use crate::raytrace::medium_stack::MediumStack;
+use crate::raytrace::ray_caster::{RayCaster, are_parallel};
+use crate::raytrace::render_scene::RenderScene;
+use crate::raytrace::roulette::{survival_probability, survives};
+use crate::raytrace::sampler::{self, Purpose, Sampler};
+use glam::Vec3;
+
+/// Least cosine to the surface by which a photon's flux is divided.
+const MIN_COSINE: f32 = 0.01;
+
+/// Traces photons for one thread.
+#[derive(Debug)]
+pub struct PhotonTracer<'a> {
+    /// Casts the rays.
+    pub caster: RayCaster<'a>,
+}
+
+/// A photon at its first caustic caster.
+struct FirstCaster {
+    surface: SurfaceInteraction,
+    /// Unit direction towards the light.
+    to_light: Vec3,
+    /// No path can hit the light.
+    is_delta: bool,
+    /// The photon as it arrives.
+    photon: Photon,
+}
+
+impl<'a> PhotonTracer<'a> {
+    /// A tracer for a scene.
+    pub fn new(scene: &'a RenderScene) -> Self {
+        PhotonTracer { caster: RayCaster::new(scene) }
+    }
+
+    /// Traces one of `emitted` photons, which share all light on casters, and appends its arrivals to `stored`.
+    pub fn trace(&mut self, sampler: &Sampler, emitted: u32, stored: &mut Vec<Photon>) {
+        if let Some(first) = self.sample_first_caster(sampler, emitted) {
+            self.follow(first, sampler, stored);
+        }
+    }
+
+    /// Samples a point on the casters, uniform in area, and a light by its importance there.
+    fn sample_first_caster(&mut self, sampler: &Sampler, emitted: u32) -> Option<FirstCaster> {
+        let scene = self.caster.scene;
+
+        // Sample the point and the side of the surface
+        let [point_set, light_set] = sampler.pair(Purpose::Camera, Purpose::Light { slot: 0, bounce: 0 });
+        let [triangle_choice, side_choice] = sampler::rest(&point_set);
+        let hit = scene.casters.sample(triangle_choice, sampler::point(&point_set))?;
+        let surface = scene.aggregate.surface(&hit);
+        let inner = inner_side_probability(&surface);
+        let (normal, side_probability) = if side_choice < inner {
+            (-surface.geometric_normal, inner)
+        } else {
+            (surface.geometric_normal, 1.0 - inner)
+        };
+
+        // Sample the light and a direction towards it
+        let light_choice = sampler::rest(&light_set)[0];
+        let (light, pmf) = scene.light_sampler.sample(&scene.lights, surface.position, normal, light_choice)?;
+        let light = &scene.lights[light as usize];
+        let sample = light.sample(surface.position, sampler::point(&light_set))?;
+        let (to_light, cos) = (sample.direction, sample.direction.dot(normal));
+        if cos <= 0.0 {
+            return None;
+        }
+
+        // Trace the shadow ray; bodies of glass block it, as photons through them start at the outer one
+        let origin = surface.spawn_origin(to_light);
+        let visibility = self.caster.visibility(origin, to_light, sample.distance, false, MediumStack::default());
+        let area = scene.casters.area() / (emitted as f32 * side_probability * pmf);
+        let density = |pdf: f32| scene.casters.density(side_probability * pmf * pdf, cos);
+        let photon = Photon {
+            position: surface.position,
+            direction: to_light,
+            normal,
+            flux: light.tint * visibility * (sample.value * cos * area),
+            layer: light.layer as u16,
+            density: sample.pdf.map_or(f32::INFINITY, density),
+            specular_depth: 0,
+        };
+        (photon.flux != Vec3::ZERO).then_some(FirstCaster { surface, to_light, is_delta: sample.pdf.is_none(), photon })
+    }
+
+    /// Follows a photon through casters, and stores it at every non-specular surface, until it is absorbed.
+    fn follow(&mut self, first: FirstCaster, sampler: &Sampler, stored: &mut Vec<Photon>) {
+        let scene = self.caster.scene;
+        let FirstCaster { mut surface, to_light, is_delta, photon } = first;
+        let mut wo = to_light;
+        let (mut specular_depth, mut was_reflected) = (0, false);
+        let (mut media, mut polarisation, mut throughput) = (MediumStack::default(), Polarisation::NONE, Vec3::ONE);
+        for depth in 0..scene.plan().max_bounces {
+            // Sample the BSDF; only specular scattering at casters is followed
+            let material = &scene.materials[surface.material as usize];
+            let set = sampler.set(Purpose::Bsdf { bounce: depth });
+            let [lobe, roulette] = sampler::rest(&set);
+            let bsdf = scene.bsdf(&surface, wo, &media, polarisation);
+            let Some(sample) = bsdf.sample(lobe, sampler::point(&set)) else { return };
+            let is_unscattered = sample.is_undeviated && specular_depth == 0;
+            // Light sampling finds what is transmitted by a pane alone.
+            if !sample.specular || !material.is_caustic_caster() || is_unscattered {
+                return;
+            }
+
+            // Update the throughput: unlike radiance, flux does not scale with the squared index of refraction
+            throughput *= sample.weight / sample.eta_scale;
+            if !sample.is_undeviated {
+                specular_depth += 1;
+                was_reflected |= !sample.is_transmission;
+                throughput *= shading_correction(wo, sample.direction, surface.normal, surface.geometric_normal);
+            }
+            let survival = survival_probability(throughput, 1.0, depth);
+            if !survives(&mut throughput, survival, roulette) {
+                return;
+            }
+            if sample.is_transmission && !surface.is_thin {
+                media.cross(surface.material, wo.dot(surface.geometric_normal) >= 0.0);
+            }
+            polarisation = sample.polarisation;
+
+            // Trace the ray to the next surface
+            let (origin, direction) = (surface.spawn_origin(sample.direction), sample.direction);
+            let Some(hit) = self.caster.intersect(&Ray { origin, direction, t_max: f32::INFINITY }) else { return };
+            throughput *= media.transmittance(&scene.materials, hit.triangle.t);
+            surface = scene.aggregate.surface(&hit);
+            wo = -sample.direction;
+
+            // Store the photon at a non-specular surface, unless light sampling finds the same light on a straight line
+            let is_straight = is_delta && !was_reflected && are_parallel(wo, to_light);
+            let cos = wo.dot(surface.geometric_normal);
+            if !is_straight && cos != 0.0 && scene.materials[surface.material as usize].has_non_specular_lobe() {
+                stored.push(Photon {
+                    position: surface.position,
+                    direction: wo,
+                    normal: surface.geometric_normal * cos.signum(),
+                    flux: photon.flux * throughput / cos.abs().max(MIN_COSINE),
+                    specular_depth,
+                    ..photon
+                });
+            }
+        }
+    }
+}
+
+/// Factor of a photon's flux at a surface with an interpolated normal, by which photons agree with paths from the camera
+/// (Veach 1997, section 5.3). `wo` and `wi` are the directions towards the light and onwards.
+pub fn shading_correction(wo: Vec3, wi: Vec3, normal: Vec3, geometric_normal: Vec3) -> f32 {
+    let cosines = |normal: Vec3| (wo.dot(normal).abs(), wi.dot(normal).abs());
+    let ((wo_shading, wi_shading), (wo_geometric, wi_geometric)) = (cosines(normal), cosines(geometric_normal));
+    let denominator = wo_geometric * wi_shading;
+    if denominator > 1e-6 { wo_shading * wi_geometric / denominator } else { 0.0 }
+}

@@ -1,0 +1,79 @@
+//! Sample passes: progressive rendering in passes of 1, 1, 2, 4 ... samples per pixel, each with its own photons.
+
+use super::caustics::{MIN_PHOTONS, PhotonMap, PhotonPass};
+use super::control::RenderControl;
+use super::render_scene::RenderScene;
+use super::settings::{Method, Settings};
+use glam::Vec3;
+
+/// Maximum samples per pixel of a pass.
+const MAX_PASS: u32 = 16;
+
+/// Consecutive samples of every pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SamplePass {
+    /// Samples per pixel before the pass.
+    pub first_sample: u32,
+    /// Samples per pixel in the pass.
+    pub samples: u32,
+}
+
+/// The passes of a render; a function of scene and settings.
+#[derive(Clone, Copy, Debug)]
+pub struct PassSchedule {
+    spp: u32,
+    max_samples: u32,
+}
+
+impl PassSchedule {
+    /// The passes of a render.
+    pub fn new(scene: &RenderScene, settings: &Settings) -> Self {
+        let with_photons = uses_photons(scene, settings);
+        let limit = if with_photons { PhotonPass::max_samples(settings.pixels()) } else { MAX_PASS };
+        PassSchedule { spp: settings.spp, max_samples: limit.min(MAX_PASS) }
+    }
+
+    /// The pass after so many samples per pixel; none after all of them.
+    pub fn pass_after(&self, taken: u32) -> Option<SamplePass> {
+        let samples = taken.clamp(1, self.max_samples).min(self.spp.saturating_sub(taken));
+        (samples > 0).then_some(SamplePass { first_sample: taken, samples })
+    }
+
+    /// All passes in order.
+    pub fn passes(self) -> impl Iterator<Item = SamplePass> {
+        std::iter::successors(self.pass_after(0), move |pass| self.pass_after(pass.first_sample + pass.samples))
+    }
+}
+
+/// Returns true if a render traces photons.
+pub fn uses_photons(scene: &RenderScene, settings: &Settings) -> bool {
+    scene.plan().photons && settings.method != Method::Whitted
+}
+
+/// Traces the photons of a pass, if the render has any. Incomplete if `control` is cancelled.
+pub fn photon_map(
+    scene: &RenderScene,
+    settings: &Settings,
+    pass: SamplePass,
+    control: &RenderControl,
+) -> Option<PhotonMap> {
+    let SamplePass { first_sample, samples } = pass;
+    let photons = MIN_PHOTONS.max(settings.pixels() * u64::from(samples));
+    let pixel_m = scene.lens.film_camera(settings.width, settings.height).pixel_m();
+    let pass = PhotonPass { first_sample, samples, photons, pixel_m, eye: Vec3::ZERO, seed: settings.seed };
+    uses_photons(scene, settings).then(|| PhotonMap::trace(scene, &pass, control))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn passes_grow_and_cover_every_sample_once() {
+        let passes: Vec<u32> = PassSchedule { spp: 45, max_samples: 16 }.passes().map(|pass| pass.samples).collect();
+        assert_eq!(passes, [1, 1, 2, 4, 8, 16, 13]);
+        let few: Vec<SamplePass> = PassSchedule { spp: 3, max_samples: 1 }.passes().collect();
+        assert_eq!(few, [0, 1, 2].map(|first_sample| SamplePass { first_sample, samples: 1 }));
+        assert_eq!(PassSchedule { spp: 0, max_samples: 16 }.passes().count(), 0);
+    }
+}

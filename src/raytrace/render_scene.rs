@@ -1,0 +1,132 @@
+//! The scene as the tracer reads it: flat tables.
+
+use super::aggregate::{Aggregate, Hit};
+use super::bsdf::{Boundary, Bsdf, Polarisation, TracedMaterial};
+use super::caustics::CausticCasters;
+use super::film::Layer;
+use super::geometry::SurfaceInteraction;
+use super::lens::Lens;
+use super::lights::{EmitterBvh, LightSampler, TracedLight};
+use super::medium_stack::MediumStack;
+use super::plan::RenderPlan;
+use super::sink::{FirstHit, FirstObject};
+use super::texture::TextureMap;
+use crate::math::Ray;
+use crate::scene::LightId;
+use glam::Vec3;
+
+/// A scene ready for tracing. Positions are relative to `origin`.
+#[derive(Debug)]
+pub struct RenderScene {
+    /// World position of the tracer's origin: the camera of a render.
+    pub(super) origin: Vec3,
+    pub(super) aggregate: Aggregate,
+    pub(super) materials: Vec<TracedMaterial>,
+    pub(super) textures: Vec<TextureMap>,
+    pub(super) lights: Vec<TracedLight>,
+    /// The scene's light of each of `lights`.
+    pub(super) light_ids: Vec<LightId>,
+    /// Samples one of `lights` by importance.
+    pub(super) light_sampler: LightSampler,
+    /// Finds those of `lights` that a ray crosses.
+    pub(super) emitter_bvh: EmitterBvh,
+    /// Surfaces that cast caustics; empty where the plan has no photons.
+    pub(super) casters: CausticCasters,
+    pub(super) layers: Vec<Layer>,
+    /// Exposure time of each layer, seconds; 1 for a flash and where the layer's sums include it.
+    pub(super) layer_times: Vec<f32>,
+    /// Exposure time of emissive surfaces, seconds.
+    pub(super) emission_time_s: f32,
+    /// Picture value of one cd s/m2.
+    pub(super) exposure: f32,
+    pub(super) lens: Lens,
+    pub(super) plan: RenderPlan,
+}
+
+/// Object index of the room's instance.
+pub(super) const ROOM: u32 = u32::MAX;
+
+impl RenderScene {
+    /// The plan of the render, with its reasons.
+    pub fn plan(&self) -> &RenderPlan {
+        &self.plan
+    }
+
+    /// Replaces the plan, to measure a shortcut. A plan without what the scene needs makes the picture wrong.
+    pub fn set_plan(&mut self, plan: RenderPlan) {
+        self.plan = plan;
+    }
+
+    /// Number of triangles, each instance counted.
+    pub fn triangle_count(&self) -> u64 {
+        self.aggregate.instances().iter().map(|i| i.geometry.mesh().triangles.len() as u64).sum()
+    }
+
+    /// Number of lights that are on.
+    pub fn light_count(&self) -> usize {
+        self.lights.len()
+    }
+
+    /// World position of the tracer's origin, to which the positions of path events are relative.
+    pub fn origin(&self) -> Vec3 {
+        self.origin
+    }
+
+    /// The scene's light of a prepared one.
+    pub fn light_id(&self, light: u32) -> Option<LightId> {
+        self.light_ids.get(light as usize).copied()
+    }
+
+    /// The BSDF at a surface towards `wo` (unit), for a path inside `media` that accepts this polarisation.
+    pub(super) fn bsdf(
+        &self,
+        surface: &SurfaceInteraction,
+        wo: Vec3,
+        media: &MediumStack,
+        polarisation: Polarisation,
+    ) -> Bsdf<'_> {
+        let material = &self.materials[surface.material as usize];
+        let texture = self.texture_value(surface);
+        let bsdf = Bsdf::new(material, texture, surface.normal, surface.geometric_normal, wo);
+        if !material.transmits() {
+            return bsdf;
+        }
+        let outside = wo.dot(surface.geometric_normal) >= 0.0;
+        let interface = || media.interface(&self.materials, surface.material, outside);
+        bsdf.with_boundary(
+            if surface.is_thin { Boundary::ThinPane } else { Boundary::Interface(interface()) },
+            polarisation,
+        )
+    }
+
+    /// Factor of the base colour from the texture at a surface.
+    pub(super) fn texture_value(&self, surface: &SurfaceInteraction) -> Vec3 {
+        let texture = self.materials[surface.material as usize].texture;
+        texture.map_or(Vec3::ONE, |texture| self.textures[texture as usize].at(surface.uv))
+    }
+
+    /// The film layer of emissive surfaces.
+    pub(super) fn emission_layer(&self) -> usize {
+        self.layers.len() - 1
+    }
+
+    /// Index into the scene's objects of a hit, none for the room, and the name of the part.
+    pub(super) fn object_and_part(&self, hit: &Hit) -> (Option<u32>, &str) {
+        let instance = &self.aggregate.instances()[hit.instance as usize];
+        let part = instance.geometry.mesh().parts.get(instance.geometry.part(hit.triangle.triangle));
+        (Some(instance.object).filter(|object| *object != ROOM), part.map_or("", |part| &part.name))
+    }
+
+    /// The film's description of the first hit of a camera ray.
+    pub(super) fn first_hit(&self, ray: &Ray, hit: &Hit, surface: &SurfaceInteraction) -> FirstHit {
+        let (object, _) = self.object_and_part(hit);
+        let side = if surface.normal.dot(ray.direction) > 0.0 { -1.0 } else { 1.0 };
+        FirstHit {
+            ray: *ray,
+            distance: hit.triangle.t,
+            normal: surface.normal * side,
+            albedo: self.materials[surface.material as usize].albedo(self.texture_value(surface)),
+            object: object.map_or(FirstObject::Room, FirstObject::Object),
+        }
+    }
+}
