@@ -1,6 +1,7 @@
-//! `catchlight bake-mannequins -o DIR`: makes the figures in `assets/mannequins` again. For developers; hidden.
+//! `catchlight bake-mannequins -o DIR`: bakes the figures in `assets/mannequins`. A hidden command for developers.
 
-use super::{Failure, say};
+use super::failure::Failure;
+use super::terminal;
 use crate::figures;
 use std::path::PathBuf;
 
@@ -15,7 +16,7 @@ pub struct Arguments {
 /// Bakes every figure and prints the file names.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for name in figures::bake(&arguments.output)? {
-        say(name);
+        terminal::result(name);
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
-//! `catchlight check SCENE`: what is wrong or odd with a studio.
+//! `catchlight check SCENE`: reports what is wrong or odd with a studio.
 
-use super::{Failure, input, say};
+use super::failure::Failure;
+use super::{input, terminal};
 use std::path::PathBuf;
 
 /// Arguments of `check`.
@@ -10,7 +11,7 @@ pub struct Arguments {
     scene: PathBuf,
 }
 
-/// Prints what there is to say; fails when the studio cannot be used.
+/// Prints a summary; fails if the studio cannot be used.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let loaded = input::load_studio(&arguments.scene)?;
     let scene = &loaded.scene;
@@ -19,7 +20,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         1 => "1 warning".to_owned(),
         n => format!("{n} warnings"),
     };
-    say(format_args!(
+    terminal::result(format_args!(
         "{}: {} objects, {} lights, {verdict}",
         if scene.name.is_empty() { "studio" } else { &scene.name },
         scene.objects.len(),

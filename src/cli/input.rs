@@ -1,8 +1,11 @@
-//! What subcommands are given: studios and sizes.
+//! Input of the subcommands: studios, sizes, points, thread pools.
 
+use super::failure::Failure;
+use super::terminal;
 use crate::io::{self, Loaded};
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use glam::Vec3;
+use rayon::ThreadPool;
 use std::path::Path;
 
 /// Largest picture edge, pixels.
@@ -16,12 +19,12 @@ pub fn load_studio(scene: &Path) -> anyhow::Result<Loaded> {
         None => io::load_scene(scene)?,
     };
     for warning in &loaded.warnings {
-        eprintln!("warning: {}: {}", warning.place, warning.message);
+        terminal::warning(format_args!("{}: {}", warning.place, warning.message));
     }
     Ok(loaded)
 }
 
-/// Complains about a studio that is neither a file nor shipped, before a window is opened for it.
+/// Fails for a studio that is neither a file nor shipped, before a window is opened for it.
 pub fn check_exists(scene: &Path) -> anyhow::Result<()> {
     anyhow::ensure!(
         scene.exists() || scene.to_str().is_some_and(|name| io::find_preset(name).is_some()),
@@ -31,9 +34,9 @@ pub fn check_exists(scene: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A picture size like `1920x1280`.
+/// Parses a picture size like `1920x1280`.
 pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
-    let wrong = || format!("`{text}` is no picture size: write WIDTHxHEIGHT in pixels, such as 1920x1280");
+    let wrong = || format!("`{text}` is not a picture size: write WIDTHxHEIGHT in pixels, such as 1920x1280");
     let (width, height) = text.split_once(['x', 'X']).ok_or_else(wrong)?;
     let edge = |side: &str| side.trim().parse::<u32>().ok().filter(|n| *n > 0).ok_or_else(wrong);
     let (width, height) = (edge(width)?, edge(height)?);
@@ -43,13 +46,19 @@ pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
     Ok((width, height))
 }
 
-/// A place or direction like `0,1.4,-0.1`.
+/// Parses a point or direction like `0,1.4,-0.1`.
 pub fn parse_vec3(text: &str) -> Result<Vec3, String> {
-    let wrong = || format!("`{text}` is no place: write X,Y,Z in metres, such as 0,1.4,-0.1");
+    let wrong = || format!("`{text}` is not a point: write X,Y,Z in metres, such as 0,1.4,-0.1");
     let parts: Vec<f32> =
         text.split(',').map(|part| part.trim().parse().map_err(|_| wrong())).collect::<Result<_, _>>()?;
     let vector = <[f32; 3]>::try_from(parts).map(Vec3::from).map_err(|_| wrong())?;
     if vector.is_finite() { Ok(vector) } else { Err(wrong()) }
+}
+
+/// Returns a pool of `threads` threads, or of one per core for 0.
+pub fn thread_pool(threads: usize) -> Result<ThreadPool, Failure> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|error| Failure::Machine(anyhow!(error).context("can't start the threads")))
 }
 
 #[cfg(test)]
@@ -57,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sizes_are_read_and_nonsense_is_refused() {
+    fn valid_sizes_are_parsed_and_others_are_errors() {
         assert_eq!(parse_size("640x480"), Ok((640, 480)));
         for wrong in ["640", "0x5", "x", "-3x4", "1e3x5", "99999x1", "640x480x3"] {
             assert!(parse_size(wrong).is_err(), "{wrong}");
@@ -65,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn places_have_three_finite_numbers() {
+    fn points_have_three_finite_numbers() {
         assert_eq!(parse_vec3("-1, 2.5,3e-1"), Ok(Vec3::new(-1.0, 2.5, 0.3)));
         for wrong in ["1,2", "1,2,3,4", "", "a,b,c", "1;2;3", "NaN,0,0", "0,inf,0", "1e39,0,0"] {
             assert!(parse_vec3(wrong).is_err(), "{wrong}");

@@ -1,10 +1,12 @@
-//! `catchlight meter SCENE --at X,Y,Z`: what an incident light meter reads at a place of the studio.
+//! `catchlight meter SCENE --at X,Y,Z`: reads an incident light meter at a point of the studio.
 
-use super::{Failure, input, say};
+use super::failure::Failure;
+use super::{input, terminal};
 use crate::io::Loaded;
+use crate::jobs::read_meter;
 use crate::photo::meter::{LUX_PER_FOOT_CANDLE, LightReading, Reading, Receptor, nearest_third};
 use crate::photo::thirds::Dial;
-use crate::raytrace::{LightMeter, MeterEffort, MeterPoint, MeterResult, RenderControl};
+use crate::raytrace::{MeterEffort, MeterPoint, MeterResult, RenderControl};
 use crate::scene::Scene;
 use anyhow::{Context, anyhow};
 use glam::Vec3;
@@ -14,31 +16,31 @@ use std::path::PathBuf;
 
 /// Arguments of `meter`.
 ///
-/// Continuous light is read in lux, flash in lux seconds. Where a flash is told in lux, that is the steady light which
-/// would expose the same at the camera's shutter: lux times shutter is lux seconds for every light. The receptor stands
-/// 0.02 mm before the place, so that a place on a surface reads what falls on it.
+/// Continuous light is read in lux, flash in lux seconds. A flash in lux is the continuous light that gives the same
+/// exposure at the camera's shutter: lux times shutter is lux seconds for every light. The receptor is 0.02 mm in front
+/// of the point, so that a point on a surface reads the light that falls on it.
 #[derive(Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
     /// Studio: a .ron file, or the name of a shipped one.
     scene: PathBuf,
-    /// Where the receptor is: X,Y,Z in metres [default: where the studio's own meter stands, as that stands].
+    /// Position of the receptor: X,Y,Z in metres [default: position, direction and receptor of the studio's own meter].
     #[arg(long, value_name = "X,Y,Z", value_parser = input::parse_vec3, allow_hyphen_values = true)]
     at: Option<Vec3>,
-    /// The direction that it faces: X,Y,Z of any length [default: towards the camera].
+    /// Direction that the receptor faces: X,Y,Z of any length [default: towards the camera].
     #[arg(long, value_name = "X,Y,Z", value_parser = input::parse_vec3, allow_hyphen_values = true)]
     facing: Option<Vec3>,
-    /// A dome (cardioid response) in place of the flat receptor (cosine law).
+    /// Use a dome (cardioid response) instead of the flat receptor (cosine response).
     #[arg(long)]
     dome: bool,
-    /// Paths for the bounced light, and points on each emitter [default: until every light is good to 0.15 %, or 3
-    /// million rays are spent].
+    /// Number of paths for the bounced light, and of points on each emitter [default: until the standard error of every
+    /// light is 0.15 %, or after 3 million rays].
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     spp: Option<u32>,
-    /// Threads [default: all cores]. The reading is the same for any number.
+    /// Number of threads [default: all cores]. The reading is the same for any number.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Another seed gives another sampling error.
+    /// Seed of the sampling error.
     #[arg(long, default_value_t = 0)]
     seed: u32,
     /// Print one JSON object.
@@ -46,20 +48,20 @@ pub struct Arguments {
     json: bool,
 }
 
-/// What `--json` prints.
+/// The object that `--json` prints.
 #[derive(Debug, Serialize)]
-struct Report {
+struct MeterReport {
     at: [f32; 3],
     receptor: &'static str,
     /// Unit vector.
     facing: [f32; 3],
-    total: Total,
+    total: TotalReport,
     lights: Vec<LightReport>,
     ratios: Vec<RatioReport>,
-    /// The light that `share_stops` compares with.
+    /// Name of the light that `share_stops` compares with.
     key: Option<String>,
     flash_percent: Option<f32>,
-    /// Standard error of the whole, percent.
+    /// Standard error of the total, percent.
     noise_percent: Option<f32>,
     paths: u64,
     rays: u64,
@@ -67,7 +69,7 @@ struct Report {
 }
 
 #[derive(Debug, Serialize)]
-struct Total {
+struct TotalReport {
     direct_lux: f32,
     bounced_lux: f32,
     lux: f32,
@@ -103,82 +105,77 @@ struct RatioReport {
 
 /// Reads the meter and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads.unwrap_or(0).into())
-        .build()
-        .map_err(|error| Failure::Machine(anyhow!(error).context("can't start the threads")))?;
+    let pool = input::thread_pool(arguments.threads.unwrap_or(0).into())?;
     let loaded = pool.install(|| input::load_studio(&arguments.scene))?;
-    let place = place(arguments, &loaded.scene)?;
-    let probed = pool.install(|| read(arguments, &loaded, &place))?;
-    warn(&loaded.scene, &place, &probed);
+    let point = meter_point(arguments, &loaded.scene)?;
+    let result = pool.install(|| read(arguments, &loaded, &point))?;
+    warn(&loaded.scene, &point, &result);
     if arguments.json {
-        say(serde_json::to_string(&report(&place, &probed)).context("can't write the reading")?);
+        terminal::result(serde_json::to_string(&report(&point, &result)).context("can't write the reading")?);
     } else {
-        say(table(arguments, &place, &probed).trim_end());
+        terminal::result(table(arguments, &point, &result).trim_end());
     }
     Ok(())
 }
 
-fn place(arguments: &Arguments, scene: &Scene) -> anyhow::Result<MeterPoint> {
+fn meter_point(arguments: &Arguments, scene: &Scene) -> anyhow::Result<MeterPoint> {
     let own = scene.meter.filter(|_| arguments.at.is_none());
     let position = arguments.at.or(own.map(|meter| meter.position));
-    let position = position.context("say where the meter is with --at X,Y,Z, or put one up in the editor")?;
-    anyhow::ensure!(
-        position.abs().max_element() <= 1e6,
-        "--at {position} is further from the origin than a studio reaches (1000 km)"
-    );
+    let position = position.context("name the meter's position with --at X,Y,Z, or add a meter in the editor")?;
+    anyhow::ensure!(position.abs().max_element() <= 1e6, "--at {position} is more than 1000 km from the origin");
     let facing = match (arguments.facing, own) {
         (Some(direction), _) => direction
             .as_dvec3()
             .try_normalize()
-            .ok_or_else(|| anyhow!("--facing {direction} has no length, and so no direction"))?
+            .ok_or_else(|| anyhow!("--facing {direction} has length 0, and so no direction"))?
             .as_vec3(),
         (None, Some(meter)) => meter.direction(scene),
         (None, None) => (scene.camera.position - position)
             .try_normalize()
-            .ok_or_else(|| anyhow!("the meter is where the camera is; say what it faces with --facing X,Y,Z"))?,
+            .ok_or_else(|| anyhow!("the meter is at the camera's position; name its direction with --facing X,Y,Z"))?,
     };
     let dome = arguments.dome || own.is_some_and(|meter| meter.receptor == Receptor::Dome);
     let receptor = if dome { Receptor::Dome } else { Receptor::Flat };
     Ok(MeterPoint { position, facing, receptor })
 }
 
-fn read(arguments: &Arguments, loaded: &Loaded, place: &MeterPoint) -> anyhow::Result<MeterResult> {
-    let probe = LightMeter::new(&loaded.scene, &loaded.assets, place.position)?;
+fn read(arguments: &Arguments, loaded: &Loaded, point: &MeterPoint) -> anyhow::Result<MeterResult> {
     let effort = MeterEffort { paths: arguments.spp, seed: arguments.seed, ..MeterEffort::default() };
-    probe.read(place, &effort, &RenderControl::new()).ok_or_else(|| anyhow!("the reading was cancelled"))
+    let (control, mut result) = (RenderControl::new(), None);
+    read_meter(&loaded.scene, &loaded.assets, point, &[effort], &control, &mut |reading| result = Some(reading))?;
+    result.ok_or_else(|| anyhow!("the reading was cancelled"))
 }
 
-/// What a photographer hardly meant.
-fn warn(scene: &Scene, place: &MeterPoint, probed: &MeterResult) {
-    if let Some(object) = probed.inside.and_then(|index| scene.objects.get(index as usize)) {
-        eprintln!("warning: the meter is inside of {:?}", object.name);
+/// Warns of a meter in an object or outside of the room, of darkness, and of non-finite contributions.
+fn warn(scene: &Scene, point: &MeterPoint, result: &MeterResult) {
+    if let Some(object) = result.inside.and_then(|index| scene.objects.get(index as usize)) {
+        terminal::warning(format_args!("the meter is inside of {:?}", object.name));
     }
     let outside = scene.room.as_ref().is_some_and(|room| {
         let half = room.size_m * 0.5;
-        let p = place.position;
+        let p = point.position;
         p.x.abs() > half.x || p.z.abs() > half.z || p.y < 0.0 || p.y > room.size_m.y
     });
     if outside {
-        eprintln!("warning: the meter is outside of the room");
+        terminal::warning("the meter is outside of the room");
     }
     if !scene.lights.iter().any(|light| light.on) {
-        eprintln!("warning: no light is on");
+        terminal::warning("no light is on");
     }
-    if probed.nonfinite.count > 0 {
-        eprintln!("warning: {} non-finite contributions were left out", probed.nonfinite.count);
+    if result.nonfinite.count > 0 {
+        terminal::warning(format_args!("{} non-finite contributions were left out", result.nonfinite.count));
     }
 }
 
-fn report(place: &MeterPoint, probed: &MeterResult) -> Report {
-    let reading = &probed.reading;
+fn report(point: &MeterPoint, result: &MeterResult) -> MeterReport {
+    let reading = &result.reading;
     let (direct_lux, bounced_lux) = reading.total_lux();
     let lux = direct_lux + bounced_lux;
-    Report {
-        at: place.position.to_array(),
-        receptor: place.receptor.label(),
-        facing: place.facing.to_array(),
-        total: Total {
+    MeterReport {
+        at: point.position.to_array(),
+        receptor: point.receptor.label(),
+        facing: point.facing.to_array(),
+        total: TotalReport {
             direct_lux,
             bounced_lux,
             lux,
@@ -196,9 +193,9 @@ fn report(place: &MeterPoint, probed: &MeterResult) -> Report {
         key: reading.key().map(|key| key.name.clone()),
         flash_percent: reading.flash_share().map(|share| share * 100.0),
         noise_percent: reading.relative_error().map(|error| error * 100.0),
-        paths: probed.paths,
-        rays: probed.rays,
-        nonfinite: probed.nonfinite.count,
+        paths: result.paths,
+        rays: result.rays,
+        nonfinite: result.nonfinite.count,
     }
 }
 
@@ -215,13 +212,13 @@ fn light_report(reading: &Reading, light: &LightReading) -> LightReport {
     }
 }
 
-/// The reading for a reader: a line a light, then what to set.
-fn table(arguments: &Arguments, place: &MeterPoint, probed: &MeterResult) -> String {
-    let reading = &probed.reading;
-    let [p, d] = [place.position, place.facing];
+/// Returns the reading as text: a line per light, then the camera settings.
+fn table(arguments: &Arguments, point: &MeterPoint, result: &MeterResult) -> String {
+    let reading = &result.reading;
+    let [p, d] = [point.position, point.facing];
     let to_camera = arguments.facing.is_none() && arguments.at.is_some();
     let towards = if to_camera { "the camera".to_owned() } else { vector(d) };
-    let mut text = format!("{} receptor at {} m, facing {towards}\n\n", place.receptor.label(), vector(p));
+    let mut text = format!("{} receptor at {} m, facing {towards}\n\n", point.receptor.label(), vector(p));
     let width = reading.lights.iter().map(|l| l.name.chars().count()).max().unwrap_or(0).max(5);
     let _ = writeln!(
         text,
@@ -263,7 +260,7 @@ fn table(arguments: &Arguments, place: &MeterPoint, probed: &MeterResult) -> Str
     let share = 100.0 * reading.flash_share().unwrap_or(0.0);
     let error = 100.0 * reading.relative_error().unwrap_or(0.0);
     let _ = writeln!(text, "flash {share:.1} %, continuous {:.1} %", 100.0 - share);
-    let _ = writeln!(text, "standard error {error:.2} %, {} paths", probed.paths);
+    let _ = writeln!(text, "standard error {error:.2} %, {} paths", result.paths);
     text
 }
 
@@ -271,7 +268,7 @@ fn vector(v: Vec3) -> String {
     format!("{:.2},{:.2},{:.2}", v.x, v.y, v.z)
 }
 
-/// Four digits and no more.
+/// Returns a number with four significant digits, or all digits before the point.
 fn digits(value: f32) -> String {
     match value.abs() {
         v if v >= 1000.0 => format!("{value:.0}"),

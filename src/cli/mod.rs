@@ -1,25 +1,30 @@
-//! The command line: arguments, one file a subcommand, exit codes.
+//! The command line: arguments, one file or folder per subcommand, exit codes.
 //!
-//! Results go to stdout, progress and complaints to stderr. Exit codes: 0 done, 1 the input is wrong, 2 the machine
-//! can't, 130 interrupted.
+//! Results go to stdout, progress, warnings and errors to stderr. Exit codes: 0 done, 1 the input is wrong, 2 the
+//! machine cannot do it, 130 interrupted.
 
 mod bake;
-mod beside;
 mod chart;
 mod check;
-mod crowd;
+mod failure;
+mod frame_rate_beside_live_view;
+mod frame_times;
 mod input;
+mod light_crowd;
+mod live_view_times;
 mod meter;
 mod presets;
 mod preview;
+mod preview_look;
 mod render;
-mod traced;
+mod terminal;
 mod truth;
 #[cfg_attr(not(feature = "gui"), path = "no_window.rs")]
 mod window;
 mod zbuffer;
 
 use clap::{Parser, Subcommand};
+use failure::Failure;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -38,17 +43,17 @@ struct Arguments {
 enum Command {
     /// Render a studio to a picture, without a window.
     Render(render::Arguments),
-    /// Draw the live preview of a studio to a picture, or time its frames, without a window.
+    /// Draw the live preview of a studio to a picture, or measure its frame times, without a window.
     Preview(preview::Arguments),
-    /// Read a light meter at a place of a studio: every light, direct and bounced.
+    /// Read an incident light meter at a point of a studio: every light, direct and bounced.
     Meter(meter::Arguments),
-    /// Say what is wrong or odd with a studio file.
+    /// Report what is wrong or odd with a studio file.
     Check(check::Arguments),
     /// Chart speed against accuracy.
     Chart(chart::Arguments),
     /// List the shipped studios.
     Presets(presets::Arguments),
-    /// Print readings beside the closed forms that they should match.
+    /// Print readings beside the closed-form values that they should match.
     #[command(hide = true)]
     Truth(truth::Arguments),
     /// Bake the mannequins' OBJ files.
@@ -56,29 +61,12 @@ enum Command {
     BakeMannequins(bake::Arguments),
 }
 
-/// Why a command ended without its result.
-#[derive(Debug)]
-enum Failure {
-    /// The input is wrong: exit code 1.
-    Input(anyhow::Error),
-    /// The machine cannot: exit code 2.
-    Machine(anyhow::Error),
-    /// Interrupted; what was there has been kept: exit code 130.
-    Interrupted,
-}
-
-impl<E: Into<anyhow::Error>> From<E> for Failure {
-    fn from(error: E) -> Self {
-        Failure::Input(error.into())
-    }
-}
-
 /// Runs the program. `started` is when the process began, for the timings it reports.
 pub fn run(started: Instant) -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version are results; anything else is wrong input. A closed pipe is nobody's fault.
+            // Help and version are results; anything else is wrong input. A closed pipe is not an error.
             let _ = error.print();
             return ExitCode::from(u8::from(error.use_stderr()));
         }
@@ -94,12 +82,14 @@ pub fn run(started: Instant) -> ExitCode {
         Some(Command::Truth(arguments)) => truth::run(&arguments),
         Some(Command::BakeMannequins(arguments)) => bake::run(&arguments),
     };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Input(error)) => complain(&error, 1),
-        Err(Failure::Machine(error)) => complain(&error, 2),
-        Err(Failure::Interrupted) => ExitCode::from(130),
-    }
+    let (error, code) = match result {
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(Failure::Interrupted) => return ExitCode::from(130),
+        Err(Failure::Input(error)) => (error, 1),
+        Err(Failure::Machine(error)) => (error, 2),
+    };
+    terminal::error(&error);
+    ExitCode::from(code)
 }
 
 fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
@@ -107,15 +97,4 @@ fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
         input::check_exists(scene)?;
     }
     window::open(scene)
-}
-
-fn complain(error: &anyhow::Error, code: u8) -> ExitCode {
-    eprintln!("catchlight: {error:#}");
-    ExitCode::from(code)
-}
-
-/// Prints a line to stdout. A closed pipe (`catchlight presets | head -1`) is no error.
-fn say(text: impl std::fmt::Display) {
-    use std::io::Write;
-    let _ = writeln!(std::io::stdout(), "{text}");
 }

@@ -1,12 +1,13 @@
-//! Stands in for `window.rs` where the program was built without the `gui` feature.
+//! Replaces `window.rs` in a build without the `gui` feature.
 
-use super::Failure;
-use super::preview::{Look, TimesReport};
+use super::failure::Failure;
+use super::frame_times::FrameTimeReport;
+use super::preview_look::PreviewLook;
 use crate::io::Loaded;
 use anyhow::anyhow;
 use std::path::{Path, PathBuf};
 
-/// There is no window in this build.
+/// Fails: this build has no window.
 pub fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
     let scene = scene.unwrap_or_else(|| "three_point".into());
     Err(Failure::Machine(anyhow!(
@@ -16,13 +17,18 @@ pub fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
     )))
 }
 
-/// There is no graphics-card preview in this build.
-pub fn write_preview(_loaded: &Loaded, _size: (u32, u32), _output: &Path, _look: &Look) -> Result<(), Failure> {
+/// Fails: this build has no GPU preview.
+pub fn write_preview(_loaded: &Loaded, _size: (u32, u32), _output: &Path, _look: &PreviewLook) -> Result<(), Failure> {
     Err(no_preview())
 }
 
-/// There is no graphics-card preview to be timed in this build.
-pub fn time_preview(_loaded: &Loaded, _size: (u32, u32), _frames: u32, _radius: bool) -> Result<TimesReport, Failure> {
+/// Fails: this build has no GPU preview.
+pub fn time_preview(
+    _loaded: &Loaded,
+    _size: (u32, u32),
+    _frames: u32,
+    _radius: bool,
+) -> Result<FrameTimeReport, Failure> {
     Err(no_preview())
 }
 

@@ -1,16 +1,18 @@
-//! `catchlight truth`: the README's table of readings beside closed forms, measured anew. For developers; hidden.
+//! `catchlight truth`: measures the README's table of readings beside closed forms. A hidden command for
+//! developers.
 
-use super::{Failure, say};
+use super::failure::Failure;
+use super::terminal;
 use crate::truth;
 
 /// No arguments.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {}
 
-/// Prints the table; fails when a row is further off than sampling explains.
+/// Prints the table; fails if the error of a row is larger than sampling explains.
 pub fn run(_arguments: &Arguments) -> Result<(), Failure> {
     let rows = truth::rows();
-    say(truth::markdown(&rows).trim_end());
+    terminal::result(truth::markdown(&rows).trim_end());
     let wrong: Vec<&str> = rows
         .iter()
         .filter(|row| row.difference().abs().partial_cmp(&row.tolerance).is_none_or(|o| o.is_gt()))
@@ -19,6 +21,6 @@ pub fn run(_arguments: &Arguments) -> Result<(), Failure> {
     if wrong.is_empty() {
         Ok(())
     } else {
-        Err(Failure::Input(anyhow::anyhow!("further off than it should be: {}", wrong.join("; "))))
+        Err(Failure::Input(anyhow::anyhow!("the error is larger than the tolerance: {}", wrong.join("; "))))
     }
 }

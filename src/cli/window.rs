@@ -1,7 +1,9 @@
-//! What needs a graphics adapter: the editor and its preview.
+//! Commands that need a GPU: the editor and its preview.
 
-use super::Failure;
-use super::preview::{Look, TimesReport};
+use super::failure::Failure;
+use super::frame_times::FrameTimeReport;
+use super::preview_look::PreviewLook;
+use super::terminal;
 use crate::editor;
 use crate::io::{self, Loaded, PictureInfo};
 use crate::photo::exposure;
@@ -22,8 +24,8 @@ pub fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
     })
 }
 
-/// Renders the preview offscreen and writes it. Channels go to PNG and JPEG in their colours, to EXR as values.
-pub fn write_preview(loaded: &Loaded, size: (u32, u32), output: &Path, look: &Look) -> Result<(), Failure> {
+/// Draws the preview offscreen and writes it. Channels are written to PNG and JPEG as colours, to EXR as values.
+pub fn write_preview(loaded: &Loaded, size: (u32, u32), output: &Path, look: &PreviewLook) -> Result<(), Failure> {
     let options = options(loaded, look)?;
     let (_, mut renderer) = start()?;
     let input = PreviewInput { options, ..PreviewInput::camera_view(&loaded.scene, &loaded.assets, size) };
@@ -37,7 +39,7 @@ pub fn write_preview(loaded: &Loaded, size: (u32, u32), output: &Path, look: &Lo
     Ok(io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene.camera, "preview", 1, 0))?)
 }
 
-fn options(loaded: &Loaded, look: &Look) -> Result<Options, Failure> {
+fn options(loaded: &Loaded, look: &PreviewLook) -> Result<Options, Failure> {
     let known = Channel::ALL.map(Channel::name).join(", ");
     let channel = Channel::ALL.into_iter().find(|channel| channel.name() == look.channel);
     let channel =
@@ -49,31 +51,33 @@ fn options(loaded: &Loaded, look: &Look) -> Result<Options, Failure> {
     Ok(Options { channel, only_light, gloss, ..Options::default() })
 }
 
-/// Says on stderr what the colours mean.
+/// Prints the legend of the false colours on stderr.
 fn legend(camera: &Camera) {
     let lux_s = exposure::pixel_per_cd_s_m2(camera).recip() * PI;
     for stops in FALSE_STOPS.0..=FALSE_STOPS.1 {
         let [r, g, b] = false_color(stops as f32);
         let lux_s = lux_s * (stops as f32).exp2();
         let lux = lux_s / camera.shutter_s;
-        eprintln!("#{r:02x}{g:02x}{b:02x}  {stops:+} stops  {lux_s:.3} lx s, or {lux:.1} lx at the camera's shutter");
+        terminal::progress(format_args!(
+            "#{r:02x}{g:02x}{b:02x}  {stops:+} stops  {lux_s:.3} lx s, or {lux:.1} lx at the camera's shutter"
+        ));
     }
 }
 
-/// Times frames of the preview in motion.
+/// Measures frame times of the preview in motion.
 pub fn time_preview(
     loaded: &Loaded,
     (width, height): (u32, u32),
     frames: u32,
     light_radius: bool,
-) -> Result<TimesReport, Failure> {
+) -> Result<FrameTimeReport, Failure> {
     let (gpu, mut renderer) = start()?;
     let mut input = PreviewInput::camera_view(&loaded.scene, &loaded.assets, (width, height));
     input.options = Options { light_radius, draft: true, ..input.options };
     let moving = renderer.time_frames(&input, frames).map_err(machine)?;
     input.options.draft = false;
     let full = if renderer.draws_drafts() { renderer.time_frames(&input, frames).map_err(machine)? } else { moving };
-    Ok(TimesReport {
+    Ok(FrameTimeReport {
         scene: loaded.scene.name.clone(),
         width,
         height,

@@ -1,7 +1,7 @@
-//! The z-buffer on the processor, from the command line: `preview --cpu` and `render --method zbuffer`.
+//! The CPU z-buffer on the command line: `preview --cpu` and `render --method zbuffer`.
 
-use super::Failure;
-use super::preview::TimesReport;
+use super::failure::Failure;
+use super::frame_times::FrameTimeReport;
 use crate::io::{self, Loaded, PictureInfo};
 use crate::photo::Picture;
 use crate::raster::{Drawing, Rasterizer, Shading};
@@ -9,30 +9,30 @@ use glam::{Affine3A, Quat, Vec3};
 use std::path::Path;
 use std::time::Instant;
 
-/// Turn of the camera from one timed frame to the next, radians.
+/// Angle by which the camera turns from one timed frame to the next, radians.
 const TURN_RAD: f32 = 0.004;
-/// Distance ahead of the camera about which it turns, metres.
+/// Distance from the camera to the point that it turns about, metres.
 const PIVOT_M: f32 = 2.0;
 
-/// Draws a studio with `samples` pixels along each side of every pixel of the picture; and how many triangles it has.
-pub fn picture(loaded: &Loaded, (width, height): (u32, u32), samples: u32) -> (Picture, u64) {
+/// Draws a studio with `side` x `side` subpixels per pixel. Returns the picture and the number of triangles.
+pub fn picture(loaded: &Loaded, (width, height): (u32, u32), side: u32) -> (Picture, u64) {
     let camera = loaded.scene.camera_frame(width as f32 / height as f32);
     let mut rasterizer = Rasterizer::new(&loaded.scene, &loaded.assets);
-    let fine = (width * samples, height * samples);
+    let fine = (width * side, height * side);
     let mut drawing = Drawing::default();
     rasterizer.draw(&loaded.scene, &camera, fine, Shading::default(), &mut drawing);
-    let picture = if samples == 1 { drawing.picture } else { reduced(&drawing.picture, samples) };
+    let picture = if side == 1 { drawing.picture } else { reduced(&drawing.picture, side) };
     (picture, rasterizer.triangle_count())
 }
 
-/// Means over squares of pixels.
-fn reduced(fine: &Picture, samples: u32) -> Picture {
-    let mut picture = Picture::new(fine.width / samples, fine.height / samples);
-    let part = 1.0 / (samples * samples) as f32;
+/// Returns the means over squares of `side` x `side` pixels.
+fn reduced(fine: &Picture, side: u32) -> Picture {
+    let mut picture = Picture::new(fine.width / side, fine.height / side);
+    let weight = 1.0 / (side * side) as f32;
     for (i, pixel) in (0_u32..).zip(picture.rgb.iter_mut()) {
-        let (x, y) = (i % picture.width * samples, i / picture.width * samples);
-        let sum: Vec3 = (0..samples * samples).map(|k| Vec3::from(fine.at(x + k % samples, y + k / samples))).sum();
-        *pixel = (sum * part).into();
+        let (x, y) = (i % picture.width * side, i / picture.width * side);
+        let sum: Vec3 = (0..side * side).map(|k| Vec3::from(fine.at(x + k % side, y + k / side))).sum();
+        *pixel = (sum * weight).into();
     }
     picture
 }
@@ -43,8 +43,8 @@ pub fn write(loaded: &Loaded, size: (u32, u32), output: &Path) -> Result<(), Fai
     Ok(io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene.camera, "zbuffer", 1, 0))?)
 }
 
-/// Times frames with a camera that turns.
-pub fn time(loaded: &Loaded, (width, height): (u32, u32), frames: u32) -> TimesReport {
+/// Measures frame times with a turning camera.
+pub fn time(loaded: &Loaded, (width, height): (u32, u32), frames: u32) -> FrameTimeReport {
     let mut rasterizer = Rasterizer::new(&loaded.scene, &loaded.assets);
     let mut drawing = Drawing::default();
     let camera = loaded.scene.camera_frame(width as f32 / height as f32);
@@ -65,8 +65,8 @@ pub fn time(loaded: &Loaded, (width, height): (u32, u32), frames: u32) -> TimesR
         .skip(1)
         .collect();
     times.sort_by(f64::total_cmp);
-    let at = |part: f64| times[((times.len() - 1) as f64 * part).round() as usize];
-    TimesReport {
+    let quantile = |part: f64| times[((times.len() - 1) as f64 * part).round() as usize];
+    FrameTimeReport {
         scene: loaded.scene.name.clone(),
         width,
         height,
@@ -76,8 +76,8 @@ pub fn time(loaded: &Loaded, (width, height): (u32, u32), frames: u32) -> TimesR
         light_radius: false,
         draft: false,
         frames: times.len(),
-        median_ms: at(0.5),
-        ninety_percent_ms: at(0.9),
-        full_median_ms: at(0.5),
+        median_ms: quantile(0.5),
+        ninety_percent_ms: quantile(0.9),
+        full_median_ms: quantile(0.5),
     }
 }

@@ -1,36 +1,36 @@
-//! Background work: renders, the traced live view, light meter readings and render forecasts, each in its own thread.
+//! Background work for the window and the command line: renders, development of films, the live traced view, light
+//! meter readings, render forecasts and thumbnails.
 //!
-//! Window and command line share it. It depends on neither egui nor wgpu: a job signals its owner through a [`Wake`].
+//! It depends on neither egui nor wgpu. A job of the window is a [`worker`]: a thread with a request slot and a result
+//! slot, each of which holds the latest value only, and a [`Wake`] callback. The command line calls the functions that
+//! those threads run: [`render()`], [`read_meter`], [`LivePacing::step`].
 
+mod clock;
+mod film_developer;
 mod forecast;
+mod forecaster;
 mod live_job;
-mod live_pace;
-mod meter_job;
+mod live_pacing;
+mod meter;
+mod monitor;
+mod render;
 mod render_job;
+mod sentence;
 mod threads;
+mod thumbnails;
+pub mod worker;
 
-pub use forecast::{Estimate, Forecast, Forecaster};
+pub use clock::Clock;
+pub use film_developer::{Developed, FilmDeveloper};
+pub use forecast::{Estimate, Forecast};
+pub use forecaster::{ForecastSubject, Forecaster};
 pub use live_job::{LiveJob, LiveRequest};
-pub use live_pace::{LiveImage, LivePace};
-pub use meter_job::MeterJob;
-pub use render_job::{Developed, Developer, Outcome, Phase, Progress, RenderJob};
-pub use threads::background_pool;
-
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-/// A callback that tells a job's owner to fetch its result, such as a request to repaint a window.
-pub type Wake = Arc<dyn Fn() + Send + Sync>;
-
-/// Locks a mutex whose data stays valid after a panic.
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Returns an error's message as a sentence: with a capital letter and a full stop.
-pub fn sentence(error: &dyn std::error::Error) -> String {
-    let text = error.to_string();
-    let mut chars = text.chars();
-    let first = chars.next().map(|c| c.to_uppercase().to_string()).unwrap_or_default();
-    let rest = chars.as_str();
-    if rest.ends_with(['.', '!', '?']) { format!("{first}{rest}") } else { format!("{first}{rest}.") }
-}
+pub use live_pacing::{LiveImage, LivePacing};
+pub use meter::{MeterJob, read_meter};
+pub use monitor::{Progress, RenderMonitor};
+pub use render::{RenderInput, RenderStage, Rendered, render, render_all_passes};
+pub use render_job::{RenderJob, RenderOutcome, RenderPhase, RenderRequest};
+pub use sentence::sentence;
+pub use threads::{Priority, background_pool};
+pub use thumbnails::{BACKGROUND, ThumbnailImage, ThumbnailJob, ThumbnailSubject, draw_thumbnail};
+pub use worker::Wake;

@@ -1,329 +1,204 @@
-//! Rendering in the background, on an immutable copy of the studio, and developing the film in a thread of its own.
+//! A render in the background, on an immutable copy of the studio.
 
-use super::threads::background_pool;
-use super::{Wake, lock, sentence};
+use super::monitor::{Progress, RenderMonitor};
+use super::render::{RenderInput, RenderStage, Rendered, render};
+use super::sentence::sentence;
+use super::threads::{Priority, background_pool};
+use super::worker::{Inbox, Interrupt, Wake, Worker, WorkerSettings};
 use crate::io;
-use crate::photo::Picture;
-use crate::raytrace::{self, Film, GeometryCache, RenderControl, Settings};
+use crate::raytrace::{Film, GeometryCache, RenderControl, Settings};
 use crate::scene::{Assets, Scene};
-use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How far a render is.
+/// The phase that a render is in.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Phase {
-    /// Building trees and tables.
+pub enum RenderPhase {
+    /// Loads missing assets, builds BVHs and tables.
     Preparing,
-    /// Taking samples.
+    /// Takes samples.
     Tracing,
     /// All samples are taken.
     Done,
-    /// Stopped by the user; what was complete is kept.
+    /// Cancelled by the user; complete samples are kept.
     Cancelled,
-    /// It could not be done.
+    /// Ended by an error, with its message.
     Failed(String),
 }
 
-impl Phase {
-    /// Whether the job still works.
+impl RenderPhase {
+    /// Returns true until the render has ended.
     pub fn is_running(&self) -> bool {
-        matches!(self, Phase::Preparing | Phase::Tracing)
+        matches!(self, RenderPhase::Preparing | RenderPhase::Tracing)
     }
 }
 
-/// Numbers for the progress bar.
+/// Cost and noise of a render that was not cancelled.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
-    /// Part of the work that is done, 0 to 1.
-    pub fraction: f32,
-    /// Samples a pixel so far.
-    pub samples: f32,
-    /// Rays a second, millions.
-    pub mrays_s: f32,
-    /// Since the start.
-    pub elapsed: Duration,
-    /// Estimate of what is left; none before there is enough to judge by.
-    pub left: Option<Duration>,
-}
-
-/// What a render that ran to its end took and left.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outcome {
-    /// Files, trees and tables, seconds.
+pub struct RenderOutcome {
+    /// Time to load missing assets and to build BVHs and tables, seconds.
     pub build_s: f64,
-    /// Sampling, seconds.
+    /// Time to trace, seconds.
     pub trace_s: f64,
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub spp: u32,
     /// Estimated noise of the picture, stops.
     pub noise_stops: f32,
 }
 
+/// A render to be made in the background.
 #[derive(Debug)]
-struct Shared {
-    phase: Mutex<Phase>,
-    film: Mutex<Option<Arc<Film>>>,
-    tracing_since: Mutex<Option<Instant>>,
-    ended: Mutex<Option<Instant>>,
-    outcome: Mutex<Option<Outcome>>,
+pub struct RenderRequest {
+    /// The studio.
+    pub scene: Arc<Scene>,
+    /// Its assets, as far as they are loaded.
+    pub assets: Assets,
+    /// Folder of the studio's file, where missing assets are looked up.
+    pub folder: Option<PathBuf>,
+    /// BVHs of meshes, shared with the live view.
+    pub cache: Arc<GeometryCache>,
+    /// Size, method and number of samples.
+    pub settings: Settings,
+}
+
+/// A request with the monitor that both threads share.
+#[derive(Debug)]
+struct Task {
+    request: RenderRequest,
+    monitor: Arc<RenderMonitor>,
+}
+
+/// State of a render as its thread publishes it.
+#[derive(Clone, Debug)]
+struct Report {
+    phase: RenderPhase,
+    film: Option<Arc<Film>>,
+    outcome: Option<RenderOutcome>,
 }
 
 /// One render. Dropping it cancels it.
 #[derive(Debug)]
 pub struct RenderJob {
-    control: Arc<RenderControl>,
-    shared: Arc<Shared>,
+    worker: Worker<Task, Report>,
+    monitor: Arc<RenderMonitor>,
+    latest: Report,
     /// The studio as it is being rendered.
     pub scene: Arc<Scene>,
-    /// What was asked for.
+    /// Size, method and number of samples.
     pub settings: Settings,
-    started: Instant,
 }
 
-/// Snapshots come at most this often: each is a copy of the film.
-const SNAPSHOT_EVERY: Duration = Duration::from_millis(150);
+const WORKER: WorkerSettings = WorkerSettings {
+    name: "render",
+    priority: Priority::Background,
+    interrupt: Interrupt::Always,
+    panic_message: "The renderer stopped with an internal error.",
+};
+
+/// Least time between two films that are published, each of which is developed.
+const FILM_INTERVAL: Duration = Duration::from_millis(150);
 
 impl RenderJob {
-    /// Starts to render a copy of the studio. Assets that are still on their way are loaded first; meshes whose trees are
-    /// there cost nothing.
-    pub fn start(
-        trees: Arc<GeometryCache>,
-        scene: Scene,
-        assets: Assets,
-        folder: Option<PathBuf>,
-        settings: Settings,
-        wake: Wake,
-    ) -> Self {
-        let control = Arc::new(RenderControl::new());
-        let shared = Arc::new(Shared {
-            phase: Mutex::new(Phase::Preparing),
-            film: Mutex::new(None),
-            tracing_since: Mutex::new(None),
-            ended: Mutex::new(None),
-            outcome: Mutex::new(None),
+    /// Starts a render.
+    pub fn start(request: RenderRequest, wake: &Wake) -> Self {
+        let (scene, settings) = (request.scene.clone(), request.settings.clone());
+        let control: Arc<RenderControl> = Arc::default();
+        let monitor = Arc::new(RenderMonitor::new(&settings, control.clone()));
+        let mut worker = Worker::new(WORKER, |inbox: &Inbox<Task, Report>| {
+            while let Some((task, _)) = inbox.next() {
+                run(&task, inbox);
+            }
         });
-        let job = RenderJob {
-            control: control.clone(),
-            shared: shared.clone(),
-            scene: Arc::new(scene),
-            settings: settings.clone(),
-            started: Instant::now(),
-        };
-        let scene = job.scene.clone();
-        std::thread::spawn(move || {
-            let work = || trace(&trees, &scene, assets, folder, &settings, &control, &shared, &wake);
-            // The tracer does not panic; if it did, the user would get a message and keep the window.
-            let end = std::panic::catch_unwind(std::panic::AssertUnwindSafe(work))
-                .unwrap_or_else(|_| Phase::Failed("The renderer stopped with an internal error.".to_owned()));
-            *lock(&shared.ended) = Some(Instant::now());
-            *lock(&shared.phase) = end;
-            wake();
-        });
-        job
+        let task = Task { request, monitor: monitor.clone() };
+        worker.request_with(control, wake, |_| task);
+        let latest = Report { phase: RenderPhase::Preparing, film: None, outcome: None };
+        RenderJob { worker, monitor, latest, scene, settings }
     }
 
-    /// Asks it to stop.
+    /// Cancels the render. Complete samples are kept.
     pub fn cancel(&self) {
-        self.control.cancel();
+        self.monitor.control().cancel();
     }
 
-    /// How far it is.
-    pub fn phase(&self) -> Phase {
-        lock(&self.shared.phase).clone()
-    }
-
-    /// The latest snapshot.
-    pub fn film(&self) -> Option<Arc<Film>> {
-        lock(&self.shared.film).clone()
-    }
-
-    /// What it took and left, once, when it has ran to its end.
-    pub fn take_outcome(&self) -> Option<Outcome> {
-        lock(&self.shared.outcome).take()
-    }
-
-    /// Numbers for the progress bar.
-    pub fn progress(&self) -> Progress {
-        let pixels = u64::from(self.settings.width) * u64::from(self.settings.height);
-        let total = (pixels * u64::from(self.settings.spp)).max(1);
-        let done = self.control.samples_done().min(total);
-        let end = lock(&self.shared.ended).unwrap_or_else(Instant::now);
-        let tracing = lock(&self.shared.tracing_since).map_or(0.0, |since| (end - since).as_secs_f64());
-        let fraction = done as f64 / total as f64;
-        let enough = tracing > 0.3 && fraction > 0.002;
-        Progress {
-            fraction: fraction as f32,
-            samples: done as f32 / pixels.max(1) as f32,
-            mrays_s: if tracing > 0.0 { (self.control.rays() as f64 * 1e-6 / tracing) as f32 } else { 0.0 },
-            elapsed: end - self.started,
-            left: enough.then(|| Duration::from_secs_f64(tracing * (1.0 - fraction) / fraction)),
+    /// Takes in what the thread has published. To be called once a frame.
+    pub fn update(&mut self) {
+        match self.worker.take() {
+            Some(Ok(report)) => self.latest = report,
+            Some(Err(message)) => self.latest.phase = RenderPhase::Failed(message),
+            None => {}
         }
     }
-}
 
-impl Drop for RenderJob {
-    fn drop(&mut self) {
-        self.cancel();
+    /// Returns the phase.
+    pub fn phase(&self) -> &RenderPhase {
+        &self.latest.phase
+    }
+
+    /// Returns the latest film.
+    pub fn film(&self) -> Option<&Arc<Film>> {
+        self.latest.film.as_ref()
+    }
+
+    /// Returns true until the render has ended and its result is taken in.
+    pub fn is_busy(&self) -> bool {
+        self.worker.is_busy()
+    }
+
+    /// Takes the outcome of a render that was not cancelled.
+    pub fn take_outcome(&mut self) -> Option<RenderOutcome> {
+        self.latest.outcome.take()
+    }
+
+    /// Returns the current progress.
+    pub fn progress(&self) -> Progress {
+        self.monitor.progress()
     }
 }
 
 /// The body of the render thread.
-#[expect(clippy::too_many_arguments, reason = "one call site")]
-fn trace(
-    trees: &GeometryCache,
-    scene: &Scene,
-    mut assets: Assets,
-    folder: Option<PathBuf>,
-    settings: &Settings,
-    control: &RenderControl,
-    shared: &Shared,
-    wake: &Wake,
-) -> Phase {
-    let began = Instant::now();
+fn run(task: &Task, inbox: &Inbox<Task, Report>) {
+    let Task { request: RenderRequest { scene, assets, folder, cache, settings }, monitor } = task;
+    let control = monitor.control();
+    let started = Instant::now();
+    // Load the assets that are missing.
+    let mut assets = assets.clone();
     io::load_assets(scene, folder.as_deref(), &mut assets);
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let pool = match background_pool(threads, "trace") {
+    let load_s = started.elapsed().as_secs_f64();
+    // Render, and publish the film from time to time.
+    let pool = match background_pool(0, "trace") {
         Ok(pool) => pool,
-        Err(error) => return Phase::Failed(format!("No threads to render with: {error}.")),
+        Err(error) => return inbox.fail(format!("No threads to render with: {error}.")),
     };
-    let prepared = match pool.install(|| raytrace::prepare_kept(scene, &assets, trees)) {
-        Ok(prepared) => prepared,
-        Err(error) => return Phase::Failed(sentence(&error)),
-    };
-    if control.is_cancelled() {
-        return Phase::Cancelled;
-    }
-    let tracing = Instant::now();
-    *lock(&shared.tracing_since) = Some(tracing);
-    *lock(&shared.phase) = Phase::Tracing;
-    wake();
-    if let Some(coarse) = settings.coarse() {
-        let film = pool
-            .install(|| raytrace::render(&prepared, &coarse, &RenderControl::new(), &mut |_| ControlFlow::Break(())));
-        *lock(&shared.film) = Some(Arc::new(film));
-        wake();
-    }
-    let mut last_snapshot: Option<Instant> = None;
-    let film = pool.install(|| {
-        raytrace::render(&prepared, settings, control, &mut |film| {
-            if last_snapshot.is_none_or(|last| last.elapsed() >= SNAPSHOT_EVERY) {
-                *lock(&shared.film) = Some(Arc::new(film.clone()));
-                last_snapshot = Some(Instant::now());
-                wake();
-            }
-            if control.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        })
-    });
-    if !control.is_cancelled() {
-        let (build_s, trace_s) = ((tracing - began).as_secs_f64(), tracing.elapsed().as_secs_f64());
-        *lock(&shared.outcome) = Some(Outcome { build_s, trace_s, spp: film.spp(), noise_stops: film.noise_stops() });
-    }
-    if film.spp() > 0 {
-        *lock(&shared.film) = Some(Arc::new(film));
-    }
-    if control.is_cancelled() { Phase::Cancelled } else { Phase::Done }
-}
-
-/// A developed film, ready to be shown and exported.
-#[derive(Debug)]
-pub struct Developed<I> {
-    /// Scene-linear, for export.
-    pub picture: Arc<Picture>,
-    /// For the screen.
-    pub image: I,
-    /// Samples a pixel in it.
-    pub spp: u32,
-    /// How it was made, for its file.
-    pub method: &'static str,
-}
-
-#[derive(Debug)]
-struct DeveloperState<I> {
-    wanted: Option<(Arc<Film>, Scene, usize)>,
-    result: Option<Developed<I>>,
-    busy: bool,
-    closed: bool,
-}
-
-/// A thread that develops films; of several requests only the last one counts.
-pub struct Developer<I> {
-    state: Arc<(Mutex<DeveloperState<I>>, Condvar)>,
-    present: fn(&Picture, usize) -> I,
-    running: bool,
-}
-
-impl<I> std::fmt::Debug for Developer<I> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Developer").field("running", &self.running).finish_non_exhaustive()
-    }
-}
-
-impl<I: Send + 'static> Developer<I> {
-    /// Creates a developer whose pictures are made ready for the screen by `present`, for a longest side in pixels.
-    pub fn new(present: fn(&Picture, usize) -> I) -> Self {
-        let state = DeveloperState { wanted: None, result: None, busy: false, closed: false };
-        Developer { state: Arc::new((Mutex::new(state), Condvar::new())), present, running: false }
-    }
-
-    /// Asks for a picture with the lights as they are in `scene`.
-    pub fn request(&mut self, film: Arc<Film>, scene: Scene, most: usize, wake: &Wake) {
-        if !self.running {
-            self.running = true;
-            let (state, present, wake) = (self.state.clone(), self.present, wake.clone());
-            std::thread::spawn(move || develop_loop(&state, present, &wake));
-        }
-        lock(&self.state.0).wanted = Some((film, scene, most));
-        self.state.1.notify_one();
-    }
-
-    /// The newest picture, once.
-    pub fn take(&self) -> Option<Developed<I>> {
-        lock(&self.state.0).result.take()
-    }
-
-    /// Whether a picture is on its way.
-    pub fn is_busy(&self) -> bool {
-        let state = lock(&self.state.0);
-        state.busy || state.wanted.is_some() || state.result.is_some()
-    }
-}
-
-impl<I> Drop for Developer<I> {
-    fn drop(&mut self) {
-        lock(&self.state.0).closed = true;
-        self.state.1.notify_one();
-    }
-}
-
-fn develop_loop<I>(state: &(Mutex<DeveloperState<I>>, Condvar), present: fn(&Picture, usize) -> I, wake: &Wake) {
-    loop {
-        let (film, scene, most) = {
-            let mut guard = lock(&state.0);
-            loop {
-                if guard.closed {
+    let mut report = Report { phase: RenderPhase::Preparing, film: None, outcome: None };
+    let mut last_film: Option<Instant> = None;
+    let input = RenderInput { scene, assets: &assets, cache, settings, without: &[], time_limit: None };
+    let rendered = render(&input, &pool, monitor, &mut |stage| {
+        match stage {
+            RenderStage::Prepared(_) => report.phase = RenderPhase::Tracing,
+            RenderStage::Coarse(film) => report.film = Some(Arc::new(film.clone())),
+            RenderStage::Pass(film) => {
+                if last_film.is_some_and(|last| last.elapsed() < FILM_INTERVAL) {
                     return;
                 }
-                if let Some(wanted) = guard.wanted.take() {
-                    guard.busy = true;
-                    break wanted;
-                }
-                guard = state.1.wait(guard).unwrap_or_else(PoisonError::into_inner);
+                (report.film, last_film) = (Some(Arc::new(film.clone())), Some(Instant::now()));
             }
-        };
-        let developed = develop(&film, &scene, |picture| present(picture, most));
-        let mut guard = lock(&state.0);
-        guard.result = Some(developed);
-        guard.busy = false;
-        drop(guard);
-        wake();
+        }
+        inbox.publish(report.clone());
+    });
+    monitor.finish();
+    let Rendered { film, build_s, trace_s, .. } = match rendered {
+        Ok(rendered) => rendered,
+        Err(error) => return inbox.fail(sentence(&error)),
+    };
+    // Publish the outcome.
+    report.phase = if control.is_cancelled() { RenderPhase::Cancelled } else { RenderPhase::Done };
+    if !control.is_cancelled() {
+        let (spp, noise_stops) = (film.spp(), film.noise_stops());
+        report.outcome = Some(RenderOutcome { build_s: load_s + build_s, trace_s, spp, noise_stops });
     }
-}
-
-/// Develops a film with the lights of a scene.
-fn develop<I>(film: &Film, scene: &Scene, present: impl FnOnce(&Picture) -> I) -> Developed<I> {
-    let picture = film.develop(scene);
-    let image = present(&picture);
-    Developed { picture: Arc::new(picture), image, spp: film.spp(), method: film.method() }
+    if film.spp() > 0 {
+        report.film = Some(Arc::new(film));
+    }
+    inbox.publish(report);
 }

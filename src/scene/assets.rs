@@ -1,6 +1,7 @@
 //! Meshes and pictures that a scene refers to, already in memory. `io` fills it; renderers only read.
 
-use super::{AssetRef, Mannequin, Mesh, Shape, tessellate};
+use super::{AssetRef, Mannequin, Mesh, Object, Shape, tessellate};
+use glam::Vec3;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -52,6 +53,15 @@ impl Assets {
             AssetRef::Figure(figure) => self.mannequins.contains_key(figure),
             AssetRef::Texture(path) => self.textures.contains_key(path.as_ref()),
         }
+    }
+
+    /// Returns the axis-aligned box around an object in world space; none while its mesh is not loaded.
+    pub fn object_bounds(&self, object: &Object) -> Option<(Vec3, Vec3)> {
+        let (low, high) = self.mesh_of(&object.shape)?.bounds();
+        let world_from_object = object.transform.world_from_object();
+        let corner = |i: usize| Vec3::new([low.x, high.x][i & 1], [low.y, high.y][i >> 1 & 1], [low.z, high.z][i >> 2]);
+        let corners = (0..8).map(|i| world_from_object.transform_point3(corner(i))).map(|p| (p, p));
+        corners.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
     }
 
     /// The triangles of a shape; none where its file is missing (loading has warned of it).

@@ -1,25 +1,25 @@
-//! The drawing of a chart: error against seconds, both logarithmic, a line a method.
+//! The drawing of a chart: error against seconds, both logarithmic, one line per method.
 
-use super::accuracy::{Row, Vary};
+use super::accuracy_row::{AccuracyRow, Study};
 use anyhow::anyhow;
 use plotters::prelude::*;
 use std::path::Path;
 
-/// Colours that the colour-blind tell apart (Okabe and Ito).
+/// Colours that colour-blind readers can distinguish (Okabe and Ito).
 const COLORS: [RGBColor; 4] =
     [RGBColor(213, 94, 0), RGBColor(0, 114, 178), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
 
-/// Draws the rows of the methods proper; studies of depth and threads are left to the table.
-pub fn draw(path: &Path, title: &str, rows: &[Row]) -> anyhow::Result<()> {
+/// Draws the rows of the methods, without the studies of depth, threads and plan.
+pub fn draw(path: &Path, title: &str, rows: &[AccuracyRow]) -> anyhow::Result<()> {
     draw_svg(path, title, rows).map_err(|error| anyhow!("can't draw {}: {error}", path.display()))
 }
 
-fn draw_svg(path: &Path, title: &str, rows: &[Row]) -> Result<(), Box<dyn std::error::Error>> {
-    let rows: Vec<&Row> = rows.iter().filter(|row| row.study == Vary::Method).collect();
-    // Errors of exactly zero have no place on a logarithmic axis.
-    let place = |row: &Row| (row.trace_s.max(1e-5), row.rel_mse.max(1e-9));
+fn draw_svg(path: &Path, title: &str, rows: &[AccuracyRow]) -> Result<(), Box<dyn std::error::Error>> {
+    let rows: Vec<&AccuracyRow> = rows.iter().filter(|row| row.study == Study::Method).collect();
+    // An error of zero is clamped: the axes are logarithmic.
+    let point = |row: &AccuracyRow| (row.trace_s.max(1e-5), row.error.rel_mse.max(1e-9));
     let range = |of: fn((f64, f64)) -> f64| {
-        let values = rows.iter().map(|row| of(place(row)));
+        let values = rows.iter().map(|row| of(point(row)));
         let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
         (low / 1.5)..(high * 1.5)
     };
@@ -45,7 +45,7 @@ fn draw_svg(path: &Path, title: &str, rows: &[Row]) -> Result<(), Box<dyn std::e
     let mut methods: Vec<&str> = rows.iter().map(|row| row.method.as_str()).collect();
     methods.dedup();
     for (method, color) in methods.into_iter().zip(COLORS.iter().cycle()) {
-        let points: Vec<(f64, f64)> = rows.iter().filter(|row| row.method == method).map(|row| place(row)).collect();
+        let points: Vec<(f64, f64)> = rows.iter().filter(|row| row.method == method).map(|row| point(row)).collect();
         chart
             .draw_series(LineSeries::new(points.iter().copied(), color.stroke_width(2)).point_size(4))?
             .label(method)

@@ -1,26 +1,31 @@
-//! The converged picture that all others are compared with, kept beside the chart for the next time.
+//! The converged picture that all others are compared with, cached in the chart's folder.
 
+use crate::cli::terminal;
 use crate::io::{self, Loaded, PictureInfo};
+use crate::jobs::render_all_passes;
 use crate::photo::Picture;
-use crate::raytrace::{self, RenderControl, RenderScene, Settings};
+use crate::raytrace::{RenderControl, RenderScene, Settings};
 use crate::scene::Mesh;
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// The reference for a studio: from the folder, if it was made of this very studio by this version, or traced and put
-/// there. A folder that takes no file costs a warning.
-pub fn of(folder: &Path, loaded: &Loaded, scene: &RenderScene, settings: &Settings) -> Picture {
+/// Returns the reference of a studio: from the folder if this version has rendered the same studio before, or rendered
+/// and written there. A folder that cannot be written causes a warning.
+pub fn load_or_render(folder: &Path, loaded: &Loaded, scene: &RenderScene, settings: &Settings) -> Picture {
     let (spp, size) = (settings.spp, (settings.width, settings.height));
     let path = path(folder, loaded, settings);
     if let Ok(picture) = io::read_exr(&path)
         && (picture.width, picture.height) == size
     {
-        eprintln!("{}: reference of {spp} samples a pixel, from {}", loaded.scene.name, path.display());
+        terminal::progress(format_args!(
+            "{}: reference of {spp} samples a pixel, from {}",
+            loaded.scene.name,
+            path.display()
+        ));
         return picture;
     }
-    eprintln!("{}: reference of {spp} samples a pixel ...", loaded.scene.name);
-    let film = raytrace::render(scene, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
+    terminal::progress(format_args!("{}: reference of {spp} samples a pixel ...", loaded.scene.name));
+    let film = render_all_passes(scene, settings, &RenderControl::new());
     let picture = film.develop(&loaded.scene);
     let info = PictureInfo::new(&loaded.scene.camera, "path", spp, u64::from(settings.seed));
     if let Err(error) = io::export_picture(&path, &picture, &info) {
@@ -29,7 +34,7 @@ pub fn of(folder: &Path, loaded: &Loaded, scene: &RenderScene, settings: &Settin
     picture
 }
 
-/// A name for this studio, its files, the settings and the version.
+/// Returns the file of a reference, named by a hash of the studio, its files, the settings and the version.
 fn path(folder: &Path, loaded: &Loaded, settings: &Settings) -> PathBuf {
     let mut hasher = DefaultHasher::new();
     env!("CARGO_PKG_VERSION").hash(&mut hasher);
@@ -57,21 +62,21 @@ fn hash_mesh(mesh: &Mesh, hasher: &mut DefaultHasher) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raytrace::Method;
+    use crate::raytrace::{self, Method};
 
     #[test]
-    fn a_reference_is_kept_for_the_same_studio_only() {
+    fn a_reference_is_reused_for_the_same_studio_only() {
         let folder = tempfile::tempdir().unwrap();
         let mut loaded = io::find_preset("three_point").unwrap().load().unwrap();
         let settings = Settings { width: 6, height: 4, spp: 1, method: Method::Path, ..Settings::default() };
         let files = || std::fs::read_dir(folder.path()).unwrap().count();
         let made = |loaded: &Loaded| {
             let scene = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
-            of(folder.path(), loaded, &scene, &settings)
+            load_or_render(folder.path(), loaded, &scene, &settings)
         };
         let first = made(&loaded);
         assert_eq!((made(&loaded), files()), (first.clone(), 1), "taken from the file");
-        // What lies in the file is what is taken.
+        // The picture in the file is used as it is.
         let dark = Picture::new(6, 4);
         io::export_picture(
             &path(folder.path(), &loaded, &settings),

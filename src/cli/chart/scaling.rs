@@ -1,10 +1,12 @@
-//! `catchlight chart --scaling`: how preparing, tracing and memory grow with triangles, lights and pixels.
+//! `catchlight chart --scaling`: build time, trace time and memory against the number of triangles, lights and pixels.
 //!
-//! What theory says: preparing grows with the number of triangles, a ray with its logarithm; light sampling at a hit
-//! with the number of lights as long as each is asked what it gives there; a picture with its pixels.
+//! In theory the build time is linear in the number of triangles and a ray's time in its logarithm; the time of light
+//! sampling is linear in the number of lights if each is evaluated; that of a picture is linear in its pixels.
 
-use crate::cli::{Failure, crowd, input, say};
+use crate::cli::failure::Failure;
+use crate::cli::{input, light_crowd, terminal};
 use crate::io;
+use crate::jobs::render_all_passes;
 use crate::raytrace::{self, RenderControl, Settings};
 use crate::scene::{
     Aim, Assets, Camera, Emitter, Light, LightId, Material, Mesh, Object, ObjectId, Output, Room, Scene, Shape,
@@ -15,17 +17,16 @@ use glam::Vec3;
 use serde::Serialize;
 use std::f32::consts::{PI, TAU};
 use std::fmt::Write;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// How far the study goes.
+/// Ranges of the study.
 #[derive(Debug, clap::Args)]
-pub struct Range {
-    /// Triangles of the models of --scaling.
+pub struct ScalingRange {
+    /// Numbers of triangles of --scaling.
     #[arg(long, value_delimiter = ',', value_name = "N,...", requires = "scaling", value_parser = clap::value_parser!(u64).range(8..=100_000_000), default_values_t = [10_000, 100_000, 1_000_000, 10_000_000])]
     triangles: Vec<u64>,
-    /// Lights of --scaling, around five figures.
+    /// Numbers of lights of --scaling, around five figures.
     #[arg(long, value_delimiter = ',', value_name = "N,...", requires = "scaling", value_parser = clap::value_parser!(u64).range(1..=100_000), default_values_t = [1, 10, 100, 1000])]
     lights: Vec<u64>,
     /// Picture sizes of --scaling.
@@ -33,41 +34,41 @@ pub struct Range {
     sizes: Vec<(u32, u32)>,
 }
 
-/// Picture of the studies of triangles and lights.
+/// Picture size of the studies of triangles and lights.
 const SIZE: (u32, u32) = (320, 240);
-/// Samples a pixel there.
+/// Samples per pixel of the studies of triangles and lights.
 const SPP: u32 = 4;
 
 /// One measurement.
 #[derive(Debug, Serialize)]
-struct Row {
-    /// `triangles`, `lights` or `pixels`.
+struct ScalingRow {
+    /// Varied quantity: `triangles`, `lights` or `pixels`.
     varies: &'static str,
-    /// How many of them.
+    /// Value of the varied quantity.
     count: u64,
     triangles: u64,
     lights: usize,
-    /// Trees and tables, seconds.
+    /// Time to build BVHs and tables, seconds.
     prepare_s: f64,
     trace_s: f64,
-    /// On all cores.
+    /// Millions of rays per second, all threads.
     mrays_s: f64,
     paths: u64,
-    /// What preparing added to the process's resident memory, MB; null where the system does not say.
+    /// Growth of the process's resident memory by the build, MB; null where the system does not report it.
     memory_mb: Option<f64>,
 }
 
 /// Measures and prints.
-pub fn run(range: &Range, json: bool) -> Result<(), Failure> {
+pub fn run(range: &ScalingRange, json: bool) -> Result<(), Failure> {
     let mut rows = Vec::new();
     for &count in &range.triangles {
         let (scene, assets) = bumpy_ball(count);
         rows.push(measure("triangles", count, &scene, &assets, SIZE, SPP)?);
     }
     let studio = io::find_preset("three_point").context("the studio three_point is not shipped")?.load()?;
-    let crowd = crowd::five_figures(&studio.scene).context("the studio three_point has no figure")?;
+    let crowd = light_crowd::five_figures(&studio.scene).context("the studio three_point has no figure")?;
     for &count in &range.lights {
-        let lit = crowd::lit_by(&crowd, count as usize);
+        let lit = light_crowd::lit_by(&crowd, count as usize);
         rows.push(measure("lights", count, &lit, &studio.assets, SIZE, SPP)?);
     }
     for &(width, height) in &range.sizes {
@@ -75,9 +76,9 @@ pub fn run(range: &Range, json: bool) -> Result<(), Failure> {
         rows.push(measure("pixels", pixels, &studio.scene, &studio.assets, (width, height), 1)?);
     }
     if json {
-        say(serde_json::to_string(&rows).context("can't write the results")?);
+        terminal::result(serde_json::to_string(&rows).context("can't write the results")?);
     } else {
-        say(table(&rows).trim_end());
+        terminal::result(table(&rows).trim_end());
     }
     Ok(())
 }
@@ -89,8 +90,8 @@ fn measure(
     assets: &Assets,
     (width, height): (u32, u32),
     spp: u32,
-) -> Result<Row, Failure> {
-    eprintln!("{count} {varies} ...");
+) -> Result<ScalingRow, Failure> {
+    terminal::progress(format_args!("{count} {varies} ..."));
     let before = resident_mb();
     let started = Instant::now();
     let prepared = raytrace::prepare(scene, assets)?;
@@ -99,12 +100,12 @@ fn measure(
     let control = RenderControl::new();
     let settings = Settings { width, height, spp, ..Settings::default() };
     let started = Instant::now();
-    let film = raytrace::render(&prepared, &settings, &control, &mut |_| ControlFlow::Continue(()));
+    let film = render_all_passes(&prepared, &settings, &control);
     let trace_s = started.elapsed().as_secs_f64();
     if film.spp() < spp {
         return Err(Failure::Machine(anyhow!("the picture of {count} {varies} was not finished")));
     }
-    Ok(Row {
+    Ok(ScalingRow {
         varies,
         count,
         triangles: prepared.triangle_count(),
@@ -117,7 +118,7 @@ fn measure(
     })
 }
 
-/// Memory of this process, MB, where /proc tells.
+/// Returns the resident memory of this process, MB; none without /proc.
 fn resident_mb() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
@@ -125,7 +126,7 @@ fn resident_mb() -> Option<f64> {
     Some(kilobytes / 1024.0)
 }
 
-/// A ball with bumps of about this many triangles, in a room under a softbox.
+/// Returns a ball with bumps of about `triangles` triangles, in a room under a softbox.
 fn bumpy_ball(triangles: u64) -> (Scene, Assets) {
     const NAME: &str = "bumpy ball";
     let mut assets = Assets::default();
@@ -152,7 +153,7 @@ fn bumpy_ball(triangles: u64) -> (Scene, Assets) {
     (scene, assets)
 }
 
-/// Rings and sectors, two triangles each; those at the poles have no area.
+/// Returns a sphere of rings and sectors, two triangles each; those at the poles have no area.
 fn bumpy_mesh(triangles: u64) -> Mesh {
     let rings = ((triangles as f64 / 4.0).sqrt().round() as u32).max(2);
     let sectors = 2 * rings;
@@ -172,13 +173,13 @@ fn bumpy_mesh(triangles: u64) -> Mesh {
     Mesh { positions, triangles: triangles.collect(), ..Mesh::default() }.with_single_part("ball")
 }
 
-fn table(rows: &[Row]) -> String {
+fn table(rows: &[ScalingRow]) -> String {
     let mut text =
         "| varies | count | triangles | lights | prepare, s | trace, s | Mrays/s | us a path | memory, MB |\n\
                     |---|---|---|---|---|---|---|---|---|\n"
             .to_owned();
     for row in rows {
-        let Row { varies, count, triangles, lights, prepare_s, trace_s, mrays_s, paths, memory_mb } = row;
+        let ScalingRow { varies, count, triangles, lights, prepare_s, trace_s, mrays_s, paths, memory_mb } = row;
         let path_us = trace_s / *paths as f64 * 1e6;
         let memory = memory_mb.map_or("-".to_owned(), |mb| format!("{mb:.0}"));
         // Writing to a String cannot fail.
@@ -196,10 +197,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ball_is_closed_and_has_the_triangles_that_were_asked_for() {
+    fn the_ball_is_closed_and_has_the_requested_number_of_triangles() {
         let mesh = bumpy_mesh(10_000);
         assert_eq!(mesh.triangles.len(), 10_000);
-        // Every edge is walked once each way.
+        // Every edge belongs to two triangles, in opposite directions.
         let mut edges = std::collections::HashMap::<(u32, u32), i32>::new();
         for [a, b, c] in &mesh.triangles {
             for (from, to) in [(a, b), (b, c), (c, a)] {

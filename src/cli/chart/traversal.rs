@@ -1,11 +1,13 @@
-//! `catchlight chart --traversal MESH.obj`: rays a second by intersection method and number of threads.
+//! `catchlight chart --traversal MESH.obj`: rays per second by intersection method and number of threads.
 
-use crate::cli::{Failure, say};
+use crate::cli::failure::Failure;
+use crate::cli::input::thread_pool;
+use crate::cli::terminal;
 use crate::io;
 use crate::math::{Ray, orthonormal_basis, warp};
 use crate::raytrace::{IntersectionMethod, Intersector};
 use crate::scene::Mesh;
-use anyhow::{Context, anyhow, ensure};
+use anyhow::{Context, ensure};
 use clap::ValueEnum;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -14,32 +16,32 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Rays that are made here.
+/// Kinds of generated rays.
 #[derive(Clone, Copy, Debug, Default, ValueEnum)]
 pub enum RayKind {
-    /// From a camera before the model, pixel by pixel.
+    /// From a camera in front of the model, pixel by pixel.
     #[default]
     Primary,
-    /// Scattered from where those hit, in their order.
+    /// Scattered diffusely at the hits of the primary rays, in their order.
     Bounce,
-    /// The same, shuffled.
+    /// Scattered rays in random order.
     Shuffled,
 }
 
-/// Edge of the picture whose camera rays are made.
+/// Edge of the picture of the primary rays, pixels.
 const EDGE: u32 = 512;
-/// Rays that a thread takes at a time.
+/// Rays per task of a thread.
 const CHUNK: usize = 4096;
-/// Passes over all rays are repeated for this long; the fastest counts, so that other work on the machine does not.
+/// Time for which passes over all rays are repeated, seconds. The fastest one counts: it is disturbed least.
 const TIMED_S: f64 = 1.0;
-/// Methods that would test more triangles than this in a pass trace every n-th ray.
+/// Triangle tests per pass above which a method traces only every n-th ray.
 const MOST_TESTS: u64 = 4_000_000_000;
 /// Largest ray file, bytes.
 const RAY_FILE_LIMIT: u64 = 4 << 30;
 
-/// One line of the result.
+/// One measurement.
 #[derive(Debug, Serialize)]
-struct Row {
+struct TraversalRow {
     method: &'static str,
     threads: usize,
     build_s: f64,
@@ -47,11 +49,11 @@ struct Row {
     hits: u64,
     /// Mean distance over the hits, in multiples of the direction; null without hits.
     mean_t: Option<f64>,
-    /// Rays traced; fewer than given for methods that would take minutes.
+    /// Rays traced: a part of the rays for methods that would take minutes.
     rays: usize,
 }
 
-/// A way to find hits, by the name that the result gives it.
+/// Parses the name of an intersection method.
 pub fn parse_method(name: &str) -> Result<IntersectionMethod, String> {
     let known = IntersectionMethod::ALL.map(IntersectionMethod::label);
     let found = IntersectionMethod::ALL.into_iter().find(|method| method.label() == name);
@@ -69,35 +71,40 @@ pub fn run(
     let mesh = Arc::new(io::import_model(model)?.mesh);
     let rays = match rays {
         Some(path) => read_rays(path)?,
-        None => made_rays(&mesh, kind),
+        None => generated_rays(&mesh, kind),
     };
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let mut rows = Vec::new();
     for &method in methods {
         for threads in 1..=cores {
             rows.push(measure(&mesh, method, threads, &rays)?);
-            eprintln!("{} on {threads} threads: {:.3} Mrays/s", method.label(), rows.last().map_or(0.0, |r| r.mrays_s));
+            let mrays_s = rows.last().map_or(0.0, |row: &TraversalRow| row.mrays_s);
+            terminal::progress(format_args!("{} on {threads} threads: {mrays_s:.3} Mrays/s", method.label()));
         }
     }
     if json {
-        say(serde_json::to_string(&rows).context("can't write the results")?);
+        terminal::result(serde_json::to_string(&rows).context("can't write the results")?);
     } else {
-        say(format!("{} triangles, {} rays, closest hit\n", mesh.triangles.len(), rays.len()));
-        say("| method | threads | build s | Mrays/s | hits | mean t |\n|---|---|---|---|---|---|");
+        terminal::result(format!("{} triangles, {} rays, closest hit\n", mesh.triangles.len(), rays.len()));
+        terminal::result("| method | threads | build s | Mrays/s | hits | mean t |\n|---|---|---|---|---|---|");
         for row in rows {
             let mean_t = row.mean_t.map_or("-".to_owned(), |t| format!("{t:.5}"));
-            let Row { method, threads, build_s, mrays_s, hits, rays, .. } = row;
-            say(format!("| {method} | {threads} | {build_s:.3} | {mrays_s:.3} | {hits} of {rays} | {mean_t} |"));
+            let TraversalRow { method, threads, build_s, mrays_s, hits, rays, .. } = row;
+            terminal::result(format!(
+                "| {method} | {threads} | {build_s:.3} | {mrays_s:.3} | {hits} of {rays} | {mean_t} |"
+            ));
         }
     }
     Ok(())
 }
 
-fn measure(mesh: &Arc<Mesh>, method: IntersectionMethod, threads: usize, rays: &[Ray]) -> Result<Row, Failure> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|error| Failure::Machine(anyhow!(error).context("can't start the threads")))?;
+fn measure(
+    mesh: &Arc<Mesh>,
+    method: IntersectionMethod,
+    threads: usize,
+    rays: &[Ray],
+) -> Result<TraversalRow, Failure> {
+    let pool = thread_pool(threads)?;
     let started = Instant::now();
     let intersector = pool.install(|| Intersector::new(mesh, method));
     let build_s = started.elapsed().as_secs_f64();
@@ -117,7 +124,7 @@ fn measure(mesh: &Arc<Mesh>, method: IntersectionMethod, threads: usize, rays: &
     }
     let hits = distances.iter().filter(|t| t.is_finite()).count() as u64;
     let sum: f64 = distances.iter().filter(|t| t.is_finite()).map(|&t| f64::from(t)).sum();
-    Ok(Row {
+    Ok(TraversalRow {
         method: method.label(),
         threads,
         build_s,
@@ -128,7 +135,7 @@ fn measure(mesh: &Arc<Mesh>, method: IntersectionMethod, threads: usize, rays: &
     })
 }
 
-/// Reads a ray file; refuses what is no whole number of rays, or no ray.
+/// Reads a ray file. Fails for a size that is not a whole number of rays, and for rays that are not finite.
 fn read_rays(path: &Path) -> anyhow::Result<Vec<Ray>> {
     let size = std::fs::metadata(path).with_context(|| format!("can't read the rays: {}", path.display()))?.len();
     ensure!(size <= RAY_FILE_LIMIT, "a ray file has at most {RAY_FILE_LIMIT} bytes, not {size}: {}", path.display());
@@ -136,7 +143,7 @@ fn read_rays(path: &Path) -> anyhow::Result<Vec<Ray>> {
     let ray_bytes = 6 * size_of::<f32>();
     ensure!(
         !bytes.is_empty() && bytes.len().is_multiple_of(ray_bytes),
-        "a ray file holds six 4-byte floats a ray; {} bytes are no whole number of rays: {}",
+        "a ray file holds six 4-byte floats a ray; {} bytes are not a whole number of rays: {}",
         bytes.len(),
         path.display()
     );
@@ -145,21 +152,21 @@ fn read_rays(path: &Path) -> anyhow::Result<Vec<Ray>> {
         let origin = Vec3::new(number(0), number(1), number(2));
         let direction = Vec3::new(number(3), number(4), number(5));
         let usable = origin.is_finite() && direction.is_finite() && direction != Vec3::ZERO;
-        ensure!(usable, "ray {index} is none: from {origin} along {direction}: {}", path.display());
+        ensure!(usable, "ray {index} is not valid: from {origin} along {direction}: {}", path.display());
         Ok(Ray { origin, direction, t_max: f32::INFINITY })
     });
     rays.collect()
 }
 
-/// Rays about a model, the same each time.
-fn made_rays(mesh: &Arc<Mesh>, kind: RayKind) -> Vec<Ray> {
+/// Returns the rays of a kind for a model, the same for each call.
+fn generated_rays(mesh: &Arc<Mesh>, kind: RayKind) -> Vec<Ray> {
     let primary = camera_rays(mesh);
     if matches!(kind, RayKind::Primary) {
         return primary;
     }
     let mut rays = bounced(mesh, &primary);
     if matches!(kind, RayKind::Shuffled) {
-        // Fisher and Yates, with numbers from a scrambled Sobol sequence.
+        // Fisher-Yates shuffle, with numbers from a scrambled Sobol sequence.
         for i in (1..rays.len()).rev() {
             let index = i as u32;
             let u = sobol_burley::sample(index & 0xffff, 0, index >> 16);
@@ -169,7 +176,7 @@ fn made_rays(mesh: &Arc<Mesh>, kind: RayKind) -> Vec<Ray> {
     rays
 }
 
-/// A square picture that the model fills, from ahead and a little above.
+/// Returns the rays of a square picture that the model fills, seen from the front and a little above.
 fn camera_rays(mesh: &Mesh) -> Vec<Ray> {
     let (low, high) = mesh.bounds();
     let (centre, radius) = ((low + high) * 0.5, (high - low).length() * 0.5);
@@ -185,7 +192,7 @@ fn camera_rays(mesh: &Mesh) -> Vec<Ray> {
     (0..EDGE * EDGE).map(pixel).collect()
 }
 
-/// From the hits of `rays`, diffusely about the direction they came from, a hair off the surface.
+/// Returns one ray from each hit of `rays`, cosine-distributed about the incident direction, offset from the surface.
 fn bounced(mesh: &Arc<Mesh>, rays: &[Ray]) -> Vec<Ray> {
     let distances = Intersector::new(mesh, IntersectionMethod::Bvh).distances(rays);
     let hits = rays.iter().zip(distances).enumerate().filter(|(_, (_, t))| t.is_finite());

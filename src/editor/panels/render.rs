@@ -7,7 +7,7 @@ use crate::editor::picture::rendering::{PictureSize, Quality, RenderSettings, Re
 use crate::editor::ui::theme;
 use crate::editor::ui::wake::wake;
 use crate::editor::ui::widgets::{self, Number, row};
-use crate::jobs::{Forecaster, Phase, Progress};
+use crate::jobs::{ForecastSubject, Forecaster, Progress, RenderPhase};
 use crate::raytrace::Method;
 use crate::scene::Scene;
 use eframe::egui::{self, Button, CollapsingHeader, ComboBox, Image, ProgressBar, RichText, Sense, Ui, vec2};
@@ -107,7 +107,8 @@ fn forecast_ui(ui: &mut Ui, rendering: &mut Rendering, forecaster: &mut Forecast
         let (running, method) = (rendering.is_running(), rendering.settings.method);
         let (scene, assets) = (document.scene(), document.assets());
         let wake = wake(ui.ctx());
-        if let Some(wait) = forecaster.update(scene, assets, document.revisions().image, method, running, &wake) {
+        let subject = ForecastSubject { revision: document.revisions().image, method };
+        if let Some(wait) = forecaster.update(subject, scene, assets, running, &wake) {
             ui.ctx().request_repaint_after(wait);
         }
         quality::quality_ui(ui, &mut rendering.settings, &scene.camera, forecaster);
@@ -142,25 +143,25 @@ fn progress_ui(ui: &mut Ui, rendering: &Rendering) {
     let Some(job) = rendering.job() else { return };
     let (phase, progress) = (job.phase(), job.progress());
     let bar = ProgressBar::new(progress.fraction).desired_height(16.0).fill(theme::ACCENT.gamma_multiply(0.6));
-    let bar = ui.add(bar.text(RichText::new(progress_text(&phase, &progress)).small()));
+    let bar = ui.add(bar.text(RichText::new(progress_text(phase, &progress)).small()));
     widgets::named(ui, &bar, "Progress");
-    if phase != Phase::Preparing {
+    if *phase != RenderPhase::Preparing {
         let samples = format!("{:.0} of {} samples", progress.samples.floor(), job.settings.spp);
         let speed = format!("{:.1} Mrays/s", progress.mrays_s);
         ui.label(RichText::new(format!("{samples}    {speed}    {}", duration_text(progress.elapsed))).weak().small());
     }
 }
 
-fn progress_text(phase: &Phase, progress: &Progress) -> String {
+fn progress_text(phase: &RenderPhase, progress: &Progress) -> String {
     match phase {
-        Phase::Preparing => "Preparing\u{2026}".to_owned(),
-        Phase::Tracing => match progress.left {
+        RenderPhase::Preparing => "Preparing\u{2026}".to_owned(),
+        RenderPhase::Tracing => match progress.left {
             Some(left) => format!("{:.0} %, {} left", progress.fraction * 100.0, duration_text(left)),
             None => format!("{:.0} %", progress.fraction * 100.0),
         },
-        Phase::Done => "Done".to_owned(),
-        Phase::Cancelled => "Cancelled".to_owned(),
-        Phase::Failed(_) => "Failed".to_owned(),
+        RenderPhase::Done => "Done".to_owned(),
+        RenderPhase::Cancelled => "Cancelled".to_owned(),
+        RenderPhase::Failed(_) => "Failed".to_owned(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::editor::ui::image_texture::Canvas;
 use crate::editor::ui::wake::wake;
-use crate::jobs::{Developed, Developer, Phase, RenderJob};
+use crate::jobs::{Developed, FilmDeveloper, RenderJob, RenderOutcome, RenderPhase, RenderRequest};
 use crate::photo::Picture;
 use crate::raytrace::{self, Film, GeometryCache, Method, Settings};
 use crate::scene::{Assets, Camera, Scene, SceneChange};
@@ -83,10 +83,11 @@ pub struct Rendering {
     trees: Arc<GeometryCache>,
     job: Option<RenderJob>,
     film: Option<Arc<Film>>,
-    developer: Developer<Arc<ColorImage>>,
+    developer: FilmDeveloper<Arc<ColorImage>>,
     /// Film and scene of the newest requested picture; the pointer is only compared.
     requested: Option<(*const Film, Scene)>,
     developed: Option<Developed<Arc<ColorImage>>>,
+    develop_failure: Option<String>,
     canvas: Canvas,
 }
 
@@ -98,9 +99,10 @@ impl Rendering {
             trees,
             job: None,
             film: None,
-            developer: Developer::new(|picture, most| Arc::new(shown_within(picture, most))),
+            developer: FilmDeveloper::new(|picture, most| Arc::new(shown_within(picture, most))),
             requested: None,
             developed: None,
+            develop_failure: None,
             canvas: Canvas::default(),
         }
     }
@@ -115,8 +117,9 @@ impl Rendering {
             spp: self.settings.samples.max(1),
             ..Settings::default()
         };
-        self.job =
-            Some(RenderJob::start(self.trees.clone(), scene.clone(), assets.clone(), folder, settings, wake(ctx)));
+        let (scene, assets, cache) = (Arc::new(scene.clone()), assets.clone(), self.trees.clone());
+        let request = RenderRequest { scene, assets, folder, cache, settings };
+        (self.job, self.develop_failure) = (Some(RenderJob::start(request, &wake(ctx))), None);
     }
 
     /// Stops the running job; what is complete is kept.
@@ -143,12 +146,7 @@ impl Rendering {
 
     /// Whether a render or the development of its film is on its way.
     pub fn is_busy(&self) -> bool {
-        self.is_running() || self.developer.is_busy() || self.has_new_film()
-    }
-
-    fn has_new_film(&self) -> bool {
-        let newest = self.job.as_ref().and_then(RenderJob::film);
-        newest.is_some_and(|film| self.film.as_ref().is_none_or(|known| !Arc::ptr_eq(&film, known)))
+        self.job.as_ref().is_some_and(RenderJob::is_busy) || self.developer.is_busy()
     }
 
     /// The picture as it is shown.
@@ -182,8 +180,9 @@ impl Rendering {
 
     /// Takes in what the threads have made and asks for what the scene needs now. Call once a frame.
     pub fn update(&mut self, scene: &Scene, ctx: &Context) {
-        if let Some(film) = self.job.as_ref().and_then(RenderJob::film) {
-            self.film = Some(film);
+        if let Some(job) = &mut self.job {
+            job.update();
+            self.film = job.film().cloned().or(self.film.take());
         }
         if let Some(film) = &self.film {
             let is_requested = self.requested.as_ref().is_some_and(|(requested, developed)| {
@@ -195,9 +194,13 @@ impl Rendering {
                 self.requested = Some((Arc::as_ptr(film), scene.clone()));
             }
         }
-        if let Some(developed) = self.developer.take() {
-            self.canvas.set(ctx, developed.image.clone());
-            self.developed = Some(developed);
+        match self.developer.take() {
+            Some(Ok(developed)) => {
+                self.canvas.set(ctx, developed.image.clone());
+                self.developed = Some(developed);
+            }
+            Some(Err(message)) => self.develop_failure = Some(message),
+            None => {}
         }
         // Progress numbers move between snapshots, too.
         if self.is_running() {
@@ -205,11 +208,18 @@ impl Rendering {
         }
     }
 
-    /// The message of a job that failed.
-    pub fn failure(&self) -> Option<String> {
-        match self.job.as_ref()?.phase() {
-            Phase::Failed(message) => Some(message),
-            _ => None,
+    /// Takes the outcome of a render that was not cancelled, with the job that made it.
+    pub fn take_outcome(&mut self) -> Option<(&RenderJob, RenderOutcome)> {
+        let job = self.job.as_mut()?;
+        let outcome = job.take_outcome()?;
+        Some((job, outcome))
+    }
+
+    /// Returns the message of a render or a development that failed.
+    pub fn failure(&self) -> Option<&str> {
+        match self.job.as_ref().map(RenderJob::phase) {
+            Some(RenderPhase::Failed(message)) => Some(message),
+            _ => self.develop_failure.as_deref(),
         }
     }
 }

@@ -1,6 +1,5 @@
 //! What a click in the view means, and what a box that is drawn there holds.
 
-use crate::editor::document::bounds::object_bounds;
 use crate::editor::document::item::Item;
 use crate::editor::document::studio_document::Document;
 use crate::editor::ui::theme;
@@ -72,7 +71,7 @@ impl Band {
 fn held_by(document: &Document, frame: &CameraFrame, view: Rect, band: Rect) -> Vec<Item> {
     let scene = document.scene();
     let objects = scene.objects.iter().filter(|o| o.visible).filter_map(|object| {
-        let (low, high) = object_bounds(object, document.assets())?;
+        let (low, high) = document.assets().object_bounds(object)?;
         Some((Item::Object(object.id), 0.5 * (low + high)))
     });
     let lights = scene.lights.iter().filter(|l| !l.emitter.is_infinite()).map(|l| (Item::Light(l.id), l.position));

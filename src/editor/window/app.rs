@@ -26,7 +26,7 @@ use crate::editor::window::frame_log::FrameLog;
 use crate::editor::window::recent::RecentFiles;
 use crate::editor::window::rescue;
 use crate::editor::window::session::Session;
-use crate::jobs::{Estimate, Forecast, Forecaster, MeterJob, Outcome};
+use crate::jobs::{Clock, Estimate, Forecast, ForecastSubject, Forecaster, MeterJob, RenderOutcome};
 use crate::raytrace::{GeometryCache, Settings};
 use crate::scene::SceneChange;
 use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, Rangef, Rect, Ui, ViewportCommand};
@@ -116,7 +116,7 @@ impl App {
             handles: Handle::default(),
             viewport: Viewport::new(preview, LiveView::new(trees.clone())),
             rendering: Rendering::new(trees.clone()),
-            forecaster: Forecaster::new(trees),
+            forecaster: Forecaster::new(trees, Clock::default()),
             session: Session::new(options.dialogs),
             tasks: Tasks::default(),
             recent: RecentFiles::load(options.settings_folder),
@@ -293,16 +293,15 @@ impl App {
 
     /// Lets the forecast know what a render took, if the studio is still what was rendered.
     fn learn_from_render(&mut self) {
-        let Some(job) = self.rendering.job() else { return };
-        let Some(outcome) = job.take_outcome() else { return };
+        let Some((job, outcome)) = self.rendering.take_outcome() else { return };
         if !SceneChange::between(&job.scene, self.document.scene()).needs_redraw() {
-            let Settings { width, height, method, .. } = job.settings.clone();
-            let revision = self.document.revisions().image;
-            let Outcome { build_s, trace_s, spp, noise_stops } = outcome;
+            let Settings { width, height, method, .. } = job.settings;
+            let RenderOutcome { build_s, trace_s, spp, noise_stops } = outcome;
             let pixels = u64::from(width) * u64::from(height);
             let forecast = Forecast::from_render(build_s, trace_s, pixels, spp, noise_stops);
-            let took = Estimate { seconds: build_s + trace_s, noise_stops: noise_stops.into() };
-            self.forecaster.learn(revision, method, forecast, took);
+            let measured = Estimate { seconds: build_s + trace_s, noise_stops: noise_stops.into() };
+            let subject = ForecastSubject { revision: self.document.revisions().image, method };
+            self.forecaster.learn(subject, forecast, measured);
         }
     }
 

@@ -123,7 +123,7 @@ impl LiveView {
     }
 
     fn take_in(&mut self, image: LiveImage, ctx: &Context) {
-        (self.shown, self.failure) = (Some((image.spp, image.done)), None);
+        (self.shown, self.failure) = (Some((image.spp, image.is_done)), None);
         self.canvas.set(ctx, ColorImage::from_rgb([image.width, image.height], &image.rgb));
     }
 

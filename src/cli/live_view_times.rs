@@ -1,143 +1,146 @@
-//! `catchlight preview SCENE --traced`: how soon the live traced view shows something, measured without a window.
+//! `catchlight preview SCENE --traced`: measures the time that the live traced view takes to show a change.
 
-use super::beside::{FrameWork, Frames};
-use super::{Failure, say};
+use super::failure::Failure;
+use super::frame_rate_beside_live_view::{FrameRate, FrameWork};
+use super::terminal;
 use crate::io::{self, Loaded, PictureInfo};
-use crate::jobs::{LivePace, background_pool};
+use crate::jobs::{Clock, LivePacing, background_pool, render_all_passes};
 use crate::photo::Picture;
 use crate::raytrace::{self, LiveCamera, LivePicture, RenderControl, Settings, Smoother};
 use crate::scene::{CameraFrame, Scene};
 use anyhow::Context;
 use glam::{Affine3A, Quat, Vec3};
 use serde::Serialize;
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Turn of the view from one picture to the next, radians: a slow drag of the mouse.
+/// Angle by which the view turns from one picture to the next, radians: a slow drag of the mouse.
 const TURN_RAD: f32 = 0.01;
-/// Distance ahead of the camera about which the view turns, metres.
+/// Distance from the camera to the point that the view turns about, metres.
 const PIVOT_M: f32 = 2.0;
-/// Way of a light or a thing from one edit to the next, metres.
+/// Distance that a light or an object moves in one edit, metres.
 const STEP_M: f32 = 0.01;
 
-/// What `--traced` prints. Times are from the change to the first picture that shows it, ready for the screen.
+/// The report of `--traced`. Times are from a change to the first picture that shows it, ready for the screen.
 #[derive(Debug, Serialize)]
-pub struct TracedReport {
+struct LiveViewReport {
     scene: String,
     width: u32,
     height: u32,
     lights: usize,
     threads: usize,
-    /// Changes of each kind.
+    /// Number of changes of each kind.
     frames: usize,
-    /// The studio was opened: all trees are built.
+    /// Opening of the studio, with all its BVHs.
     opened_ms: f64,
-    /// Of the time to show a moved light or thing: trees and tables.
+    /// Part of the time to show a moved light or object: BVHs and tables.
     prepared_ms: [f64; 2],
-    /// A light moved: median and nine of ten.
+    /// A moved light: median and 90th percentile.
     light_moved_ms: [f64; 2],
-    /// A thing moved.
+    /// A moved object.
     thing_moved_ms: [f64; 2],
-    /// A light was dimmed, with no ray traced.
+    /// A dimmed light, for which no ray is traced.
     dimmed_ms: [f64; 2],
-    /// The view turned a little.
+    /// A slightly turned view.
     view_turned_ms: [f64; 2],
-    /// Pixels that a turned view takes over from before, share.
+    /// Fraction of the pixels of a turned view that are reprojected from its history.
     reused: f64,
-    /// Seconds until every pixel has a sample, and paths a second.
+    /// Time until every pixel has a sample, seconds.
     covered_s: f64,
+    /// Millions of paths per second.
     mpaths_s: f64,
-    /// What smoothing the grain of a picture takes, on all cores.
+    /// Time to smooth the noise of a picture, on all cores.
     smoothing_ms: f64,
-    /// Frames of a window that works 8 ms in each, on the same cores: alone, while the view that turns is traced, and
-    /// while a picture is rendered, too.
-    frames_alone: Frames,
-    frames_beside: Frames,
-    frames_beside_render: Frames,
+    /// Frame rate of a window that works 8 ms per frame, alone.
+    frames_alone: FrameRate,
+    /// The same while a turning view is traced on the same cores.
+    frames_beside: FrameRate,
+    /// The same while a turning view is traced and a picture is rendered.
+    frames_beside_render: FrameRate,
 }
 
-/// How long frames are counted.
-const COUNTED: Duration = Duration::from_secs(3);
+/// Duration of a measurement of the frame rate.
+const COUNT_TIME: Duration = Duration::from_secs(3);
 
-/// Measures and prints; with `output`, writes the settled picture.
+/// Measures and prints; with `output`, writes the finished picture instead.
 pub fn run(loaded: &Loaded, size: (u32, u32), frames: u32, output: Option<&Path>, json: bool) -> Result<(), Failure> {
     let mut bench = Bench::new(loaded, size)?;
     if let Some(output) = output {
         bench.open()?;
-        bench.work_until(|pace| pace.picture().is_done());
-        let picture = bench.pace.picture().develop(&loaded.scene);
-        let spp = bench.pace.picture().spp();
+        bench.work_until(|pacing| pacing.picture().is_done());
+        let picture = bench.pacing.picture().develop(&loaded.scene);
+        let spp = bench.pacing.picture().spp();
         io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene.camera, "path", spp, 0))?;
         return Ok(());
     }
     let report = bench.measure(frames.max(1) as usize)?;
     if json {
-        say(serde_json::to_string(&report)?);
+        terminal::result(serde_json::to_string(&report)?);
     } else {
         report.print();
     }
     Ok(())
 }
 
+/// A live view under measurement.
 struct Bench<'a> {
     loaded: &'a Loaded,
-    pace: LivePace,
+    pacing: LivePacing,
     scene: Scene,
     frame: CameraFrame,
     size: (u32, u32),
     control: RenderControl,
-    /// Milliseconds that each update took, the pictures' own time left out.
-    updates: Vec<f64>,
+    /// Time of each update without tracing, milliseconds.
+    updates_ms: Vec<f64>,
 }
 
 impl<'a> Bench<'a> {
     fn new(loaded: &'a Loaded, size: (u32, u32)) -> Result<Self, Failure> {
-        let pace = LivePace::new(Arc::default()).context("no threads to trace with").map_err(Failure::Machine)?;
+        let pacing = LivePacing::new(Arc::default(), Clock::default())
+            .context("no threads to trace with")
+            .map_err(Failure::Machine)?;
         let frame = loaded.scene.camera_frame(size.0 as f32 / size.1 as f32);
         Ok(Bench {
             loaded,
-            pace,
+            pacing,
             scene: loaded.scene.clone(),
             frame,
             size,
             control: RenderControl::new(),
-            updates: Vec::new(),
+            updates_ms: Vec::new(),
         })
     }
 
-    /// Shows the scene from the view as they are now; milliseconds to the first picture.
+    /// Traces scene and view as they are now. Returns the time to the first picture, milliseconds.
     fn open(&mut self) -> Result<f64, Failure> {
         let (began, scene) = (Instant::now(), Arc::new(self.scene.clone()));
-        self.pace.update(scene, &self.loaded.assets, LiveCamera::pinhole(self.frame, self.size))?;
-        self.updates.push(began.elapsed().as_secs_f64() * 1e3);
-        while self.pace.look().is_none() {
-            self.pace.slice(true, &self.control);
-        }
+        self.pacing.update(scene, &self.loaded.assets, LiveCamera::pinhole(self.frame, self.size))?;
+        self.updates_ms.push(began.elapsed().as_secs_f64() * 1e3);
+        while self.pacing.step(true, &self.control).is_none() {}
         Ok(began.elapsed().as_secs_f64() * 1e3)
     }
 
-    fn work_until(&mut self, enough: impl Fn(&LivePace) -> bool) {
-        while !enough(&self.pace) {
-            self.pace.slice(true, &self.control);
+    fn work_until(&mut self, enough: impl Fn(&LivePacing) -> bool) {
+        while !enough(&self.pacing) {
+            self.pacing.step(true, &self.control);
         }
     }
 
-    /// Median and nine of ten of the times to the first picture after so many changes.
+    /// Returns median and 90th percentile of the times to the first picture after a number of changes.
     fn time(&mut self, frames: usize, mut change: impl FnMut(&mut Self)) -> Result<[f64; 2], Failure> {
         let mut times = Vec::with_capacity(frames);
         for _ in 0..frames {
             change(self);
             times.push(self.open()?);
         }
-        Ok(spread(&mut times))
+        Ok(quantiles(&mut times))
     }
 
-    fn measure(&mut self, frames: usize) -> Result<TracedReport, Failure> {
+    fn measure(&mut self, frames: usize) -> Result<LiveViewReport, Failure> {
         let opened_ms = self.open()?;
         let (began, before) = (Instant::now(), self.control.samples_done());
-        self.work_until(|pace| pace.picture().stride() == Some(1));
+        self.work_until(|pacing| pacing.picture().stride() == Some(1));
         let covered_s = began.elapsed().as_secs_f64();
         let mpaths_s = (self.control.samples_done() - before) as f64 * 1e-6 / covered_s.max(1e-9);
         let dimmed_ms = self.time(frames, |bench| {
@@ -146,9 +149,9 @@ impl<'a> Bench<'a> {
         let view_turned_ms = self.time(frames, |bench| {
             bench.frame.world_from_camera = turned(&bench.frame.world_from_camera);
         })?;
-        self.work_until(|pace| pace.picture().steps() > LivePicture::SEEN);
-        let reused = f64::from(self.pace.picture().reused());
-        self.updates.clear();
+        self.work_until(|pacing| pacing.picture().steps() > LivePicture::SEEN);
+        let reused = f64::from(self.pacing.picture().reused());
+        self.updates_ms.clear();
         let light_moved_ms =
             self.time(frames, |bench| bench.scene.lights.iter_mut().take(1).for_each(|l| l.position.y += STEP_M))?;
         let thing_moved_ms = self.time(frames, |bench| {
@@ -156,18 +159,18 @@ impl<'a> Bench<'a> {
         })?;
         let smoothing_ms = self.smoothing_ms();
         let work = FrameWork::new();
-        let frames_alone = work.timed(|| std::thread::sleep(COUNTED));
-        let frames_beside = work.timed(|| self.turn_for(COUNTED));
+        let frames_alone = work.timed(|| std::thread::sleep(COUNT_TIME));
+        let frames_beside = work.timed(|| self.turn_for(COUNT_TIME));
         let frames_beside_render = work.timed(|| self.turn_beside_a_render());
-        Ok(TracedReport {
+        Ok(LiveViewReport {
             scene: self.scene.name.clone(),
             width: self.size.0,
             height: self.size.1,
             lights: self.scene.lights.iter().filter(|light| light.on).count(),
-            threads: self.pace.threads(),
+            threads: self.pacing.threads(),
             frames,
             opened_ms,
-            prepared_ms: spread(&mut self.updates),
+            prepared_ms: quantiles(&mut self.updates_ms),
             light_moved_ms,
             thing_moved_ms,
             dimmed_ms,
@@ -182,32 +185,32 @@ impl<'a> Bench<'a> {
         })
     }
 
-    /// How much longer a picture takes to develop with its grain smoothed; the quickest of some.
+    /// Returns the time that smoothing adds to the development of a picture: the fastest of some trials.
     fn smoothing_ms(&self) -> f64 {
-        let (picture, mut smoother) = (self.pace.picture(), Smoother::default());
-        let quickest = |develop: &mut dyn FnMut() -> Picture| {
-            let one = |_| {
+        let (picture, mut smoother) = (self.pacing.picture(), Smoother::default());
+        let fastest = |develop: &mut dyn FnMut() -> Picture| {
+            let trial = |_| {
                 let began = Instant::now();
                 std::hint::black_box(develop());
                 began.elapsed().as_secs_f64() * 1e3
             };
-            (0..5).map(one).fold(f64::INFINITY, f64::min)
+            (0..5).map(trial).fold(f64::INFINITY, f64::min)
         };
-        let smoothed = quickest(&mut || picture.develop_smooth(&self.scene, 1, &mut smoother));
-        smoothed - quickest(&mut || picture.develop(&self.scene))
+        let smoothed = fastest(&mut || picture.develop_smooth(&self.scene, 1, &mut smoother));
+        smoothed - fastest(&mut || picture.develop(&self.scene))
     }
 
-    /// Turns the view as a user would, showing every picture.
+    /// Turns the view as a user would, with a picture of each view.
     fn turn_for(&mut self, time: Duration) {
         let began = Instant::now();
         while began.elapsed() < time {
             self.frame.world_from_camera = turned(&self.frame.world_from_camera);
-            // The scene has been shown before: it can be shown again.
+            // The scene has been prepared before: it can be prepared again.
             let _ = self.open();
         }
     }
 
-    /// The same while all cores render a picture.
+    /// Turns the view while all cores render a picture.
     fn turn_beside_a_render(&mut self) {
         let control = RenderControl::new();
         let Ok(prepared) = raytrace::prepare(&self.scene, &self.loaded.assets) else { return };
@@ -215,52 +218,59 @@ impl<'a> Bench<'a> {
         let settings = Settings { width, height, spp: 1 << 16, ..Settings::default() };
         std::thread::scope(|scope| {
             scope.spawn(|| {
-                // As the window renders.
+                // The pool of the window's renders.
                 let Ok(pool) = background_pool(0, "trace") else { return };
-                pool.install(|| raytrace::render(&prepared, &settings, &control, &mut |_| ControlFlow::Continue(())));
+                pool.install(|| render_all_passes(&prepared, &settings, &control));
             });
-            self.turn_for(COUNTED);
+            self.turn_for(COUNT_TIME);
             control.cancel();
         });
     }
 }
 
-impl TracedReport {
+impl LiveViewReport {
     fn print(&self) {
-        let TracedReport { scene, width, height, lights, threads, frames, opened_ms, .. } = self;
-        say(format!(
+        let LiveViewReport { scene, width, height, lights, threads, frames, opened_ms, .. } = self;
+        terminal::result(format!(
             "{scene}, {width}x{height}, {lights} lights, {threads} threads while the user works: first picture \
              {opened_ms:.0} ms after opening, a sample of every pixel {:.1} s later ({:.2} million paths a second)",
             self.covered_s, self.mpaths_s
         ));
-        for (what, [median, most]) in [
+        for (change, [median, most]) in [
             ("a light dimmed", self.dimmed_ms),
             ("the view turned", self.view_turned_ms),
             ("a light moved", self.light_moved_ms),
-            ("a thing moved", self.thing_moved_ms),
+            ("an object moved", self.thing_moved_ms),
         ] {
-            say(format!("{what}: first picture after {median:.0} ms (median of {frames}), 90 % within {most:.0} ms"));
+            terminal::result(format!(
+                "{change}: first picture after {median:.0} ms (median of {frames}), 90 % within {most:.0} ms"
+            ));
         }
-        say(format!("of that, trees and tables {:.0} ms", self.prepared_ms[0]));
-        say(format!("smoothing the grain takes {:.0} ms a picture", self.smoothing_ms));
-        let told = |frames: Frames| format!("{:.0} frames/s, 99 % within {:.0} ms", frames.per_second, frames.most_ms);
-        say(format!(
+        terminal::result(format!("of that, BVHs and tables {:.0} ms", self.prepared_ms[0]));
+        terminal::result(format!("smoothing the noise takes {:.0} ms a picture", self.smoothing_ms));
+        let rate =
+            |frames: FrameRate| format!("{:.0} frames/s, 99 % within {:.0} ms", frames.per_second, frames.most_ms);
+        terminal::result(format!(
             "a window that works 8 ms a frame: alone {}; beside the traced view {}; beside a render, too, {}",
-            told(self.frames_alone),
-            told(self.frames_beside),
-            told(self.frames_beside_render)
+            rate(self.frames_alone),
+            rate(self.frames_beside),
+            rate(self.frames_beside_render)
         ));
-        say(format!("turned {} times, the view takes over {:.0} % of its pixels", self.frames, self.reused * 100.0));
+        terminal::result(format!(
+            "turned {} times, the view reuses {:.0} % of its pixels",
+            self.frames,
+            self.reused * 100.0
+        ));
     }
 }
 
-/// Median and nine of ten; there is at least one.
-fn spread(times: &mut [f64]) -> [f64; 2] {
+/// Returns median and 90th percentile; there is at least one time.
+fn quantiles(times: &mut [f64]) -> [f64; 2] {
     times.sort_by(f64::total_cmp);
     [0.5, 0.9].map(|part: f64| times[((times.len() - 1) as f64 * part).round() as usize])
 }
 
-/// A view turned about the vertical line through what lies ahead of it.
+/// Returns a view turned about the vertical line through the point ahead of it.
 fn turned(world_from_camera: &Affine3A) -> Affine3A {
     let pivot = world_from_camera.transform_point3(Vec3::NEG_Z * PIVOT_M);
     let turn = Affine3A::from_quat(Quat::from_rotation_y(TURN_RAD));

@@ -1,45 +1,45 @@
-//! The studio of `preview --lights`: five figures, and any number of small lights around them.
+//! The test studio of `preview --lights`: five figures, and any number of small lights around them.
 
 use crate::scene::{Aim, Emitter, Light, LightId, Object, ObjectId, Output, Role, Scene, Shape, Transform};
 use glam::{Vec2, Vec3};
 
-/// Figures in the group.
+/// Number of figures.
 const FIGURES: usize = 5;
 /// Distance between neighbours, metres.
 const APART_M: f32 = 0.75;
-/// Light of all lights together on a figure, as if each stood at `RING_M`, lx s: f/8 at ISO 100.
+/// Exposure of a figure by all lights together, each at a distance of `RING_M`, lx s: f/8 at ISO 100.
 const EXPOSURE_LUX_S: f32 = 160.0;
 /// Radius of the ring of lights, metres.
 const RING_M: f32 = 2.2;
-/// Turn from one light to the next: never the same place twice.
+/// Angle from one light to the next, radians: no two lights coincide.
 const GOLDEN_ANGLE: f32 = 2.399_963_2;
 
-/// The studio with five figures side by side, as many of them copies as need be; none if it has no figure.
+/// Returns the studio with five figures side by side, copied if it has fewer; none if it has no figure.
 pub fn five_figures(scene: &Scene) -> Option<Scene> {
     let is_figure = |object: &&Object| matches!(object.shape, Shape::Mannequin(_));
     let figures: Vec<Object> = scene.objects.iter().filter(is_figure).cloned().collect();
     let mut crowd = scene.clone();
     crowd.objects.retain(|object| !is_figure(&object));
-    for (place, figure) in figures.iter().cycle().take(FIGURES).enumerate() {
+    for (position, figure) in figures.iter().cycle().take(FIGURES).enumerate() {
         let mut figure = figure.clone();
         figure.id = ObjectId(crowd.fresh_object_id().0.max(1000));
         figure.name = crowd.unique_name(&figure.name);
         figure.transform = Transform {
-            position: Vec3::new((place as f32 - 2.0) * APART_M, 0.0, 0.0),
-            rotation_deg: Vec3::Y * (2.0 - place as f32) * 8.0,
+            position: Vec3::new((position as f32 - 2.0) * APART_M, 0.0, 0.0),
+            rotation_deg: Vec3::Y * (2.0 - position as f32) * 8.0,
             ..figure.transform
         };
         crowd.objects.push(figure);
     }
-    // The whole group in the frame, from where a photographer would stand.
+    // The camera frames the whole group.
     crowd.camera.position = Vec3::new(0.0, 1.5, 5.0);
     crowd.camera.aim = Aim::Point(Vec3::new(0.0, 1.1, 0.0));
     crowd.camera.focal_length_mm = 35.0;
     (!figures.is_empty()).then_some(crowd)
 }
 
-/// The same studio under this many lights, panels, spots and bulbs in turn. Together they give the same exposure,
-/// however many they are.
+/// Returns the studio with `count` lights, which are panels, spots and bulbs in turn. Together they give the same
+/// exposure for any count.
 pub fn lit_by(crowd: &Scene, count: usize) -> Scene {
     let mut scene = crowd.clone();
     scene.lights = (0..count).map(|index| small_light(index, count)).collect();
@@ -49,7 +49,7 @@ pub fn lit_by(crowd: &Scene, count: usize) -> Scene {
 fn small_light(index: usize, count: usize) -> Light {
     let turn = index as f32 * GOLDEN_ANGLE;
     let height_m = 0.6 + 2.0 * ((index as f32 + 0.5) / count as f32);
-    // An oval about the group: every light stands about as far from the nearest figure.
+    // An ellipse around the group: every light has about the same distance to its nearest figure.
     let around = Vec2::from_angle(turn + 0.6) * Vec2::new(RING_M + 0.5 * APART_M * (FIGURES - 1) as f32, RING_M);
     let figure = Vec3::X * APART_M * (index % FIGURES) as f32 - Vec3::X * APART_M * 2.0;
     let emitter = match index % 3 {
@@ -75,7 +75,7 @@ mod tests {
     use crate::photo::light::axial_intensity;
 
     #[test]
-    fn five_figures_under_lights_that_add_up_to_the_same() {
+    fn any_number_of_lights_gives_five_figures_the_same_exposure() {
         let loaded = crate::io::find_preset("three_point").unwrap().load().unwrap();
         let crowd = five_figures(&loaded.scene).unwrap();
         let figures = crowd.objects.iter().filter(|o| matches!(o.shape, Shape::Mannequin(_))).count();

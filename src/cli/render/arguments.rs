@@ -1,0 +1,155 @@
+//! Arguments of `catchlight render`, and the settings that follow from them.
+
+use crate::cli::input;
+use crate::io::PictureFormat;
+use crate::raytrace::{Method, Settings, Shortcut};
+use crate::scene::Camera;
+use anyhow::anyhow;
+use clap::ValueEnum;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Arguments of `render`.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// Studio: a .ron file, or the name of a shipped one.
+    pub scene: PathBuf,
+    /// Picture file, whose extension names its format: png, jpg (as shown), exr (scene-linear).
+    #[arg(short, long)]
+    pub output: PathBuf,
+    /// Rendering method.
+    #[arg(long, value_enum, default_value_t = MethodName::Path)]
+    pub method: MethodName,
+    /// Picture size in pixels, WIDTHxHEIGHT [default: 960 on the long edge, in the sensor's shape].
+    #[arg(long, value_parser = input::parse_size)]
+    size: Option<(u32, u32)>,
+    /// Samples per pixel [default: 64, or as many as --noise or --time allow].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub spp: Option<u32>,
+    /// Sample each part of the picture until its noise is below this many stops, such as 0.05.
+    #[arg(long, value_name = "STOPS", value_parser = positive)]
+    noise: Option<f32>,
+    /// Stop after this many seconds.
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    time: Option<f32>,
+    /// Maximum number of bounces [default: what the studio's surfaces need].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    max_depth: Option<u32>,
+    /// Method for caustics, the light that mirrors and glass throw on surfaces. Photons have little noise and blur the
+    /// edges by a pixel or two, less the longer it renders; paths blur nothing and are noisy.
+    #[arg(long, value_enum, default_value_t = Caustics::Photons)]
+    caustics: Caustics,
+    /// Number of threads [default: all cores].
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Seed of the noise pattern.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u32,
+    /// Print what the renderer leaves out for this studio, and why.
+    #[arg(long)]
+    pub explain: bool,
+    /// Print one JSON object with the statistics.
+    #[arg(long)]
+    pub json: bool,
+    /// Write one EXR layer per light beside the whole picture (exr only).
+    #[arg(long)]
+    pub layers: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum Caustics {
+    Photons,
+    Paths,
+}
+
+/// A rendering method, by its name in arguments and reports.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum MethodName {
+    /// A z-buffer on the CPU: visibility and direct light, no shadows.
+    Zbuffer,
+    /// Phong lobes, hard shadows, mirrors and glass, no bounced light.
+    Whitted,
+    /// Direct light only: soft shadows, no bounced light.
+    Direct,
+    /// All light paths: the reference.
+    Path,
+}
+
+impl MethodName {
+    /// Returns the ray tracer's method; none for the z-buffer.
+    pub fn traced(self) -> Option<Method> {
+        match self {
+            MethodName::Zbuffer => None,
+            MethodName::Whitted => Some(Method::Whitted),
+            MethodName::Direct => Some(Method::Direct),
+            MethodName::Path => Some(Method::Path),
+        }
+    }
+
+    /// Returns the name in reports.
+    pub fn label(self) -> &'static str {
+        match self {
+            MethodName::Zbuffer => "zbuffer",
+            MethodName::Whitted => "whitted",
+            MethodName::Direct => "direct",
+            MethodName::Path => "path",
+        }
+    }
+}
+
+fn positive(text: &str) -> Result<f32, String> {
+    let value: f32 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    if value > 0.0 && value.is_finite() { Ok(value) } else { Err(format!("must be more than 0, not {text}")) }
+}
+
+/// Samples per pixel where nothing else ends the render.
+const DEFAULT_SPP: u32 = 64;
+/// Samples per pixel where noise or time end the render.
+const MAX_SPP: u32 = 65_536;
+
+impl Arguments {
+    /// Checks the output file's name before a picture is rendered for it.
+    pub fn check_output(&self) -> anyhow::Result<()> {
+        let format = PictureFormat::of(&self.output)?;
+        if self.layers && format != PictureFormat::Exr {
+            return Err(anyhow!("--layers needs a picture that ends in .exr, not {}", self.output.display()));
+        }
+        let folder = self.output.parent().filter(|p| !p.as_os_str().is_empty());
+        if let Some(folder) = folder.filter(|p| !p.is_dir()) {
+            return Err(anyhow!("the folder of the picture does not exist: {}", folder.display()));
+        }
+        Ok(())
+    }
+
+    /// Returns the size of the picture, pixels.
+    pub fn picture_size(&self, camera: &Camera) -> (u32, u32) {
+        self.size.unwrap_or_else(|| camera.picture_size(960))
+    }
+
+    /// Returns the settings of a ray-traced picture.
+    pub fn settings(&self, camera: &Camera, method: Method) -> Settings {
+        let (width, height) = self.picture_size(camera);
+        let is_open_ended = self.noise.is_some() || self.time.is_some();
+        let spp = self.spp.unwrap_or(if is_open_ended { MAX_SPP } else { DEFAULT_SPP });
+        let (max_depth, seed, noise_stops) = (self.max_depth, self.seed, self.noise);
+        Settings { width, height, method, spp, max_depth, seed, noise_stops }
+    }
+
+    /// Returns the time limit. A limit beyond what a duration holds is none.
+    pub fn time_limit(&self) -> Option<Duration> {
+        self.time.and_then(|seconds| Duration::try_from_secs_f32(seconds).ok())
+    }
+
+    /// Returns the number of threads; 0 for all cores.
+    pub fn threads(&self) -> usize {
+        self.threads.unwrap_or(0).into()
+    }
+
+    /// Returns the shortcuts of the render plan that are not taken.
+    pub fn without(&self) -> &'static [Shortcut] {
+        match self.caustics {
+            Caustics::Photons => &[],
+            Caustics::Paths => &[Shortcut::Photons],
+        }
+    }
+}

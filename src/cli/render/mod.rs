@@ -1,0 +1,203 @@
+//! `catchlight render SCENE -o OUT`: renders a picture without a window.
+
+mod arguments;
+mod interrupt;
+mod progress_bar;
+mod report;
+
+pub use arguments::Arguments;
+
+use super::failure::Failure;
+use super::{input, terminal, zbuffer};
+use crate::io::{self, Loaded, PictureInfo};
+use crate::jobs::{self, RenderInput, RenderMonitor, RenderStage, Rendered};
+use crate::raytrace::{Film, GeometryCache, NonFiniteReport, RenderControl, RenderScene, SampleId, Settings};
+use anyhow::anyhow;
+use interrupt::cancel_on_ctrl_c;
+use progress_bar::ProgressDisplay;
+use rayon::ThreadPool;
+use report::RenderReport;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// Renders, writes the picture and prints the statistics.
+pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
+    arguments.check_output()?;
+    let control: Arc<RenderControl> = Arc::default();
+    let interrupted = cancel_on_ctrl_c(&control)?;
+    let pool = input::thread_pool(arguments.threads())?;
+    // Load the studio.
+    let load_started = Instant::now();
+    let loaded = pool.install(|| input::load_studio(&arguments.scene))?;
+    let load_s = load_started.elapsed().as_secs_f64();
+    let Some(method) = arguments.method.traced() else {
+        return draw_zbuffer(arguments, &loaded, &pool, started, load_s);
+    };
+    // Render with a progress bar.
+    let settings = arguments.settings(&loaded.scene.camera, method);
+    let monitor = Arc::new(RenderMonitor::new(&settings, control));
+    let rendered = render(arguments, &loaded, &settings, &pool, &monitor)?;
+    // Write the picture.
+    let film = &rendered.film;
+    if film.spp() == 0 {
+        return keep_coarse(arguments, &loaded, rendered.coarse.as_ref(), &settings);
+    }
+    let nonfinite = film.nonfinite();
+    warn_of_nonfinite(&nonfinite);
+    write(arguments, &loaded, film, &settings)?;
+    // Print the statistics.
+    let interrupted = interrupted.load(Ordering::Relaxed);
+    let seconds = |then: Option<Instant>| then.map_or(0.0, |then| (then - started).as_secs_f64());
+    let rays = monitor.control().rays();
+    let report = RenderReport {
+        width: film.width(),
+        height: film.height(),
+        spp: film.spp(),
+        mean_spp: film.mean_spp(),
+        threads: pool.current_num_threads(),
+        method: arguments.method.label(),
+        seed: arguments.seed,
+        triangles: rendered.scene.triangle_count(),
+        lights: rendered.scene.light_count(),
+        load_s,
+        build_s: rendered.build_s,
+        trace_s: rendered.trace_s,
+        wall_s: started.elapsed().as_secs_f64(),
+        first_picture_s: seconds(monitor.first_picture()),
+        first_wave_s: seconds(monitor.first_pass()),
+        rays,
+        mrays_s: rays as f64 / rendered.trace_s.max(1e-9) / 1e6,
+        photons: film.has_photons(),
+        noise_stops: Some(film.noise_stops()).filter(|n| n.is_finite()),
+        nonfinite: nonfinite.count,
+        interrupted,
+        output: arguments.output.display().to_string(),
+    };
+    report.print(arguments.json)?;
+    if interrupted { Err(Failure::Interrupted) } else { Ok(()) }
+}
+
+/// Renders with a progress bar, and prints the render plan if that is requested.
+fn render(
+    arguments: &Arguments,
+    loaded: &Loaded,
+    settings: &Settings,
+    pool: &ThreadPool,
+    monitor: &Arc<RenderMonitor>,
+) -> anyhow::Result<Rendered> {
+    let input = RenderInput {
+        scene: &loaded.scene,
+        assets: &loaded.assets,
+        cache: &GeometryCache::default(),
+        settings,
+        without: arguments.without(),
+        time_limit: arguments.time_limit(),
+    };
+    let mut display = None;
+    let rendered = jobs::render(&input, pool, monitor, &mut |stage| {
+        if let RenderStage::Prepared(scene) = stage {
+            if arguments.explain {
+                print_plan(scene, arguments.json);
+            }
+            display = Some(ProgressDisplay::start(monitor.clone()));
+        }
+    });
+    drop(display);
+    Ok(rendered?)
+}
+
+/// Prints the render plan: on stderr with `--json`, whose object is alone on stdout.
+fn print_plan(scene: &RenderScene, json: bool) {
+    let text = scene.plan().to_string();
+    if json { terminal::progress(text.trim_end()) } else { terminal::result(text.trim_end()) }
+}
+
+fn warn_of_nonfinite(nonfinite: &NonFiniteReport) {
+    if let Some(SampleId { x, y, index, seed }) = nonfinite.first {
+        terminal::warning(format_args!(
+            "{} non-finite contributions shown black; the first at pixel {x},{y}, sample {index}, seed {seed}",
+            nonfinite.count,
+        ));
+    }
+}
+
+/// Keeps the coarse version of a large picture that was interrupted before the first sample of every pixel.
+fn keep_coarse(
+    arguments: &Arguments,
+    loaded: &Loaded,
+    coarse: Option<&Film>,
+    settings: &Settings,
+) -> Result<(), Failure> {
+    const EARLY: &str = "interrupted before the first sample of every pixel was done";
+    match coarse.filter(|film| film.spp() > 0) {
+        Some(film) => {
+            write(arguments, loaded, film, settings)?;
+            terminal::progress(format_args!("{EARLY}; a coarse picture is kept"));
+        }
+        None => terminal::progress(format_args!("{EARLY}; nothing is written")),
+    }
+    Err(Failure::Interrupted)
+}
+
+/// Draws and writes the picture of the z-buffer. Samples are a square of subpixels, 4 x 4 at most.
+fn draw_zbuffer(
+    arguments: &Arguments,
+    loaded: &Loaded,
+    pool: &ThreadPool,
+    started: Instant,
+    load_s: f64,
+) -> Result<(), Failure> {
+    if arguments.layers || arguments.explain {
+        return Err(Failure::Input(anyhow!("--layers and --explain are for methods that trace, not for zbuffer")));
+    }
+    let (width, height) = arguments.picture_size(&loaded.scene.camera);
+    let side = arguments.spp.unwrap_or(1).isqrt().clamp(1, 4);
+    let draw_started = Instant::now();
+    let (picture, triangles) = pool.install(|| zbuffer::picture(loaded, (width, height), side));
+    let trace_s = draw_started.elapsed().as_secs_f64();
+    let info = PictureInfo::new(&loaded.scene.camera, "zbuffer", side * side, arguments.seed.into());
+    let first_picture_s = started.elapsed().as_secs_f64();
+    io::export_picture(&arguments.output, &picture, &info)?;
+    let report = RenderReport {
+        width,
+        height,
+        spp: side * side,
+        mean_spp: f64::from(side * side),
+        threads: pool.current_num_threads(),
+        method: arguments.method.label(),
+        seed: arguments.seed,
+        triangles,
+        lights: loaded.scene.lights.iter().filter(|light| light.on).count(),
+        load_s,
+        build_s: 0.0,
+        trace_s,
+        wall_s: started.elapsed().as_secs_f64(),
+        first_picture_s,
+        first_wave_s: first_picture_s,
+        rays: 0,
+        mrays_s: 0.0,
+        photons: false,
+        noise_stops: None,
+        nonfinite: 0,
+        interrupted: false,
+        output: arguments.output.display().to_string(),
+    };
+    Ok(report.print(arguments.json)?)
+}
+
+/// Writes the picture in the requested size, for a film of any size.
+fn write(arguments: &Arguments, loaded: &Loaded, film: &Film, settings: &Settings) -> anyhow::Result<()> {
+    let camera = &loaded.scene.camera;
+    let info = PictureInfo::new(camera, film.method(), film.spp(), arguments.seed.into());
+    let (width, height) = (settings.width, settings.height);
+    let picture = film.develop(&loaded.scene).resized(width, height);
+    if arguments.layers {
+        let layers = film.develop_layers(&loaded.scene).into_iter();
+        let layers: Vec<_> = layers.map(|(name, layer)| (name, layer.resized(width, height))).collect();
+        io::export_layers(&arguments.output, &picture, &layers, &info)?;
+    } else {
+        io::export_picture(&arguments.output, &picture, &info)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,147 @@
+//! A render from scene to film: prepare, coarse first picture, sample passes, timings. Command line, window and the
+//! pilot renders of forecasts all use it, each with its own observer.
+
+use super::monitor::RenderMonitor;
+use crate::raytrace::{self, Film, GeometryCache, PrepareError, RenderControl, RenderScene, Settings, Shortcut};
+use crate::scene::{Assets, Scene};
+use rayon::ThreadPool;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A render to be made.
+#[derive(Clone, Copy, Debug)]
+pub struct RenderInput<'a> {
+    /// The studio.
+    pub scene: &'a Scene,
+    /// Its meshes and textures.
+    pub assets: &'a Assets,
+    /// BVHs of meshes, shared with other renders and the live view.
+    pub cache: &'a GeometryCache,
+    /// Size, method and number of samples.
+    pub settings: &'a Settings,
+    /// Shortcuts of the plan that are not taken.
+    pub without: &'a [Shortcut],
+    /// Time after which the render ends, once every pixel has a sample.
+    pub time_limit: Option<Duration>,
+}
+
+/// A stage that a render has reached, for its observer.
+#[derive(Clone, Copy, Debug)]
+pub enum RenderStage<'a> {
+    /// BVHs and tables are built.
+    Prepared(&'a RenderScene),
+    /// One sample a pixel of a small version of a large picture.
+    Coarse(&'a Film),
+    /// A sample pass is complete.
+    Pass(&'a Film),
+}
+
+/// A finished or interrupted render.
+#[derive(Debug)]
+pub struct Rendered {
+    /// The scene as it was traced.
+    pub scene: RenderScene,
+    /// The small version of a large picture; without samples if the render was cancelled in it.
+    pub coarse: Option<Film>,
+    /// The picture; without samples if the render was cancelled in its first pass.
+    pub film: Film,
+    /// Time to build BVHs and tables, seconds.
+    pub build_s: f64,
+    /// Time to trace, seconds.
+    pub trace_s: f64,
+}
+
+/// Renders on `pool`, keeping `monitor` up to date and calling `observe` at each stage.
+///
+/// # Errors
+/// When the scene cannot be prepared.
+pub fn render(
+    input: &RenderInput<'_>,
+    pool: &ThreadPool,
+    monitor: &RenderMonitor,
+    observe: &mut (dyn FnMut(RenderStage<'_>) + Send),
+) -> Result<Rendered, PrepareError> {
+    let RenderInput { settings, .. } = *input;
+    let control = monitor.control();
+    // Build the acceleration structures and the light tables.
+    let build_started = Instant::now();
+    let mut scene = pool.install(|| raytrace::prepare_kept(input.scene, input.assets, input.cache))?;
+    if !input.without.is_empty() {
+        let plan = input.without.iter().fold(scene.plan().clone(), |plan, shortcut| plan.without(*shortcut));
+        scene.set_plan(plan);
+    }
+    let build_s = build_started.elapsed().as_secs_f64();
+    observe(RenderStage::Prepared(&scene));
+    // Trace a small version of a large picture, whose first pass takes long.
+    let trace_started = Instant::now();
+    monitor.start_tracing(trace_started);
+    let coarse = settings.coarse().filter(|_| !control.is_cancelled());
+    let coarse = coarse
+        .map(|coarse| pool.install(|| raytrace::render(&scene, &coarse, control, &mut |_| ControlFlow::Break(()))));
+    if let Some(film) = coarse.as_ref().filter(|film| film.spp() > 0) {
+        monitor.finish_coarse();
+        observe(RenderStage::Coarse(film));
+    }
+    // Trace sample passes until the samples, the noise limit or the time limit are reached.
+    let film = pool.install(|| {
+        within_time(input.time_limit, trace_started, control, |deadline| {
+            raytrace::render(&scene, settings, control, &mut |film| {
+                monitor.finish_pass();
+                observe(RenderStage::Pass(film));
+                deadline.after_pass()
+            })
+        })
+    });
+    monitor.finish();
+    Ok(Rendered { scene, coarse, film, build_s, trace_s: trace_started.elapsed().as_secs_f64() })
+}
+
+/// Traces all passes of a prepared scene on the current pool, without an observer.
+pub fn render_all_passes(scene: &RenderScene, settings: &Settings, control: &RenderControl) -> Film {
+    raytrace::render(scene, settings, control, &mut |_| ControlFlow::Continue(()))
+}
+
+/// The end of a render with a time limit.
+struct Deadline {
+    at: Option<Instant>,
+    has_pass: AtomicBool,
+}
+
+impl Deadline {
+    /// Ends the render after a pass once the time is over.
+    fn after_pass(&self) -> ControlFlow<()> {
+        self.has_pass.store(true, Ordering::SeqCst);
+        let is_over = self.at.is_some_and(|at| Instant::now() >= at);
+        if is_over { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// Traces with a time limit. At its end the pass under way is cancelled, unless it is the first one.
+fn within_time(
+    limit: Option<Duration>,
+    started: Instant,
+    control: &RenderControl,
+    trace: impl FnOnce(&Deadline) -> Film,
+) -> Film {
+    let deadline =
+        Deadline { at: limit.and_then(|limit| started.checked_add(limit)), has_pass: AtomicBool::new(false) };
+    let Some(at) = deadline.at else { return trace(&deadline) };
+    let (is_done, done) = (Mutex::new(false), Condvar::new());
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let left = at.saturating_duration_since(Instant::now());
+            let is_done = is_done.lock().unwrap_or_else(PoisonError::into_inner);
+            let waited = done.wait_timeout_while(is_done, left, |is_done| !*is_done);
+            let (is_done, _) = waited.unwrap_or_else(PoisonError::into_inner);
+            if !*is_done && deadline.has_pass.load(Ordering::SeqCst) {
+                control.cancel();
+            }
+        });
+        let film = trace(&deadline);
+        *is_done.lock().unwrap_or_else(PoisonError::into_inner) = true;
+        done.notify_one();
+        film
+    })
+}
