@@ -38,8 +38,8 @@ pub(crate) struct GpuFrame {
     pub environment_radiance: [[f32; 4]; 6],
     pub bounce: [[f32; 4]; 6],
     pub size: [f32; 2],
-    /// Distances that show as white and as black in the depth channel, metres; both 0 for a perspective view, where they
-    /// are fixed.
+    /// Distances that show as white and as black in the depth channel, metres; both 0 for a perspective view, where
+    /// they are fixed.
     pub depth_range_m: [f32; 2],
     pub light_ends: [u32; 4],
 }

@@ -122,8 +122,8 @@ impl RenderTargets {
         RenderTargets { layouts, current, generation: 0 }
     }
 
-    /// Recreates the targets if size or output differ from the current ones; returns true if it did. The size is clamped
-    /// to what the device supports, and to at least one pixel.
+    /// Recreates the targets if size or output differ from the current ones; returns true if it did. The size is
+    /// clamped to what the device supports, and to at least one pixel.
     pub fn resize(&mut self, device: &wgpu::Device, size: (u32, u32), output: Output) -> bool {
         let largest = device.limits().max_texture_dimension_2d;
         let size = (size.0.clamp(1, largest), size.1.clamp(1, largest));

@@ -60,7 +60,7 @@ impl DrawList {
         list.add_objects(scene, overlay, uploads, &mut signature);
         list.add_emitters(scene, uploads);
         list.caster_signature = signature.finish();
-        // Few state changes: opaque before glass, then by texture and mesh.
+        // Sort by pass (opaque before glass), then by texture, to reduce state changes
         list.items.sort_by_key(|item| (item.pass as u32, item.texture));
         list
     }
@@ -141,7 +141,7 @@ impl DrawList {
             self.surfaces[surface as usize].emission = luminance.into();
             for part in &parts {
                 self.add_item(mesh, part, surface, &black, uploads);
-                // From behind, the camera looks through an emitter.
+                // The back of an emitter is not drawn
                 if let Some(item) = self.items.last_mut() {
                     item.pass = DrawPass::OneSided;
                 }

@@ -9,16 +9,16 @@ use eframe::wgpu;
 
 /// Stride of the records, bytes.
 const OFFSET_STRIDE: usize = UNIFORM_OFFSET_ALIGNMENT as usize;
-/// Draws for which there is room at first.
-const FIRST_ROOM: usize = 64;
+/// Initial capacity in draws.
+const INITIAL_CAPACITY: usize = 64;
 
-/// The draws of a frame, one for each surface.
+/// The draw records of a frame, one per surface.
 #[derive(Debug)]
 pub(crate) struct DrawUniforms {
     layout: wgpu::BindGroupLayout,
     buffer: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
-    /// What the buffer holds.
+    /// Contents of the buffer.
     written: Vec<GpuDraw>,
 }
 
@@ -26,38 +26,44 @@ impl DrawUniforms {
     pub fn new(device: &wgpu::Device) -> Self {
         let stages = wgpu::ShaderStages::VERTEX_FRAGMENT;
         let layout = dynamic_uniform_layout(device, "draw", stages);
-        let (buffer, bind_group) = with_room(device, &layout, FIRST_ROOM);
+        let (buffer, bind_group) = buffer_with_capacity(device, &layout, INITIAL_CAPACITY);
         DrawUniforms { layout, buffer, bind_group, written: Vec::new() }
     }
 
-    /// Layout of the bind group.
+    /// The layout of the bind group.
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layout
     }
 
-    /// Uploads a frame's draws, unless they are those of the last one.
+    /// Uploads a frame's records if they differ from those of the last frame.
     pub fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, draws: &[GpuDraw]) {
         if draws == self.written {
             return;
         }
         if (draws.len() * OFFSET_STRIDE) as u64 > self.buffer.size() {
-            (self.buffer, self.bind_group) = with_room(device, &self.layout, draws.len().next_power_of_two());
+            (self.buffer, self.bind_group) =
+                buffer_with_capacity(device, &self.layout, draws.len().next_power_of_two());
         }
         let mut bytes = vec![0; draws.len() * OFFSET_STRIDE];
-        for (place, draw) in bytes.chunks_exact_mut(OFFSET_STRIDE).zip(draws) {
-            place[..size_of::<GpuDraw>()].copy_from_slice(bytemuck::bytes_of(draw));
+        for (slot, draw) in bytes.chunks_exact_mut(OFFSET_STRIDE).zip(draws) {
+            slot[..size_of::<GpuDraw>()].copy_from_slice(bytemuck::bytes_of(draw));
         }
         queue.write_buffer(&self.buffer, 0, &bytes);
         self.written = draws.to_vec();
     }
 
-    /// Binds a surface's draw as group 1.
+    /// Binds a surface's record as group 1.
     pub fn bind(&self, pass: &mut wgpu::RenderPass, surface: u32) {
         pass.set_bind_group(1, &self.bind_group, &[surface * OFFSET_STRIDE as u32]);
     }
 }
 
-fn with_room(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, draws: usize) -> (wgpu::Buffer, wgpu::BindGroup) {
+/// Creates the buffer for a number of draws, and its bind group.
+fn buffer_with_capacity(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    draws: usize,
+) -> (wgpu::Buffer, wgpu::BindGroup) {
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("draws"),
         size: (draws * OFFSET_STRIDE) as u64,

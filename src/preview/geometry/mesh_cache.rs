@@ -1,4 +1,4 @@
-//! Triangles on the graphics device: each mesh is uploaded once and stays while it is in use.
+//! The mesh cache: vertex and index buffers, uploaded once and kept while in use.
 
 use super::clusters::{Cluster, Clustered};
 use crate::scene::{Assets, Mesh, MeshPart, Room, Shape, room_mesh, tessellate};
@@ -8,15 +8,15 @@ use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A mesh that no frame has used for so long is dropped.
+/// Number of frames after which an unused mesh is dropped.
 const KEPT_FRAMES: u64 = 300;
 
-/// One vertex as the shaders read it; twin of the vertex input in `geometry.wgsl`.
+/// A vertex; twin of the vertex input in `geometry.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct Vertex {
     position: [f32; 3],
-    /// Zero asks for the face's own normal.
+    /// Zero selects the geometric normal.
     normal: [f32; 3],
     uv: [f32; 2],
 }
@@ -28,7 +28,7 @@ pub(crate) const VERTEX_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::Vertex
     attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x2],
 };
 
-/// Surface of an emitter that the camera sees.
+/// The mesh of an emitter that is visible to the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum EmitterSurface {
     /// Square from -1 to 1 in XY, facing -Z.
@@ -39,39 +39,39 @@ pub(crate) enum EmitterSurface {
     Sphere,
 }
 
-/// What identifies a mesh: the pointer of shared triangles, the numbers of a formula.
+/// The identity of a mesh: the address of shared triangles, or the parameters of a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum MeshKey {
     Shared(usize),
-    Formula(u8, [u32; 4]),
+    Parametric(u8, [u32; 4]),
     Room([u32; 3]),
     Emitter(EmitterSurface),
 }
 
-/// A mesh on the device.
+/// A mesh on the GPU.
 #[derive(Debug)]
 pub(crate) struct GpuMesh {
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
     pub parts: Vec<MeshPart>,
-    /// Of all triangles, in their order.
+    /// Clusters of all triangles, in index order.
     clusters: Vec<Cluster>,
     /// Corners in object space.
     pub bounds: (Vec3, Vec3),
     last_used: u64,
-    /// Keeps the pointer in the key from being given to another mesh.
+    /// Keeps the mesh alive, so that the address in the key stays unique.
     _source: Option<Arc<Mesh>>,
 }
 
 impl GpuMesh {
-    /// The clusters of a part, whose indices these are.
+    /// Returns the clusters of a part with this index range.
     pub fn clusters(&self, indices: &std::ops::Range<u32>) -> &[Cluster] {
-        let place = |index: u32| self.clusters.partition_point(|cluster| cluster.indices.start < index);
-        &self.clusters[place(indices.start)..place(indices.end)]
+        let cluster_at = |index: u32| self.clusters.partition_point(|cluster| cluster.indices.start < index);
+        &self.clusters[cluster_at(indices.start)..cluster_at(indices.end)]
     }
 }
 
-/// All meshes on the device.
+/// All meshes on the GPU.
 #[derive(Debug, Default)]
 pub(crate) struct MeshCache {
     meshes: HashMap<MeshKey, GpuMesh>,
@@ -79,21 +79,21 @@ pub(crate) struct MeshCache {
 }
 
 impl MeshCache {
-    /// Starts a frame and drops what has long been out of use.
+    /// Begins a frame and drops meshes that have been unused for long.
     pub fn begin_frame(&mut self) {
         self.frame += 1;
         let frame = self.frame;
         self.meshes.retain(|_, mesh| frame - mesh.last_used <= KEPT_FRAMES);
     }
 
-    /// A mesh that a key of this frame names.
+    /// Returns the mesh of a key.
     pub fn get(&self, key: MeshKey) -> Option<&GpuMesh> {
         self.meshes.get(&key)
     }
 
-    /// Uploads a shape if need be; none where it has no triangles.
+    /// Returns the key of a shape's mesh, uploading it on first use; none if it has no triangles.
     pub fn object(&mut self, device: &wgpu::Device, shape: &Shape, assets: &Assets) -> Option<MeshKey> {
-        if let Some(key) = formula_key(shape) {
+        if let Some(key) = parametric_key(shape) {
             return self.ensure(device, key, || tessellate(shape));
         }
         let shared = assets.mesh_of(shape)?;
@@ -105,13 +105,13 @@ impl MeshCache {
         Some(key)
     }
 
-    /// Uploads the room if need be.
+    /// Returns the key of the room's mesh, uploading it on first use.
     pub fn room(&mut self, device: &wgpu::Device, room: &Room) -> Option<MeshKey> {
         let key = MeshKey::Room(room.size_m.to_array().map(f32::to_bits));
         self.ensure(device, key, || Some(room_mesh(room)))
     }
 
-    /// Uploads an emitter's surface if need be.
+    /// Returns the key of an emitter's mesh, uploading it on first use.
     pub fn emitter(&mut self, device: &wgpu::Device, surface: EmitterSurface) -> Option<MeshKey> {
         self.ensure(device, MeshKey::Emitter(surface), || emitter_mesh(surface))
     }
@@ -127,7 +127,7 @@ impl MeshCache {
     }
 }
 
-fn formula_key(shape: &Shape) -> Option<MeshKey> {
+fn parametric_key(shape: &Shape) -> Option<MeshKey> {
     let (tag, numbers) = match *shape {
         Shape::MeshFile { .. } | Shape::Mannequin(_) => return None,
         Shape::Plane { width_m, depth_m } => (0, [width_m, depth_m, 0.0, 0.0]),
@@ -136,10 +136,10 @@ fn formula_key(shape: &Shape) -> Option<MeshKey> {
         Shape::Cylinder { radius_m, height_m } => (3, [radius_m, height_m, 0.0, 0.0]),
         Shape::Sweep { width_m, height_m, depth_m, radius_m } => (4, [width_m, height_m, depth_m, radius_m]),
     };
-    Some(MeshKey::Formula(tag, numbers.map(f32::to_bits)))
+    Some(MeshKey::Parametric(tag, numbers.map(f32::to_bits)))
 }
 
-/// Puts a mesh on the device; none for one without triangles, with an index out of range, or too big for a buffer.
+/// Uploads a mesh; none if it has no triangles, an index out of range, or does not fit into a buffer.
 fn upload(device: &wgpu::Device, mesh: &Mesh, frame: u64) -> Option<GpuMesh> {
     let count = mesh.positions.len();
     let in_range = mesh.triangles.iter().flatten().all(|&i| (i as usize) < count);
@@ -185,7 +185,7 @@ fn emitter_mesh(surface: EmitterSurface) -> Option<Mesh> {
             normals: vec![Vec3::NEG_Z; outline.len()],
             positions: outline,
             uvs: Vec::new(),
-            // A fan that winds counter-clockwise as seen from -Z.
+            // A triangle fan, counter-clockwise as seen from -Z
             triangles: (1..count - 1).map(|i| [0, i + 1, i]).collect(),
             parts: Vec::new(),
         }

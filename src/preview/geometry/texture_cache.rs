@@ -1,4 +1,4 @@
-//! Pictures on the graphics device, with their smaller versions (mipmaps).
+//! The texture cache: base colour textures with mipmaps.
 
 use crate::color::{srgb_decode, srgb_encode};
 use crate::scene::Texture;
@@ -6,25 +6,25 @@ use eframe::wgpu;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Key of the white texture that untextured surfaces read.
+/// Key of the white texture of untextured surfaces.
 pub(crate) const WHITE: usize = 0;
 
-/// One level: width, height, RGBA rows.
-type Level = (u32, u32, Vec<[u8; 4]>);
+/// A mip level: width, height, RGBA rows.
+type MipLevel = (u32, u32, Vec<[u8; 4]>);
 
 #[derive(Debug)]
-struct Entry {
+struct CachedTexture {
     bind_group: wgpu::BindGroup,
-    /// Keeps the pointer in the key from being given to another texture.
+    /// Keeps the texture alive, so that the address in the key stays unique.
     _source: Option<Arc<Texture>>,
 }
 
-/// All textures on the device, by pointer.
+/// All textures on the GPU, by address of their source.
 #[derive(Debug)]
 pub(crate) struct TextureCache {
     layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
-    entries: HashMap<usize, Entry>,
+    entries: HashMap<usize, CachedTexture>,
 }
 
 impl TextureCache {
@@ -62,21 +62,21 @@ impl TextureCache {
         });
         let mut cache = TextureCache { layout, sampler, entries: HashMap::new() };
         let bind_group = cache.upload(device, queue, vec![(1, 1, vec![[255; 4]])]);
-        cache.entries.insert(WHITE, Entry { bind_group, _source: None });
+        cache.entries.insert(WHITE, CachedTexture { bind_group, _source: None });
         cache
     }
 
-    /// Layout of the bind groups.
+    /// The layout of the bind groups.
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layout
     }
 
-    /// The texture of a key that `ensure` gave; white for one it did not.
+    /// Returns the bind group of a key from `ensure`; white for an unknown key.
     pub fn get(&self, key: usize) -> Option<&wgpu::BindGroup> {
         self.entries.get(&key).or_else(|| self.entries.get(&WHITE)).map(|entry| &entry.bind_group)
     }
 
-    /// Uploads a texture if need be. One that is empty, broken or too large for the device is shown white.
+    /// Returns the key of a texture, uploading it on first use; `WHITE` if it is empty, inconsistent or too large.
     pub fn ensure(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, texture: &Arc<Texture>) -> usize {
         let key = Arc::as_ptr(texture) as usize;
         let pixels = texture.width as usize * texture.height as usize;
@@ -86,17 +86,17 @@ impl TextureCache {
         }
         if !self.entries.contains_key(&key) {
             let bind_group = self.upload(device, queue, mip_chain(texture));
-            self.entries.insert(key, Entry { bind_group, _source: Some(texture.clone()) });
+            self.entries.insert(key, CachedTexture { bind_group, _source: Some(texture.clone()) });
         }
         key
     }
 
-    /// Drops the textures that only this cache still holds.
+    /// Drops the textures that only this cache still references.
     pub fn drop_unused(&mut self) {
         self.entries.retain(|_, entry| entry._source.as_ref().is_none_or(|source| Arc::strong_count(source) > 1));
     }
 
-    fn upload(&self, device: &wgpu::Device, queue: &wgpu::Queue, levels: Vec<Level>) -> wgpu::BindGroup {
+    fn upload(&self, device: &wgpu::Device, queue: &wgpu::Queue, levels: Vec<MipLevel>) -> wgpu::BindGroup {
         let extent = |width, height| wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("base colour"),
@@ -130,11 +130,11 @@ impl TextureCache {
     }
 }
 
-/// The picture and its halves down to one pixel, averaged in linear light.
-fn mip_chain(texture: &Texture) -> Vec<Level> {
+/// Returns the mip levels of a texture down to one pixel, averaged in linear light.
+fn mip_chain(texture: &Texture) -> Vec<MipLevel> {
     let decode: Vec<f32> = (0..=255).map(|code| srgb_decode(code as f32 / 255.0)).collect();
     let opaque = texture.rgb.iter().map(|&[r, g, b]| [r, g, b, 255]).collect();
-    let mut levels: Vec<Level> = vec![(texture.width, texture.height, opaque)];
+    let mut levels: Vec<MipLevel> = vec![(texture.width, texture.height, opaque)];
     while let Some((width, height, pixels)) = levels.last() {
         let (width, height) = (*width, *height);
         if width == 1 && height == 1 {

@@ -1,5 +1,5 @@
-//! The lighting pass over the G-buffer: at full resolution, or for drafts one pixel of each coarse pixel, upsampled along
-//! surfaces by the resolve pass.
+//! The lighting pass over the G-buffer: at full resolution, or for drafts one pixel of each coarse pixel, upsampled
+//! along surfaces by the resolve pass.
 
 use super::pipelines::{self, LightingVariant};
 use crate::preview::channel::Channel;
@@ -28,7 +28,8 @@ impl LightingPasses {
         LightingPasses { layouts, lighting: HashMap::new(), glass: HashMap::new(), resolve, channels: HashMap::new() }
     }
 
-    /// Returns the pipeline that draws these sides of glass over the lit picture. `inner` sides are seen through others.
+    /// Returns the pipeline that draws these sides of glass over the lit picture. `inner` sides are seen through
+    /// others.
     pub fn glass(
         &mut self,
         device: &wgpu::Device,

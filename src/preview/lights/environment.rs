@@ -1,5 +1,5 @@
-//! What surrounds the subjects, as an estimate: a box of six even faces for mirrors, and the light that backdrops throw
-//! back. Computed on the processor from a few rays against walls, papers and boxes, lit without shadows.
+//! The environment estimate: a box of six uniform faces for reflections, and the irradiance bounced by backdrops.
+//! Computed on the CPU from a few rays against walls and backdrops, lit without shadows.
 
 use super::light_table::{GpuLight, LightTable};
 use crate::photo::PhotometricLight;
@@ -8,48 +8,51 @@ use crate::scene::{Mesh, Scene, Shape, room_mesh, tessellate};
 use glam::{Affine3A, Vec3, Vec3A};
 use std::f32::consts::{PI, TAU};
 
-/// Directions of the six faces.
+/// Outward directions of the six faces.
 const FACES: [Vec3; 6] = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
-/// Rays for the light that comes back.
+/// Number of rays of the bounce estimate.
 const RAYS: u32 = 96;
-/// Distance of a face where there is nothing, metres.
+/// Distance of a face whose ray hits nothing, metres.
 const FAR_M: f32 = 20.0;
 
-/// The surroundings of the subjects.
+/// The environment around the subjects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Environment {
-    /// Corners of the box, metres.
+    /// Corners of the box, world space.
     pub low: Vec3,
     pub high: Vec3,
     /// Radiance of the faces +X, -X, +Y, -Y, +Z, -Z, picture units.
     pub radiance: [Vec3; 6],
-    /// Irradiance from bounced light on a surface that faces each of them, picture units.
+    /// Bounced irradiance on a surface that faces +X, -X, +Y, -Y, +Z, -Z, picture units.
     pub irradiance: [Vec3; 6],
 }
 
-/// A lit sheet in world space.
-struct Sheet {
+/// A triangle of a wall or backdrop in world space.
+struct BackdropTriangle {
     corners: [Vec3; 3],
     albedo: Vec3,
 }
 
 impl Environment {
-    /// The surroundings; none where there is no subject or nothing around it.
+    /// Estimates the environment; none without a subject, or where the estimate is not finite.
     pub fn new(scene: &Scene, table: &LightTable) -> Option<Self> {
         let probe = probe(scene)?;
-        let sheets = sheets(scene);
+        let triangles = backdrop_triangles(scene);
+        // Distance and reflected radiance along a ray
         let radiance = |direction: Vec3| {
-            let Some((distance, sheet)) = first_hit(&sheets, probe, direction) else {
+            let Some((distance, triangle)) = closest_hit(&triangles, probe, direction) else {
                 return (FAR_M, table.ambient.surround_radiance);
             };
-            let [a, b, c] = sheet.corners;
+            let [a, b, c] = triangle.corners;
             let normal = (b - a).cross(c - a).normalize_or_zero();
             let facing = if normal.dot(direction) > 0.0 { -normal } else { normal };
             let lit = irradiance(table, probe + distance * direction, facing) + table.ambient.irradiance;
-            (distance, sheet.albedo * lit / PI)
+            (distance, triangle.albedo * lit / PI)
         };
+        // One ray per face of the box
         let faces = FACES.map(radiance);
         let distance = faces.map(|(distance, _)| distance);
+        // Integrate the bounced irradiance of each face over the sphere
         let mut bounced = [Vec3::ZERO; 6];
         for direction in sphere_directions() {
             let weight = radiance(direction).1 * (2.0 * TAU / RAYS as f32);
@@ -67,50 +70,52 @@ impl Environment {
     }
 }
 
-fn is_sheet(shape: &Shape) -> bool {
+fn is_backdrop(shape: &Shape) -> bool {
     matches!(shape, Shape::Sweep { .. } | Shape::Plane { .. })
 }
 
-/// Middle of the subjects: everything visible that is not a backdrop.
+/// Returns the mean position of the subjects, which are all visible objects except backdrops.
 fn probe(scene: &Scene) -> Option<Vec3> {
-    let subjects = scene.objects.iter().filter(|o| o.visible && !is_sheet(&o.shape));
+    let subjects = scene.objects.iter().filter(|o| o.visible && !is_backdrop(&o.shape));
     let (mut sum, mut count) = (Vec3::ZERO, 0.0);
     for object in subjects {
-        // Figures stand on their origin.
-        let middle = if matches!(object.shape, Shape::Mannequin(_)) { Vec3::Y * 0.5 } else { Vec3::ZERO };
-        sum += object.transform.world_from_object().transform_point3(middle);
+        // The origin of a figure is between its feet
+        let centre = if matches!(object.shape, Shape::Mannequin(_)) { Vec3::Y * 0.5 } else { Vec3::ZERO };
+        sum += object.transform.world_from_object().transform_point3(centre);
         count += 1.0;
     }
-    let middle = sum / count + Vec3::Y * 0.02;
-    (count > 0.0 && middle.is_finite()).then_some(middle)
+    let mean = sum / count + Vec3::Y * 0.02;
+    (count > 0.0 && mean.is_finite()).then_some(mean)
 }
 
-fn sheets(scene: &Scene) -> Vec<Sheet> {
-    let mut sheets = Vec::new();
+/// Returns the triangles of the room and of visible backdrops.
+fn backdrop_triangles(scene: &Scene) -> Vec<BackdropTriangle> {
+    let mut triangles = Vec::new();
     let mut add = |mesh: &Mesh, world: Affine3A, albedo: &dyn Fn(&str) -> [f32; 3]| {
         for part in &mesh.parts {
             let albedo = Vec3::from(albedo(&part.name)).clamp(Vec3::ZERO, Vec3::ONE);
             let corners = part.triangles.clone().map(|t| mesh.corners(t as usize));
-            sheets.extend(corners.map(|c| Sheet { corners: c.map(|p| world.transform_point3(p)), albedo }));
+            triangles
+                .extend(corners.map(|c| BackdropTriangle { corners: c.map(|p| world.transform_point3(p)), albedo }));
         }
     };
     if let Some(room) = &scene.room {
         add(&room_mesh(room), Affine3A::IDENTITY, &|part| room.material_of(part).base_color);
     }
-    for object in scene.objects.iter().filter(|o| o.visible && is_sheet(&o.shape)) {
+    for object in scene.objects.iter().filter(|o| o.visible && is_backdrop(&o.shape)) {
         let Some(mesh) = tessellate(&object.shape) else { continue };
         add(&mesh, object.transform.world_from_object(), &|part| {
             let material = object.material_of(part);
             if material.transmission > 0.0 { [0.0; 3] } else { material.base_color }
         });
     }
-    sheets
+    triangles
 }
 
-/// Nearest sheet and its distance (Moller and Trumbore 1997; an estimate needs no watertight test).
-fn first_hit(sheets: &[Sheet], origin: Vec3, direction: Vec3) -> Option<(f32, &Sheet)> {
-    let distance = |sheet: &Sheet| {
-        let [a, b, c] = sheet.corners;
+/// Returns the closest hit (Moller and Trumbore 1997; the estimate needs no watertight test).
+fn closest_hit(triangles: &[BackdropTriangle], origin: Vec3, direction: Vec3) -> Option<(f32, &BackdropTriangle)> {
+    let distance = |triangle: &BackdropTriangle| {
+        let [a, b, c] = triangle.corners;
         let (u, v) = (b - a, c - a);
         let p = direction.cross(v);
         let scale = 1.0 / u.dot(p);
@@ -121,9 +126,9 @@ fn first_hit(sheets: &[Sheet], origin: Vec3, direction: Vec3) -> Option<(f32, &S
         let t = v.dot(q) * scale;
         (x >= 0.0 && y >= 0.0 && x + y <= 1.0 && t > 1e-4).then_some(t)
     };
-    sheets
+    triangles
         .iter()
-        .filter_map(|sheet| Some((distance(sheet)?, sheet)))
+        .filter_map(|triangle| Some((distance(triangle)?, triangle)))
         .min_by(|a, b| a.0.total_cmp(&b.0))
         .filter(|(distance, _)| *distance < FAR_M)
 }
@@ -155,7 +160,7 @@ fn irradiance_per_color(gpu: &GpuLight, light: &PhotometricLight, point: Vec3, n
     factor * light.beam.as_ref().map_or(1.0, |beam| beam.transmission(away_light.into()))
 }
 
-/// Even directions over the sphere (golden spiral).
+/// Returns uniform directions over the sphere (golden spiral).
 fn sphere_directions() -> impl Iterator<Item = Vec3> {
     (0..RAYS).map(|i| {
         let height = 1.0 - (2 * i + 1) as f32 / RAYS as f32;
@@ -183,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn an_even_room_reflects_its_paint_and_its_size() {
+    fn a_uniform_room_has_its_radiance_and_its_size() {
         let paint = Material { base_color: [0.5; 3], ..Material::default() };
         let room =
             Room { size_m: Vec3::new(4.0, 3.0, 6.0), floor: paint.clone(), walls: paint.clone(), ceiling: paint };
@@ -203,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_around_gives_nothing_back() {
+    fn an_empty_scene_has_no_bounced_light() {
         let scene = Scene { objects: vec![subject()], ..Scene::default() };
         let environment = Environment::new(&scene, &LightTable::default()).unwrap();
         assert_eq!((environment.radiance, environment.irradiance), ([Vec3::ZERO; 6], [Vec3::ZERO; 6]));

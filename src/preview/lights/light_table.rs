@@ -1,5 +1,5 @@
-//! Lights as the shaders read them: in picture units (exposure, shutter and white balance folded in), so that a
-//! shader's sum is the scene-linear pixel.
+//! The light buffer: photometric lights packed for the shaders in picture units (exposure, shutter and white balance
+//! folded in), so that a shader's sum is the scene-linear pixel.
 
 use crate::photo::beam::Beam;
 use crate::photo::emitter::{EmitterShape, IntensityDistribution};
@@ -9,17 +9,17 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
-/// Lights beyond this number are not shown.
+/// Maximum number of lights; further lights are not shown.
 pub(crate) const MAX_LIGHTS: usize = 256;
-/// What is left out of the picture of many lights: 1/256 of display white.
-const LEAST_SHOWN: f32 = 1.0 / 256.0;
-/// Smallest side of a panel and radius of a bulb, metres: a light of no size keeps a finite luminance.
-const SMALLEST_M: f32 = 1e-3;
+/// Radiance below which a light is culled: 1/256 of display white.
+const CULL_RADIANCE: f32 = 1.0 / 256.0;
+/// Smallest side of a panel and radius of a sphere, metres, which keeps the luminance of a light without size finite.
+const MIN_SIZE_M: f32 = 1e-3;
 
-/// What a `GpuLight` is; the numbers are repeated in `light.wgsl`.
+/// The kind of a `GpuLight`; the values are repeated in `light.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
-pub(crate) enum Kind {
+pub(crate) enum LightKind {
     Point = 0,
     Spot = 1,
     Sphere = 2,
@@ -28,7 +28,7 @@ pub(crate) enum Kind {
     Sun = 5,
 }
 
-/// One light in a storage buffer; twin of `Light` in `scene.wgsl`.
+/// A light in the uniform buffer; twin of `Light` in `scene.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub(crate) struct GpuLight {
@@ -36,31 +36,34 @@ pub(crate) struct GpuLight {
     pub kind: u32,
     /// Half width vector of a panel; unit otherwise.
     pub right: [f32; 3],
-    /// Half angle of a spot's even part, radians.
+    /// Half angle of a spot's inner cone, radians.
     pub inner_rad: f32,
     /// Half height vector of a panel; unit otherwise.
     pub up: [f32; 3],
-    /// Half angle where a spot ends, radians.
+    /// Half angle of a spot's outer cone, radians.
     pub outer_rad: f32,
-    /// Unit direction in which it shines.
+    /// Unit direction of emission.
     pub axis: [f32; 3],
-    /// Radius of a bulb, metres; tangent of a sun's half angle.
+    /// Radius of a sphere, metres; tangent of a sun's half angle.
     pub radius: f32,
-    /// Picture units of: intensity (point, spot), luminance (sphere, panels), normal illuminance (sun).
+    /// Intensity (point, spot), radiance (sphere, panels) or normal irradiance (sun), picture units.
     pub color: [f32; 3],
-    /// Distance at which it falls under 1/256 of display white on white, metres; 0 for a sun, which never does.
-    pub reach_m: f32,
-    /// Half angles of its beam: even, whole, where a grid ends, radians.
+    /// Distance at which a white surface falls under 1/256 of display white, metres; 0 for a sun, which is never
+    /// culled.
+    pub cull_radius_m: f32,
+    /// Half angles of the beam, radians: inner, outer, and the cutoff of a grid.
     pub beam_rad: [f32; 3],
-    /// Whether those or the doors cut anything: 0 or 1.
+    /// 1 if a modifier narrows the beam, else 0.
     pub has_beam: u32,
-    /// Barn doors, open so far from the axis: left, right, top, bottom, radians.
+    /// Angles of the barn doors from the axis, radians: left, right, top, bottom.
     pub doors_rad: [f32; 4],
 }
 
-/// An angle that cuts nothing, radians: beyond half a turn, and for a grid so far that its slope is nothing either.
+/// Angle of a cone, grid or door without effect, radians: beyond pi, and so large that the slope of a grid's falloff
+/// vanishes.
 const OPEN_RAD: f32 = 1e9;
 
+/// Sets the angles of a modifier.
 fn set_beam(gpu: &mut GpuLight, beam: &Beam) {
     let half = |full_deg: f32| (0.5 * full_deg).to_radians();
     let cone = beam.cone.map(|cone| [half(cone.inner_deg.min(cone.outer_deg)), half(cone.outer_deg)]);
@@ -73,29 +76,30 @@ fn set_beam(gpu: &mut GpuLight, beam: &Beam) {
 }
 
 impl GpuLight {
-    /// Family of lights that the lighting pass takes in one loop: points and suns, balls, rectangles, discs.
-    pub fn family(&self) -> usize {
+    /// Returns the group of kinds that one loop of the lighting pass shades: 0 points, spots and suns, 1 spheres,
+    /// 2 rectangles, 3 discs.
+    pub fn kind_group(&self) -> usize {
         match self.kind {
-            kind if kind == Kind::Sphere as u32 => 1,
-            kind if kind == Kind::Rect as u32 => 2,
-            kind if kind == Kind::Disc as u32 => 3,
+            kind if kind == LightKind::Sphere as u32 => 1,
+            kind if kind == LightKind::Rect as u32 => 2,
+            kind if kind == LightKind::Disc as u32 => 3,
             _ => 0,
         }
     }
 
-    /// Area of a panel, m2; that of a ball's disc.
+    /// Returns the area of a panel, or of a sphere's disc, m2.
     pub fn area_m2(&self) -> f32 {
-        match self.family() {
+        match self.kind_group() {
             2 => 4.0 * Vec3::from(self.right).length() * Vec3::from(self.up).length(),
             3 => PI * Vec3::from(self.right).length_squared(),
             _ => PI * self.radius * self.radius,
         }
     }
 
-    /// Half axes of the emitter as its penumbra sees them: metres, for a sun tangents.
+    /// Returns the half axes of the emitter that determine the penumbra: metres, for a sun tangents.
     pub fn softness(&self) -> Vec2 {
-        match self.family() {
-            // The shadow's kernel is a disc: one of the rectangle's area.
+        match self.kind_group() {
+            // The filter kernel is an ellipse: give it the area of the rectangle
             2 => Vec2::new(Vec3::from(self.right).length(), Vec3::from(self.up).length()) * (4.0 / PI).sqrt(),
             3 => Vec2::splat(Vec3::from(self.right).length()),
             _ => Vec2::splat(self.radius),
@@ -103,32 +107,32 @@ impl GpuLight {
     }
 }
 
-/// Light that has no direction here, in picture units.
+/// Ambient light, picture units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Ambient {
-    /// Irradiance from all round: surround and the bounce estimate.
+    /// Irradiance from a surround and from the bounce estimate.
     pub irradiance: Vec3,
-    /// Luminance of a surround.
+    /// Radiance of a surround.
     pub surround_radiance: Vec3,
-    /// The same, of those that the camera sees.
+    /// Radiance of the surrounds that are visible to the camera.
     pub void_radiance: Vec3,
 }
 
-/// The lights that are on, sorted by family.
+/// The lights that are on, sorted by group.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LightTable {
     pub lights: Vec<GpuLight>,
-    /// Of each of them.
+    /// Scene ids of `lights`.
     pub ids: Vec<LightId>,
-    /// What each was packed from.
+    /// The photometric lights from which `lights` were packed.
     pub photometric: Vec<PhotometricLight>,
-    /// One past the last light of each family.
+    /// One past the last light of each group.
     pub ends: [u32; 4],
     pub ambient: Ambient,
 }
 
 impl LightTable {
-    /// The lights of a scene, or one of them alone.
+    /// Packs the lights of a scene, or one of them alone.
     pub fn new(scene: &Scene, bounce_estimate: bool, only: Option<LightId>) -> Self {
         let mut table = LightTable::default();
         let mut lights: Vec<(GpuLight, LightId, PhotometricLight)> = Vec::new();
@@ -136,7 +140,7 @@ impl LightTable {
         for light in scene.lights.iter().filter(|light| light.on && only.is_none_or(|id| id == light.id)) {
             let (id, light) = (light.id, PhotometricLight::new(scene, light));
             if light.shape.is_distant() && scene.room.is_some() {
-                // A closed room keeps it out.
+                // A closed room blocks suns and surrounds
                 continue;
             }
             let scale = picture_scale(&light, &scene.camera);
@@ -152,13 +156,14 @@ impl LightTable {
             flux += scale * light.flux();
             lights.push((gpu, id, light));
         }
-        lights.sort_by_key(|(light, _, _)| light.family());
+        lights.sort_by_key(|(light, _, _)| light.kind_group());
         for (gpu, id, light) in lights {
             table.lights.push(gpu);
             table.ids.push(id);
             table.photometric.push(light);
         }
-        table.ends = std::array::from_fn(|f| table.lights.partition_point(|light| light.family() <= f) as u32);
+        table.ends =
+            std::array::from_fn(|group| table.lights.partition_point(|light| light.kind_group() <= group) as u32);
         table.ambient.surround_radiance = table.ambient.irradiance / PI;
         if let Some(room) = scene.room.as_ref().filter(|_| bounce_estimate) {
             table.ambient.irradiance += bounced_irradiance(room, flux);
@@ -168,8 +173,8 @@ impl LightTable {
 }
 
 impl LightTable {
-    /// Which families have lights.
-    pub fn families(&self) -> [bool; 4] {
+    /// Returns true for the groups that have lights.
+    pub fn groups_present(&self) -> [bool; 4] {
         let [delta, spheres, rects, discs] = self.ends;
         [delta > 0, spheres > delta, rects > spheres, discs > rects]
     }
@@ -180,17 +185,18 @@ pub(crate) fn picture_scale(light: &PhotometricLight, camera: &Camera) -> Vec3 {
     light.tint * exposure::pixel_per_cd_s_m2(camera) * light.exposure_time_s
 }
 
-/// Picture value of a surface's own glow.
+/// Returns the picture value of a surface's emission.
 pub(crate) fn emission(material: &Material, camera: &Camera) -> Vec3 {
     Vec3::from(material.emission_cd_m2) * exposure::pixel_per_cd_s_m2(camera) * camera.shutter_s
 }
 
+/// Returns true if all values are finite and the light is not black.
 fn is_usable(light: &GpuLight) -> bool {
     bytemuck::cast_slice::<GpuLight, f32>(std::slice::from_ref(light)).iter().all(|x| x.is_finite())
         && light.color.iter().any(|c| *c > 0.0)
 }
 
-/// Packs a light, with the picture value of each unit of it; none for a surround.
+/// Packs a light, scaled by the picture value of one unit of it; none for a surround.
 fn gpu_light(light: &PhotometricLight, scale: Vec3) -> Option<GpuLight> {
     let axes = light.world_from_light.matrix3;
     let intensity = light.axial_intensity();
@@ -204,31 +210,31 @@ fn gpu_light(light: &PhotometricLight, scale: Vec3) -> Option<GpuLight> {
         doors_rad: [OPEN_RAD; 4],
         ..GpuLight::zeroed()
     };
-    gpu.reach_m = (scale.max_element() * intensity / (PI * LEAST_SHOWN)).max(0.0).sqrt();
+    gpu.cull_radius_m = (scale.max_element() * intensity / (PI * CULL_RADIANCE)).max(0.0).sqrt();
     match light.shape {
-        EmitterShape::Point(IntensityDistribution::Isotropic) => gpu.kind = Kind::Point as u32,
+        EmitterShape::Point(IntensityDistribution::Isotropic) => gpu.kind = LightKind::Point as u32,
         EmitterShape::Point(IntensityDistribution::Cone(Cone { inner_deg, outer_deg })) => {
-            gpu.kind = Kind::Spot as u32;
+            gpu.kind = LightKind::Spot as u32;
             gpu.outer_rad = (0.5 * outer_deg).to_radians();
             gpu.inner_rad = (0.5 * inner_deg.min(outer_deg)).to_radians();
         }
         EmitterShape::Sphere { radius_m } => {
-            let radius = radius_m.max(SMALLEST_M);
-            gpu.kind = Kind::Sphere as u32;
+            let radius = radius_m.max(MIN_SIZE_M);
+            gpu.kind = LightKind::Sphere as u32;
             gpu.radius = radius;
             gpu.color = (scale * intensity / (PI * radius * radius)).into();
         }
         EmitterShape::Rect { half_size_m } => {
-            panel(&mut gpu, Kind::Rect, half_size_m.max(Vec2::splat(0.5 * SMALLEST_M)), scale * intensity);
+            panel(&mut gpu, LightKind::Rect, half_size_m.max(Vec2::splat(0.5 * MIN_SIZE_M)), scale * intensity);
         }
         EmitterShape::Disc { radius_m } => {
-            panel(&mut gpu, Kind::Disc, Vec2::splat(radius_m.max(0.5 * SMALLEST_M)), scale * intensity);
+            panel(&mut gpu, LightKind::Disc, Vec2::splat(radius_m.max(0.5 * MIN_SIZE_M)), scale * intensity);
         }
         EmitterShape::Sun { half_angle_rad } => {
-            gpu.kind = Kind::Sun as u32;
+            gpu.kind = LightKind::Sun as u32;
             gpu.radius = half_angle_rad.clamp(0.0, 0.25 * PI).tan();
             gpu.color = (scale * light.illuminance()).into();
-            gpu.reach_m = 0.0;
+            gpu.cull_radius_m = 0.0;
         }
         EmitterShape::Surround => return None,
     }
@@ -238,15 +244,16 @@ fn gpu_light(light: &PhotometricLight, scale: Vec3) -> Option<GpuLight> {
     Some(gpu)
 }
 
-fn panel(gpu: &mut GpuLight, kind: Kind, half: Vec2, intensity: Vec3) {
+/// Sets the kind, half axes and radiance of a panel.
+fn panel(gpu: &mut GpuLight, kind: LightKind, half: Vec2, intensity: Vec3) {
     gpu.kind = kind as u32;
     gpu.right = (Vec3::from(gpu.right) * half.x).into();
     gpu.up = (Vec3::from(gpu.up) * half.y).into();
     gpu.color = (intensity / gpu.area_m2()).into();
 }
 
-/// Estimate of the bounced light in a closed diffuse box, per channel: E = F r / (S (1 - r)) with r the mean
-/// reflectance (integrating sphere).
+/// Returns the bounced irradiance in a closed diffuse box, per channel: E = F r / (S (1 - r)) with the mean reflectance
+/// r (integrating sphere).
 fn bounced_irradiance(room: &Room, flux: Vec3) -> Vec3 {
     let size = room.size_m.max(Vec3::splat(0.1));
     let (floor, walls) = (size.x * size.z, 2.0 * size.y * (size.x + size.z));
@@ -267,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn the_shutter_moves_continuous_light_and_not_flash() {
+    fn the_shutter_scales_continuous_light_and_not_flash() {
         let flash = light(Emitter::Point, Output::FlashWs { energy_ws: 100.0, efficacy_lm_s_per_ws: 40.0 });
         let lamp = light(Emitter::Point, Output::Lumens(1000.0));
         let scale = |light: &Light, camera: &Camera| {
@@ -280,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn a_closed_box_holds_the_tabulated_light() {
+    fn a_closed_box_has_the_tabulated_irradiance() {
         // light_and_camera.md: a 4 m cube with 10 000 lm.
         for (r, mean) in [(0.0, 104.17), (0.2, 130.21), (0.5, 208.33), (0.8, 520.83), (0.9, 1041.67)] {
             let paint = Material { base_color: [r; 3], ..Material::default() };
@@ -292,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn lights_that_are_off_or_without_size_do_no_harm() {
+    fn lights_that_are_off_are_left_out_and_lights_without_size_stay_finite() {
         let mut scene = Scene { lights: vec![light(Emitter::Point, Output::Lumens(1000.0))], ..Scene::default() };
         scene.lights[0].on = false;
         assert!(LightTable::new(&scene, true, None).lights.is_empty());

@@ -63,7 +63,7 @@ impl FramePlan {
     pub fn lighting_variant(&self, options: &Options) -> LightingVariant {
         LightingVariant {
             output: self.output,
-            light_kinds: self.lights.families(),
+            light_kinds: self.lights.groups_present(),
             masks: self.shadows.masks.len(),
             mask_scale: self.constants.mask_scale,
             light_radius: options.light_radius,
@@ -98,7 +98,8 @@ impl FramePlan {
         hasher.finish()
     }
 
-    /// Returns a hash of everything that the shadow masks depend on besides the shadow maps. The layers must be assigned.
+    /// Returns a hash of everything that the shadow masks depend on besides the shadow maps. The layers must be
+    /// assigned.
     pub fn mask_signature(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         self.gbuffer_signature().hash(&mut hasher);
@@ -130,8 +131,8 @@ fn frame_constants(input: &PreviewInput, size: (u32, u32), lights: &LightTable) 
     frame
 }
 
-/// Returns the picture pixels per shadow mask pixel along each axis: 1 on a GPU; on a CPU rasteriser 2, in drafts 4, and
-/// 8 under many lights, each of which contributes little.
+/// Returns the picture pixels per shadow mask pixel along each axis: 1 on a GPU; on a CPU rasteriser 2, in drafts 4,
+/// and 8 under many lights, each of which contributes little.
 fn mask_scale(is_cpu: bool, is_draft: bool, light_count: usize) -> u32 {
     match (is_cpu, is_draft) {
         (false, _) => 1,
@@ -141,8 +142,8 @@ fn mask_scale(is_cpu: bool, is_draft: bool, light_count: usize) -> u32 {
     }
 }
 
-/// Returns the picture pixels per coarse pixel along each axis of a draft: the more lights, the larger. Panels and spheres
-/// cost several times what lights without a size do.
+/// Returns the picture pixels per coarse pixel along each axis of a draft: the more lights, the larger. Panels and
+/// spheres cost several times what lights without a size do.
 fn coarse_scale(table: &LightTable) -> u32 {
     let without_size = table.ends[0] as usize;
     match (table.lights.len(), table.lights.len() - without_size) {

@@ -155,8 +155,8 @@ impl PreviewRenderer {
         self.picking.hit_blocking(&self.gpu, &self.targets.current, pixel)
     }
 
-    /// Starts a pick at a pixel of the last picture without waiting; `poll_pick` returns the result some frames later. A
-    /// newer request replaces an older one.
+    /// Starts a pick at a pixel of the last picture without waiting; `poll_pick` returns the result some frames later.
+    /// A newer request replaces an older one.
     pub fn request_pick(&mut self, pixel: (u32, u32)) -> Result<(), PreviewError> {
         self.picking.request(&self.gpu, &self.targets.current, pixel)
     }
@@ -196,7 +196,8 @@ impl PreviewRenderer {
         };
         self.encode(input, &plan, &stale, &gizmos);
 
-        // Remember what the targets hold. Glass has overwritten the id buffer, so that the G-buffer pass must run again.
+        // Remember what the targets hold. Glass has overwritten the id buffer, so that the G-buffer pass must run
+        // again.
         let (gbuffer, masks) = (Some(plan.gbuffer_signature()), Some(plan.mask_signature()));
         let (gbuffer, masks) = if plan.has_glass() { (None, None) } else { (gbuffer, masks) };
         self.drawn = DrawnFrame { gbuffer, masks, shadow_maps: stale.shadow_maps.len() };
@@ -253,7 +254,7 @@ impl PreviewRenderer {
         }
         // Blend glass over the lit picture
         if plan.has_glass() {
-            let light_kinds = plan.lights.families();
+            let light_kinds = plan.lights.groups_present();
             glass_pass::draw(device, &mut encoder, &mut self.lighting, resources, &plan.list, light_kinds);
         }
         // Replace the picture by a channel of the G-buffer, or by nothing

@@ -246,9 +246,9 @@ fn radius_window(light: u32, to_light: vec3f) -> f32 {
     if !LIGHT_CULLING {
         return 1.0;
     }
-    let reach_m = lights[light].reach_m;
-    let part = sqrt(dot(to_light, to_light)) / max(reach_m, 1e-6);
-    return select(1.0, saturate(5.0 - 5.0 * part), reach_m > 0.0);
+    let cull_radius_m = lights[light].cull_radius_m;
+    let part = sqrt(dot(to_light, to_light)) / max(cull_radius_m, 1e-6);
+    return select(1.0, saturate(5.0 - 5.0 * part), cull_radius_m > 0.0);
 }
 
 // Returns the window of a panel, whose radius is smaller off axis: its intensity falls with the cosine.
@@ -258,7 +258,7 @@ fn panel_radius_window(light: u32, to_light: vec3f) -> f32 {
     }
     let squared = dot(to_light, to_light);
     let cosine = max(-dot(to_light, lights[light].axis) * inverseSqrt(max(squared, 1e-12)), 1e-6);
-    let part = sqrt(squared / cosine) / max(lights[light].reach_m, 1e-6);
+    let part = sqrt(squared / cosine) / max(lights[light].cull_radius_m, 1e-6);
     return saturate(5.0 - 5.0 * part);
 }
 

@@ -66,7 +66,7 @@ struct Light {
     radius: f32,
     color: vec3f,
     // Distance at which the light falls under 1/256 of display white, metres; 0 for a sun, which has none.
-    reach_m: f32,
+    cull_radius_m: f32,
     // Half angles of the beam, radians: inner, outer, and the cutoff of a grid. `has_beam` is 1 if a modifier narrows
     // it.
     beam_rad: vec3f,

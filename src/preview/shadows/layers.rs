@@ -20,13 +20,13 @@ pub(crate) struct ShadowView {
     /// Position of the light, world space.
     pub eye: Vec3,
     /// Light radius, metres, beyond which the light is negligible; 0 for a sun, which has none.
-    pub reach_m: f32,
+    pub cull_radius_m: f32,
 }
 
 impl ShadowView {
     /// Returns true if a distance is within the light radius.
     pub fn is_in_radius(&self, distance_m: f32) -> bool {
-        self.reach_m == 0.0 || distance_m < self.reach_m
+        self.cull_radius_m == 0.0 || distance_m < self.cull_radius_m
     }
 }
 
@@ -171,7 +171,7 @@ mod tests {
         let view = |face: usize| ShadowView {
             clip_from_world: Mat4::from_translation(Vec3::new(x, face as f32, light as f32)),
             eye: Vec3::ZERO,
-            reach_m: 0.0,
+            cull_radius_m: 0.0,
         };
         LightViews { owner: (light, 0), views: (0..count).map(view).collect() }
     }

@@ -5,7 +5,7 @@
 //! are weighted by their irradiance.
 
 use crate::preview::geometry::oriented_box::OrientedBox;
-use crate::preview::lights::light_table::{GpuLight, Kind};
+use crate::preview::lights::light_table::{GpuLight, LightKind};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
@@ -31,7 +31,7 @@ pub(crate) fn emitter_parts(light: &GpuLight, casters: &[OrientedBox]) -> Vec<Em
     let whole = vec![EmitterPart { at: Vec2::ZERO, softness }];
     let half = Vec2::new(Vec3::from(light.right).length(), Vec3::from(light.up).length());
     let nearest = casters.iter().map(|caster| caster.distance(light.position.into())).fold(f32::INFINITY, f32::min);
-    let is_panel = light.kind == Kind::Rect as u32 || light.kind == Kind::Disc as u32;
+    let is_panel = light.kind == LightKind::Rect as u32 || light.kind == LightKind::Disc as u32;
     if !is_panel || half.length() < SUBDIVISION_RATIO * nearest {
         return whole;
     }
@@ -41,7 +41,7 @@ pub(crate) fn emitter_parts(light: &GpuLight, casters: &[OrientedBox]) -> Vec<Em
         return [0.0, -2.0 / 3.0, 2.0 / 3.0].map(|step| EmitterPart { at: step * along, softness }).to_vec();
     }
     // Centroids of the quarters of a rectangle, or of a disc
-    let step = if light.kind == Kind::Rect as u32 { 0.5 } else { 4.0 / (3.0 * PI) };
+    let step = if light.kind == LightKind::Rect as u32 { 0.5 } else { 4.0 / (3.0 * PI) };
     let corners = [Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0), Vec2::new(-1.0, 1.0), Vec2::ONE];
     corners.map(|corner| EmitterPart { at: step * corner, softness: 0.5 * softness }).to_vec()
 }
@@ -52,7 +52,7 @@ mod tests {
     use bytemuck::Zeroable;
     use glam::Affine3A;
 
-    fn panel(kind: Kind, half_width: f32, half_height: f32) -> GpuLight {
+    fn panel(kind: LightKind, half_width: f32, half_height: f32) -> GpuLight {
         GpuLight {
             kind: kind as u32,
             right: [half_width, 0.0, 0.0],
@@ -71,11 +71,11 @@ mod tests {
     fn only_emitters_large_relative_to_their_distance_are_subdivided() {
         let (near, far) = ([caster_at(-1.5)], [caster_at(-5.5)]);
         for (light, count) in [
-            (panel(Kind::Rect, 0.15, 0.8), 3),
-            (panel(Kind::Rect, 0.8, 0.15), 3),
-            (panel(Kind::Rect, 0.5, 0.7), 4),
-            (panel(Kind::Disc, 0.6, 0.6), 4),
-            (panel(Kind::Sphere, 0.6, 0.6), 1),
+            (panel(LightKind::Rect, 0.15, 0.8), 3),
+            (panel(LightKind::Rect, 0.8, 0.15), 3),
+            (panel(LightKind::Rect, 0.5, 0.7), 4),
+            (panel(LightKind::Disc, 0.6, 0.6), 4),
+            (panel(LightKind::Sphere, 0.6, 0.6), 1),
         ] {
             assert_eq!(emitter_parts(&light, &near).len(), count);
             assert_eq!(emitter_parts(&light, &far).len(), 1);
@@ -84,7 +84,9 @@ mod tests {
 
     #[test]
     fn the_parts_have_the_centroid_and_the_area_of_the_emitter() {
-        for light in [panel(Kind::Rect, 0.15, 0.8), panel(Kind::Rect, 0.5, 0.7), panel(Kind::Disc, 0.6, 0.6)] {
+        for light in
+            [panel(LightKind::Rect, 0.15, 0.8), panel(LightKind::Rect, 0.5, 0.7), panel(LightKind::Disc, 0.6, 0.6)]
+        {
             let parts = emitter_parts(&light, &[caster_at(-1.0)]);
             let centroid: Vec2 = parts.iter().map(|part| part.at).sum();
             assert!(centroid.length() < 1e-6);

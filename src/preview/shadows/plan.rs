@@ -93,8 +93,8 @@ impl ShadowPlan {
         let (mut slot, views) = fit_views(light, casters, receivers, MAX_VIEWS - self.view_count());
         if !views.is_empty() {
             (slot.layer, slot.softness) = (self.lights.len() as u32, light.softness().into());
-            let (eye, reach_m) = (light.position.into(), light.reach_m);
-            let view = |clip_from_world| ShadowView { clip_from_world, eye, reach_m };
+            let (eye, cull_radius_m) = (light.position.into(), light.cull_radius_m);
+            let view = |clip_from_world| ShadowView { clip_from_world, eye, cull_radius_m };
             self.lights.push(LightViews { owner, views: views.into_iter().map(view).collect() });
         }
         slot
@@ -136,15 +136,16 @@ impl ShadowPlan {
 
 /// Returns the casters within the light radius.
 fn casters_in_radius(light: &GpuLight, casters: &[OrientedBox]) -> Vec<OrientedBox> {
-    let reaches =
-        |caster: &&OrientedBox| light.reach_m == 0.0 || caster.distance(light.position.into()) < light.reach_m;
+    let reaches = |caster: &&OrientedBox| {
+        light.cull_radius_m == 0.0 || caster.distance(light.position.into()) < light.cull_radius_m
+    };
     casters.iter().filter(reaches).copied().collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::preview::lights::light_table::Kind;
+    use crate::preview::lights::light_table::LightKind;
     use crate::preview::shadows::slots::Projection;
     use crate::scene::LightId;
     use glam::{Affine3A, Mat4};
@@ -157,7 +158,7 @@ mod tests {
         }
     }
 
-    fn light(kind: Kind) -> GpuLight {
+    fn light(kind: LightKind) -> GpuLight {
         GpuLight {
             kind: kind as u32,
             position: [0.0, 4.0, 0.0],
@@ -180,7 +181,7 @@ mod tests {
 
     #[test]
     fn one_view_contains_every_caster_and_depth_falls_with_distance() {
-        for kind in [Kind::Point, Kind::Spot, Kind::Sphere, Kind::Rect, Kind::Sun] {
+        for kind in [LightKind::Point, LightKind::Spot, LightKind::Sphere, LightKind::Rect, LightKind::Sun] {
             let caster = unit_box_at(Vec3::new(0.3, 1.0, 0.2));
             let plan = ShadowPlan::new(&table(&[light(kind)]), &[caster], &VisibleReceivers::default(), false);
             assert_eq!((plan.views, plan.masks.len()), (1, 1), "{kind:?}");
@@ -195,7 +196,7 @@ mod tests {
 
     #[test]
     fn a_point_light_among_casters_gets_a_cube_map() {
-        let point = light(Kind::Point);
+        let point = light(LightKind::Point);
         let casters = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
         let plan = ShadowPlan::new(&table(&[point]), &casters, &VisibleReceivers::default(), false);
         assert_eq!((plan.views, plan.masks[0].slots[0][0].kind), (6, Projection::Cube as u32));
@@ -209,11 +210,15 @@ mod tests {
     #[test]
     fn depth_is_affine_across_a_plane() {
         // The shader's receiver plane depth requires that depth is linear along a line on the map
-        let view =
-            ShadowPlan::new(&table(&[light(Kind::Rect)]), &[unit_box_at(Vec3::Y)], &VisibleReceivers::default(), false)
-                .lights[0]
-                .views[0]
-                .clip_from_world;
+        let view = ShadowPlan::new(
+            &table(&[light(LightKind::Rect)]),
+            &[unit_box_at(Vec3::Y)],
+            &VisibleReceivers::default(),
+            false,
+        )
+        .lights[0]
+            .views[0]
+            .clip_from_world;
         let (a, b) = (project(&view, Vec3::new(-0.3, 0.2, 0.1)), project(&view, Vec3::new(0.4, 0.9, -0.2)));
         let on_line = project(&view, Vec3::new(-0.3, 0.2, 0.1).lerp(Vec3::new(0.4, 0.9, -0.2), 0.25));
         let along = (on_line.truncate() - a.truncate()).length() / (b.truncate() - a.truncate()).length();
@@ -223,19 +228,20 @@ mod tests {
     #[test]
     fn lights_beyond_the_limit_have_no_shadow_and_no_caster_needs_no_map() {
         let plan = ShadowPlan::new(
-            &table(&[light(Kind::Rect); 40]),
+            &table(&[light(LightKind::Rect); 40]),
             &[unit_box_at(Vec3::ZERO)],
             &VisibleReceivers::default(),
             false,
         );
         assert_eq!((plan.views, plan.masks.len()), (MAX_SHADOWS, MAX_SHADOWS / 4));
         let all_round = [unit_box_at(Vec3::ZERO), unit_box_at(Vec3::Y * 8.0)];
-        let plan = ShadowPlan::new(&table(&[light(Kind::Rect); 16]), &all_round, &VisibleReceivers::default(), false);
+        let plan =
+            ShadowPlan::new(&table(&[light(LightKind::Rect); 16]), &all_round, &VisibleReceivers::default(), false);
         // Eight cubes use up all views
         let kind = |light: usize| plan.masks[light / 4].slots[light % 4][0].kind;
         assert_eq!((plan.views, kind(7), kind(8)), (MAX_VIEWS, Projection::Cube as u32, 0));
         assert_eq!(
-            ShadowPlan::new(&table(&[light(Kind::Rect)]), &[], &VisibleReceivers::default(), false),
+            ShadowPlan::new(&table(&[light(LightKind::Rect)]), &[], &VisibleReceivers::default(), false),
             ShadowPlan::default()
         );
     }

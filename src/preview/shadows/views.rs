@@ -3,7 +3,7 @@
 use super::focus::VisibleReceivers;
 use super::slots::{GpuShadowSlot, Projection};
 use crate::preview::geometry::oriented_box::OrientedBox;
-use crate::preview::lights::light_table::{GpuLight, Kind};
+use crate::preview::lights::light_table::{GpuLight, LightKind};
 use bytemuck::Zeroable;
 use glam::{Affine3A, Mat4, Quat, Vec2, Vec3, Vec4};
 
@@ -43,9 +43,9 @@ pub(crate) fn fit_views(
     let focus = (light.softness() / nearest.max(NEAR_M), receivers);
     // Fit one view by the kind of light, or a cube if some casters do not fit
     let single = match light.kind {
-        kind if kind == Kind::Sun as u32 => parallel(&frame, &corners, light.softness(), receivers),
-        kind if kind == Kind::Spot as u32 => perspective(&frame, &corners, spot_limit, focus),
-        kind if kind == Kind::Rect as u32 || kind == Kind::Disc as u32 => {
+        kind if kind == LightKind::Sun as u32 => parallel(&frame, &corners, light.softness(), receivers),
+        kind if kind == LightKind::Spot as u32 => perspective(&frame, &corners, spot_limit, focus),
+        kind if kind == LightKind::Rect as u32 || kind == LightKind::Disc as u32 => {
             if max_views >= 6 && corners.iter().any(|corner| !is_within(&frame, *corner)) {
                 return cube(&frame, focus);
             }
