@@ -40,3 +40,9 @@ pub mod truth;
 pub mod editor;
 #[cfg(feature = "gui")]
 pub mod preview;
+
+/// Hypothesis tests, shared by unit tests and integration tests.
+#[cfg(test)]
+#[path = "../tests/studio/statistics.rs"]
+#[allow(dead_code, reason = "integration tests use the rest")]
+mod statistics;

@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 use studio::closed_forms::{fresnel, pane};
 use studio::light;
 use studio::measure::{BIAS, illuminance, illuminance_over, luminance_per_value, meter_card, picture, square, values};
-use studio::statistics::Estimate;
+use studio::statistics::SampleMean;
 
 const LUMINANCE: f32 = 1000.0;
 
@@ -43,10 +43,9 @@ fn glowing_wall(distance: f32) -> Scene {
 }
 
 /// Luminance of the picture over that of the wall.
-fn share(scene: &Scene, side: u32, spp: u32) -> Estimate {
-    let Estimate { mean, error } = values(&picture(scene, &square(Method::Path, side, spp)));
-    let scale = luminance_per_value(&scene.camera) / f64::from(LUMINANCE);
-    Estimate { mean: mean * scale, error: error * scale }
+fn relative_luminance(scene: &Scene, side: u32, spp: u32) -> SampleMean {
+    values(&picture(scene, &square(Method::Path, side, spp)))
+        .scaled(luminance_per_value(&scene.camera) / f64::from(LUMINANCE))
 }
 
 #[test]
@@ -66,13 +65,19 @@ fn panes_let_through_by_angle_what_both_polarisations_pass_with_all_inner_reflec
                 (Shape::Box { size_m: Vec3::new(3.0, 3.0, 0.004) }, deg as f32)
             };
             scene.objects.push(thing("Pane", shape, glass(n), Vec3::Z * 1.5, Vec3::X * turn));
-            let reading = share(&scene, 32, 64);
-            assert!(reading.agrees(truth, BIAS, 18), "{deg} degrees, n {n}, sheet {sheet}: {reading:?} for {truth}");
+            let reading = relative_luminance(&scene, 32, 64);
+            assert!(
+                reading.agrees_with(truth, BIAS, 18),
+                "{deg} degrees, n {n}, sheet {sheet}: {reading:?} for {truth}"
+            );
             // Single interfaces, without memory of the polarisation, would be off by more than we allow from 60 degrees.
             let (s, p) = fresnel(f64::to_radians(deg), f64::from(n));
             let mean = 0.5 * (s + p);
             let forgetful = (1.0 - mean) / (1.0 + mean);
-            assert!(deg < 59.0 || n < 1.4 || !reading.agrees(forgetful, BIAS, 18), "{deg}: {reading:?} says little");
+            assert!(
+                deg < 59.0 || n < 1.4 || !reading.agrees_with(forgetful, BIAS, 18),
+                "{deg}: {reading:?} says little"
+            );
         }
     }
 }
@@ -95,7 +100,7 @@ fn a_point_light_shines_through_a_pane_as_much_as_the_pane_lets_through() {
             // The pane brings the light's image closer by t (1 - 1/n) = 1.4 mm of 2 m: 0.14 %, which is left out. The card
             // of 18 % and the pane light each other by far less.
             assert!(
-                reading.agrees(truth, 2e-3, 8),
+                reading.agrees_with(truth, 2e-3, 8),
                 "{deg} degrees, sheet {sheet}, {method:?}: {reading:?} for {truth} lx"
             );
         }
@@ -122,10 +127,10 @@ fn a_mirror_throws_light_where_its_image_would() {
         // The image stands at (2, 1, 0): its light falls by the inverse square and the cosine. A sun's image is as bright.
         let image = if let Emitter::Sun { .. } = emitter { 1.0 } else { 5.0_f64.powf(-1.5) };
         assert!(
-            reading.agrees(open * (1.0 + 0.999 * image), 1e-3, 3),
+            reading.agrees_with(open * (1.0 + 0.999 * image), 1e-3, 3),
             "{emitter:?}: {reading:?} for {open} and {image} of it"
         );
-        assert!(reading.error < 0.05 * image * open, "{emitter:?}: {reading:?} says little");
+        assert!(reading.standard_error < 0.05 * image * open, "{emitter:?}: {reading:?} says little");
     }
 }
 
@@ -142,7 +147,7 @@ fn a_softbox_behind_a_thin_pane_loses_what_the_pane_takes_in_every_method() {
             let reading = illuminance(&scene, &square(method, 16, 64));
             let truth = open * pane(0.0, 1.52);
             // Rays meet the pane at up to 4 degrees, where it takes as much to 0.01 %.
-            assert!(reading.agrees(truth, 1e-3, 4), "{emitter:?}, {method:?}: {reading:?} for {truth} lx");
+            assert!(reading.agrees_with(truth, 1e-3, 4), "{emitter:?}, {method:?}: {reading:?} for {truth} lx");
         }
     }
 }
@@ -159,7 +164,7 @@ fn a_softbox_behind_thick_glass_arrives_by_refraction() {
     let reading = illuminance(&scene, &square(Method::Path, 64, 64));
     // Within 43 degrees the pane passes between 0.918 and 0.906.
     assert!(reading.mean / open > 0.9 && reading.mean / open < 0.925, "{reading:?} of {open} lx");
-    assert!(reading.error / open < 0.005, "{reading:?} says little");
+    assert!(reading.standard_error / open < 0.005, "{reading:?} says little");
 }
 
 #[test]
@@ -187,8 +192,8 @@ fn water_in_glass_and_glass_in_glass_have_the_faces_that_they_have() {
         let faces = [r(1.0, outer), r(outer, inner), r(inner, outer), r(outer, 1.0)];
         let gaps = [0.03 * outer_per_m, 0.04 * inner_per_m, 0.03 * outer_per_m].map(|a| f64::from(-a).exp());
         let truth = stack_transmittance(&faces, &gaps);
-        let reading = share(&scene, 32, 64);
-        assert!(reading.agrees(truth, 1e-3, cases.len()), "{outer} with {inner} in it: {reading:?} for {truth}");
+        let reading = relative_luminance(&scene, 32, 64);
+        assert!(reading.agrees_with(truth, 1e-3, cases.len()), "{outer} with {inner} in it: {reading:?} for {truth}");
     }
 }
 
@@ -215,8 +220,8 @@ fn what_stands_in_coloured_water_is_seen_through_it() {
     scene.objects.push(thing("Water", shape, water, Vec3::ZERO, Vec3::ZERO));
     // Radiance that leaves water is spread out by n2; a glowing wall in it gives that much less.
     let truth = (1.0 - (0.33 / 2.33_f64).powi(2)) * (-0.5 * 4.0_f64).exp() / 1.33_f64.powi(2);
-    let reading = share(&scene, 32, 64);
-    assert!(reading.agrees(truth, 1e-3, 1), "{reading:?} for {truth}");
+    let reading = relative_luminance(&scene, 32, 64);
+    assert!(reading.agrees_with(truth, 1e-3, 1), "{reading:?} for {truth}");
 }
 
 #[test]
@@ -230,8 +235,8 @@ fn a_camera_in_water_sees_no_more_light_than_there_is() {
         scene.camera.aim = Aim::Point(Vec3::NEG_Z);
         scene.camera.focal_length_mm = 24.0;
         let reading = values(&picture(&scene, &square(Method::Path, 32, 64)));
-        let ratio = Estimate { mean: reading.mean / open, error: reading.error / open };
-        assert!(ratio.agrees(1.0, 5e-3, 2), "{shape:?}: {ratio:?}");
+        let ratio = SampleMean { mean: reading.mean / open, standard_error: reading.standard_error / open };
+        assert!(ratio.agrees_with(1.0, 5e-3, 2), "{shape:?}: {ratio:?}");
     }
 }
 
@@ -244,13 +249,13 @@ fn a_slab_shifts_what_is_behind_it_by_snells_law() {
         scene.objects[0].transform.position.x = 0.25;
         scene.camera.focal_length_mm = 1000.0;
         let width_m = 3.0 * 24.0 / 1000.0;
-        let before = share(&scene, 64, 16).mean;
+        let before = relative_luminance(&scene, 64, 16).mean;
         let thickness = 0.02;
         let shape = Shape::Box { size_m: Vec3::new(4.0, 4.0, thickness as f32) };
         // Turned about Y; its far ends are out of the picture.
         scene.objects.push(thing("Slab", shape, glass(n as f32), Vec3::Z * 1.5, Vec3::Y * deg as f32));
         let i = deg.to_radians();
-        let after = share(&scene, 64, 128).mean / pane(i, n);
+        let after = relative_luminance(&scene, 64, 128).mean / pane(i, n);
         let r = (i.sin() / n).asin();
         let shift = thickness * i.sin() * (1.0 - i.cos() / (n * r.cos()));
         // Every pair of inner reflections shows the edge again, 2 t tan(r) cos(i) back, with R2 of the light.
@@ -276,13 +281,13 @@ fn a_mirror_shows_the_softbox_where_the_angle_of_reflection_says_and_as_bright()
     let panel =
         light(Emitter::RectPanel { width_m, height_m }, Output::Lumens(LUMINANCE * area * PI as f32), Vec3::Y * 2.0);
     scene.lights.push(panel);
-    let reading = share(&scene, 8, 16);
+    let reading = relative_luminance(&scene, 8, 16);
     let schlick = 0.9 + 0.1 * (1.0 - 45_f64.to_radians().cos()).powi(5);
-    assert!(reading.agrees(schlick, 1e-4, 1), "{reading:?} for {schlick}");
+    assert!(reading.agrees_with(schlick, 1e-4, 1), "{reading:?} for {schlick}");
     // The picture of 24 mm at 5 m focal length is 24 mm wide on the panel: 30 cm aside there is none of it.
     scene.lights[0].position.z = 0.3;
     scene.lights[0].aim = Aim::Point(Vec3::Z * 0.3);
-    assert_eq!(share(&scene, 8, 16).mean, 0.0);
+    assert_eq!(relative_luminance(&scene, 8, 16).mean, 0.0);
 }
 
 #[test]
@@ -294,5 +299,5 @@ fn the_back_of_a_softbox_is_not_seen_in_a_mirror() {
     let mut panel = light(Emitter::RectPanel { width_m: 0.2, height_m: 0.2 }, Output::Lumens(100.0), Vec3::Y * 2.0);
     panel.aim = Aim::Point(Vec3::Y * 3.0);
     scene.lights.push(panel);
-    assert_eq!(share(&scene, 8, 4).mean, 0.0);
+    assert_eq!(relative_luminance(&scene, 8, 4).mean, 0.0);
 }

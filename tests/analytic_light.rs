@@ -1,6 +1,6 @@
 //! Every emitter against closed forms, read from rendered pictures. A tolerance is a number of standard errors, which
 //! come from the scatter of the pixels and so from the number of samples; the families share a false-alarm rate of
-//! 1 in 1000 (`math::statistics`). `BIAS` is what the measuring card itself may be off.
+//! 1 in 1000 (`studio::statistics`). `BIAS` is what the measuring card itself may be off.
 #![allow(clippy::unwrap_used)]
 
 mod studio;
@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 use studio::closed_forms::{disc, polygon, vec3};
 use studio::light;
 use studio::measure::{BIAS, corners, film, illuminance, lux_per_value, meter_card, square, values};
-use studio::statistics::{Estimate, Numbers};
+use studio::statistics::{SampleMean, TestRng};
 
 fn lit(emitter: Emitter, position: Vec3, aim: Vec3, receiver: Vec3, normal: Vec3) -> Scene {
     let mut scene = meter_card(receiver, normal);
@@ -21,22 +21,22 @@ fn lit(emitter: Emitter, position: Vec3, aim: Vec3, receiver: Vec3, normal: Vec3
     scene
 }
 
-fn check(reading: Estimate, truth: f64, tests: usize, what: &str) {
-    assert!(reading.agrees(truth, BIAS, tests), "{what}: {reading:?} for {truth} lx");
+fn check(reading: SampleMean, truth: f64, tests: usize, what: &str) {
+    assert!(reading.agrees_with(truth, BIAS, tests), "{what}: {reading:?} for {truth} lx");
 }
 
 #[test]
 fn any_panel_lights_any_receiver_as_lamberts_polygon_says() {
     // Sizes, distances, turns and receivers at random: also behind the panel, edge-on, cut by the horizon.
-    let mut numbers = Numbers::new(41);
+    let mut rng = TestRng::new(41);
     let tests = 80;
     let (mut lit_ones, mut dark) = (0, 0);
     for _ in 0..tests {
-        let (width_m, height_m) = (numbers.between(0.05, 2.0), numbers.between(0.05, 2.0));
-        let position = numbers.direction() * numbers.between(0.2, 4.0);
-        let (aim, normal) = (position + numbers.direction(), numbers.direction());
+        let (width_m, height_m) = (rng.range(0.05, 2.0), rng.range(0.05, 2.0));
+        let position = rng.direction() * rng.range(0.2, 4.0);
+        let (aim, normal) = (position + rng.direction(), rng.direction());
         let mut scene = lit(Emitter::RectPanel { width_m, height_m }, position, aim, Vec3::ZERO, normal);
-        scene.lights[0].roll_deg = numbers.between(0.0, 360.0);
+        scene.lights[0].roll_deg = rng.range(0.0, 360.0);
         let luminance = 1000.0 / (PI * f64::from(width_m * height_m));
         let front = (Vec3::ZERO - position).dot(aim - position) > 0.0;
         let outline = corners(&scene, 0, width_m, height_m);
@@ -51,13 +51,13 @@ fn any_panel_lights_any_receiver_as_lamberts_polygon_says() {
 
 #[test]
 fn any_disc_lights_any_receiver_as_a_polygon_of_many_corners() {
-    let mut numbers = Numbers::new(42);
+    let mut rng = TestRng::new(42);
     let tests = 40;
     for _ in 0..tests {
-        let diameter_m = numbers.between(0.05, 2.0);
-        let position = numbers.direction() * numbers.between(0.3, 4.0);
+        let diameter_m = rng.range(0.05, 2.0);
+        let position = rng.direction() * rng.range(0.3, 4.0);
         // Roughly towards the receiver and back, so that most are lit.
-        let (aim, normal) = (numbers.direction() * 0.5, (position + numbers.direction()).normalize());
+        let (aim, normal) = (rng.direction() * 0.5, (position + rng.direction()).normalize());
         let scene = lit(Emitter::RoundPanel { diameter_m }, position, aim, Vec3::ZERO, normal);
         let frame = scene.light_frame(&scene.lights[0]);
         let outline = disc(
@@ -116,21 +116,24 @@ fn a_panel_along_the_floor_lights_it_right_even_where_it_is_seen_almost_edge_on(
         let truth = polygon(&corners(&scene, 0, width_m, height_m), luminance, DVec3::ZERO, vec3(*normal));
         let reading = illuminance(&scene, &square(Method::Direct, 16, 256));
         // A millimetre above the receiver's plane the card's 0.2 mm to the side count: 1 %.
-        assert!(reading.agrees(truth, 0.01, cases.len()), "at {position}, facing {normal}: {reading:?} for {truth} lx");
-        assert!(reading.error < 0.05 * truth, "at {position}: {reading:?} says little about {truth} lx");
+        assert!(
+            reading.agrees_with(truth, 0.01, cases.len()),
+            "at {position}, facing {normal}: {reading:?} for {truth} lx"
+        );
+        assert!(reading.standard_error < 0.05 * truth, "at {position}: {reading:?} says little about {truth} lx");
     }
 }
 
 #[test]
 fn balls_of_any_size_light_any_receiver_above_its_horizon_as_points_do() {
-    let mut numbers = Numbers::new(43);
+    let mut rng = TestRng::new(43);
     let tests = 30;
     for _ in 0..tests {
-        let distance = numbers.between(0.3, 6.0);
-        let radius_m = distance * numbers.between(1e-4, 0.6);
-        let towards = numbers.direction();
+        let distance = rng.range(0.3, 6.0);
+        let radius_m = distance * rng.range(1e-4, 0.6);
+        let towards = rng.direction();
         // Tilted so far that the whole ball stays above the horizon.
-        let free = (radius_m / distance).acos().min(1.5) * numbers.between(0.0, 0.95);
+        let free = (radius_m / distance).acos().min(1.5) * rng.range(0.0, 0.95);
         let aside = towards.any_orthonormal_vector();
         let normal = towards * free.cos() + aside * free.sin();
         let scene = lit(Emitter::Sphere { radius_m }, towards * distance, Vec3::ZERO, Vec3::ZERO, normal.normalize());
@@ -173,7 +176,7 @@ fn inverse_square_holds_from_a_centimetre_to_a_kilometre_without_a_clamp() {
             // At a centimetre the card's corners are 0.3 mm off the axis: (1 + r2/d2)^-2 is 0.2 % less.
             let bias = if distance < 0.05 { 2e-3 } else { BIAS };
             let reading = illuminance(&scene, &square(Method::Direct, 4, 4));
-            assert!(reading.agrees(truth, bias, 12), "{emitter:?} at {distance} m: {reading:?} for {truth} lx");
+            assert!(reading.agrees_with(truth, bias, 12), "{emitter:?} at {distance} m: {reading:?} for {truth} lx");
         }
     }
 }
@@ -192,7 +195,7 @@ fn a_spot_falls_off_linearly_in_angle_between_its_cones() {
         let scene = lit(emitter, Vec3::ZERO, Vec3::NEG_Z, receiver, -receiver.normalize());
         let reading = illuminance(&scene, &square(Method::Direct, 4, 4));
         // Close to the outer edge a rounded angle counts more.
-        assert!(reading.agrees(axial * share / 4.0, 1e-3, 8), "{off_deg} degrees: {reading:?}");
+        assert!(reading.agrees_with(axial * share / 4.0, 1e-3, 8), "{off_deg} degrees: {reading:?}");
     }
 }
 
@@ -270,25 +273,23 @@ fn of_many_lights_one_is_chosen_a_hit_and_each_still_gives_its_own() {
     // sampled one by one, and few enough for a layer each. A wrong chance of choice would move light between layers.
     let (position, normal) = (Vec3::ZERO, Vec3::new(0.3, 0.9, 0.2).normalize());
     let mut scene = meter_card(position, normal);
-    let mut numbers = Numbers::new(77);
+    let mut rng = TestRng::new(77);
     let (width_m, height_m) = (0.4, 0.7);
     for i in 0..14 {
         let behind = i == 5;
-        let from = numbers.direction();
+        let from = rng.direction();
         let from = if (from.dot(normal) > 0.0) == behind { -from } else { from };
         let emitter = if i % 2 == 0 { Emitter::Point } else { Emitter::RectPanel { width_m, height_m } };
         let output = Output::Lumens(100.0 * 1.4_f32.powi(i));
         let id = catchlight::scene::LightId(i as u32);
-        let place = from * numbers.between(0.6, 4.0);
+        let place = from * rng.range(0.6, 4.0);
         scene.lights.push(catchlight::scene::Light { id, name: format!("Light {i}"), ..light(emitter, output, place) });
     }
     let film = film(&scene, &square(Method::Direct, 32, 256));
     for (i, light) in scene.lights.iter().enumerate() {
         let mut alone = scene.clone();
         alone.lights.iter_mut().enumerate().for_each(|(k, light)| light.on = k == i);
-        let Estimate { mean, error } = values(&film.develop(&alone));
-        let scale = lux_per_value(&scene.camera);
-        let reading = Estimate { mean: mean * scale, error: error * scale };
+        let reading = values(&film.develop(&alone)).scaled(lux_per_value(&scene.camera));
         let flux = 100.0 * 1.4_f64.powi(i as i32);
         let truth = if i == 5 {
             0.0
@@ -299,7 +300,10 @@ fn of_many_lights_one_is_chosen_a_hit_and_each_still_gives_its_own() {
             let to = vec3(light.position);
             flux / (4.0 * PI) * to.normalize().dot(vec3(normal)) / to.length_squared()
         };
-        assert!(truth == 0.0 || reading.error < 0.1 * truth, "light {i} is too noisy to say anything: {reading:?}");
+        assert!(
+            truth == 0.0 || reading.standard_error < 0.1 * truth,
+            "light {i} is too noisy to say anything: {reading:?}"
+        );
         check(reading, truth, scene.lights.len(), &format!("light {i}"));
     }
 }

@@ -16,7 +16,7 @@ use studio::light;
 use studio::measure::{
     illuminance, illuminance_by_paths, illuminance_over, luminance_per_value, meter_card, picture, square, values,
 };
-use studio::statistics::Estimate;
+use studio::statistics::SampleMean;
 
 /// Ours is right, the wrong one is not, by the same limit (a share of the truth).
 fn told_apart(ours: f64, truth: f64, wrong: f64, limit: f64, what: &str) {
@@ -40,10 +40,8 @@ fn camera(position: Vec3, at: Vec3) -> Camera {
     }
 }
 
-fn luminance(scene: &Scene, method: Method, spp: u32) -> Estimate {
-    let Estimate { mean, error } = values(&picture(scene, &square(method, 16, spp)));
-    let scale = luminance_per_value(&scene.camera);
-    Estimate { mean: mean * scale, error: error * scale }
+fn luminance(scene: &Scene, method: Method, spp: u32) -> SampleMean {
+    values(&picture(scene, &square(method, 16, spp))).scaled(luminance_per_value(&scene.camera))
 }
 
 #[test]
@@ -241,13 +239,13 @@ fn near_a_softbox_its_size_counts_and_a_point_with_a_clamp_does_not_do() {
 
 /// Mean illuminance of the walls of a 4 m cube with 10 000 lm in it. Six views of 90 degrees show each wall as a square,
 /// whose pixels are equal areas of wall; each of eight seeds is one independent mean over all walls.
-fn cube_illuminance(reflectance: f32, method: Method, max_depth: Option<u32>) -> Estimate {
+fn cube_illuminance(reflectance: f32, method: Method, max_depth: Option<u32>) -> SampleMean {
     let paint = Material { base_color: [reflectance; 3], ior: 1.0, roughness: 1.0, ..Material::default() };
     let room = Room { size_m: Vec3::splat(4.0), floor: paint.clone(), walls: paint.clone(), ceiling: paint };
     let lamp = light(Emitter::Point, Output::Lumens(10_000.0), Vec3::new(0.3, 2.2, 0.1));
     let mut scene = Scene { room: Some(room), lights: vec![lamp], ..Scene::default() };
     let centre = Vec3::Y * 2.0;
-    Estimate::of((0..8).map(|seed| {
+    SampleMean::of((0..8).map(|seed| {
         let views = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z].map(|direction| {
             scene.camera = Camera { focal_length_mm: 12.0, ..camera(centre, centre + direction) };
             values(&picture(&scene, &Settings { seed, max_depth, ..square(method, 8, 16) })).mean
@@ -257,8 +255,8 @@ fn cube_illuminance(reflectance: f32, method: Method, max_depth: Option<u32>) ->
 }
 
 /// Five standard errors of eight means: with seven degrees of freedom, 1 in 600 is beyond.
-fn near(ours: Estimate, truth: f64) -> bool {
-    (ours.mean - truth).abs() < 5.0 * ours.error
+fn near(ours: SampleMean, truth: f64) -> bool {
+    (ours.mean - truth).abs() < 5.0 * ours.standard_error
 }
 
 #[test]
@@ -268,7 +266,7 @@ fn white_rooms_are_followed_to_their_end() {
     for reflectance in [0.2, 0.5, 0.8, 0.9, 0.95] {
         let truth = 10_000.0 / 96.0 / (1.0 - f64::from(reflectance));
         let ours = cube_illuminance(reflectance, Method::Path, None);
-        assert!(ours.error < 0.007 * truth && near(ours, truth), "r = {reflectance}: {ours:?} for {truth}");
+        assert!(ours.standard_error < 0.007 * truth && near(ours, truth), "r = {reflectance}: {ours:?} for {truth}");
         if reflectance == 0.95 {
             for depth in [8, 64] {
                 let share = 1.0 - 0.95_f64.powi(depth);
@@ -306,7 +304,7 @@ fn a_point_through_a_glass_ball_is_focused_by_photons_and_goes_straight_without(
     let pane = studio::closed_forms::pane(0.0, 1.5);
     assert!((ours - pane).abs() < 0.01, "{ours} of the open light for {pane}");
     scene.objects[0].shape = Shape::Plane { width_m: 0.3, depth_m: 0.3 };
-    let Estimate { mean, error } = illuminance_over(16, &scene, &square(Method::Path, 4, 64));
+    let SampleMean { mean, standard_error: error } = illuminance_over(16, &scene, &square(Method::Path, 4, 64));
     let lens = (3.0 / 2.6 / 1.513_f64).powi(2) * 0.96_f64.powi(2);
     let ours = mean / open;
     assert!((ours / lens - 1.0).abs() < 0.04 && error / mean < 0.01, "{ours} of the open light for {lens}, {error}");

@@ -14,7 +14,7 @@ use std::f32::consts::PI;
 use std::path::Path;
 use std::process::{Command, Output as ProcessOutput};
 use studio::light;
-use studio::statistics::Estimate;
+use studio::statistics::SampleMean;
 
 fn probe(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor) -> MeterResult {
     probe_with(scene, position, facing, receptor, &MeterEffort::default())
@@ -378,10 +378,10 @@ fn what_comes_straight_and_what_the_meter_reads_bounced_are_together_the_path_tr
     let bounced: f64 = read.lights.iter().map(|light| f64::from(light.bounced)).sum();
     let bounced_error = read.lights.iter().map(|light| f64::from(light.standard_error).powi(2)).sum::<f64>();
     assert!(bounced > 0.2 * direct.mean, "a room worth the test: {bounced} of {direct:?}");
-    let rest = Estimate {
+    let rest = SampleMean {
         mean: path.mean - direct.mean,
-        error: (path.error.powi(2) + direct.error.powi(2) + bounced_error).sqrt(),
+        standard_error: (path.standard_error.powi(2) + direct.standard_error.powi(2) + bounced_error).sqrt(),
     };
-    assert!(rest.error < 0.01 * bounced, "{rest:?} for {bounced}");
-    assert!(rest.agrees(bounced, 1e-3, 1), "{rest:?} for {bounced}");
+    assert!(rest.standard_error < 0.01 * bounced, "{rest:?} for {bounced}");
+    assert!(rest.agrees_with(bounced, 1e-3, 1), "{rest:?} for {bounced}");
 }

@@ -345,7 +345,7 @@ fn a_light_without_size_is_refused_by_name_and_the_smallest_is_right() {
         let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
         scene.lights.push(light(emitter, Output::Lumens(1000.0), Vec3::Z * 2.0));
         let reading = illuminance(&scene, &square(Method::Path, 8, 16));
-        assert!(reading.agrees(1000.0 / per_axial / 4.0, BIAS, 4), "{emitter:?}: {reading:?}");
+        assert!(reading.agrees_with(1000.0 / per_axial / 4.0, BIAS, 4), "{emitter:?}: {reading:?}");
     }
 }
 
@@ -367,8 +367,8 @@ fn a_light_as_large_as_a_town_is_an_even_sky() {
         scene.lights.push(light(emitter, Output::Lumens(flux), position));
         let reading = illuminance(&scene, &square(Method::Path, 16, 256));
         // A ball ends 0.05 % above the horizon.
-        assert!(reading.agrees(PI * luminance, 2e-3, 3), "{emitter:?}: {reading:?} for {}", PI * luminance);
-        assert!(reading.error / reading.mean < 0.01, "{emitter:?}: {reading:?} says little");
+        assert!(reading.agrees_with(PI * luminance, 2e-3, 3), "{emitter:?}: {reading:?} for {}", PI * luminance);
+        assert!(reading.standard_error / reading.mean < 0.01, "{emitter:?}: {reading:?} says little");
     }
 }
 

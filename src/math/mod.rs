@@ -5,8 +5,6 @@ mod frame;
 mod ray;
 mod safe;
 pub mod simd;
-#[cfg(test)]
-pub mod statistics;
 pub mod warp;
 
 pub use angle::{sin_cos_eighth, sin_cos_turn};

@@ -51,7 +51,7 @@ pub fn uniform_cone_pdf(one_minus_cos: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::statistics::{ChiSquare, Numbers, share};
+    use crate::statistics::{ChiSquare, TestRng, sidak_level};
 
     #[test]
     fn directions_are_unit_and_in_range() {
@@ -71,15 +71,15 @@ mod tests {
     fn evenly(seed: u64, cell: impl Fn(Vec2) -> (f32, f32)) -> f64 {
         const CELLS: usize = 16;
         const SAMPLES: usize = 100_000;
-        let mut numbers = Numbers::new(seed);
+        let mut rng = TestRng::new(seed);
         let mut counts = vec![0.0; CELLS * CELLS];
         for _ in 0..SAMPLES {
-            let (u, v) = cell(numbers.square());
+            let (u, v) = cell(rng.unit_square());
             let index = |x: f32| ((x * CELLS as f32) as usize).min(CELLS - 1);
             counts[index(v) * CELLS + index(u)] += 1.0;
         }
         let mut test = ChiSquare::default();
-        counts.iter().for_each(|&c| test.cell(c, SAMPLES as f64 / (CELLS * CELLS) as f64));
+        counts.iter().for_each(|&c| test.add_bin(c, SAMPLES as f64 / (CELLS * CELLS) as f64));
         test.p_value()
     }
 
@@ -105,7 +105,7 @@ mod tests {
             evenly(5, |u| thin_cone(uniform_cone(u, 1e-8))),
         ];
         for (warp, p) in results.iter().enumerate() {
-            assert!(*p > share(results.len()), "warp {warp}: p = {p}");
+            assert!(*p > sidak_level(results.len()), "warp {warp}: p = {p}");
         }
     }
 

@@ -118,8 +118,8 @@ impl Lens {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::statistics::{ChiSquare, Numbers, share};
     use crate::scene::{Aim, Camera};
+    use crate::statistics::{ChiSquare, TestRng, sidak_level};
 
     fn scene(focus: Focus) -> Scene {
         let aim = Aim::Point(Vec3::NEG_Z * 3.0);
@@ -132,13 +132,13 @@ mod tests {
         let lens = Lens::new(&scene(Focus::Distance(2.0)));
         let frame = lens.frame(1.5);
         let radius = 0.085 / (2.0 * 1.4);
-        let mut numbers = Numbers::new(31);
+        let mut rng = TestRng::new(31);
         const CELLS: usize = 12;
         const SAMPLES: usize = 40_000;
         let mut counts = vec![0.0; CELLS * CELLS];
         let picture_point = Vec2::new(0.2, 0.7);
         for _ in 0..SAMPLES {
-            let (origin, direction) = lens.aperture().ray(&frame, picture_point, numbers.square());
+            let (origin, direction) = lens.aperture().ray(&frame, picture_point, rng.unit_square());
             assert!(origin.z.abs() < 1e-7 && (direction.length() - 1.0).abs() < 1e-5);
             let focus = origin + direction * ((-2.0 - origin.z) / direction.z);
             assert!((focus - frame.direction(picture_point) * 2.0).length() < 2e-6);
@@ -147,8 +147,8 @@ mod tests {
             counts[index(origin.length_squared() / (radius * radius)) * CELLS + index(turn - turn.floor())] += 1.0;
         }
         let mut test = ChiSquare::default();
-        counts.iter().for_each(|&c| test.cell(c, SAMPLES as f64 / (CELLS * CELLS) as f64));
-        assert!(test.p_value() > share(1), "p = {}", test.p_value());
+        counts.iter().for_each(|&c| test.add_bin(c, SAMPLES as f64 / (CELLS * CELLS) as f64));
+        assert!(test.p_value() > sidak_level(1), "p = {}", test.p_value());
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! independent repetitions. Their scatter gives the standard error of the mean, and with it the tolerance of a test.
 
 use super::closed_forms::vec3;
-use super::statistics::Estimate;
+use super::statistics::SampleMean;
 use super::{REFLECTANCE, looking_at_card, object};
 use catchlight::photo::Picture;
 use catchlight::raytrace::{self, Film, Method, RenderControl, Settings, Shortcut};
@@ -52,31 +52,27 @@ pub fn luminance_per_value(camera: &Camera) -> f64 {
 }
 
 /// Mean of the green values.
-pub fn values(picture: &Picture) -> Estimate {
-    Estimate::of(picture.rgb.iter().map(|p| f64::from(p[1])))
+pub fn values(picture: &Picture) -> SampleMean {
+    SampleMean::of(picture.rgb.iter().map(|p| f64::from(p[1])))
 }
 
 /// What a meter at the card reads, lux.
-pub fn illuminance(scene: &Scene, settings: &Settings) -> Estimate {
-    let Estimate { mean, error } = values(&picture(scene, settings));
-    let scale = lux_per_value(&scene.camera);
-    Estimate { mean: mean * scale, error: error * scale }
+pub fn illuminance(scene: &Scene, settings: &Settings) -> SampleMean {
+    values(&picture(scene, settings)).scaled(lux_per_value(&scene.camera))
 }
 
 /// The same without photons.
-pub fn illuminance_by_paths(scene: &Scene, settings: &Settings) -> Estimate {
+pub fn illuminance_by_paths(scene: &Scene, settings: &Settings) -> SampleMean {
     let mut prepared = raytrace::prepare(scene, &Assets::default()).unwrap();
     prepared.set_plan(prepared.plan().clone().without(Shortcut::Photons));
     let film = raytrace::render(&prepared, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
-    let Estimate { mean, error } = values(&film.develop(scene));
-    let scale = lux_per_value(&scene.camera);
-    Estimate { mean: mean * scale, error: error * scale }
+    values(&film.develop(scene)).scaled(lux_per_value(&scene.camera))
 }
 
 /// The same where pixels share photons: the scatter of several renders tells the error.
-pub fn illuminance_over(seeds: u32, scene: &Scene, settings: &Settings) -> Estimate {
+pub fn illuminance_over(seeds: u32, scene: &Scene, settings: &Settings) -> SampleMean {
     let reading = |seed| illuminance(scene, &Settings { seed, ..settings.clone() }).mean;
-    Estimate::of((0..seeds).map(reading))
+    SampleMean::of((0..seeds).map(reading))
 }
 
 /// A card at `position` that faces `normal`, and a camera that sees 0.4 mm of it and nothing else.

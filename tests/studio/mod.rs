@@ -4,7 +4,6 @@
 
 pub use catchlight::truth::forms as closed_forms;
 pub mod measure;
-#[path = "../../src/math/statistics.rs"]
 pub mod statistics;
 
 use catchlight::scene::{

@@ -1,8 +1,8 @@
 //! Surfaces against their densities, their energy and their geometry.
 
 use super::*;
-use crate::math::statistics::{ChiSquare, Estimate, Numbers, share};
 use crate::scene::MaterialPreset;
+use crate::statistics::{ChiSquare, SampleMean, TestRng, sidak_level};
 use std::f32::consts::TAU;
 
 /// Mean weight of many stratified samples: the share of light that comes back from a white furnace.
@@ -144,7 +144,7 @@ fn directions_follow_their_density_for_every_lobe_roughness_and_angle() {
     }
     cases.push((Material { roughness: 0.0, ..plain.clone() }, 0.7));
     cases.push((Material { roughness: 1.0, ior: 1.0, ..plain.clone() }, 0.3));
-    let mut numbers = Numbers::new(21);
+    let mut rng = TestRng::new(21);
     for (material, cos) in &cases {
         const SAMPLES: usize = 40_000;
         let material = TracedMaterial::new(material, None);
@@ -157,23 +157,23 @@ fn directions_follow_their_density_for_every_lobe_roughness_and_angle() {
         // What goes nowhere, through glass or off a mirror has no density and makes one cell.
         let mut rest = 0.0;
         for _ in 0..SAMPLES {
-            match bsdf.sample(numbers.number(), numbers.square()) {
+            match bsdf.sample(rng.uniform(), rng.unit_square()) {
                 Some(sample) if !sample.specular => counts[cells.index(sample.direction)] += 1.0,
                 _ => rest += 1.0,
             }
         }
         let mut test = ChiSquare::default();
         let samples = SAMPLES as f64;
-        counts.iter().zip(&expected).for_each(|(&c, &e)| test.cell(c, e * samples));
-        test.cell(rest, (1.0 - expected.iter().sum::<f64>()).max(0.0) * samples + 1e-3);
-        assert!(test.p_value() > share(cases.len()), "{material:?} under {cos}: p = {}", test.p_value());
+        counts.iter().zip(&expected).for_each(|(&c, &e)| test.add_bin(c, e * samples));
+        test.add_bin(rest, (1.0 - expected.iter().sum::<f64>()).max(0.0) * samples + 1e-3);
+        assert!(test.p_value() > sidak_level(cases.len()), "{material:?} under {cos}: p = {}", test.p_value());
     }
 }
 
 #[test]
 fn glass_reflects_as_often_as_fresnel_says_and_refracts_as_snell_says() {
     let glass = TracedMaterial::new(&Material { transmission: 1.0, ior: 1.52, ..Material::default() }, None);
-    let mut numbers = Numbers::new(22);
+    let mut rng = TestRng::new(22);
     let angles = [0.0_f64, 20.0, 41.0, 42.0, 60.0, 80.0, 89.0];
     for (deg, outside) in angles.into_iter().flat_map(|deg| [(deg, true), (deg, false)]) {
         const SAMPLES: usize = 20_000;
@@ -193,7 +193,7 @@ fn glass_reflects_as_often_as_fresnel_says_and_refracts_as_snell_says() {
         };
         let mut reflected = 0.0;
         for _ in 0..SAMPLES {
-            let sample = bsdf.sample(numbers.number(), numbers.square()).unwrap();
+            let sample = bsdf.sample(rng.uniform(), rng.unit_square()).unwrap();
             assert!(sample.specular);
             let d = sample.direction;
             if d.z * side as f32 > 0.0 {
@@ -206,10 +206,14 @@ fn glass_reflects_as_often_as_fresnel_says_and_refracts_as_snell_says() {
             }
         }
         let mut test = ChiSquare::default();
-        test.cell(reflected, reflectance * SAMPLES as f64);
-        test.cell(SAMPLES as f64 - reflected, (1.0 - reflectance) * SAMPLES as f64);
+        test.add_bin(reflected, reflectance * SAMPLES as f64);
+        test.add_bin(SAMPLES as f64 - reflected, (1.0 - reflectance) * SAMPLES as f64);
         let certain = reflectance >= 1.0 && reflected as usize == SAMPLES;
-        assert!(certain || test.p_value() > share(2 * angles.len()), "{deg} outside {outside}: p = {}", test.p_value());
+        assert!(
+            certain || test.p_value() > sidak_level(2 * angles.len()),
+            "{deg} outside {outside}: p = {}",
+            test.p_value()
+        );
     }
 }
 
@@ -219,7 +223,7 @@ fn the_furnace_never_shows_more_than_one_at_any_roughness_and_angle() {
     // facets each). Only what should be 1 is held to 1 from below.
     let roughness = [0.0, 1e-4, 0.01, 0.032, 0.1, 0.3, 0.5, 0.7, 1.0];
     let cosines = [1.0, 0.6, 0.2, 0.05, 0.01];
-    let mut numbers = Numbers::new(23);
+    let mut rng = TestRng::new(23);
     let tests = roughness.len() * cosines.len() * 6;
     for (roughness, cos) in roughness.into_iter().flat_map(|r| cosines.map(|c| (r, c))) {
         let white = Material { base_color: [1.0; 3], roughness, ..Material::default() };
@@ -233,11 +237,11 @@ fn the_furnace_never_shows_more_than_one_at_any_roughness_and_angle() {
         ] {
             let material = TracedMaterial::new(&material, None);
             let bsdf = Bsdf::new(&material, Vec3::ONE, Vec3::Z, Vec3::Z, view(cos));
-            let albedo = Estimate::of((0..8000).map(|_| {
-                let sample = bsdf.sample(numbers.number(), numbers.square());
+            let albedo = SampleMean::of((0..8000).map(|_| {
+                let sample = bsdf.sample(rng.uniform(), rng.unit_square());
                 sample.map_or(0.0, |s| f64::from(s.weight.x / s.eta_scale))
             }));
-            let error = crate::math::statistics::allowed_errors(tests) * albedo.error + 0.005;
+            let error = crate::statistics::critical_z(tests) * albedo.standard_error + 0.005;
             assert!(albedo.mean < 1.0 + error, "{material:?} under {cos} makes light: {albedo:?}");
             assert!(!whole || albedo.mean > 1.0 - error, "{material:?} under {cos} loses light: {albedo:?}");
         }

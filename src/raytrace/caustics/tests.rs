@@ -2,9 +2,9 @@ use super::grid::PhotonGrid;
 use super::photon::Photon;
 use super::photon_tracer::shading_correction;
 use super::*;
-use crate::math::statistics::Numbers;
 use crate::raytrace::{RenderControl, Settings, prepare, render};
 use crate::scene::{Aim, Assets, Camera, Emitter, Light, LightId, Material, Object, ObjectId, Output, Scene, Shape};
+use crate::statistics::TestRng;
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 use std::f32::consts::PI;
@@ -16,14 +16,14 @@ fn photon(position: Vec3) -> Photon {
 
 #[test]
 fn the_grid_finds_what_looking_at_every_photon_finds() {
-    let mut numbers = Numbers::new(5);
+    let mut rng = TestRng::new(5);
     // Around the origin, where cells change sign, and so many that cells share hashes.
-    let photons: Vec<Photon> = (0..3000).map(|_| photon(numbers.direction() * numbers.between(0.0, 2.0))).collect();
+    let photons: Vec<Photon> = (0..3000).map(|_| photon(rng.direction() * rng.range(0.0, 2.0))).collect();
     for radius in [0.01, 0.2, 5.0] {
         let grid = PhotonGrid::new(photons.clone(), radius);
         let mut most = 0;
         for _ in 0..300 {
-            let place = numbers.direction() * numbers.between(0.0, 2.1);
+            let place = rng.direction() * rng.range(0.0, 2.1);
             let mut found = Vec::new();
             grid.for_each_near(place, |photon, distance2| found.push((photon.position.to_array(), distance2)));
             let near = |p: &&Photon| p.position.distance_squared(place) < radius * radius;
@@ -98,11 +98,11 @@ fn casters_are_chosen_by_their_area() {
     let scene = prepare(&still_life(), &Assets::default()).unwrap();
     let sphere = 4.0 * PI * 0.3 * 0.3;
     assert!((scene.casters.area() / (2.0 * sphere) - 1.0).abs() < 0.02, "{} of flat triangles", scene.casters.area());
-    let mut numbers = Numbers::new(8);
+    let mut rng = TestRng::new(8);
     let mut counts: HashMap<u32, u32> = HashMap::new();
     let mut above = 0;
     for _ in 0..20_000 {
-        let hit = scene.casters.sample(numbers.number(), numbers.square()).unwrap();
+        let hit = scene.casters.sample(rng.uniform(), rng.unit_square()).unwrap();
         let [b, c] = hit.triangle.barycentric;
         assert!(b >= 0.0 && c >= 0.0 && b + c <= 1.0);
         *counts.entry(scene.aggregate.instances()[hit.instance as usize].object).or_default() += 1;

@@ -259,9 +259,9 @@ impl KernelTask for ComputeImportances<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::statistics::Numbers;
     use crate::raytrace::lights::tests::random_lights;
     use crate::raytrace::simd::Scalar;
+    use crate::statistics::TestRng;
 
     /// Returns the bits of lanes, sums and total.
     fn bits(importances: &ChildImportances) -> Vec<u32> {
@@ -271,17 +271,17 @@ mod tests {
 
     #[test]
     fn avx2_and_scalar_importances_have_the_same_bits() {
-        let mut numbers = Numbers::new(21);
-        let lights = random_lights(700, &mut numbers);
+        let mut rng = TestRng::new(21);
+        let lights = random_lights(700, &mut rng);
         let bvh = LightBvh::new(&lights);
         assert!(bvh.nodes.len() > 1, "the test includes clusters");
         // Between the lights, exactly at their centres, and so far away that squares overflow.
-        let mut points: Vec<Vec3> = (0..300).map(|_| numbers.direction() * numbers.between(0.0, 6.0)).collect();
+        let mut points: Vec<Vec3> = (0..300).map(|_| rng.direction() * rng.range(0.0, 6.0)).collect();
         points.extend(lights.iter().step_by(9).filter_map(TracedLight::centre));
-        points.extend((0..20).map(|_| numbers.direction() * 1e25));
+        points.extend((0..20).map(|_| rng.direction() * 1e25));
         let (mut positive, mut zero) = (0, 0);
         for point in points {
-            let normal = numbers.direction();
+            let normal = rng.direction();
             for node in &bvh.nodes {
                 let first = node.first_packet as usize;
                 let packets = &bvh.packets[first..first + node.packets as usize];

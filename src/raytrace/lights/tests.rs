@@ -2,11 +2,11 @@
 
 use super::traced_light::LightSource;
 use super::*;
-use crate::math::statistics::{ChiSquare, Estimate, Numbers, share};
 use crate::math::{Ray, look_at, orthonormal_basis};
 use crate::photo::PhotometricLight;
 use crate::raytrace::bvh::TraversalStack;
 use crate::scene::{Camera, Emitter, Light, Output};
+use crate::statistics::{ChiSquare, SampleMean, TestRng, sidak_level};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
@@ -42,7 +42,7 @@ fn flat_sampling_p_value(
     area: f32,
     surface_point: impl Fn(f64, f64) -> Vec3,
     cell: impl Fn(Vec3) -> (f32, f32),
-    numbers: &mut Numbers,
+    rng: &mut TestRng,
 ) -> f64 {
     const SAMPLES: usize = 40_000;
     // Integrate the density over a cell on a finer grid: from near by it varies over a cell by orders of magnitude. Grid
@@ -51,7 +51,7 @@ fn flat_sampling_p_value(
     let mut counts = vec![0.0; CELLS * CELLS];
     let mut drawn = 0.0;
     for _ in 0..SAMPLES {
-        let Some(sample) = light.sample(from, numbers.square()) else { continue };
+        let Some(sample) = light.sample(from, rng.unit_square()) else { continue };
         let (u, v) = cell(from + sample.direction * sample.distance);
         let index = |x: f32| ((x * CELLS as f32) as usize).min(CELLS - 1);
         counts[index(v) * CELLS + index(u)] += 1.0;
@@ -75,7 +75,7 @@ fn flat_sampling_p_value(
     let error = (accepted * (1.0 - accepted) / SAMPLES as f64).sqrt();
     assert!((total - accepted).abs() < 5e-3 + 4.0 * error, "density {total}, accepted samples {accepted} from {from}");
     let mut test = ChiSquare::default();
-    counts.iter().zip(&expected).for_each(|(&c, &e)| test.cell(c, e / total * drawn));
+    counts.iter().zip(&expected).for_each(|(&c, &e)| test.add_bin(c, e / total * drawn));
     test.p_value()
 }
 
@@ -83,12 +83,12 @@ fn flat_sampling_p_value(
 fn directions_to_rectangles_follow_their_density() {
     let (width_m, height_m) = (0.6, 0.9);
     let light = traced(Emitter::RectPanel { width_m, height_m }, Output::Lumens(1000.0));
-    let mut numbers = Numbers::new(11);
+    let mut rng = TestRng::new(11);
     for from in POINTS {
         let surface_point = |u: f64, v: f64| Vec3::new((u as f32 - 0.5) * width_m, (v as f32 - 0.5) * height_m, 0.0);
         let cell = |p: Vec3| (p.x / width_m + 0.5, p.y / height_m + 0.5);
-        let p = flat_sampling_p_value(&light, from, width_m * height_m, surface_point, cell, &mut numbers);
-        assert!(p > share(POINTS.len()), "from {from}: p = {p}");
+        let p = flat_sampling_p_value(&light, from, width_m * height_m, surface_point, cell, &mut rng);
+        assert!(p > sidak_level(POINTS.len()), "from {from}: p = {p}");
     }
 }
 
@@ -96,7 +96,7 @@ fn directions_to_rectangles_follow_their_density() {
 fn directions_to_discs_follow_their_density() {
     let radius = 0.6_f32;
     let light = traced(Emitter::RoundPanel { diameter_m: 2.0 * radius }, Output::Lumens(1000.0));
-    let mut numbers = Numbers::new(12);
+    let mut rng = TestRng::new(12);
     for from in POINTS {
         // Equal areas: radius by the root, angle.
         let surface_point = |u: f64, v: f64| {
@@ -107,8 +107,8 @@ fn directions_to_discs_follow_their_density() {
             let turn = p.y.atan2(p.x) / std::f32::consts::TAU;
             ((p.x * p.x + p.y * p.y) / (radius * radius), turn - turn.floor())
         };
-        let p = flat_sampling_p_value(&light, from, light_area(&light), surface_point, cell, &mut numbers);
-        assert!(p > share(POINTS.len()), "from {from}: p = {p}");
+        let p = flat_sampling_p_value(&light, from, light_area(&light), surface_point, cell, &mut rng);
+        assert!(p > sidak_level(POINTS.len()), "from {from}: p = {p}");
     }
 }
 
@@ -122,7 +122,7 @@ fn light_area(light: &TracedLight) -> f32 {
 
 #[test]
 fn directions_to_spheres_and_suns_are_uniform_in_their_cones() {
-    let mut numbers = Numbers::new(13);
+    let mut rng = TestRng::new(13);
     let sphere = |radius_m| traced(Emitter::Sphere { radius_m }, Output::Lumens(1000.0));
     let sun = |angular_diameter_deg| traced(Emitter::Sun { angular_diameter_deg }, Output::Lux(1000.0));
     let far = Vec3::new(0.4, -0.3, 2.0);
@@ -148,7 +148,7 @@ fn directions_to_spheres_and_suns_are_uniform_in_their_cones() {
         let (tangent, bitangent) = orthonormal_basis(axis);
         let mut counts = vec![0.0; CELLS * CELLS];
         for _ in 0..SAMPLES {
-            let sample = light.sample(*from, numbers.square()).unwrap();
+            let sample = light.sample(*from, rng.unit_square()).unwrap();
             assert_eq!(sample.pdf, Some(light.pdf(*from, sample.direction, sample.distance)));
             let drop = 0.5 * (sample.direction - axis).length_squared() / one_minus_cos;
             let turn = sample.direction.dot(bitangent).atan2(sample.direction.dot(tangent)) / std::f32::consts::TAU;
@@ -156,8 +156,8 @@ fn directions_to_spheres_and_suns_are_uniform_in_their_cones() {
             counts[index(drop) * CELLS + index(turn - turn.floor())] += 1.0;
         }
         let mut test = ChiSquare::default();
-        counts.iter().for_each(|&c| test.cell(c, SAMPLES as f64 / (CELLS * CELLS) as f64));
-        assert!(test.p_value() > share(lights.len()), "{light:?}: p = {}", test.p_value());
+        counts.iter().for_each(|&c| test.add_bin(c, SAMPLES as f64 / (CELLS * CELLS) as f64));
+        assert!(test.p_value() > sidak_level(lights.len()), "{light:?}: p = {}", test.p_value());
     }
 }
 
@@ -178,24 +178,24 @@ fn a_sphere_around_any_emitter_receives_its_whole_flux() {
         Emitter::Spot { inner_deg: 0.0, outer_deg: 180.0 },
         Emitter::Spot { inner_deg: 180.0, outer_deg: 180.0 },
     ];
-    let mut numbers = Numbers::new(14);
+    let mut rng = TestRng::new(14);
     for emitter in emitters {
         let light = traced(emitter, Output::Lumens(1000.0));
         const RADIUS: f32 = 1.5;
         let area = f64::from(4.0 * PI * RADIUS * RADIUS);
-        let flux = Estimate::of((0..200_000).map(|_| {
-            let outwards = numbers.direction();
-            let sample = light.sample(outwards * RADIUS, numbers.square());
+        let flux = SampleMean::of((0..200_000).map(|_| {
+            let outwards = rng.direction();
+            let sample = light.sample(outwards * RADIUS, rng.unit_square());
             // The receiver faces the centre: every emitter in the sphere is in front of it.
             sample.map_or(0.0, |s| f64::from(s.value * s.direction.dot(-outwards).max(0.0)) * area)
         }));
-        assert!(flux.agrees(1000.0, 1e-5, emitters.len()), "{emitter:?}: {flux:?} lm");
+        assert!(flux.agrees_with(1000.0, 1e-5, emitters.len()), "{emitter:?}: {flux:?} lm");
     }
 }
 
 #[test]
 fn light_sampling_agrees_with_the_intersection_of_rays() {
-    let mut numbers = Numbers::new(15);
+    let mut rng = TestRng::new(15);
     for emitter in [
         Emitter::Sphere { radius_m: 0.2 },
         Emitter::RectPanel { width_m: 0.6, height_m: 0.9 },
@@ -205,7 +205,7 @@ fn light_sampling_agrees_with_the_intersection_of_rays() {
         for from in POINTS {
             let mut hits = 0;
             for _ in 0..200 {
-                let Some(sample) = light.sample(from, numbers.square()) else { continue };
+                let Some(sample) = light.sample(from, rng.unit_square()) else { continue };
                 let pdf = sample.pdf.unwrap();
                 // At the rim, rounding may make the ray miss.
                 let Some(hit) = light.intersect(from, sample.direction) else { continue };
@@ -222,7 +222,7 @@ fn light_sampling_agrees_with_the_intersection_of_rays() {
 }
 
 /// Returns lights of all kinds around the origin.
-pub(super) fn random_lights(count: usize, numbers: &mut Numbers) -> Vec<TracedLight> {
+pub(super) fn random_lights(count: usize, rng: &mut TestRng) -> Vec<TracedLight> {
     let emitters = [
         Emitter::Point,
         Emitter::Sphere { radius_m: 0.3 },
@@ -238,9 +238,9 @@ pub(super) fn random_lights(count: usize, numbers: &mut Numbers) -> Vec<TracedLi
         let output = if emitter.is_infinite() { Output::Lux(100.0) } else { Output::Lumens(1000.0) };
         let mut light = Light::new(emitter, output);
         light.modifier.grid_deg = (i % 5 == 4).then_some(60.0);
-        let position = numbers.direction() * numbers.between(0.5, 4.0);
-        let frame = look_at(position, position + numbers.direction(), 0.0);
-        let camera = Camera { shutter_s: numbers.between(0.01, 1.0), ..Camera::default() };
+        let position = rng.direction() * rng.range(0.5, 4.0);
+        let frame = look_at(position, position + rng.direction(), 0.0);
+        let camera = Camera { shutter_s: rng.range(0.01, 1.0), ..Camera::default() };
         TracedLight::new(&PhotometricLight::in_frame(&light, frame, &camera), Vec3::ZERO).unwrap()
     };
     (0..count).map(light).collect()
@@ -248,12 +248,12 @@ pub(super) fn random_lights(count: usize, numbers: &mut Numbers) -> Vec<TracedLi
 
 #[test]
 fn the_light_sampler_samples_by_its_pmf() {
-    let mut numbers = Numbers::new(16);
+    let mut rng = TestRng::new(16);
     for count in [1, 3, 8, 40, 300, 5000] {
-        let lights = random_lights(count, &mut numbers);
+        let lights = random_lights(count, &mut rng);
         let light_sampler = LightSampler::new(&lights);
         for _ in 0..4 {
-            let (point, normal) = (numbers.direction() * numbers.between(0.01, 4.0), numbers.direction());
+            let (point, normal) = (rng.direction() * rng.range(0.01, 4.0), rng.direction());
             const GRID: usize = 20_000;
             let mut counts = vec![0.0_f64; count];
             let importances = light_sampler.importances(&lights, point, normal).unwrap();
@@ -282,49 +282,49 @@ fn the_light_sampler_samples_by_its_pmf() {
 #[test]
 fn one_sampled_light_estimates_the_illuminance_of_all() {
     // The illuminance at a point by one sampled light, against the sum over all lights.
-    let mut numbers = Numbers::new(17);
+    let mut rng = TestRng::new(17);
     const COUNTS: [usize; 4] = [2, 12, 100, 1000];
     for count in COUNTS {
-        let lights = random_lights(count, &mut numbers);
+        let lights = random_lights(count, &mut rng);
         let light_sampler = LightSampler::new(&lights);
-        let (point, normal) = (numbers.direction() * 0.5, numbers.direction());
+        let (point, normal) = (rng.direction() * 0.5, rng.direction());
         let illuminance = |light: &TracedLight, u: Vec2| {
             light.sample(point, u).map_or(0.0, |s| f64::from(s.value * s.direction.dot(normal).max(0.0)))
         };
         let truth: f64 = lights
             .iter()
-            .map(|light| (0..4096).map(|_| illuminance(light, numbers.square())).sum::<f64>() / 4096.0)
+            .map(|light| (0..4096).map(|_| illuminance(light, rng.unit_square())).sum::<f64>() / 4096.0)
             .sum();
         let importances = light_sampler.importances(&lights, point, normal).unwrap();
-        let estimate = Estimate::of((0..60_000).map(|_| {
-            let sampled = importances.sample(&lights, numbers.number());
-            sampled.map_or(0.0, |(light, pmf)| illuminance(&lights[light as usize], numbers.square()) / f64::from(pmf))
+        let estimate = SampleMean::of((0..60_000).map(|_| {
+            let sampled = importances.sample(&lights, rng.uniform());
+            sampled.map_or(0.0, |(light, pmf)| illuminance(&lights[light as usize], rng.unit_square()) / f64::from(pmf))
         }));
         // The sum itself has an error of some 1e-3.
-        assert!(estimate.agrees(truth, 3e-3, COUNTS.len()), "{count} lights: {estimate:?} for {truth}");
+        assert!(estimate.agrees_with(truth, 3e-3, COUNTS.len()), "{count} lights: {estimate:?} for {truth}");
     }
 }
 
 #[test]
 fn the_light_bvh_of_ten_thousand_lights_is_three_nodes_deep() {
-    let mut numbers = Numbers::new(18);
+    let mut rng = TestRng::new(18);
     for (count, max_depth) in [(60, 1), (1000, 2), (10_000, 3)] {
-        let light_sampler = LightSampler::new(&random_lights(count, &mut numbers));
+        let light_sampler = LightSampler::new(&random_lights(count, &mut rng));
         assert!(light_sampler.depth() <= max_depth, "{count} lights: {} deep", light_sampler.depth());
     }
 }
 
 #[test]
 fn the_emitter_bvh_finds_the_hits_of_brute_force() {
-    let mut numbers = Numbers::new(19);
-    let lights = random_lights(200, &mut numbers);
+    let mut rng = TestRng::new(19);
+    let lights = random_lights(200, &mut rng);
     let emitter_bvh = EmitterBvh::new(&lights);
     let mut stack = TraversalStack::default();
     let mut hits = 0;
     for i in 0..20_000 {
-        let origin = numbers.direction() * numbers.between(0.0, 5.0);
-        let t_max = if i % 2 == 0 { f32::INFINITY } else { numbers.between(0.1, 4.0) };
-        let ray = Ray { origin, direction: numbers.direction(), t_max };
+        let origin = rng.direction() * rng.range(0.0, 5.0);
+        let t_max = if i % 2 == 0 { f32::INFINITY } else { rng.range(0.1, 4.0) };
+        let ray = Ray { origin, direction: rng.direction(), t_max };
         let mut found = Vec::new();
         // The caller compares with t_max.
         emitter_bvh.for_each_hit(&lights, &ray, &mut stack, |light, hit| {
@@ -347,7 +347,7 @@ fn the_emitter_bvh_finds_the_hits_of_brute_force() {
 #[test]
 fn a_light_that_contributes_has_a_positive_pmf() {
     // Importance sampling is unbiased only if every light that contributes can be sampled.
-    let mut numbers = Numbers::new(16);
+    let mut rng = TestRng::new(16);
     for emitter in [
         Emitter::Point,
         Emitter::Sphere { radius_m: 0.7 },
@@ -358,9 +358,9 @@ fn a_light_that_contributes_has_a_positive_pmf() {
         let light = traced(emitter, Output::Lumens(1000.0));
         let light_sampler = LightSampler::new(std::slice::from_ref(&light));
         for _ in 0..20_000 {
-            let from = numbers.direction() * numbers.between(0.01, 4.0);
-            let normal = numbers.direction();
-            let Some(sample) = light.sample(from, numbers.square()) else { continue };
+            let from = rng.direction() * rng.range(0.01, 4.0);
+            let normal = rng.direction();
+            let Some(sample) = light.sample(from, rng.unit_square()) else { continue };
             if sample.direction.dot(normal) > 1e-4 && sample.value > 0.0 {
                 let pmf = light_sampler.pmf(std::slice::from_ref(&light), 0, from, normal);
                 assert!(pmf > 0.0, "{emitter:?} from {from}, normal {normal}");
@@ -372,14 +372,14 @@ fn a_light_that_contributes_has_a_positive_pmf() {
 #[test]
 fn a_light_that_contributes_has_a_positive_pmf_in_any_cluster() {
     // The bounds of a cluster include members that are off centre or face another way.
-    let mut numbers = Numbers::new(20);
-    let lights = random_lights(600, &mut numbers);
+    let mut rng = TestRng::new(20);
+    let lights = random_lights(600, &mut rng);
     let light_sampler = LightSampler::new(&lights);
     let mut contributing = 0;
     for _ in 0..300 {
-        let (from, normal) = (numbers.direction() * numbers.between(0.01, 6.0), numbers.direction());
+        let (from, normal) = (rng.direction() * rng.range(0.01, 6.0), rng.direction());
         for (light, index) in lights.iter().zip(0..).step_by(7) {
-            let Some(sample) = light.sample(from, numbers.square()) else { continue };
+            let Some(sample) = light.sample(from, rng.unit_square()) else { continue };
             if sample.direction.dot(normal) > 1e-4 && sample.value > 0.0 {
                 contributing += 1;
                 assert!(
