@@ -1,41 +1,10 @@
 //! What menus, shortcuts, panels and the viewport ask of the window. Changes of the scene travel inside as actions.
 
-use crate::editor::commands::shortcuts::BINDINGS;
+use crate::editor::commands::choices::{Centre, Handle, LiveMode, Side, Swing};
+use crate::editor::commands::file_purpose::Purpose;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
-use crate::editor::viewport::live::traced_view::LiveMode;
-use crate::editor::viewport::studio_view::Side;
-use crate::editor::viewport::tools::place_light::Swing;
-use crate::editor::window::dialogs::Purpose;
-use crate::scene::LightId;
-use eframe::egui::KeyboardShortcut;
 use std::path::PathBuf;
-
-/// What the middle of the window shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Centre {
-    /// The studio from anywhere.
-    #[default]
-    Studio,
-    /// What the camera frames.
-    Camera,
-    /// What a light sees along its axis.
-    Light(LightId),
-    /// The rendered picture.
-    Picture,
-}
-
-/// What the handles in the viewport do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Handle {
-    /// Move.
-    #[default]
-    Move,
-    /// Rotate.
-    Turn,
-    /// Scale.
-    Size,
-}
 
 /// One request.
 #[derive(Clone, Debug, PartialEq)]
@@ -133,11 +102,4 @@ pub enum Command {
     Handles(Handle),
     /// Show or hide the list of keys.
     ToggleHelp,
-}
-
-impl Command {
-    /// The key that gives it, where there is one.
-    pub fn shortcut(&self) -> Option<KeyboardShortcut> {
-        BINDINGS.iter().find(|binding| (binding.command)() == *self).map(|binding| binding.shortcut)
-    }
 }

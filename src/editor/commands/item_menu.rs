@@ -1,10 +1,10 @@
 //! What can be done to the selected things, for the context menus of list and view and the Edit menu.
 
+use crate::editor::commands::choices::Swing;
 use crate::editor::commands::command::Command;
+use crate::editor::commands::menu_entry::entry;
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
-use crate::editor::panels::menu::entry;
-use crate::editor::viewport::tools::place_light::Swing;
 use crate::scene::Scene;
 use eframe::egui::Ui;
 

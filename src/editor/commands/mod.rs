@@ -1,5 +1,8 @@
 //! The commands that menus, shortcuts, panels and the viewport give, their shortcuts and the menu of an item.
 
+pub mod choices;
 pub mod command;
+pub mod file_purpose;
 pub mod item_menu;
+pub mod menu_entry;
 pub mod shortcuts;

@@ -1,8 +1,9 @@
 //! The keys: what each means, for the window and for the list of keys alike.
 
-use crate::editor::commands::command::{Centre, Command, Handle};
-use crate::editor::viewport::studio_view::Side;
-use crate::editor::viewport::tools::place_light::Swing;
+use crate::editor::commands::choices::Side;
+use crate::editor::commands::choices::Swing;
+use crate::editor::commands::choices::{Centre, Handle};
+use crate::editor::commands::command::Command;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
 /// A key, the command it gives, and what that does.
@@ -89,6 +90,13 @@ pub const BINDINGS: [Binding; 38] = [
     bind(key(Key::R), || Command::Render, "Render"),
     bind(key(Key::F1), || Command::ToggleHelp, "This list"),
 ];
+
+impl Command {
+    /// The key that gives it, where there is one.
+    pub fn shortcut(&self) -> Option<KeyboardShortcut> {
+        BINDINGS.iter().find(|binding| (binding.command)() == *self).map(|binding| binding.shortcut)
+    }
+}
 
 #[cfg(test)]
 mod tests {

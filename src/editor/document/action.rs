@@ -1,6 +1,7 @@
 //! Every change to the scene. Menus, shortcuts, panels, gizmos, undo and tests all go through [`Action`].
 
-use crate::editor::document::arrange::{self, MirrorPlane};
+use crate::editor::document::action_error::ActionError;
+use crate::editor::document::arrange::{self, MirrorPlane, add_light, add_object};
 use crate::editor::document::item::{Item, name_of_all};
 use crate::editor::document::switches;
 use crate::scene::{Camera, Light, LightId, Meter, Object, Room, Scene};
@@ -57,32 +58,6 @@ pub enum Action {
         /// The changes, in order.
         actions: Vec<Action>,
     },
-}
-
-/// Why an action cannot be done, in words for the user.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ActionError {
-    /// A name that is empty.
-    #[error("A name cannot be empty.")]
-    EmptyName,
-    /// A name that something else bears.
-    #[error("\"{0}\" is taken. Names are unique, so that aims and the file can use them.")]
-    NameTaken(String),
-    /// The camera and the room are always there, once.
-    #[error("The {0} cannot be deleted, duplicated or renamed.")]
-    Fixed(&'static str),
-    /// There is one meter, and it has no name.
-    #[error("There is one light meter in a studio: move it to where you want to read.")]
-    Single,
-    /// What is locked does not move.
-    #[error("{0} is locked in its place: unlock it first (K, or the padlock in the list).")]
-    Locked(String),
-    /// What the action is about has gone.
-    #[error("That is no longer in the studio.")]
-    Gone,
-    /// The result would be a scene that no renderer can take.
-    #[error("{0}")]
-    Invalid(String),
 }
 
 impl Action {
@@ -196,24 +171,6 @@ fn light_change_label(scene: &Scene, new: &Light) -> String {
         Some(old) if old.position != new.position => format!("Move {}", new.name),
         _ => format!("Change {}", new.name),
     }
-}
-
-/// Adds an object under an id and a name of its own.
-pub fn add_object(scene: &mut Scene, mut object: Object) -> Item {
-    object.id = scene.fresh_object_id();
-    object.name = scene.unique_name(&object.name);
-    let item = Item::Object(object.id);
-    scene.objects.push(object);
-    item
-}
-
-/// Adds a light under an id and a name of its own.
-pub fn add_light(scene: &mut Scene, mut light: Light) -> Item {
-    light.id = scene.fresh_light_id();
-    light.name = scene.unique_name(&light.name);
-    let item = Item::Light(light.id);
-    scene.lights.push(light);
-    item
 }
 
 fn check_name(scene: &Scene, item: Item, name: &str) -> Result<(), ActionError> {

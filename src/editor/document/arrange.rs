@@ -1,8 +1,9 @@
 //! Several things at once: taken away, copied, mirrored.
 
-use crate::editor::document::action::{ActionError, add_light, add_object};
+use crate::editor::document::action_error::ActionError;
 use crate::editor::document::item::Item;
-use crate::editor::panels::inspector::angles_towards;
+use crate::editor::document::placement::angles_towards;
+use crate::editor::document::switches;
 use crate::figures;
 use crate::scene::{Aim, BarnDoors, Emitter, Facing, Focus, Light, Object, ObjectId, Scene, Shape};
 use glam::{Quat, Vec3};
@@ -10,6 +11,24 @@ use std::collections::HashMap;
 
 /// How far a copy stands from its original, metres.
 const COPY_OFFSET: Vec3 = Vec3::new(0.4, 0.0, 0.0);
+
+/// Adds an object under an id and a name of its own.
+pub fn add_object(scene: &mut Scene, mut object: Object) -> Item {
+    object.id = scene.fresh_object_id();
+    object.name = scene.unique_name(&object.name);
+    let item = Item::Object(object.id);
+    scene.objects.push(object);
+    item
+}
+
+/// Adds a light under an id and a name of its own.
+pub fn add_light(scene: &mut Scene, mut light: Light) -> Item {
+    light.id = scene.fresh_light_id();
+    light.name = scene.unique_name(&light.name);
+    let item = Item::Light(light.id);
+    scene.lights.push(light);
+    item
+}
 
 /// Takes things away. What aimed at an object keeps aiming at where it was.
 pub fn delete(scene: &mut Scene, items: &[Item]) -> Result<(), ActionError> {
@@ -32,7 +51,7 @@ pub fn delete(scene: &mut Scene, items: &[Item]) -> Result<(), ActionError> {
             Item::Room => return Err(ActionError::Fixed("room")),
         }
     }
-    crate::editor::document::switches::forget_gone(scene);
+    switches::forget_gone(scene);
     Ok(())
 }
 

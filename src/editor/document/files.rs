@@ -5,10 +5,8 @@ use crate::io::{self, PictureInfo};
 use crate::jobs::sentence;
 use crate::photo::Picture;
 use crate::scene::{Assets, Material, Mesh, Room, Scene, Texture};
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
 
 /// A shipped studio in the list.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,19 +49,6 @@ pub struct Imported {
     pub warnings: Vec<String>,
 }
 
-/// What came out of a background task.
-#[derive(Debug)]
-pub enum Done {
-    /// A studio was read, or not; with what was asked for.
-    Opened(Source, Result<Box<Opened>, String>),
-    /// A model was read, or not.
-    Imported(Result<Box<Imported>, String>),
-    /// Assets of the scene were read: what was loaded, what was asked for, what is odd.
-    Assets(Assets, BTreeSet<String>, Vec<String>),
-    /// A picture was written, or not.
-    Exported(PathBuf, Result<(), String>),
-}
-
 /// Where a studio comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
@@ -79,45 +64,6 @@ impl Source {
         let shipped = path.to_str().filter(|_| !path.exists()).and_then(io::find_preset);
         let place = shipped.and_then(|preset| io::presets().iter().position(|p| p.file_name == preset.file_name));
         place.map_or(Source::File(path), Source::Preset)
-    }
-}
-
-/// Background tasks and the channel their results come through.
-#[derive(Debug)]
-pub struct Tasks {
-    sender: Sender<Done>,
-    receiver: Receiver<Done>,
-    running: usize,
-}
-
-impl Default for Tasks {
-    fn default() -> Self {
-        let (sender, receiver) = channel();
-        Tasks { sender, receiver, running: 0 }
-    }
-}
-
-impl Tasks {
-    /// Runs `work` in a thread; `wake` is called when its result is there.
-    pub fn start(&mut self, work: impl FnOnce() -> Done + Send + 'static, wake: impl FnOnce() + Send + 'static) {
-        let sender = self.sender.clone();
-        self.running += 1;
-        std::thread::spawn(move || {
-            let _ = sender.send(work());
-            wake();
-        });
-    }
-
-    /// Results that have come in.
-    pub fn finished(&mut self) -> Vec<Done> {
-        let done: Vec<Done> = self.receiver.try_iter().collect();
-        self.running -= done.len();
-        done
-    }
-
-    /// Whether something is on its way.
-    pub fn is_busy(&self) -> bool {
-        self.running > 0
     }
 }
 

@@ -1,6 +1,7 @@
 //! The open studio and every change of it: the document, its undo history, the selection and the [`action::Action`]s.
 
 pub mod action;
+pub mod action_error;
 pub mod arrange;
 pub mod bounds;
 pub mod catalog;

@@ -43,6 +43,18 @@ pub fn aim_at(scene: &Scene, assets: &Assets, subject: Option<ObjectId>) -> Aim 
     }
 }
 
+/// The angles that look along a direction; level to the back where there is none.
+pub fn angles_towards(direction: Vec3) -> Aim {
+    let d = direction.try_normalize().unwrap_or(Vec3::NEG_Z);
+    Aim::Angles { yaw_deg: (-d.x).atan2(-d.z).to_degrees(), pitch_deg: 90.0 - crate::math::safe_acos(d.y).to_degrees() }
+}
+
+/// The same angle in (-180, 180].
+pub fn wrap_deg(angle: f32) -> f32 {
+    let wrapped = angle.rem_euclid(360.0);
+    if wrapped > 180.0 { wrapped - 360.0 } else { wrapped }
+}
+
 /// Unit horizontal direction from a point to the camera; the front where the camera is straight above.
 fn towards_camera(scene: &Scene, point: Vec3) -> Vec3 {
     let direction = scene.camera.position - point;
@@ -117,6 +129,15 @@ mod tests {
         let mut object = catalog::object_named(name).unwrap();
         place_object(scene, None, &mut object);
         Action::AddObject(Box::new(object)).apply(scene).unwrap();
+    }
+
+    #[test]
+    fn angles_point_where_the_point_was() {
+        let scene = Scene::default();
+        for direction in [Vec3::new(1.0, 2.0, -3.0), Vec3::new(-0.2, -5.0, 1.0), Vec3::X] {
+            let aimed = scene.aim_point(&angles_towards(direction), Vec3::ZERO);
+            assert!((aimed - direction.normalize()).length() < 1e-5, "{direction} became {aimed}");
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The open studio: scene, assets, file, history. The scene changes only in [`Document::apply`], undo and redo.
 
-use crate::editor::document::action::{Action, ActionError};
+use crate::editor::document::action::Action;
+use crate::editor::document::action_error::ActionError;
 use crate::editor::document::history::{History, MergeKey};
 use crate::editor::document::item::Item;
 use crate::editor::document::revisions::Revisions;

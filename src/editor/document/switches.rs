@@ -1,6 +1,6 @@
 //! Switches of several things at once: mute, solo, lock. No power, colour or place is touched, so all of it goes back.
 
-use crate::editor::document::action::ActionError;
+use crate::editor::document::action_error::ActionError;
 use crate::editor::document::item::Item;
 use crate::scene::{LightId, Scene, Solo};
 

@@ -2,7 +2,7 @@
 
 use crate::editor::commands::command::Command;
 use crate::editor::document::catalog::{Entry, Kind, Shelf, entries};
-use crate::editor::thumbnails::{THING_POINTS, Thumbnails};
+use crate::editor::panels::thumbnails::{THING_POINTS, Thumbnails};
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets;
 use crate::io;

@@ -1,14 +1,16 @@
 //! The menu bar.
 
-use crate::editor::commands::command::{Centre, Command, Handle};
+use crate::editor::commands::choices::LiveMode;
+use crate::editor::commands::choices::Side;
+use crate::editor::commands::choices::{Centre, Handle};
+use crate::editor::commands::command::Command;
 use crate::editor::commands::item_menu::selection_entries;
+use crate::editor::commands::menu_entry::entry;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
-use crate::editor::viewport::live::traced_view::LiveMode;
-use crate::editor::viewport::studio_view::Side;
-use crate::editor::window::recent::RecentFiles;
 use crate::io;
-use eframe::egui::{Button, MenuBar, Ui};
+use eframe::egui::{MenuBar, Ui};
+use std::path::PathBuf;
 
 /// What the menus show beside the document.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +20,7 @@ pub struct MenuState<'a> {
     /// What is selected.
     pub selection: &'a Selection,
     /// Studios opened before.
-    pub recent: &'a RecentFiles,
+    pub recent: &'a [PathBuf],
     /// What the middle shows.
     pub centre: Centre,
     /// The handles on show.
@@ -42,15 +44,6 @@ pub fn menu_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
         ui.menu_button("Render", |ui| render_menu(ui, state, out));
         ui.menu_button("Help", |ui| entry(ui, true, "Keys and mouse", "How to move around", Command::ToggleHelp, out));
     });
-}
-
-/// One entry with its key.
-pub fn entry(ui: &mut Ui, enabled: bool, text: &str, tip: &str, command: Command, out: &mut Vec<Command>) {
-    let shortcut = command.shortcut().map(|s| ui.ctx().format_shortcut(&s)).unwrap_or_default();
-    let button = Button::new(text).shortcut_text(shortcut);
-    if ui.add_enabled(enabled, button).on_hover_text(tip).clicked() {
-        out.push(command);
-    }
 }
 
 fn file_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
@@ -77,7 +70,7 @@ fn file_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
 }
 
 fn recent_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
-    let paths = state.recent.paths();
+    let paths = state.recent;
     ui.add_enabled_ui(!paths.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             for path in paths {

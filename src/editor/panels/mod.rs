@@ -11,4 +11,5 @@ pub mod prompts;
 pub mod quality;
 pub mod render;
 pub mod status;
+pub mod thumbnails;
 pub mod view_bar;

@@ -2,7 +2,7 @@
 
 use crate::editor::commands::command::Command;
 use crate::editor::document::files::PresetInfo;
-use crate::editor::thumbnails::{STUDIO_POINTS, Thumbnail, Thumbnails};
+use crate::editor::panels::thumbnails::{STUDIO_POINTS, Thumbnail, Thumbnails};
 use crate::editor::ui::widgets;
 use eframe::egui::{self, Atom, Button, Key, Modifiers, RichText, ScrollArea, Ui, vec2};
 

@@ -1,7 +1,7 @@
 //! Questions in the middle of the window: unsaved changes, and a path where the desktop has no dialog.
 
+use crate::editor::commands::file_purpose::Purpose;
 use crate::editor::ui::widgets;
-use crate::editor::window::dialogs::Purpose;
 use eframe::egui::{self, Button, Key, RichText, TextEdit};
 use std::path::{Path, PathBuf};
 

@@ -1,8 +1,8 @@
 //! The Quality view: grain against time of this studio's picture, with draft, good, final and the user's own choice.
 
-use crate::editor::panels::render::duration_text;
 use crate::editor::picture::rendering::{Quality, RenderSettings};
 use crate::editor::ui::theme;
+use crate::editor::ui::units::duration_text;
 use crate::jobs::{Estimate, Forecaster};
 use crate::scene::Camera;
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, vec2};

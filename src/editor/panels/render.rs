@@ -1,17 +1,18 @@
 //! The render panel: size, quality, the button, progress and a small picture.
 
-use crate::editor::commands::command::{Centre, Command};
+use crate::editor::commands::choices::Centre;
+use crate::editor::commands::command::Command;
 use crate::editor::document::studio_document::Document;
 use crate::editor::panels::quality;
-use crate::editor::picture::rendering::{PictureSize, Quality, RenderSettings, Rendering, method_label};
+use crate::editor::picture::rendering::{OUT_OF_DATE, PictureSize, Quality, RenderSettings, Rendering, method_label};
 use crate::editor::ui::theme;
+use crate::editor::ui::units::duration_text;
 use crate::editor::ui::wake::wake;
 use crate::editor::ui::widgets::{self, Number, row};
 use crate::jobs::{ForecastSubject, Forecaster, Progress, RenderPhase};
 use crate::raytrace::Method;
 use crate::scene::Scene;
 use eframe::egui::{self, Button, CollapsingHeader, ComboBox, Image, ProgressBar, RichText, Sense, Ui, vec2};
-use std::time::Duration;
 
 /// Longest side of a picture, pixels.
 const LARGEST: f32 = 16_384.0;
@@ -165,17 +166,6 @@ fn progress_text(phase: &RenderPhase, progress: &Progress) -> String {
     }
 }
 
-/// `12 s`, `3 min 05 s`, `2 h 10 min`.
-pub fn duration_text(duration: Duration) -> String {
-    let seconds = duration.as_secs_f64();
-    match seconds {
-        s if s < 10.0 => format!("{s:.1} s"),
-        s if s < 60.0 => format!("{s:.0} s"),
-        s if s < 3600.0 => format!("{} min {:02} s", s as u64 / 60, s as u64 % 60),
-        s => format!("{} h {:02} min", s as u64 / 3600, s as u64 / 60 % 60),
-    }
-}
-
 fn thumbnail_ui(ui: &mut Ui, rendering: &Rendering, scene: &Scene, out: &mut Vec<Command>) {
     let Some(texture) = rendering.texture() else { return };
     let room = vec2(ui.available_width(), 200.0);
@@ -192,19 +182,5 @@ fn thumbnail_ui(ui: &mut Ui, rendering: &Rendering, scene: &Scene, out: &mut Vec
     });
     if rendering.is_out_of_date(scene) && !rendering.is_running() {
         ui.label(RichText::new(OUT_OF_DATE).color(theme::ACCENT).small());
-    }
-}
-
-/// Said of a picture that no longer shows the studio as it is.
-pub const OUT_OF_DATE: &str = "Out of date: the studio has changed since. Light power, colour and switches follow at once; the rest needs a render.";
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn durations_read_well() {
-        let text = |s| duration_text(Duration::from_secs_f64(s));
-        assert_eq!([text(2.34), text(42.0), text(185.0), text(7800.0)], ["2.3 s", "42 s", "3 min 05 s", "2 h 10 min"]);
     }
 }

@@ -1,6 +1,6 @@
 //! The line at the foot of the window: what is selected, what the mouse does here.
 
-use crate::editor::commands::command::Centre;
+use crate::editor::commands::choices::Centre;
 use crate::editor::document::item::{Item, name_of_all};
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;

@@ -1,11 +1,12 @@
 //! The row of buttons over the view: what it shows, how it is made, which handles there are.
 
 use super::menu::{HANDLES, MenuState, SNAP_TIP};
-use crate::editor::commands::command::{Centre, Command};
+use crate::editor::commands::choices::Centre;
+use crate::editor::commands::choices::LiveMode;
+use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
 use crate::editor::ui::widgets;
-use crate::editor::viewport::live::traced_view::LiveMode;
 use crate::scene::{Facing, Meter, Receptor, Scene};
 use eframe::egui::{Button, Ui};
 

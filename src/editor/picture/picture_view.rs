@@ -1,8 +1,7 @@
 //! The rendered picture, large: fit to the window or at its own pixels, with zoom and pan.
 
 use crate::editor::commands::command::Command;
-use crate::editor::panels::render::OUT_OF_DATE;
-use crate::editor::picture::rendering::Rendering;
+use crate::editor::picture::rendering::{OUT_OF_DATE, Rendering};
 use crate::editor::ui::theme;
 use crate::scene::Scene;
 use eframe::egui::{self, Color32, Pos2, Rect, RichText, Sense, Ui, Vec2, vec2};

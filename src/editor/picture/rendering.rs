@@ -249,6 +249,9 @@ fn shown_within(picture: &Picture, most: usize) -> ColorImage {
     image
 }
 
+/// Said of a picture that no longer shows the studio as it is.
+pub const OUT_OF_DATE: &str = "Out of date: the studio has changed since. Light power, colour and switches follow at once; the rest needs a render.";
+
 /// Name of a method in lists.
 pub fn method_label(method: Method) -> &'static str {
     match method {

@@ -1,5 +1,7 @@
 //! Numbers as they are typed into a field: with its unit, with another unit of the same kind, or with none.
 
+use std::time::Duration;
+
 /// Lengths in metres.
 const LENGTHS: [(&str, f64); 8] = [
     ("mm", 0.001),
@@ -28,9 +30,26 @@ pub fn parse(text: &str, unit: &str) -> Option<f64> {
     }
 }
 
+/// `12 s`, `3 min 05 s`, `2 h 10 min`.
+pub fn duration_text(duration: Duration) -> String {
+    let seconds = duration.as_secs_f64();
+    match seconds {
+        s if s < 10.0 => format!("{s:.1} s"),
+        s if s < 60.0 => format!("{s:.0} s"),
+        s if s < 3600.0 => format!("{} min {:02} s", s as u64 / 60, s as u64 % 60),
+        s => format!("{} h {:02} min", s as u64 / 3600, s as u64 / 60 % 60),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn durations_read_well() {
+        let text = |s| duration_text(Duration::from_secs_f64(s));
+        assert_eq!([text(2.34), text(42.0), text(185.0), text(7800.0)], ["2.3 s", "42 s", "3 min 05 s", "2 h 10 min"]);
+    }
 
     #[test]
     fn lengths_are_taken_in_any_unit() {

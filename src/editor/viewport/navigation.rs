@@ -1,6 +1,6 @@
 //! How mouse and keys move the eye: the studio's, and where it looks through camera or light, these themselves.
 
-use crate::editor::panels::inspector::angles_towards;
+use crate::editor::document::placement::angles_towards;
 use crate::editor::viewport::studio_view::StudioView;
 use crate::scene::{Aim, Camera, Light, Scene};
 use eframe::egui::{Key, PointerButton, Response, Ui};

@@ -1,9 +1,10 @@
 //! The free view of the studio: an eye that orbits, pans, zooms and flies, and the views from the room's axes.
 
+use crate::editor::commands::choices::Side;
 use crate::math;
 use crate::scene::CameraFrame;
 use glam::{Affine3A, Quat, Vec2, Vec3};
-use std::f32::consts::{FRAC_PI_2, PI};
+use std::f32::consts::FRAC_PI_2;
 
 /// Half the vertical field of view, as a tangent: a 35 mm lens on full frame.
 const HALF_HEIGHT: f32 = 12.0 / 35.0;
@@ -16,64 +17,6 @@ const STEEPEST: f32 = 1.55;
 /// 3 m before or behind the target shifts by less than a thousandth of its distance from the middle (0.7 pixels at the
 /// edge of 900), while single precision still tells a tenth of a millimetre.
 const PARALLEL_EYE_M: f32 = 2000.0;
-
-/// A side of the room that the studio is looked at from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Side {
-    /// From above; the back of the room is up.
-    Top,
-    /// From the front (+Z).
-    Front,
-    /// From the right (+X).
-    Right,
-    /// From the back.
-    Back,
-    /// From the left.
-    Left,
-    /// From below.
-    Bottom,
-}
-
-impl Side {
-    /// All of them; the three with a key come first.
-    pub const ALL: [Side; 6] = [Side::Top, Side::Front, Side::Right, Side::Back, Side::Left, Side::Bottom];
-
-    /// Its name.
-    pub fn label(self) -> &'static str {
-        match self {
-            Side::Top => "Top",
-            Side::Front => "Front",
-            Side::Right => "Right side",
-            Side::Back => "Back",
-            Side::Left => "Left side",
-            Side::Bottom => "Below",
-        }
-    }
-
-    /// Unit direction from the target to the eye.
-    pub fn away(self) -> Vec3 {
-        match self {
-            Side::Top => Vec3::Y,
-            Side::Front => Vec3::Z,
-            Side::Right => Vec3::X,
-            Side::Back => Vec3::NEG_Z,
-            Side::Left => Vec3::NEG_X,
-            Side::Bottom => Vec3::NEG_Y,
-        }
-    }
-
-    /// Yaw and pitch, radians.
-    fn angles(self) -> (f32, f32) {
-        match self {
-            Side::Top => (0.0, FRAC_PI_2),
-            Side::Front => (0.0, 0.0),
-            Side::Right => (FRAC_PI_2, 0.0),
-            Side::Back => (PI, 0.0),
-            Side::Left => (-FRAC_PI_2, 0.0),
-            Side::Bottom => (0.0, -FRAC_PI_2),
-        }
-    }
-}
 
 /// An eye on a sphere about a target.
 #[derive(Clone, Copy, Debug, PartialEq)]

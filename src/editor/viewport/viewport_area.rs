@@ -1,6 +1,7 @@
 //! The middle of the window: the live preview with navigation, selection and handles.
 
-use crate::editor::commands::command::{Centre, Command, Handle};
+use crate::editor::commands::choices::{Centre, Handle};
+use crate::editor::commands::command::Command;
 use crate::editor::commands::item_menu::{item_menu_ui, nothing_menu_ui};
 use crate::editor::document::action::Action;
 use crate::editor::document::bounds::bounds;
@@ -8,18 +9,20 @@ use crate::editor::document::item::Item;
 use crate::editor::document::selection::{Selection, centre};
 use crate::editor::document::studio_document::Document;
 use crate::editor::ui::theme;
-use crate::editor::viewport::axis_widget::{self, axis_cross_ui};
-use crate::editor::viewport::floor_plan;
-use crate::editor::viewport::light_view;
 use crate::editor::viewport::live::channel_menu::look_menu_ui;
 use crate::editor::viewport::live::preview_host::PreviewHost;
 use crate::editor::viewport::live::traced_view::LiveView;
 use crate::editor::viewport::navigation::{camera_as_view, light_as_view, moved_camera, moved_light, steer};
-use crate::editor::viewport::overlay;
-use crate::editor::viewport::picking::Band;
+use crate::editor::viewport::overlays::axis_widget::{self, axis_cross_ui};
+use crate::editor::viewport::overlays::floor_plan;
+use crate::editor::viewport::overlays::light_view;
+use crate::editor::viewport::overlays::markers;
 use crate::editor::viewport::studio_view::StudioView;
-use crate::editor::viewport::tools::gizmo::{HandleView, Handles, Pointer};
+use crate::editor::viewport::tools::click_pick;
+use crate::editor::viewport::tools::handle_pointer::Pointer;
+use crate::editor::viewport::tools::marquee_selection::Band;
 use crate::editor::viewport::tools::place_light_drag::SwingDrag;
+use crate::editor::viewport::tools::transform_handles::{HandleView, Handles};
 use crate::preview::{Overlay, Pick};
 use crate::scene::{Camera, CameraFrame, Scene};
 use eframe::egui::{self, Align2, Color32, EventFilter, FontId, Pos2, Rect, Response, RichText, Sense, Ui, vec2};
@@ -235,7 +238,7 @@ impl Viewport {
     fn under(&self, ui: &Ui, rect: Rect, frame: &CameraFrame, scene: &Scene, position: Pos2) -> Option<Item> {
         let pixel = (position - rect.min) * ui.pixels_per_point();
         let picked = self.preview.pick((pixel.x.max(0.0) as u32, pixel.y.max(0.0) as u32));
-        crate::editor::viewport::picking::meant(scene, frame, rect, position, picked)
+        click_pick::meant(scene, frame, rect, position, picked)
     }
 
     fn click(
@@ -309,7 +312,7 @@ impl Viewport {
         }
         let scene = input.document.scene();
         if let Some(picture) = picture {
-            overlay::paint_picture_frame(&painter, rect, picture);
+            markers::paint_picture_frame(&painter, rect, picture);
         }
         let side = self.view.side.filter(|_| input.centre == Centre::Studio);
         if let Some(side) = side {
@@ -317,7 +320,7 @@ impl Viewport {
             floor_plan::paint_distances(&painter, scene, &frame, rect, input.selection);
         }
         if traced.is_some() || self.live.has_failed() {
-            overlay::paint_note(&painter, rect, &self.live.status(), side.is_some());
+            markers::paint_note(&painter, rect, &self.live.status(), side.is_some());
         }
         if let Centre::Light(id) = input.centre {
             if let Some(light) = scene.light(id) {
@@ -325,13 +328,13 @@ impl Viewport {
                 light_view::paint(&painter, light, distance_m, &frame, rect);
                 let text =
                     format!("Through {}: orbit swings it, the wheel moves it nearer or away.    Esc ends", light.name);
-                light_view::paint_banner(&painter, rect, &text);
+                markers::paint_banner(&painter, rect, &text);
             }
         } else {
             let all = input.centre == Centre::Studio;
-            overlay::paint_labels(&painter, scene, &frame, rect, input.selection, all, side.is_none());
+            markers::paint_labels(&painter, scene, &frame, rect, input.selection, all, side.is_none());
         }
-        overlay::paint_meter(&painter, scene, &frame, rect);
+        markers::paint_meter(&painter, scene, &frame, rect);
         if let Some(swing) = &self.swing {
             swing.paint(&painter, scene, &frame, rect);
         } else if !handled(scene, input).is_empty() {

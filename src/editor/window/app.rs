@@ -1,19 +1,20 @@
 //! The window: its state, and one frame of it. Commands are carried out in `commands` and `session`.
 
-use crate::editor::commands::command::{Centre, Command, Handle};
+use crate::editor::commands::choices::{Centre, Handle};
+use crate::editor::commands::command::Command;
 use crate::editor::commands::shortcuts::{BINDINGS, Binding};
 use crate::editor::document::catalog::Shelf;
 use crate::editor::document::files;
-use crate::editor::document::files::{PresetInfo, Source, Tasks};
+use crate::editor::document::files::{PresetInfo, Source};
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::panels::menu::MenuState;
 use crate::editor::panels::outliner::OutlinerState;
 use crate::editor::panels::presets::PresetPicker;
+use crate::editor::panels::thumbnails::Thumbnails;
 use crate::editor::panels::{self, add, help, inspector, menu, outliner, render, status, view_bar};
 use crate::editor::picture::picture_view::PictureView;
 use crate::editor::picture::rendering::Rendering;
-use crate::editor::thumbnails::Thumbnails;
 use crate::editor::ui::side_panel::{SidePanel, Widths};
 use crate::editor::ui::theme;
 use crate::editor::ui::toasts::Toasts;
@@ -21,6 +22,7 @@ use crate::editor::ui::wake::wake;
 use crate::editor::viewport::live::preview_host::PreviewHost;
 use crate::editor::viewport::live::traced_view::LiveView;
 use crate::editor::viewport::viewport_area::{Viewport, ViewportInput};
+use crate::editor::window::background_tasks::Tasks;
 use crate::editor::window::dialogs::FileDialogs;
 use crate::editor::window::frame_log::FrameLog;
 use crate::editor::window::recent::RecentFiles;
@@ -411,7 +413,7 @@ impl App {
         MenuState {
             document: &self.document,
             selection: &self.selection,
-            recent: &self.recent,
+            recent: self.recent.paths(),
             centre: self.centre,
             handles: self.handles,
             snap: self.viewport.snap,

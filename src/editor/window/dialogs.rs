@@ -1,58 +1,10 @@
 //! Asking for a file name: the desktop's dialog in a thread of its own, or a list of answers in tests.
 
-use crate::io;
+use crate::editor::commands::file_purpose::Purpose;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
-
-/// What a file name is wanted for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
-    /// A scene to open.
-    OpenScene,
-    /// Where to save the scene.
-    SaveScene,
-    /// A model to bring in.
-    ImportModel,
-    /// A texture for a material.
-    OpenTexture,
-    /// Where to write the finished picture.
-    ExportPicture,
-}
-
-impl Purpose {
-    /// Title of the dialog.
-    pub fn title(self) -> String {
-        match self {
-            Purpose::OpenScene => "Open studio".to_owned(),
-            Purpose::SaveScene => "Save studio".to_owned(),
-            Purpose::ImportModel => format!("Import {} model", io::model_format_names()),
-            Purpose::OpenTexture => "Choose texture".to_owned(),
-            Purpose::ExportPicture => "Export picture".to_owned(),
-        }
-    }
-
-    /// Whether the file is one that is going to be written.
-    pub fn is_save(self) -> bool {
-        matches!(self, Purpose::SaveScene | Purpose::ExportPicture)
-    }
-
-    /// Name and endings of the files.
-    pub fn filter(self) -> (String, &'static [&'static str]) {
-        match self {
-            Purpose::OpenScene | Purpose::SaveScene => ("Catchlight studio".to_owned(), &["ron"]),
-            Purpose::ImportModel => (format!("{} model", io::model_format_names()), io::model_extensions()),
-            Purpose::OpenTexture => ("Picture".to_owned(), io::TEXTURE_EXTENSIONS),
-            Purpose::ExportPicture => ("Picture".to_owned(), &["png", "jpg", "exr"]),
-        }
-    }
-
-    /// The path with the ending the files have, where the user typed none.
-    pub fn with_ending(self, path: PathBuf) -> PathBuf {
-        if self.is_save() && path.extension().is_none() { path.with_extension(self.filter().1[0]) } else { path }
-    }
-}
 
 /// The user's answer.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,6 +1,7 @@
 //! The window: application state, execution of commands, sessions, files and recovery.
 
 pub mod app;
+pub mod background_tasks;
 pub mod dialogs;
 pub mod event_guard;
 pub mod frame_log;
@@ -8,4 +9,5 @@ pub mod native_window;
 pub mod recent;
 pub mod rescue;
 pub mod run_command;
+pub mod run_file_command;
 pub mod session;

@@ -1,7 +1,10 @@
 //! Commands carried out.
 
-use crate::editor::commands::command::{Centre, Command};
-use crate::editor::document::action::{Action, ActionError};
+use crate::editor::commands::choices::Centre;
+use crate::editor::commands::choices::Swing;
+use crate::editor::commands::command::Command;
+use crate::editor::document::action::Action;
+use crate::editor::document::action_error::ActionError;
 use crate::editor::document::arrange::MirrorPlane;
 use crate::editor::document::catalog::Made;
 use crate::editor::document::files::Source;
@@ -9,7 +12,7 @@ use crate::editor::document::item::Item;
 use crate::editor::document::placement;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
-use crate::editor::viewport::tools::place_light::{Placing, Swing, can_swing};
+use crate::editor::viewport::tools::place_light::{Placing, can_swing};
 use crate::editor::viewport::tools::place_light_drag::SwingDrag;
 use crate::editor::window::app::App;
 use crate::scene::{Aim, Emitter, LightId, Object, Scene, Solo};

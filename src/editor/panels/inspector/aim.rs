@@ -1,6 +1,6 @@
 //! What a light or the camera points at.
 
-use crate::editor::document::placement::{aim_offset, subject};
+use crate::editor::document::placement::{aim_offset, angles_towards, subject};
 use crate::editor::ui::widgets::{self, DEGREES, METRES, row};
 use crate::scene::{Aim, Assets, Scene};
 use eframe::egui::{ComboBox, Ui};
@@ -63,24 +63,4 @@ fn lock_row(ui: &mut Ui, scene: &Scene, now: Vec3, aim: &mut Aim) {
         let offset = subject.transform.world_from_object().inverse().transform_point3(now);
         *aim = if locked && offset.is_finite() { Aim::Object { object: subject.id, offset } } else { Aim::Point(now) };
     });
-}
-
-/// The angles that look along a direction; level to the back where there is none.
-pub fn angles_towards(direction: Vec3) -> Aim {
-    let d = direction.try_normalize().unwrap_or(Vec3::NEG_Z);
-    Aim::Angles { yaw_deg: (-d.x).atan2(-d.z).to_degrees(), pitch_deg: 90.0 - crate::math::safe_acos(d.y).to_degrees() }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn angles_point_where_the_point_was() {
-        let scene = Scene::default();
-        for direction in [Vec3::new(1.0, 2.0, -3.0), Vec3::new(-0.2, -5.0, 1.0), Vec3::X] {
-            let aimed = scene.aim_point(&angles_towards(direction), Vec3::ZERO);
-            assert!((aimed - direction.normalize()).length() < 1e-5, "{direction} became {aimed}");
-        }
-    }
 }

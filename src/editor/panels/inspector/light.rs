@@ -3,13 +3,13 @@
 use super::power::{self, Unit};
 use super::{Context, aim, gel, modifier, text_ui, title};
 use crate::color::{light_rgb, rgb_from_kelvin};
+use crate::editor::commands::choices::Swing;
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
 use crate::editor::document::readout;
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, Number, fact, row, section};
-use crate::editor::viewport::tools::place_light::Swing;
 use crate::photo::light::axial_intensity;
 use crate::photo::thirds::Dial;
 use crate::scene::{ColorSource, Emitter, Light, LightId, Output, Role, Scene};

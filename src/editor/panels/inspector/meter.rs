@@ -1,10 +1,10 @@
 //! The inspector of the light meter.
 
-use super::angles_towards;
 use super::{Context, title};
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
+use crate::editor::document::placement::angles_towards;
 use crate::editor::ui::widgets::{self, DEGREES, METRES, row, section};
 use crate::scene::{Aim, Facing, Meter, Receptor, Role, Scene};
 use eframe::egui::Ui;

@@ -11,8 +11,6 @@ mod object;
 mod power;
 mod room;
 
-pub use aim::angles_towards;
-
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::{Item, name_of_all};

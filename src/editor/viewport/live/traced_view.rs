@@ -1,5 +1,6 @@
 //! The live view as the tracer sees it, *True*: asked for when something changed, shown while it grows.
 
+use crate::editor::commands::choices::LiveMode;
 use crate::editor::document::studio_document::Document;
 use crate::editor::ui::image_texture::Canvas;
 use crate::editor::ui::wake::wake;
@@ -10,16 +11,6 @@ use crate::raytrace::{GeometryCache, LiveCamera, MAX_LIGHT_LAYERS};
 use crate::scene::{CameraFrame, LightId};
 use eframe::egui::{ColorImage, Context, TextureId};
 use std::sync::Arc;
-
-/// How the live view is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum LiveMode {
-    /// By the graphics card: at once, with bounced light and mirrors estimated.
-    #[default]
-    Quick,
-    /// By the tracer: as the picture will be, out of grain within moments.
-    True,
-}
 
 /// Pixels of a traced view at most: larger ones are traced at a half, a third ... and enlarged.
 const MOST_PIXELS: f32 = 1_300_000.0;

@@ -1,7 +1,7 @@
 //! The ring with which a thing slides over the floor, at the height it stands at.
 
-use crate::editor::viewport::overlay::place_of;
-use crate::editor::viewport::tools::gizmo::{Pointer, STEP_M};
+use crate::editor::viewport::overlays::markers::place_of;
+use crate::editor::viewport::tools::handle_pointer::{Pointer, STEP_M};
 use crate::scene::CameraFrame;
 use eframe::egui::{self, Color32, Pos2, Rect, Stroke};
 use glam::{Vec2, Vec3};

@@ -1,55 +1,9 @@
 //! A light placed by what it does: where its highlight, its light, or the shadow of what it is aimed at falls on a
 //! surface.
 
+use crate::editor::commands::choices::Swing;
 use crate::editor::viewport::tools::surface_pick::SurfaceHit;
 use crate::scene::{Aim, Emitter, Light, LightId, Scene};
-
-/// What is put on the point of a surface that the pointer shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Swing {
-    /// The highlight: the mirror image of the light, as the camera sees it.
-    Highlight,
-    /// The light itself: it falls on the point straight on.
-    Light,
-    /// The shadow of the point that it is aimed at: of a nose on a cheek, of a head on the paper.
-    Shadow,
-}
-
-impl Swing {
-    /// All of them, in menu order.
-    pub const ALL: [Swing; 3] = [Swing::Highlight, Swing::Light, Swing::Shadow];
-
-    /// What a menu calls it.
-    pub fn label(self) -> &'static str {
-        match self {
-            Swing::Highlight => "Place its highlight",
-            Swing::Light => "Place its light",
-            Swing::Shadow => "Place its shadow",
-        }
-    }
-
-    /// What a tip says of it.
-    pub fn tip(self) -> &'static str {
-        match self {
-            Swing::Highlight => "Drag over a face: the light swings round so that the camera sees its highlight there",
-            Swing::Light => "Drag over a face: the light swings round so that it falls there straight on",
-            Swing::Shadow => {
-                "Drag to where the shadow of the point that it is aimed at shall fall: of a nose on a cheek, of a head on \
-                 the paper"
-            }
-        }
-    }
-
-    /// What the mouse does, for a light of this name.
-    pub fn hint(self, light: &str) -> String {
-        let what = match self {
-            Swing::Highlight => "where the camera shall see the highlight of",
-            Swing::Light => "where straight light shall fall from",
-            Swing::Shadow => "where the shadow of its aim shall fall from",
-        };
-        format!("Press or drag on a surface {what} {light}.    Esc ends")
-    }
-}
 
 /// A light that is being placed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,12 +1,12 @@
 //! The mouse in the view while a light is placed by its highlight, its light or its shadow.
 
+use crate::editor::commands::choices::Swing;
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::studio_document::Document;
 use crate::editor::ui::theme;
-use crate::editor::viewport::light_view::paint_banner;
-use crate::editor::viewport::overlay::{paint_text, place_of};
-use crate::editor::viewport::tools::place_light::{Placing, Swing, SwingError, swung};
+use crate::editor::viewport::overlays::markers::{paint_banner, paint_text, place_of};
+use crate::editor::viewport::tools::place_light::{Placing, SwingError, swung};
 use crate::editor::viewport::tools::surface_pick::{self, SurfaceHit};
 use crate::scene::{CameraFrame, Light, ObjectId, Scene};
 use eframe::egui::{Align2, Color32, CursorIcon, Painter, Rect, Response, Stroke, Ui, vec2};

@@ -2,11 +2,11 @@
 //!
 //! Every change is told from the beginning of the drag, so that nothing adds up by rounding and a typed number is exact.
 
-use crate::editor::commands::command::Handle;
+use crate::editor::commands::choices::Handle;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::{Item, name_of_all};
+use crate::editor::document::placement::{angles_towards, wrap_deg};
 use crate::editor::document::selection::centre;
-use crate::editor::panels::inspector::angles_towards;
 use crate::math;
 use crate::scene::{Aim, Camera, Emitter, Light, Meter, Object, Scene};
 use glam::{Quat, Vec3};
@@ -200,12 +200,6 @@ fn changed_object(start: &Object, pivot: Vec3, change: Change) -> Object {
         Change::Size(factor) => object.transform.scale = (start.transform.scale * factor).max(Vec3::splat(0.001)),
     }
     object
-}
-
-/// The same angle in (-180, 180].
-pub fn wrap_deg(angle: f32) -> f32 {
-    let wrapped = angle.rem_euclid(360.0);
-    if wrapped > 180.0 { wrapped - 360.0 } else { wrapped }
 }
 
 /// Makes an emitter larger or smaller by factors along its own axes.

@@ -1,9 +1,10 @@
 //! The cross of the room's axes in the corner of the view: it shows how the view is turned, and its ends are buttons
 //! that look from there.
 
+use crate::editor::commands::choices::Side;
 use crate::editor::commands::command::Command;
 use crate::editor::ui::widgets;
-use crate::editor::viewport::studio_view::{Side, StudioView};
+use crate::editor::viewport::studio_view::StudioView;
 use crate::scene::CameraFrame;
 use eframe::egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, Ui, vec2};
 use glam::Vec3;

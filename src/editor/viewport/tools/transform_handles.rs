@@ -1,10 +1,11 @@
 //! Handles for moving, turning and sizing the selected things, over the viewport.
 
-use crate::editor::commands::command::Handle;
+use crate::editor::commands::choices::Handle;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
-use crate::editor::viewport::overlay::paint_text;
+use crate::editor::viewport::overlays::markers::paint_text;
 use crate::editor::viewport::tools::floor_handle::FloorHandle;
+use crate::editor::viewport::tools::handle_pointer::{Pointer, STEP_DEG, STEP_M};
 use crate::editor::viewport::tools::transform_selection::{Change, Held, pivot};
 use crate::editor::viewport::tools::typed_number::TypedNumber;
 use crate::scene::{CameraFrame, Scene};
@@ -15,30 +16,11 @@ use transform_gizmo::{
     EnumSet, Gizmo, GizmoConfig, GizmoInteraction, GizmoMode, GizmoOrientation, GizmoResult, GizmoVisuals, mint,
 };
 
-/// Snapping steps: metres, degrees, part of the scale.
-pub const STEP_M: f32 = 0.1;
-/// Degrees of a snapped turn.
-pub const STEP_DEG: f32 = 15.0;
 const STEP_SCALE: f32 = 0.1;
 /// The nearest that handles can be to the eye, metres.
 const NEAR_M: f64 = 0.02;
 /// Below this sine of the view's tilt the floor is seen too much from its edge to slide things over it.
 const LEAST_TILT: f32 = 0.1;
-
-/// What the mouse does over the handles.
-#[derive(Clone, Copy, Debug)]
-pub struct Pointer {
-    /// Where it is, points.
-    pub position: egui::Pos2,
-    /// Nothing covers the viewport there, and the mouse is not navigating.
-    pub is_over: bool,
-    /// The left button went down just now.
-    pub pressed: bool,
-    /// The left button is down.
-    pub down: bool,
-    /// In steps.
-    pub snap: bool,
-}
 
 /// Where the handles are seen from.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! The view through a light: along its axis, with the beam that it throws.
 
 use crate::editor::ui::theme;
-use crate::editor::viewport::overlay::paint_text;
+use crate::editor::viewport::overlays::markers::paint_text;
 use crate::scene::{CameraFrame, Emitter, Light, Scene};
 use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, pos2, vec2};
 use glam::Vec2;
@@ -93,16 +93,6 @@ pub fn paint(painter: &Painter, light: &Light, distance_m: f32, frame: &CameraFr
         let text = format!("{what} {full_deg:.0}\u{b0}");
         paint_text(painter, place + vec2(0.0, -4.0), Align2::CENTER_BOTTOM, &text, color);
     }
-}
-
-/// A line of help at the lower edge of the view, clear of the menus in its upper corners.
-pub fn paint_banner(painter: &Painter, rect: Rect, text: &str) {
-    let width = (rect.width() - 40.0).max(120.0);
-    let galley = painter.layout(text.to_owned(), eframe::egui::FontId::proportional(13.0), Color32::WHITE, width);
-    let size = galley.size() + vec2(20.0, 10.0);
-    let place = Rect::from_min_size(Pos2::new(rect.center().x - 0.5 * size.x, rect.max.y - size.y - 28.0), size);
-    painter.rect_filled(place, 5.0, Color32::from_black_alpha(190));
-    painter.galley(place.min + vec2(10.0, 5.0), galley, Color32::WHITE);
 }
 
 #[cfg(test)]

@@ -3,24 +3,9 @@
 use crate::editor::document::item::Item;
 use crate::editor::document::studio_document::Document;
 use crate::editor::ui::theme;
-use crate::editor::viewport::overlay::{light_at, meter_at, place_of};
-use crate::preview::Pick;
-use crate::scene::{CameraFrame, Scene};
+use crate::editor::viewport::overlays::markers::place_of;
+use crate::scene::CameraFrame;
 use eframe::egui::{Color32, CornerRadius, Painter, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui};
-
-/// The thing that a click at `position` means, when the id buffer shows `picked` there. What is locked is passed over.
-pub fn meant(scene: &Scene, frame: &CameraFrame, rect: Rect, position: Pos2, picked: Option<Pick>) -> Option<Item> {
-    if meter_at(scene, frame, rect, position) {
-        return Some(Item::Meter);
-    }
-    let item = match picked {
-        Some(Pick::Light(id)) => Some(Item::Light(id)),
-        Some(Pick::Camera) => Some(Item::Camera),
-        Some(Pick::Object(id)) => Some(light_at(scene, frame, rect, position).unwrap_or(Item::Object(id))),
-        None => light_at(scene, frame, rect, position),
-    };
-    item.filter(|item| !item.is_locked(scene))
-}
 
 /// A box that is drawn with the left button.
 #[derive(Clone, Copy, Debug)]

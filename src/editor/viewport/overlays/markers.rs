@@ -155,3 +155,13 @@ pub fn paint_text(painter: &Painter, place: Pos2, align: Align2, text: &str, col
     painter.rect_filled(rect.expand2(vec2(3.0, 0.0)), CornerRadius::same(3), Color32::from_black_alpha(130));
     painter.galley(rect.min, galley, color);
 }
+
+/// A line of help at the lower edge of the view, clear of the menus in its upper corners.
+pub fn paint_banner(painter: &Painter, rect: Rect, text: &str) {
+    let width = (rect.width() - 40.0).max(120.0);
+    let galley = painter.layout(text.to_owned(), FontId::proportional(13.0), Color32::WHITE, width);
+    let size = galley.size() + vec2(20.0, 10.0);
+    let place = Rect::from_min_size(Pos2::new(rect.center().x - 0.5 * size.x, rect.max.y - size.y - 28.0), size);
+    painter.rect_filled(place, 5.0, Color32::from_black_alpha(190));
+    painter.galley(place.min + vec2(10.0, 5.0), galley, Color32::WHITE);
+}

@@ -1,13 +1,13 @@
 //! What is drawn over a view from a side: a metre grid with numbers, and how far lights and camera are from what they
 //! are aimed at.
 
+use crate::editor::commands::choices::Side;
 use crate::editor::document::item::Item;
 use crate::editor::document::readout;
 use crate::editor::document::selection::Selection;
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets::signed_stops;
-use crate::editor::viewport::overlay::{label_place, paint_aim_line, paint_text, place_of};
-use crate::editor::viewport::studio_view::Side;
+use crate::editor::viewport::overlays::markers::{label_place, paint_aim_line, paint_text, place_of};
 use crate::scene::{CameraFrame, Light, Role, Scene};
 use eframe::egui::{Align2, Color32, Painter, Rect, Stroke, vec2};
 use glam::Vec3;

@@ -1,0 +1,362 @@
+//! Files in and out of the window: open, save, import, export, drops, and the questions on the way.
+
+use crate::editor::commands::choices::Centre;
+use crate::editor::commands::command::Command;
+use crate::editor::commands::file_purpose::Purpose;
+use crate::editor::document::action::Action;
+use crate::editor::document::files::{self, Imported, Opened, Source};
+use crate::editor::document::item::Item;
+use crate::editor::document::placement;
+use crate::editor::document::selection::Selection;
+use crate::editor::document::studio_document::Document;
+use crate::editor::panels::prompts::{self, GuardAnswer, PathAnswer, PathPrompt};
+use crate::editor::window::app::App;
+use crate::editor::window::background_tasks::Done;
+use crate::editor::window::dialogs::Answer;
+use crate::editor::window::session::Intent;
+use crate::io::{self, ModelFormat, PictureInfo};
+use crate::scene::{Assets, Material, MaterialPreset, Object, ObjectId, Shape, Transform};
+use eframe::egui::{self, Align2, Color32, Context, Id, LayerId, Order, ViewportCommand};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::TryRecvError;
+
+impl App {
+    pub(super) fn run_file_command(&mut self, command: Command, ctx: &Context) {
+        match command {
+            Command::Open => self.ask_for_path(Purpose::OpenScene, ctx),
+            Command::Save => match self.document.path().map(Path::to_owned) {
+                Some(path) => self.save_to(path, ctx),
+                None => self.ask_for_path(Purpose::SaveScene, ctx),
+            },
+            Command::SaveAs => self.ask_for_path(Purpose::SaveScene, ctx),
+            Command::Import => self.ask_for_path(Purpose::ImportModel, ctx),
+            Command::ImportPath(path) => {
+                self.tasks.start(move || Done::Imported(files::import(path)), waker(ctx));
+            }
+            Command::ChooseTexture(item, part) => {
+                self.session.texture_for = Some((item, part));
+                self.ask_for_path(Purpose::OpenTexture, ctx);
+            }
+            Command::ExportPicture if self.rendering.developed().is_none() => {
+                self.toasts.news("There is no picture to export yet: press Render (R) first.");
+            }
+            Command::ExportPicture => self.ask_for_path(Purpose::ExportPicture, ctx),
+            Command::PathTyped(purpose, path) => self.path_chosen(purpose, purpose.with_ending(path), ctx),
+            _ => {}
+        }
+    }
+
+    /// Loads another studio in the background.
+    pub(super) fn load(&mut self, source: Source, ctx: &Context) {
+        let work = move || {
+            let result = files::open(&source);
+            Done::Opened(source, result)
+        };
+        self.tasks.start(work, waker(ctx));
+    }
+
+    /// Loads another studio, after asking about unsaved changes.
+    pub(super) fn replace_with(&mut self, source: Source, ctx: &Context) {
+        self.guarded(Intent::Load(source), ctx);
+    }
+
+    fn guarded(&mut self, intent: Intent, ctx: &Context) {
+        if self.document.is_dirty() {
+            self.session.guard = Some(intent);
+        } else {
+            self.go_on(intent, ctx);
+        }
+    }
+
+    fn go_on(&mut self, intent: Intent, ctx: &Context) {
+        match intent {
+            Intent::Load(source) => self.load(source, ctx),
+            Intent::Quit => {
+                self.session.may_close = true;
+                ctx.send_viewport_cmd(ViewportCommand::Close);
+            }
+        }
+    }
+
+    fn ask_for_path(&mut self, purpose: Purpose, ctx: &Context) {
+        if self.session.dialog.is_some() {
+            self.toasts.news("A file dialog is open already.");
+            return;
+        }
+        let (folder, name) = self.suggestion(purpose);
+        let receiver = self.session.dialogs.ask(purpose, folder.as_deref(), &name, waker(ctx));
+        self.session.dialog = Some((purpose, receiver));
+    }
+
+    /// Folder and name that a dialog begins with.
+    fn suggestion(&self, purpose: Purpose) -> (Option<PathBuf>, String) {
+        let recent = self.recent.paths().first().and_then(|path| path.parent());
+        let folder = self.document.folder().or(recent).filter(|folder| folder.is_dir()).map(Path::to_owned);
+        let title = self.document.title();
+        let stem = title.strip_suffix(".ron").unwrap_or(&title);
+        let stem: String =
+            stem.chars().map(|c| if c.is_alphanumeric() || "-_ .".contains(c) { c } else { '-' }).collect();
+        (folder, format!("{}.{}", stem.trim(), purpose.filter().1[0]))
+    }
+
+    pub(super) fn take_dialog_answer(&mut self, out: &mut Vec<Command>) {
+        let Some((purpose, receiver)) = &self.session.dialog else { return };
+        let purpose = *purpose;
+        let answer = match receiver.try_recv() {
+            Ok(answer) => answer,
+            Err(TryRecvError::Disconnected) => Answer::Unavailable,
+            Err(TryRecvError::Empty) => return,
+        };
+        self.session.dialog = None;
+        match answer {
+            Answer::Chosen(path) => out.push(Command::PathTyped(purpose, path)),
+            Answer::Cancelled => self.session.after_save = None,
+            Answer::Unavailable => {
+                let (folder, name) = self.suggestion(purpose);
+                self.session.prompt = Some(PathPrompt::new(purpose, folder.as_deref(), &name));
+            }
+        }
+    }
+
+    fn path_chosen(&mut self, purpose: Purpose, path: PathBuf, ctx: &Context) {
+        match purpose {
+            Purpose::OpenScene => self.replace_with(Source::File(path), ctx),
+            Purpose::SaveScene => self.save_to(path, ctx),
+            Purpose::ImportModel => self.run_file_command(Command::ImportPath(path), ctx),
+            Purpose::OpenTexture => self.use_texture(&path),
+            Purpose::ExportPicture => self.export_to(path, ctx),
+        }
+    }
+
+    fn save_to(&mut self, path: PathBuf, ctx: &Context) {
+        if let Err(message) = files::save(&self.document, &path) {
+            self.session.after_save = None;
+            self.toasts.error(format!("The studio was not saved. {message}"));
+            return;
+        }
+        self.recent.push(&path);
+        self.toasts.news(format!("Saved to {}", path.display()));
+        self.document.mark_saved(path);
+        if let Some(intent) = self.session.after_save.take() {
+            self.go_on(intent, ctx);
+        }
+    }
+
+    fn export_to(&mut self, path: PathBuf, ctx: &Context) {
+        let (Some(developed), Some(job)) = (self.rendering.developed(), self.rendering.job()) else { return };
+        let picture = developed.picture.clone();
+        let seed = job.settings.seed.into();
+        let info = PictureInfo::new(&self.document.scene().camera, developed.method, developed.spp, seed);
+        let work = move || {
+            let result = files::export(&path, &picture, &info);
+            Done::Exported(path, result)
+        };
+        self.tasks.start(work, waker(ctx));
+    }
+
+    pub(super) fn take_done(&mut self, done: Done, ctx: &Context) {
+        match done {
+            Done::Opened(_, Ok(opened)) => self.show_opened(*opened, ctx),
+            Done::Opened(source, Err(message)) => {
+                if let Source::File(path) = source
+                    && !path.exists()
+                {
+                    self.recent.forget(&path);
+                }
+                self.toasts.error(format!("The studio could not be opened. {message}"));
+            }
+            Done::Imported(Ok(imported)) => self.bring_in(*imported),
+            Done::Imported(Err(message)) => self.toasts.error(format!("The model could not be brought in. {message}")),
+            Done::Assets(assets, tried, warnings) => {
+                self.document.insert_assets(assets, &tried);
+                warnings.into_iter().for_each(|warning| self.toasts.warning(warning));
+            }
+            Done::Exported(path, Ok(())) => self.toasts.news(format!("Picture written to {}", path.display())),
+            Done::Exported(_, Err(message)) => self.toasts.error(format!("The picture was not written. {message}")),
+        }
+    }
+
+    fn show_opened(&mut self, opened: Opened, ctx: &Context) {
+        const SHOWN: usize = 3;
+        if let Some(path) = &opened.path {
+            self.recent.push(path);
+        }
+        let more = opened.warnings.len().saturating_sub(SHOWN);
+        opened.warnings.iter().take(SHOWN).for_each(|warning| self.toasts.warning(warning.clone()));
+        if more > 0 {
+            self.toasts.warning(format!("And {more} more things are odd about this studio."));
+        }
+        self.rendering.clear();
+        self.viewport.live.clear();
+        self.document = Document::new(opened.scene, opened.assets, opened.path);
+        self.selection = Selection::default();
+        self.viewport.swing = None;
+        if matches!(self.centre, Centre::Picture | Centre::Light(_)) {
+            self.centre = Centre::Studio;
+        }
+        self.viewport.frame_selection(&self.document, &self.selection);
+        ctx.request_repaint();
+    }
+
+    fn bring_in(&mut self, imported: Imported) {
+        let Imported { file, mesh, part_materials, warnings } = imported;
+        let path = self.document.asset_path_for(&file, "models");
+        let stem = file.file_stem().map_or_else(|| "Model".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let mut assets = Assets::default();
+        assets.meshes.insert(path.clone(), mesh);
+        self.document.insert_assets(assets, &Default::default());
+        self.document.note_import(path.clone(), file.clone());
+        let folder = file.parent().unwrap_or(Path::new("")).to_owned();
+        let part_materials =
+            part_materials.into_iter().map(|(part, m)| (part, self.adopt_texture(m, &folder))).collect();
+        let mut object = Object {
+            id: ObjectId(0),
+            name: stem,
+            transform: Transform::default(),
+            shape: Shape::MeshFile { path },
+            material: MaterialPreset::MatteFabric.material(),
+            part_materials,
+            visible: true,
+            locked: false,
+        };
+        placement::place_object(self.document.scene(), self.selection.last(), &mut object);
+        self.apply(Action::AddObject(Box::new(object)), None);
+        warnings.into_iter().for_each(|warning| self.toasts.warning(warning));
+    }
+
+    /// A material whose texture is named as the open studio can name it.
+    fn adopt_texture(&mut self, mut material: Material, folder: &Path) -> Material {
+        if let Some(texture) = material.base_color_texture.take() {
+            let file = folder.join(texture);
+            let path = self.document.asset_path_for(&file, "textures");
+            self.document.note_import(path.clone(), file);
+            material.base_color_texture = Some(path);
+        }
+        material
+    }
+
+    fn use_texture(&mut self, file: &Path) {
+        let Some((item, part)) = self.session.texture_for.take() else { return };
+        let path = self.document.asset_path_for(file, "textures");
+        self.document.note_import(path.clone(), file.to_owned());
+        let scene = self.document.scene();
+        let action = match item {
+            Item::Object(id) => scene.object(id).cloned().map(|mut object| {
+                let own = object.part_materials.iter_mut().find(|(name, _)| Some(name) == part.as_ref());
+                own.map_or(&mut object.material, |(_, material)| material).base_color_texture = Some(path);
+                Action::SetObject(Box::new(object))
+            }),
+            Item::Room => scene.room.clone().map(|mut room| {
+                let material = match part.as_deref() {
+                    Some("floor") => &mut room.floor,
+                    Some("ceiling") => &mut room.ceiling,
+                    _ => &mut room.walls,
+                };
+                material.base_color_texture = Some(path);
+                Action::SetRoom(Some(Box::new(room)))
+            }),
+            Item::Camera | Item::Light(_) | Item::Meter => None,
+        };
+        if let Some(action) = action {
+            self.apply(action, None);
+        }
+    }
+
+    /// Loads in the background what the scene needs and does not have: the mesh of a new figure, say.
+    pub(super) fn load_wanted_assets(&mut self, ctx: &Context) {
+        if self.tasks.is_busy() {
+            return;
+        }
+        let wanted = self.document.wanted_assets();
+        if wanted.is_empty() {
+            return;
+        }
+        let (scene, known) = (self.document.scene().clone(), self.document.assets().clone());
+        let folder = self.document.folder().map(Path::to_owned);
+        let moved = self.document.imported_files();
+        let work = move || {
+            let (assets, warnings) = files::load_assets(&scene, folder.as_deref(), &known, &moved);
+            Done::Assets(assets, wanted, warnings)
+        };
+        self.tasks.start(work, waker(ctx));
+    }
+
+    /// Files that were dropped on the window.
+    pub(super) fn take_drops(&mut self, ctx: &Context, out: &mut Vec<Command>) {
+        for file in ctx.input(|i| i.raw.dropped_files.clone()) {
+            let path = file.path().to_owned();
+            let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+            match ending.as_str() {
+                "ron" => out.push(Command::OpenPath(path)),
+                _ if ModelFormat::of(&path).is_some() => out.push(Command::ImportPath(path)),
+                _ => self.toasts.error(format!(
+                    "Only studios (.ron) and models ({}) can be dropped here, not {}.",
+                    io::model_extension_list(),
+                    path.display()
+                )),
+            }
+        }
+    }
+
+    /// Says what a drop would do while files hover over the window.
+    pub(super) fn drop_hint(&self, ctx: &Context) {
+        if ctx.input(|i| i.raw.hovered_files.is_empty()) {
+            return;
+        }
+        let painter = ctx.layer_painter(LayerId::new(Order::Foreground, Id::unique("drop hint")));
+        let rect = ctx.content_rect();
+        painter.rect_filled(rect, 0.0, Color32::from_black_alpha(170));
+        let models = io::model_extension_list();
+        let text = format!("Drop a studio (.ron) to open it, a model ({models}) to bring it in");
+        painter.text(rect.center(), Align2::CENTER_CENTER, text, egui::FontId::proportional(20.0), Color32::WHITE);
+    }
+
+    /// A window that is asked to close first asks about unsaved changes.
+    pub(super) fn take_close_request(&mut self, ctx: &Context) {
+        if !ctx.input(|i| i.viewport().close_requested()) || self.session.may_close {
+            return;
+        }
+        if self.document.is_dirty() {
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.session.guard = Some(Intent::Quit);
+            if ctx.input(|i| i.viewport().visible()) == Some(false) {
+                // A question that nobody sees would keep the window from closing for no reason.
+                ctx.send_viewport_cmd(ViewportCommand::Minimized(false));
+                ctx.send_viewport_cmd(ViewportCommand::Focus);
+            }
+        }
+    }
+
+    /// The questions in the middle of the window.
+    pub(super) fn ask(&mut self, ctx: &Context, out: &mut Vec<Command>) {
+        if let Some(intent) = self.session.guard.clone()
+            && let Some(answer) = prompts::guard_ui(ctx, &self.document.title(), intent.words())
+        {
+            self.session.guard = None;
+            match answer {
+                GuardAnswer::Save => {
+                    self.session.after_save = Some(intent);
+                    out.push(Command::Save);
+                }
+                GuardAnswer::Discard => self.go_on(intent, ctx),
+                GuardAnswer::Cancel => {}
+            }
+        }
+        if let Some(prompt) = &mut self.session.prompt {
+            let purpose = prompt.purpose;
+            match prompt.ui(ctx) {
+                Some(PathAnswer::Chosen(path)) => {
+                    self.session.prompt = None;
+                    out.push(Command::PathTyped(purpose, path));
+                }
+                Some(PathAnswer::Cancelled) => (self.session.prompt, self.session.after_save) = (None, None),
+                None => {}
+            }
+        }
+    }
+}
+
+fn waker(ctx: &Context) -> impl FnOnce() + Send + 'static {
+    let ctx = ctx.clone();
+    move || ctx.request_repaint()
+}
