@@ -229,3 +229,76 @@ fn the_traced_preview_tells_how_soon_it_shows_a_change_and_writes_its_picture() 
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(image::open(folder.path().join("t.png")).unwrap().to_rgb8().dimensions(), (64, 40));
 }
+
+/// The values of a channel in the first part of an EXR file, by pixel.
+fn exr_channel(path: &Path, name: &str) -> Option<Vec<f64>> {
+    use exr::prelude::{FlatSamples, read_first_flat_layer_from_file};
+    let image = read_first_flat_layer_from_file(path).unwrap();
+    let channel = image.layer_data.channel_data.list.into_iter().find(|channel| channel.name.eq(name))?;
+    Some(match channel.sample_data {
+        FlatSamples::F32(values) => values.into_iter().map(f64::from).collect(),
+        FlatSamples::U32(values) => values.into_iter().map(f64::from).collect(),
+        FlatSamples::F16(values) => values.into_iter().map(|value| f64::from(value.to_f32())).collect(),
+    })
+}
+
+#[test]
+fn aovs_are_channels_beside_the_same_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = |name: &str, options: &[&str]| {
+        let size = ["--size", "48x32", "--spp", "2"];
+        catchlight(folder.path(), &[&["render", "product_still_life", "-o", name], &size[..], options].concat())
+    };
+    for (name, options) in [("plain.exr", &[][..]), ("aovs.exr", &["--aovs", "--layers"])] {
+        let output = render(name, options);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    let (plain, aovs) = (folder.path().join("plain.exr"), folder.path().join("aovs.exr"));
+    for channel in ["R", "G", "B"] {
+        assert_eq!(exr_channel(&plain, channel).unwrap(), exr_channel(&aovs, channel).unwrap());
+    }
+    let channel = |name| exr_channel(&aovs, name).unwrap_or_else(|| panic!("no channel {name}"));
+    assert!(["albedo.R", "albedo.G", "albedo.B"].iter().all(|name| channel(name).iter().any(|value| *value > 0.05)));
+    let [x, y, z] = ["normal.X", "normal.Y", "normal.Z"].map(channel);
+    assert!(x.iter().zip(&y).zip(&z).all(|((x, y), z)| (x * x + y * y + z * z) < 1.0001));
+    let (depth, id) = (channel("Z"), channel("id"));
+    assert!(depth.iter().zip(&id).all(|(depth, id)| *depth > 0.0 && (depth.is_finite() || *id == 0.0)));
+    assert!(id.iter().any(|id| *id >= 2.0) && exr_channel(&plain, "Z").is_none());
+    // A PNG has no place for them, and a z-buffer has no paths.
+    for (name, options) in [("a.png", &["--aovs"][..]), ("a.exr", &["--aovs", "--method", "zbuffer"])] {
+        let output = render(name, options);
+        assert_eq!(output.status.code(), Some(1));
+        assert!(stderr(&output).contains("--aovs"), "{}", stderr(&output));
+        assert!(!folder.path().join(name).exists());
+    }
+}
+
+#[test]
+fn a_pixel_is_explained_step_by_step_and_adds_up_to_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let size = ["render", "product_still_life", "--size", "24x16", "--spp", "1", "--seed", "3"];
+    let output = catchlight(folder.path(), &[&size[..], &["-o", "a.exr"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let explain = |options: &[&str]| catchlight(folder.path(), &[&size[..], options].concat());
+    let text = stdout(&explain(&["--explain-pixel", "12,9"]));
+    for word in ["pixel 12,9, sample 0, the brightest of 1, seed 3", "camera ray", "vertex 0:", "BSDF sample", "pmf"] {
+        assert!(text.contains(word), "no {word:?} in\n{text}");
+    }
+    let json = stdout(&explain(&["--explain-pixel", "12,9", "--sample", "0", "--json"]));
+    let report: Value = serde_json::from_str(json.trim()).unwrap();
+    assert!(report["events"].as_array().unwrap().len() > 3);
+    for (index, name) in ["R", "G", "B"].into_iter().enumerate() {
+        let film = exr_channel(&folder.path().join("a.exr"), name).unwrap()[9 * 24 + 12];
+        assert_eq!(report["value"][index].as_f64().unwrap() as f32, film as f32, "{name}");
+    }
+    for (options, word) in [
+        (&["--explain-pixel", "24,0"][..], "24x16"),
+        (&["--explain-pixel", "1,1", "--sample", "1"], "sample 1"),
+        (&["--explain-pixel", "1"], "such as"),
+        (&["--sample", "1"], "--explain-pixel"),
+    ] {
+        let output = explain(options);
+        assert_eq!(output.status.code(), Some(1), "{options:?}");
+        assert!(stderr(&output).contains(word), "{options:?}: {}", stderr(&output));
+    }
+}

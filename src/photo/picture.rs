@@ -24,19 +24,26 @@ impl Picture {
 
     /// The same picture in other pixels, each the nearest of these.
     pub fn resized(&self, width: u32, height: u32) -> Picture {
-        let nearest = |i: u32, ours: u32, theirs: u32| {
-            (u64::from(2 * i + 1) * u64::from(ours) / u64::from(2 * theirs.max(1))).min(u64::from(ours.max(1) - 1))
-                as u32
-        };
-        let rows = (0..height).map(|y| nearest(y, self.height, height));
-        let rgb = rows.flat_map(|y| (0..width).map(move |x| self.at(nearest(x, self.width, width), y))).collect();
-        Picture { width, height, rgb }
+        Picture { width, height, rgb: resized(&self.rgb, (self.width, self.height), (width, height)) }
     }
 
     /// The picture as it is shown: tone curve and sRGB encoding, 8 bits a channel.
     pub fn to_srgb8(&self) -> Vec<[u8; 3]> {
         self.rgb.iter().map(|&c| crate::color::display_srgb8(c)).collect()
     }
+}
+
+/// Rows of pixels at another size, each the nearest of the given ones.
+pub(super) fn resized<T: Copy>(
+    pixels: &[T],
+    (width, height): (u32, u32),
+    (new_width, new_height): (u32, u32),
+) -> Vec<T> {
+    let nearest = |i: u32, ours: u32, theirs: u32| {
+        (u64::from(2 * i + 1) * u64::from(ours) / u64::from(2 * theirs.max(1))).min(u64::from(ours.max(1) - 1)) as usize
+    };
+    let rows = (0..new_height).map(|y| nearest(y, height, new_height) * width as usize);
+    rows.flat_map(|row| (0..new_width).map(move |x| pixels[row + nearest(x, width, new_width)])).collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The steps of a path, for the replay of a single sample.
 //!
-//! Positions are in the tracer's space: relative to the camera of a render. Throughputs and contributions are white
-//! luminance, as on the film's layers.
+//! The tracer records positions in its own space, relative to its origin; a replay moves them to world space. Throughputs
+//! and contributions are white luminance, as on the film's layers.
 
 use glam::Vec3;
 use serde::Serialize;
@@ -103,6 +103,19 @@ pub enum PathEvent {
         /// White luminance times exposure factors, as the layer counts; discarded unless finite.
         value: Vec3,
     },
+}
+
+impl PathEvent {
+    /// The event with positions relative to `origin` moved to world space.
+    pub fn into_world(self, origin: Vec3) -> Self {
+        match self {
+            PathEvent::CameraRay { origin: start, direction } => {
+                PathEvent::CameraRay { origin: start + origin, direction }
+            }
+            PathEvent::Vertex(vertex) => PathEvent::Vertex(PathVertex { position: vertex.position + origin, ..vertex }),
+            other => other,
+        }
+    }
 }
 
 /// A path vertex.

@@ -18,6 +18,13 @@ pub struct SamplePass {
     pub samples: u32,
 }
 
+impl SamplePass {
+    /// Returns true if the pass has a sample.
+    pub fn contains(&self, index: u32) -> bool {
+        index >= self.first_sample && index - self.first_sample < self.samples
+    }
+}
+
 /// The passes of a render; a function of scene and settings.
 #[derive(Clone, Copy, Debug)]
 pub struct PassSchedule {

@@ -28,7 +28,7 @@ pub fn render(
     on_pass: &mut dyn FnMut(&Film) -> ControlFlow<()>,
 ) -> Film {
     let photons = passes::uses_photons(scene, settings);
-    let mut film = Film::new(settings.width, settings.height, scene.layers.clone(), settings.method, photons);
+    let mut film = Film::new(settings, scene.layers.clone(), photons);
     let camera = scene.lens.film_camera(settings.width, settings.height);
     for pass in PassSchedule::new(scene, settings).passes() {
         let photon_map = passes::photon_map(scene, settings, pass, control);
@@ -69,7 +69,7 @@ impl TileJob<'_> {
         }
         let Settings { method, max_depth, seed, .. } = *self.settings;
         let SamplePass { first_sample, samples } = self.pass;
-        let half = tile.halves.next_half();
+        let (half, view_axis) = (tile.halves.next_half(), self.camera.forward());
         let limits = PathLimits::new(method, self.scene.plan(), max_depth);
         let tracer = PathTracer::new(self.scene, self.photon_map);
         let mut pixel_sampler = PixelSampler { tracer, camera: self.camera, method, limits };
@@ -77,7 +77,7 @@ impl TileJob<'_> {
             let (x, y) = tile.position(pixel);
             for index in first_sample..first_sample + samples {
                 let sample = SampleId { x, y, index, seed };
-                let mut gate = tile.sample_sink(pixel, sample, &self.scene.layer_times);
+                let mut gate = tile.sample_sink(pixel, sample, &self.scene.layer_times, view_axis);
                 pixel_sampler.sample(sample, &mut gate);
                 let luminance = gate.sink.luminance * self.scene.exposure;
                 tile.halves.add(half, pixel, luminance);

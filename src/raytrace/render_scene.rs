@@ -67,9 +67,9 @@ impl RenderScene {
         self.lights.len()
     }
 
-    /// World position of the tracer's origin, to which the positions of path events are relative.
-    pub fn origin(&self) -> Vec3 {
-        self.origin
+    /// The layers of the scene's films.
+    pub fn layers(&self) -> &[Layer] {
+        &self.layers
     }
 
     /// The scene's light of a prepared one.

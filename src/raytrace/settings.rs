@@ -30,11 +30,22 @@ pub struct Settings {
     pub seed: u32,
     /// Noise of a tile, in stops, at which it takes no more samples.
     pub noise_stops: Option<f32>,
+    /// The film also holds albedo, normal, depth and object of the first hit.
+    pub aovs: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { width: 960, height: 640, method: Method::Path, spp: 64, max_depth: None, seed: 0, noise_stops: None }
+        Settings {
+            width: 960,
+            height: 640,
+            method: Method::Path,
+            spp: 64,
+            max_depth: None,
+            seed: 0,
+            noise_stops: None,
+            aovs: false,
+        }
     }
 }
 

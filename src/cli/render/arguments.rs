@@ -1,12 +1,13 @@
 //! Arguments of `catchlight render`, and the settings that follow from them.
 
+use super::explain_pixel::parse_pixel;
 use crate::cli::input;
 use crate::io::PictureFormat;
-use crate::raytrace::{Method, Settings, Shortcut};
+use crate::raytrace::{Method, SampleId, Settings, Shortcut};
 use crate::scene::Camera;
 use anyhow::anyhow;
 use clap::ValueEnum;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Arguments of `render`.
@@ -15,8 +16,8 @@ pub struct Arguments {
     /// Studio: a .ron file, or the name of a shipped one.
     pub scene: PathBuf,
     /// Picture file, whose extension names its format: png, jpg (as shown), exr (scene-linear).
-    #[arg(short, long)]
-    pub output: PathBuf,
+    #[arg(short, long, required_unless_present = "explain_pixel")]
+    output: Option<PathBuf>,
     /// Rendering method.
     #[arg(long, value_enum, default_value_t = MethodName::Path)]
     pub method: MethodName,
@@ -54,6 +55,16 @@ pub struct Arguments {
     /// Write one EXR layer per light beside the whole picture (exr only).
     #[arg(long)]
     pub layers: bool,
+    /// Write what each pixel shows beside its light (exr only): albedo.R/G/B, normal.X/Y/Z (world), Z (metres along the
+    /// view axis, infinite where there is nothing), id (0 nothing, 1 the room, then the objects in the file's order).
+    #[arg(long)]
+    pub aovs: bool,
+    /// Trace one sample of a pixel again and print every step, instead of a picture.
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
+    pub explain_pixel: Option<(u32, u32)>,
+    /// The sample that --explain-pixel traces [default: the pixel's brightest].
+    #[arg(long, value_name = "N", requires = "explain_pixel")]
+    pub sample: Option<u32>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
@@ -110,15 +121,36 @@ const MAX_SPP: u32 = 65_536;
 impl Arguments {
     /// Checks the output file's name before a picture is rendered for it.
     pub fn check_output(&self) -> anyhow::Result<()> {
-        let format = PictureFormat::of(&self.output)?;
-        if self.layers && format != PictureFormat::Exr {
-            return Err(anyhow!("--layers needs a picture that ends in .exr, not {}", self.output.display()));
+        let Some(output) = &self.output else { return Ok(()) };
+        let format = PictureFormat::of(output)?;
+        for (is_set, option) in [(self.layers, "--layers"), (self.aovs, "--aovs")] {
+            if is_set && format != PictureFormat::Exr {
+                return Err(anyhow!("{option} needs a picture that ends in .exr, not {}", output.display()));
+            }
         }
-        let folder = self.output.parent().filter(|p| !p.as_os_str().is_empty());
+        let folder = output.parent().filter(|p| !p.as_os_str().is_empty());
         if let Some(folder) = folder.filter(|p| !p.is_dir()) {
             return Err(anyhow!("the folder of the picture does not exist: {}", folder.display()));
         }
         Ok(())
+    }
+
+    /// Returns the picture file; empty only with --explain-pixel.
+    pub fn output(&self) -> &Path {
+        self.output.as_deref().unwrap_or(Path::new(""))
+    }
+
+    /// Returns the command that traces a sample of a render again, step by step.
+    pub fn replay_command(&self, settings: &Settings, sample: SampleId) -> String {
+        let Settings { width, height, spp, .. } = settings;
+        let SampleId { x, y, index, seed } = sample;
+        let (scene, method) = (self.scene.display(), self.method.label());
+        let depth = self.max_depth.map_or(String::new(), |depth| format!(" --max-depth {depth}"));
+        let caustics = if self.caustics == Caustics::Paths { " --caustics paths" } else { "" };
+        format!(
+            "catchlight render '{scene}' --method {method} --size {width}x{height} --spp {spp}{depth}{caustics} \
+             --seed {seed} --explain-pixel {x},{y} --sample {index}"
+        )
     }
 
     /// Returns the size of the picture, pixels.
@@ -132,7 +164,7 @@ impl Arguments {
         let is_open_ended = self.noise.is_some() || self.time.is_some();
         let spp = self.spp.unwrap_or(if is_open_ended { MAX_SPP } else { DEFAULT_SPP });
         let (max_depth, seed, noise_stops) = (self.max_depth, self.seed, self.noise);
-        Settings { width, height, method, spp, max_depth, seed, noise_stops }
+        Settings { width, height, method, spp, max_depth, seed, noise_stops, aovs: self.aovs }
     }
 
     /// Returns the time limit. A limit beyond what a duration holds is none.

@@ -1,6 +1,7 @@
 //! `catchlight render SCENE -o OUT`: renders a picture without a window.
 
 mod arguments;
+mod explain_pixel;
 mod interrupt;
 mod progress_bar;
 mod report;
@@ -11,7 +12,7 @@ use super::failure::Failure;
 use super::{input, terminal, zbuffer};
 use crate::io::{self, Loaded, PictureInfo};
 use crate::jobs::{self, RenderInput, RenderMonitor, RenderStage, Rendered};
-use crate::raytrace::{Film, GeometryCache, NonFiniteReport, RenderControl, RenderScene, SampleId, Settings};
+use crate::raytrace::{Film, GeometryCache, NonFiniteReport, RenderControl, RenderScene, Settings};
 use anyhow::anyhow;
 use interrupt::cancel_on_ctrl_c;
 use progress_bar::ProgressDisplay;
@@ -34,8 +35,12 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
     let Some(method) = arguments.method.traced() else {
         return draw_zbuffer(arguments, &loaded, &pool, started, load_s);
     };
-    // Render with a progress bar.
     let settings = arguments.settings(&loaded.scene.camera, method);
+    if let Some(pixel) = arguments.explain_pixel {
+        let explain = || explain_pixel::run(arguments, &loaded, &settings, pixel);
+        return Ok(pool.install(explain)?);
+    }
+    // Render with a progress bar.
     let monitor = Arc::new(RenderMonitor::new(&settings, control));
     let rendered = render(arguments, &loaded, &settings, &pool, &monitor)?;
     // Write the picture.
@@ -44,7 +49,7 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
         return keep_coarse(arguments, &loaded, rendered.coarse.as_ref(), &settings);
     }
     let nonfinite = film.nonfinite();
-    warn_of_nonfinite(&nonfinite);
+    warn_of_nonfinite(arguments, &settings, &nonfinite);
     write(arguments, &loaded, film, &settings)?;
     // Print the statistics.
     let interrupted = interrupted.load(Ordering::Relaxed);
@@ -72,7 +77,7 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
         noise_stops: Some(film.noise_stops()).filter(|n| n.is_finite()),
         nonfinite: nonfinite.count,
         interrupted,
-        output: arguments.output.display().to_string(),
+        output: arguments.output().display().to_string(),
     };
     report.print(arguments.json)?;
     if interrupted { Err(Failure::Interrupted) } else { Ok(()) }
@@ -113,11 +118,13 @@ fn print_plan(scene: &RenderScene, json: bool) {
     if json { terminal::progress(text.trim_end()) } else { terminal::result(text.trim_end()) }
 }
 
-fn warn_of_nonfinite(nonfinite: &NonFiniteReport) {
-    if let Some(SampleId { x, y, index, seed }) = nonfinite.first {
+/// Warns of non-finite contributions, with the command that replays the first.
+fn warn_of_nonfinite(arguments: &Arguments, settings: &Settings, nonfinite: &NonFiniteReport) {
+    if let Some(sample) = nonfinite.first {
         terminal::warning(format_args!(
-            "{} non-finite contributions shown black; the first at pixel {x},{y}, sample {index}, seed {seed}",
+            "{} non-finite contributions shown black; trace the first again with\n  {}",
             nonfinite.count,
+            arguments.replay_command(settings, sample)
         ));
     }
 }
@@ -148,8 +155,10 @@ fn draw_zbuffer(
     started: Instant,
     load_s: f64,
 ) -> Result<(), Failure> {
-    if arguments.layers || arguments.explain {
-        return Err(Failure::Input(anyhow!("--layers and --explain are for methods that trace, not for zbuffer")));
+    if arguments.layers || arguments.explain || arguments.aovs || arguments.explain_pixel.is_some() {
+        return Err(Failure::Input(anyhow!(
+            "--layers, --aovs, --explain and --explain-pixel are for methods that trace, not for zbuffer"
+        )));
     }
     let (width, height) = arguments.picture_size(&loaded.scene.camera);
     let side = arguments.spp.unwrap_or(1).isqrt().clamp(1, 4);
@@ -158,7 +167,7 @@ fn draw_zbuffer(
     let trace_s = draw_started.elapsed().as_secs_f64();
     let info = PictureInfo::new(&loaded.scene.camera, "zbuffer", side * side, arguments.seed.into());
     let first_picture_s = started.elapsed().as_secs_f64();
-    io::export_picture(&arguments.output, &picture, &info)?;
+    io::export_picture(arguments.output(), &picture, &info)?;
     let report = RenderReport {
         width,
         height,
@@ -181,7 +190,7 @@ fn draw_zbuffer(
         noise_stops: None,
         nonfinite: 0,
         interrupted: false,
-        output: arguments.output.display().to_string(),
+        output: arguments.output().display().to_string(),
     };
     Ok(report.print(arguments.json)?)
 }
@@ -192,12 +201,8 @@ fn write(arguments: &Arguments, loaded: &Loaded, film: &Film, settings: &Setting
     let info = PictureInfo::new(camera, film.method(), film.spp(), arguments.seed.into());
     let (width, height) = (settings.width, settings.height);
     let picture = film.develop(&loaded.scene).resized(width, height);
-    if arguments.layers {
-        let layers = film.develop_layers(&loaded.scene).into_iter();
-        let layers: Vec<_> = layers.map(|(name, layer)| (name, layer.resized(width, height))).collect();
-        io::export_layers(&arguments.output, &picture, &layers, &info)?;
-    } else {
-        io::export_picture(&arguments.output, &picture, &info)?;
-    }
-    Ok(())
+    let layers = if arguments.layers { film.develop_layers(&loaded.scene) } else { Vec::new() };
+    let layers: Vec<_> = layers.into_iter().map(|(name, layer)| (name, layer.resized(width, height))).collect();
+    let aovs = film.aovs().map(|aovs| aovs.resized(width, height));
+    Ok(io::export_layers(arguments.output(), &picture, &layers, aovs.as_ref(), &info)?)
 }

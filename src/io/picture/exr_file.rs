@@ -1,22 +1,26 @@
-//! OpenEXR: 32-bit float, Rec.709 primaries, ZIP, one part for the picture and one a light.
+//! OpenEXR: 32-bit float, Rec.709 primaries, ZIP, one part for the picture with its AOVs and one per light.
 
 use super::PictureInfo;
-use crate::photo::Picture;
-use exr::image::RgbChannels;
-use exr::image::write::channels::GetPixel;
+use crate::photo::{AovPicture, Picture};
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{
-    Encoding, Image, ImageAttributes, IntegerBounds, Layer, LayerAttributes, ReadChannels, ReadLayers,
-    SpecificChannels, Text, Vec2, WritableImage,
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer, LayerAttributes,
+    ReadChannels, ReadLayers, Text, WritableImage,
 };
 use std::io::Cursor;
 
 /// Name of the part with all light, beside the parts of single lights.
 const WHOLE: &str = "picture";
 
-pub(super) fn encode(picture: &Picture, layers: &[(String, Picture)], info: &PictureInfo) -> Result<Vec<u8>, String> {
-    let parts = std::iter::once((WHOLE, picture)).chain(layers.iter().map(|(name, layer)| (name.as_str(), layer)));
-    let parts: Vec<_> = parts.map(|(name, picture)| part(name, picture, info)).collect();
+pub(super) fn encode(
+    picture: &Picture,
+    layers: &[(String, Picture)],
+    aovs: Option<&AovPicture>,
+    info: &PictureInfo,
+) -> Result<Vec<u8>, String> {
+    let whole = part(WHOLE, picture, aovs, info);
+    let parts: Vec<_> =
+        std::iter::once(whole).chain(layers.iter().map(|(name, layer)| part(name, layer, None, info))).collect();
     let size = (picture.width as usize, picture.height as usize);
     let image = Image::from_layers(ImageAttributes::new(IntegerBounds::from_dimensions(size)), parts);
     let mut content = Cursor::new(Vec::new());
@@ -43,21 +47,12 @@ pub(super) fn decode(content: &[u8]) -> Result<Picture, String> {
     Ok(image.layer_data.channel_data.pixels)
 }
 
-/// A picture as the exr crate asks for it.
-struct Pixels<'a>(&'a Picture);
-
-impl GetPixel for Pixels<'_> {
-    type Pixel = (f32, f32, f32);
-
-    fn get_pixel(&self, at: Vec2<usize>) -> Self::Pixel {
-        let [r, g, b] = self.0.at(at.x() as u32, at.y() as u32);
-        (r, g, b)
-    }
-}
-
-type Part<'a> = Layer<SpecificChannels<Pixels<'a>, RgbChannels>>;
-
-fn part<'a>(name: &str, picture: &'a Picture, info: &PictureInfo) -> Part<'a> {
+fn part(
+    name: &str,
+    picture: &Picture,
+    aovs: Option<&AovPicture>,
+    info: &PictureInfo,
+) -> Layer<AnyChannels<FlatSamples>> {
     let mut attributes = LayerAttributes::named(text(name));
     attributes.software_name = Some(text(concat!("Catchlight ", env!("CARGO_PKG_VERSION"))));
     let others = [
@@ -69,8 +64,29 @@ fn part<'a>(name: &str, picture: &'a Picture, info: &PictureInfo) -> Part<'a> {
         ("catchlightVersion", AttributeValue::Text(text(env!("CARGO_PKG_VERSION")))),
     ];
     attributes.other.extend(others.map(|(name, value)| (text(name), value)));
+    let mut channels = channels(["R", "G", "B"], &picture.rgb).to_vec();
+    channels.extend(aovs.into_iter().flat_map(aov_channels));
     let size = (picture.width as usize, picture.height as usize);
-    Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, SpecificChannels::rgb(Pixels(picture)))
+    Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels.into()))
+}
+
+/// Channels of the AOVs, by the names of the OpenEXR conventions: normals in world space, `Z` in metres along the view
+/// axis, `id` as unsigned integers.
+fn aov_channels(aovs: &AovPicture) -> Vec<AnyChannel<FlatSamples>> {
+    let mut all = channels(["albedo.R", "albedo.G", "albedo.B"], &aovs.albedo).to_vec();
+    all.extend(channels(["normal.X", "normal.Y", "normal.Z"], &aovs.normal));
+    all.push(AnyChannel::new("Z", FlatSamples::F32(aovs.depth_m.clone())));
+    all.push(AnyChannel::new("id", FlatSamples::U32(aovs.object_id.clone())));
+    all
+}
+
+/// Three channels of pixels with three values.
+fn channels(names: [&str; 3], pixels: &[[f32; 3]]) -> [AnyChannel<FlatSamples>; 3] {
+    let channel = |index: usize| {
+        let values = pixels.iter().map(|pixel| pixel[index]).collect();
+        AnyChannel::new(names[index], FlatSamples::F32(values))
+    };
+    [0, 1, 2].map(channel)
 }
 
 /// Text in EXR is bytes; what does not fit is replaced. It must not be empty and not be long.

@@ -4,7 +4,7 @@ mod exr_file;
 
 use super::atomic;
 use super::error::SaveError;
-use crate::photo::{Picture, exposure};
+use crate::photo::{AovPicture, Picture, exposure};
 use crate::scene::Camera;
 use std::io::Cursor;
 use std::path::Path;
@@ -74,18 +74,19 @@ pub fn read_exr(path: &Path) -> Result<Picture, String> {
 /// # Errors
 /// For an unknown ending, a missing folder, an empty picture, or a disk that refuses.
 pub fn export_picture(path: &Path, picture: &Picture, info: &PictureInfo) -> Result<(), SaveError> {
-    export_layers(path, picture, &[], info)
+    export_layers(path, picture, &[], None, info)
 }
 
-/// As [`export_picture`]; an EXR file gets the light layers besides, each under its light's name. PNG and JPEG have no
-/// layers and show the whole picture alone.
+/// As [`export_picture`]; an EXR file also gets the light layers, each as a part under its light's name, and the AOVs as
+/// channels beside the picture's. PNG and JPEG hold the picture alone.
 ///
 /// # Errors
-/// As [`export_picture`], and when layers differ in size.
+/// As [`export_picture`], and when layers or AOVs differ in size.
 pub fn export_layers(
     path: &Path,
     picture: &Picture,
     layers: &[(String, Picture)],
+    aovs: Option<&AovPicture>,
     info: &PictureInfo,
 ) -> Result<(), SaveError> {
     let format = PictureFormat::of(path)?;
@@ -96,9 +97,12 @@ pub fn export_layers(
             return Err(SaveError::BadPicture(format!("the layer {name:?} has another size than the picture")));
         }
     }
+    if aovs.is_some_and(|aovs| (aovs.width, aovs.height) != (picture.width, picture.height)) {
+        return Err(SaveError::BadPicture("the AOVs have another size than the picture".to_owned()));
+    }
     let content = match format {
         PictureFormat::Png | PictureFormat::Jpeg => encode_8bit(picture, format),
-        PictureFormat::Exr => exr_file::encode(picture, layers, info),
+        PictureFormat::Exr => exr_file::encode(picture, layers, aovs, info),
     };
     let content = content.map_err(|message| SaveError::Encode { message, path: path.to_owned() })?;
     atomic::write(path, &content)

@@ -41,7 +41,7 @@ fn exr_keeps_every_bit_the_layers_and_the_attributes() {
     let path = folder.path().join("a.exr");
     let layers = [("Key".to_owned(), ramp(19, 33, 0.25)), ("Füll 灯".to_owned(), ramp(19, 33, 0.75))];
     let whole = ramp(19, 33, 1.0);
-    export_layers(&path, &whole, &layers, &info()).unwrap();
+    export_layers(&path, &whole, &layers, None, &info()).unwrap();
     let image =
         read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes().from_file(&path);
     let image = image.unwrap();
@@ -86,6 +86,6 @@ fn refusals_are_clear_and_leave_nothing_behind() {
     assert!(refused("none/a.png", &picture).starts_with("there is no such folder"));
     assert!(refused("a.png", &Picture::default()).contains("no picture of 0 x 0"));
     let layers = [("Key".to_owned(), ramp(3, 2, 1.0))];
-    assert!(export_layers(&folder.path().join("a.exr"), &picture, &layers, &info()).is_err());
+    assert!(export_layers(&folder.path().join("a.exr"), &picture, &layers, None, &info()).is_err());
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }

@@ -1,7 +1,7 @@
 //! The gate that keeps non-finite values out of every film and meter (invariant 7).
 
 use crate::raytrace::sampler::SampleId;
-use crate::raytrace::sink::RadianceSink;
+use crate::raytrace::sink::{FirstHit, RadianceSink};
 use glam::Vec3;
 
 /// The non-finite contributions of a film, a tile or a meter reading.
@@ -58,6 +58,16 @@ impl<S: RadianceSink> RadianceSink for NonFiniteGate<'_, S> {
         if let Some(value) = self.report.admit(self.sample, value) {
             self.sink.add(layer, value);
         }
+    }
+
+    #[inline]
+    fn first_hit(&mut self, hit: impl FnOnce() -> FirstHit) {
+        let NonFiniteGate { sink, sample, report } = self;
+        sink.first_hit(|| {
+            let hit = hit();
+            let mut admit = |value: Vec3| report.admit(*sample, value).unwrap_or_default();
+            FirstHit { normal: admit(hit.normal), albedo: admit(hit.albedo), ..hit }
+        });
     }
 }
 

@@ -1,6 +1,7 @@
 //! The film: sums of samples in tiles, with one layer per light, so that lights can be dimmed and coloured after the
 //! render.
 
+mod aov;
 mod gate;
 mod layer;
 mod noise;
@@ -13,9 +14,8 @@ pub use noise::HalfBuffers;
 pub use sums::LayerSums;
 pub use tile::{FilmTile, TILE};
 
-use super::settings::Method;
-use crate::photo::Picture;
-use crate::photo::exposure;
+use super::settings::{Method, Settings};
+use crate::photo::{AovPicture, Picture, exposure};
 use crate::scene::Scene;
 use glam::Vec3;
 use std::sync::Arc;
@@ -36,13 +36,14 @@ pub struct Film {
 }
 
 impl Film {
-    /// An empty film for a method, with caustics from photons or without.
-    pub fn new(width: u32, height: u32, layers: Vec<Layer>, method: Method, photons: bool) -> Self {
+    /// An empty film for a render, with caustics from photons or without.
+    pub fn new(settings: &Settings, layers: Vec<Layer>, photons: bool) -> Self {
+        let Settings { width, height, method, aovs, .. } = *settings;
         let mut tiles = Vec::new();
         for y in (0..height).step_by(TILE as usize) {
             for x in (0..width).step_by(TILE as usize) {
                 let (tile_width, tile_height) = (TILE.min(width - x), TILE.min(height - y));
-                tiles.push(Arc::new(FilmTile::new(x, y, tile_width, tile_height, layers.len())));
+                tiles.push(Arc::new(FilmTile::new((x, y), (tile_width, tile_height), layers.len(), aovs)));
             }
         }
         Film { width, height, layers, method, photons, tiles }
@@ -125,6 +126,20 @@ impl Film {
             (info.name.clone(), picture)
         };
         self.layers.iter().enumerate().map(one).collect()
+    }
+
+    /// The AOVs; none unless [`Settings::aovs`] asked for them.
+    pub fn aovs(&self) -> Option<AovPicture> {
+        let mut picture = AovPicture::new(self.width, self.height);
+        for tile in &self.tiles {
+            let aovs = tile.aovs.as_ref()?;
+            for pixel in 0..tile.pixels() {
+                let (x, y) = tile.position(pixel);
+                let at = y as usize * self.width as usize + x as usize;
+                aovs.write(pixel, tile.per_sample(), &mut picture, at);
+            }
+        }
+        Some(picture)
     }
 
     /// Factor of each layer from means to picture values.

@@ -1,9 +1,10 @@
 //! One tile of a film.
 
+use super::aov::AovTile;
 use super::{HalfBuffers, LayerSums, NonFiniteGate, NonFiniteReport};
 use crate::color::luminance;
 use crate::raytrace::sampler::SampleId;
-use crate::raytrace::sink::RadianceSink;
+use crate::raytrace::sink::{FirstHit, RadianceSink};
 use glam::Vec3;
 
 /// Edge length of a tile, pixels. Each tile is written by one thread, without locks.
@@ -22,13 +23,15 @@ pub struct FilmTile {
     pub sums: LayerSums<Vec3>,
     /// Halves of the samples, for the noise estimate.
     pub halves: HalfBuffers,
+    /// Albedo, normal, depth and object, if the render has AOVs.
+    pub aovs: Option<Box<AovTile>>,
     /// Discarded non-finite contributions.
     pub nonfinite: NonFiniteReport,
 }
 
 impl FilmTile {
-    /// An empty tile.
-    pub fn new(x: u32, y: u32, width: u32, height: u32, layers: usize) -> Self {
+    /// An empty tile at a position, of a width and height in pixels.
+    pub fn new((x, y): (u32, u32), (width, height): (u32, u32), layers: usize, aovs: bool) -> Self {
         let pixels = (width * height) as usize;
         FilmTile {
             x,
@@ -36,6 +39,7 @@ impl FilmTile {
             width,
             sums: LayerSums::new(pixels, layers),
             halves: HalfBuffers::new(pixels),
+            aovs: aovs.then(|| Box::new(AovTile::new(pixels))),
             nonfinite: NonFiniteReport::default(),
         }
     }
@@ -67,14 +71,17 @@ impl FilmTile {
     }
 
     /// The sink of one sample of a pixel, behind the non-finite gate. `layer_times` are the seconds for which each layer
-    /// counts in the exposure.
+    /// counts in the exposure, `view_axis` is the unit axis of the camera.
     pub fn sample_sink<'a>(
         &'a mut self,
         pixel: usize,
         sample: SampleId,
         layer_times: &'a [f32],
+        view_axis: Vec3,
     ) -> NonFiniteGate<'a, PixelSink<'a>> {
-        let sink = PixelSink { sums: &mut self.sums, pixel, layer_times, luminance: 0.0 };
+        let FilmTile { sums, aovs, .. } = self;
+        let aovs = aovs.as_deref_mut().map(|tile| PixelAovs { tile, sample_index: sample.index, view_axis });
+        let sink = PixelSink { sums, pixel, layer_times, luminance: 0.0, aovs };
         NonFiniteGate { sink, sample, report: &mut self.nonfinite }
     }
 }
@@ -87,6 +94,15 @@ pub struct PixelSink<'a> {
     layer_times: &'a [f32],
     /// Time-integrated luminance of the sample, cd s/m2.
     pub luminance: f32,
+    aovs: Option<PixelAovs<'a>>,
+}
+
+/// The AOVs of a sample.
+#[derive(Debug)]
+struct PixelAovs<'a> {
+    tile: &'a mut AovTile,
+    sample_index: u32,
+    view_axis: Vec3,
 }
 
 impl RadianceSink for PixelSink<'_> {
@@ -94,5 +110,12 @@ impl RadianceSink for PixelSink<'_> {
     fn add(&mut self, layer: usize, value: Vec3) {
         self.sums.add(layer, self.pixel, value);
         self.luminance += luminance(value) * self.layer_times[layer];
+    }
+
+    #[inline]
+    fn first_hit(&mut self, hit: impl FnOnce() -> FirstHit) {
+        if let Some(PixelAovs { tile, sample_index, view_axis }) = &mut self.aovs {
+            tile.add(self.pixel, *sample_index, &hit(), *view_axis);
+        }
     }
 }

@@ -1,0 +1,59 @@
+//! AOVs (arbitrary output variables): what the pixels of a picture show, beside their light.
+
+use super::picture::resized;
+
+/// Albedo, normal, depth and object of every pixel, rows from the top.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct AovPicture {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Reflectance, linear RGB; white for clear glass and emitters, zero where nothing is hit.
+    pub albedo: Vec<[f32; 3]>,
+    /// Shading normal towards the viewer, world space; zero where nothing is hit and for emitters. Shorter than 1 where
+    /// the samples of a pixel differ.
+    pub normal: Vec<[f32; 3]>,
+    /// Distance along the view axis, metres; infinite where nothing is hit.
+    pub depth_m: Vec<f32>,
+    /// Object: [`AovPicture::NO_OBJECT`], [`AovPicture::ROOM`] or an [`AovPicture::object_id`].
+    pub object_id: Vec<u32>,
+}
+
+impl AovPicture {
+    /// Id where nothing is hit, or an emitter that the camera sees.
+    pub const NO_OBJECT: u32 = 0;
+    /// Id of the room.
+    pub const ROOM: u32 = 1;
+
+    /// A picture that shows nothing.
+    pub fn new(width: u32, height: u32) -> Self {
+        let pixels = width as usize * height as usize;
+        AovPicture {
+            width,
+            height,
+            albedo: vec![[0.0; 3]; pixels],
+            normal: vec![[0.0; 3]; pixels],
+            depth_m: vec![f32::INFINITY; pixels],
+            object_id: vec![Self::NO_OBJECT; pixels],
+        }
+    }
+
+    /// The same AOVs at another size, each pixel the nearest of these.
+    pub fn resized(&self, width: u32, height: u32) -> AovPicture {
+        let (from, to) = ((self.width, self.height), (width, height));
+        AovPicture {
+            width,
+            height,
+            albedo: resized(&self.albedo, from, to),
+            normal: resized(&self.normal, from, to),
+            depth_m: resized(&self.depth_m, from, to),
+            object_id: resized(&self.object_id, from, to),
+        }
+    }
+
+    /// Id of an object by its index in the scene: from 2 on, in the order of the studio's file.
+    pub fn object_id(index: usize) -> u32 {
+        u32::try_from(index + 2).unwrap_or(u32::MAX)
+    }
+}
