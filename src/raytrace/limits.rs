@@ -28,13 +28,13 @@ impl PathLimits {
             }
             Method::Direct => PathLimits {
                 max_non_specular_depth: 1,
-                max_depth: max_depth.unwrap_or(plan.max_bounces.max(DIRECT_DEPTH)),
+                max_depth: max_depth.unwrap_or(plan.max_depth.max(DIRECT_DEPTH)),
                 // Without emitters to hit nothing is found beyond the first surface.
-                split_factor: if plan.emitters_have_size { plan.branches } else { 1 },
+                split_factor: if plan.has_area_emitters { plan.split_factor } else { 1 },
             },
             Method::Path => {
-                let depth = max_depth.unwrap_or(plan.max_bounces);
-                PathLimits { max_non_specular_depth: depth, max_depth: depth, split_factor: plan.branches }
+                let depth = max_depth.unwrap_or(plan.max_depth);
+                PathLimits { max_non_specular_depth: depth, max_depth: depth, split_factor: plan.split_factor }
             }
         }
     }

@@ -391,7 +391,7 @@ impl<'a> PathTracer<'a> {
             });
             path.non_specular_depth += 1;
             let is_last = path.non_specular_depth >= limits.max_non_specular_depth || depth + 1 >= limits.max_depth;
-            if is_last && !self.caster.scene.plan().emitters_have_size {
+            if is_last && !self.caster.scene.plan().has_area_emitters {
                 sink.record(|| PathEvent::End(PathEnd::Depth));
                 return false;
             }

@@ -1,117 +1,122 @@
-//! What a scene needs of the tracer, and why: "model no more than a scene needs".
+//! The render plan: the parts of the full model that a scene needs, with the reasons.
 
 use super::bsdf::TracedMaterial;
 use super::lights::TracedLight;
 use std::fmt;
 
-/// Bounces are cut where what is left of the light falls under this share.
+/// Part of the light after which further bounces are cut.
 const NEGLIGIBLE: f32 = 1.0 / 512.0;
-/// Ways on from the first surface that scatters widely, where bounced light is nearly all of the noise (points without
-/// penumbra, caustics) or each way asks a light of its own: the way to the surface is paid once.
-const MANY_WAYS: u32 = 4;
-/// The same where direct light has noise of its own.
-const FEW_WAYS: u32 = 2;
-/// Never more bounces than this, however white the room: what the whitest surface (0.999) needs. Roulette ends most paths
-/// long before; a lower limit would darken white rooms (at 64, one of 0.95 by 4 %).
-const MAX_BOUNCES: u32 = 6300;
-/// Up to this many lights, the first hit samples each of them.
-const SAMPLE_ALL: usize = 6;
+/// Paths from the first non-specular vertex where indirect light is nearly all of the noise (delta lights, caustics) or
+/// each path samples a light of its own: the path up to the vertex is shared.
+const HIGH_SPLIT_FACTOR: u32 = 4;
+/// Paths from there where direct light has noise of its own.
+const LOW_SPLIT_FACTOR: u32 = 2;
+/// Maximum depth in the whitest room: what the largest reflectance (0.999) needs. Russian roulette ends most paths long
+/// before; a lower limit would darken white rooms (at 64, one of 0.95 by 4 %).
+const MAX_DEPTH: u32 = 6300;
+/// Maximum number of lights that are all sampled at the first hit.
+const MAX_LIGHTS_AT_FIRST_HIT: usize = 6;
+/// Depth for refraction, beyond that of the largest reflectance.
+const REFRACTION_DEPTH: u32 = 8;
 
-/// What the tracer does for this scene. Derived from the scene alone.
+/// The shortcuts of the tracer for a scene. A function of the scene alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderPlan {
-    /// Rays after the first hit may meet emitters: some light has a size, or a surface glows.
-    pub emitters_have_size: bool,
+    /// Rays after the first hit may hit emitters: there are area lights or emissive surfaces.
+    pub has_area_emitters: bool,
     /// Surfaces refract.
     pub refraction: bool,
     /// The lens has an aperture.
     pub lens: bool,
-    /// All lights are sampled at the first hit (otherwise one, chosen by what it gives there).
+    /// All lights are sampled at the first hit, rather than one by its importance.
     pub sample_all_lights: bool,
-    /// Photons bring the light that comes by mirrors and glass.
+    /// Caustics come from photons.
     pub photons: bool,
-    /// Ways that are followed from the first surface that scatters widely.
-    pub branches: u32,
-    /// Scattering events a path at most.
-    pub max_bounces: u32,
-    /// A reason a line.
+    /// Number of paths from the first non-specular vertex.
+    pub split_factor: u32,
+    /// Maximum number of scattering events of a path.
+    pub max_depth: u32,
+    /// One reason per line.
     pub reasons: Vec<String>,
 }
 
-/// Something of the full model that a plan leaves out, or does in a cheaper way, for its reason.
+/// A part of the full model that a plan leaves out, or a cheaper technique that it takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shortcut {
-    /// Rays do not look for emitters after the first hit.
-    EmittersNotMet,
-    /// No ray refracts.
+    /// No emitter hits after the first hit.
+    NoEmitterHits,
+    /// No refraction.
     NoRefraction,
-    /// Rays start at one point.
+    /// No lens samples.
     Pinhole,
-    /// No choice between lights at the first hit.
-    EveryLight,
-    /// Paths end at a depth that the largest reflectance gives.
-    FewBounces,
-    /// Several ways share the way to the first surface.
-    SharedWay,
-    /// Photons bring caustics to paths that would find them by luck.
+    /// All lights are sampled at the first hit.
+    AllLights,
+    /// The maximum depth follows from the largest reflectance.
+    LimitedDepth,
+    /// Several paths share the path to the first non-specular vertex.
+    PathSplitting,
+    /// Caustics come from photons.
     Photons,
 }
 
 impl Shortcut {
-    /// All there are.
+    /// All shortcuts.
     pub const ALL: [Shortcut; 7] = [
-        Shortcut::EmittersNotMet,
+        Shortcut::NoEmitterHits,
         Shortcut::NoRefraction,
         Shortcut::Pinhole,
-        Shortcut::EveryLight,
-        Shortcut::FewBounces,
-        Shortcut::SharedWay,
+        Shortcut::AllLights,
+        Shortcut::LimitedDepth,
+        Shortcut::PathSplitting,
         Shortcut::Photons,
     ];
 
-    /// Its name on the chart.
+    /// Name on the chart.
     pub fn label(self) -> &'static str {
         match self {
-            Shortcut::EmittersNotMet => "no rays towards emitters",
+            Shortcut::NoEmitterHits => "no emitter hits",
             Shortcut::NoRefraction => "no refraction",
             Shortcut::Pinhole => "no lens samples",
-            Shortcut::EveryLight => "every light at the first hit",
-            Shortcut::FewBounces => "depth from the largest reflectance",
-            Shortcut::SharedWay => "several ways on from the first surface",
+            Shortcut::AllLights => "every light at the first hit",
+            Shortcut::LimitedDepth => "depth from the largest reflectance",
+            Shortcut::PathSplitting => "path splitting at the first surface",
             Shortcut::Photons => "caustics from photons",
         }
     }
 }
 
 impl RenderPlan {
-    /// The same plan with one shortcut undone.
+    /// The plan with one shortcut undone.
     pub fn without(mut self, shortcut: Shortcut) -> Self {
         match shortcut {
-            Shortcut::EmittersNotMet => self.emitters_have_size = true,
+            Shortcut::NoEmitterHits => self.has_area_emitters = true,
             Shortcut::NoRefraction => self.refraction = true,
             Shortcut::Pinhole => self.lens = true,
-            Shortcut::EveryLight => self.sample_all_lights = false,
-            Shortcut::FewBounces => self.max_bounces = MAX_BOUNCES,
-            Shortcut::SharedWay => self.branches = 1,
+            Shortcut::AllLights => self.sample_all_lights = false,
+            Shortcut::LimitedDepth => self.max_depth = MAX_DEPTH,
+            Shortcut::PathSplitting => self.split_factor = 1,
             Shortcut::Photons => self.photons = false,
         }
         self
     }
 
-    /// Looks at what is there.
+    /// Derives the plan from a scene's materials, lights and lens.
     pub fn new(materials: &[TracedMaterial], lights: &[TracedLight], lens: bool) -> Self {
         let mut reasons = Vec::new();
-        let glow = materials.iter().any(TracedMaterial::is_emissive);
-        let sized_lights = lights.iter().any(|light| !light.is_delta());
-        let emitters_have_size = sized_lights || glow;
-        reasons.push(match (lights.is_empty(), sized_lights) {
+
+        // Emitter hits
+        let has_area_lights = lights.iter().any(|light| !light.is_delta());
+        let has_area_emitters = has_area_lights || materials.iter().any(TracedMaterial::is_emissive);
+        reasons.push(match (lights.is_empty(), has_area_lights) {
             (true, _) => "no light is on: only glowing surfaces are traced".to_owned(),
-            (false, true) => "some light has a size: lights are met by rays as well as sampled (MIS)".to_owned(),
-            (false, false) => "point, spot and sharp sun only: no rays towards emitters, no MIS".to_owned(),
+            (false, true) => "area lights: emitter hits and light sampling, weighted (MIS)".to_owned(),
+            (false, false) => "point, spot and sharp sun only: no emitter hits, no MIS".to_owned(),
         });
+
+        // Refraction and lens
         let refraction = materials.iter().any(TracedMaterial::transmits);
         reasons.push(if refraction {
-            "glass: paths refract, and go on through it".to_owned()
+            "glass: paths refract and continue through it".to_owned()
         } else {
             "no glass: no refraction".to_owned()
         });
@@ -120,43 +125,49 @@ impl RenderPlan {
         } else {
             "pinhole: no lens samples".to_owned()
         });
-        let photons = sampled_lights(lights) > 0 && materials.iter().any(TracedMaterial::is_caustic_caster);
+
+        // Caustics
+        let sampled = sampled_lights(lights);
+        let photons = sampled > 0 && materials.iter().any(TracedMaterial::is_caustic_caster);
         reasons.push(if photons {
-            "mirrors or clear glass: what they throw on surfaces is gathered from photons".to_owned()
+            "mirrors or clear glass: caustics from photons".to_owned()
         } else {
             "neither mirror nor clear glass under a light: no photons".to_owned()
         });
-        let sampled = sampled_lights(lights);
-        let sample_all_lights = sampled <= SAMPLE_ALL;
+
+        // Light sampling
+        let sample_all_lights = sampled <= MAX_LIGHTS_AT_FIRST_HIT;
         reasons.push(match sampled {
-            0 => "no light to choose from".to_owned(),
-            1 => "one light: no choice between lights".to_owned(),
-            n if sample_all_lights => format!("{n} lights: each is sampled at the first hit, one after it"),
-            n => format!("{n} lights: one is chosen a hit, by what it gives there"),
+            0 => "no light to sample".to_owned(),
+            1 => "one light: no light selection".to_owned(),
+            n if sample_all_lights => format!("{n} lights: each is sampled at the first hit, one at later ones"),
+            n => format!("{n} lights: one is sampled at each hit, by importance"),
         });
+
+        // Depth and path splitting
         let albedo = materials.iter().map(TracedMaterial::max_albedo).fold(0.0, f32::max);
-        let max_bounces = bounces_for(albedo) + if refraction { 8 } else { 0 };
-        reasons.push(format!("largest reflectance {albedo:.2}: at most {max_bounces} bounces leave less than 1/512"));
-        let caustics = sized_lights && materials.iter().any(TracedMaterial::is_nearly_specular);
-        let direct_is_noisy = sized_lights && sample_all_lights && !caustics;
-        let branches = if direct_is_noisy { FEW_WAYS } else { MANY_WAYS };
-        reasons.push(format!("bounced light is noisier than direct: {branches} ways on from the first surface"));
-        RenderPlan { emitters_have_size, refraction, lens, sample_all_lights, photons, branches, max_bounces, reasons }
+        let max_depth = depth_for(albedo) + if refraction { REFRACTION_DEPTH } else { 0 };
+        reasons.push(format!("largest reflectance {albedo:.2}: less than 1/512 is left after {max_depth} bounces"));
+        let has_noisy_caustics = has_area_lights && materials.iter().any(TracedMaterial::is_nearly_specular);
+        let direct_is_noisy = has_area_lights && sample_all_lights && !has_noisy_caustics;
+        let split_factor = if direct_is_noisy { LOW_SPLIT_FACTOR } else { HIGH_SPLIT_FACTOR };
+        reasons.push(format!("indirect light is noisier than direct: {split_factor} paths from the first surface"));
+        RenderPlan { has_area_emitters, refraction, lens, sample_all_lights, photons, split_factor, max_depth, reasons }
     }
 }
 
-/// Lights that are sampled by choosing points on them.
+/// Number of lights with light sampling.
 fn sampled_lights(lights: &[TracedLight]) -> usize {
     lights.iter().filter(|light| light.is_sampled()).count()
 }
 
-/// Bounces after which less than 1/512 is left at this reflectance.
-fn bounces_for(albedo: f32) -> u32 {
+/// Number of bounces after which less than 1/512 is left at this reflectance.
+fn depth_for(albedo: f32) -> u32 {
     if albedo <= NEGLIGIBLE {
         return 1;
     }
     let bounces = (NEGLIGIBLE.ln() / albedo.min(0.999).ln()).ceil();
-    (bounces as u32 + 1).clamp(2, MAX_BOUNCES)
+    (bounces as u32 + 1).clamp(2, MAX_DEPTH)
 }
 
 impl fmt::Display for RenderPlan {
@@ -175,12 +186,12 @@ mod tests {
     use glam::Vec3;
     use std::ops::ControlFlow;
 
-    /// Everything on.
+    /// The plan without any shortcut.
     fn full(plan: &RenderPlan) -> RenderPlan {
         Shortcut::ALL.into_iter().fold(plan.clone(), RenderPlan::without)
     }
 
-    /// A ball in a room under lights in a row.
+    /// A ball in a room under a row of lights.
     fn studio(emitters: &[Emitter], ball: Material) -> Scene {
         let ball = Object {
             id: ObjectId(1),
@@ -205,7 +216,7 @@ mod tests {
         Scene { camera, room: Some(Room::default()), objects: vec![ball], lights, ..Scene::default() }
     }
 
-    /// Mean picture value, and its standard error from the scatter of eight seeds.
+    /// Mean picture value, and its standard error from eight seeds.
     fn mean(scene: &Scene, plan: Option<RenderPlan>) -> (f32, f32) {
         let mut prepared = prepare(scene, &Assets::default()).unwrap();
         if let Some(plan) = plan {
@@ -223,14 +234,14 @@ mod tests {
         (mean, (variance / 8.0).sqrt())
     }
 
-    /// Holds what is rendered as the scene is planned to the mean of the full model.
+    /// Compares the mean of the planned render with that of the full model.
     fn keeps_the_mean(scene: &Scene, most_error: f32) -> RenderPlan {
         let plan = prepare(scene, &Assets::default()).unwrap().plan;
         let ((ours, error), (full, full_error)) = (mean(scene, None), mean(scene, Some(full(&plan))));
-        // What the bounces that are cut off leave, and four standard errors (one false alarm in 10 000).
+        // The light of the bounces that are cut, and four standard errors (one false alarm in 10 000).
         let tolerance = NEGLIGIBLE * full + 4.0 * error.hypot(full_error);
         assert!((ours - full).abs() < tolerance, "{ours} for {full}, within {tolerance}\n{plan}");
-        assert!(tolerance < most_error * full, "too noisy to say anything: {tolerance} of {full}");
+        assert!(tolerance < most_error * full, "too noisy for a comparison: {tolerance} of {full}");
         plan
     }
 
@@ -240,18 +251,18 @@ mod tests {
         let spot = Emitter::Spot { inner_deg: 40.0, outer_deg: 70.0 };
         for emitters in [[Emitter::Point, spot], [panel, Emitter::Sphere { radius_m: 0.05 }]] {
             let plan = keeps_the_mean(&studio(&emitters, Material::default()), 0.02);
-            assert!(!plan.refraction && plan.sample_all_lights && plan.max_bounces < MAX_BOUNCES, "{plan}");
-            assert!(plan.branches > 1);
-            assert_eq!(plan.emitters_have_size, emitters[0] == panel);
+            assert!(!plan.refraction && plan.sample_all_lights && plan.max_depth < MAX_DEPTH, "{plan}");
+            assert!(plan.split_factor > 1);
+            assert_eq!(plan.has_area_emitters, emitters[0] == panel);
         }
     }
 
     #[test]
-    fn one_of_many_lights_a_way_keeps_the_mean_of_the_full_model() {
+    fn one_of_many_lights_per_path_keeps_the_mean_of_the_full_model() {
         let panel = Emitter::RectPanel { width_m: 0.2, height_m: 0.3 };
         let emitters: Vec<Emitter> = (0..80).map(|i| if i % 2 == 0 { panel } else { Emitter::Point }).collect();
         let plan = keeps_the_mean(&studio(&emitters, Material::default()), 0.02);
-        assert!(!plan.sample_all_lights && plan.branches > 1);
+        assert!(!plan.sample_all_lights && plan.split_factor > 1);
     }
 
     #[test]
@@ -261,14 +272,14 @@ mod tests {
         let chrome = Material { metallic: 1.0, roughness: 0.0, base_color: [0.9; 3], ..Material::default() };
         for material in [glass, chrome] {
             let plan = keeps_the_mean(&studio(&emitters, material), 0.1);
-            assert!(plan.photons && plan.branches > 1, "{plan}");
+            assert!(plan.photons && plan.split_factor > 1, "{plan}");
         }
     }
 
     #[test]
     fn darker_rooms_need_fewer_bounces() {
-        assert_eq!(bounces_for(0.0), 1);
-        assert_eq!(bounces_for(0.18), 5);
-        assert!(bounces_for(0.5) < bounces_for(0.8) && bounces_for(0.95) > 120 && bounces_for(1.0) <= MAX_BOUNCES);
+        assert_eq!(depth_for(0.0), 1);
+        assert_eq!(depth_for(0.18), 5);
+        assert!(depth_for(0.5) < depth_for(0.8) && depth_for(0.95) > 120 && depth_for(1.0) <= MAX_DEPTH);
     }
 }

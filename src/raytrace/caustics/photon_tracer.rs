@@ -95,7 +95,7 @@ impl<'a> PhotonTracer<'a> {
         let mut wo = to_light;
         let (mut specular_depth, mut was_reflected) = (0, false);
         let (mut media, mut polarisation, mut throughput) = (MediumStack::default(), Polarisation::NONE, Vec3::ONE);
-        for depth in 0..scene.plan().max_bounces {
+        for depth in 0..scene.plan().max_depth {
             // Sample the BSDF; only specular scattering at casters is followed
             let material = &scene.materials[surface.material as usize];
             let set = sampler.set(Purpose::Bsdf { bounce: depth });

@@ -402,7 +402,7 @@ struct Brush<'a> {
 
 impl<'a> Brush<'a> {
     fn new(job: &'a Job<'a>) -> Self {
-        let depth = job.scene.plan().max_bounces;
+        let depth = job.scene.plan().max_depth;
         Brush {
             job,
             tracer: PathTracer::new(job.scene, job.caustics),
@@ -428,7 +428,7 @@ impl<'a> Brush<'a> {
         }
         let mut gate = Gate { tile, pixel, job: self.job, luminance: 0.0 };
         // The first sample is soon there; those after it share the way to the surface, which is less noise for the time.
-        let split_factor = if sample == 0 { 1 } else { self.job.scene.plan().branches };
+        let split_factor = if sample == 0 { 1 } else { self.job.scene.plan().split_factor };
         self.tracer.trace(origin, direction, &sampler, PathLimits { split_factor, ..self.limits }, &mut gate);
         self.paths += 1;
         gate.luminance * self.job.scene.exposure

@@ -1,0 +1,158 @@
+//! The samples of one round: emitter points with shadow rays, and paths from the receptor.
+
+use super::receptor::ReceptorFrame;
+use super::replicate::Replicate;
+use super::rounds::SamplingRound;
+use super::studio::MeteredStudio;
+use crate::color::luminance;
+use crate::raytrace::control::RenderControl;
+use crate::raytrace::film::{NonFiniteGate, NonFiniteReport};
+use crate::raytrace::lights::TracedLight;
+use crate::raytrace::limits::PathLimits;
+use crate::raytrace::medium_stack::MediumStack;
+use crate::raytrace::path_tracer::PathTracer;
+use crate::raytrace::ray_caster::RayCaster;
+use crate::raytrace::sampler::{self, Purpose, SampleId, Sampler};
+use crate::raytrace::sink::RadianceSink;
+use glam::{DVec3, Vec3};
+
+/// Limits of the paths, far beyond the depth at which Russian roulette ends them.
+const PATHS: PathLimits = PathLimits { max_non_specular_depth: 4096, max_depth: 4096, split_factor: 1 };
+/// Limits of a path that finds the emission of the first surface alone.
+const FIRST_SURFACE: PathLimits = PathLimits { max_non_specular_depth: 0, max_depth: 0, split_factor: 1 };
+/// Paths between two checks for cancellation.
+const CHECK_EVERY: u32 = 256;
+
+/// The sampling of a round, for any replicate.
+#[derive(Debug)]
+pub struct RoundSampler<'a> {
+    /// The studio.
+    pub studio: &'a MeteredStudio,
+    /// The receptor.
+    pub receptor: ReceptorFrame,
+    /// The samples to take.
+    pub round: &'a SamplingRound,
+    /// Seed of the reading.
+    pub seed: u32,
+    /// Cancellation.
+    pub control: &'a RenderControl,
+}
+
+impl RoundSampler<'_> {
+    /// Adds the round's samples to a replicate. Incomplete if the reading is cancelled.
+    pub fn run(&self, replicate: &mut Replicate) {
+        let scene = &self.studio.scene;
+        let mut tracer = PathTracer::new(scene, None);
+        for (layer, light) in scene.lights.iter().enumerate() {
+            if self.control.is_cancelled() {
+                return;
+            }
+            self.sample_light(replicate, &mut tracer.caster, layer, light);
+        }
+        for index in self.round.paths.clone() {
+            if index % CHECK_EVERY == 0 && self.control.is_cancelled() {
+                return;
+            }
+            self.trace_path(replicate, &mut tracer, index);
+        }
+        replicate.rays += tracer.caster.rays;
+    }
+
+    /// Samples points of a light and adds their direct illuminance.
+    fn sample_light(&self, replicate: &mut Replicate, caster: &mut RayCaster<'_>, layer: usize, light: &TracedLight) {
+        for index in self.round.points[layer].clone() {
+            // One sample of a delta light is exact.
+            if !light.is_sampled() || (light.is_delta() && index > 0) {
+                return;
+            }
+            let sampler = Sampler::new(replicate.index, 1 + layer as u32, index, self.seed);
+            let illuminance = self.light_sample(caster, light, &sampler);
+            let (sum, points) = &mut replicate.direct[layer];
+            *points += 1;
+            if let Some(illuminance) = replicate.nonfinite.admit(sampler.id(), Vec3::splat(illuminance)) {
+                *sum += f64::from(illuminance.x);
+            }
+        }
+    }
+
+    /// Illuminance by one sample of a light.
+    fn light_sample(&self, caster: &mut RayCaster<'_>, light: &TracedLight, sampler: &Sampler) -> f32 {
+        let ReceptorFrame { origin, facing, receptor, .. } = self.receptor;
+        let set = sampler.set(Purpose::Camera);
+        let Some(sample) = light.sample(origin, sampler::point(&set)) else { return 0.0 };
+        let value = sample.value * receptor.response(sample.direction.dot(facing));
+        if value <= 0.0 {
+            return 0.0;
+        }
+        // The paths find light of an area light through bodies of glass.
+        let (is_delta, media) = (light.is_delta(), MediumStack::default());
+        value * luminance(caster.visibility(origin, sample.direction, sample.distance, is_delta, media))
+    }
+
+    /// Traces one path for all lights.
+    fn trace_path(&self, replicate: &mut Replicate, tracer: &mut PathTracer<'_>, index: u32) {
+        let receptor = &self.receptor;
+        let sampler = Sampler::new(replicate.index, 0, index, self.seed);
+        let direction = receptor.sample(sampler::point(&sampler.set(Purpose::Camera)));
+        let weight = receptor.response_integral();
+        replicate.paths += 1;
+
+        // Surrounds by the sampled direction, then bounced light
+        let report = &mut replicate.nonfinite;
+        let mut sink = WeightedSink::new(&mut replicate.straight, weight, sampler.id(), report);
+        self.add_surrounds(&mut tracer.caster, direction, &mut sink);
+        let mut sink = WeightedSink::new(&mut replicate.bounced, weight, sampler.id(), report);
+        tracer.trace_without_direct_light(receptor.origin, direction, &sampler, PATHS, &mut sink);
+
+        // The emission of the first surface, which the path includes, is direct light
+        if self.studio.has_emission {
+            let layer = self.studio.emission_layer();
+            let mut first = vec![DVec3::ZERO; layer + 1];
+            let mut sink = WeightedSink::new(&mut first, weight, sampler.id(), report);
+            tracer.trace(receptor.origin, direction, &sampler, FIRST_SURFACE, &mut sink);
+            replicate.bounced[layer] -= first[layer];
+            replicate.straight[layer] += first[layer];
+        }
+    }
+
+    /// Adds the surrounds that a ray from the receptor reaches.
+    fn add_surrounds(&self, caster: &mut RayCaster<'_>, direction: Vec3, sink: &mut impl RadianceSink) {
+        let origin = self.receptor.origin;
+        let surrounds = || self.studio.scene.lights.iter().filter(|light| !light.is_sampled());
+        if surrounds().next().is_none() || caster.occluded(origin, direction, f32::INFINITY) {
+            return;
+        }
+        for light in surrounds() {
+            if let Some(hit) = light.intersect(origin, direction) {
+                sink.add(light.layer, Vec3::splat(hit.luminance));
+            }
+        }
+    }
+}
+
+/// Weights the contributions of a path by the receptor's response, and adds the finite ones to the layers' sums.
+struct WeightedSink<'a> {
+    gate: NonFiniteGate<'a, LayerTotals<'a>>,
+    weight: f32,
+}
+
+impl<'a> WeightedSink<'a> {
+    fn new(sums: &'a mut [DVec3], weight: f32, sample: SampleId, report: &'a mut NonFiniteReport) -> Self {
+        WeightedSink { gate: NonFiniteGate { sink: LayerTotals(sums), sample, report }, weight }
+    }
+}
+
+impl RadianceSink for WeightedSink<'_> {
+    fn add(&mut self, layer: usize, value: Vec3) {
+        self.gate.add(layer, value * self.weight);
+    }
+}
+
+/// One sum per layer, in double precision.
+struct LayerTotals<'a>(&'a mut [DVec3]);
+
+impl RadianceSink for LayerTotals<'_> {
+    fn add(&mut self, layer: usize, value: Vec3) {
+        self.0[layer] += value.as_dvec3();
+    }
+}

@@ -1,0 +1,82 @@
+//! A scene prepared for the light meter.
+
+use crate::photo::PhotometricLight;
+use crate::photo::meter::LightReading;
+use crate::raytrace::film::Layer;
+use crate::raytrace::lights::TracedLight;
+use crate::raytrace::prepare::{PrepareError, prepare_around};
+use crate::raytrace::render_scene::RenderScene;
+use crate::scene::{Assets, Light, LightId, Scene};
+use glam::Vec3;
+
+/// A scene with one layer per light.
+#[derive(Debug)]
+pub struct MeteredStudio {
+    /// The scene; its layers are those of `lights`, and one of emissive surfaces.
+    pub scene: RenderScene,
+    /// The lights with any output, in the scene's order.
+    pub lights: Vec<MeteredLight>,
+    /// Some surface is emissive.
+    pub has_emission: bool,
+    /// Exposure time of continuous light, seconds.
+    pub shutter_s: f32,
+}
+
+/// A light with any output.
+#[derive(Debug)]
+pub struct MeteredLight {
+    /// The scene's light.
+    pub id: LightId,
+    /// Its reading without light.
+    pub blank: LightReading,
+    /// Its colour.
+    pub rgb: Vec3,
+}
+
+impl MeteredStudio {
+    /// Prepares a scene; points near `around` (world space) are read most precisely.
+    pub fn new(scene: &Scene, assets: &Assets, around: Vec3) -> Result<Self, PrepareError> {
+        let mut prepared = prepare_around(scene, assets, around, one_layer_per_light)?;
+        // Emissive surfaces are read in lux, like any continuous light.
+        prepared.emission_time_s = 1.0;
+        let metered = |layer: &Layer| {
+            let light = layer.light.and_then(|id| scene.light(id))?;
+            let rgb = PhotometricLight::new(scene, light).tint;
+            Some(MeteredLight { id: light.id, blank: blank_reading(light), rgb })
+        };
+        let lights = prepared.layers.iter().filter_map(metered).collect();
+        let has_emission = prepared.materials.iter().any(|material| material.is_emissive());
+        Ok(MeteredStudio { scene: prepared, lights, has_emission, shutter_s: scene.camera.shutter_s })
+    }
+
+    /// Layer of emissive surfaces.
+    pub fn emission_layer(&self) -> usize {
+        self.lights.len()
+    }
+}
+
+/// Assigns each light a layer of its own with white light, however many there are.
+fn one_layer_per_light(scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<Layer> {
+    for (layer, (traced, light)) in lights.iter_mut().enumerate() {
+        traced.layer = layer;
+        // Raise the importance of weak lights for light sampling: each has a reading with its own relative error.
+        let strength = PhotometricLight::new(scene, light).axial_intensity_or_illuminance();
+        traced.time_s = (traced.time_s / strength).sqrt();
+        // A path from the receptor must not see emitters, which are found by light sampling.
+        traced.visible_to_camera = false;
+    }
+    lights.iter().map(|(_, light)| Layer::of_light(light)).chain([Layer::shared("Glow")]).collect()
+}
+
+/// The reading of a light that gives none.
+pub fn blank_reading(light: &Light) -> LightReading {
+    LightReading {
+        light: Some(light.id),
+        name: light.name.clone(),
+        role: Some(light.role),
+        flash: light.power.output.is_flash(),
+        direct: 0.0,
+        bounced: 0.0,
+        standard_error: 0.0,
+    }
+}
