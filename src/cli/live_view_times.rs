@@ -6,7 +6,7 @@ use super::terminal;
 use crate::io::{self, Loaded, PictureInfo};
 use crate::jobs::{Clock, LivePacing, background_pool, render_all_passes};
 use crate::photo::Picture;
-use crate::raytrace::{self, LiveCamera, LivePicture, RenderControl, Settings, Smoother};
+use crate::raytrace::{self, AtrousFilter, LiveCamera, LivePicture, RenderControl, Settings};
 use crate::scene::{CameraFrame, Scene};
 use anyhow::Context;
 use glam::{Affine3A, Quat, Vec3};
@@ -68,7 +68,7 @@ pub fn run(loaded: &Loaded, size: (u32, u32), frames: u32, output: Option<&Path>
     let mut bench = Bench::new(loaded, size)?;
     if let Some(output) = output {
         bench.open()?;
-        bench.work_until(|pacing| pacing.picture().is_done());
+        bench.work_until(|pacing| pacing.picture().is_converged());
         let picture = bench.pacing.picture().develop(&loaded.scene);
         let spp = bench.pacing.picture().spp();
         io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene.camera, "path", spp, 0))?;
@@ -149,8 +149,8 @@ impl<'a> Bench<'a> {
         let view_turned_ms = self.time(frames, |bench| {
             bench.frame.world_from_camera = turned(&bench.frame.world_from_camera);
         })?;
-        self.work_until(|pacing| pacing.picture().steps() > LivePicture::SEEN);
-        let reused = f64::from(self.pacing.picture().reused());
+        self.work_until(|pacing| pacing.picture().completed_steps() > LivePicture::HISTORY_STEPS);
+        let reused = f64::from(self.pacing.picture().reprojected_fraction());
         self.updates_ms.clear();
         let light_moved_ms =
             self.time(frames, |bench| bench.scene.lights.iter_mut().take(1).for_each(|l| l.position.y += STEP_M))?;
@@ -187,7 +187,7 @@ impl<'a> Bench<'a> {
 
     /// Returns the time that smoothing adds to the development of a picture: the fastest of some trials.
     fn smoothing_ms(&self) -> f64 {
-        let (picture, mut smoother) = (self.pacing.picture(), Smoother::default());
+        let (picture, mut filter) = (self.pacing.picture(), AtrousFilter::default());
         let fastest = |develop: &mut dyn FnMut() -> Picture| {
             let trial = |_| {
                 let began = Instant::now();
@@ -196,7 +196,7 @@ impl<'a> Bench<'a> {
             };
             (0..5).map(trial).fold(f64::INFINITY, f64::min)
         };
-        let smoothed = fastest(&mut || picture.develop_smooth(&self.scene, 1, &mut smoother));
+        let smoothed = fastest(&mut || picture.develop_filtered(&self.scene, 1, &mut filter));
         smoothed - fastest(&mut || picture.develop(&self.scene))
     }
 

@@ -6,7 +6,7 @@
 use super::clock::Clock;
 use super::threads::background_pool;
 use crate::color::ToneTable;
-use crate::raytrace::{GeometryCache, LiveCamera, LivePicture, PrepareError, RenderControl, Smoother};
+use crate::raytrace::{AtrousFilter, GeometryCache, LiveCamera, LivePicture, PrepareError, RenderControl, SampleId};
 use crate::scene::{Assets, Scene};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -51,8 +51,10 @@ pub struct LivePacing {
     /// When the last picture was shown; none since the edit.
     last_shown: Option<Instant>,
     has_shown_end: bool,
+    /// True if the non-finite samples of the picture have been logged.
+    has_logged_nonfinite: bool,
     /// Smooths pictures that are not done; none where that is switched off.
-    smoother: Option<Smoother>,
+    filter: Option<AtrousFilter>,
 }
 
 impl LivePacing {
@@ -73,7 +75,8 @@ impl LivePacing {
             clock,
             last_shown: None,
             has_shown_end: true,
-            smoother: None,
+            has_logged_nonfinite: false,
+            filter: None,
         })
     }
 
@@ -87,9 +90,9 @@ impl LivePacing {
         self.pools[0].current_num_threads()
     }
 
-    /// Switches smoothing of pictures that are not done on or off; see [`LivePicture::develop_smooth`]. It starts off.
+    /// Switches smoothing of pictures that are not done on or off; see [`LivePicture::develop_filtered`]. It starts off.
     pub fn set_smooth(&mut self, smooth: bool) {
-        self.smoother = smooth.then(|| self.smoother.take().unwrap_or_default());
+        self.filter = smooth.then(|| self.filter.take().unwrap_or_default());
     }
 
     /// Changes studio and view.
@@ -111,13 +114,14 @@ impl LivePacing {
 
     /// Returns true if nothing is left to trace or to show.
     pub fn is_idle(&self) -> bool {
-        self.picture.is_done() && self.has_shown_end
+        self.picture.is_converged() && self.has_shown_end
     }
 
     /// Traces a slice of work, unless `control` is cancelled, and returns the picture if it is time to show one.
     /// `user_is_active` leaves a core free.
     pub fn step(&mut self, user_is_active: bool, control: &RenderControl) -> Option<LiveImage> {
         self.trace_slice(user_is_active, control);
+        self.log_nonfinite();
         self.image_if_due()
     }
 
@@ -128,7 +132,7 @@ impl LivePacing {
         let threads = pool.current_num_threads() as f64;
         let paths = (self.paths_s * threads * slice.as_secs_f64()).max(64.0) as u64;
         let picture = &mut self.picture;
-        let done = pool.install(|| picture.work(paths, control));
+        let done = pool.install(|| picture.trace(paths, control));
         if done > 0 && !control.is_cancelled() {
             let measured = done as f64 / (self.clock.now() - began).as_secs_f64().max(1e-6) / threads;
             // The estimate follows slowly: one tile of glass does not make all tiles slow.
@@ -136,18 +140,30 @@ impl LivePacing {
         }
     }
 
+    /// Logs the first non-finite sample of the picture, as a render does.
+    fn log_nonfinite(&mut self) {
+        let report = self.picture.nonfinite();
+        if let Some(SampleId { x, y, index, seed }) = report.first.filter(|_| !self.has_logged_nonfinite) {
+            let count = report.count;
+            log::warn!(
+                "the live view shows {count} non-finite contributions black; the first at pixel {x},{y}, sample {index}, seed {seed}"
+            );
+        }
+        self.has_logged_nonfinite = report.first.is_some();
+    }
+
     /// Returns the picture if it is time to show one.
     fn image_if_due(&mut self) -> Option<LiveImage> {
-        let (is_done, now) = (self.picture.is_done(), self.clock.now());
+        let (is_done, now) = (self.picture.is_converged(), self.clock.now());
         let age = now - self.edited;
         let is_due = match self.last_shown {
-            None => is_done || self.picture.steps() >= LivePicture::SEEN || age > FIRST_PICTURE,
+            None => is_done || self.picture.completed_steps() >= LivePicture::HISTORY_STEPS || age > FIRST_PICTURE,
             Some(last) => {
                 let interval = (age / 6).clamp(PICTURE_INTERVALS[0], PICTURE_INTERVALS[1]);
                 now - last > interval || (is_done && !self.has_shown_end)
             }
         };
-        if self.is_idle() || !is_due || !(self.picture.is_begun() || is_done) {
+        if self.is_idle() || !is_due || !(self.picture.has_picture() || is_done) {
             return None;
         }
         self.has_shown_end = is_done;
@@ -157,18 +173,18 @@ impl LivePacing {
     }
 
     fn develop(&mut self) -> LiveImage {
-        let every = self.picture.coarseness();
-        let Self { picture: traced, smoother, scene, tone, pools, .. } = self;
+        let every = self.picture.display_stride();
+        let Self { picture: traced, filter, scene, tone, pools, .. } = self;
         pools[0].install(|| {
             // A picture of half the resolution is the history of before the view moved, which has little noise.
-            let picture = match smoother.as_mut().filter(|_| every != 2 && !traced.is_done()) {
-                Some(smoother) => traced.develop_smooth(scene, every, smoother),
-                None => traced.develop_every(scene, every),
+            let picture = match filter.as_mut().filter(|_| every != 2 && !traced.is_converged()) {
+                Some(filter) => traced.develop_filtered(scene, every, filter),
+                None => traced.develop_strided(scene, every),
             };
             let row = |row: &[[f32; 3]]| row.iter().flat_map(|rgb| tone.shown(*rgb)).collect::<Vec<u8>>();
             let rgb = picture.rgb.par_chunks(picture.width.max(1) as usize).flat_map_iter(row).collect();
             let (width, height) = (picture.width as usize, picture.height as usize);
-            LiveImage { width, height, rgb, spp: traced.spp(), is_done: traced.is_done() }
+            LiveImage { width, height, rgb, spp: traced.spp(), is_done: traced.is_converged() }
         })
     }
 }
@@ -246,11 +262,11 @@ mod tests {
             let control = RenderControl::new();
             // Every pixel with one sample: the same picture, for any clock.
             while pacing.picture().stride() != Some(1) {
-                pacing.picture.work(1, &control);
+                pacing.picture.trace(1, &control);
             }
             let unfinished = pacing.develop();
-            while !pacing.picture().is_done() {
-                pacing.picture.work(10_000, &control);
+            while !pacing.picture().is_converged() {
+                pacing.picture.trace(10_000, &control);
             }
             (unfinished, pacing.develop())
         };

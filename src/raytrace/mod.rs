@@ -46,7 +46,7 @@ pub use film::{Film, Layer, MAX_LIGHT_LAYERS, NonFiniteReport};
 pub use geometry_cache::GeometryCache;
 pub use intersectors::{IntersectionMethod, Intersector};
 pub use light_meter::{LightMeter, MeterEffort, MeterPoint, MeterResult};
-pub use live::{LiveCamera, LivePicture, Smoother};
+pub use live::{AtrousFilter, LiveCamera, LivePicture};
 pub use plan::{RenderPlan, Shortcut};
 pub use prepare::{PrepareError, prepare, prepare_kept};
 pub use primary_objects::primary_objects;

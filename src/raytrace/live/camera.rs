@@ -1,28 +1,28 @@
-//! From where a live picture is seen.
+//! The camera of the live view.
 
-use crate::raytrace::lens::{Aperture, Lens};
+use crate::raytrace::lens::{Aperture, Lens, PixelCamera};
 use crate::scene::{CameraFrame, Room, Scene};
 use glam::{Vec2, Vec3};
 
-/// A view of the studio, at a size in pixels.
+/// The camera of the live view, with the picture's size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LiveCamera {
-    /// What is framed, in world space.
+    /// Framing, in world space.
     pub frame: CameraFrame,
     /// Pixels across and down.
     pub size: (u32, u32),
     aperture: Aperture,
     /// The tracer's origin in world space.
     origin: Vec3,
-    /// Corners of the room around the tracer's origin, where the eye stands outside of it.
+    /// Corners of the room relative to the tracer's origin, if the eye is outside of it.
     room: Option<[Vec3; 2]>,
 }
 
-/// How far inside the room rays from outside begin, metres: clear of the wall's own rounding.
+/// Distance behind the near wall at which rays from outside the room begin, metres: more than its rounding error.
 const CLEAR_OF_WALL_M: f32 = 1e-3;
 
 impl LiveCamera {
-    /// A view in which everything is sharp.
+    /// A pinhole camera.
     pub fn pinhole(frame: CameraFrame, size: (u32, u32)) -> Self {
         LiveCamera {
             frame,
@@ -33,12 +33,12 @@ impl LiveCamera {
         }
     }
 
-    /// The view through the scene's camera, with its depth of field where that is on.
+    /// The scene's camera, with its depth of field if that is on.
     pub fn through_lens(scene: &Scene, frame: CameraFrame, size: (u32, u32)) -> Self {
         LiveCamera { aperture: Lens::new(scene).aperture(), ..Self::pinhole(frame, size) }
     }
 
-    /// The same view for a tracer whose origin lies elsewhere. From outside, a room's near walls are not seen.
+    /// Returns the same view for a tracer with this origin. From outside a room, its near walls are clipped.
     pub(super) fn around(self, origin: Vec3, room: Option<&Room>) -> Self {
         let corners = room.map(|room| corners(room).map(|corner| corner - origin));
         let eye = self.frame.position() - origin;
@@ -46,19 +46,19 @@ impl LiveCamera {
         LiveCamera { origin, room: corners.filter(outside), ..self }
     }
 
-    /// A good place for the tracer's origin: the eye, or where the room is nearest to it.
+    /// Returns a good origin for the tracer: the eye, clamped to the room.
     pub(super) fn natural_origin(&self, room: Option<&Room>) -> Vec3 {
         let eye = self.frame.position();
         room.map(corners).map_or(eye, |[low, high]| eye.max(low).min(high))
     }
 
-    /// What counts as far where a point is seen, metres: its distance, or less where the lens is long.
+    /// Returns the scale of depth tolerances at a point, metres: its distance, shortened for long lenses.
     pub(super) fn depth_scale(&self, point: Vec3) -> f32 {
-        const USUAL_HALF_HEIGHT: f32 = 0.35;
-        point.distance(self.eye()) * self.frame.half_extent.y / USUAL_HALF_HEIGHT
+        const NORMAL_LENS_HALF_HEIGHT: f32 = 0.35;
+        point.distance(self.eye()) * self.frame.half_extent.y / NORMAL_LENS_HALF_HEIGHT
     }
 
-    /// Whether things out of focus are blurred.
+    /// Returns true if there is depth of field.
     pub(super) fn has_aperture(&self) -> bool {
         self.aperture != Aperture::PINHOLE
     }
@@ -68,32 +68,32 @@ impl LiveCamera {
         self.frame.position() - self.origin
     }
 
-    /// Origin and unit direction of the ray through a place in the picture, in pixels from the top left; `u` chooses the
-    /// place on the lens.
-    pub(super) fn ray(&self, pixel: Vec2, u: Vec2) -> (Vec3, Vec3) {
-        let size = Vec2::new(self.size.0 as f32, self.size.1 as f32);
-        let (from, direction) = self.aperture.ray(&self.frame, pixel / size, u);
-        let from = from + self.eye();
-        (from + direction * self.room.map_or(0.0, |room| entry(from, direction, room)), direction)
-    }
-
-    /// Where a point relative to the tracer's origin is seen, in pixels from the top left; none behind the eye.
+    /// Projects a point relative to the tracer's origin to pixels from the top left; `None` behind the eye.
     pub(super) fn project(&self, point: Vec3) -> Option<Vec2> {
         let size = Vec2::new(self.size.0 as f32, self.size.1 as f32);
-        self.frame.project(point + self.origin).map(|place| place * size)
+        self.frame.project(point + self.origin).map(|position| position * size)
     }
 }
 
-/// Lower and upper corner of a room in world space.
+impl PixelCamera for LiveCamera {
+    fn ray(&self, point_px: Vec2, u: Vec2) -> (Vec3, Vec3) {
+        let size = Vec2::new(self.size.0 as f32, self.size.1 as f32);
+        let (from, direction) = self.aperture.ray(&self.frame, point_px / size, u);
+        let from = from + self.eye();
+        (from + direction * self.room.map_or(0.0, |room| entry(from, direction, room)), direction)
+    }
+}
+
+/// Returns the lower and upper corner of a room in world space.
 fn corners(room: &Room) -> [Vec3; 2] {
     let half = 0.5 * Vec3::new(room.size_m.x, 0.0, room.size_m.z);
     [-half, half + Vec3::Y * room.size_m.y]
 }
 
-/// Distance at which a ray from outside has passed a box's near side; 0 where it misses the box.
+/// Returns the distance at which a ray from outside enters a box; 0 where it misses it.
 fn entry(from: Vec3, direction: Vec3, [low, high]: [Vec3; 2]) -> f32 {
     let (a, b) = ((low - from) / direction, (high - from) / direction);
-    // A ray along a side has 0 / 0 there; `max_element` of the ordered pair drops it, as the other sides decide.
+    // A ray in the plane of a side has 0 / 0 there; `max_element` of the ordered pair drops the NaN.
     let (near, far) = (a.min(b).max_element(), a.max(b).min_element());
     if near > 0.0 && near < far { near + CLEAR_OF_WALL_M } else { 0.0 }
 }
@@ -103,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rays_from_outside_begin_inside_the_near_wall() {
+    fn rays_from_outside_begin_behind_the_near_wall() {
         let frame = CameraFrame {
             world_from_camera: glam::Affine3A::from_translation(Vec3::new(0.0, 1.0, 10.0)),
             half_extent: Vec2::splat(0.3),
@@ -112,7 +112,7 @@ mod tests {
         let camera = LiveCamera::pinhole(frame, (100, 100)).around(Vec3::ZERO, Some(&room));
         let (start, direction) = camera.ray(Vec2::splat(50.0), Vec2::ZERO);
         assert!((start.z - 3.0 + CLEAR_OF_WALL_M).abs() < 1e-4 && direction.z < -0.999, "{start}");
-        // Beside the room there is nothing to pass.
+        // A ray beside the room starts at the eye.
         let (start, _) = camera.ray(Vec2::new(0.0, 50.0), Vec2::ZERO);
         assert_eq!(start, Vec3::new(0.0, 1.0, 10.0));
         assert_eq!(camera.natural_origin(Some(&room)), Vec3::new(0.0, 1.0, 3.0));

@@ -1,25 +1,28 @@
-//! The live picture: the path tracer at work while the studio is being arranged.
+//! The live view: the path tracer with progressive refinement while the user arranges the studio.
 //!
-//! [`LivePicture::update`] is told of every edit and every move of the view and keeps what is still true: all of it when a
-//! light is dimmed, coloured or switched, the other lights' layers when one moves, what another view knows of the same
-//! surfaces when the camera moves. [`LivePicture::work`] then traces for as long as it is told, coarse first, until every
-//! tile is quiet. There is no clock in here: whoever calls measures how fast it goes and says how much to do.
+//! [`LivePicture::update`] receives every edit and every camera move and keeps the samples that are still valid: all of them
+//! when a light is dimmed, coloured or switched; the other lights' layers when one light moves; the history, reprojected,
+//! when the camera moves. [`LivePicture::trace`] then traces a given number of paths, the coarsest tiles first, until every
+//! tile is converged. There is no clock here: the caller measures the speed and chooses the number of paths.
 
+mod atrous_filter;
 mod camera;
 mod change;
 mod history;
 mod live_film;
+mod live_tile;
 mod photons;
-mod smooth;
+mod primary_hit;
+mod refinement;
 #[cfg(test)]
 mod tests;
-mod tile;
+mod tile_tracer;
 
+pub use atrous_filter::AtrousFilter;
 pub use camera::LiveCamera;
-pub use smooth::Smoother;
 
 use super::control::RenderControl;
-use super::film::{Layer, assign_layers};
+use super::film::{Layer, NonFiniteReport, assign_layers};
 use super::geometry_cache::GeometryCache;
 use super::prepare::{self, PrepareError};
 use super::render_scene::RenderScene;
@@ -27,59 +30,63 @@ use super::retrace::Retrace;
 use crate::photo::Picture;
 use crate::scene::{Assets, LightId, Scene};
 use glam::Vec3;
-use history::History;
+use history::ReprojectionHistory;
 use live_film::LiveFilm;
+use live_tile::LiveTile;
 use photons::LivePhotons;
 use rayon::prelude::*;
+use refinement::RefinementStep;
 use std::sync::Arc;
-use tile::{Job, LiveTile, Step};
+use tile_tracer::{RefinementContext, refine};
 
-/// Noise of a tile at which it is left alone, stops: grain that the eye finds only if it looks for it.
-const QUIET_STOPS: f32 = 0.06;
-/// The tracer's origin follows the view at this distance, metres, to keep its digits.
-const FARTHEST_ORIGIN_M: f32 = 30.0;
-/// Pixels between those of a picture that is worth keeping as the view's past.
-const WORTH_KEEPING: u32 = 4;
-/// Where the past knows of fewer pixels than this share, the picture at hand takes its place sooner.
-const LITTLE_REUSED: f32 = 0.5;
+/// Noise at which a tile is converged, stops: barely visible grain.
+const CONVERGED_STOPS: f32 = 0.06;
+/// Distance between the camera and the tracer's origin at which the origin moves, metres, for floating-point accuracy.
+const MAX_ORIGIN_DISTANCE_M: f32 = 30.0;
+/// Coarsest grid spacing of a picture that becomes the history, pixels.
+const MAX_HISTORY_STRIDE: u32 = 4;
+/// Fraction of reprojected pixels below which a coarse picture replaces the history.
+const LOW_REPROJECTION: f32 = 0.5;
 
-/// A picture that is traced while the scene changes under it.
+/// A progressively refined picture of a scene that is being edited.
 #[derive(Debug, Default)]
 pub struct LivePicture {
     cache: Arc<GeometryCache>,
-    traced: Option<Traced>,
+    prepared: Option<PreparedScene>,
     view: Option<View>,
-    history: Option<History>,
-    /// Memory of a picture that is of no use any more: getting and clearing a hundred megabytes takes its time.
-    spare: Option<LiveFilm>,
+    history: Option<ReprojectionHistory>,
+    /// A film whose memory is reused: allocating and clearing a hundred megabytes takes milliseconds.
+    recycled: Option<LiveFilm>,
 }
 
-/// What is being traced.
+/// The scene as it is traced.
 #[derive(Debug)]
-struct Traced {
-    /// The scene of `full`; see [`change::between`].
+struct PreparedScene {
+    /// The source of `full`; see [`change::between`].
     scene: Scene,
     assets: Assets,
     /// The tracer's origin in world space.
     origin: Vec3,
+    /// The scene with all lights.
     full: RenderScene,
     photons: LivePhotons,
-    /// The picture's layers, as `full` has them.
-    layers: Vec<Option<usize>>,
-    /// Lights whose layers are behind, alone in the same studio.
-    lagging: Option<Lagging>,
+    /// The film's layer of each of the layers of `full`.
+    film_layers: Vec<Option<usize>>,
+    /// The lights whose layers have fewer samples than the others.
+    retraced: Option<RetracedLights>,
 }
 
+/// The scene with the retraced lights alone.
 #[derive(Debug)]
-struct Lagging {
+struct RetracedLights {
     lights: Vec<LightId>,
     scene: RenderScene,
     photons: LivePhotons,
-    /// The picture's layer of each of this scene's.
-    layers: Vec<Option<usize>>,
+    /// The film's layer of each of this scene's layers.
+    film_layers: Vec<Option<usize>>,
 }
 
-/// From where, and what has been seen.
+/// The camera and the film that it exposes.
 #[derive(Debug)]
 struct View {
     camera: LiveCamera,
@@ -87,150 +94,181 @@ struct View {
 }
 
 impl LivePicture {
-    /// A picture that shares its meshes' trees with others.
+    /// A picture that shares the BVHs of meshes with others.
     pub fn new(cache: Arc<GeometryCache>) -> Self {
         LivePicture { cache, ..LivePicture::default() }
     }
 
-    /// Takes in the scene and the view as they are now. What is still true is kept, the rest will be traced.
+    /// Sets the scene and the view. Samples that are still valid are kept.
     ///
     /// # Errors
     /// When the scene cannot be rendered; the picture is then empty.
     pub fn update(&mut self, scene: &Scene, assets: &Assets, camera: LiveCamera) -> Result<(), PrepareError> {
-        let far = |traced: &Traced| {
-            traced.origin.distance(camera.natural_origin(traced.scene.room.as_ref())) > FARTHEST_ORIGIN_M
+        let is_far = |prepared: &PreparedScene| {
+            let origin = camera.natural_origin(prepared.scene.room.as_ref());
+            prepared.origin.distance(origin) > MAX_ORIGIN_DISTANCE_M
         };
-        let kept = self.traced.as_ref().zip(self.view.as_ref());
-        let kept = kept.filter(|(traced, _)| !far(traced) && change::same_assets(&traced.assets, assets));
-        let (wanted, retrace) = match kept {
-            Some((traced, view)) => change::between(&traced.scene, &view.film.layers, scene),
+        let kept = self.prepared.as_ref().zip(self.view.as_ref());
+        let kept = kept.filter(|(prepared, _)| !is_far(prepared) && change::same_assets(&prepared.assets, assets));
+        let (to_trace, retrace) = match kept {
+            Some((prepared, view)) => change::between(&prepared.scene, &view.film.layers, scene),
             None => (scene.clone(), Retrace::Everything),
         };
         match retrace {
             Retrace::Nothing => {}
-            Retrace::Lights(changed) => self.take_lights(wanted, changed)?,
-            Retrace::Everything => return self.begin(wanted, assets, camera),
+            Retrace::Lights(lights) => self.retrace_lights(to_trace, lights)?,
+            Retrace::Everything => return self.restart(to_trace, assets, camera),
         }
-        self.look_from(camera);
+        self.move_camera(camera);
         Ok(())
     }
 
-    /// Everything anew.
-    fn begin(&mut self, scene: Scene, assets: &Assets, camera: LiveCamera) -> Result<(), PrepareError> {
-        self.spare = self.view.take().map(|view| view.film).or(self.spare.take());
-        (self.traced, self.history) = (None, None);
+    /// Discards all samples and prepares the scene.
+    fn restart(&mut self, scene: Scene, assets: &Assets, camera: LiveCamera) -> Result<(), PrepareError> {
+        self.recycled = self.view.take().map(|view| view.film).or(self.recycled.take());
+        (self.prepared, self.history) = (None, None);
         let origin = camera.natural_origin(scene.room.as_ref());
         let full = prepare::prepare_all(&scene, assets, origin, assign_layers, &self.cache)?;
-        let (film_layers, camera) = (full.layers.clone(), camera.around(origin, scene.room.as_ref()));
-        let layers = (0..film_layers.len()).map(Some).collect();
-        self.view = Some(View { camera, film: LiveFilm::reusing(self.spare.take(), camera.size, film_layers) });
+        let (layers, camera) = (full.layers.clone(), camera.around(origin, scene.room.as_ref()));
+        let film_layers = (0..layers.len()).map(Some).collect();
+        self.view = Some(View { camera, film: LiveFilm::recycling(self.recycled.take(), camera.size, layers) });
         let (assets, photons) = (assets.clone(), LivePhotons::default());
-        self.traced = Some(Traced { scene, assets, origin, full, photons, layers, lagging: None });
+        self.prepared = Some(PreparedScene { scene, assets, origin, full, photons, film_layers, retraced: None });
         Ok(())
     }
 
-    /// Some lights shine differently: their layers start anew, beside those of lights that have not caught up yet.
-    fn take_lights(&mut self, wanted: Scene, mut changed: Vec<LightId>) -> Result<(), PrepareError> {
-        let (Some(traced), Some(view)) = (&mut self.traced, &mut self.view) else { return Ok(()) };
-        changed.extend(traced.lagging.iter().flat_map(|lagging| &lagging.lights));
-        let prepared =
-            |scene: &Scene| prepare::prepare_all(scene, &traced.assets, traced.origin, assign_layers, &self.cache);
-        let full = prepared(&wanted)?;
-        let mut alone = wanted.clone();
-        alone.lights.retain(|light| changed.contains(&light.id));
-        let alone = prepared(&alone)?;
-        let new = full.layers.clone();
-        let place = |layers: &[Layer], layer: &Layer| layers.iter().position(|l| l.light == layer.light);
-        let is_behind = |layer: &Layer| layer.light.is_some_and(|id| changed.contains(&id));
-        let from: Vec<Option<usize>> =
-            new.iter().map(|layer| place(&view.film.layers, layer).filter(|_| !is_behind(layer))).collect();
-        let of_alone = |layer: &Layer| layer.light.and_then(|_| place(&new, layer));
-        let layers: Vec<Option<usize>> = alone.layers.iter().map(of_alone).collect();
-        (traced.scene, traced.full, traced.photons) = (wanted, full, LivePhotons::default());
-        traced.layers = (0..new.len()).map(Some).collect();
+    /// Discards the layers of some lights, beside those of lights that are being retraced already.
+    fn retrace_lights(&mut self, scene: Scene, mut lights: Vec<LightId>) -> Result<(), PrepareError> {
+        let (Some(prepared), Some(view)) = (&mut self.prepared, &mut self.view) else { return Ok(()) };
+        lights.extend(prepared.retraced.iter().flat_map(|retraced| &retraced.lights));
+
+        // Prepare the scene with all lights, and with the retraced ones alone
+        let prepare_lights =
+            |scene: &Scene| prepare::prepare_all(scene, &prepared.assets, prepared.origin, assign_layers, &self.cache);
+        let full = prepare_lights(&scene)?;
+        let mut retraced_only = scene.clone();
+        retraced_only.lights.retain(|light| lights.contains(&light.id));
+        let retraced_scene = prepare_lights(&retraced_only)?;
+
+        // Map the film's layers: former to new, and those of the retraced scene to the film's
+        let layers = full.layers.clone();
+        let position = |layers: &[Layer], layer: &Layer| layers.iter().position(|other| other.light == layer.light);
+        let is_retraced = |layer: &Layer| layer.light.is_some_and(|id| lights.contains(&id));
+        let kept = |layer: &Layer| position(&view.film.layers, layer).filter(|_| !is_retraced(layer));
+        let from: Vec<Option<usize>> = layers.iter().map(kept).collect();
+        let in_film = |layer: &Layer| layer.light.and_then(|_| position(&layers, layer));
+        let film_layers: Vec<Option<usize>> = retraced_scene.layers.iter().map(in_film).collect();
+
+        // Replace the scene and the layers; the history has the former layers
+        (prepared.scene, prepared.full, prepared.photons) = (scene, full, LivePhotons::default());
+        prepared.film_layers = (0..layers.len()).map(Some).collect();
+        let has_layers = film_layers.iter().any(Option::is_some);
         let photons = LivePhotons::default();
-        let lagging = || Lagging { lights: changed, scene: alone, photons, layers: layers.clone() };
-        traced.lagging = layers.iter().any(Option::is_some).then(lagging);
-        view.film.remap(new, &from);
-        // The past has other layers.
+        let retraced = RetracedLights { lights, scene: retraced_scene, photons, film_layers };
+        prepared.retraced = has_layers.then_some(retraced);
+        view.film.remap(layers, &from);
         self.history = None;
         Ok(())
     }
 
-    /// Another view of the same studio.
-    fn look_from(&mut self, camera: LiveCamera) {
-        let (Some(traced), Some(view)) = (&mut self.traced, &mut self.view) else { return };
-        let camera = camera.around(traced.origin, traced.scene.room.as_ref());
+    /// Moves the camera; the picture becomes the history if it is better than the one there is.
+    fn move_camera(&mut self, camera: LiveCamera) {
+        let (Some(prepared), Some(view)) = (&mut self.prepared, &mut self.view) else { return };
+        let camera = camera.around(prepared.origin, prepared.scene.room.as_ref());
         if camera == view.camera {
             return;
         }
         let old_camera = std::mem::replace(&mut view.camera, camera);
         let layers = view.film.layers.clone();
-        let old = std::mem::take(&mut view.film);
-        (traced.lagging, traced.photons) = (None, LivePhotons::default());
+        let old_film = std::mem::take(&mut view.film);
+        (prepared.retraced, prepared.photons) = (None, LivePhotons::default());
         if camera.has_aperture() || old_camera.has_aperture() {
-            (self.history, self.spare) = (None, Some(old));
-        } else if let Some(stride) = old.stride().filter(|stride| is_worth_keeping(&old, *stride, &self.history)) {
-            self.spare = self.history.take().map(History::into_film).or(self.spare.take());
-            self.history = Some(History::new(old, old_camera, stride));
+            (self.history, self.recycled) = (None, Some(old_film));
+        } else if let Some(stride) = old_film.stride().filter(|stride| self.is_better_history(&old_film, *stride)) {
+            self.recycled = self.history.take().map(ReprojectionHistory::into_film).or(self.recycled.take());
+            self.history = Some(ReprojectionHistory::new(old_film, old_camera, stride));
         } else {
-            self.spare = Some(old);
+            self.recycled = Some(old_film);
         }
-        view.film = LiveFilm::reusing(self.spare.take(), camera.size, layers);
+        if let Some(view) = &mut self.view {
+            view.film = LiveFilm::recycling(self.recycled.take(), camera.size, layers);
+        }
+    }
+
+    /// Returns true if a picture is a better history than the one there is.
+    fn is_better_history(&self, film: &LiveFilm, stride: u32) -> bool {
+        match &self.history {
+            None => stride <= MAX_HISTORY_STRIDE,
+            Some(_) => stride == 1 || (stride <= MAX_HISTORY_STRIDE && film.reprojected_fraction() < LOW_REPROJECTION),
+        }
     }
 
     /// Traces about `paths` paths, or until `control` is cancelled, on rayon's current pool; the coarsest tiles first.
-    /// Returns how many it did; 0 when nothing is left to do.
-    pub fn work(&mut self, paths: u64, control: &RenderControl) -> u64 {
-        let (Some(traced), Some(view)) = (&mut self.traced, &mut self.view) else { return 0 };
-        let mut spent = 0;
-        while spent < paths && !control.is_cancelled() {
-            let active = || view.film.tiles.iter().filter(|tile| tile.is_active());
-            let Some(next) = active().map(|tile| tile.progress.next()).min() else { break };
+    /// Returns the number of paths; 0 when every tile is converged.
+    pub fn trace(&mut self, paths: u64, control: &RenderControl) -> u64 {
+        let (Some(prepared), Some(view)) = (&mut self.prepared, &mut self.view) else { return 0 };
+        let mut traced = 0;
+        while traced < paths && !control.is_cancelled() {
+            // Choose the tiles with the fewest completed steps, as many as the budget pays for
+            let completed = |tile: &LiveTile| tile.progress.completed();
+            let Some(fewest) = view.film.tiles.iter().filter(|tile| tile.is_active()).map(completed).min() else {
+                break;
+            };
             let mut tiles: Vec<&mut LiveTile> = Vec::new();
-            for tile in view.film.tiles.iter_mut().filter(|tile| tile.is_active() && tile.progress.next() == next) {
-                if spent >= paths {
+            for tile in view.film.tiles.iter_mut().filter(|tile| tile.is_active() && completed(tile) == fewest) {
+                if traced >= paths {
                     break;
                 }
-                spent += Step::after(next).cost(tile.pixels()).max(1);
+                traced += RefinementStep::after(fewest).cost(tile.pixels()).max(1);
                 tiles.push(tile);
             }
+
+            // Trace the photons of the pass
             let (camera, history) = (&view.camera, self.history.as_ref());
-            let sample = Step::samples(next);
-            if tiles.iter().any(|tile| !tile.progress.lags()) {
-                spent += traced.photons.prepare(&traced.full, camera, sample, control);
+            let sample = RefinementStep::samples(fewest);
+            if tiles.iter().any(|tile| !tile.progress.is_retracing()) {
+                traced += prepared.photons.prepare(&prepared.full, camera, sample, control);
             }
-            if let Some(Lagging { scene, photons, .. }) = &mut traced.lagging {
-                spent += photons.prepare(scene, camera, sample, control);
+            if let Some(RetracedLights { scene, photons, .. }) = &mut prepared.retraced {
+                traced += photons.prepare(scene, camera, sample, control);
             }
-            let times = &traced.full.layer_times;
-            let noise_stops = QUIET_STOPS;
-            let job =
-                |scene, caustics, layers| Job { scene, layers, times, camera, caustics, history, noise_stops, control };
-            let full = job(&traced.full, traced.photons.map(), &traced.layers);
-            let alone = traced.lagging.as_ref().map(|l| job(&l.scene, l.photons.map(), &l.layers));
-            tiles.par_iter_mut().with_max_len(1).for_each(|tile| match &alone {
-                Some(alone) if tile.progress.lags() => tile.advance(alone),
-                Some(_) | None => tile.advance(&full),
+
+            // Refine the tiles in parallel: all layers, or those of the retraced lights
+            let (layer_times, noise_stops) = (&prepared.full.layer_times, CONVERGED_STOPS);
+            let context = |scene, photons, film_layers| RefinementContext {
+                scene,
+                film_layers,
+                layer_times,
+                camera,
+                photons,
+                history,
+                noise_stops,
+                control,
+            };
+            let full = context(&prepared.full, prepared.photons.map(), &prepared.film_layers);
+            let retraced = prepared.retraced.as_ref().map(|r| context(&r.scene, r.photons.map(), &r.film_layers));
+            tiles.par_iter_mut().with_max_len(1).for_each(|tile| match &retraced {
+                Some(retraced) if tile.progress.is_retracing() => refine(tile, retraced),
+                Some(_) | None => refine(tile, &full),
             });
         }
-        if traced.lagging.is_some() && !view.film.tiles.iter().any(|tile| tile.progress.lags()) {
-            traced.lagging = None;
+        if !view.film.tiles.iter().any(|tile| tile.progress.is_retracing()) {
+            prepared.retraced = None;
         }
-        spent
+        traced
     }
 
-    /// Whether nothing is left to do: every tile is quiet, or has been sampled enough.
-    pub fn is_done(&self) -> bool {
+    /// Returns true if every tile is converged, or has the maximum of samples.
+    pub fn is_converged(&self) -> bool {
         self.view.as_ref().is_none_or(|view| !view.film.tiles.iter().any(LiveTile::is_active))
     }
 
-    /// Whether there is something to show: a value at every sixteenth pixel, at least.
-    pub fn is_begun(&self) -> bool {
+    /// Returns true if there is a picture to develop: a value at every sixteenth pixel at least.
+    pub fn has_picture(&self) -> bool {
         self.stride().is_some()
     }
 
-    /// Pixels between those that have a value of their own; none before there are any.
+    /// Spacing of the pixels that have a value; `None` before there are any.
     pub fn stride(&self) -> Option<u32> {
         self.view.as_ref().and_then(|view| view.film.stride())
     }
@@ -240,65 +278,56 @@ impl LivePicture {
         self.view.as_ref().map_or(0, |view| view.film.spp())
     }
 
-    /// Share of the pixels that took over what was known from before the view moved.
-    pub fn reused(&self) -> f32 {
-        self.view.as_ref().map_or(0.0, |view| view.film.reused())
+    /// Fraction of the pixels that took their value from the history.
+    pub fn reprojected_fraction(&self) -> f32 {
+        self.view.as_ref().map_or(0.0, |view| view.film.reprojected_fraction())
     }
 
-    /// Non-finite contributions that were dropped and are shown black.
-    pub fn nonfinite(&self) -> u64 {
-        self.view.as_ref().map_or(0, |view| view.film.tiles.iter().map(|tile| tile.nonfinite).sum())
+    /// The non-finite contributions that were discarded and are shown black.
+    pub fn nonfinite(&self) -> NonFiniteReport {
+        self.view.iter().flat_map(|view| view.film.tiles.iter().map(|tile| &tile.nonfinite)).collect()
     }
 
-    /// The picture with exposure, and each light's power, colour and switch, as in `scene`. Empty before there is one.
+    /// Develops the picture with the exposure, and each light's power, colour and switch, in `scene`. Empty before there is
+    /// one.
     pub fn develop(&self, scene: &Scene) -> Picture {
-        self.develop_every(scene, 1)
+        self.develop_strided(scene, 1)
     }
 
-    /// The same for a grid of its pixels, each `every`th across and down, which is 1, 2, 4, 8 or 16: quicker, and no worse
-    /// while no more of them are traced.
-    pub fn develop_every(&self, scene: &Scene, every: u32) -> Picture {
-        self.view.as_ref().map_or_else(Picture::default, |view| view.film.develop(scene, &view.camera, every))
+    /// Develops every `stride`th pixel of every `stride`th row, which is 1, 2, 4, 8 or 16.
+    pub fn develop_strided(&self, scene: &Scene, stride: u32) -> Picture {
+        self.view.as_ref().map_or_else(Picture::default, |view| view.film.develop(scene, &view.camera, stride))
     }
 
-    /// The same with less grain, by an edge-aware filter: for the eye, while the picture settles. See [`smooth`].
-    pub fn develop_smooth(&self, scene: &Scene, every: u32, smoother: &mut Smoother) -> Picture {
-        let mut picture = self.develop_every(scene, every);
+    /// Develops with an edge-aware filter, for display until the picture is converged. The samples stay as they are.
+    pub fn develop_filtered(&self, scene: &Scene, stride: u32, filter: &mut AtrousFilter) -> Picture {
+        let mut picture = self.develop_strided(scene, stride);
         if let Some(view) = &self.view {
-            smoother.smooth(&mut picture, |x, y| view.film.guide(&view.camera, every, (x, y)));
+            filter.apply(&mut picture, |x, y| view.film.filter_input(&view.camera, stride, (x, y)));
         }
         picture
     }
 
-    /// Steps that every tile has done: a coarse grid of paths, a finer one, surfaces at every fourth pixel, every second,
-    /// every one, then ever more paths. What the camera's last move left is on show from [`LivePicture::SEEN`] on.
-    pub fn steps(&self) -> u32 {
-        let tiles = self.view.iter().flat_map(|view| &view.film.tiles);
-        tiles.map(|tile| tile.progress.next()).min().unwrap_or(0)
+    /// Refinement steps that every tile has completed: a coarse grid of paths, a finer one, primary hits at every fourth
+    /// pixel, every second, every one, paths at the pixels between, then sample passes.
+    pub fn completed_steps(&self) -> u32 {
+        self.view.as_ref().map_or(0, |view| view.film.completed_steps())
     }
 
-    /// Steps after which every second pixel knows its surface, and what is known of it.
-    pub const SEEN: u32 = 4;
+    /// Steps after which every second pixel has its primary hit and its history.
+    pub const HISTORY_STEPS: u32 = 4;
 
-    /// Of how many pixels one is worth developing, along each side: there is nothing finer to show yet.
-    pub fn coarseness(&self) -> u32 {
-        let steps = self.steps();
+    /// Spacing of the pixels to develop for display: a finer grid has no more detail yet.
+    pub fn display_stride(&self) -> u32 {
+        let steps = self.completed_steps();
         match self.stride() {
             Some(1) => 1,
-            // What is taken over from before is as fine as the surfaces are known.
-            _ if self.history.is_some() && steps > Self::SEEN => 1,
-            _ if self.history.is_some() && steps == Self::SEEN => 2,
+            // The history is as fine as the primary hits.
+            _ if self.history.is_some() && steps > Self::HISTORY_STEPS => 1,
+            _ if self.history.is_some() && steps == Self::HISTORY_STEPS => 2,
             Some(stride) if stride < 8 => 1,
             Some(_) => 4,
             None => 16,
         }
-    }
-}
-
-/// Whether a picture that the view has left tells more about the next one than what was kept before.
-fn is_worth_keeping(film: &LiveFilm, stride: u32, known: &Option<History>) -> bool {
-    match known {
-        None => stride <= WORTH_KEEPING,
-        Some(_) => stride == 1 || (stride <= WORTH_KEEPING && film.reused() < LITTLE_REUSED),
     }
 }

@@ -56,19 +56,20 @@ fn begun(scene: &Scene) -> LivePicture {
 
 /// Works until every tile has done so many steps.
 fn work_to(live: &mut LivePicture, steps: u32) {
-    let least = |live: &LivePicture| live.view.as_ref().unwrap().film.tiles.iter().map(|t| t.progress.next()).min();
-    while !live.is_done() && least(live) < Some(steps) {
-        live.work(1, &RenderControl::new());
+    let least =
+        |live: &LivePicture| live.view.as_ref().unwrap().film.tiles.iter().map(|t| t.progress.completed()).min();
+    while !live.is_converged() && least(live) < Some(steps) {
+        live.trace(1, &RenderControl::new());
     }
 }
 
 /// Steps until every pixel is traced or taken over, and until it is known which are taken over.
 const ALL_TRACED: u32 = 8;
-const ALL_SEEN: u32 = 5;
+const ALL_HITS: u32 = 5;
 
 fn finish(live: &mut LivePicture) {
-    while live.work(1 << 20, &RenderControl::new()) > 0 {}
-    assert!(live.is_done());
+    while live.trace(1 << 20, &RenderControl::new()) > 0 {}
+    assert!(live.is_converged());
 }
 
 /// The picture of an ordinary render from a view, each light's traced value.
@@ -97,13 +98,14 @@ fn assert_same(ours: &Picture, theirs: &Picture) {
     assert!(off < 0.045, "{off} off, {brightness} times as bright");
 }
 
-/// Pixels of an object, and how many of them were taken over. Valid after [`ALL_SEEN`] steps.
+/// Pixels of an object, and how many of them were taken over. Valid after [`ALL_HITS`] steps.
 fn pixels_of(live: &LivePicture, object: u32) -> (usize, usize) {
     let film = &live.view.as_ref().unwrap().film;
     let all = film.tiles.iter().flat_map(|tile| (0..tile.pixels()).map(move |pixel| (tile, pixel)));
     // Those of the coarse grid were traced where nothing was known: their weight is that of one path.
-    let of_object = all.filter(|(tile, pixel)| tile.shown[*pixel].object == object);
-    of_object.fold((0, 0), |(count, known), (tile, pixel)| (count + 1, known + usize::from(tile.sum(0, pixel).w > 1.0)))
+    let of_object = all.filter(|(tile, pixel)| tile.primary_hits[*pixel].object == object);
+    of_object
+        .fold((0, 0), |(count, known), (tile, pixel)| (count + 1, known + usize::from(tile.sums.at(0, pixel).w > 1.0)))
 }
 
 #[test]
@@ -140,14 +142,14 @@ fn it_ends_at_the_picture_of_a_render() {
     // A quiet tile is within 0.06 stop, 4 %, of the truth in each pixel; the mean of thousands of pixels much closer.
     assert_same(&ours, &theirs);
     assert!((mean(&ours) / mean(&theirs) - 1.0).abs() < 0.005, "{} for {}", mean(&ours), mean(&theirs));
-    assert_eq!((live.work(1000, &RenderControl::new()), live.nonfinite()), (0, 0), "nothing is left to do");
+    assert_eq!((live.trace(1000, &RenderControl::new()), live.nonfinite().count), (0, 0), "nothing is left to do");
 }
 
 #[test]
 fn a_coarse_picture_comes_first_and_has_the_light_of_the_fine_one() {
     let scene = studio(matte());
     let mut live = begun(&scene);
-    assert!(!live.is_begun());
+    assert!(!live.has_picture());
     work_to(&mut live, 2);
     assert_eq!(live.stride(), Some(8));
     let coarse = live.develop(&scene);
@@ -165,8 +167,8 @@ fn a_small_pan_keeps_most_of_a_matte_studio_and_what_it_keeps_is_right() {
     finish(&mut live);
     let moved = view(&scene, 0.1);
     live.update(&scene, &Assets::default(), moved).unwrap();
-    work_to(&mut live, ALL_SEEN);
-    assert!(live.reused() > 0.8, "{} of the pixels", live.reused());
+    work_to(&mut live, ALL_HITS);
+    assert!(live.reprojected_fraction() > 0.8, "{} of the pixels", live.reprojected_fraction());
     work_to(&mut live, ALL_TRACED);
     let (ours, theirs) = (live.develop(&scene), truth(&scene, &moved, 256));
     // Grain of one path where the ball's edge was, of quiet tiles elsewhere.
@@ -182,17 +184,17 @@ fn what_was_hidden_is_traced_anew() {
     finish(&mut live);
     let old_eye = view(&scene, 0.0).frame.position();
     live.update(&scene, &Assets::default(), view(&scene, 0.4)).unwrap();
-    work_to(&mut live, ALL_SEEN);
-    let traced = live.traced.as_ref().unwrap();
+    work_to(&mut live, ALL_HITS);
+    let traced = live.prepared.as_ref().unwrap();
     let mut caster = crate::raytrace::ray_caster::RayCaster::new(&traced.full);
     let (mut hidden, mut wrong) = (0, 0);
     for tile in &live.view.as_ref().unwrap().film.tiles {
-        for (pixel, shown) in tile.shown.iter().enumerate().filter(|(_, shown)| shown.object == 0) {
+        for (pixel, hit) in tile.primary_hits.iter().enumerate().filter(|(_, hit)| hit.object == 0) {
             let from = old_eye - traced.origin;
-            let to = shown.position - from;
+            let to = hit.position - from;
             if caster.occluded(from, to.normalize(), 0.99 * to.length()) {
                 hidden += 1;
-                wrong += usize::from(tile.sum(0, pixel).w > 1.0);
+                wrong += usize::from(tile.sums.at(0, pixel).w > 1.0);
             }
         }
     }
@@ -211,10 +213,12 @@ fn mirrors_and_glass_are_traced_anew_and_gloss_counts_the_less_the_more_the_view
         let mut live = begun(&scene);
         work_to(&mut live, ALL_TRACED + 20);
         live.update(&scene, &Assets::default(), view(&scene, aside_m)).unwrap();
-        work_to(&mut live, ALL_SEEN);
+        work_to(&mut live, ALL_HITS);
         let film = &live.view.as_ref().unwrap().film;
         let weights = film.tiles.iter().flat_map(|tile| {
-            (0..tile.pixels()).filter(|p| tile.shown[*p].object == 1).map(|p| (tile.sum(0, p).w - 1.0).max(0.0))
+            (0..tile.pixels())
+                .filter(|p| tile.primary_hits[*p].object == 1)
+                .map(|p| (tile.sums.at(0, p).w - 1.0).max(0.0))
         });
         let weights: Vec<f32> = weights.collect();
         weights.iter().sum::<f32>() / weights.len() as f32
@@ -238,13 +242,13 @@ fn what_was_wrong_before_the_view_moved_fades_as_samples_come() {
     assert!(start > 1.2, "three times as bright where it was known: {start}");
     for samples in [16, 64, 240] {
         let target = ALL_TRACED + samples;
-        while live.view.as_ref().unwrap().film.tiles.iter().any(|t| t.progress.main < target) {
+        while live.view.as_ref().unwrap().film.tiles.iter().any(|t| t.progress.kept < target) {
             // Quiet tiles go on, too: the past is no part of their noise.
-            live.view.as_mut().unwrap().film.tiles.iter_mut().for_each(LiveTile::wake);
-            live.work(1, &RenderControl::new());
+            live.view.as_mut().unwrap().film.tiles.iter_mut().for_each(LiveTile::reactivate);
+            live.trace(1, &RenderControl::new());
         }
         let wrong = mean(&live.develop(&scene)) / mean(&theirs) - 1.0;
-        let expected = 2.0 * history::MOST_WEIGHT / (history::MOST_WEIGHT + samples as f32);
+        let expected = 2.0 * history::MAX_WEIGHT / (history::MAX_WEIGHT + samples as f32);
         assert!(wrong < 1.1 * expected + 0.01, "{wrong} after {samples} samples, {expected} expected at most");
     }
 }
@@ -256,11 +260,11 @@ fn a_moved_thing_drops_all_that_was_known() {
     finish(&mut live);
     scene.objects[1].transform.position.x += 0.3;
     live.update(&scene, &Assets::default(), view(&scene, 0.0)).unwrap();
-    assert!(!live.is_begun() && live.history.is_none());
+    assert!(!live.has_picture() && live.history.is_none());
     finish(&mut live);
     let (ours, theirs) = (live.develop(&scene), truth(&scene, &view(&scene, 0.0), 256));
     assert_same(&ours, &theirs);
-    assert_eq!(live.reused(), 0.0);
+    assert_eq!(live.reprojected_fraction(), 0.0);
 }
 
 #[test]
@@ -272,7 +276,7 @@ fn power_colour_and_switch_of_a_light_cost_no_ray() {
     let mut edited = |edit: &dyn Fn(&mut Scene)| {
         edit(&mut scene);
         live.update(&scene, &Assets::default(), from_here).unwrap();
-        assert_eq!((live.work(1 << 20, &control), control.rays()), (0, 0));
+        assert_eq!((live.trace(1 << 20, &control), control.rays()), (0, 0));
         mean(&live.develop(&scene))
     };
     let bright = edited(&|_| {});
@@ -299,13 +303,13 @@ fn a_moved_light_is_traced_alone_and_the_others_keep_what_they_have() {
     finish(&mut live);
     let sums = |live: &LivePicture, layer: usize| -> Vec<glam::Vec4> {
         let film = &live.view.as_ref().unwrap().film;
-        film.tiles.iter().flat_map(|t| (0..t.pixels()).map(move |p| t.sum(layer, p))).collect()
+        film.tiles.iter().flat_map(|t| (0..t.pixels()).map(move |p| t.sums.at(layer, p))).collect()
     };
     let others = sums(&live, 1);
     scene.lights[0].power.dial_stops = -1.0;
     scene.lights[0].position.x -= 0.8;
     live.update(&scene, &Assets::default(), view(&scene, 0.0)).unwrap();
-    assert_eq!(live.traced.as_ref().unwrap().lagging.as_ref().unwrap().lights, [LightId(0)]);
+    assert_eq!(live.prepared.as_ref().unwrap().retraced.as_ref().unwrap().lights, [LightId(0)]);
     work_to(&mut live, 2);
     // The first picture of the moved light is coarse; the other light's stays fine.
     let first = live.develop(&scene);
@@ -325,7 +329,7 @@ fn a_moved_light_is_traced_alone_and_the_others_keep_what_they_have() {
     assert!(sums(&live, 2) == others);
     scene.lights.remove(1);
     live.update(&scene, &Assets::default(), view(&scene, 0.0)).unwrap();
-    assert_eq!(live.work(1 << 20, &RenderControl::new()), 0);
+    assert_eq!(live.trace(1 << 20, &RenderControl::new()), 0);
     let (ours, theirs) = (live.develop(&scene), truth(&scene, &view(&scene, 0.0), 256));
     assert_same(&ours, &theirs);
 }
@@ -352,7 +356,7 @@ fn nothing_breaks_it() {
     let no_assets = Assets::default();
     let mut live = LivePicture::default();
     assert_eq!(
-        (live.work(10, &RenderControl::new()), live.is_done(), live.develop(&scene)),
+        (live.trace(10, &RenderControl::new()), live.is_converged(), live.develop(&scene)),
         (0, true, Picture::default())
     );
     let mut wrong = scene.clone();
@@ -361,7 +365,7 @@ fn nothing_breaks_it() {
     assert!(live.update(&wrong, &no_assets, LiveCamera::pinhole(frame, SIZE)).is_err());
     for size in [(0, 0), (1, 1), (33, 1), (31, 65)] {
         live.update(&scene, &no_assets, LiveCamera::pinhole(frame, size)).unwrap();
-        live.work(3000, &RenderControl::new());
+        live.trace(3000, &RenderControl::new());
         let picture = live.develop(&scene);
         assert_eq!((picture.width, picture.height), (size.0.max(1), size.1.max(1)));
         assert!(picture.rgb.iter().flatten().all(|value| value.is_finite()));
@@ -369,7 +373,7 @@ fn nothing_breaks_it() {
     let cancelled = RenderControl::new();
     cancelled.cancel();
     live.update(&scene, &no_assets, LiveCamera::pinhole(frame, SIZE)).unwrap();
-    assert_eq!((live.work(1000, &cancelled), live.is_begun()), (0, false));
+    assert_eq!((live.trace(1000, &cancelled), live.has_picture()), (0, false));
     // Dark, with many lights, with depth of field, from far away, with everything moved at once.
     let dark = Scene { lights: Vec::new(), ..scene.clone() };
     let mut many = scene.clone();
@@ -388,12 +392,12 @@ fn nothing_breaks_it() {
                 camera = LiveCamera::through_lens(scene, camera.frame, SIZE);
             }
             live.update(scene, &no_assets, camera).unwrap();
-            live.work(6000, &RenderControl::new());
+            live.trace(6000, &RenderControl::new());
             let picture = live.develop(scene);
             assert!(picture.rgb.iter().flatten().all(|value| value.is_finite()));
         }
     }
-    assert_eq!(live.nonfinite(), 0);
+    assert_eq!(live.nonfinite().count, 0);
 }
 
 #[test]
@@ -407,6 +411,6 @@ fn things_out_of_focus_are_blurred_and_never_taken_over() {
     let (ours, theirs) = (live.develop(&scene), truth(&scene, &view(&scene, 0.0), 256));
     assert!(difference(&ours, &theirs) < 0.05, "{}", difference(&ours, &theirs));
     live.update(&scene, &Assets::default(), camera(0.05)).unwrap();
-    work_to(&mut live, ALL_SEEN);
-    assert_eq!(live.reused(), 0.0);
+    work_to(&mut live, ALL_HITS);
+    assert_eq!(live.reprojected_fraction(), 0.0);
 }
