@@ -1,4 +1,4 @@
-//! `catchlight chart` as a process: what it writes is whole, and says what the methods are.
+//! `catchlight chart` as a process: its files are complete, and its errors rank the methods.
 #![allow(clippy::unwrap_used)]
 
 use serde_json::Value;
@@ -15,7 +15,7 @@ fn json(output: &Output) -> Vec<Value> {
 }
 
 #[test]
-fn more_samples_bring_the_path_tracer_nearer_and_the_others_stay_off() {
+fn the_path_tracer_converges_and_the_other_methods_keep_their_bias() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["three_point", "-o", "out", "--size", "24x16", "--spp", "16", "--json"];
     let rows = json(&chart(folder.path(), &arguments));
@@ -26,9 +26,9 @@ fn more_samples_bring_the_path_tracer_nearer_and_the_others_stay_off() {
         assert_eq!(row["mrays_s"].as_f64().unwrap() > 0.0, method != "zbuffer", "{row}");
         row["rel_mse"].as_f64().unwrap()
     };
-    // Sixteen times the samples: a sixteenth of the error or less; a third leaves room for a seed's luck.
+    // Sixteen times the samples have a sixteenth of the squared error or less; a third allows for the seed.
     assert!(error("path", 16) < error("path", 1) / 3.0);
-    // What the others leave out, no number of samples brings back.
+    // Samples do not reduce the bias of the other methods.
     for method in ["zbuffer", "whitted", "direct"] {
         assert!(error(method, 16) > 2.0 * error("path", 16), "{method}");
     }
@@ -39,7 +39,7 @@ fn more_samples_bring_the_path_tracer_nearer_and_the_others_stay_off() {
     assert!(drawing.starts_with("<svg") && drawing.trim_end().ends_with("</svg>") && drawing.contains("whitted"));
 }
 
-/// A unit square in the XY plane, cut in two, and a ray file's bytes.
+/// Writes a model of a unit square in the XY plane and a triangle behind it, and a ray file.
 fn square(folder: &Path) {
     let model = "o a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\no b\nv 0 0 -1\nv 1 1 -1\nv 0 1 -1\nf 5 6 7\n";
     std::fs::write(folder.join("square.obj"), model).unwrap();
@@ -57,14 +57,14 @@ fn square(folder: &Path) {
 }
 
 #[test]
-fn all_ways_to_find_a_hit_agree_on_rays_from_a_file() {
+fn all_intersection_methods_find_the_same_hits_for_rays_from_a_file() {
     let folder = tempfile::tempdir().unwrap();
     square(folder.path());
     let rows = json(&chart(folder.path(), &["--traversal", "square.obj", "--rays", "rays.bin", "--json"]));
     let cores = std::thread::available_parallelism().unwrap().get();
-    assert_eq!(rows.len(), 4 * cores, "a row a method and number of threads");
+    assert_eq!(rows.len(), 4 * cores, "one row per method and number of threads");
     for row in &rows {
-        // The first ray meets the near square at 2; the second, twice as fast, meets the far triangle at 1.5.
+        // The first ray hits the near square at t = 2. The second, of twice the length, hits the far triangle at 1.5.
         assert_eq!(row["hits"], 2, "{row}");
         assert!((row["mean_t"].as_f64().unwrap() - 1.75).abs() < 1e-6, "{row}");
         assert!(row["build_s"].as_f64().is_some() && row["mrays_s"].as_f64().unwrap() > 0.0);
@@ -73,7 +73,7 @@ fn all_ways_to_find_a_hit_agree_on_rays_from_a_file() {
 }
 
 #[test]
-fn bad_rays_and_missing_folders_are_refused_with_a_reason() {
+fn invalid_rays_and_missing_files_are_errors_with_a_reason() {
     let folder = tempfile::tempdir().unwrap();
     square(folder.path());
     std::fs::write(folder.path().join("short.bin"), [0; 23]).unwrap();
@@ -95,7 +95,7 @@ fn bad_rays_and_missing_folders_are_refused_with_a_reason() {
 }
 
 #[test]
-fn scaling_tells_what_grows_with_triangles_lights_and_pixels() {
+fn scaling_reports_one_row_per_number_of_triangles_lights_and_pixels() {
     let folder = tempfile::tempdir().unwrap();
     let few = ["--scaling", "--triangles", "2000,8000", "--lights", "1,9", "--sizes", "32x24,64x48", "--json"];
     let rows = json(&chart(folder.path(), &few));

@@ -1,9 +1,10 @@
-//! The program as a process: arguments, files, exit codes, what goes to stdout and what to stderr.
+//! The program as a process: arguments, files, exit codes, output to stdout and stderr.
 #![allow(clippy::unwrap_used)]
 
 use serde_json::Value;
+use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 fn catchlight(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_catchlight"))
@@ -62,7 +63,7 @@ fn render_writes_each_format_and_reports_in_json() {
 }
 
 #[test]
-fn exr_holds_scene_linear_values_and_how_they_came_about() {
+fn exr_holds_scene_linear_values_and_attributes_of_the_render() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["render", "split", "-o", "x.exr", "--size", "24x36", "--spp", "2", "--seed", "9", "--layers"];
     let output = catchlight(folder.path(), &arguments);
@@ -76,25 +77,25 @@ fn exr_holds_scene_linear_values_and_how_they_came_about() {
 }
 
 #[test]
-fn the_file_says_whether_photons_brought_caustics() {
+fn the_exr_method_and_the_report_name_photons_where_caustics_come_from_them() {
     let folder = tempfile::tempdir().unwrap();
-    let made = |studio: &str, caustics: &str| {
+    let render = |studio: &str, caustics: &str| {
         let arguments =
             ["render", studio, "-o", "a.exr", "--size", "24x16", "--spp", "1", "--json", "--caustics", caustics];
         let output = catchlight(folder.path(), &arguments);
         let report: Value = serde_json::from_str(stdout(&output).trim()).unwrap();
         let file = std::fs::read(folder.path().join("a.exr")).unwrap();
-        let told = String::from_utf8_lossy(&file[..4000.min(file.len())]).contains("path, caustics from photons");
-        (report["photons"].as_bool().unwrap(), told)
+        let header = String::from_utf8_lossy(&file[..4000.min(file.len())]).into_owned();
+        (report["photons"].as_bool().unwrap(), header.contains("path, caustics from photons"))
     };
-    assert_eq!(made("product_still_life", "photons"), (true, true));
-    assert_eq!(made("product_still_life", "paths"), (false, false));
-    // Neither glass nor a mirror in there.
-    assert_eq!(made("rembrandt", "photons"), (false, false));
+    assert_eq!(render("product_still_life", "photons"), (true, true));
+    assert_eq!(render("product_still_life", "paths"), (false, false));
+    // This studio has neither glass nor mirrors.
+    assert_eq!(render("rembrandt", "photons"), (false, false));
 }
 
 #[test]
-fn explain_says_what_is_left_out_and_why() {
+fn explain_prints_the_shortcuts_of_the_render_plan_with_reasons() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["render", "three_point", "-o", "x.png", "--size", "12x18", "--spp", "1", "--explain"];
     let output = catchlight(folder.path(), &arguments);
@@ -110,7 +111,7 @@ fn presets_are_listed_with_a_description() {
 }
 
 #[test]
-fn wrong_input_is_exit_code_1_with_a_reason_and_no_file() {
+fn wrong_input_exits_with_code_1_a_reason_and_no_file() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("bad.ron"), "(format: 1, name: \"x\", camra: ())").unwrap();
     for (arguments, reason) in [
@@ -133,7 +134,7 @@ fn wrong_input_is_exit_code_1_with_a_reason_and_no_file() {
 }
 
 #[test]
-fn check_passes_a_good_studio_and_names_what_is_odd() {
+fn check_accepts_a_valid_studio_and_warns_of_one_without_lights() {
     let folder = tempfile::tempdir().unwrap();
     assert_eq!(catchlight(folder.path(), &["check", "loop"]).status.code(), Some(0));
     let dark = catchlight::io::write_scene(&catchlight::scene::Scene::default());
@@ -151,29 +152,32 @@ fn without_a_display_the_editor_names_the_render_command() {
 }
 
 #[test]
-fn time_ends_a_render_with_a_picture() {
+fn a_time_limit_ends_a_render_with_a_picture() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["render", "split", "-o", "x.png", "--size", "64x96", "--time", "0.5", "--json"];
     let output = catchlight(folder.path(), &arguments);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let report: Value = serde_json::from_str(stdout(&output).trim()).unwrap();
-    // Generous: the machine may be busy. What matters is that it ends and has a picture.
-    assert!(report["trace_s"].as_f64().unwrap() < 20.0 && report["spp"].as_u64().unwrap() >= 1);
+    // Without a limit the picture would have 65 536 samples; half a second is enough for some hundreds.
+    assert!((1..16_384).contains(&report["spp"].as_u64().unwrap()), "{report}");
     assert!(folder.path().join("x.png").exists());
 }
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_keeps_what_is_rendered() {
+fn ctrl_c_exits_with_code_130_and_keeps_the_picture() {
     let folder = tempfile::tempdir().unwrap();
     let mut child = Command::new(env!("CARGO_BIN_EXE_catchlight"))
         .current_dir(folder.path())
+        .env("RUST_LOG", "catchlight=debug")
         .args(["render", "split", "-o", "x.png", "--size", "64x96", "--spp", "100000", "--json"])
-        .stdout(std::process::Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // Long enough for the first samples on a busy machine; the render itself would take minutes.
-    std::thread::sleep(std::time::Duration::from_secs(4));
+    // Wait for the first samples; the whole render would take minutes.
+    let mut log = BufReader::new(child.stderr.take().unwrap()).lines();
+    assert!(log.any(|line| line.unwrap().contains("every pixel has a sample")));
     Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     let status = child.wait().unwrap();
     assert_eq!(status.code(), Some(130));
@@ -181,7 +185,7 @@ fn ctrl_c_keeps_what_is_rendered() {
 }
 
 #[test]
-fn the_zbuffer_draws_without_a_graphics_adapter_in_the_same_units() {
+fn the_zbuffer_draws_on_the_cpu_with_the_exposure_of_the_other_methods() {
     let folder = tempfile::tempdir().unwrap();
     let render =
         ["render", "three_point", "-o", "z.png", "--method", "zbuffer", "--size", "48x72", "--spp", "4", "--json"];
@@ -199,7 +203,7 @@ fn the_zbuffer_draws_without_a_graphics_adapter_in_the_same_units() {
         &["render", "three_point", "-o", "d.png", "--method", "direct", "--size", "48x72", "--spp", "4"],
     );
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    // Without shadows it is brighter, but by the same exposure: well within a stop in the mean of encoded codes.
+    // The exposure is the same. Without shadows the mean of the encoded values is a little larger.
     let mean = |name: &str| {
         let bytes = image::open(folder.path().join(name)).unwrap().to_rgb8().into_raw();
         bytes.iter().map(|c| f64::from(*c)).sum::<f64>() / bytes.len() as f64
@@ -213,7 +217,7 @@ fn the_zbuffer_draws_without_a_graphics_adapter_in_the_same_units() {
 }
 
 #[test]
-fn the_traced_preview_tells_how_soon_it_shows_a_change_and_writes_its_picture() {
+fn the_traced_preview_measures_times_to_a_first_picture_and_writes_the_finished_one() {
     let folder = tempfile::tempdir().unwrap();
     let traced = ["preview", "product_still_life", "--traced", "--size", "64x40"];
     let output = catchlight(folder.path(), &[&traced[..], &["--frames", "3", "--json"]].concat());
@@ -224,7 +228,7 @@ fn the_traced_preview_tells_how_soon_it_shows_a_change_and_writes_its_picture() 
         assert!(median > 0.0 && median <= most, "{key}: {report}");
     }
     assert!(report["opened_ms"].as_f64() > Some(0.0) && report["covered_s"].as_f64() > Some(0.0), "{report}");
-    assert!(report["reused"].as_f64() > Some(0.3), "a turned view knows most of what it shows: {report}");
+    assert!(report["reused"].as_f64() > Some(0.3), "a turned view reuses most of its pixels: {report}");
     let output = catchlight(folder.path(), &[&traced[..], &["-o", "t.png"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(image::open(folder.path().join("t.png")).unwrap().to_rgb8().dimensions(), (64, 40));

@@ -102,7 +102,11 @@ impl RenderMonitor {
     }
 
     pub(super) fn finish_pass(&self) {
-        locked(&self.stages).first_pass.get_or_insert_with(Instant::now);
+        let mut stages = locked(&self.stages);
+        if stages.first_pass.is_none() {
+            stages.first_pass = Some(Instant::now());
+            log::debug!("every pixel has a sample after {} ms", self.started.elapsed().as_millis());
+        }
     }
 
     pub(super) fn finish(&self) {
