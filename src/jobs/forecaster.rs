@@ -128,7 +128,7 @@ impl Forecaster {
         &self.measured
     }
 
-    /// Returns true if a pilot is under way or about to start.
+    /// Returns true if a pilot is running or about to start.
     pub fn is_busy(&self) -> bool {
         self.changed.is_some() || self.worker.is_busy()
     }

@@ -74,7 +74,7 @@ impl MeterJob {
         self.latest.as_ref()
     }
 
-    /// Returns true while a reading is under way.
+    /// Returns true while a reading is running.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy()
     }

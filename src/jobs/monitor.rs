@@ -1,4 +1,4 @@
-//! Progress of a render under way, readable from another thread.
+//! Progress of a running render, readable from another thread.
 
 use super::threads::locked;
 use crate::raytrace::{RenderControl, Settings};

@@ -118,7 +118,7 @@ impl Deadline {
     }
 }
 
-/// Traces with a time limit. At its end the pass under way is cancelled, unless it is the first one.
+/// Traces with a time limit. At its end the current pass is cancelled, unless it is the first one.
 fn within_time(
     limit: Option<Duration>,
     started: Instant,

@@ -49,7 +49,7 @@ struct Request<K> {
     side: u32,
 }
 
-/// The worker that draws thumbnails, each with a key by which its owner knows it.
+/// The worker that draws thumbnails, each with a key that its owner chooses.
 #[derive(Debug)]
 pub struct ThumbnailJob<K> {
     worker: Worker<VecDeque<Request<K>>, Vec<(K, ThumbnailImage)>>,

@@ -13,7 +13,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 /// A callback that makes a job's owner fetch its result, such as a request to repaint a window.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// When a new request cancels the work on the previous one.
+/// Rule by which a new request cancels the work on the previous one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interrupt {
     /// At once: a result of the previous request is of no use.
@@ -29,7 +29,7 @@ pub struct WorkerSettings {
     pub name: &'static str,
     /// Priority of the thread.
     pub priority: Priority,
-    /// When a new request cancels the work on the previous one.
+    /// Rule by which a new request cancels the work on the previous one.
     pub interrupt: Interrupt,
     /// Message of the result after a panic.
     pub panic_message: &'static str,
@@ -134,14 +134,14 @@ impl<Q: Send + 'static, R: Send + 'static> Worker<Q, R> {
         }
     }
 
-    /// Cancels the work under way and discards request and result.
+    /// Cancels the current work and discards request and result.
     pub fn reset(&self) {
         let mut state = self.shared.lock();
         state.control.cancel();
         (state.request, state.result) = (None, None);
     }
 
-    /// Pauses or resumes the work. A pause cancels the work under way, and the request waits.
+    /// Pauses or resumes the work. A pause cancels the current work; the request stays in its slot.
     pub fn pause(&self, is_paused: bool) {
         let mut state = self.shared.lock();
         if state.is_paused != is_paused {
@@ -204,7 +204,7 @@ impl<Q, R> Inbox<Q, R> {
                 return Some(step);
             }
             state = if was_busy && !state.is_busy {
-                // The owner learns that the work is done, also where it ended without a result.
+                // Signal the end of the work, which may have left no result.
                 let wake = state.wake.clone();
                 drop(state);
                 signal(wake);
@@ -341,7 +341,7 @@ mod tests {
         (Arc::new(move || sender.send(()).unwrap_or_default()), receiver)
     }
 
-    /// A worker that reports each request it starts, waits for leave to go on, and returns the request.
+    /// A worker that reports each request it starts, waits for a signal, and returns the request.
     fn gated(settings: WorkerSettings) -> (Worker<u32, u32>, Receiver<(u32, Arc<RenderControl>)>, Sender<()>) {
         let (started, starts) = channel();
         let (leave, gate) = channel();
