@@ -140,10 +140,10 @@ fn next_step(pending: &mut Pending<'_, LiveRequest, LiveImage>, is_idle: bool) -
         }
         return None;
     }
-    if is_idle || pending.has_result() {
-        if let Some((request, _)) = pending.take_request() {
-            return Some(LiveStep::Update(Box::new(request)));
-        }
+    if (is_idle || pending.has_result())
+        && let Some((request, _)) = pending.take_request()
+    {
+        return Some(LiveStep::Update(Box::new(request)));
     }
     Some(LiveStep::Trace(pending.control()))
 }

@@ -39,9 +39,12 @@ pub struct WorkerSettings {
 pub struct Worker<Q, R> {
     shared: Arc<Shared<Q, R>>,
     settings: WorkerSettings,
-    work: Arc<dyn Fn(&Inbox<Q, R>) + Send + Sync>,
+    work: Arc<Work<Q, R>>,
     is_started: bool,
 }
+
+/// The body of a worker's thread.
+type Work<Q, R> = dyn Fn(&Inbox<Q, R>) + Send + Sync;
 
 struct Shared<Q, R> {
     state: Mutex<State<Q, R>>,
@@ -341,8 +344,11 @@ mod tests {
         (Arc::new(move || sender.send(()).unwrap_or_default()), receiver)
     }
 
+    /// The requests that a worker has started, with their controls.
+    type Starts = Receiver<(u32, Arc<RenderControl>)>;
+
     /// A worker that reports each request it starts, waits for a signal, and returns the request.
-    fn gated(settings: WorkerSettings) -> (Worker<u32, u32>, Receiver<(u32, Arc<RenderControl>)>, Sender<()>) {
+    fn gated(settings: WorkerSettings) -> (Worker<u32, u32>, Starts, Sender<()>) {
         let (started, starts) = channel();
         let (leave, gate) = channel();
         let gate = Mutex::new(gate);
