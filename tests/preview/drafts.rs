@@ -1,8 +1,8 @@
-//! What is cheaper may show, but not much: drafts while something moves, lights that are left out beyond their reach.
+//! Approximations and their errors: drafts while something moves, and light culling.
 
 use super::*;
 
-/// Mean and 99th percentile of the differences between two pictures, codes of 255.
+/// Returns the mean and the 99th percentile of the differences between two pictures, codes of 255.
 fn differences(a: &image::RgbImage, b: &image::RgbImage) -> (f32, u8) {
     let mut codes: Vec<u8> = a.as_raw().iter().zip(b.as_raw()).map(|(a, b)| a.abs_diff(*b)).collect();
     codes.sort_unstable();
@@ -11,36 +11,36 @@ fn differences(a: &image::RgbImage, b: &image::RgbImage) -> (f32, u8) {
 }
 
 #[test]
-fn a_draft_shows_the_same_light_and_gives_way_to_the_very_same_picture() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
+fn a_draft_is_close_to_the_full_picture_and_leaves_no_trace_in_it() {
+    let Some(mut renderer) = shared_renderer() else { return };
     for name in ["three_point", "product_still_life", "gel_portrait"] {
         let loaded = catchlight::io::find_preset(name).unwrap().load().unwrap();
         let mut input = PreviewInput::camera_view(&loaded.scene, &loaded.assets, (481, 321));
         let full = renderer.picture(&input).unwrap();
         input.options.draft = true;
         let (mean, most) = differences(&renderer.picture(&input).unwrap(), &full);
-        // One pixel in nine or fewer is lit: what is lost are the finest highlights and the edges of shadows.
+        // One pixel in nine or fewer is shaded: fine highlights and shadow edges are lost.
         assert!(mean < 1.5 && most < 40, "{name}: {mean} codes in the mean, {most} in the 99th percentile");
         if !renderer.draws_drafts() {
-            assert_eq!((mean, most), (0.0, 0), "a graphics card has no need of drafts");
+            assert_eq!((mean, most), (0.0, 0), "a GPU draws no drafts");
         }
         input.options.draft = false;
-        assert_eq!(renderer.picture(&input).unwrap(), full, "{name}: a draft leaves nothing behind");
+        assert_eq!(renderer.picture(&input).unwrap(), full, "{name}: after a draft");
     }
 }
 
 #[test]
-fn a_light_beyond_its_reach_is_not_missed() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
-    // Small lights over the floor, from the middle on: each reaches a part of it.
+fn light_culling_removes_only_faint_light() {
+    let Some(mut renderer) = shared_renderer() else { return };
+    // Small lights over the floor, each with a cull radius smaller than the floor
     for count in [40, 3, 1] {
         let mut scene = floor_under(light(0, Vec3::Y, Vec3::ZERO, Emitter::Point, Output::Candela(1.0)));
         scene.lights = (0..count).map(small_light).collect();
-        light_is_lost_only_where_it_is_faint(&mut renderer, &scene);
+        assert_only_faint_light_is_culled(&mut renderer, &scene);
     }
 }
 
-/// A light 0.6 m over the floor, of each kind in turn.
+/// Returns a light 0.6 m above the floor, cycling through the kinds.
 fn small_light(i: u32) -> Light {
     let place = Vec3::new(((i + 4) % 8) as f32 * 1.2 - 4.2, 0.6, ((i / 8 + 2) % 5) as f32 * 1.2 - 2.4);
     let emitter = match i % 4 {
@@ -52,28 +52,28 @@ fn small_light(i: u32) -> Light {
     light(i, place, place.with_y(0.0), emitter, Output::Candela(1.5))
 }
 
-fn light_is_lost_only_where_it_is_faint(renderer: &mut PreviewRenderer, scene: &Scene) {
+fn assert_only_faint_light_is_culled(renderer: &mut PreviewRenderer, scene: &Scene) {
     let mut input = direct(scene, (301, 201));
     input.options.shadows = false;
-    let near = renderer.linear_picture(&input).unwrap();
+    let culled = renderer.linear_picture(&input).unwrap();
     input.options.light_radius = false;
     let all = renderer.linear_picture(&input).unwrap();
     let luminance =
         |picture: &Picture| -> Vec<f32> { picture.rgb.iter().map(|rgb| color::luminance((*rgb).into())).collect() };
-    let (near, all) = (luminance(&near), luminance(&all));
-    let lost: Vec<f32> = all.iter().zip(&near).map(|(all, near)| all - near).collect();
+    let (culled, all) = (luminance(&culled), luminance(&all));
+    let lost: Vec<f32> = all.iter().zip(&culled).map(|(all, culled)| all - culled).collect();
     let most = lost.iter().fold(0.0_f32, |a, b| a.max(*b));
-    // Each light is left out where it would give 1/256 to white paper; the card is a fifth of that.
+    // A light is culled where a white surface would fall under 1/256; the card reflects 18 %.
     assert!(most < scene.lights.len() as f32 * 0.18 / 256.0 / 0.64, "{most} lost");
-    assert!(most > 0.0, "somewhere a light is out of reach");
+    assert!(most > 0.0, "some light is culled");
     assert!(lost.iter().all(|lost| *lost > -1e-3), "nothing is added");
     let brightest = all.iter().fold(0.0_f32, |a, b| a.max(*b));
     assert!(brightest > 0.005, "{brightest}");
 }
 
 #[test]
-fn a_draft_under_many_lights_is_coarser_and_still_the_same_picture() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
+fn a_draft_under_many_lights_is_close_to_the_full_picture() {
+    let Some(mut renderer) = shared_renderer() else { return };
     let mut scene = floor_under(light(0, Vec3::Y, Vec3::ZERO, Emitter::Point, Output::Candela(1.0)));
     let ball = Shape::Sphere { radius_m: 0.8 };
     scene.objects.push(object(1, ball, Vec3::new(0.0, 0.8, 0.0), grey_card()));

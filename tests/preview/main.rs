@@ -1,6 +1,6 @@
-//! The live preview against closed forms, against the tracer's layout, and against what an editor can do to it.
+//! Tests of the live preview: closed forms, the path tracer's layout and direct light, picking, overlays and caching.
 //!
-//! Without a graphics adapter these tests say so and pass; with `CATCHLIGHT_REQUIRE_GPU` set they fail.
+//! Without a GPU adapter these tests print that they are skipped and pass; with `CATCHLIGHT_REQUIRE_GPU` set they fail.
 #![cfg(feature = "gui")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
 
@@ -14,7 +14,7 @@ use catchlight::scene::{
 };
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 
 mod against_tracer;
 mod channels;
@@ -27,7 +27,7 @@ mod shadow_cache;
 mod stored;
 mod textures;
 
-/// A renderer, or a loud skip where the machine has no adapter and nobody insists on one.
+/// Returns a renderer on a device of its own, or none with a message if the machine has no adapter.
 fn renderer() -> Option<(Gpu, PreviewRenderer)> {
     match Gpu::headless() {
         Ok(gpu) => {
@@ -44,7 +44,36 @@ fn renderer() -> Option<(Gpu, PreviewRenderer)> {
     }
 }
 
-/// A diffuse surface of 18 % without gloss, on which pixels are illuminance times a known factor.
+/// A renderer whose device and pipelines several tests use, one after the other.
+struct SharedRenderer {
+    gpu: Gpu,
+    renderer: PreviewRenderer,
+}
+
+impl std::ops::Deref for SharedRenderer {
+    type Target = PreviewRenderer;
+
+    fn deref(&self) -> &PreviewRenderer {
+        &self.renderer
+    }
+}
+
+impl std::ops::DerefMut for SharedRenderer {
+    fn deref_mut(&mut self) -> &mut PreviewRenderer {
+        &mut self.renderer
+    }
+}
+
+/// Returns the renderer that tests share: compiling the pipelines takes longer than most of them. For tests that do not
+/// depend on what earlier frames left in its caches.
+fn shared_renderer() -> Option<MutexGuard<'static, SharedRenderer>> {
+    static SHARED: LazyLock<Option<Mutex<SharedRenderer>>> =
+        LazyLock::new(|| renderer().map(|(gpu, renderer)| Mutex::new(SharedRenderer { gpu, renderer })));
+    // A test that failed while it held the lock leaves a renderer that still works.
+    SHARED.as_ref().map(|shared| shared.lock().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// A Lambertian surface of 18 % without specular reflection: pixels are illuminance times a known factor.
 fn grey_card() -> Material {
     MaterialPreset::GreyCard.material()
 }
@@ -67,7 +96,7 @@ fn light(id: u32, position: Vec3, target: Vec3, emitter: Emitter, output: Output
     Light { id, name, position, aim: Aim::Point(target), ..Light::new(emitter, output) }
 }
 
-/// A floor of grey card and one light, in no room; the camera looks at the floor's middle from the side.
+/// A grey card floor and one light without a room; the camera looks at the centre of the floor from the side.
 fn floor_under(light: Light) -> Scene {
     let floor = Shape::Plane { width_m: 12.0, depth_m: 12.0 };
     Scene {
@@ -91,22 +120,22 @@ fn direct(scene: &Scene, size: (u32, u32)) -> PreviewInput<'_> {
     PreviewInput { options: Options::direct_only(), ..PreviewInput::camera_view(scene, no_assets, size) }
 }
 
-/// Scene-linear luminance at a point, between the four pixels around it.
-fn seen_at(picture: &Picture, frame: &CameraFrame, point: Vec3) -> f32 {
+/// Returns the scene-linear luminance at a world point, bilinearly interpolated.
+fn luminance_at(picture: &Picture, frame: &CameraFrame, point: Vec3) -> f32 {
     let size = Vec2::new(picture.width as f32, picture.height as f32);
-    let place = frame.project(point).unwrap() * size - 0.5;
-    let (corner, part) = (place.floor().as_uvec2(), place.fract());
+    let position_px = frame.project(point).unwrap() * size - 0.5;
+    let (corner, part) = (position_px.floor().as_uvec2(), position_px.fract());
     let at = |x: u32, y: u32| color::luminance(picture.at(corner.x + x, corner.y + y).into());
     let row = |y: u32| at(0, y) + (at(1, y) - at(0, y)) * part.x;
     row(0) + (row(1) - row(0)) * part.y
 }
 
-/// Illuminance that a picture shows on grey card at a point, lx.
+/// Returns the illuminance at a point of a grey card, lx.
 fn lux_at(renderer: &mut PreviewRenderer, scene: &Scene, point: Vec3) -> f32 {
     lux_of(renderer, &direct(scene, (301, 201)), point)
 }
 
-/// The same without shadows.
+/// Returns the illuminance at a point of a grey card without shadows, lx.
 fn unshadowed_lux_at(renderer: &mut PreviewRenderer, scene: &Scene, point: Vec3) -> f32 {
     let mut input = direct(scene, (301, 201));
     input.options.shadows = false;
@@ -117,7 +146,7 @@ fn lux_of(renderer: &mut PreviewRenderer, input: &PreviewInput, point: Vec3) -> 
     let camera = &input.scene.camera;
     let picture = renderer.linear_picture(input).unwrap();
     let per_lux = exposure::pixel_per_cd_s_m2(camera) * camera.shutter_s * 0.18 / PI;
-    seen_at(&picture, &input.frame, point) / per_lux
+    luminance_at(&picture, &input.frame, point) / per_lux
 }
 
 fn assert_close(actual: f32, expected: f32, tolerance: f32, what: &str) {
@@ -125,9 +154,9 @@ fn assert_close(actual: f32, expected: f32, tolerance: f32, what: &str) {
     assert!(error.abs() <= tolerance, "{what}: {actual} instead of {expected}, off by {:.2} %", error * 100.0);
 }
 
-/// Where a pixel's middle looks at the height of the floor; none above the horizon.
+/// Returns the floor point at a pixel's centre; none above the horizon.
 fn floor_at(frame: &CameraFrame, size: (u32, u32), (x, y): (u32, u32)) -> Option<Vec3> {
-    let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / Vec2::new(size.0 as f32, size.1 as f32);
-    let (eye, direction) = (frame.position(), frame.direction(place));
+    let uv = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / Vec2::new(size.0 as f32, size.1 as f32);
+    let (eye, direction) = (frame.position(), frame.direction(uv));
     (direction.y < 0.0).then(|| eye - direction * (eye.y / direction.y))
 }

@@ -1,10 +1,10 @@
-//! What the picture shows: shadows, textures, clicks, overlay, and that nothing an editor does to it breaks it.
+//! Shadows, textures, picking, overlay, caching between frames and robustness.
 
 use super::*;
 
 #[test]
-fn things_cast_shadows_and_stand_on_them() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
+fn objects_cast_contact_shadows_for_every_kind_of_light() {
+    let Some(mut renderer) = shared_renderer() else { return };
     let emitters = [
         Emitter::Point,
         Emitter::Sphere { radius_m: 0.05 },
@@ -17,7 +17,7 @@ fn things_cast_shadows_and_stand_on_them() {
         let mut scene = floor_under(light(0, Vec3::new(2.0, 2.0, 0.0), Vec3::ZERO, emitter, Output::Lumens(5000.0)));
         let lit = lux_at(&mut renderer, &scene, Vec3::new(-0.5, 0.0, 0.0));
         scene.objects.push(object(1, cube.clone(), Vec3::Y * 0.25, grey_card()));
-        // The shadow runs from the box's foot to 0.4 m behind it; a pixel of the shadow mask covers 6 cm.
+        // The shadow extends from the box to 0.4 m behind it; a pixel of the shadow mask covers 6 cm.
         for x in [-0.34, -0.45, -0.55] {
             let dark = lux_at(&mut renderer, &scene, Vec3::new(x, 0.0, 0.0));
             assert!(dark < 0.03 * lit, "{emitter:?}: {dark} lx at {x} m, {lit} lx without the box");
@@ -29,8 +29,8 @@ fn things_cast_shadows_and_stand_on_them() {
 }
 
 #[test]
-fn close_up_a_cube_of_three_millimetres_stands_on_a_wide_floor_and_in_its_shadow() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
+fn a_cube_of_three_millimetres_on_a_wide_floor_has_its_shadow_in_a_close_up() {
+    let Some(mut renderer) = shared_renderer() else { return };
     let lumens = Output::Lumens(5000.0);
     let lights = [
         (Emitter::Point, lumens),
@@ -47,17 +47,17 @@ fn close_up_a_cube_of_three_millimetres_stands_on_a_wide_floor_and_in_its_shadow
         scene.objects.push(object(1, Shape::Box { size_m: Vec3::splat(0.003) }, Vec3::Y * 0.0015, grey_card()));
         let lit = places.map(|place| lux_at(&mut renderer, &scene, place));
         let parts: [f32; 4] = std::array::from_fn(|i| lit[i] / free[i]);
-        // Light from 45 degrees: the shadow runs from the foot to 3 mm behind it. A texel of the sun's map, and a pixel of
-        // the mask, cover half a millimetre. It is dark 1 mm behind the foot, and there is light 1 mm before the cube and
-        // 2 mm behind the shadow.
+        // Light from 45 degrees: the shadow extends to 3 mm behind the cube. A texel of the sun's map and a pixel of
+        // the mask cover half a millimetre. It is dark 1 mm behind the cube, and lit 1 mm in front of the cube and 2 mm
+        // behind the shadow.
         assert!(parts[..2].iter().all(|part| *part < 0.2), "{emitter:?}: {parts:?} of the light");
         assert!(parts[2..].iter().all(|part| *part > 0.9), "{emitter:?}: {parts:?} of the light");
     }
 }
 
 #[test]
-fn a_floor_does_not_shadow_itself_however_flat_the_light() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
+fn a_floor_does_not_shadow_itself_under_grazing_light() {
+    let Some(mut renderer) = shared_renderer() else { return };
     for height in [0.1, 0.5, 3.0] {
         let emitter = Emitter::RectPanel { width_m: 1.0, height_m: 0.1 };
         let place = Vec3::new(3.0, height, 0.0);
@@ -73,8 +73,8 @@ fn a_floor_does_not_shadow_itself_however_flat_the_light() {
 }
 
 #[test]
-fn the_shaders_tone_curve_is_the_processors() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
+fn the_tone_curve_of_the_shader_equals_that_of_the_cpu() {
+    let Some(mut renderer) = shared_renderer() else { return };
     let camera = Camera { position: Vec3::new(0.0, 0.0, 4.0), aim: Aim::Point(Vec3::ZERO), ..Camera::default() };
     let per_cd_m2 = exposure::pixel_per_cd_s_m2(&camera) * camera.shutter_s;
     for step in 0..24 {
@@ -97,8 +97,8 @@ fn the_shaders_tone_curve_is_the_processors() {
 }
 
 #[test]
-fn a_texture_shows_upright_and_averaged() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
+fn a_texture_is_upright_and_filtered() {
+    let Some(mut renderer) = shared_renderer() else { return };
     let mut assets = Assets::default();
     // Upper half red, lower half blue.
     let rgb = (0..64 * 64).map(|i| if i < 32 * 64 { [255, 0, 0] } else { [0, 0, 255] }).collect();
@@ -124,8 +124,8 @@ fn a_texture_shows_upright_and_averaged() {
 }
 
 #[test]
-fn a_click_finds_what_is_under_it() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
+fn a_pick_returns_the_object_light_or_point_at_a_pixel() {
+    let Some(mut renderer) = shared_renderer() else { return };
     let mut scene = floor_under(light(
         7,
         Vec3::new(0.0, 1.0, -2.0),
@@ -146,8 +146,8 @@ fn a_click_finds_what_is_under_it() {
     renderer.render(&input).unwrap();
     let frame = input.frame;
     let pixel = move |point: Vec3| {
-        let place = frame.project(point).unwrap() * Vec2::new(300.0, 200.0);
-        (place.x as u32, place.y as u32)
+        let px = frame.project(point).unwrap() * Vec2::new(300.0, 200.0);
+        (px.x as u32, px.y as u32)
     };
     let ball = Vec3::new(1.5, 0.4, 1.0);
     assert_eq!(renderer.pick_blocking(pixel(ball)).unwrap(), Some(Pick::Object(ObjectId(3))));
@@ -156,7 +156,7 @@ fn a_click_finds_what_is_under_it() {
         Some(Pick::Object(ObjectId(4)))
     );
     assert_eq!(renderer.pick_blocking(pixel(Vec3::new(0.0, 1.0, -2.0))).unwrap(), Some(Pick::Light(LightId(7))));
-    assert_eq!(renderer.pick_blocking(pixel(Vec3::new(0.0, 0.5, -6.4))).unwrap(), None, "a wall is no thing");
+    assert_eq!(renderer.pick_blocking(pixel(Vec3::new(0.0, 0.5, -6.4))).unwrap(), None, "a wall cannot be picked");
     assert_eq!(renderer.pick_blocking((300, 0)).unwrap(), None);
 
     let floor = Vec3::new(0.5, 0.0, 2.0);
@@ -165,14 +165,11 @@ fn a_click_finds_what_is_under_it() {
     assert!((hit.point.unwrap() - floor).length() < 0.05, "{hit:?}");
 
     renderer.request_pick(pixel(ball)).unwrap();
-    let answer = (0..1000).find_map(|_| {
-        std::thread::sleep(std::time::Duration::from_millis(1));
-        renderer.poll_pick()
-    });
-    assert_eq!(answer.unwrap().pick, Some(Pick::Object(ObjectId(3))));
+    renderer.gpu.device.poll(eframe::wgpu::PollType::wait_indefinitely()).unwrap();
+    assert_eq!(renderer.poll_pick().unwrap().pick, Some(Pick::Object(ObjectId(3))));
     assert_eq!(renderer.poll_pick(), None);
 
-    // A light that the camera does not see is found by its gizmo.
+    // A light that is invisible to the camera is picked by its gizmo
     scene.lights[0].visible_to_camera = false;
     input = direct(&scene, (300, 200));
     let corner = pixel(Vec3::new(0.5, 1.2, -2.0));
@@ -184,8 +181,8 @@ fn a_click_finds_what_is_under_it() {
 }
 
 #[test]
-fn the_overlay_draws_over_the_picture_and_only_when_asked() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
+fn the_overlay_changes_the_picture_only_where_it_is_enabled() {
+    let Some(mut renderer) = shared_renderer() else { return };
     let mut scene = floor_under(light(0, Vec3::Y * 3.0, Vec3::ZERO, Emitter::Point, Output::Lumens(9000.0)));
     scene.objects.push(object(1, Shape::Sphere { radius_m: 0.6 }, Vec3::Y * 0.6, grey_card()));
     let mut input = direct(&scene, (240, 160));
@@ -204,7 +201,7 @@ fn the_overlay_draws_over_the_picture_and_only_when_asked() {
 }
 
 #[test]
-fn what_is_kept_between_frames_never_shows() {
+fn a_renderer_with_caches_draws_the_same_picture_as_a_fresh_one() {
     let Some((_gpu, mut renderer)) = renderer() else { return };
     let panel = Emitter::RectPanel { width_m: 0.6, height_m: 0.6 };
     let mut scene = floor_under(light(0, Vec3::new(1.0, 2.0, 1.0), Vec3::ZERO, panel, Output::Lumens(20_000.0)));
@@ -227,7 +224,7 @@ fn what_is_kept_between_frames_never_shows() {
 }
 
 #[test]
-fn any_size_and_any_scene_is_drawn() {
+fn any_size_and_degenerate_scenes_are_drawn() {
     let Some((_gpu, mut renderer)) = renderer() else { return };
     let empty = Scene::default();
     for size in [(0, 0), (1, 1), (0, 7), (333, 1), (1, 333), (17, 31), (640, 3), (64, 64)] {
@@ -280,8 +277,8 @@ fn a_lost_device_is_an_error_and_a_new_one_works() {
 }
 
 #[test]
-fn the_overlay_alone_leaves_the_picture_out_and_things_can_still_be_picked() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
+fn the_overlay_alone_leaves_out_the_picture_and_keeps_picking() {
+    let Some(mut renderer) = shared_renderer() else { return };
     let lamp = light(0, Vec3::new(1.5, 3.0, 1.0), Vec3::ZERO, Emitter::Point, Output::Lumens(20_000.0));
     let mut scene = floor_under(lamp);
     for (id, x, material) in [(1, -0.5, grey_card()), (2, 0.5, MaterialPreset::ClearGlass.material())] {

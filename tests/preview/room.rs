@@ -1,9 +1,9 @@
-//! The room and what lies flush with its floor.
+//! The room and surfaces that are coplanar with its floor.
 
 use super::*;
 use catchlight::preview::Channel;
 
-/// A paper roll in a room under one bulb; the camera stands on its front edge's side and looks along the floor.
+/// A paper roll in a room under a point light; the camera is beside its front edge and looks along the floor.
 fn paper_in_a_room() -> Scene {
     let paper = Shape::Sweep { width_m: 2.7, height_m: 2.6, depth_m: 3.4, radius_m: 0.6 };
     let bulb = light(0, Vec3::new(0.6, 2.4, 1.0), Vec3::ZERO, Emitter::Point, Output::Lumens(8000.0));
@@ -22,8 +22,8 @@ fn paper_in_a_room() -> Scene {
 }
 
 #[test]
-fn the_floor_is_as_deep_as_it_is_though_it_runs_under_the_camera() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
+fn a_floor_that_extends_under_the_camera_has_exact_depth() {
+    let Some(mut renderer) = shared_renderer() else { return };
     let scene = paper_in_a_room();
     let size = (301, 201);
     let mut input = direct(&scene, size);
@@ -32,7 +32,7 @@ fn the_floor_is_as_deep_as_it_is_though_it_runs_under_the_camera() {
     let mut compared = 0;
     for (x, y) in (0..size.1).flat_map(|y| (0..size.0).map(move |x| (x, y))) {
         let Some(floor) = floor_at(&input.frame, size, (x, y)) else { continue };
-        // A little off the walls and the roll's bend.
+        // Keep away from the walls and the curve of the roll
         if floor.x.abs() < 3.3 && (-1.2..4.3).contains(&floor.z) {
             let depth = (floor - input.frame.position()).dot(input.frame.forward());
             // Half floats hold eleven bits.
@@ -45,7 +45,7 @@ fn the_floor_is_as_deep_as_it_is_though_it_runs_under_the_camera() {
 
 #[test]
 fn the_edge_of_paper_on_the_floor_casts_no_shadow() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
+    let Some(mut renderer) = shared_renderer() else { return };
     let mut scene = paper_in_a_room();
     for position in [Vec3::new(2.0, 2.0, 4.2), Vec3::new(-2.6, 0.7, 2.4), Vec3::new(0.4, 1.3, 3.9)] {
         scene.camera.position = position;
@@ -59,7 +59,7 @@ fn the_edge_of_paper_on_the_floor_casts_no_shadow() {
         for (i, object) in (0..).zip(&paper) {
             let (x, y) = (i % size.0, i / size.0);
             let Some(floor) = floor_at(&input.frame, size, (x, y)) else { continue };
-            // The flat part of the paper and the floor around it, out of the roll's own shadow.
+            // The flat part of the paper and the floor around it, outside of the roll's shadow
             if floor.x.abs() < 1.6 && (0.0..1.8).contains(&floor.z) {
                 let inside = floor.x.abs() < 1.33 && floor.z < 1.38;
                 assert!(object.is_some() || !inside, "the floor shows through the paper at {floor}");

@@ -1,8 +1,8 @@
-//! Which shadow maps are drawn anew after a change.
+//! The number of shadow maps that are redrawn after a change.
 
 use super::*;
 
-/// Two spots that shine side by side on a box each, and a bulb between them that reaches both.
+/// Two spots side by side, each lighting its own box.
 fn two_spots() -> Scene {
     let spot = Emitter::Spot { inner_deg: 20.0, outer_deg: 30.0 };
     let over =
@@ -16,14 +16,14 @@ fn two_spots() -> Scene {
     scene
 }
 
-/// Maps drawn for a picture of the scene.
+/// Draws a picture and returns the number of shadow maps that it redrew.
 fn redrawn(renderer: &mut PreviewRenderer, scene: &Scene) -> usize {
     renderer.render(&direct(scene, (60, 40))).unwrap();
     renderer.redrawn_shadow_maps()
 }
 
 #[test]
-fn a_shadow_map_is_drawn_again_only_for_what_its_light_sees() {
+fn a_shadow_map_is_redrawn_only_for_changes_in_its_view() {
     let Some((_gpu, mut renderer)) = renderer() else { return };
     let mut scene = two_spots();
     assert_eq!(redrawn(&mut renderer, &scene), 2);
@@ -31,20 +31,20 @@ fn a_shadow_map_is_drawn_again_only_for_what_its_light_sees() {
     scene.camera.position.x += 0.5;
     scene.lights[0].power.dial_stops = -1.0;
     scene.objects[1].material.base_color = [0.5, 0.1, 0.1];
-    assert_eq!(redrawn(&mut renderer, &scene), 0, "camera, power and colour cast no shadow");
+    assert_eq!(redrawn(&mut renderer, &scene), 0, "camera, power and colour do not affect shadow maps");
 
     scene.objects[1].transform.position.x += 0.1;
     assert_eq!(redrawn(&mut renderer, &scene), 1, "a box under the first spot moves");
     scene.lights[1].position.y += 0.1;
     assert_eq!(redrawn(&mut renderer, &scene), 1, "the second spot moves");
     scene.objects[1].transform.position.x = 3.5;
-    assert_eq!(redrawn(&mut renderer, &scene), 2, "a box goes from one to the other");
+    assert_eq!(redrawn(&mut renderer, &scene), 2, "a box moves from the first view to the second");
     scene.objects[1].transform.position.x = 3.4;
-    assert_eq!(redrawn(&mut renderer, &scene), 1, "the first sees nothing of it there");
+    assert_eq!(redrawn(&mut renderer, &scene), 1, "the box is outside of the first view");
 }
 
 #[test]
-fn a_light_that_goes_out_and_on_again_finds_its_shadow_where_it_was() {
+fn switching_a_light_off_and_on_keeps_its_shadow_map() {
     let Some((_gpu, mut renderer)) = renderer() else { return };
     let mut scene = two_spots();
     redrawn(&mut renderer, &scene);
@@ -58,12 +58,12 @@ fn a_light_that_goes_out_and_on_again_finds_its_shadow_where_it_was() {
 }
 
 #[test]
-fn a_light_whose_reach_ends_before_a_thing_keeps_its_shadow_map() {
+fn objects_outside_of_the_cull_radius_do_not_invalidate_a_shadow_map() {
     let Some((_gpu, mut renderer)) = renderer() else { return };
     let mut scene = two_spots();
     // f/4, 0.5 s, ISO 100: half a candela falls under 1/256 of display white within two metres.
     scene.lights = vec![light(0, Vec3::new(-3.0, 1.0, 0.0), Vec3::ZERO, Emitter::Point, Output::Candela(0.5))];
-    assert_eq!(redrawn(&mut renderer, &scene), 6, "a cube, for the floor is all around");
+    assert_eq!(redrawn(&mut renderer, &scene), 6, "a cube map, because the floor surrounds the light");
     scene.objects[2].transform.position.x = 3.5;
     assert_eq!(redrawn(&mut renderer, &scene), 0, "a box far away");
     scene.objects[1].transform.position.x = -2.5;

@@ -1,6 +1,6 @@
-//! A small studio against stored pictures, channel by channel.
+//! A small studio against stored pictures of each channel.
 //!
-//! After a change that is meant, and looked at: `CATCHLIGHT_ACCEPT=1 cargo test --test preview stored`.
+//! To accept an intended change after inspection: `CATCHLIGHT_ACCEPT=1 cargo test --test preview stored`.
 
 use super::*;
 use catchlight::preview::Channel;
@@ -10,11 +10,11 @@ use std::path::Path;
 const SIZE: (u32, u32) = (96, 64);
 /// Side of a block, pixels.
 const BLOCK: u32 = 8;
-/// Codes of 255 by which a picture may differ in the mean and in its worst block. Between adapters, pixels on an edge
-/// fall to one side or the other (a handful in a block, each by up to a hundred codes), and last digits round otherwise.
+/// Codes of 255 by which a picture may differ in the mean and in its worst block. Adapters differ in the coverage of
+/// edge pixels (a few in a block, each by up to a hundred codes) and in rounding.
 const LIMITS: (f32, f32) = (0.5, 6.0);
 
-/// Things of each kind of surface in a room, under a light of each kind.
+/// A room with each kind of surface and each kind of light.
 fn studio() -> Scene {
     let key = Emitter::RectPanel { width_m: 0.8, height_m: 1.2 };
     let octa = Emitter::RoundPanel { diameter_m: 1.0 };
@@ -64,8 +64,8 @@ fn studio() -> Scene {
 }
 
 #[test]
-fn a_small_studio_looks_as_its_stored_pictures_in_every_channel() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
+fn a_small_studio_equals_its_stored_pictures_in_every_channel() {
+    let Some(mut renderer) = shared_renderer() else { return };
     let (scene, assets) = (studio(), Assets::default());
     let mut wrong = Vec::new();
     for (channel, name) in [
@@ -82,7 +82,7 @@ fn a_small_studio_looks_as_its_stored_pictures_in_every_channel() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What is wrong with a picture beside the stored one, if anything is; both and their difference are then written.
+/// Compares a picture with the stored one. On a mismatch writes both and their difference, and returns a message.
 fn compare(name: &str, actual: &RgbImage) -> Option<String> {
     let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/preview/stored/{name}.png"));
     if std::env::var_os("CATCHLIGHT_ACCEPT").is_some() {
@@ -108,7 +108,7 @@ fn compare(name: &str, actual: &RgbImage) -> Option<String> {
             picture.save(folder.join(format!("preview_{name}_{kind}.png"))).unwrap();
         }
         format!(
-            "{name}: {mean:.2} codes in the mean, {worst:.1} in the worst block; see {}/preview_{name}_*.png. If it is meant: \
+            "{name}: {mean:.2} codes in the mean, {worst:.1} in the worst block; see {}/preview_{name}_*.png. To accept it: \
              CATCHLIGHT_ACCEPT=1 cargo test --test preview stored",
             folder.display()
         )

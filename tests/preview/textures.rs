@@ -1,4 +1,4 @@
-//! Textures far away and at a flat angle.
+//! Texture filtering at a distance and at grazing angles.
 
 use super::*;
 use catchlight::preview::Channel;
@@ -7,9 +7,9 @@ const SIZE: (u32, u32) = (300, 200);
 /// Texels along each side of a texture that covers 12 m of floor.
 const TEXELS: u32 = 1024;
 
-/// The base colour of a floor under a texture, seen along the floor from half a metre above: pixels and where on the
-/// floor each looks, as a part of the base colour.
-fn floor_seen_flat(renderer: &mut PreviewRenderer, is_white: impl Fn(u32, u32) -> bool) -> Vec<(Vec3, f32)> {
+/// Draws a textured floor from half a metre above, looking along it. Returns the floor point of each pixel, and its
+/// base colour relative to the material's.
+fn grazing_floor(renderer: &mut PreviewRenderer, is_white: impl Fn(u32, u32) -> bool) -> Vec<(Vec3, f32)> {
     let mut assets = Assets::default();
     let code = |i: u32| if is_white(i % TEXELS, i / TEXELS) { [255; 3] } else { [0; 3] };
     let rgb = (0..TEXELS * TEXELS).map(code).collect();
@@ -24,20 +24,20 @@ fn floor_seen_flat(renderer: &mut PreviewRenderer, is_white: impl Fn(u32, u32) -
     let picture = renderer.linear_picture(&input).unwrap();
     let pixels = (0..SIZE.0 * SIZE.1).filter_map(|i| {
         let (x, y) = (i % SIZE.0, i / SIZE.0);
-        let place = floor_at(&input.frame, SIZE, (x, y))?;
-        let inside = place.x.abs() < 5.5 && place.z.abs() < 5.5;
-        inside.then(|| (place, picture.at(x, y)[1] / grey_card().base_color[1]))
+        let point = floor_at(&input.frame, SIZE, (x, y))?;
+        let inside = point.x.abs() < 5.5 && point.z.abs() < 5.5;
+        inside.then(|| (point, picture.at(x, y)[1] / grey_card().base_color[1]))
     });
     pixels.collect()
 }
 
 #[test]
-fn a_fine_checker_far_away_is_grey_and_shows_no_pattern() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
+fn a_fine_checkerboard_at_a_distance_is_uniform_grey() {
+    let Some(mut renderer) = shared_renderer() else { return };
     // Squares of one texel, 12 mm: from 6 m on a pixel covers 30 mm across and ten times that along.
-    let far: Vec<f32> = floor_seen_flat(&mut renderer, |x, y| (x + y) % 2 == 0)
+    let far: Vec<f32> = grazing_floor(&mut renderer, |x, y| (x + y) % 2 == 0)
         .into_iter()
-        .filter_map(|(place, shown)| (place.z < 0.0).then_some(shown))
+        .filter_map(|(point, shown)| (point.z < 0.0).then_some(shown))
         .collect();
     assert!(far.len() > 1000, "{} pixels", far.len());
     // The colour of the G-buffer has ten bits of square roots.
@@ -47,12 +47,12 @@ fn a_fine_checker_far_away_is_grey_and_shows_no_pattern() {
 }
 
 #[test]
-fn stripes_that_run_away_from_the_camera_are_told_apart_at_a_flat_angle() {
-    let Some((_gpu, mut renderer)) = renderer() else { return };
-    // Stripes of 0.38 m. At 8 m a pixel covers 4 cm across and 0.65 m along: a texture that is blurred alike both ways
-    // would be grey.
-    let stripes = floor_seen_flat(&mut renderer, |x, _| x / 32 % 2 == 0);
-    let row = stripes.iter().filter(|(place, _)| (place.z + 2.0).abs() < 0.4 && place.x.abs() < 3.0);
+fn stripes_along_the_view_are_resolved_at_a_grazing_angle() {
+    let Some(mut renderer) = shared_renderer() else { return };
+    // Stripes of 0.38 m. At 8 m a pixel covers 4 cm across and 0.65 m along: an isotropic filter would blur them
+    // to grey.
+    let stripes = grazing_floor(&mut renderer, |x, _| x / 32 % 2 == 0);
+    let row = stripes.iter().filter(|(point, _)| (point.z + 2.0).abs() < 0.4 && point.x.abs() < 3.0);
     let (low, high) = row.fold((f32::MAX, 0.0_f32), |(low, high), (_, shown)| (low.min(*shown), high.max(*shown)));
     assert!(low < 0.15 && high > 0.85, "{low} to {high} of the base colour");
 }
