@@ -1,30 +1,30 @@
-//! What of the G-buffer the preview shows, and the colours in which it shows illuminance.
+//! Displayed channels, and the false colours of illuminance.
 
-/// What a picture shows at each pixel.
+/// The quantity that a picture displays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Channel {
-    /// The studio as it is lit.
+    /// The lit picture.
     #[default]
     Lit,
-    /// What surfaces reflect of diffuse light, or metals of all light.
+    /// Base colour: diffuse albedo, or the reflectance of metals.
     BaseColor,
-    /// Directions that surfaces face, in the world: red right, green up, blue towards the front.
+    /// World normals: red right, green up, blue towards the front.
     Normal,
     /// Roughness from 0 (black) to 1.
     Roughness,
-    /// Metal (white) or not.
+    /// Metallic: white for metals.
     Metallic,
-    /// Distance along the camera's axis: from white at 0.5 m to black at 32 m, a sixth each time it doubles. A parallel
-    /// view, which looks from far away, shows it from white at the nearest thing to black at the farthest.
+    /// Distance along the optical axis, from white at 0.5 m to black at 32 m, logarithmic. In a parallel view from
+    /// white at the nearest object to black at the farthest.
     Depth,
-    /// A colour for each surface.
+    /// A distinct colour per surface.
     Ids,
-    /// Direct light on surfaces in stops, in false colour.
+    /// Direct illuminance in stops, in false colour.
     Illuminance,
 }
 
 impl Channel {
-    /// All of them.
+    /// All channels.
     pub const ALL: [Channel; 8] = [
         Channel::Lit,
         Channel::BaseColor,
@@ -36,7 +36,7 @@ impl Channel {
         Channel::Illuminance,
     ];
 
-    /// Its name for people.
+    /// The label in menus.
     pub fn label(self) -> &'static str {
         match self {
             Channel::Lit => "Lit",
@@ -50,7 +50,7 @@ impl Channel {
         }
     }
 
-    /// Its name on the command line.
+    /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Channel::Lit => "lit",
@@ -64,28 +64,28 @@ impl Channel {
         }
     }
 
-    /// Whether lights matter to it.
+    /// Returns true if the channel depends on lights.
     pub fn is_lit(self) -> bool {
         matches!(self, Channel::Lit | Channel::Illuminance)
     }
 
-    /// Its number in `channel.wgsl`.
+    /// Returns the value of `CHANNEL` in `channel.wgsl`.
     pub(super) fn number(self) -> u32 {
         self as u32
     }
 }
 
-/// How surfaces shine.
+/// The specular model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Gloss {
-    /// GGX facets, and emitters mirrored in their whole size: what the tracer computes.
+    /// GGX microfacets with the highlight of the emitter's full shape, as in the path tracer.
     #[default]
     Ggx,
-    /// Blinn and Phong's lobe towards an emitter's middle: quick, and without the emitter's shape.
+    /// Blinn-Phong lobe towards the emitter's centre: fast, without the emitter's shape.
     BlinnPhong,
 }
 
-/// Lowest and highest of the stops that have a colour of their own.
+/// Lowest and highest stop of the false colour scale.
 pub const FALSE_STOPS: (i32, i32) = (-6, 3);
 
 /// sRGB colours of whole stops from the lowest to the highest; twin of `false_color.wgsl`.
@@ -102,14 +102,14 @@ const FALSE_COLORS: [[f32; 3]; 10] = [
     [0.85, 0.15, 0.16],
 ];
 
-/// The colour of so many stops over the exposure that the camera is set for, sRGB; it changes in thirds of a stop.
+/// Returns the sRGB false colour of an illuminance in stops relative to the exposure, in steps of a third of a stop.
 pub fn false_color(stops: f32) -> [u8; 3] {
     let (low, high) = (FALSE_STOPS.0 as f32, FALSE_STOPS.1 as f32);
     let thirds = ((3.0 * stops).round() / 3.0).clamp(low, high) - low;
-    let place = (thirds.floor() as usize).min(FALSE_COLORS.len() - 2);
-    let part = thirds - place as f32;
+    let index = (thirds.floor() as usize).min(FALSE_COLORS.len() - 2);
+    let fraction = thirds - index as f32;
     std::array::from_fn(|i| {
-        let value = FALSE_COLORS[place][i] + (FALSE_COLORS[place + 1][i] - FALSE_COLORS[place][i]) * part;
+        let value = FALSE_COLORS[index][i] + (FALSE_COLORS[index + 1][i] - FALSE_COLORS[index][i]) * fraction;
         (value * 255.0).round() as u8
     })
 }
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_change_in_thirds_of_a_stop_and_end() {
+    fn false_colours_change_in_thirds_of_a_stop_and_are_clamped() {
         assert_eq!(false_color(0.1), false_color(-0.1));
         assert_ne!(false_color(0.2), false_color(0.1));
         assert_eq!(false_color(9.0), false_color(FALSE_STOPS.1 as f32));
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn every_channel_has_a_name_of_its_own() {
+    fn channel_names_are_unique() {
         let names: std::collections::HashSet<_> = Channel::ALL.iter().map(|channel| channel.name()).collect();
         assert_eq!(names.len(), Channel::ALL.len());
     }

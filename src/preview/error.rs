@@ -1,32 +1,32 @@
-//! What can go wrong between the preview and a graphics adapter.
+//! Errors of the preview.
 
-/// Why there is no preview picture.
+/// The reason why a preview picture could not be drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum PreviewError {
-    /// The machine offers no adapter at all.
+    /// The machine has no adapter.
     #[error(
-        "no graphics adapter found: a Vulkan, Metal or DirectX 12 driver is needed (on Linux, mesa-vulkan-drivers \
-         renders on the processor): {0}"
+        "no GPU adapter found: a Vulkan, Metal or DirectX 12 driver is needed (on Linux, mesa-vulkan-drivers renders on \
+         the CPU): {0}"
     )]
     NoAdapter(String),
-    /// There is an adapter, but it gives no device.
-    #[error("the graphics adapter {adapter} gave no device: {reason}")]
+    /// The adapter refused to create a device.
+    #[error("the GPU adapter {adapter} gave no device: {reason}")]
     NoDevice {
         /// Name of the adapter.
         adapter: String,
-        /// What the driver says.
+        /// Message of the driver.
         reason: String,
     },
-    /// The device cannot do what the preview needs.
-    #[error("the graphics device cannot show the preview: {0}")]
+    /// The device lacks a limit that the preview needs.
+    #[error("the GPU cannot show the preview: {0}")]
     Unsupported(String),
-    /// The device is gone (driver reset, unplugged, destroyed): build a new device and a new renderer.
-    #[error("the graphics device was lost: {0}")]
+    /// The device is lost (driver reset, unplugged, destroyed): create a new device and a new renderer.
+    #[error("the GPU device was lost: {0}")]
     DeviceLost(String),
     /// The device has too little memory for this picture or scene.
-    #[error("out of graphics memory")]
+    #[error("out of GPU memory")]
     OutOfMemory,
     /// The driver refused a command.
-    #[error("the graphics driver refused the preview: {0}")]
+    #[error("the GPU driver refused the preview: {0}")]
     Driver(String),
 }

@@ -1,31 +1,30 @@
-//! Frame times in motion, each frame waited for: what somebody gets who orbits about the studio.
+//! Frame times while the camera orbits, each frame waited for.
 
 use super::{PreviewError, PreviewInput, PreviewRenderer};
 use eframe::wgpu;
 use glam::{Affine3A, Quat, Vec3};
 use std::time::Instant;
 
-/// Turn of the camera from one frame to the next, radians: a slow drag of the mouse.
+/// Rotation of the camera per frame, radians: a slow drag of the mouse.
 const TURN_RAD: f32 = 0.004;
-/// Frames that are drawn before the clock counts: pipelines are compiled and meshes uploaded in the first.
+/// Untimed frames at the start: the first compile pipelines and upload meshes.
 const WARM_UP: u32 = 3;
-/// Distance ahead of the camera about which it turns, metres.
+/// Distance of the orbit's centre in front of the camera, metres.
 const PIVOT_M: f32 = 2.0;
 
-/// Times of frames with a camera that moves.
+/// Frame times with a moving camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameTimes {
-    /// Frames measured.
+    /// Number of timed frames.
     pub frames: usize,
-    /// Half of the frames took less, milliseconds.
+    /// Median, milliseconds.
     pub median_ms: f64,
-    /// Nine of ten frames took less, milliseconds.
+    /// 90th percentile, milliseconds.
     pub ninety_percent_ms: f64,
 }
 
 impl PreviewRenderer {
-    /// Draws frames with the camera a little farther each time, and waits for each until the device has finished it.
-    /// Nothing is read back.
+    /// Draws frames with an orbiting camera and waits for the device after each. Nothing is read back.
     pub fn time_frames(&mut self, input: &PreviewInput, frames: u32) -> Result<FrameTimes, PreviewError> {
         let mut times = Vec::new();
         for step in 0..WARM_UP + frames.max(1) {
@@ -39,8 +38,8 @@ impl PreviewRenderer {
             }
         }
         times.sort_by(f64::total_cmp);
-        let at = |part: f64| times[((times.len() - 1) as f64 * part).round() as usize];
-        Ok(FrameTimes { frames: times.len(), median_ms: at(0.5), ninety_percent_ms: at(0.9) })
+        let percentile = |part: f64| times[((times.len() - 1) as f64 * part).round() as usize];
+        Ok(FrameTimes { frames: times.len(), median_ms: percentile(0.5), ninety_percent_ms: percentile(0.9) })
     }
 
     /// Waits until all submitted work is done.
@@ -52,7 +51,7 @@ impl PreviewRenderer {
     }
 }
 
-/// A camera turned about the vertical line through what lies ahead of it.
+/// Returns a camera rotated about the vertical axis through a point in front of it.
 fn orbited(world_from_camera: &Affine3A, angle_rad: f32) -> Affine3A {
     let pivot = world_from_camera.transform_point3(Vec3::NEG_Z * PIVOT_M);
     let turn = Affine3A::from_quat(Quat::from_rotation_y(angle_rad));
@@ -64,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_camera_keeps_its_distance_and_what_it_looks_at() {
+    fn orbiting_keeps_the_distance_and_the_target() {
         let camera = Affine3A::from_translation(Vec3::new(0.0, 1.5, 3.0));
         let moved = orbited(&camera, 0.3);
         let pivot = Vec3::new(0.0, 1.5, 1.0);

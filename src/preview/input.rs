@@ -1,28 +1,28 @@
-//! What the preview is asked to show.
+//! The input of a preview picture: scene, camera, overlay and options.
 
 use super::channel::{Channel, Gloss};
 use crate::scene::{Assets, CameraFrame, LightId, ObjectId, Scene};
 use glam::Vec3;
 
-/// Everything one preview picture depends on.
+/// Everything that a preview picture depends on.
 #[derive(Clone, Debug)]
 pub struct PreviewInput<'a> {
     /// The studio.
     pub scene: &'a Scene,
     /// Its meshes and textures.
     pub assets: &'a Assets,
-    /// What is framed: the scene's camera or the editor's own.
+    /// The camera: the scene's or the editor's own.
     pub frame: CameraFrame,
-    /// Picture size in pixels; 0 is taken as 1, and too much as the device's largest.
+    /// Picture size in pixels, clamped to 1 and to the device's largest texture.
     pub size: (u32, u32),
-    /// What is drawn over the lit picture.
+    /// Gizmos and outlines over the picture.
     pub overlay: Overlay,
-    /// How the picture is lit.
+    /// Shadows, estimates, channel and quality.
     pub options: Options,
 }
 
 impl<'a> PreviewInput<'a> {
-    /// What the scene's camera frames, with nothing drawn over it.
+    /// Returns the view of the scene's camera without overlay.
     pub fn camera_view(scene: &'a Scene, assets: &'a Assets, size: (u32, u32)) -> Self {
         let aspect = size.0.max(1) as f32 / size.1.max(1) as f32;
         PreviewInput {
@@ -36,7 +36,7 @@ impl<'a> PreviewInput<'a> {
     }
 }
 
-/// Something a click can mean or a selection can hold.
+/// A thing that can be clicked and selected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Pick {
     /// An object of the scene.
@@ -47,56 +47,58 @@ pub enum Pick {
     Camera,
 }
 
-/// What is drawn over the lit picture. The default draws nothing.
+/// Gizmos and outlines over the picture. The default has none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overlay {
-    /// Metre grid on the floor.
+    /// Draws a metre grid on the floor.
     pub grid: bool,
-    /// Balls, cones and outlines where the lights are.
+    /// Draws the gizmos of the lights.
     pub light_gizmos: bool,
     /// Draws the scene's camera with the frame of a picture of this aspect (width / height).
     pub camera_gizmo: Option<f32>,
-    /// Outlined things.
+    /// Things with a selection outline.
     pub selection: Vec<Pick>,
-    /// The thing under the pointer, outlined faintly.
+    /// The thing under the pointer, which has a faint outline.
     pub hovered: Option<Pick>,
-    /// Linear colour where there is nothing at all.
+    /// Scene-linear colour of the background.
     pub void_color: Vec3,
 }
 
 impl Overlay {
-    /// Whether something is selected.
-    pub fn selects(&self, what: Pick) -> bool {
-        self.selection.contains(&what)
+    /// Returns true if a thing is selected.
+    pub fn selects(&self, thing: Pick) -> bool {
+        self.selection.contains(&thing)
     }
 }
 
-/// How the picture is lit.
+/// Shadows, estimates, channel and quality of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Shadows of objects.
+    /// Draws shadows of objects.
     pub shadows: bool,
-    /// Adds an estimate of bounced light: in a room, even light from the lights' total flux and the mean reflectance;
-    /// without one, what the backdrops throw back at the subjects. Off, the picture holds direct light alone.
+    /// Adds an estimate of bounced light: in a room, ambient light from the lights' total flux and the mean
+    /// reflectance; without one, light bounced from the backdrops to the subjects. Without it the picture has direct
+    /// light alone.
     pub bounce_estimate: bool,
-    /// Walls and backdrops mirrored in chrome and glass as six even faces, so that they are not black.
+    /// Reflects walls and backdrops in chrome and glass, as a box of six uniform faces.
     pub environment_estimate: bool,
-    /// Leaves a light out where it falls under 1/256 of display white: in its place many lights cost little.
+    /// Culls each light beyond the radius at which it falls under 1/256 of display white, so that many lights stay
+    /// cheap.
     pub light_radius: bool,
-    /// While something moves: on a rasteriser that runs on the processor, lights one pixel in nine (under more than two
-    /// panels or eight lights one in sixteen, under more than 24 one in 25) and spreads the light over the surfaces.
-    /// Adapters with a card of their own take no notice.
+    /// Draft quality while something moves. On a CPU rasteriser the lighting pass shades one pixel in nine (one in 16
+    /// under more than two panels or eight lights, one in 25 under more than 24) and upsamples the result. GPUs ignore
+    /// it.
     pub draft: bool,
-    /// Draws only what lies over the picture, on nothing: transparent, colour times coverage. For a picture that comes
-    /// from elsewhere. Depth and ids are there all the same, so that things hide each other and can be picked.
+    /// Draws the overlay alone on a transparent picture, premultiplied, to be composited over a picture from elsewhere.
+    /// Depth and ids are drawn for occlusion and picking.
     pub overlay_alone: bool,
-    /// What is shown at each pixel.
+    /// The displayed channel.
     pub channel: Channel,
-    /// Leaves all other lights out.
+    /// Shows this light alone.
     pub only_light: Option<LightId>,
-    /// How surfaces shine.
+    /// The specular model.
     pub gloss: Gloss,
-    /// Pixels along each side of a shadow map.
+    /// Width and height of a shadow map, texels.
     pub shadow_resolution: u32,
 }
 
@@ -118,7 +120,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Direct light alone, without estimates: what the tracer's `direct` method computes for matte surfaces.
+    /// Returns options for direct light without estimates, comparable with the path tracer's `direct` method.
     pub fn direct_only() -> Self {
         Options { bounce_estimate: false, environment_estimate: false, ..Self::default() }
     }

@@ -1,4 +1,4 @@
-//! Pictures without a window.
+//! Offscreen rendering and read-back of pictures.
 
 use super::gpu::readback::read_back;
 use super::targets::Output;
@@ -6,7 +6,7 @@ use super::{Gpu, ObjectMask, PreviewError, PreviewInput, PreviewRenderer};
 use crate::photo::Picture;
 use crate::scene::{Assets, Scene};
 
-/// What the scene's camera sees, as it is shown: sRGB bytes, rows from the top. A size of 0 is taken as 1.
+/// Draws the scene's camera view as a display picture: sRGB bytes, rows from the top. A size of 0 is taken as 1.
 pub fn render_picture(
     scene: &Scene,
     assets: &Assets,
@@ -17,7 +17,7 @@ pub fn render_picture(
     PreviewRenderer::new(&gpu.device, &gpu.queue)?.picture(&PreviewInput::camera_view(scene, assets, (width, height)))
 }
 
-/// Which object the scene's camera sees in each pixel.
+/// Returns the object that the scene's camera sees in each pixel.
 pub fn object_mask(scene: &Scene, assets: &Assets, width: u32, height: u32) -> Result<ObjectMask, PreviewError> {
     let gpu = Gpu::headless()?;
     let mut renderer = PreviewRenderer::new(&gpu.device, &gpu.queue)?;
@@ -26,7 +26,7 @@ pub fn object_mask(scene: &Scene, assets: &Assets, width: u32, height: u32) -> R
 }
 
 impl PreviewRenderer {
-    /// Draws and reads back a picture as it is shown: sRGB bytes, rows from the top.
+    /// Draws and reads back a display picture: sRGB bytes, rows from the top.
     pub fn picture(&mut self, input: &PreviewInput) -> Result<image::RgbImage, PreviewError> {
         self.render_to(input, Output::Display)?;
         let (width, height) = self.size();
@@ -36,7 +36,7 @@ impl PreviewRenderer {
             .ok_or_else(|| PreviewError::Driver("the picture came back with the wrong size".to_owned()))
     }
 
-    /// Draws and reads back a picture in scene-linear units, without anything drawn over it. Half floats: 11 bits.
+    /// Draws and reads back a scene-linear picture without overlay, in half floats (11 bits).
     pub fn linear_picture(&mut self, input: &PreviewInput) -> Result<Picture, PreviewError> {
         self.render_to(input, Output::Linear)?;
         let (width, height) = self.size();
@@ -53,7 +53,7 @@ impl PreviewRenderer {
     }
 }
 
-/// IEEE 754 binary16 to binary32.
+/// Converts IEEE 754 binary16 to binary32.
 fn half_to_f32(half: u16) -> f32 {
     let sign = if half & 0x8000 == 0 { 1.0 } else { -1.0 };
     let (exponent, mantissa) = (i32::from(half >> 10 & 31), f32::from(half & 0x3ff));
@@ -70,7 +70,7 @@ mod tests {
     use super::half_to_f32;
 
     #[test]
-    fn halves_widen_exactly() {
+    fn half_floats_convert_exactly() {
         for (half, value) in [(0x0000, 0.0), (0x3c00, 1.0), (0xc000, -2.0), (0x7bff, 65504.0), (0x0001, 5.960_464_5e-8)]
         {
             assert_eq!(half_to_f32(half), value);

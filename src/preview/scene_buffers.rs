@@ -1,4 +1,4 @@
-//! The buffers that every pass reads: frame, surfaces, lights.
+//! Bind group 0 of all passes: frame constants, surfaces, lights, light tiles.
 
 use super::geometry::surface::GpuSurface;
 use super::lights::environment::Environment;
@@ -9,10 +9,10 @@ use bytemuck::{Pod, Zeroable};
 use eframe::wgpu;
 use glam::Vec3;
 
-/// Nearest thing the preview shows, metres. Reversed float depth makes so small a value free.
+/// Near plane, metres. Reversed float depth allows a small value without loss of precision.
 pub(crate) const NEAR_M: f32 = 0.005;
 
-/// One frame's constants; twin of `Frame` in `scene.wgsl`.
+/// The frame constants; twin of `Frame` in `scene.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct GpuFrame {
@@ -20,10 +20,10 @@ pub(crate) struct GpuFrame {
     pub eye: [f32; 3],
     pub near_m: f32,
     pub ray_centre: [f32; 3],
-    /// Picture pixels a pixel of the shadow masks, along each side.
+    /// Picture pixels per shadow mask pixel along each axis.
     pub mask_scale: u32,
     pub ray_right: [f32; 3],
-    /// Picture pixels a cell of a draft, along each side.
+    /// Picture pixels per coarse pixel along each axis, in drafts.
     pub coarse_scale: u32,
     pub ray_up: [f32; 3],
     pub unused_2: f32,
@@ -45,7 +45,7 @@ pub(crate) struct GpuFrame {
 }
 
 impl GpuFrame {
-    /// Constants of a frame that looks through `camera` at a picture of this size.
+    /// Returns the constants of a camera and a picture size.
     pub fn new(camera: &CameraFrame, size: (u32, u32)) -> Self {
         let axes = camera.world_from_camera.matrix3;
         let extent = camera.half_extent;
@@ -62,7 +62,7 @@ impl GpuFrame {
         }
     }
 
-    /// Light from all round, and what there is where there is nothing.
+    /// Sets the ambient light, the background, and a uniform environment.
     pub fn set_ambient(&mut self, ambient: &Ambient, void_radiance: Vec3) {
         self.ambient = ambient.irradiance.into();
         self.void_radiance = void_radiance.max(ambient.void_radiance).into();
@@ -71,35 +71,35 @@ impl GpuFrame {
         self.environment_radiance = [ambient.surround_radiance.extend(0.0).into(); 6];
     }
 
-    /// What mirrors show.
+    /// Sets the environment box of reflections.
     pub fn set_environment(&mut self, environment: &Environment) {
         self.environment_low = environment.low.into();
         self.environment_high = environment.high.into();
         self.environment_radiance = environment.radiance.map(|c| c.extend(0.0).into());
     }
 
-    /// Light that backdrops throw back.
+    /// Sets the irradiance bounced by backdrops.
     pub fn set_bounce(&mut self, environment: &Environment) {
         self.bounce = environment.irradiance.map(|c| c.extend(0.0).into());
     }
 }
 
-/// Bytes of the table of lights.
+/// Size of the light buffer, bytes.
 pub(crate) const LIGHTS_BYTES: u64 = (MAX_LIGHTS * size_of::<GpuLight>()) as u64;
 
-/// A storage buffer that grows.
+/// A storage buffer that grows on demand.
 #[derive(Debug)]
-struct Growing {
+struct GrowingBuffer {
     buffer: wgpu::Buffer,
     label: &'static str,
 }
 
-impl Growing {
+impl GrowingBuffer {
     fn new(device: &wgpu::Device, label: &'static str, bytes: u64) -> Self {
-        Growing { buffer: storage(device, label, bytes), label }
+        GrowingBuffer { buffer: storage(device, label, bytes), label }
     }
 
-    /// Writes the bytes; true if the buffer had to be replaced.
+    /// Writes the bytes and returns true if the buffer was replaced.
     fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> bool {
         let grows = bytes.len() as u64 > self.buffer.size();
         if grows {
@@ -123,8 +123,8 @@ pub(crate) struct SceneBuffers {
     layout: wgpu::BindGroupLayout,
     bind_group: wgpu::BindGroup,
     frame: wgpu::Buffer,
-    surfaces: Growing,
-    /// A uniform, not a storage buffer: rasterisers on a processor read uniforms several times faster.
+    surfaces: GrowingBuffer,
+    /// A uniform rather than a storage buffer: CPU rasterisers read uniforms several times faster.
     lights: wgpu::Buffer,
     tiles: wgpu::Buffer,
 }
@@ -151,12 +151,12 @@ impl SceneBuffers {
         let frame = uniform(device, "frame", size_of::<GpuFrame>() as u64);
         let lights = uniform(device, "lights", LIGHTS_BYTES);
         let tiles = uniform(device, "light tiles", TILES_BYTES);
-        let surfaces = Growing::new(device, "surfaces", 64 * size_of::<GpuSurface>() as u64);
+        let surfaces = GrowingBuffer::new(device, "surfaces", 64 * size_of::<GpuSurface>() as u64);
         let bind_group = bind(device, &layout, [&frame, &surfaces.buffer, &lights, &tiles]);
         SceneBuffers { layout, bind_group, frame, surfaces, lights, tiles }
     }
 
-    /// Layout of the bind group.
+    /// The layout of the bind group.
     pub fn layout(&self) -> &wgpu::BindGroupLayout {
         &self.layout
     }

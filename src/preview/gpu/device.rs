@@ -1,4 +1,4 @@
-//! A graphics device without a window, and the guard that turns driver errors into ours.
+//! The wgpu device without a window, its loss flag, and conversion of driver errors to `PreviewError`.
 
 use crate::preview::PreviewError;
 use eframe::wgpu;
@@ -17,8 +17,8 @@ pub struct Gpu {
 }
 
 impl Gpu {
-    /// The fastest adapter of the machine; a software one where there is no other. The variables `WGPU_BACKEND` and
-    /// `WGPU_ADAPTER_NAME` narrow the choice.
+    /// Opens the fastest adapter of the machine, a CPU rasteriser if there is no other. The environment variables
+    /// `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` restrict the choice.
     pub fn headless() -> Result<Self, PreviewError> {
         pollster::block_on(Self::headless_async())
     }
@@ -49,12 +49,12 @@ impl Gpu {
     }
 }
 
-/// Whether a device is gone, and why; set by the driver's callback. Clones watch the same device.
+/// The loss of a device and its reason, set by the driver's callback. Clones share the state.
 #[derive(Clone, Debug, Default)]
 pub struct LossFlag(Arc<OnceLock<String>>);
 
 impl LossFlag {
-    /// A flag that the device raises when it is lost. A device has one: it raises the newest.
+    /// Registers a flag that is set when the device is lost, replacing an earlier one of that device.
     pub fn watch(device: &wgpu::Device) -> Self {
         let flag = LossFlag::default();
         let raised = flag.clone();
@@ -65,27 +65,27 @@ impl LossFlag {
         flag
     }
 
-    /// Why the device is gone, if it is.
+    /// Returns the reason if the device is lost.
     pub fn reason(&self) -> Option<&str> {
         self.0.get().map(String::as_str)
     }
 
-    /// Why the device is gone, if it is. Asks it: one that was destroyed says so only then.
-    pub fn ask(&self, device: &wgpu::Device) -> Option<&str> {
+    /// Polls the device and returns the reason if it is lost. A destroyed device reports its loss only when polled.
+    pub fn poll(&self, device: &wgpu::Device) -> Option<&str> {
         if self.reason().is_none() {
-            // wgpu panics where it asks a device that the driver has lost; the flag is up by then.
+            // wgpu panics when it polls a device that the driver has lost; the flag is set by then
             let _ = catch_unwind(AssertUnwindSafe(|| device.poll(wgpu::PollType::Poll)));
         }
         self.reason()
     }
 
-    /// An error if the device is gone.
+    /// Returns an error if the device is lost.
     pub(crate) fn check(&self) -> Result<(), PreviewError> {
         self.0.get().map_or(Ok(()), |why| Err(PreviewError::DeviceLost(why.clone())))
     }
 }
 
-/// Runs GPU work so that an error of the driver comes back as a value; left alone, wgpu would panic.
+/// Runs GPU work and returns driver errors as values, where wgpu would panic.
 pub(crate) fn guarded<T>(
     device: &wgpu::Device,
     loss: &LossFlag,
@@ -95,12 +95,12 @@ pub(crate) fn guarded<T>(
     let memory = device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
     let internal = device.push_error_scope(wgpu::ErrorFilter::Internal);
     let validation = device.push_error_scope(wgpu::ErrorFilter::Validation);
-    // wgpu panics where it waits for a device that the driver has lost.
+    // wgpu panics when it waits for a device that the driver has lost
     let done = catch_unwind(AssertUnwindSafe(work));
     // On native backends the scopes are settled by the time they are popped, so nothing waits here.
     let errors = [validation.pop(), internal.pop()].map(pollster::block_on);
     let out_of_memory = pollster::block_on(memory.pop());
-    loss.ask(device);
+    loss.poll(device);
     loss.check()?;
     if out_of_memory.is_some() {
         return Err(PreviewError::OutOfMemory);

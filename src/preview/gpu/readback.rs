@@ -1,9 +1,10 @@
-//! Copies of textures into memory.
+//! Read-back of textures to memory.
 
 use crate::preview::PreviewError;
 use eframe::wgpu;
 
-/// Copies a part of a texture to memory: `bytes_per_pixel` times width bytes a row, without padding.
+/// Reads a part of a texture back and waits for the device. Rows have `bytes_per_pixel` times width bytes, without
+/// padding.
 pub(crate) fn read_back(
     device: &wgpu::Device,
     queue: &wgpu::Queue,

@@ -99,7 +99,7 @@ impl Picking {
 
     /// Returns the result of the pending pick once it has arrived.
     pub fn poll(&mut self, gpu: &GpuContext, targets: &Targets) -> Option<PickHit> {
-        gpu.loss.ask(&gpu.device);
+        gpu.loss.poll(&gpu.device);
         let pending = self.pending.take()?;
         match pending.mapped.try_recv() {
             Ok(true) => {

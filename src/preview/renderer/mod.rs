@@ -66,7 +66,7 @@ impl PreviewRenderer {
         Self::watched(device, queue, LossFlag::watch(device))
     }
 
-    /// Compiles the pipelines for a shared device, whose loss raises `loss`.
+    /// Compiles the pipelines for a shared device, whose loss sets `loss`.
     pub fn watched(device: &wgpu::Device, queue: &wgpu::Queue, loss: LossFlag) -> Result<Self, PreviewError> {
         let limits = device.limits();
         if limits.max_storage_buffers_per_shader_stage < 1

@@ -1,16 +1,16 @@
-//! The shaders' sources. WGSL has no includes: each module is its files, one after the other.
+//! WGSL sources of the passes. WGSL has no includes: each module is a concatenation of files.
 
 use eframe::wgpu;
 
 /// The geometry pass.
 pub(crate) const GEOMETRY: &str =
     concat!(include_str!("scene.wgsl"), include_str!("draw.wgsl"), include_str!("geometry.wgsl"));
-/// The shadow maps.
+/// The shadow map pass.
 pub(crate) const SHADOW_MAP: &str =
     concat!(include_str!("scene.wgsl"), include_str!("draw.wgsl"), include_str!("shadow_map.wgsl"));
-/// The shadow masks.
+/// The shadow mask pass.
 pub(crate) const SHADOW_MASK: &str = concat!(include_str!("scene.wgsl"), include_str!("shadow_mask.wgsl"));
-/// The blur of the shadow masks.
+/// The blur pass of the shadow masks.
 pub(crate) const SHADOW_BLUR: &str = concat!(include_str!("scene.wgsl"), include_str!("shadow_blur.wgsl"));
 /// The lighting pass.
 pub(crate) const LIGHTING: &str = concat!(
@@ -21,17 +21,17 @@ pub(crate) const LIGHTING: &str = concat!(
     include_str!("false_color.wgsl"),
     include_str!("lighting.wgsl")
 );
-/// Light of one pixel of each cell, spread over all.
+/// The resolve pass, which upsamples coarse lighting.
 pub(crate) const RESOLVE: &str = concat!(
     include_str!("scene.wgsl"),
     include_str!("tone.wgsl"),
     include_str!("false_color.wgsl"),
     include_str!("resolve.wgsl")
 );
-/// One channel of the G-buffer.
+/// The channel pass.
 pub(crate) const CHANNEL: &str =
     concat!(include_str!("scene.wgsl"), include_str!("tone.wgsl"), include_str!("channel.wgsl"));
-/// Glass over the lit picture.
+/// The glass pass.
 pub(crate) const GLASS: &str = concat!(
     include_str!("scene.wgsl"),
     include_str!("light.wgsl"),
@@ -40,12 +40,12 @@ pub(crate) const GLASS: &str = concat!(
     include_str!("draw.wgsl"),
     include_str!("glass.wgsl")
 );
-/// Lines and tints.
+/// The overlay pass: lines and tints.
 pub(crate) const OVERLAY: &str = concat!(include_str!("scene.wgsl"), include_str!("overlay.wgsl"));
-/// The outline of the selection.
+/// The overlay pass: selection outline.
 pub(crate) const OUTLINE: &str = concat!(include_str!("scene.wgsl"), include_str!("outline.wgsl"));
 
-/// Compiles a module.
+/// Creates a shader module.
 pub(crate) fn module(device: &wgpu::Device, label: &str, source: &str) -> wgpu::ShaderModule {
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),

@@ -111,7 +111,7 @@ impl PreviewHost {
 
     /// Why the window's device is gone, if it is: nothing can be drawn in this window any more.
     pub fn lost_device(&self) -> Option<&str> {
-        self.state.as_ref().and_then(|state| self.loss.ask(&state.device))
+        self.state.as_ref().and_then(|state| self.loss.poll(&state.device))
     }
 
     /// Leaves the view to the processor until [`PreviewHost::restart`].
