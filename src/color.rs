@@ -1,6 +1,5 @@
 //! Colour: scene-linear Rec.709 RGB, Kelvin, gels, white balance, tone curve, sRGB. One source for all renderers.
 
-use crate::scene::{ColorSource, Gel, LightColor};
 use glam::{DMat3, DVec3, Vec3};
 
 /// Luminance of linear Rec.709 RGB.
@@ -87,18 +86,6 @@ pub fn rgb_from_kelvin(kelvin: f32, white_balance_k: f32) -> Vec3 {
 /// Colour temperature behind a gel that shifts by `mired`. Cannot go past 25000 K.
 pub fn shift_kelvin(kelvin: f32, mired: f32) -> f32 {
     1e6 / (1e6 / kelvin + mired).max(40.0)
-}
-
-/// RGB of a light for a camera's white balance, scaled to luminance 1. A light given in RGB is taken as it looks to a
-/// camera balanced to 5500 K daylight, and shifts with the balance like any other.
-pub fn light_rgb(color: &LightColor, white_balance_k: f32) -> Vec3 {
-    let mired = if let Gel::Mired(shift) = color.gel { shift } else { 0.0 };
-    let source = match color.source {
-        ColorSource::Kelvin(kelvin) => rgb_from_kelvin(shift_kelvin(kelvin, mired), white_balance_k),
-        ColorSource::Rgb(rgb) => Vec3::from(rgb) * rgb_from_kelvin(shift_kelvin(5500.0, mired), white_balance_k),
-    };
-    let tint = if let Gel::Tint(tint) = color.gel { Vec3::from(tint) } else { Vec3::ONE };
-    unit_luminance(source * tint)
 }
 
 /// sRGB-encoded value of a linear one in 0..=1 (IEC 61966-2-1).

@@ -10,7 +10,7 @@
 
 use super::beam::{self, Beam};
 use super::emitter::EmitterShape;
-use crate::color;
+use super::light_color::light_rgb;
 use crate::scene::{Camera, Light, Modifier, Output, Scene};
 use glam::{Affine3A, Vec3};
 
@@ -82,7 +82,7 @@ impl PhotometricLight {
             world_from_light,
             beam: Beam::new(&light.modifier),
             strength: Strength::new(light),
-            tint: color::light_rgb(&light.color, camera.white_balance_k),
+            tint: light_rgb(&light.color, camera.white_balance_k),
             exposure_time_s: integration_time_s(&light.power.output, camera),
             is_flash: light.power.output.is_flash(),
             visible_to_camera: light.visible_to_camera,

@@ -5,10 +5,12 @@ pub mod beam;
 pub mod emitter;
 pub mod exposure;
 pub mod light;
+mod light_color;
 pub mod meter;
 mod picture;
 pub mod thirds;
 
 pub use aov::AovPicture;
 pub use light::{PhotometricLight, Strength};
+pub use light_color::light_rgb;
 pub use picture::Picture;

@@ -1,6 +1,5 @@
 //! The list of everything in the studio, with names, switches and a context menu.
 
-use crate::color::light_rgb;
 use crate::editor::commands::command::Command;
 use crate::editor::commands::item_menu::item_menu_ui;
 use crate::editor::document::action::Action;
@@ -9,6 +8,7 @@ use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets;
+use crate::photo::light_rgb;
 use crate::scene::{Light, Object, Scene};
 use eframe::egui::{self, Button, Key, Response, RichText, ScrollArea, Sense, TextEdit, Ui, vec2};
 

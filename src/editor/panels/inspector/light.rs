@@ -2,7 +2,7 @@
 
 use super::power::{self, Unit};
 use super::{Context, aim, gel, modifier, text_ui, title};
-use crate::color::{light_rgb, rgb_from_kelvin};
+use crate::color::rgb_from_kelvin;
 use crate::editor::commands::choices::Swing;
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
@@ -11,6 +11,7 @@ use crate::editor::document::readout;
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, Number, fact, row, section};
 use crate::photo::light::axial_intensity;
+use crate::photo::light_rgb;
 use crate::photo::thirds::Dial;
 use crate::scene::{ColorSource, Emitter, Light, LightId, Output, Role, Scene};
 use eframe::egui::{ComboBox, Label, RichText, Slider, SliderClamping, Ui, vec2};
