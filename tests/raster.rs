@@ -10,7 +10,7 @@ use catchlight::scene::{Aim, Assets, Camera, Emitter, Material, Object, Output, 
 use glam::Vec3;
 use std::f32::consts::PI;
 
-fn drawn(scene: &Scene, size: (u32, u32), shading: Shading) -> raster::Drawing {
+fn drawn(scene: &Scene, size: (u32, u32), shading: Shading) -> raster::Framebuffer {
     let camera = scene.camera_frame(size.0 as f32 / size.1 as f32);
     raster::draw(scene, &Assets::default(), &camera, size, shading)
 }

@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::frame_times::FrameTimeReport;
 use crate::io::{self, Loaded, PictureInfo};
 use crate::photo::Picture;
-use crate::raster::{Drawing, Rasterizer, Shading};
+use crate::raster::{Framebuffer, Rasterizer, Shading};
 use glam::{Affine3A, Quat, Vec3};
 use std::path::Path;
 use std::time::Instant;
@@ -19,7 +19,7 @@ pub fn picture(loaded: &Loaded, (width, height): (u32, u32), side: u32) -> (Pict
     let camera = loaded.scene.camera_frame(width as f32 / height as f32);
     let mut rasterizer = Rasterizer::new(&loaded.scene, &loaded.assets);
     let fine = (width * side, height * side);
-    let mut drawing = Drawing::default();
+    let mut drawing = Framebuffer::default();
     rasterizer.draw(&loaded.scene, &camera, fine, Shading::default(), &mut drawing);
     let picture = if side == 1 { drawing.picture } else { reduced(&drawing.picture, side) };
     (picture, rasterizer.triangle_count())
@@ -46,7 +46,7 @@ pub fn write(loaded: &Loaded, size: (u32, u32), output: &Path) -> Result<(), Fai
 /// Measures frame times with a turning camera.
 pub fn time(loaded: &Loaded, (width, height): (u32, u32), frames: u32) -> FrameTimeReport {
     let mut rasterizer = Rasterizer::new(&loaded.scene, &loaded.assets);
-    let mut drawing = Drawing::default();
+    let mut drawing = Framebuffer::default();
     let camera = loaded.scene.camera_frame(width as f32 / height as f32);
     let pivot = camera.world_from_camera.transform_point3(Vec3::NEG_Z * PIVOT_M);
     let mut times: Vec<f64> = (0..=frames)

@@ -4,7 +4,7 @@
 use super::threads::{Priority, background_pool};
 use super::worker::{Inbox, Interrupt, Wake, Worker, WorkerSettings};
 use crate::color::ToneTable;
-use crate::raster::{self, Drawing, NO_OBJECT, Shading};
+use crate::raster::{self, Framebuffer, NO_OBJECT, Shading};
 use crate::scene::{
     Aim, Assets, Camera, CameraFrame, ColorSource, Emitter, Gel, Light, LightColor, Object, Output, Scene,
 };
@@ -162,7 +162,7 @@ fn frame_around((low, high): (Vec3, Vec3)) -> CameraFrame {
 }
 
 /// Returns the drawing for the screen, with the background where `is_background` is true for the object of a pixel.
-fn image(drawing: &Drawing, is_background: impl Fn(u32) -> bool) -> ThumbnailImage {
+fn image(drawing: &Framebuffer, is_background: impl Fn(u32) -> bool) -> ThumbnailImage {
     let (tone, picture) = (ToneTable::default(), &drawing.picture);
     let pixel = |(rgb, object): (&[f32; 3], &u32)| if is_background(*object) { BACKGROUND } else { tone.shown(*rgb) };
     let rgb = picture.rgb.iter().zip(&drawing.objects).flat_map(pixel).collect();

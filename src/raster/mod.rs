@@ -1,119 +1,89 @@
-//! The software renderer: a z-buffer on the processor, the first rung of the ladder and the preview without an adapter.
+//! The software rasterizer: a z-buffer on the CPU, the first rung of the ladder and the preview without a GPU.
 //!
-//! A picture takes three steps, each parallel over rayon:
+//! World space -> camera-relative world space -> clip space -> screen space, in stages, each parallel over rayon:
 //!
-//! 1. vertices go from their meshes into clip space ([`world`]);
-//! 2. triangles are cut at the six planes ([`clip`]), placed on the screen in 1/256 of a pixel ([`triangle`]), and
-//!    sorted by the tiles that they touch ([`batch`]);
-//! 3. each tile finds the nearest triangle of every pixel ([`fill`]), collects what its rows show ([`row`]), and shades
-//!    each pixel once ([`shade`], [`lights`]).
+//! 1. [`vertex_stage`]: vertices of the mesh instances ([`geometry`]) to clip space;
+//! 2. [`primitive_stage`]: clipping at the six planes ([`clip`]), the perspective division and viewport transform to 1/256
+//!    of a pixel ([`viewport`]), triangle set-up ([`triangle`]) and tile binning ([`binning`]);
+//! 3. [`tile`]: coverage by edge functions with the top-left rule ([`edge_function`]) and the depth test, then G-buffer
+//!    rows ([`gbuffer_row`]) and one evaluation of the fragment shader per pixel ([`shade`], [`material`], [`lights`]).
 //!
-//! The inner loops are written for one pixel and free of jumps: they run eight pixels wide, see [`crate::math::simd`].
+//! Inner loops are branch-free code for one pixel that runs eight pixels wide: see [`crate::math::simd`] and [`approx`].
 //! Pictures have the exposure and the scene-linear units of every other rung.
 //!
-//! Models visibility and direct light. Leaves out shadows, bounces and all reflections but an even surround's; panels
-//! shine as from their middle, with a term that keeps a disc exact on its axis, however near; emitters themselves are
-//! not drawn.
+//! Models visibility and direct light. Leaves out shadows, bounces and reflections other than that of a uniform surround;
+//! panels shine from their centre, with a term that is exact on the axis of a disc at any distance; emitters themselves
+//! are not drawn.
 
-mod batch;
+mod approx;
+mod binning;
 mod clip;
-mod fill;
+mod edge_function;
+mod framebuffer;
+mod gbuffer_row;
+mod geometry;
 mod lights;
-mod row;
-mod series;
+mod material;
+mod primitive_stage;
 mod shade;
+mod tile;
 mod triangle;
-mod world;
+mod vertex_stage;
+mod viewport;
 
-use crate::photo::Picture;
 use crate::scene::{Assets, CameraFrame, Scene};
-use batch::Batch;
-use triangle::Screen;
-use world::{Vertices, World};
+use binning::TriangleBatch;
+pub use framebuffer::{Framebuffer, NO_OBJECT};
+use geometry::SceneGeometry;
+use lights::RasterLights;
+use shade::FragmentShader;
+pub use shade::Shading;
+use vertex_stage::VertexBuffer;
+use viewport::Viewport;
 
-/// How a pixel gets its light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Shading {
-    /// Matte alone, with the interpolated normal.
-    Lambert,
-    /// Matte, and a highlight about the half vector (Blinn 1977) whose exponent follows the roughness.
-    #[default]
-    BlinnPhong,
-    /// The same at the vertices, and colours interpolated (Gouraud 1971): highlights inside large triangles are missed.
-    Gouraud,
-    /// One colour a triangle, from its middle and its plane.
-    Flat,
+/// Draws a scene from a camera. A size of 0 counts as 1.
+pub fn draw(scene: &Scene, assets: &Assets, camera: &CameraFrame, size: (u32, u32), shading: Shading) -> Framebuffer {
+    let mut framebuffer = Framebuffer::default();
+    Rasterizer::new(scene, assets).draw(scene, camera, size, shading, &mut framebuffer);
+    framebuffer
 }
 
-/// Mark of a pixel that shows no object: the room, or nothing.
-pub const NO_OBJECT: u32 = u32::MAX;
-
-/// A drawn picture.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub struct Drawing {
-    /// Scene-linear.
-    pub picture: Picture,
-    /// Index of the object in the scene's list that each pixel shows, or [`NO_OBJECT`].
-    pub objects: Vec<u32>,
-    /// One over the distance along the camera's axis of what each pixel shows, 1/m; 0 where there is nothing.
-    pub inverse_depths: Vec<f32>,
-}
-
-impl Drawing {
-    /// Takes a size; what it shows stays undefined until it is drawn.
-    fn resize(&mut self, Screen { width, height }: Screen) {
-        let pixels = width as usize * height as usize;
-        (self.picture.width, self.picture.height) = (width, height);
-        self.picture.rgb.resize(pixels, [0.0; 3]);
-        self.objects.resize(pixels, NO_OBJECT);
-        self.inverse_depths.resize(pixels, 0.0);
-    }
-}
-
-/// Draws what a camera sees of a studio. A size of 0 is taken as 1.
-pub fn draw(scene: &Scene, assets: &Assets, camera: &CameraFrame, size: (u32, u32), shading: Shading) -> Drawing {
-    let mut drawing = Drawing::default();
-    Rasterizer::new(scene, assets).draw(scene, camera, size, shading, &mut drawing);
-    drawing
-}
-
-/// A studio whose meshes are looked up once, to be drawn from many places. Keeps its memory from one picture to the
-/// next.
+/// The geometry of a scene, ready to be drawn from many cameras, and buffers that are reused from frame to frame.
 #[derive(Debug)]
 pub struct Rasterizer {
-    world: World,
-    vertices: Vec<Vertices>,
-    batches: Vec<Batch>,
+    geometry: SceneGeometry,
+    vertices: Vec<VertexBuffer>,
+    batches: Vec<TriangleBatch>,
 }
 
 impl Rasterizer {
-    /// Collects what stands in the studio.
+    /// Collects the geometry of a scene.
     pub fn new(scene: &Scene, assets: &Assets) -> Self {
-        Rasterizer { world: World::new(scene, assets), vertices: Vec::new(), batches: Vec::new() }
+        Rasterizer { geometry: SceneGeometry::new(scene, assets), vertices: Vec::new(), batches: Vec::new() }
     }
 
-    /// Triangles in the studio, each instance counted.
+    /// Returns the number of triangles, each instance counted.
     pub fn triangle_count(&self) -> u64 {
-        self.world.triangle_count()
+        self.geometry.triangle_count()
     }
 
-    /// Draws what a camera sees over an older drawing, of any size. The scene is the one that this was made of; its
-    /// lights and camera may have changed.
+    /// Draws into a framebuffer of any earlier size. The scene's objects are those of [`Rasterizer::new`]; its lights and
+    /// camera may have changed.
     pub fn draw(
         &mut self,
         scene: &Scene,
         camera: &CameraFrame,
         size: (u32, u32),
         shading: Shading,
-        drawing: &mut Drawing,
+        framebuffer: &mut Framebuffer,
     ) {
-        let Rasterizer { world, vertices, batches } = self;
-        let screen = Screen::new(size);
-        drawing.resize(screen);
-        world.transform(camera, screen, vertices);
-        world.set_up(vertices, screen, batches);
-        let lights = lights::Lights::new(scene, camera.position());
-        let shader = shade::Shader::new(world, vertices, &lights, shading);
-        fill::draw(screen, batches, &shader, drawing);
+        let Rasterizer { geometry, vertices, batches } = self;
+        let viewport = Viewport::new(size);
+        framebuffer.resize(viewport);
+        vertex_stage::transform(geometry, camera, viewport, vertices);
+        primitive_stage::set_up(geometry, vertices, viewport, batches);
+        let lights = RasterLights::new(scene, camera.position());
+        let shader = FragmentShader::new(geometry, vertices, &lights, shading);
+        tile::draw(viewport, batches, &shader, framebuffer);
     }
 }

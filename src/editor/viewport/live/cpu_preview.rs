@@ -4,7 +4,7 @@
 use crate::color::ToneTable;
 use crate::editor::ui::image_texture::Canvas;
 use crate::preview::{Gizmos, GpuLine, GpuTint, Pick, PreviewInput, REACH_PX};
-use crate::raster::{Drawing, NO_OBJECT, Rasterizer, Shading};
+use crate::raster::{Framebuffer, NO_OBJECT, Rasterizer, Shading};
 use crate::scene::{CameraFrame, LightId, ObjectId, Scene};
 use eframe::egui::{Color32, ColorImage, Context, Mesh, Painter, Pos2, Rect, Shape, Stroke, TextureId, vec2};
 use glam::{Vec2, Vec3, Vec4};
@@ -33,7 +33,7 @@ pub struct ProcessorView {
 
 #[derive(Debug)]
 struct Drawn {
-    drawing: Drawing,
+    drawing: Framebuffer,
     frame: CameraFrame,
     gizmos: Gizmos,
     /// The objects of the scene, in its order.
@@ -82,7 +82,7 @@ impl ProcessorView {
     }
 
     /// The picture as it is shown; nothing where only what lies over it is wanted.
-    fn image(&self, drawing: &Drawing, input: &PreviewInput) -> ColorImage {
+    fn image(&self, drawing: &Framebuffer, input: &PreviewInput) -> ColorImage {
         let picture = &drawing.picture;
         let size = [picture.width as usize, picture.height as usize];
         if input.options.overlay_alone {

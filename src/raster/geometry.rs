@@ -1,0 +1,100 @@
+//! The geometry of a scene: mesh instances, their surfaces, and batches of triangles.
+
+use super::binning::BATCH_TRIANGLES;
+use super::framebuffer::NO_OBJECT;
+use super::triangle::PrimitiveState;
+use crate::scene::{Assets, Material, Mesh, Scene, Texture, room_mesh};
+use glam::Affine3A;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Depth bias of the room: paper that lies on its floor is drawn over it.
+const ROOM_DEPTH_FACTOR: f32 = 1.0 - 1e-4;
+
+/// An instance of a mesh.
+#[derive(Debug)]
+pub(super) struct MeshInstance {
+    pub mesh: Arc<Mesh>,
+    pub world_from_object: Affine3A,
+    /// Index among the scene's objects, or [`NO_OBJECT`].
+    pub object: u32,
+    /// The surface of its first part.
+    pub first_surface: u32,
+    pub state: PrimitiveState,
+}
+
+/// A part of an instance with its material and texture.
+#[derive(Debug)]
+pub(super) struct Surface {
+    /// Index among the instances.
+    pub instance: u32,
+    pub material: Material,
+    pub texture: Option<Arc<Texture>>,
+}
+
+/// The triangles of a batch: consecutive in a mesh, all of one surface.
+#[derive(Clone, Debug)]
+pub(super) struct BatchTriangles {
+    pub surface: u32,
+    pub triangles: Range<usize>,
+}
+
+/// The meshes and materials of a scene.
+#[derive(Debug, Default)]
+pub(super) struct SceneGeometry {
+    pub instances: Vec<MeshInstance>,
+    pub surfaces: Vec<Surface>,
+    /// All triangles, in scene order.
+    pub batches: Vec<BatchTriangles>,
+}
+
+impl SceneGeometry {
+    pub fn new(scene: &Scene, assets: &Assets) -> Self {
+        let mut geometry = SceneGeometry::default();
+        if let Some(room) = &scene.room {
+            let state = PrimitiveState { cull_back_faces: true, depth_factor: ROOM_DEPTH_FACTOR };
+            let material = |part: &str| room.material_of(part).clone();
+            geometry.add(Arc::new(room_mesh(room)), Affine3A::IDENTITY, NO_OBJECT, state, assets, material);
+        }
+        for (index, object) in (0..).zip(&scene.objects) {
+            let world_from_object = object.transform.world_from_object();
+            let Some(mesh) = assets.mesh_of(&object.shape).filter(|_| object.visible && world_from_object.is_finite())
+            else {
+                continue;
+            };
+            let state = PrimitiveState { cull_back_faces: false, depth_factor: 1.0 };
+            geometry.add(mesh, world_from_object, index, state, assets, |part| object.material_of(part).clone());
+        }
+        geometry
+    }
+
+    fn add(
+        &mut self,
+        mesh: Arc<Mesh>,
+        world_from_object: Affine3A,
+        object: u32,
+        state: PrimitiveState,
+        assets: &Assets,
+        material: impl Fn(&str) -> Material,
+    ) {
+        let first_surface = self.surfaces.len() as u32;
+        for part in &mesh.parts {
+            let material = material(&part.name);
+            let texture = material.base_color_texture.as_ref().and_then(|path| assets.textures.get(path).cloned());
+            let end = (part.triangles.end as usize).min(mesh.triangles.len());
+            let starts = (part.triangles.start as usize..end).step_by(BATCH_TRIANGLES);
+            let surface = self.surfaces.len() as u32;
+            self.batches.extend(starts.map(|first| {
+                let triangles = first..(first + BATCH_TRIANGLES).min(end);
+                BatchTriangles { surface, triangles }
+            }));
+            self.surfaces.push(Surface { instance: self.instances.len() as u32, material, texture });
+        }
+        self.instances.push(MeshInstance { mesh, world_from_object, object, first_surface, state });
+    }
+
+    /// Returns the number of triangles, each instance counted.
+    pub fn triangle_count(&self) -> u64 {
+        self.instances.iter().map(|instance| instance.mesh.triangles.len() as u64).sum()
+    }
+}
