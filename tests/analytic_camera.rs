@@ -76,7 +76,7 @@ fn ev_and_f_numbers_are_those_of_the_tables() {
     for (lux, label) in [(1000.0, "f/1.8"), (2000.0, "f/2.5"), (5000.0, "f/4"), (10_000.0, "f/5.6")] {
         let n = exposure::f_number(lux / 125.0, 100.0, 250.0);
         let dial = catchlight::photo::thirds::Dial::FNumber;
-        let nearest = dial.engraved(dial.thirds(n).round() as i32).unwrap();
+        let nearest = dial.nominal_label(dial.thirds(n).round() as i32).unwrap();
         assert_eq!(format!("f/{nearest}"), label, "{lux} lx: {n}");
     }
     assert!((exposure::f_number(160.0, 100.0, 250.0) - 8.0).abs() < 1e-5);

@@ -191,7 +191,7 @@ fn report(point: &MeterPoint, result: &MeterResult) -> MeterReport {
             .map(|ratio| RatioReport { name: ratio.name, value: ratio.value, stops: ratio.stops() })
             .collect(),
         key: reading.key().map(|key| key.name.clone()),
-        flash_percent: reading.flash_share().map(|share| share * 100.0),
+        flash_percent: reading.flash_fraction().map(|share| share * 100.0),
         noise_percent: reading.relative_error().map(|error| error * 100.0),
         paths: result.paths,
         rays: result.rays,
@@ -207,7 +207,7 @@ fn light_report(reading: &Reading, light: &LightReading) -> LightReport {
         bounced_lux: reading.as_lux(light, light.bounced),
         lux: reading.as_lux(light, light.sum()),
         lux_s: reading.lux_s(light),
-        share_stops: reading.share_stops(light),
+        share_stops: reading.stops_over_key(light),
         noise_lux: reading.as_lux(light, light.standard_error),
     }
 }
@@ -227,7 +227,7 @@ fn table(arguments: &Arguments, point: &MeterPoint, result: &MeterResult) -> Str
     );
     for light in &reading.lights {
         let unit = if light.flash { "lx s" } else { "lx" };
-        let share = reading.share_stops(light).map_or("\u{2013}".to_owned(), |s| format!("{s:+.2} stops"));
+        let share = reading.stops_over_key(light).map_or("\u{2013}".to_owned(), |s| format!("{s:+.2} stops"));
         let [direct, bounced, sum] = [light.direct, light.bounced, light.sum()].map(digits);
         let _ = writeln!(text, "{:width$}  {direct:>10}  {bounced:>10}  {sum:>10} {unit:<4}  {share:>11}", light.name);
     }
@@ -257,7 +257,7 @@ fn table(arguments: &Arguments, point: &MeterPoint, result: &MeterResult) -> Str
     for ratio in reading.ratios().into_iter().flatten() {
         let _ = writeln!(text, "{} {:.2}:1, {:.2} stops", ratio.name, ratio.value, ratio.stops());
     }
-    let share = 100.0 * reading.flash_share().unwrap_or(0.0);
+    let share = 100.0 * reading.flash_fraction().unwrap_or(0.0);
     let error = 100.0 * reading.relative_error().unwrap_or(0.0);
     let _ = writeln!(text, "flash {share:.1} %, continuous {:.1} %", 100.0 - share);
     let _ = writeln!(text, "standard error {error:.2} %, {} paths", result.paths);

@@ -1,19 +1,20 @@
-//! The light meter's arithmetic (ISO 2720): from what each light gives at a place to what the meter shows.
+//! The arithmetic of an incident light meter (ISO 2720): from the illuminance of each light to f-number, EV and ratios.
 //!
-//! Continuous light is read in lux, flash in lux seconds. Both meet in the exposure E t + H in lux s, from which the
-//! f-number follows: N^2 = (E t + H) S / C. Where one number in lux is asked for all light together, a flash counts as
-//! the steady light that would expose the same at the camera's shutter, H / t: so `lux x shutter = lux s` always.
+//! Continuous light is read in lux, flash in lux seconds. Their luminous exposures add up, E t + H in lux s, and give the
+//! f-number: N^2 = (E t + H) S / C. For a total in lux, a flash counts as the continuous light of the same exposure at
+//! the camera's shutter, H / t, so that `lux x shutter = lux s`.
 
 use super::exposure;
 use super::thirds::Dial;
 pub use crate::scene::Receptor;
 use crate::scene::{Camera, LightId, Role};
 
-/// Lux in a foot-candle: a lumen a square foot.
+/// Lux per foot-candle (lumen per square foot).
 pub const LUX_PER_FOOT_CANDLE: f32 = 10.763_91;
 
 impl Receptor {
-    /// Part of a light's normal illuminance that counts, by the cosine of its angle from where the receptor faces.
+    /// Returns the response to light relative to its normal illuminance, by the cosine between the light's direction and
+    /// the receptor's axis.
     pub fn response(self, cos: f32) -> f32 {
         match self {
             Receptor::Flat => cos.max(0.0),
@@ -21,7 +22,7 @@ impl Receptor {
         }
     }
 
-    /// Its name.
+    /// Returns its label.
     pub fn label(self) -> &'static str {
         match self {
             Receptor::Flat => "flat",
@@ -30,106 +31,105 @@ impl Receptor {
     }
 }
 
-/// One light at the meter: lux for continuous light, lux seconds for flash.
+/// The reading of one light: lux for continuous light, lux seconds for flash.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightReading {
-    /// The light; none for all surfaces that glow, together.
+    /// The light; none for the sum of all emissive surfaces.
     pub light: Option<LightId>,
-    /// Its name.
+    /// Name of the light.
     pub name: String,
-    /// Its part in the set-up.
+    /// Role in the set-up.
     pub role: Option<Role>,
-    /// Whether the numbers are lux seconds.
+    /// True for flash: the numbers are lux seconds.
     pub flash: bool,
-    /// Straight from the light, shadows included.
+    /// Direct light, with shadows.
     pub direct: f32,
-    /// By way of any surface, mirrors and glass included.
+    /// Indirect light by any surface, mirrors and glass included.
     pub bounced: f32,
     /// Standard error of `direct + bounced`, in the same unit.
     pub standard_error: f32,
 }
 
 impl LightReading {
-    /// Direct and bounced together.
+    /// Returns direct plus bounced light.
     pub fn sum(&self) -> f32 {
         self.direct + self.bounced
     }
 }
 
-/// What a meter shows at one place.
+/// A reading of the meter at one point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// Every light that is on, in the scene's order; glowing surfaces last, where there are any.
+    /// Every light that is on, in scene order; emissive surfaces last, if there are any.
     pub lights: Vec<LightReading>,
     /// The camera's shutter, seconds.
     pub shutter_s: f32,
     /// The camera's ISO speed.
     pub iso: f32,
-    /// C in lux seconds.
+    /// Meter constant C, lux seconds.
     pub meter_constant: f32,
 }
 
-/// A ratio between groups of lights.
+/// A lighting ratio between groups of lights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ratio {
-    /// Which ratio: `key:fill`.
+    /// Name of the ratio: `key:fill`.
     pub name: &'static str,
-    /// So many to 1.
+    /// The ratio to 1.
     pub value: f32,
 }
 
 impl Ratio {
-    /// The ratio in stops.
+    /// Returns the ratio in stops.
     pub fn stops(&self) -> f32 {
         self.value.log2()
     }
 }
 
 impl Reading {
-    /// A reading for a camera's settings.
+    /// Creates a reading for a camera's settings.
     pub fn new(lights: Vec<LightReading>, camera: &Camera) -> Self {
         Reading { lights, shutter_s: camera.shutter_s, iso: camera.iso, meter_constant: camera.meter_constant }
     }
 
-    /// Seconds for which a light counts.
+    /// Returns the time by which a light counts in the exposure, seconds.
     fn time_s(&self, light: &LightReading) -> f32 {
         if light.flash { 1.0 } else { self.shutter_s }
     }
 
-    /// What a light adds to the exposure, lux s.
+    /// Returns the luminous exposure of a light, lux s.
     pub fn lux_s(&self, light: &LightReading) -> f32 {
         light.sum() * self.time_s(light)
     }
 
-    /// A quantity of a light (its own unit: lux, or lux s for flash) as steady light at the camera's shutter, lux.
+    /// Converts a quantity of a light (lux, or lux s for flash) to continuous light at the camera's shutter, lux.
     pub fn as_lux(&self, light: &LightReading, quantity: f32) -> f32 {
         if light.flash { quantity / self.shutter_s } else { quantity }
     }
 
-    /// All light in one exposure, E t + H, lux s.
+    /// Returns the luminous exposure of all lights, E t + H, lux s.
     pub fn total_lux_s(&self) -> f32 {
         total(self.lights.iter().map(|light| self.lux_s(light)))
     }
 
-    /// Direct and bounced light as steady light at the camera's shutter, lux.
+    /// Returns direct and bounced light of all lights as continuous light at the camera's shutter, lux.
     pub fn total_lux(&self) -> (f32, f32) {
         self.lights.iter().fold((0.0, 0.0), |(direct, bounced), light| {
             (direct + self.as_lux(light, light.direct), bounced + self.as_lux(light, light.bounced))
         })
     }
 
-    /// EV at ISO 100; minus infinity in the dark.
+    /// Returns EV at ISO 100; minus infinity without light.
     pub fn ev100(&self) -> f32 {
         exposure::ev100(self.total_lux_s() / self.shutter_s, self.meter_constant)
     }
 
-    /// The f-number to set at the camera's ISO and shutter; 0 in the dark.
+    /// Returns the f-number at the camera's ISO and shutter; 0 without light.
     pub fn f_number(&self) -> f32 {
         exposure::f_number(self.total_lux_s(), self.iso, self.meter_constant)
     }
 
-    /// The light that the others are compared with: the strongest of the key lights, or of all where none has that
-    /// role.
+    /// Returns the reference light of ratios: the strongest of the key lights, or of all where none has that role.
     pub fn key(&self) -> Option<&LightReading> {
         let strongest = |lights: &mut dyn Iterator<Item = &'_ LightReading>| {
             lights
@@ -143,20 +143,20 @@ impl Reading {
         self.lights.iter().find(|light| light.light == id)
     }
 
-    /// A light's exposure against the key's, stops; none in the dark.
-    pub fn share_stops(&self, light: &LightReading) -> Option<f32> {
+    /// Returns a light's exposure over the key's, stops; none without light.
+    pub fn stops_over_key(&self, light: &LightReading) -> Option<f32> {
         let stops = (self.lux_s(light) / self.lux_s(self.key()?)).log2();
         stops.is_finite().then_some(stops)
     }
 
-    /// Part of the exposure that comes from flash, 0 to 1; none in the dark.
-    pub fn flash_share(&self) -> Option<f32> {
-        let whole = self.total_lux_s();
+    /// Returns the fraction of the exposure that comes from flash, 0 to 1; none without light.
+    pub fn flash_fraction(&self) -> Option<f32> {
+        let total_lux_s = self.total_lux_s();
         let flash = total(self.lights.iter().filter(|l| l.flash).map(|l| self.lux_s(l)));
-        (whole > 0.0).then(|| flash / whole)
+        (total_lux_s > 0.0).then(|| flash / total_lux_s)
     }
 
-    /// Standard error of the whole exposure relative to it; none in the dark.
+    /// Returns the relative standard error of the total exposure; none without light.
     pub fn relative_error(&self) -> Option<f32> {
         let total = self.total_lux_s();
         let square: f32 = self.lights.iter().map(|l| (l.standard_error * self.time_s(l)).powi(2)).sum();
@@ -167,7 +167,7 @@ impl Reading {
         total(self.lights.iter().filter(|l| l.role == Some(role)).map(|l| self.lux_s(l)))
     }
 
-    /// Key against fill, in the two ways in which ratios are quoted. None without light from both roles.
+    /// Returns the key:fill and (key+fill):fill ratios; none without light from both roles.
     pub fn ratios(&self) -> Option<[Ratio; 2]> {
         let (key, fill) = (self.lux_s_of(Role::Key), self.lux_s_of(Role::Fill));
         (key > 0.0 && fill > 0.0).then(|| {
@@ -179,16 +179,16 @@ impl Reading {
     }
 }
 
-/// An f-number as a meter in thirds shows it: the engraved number of the nearest third, such as `f/5.6`.
+/// Formats an f-number as the nominal label of its nearest third, such as `f/5.6`.
 pub fn nearest_third(f_number: f32) -> String {
-    let engraved = (f_number > 0.0).then(|| Dial::FNumber.thirds(f_number).round() as i32);
-    match engraved.and_then(|thirds| Dial::FNumber.engraved(thirds)) {
+    let thirds = (f_number > 0.0).then(|| Dial::FNumber.thirds(f_number).round() as i32);
+    match thirds.and_then(|thirds| Dial::FNumber.nominal_label(thirds)) {
         Some(label) => format!("f/{label}"),
         None => format!("f/{f_number:.1}"),
     }
 }
 
-/// Sum that is 0 of nothing: the standard library's is -0, which would be printed so.
+/// Returns the sum; +0 for no values, where the standard library returns -0, which would be printed.
 fn total(values: impl Iterator<Item = f32>) -> f32 {
     values.fold(0.0, |sum, value| sum + value)
 }
@@ -208,22 +208,25 @@ mod tests {
     }
 
     #[test]
-    fn flash_and_continuous_light_meet_in_the_exposure() {
+    fn exposures_of_flash_and_continuous_light_add_up() {
         // light_and_camera.md: f/8 is 160 lux s of flash at ISO 100; 10 000 lx at 1/125 s are 80 more.
         let both = reading(vec![light(0, Role::Key, true, 160.0), light(1, Role::Fill, false, 10_000.0)]);
         assert!((both.total_lux_s() - 240.0).abs() < 1e-3);
         assert!((both.f_number() - (240.0_f32 * 100.0 / 250.0).sqrt()).abs() < 1e-4);
-        assert!((both.flash_share().unwrap() - 160.0 / 240.0).abs() < 1e-6);
+        assert!((both.flash_fraction().unwrap() - 160.0 / 240.0).abs() < 1e-6);
         let no_flash = Reading { lights: vec![light(1, Role::Key, false, 10_000.0)], ..both.clone() };
-        assert!(no_flash.flash_share().is_some_and(|share| share == 0.0 && share.is_sign_positive()), "-0 is printed");
-        // The flash as steady light at this shutter: 160 x 125 lx.
+        assert!(
+            no_flash.flash_fraction().is_some_and(|fraction| fraction == 0.0 && fraction.is_sign_positive()),
+            "-0 is printed"
+        );
+        // The flash as continuous light at this shutter: 160 x 125 lx.
         assert!((both.total_lux().0 / 30_000.0 - 1.0).abs() < 1e-6);
         let slower = Reading { shutter_s: 1.0 / 60.0, ..both.clone() };
-        assert_eq!(slower.lux_s(&slower.lights[0]), 160.0, "the shutter leaves the flash alone");
+        assert_eq!(slower.lux_s(&slower.lights[0]), 160.0, "the exposure of a flash does not depend on the shutter");
     }
 
     #[test]
-    fn ratios_and_shares_are_in_stops_against_the_key() {
+    fn ratios_and_stops_are_relative_to_the_key() {
         let set = reading(vec![
             light(0, Role::Fill, true, 20.0),
             light(1, Role::Key, true, 80.0),
@@ -231,23 +234,23 @@ mod tests {
             light(3, Role::Hair, true, 0.0),
         ]);
         assert_eq!(set.key().unwrap().name, "Key 1");
-        let shares: Vec<_> = set.lights.iter().map(|l| set.share_stops(l)).collect();
-        assert_eq!(shares, [Some(-2.0), Some(0.0), Some(1.0), None]);
+        let stops: Vec<_> = set.lights.iter().map(|l| set.stops_over_key(l)).collect();
+        assert_eq!(stops, [Some(-2.0), Some(0.0), Some(1.0), None]);
         let [plain, with_fill] = set.ratios().unwrap();
         assert_eq!((plain.value, plain.stops(), with_fill.value), (4.0, 2.0, 5.0));
     }
 
     #[test]
-    fn without_a_key_the_strongest_light_is_the_measure_and_darkness_is_no_number() {
+    fn without_a_key_the_strongest_light_is_the_reference() {
         let set = reading(vec![light(0, Role::Rim, false, 10.0), light(1, Role::Hair, false, 40.0)]);
-        assert_eq!(set.share_stops(&set.lights[0]), Some(-2.0));
+        assert_eq!(set.stops_over_key(&set.lights[0]), Some(-2.0));
         assert!(set.ratios().is_none());
         let dark = reading(vec![light(0, Role::Key, true, 0.0)]);
-        assert_eq!((dark.share_stops(&dark.lights[0]), dark.flash_share(), dark.f_number()), (None, None, 0.0));
+        assert_eq!((dark.stops_over_key(&dark.lights[0]), dark.flash_fraction(), dark.f_number()), (None, None, 0.0));
     }
 
     #[test]
-    fn a_dome_has_the_cardioid_and_a_disc_the_cosine() {
+    fn a_dome_has_the_cardioid_response_and_a_flat_receptor_the_cosine() {
         for (degrees, flat, dome) in [(0.0_f32, 1.0, 1.0), (60.0, 0.5, 0.75), (90.0, 0.0, 0.5), (180.0, 0.0, 0.0)] {
             let cos = degrees.to_radians().cos();
             assert!((Receptor::Flat.response(cos) - flat).abs() < 1e-6);
@@ -256,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn apertures_are_told_in_thirds() {
+    fn f_numbers_are_labelled_by_their_nearest_third() {
         assert_eq!([7.9, 5.5, 0.3, 0.0].map(nearest_third), ["f/8", "f/5.6", "f/0.3", "f/0.0"]);
     }
 }

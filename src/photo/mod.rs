@@ -1,4 +1,4 @@
-//! Arithmetic of exposure, light meter and set-ups: what a photographer's own tools compute.
+//! Photometry: lights in physical units, exposure, the light meter, and the scales of a camera's dials.
 
 mod aov;
 pub mod beam;

@@ -1,14 +1,14 @@
-//! The third-stop scales of f-number, shutter and ISO: exact values inside, the engraved numbers outside.
+//! The third-stop scales of f-number, shutter and ISO: exact values for arithmetic, nominal labels for display.
 //!
 //! A value of a scale is a whole number of thirds `k`: f-number 2^(k/6), shutter 2^(-k/3) s, ISO 100 x 2^(k/3).
-//! Cameras engrave rounded numbers (ISO 2720, annex): f/5.6 is exactly 5.657, 1/125 s exactly 1/128.
+//! Nominal labels are rounded (ISO 2720, annex): f/5.6 is exactly 5.657, 1/125 s exactly 1/128.
 
-/// f/1 to f/32 as engraved, from k = 0.
+/// Nominal labels f/1 to f/32, from k = 0.
 const F_NUMBERS: [&str; 31] = [
     "1", "1.1", "1.2", "1.4", "1.6", "1.8", "2", "2.2", "2.5", "2.8", "3.2", "3.5", "4", "4.5", "5", "5.6", "6.3",
     "7.1", "8", "9", "10", "11", "13", "14", "16", "18", "20", "22", "25", "29", "32",
 ];
-/// 30 s to 1/8000 s as engraved, from k = -15.
+/// Nominal labels 30 s to 1/8000 s, from k = -15.
 const SHUTTERS: [&str; 55] = [
     "30 s", "25 s", "20 s", "15 s", "13 s", "10 s", "8 s", "6 s", "5 s", "4 s", "3.2 s", "2.5 s", "2 s", "1.6 s",
     "1.3 s", "1 s", "0.8 s", "0.6 s", "0.5 s", "0.4 s", "0.3 s", "1/4", "1/5", "1/6", "1/8", "1/10", "1/13", "1/15",
@@ -16,13 +16,13 @@ const SHUTTERS: [&str; 55] = [
     "1/400", "1/500", "1/640", "1/800", "1/1000", "1/1250", "1/1600", "1/2000", "1/2500", "1/3200", "1/4000", "1/5000",
     "1/6400", "1/8000",
 ];
-/// ISO 50 to 25600 as engraved, from k = -3.
+/// Nominal labels ISO 50 to 25600, from k = -3.
 const ISOS: [&str; 28] = [
     "50", "64", "80", "100", "125", "160", "200", "250", "320", "400", "500", "640", "800", "1000", "1250", "1600",
     "2000", "2500", "3200", "4000", "5000", "6400", "8000", "10000", "12800", "16000", "20000", "25600",
 ];
 
-/// One of the three dials of an exposure.
+/// A dial of the camera's exposure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dial {
     /// Aperture, f-number.
@@ -34,7 +34,7 @@ pub enum Dial {
 }
 
 impl Dial {
-    /// The whole thirds of the dial's first and last engraved value.
+    /// Returns the range of the scale, whole thirds.
     pub fn range(self) -> std::ops::RangeInclusive<i32> {
         let (first, labels) = self.table();
         first..=first + labels.len() as i32 - 1
@@ -48,8 +48,8 @@ impl Dial {
         }
     }
 
-    /// Exact value `thirds` of a stop from f/1, 1 s or ISO 100. More thirds is a smaller aperture, a shorter time, a
-    /// higher speed.
+    /// Returns the exact value `thirds` of a stop from f/1, 1 s or ISO 100. More thirds are a smaller aperture, a shorter
+    /// time, a higher speed.
     pub fn value(self, thirds: i32) -> f32 {
         let stops = f64::from(thirds) / 3.0;
         match self {
@@ -59,7 +59,7 @@ impl Dial {
         }
     }
 
-    /// Thirds of a stop of any value, not rounded.
+    /// Returns the thirds of a stop of any value, not rounded.
     pub fn thirds(self, value: f32) -> f32 {
         let value = value.max(f32::MIN_POSITIVE);
         match self {
@@ -69,19 +69,18 @@ impl Dial {
         }
     }
 
-    /// The engraved number for a whole number of thirds; none outside the scale.
-    pub fn engraved(self, thirds: i32) -> Option<&'static str> {
+    /// Returns the nominal label of a whole number of thirds; none outside the scale.
+    pub fn nominal_label(self, thirds: i32) -> Option<&'static str> {
         let (first, labels) = self.table();
         usize::try_from(thirds - first).ok().and_then(|i| labels.get(i)).copied()
     }
 
-    /// The value as a photographer reads it: the engraved number where one is within a twentieth of a stop, otherwise
-    /// the number itself.
+    /// Formats a value: the nominal label within a twentieth of a stop, otherwise the number itself.
     pub fn label(self, value: f32) -> String {
         let thirds = self.thirds(value);
-        let near = thirds.round();
-        let engraved = ((thirds - near).abs() < 0.15).then(|| self.engraved(near as i32)).flatten();
-        match (self, engraved) {
+        let nearest = thirds.round();
+        let nominal = ((thirds - nearest).abs() < 0.15).then(|| self.nominal_label(nearest as i32)).flatten();
+        match (self, nominal) {
             (Dial::FNumber, Some(text)) => format!("f/{text}"),
             (Dial::FNumber, None) => format!("f/{value:.1}"),
             (Dial::Iso, Some(text)) => text.to_owned(),
@@ -92,15 +91,14 @@ impl Dial {
         }
     }
 
-    /// The next whole third from `value` in a direction (+1 or -1), kept on the scale.
+    /// Returns the next whole third from `value` in a direction (+1 or -1), clamped to the scale.
     pub fn step(self, value: f32, direction: i32) -> f32 {
         let thirds = self.thirds(value);
-        // Files hold engraved numbers (5.6, 1/60), up to 0.3 thirds from the exact ones: such a value counts as its
-        // third.
-        let near = thirds.round();
-        let next = match (direction > 0, (thirds - near).abs() < 0.35) {
-            (true, true) => near as i32 + 1,
-            (false, true) => near as i32 - 1,
+        // Files hold nominal values (5.6, 1/60), up to 0.3 thirds from the exact ones: such a value counts as its third.
+        let nearest = thirds.round();
+        let next = match (direction > 0, (thirds - nearest).abs() < 0.35) {
+            (true, true) => nearest as i32 + 1,
+            (false, true) => nearest as i32 - 1,
             (true, false) => thirds.ceil() as i32,
             (false, false) => thirds.floor() as i32,
         };
@@ -113,15 +111,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_engraved_numbers_are_their_exact_values_rounded() {
+    fn nominal_labels_are_the_exact_values_rounded() {
         for dial in [Dial::FNumber, Dial::Shutter, Dial::Iso] {
             for thirds in dial.range() {
-                let text = dial.engraved(thirds).unwrap().trim_end_matches(" s");
+                let text = dial.nominal_label(thirds).unwrap().trim_end_matches(" s");
                 let shown: f32 = match text.strip_prefix("1/") {
                     Some(denominator) => 1.0 / denominator.parse::<f32>().unwrap(),
                     None => text.parse().unwrap(),
                 };
-                // Engravings are rounded by up to a sixth of a stop (f/1.2, 1/60, 1/6).
+                // Labels are rounded by up to a sixth of a stop (f/1.2, 1/60, 1/6).
                 let off = (dial.thirds(shown) - thirds as f32).abs();
                 assert!(off < 0.5, "{dial:?} {text} is {off} thirds off");
             }
@@ -129,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_scene_holds_reads_as_on_the_camera() {
+    fn values_are_labelled_as_on_a_camera() {
         assert_eq!(Dial::FNumber.label(5.6), "f/5.6");
         assert_eq!(Dial::Shutter.label(1.0 / 125.0), "1/125");
         assert_eq!(Dial::Shutter.label(2.0), "2 s");
@@ -138,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_are_thirds_and_end_at_the_ends() {
+    fn steps_are_thirds_and_stop_at_the_ends_of_the_scale() {
         let up = Dial::FNumber.step(5.6, 1);
         assert!((up - 2.0_f32.powf(16.0 / 6.0)).abs() < 1e-5, "{up}");
         assert_eq!(Dial::FNumber.label(up), "f/6.3");

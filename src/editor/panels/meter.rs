@@ -67,7 +67,7 @@ fn reading_ui(ui: &mut Ui, reading: &Reading) {
         let text = format!("{}  {}:1  ({:.1} stops)", ratio.name, widgets::three_digits(ratio.value), ratio.stops());
         ui.label(text).on_hover_text("By the roles of the lights");
     }
-    if let Some(share) = reading.flash_share() {
+    if let Some(share) = reading.flash_fraction() {
         ui.label(format!("Flash {:.0} %, continuous {:.0} %", 100.0 * share, 100.0 - 100.0 * share))
             .on_hover_text("Parts of the exposure: the continuous one follows the shutter");
     }
@@ -91,7 +91,7 @@ fn light_row(ui: &mut Ui, reading: &Reading, light: &LightReading) {
         ui.set_min_width(130.0);
         ui.add(Label::new(&light.name).truncate());
     });
-    let stops = match reading.share_stops(light) {
+    let stops = match reading.stops_over_key(light) {
         _ if key => "key".to_owned(),
         Some(stops) => format!("{} stops", widgets::signed_stops(stops)),
         None => "dark".to_owned(),

@@ -118,7 +118,7 @@ pub fn choice<T: Copy + PartialEq>(ui: &mut Ui, value: &mut T, options: &[(T, &s
     }
 }
 
-/// A dial of the exposure: down and up in thirds, the engraved numbers as a list.
+/// A dial of the exposure: down and up in thirds, the nominal values as a list.
 pub fn dial_ui(ui: &mut Ui, name: &str, dial: Dial, value: &mut f32) {
     ui.spacing_mut().item_spacing.x = 2.0;
     if small_button(ui, "\u{2212}", &format!("{name} down")).on_hover_text("A third of a stop down the scale").clicked()
