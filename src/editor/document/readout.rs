@@ -1,5 +1,4 @@
-//! What a light gives where it aims: the read-outs of the inspector. Closed forms for free light, without bounce and
-//! without what stands in the way.
+//! The inspector's read-outs of a light at its aim point: closed forms without indirect light and without occlusion.
 
 use crate::photo::beam::Beam;
 use crate::photo::emitter::EmitterShape;
@@ -8,14 +7,14 @@ use crate::scene::{Camera, Light, Scene};
 use glam::Vec2;
 use std::f32::consts::PI;
 
-/// A light at its aim point, on a surface that faces it.
+/// The reading of a light at its aim point, on a surface that faces it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtAim {
     /// Distance to the aim point, metres; none for sun and surround.
     pub distance_m: Option<f32>,
     /// Illuminance in lux for continuous light; luminous exposure in lux seconds for flash.
     pub illuminance: f32,
-    /// What it adds to the film in one exposure, lux seconds.
+    /// Luminous exposure, lux seconds.
     pub lux_s: f32,
 }
 
@@ -81,17 +80,17 @@ fn beamed_panel(beam: &Beam, half_size_m: Vec2, is_disc: bool, h: f32) -> f32 {
     sum / cells.max(1) as f32
 }
 
-/// The f-number a meter at the aim point asks for, from this light alone, at the camera's ISO and shutter.
+/// Returns the f-number that a meter at the aim point reads from this light alone, at the camera's ISO and shutter.
 pub fn f_number(camera: &Camera, lux_s: f32) -> f32 {
     exposure::f_number(lux_s, camera.iso, camera.meter_constant)
 }
 
-/// How far that is from the camera's aperture, stops: positive is brighter than a metered grey card.
+/// Returns the exposure over the camera's setting, stops: positive is brighter than a correctly metered grey card.
 pub fn stops_over_camera(camera: &Camera, lux_s: f32) -> f32 {
     2.0 * (f_number(camera, lux_s) / camera.f_number).log2()
 }
 
-/// The dial, in whole thirds of a stop, that puts this light `stops` over the camera's setting at its aim.
+/// Returns the power dial, in whole thirds of a stop, that puts this light `stops` over the camera's setting at its aim.
 pub fn dial_for(scene: &Scene, light: &Light, stops: f32) -> f32 {
     let over = stops_over_camera(&scene.camera, at_aim(scene, light).lux_s);
     if over.is_finite() {
@@ -119,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn panels_give_what_the_tables_say() {
+    fn panels_have_the_tabulated_illuminance() {
         // light_and_camera.md: 1000 lm on the axis at 0.5, 1 and 3 m.
         let tables = [
             (Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, [729.52, 267.05, 34.62]),
@@ -135,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn a_panel_whose_beam_cuts_nothing_is_a_panel_and_one_with_a_grid_is_less() {
+    fn an_open_beam_leaves_a_panel_unchanged_and_a_grid_cuts_it() {
         for emitter in [Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, Emitter::RoundPanel { diameter_m: 1.2 }] {
             for distance in [0.5, 1.0, 3.0] {
                 let bare = light(emitter);
@@ -151,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn the_dial_that_is_asked_for_meters_at_the_camera() {
+    fn the_dial_for_a_reading_gives_that_reading() {
         let mut scene = Scene::default();
         let mut light = light(Emitter::RectPanel { width_m: 0.6, height_m: 0.9 });
         light.aim = Aim::Point(Vec3::ZERO);
