@@ -1,13 +1,13 @@
-//! AOVs (arbitrary output variables): what the pixels of a picture show, beside their light.
+//! AOVs (arbitrary output variables): albedo, normal, depth and object id of a picture's pixels.
 
 use super::picture::resized;
 
 /// Albedo, normal, depth and object of every pixel, rows from the top.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct AovPicture {
-    /// Pixels across.
+    /// Width, pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height, pixels.
     pub height: u32,
     /// Reflectance, linear RGB; white for clear glass and emitters, zero where nothing is hit.
     pub albedo: Vec<[f32; 3]>,
@@ -26,7 +26,7 @@ impl AovPicture {
     /// Id of the room.
     pub const ROOM: u32 = 1;
 
-    /// A picture that shows nothing.
+    /// Creates the AOVs of a picture without hits.
     pub fn new(width: u32, height: u32) -> Self {
         let pixels = width as usize * height as usize;
         AovPicture {
@@ -39,7 +39,7 @@ impl AovPicture {
         }
     }
 
-    /// The same AOVs at another size, each pixel the nearest of these.
+    /// Resizes by the nearest pixel.
     pub fn resized(&self, width: u32, height: u32) -> AovPicture {
         let (from, to) = ((self.width, self.height), (width, height));
         AovPicture {
@@ -52,7 +52,7 @@ impl AovPicture {
         }
     }
 
-    /// Id of an object by its index in the scene: from 2 on, in the order of the studio's file.
+    /// Returns the id of an object by its index in the scene: from 2 on, in scene order.
     pub fn object_id(index: usize) -> u32 {
         u32::try_from(index + 2).unwrap_or(u32::MAX)
     }

@@ -33,14 +33,14 @@ impl Picture {
     }
 }
 
-/// Rows of pixels at another size, each the nearest of the given ones.
+/// Returns rows of pixels resized by the nearest pixel.
 pub(super) fn resized<T: Copy>(
     pixels: &[T],
     (width, height): (u32, u32),
     (new_width, new_height): (u32, u32),
 ) -> Vec<T> {
-    let nearest = |i: u32, ours: u32, theirs: u32| {
-        (u64::from(2 * i + 1) * u64::from(ours) / u64::from(2 * theirs.max(1))).min(u64::from(ours.max(1) - 1)) as usize
+    let nearest = |i: u32, from: u32, to: u32| {
+        (u64::from(2 * i + 1) * u64::from(from) / u64::from(2 * to.max(1))).min(u64::from(from.max(1) - 1)) as usize
     };
     let rows = (0..new_height).map(|y| nearest(y, height, new_height) * width as usize);
     rows.flat_map(|row| (0..new_width).map(move |x| pixels[row + nearest(x, width, new_width)])).collect()
