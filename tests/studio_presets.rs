@@ -1,12 +1,12 @@
-//! The shipped studios as a photographer would check them with a meter: exposure on the key, ratios between the lights.
-//! The illuminances here are closed forms, apart from every renderer.
+//! Checks the shipped studios as a photographer does with a meter: exposure of the key, lighting ratios, angles of the
+//! patterns. The illuminances are closed forms, independent of every renderer.
 
 use catchlight::io::presets;
 use catchlight::photo::{PhotometricLight, exposure};
 use catchlight::scene::{Emitter, Light, Role, Scene};
 use std::f32::consts::PI;
 
-/// Luminous exposure (lux s) that one light gives, directly, on a receptor that stands at its aim and faces it.
+/// Returns the direct luminous exposure (lux s) of one light on a receptor at its aim that faces it.
 fn metered_lux_s(scene: &Scene, light: &Light) -> f32 {
     let distance = scene.aim_point(&light.aim, light.position).distance(light.position);
     let per_axial_intensity = match light.emitter {
@@ -24,7 +24,7 @@ fn metered_lux_s(scene: &Scene, light: &Light) -> f32 {
     light.axial_intensity() * per_axial_intensity * light.exposure_time_s
 }
 
-/// Stops of a light over what the camera's settings ask for.
+/// Returns the stops of a light over the exposure of the camera's settings.
 fn stops_over(scene: &Scene, lux_s: f32) -> f32 {
     let n = exposure::f_number(lux_s, scene.camera.iso, scene.camera.meter_constant);
     2.0 * (n / scene.camera.f_number).log2()
@@ -40,7 +40,7 @@ fn scene(file: &str) -> Scene {
 }
 
 #[test]
-fn the_meter_formulas_agree_with_the_printed_table() {
+fn the_closed_forms_agree_with_the_table_of_illuminances() {
     // light_and_camera.md's table: 1000 lm, 60x90 cm at 1 m 267.05 lx, round 120 cm at 1 m 234.05 lx.
     let mut scene = scene("three_point.ron");
     let light = &mut scene.lights[0];
@@ -53,19 +53,19 @@ fn the_meter_formulas_agree_with_the_printed_table() {
         (Emitter::Point, 1000.0 / (4.0 * PI)),
     ] {
         let light = Light { emitter, ..scene.lights[0].clone() };
-        let ours = metered_lux_s(&scene, &light);
-        assert!((ours / expected - 1.0).abs() < 1e-4, "{emitter:?}: {ours}");
+        let computed = metered_lux_s(&scene, &light);
+        assert!((computed / expected - 1.0).abs() < 1e-4, "{emitter:?}: {computed}");
     }
 }
 
 #[test]
-fn keys_are_exposed_right_and_fills_are_weaker() {
+fn keys_are_exposed_correctly_and_fills_are_weaker() {
     for preset in presets() {
         let scene = scene(preset.file_name);
         let keys: Vec<f32> = of_role(&scene, Role::Key).collect();
         assert!(keys.len() == 1 || preset.file_name == "rim_low_key.ron", "{}: {keys:?}", preset.file_name);
         for key in keys {
-            // A little under where a fill or a bright room adds to it.
+            // Slightly under where a fill or a bright room adds light.
             assert!((-0.8..=0.2).contains(&key), "{}: the key is {key:+.2} stops off", preset.file_name);
             for fill in of_role(&scene, Role::Fill) {
                 let ratio = key - fill;
@@ -76,7 +76,7 @@ fn keys_are_exposed_right_and_fills_are_weaker() {
 }
 
 #[test]
-fn dials_stay_within_what_heads_can_do() {
+fn dials_stay_within_the_range_of_flash_heads() {
     for preset in presets() {
         for light in &scene(preset.file_name).lights {
             let dial = light.power.dial_stops;
@@ -86,7 +86,7 @@ fn dials_stay_within_what_heads_can_do() {
     }
 }
 
-/// Azimuth and elevation, degrees, of a light as seen from a face at its aim that looks along +Z.
+/// Returns azimuth and elevation, degrees, of a light, seen from a face at its aim that looks along +Z.
 fn angles(scene: &Scene, name: &str) -> (f32, f32) {
     let light = scene.lights.iter().find(|l| l.name == name).cloned();
     let offset = light.map(|l| l.position - scene.aim_point(&l.aim, l.position)).unwrap_or_default();
@@ -94,8 +94,8 @@ fn angles(scene: &Scene, name: &str) -> (f32, f32) {
 }
 
 #[test]
-fn patterns_have_the_angles_of_the_textbook() {
-    // light_and_camera.md, portrait patterns. Positions are rounded to the centimetre, so half a degree is let off.
+fn portrait_patterns_have_their_textbook_angles() {
+    // light_and_camera.md, portrait patterns. Positions are rounded to the centimetre, so the tolerance is half a degree.
     for (file, light, azimuths, elevations) in [
         ("butterfly.ron", "Beauty dish", 0.0..=0.0, 25.0..=45.0),
         ("loop.ron", "Key dish", 20.0..=50.0, 25.0..=60.0),

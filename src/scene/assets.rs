@@ -1,4 +1,4 @@
-//! Meshes and pictures that a scene refers to, already in memory. `io` fills it; renderers only read.
+//! The loaded meshes and textures of a scene. `io` loads them; renderers read them.
 
 use super::{AssetRef, Mannequin, Mesh, Object, Shape, tessellate};
 use glam::Vec3;

@@ -4,7 +4,7 @@ use super::{Aim, ObjectId};
 use crate::math;
 use glam::{Affine3A, Mat4, Vec2, Vec3};
 
-/// A sensor's picture area, millimetres, in landscape.
+/// A sensor format.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sensor {
     /// 36 x 24 mm.
@@ -27,7 +27,7 @@ pub enum Sensor {
 }
 
 impl Sensor {
-    /// The fixed sensors with the names a photographer knows.
+    /// The standard sensor formats with their names.
     pub const NAMED: [(&'static str, Sensor); 5] = [
         ("Full frame 36x24", Sensor::FullFrame),
         ("APS-C 23.5x15.6", Sensor::ApsC),
@@ -36,7 +36,7 @@ impl Sensor {
         ("Medium format 54x40", Sensor::Medium54x40),
     ];
 
-    /// Width and height in landscape, millimetres.
+    /// Returns width and height in landscape, millimetres.
     pub fn size_mm(self) -> Vec2 {
         match self {
             Sensor::FullFrame => Vec2::new(36.0, 24.0),
@@ -49,22 +49,22 @@ impl Sensor {
     }
 }
 
-/// How the camera is held.
+/// The orientation of the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Orientation {
-    /// Long side level.
+    /// Long side horizontal.
     #[default]
     Landscape,
-    /// Turned upright.
+    /// Long side vertical.
     Portrait,
 }
 
-/// What the lens is focused on.
+/// The focus of the lens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Focus {
     /// The point that the camera aims at.
     OnAim,
-    /// An object's aim point follows it: a point in the object's own space.
+    /// A point of an object; follows the object when it moves.
     OnObject {
         /// The object in focus.
         object: ObjectId,
@@ -75,16 +75,16 @@ pub enum Focus {
     Distance(f32),
 }
 
-/// Camera settings, as on the camera.
+/// The camera: position, lens and exposure settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     /// Centre of the lens, metres.
     pub position: Vec3,
-    /// What it looks at.
+    /// Aim.
     pub aim: Aim,
-    /// Turn about the optical axis, degrees, clockwise as seen from behind.
+    /// Roll about the optical axis, degrees, clockwise as seen from behind.
     pub roll_deg: f32,
-    /// Picture area.
+    /// Sensor format.
     pub sensor: Sensor,
     /// Landscape or portrait.
     pub orientation: Orientation,
@@ -100,7 +100,7 @@ pub struct Camera {
     pub white_balance_k: f32,
     /// Focus, used only with `depth_of_field`.
     pub focus: Focus,
-    /// Whether the aperture blurs what is out of focus (thin lens). Off is a pinhole.
+    /// Depth of field of a thin lens; false is a pinhole.
     pub depth_of_field: bool,
     /// Calibration constant of the incident meter, lux seconds (ISO 2720): 250 for a flat receptor.
     pub meter_constant: f32,
@@ -127,7 +127,7 @@ impl Default for Camera {
 }
 
 impl Camera {
-    /// Picture area as held, millimetres.
+    /// Returns width and height of the sensor in the camera's orientation, millimetres.
     pub fn film_size_mm(&self) -> Vec2 {
         let size = self.sensor.size_mm();
         match self.orientation {
@@ -136,21 +136,21 @@ impl Camera {
         }
     }
 
-    /// Width over height of the uncropped picture.
+    /// Returns width over height of the uncropped picture.
     pub fn aspect(&self) -> f32 {
         let size = self.film_size_mm();
         size.x / size.y
     }
 
-    /// Picture size in pixels with the sensor's aspect whose longer side is `long_edge`.
+    /// Returns the picture size in pixels with the sensor's aspect and this longer side.
     pub fn picture_size(&self, long_edge: u32) -> (u32, u32) {
         let aspect = self.aspect();
         let short = |ratio: f32| ((long_edge as f32 * ratio).round() as u32).max(1);
         if aspect >= 1.0 { (long_edge, short(1.0 / aspect)) } else { (short(aspect), long_edge) }
     }
 
-    /// The frame of a camera that looks at `target`, for a picture of `aspect` (width / height). A picture of another
-    /// aspect than the sensor's is a crop of it, as a print would be: the lens keeps its angle on the side that fits.
+    /// Returns the frame of a camera that looks at `target`, for a picture of `aspect` (width / height). A picture of another
+    /// aspect than the sensor's is a crop of the sensor: the field of view stays the same along the side that fits.
     pub fn frame(&self, target: Vec3, aspect: f32) -> CameraFrame {
         let film = self.film_size_mm();
         let (width_mm, height_mm) =
@@ -163,35 +163,35 @@ impl Camera {
     }
 }
 
-/// The pinhole geometry of one picture: the single source of framing for tracer, rasteriser and preview.
+/// The pinhole projection of one picture, shared by path tracer, rasteriser and preview.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraFrame {
     /// Columns right, up, back and the lens centre; looks along -Z.
     pub world_from_camera: Affine3A,
-    /// Half width and half height of the picture on a plane one metre ahead, metres.
+    /// Half width and half height of the image plane at 1 m, metres.
     pub half_extent: Vec2,
 }
 
 impl CameraFrame {
-    /// Unnormalised world direction through a picture point: (0, 0) is the top left corner, (1, 1) the bottom right.
-    /// Its component along the optical axis is 1 m.
+    /// Returns the unnormalised world-space direction through a picture point: (0, 0) is the top left corner, (1, 1) the
+    /// bottom right. Its component along the optical axis is 1 m.
     pub fn direction(&self, picture_point: Vec2) -> Vec3 {
         let x = (2.0 * picture_point.x - 1.0) * self.half_extent.x;
         let y = (1.0 - 2.0 * picture_point.y) * self.half_extent.y;
         self.world_from_camera.transform_vector3(Vec3::new(x, y, -1.0))
     }
 
-    /// Lens centre, world space.
+    /// Returns the lens centre, world space.
     pub fn position(&self) -> Vec3 {
         self.world_from_camera.translation.into()
     }
 
-    /// Optical axis, unit length, world space.
+    /// Returns the unit optical axis, world space.
     pub fn forward(&self) -> Vec3 {
         -Vec3::from(self.world_from_camera.matrix3.z_axis)
     }
 
-    /// Clip from world with reversed, infinite depth: 1 at `near_m`, 0 at infinity.
+    /// Returns the clip-from-world matrix with reversed, infinite depth: 1 at `near_m`, 0 at infinity.
     pub fn clip_from_world(&self, near_m: f32) -> Mat4 {
         let projection = Mat4::from_cols_array(&[
             1.0 / self.half_extent.x,
@@ -214,7 +214,7 @@ impl CameraFrame {
         projection * Mat4::from(self.world_from_camera.inverse())
     }
 
-    /// Picture point (0..1, top left origin) of a world point; none behind the camera.
+    /// Projects a world-space point to the picture (0..1 from the top left); `None` behind the camera.
     pub fn project(&self, point: Vec3) -> Option<Vec2> {
         let local = self.world_from_camera.inverse().transform_point3(point);
         (local.z < -1e-6).then(|| {
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn a_standing_figure_fills_the_frame_from_the_known_distances() {
+    fn a_standing_figure_fills_the_frame_at_the_tabulated_distances() {
         // light_and_camera.md: a 1.9 m figure fills 24 mm of height from 2.8 m at 35 mm, 4.0 at 50, 6.7 at 85.
         for (focal_length_mm, distance_m) in [(35.0, 2.8), (50.0, 4.0), (85.0, 6.7)] {
             let camera = Camera { focal_length_mm, ..Camera::default() };

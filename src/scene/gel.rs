@@ -1,7 +1,7 @@
-//! Colour filters before a light, by the names on the swatch book.
+//! Gels: colour filters of lights, with the names of the swatch book.
 
-/// A colour filter before the light. Its hue counts, not its loss: colours are scaled to luminance 1. What the real
-/// filter would cost is told by [`Gel::loss_stops`].
+/// The gel of a light. It changes the colour alone: colours are scaled to luminance 1. [`Gel::loss_stops`] returns the loss
+/// of the real filter.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Gel {
     /// No gel.
@@ -13,23 +13,23 @@ pub enum Gel {
     Tint([f32; 3]),
 }
 
-/// What a group of gels is for.
+/// The purpose of a group of gels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GelFamily {
     /// CTO and CTB.
     Temperature,
-    /// Plus and minus green: against the cast of tubes.
+    /// Plus and minus green: corrects fluorescent tubes.
     Green,
     /// Effects.
     Party,
 }
 
-/// A gel by its name.
+/// A gel of the swatch book.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NamedGel {
     /// Its name.
     pub name: &'static str,
-    /// Where it stands in the swatch book.
+    /// Section of the swatch book.
     pub family: GelFamily,
     /// Its colour.
     pub gel: Gel,
@@ -47,7 +47,7 @@ const fn party(name: &'static str, tint: [f32; 3]) -> NamedGel {
     NamedGel { name, family: GelFamily::Party, gel: Gel::Tint(tint) }
 }
 
-/// Luminous transmittance of the standard conversion gels, by mired shift: what makers print on the swatch, in stops.
+/// Loss of the standard conversion gels by mired shift, stops, as makers print it on the swatch.
 const CONVERSION_LOSS: [(f32, f32); 9] = [
     (-137.0, 1.56),
     (-78.0, 0.87),
@@ -92,13 +92,13 @@ impl Gel {
         party("Pink", [0.95, 0.45, 0.65]),
     ];
 
-    /// Its name, if it is one of the book.
+    /// Returns its name, if it is in the swatch book.
     pub fn name(&self) -> Option<&'static str> {
         const NAMED: &[NamedGel] = &Gel::NAMED;
         NAMED.iter().find(|named| named.gel == *self).map(|named| named.name)
     }
 
-    /// What the real filter takes from white light, stops; between the standard ones by a straight line.
+    /// Returns the loss of the real filter in white light, stops; interpolated linearly between the standard gels.
     pub fn loss_stops(&self) -> f32 {
         match *self {
             Gel::None => 0.0,
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn gels_cost_what_the_swatch_book_prints() {
+    fn gel_losses_agree_with_the_swatch_book() {
         assert_eq!(Gel::None.loss_stops(), 0.0);
         assert!((Gel::Mired(159.0).loss_stops() - 0.85).abs() < 1e-6);
         assert!((Gel::Mired(-137.0).loss_stops() - 1.56).abs() < 1e-6);
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn names_and_colours_of_the_book_are_all_different() {
+    fn names_and_colours_of_the_swatch_book_are_unique() {
         for (i, named) in Gel::NAMED.iter().enumerate() {
             assert_eq!(named.gel.name(), Some(named.name));
             assert!(named.gel.loss_stops() > 0.0, "{}", named.name);

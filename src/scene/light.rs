@@ -1,23 +1,24 @@
-//! Lights as a photographer states them: emitter, power, colour, role.
+//! Lights in a photographer's terms: role, emitter, modifier, power, colour.
 
 use super::{Aim, Emitter, Gel, LightId, Modifier};
 use glam::Vec3;
 
-/// What a light does in the set-up. It never changes what the light emits.
+/// The role of a light in the set-up, as a lighting diagram names it. It labels the light, groups it and colours its gizmo;
+/// it does not change its output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Hash)]
 pub enum Role {
-    /// The main light.
+    /// Main light: sets the exposure and shapes the subject.
     #[default]
     Key,
-    /// Opens the key's shadows.
+    /// Lifts the shadows of the key; sets the lighting ratio.
     Fill,
-    /// Edge light from behind.
+    /// Light from behind that outlines the subject (kicker, edge light).
     Rim,
-    /// On the hair, from above and behind.
+    /// Light on the hair, from above and behind.
     Hair,
-    /// On the backdrop.
+    /// Light on the background.
     Background,
-    /// Anything else.
+    /// Any other light.
     Accent,
 }
 
@@ -25,7 +26,7 @@ impl Role {
     /// All roles, in list order.
     pub const ALL: [Role; 6] = [Role::Key, Role::Fill, Role::Rim, Role::Hair, Role::Background, Role::Accent];
 
-    /// Label in lists.
+    /// Returns the label in lists.
     pub fn label(self) -> &'static str {
         match self {
             Role::Key => "Key",
@@ -38,28 +39,28 @@ impl Role {
     }
 }
 
-/// What the light gives with its dial at full power, before its [`Modifier`] takes from it.
+/// The output of a light at full power, without the loss of its [`Modifier`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Output {
     /// Continuous luminous flux, lm.
     Lumens(f32),
     /// Continuous intensity on the axis, cd.
     Candela(f32),
-    /// Continuous, as metered on the axis: `lux` at `distance_m`, far-field (I = E d2).
+    /// Continuous, metered on the axis: `lux` at `distance_m`, far field (I = E d²).
     LuxAt {
         /// Illuminance, lx.
         lux: f32,
         /// Distance from the light, metres.
         distance_m: f32,
     },
-    /// Continuous light of a sun (illuminance normal to its direction) or a surround (illuminance on a plane that
-    /// sees half of it), lx. Only for those two.
+    /// Continuous illuminance of a sun (normal to its direction) or of a surround (on a plane that sees half of it), lx.
+    /// Valid for these two alone.
     Lux(f32),
     /// Flash energy with the head's efficacy.
     FlashWs {
         /// Stored energy, Ws.
         energy_ws: f32,
-        /// Light a Ws gives, lm s per Ws; real heads 15-50.
+        /// Luminous efficacy, lm s per Ws; real heads have 15 to 50.
         efficacy_lm_s_per_ws: f32,
     },
     /// Flash as a guide number on the axis, metres at ISO 100.
@@ -67,25 +68,25 @@ pub enum Output {
 }
 
 impl Output {
-    /// Efficacy assumed where nothing better is known, lm s per Ws.
+    /// Default efficacy, lm s per Ws.
     pub const DEFAULT_EFFICACY: f32 = 40.0;
 
-    /// Whether this is a flash: counted once an exposure, whatever the shutter.
+    /// Returns true for a flash, whose exposure does not depend on the shutter time.
     pub fn is_flash(&self) -> bool {
         matches!(self, Output::FlashWs { .. } | Output::FlashGuideNumber(_))
     }
 }
 
-/// Output and the dial on the head.
+/// The power of a light: its output, and the dial on the head.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Power {
-    /// What the light gives at full power.
+    /// Output at full power.
     pub output: Output,
     /// Dial, stops from full power: 0 is 1/1, -2 is 1/4.
     pub dial_stops: f32,
 }
 
-/// Where a light's colour comes from.
+/// The colour of a light source, before its gel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ColorSource {
     /// Correlated colour temperature, kelvin.
@@ -99,7 +100,7 @@ pub enum ColorSource {
 pub struct LightColor {
     /// Colour of the source.
     pub source: ColorSource,
-    /// Filter before it.
+    /// Gel.
     pub gel: Gel,
 }
 
@@ -109,12 +110,12 @@ impl Default for LightColor {
     }
 }
 
-/// Some lights alone, and how to go back.
+/// A solo: some lights on alone, to judge each light's contribution, and the switches to restore when it ends.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Solo {
-    /// The lights that shine alone.
+    /// The soloed lights.
     pub lights: Vec<LightId>,
-    /// The lights that were on before, and will be again.
+    /// The lights that were on before; ending the solo switches them on again.
     pub restores: Vec<LightId>,
 }
 
@@ -125,34 +126,34 @@ pub struct Light {
     pub id: LightId,
     /// Unique among objects and lights.
     pub name: String,
-    /// Its part in the set-up.
+    /// Role in the set-up.
     pub role: Role,
     /// Centre of the emitter, metres.
     pub position: Vec3,
-    /// What it points at.
+    /// Aim.
     pub aim: Aim,
-    /// Turn about its axis, degrees.
+    /// Roll about its axis, degrees.
     pub roll_deg: f32,
-    /// What shines.
+    /// Luminous surface.
     pub emitter: Emitter,
-    /// What is lost before it leaves.
+    /// Loss and beam shape.
     pub modifier: Modifier,
-    /// How much.
+    /// Power.
     pub power: Power,
-    /// In which colour.
+    /// Colour.
     pub color: LightColor,
     /// Switched on.
     pub on: bool,
-    /// Whether the camera sees the emitter itself. Mirrors and glass always show it.
+    /// True if the camera sees the emitter itself. Mirrors and glass always show it.
     pub visible_to_camera: bool,
-    /// Off only for now: it belongs to the set-up and comes on again when it is unmuted. Means nothing while `on`.
+    /// Muted: off, and on again when it is unmuted. Ignored while `on`.
     pub muted: bool,
-    /// Stays where it is: the editor neither moves nor deletes it, and a click in a view goes past it.
+    /// Locked: the editor neither moves nor deletes it, and clicks in a view ignore it.
     pub locked: bool,
 }
 
 impl Light {
-    /// A key light without a modifier, in white, switched on and unseen by the camera: at the origin, along -Z.
+    /// Returns a white key light without modifier, on, not visible to the camera, at the origin and aimed along -Z.
     pub fn new(emitter: Emitter, output: Output) -> Self {
         Light {
             id: LightId(0),

@@ -1,4 +1,4 @@
-//! One surface model for everything: diffuse, metal, dielectric, clear glass, glow.
+//! Materials: diffuse, metal, dielectric, glass and emissive surfaces in one model.
 
 /// Surface properties. Colours are scene-linear RGB with Rec.709 primaries.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +48,7 @@ impl Material {
     }
 }
 
-/// A material of the shelf, by name.
+/// A material preset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MaterialPreset {
     /// Light skin.
@@ -92,7 +92,7 @@ pub enum MaterialPreset {
 }
 
 impl MaterialPreset {
-    /// The whole shelf, in list order.
+    /// All presets, in list order.
     pub const ALL: [MaterialPreset; 19] = [
         MaterialPreset::SkinLight,
         MaterialPreset::SkinMedium,
@@ -115,7 +115,7 @@ impl MaterialPreset {
         MaterialPreset::StudioFloor,
     ];
 
-    /// Label in lists.
+    /// Returns the label in lists.
     pub fn label(self) -> &'static str {
         match self {
             MaterialPreset::SkinLight => "Skin, light",
@@ -140,7 +140,7 @@ impl MaterialPreset {
         }
     }
 
-    /// The material itself.
+    /// Returns the material.
     pub fn material(self) -> Material {
         let opaque = |base_color, roughness| Material { base_color, roughness, ..Material::default() };
         let metal = |base_color, roughness| Material { metallic: 1.0, ..opaque(base_color, roughness) };
@@ -162,7 +162,7 @@ impl MaterialPreset {
             MaterialPreset::WhitePaper => opaque([0.88, 0.88, 0.87], 0.95),
             MaterialPreset::GreyPaper => opaque([0.3; 3], 0.95),
             MaterialPreset::BlackPaper => opaque([0.03; 3], 0.95),
-            // No gloss at all: what a meter calls 18 % is the whole reflectance.
+            // Without a specular lobe: the 18 % are the whole reflectance.
             MaterialPreset::GreyCard => Material { ior: 1.0, ..opaque([0.18; 3], 1.0) },
             MaterialPreset::PaintedWall => opaque([0.7, 0.69, 0.67], 0.85),
             MaterialPreset::StudioFloor => opaque([0.2, 0.19, 0.18], 0.55),

@@ -1,15 +1,15 @@
-//! Triangles as every renderer reads them.
+//! Indexed triangle meshes.
 
 use glam::{Vec2, Vec3};
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
-/// A run of triangles with a name of its own, so that it can have its own material.
+/// A named range of triangles that can have its own material.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeshPart {
     /// `eyes`, `floor`, an OBJ group.
     pub name: String,
-    /// Its triangles, as a range of `Mesh::triangles`.
+    /// Range of `Mesh::triangles`.
     pub triangles: std::ops::Range<u32>,
 }
 
@@ -26,29 +26,29 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// Vertex indices, three a triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Named runs of triangles.
+    /// Named ranges of triangles.
     pub parts: Vec<MeshPart>,
 }
 
 impl Mesh {
-    /// Smallest and largest corner; both zero for a mesh without vertices.
+    /// Returns the lower and upper corner of the bounding box; both zero without vertices.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let Some(&first) = self.positions.first() else { return (Vec3::ZERO, Vec3::ZERO) };
         self.positions.iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)))
     }
 
-    /// The corners of a triangle.
+    /// Returns the vertex positions of a triangle.
     pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
         self.triangles[triangle].map(|i| self.positions[i as usize])
     }
 
-    /// One part for all triangles.
+    /// Returns the mesh with a single part.
     pub fn with_single_part(mut self, name: &str) -> Self {
         self.parts = vec![MeshPart { name: name.to_owned(), triangles: 0..self.triangles.len() as u32 }];
         self
     }
 
-    /// Appends another mesh behind this one, its parts too. Attributes that only one of the two has are dropped.
+    /// Appends another mesh and its parts. Attributes that only one of the two has are dropped.
     pub fn append(&mut self, other: &Mesh) {
         let (base, first) = (self.positions.len() as u32, self.triangles.len() as u32);
         let keep = |ours: usize, theirs: usize| (ours as u32 == base) && theirs == other.positions.len();
@@ -72,19 +72,18 @@ impl Mesh {
         );
     }
 
-    /// Whether the triangles enclose a space: every edge is shared by as many triangles one way as the other. Vertices
-    /// at the same place count as one. A few open edges are forgiven (files are rarely perfect), if as many triangles
-    /// look one way as the other.
+    /// Returns true if the mesh encloses a volume: every edge has as many triangles in one direction as in the other. Vertices
+    /// at the same position count as one. Up to 1 % of open edges is tolerated if the area-weighted normals cancel.
     pub fn is_closed(&self) -> bool {
-        let place = |i: u32| (self.positions[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
+        let position_bits = |i: u32| (self.positions[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
         let mut edges: HashMap<[[u32; 3]; 2], i32> = HashMap::with_capacity(self.triangles.len() * 3 / 2);
-        let (mut looking, mut area) = (Vec3::ZERO, 0.0);
+        let (mut area_vector, mut area) = (Vec3::ZERO, 0.0);
         for (index, triangle) in self.triangles.iter().enumerate() {
             let [a, b, c] = self.corners(index);
             let face = (b - a).cross(c - a);
-            looking += face;
+            area_vector += face;
             area += face.length();
-            let p = triangle.map(place);
+            let p = triangle.map(position_bits);
             for [from, to] in [[p[0], p[1]], [p[1], p[2]], [p[2], p[0]]] {
                 match from.cmp(&to) {
                     Ordering::Less => *edges.entry([from, to]).or_default() += 1,
@@ -94,11 +93,11 @@ impl Mesh {
             }
         }
         let open = edges.values().filter(|&&balance| balance != 0).count();
-        open == 0 || (open * 100 < edges.len() && looking.length() < 1e-2 * area)
+        open == 0 || (open * 100 < edges.len() && area_vector.length() < 1e-2 * area)
     }
 
     /// Replaces the normals by the angle-weighted mean of the faces around each vertex (Thurmer and Wuthrich 1998).
-    /// A vertex of zero-area faces alone gets +Y.
+    /// Vertices of zero-area faces alone get +Y.
     pub fn compute_smooth_normals(&mut self) {
         let mut sums = vec![Vec3::ZERO; self.positions.len()];
         for t in &self.triangles {
@@ -120,7 +119,7 @@ mod tests {
     use crate::scene::{Room, Shape, room_mesh, tessellate};
 
     #[test]
-    fn solids_enclose_a_space_and_sheets_do_not() {
+    fn solids_are_closed_and_sheets_are_open() {
         for (shape, closed) in [
             (Shape::Box { size_m: Vec3::new(1.0, 2.0, 0.01) }, true),
             (Shape::Sphere { radius_m: 0.1 }, true),
@@ -133,8 +132,8 @@ mod tests {
         assert!(room_mesh(&Room::default()).is_closed());
         let mut holed = tessellate(&Shape::Sphere { radius_m: 1.0 }).unwrap();
         holed.triangles.truncate(holed.triangles.len() - 1);
-        assert!(holed.is_closed(), "one lost triangle of thousands does not make it a pane");
+        assert!(holed.is_closed(), "one missing triangle of thousands is tolerated");
         holed.triangles.truncate(holed.triangles.len() / 2);
-        assert!(!holed.is_closed(), "half a ball is a bowl of thin glass");
+        assert!(!holed.is_closed(), "half a sphere is open");
     }
 }

@@ -1,46 +1,46 @@
-//! The light meter that stands in the studio. It takes no light away and shows in no picture.
+//! The light meter in the studio. It casts no shadow and shows in no picture.
 
 use super::Scene;
 use glam::Vec3;
 
-/// What gathers the light.
+/// The receptor of an incident meter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Receptor {
-    /// A flat disc: Lambert's cosine law. For ratios, and for flat things.
+    /// Flat receptor: Lambert's cosine law. For lighting ratios and flat subjects.
     #[default]
     Flat,
-    /// A dome: cardioid response, half of the light from the side and none from straight behind. For faces.
+    /// Dome: cardioid response, half of the light from the side and none from behind. For faces.
     Dome,
 }
 
-/// Where a meter looks.
+/// The direction of a meter.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Facing {
-    /// Towards the camera, wherever that is.
+    /// Towards the camera.
     #[default]
     Camera,
-    /// Fixed angles, degrees: yaw 0 looks along -Z and grows to the left, pitch is up.
+    /// Fixed angles, degrees: pan 0 looks along -Z and grows to the left, tilt grows upwards.
     Angles {
-        /// Turn about the vertical axis.
+        /// Pan, about the vertical axis.
         yaw_deg: f32,
         /// Tilt, positive upwards.
         pitch_deg: f32,
     },
 }
 
-/// A light meter at a place.
+/// A light meter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meter {
     /// Centre of the receptor, metres.
     pub position: Vec3,
-    /// Where it looks.
+    /// Direction.
     pub facing: Facing,
-    /// Flat or dome.
+    /// Receptor.
     pub receptor: Receptor,
 }
 
 impl Meter {
-    /// Unit direction that it faces. At the camera's own place it faces as the camera does.
+    /// Returns the unit direction that it faces; the camera's own if both are at one position.
     pub fn direction(&self, scene: &Scene) -> Vec3 {
         match self.facing {
             Facing::Camera => (scene.camera.position - self.position)

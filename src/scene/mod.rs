@@ -1,9 +1,8 @@
-//! The studio as plain data: what the user edits, what a file holds, what every renderer reads.
+//! The scene: a studio as plain data, which the user edits, files store and every renderer reads.
 //!
-//! Everything here is `Clone + PartialEq`, does no I/O and holds no GPU handle. Lengths are metres, angles are
-//! degrees (the fields say `_deg`: the file, the panels and the history then hold the very number the user typed;
-//! renderers convert once, when they prepare). Axes are right-handed with Y up; cameras and lights look along their
-//! local -Z.
+//! All types are `Clone + PartialEq`, do no I/O and hold no GPU handles. Lengths are in metres. Angles are in degrees, in fields
+//! that end in `_deg`, so that file, panels and undo history keep the number that the user typed; renderers convert when
+//! they prepare. Axes are right-handed with Y up; cameras and lights look along their local -Z.
 
 mod aim;
 mod assets;
@@ -48,61 +47,61 @@ use glam::Vec3;
 /// A whole studio.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Scene {
-    /// Title, for window and lists.
+    /// Title.
     pub name: String,
-    /// One line that says what the set-up is for.
+    /// One line on the purpose of the set-up.
     pub description: String,
-    /// The camera that takes the picture.
+    /// The camera.
     pub camera: Camera,
-    /// Floor, walls and ceiling; none is an endless black void.
+    /// Floor, walls and ceiling; `None` is an empty black space.
     pub room: Option<Room>,
     /// Mannequins, props and backdrops, in list order.
     pub objects: Vec<Object>,
-    /// All lights, in list order; film layers follow this order.
+    /// Lights, in list order; film layers have the same order.
     pub lights: Vec<Light>,
-    /// The light meter, where one is up.
+    /// The light meter, if there is one.
     pub meter: Option<Meter>,
-    /// While some lights shine alone: which, and what was on before.
+    /// The solo, if some lights are on alone.
     pub solo: Option<Solo>,
 }
 
 impl Scene {
-    /// Whether a light is off only because others shine alone.
+    /// Returns true if a light is off only because others are soloed.
     pub fn is_silenced(&self, light: &Light) -> bool {
         !light.on && self.solo.as_ref().is_some_and(|solo| solo.restores.contains(&light.id))
     }
 
-    /// The object with this id.
+    /// Returns the object with this id.
     pub fn object(&self, id: ObjectId) -> Option<&Object> {
         self.objects.iter().find(|o| o.id == id)
     }
 
-    /// The object with this id, to be changed.
+    /// Returns the object with this id, to change it.
     pub fn object_mut(&mut self, id: ObjectId) -> Option<&mut Object> {
         self.objects.iter_mut().find(|o| o.id == id)
     }
 
-    /// The light with this id.
+    /// Returns the light with this id.
     pub fn light(&self, id: LightId) -> Option<&Light> {
         self.lights.iter().find(|l| l.id == id)
     }
 
-    /// The light with this id, to be changed.
+    /// Returns the light with this id, to change it.
     pub fn light_mut(&mut self, id: LightId) -> Option<&mut Light> {
         self.lights.iter_mut().find(|l| l.id == id)
     }
 
-    /// An id no object has.
+    /// Returns an id that no object has.
     pub fn fresh_object_id(&self) -> ObjectId {
         ObjectId(self.objects.iter().map(|o| o.id.0 + 1).max().unwrap_or(0))
     }
 
-    /// An id no light has.
+    /// Returns an id that no light has.
     pub fn fresh_light_id(&self) -> LightId {
         LightId(self.lights.iter().map(|l| l.id.0 + 1).max().unwrap_or(0))
     }
 
-    /// `wanted`, or `wanted 2`, `wanted 3` ...: the first name that no object and no light bears.
+    /// Returns the first of `wanted`, `wanted 2`, `wanted 3` ... that is not the name of an object or light.
     pub fn unique_name(&self, wanted: &str) -> String {
         let taken =
             |name: &str| self.objects.iter().any(|o| o.name == name) || self.lights.iter().any(|l| l.name == name);
@@ -114,8 +113,8 @@ impl Scene {
         (2..).map(|n| format!("{stem} {n}")).find(|name| !taken(name)).unwrap_or_default()
     }
 
-    /// The world point that `aim` means for something that stands at `position`. An aim at an object that is gone
-    /// means the origin; `validate` reports it.
+    /// Returns the world-space point of an aim from `position`. For an object that does not exist, it is the origin;
+    /// `validate` reports that.
     pub fn aim_point(&self, aim: &Aim, position: Vec3) -> Vec3 {
         match *aim {
             Aim::Point(point) => point,
@@ -130,13 +129,13 @@ impl Scene {
         }
     }
 
-    /// World frame of a light: columns right, up, back (it shines along -Z), and its position.
+    /// Returns the world frame of a light: columns right, up, back (it faces -Z), and its position.
     pub fn light_frame(&self, light: &Light) -> glam::Affine3A {
         let target = self.aim_point(&light.aim, light.position);
         crate::math::look_at(light.position, target, light.roll_deg.to_radians())
     }
 
-    /// What the camera frames at a picture aspect (width / height).
+    /// Returns the camera's frame for a picture aspect (width / height).
     pub fn camera_frame(&self, aspect: f32) -> CameraFrame {
         let target = self.aim_point(&self.camera.aim, self.camera.position);
         self.camera.frame(target, aspect)

@@ -1,20 +1,19 @@
-//! What sits before a light's source: how much light it swallows, and to which directions it lets the rest pass.
+//! The loss and the beam shape of a light modifier.
 //!
-//! The shape and size of what shines is the [`super::Emitter`]; a modifier takes from its light and never adds or moves any.
-//! Named modifiers of the trade are pairs of both, in [`super::NamedModifier::ALL`].
+//! The shape and size of the luminous surface is the [`super::Emitter`]; a modifier only takes light away. The modifiers that
+//! are sold are pairs of both, in [`super::NamedModifier::ALL`].
 
-/// A cone about the light's axis that passes everything inside the inner angle and falls linearly in angle to nothing
-/// at the outer one. Full (edge to edge) angles, degrees, up to 180.
+/// A cone about the light's axis: transmits all light inside the inner angle, falling linearly in angle to 0 at the outer one. Full (edge to edge) angles, degrees, up to 180.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
-    /// Full angle of what passes untouched.
+    /// Full angle of full transmission.
     pub inner_deg: f32,
-    /// Full angle where it ends.
+    /// Full angle of zero transmission.
     pub outer_deg: f32,
 }
 
-/// Four flaps, each opened so far from the light's axis, degrees; 90 is out of the way. Sides as seen from behind the
-/// light, along its axis.
+/// Barn doors: the opening of each flap from the light's axis, degrees; 90 is fully open. Sides are seen from behind the light,
+/// along its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BarnDoors {
     /// Left flap.
@@ -32,24 +31,23 @@ impl BarnDoors {
     pub const HALF_OPEN: BarnDoors = BarnDoors { left_deg: 30.0, right_deg: 30.0, top_deg: 30.0, bottom_deg: 30.0 };
 }
 
-/// What a light loses before it leaves.
+/// The loss and the beam shape of a modifier.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Modifier {
-    /// Light swallowed by cloth, dish or umbrella, stops; whatever the light's power is stated in.
+    /// Loss in cloth, dish or umbrella, stops; independent of the unit of the light's power.
     pub loss_stops: f32,
-    /// Scrim, net or frost before it, stops.
+    /// Loss in a scrim, net or frost, stops.
     pub scrim_stops: f32,
-    /// The beam that a dish, a snoot or a reflector's rim leaves; none is all that the emitter gives.
+    /// Beam of a dish, a snoot or a reflector's rim; `None` for the emitter's own.
     pub beam: Option<Cone>,
-    /// A honeycomb: the full angle beyond which nothing passes, degrees. It passes everything on its axis, and falls
-    /// linearly in angle.
+    /// Honeycomb grid: full angle of zero transmission, degrees. Transmission is 1 on the axis and falls linearly in angle.
     pub grid_deg: Option<f32>,
     /// Barn doors.
     pub doors: Option<BarnDoors>,
 }
 
 impl Modifier {
-    /// No loss but this.
+    /// Returns a modifier with a loss alone.
     pub const fn loss(loss_stops: f32) -> Self {
         Modifier { loss_stops, scrim_stops: 0.0, beam: None, grid_deg: None, doors: None }
     }
@@ -66,7 +64,7 @@ impl Modifier {
         Modifier { doors: Some(doors), ..self }
     }
 
-    /// Whether it keeps light from some directions.
+    /// Returns true if it shapes the beam.
     pub fn narrows(&self) -> bool {
         self.beam.is_some() || self.grid_deg.is_some() || self.doors.is_some()
     }

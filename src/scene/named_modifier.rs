@@ -7,16 +7,16 @@ pub const SOFT_GRIDS_DEG: [f32; 5] = [20.0, 30.0, 40.0, 50.0, 60.0];
 /// Full angles in which honeycombs for reflectors are sold.
 pub const HARD_GRIDS_DEG: [f32; 4] = [10.0, 20.0, 30.0, 40.0];
 
-/// A modifier by the name on its bag.
+/// A modifier that is sold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NamedModifier {
     /// Its name, sizes in centimetres.
     pub name: &'static str,
-    /// One line on what it is for.
+    /// One line on its use.
     pub tip: &'static str,
-    /// What shines.
+    /// Luminous surface.
     pub emitter: Emitter,
-    /// What it takes away.
+    /// Loss and beam shape.
     pub modifier: Modifier,
 }
 
@@ -33,7 +33,7 @@ const fn dish(name: &'static str, tip: &'static str, diameter_m: f32) -> NamedMo
     NamedModifier { name, tip, emitter: Emitter::RoundPanel { diameter_m }, modifier }
 }
 
-/// A standard reflector of 18 cm: hard light in a broad cone. Its polish loses a third of a stop.
+/// A standard reflector of 18 cm: hard light in a broad cone, with a loss of a third of a stop.
 const REFLECTOR: Emitter = Emitter::Spot { inner_deg: 40.0, outer_deg: 70.0 };
 
 const fn hard(name: &'static str, tip: &'static str, modifier: Modifier) -> NamedModifier {
@@ -43,9 +43,9 @@ const fn hard(name: &'static str, tip: &'static str, modifier: Modifier) -> Name
 const REFLECTOR_LOSS: Modifier = Modifier::loss(0.3);
 
 impl NamedModifier {
-    /// The whole rack, in list order. Losses are typical of what makers and testers state: 1 to 2 stops for softboxes,
-    /// the more the larger and the more cloth; half a stop for a white dish; 1 stop for a reflecting umbrella, 1.7 for
-    /// one that is shot through.
+    /// All modifiers, in list order. Losses are typical of makers' and testers' data: 1 to 2 stops for softboxes, more for
+    /// larger ones and for more cloth; half a stop for a white dish; 1 stop for a reflective umbrella, 1.7 for a
+    /// shoot-through.
     pub const ALL: [NamedModifier; 32] = [
         NamedModifier {
             name: "Bare bulb",
@@ -115,13 +115,13 @@ impl NamedModifier {
         soft("Scrim 120 x 180", "A frame of silk, lit from behind through its whole area.", 1.2, 1.8, 1.0),
     ];
 
-    /// The one that this emitter and modifier are.
+    /// Returns the modifier with this emitter and beam, if it is one of the list.
     pub fn of(emitter: &Emitter, modifier: &Modifier) -> Option<&'static NamedModifier> {
         const ALL: &[NamedModifier] = &NamedModifier::ALL;
         ALL.iter().find(|named| named.emitter == *emitter && named.modifier == *modifier)
     }
 
-    /// By its name.
+    /// Returns the modifier of this name.
     pub fn named(name: &str) -> Option<&'static NamedModifier> {
         const ALL: &[NamedModifier] = &NamedModifier::ALL;
         ALL.iter().find(|named| named.name == name)

@@ -1,9 +1,9 @@
-//! Things that are lit: mannequins, props, backdrops.
+//! Objects: mannequins, props, backdrops.
 
 use super::{Material, ObjectId};
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
-/// A figure of the wardrobe.
+/// A mannequin's figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Figure {
     /// A grown woman, 1.68 m.
@@ -16,7 +16,7 @@ pub enum Figure {
     Bust,
 }
 
-/// How a figure holds itself.
+/// A mannequin's pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Pose {
     /// Upright, arms at the sides.
@@ -32,9 +32,9 @@ pub enum Pose {
 /// A mannequin: its origin is the floor between its feet (for a bust the base's centre); it looks along +Z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Mannequin {
-    /// Who.
+    /// Figure.
     pub figure: Figure,
-    /// How.
+    /// Pose.
     pub pose: Pose,
 }
 
@@ -46,13 +46,13 @@ pub enum Shape {
         /// Relative path.
         path: String,
     },
-    /// A figure of the wardrobe.
+    /// A mannequin.
     Mannequin(Mannequin),
     /// A rectangle in the XZ plane about the origin, facing +Y.
     Plane {
-        /// Along X.
+        /// Size along X.
         width_m: f32,
-        /// Along Z.
+        /// Size along Z.
         depth_m: f32,
     },
     /// A box about the origin.
@@ -72,22 +72,22 @@ pub enum Shape {
         /// Height.
         height_m: f32,
     },
-    /// A paper roll hung up and pulled forward: wall, curve and floor in one smooth piece. Its origin is on the floor
-    /// below the front of the wall; the floor runs to +Z.
+    /// Seamless paper: wall, curve and floor in one smooth surface. Its origin is on the floor below the front of the wall;
+    /// the floor extends to +Z.
     Sweep {
-        /// Along X.
+        /// Size along X.
         width_m: f32,
-        /// Of the wall.
+        /// Height of the wall.
         height_m: f32,
-        /// Of the floor, from the wall.
+        /// Depth of the floor, from the wall.
         depth_m: f32,
-        /// Of the curve between them.
+        /// Radius of the curve between them.
         radius_m: f32,
     },
 }
 
 impl Shape {
-    /// Label in lists.
+    /// Returns the label in lists.
     pub fn label(&self) -> &'static str {
         match self {
             Shape::MeshFile { .. } => "Model",
@@ -101,10 +101,10 @@ impl Shape {
     }
 }
 
-/// Place, turn and size of an object.
+/// Position, rotation and scale of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
-    /// Of the object's origin, metres.
+    /// Position of the object's origin, metres.
     pub position: Vec3,
     /// Pitch (about X), yaw (about Y), roll (about Z), degrees; applied roll first, yaw last.
     pub rotation_deg: Vec3,
@@ -119,7 +119,7 @@ impl Default for Transform {
 }
 
 impl Transform {
-    /// The rotation alone.
+    /// Returns the rotation.
     pub fn rotation(&self) -> Quat {
         let [pitch, yaw, roll] = self.rotation_deg.to_array().map(f32::to_radians);
         Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll)
@@ -131,35 +131,35 @@ impl Transform {
         self.rotation_deg = Vec3::new(pitch, yaw, roll).map(f32::to_degrees);
     }
 
-    /// World from object.
+    /// Returns the world-from-object transform.
     pub fn world_from_object(&self) -> Affine3A {
         Affine3A::from_scale_rotation_translation(self.scale, self.rotation(), self.position)
     }
 }
 
-/// One thing in the studio.
+/// An object of the studio.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
     /// Stable while the scene is open.
     pub id: ObjectId,
     /// Unique among objects and lights.
     pub name: String,
-    /// Where it stands.
+    /// World-from-object transform.
     pub transform: Transform,
-    /// What it is.
+    /// Geometry.
     pub shape: Shape,
-    /// Its surface.
+    /// Material.
     pub material: Material,
-    /// Other surfaces for named parts of its mesh: a mannequin's `eyes`, a group of an OBJ file.
+    /// Materials of named parts of its mesh: a mannequin's `eyes`, a group of an OBJ file.
     pub part_materials: Vec<(String, Material)>,
-    /// Hidden things are neither seen nor do they cast shadows.
+    /// False hides the object and its shadow.
     pub visible: bool,
-    /// Stays where it is: the editor neither moves nor deletes it, and a click in a view goes past it.
+    /// Locked: the editor neither moves nor deletes it, and clicks in a view ignore it.
     pub locked: bool,
 }
 
 impl Object {
-    /// The surface of a part of the mesh.
+    /// Returns the material of a part of the mesh.
     pub fn material_of(&self, part: &str) -> &Material {
         self.part_materials.iter().find(|(name, _)| name == part).map_or(&self.material, |(_, material)| material)
     }

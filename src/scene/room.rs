@@ -1,18 +1,18 @@
-//! The studio's walls.
+//! The room of the studio.
 
 use super::{Material, MaterialPreset};
 use glam::Vec3;
 
-/// A box of floor, four walls and ceiling around the origin, floor at y = 0, seen from inside.
+/// A room: floor at y = 0, four walls and a ceiling around the origin, seen from inside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Room {
     /// Width (X), height (Y), depth (Z), metres.
     pub size_m: Vec3,
-    /// Floor surface.
+    /// Floor material.
     pub floor: Material,
-    /// Wall surface.
+    /// Wall material.
     pub walls: Material,
-    /// Ceiling surface.
+    /// Ceiling material.
     pub ceiling: Material,
 }
 
@@ -28,7 +28,7 @@ impl Default for Room {
 }
 
 impl Room {
-    /// The surface of a part of the room's mesh: `floor`, `walls` or `ceiling`.
+    /// Returns the material of a part of the room's mesh: `floor`, `walls` or `ceiling`.
     pub fn material_of(&self, part: &str) -> &Material {
         match part {
             "floor" => &self.floor,

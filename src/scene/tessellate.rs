@@ -1,17 +1,17 @@
-//! Triangles for the shapes that are formulas. All renderers see the same ones.
+//! Tessellation of the parametric shapes, the same for all renderers.
 
 use super::{Mesh, MeshPart, Room, Shape};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-/// Segments around a sphere or cylinder: the outline strays from the circle by 0.03 % of the radius.
+/// Segments around a sphere or cylinder: the outline deviates from the circle by 0.03 % of the radius.
 const AROUND: u32 = 128;
 /// Rows of a sphere from pole to pole.
 const ROWS: u32 = 64;
 /// Segments of a sweep's curve.
 const CURVE: u32 = 48;
 
-/// The mesh of a formula shape; none for shapes that come from files.
+/// Returns the mesh of a parametric shape; `None` for shapes that are loaded.
 pub fn tessellate(shape: &Shape) -> Option<Mesh> {
     let mesh = match *shape {
         Shape::MeshFile { .. } | Shape::Mannequin(_) => return None,
@@ -24,11 +24,11 @@ pub fn tessellate(shape: &Shape) -> Option<Mesh> {
     Some(mesh.with_single_part("surface"))
 }
 
-/// How far floor, walls and ceiling stand back, metres: what lies flush with them (paper on the floor, a lamp in the
-/// ceiling) is before them, and no renderer has to choose between two surfaces in one place.
+/// Offset of floor, walls and ceiling to the outside, metres, so that objects flush with them (paper on the floor, a light in
+/// the ceiling) lie in front and do not z-fight.
 pub const ROOM_STANDS_BACK_M: f32 = 2e-4;
 
-/// The room seen from inside, with the parts `floor`, `walls` and `ceiling`.
+/// Returns the mesh of a room, front faces inwards, with the parts `floor`, `walls` and `ceiling`.
 pub fn room_mesh(room: &Room) -> Mesh {
     let middle = Vec3::Y * (room.size_m.y * 0.5);
     let h = room.size_m * 0.5 + ROOM_STANDS_BACK_M;
@@ -43,7 +43,7 @@ pub fn room_mesh(room: &Room) -> Mesh {
     mesh
 }
 
-/// Rectangle spanned by half axes `u` and `v`, facing u x v.
+/// Returns the rectangle of half axes `u` and `v`, facing u x v.
 fn quad(centre: Vec3, u: Vec3, v: Vec3) -> Mesh {
     let normal = u.cross(v).try_normalize().unwrap_or(Vec3::Y);
     Mesh {
@@ -64,8 +64,8 @@ fn cuboid(centre: Vec3, h: Vec3) -> Mesh {
     mesh
 }
 
-/// A grid of `(columns + 1) x (rows + 1)` vertices; `vertex` maps (column, row) fractions in 0..=1 to position and
-/// normal. Quads face the side from which columns run right and rows run up.
+/// Returns a grid of `(columns + 1) x (rows + 1)` vertices; `vertex` maps (column, row) fractions in 0..=1 to position and
+/// normal. Front faces have columns to the right and rows upwards.
 fn grid(columns: u32, rows: u32, vertex: impl Fn(f32, f32) -> (Vec3, Vec3)) -> Mesh {
     let mut mesh = Mesh::default();
     for row in 0..=rows {
@@ -87,7 +87,7 @@ fn grid(columns: u32, rows: u32, vertex: impl Fn(f32, f32) -> (Vec3, Vec3)) -> M
     mesh
 }
 
-/// Direction at `turn` (0..=1) around Y; exactly closed at both ends.
+/// Returns the direction at a fraction of a turn (0..=1) about Y; both ends are equal to the bit.
 fn around(turn: f32) -> Vec3 {
     let angle = if turn >= 1.0 { 0.0 } else { turn * TAU };
     Vec3::new(angle.sin(), 0.0, angle.cos())
@@ -96,12 +96,12 @@ fn around(turn: f32) -> Vec3 {
 fn sphere(radius: f32) -> Mesh {
     let mut mesh = grid(AROUND, ROWS, |u, v| {
         let latitude = (v - 0.5) * PI;
-        // The poles are exact, so that all their vertices coincide and the surface closes.
+        // The cosine is exactly 0 at the poles, so that their vertices coincide and the mesh is closed.
         let cos = if v == 0.0 || v == 1.0 { 0.0 } else { latitude.cos() };
         let normal = around(u) * cos + Vec3::Y * latitude.sin();
         (normal * radius, normal)
     });
-    // Each quad at a pole has one triangle without area.
+    // Remove the zero-area triangle of each quad at a pole.
     let mesh_positions = &mesh.positions;
     mesh.triangles.retain(|t| {
         let [a, b, c] = t.map(|i| mesh_positions[i as usize]);
@@ -136,8 +136,7 @@ fn disc(radius: f32, y: f32, normal: Vec3) -> Mesh {
     mesh
 }
 
-/// Profile from the front edge of the floor over the curve to the top of the wall, as (y, z, normal y, normal z,
-/// length).
+/// Returns the surface of a profile from the front edge of the floor over the curve to the top of the wall.
 fn sweep(width: f32, height: f32, depth: f32, radius: f32) -> Mesh {
     let radius = radius.min(height).min(depth).max(0.0);
     let mut profile = vec![(Vec3::new(0.0, 0.0, depth), Vec3::Y)];
@@ -166,9 +165,8 @@ fn sweep(width: f32, height: f32, depth: f32, radius: f32) -> Mesh {
     mesh
 }
 
-/// Names the parts of a mesh by hand, for tests and importers.
 impl MeshPart {
-    /// A part with this name and these triangles.
+    /// Returns a part with this name and these triangles.
     pub fn new(name: &str, triangles: std::ops::Range<u32>) -> Self {
         MeshPart { name: name.to_owned(), triangles }
     }
@@ -208,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn sheets_face_where_they_say() {
+    fn sheets_face_their_documented_direction() {
         let plane = tessellate(&Shape::Plane { width_m: 2.0, depth_m: 1.0 }).unwrap();
         winding_agrees_with_normals(&plane);
         assert_eq!(plane.normals[0], Vec3::Y);
@@ -219,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn the_room_is_seen_from_inside() {
+    fn the_room_faces_inwards() {
         let mesh = room_mesh(&Room::default());
         winding_agrees_with_normals(&mesh);
         let expected = -(Room::default().size_m + 2.0 * ROOM_STANDS_BACK_M).element_product();

@@ -1,4 +1,4 @@
-//! What the live picture keeps, what it drops, and that it ends at the truth.
+//! Tests of the samples that the live view keeps and discards, and of its convergence to a render.
 
 use super::*;
 use crate::raytrace::{Settings, render};
@@ -20,7 +20,7 @@ fn matte() -> Material {
     Material { base_color: [0.5; 3], roughness: 0.9, ..Material::default() }
 }
 
-/// A ball of some material before a grey wall, under two lamps; no room.
+/// Returns a ball of a material before a grey wall, under two lights, without a room.
 fn studio(ball: Material) -> Scene {
     let wall = Shape::Box { size_m: Vec3::new(8.0, 6.0, 0.2) };
     let light = |id: u32, x: f32| Light {
@@ -41,21 +41,21 @@ fn studio(ball: Material) -> Scene {
     }
 }
 
-/// The scene's camera, moved sideways.
+/// Returns the scene's camera, moved sideways.
 fn view(scene: &Scene, aside_m: f32) -> LiveCamera {
     let mut frame: CameraFrame = scene.camera_frame(1.5);
     frame.world_from_camera = Affine3A::from_translation(Vec3::X * aside_m) * frame.world_from_camera;
     LiveCamera::pinhole(frame, SIZE)
 }
 
-fn begun(scene: &Scene) -> LivePicture {
+fn started(scene: &Scene) -> LivePicture {
     let mut live = LivePicture::default();
     live.update(scene, &Assets::default(), view(scene, 0.0)).unwrap();
     live
 }
 
-/// Works until every tile has done so many steps.
-fn work_to(live: &mut LivePicture, steps: u32) {
+/// Traces until every tile has completed so many steps.
+fn trace_to(live: &mut LivePicture, steps: u32) {
     let least =
         |live: &LivePicture| live.view.as_ref().unwrap().film.tiles.iter().map(|t| t.progress.completed()).min();
     while !live.is_converged() && least(live) < Some(steps) {
@@ -63,17 +63,17 @@ fn work_to(live: &mut LivePicture, steps: u32) {
     }
 }
 
-/// Steps until every pixel is traced or taken over, and until it is known which are taken over.
+/// Steps until every pixel is traced or reprojected, and until every pixel has its primary hit.
 const ALL_TRACED: u32 = 8;
 const ALL_HITS: u32 = 5;
 
-fn finish(live: &mut LivePicture) {
+fn converge(live: &mut LivePicture) {
     while live.trace(1 << 20, &RenderControl::new()) > 0 {}
     assert!(live.is_converged());
 }
 
-/// The picture of an ordinary render from a view, each light's traced value.
-fn truth(scene: &Scene, camera: &LiveCamera, spp: u32) -> Picture {
+/// Renders the picture of a view.
+fn reference(scene: &Scene, camera: &LiveCamera, spp: u32) -> Picture {
     let mut seen = scene.clone();
     seen.camera.position = camera.frame.position();
     seen.camera.aim = Aim::Point(camera.frame.position() + 4.0 * camera.frame.forward());
@@ -92,99 +92,103 @@ fn difference(a: &Picture, b: &Picture) -> f32 {
     (square / (3 * a.rgb.len()) as f32).sqrt() / mean(b)
 }
 
-/// Asserts that two pictures differ by no more than the grain of quiet tiles: 0.06 stop, 4 %, in each pixel.
-fn assert_same(ours: &Picture, theirs: &Picture) {
-    let (off, brightness) = (difference(ours, theirs), mean(ours) / mean(theirs));
+/// Asserts that two pictures differ by no more than the noise of converged tiles: 0.06 stops, 4 %, in each pixel.
+fn assert_same(live_view: &Picture, rendered: &Picture) {
+    let (off, brightness) = (difference(live_view, rendered), mean(live_view) / mean(rendered));
     assert!(off < 0.045, "{off} off, {brightness} times as bright");
 }
 
-/// Pixels of an object, and how many of them were taken over. Valid after [`ALL_HITS`] steps.
+/// Returns the number of pixels of an object, and how many of them were reprojected. Valid after [`ALL_HITS`] steps.
 fn pixels_of(live: &LivePicture, object: u32) -> (usize, usize) {
     let film = &live.view.as_ref().unwrap().film;
     let all = film.tiles.iter().flat_map(|tile| (0..tile.pixels()).map(move |pixel| (tile, pixel)));
-    // Those of the coarse grid were traced where nothing was known: their weight is that of one path.
+    // Pixels of the coarse grid without a history were traced: they have the weight of one path.
     let of_object = all.filter(|(tile, pixel)| tile.primary_hits[*pixel].object == object);
-    of_object
-        .fold((0, 0), |(count, known), (tile, pixel)| (count + 1, known + usize::from(tile.sums.at(0, pixel).w > 1.0)))
+    of_object.fold((0, 0), |(count, reprojected), (tile, pixel)| {
+        (count + 1, reprojected + usize::from(tile.sums.at(0, pixel).w > 1.0))
+    })
 }
 
 #[test]
-fn a_small_lamp_throws_light_through_a_glass_ball_as_in_a_render() {
+fn caustics_of_a_point_light_through_a_glass_ball_agree_with_a_render() {
     let mut scene = studio(Material { transmission: 1.0, roughness: 0.0, ..Material::default() });
     scene.lights.truncate(1);
     (scene.lights[0].emitter, scene.lights[0].power.output) = (Emitter::Point, Output::Lumens(2e6));
-    // Boundary the ball as the lamp sees it.
+    // Behind the ball, seen from the light.
     scene.objects[1].transform.position = Vec3::new(0.4, 0.4, -0.2);
     let camera = view(&scene, 0.0);
-    let mut live = begun(&scene);
-    work_to(&mut live, ALL_TRACED + 2);
-    // Another lamp: its caustics alone are traced.
+    let mut live = started(&scene);
+    trace_to(&mut live, ALL_TRACED + 2);
+    // The caustics of an added light are traced alone.
     let name = "Other".to_owned();
     scene.lights.push(Light { id: LightId(7), name, position: Vec3::new(-2.0, 1.0, 3.0), ..scene.lights[0].clone() });
     live.update(&scene, &Assets::default(), camera).unwrap();
-    finish(&mut live);
-    let (ours, theirs) = (live.develop(&scene), truth(&scene, &camera, 128));
-    assert!((mean(&ours) / mean(&theirs) - 1.0).abs() < 0.01, "{} for {}", mean(&ours), mean(&theirs));
-    // What outshines everything without the ball: the caustics. Their foci are as sharp as there are samples.
+    converge(&mut live);
+    let (live_view, rendered) = (live.develop(&scene), reference(&scene, &camera, 128));
+    assert!((mean(&live_view) / mean(&rendered) - 1.0).abs() < 0.01, "{} for {}", mean(&live_view), mean(&rendered));
+    // Caustics are the pixels brighter than any pixel without the ball. The sharpness of their foci depends on the samples.
     scene.objects[1].visible = false;
-    let open = truth(&scene, &camera, 16).rgb.iter().map(|rgb| rgb[1]).fold(0.0, f32::max);
+    let open = reference(&scene, &camera, 16).rgb.iter().map(|rgb| rgb[1]).fold(0.0, f32::max);
     let caustics = |picture: &Picture| picture.rgb.iter().map(|rgb| rgb[1]).filter(|g| *g > 1.5 * open).sum::<f32>();
-    let (ours, theirs) = (caustics(&ours), caustics(&theirs));
-    assert!(theirs > 20.0 * open && (ours / theirs - 1.0).abs() < 0.1, "{ours} for {theirs}, beside {open}");
+    let (live_view, rendered) = (caustics(&live_view), caustics(&rendered));
+    assert!(
+        rendered > 20.0 * open && (live_view / rendered - 1.0).abs() < 0.1,
+        "{live_view} for {rendered}, beside {open}"
+    );
 }
 
 #[test]
-fn it_ends_at_the_picture_of_a_render() {
+fn it_converges_to_the_picture_of_a_render() {
     let scene = studio(Material::default());
-    let mut live = begun(&scene);
-    finish(&mut live);
-    let (ours, theirs) = (live.develop(&scene), truth(&scene, &view(&scene, 0.0), 256));
-    // A quiet tile is within 0.06 stop, 4 %, of the truth in each pixel; the mean of thousands of pixels much closer.
-    assert_same(&ours, &theirs);
-    assert!((mean(&ours) / mean(&theirs) - 1.0).abs() < 0.005, "{} for {}", mean(&ours), mean(&theirs));
-    assert_eq!((live.trace(1000, &RenderControl::new()), live.nonfinite().count), (0, 0), "nothing is left to do");
+    let mut live = started(&scene);
+    converge(&mut live);
+    let (live_view, rendered) = (live.develop(&scene), reference(&scene, &view(&scene, 0.0), 256));
+    // A converged tile is within 0.06 stops, 4 %, of the reference in each pixel; the mean of thousands of pixels is closer.
+    assert_same(&live_view, &rendered);
+    assert!((mean(&live_view) / mean(&rendered) - 1.0).abs() < 0.005, "{} for {}", mean(&live_view), mean(&rendered));
+    assert_eq!((live.trace(1000, &RenderControl::new()), live.nonfinite().count), (0, 0), "every tile is converged");
 }
 
 #[test]
-fn a_coarse_picture_comes_first_and_has_the_light_of_the_fine_one() {
+fn the_first_coarse_picture_has_the_mean_of_the_converged_one() {
     let scene = studio(matte());
-    let mut live = begun(&scene);
+    let mut live = started(&scene);
     assert!(!live.has_picture());
-    work_to(&mut live, 2);
+    trace_to(&mut live, 2);
     assert_eq!(live.stride(), Some(8));
     let coarse = live.develop(&scene);
-    finish(&mut live);
+    converge(&mut live);
     let fine = live.develop(&scene);
     assert!((mean(&coarse) / mean(&fine) - 1.0).abs() < 0.15, "{} for {}", mean(&coarse), mean(&fine));
     let dark = coarse.rgb.iter().filter(|rgb| rgb[1] <= 0.0).count();
-    assert!(dark < 40, "{dark} black pixels: what is not yet traced is filled in");
+    assert!(dark < 40, "{dark} black pixels: pixels without a value are interpolated");
 }
 
 #[test]
-fn a_small_pan_keeps_most_of_a_matte_studio_and_what_it_keeps_is_right() {
+fn a_small_pan_reprojects_most_of_a_matte_scene_correctly() {
     let scene = studio(matte());
-    let mut live = begun(&scene);
-    finish(&mut live);
+    let mut live = started(&scene);
+    converge(&mut live);
     let moved = view(&scene, 0.1);
     live.update(&scene, &Assets::default(), moved).unwrap();
-    work_to(&mut live, ALL_HITS);
+    trace_to(&mut live, ALL_HITS);
     assert!(live.reprojected_fraction() > 0.8, "{} of the pixels", live.reprojected_fraction());
-    work_to(&mut live, ALL_TRACED);
-    let (ours, theirs) = (live.develop(&scene), truth(&scene, &moved, 256));
-    // Grain of one path where the ball's edge was, of quiet tiles elsewhere.
-    let off = difference(&ours, &theirs);
+    trace_to(&mut live, ALL_TRACED);
+    let (live_view, rendered) = (live.develop(&scene), reference(&scene, &moved, 256));
+    // The noise is that of one path at the ball's former edge, and that of converged tiles elsewhere.
+    let off = difference(&live_view, &rendered);
     assert!(off < 0.1, "{off}");
-    assert!((mean(&ours) / mean(&theirs) - 1.0).abs() < 0.01, "{} for {}", mean(&ours), mean(&theirs));
+    assert!((mean(&live_view) / mean(&rendered) - 1.0).abs() < 0.01, "{} for {}", mean(&live_view), mean(&rendered));
 }
 
 #[test]
-fn what_was_hidden_is_traced_anew() {
+fn disoccluded_pixels_are_traced() {
     let scene = studio(matte());
-    let mut live = begun(&scene);
-    finish(&mut live);
+    let mut live = started(&scene);
+    converge(&mut live);
     let old_eye = view(&scene, 0.0).frame.position();
     live.update(&scene, &Assets::default(), view(&scene, 0.4)).unwrap();
-    work_to(&mut live, ALL_HITS);
+    trace_to(&mut live, ALL_HITS);
     let traced = live.prepared.as_ref().unwrap();
     let mut caster = crate::raytrace::ray_caster::RayCaster::new(&traced.full);
     let (mut hidden, mut wrong) = (0, 0);
@@ -198,22 +202,22 @@ fn what_was_hidden_is_traced_anew() {
             }
         }
     }
-    assert!(hidden > 20 && wrong == 0, "{wrong} of {hidden} hidden pixels were taken over");
-    let (wall, known) = pixels_of(&live, 0);
-    assert!(known * 2 > wall, "{known} of {wall} pixels of the wall are kept");
+    assert!(hidden > 20 && wrong == 0, "{wrong} of {hidden} disoccluded pixels were reprojected");
+    let (wall, reprojected) = pixels_of(&live, 0);
+    assert!(reprojected * 2 > wall, "{reprojected} of {wall} pixels of the wall are reprojected");
 }
 
 #[test]
-fn mirrors_and_glass_are_traced_anew_and_gloss_counts_the_less_the_more_the_view_turns() {
+fn mirrors_and_glass_are_traced_and_the_weight_of_gloss_falls_with_the_view_angle() {
     let smooth = Material { roughness: 0.0, metallic: 1.0, base_color: [0.9; 3], ..Material::default() };
     let glass = Material { roughness: 0.0, transmission: 1.0, ..Material::default() };
     let glossy = Material { roughness: 0.3, ..matte() };
-    let kept = |ball: &Material, aside_m: f32| {
+    let reprojected_weight = |ball: &Material, aside_m: f32| {
         let scene = studio(ball.clone());
-        let mut live = begun(&scene);
-        work_to(&mut live, ALL_TRACED + 20);
+        let mut live = started(&scene);
+        trace_to(&mut live, ALL_TRACED + 20);
         live.update(&scene, &Assets::default(), view(&scene, aside_m)).unwrap();
-        work_to(&mut live, ALL_HITS);
+        trace_to(&mut live, ALL_HITS);
         let film = &live.view.as_ref().unwrap().film;
         let weights = film.tiles.iter().flat_map(|tile| {
             (0..tile.pixels())
@@ -223,55 +227,56 @@ fn mirrors_and_glass_are_traced_anew_and_gloss_counts_the_less_the_more_the_view
         let weights: Vec<f32> = weights.collect();
         weights.iter().sum::<f32>() / weights.len() as f32
     };
-    assert_eq!((kept(&smooth, 0.1), kept(&glass, 0.1)), (0.0, 0.0));
-    let (near, farther, far) = (kept(&glossy, 0.05), kept(&glossy, 0.2), kept(&glossy, 0.6));
+    assert_eq!((reprojected_weight(&smooth, 0.1), reprojected_weight(&glass, 0.1)), (0.0, 0.0));
+    let (near, farther, far) =
+        (reprojected_weight(&glossy, 0.05), reprojected_weight(&glossy, 0.2), reprojected_weight(&glossy, 0.6));
     assert!(near > farther && farther > far && far == 0.0, "{near} {farther} {far}");
-    assert!(kept(&matte(), 0.2) > farther);
+    assert!(reprojected_weight(&matte(), 0.2) > farther);
 }
 
 #[test]
-fn what_was_wrong_before_the_view_moved_fades_as_samples_come() {
+fn errors_of_the_history_fade_with_the_number_of_samples() {
     let scene = studio(matte());
-    let mut live = begun(&scene);
-    work_to(&mut live, ALL_TRACED + 30);
+    let mut live = started(&scene);
+    trace_to(&mut live, ALL_TRACED + 30);
     live.update(&scene, &Assets::default(), view(&scene, 0.05)).unwrap();
     live.history.as_mut().unwrap().distort(3.0);
-    work_to(&mut live, ALL_TRACED);
-    let theirs = truth(&scene, &view(&scene, 0.05), 64);
-    let start = mean(&live.develop(&scene)) / mean(&theirs) - 1.0;
-    assert!(start > 1.2, "three times as bright where it was known: {start}");
+    trace_to(&mut live, ALL_TRACED);
+    let rendered = reference(&scene, &view(&scene, 0.05), 64);
+    let start = mean(&live.develop(&scene)) / mean(&rendered) - 1.0;
+    assert!(start > 1.2, "three times as bright where it is reprojected: {start}");
     for samples in [16, 64, 240] {
         let target = ALL_TRACED + samples;
         while live.view.as_ref().unwrap().film.tiles.iter().any(|t| t.progress.kept < target) {
-            // Quiet tiles go on, too: the past is no part of their noise.
+            // Converged tiles take more samples, too: the noise estimate leaves the history out.
             live.view.as_mut().unwrap().film.tiles.iter_mut().for_each(LiveTile::reactivate);
             live.trace(1, &RenderControl::new());
         }
-        let wrong = mean(&live.develop(&scene)) / mean(&theirs) - 1.0;
+        let wrong = mean(&live.develop(&scene)) / mean(&rendered) - 1.0;
         let expected = 2.0 * history::MAX_WEIGHT / (history::MAX_WEIGHT + samples as f32);
         assert!(wrong < 1.1 * expected + 0.01, "{wrong} after {samples} samples, {expected} expected at most");
     }
 }
 
 #[test]
-fn a_moved_thing_drops_all_that_was_known() {
+fn a_moved_object_discards_all_samples() {
     let mut scene = studio(matte());
-    let mut live = begun(&scene);
-    finish(&mut live);
+    let mut live = started(&scene);
+    converge(&mut live);
     scene.objects[1].transform.position.x += 0.3;
     live.update(&scene, &Assets::default(), view(&scene, 0.0)).unwrap();
     assert!(!live.has_picture() && live.history.is_none());
-    finish(&mut live);
-    let (ours, theirs) = (live.develop(&scene), truth(&scene, &view(&scene, 0.0), 256));
-    assert_same(&ours, &theirs);
+    converge(&mut live);
+    let (live_view, rendered) = (live.develop(&scene), reference(&scene, &view(&scene, 0.0), 256));
+    assert_same(&live_view, &rendered);
     assert_eq!(live.reprojected_fraction(), 0.0);
 }
 
 #[test]
-fn power_colour_and_switch_of_a_light_cost_no_ray() {
+fn power_colour_and_switch_of_a_light_trace_no_ray() {
     let mut scene = studio(matte());
-    let mut live = begun(&scene);
-    finish(&mut live);
+    let mut live = started(&scene);
+    converge(&mut live);
     let (control, from_here) = (RenderControl::new(), view(&scene, 0.0));
     let mut edited = |edit: &dyn Fn(&mut Scene)| {
         edit(&mut scene);
@@ -289,7 +294,7 @@ fn power_colour_and_switch_of_a_light_cost_no_ray() {
     edited(&|scene| (scene.camera.iso, scene.camera.f_number, scene.camera.shutter_s) = (400.0, 8.0, 0.1));
     edited(&|scene| scene.camera.position.x += 1.0);
     edited(&|scene| scene.objects[0].name = "Backdrop".to_owned());
-    // Dark lights may go anywhere, and come back as they were.
+    // A light that is off can move away and back.
     edited(&|scene| scene.lights[1].position.y += 1.0);
     edited(&|scene| scene.lights[1].position.y -= 1.0);
     let both = edited(&|scene| scene.lights[1].on = true);
@@ -297,10 +302,10 @@ fn power_colour_and_switch_of_a_light_cost_no_ray() {
 }
 
 #[test]
-fn a_moved_light_is_traced_alone_and_the_others_keep_what_they_have() {
+fn a_moved_light_is_traced_alone_and_the_others_keep_their_samples() {
     let mut scene = studio(matte());
-    let mut live = begun(&scene);
-    finish(&mut live);
+    let mut live = started(&scene);
+    converge(&mut live);
     let sums = |live: &LivePicture, layer: usize| -> Vec<glam::Vec4> {
         let film = &live.view.as_ref().unwrap().film;
         film.tiles.iter().flat_map(|t| (0..t.pixels()).map(move |p| t.sums.at(layer, p))).collect()
@@ -310,28 +315,28 @@ fn a_moved_light_is_traced_alone_and_the_others_keep_what_they_have() {
     scene.lights[0].position.x -= 0.8;
     live.update(&scene, &Assets::default(), view(&scene, 0.0)).unwrap();
     assert_eq!(live.prepared.as_ref().unwrap().retraced.as_ref().unwrap().lights, [LightId(0)]);
-    work_to(&mut live, 2);
-    // The first picture of the moved light is coarse; the other light's stays fine.
+    trace_to(&mut live, 2);
+    // The first picture of the moved light is coarse; that of the other light keeps its samples.
     let first = live.develop(&scene);
     scene.lights[0].position.x -= 0.1;
     live.update(&scene, &Assets::default(), view(&scene, 0.0)).unwrap();
-    finish(&mut live);
+    converge(&mut live);
     assert!(sums(&live, 1) == others, "the other light was traced again");
-    let (ours, theirs) = (live.develop(&scene), truth(&scene, &view(&scene, 0.0), 256));
-    assert_same(&ours, &theirs);
-    assert!((mean(&first) / mean(&theirs) - 1.0).abs() < 0.2, "{} for {}", mean(&first), mean(&theirs));
-    // A light that is new, and one that is gone.
+    let (live_view, rendered) = (live.develop(&scene), reference(&scene, &view(&scene, 0.0), 256));
+    assert_same(&live_view, &rendered);
+    assert!((mean(&first) / mean(&rendered) - 1.0).abs() < 0.2, "{} for {}", mean(&first), mean(&rendered));
+    // An added and a removed light.
     let mut third = scene.lights[1].clone();
     (third.id, third.name, third.position) = (LightId(7), "Third".to_owned(), Vec3::new(0.0, 3.0, 2.0));
     scene.lights.insert(0, third);
     live.update(&scene, &Assets::default(), view(&scene, 0.0)).unwrap();
-    finish(&mut live);
+    converge(&mut live);
     assert!(sums(&live, 2) == others);
     scene.lights.remove(1);
     live.update(&scene, &Assets::default(), view(&scene, 0.0)).unwrap();
     assert_eq!(live.trace(1 << 20, &RenderControl::new()), 0);
-    let (ours, theirs) = (live.develop(&scene), truth(&scene, &view(&scene, 0.0), 256));
-    assert_same(&ours, &theirs);
+    let (live_view, rendered) = (live.develop(&scene), reference(&scene, &view(&scene, 0.0), 256));
+    assert_same(&live_view, &rendered);
 }
 
 #[test]
@@ -340,10 +345,10 @@ fn the_same_bits_for_any_number_of_threads() {
     let picture = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let mut live = begun(&scene);
-            work_to(&mut live, ALL_TRACED + 2);
+            let mut live = started(&scene);
+            trace_to(&mut live, ALL_TRACED + 2);
             live.update(&scene, &Assets::default(), view(&scene, 0.1)).unwrap();
-            work_to(&mut live, ALL_TRACED + 2);
+            trace_to(&mut live, ALL_TRACED + 2);
             live.develop(&scene)
         })
     };
@@ -351,7 +356,7 @@ fn the_same_bits_for_any_number_of_threads() {
 }
 
 #[test]
-fn nothing_breaks_it() {
+fn every_input_gives_finite_pixels() {
     let scene = studio(Material::default());
     let no_assets = Assets::default();
     let mut live = LivePicture::default();
@@ -374,7 +379,7 @@ fn nothing_breaks_it() {
     cancelled.cancel();
     live.update(&scene, &no_assets, LiveCamera::pinhole(frame, SIZE)).unwrap();
     assert_eq!((live.trace(1000, &cancelled), live.has_picture()), (0, false));
-    // Dark, with many lights, with depth of field, from far away, with everything moved at once.
+    // Without lights, with many lights, with depth of field, from far away, with everything moved at once.
     let dark = Scene { lights: Vec::new(), ..scene.clone() };
     let mut many = scene.clone();
     many.lights = (0..40).map(|i| Light { id: LightId(i), ..scene.lights[0].clone() }).collect();
@@ -401,16 +406,16 @@ fn nothing_breaks_it() {
 }
 
 #[test]
-fn things_out_of_focus_are_blurred_and_never_taken_over() {
+fn out_of_focus_pixels_are_blurred_and_never_reprojected() {
     let mut scene = studio(matte());
     (scene.camera.depth_of_field, scene.camera.f_number, scene.camera.focal_length_mm) = (true, 1.4, 135.0);
     let camera = |aside_m: f32| LiveCamera::through_lens(&scene, view(&scene, aside_m).frame, SIZE);
     let mut live = LivePicture::default();
     live.update(&scene, &Assets::default(), camera(0.0)).unwrap();
-    finish(&mut live);
-    let (ours, theirs) = (live.develop(&scene), truth(&scene, &view(&scene, 0.0), 256));
-    assert!(difference(&ours, &theirs) < 0.05, "{}", difference(&ours, &theirs));
+    converge(&mut live);
+    let (live_view, rendered) = (live.develop(&scene), reference(&scene, &view(&scene, 0.0), 256));
+    assert!(difference(&live_view, &rendered) < 0.05, "{}", difference(&live_view, &rendered));
     live.update(&scene, &Assets::default(), camera(0.05)).unwrap();
-    work_to(&mut live, ALL_HITS);
+    trace_to(&mut live, ALL_HITS);
     assert_eq!(live.reprojected_fraction(), 0.0);
 }

@@ -1,10 +1,10 @@
-//! The checks of single values that all others are made of.
+//! Checks of single values.
 
 use super::finding::{Finding, Severity};
 use crate::scene::path_complaint;
 use glam::Vec3;
 
-/// The values that a field may have.
+/// The range of a field's values.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Allowed {
     low: f32,
@@ -13,12 +13,12 @@ pub(super) struct Allowed {
 }
 
 impl Allowed {
-    /// From `low` to `high`, both allowed. The unit is for the message.
+    /// Returns the range from `low` to `high`, inclusive. The unit is for the message.
     pub const fn between(low: f32, high: f32, unit: &'static str) -> Self {
         Allowed { low, high, unit }
     }
 
-    /// What is wrong with `value`, if anything. Phrased so that NaN is not inside.
+    /// Returns the error message of a value outside of the range; NaN is outside.
     fn complaint(self, value: f32) -> Option<String> {
         let Allowed { low, high, unit } = self;
         let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
@@ -39,16 +39,16 @@ pub(super) const SIZE: Allowed = Allowed::between(1e-5, 1e5, "m");
 /// Rotations, degrees.
 pub(super) const TURN: Allowed = Allowed::between(-1e5, 1e5, "degrees");
 
-/// Collects findings about the thing whose place it was told.
+/// Collects findings, with the place of each.
 #[derive(Debug, Default)]
 pub(super) struct Check {
     findings: Vec<Finding>,
-    /// What comes before the field: `camera.` or `lights[2] "Key" `.
+    /// Prefix of the field: `camera.` or `lights[2] "Key" `.
     place: String,
 }
 
 impl Check {
-    /// Turns to another thing.
+    /// Sets the prefix of the fields that follow.
     pub fn enter(&mut self, place: String) {
         self.place = place;
     }
@@ -83,12 +83,12 @@ impl Check {
         }
     }
 
-    /// Every component; the message names the first that is wrong.
+    /// Checks every component; the message names the first that is out of range.
     pub fn vector(&mut self, field: &str, value: Vec3, allowed: Allowed) {
         self.triple(field, ["x", "y", "z"], value.to_array(), allowed);
     }
 
-    /// Every channel of a colour.
+    /// Checks every channel of a colour.
     pub fn color(&mut self, field: &str, value: [f32; 3], allowed: Allowed) {
         self.triple(field, ["red", "green", "blue"], value, allowed);
     }
@@ -107,7 +107,7 @@ impl Check {
         }
     }
 
-    /// A path to a file of the scene: relative, `/` between folders, never out of the scene's folder.
+    /// Checks a path to an asset: relative, `/` between folders, inside the scene's folder.
     pub fn asset_path(&mut self, field: &str, path: &str) {
         if let Some(reason) = path_complaint(path) {
             self.error(field, format!("{path:?}: {reason}"));

@@ -1,11 +1,11 @@
-//! Lights: emitter, power, colour, and which of them go together.
+//! Checks lights: emitter, power, colour, and their combinations.
 
 use super::aim::check_aim;
 use super::check::{Allowed, Check, POSITION, SIZE, TURN};
 use crate::scene::{BarnDoors, ColorSource, Cone, Emitter, Gel, Light, Modifier, Output, Power, Scene};
 
 const AMOUNT: Allowed = Allowed::between(0.0, 1e9, "");
-/// The brightest that light of one watt can be, lm/W.
+/// Upper limit: the luminous efficacy of monochromatic light at 555 nm, 683 lm/W.
 const EFFICACY: Allowed = Allowed::between(0.0, 683.0, "lm s per Ws");
 
 pub(super) fn check_light(scene: &Scene, light: &Light, check: &mut Check) {
@@ -102,7 +102,7 @@ fn check_power(power: &Power, check: &mut Check) {
     check.number("power.dial_stops", power.dial_stops, Allowed::between(-20.0, 10.0, "stops"));
 }
 
-/// Sun and surround are stated in lux; everything that has a place is stated in what it gives off.
+/// Checks that the output's unit fits the emitter: lux for sun and surround, flux or intensity for all others.
 fn check_pairing(light: &Light, check: &mut Check) {
     let kind = light.emitter.label();
     match (light.emitter.is_infinite(), light.power.output) {

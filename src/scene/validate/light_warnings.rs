@@ -1,4 +1,4 @@
-//! Lights that can be rendered but were hardly meant so.
+//! Warnings about lights that can be rendered but are hardly intended.
 
 use super::check::Check;
 use crate::scene::{Output, Scene};

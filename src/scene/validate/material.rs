@@ -1,11 +1,11 @@
-//! Surfaces.
+//! Checks materials.
 
 use super::check::{Allowed, Check};
 use crate::scene::Material;
 
-/// Reflectances lie in [0, 1): a surface that gives back everything keeps light in a closed room for ever.
+/// Reflectances lie in [0, 1): a closed room with reflectance 1 has no finite solution.
 const REFLECTANCE: Allowed = Allowed::between(0.0, 0.999, "");
-const SHARE: Allowed = Allowed::between(0.0, 1.0, "");
+const FRACTION: Allowed = Allowed::between(0.0, 1.0, "");
 
 pub(super) fn check_material(field: &str, material: &Material, check: &mut Check) {
     let name = |part: &str| format!("{field}.{part}");
@@ -13,10 +13,10 @@ pub(super) fn check_material(field: &str, material: &Material, check: &mut Check
     if let Some(path) = &material.base_color_texture {
         check.asset_path(&name("base_color_texture"), path);
     }
-    check.number(&name("metallic"), material.metallic, SHARE);
-    check.number(&name("roughness"), material.roughness, SHARE);
+    check.number(&name("metallic"), material.metallic, FRACTION);
+    check.number(&name("roughness"), material.roughness, FRACTION);
     check.number(&name("ior"), material.ior, Allowed::between(1.0, 4.0, ""));
-    check.number(&name("transmission"), material.transmission, SHARE);
+    check.number(&name("transmission"), material.transmission, FRACTION);
     check.color(&name("absorption_per_m"), material.absorption_per_m, Allowed::between(0.0, 1e6, "per m"));
     check.color(&name("emission_cd_m2"), material.emission_cd_m2, Allowed::between(0.0, 1e9, "cd/m2"));
     if material.metallic > 0.0 && material.transmission > 0.0 {

@@ -1,12 +1,13 @@
-//! Things that stand where they were hardly meant to: a light inside a body, a camera behind the wall.
+//! Warnings about unlikely positions: a light inside an object, a camera behind the wall.
 
 use super::finding::Finding;
 use crate::scene::{Assets, Object, Room, Scene, Shape};
 use glam::{Affine3A, Vec2, Vec3};
 
-/// Warnings about where camera and lights stand. They need the meshes; those that are missing are left out.
+/// Returns warnings about the positions of camera and lights. Objects whose mesh is missing are skipped.
 pub fn placement(scene: &Scene, assets: &Assets) -> Vec<Finding> {
-    let bodies: Vec<Body> = scene.objects.iter().filter(|o| o.visible).filter_map(|o| Body::of(o, assets)).collect();
+    let solids: Vec<ObjectBounds> =
+        scene.objects.iter().filter(|o| o.visible).filter_map(|o| ObjectBounds::of(o, assets)).collect();
     let mut findings = Vec::new();
     let mut warn = |place: &str, message: String| findings.push(Finding::warning(place, message));
 
@@ -14,10 +15,10 @@ pub fn placement(scene: &Scene, assets: &Assets) -> Vec<Finding> {
     if scene.room.as_ref().is_some_and(|room| is_outside(room, camera)) {
         warn("camera.position", format!("{camera} is outside the room; a wall is in the way"));
     }
-    if let Some(body) = bodies.iter().find(|body| body.holds(camera)) {
-        warn("camera.position", format!("{camera} is inside {:?}", body.object.name));
+    if let Some(solid) = solids.iter().find(|solid| solid.contains(camera)) {
+        warn("camera.position", format!("{camera} is inside {:?}", solid.object.name));
     }
-    if !bodies.is_empty() && !bodies.iter().any(|body| is_framed(scene, body)) {
+    if !solids.is_empty() && !solids.iter().any(|solid| is_framed(scene, solid)) {
         warn("camera.aim", "the camera looks past everything".to_owned());
     }
     for (index, light) in scene.lights.iter().enumerate().filter(|(_, l)| l.on && !l.emitter.is_infinite()) {
@@ -25,8 +26,8 @@ pub fn placement(scene: &Scene, assets: &Assets) -> Vec<Finding> {
         if scene.room.as_ref().is_some_and(|room| is_outside(room, light.position)) {
             warn(&place, format!("{} is outside the room; a wall is in the way", light.position));
         }
-        if let Some(body) = bodies.iter().find(|body| body.holds(light.position)) {
-            warn(&place, format!("{} is inside {:?}", light.position, body.object.name));
+        if let Some(solid) = solids.iter().find(|solid| solid.contains(light.position)) {
+            warn(&place, format!("{} is inside {:?}", light.position, solid.object.name));
         }
     }
     findings
@@ -37,28 +38,28 @@ fn is_outside(room: &Room, point: Vec3) -> bool {
     point.x.abs() > half.x || point.z.abs() > half.z || point.y < 0.0 || point.y > room.size_m.y
 }
 
-/// Whether some of a body's bounding box is in the picture, by its corners and its middle.
-fn is_framed(scene: &Scene, body: &Body) -> bool {
+/// Returns true if some of an object's bounding box is in the picture, by a grid of sample points.
+fn is_framed(scene: &Scene, solid: &ObjectBounds) -> bool {
     let frame = scene.camera_frame(scene.camera.aspect());
     let inside = |p: Vec2| p.cmpge(Vec2::ZERO).all() && p.cmple(Vec2::ONE).all();
-    // Thirds of the box: a backdrop may fill the frame with all its corners outside.
+    // A grid, not the corners alone: a backdrop may fill the frame with all its corners outside.
     let steps = [0.0, 1.0 / 3.0, 0.5, 2.0 / 3.0, 1.0];
     let points = steps.iter().flat_map(|&x| steps.iter().flat_map(move |&y| steps.map(|z| Vec3::new(x, y, z))));
-    body.holds(frame.position())
+    solid.contains(frame.position())
         || points
-            .map(|t| body.world_from_object.transform_point3(body.low + (body.high - body.low) * t))
+            .map(|t| solid.world_from_object.transform_point3(solid.low + (solid.high - solid.low) * t))
             .any(|point| frame.project(point).is_some_and(inside))
 }
 
-/// An object's box in its own space.
-struct Body<'a> {
+/// An object's bounding box in object space.
+struct ObjectBounds<'a> {
     object: &'a Object,
     world_from_object: Affine3A,
     low: Vec3,
     high: Vec3,
 }
 
-impl<'a> Body<'a> {
+impl<'a> ObjectBounds<'a> {
     fn of(object: &'a Object, assets: &Assets) -> Option<Self> {
         let (low, high) = match object.shape {
             Shape::MeshFile { .. } | Shape::Mannequin(_) => assets.mesh_of(&object.shape)?.bounds(),
@@ -70,12 +71,11 @@ impl<'a> Body<'a> {
                 (Vec3::new(-0.5 * width_m, 0.0, 0.0), Vec3::new(0.5 * width_m, height_m, depth_m))
             }
         };
-        Some(Body { object, world_from_object: object.transform.world_from_object(), low, high })
+        Some(ObjectBounds { object, world_from_object: object.transform.world_from_object(), low, high })
     }
 
-    /// Whether a point is inside, for the shapes that have an inside; files may be hollow, and glass is there to be lit
-    /// from within.
-    fn holds(&self, point: Vec3) -> bool {
+    /// Returns true if a point is inside of a solid shape. Mesh files may be hollow, and glass may be lit from inside.
+    fn contains(&self, point: Vec3) -> bool {
         let p = self.world_from_object.inverse().transform_point3(point);
         let in_box = p.cmpgt(self.low).all() && p.cmplt(self.high).all();
         let across = Vec2::new(p.x, p.z).length();

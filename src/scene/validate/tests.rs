@@ -24,15 +24,15 @@ fn light(name: &str) -> Light {
     Light { name, position, aim: Aim::Point(Vec3::ZERO), ..Light::new(panel, Output::Lumens(1000.0)) }
 }
 
-fn good() -> Scene {
+fn valid_scene() -> Scene {
     let camera = Camera { aim: Aim::Point(Vec3::ZERO), ..Camera::default() };
     Scene { camera, objects: vec![object("Box")], lights: vec![light("Key")], ..Scene::default() }
 }
 
-/// The one finding of a scene that was good before `spoil`.
-fn finding(spoil: impl FnOnce(&mut Scene)) -> Finding {
-    let mut scene = good();
-    spoil(&mut scene);
+/// Returns the one finding of a valid scene after an edit.
+fn finding(edit: impl FnOnce(&mut Scene)) -> Finding {
+    let mut scene = valid_scene();
+    edit(&mut scene);
     let mut findings = validate(&scene);
     if findings.iter().all(|f| f.severity == Severity::Warning) {
         findings.extend(placement(&scene, &Assets::default()));
@@ -43,12 +43,12 @@ fn finding(spoil: impl FnOnce(&mut Scene)) -> Finding {
 
 #[test]
 fn a_good_scene_has_no_findings() {
-    assert_eq!(validate(&good()), []);
-    assert_eq!(placement(&good(), &Assets::default()), []);
+    assert_eq!(validate(&valid_scene()), []);
+    assert_eq!(placement(&valid_scene(), &Assets::default()), []);
 }
 
 #[test]
-fn errors_name_the_place_and_the_value() {
+fn errors_name_the_field_and_the_value() {
     let found = finding(|s| s.lights[0].power.dial_stops = 400.0);
     assert_eq!(found.severity, Severity::Error);
     assert_eq!(
@@ -63,9 +63,9 @@ fn errors_name_the_place_and_the_value() {
 }
 
 #[test]
-fn every_number_has_a_bound() {
-    type Spoil = (&'static str, fn(&mut Scene));
-    let cases: &[Spoil] = &[
+fn every_number_has_a_range() {
+    type Edit = (&'static str, fn(&mut Scene));
+    let cases: &[Edit] = &[
         ("camera.focal_length_mm", |s| s.camera.focal_length_mm = 0.0),
         ("camera.f_number", |s| s.camera.f_number = -8.0),
         ("camera.iso", |s| s.camera.iso = f32::INFINITY),
@@ -102,9 +102,9 @@ fn every_number_has_a_bound() {
         ("lights[0] \"Key\" aim", |s| s.lights[0].aim = Aim::Object { object: ObjectId(7), offset: Vec3::ZERO }),
         ("lights[0] \"Key\" name", |s| s.lights[0].name = "Key".repeat(100)),
     ];
-    for (place, spoil) in cases {
-        let mut scene = good();
-        spoil(&mut scene);
+    for (place, edit) in cases {
+        let mut scene = valid_scene();
+        edit(&mut scene);
         let errors: Vec<Finding> = validate(&scene).into_iter().filter(|f| f.severity == Severity::Error).collect();
         assert_eq!(errors.len(), 1, "{place}: {errors:#?}");
         let found = errors[0].place.replace(&"Key".repeat(100), "Key");
@@ -113,14 +113,14 @@ fn every_number_has_a_bound() {
 }
 
 #[test]
-fn equal_names_clash_also_between_objects_and_lights() {
+fn equal_names_of_an_object_and_a_light_clash() {
     assert!(finding(|s| s.lights[0].name = "Box".to_owned()).is_name_clash());
 }
 
 #[test]
-fn odd_scenes_are_warned_of() {
-    type Odd = (&'static str, fn(&mut Scene));
-    let cases: &[Odd] = &[
+fn unlikely_scenes_have_warnings() {
+    type Edit = (&'static str, fn(&mut Scene));
+    let cases: &[Edit] = &[
         ("there is no light", |s| s.lights.clear()),
         ("all lights are off", |s| s.lights[0].on = false),
         ("one light is silent", |s| {
@@ -137,15 +137,15 @@ fn odd_scenes_are_warned_of() {
             s.lights[0].position.x = 8.0;
         }),
     ];
-    for (words, spoil) in cases {
-        let found = finding(spoil);
+    for (words, edit) in cases {
+        let found = finding(edit);
         assert_eq!(found.severity, Severity::Warning);
         assert!(found.message.contains(words), "{found}");
     }
 }
 
 #[test]
-fn a_camera_inside_a_thing_is_noticed() {
+fn a_camera_inside_an_object_has_a_warning() {
     let found = finding(|s| {
         s.camera.position = Vec3::splat(0.1);
         s.camera.aim = Aim::Point(Vec3::NEG_Z);
@@ -154,7 +154,7 @@ fn a_camera_inside_a_thing_is_noticed() {
 }
 
 #[test]
-fn too_many_things_are_refused_before_each_is_looked_at() {
+fn too_long_lists_are_refused_before_their_items_are_checked() {
     let found = finding(|s| s.lights = vec![light("Key"); LIST_LIMIT + 1]);
     assert_eq!(found.message, "10001 are too many; at most 10000 fit in a scene");
 }
