@@ -1,18 +1,29 @@
-//! Catchlight plans the light of a photo studio: arrange it, see it live, render the picture the camera would take.
+//! Catchlight plans the light of a photo studio: arrange it, see it live, render the picture that the camera would take.
 //!
-//! Data flows one way, and so do imports:
+//! A [`scene::Scene`] is what the user edits and what a file stores. Imports go one way, from right to left; rooms in
+//! braces do not import each other, except that `cli` opens the window of `editor`:
 //!
 //! ```text
-//! math, color  <-  scene  <-  photo  <-  { io, figures, raytrace, raster, preview }  <-  jobs  <-  { editor, cli }  <-  main
+//! { math, color }  <-  scene  <-  photo  <-  { figures, raytrace, raster, preview }  <-  io
+//!                                         <-  { jobs, truth }  <-  { editor, cli }  <-  main
 //! ```
 //!
-//! A [`scene::Scene`] is what the user edits and what a file holds. `raytrace::prepare` turns it into flat tables,
-//! `raytrace::render` fills a film wave by wave, `Film::develop` makes a [`photo::Picture`] of it, which a window shows
-//! or [`io::export_picture`] writes. `preview` draws the same scene on the graphics card while the user works.
+//! | room | contents |
+//! |---|---|
+//! | `math`, `color` | frames, warps, error bounds; Kelvin, white balance, tone curve, sRGB |
+//! | `scene` | the studio as plain data, its validation, and the class of every change of it |
+//! | `photo` | photometric lights, exposure, meter arithmetic, scales in thirds of a stop, pictures |
+//! | `figures` | mannequins as signed distance fields, and their meshes |
+//! | `raytrace` | the ray tracer: BVH, BSDFs, light sampling, path tracer, photon map, film, light meter, live view |
+//! | `raster` | the z-buffer renderer on the CPU |
+//! | `preview` | the live preview on wgpu |
+//! | `io` | RON studios, models, textures, pictures, shipped studios |
+//! | `jobs` | background work: renders, live view, meter, forecasts, thumbnails; shared by window and command line |
+//! | `truth` | closed forms beside what meter and renders give for them |
+//! | `editor`, `cli` | the window; the command line |
 //!
-//! `jobs` renders, meters and traces the live view in the background, for the window and the command line alike.
-//!
-//! `truth` sets readings of the meter and of renders beside closed forms: the README's table, and the tests' measure.
+//! `ARCHITECTURE.md` draws the data flow and names the files to touch for an extension. `tests/structure.rs` holds the
+//! direction of imports, and that only `editor` and `preview` use wgpu and only `editor` uses egui.
 //!
 //! Invariants:
 //! 1. `scene` does no I/O. `raytrace` has no clock, no entropy, no globals, and cannot fail once `prepare` succeeded.
