@@ -1,14 +1,14 @@
-//! Colour: scene-linear Rec.709 RGB, Kelvin, gels, white balance, tone curve, sRGB. One source for all renderers.
+//! Colour: scene-linear Rec.709 RGB, Kelvin, gels, white balance, tone curve and sRGB, shared by all renderers.
 
 use glam::{DMat3, DVec3, Vec3};
 
-/// Luminance of linear Rec.709 RGB.
+/// Returns the luminance of linear Rec.709 RGB.
 pub fn luminance(rgb: Vec3) -> f32 {
     rgb.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// CIE 1931 xy of a colour temperature: Planck below 4000 K, CIE daylight above 5000 K, a blend between (so that no
-/// step shows on a slider). Clamped to 1000..25000 K.
+/// Returns the CIE 1931 xy chromaticity of a colour temperature: Planckian locus below 4000 K, CIE daylight above 5000 K, a
+/// continuous blend between. Clamped to 1000..25000 K.
 pub fn xy_from_kelvin(kelvin: f64) -> (f64, f64) {
     let t = kelvin.clamp(1000.0, 25_000.0);
     let blend = ((t - 4000.0) / 1000.0).clamp(0.0, 1.0);
@@ -16,8 +16,8 @@ pub fn xy_from_kelvin(kelvin: f64) -> (f64, f64) {
     (planck.0 + (daylight.0 - planck.0) * blend, planck.1 + (daylight.1 - planck.1) * blend)
 }
 
-/// Planckian locus by Krystek's rational approximation in CIE 1960 uv (1985): within 1e-4 from 1000 to 15000 K. It is
-/// used up to 5000 K.
+/// Returns the Planckian locus by Krystek's rational approximation in CIE 1960 uv (1985): within 1e-4 from 1000 to 15000 K.
+/// Used up to 5000 K.
 fn planckian_xy(t: f64) -> (f64, f64) {
     let u = (0.860_117_757 + 1.541_182_54e-4 * t + 1.286_412_12e-7 * t * t)
         / (1.0 + 8.424_202_35e-4 * t + 7.081_451_63e-7 * t * t);
@@ -27,7 +27,7 @@ fn planckian_xy(t: f64) -> (f64, f64) {
     (3.0 * u / d, 2.0 * v / d)
 }
 
-/// CIE daylight locus (CIE 15), 4000..25000 K.
+/// Returns the CIE daylight locus (CIE 15), 4000..25000 K.
 fn daylight_xy(t: f64) -> (f64, f64) {
     let i = 1.0 / t;
     let x = if t <= 7000.0 {
@@ -42,7 +42,7 @@ fn xyz_from_xy((x, y): (f64, f64)) -> DVec3 {
     DVec3::new(x / y, 1.0, (1.0 - x - y) / y)
 }
 
-/// XYZ from linear Rec.709 RGB (IEC 61966-2-1).
+/// Returns the matrix from linear Rec.709 RGB to XYZ (IEC 61966-2-1).
 fn xyz_from_rgb() -> DMat3 {
     DMat3::from_cols(
         DVec3::new(0.412_390_8, 0.212_639_0, 0.019_330_8),
@@ -51,7 +51,7 @@ fn xyz_from_rgb() -> DMat3 {
     )
 }
 
-/// Bradford cone response from XYZ.
+/// Returns the Bradford matrix from XYZ to cone responses.
 fn bradford() -> DMat3 {
     DMat3::from_cols(
         DVec3::new(0.8951, -0.7502, 0.0389),
@@ -62,8 +62,8 @@ fn bradford() -> DMat3 {
 
 const D65_XY: (f64, f64) = (0.312_727, 0.329_023);
 
-/// RGB of a chromaticity for a camera balanced to `white`, scaled to luminance 1. May have a negative channel when the
-/// colour is outside Rec.709; that channel is cut to 0 before scaling.
+/// Returns RGB of a chromaticity for a camera balanced to `white`, scaled to luminance 1. Negative channels of colours outside
+/// Rec.709 are clamped to 0 before scaling.
 fn rgb_from_xy(xy: (f64, f64), white: (f64, f64)) -> Vec3 {
     let cone = bradford();
     let (from, to) = (cone * xyz_from_xy(white), cone * xyz_from_xy(D65_XY));
@@ -72,50 +72,50 @@ fn rgb_from_xy(xy: (f64, f64), white: (f64, f64)) -> Vec3 {
     unit_luminance(rgb.as_vec3().max(Vec3::ZERO))
 }
 
-/// Scales a colour to luminance 1; white where it has none.
+/// Scales a colour to luminance 1. Returns white for black.
 pub fn unit_luminance(rgb: Vec3) -> Vec3 {
     let y = luminance(rgb);
     if y > 0.0 && y.is_finite() { rgb / y } else { Vec3::ONE }
 }
 
-/// RGB of a Kelvin light seen by a camera balanced to `white_balance_k`, luminance 1.
+/// Returns RGB of a light of a colour temperature for a camera balanced to `white_balance_k`, scaled to luminance 1.
 pub fn rgb_from_kelvin(kelvin: f32, white_balance_k: f32) -> Vec3 {
     rgb_from_xy(xy_from_kelvin(f64::from(kelvin)), xy_from_kelvin(f64::from(white_balance_k)))
 }
 
-/// Colour temperature behind a gel that shifts by `mired`. Cannot go past 25000 K.
+/// Returns the colour temperature behind a gel that shifts by `mired`, at most 25000 K.
 pub fn shift_kelvin(kelvin: f32, mired: f32) -> f32 {
     1e6 / (1e6 / kelvin + mired).max(40.0)
 }
 
-/// sRGB-encoded value of a linear one in 0..=1 (IEC 61966-2-1).
+/// Encodes a linear value in 0..=1 in sRGB (IEC 61966-2-1).
 pub fn srgb_encode(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// Linear value of an sRGB-encoded one in 0..=1.
+/// Decodes an sRGB value in 0..=1 to linear.
 pub fn srgb_decode(encoded: f32) -> f32 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
-/// Where the tone curve leaves the straight line.
+/// Value at which the shoulder of the tone curve begins.
 const SHOULDER: f32 = 0.6;
 
-/// Tone curve of one channel: straight up to 0.6, so that meter and picture agree on skin and grey cards, then a
-/// smooth shoulder that reaches white at infinity. White paper (0.9) shows as 0.81, one stop over it as 0.97.
+/// Applies the tone curve to one channel: linear up to 0.6, so that meter and picture agree on skin and grey cards, then a
+/// smooth shoulder that approaches 1. White paper (0.9) becomes 0.81, one stop above it 0.97.
 pub fn tone_curve(x: f32) -> f32 {
     let x = if x > 0.0 { x } else { 0.0 };
-    let room = 1.0 - SHOULDER;
-    if x <= SHOULDER { x } else { SHOULDER + room * (1.0 - (-(x - SHOULDER) / room).exp()) }
+    let range = 1.0 - SHOULDER;
+    if x <= SHOULDER { x } else { SHOULDER + range * (1.0 - (-(x - SHOULDER) / range).exp()) }
 }
 
-/// Tone curve and sRGB encoding of a scene-linear pixel.
+/// Applies the tone curve and sRGB encoding to a scene-linear pixel.
 pub fn display_srgb8(rgb: [f32; 3]) -> [u8; 3] {
     rgb.map(|c| (srgb_encode(tone_curve(c)) * 255.0 + 0.5) as u8)
 }
 
-/// Tone curve and sRGB encoding by table, to one code of 255: for pictures that are shown while they change, as the
-/// curve has a power in it.
+/// A lookup table of tone curve and sRGB encoding, within one code of 255, for interactive display: it avoids the power
+/// function.
 #[derive(Debug)]
 pub struct ToneTable(Vec<u8>);
 
@@ -126,25 +126,25 @@ impl Default for ToneTable {
 }
 
 impl ToneTable {
-    /// Bits of the mantissa that are dropped: steps of 1/256 of the value.
-    const DROPPED: u32 = 15;
-    /// Everything under this shows as black, everything over `MOST` as white.
-    const LEAST: f32 = 1.0 / 16384.0;
-    const MOST: f32 = 16.0;
+    /// Mantissa bits that the table index leaves out: steps of 1/256 of the value.
+    const DROPPED_BITS: u32 = 15;
+    /// Values below are black, values above `MAX` white.
+    const MIN: f32 = 1.0 / 16384.0;
+    const MAX: f32 = 16.0;
 
-    /// Fills the table.
+    /// Computes the table.
     pub fn new() -> Self {
-        let (first, last) = (Self::LEAST.to_bits() >> Self::DROPPED, Self::MOST.to_bits() >> Self::DROPPED);
-        let middle = |index: u32| f32::from_bits(index << Self::DROPPED | 1 << (Self::DROPPED - 1));
+        let (first, last) = (Self::MIN.to_bits() >> Self::DROPPED_BITS, Self::MAX.to_bits() >> Self::DROPPED_BITS);
+        let middle = |index: u32| f32::from_bits(index << Self::DROPPED_BITS | 1 << (Self::DROPPED_BITS - 1));
         ToneTable((first..=last).map(|index| display_srgb8([middle(index); 3])[0]).collect())
     }
 
-    /// What [`display_srgb8`] gives, or a code beside it.
-    pub fn shown(&self, rgb: [f32; 3]) -> [u8; 3] {
+    /// Returns [`display_srgb8`] of a pixel, within one code.
+    pub fn display_srgb8(&self, rgb: [f32; 3]) -> [u8; 3] {
         rgb.map(|value| {
-            // NaN is black, as in the tone curve.
-            let value = if value >= Self::LEAST { value.min(Self::MOST) } else { return 0 };
-            self.0[((value.to_bits() >> Self::DROPPED) - (Self::LEAST.to_bits() >> Self::DROPPED)) as usize]
+            // NaN is black, as in the tone curve
+            let value = if value >= Self::MIN { value.min(Self::MAX) } else { return 0 };
+            self.0[((value.to_bits() >> Self::DROPPED_BITS) - (Self::MIN.to_bits() >> Self::DROPPED_BITS)) as usize]
         })
     }
 }
@@ -154,18 +154,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_table_shows_what_the_tone_curve_shows() {
+    fn the_table_is_within_one_code_of_the_tone_curve() {
         let table = ToneTable::new();
         for step in 0..4000 {
             let value = 1e-6 * 1.006_f32.powi(step);
-            let (ours, theirs) = (table.shown([value; 3])[0], display_srgb8([value; 3])[0]);
-            assert!(ours.abs_diff(theirs) <= 1, "{value}: {ours} for {theirs}");
+            let (ours, exact) = (table.display_srgb8([value; 3])[0], display_srgb8([value; 3])[0]);
+            assert!(ours.abs_diff(exact) <= 1, "{value}: {ours} for {exact}");
         }
-        assert_eq!(table.shown([f32::NAN, -1.0, f32::INFINITY]), [0, 0, 255]);
+        assert_eq!(table.display_srgb8([f32::NAN, -1.0, f32::INFINITY]), [0, 0, 255]);
     }
 
     #[test]
-    fn a_light_of_the_cameras_white_is_neutral() {
+    fn a_light_of_the_white_balance_is_neutral() {
         for k in [2900.0, 4500.0, 5500.0, 9000.0] {
             assert!((rgb_from_kelvin(k, k) - Vec3::ONE).abs().max_element() < 1e-3, "{k}");
         }
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tone_curve_keeps_grey_and_never_clips_to_a_step() {
+    fn the_tone_curve_preserves_grey_and_is_monotonic_without_steps() {
         assert_eq!(tone_curve(0.18), 0.18);
         let mut last = 0.0;
         for i in 0..1000 {

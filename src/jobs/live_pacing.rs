@@ -181,7 +181,7 @@ impl LivePacing {
                 Some(filter) => traced.develop_filtered(scene, every, filter),
                 None => traced.develop_strided(scene, every),
             };
-            let row = |row: &[[f32; 3]]| row.iter().flat_map(|rgb| tone.shown(*rgb)).collect::<Vec<u8>>();
+            let row = |row: &[[f32; 3]]| row.iter().flat_map(|rgb| tone.display_srgb8(*rgb)).collect::<Vec<u8>>();
             let rgb = picture.rgb.par_chunks(picture.width.max(1) as usize).flat_map_iter(row).collect();
             let (width, height) = (picture.width as usize, picture.height as usize);
             LiveImage { width, height, rgb, spp: traced.spp(), is_done: traced.is_converged() }

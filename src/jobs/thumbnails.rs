@@ -164,7 +164,8 @@ fn frame_around((low, high): (Vec3, Vec3)) -> CameraFrame {
 /// Returns the drawing for the screen, with the background where `is_background` is true for the object of a pixel.
 fn image(drawing: &Framebuffer, is_background: impl Fn(u32) -> bool) -> ThumbnailImage {
     let (tone, picture) = (ToneTable::default(), &drawing.picture);
-    let pixel = |(rgb, object): (&[f32; 3], &u32)| if is_background(*object) { BACKGROUND } else { tone.shown(*rgb) };
+    let pixel =
+        |(rgb, object): (&[f32; 3], &u32)| if is_background(*object) { BACKGROUND } else { tone.display_srgb8(*rgb) };
     let rgb = picture.rgb.iter().zip(&drawing.objects).flat_map(pixel).collect();
     ThumbnailImage { size: [picture.width as usize, picture.height as usize], rgb }
 }

@@ -1,4 +1,5 @@
-//! Vectors beyond glam: safe forms, frames, warps with their densities, rays with error bounds.
+//! Mathematics beyond glam: safe square roots and angles, frames, sampling warps with their densities, rays with error
+//! bounds, SIMD dispatch.
 
 mod angle;
 mod frame;

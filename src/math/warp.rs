@@ -1,32 +1,33 @@
-//! Maps from the unit square to directions and discs, with the densities they have.
+//! Sampling warps from the unit square to discs and directions, with their densities.
 
 use super::{sin_cos_eighth, sin_cos_turn};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_4, PI, TAU};
 
-/// Uniform point of the unit disc, area preserving and continuous (Shirley and Chiu 1997). Density 1 / pi.
+/// Samples a point uniformly in the unit disc. The map is area preserving and continuous (Shirley and Chiu 1997, "A Low
+/// Distortion Map Between Disk and Square"). Density 1 / pi.
 pub fn concentric_disc(u: Vec2) -> Vec2 {
     let offset = 2.0 * u - Vec2::ONE;
-    let wide = offset.x.abs() > offset.y.abs();
-    let (radius, other) = if wide { (offset.x, offset.y) } else { (offset.y, offset.x) };
+    let is_x_major = offset.x.abs() > offset.y.abs();
+    let (radius, other) = if is_x_major { (offset.x, offset.y) } else { (offset.y, offset.x) };
     let ratio = if radius == 0.0 { 0.0 } else { other / radius };
     let (sin, cos) = sin_cos_eighth(FRAC_PI_4 * ratio);
-    let (along, across) = (radius * cos, radius * sin);
-    if wide { Vec2::new(along, across) } else { Vec2::new(across, along) }
+    let (major, minor) = (radius * cos, radius * sin);
+    if is_x_major { Vec2::new(major, minor) } else { Vec2::new(minor, major) }
 }
 
-/// Cosine-weighted direction about +Z. Density cos / pi in solid angle.
+/// Samples a cosine-weighted direction about +Z (Malley's method). Density cos / pi, 1/sr.
 pub fn cosine_hemisphere(u: Vec2) -> Vec3 {
     let disc = concentric_disc(u);
     Vec3::new(disc.x, disc.y, (1.0 - disc.length_squared()).max(0.0).sqrt())
 }
 
-/// Density of [`cosine_hemisphere`], 1/sr.
+/// Returns the density of [`cosine_hemisphere`], 1/sr.
 pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
     cos_theta.max(0.0) / PI
 }
 
-/// Uniform direction on the sphere. Density 1 / 4 pi.
+/// Samples a direction uniformly on the sphere. Density 1 / 4 pi, 1/sr.
 pub fn uniform_sphere(u: Vec2) -> Vec3 {
     let z = 1.0 - 2.0 * u.x;
     let radius = (1.0 - z * z).max(0.0).sqrt();
@@ -34,8 +35,8 @@ pub fn uniform_sphere(u: Vec2) -> Vec3 {
     Vec3::new(radius * cos, radius * sin, z)
 }
 
-/// Uniform direction in a cone about +Z, given `1 - cos` of its half angle (which keeps its digits for thin cones).
-/// Density 1 / (2 pi (1 - cos)).
+/// Samples a direction uniformly in a cone about +Z, given `1 - cos` of its half angle, which is precise for narrow cones.
+/// Density 1 / (2 pi (1 - cos)), 1/sr.
 pub fn uniform_cone(u: Vec2, one_minus_cos: f32) -> Vec3 {
     let drop = u.x * one_minus_cos;
     let sin_theta = (drop * (2.0 - drop)).max(0.0).sqrt();
@@ -43,7 +44,7 @@ pub fn uniform_cone(u: Vec2, one_minus_cos: f32) -> Vec3 {
     Vec3::new(sin_theta * cos, sin_theta * sin, 1.0 - drop)
 }
 
-/// Density of [`uniform_cone`], 1/sr.
+/// Returns the density of [`uniform_cone`], 1/sr.
 pub fn uniform_cone_pdf(one_minus_cos: f32) -> f32 {
     1.0 / (TAU * one_minus_cos)
 }
@@ -54,7 +55,7 @@ mod tests {
     use crate::statistics::{ChiSquare, TestRng, sidak_level};
 
     #[test]
-    fn directions_are_unit_and_in_range() {
+    fn samples_are_unit_vectors_in_range() {
         for i in 0..64 {
             for j in 0..64 {
                 let u = Vec2::new(i as f32 / 63.0, j as f32 / 63.0);
@@ -67,8 +68,8 @@ mod tests {
         }
     }
 
-    /// p-value of samples that should fall evenly into the cells of a unit square.
-    fn evenly(seed: u64, cell: impl Fn(Vec2) -> (f32, f32)) -> f64 {
+    /// Returns the p-value of a chi-square test for uniform samples in the unit square.
+    fn uniformity_p_value(seed: u64, cell: impl Fn(Vec2) -> (f32, f32)) -> f64 {
         const CELLS: usize = 16;
         const SAMPLES: usize = 100_000;
         let mut rng = TestRng::new(seed);
@@ -90,19 +91,24 @@ mod tests {
 
     #[test]
     fn every_warp_follows_its_density() {
-        // Each maps back to the unit square by its cumulative density: radius squared, sin2, height, drop; azimuth.
-        let wide_cone = |w: Vec3| ((1.0 - w.z) / 0.5, turn(w.x, w.y));
-        // 1 - cos of a thin cone from the sine: its cosine has no digits.
-        let thin_cone = |w: Vec3| ((w.x * w.x + w.y * w.y) / 2e-8, turn(w.x, w.y));
+        // Each sample is mapped back to the unit square by the cumulative distribution (squared radius, sin2, height, 1 - cos) and
+        // the azimuth.
+        let broad_cone = |w: Vec3| ((1.0 - w.z) / 0.5, turn(w.x, w.y));
+        // 1 - cos of a narrow cone from the sine: its cosine rounds to 1.
+        let narrow_cone = |w: Vec3| ((w.x * w.x + w.y * w.y) / 2e-8, turn(w.x, w.y));
         let results = [
-            evenly(1, |u| (concentric_disc(u).length_squared(), turn(concentric_disc(u).x, concentric_disc(u).y))),
-            evenly(2, |u| {
+            uniformity_p_value(1, |u| {
+                (concentric_disc(u).length_squared(), turn(concentric_disc(u).x, concentric_disc(u).y))
+            }),
+            uniformity_p_value(2, |u| {
                 let w = cosine_hemisphere(u);
                 (w.x * w.x + w.y * w.y, turn(w.x, w.y))
             }),
-            evenly(3, |u| (0.5 - 0.5 * uniform_sphere(u).z, turn(uniform_sphere(u).x, uniform_sphere(u).y))),
-            evenly(4, |u| wide_cone(uniform_cone(u, 0.5))),
-            evenly(5, |u| thin_cone(uniform_cone(u, 1e-8))),
+            uniformity_p_value(3, |u| {
+                (0.5 - 0.5 * uniform_sphere(u).z, turn(uniform_sphere(u).x, uniform_sphere(u).y))
+            }),
+            uniformity_p_value(4, |u| broad_cone(uniform_cone(u, 0.5))),
+            uniformity_p_value(5, |u| narrow_cone(uniform_cone(u, 1e-8))),
         ];
         for (warp, p) in results.iter().enumerate() {
             assert!(*p > sidak_level(results.len()), "warp {warp}: p = {p}");
@@ -110,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn densities_are_those_of_the_shapes() {
+    fn pdfs_have_their_closed_forms() {
         for cos in [0.0, 0.3, 1.0] {
             assert_eq!(cosine_hemisphere_pdf(cos), cos / PI);
         }

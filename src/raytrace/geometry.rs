@@ -1,4 +1,4 @@
-//! Meshes ready for tracing, their instances, and what a hit says about the surface.
+//! Meshes prepared for tracing, their instances, and the surface interaction at a hit.
 
 use super::blas::Blas;
 use super::simd::TriangleHit;
@@ -7,37 +7,37 @@ use crate::scene::Mesh;
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
 use std::sync::{Arc, OnceLock};
 
-/// A mesh with its tree.
+/// A mesh with its BLAS.
 #[derive(Debug)]
 pub struct MeshGeometry {
     mesh: Arc<Mesh>,
-    /// In object space.
+    /// Over all triangles, in object space.
     pub blas: Blas,
-    /// Part of each triangle; empty when there is just one.
+    /// Part of each triangle; empty for meshes of one part.
     part_of_triangle: Vec<u16>,
-    /// Whether the mesh encloses a space; looked at once, and only where something is clear.
+    /// True if the mesh encloses a volume. Computed on first use, which is only for clear materials.
     closed: OnceLock<bool>,
 }
 
 impl MeshGeometry {
-    /// Builds the tree over all triangles.
+    /// Builds the BLAS over all triangles.
     pub fn new(mesh: Arc<Mesh>) -> Self {
         let blas = Blas::new(mesh.triangles.len(), |t| mesh.corners(t));
         let part_of_triangle = part_of_triangle(&mesh);
         MeshGeometry { mesh, blas, part_of_triangle, closed: OnceLock::new() }
     }
 
-    /// The mesh itself.
+    /// Returns the mesh.
     pub fn mesh(&self) -> &Arc<Mesh> {
         &self.mesh
     }
 
-    /// Whether the mesh encloses a space.
+    /// Returns true if the mesh encloses a volume.
     pub fn is_closed(&self) -> bool {
         *self.closed.get_or_init(|| self.mesh.is_closed())
     }
 
-    /// Index of the part that a triangle belongs to.
+    /// Returns the index of the part that a triangle belongs to.
     pub fn part(&self, triangle: u32) -> usize {
         self.part_of_triangle.get(triangle as usize).copied().unwrap_or(0).into()
     }
@@ -55,8 +55,8 @@ fn part_of_triangle(mesh: &Mesh) -> Vec<u16> {
     parts
 }
 
-/// A mesh placed in the studio. All world positions of the tracer are relative to the camera, so that a studio far from
-/// the origin keeps its precision near the lens.
+/// A mesh with a transform and materials. World positions in the ray tracer are relative to the camera, so that precision near
+/// the camera does not depend on the distance from the origin.
 #[derive(Debug)]
 pub struct Instance {
     /// The mesh.
@@ -65,20 +65,19 @@ pub struct Instance {
     pub object: u32,
     /// Material of each part, as an index into the scene's material table.
     pub materials: Vec<u32>,
-    /// The mesh encloses no space: where it is clear, it is a thin pane.
+    /// True for a clear mesh that encloses no volume: a thin pane.
     pub is_thin: bool,
     world_from_object: Affine3A,
     object_from_world: Affine3A,
-    /// Both ways in absolute values, for error bounds.
-    forward_abs: Affine3A,
-    backward_abs: Affine3A,
+    /// Absolute values of both transforms, for error bounds.
+    abs_world_from_object: Affine3A,
+    abs_object_from_world: Affine3A,
     /// Inverse transpose, for normals.
     normal_matrix: Mat3A,
 }
 
 impl Instance {
-    /// Places a mesh; none when the transform cannot be inverted (a scale of zero): such a thing has no volume and is
-    /// not seen.
+    /// Returns an instance of a mesh; none for a singular transform (a scale of zero): no ray hits such an instance.
     pub fn new(
         geometry: Arc<MeshGeometry>,
         world_from_object: Affine3A,
@@ -87,45 +86,45 @@ impl Instance {
     ) -> Option<Self> {
         let object_from_world = world_from_object.inverse();
         let normal_matrix = object_from_world.matrix3.transpose();
-        let usable = object_from_world.is_finite() && world_from_object.is_finite();
-        usable.then_some(Instance {
+        let is_invertible = object_from_world.is_finite() && world_from_object.is_finite();
+        is_invertible.then_some(Instance {
             geometry,
             object,
             materials,
             is_thin: false,
             world_from_object,
             object_from_world,
-            forward_abs: abs(&world_from_object),
-            backward_abs: abs(&object_from_world),
+            abs_world_from_object: abs(&world_from_object),
+            abs_object_from_world: abs(&object_from_world),
             normal_matrix,
         })
     }
 
-    /// Where the mesh stands.
+    /// Returns the transform of the instance.
     pub fn world_from_object(&self) -> &Affine3A {
         &self.world_from_object
     }
 
-    /// World box of the eight corners of the mesh's box, rounded outwards.
+    /// Returns the world bounding box of the corners of the mesh's bounding box, rounded outwards.
     pub fn world_bounds(&self) -> Option<(Vec3, Vec3)> {
         let (low, high) = self.geometry.blas.bounds()?;
         let centre = (low + high) * 0.5;
         let half = (high - low) * 0.5;
         let matrix = self.world_from_object.matrix3;
-        let reach = Vec3::from(matrix.x_axis).abs() * half.x
+        let extent = Vec3::from(matrix.x_axis).abs() * half.x
             + Vec3::from(matrix.y_axis).abs() * half.y
             + Vec3::from(matrix.z_axis).abs() * half.z;
-        let middle = self.world_from_object.transform_point3(centre);
-        let slack = (middle.abs() + reach) * gamma(8);
-        Some((middle - reach - slack, middle + reach + slack))
+        let world_centre = self.world_from_object.transform_point3(centre);
+        let slack = (world_centre.abs() + extent) * gamma(8);
+        Some((world_centre - extent - slack, world_centre + extent + slack))
     }
 
-    /// The corners of a triangle in world space.
+    /// Returns the corners of a triangle in world space.
     pub fn world_corners(&self, triangle: usize) -> [Vec3; 3] {
         self.geometry.mesh.corners(triangle).map(|corner| self.world_from_object.transform_point3(corner))
     }
 
-    /// The ray in object space. `t` keeps its meaning.
+    /// Transforms a ray to object space. Distances `t` stay the same.
     #[inline(always)]
     pub fn to_object(&self, ray: &Ray) -> Ray {
         Ray {
@@ -135,8 +134,9 @@ impl Instance {
         }
     }
 
-    /// All about the surface at a hit, in world space.
+    /// Returns the surface interaction at a hit, in world space.
     pub fn surface(&self, hit: &TriangleHit) -> SurfaceInteraction {
+        // Interpolate the position
         let mesh = &*self.geometry.mesh;
         let indices = mesh.triangles[hit.triangle as usize].map(|i| i as usize);
         let corners = indices.map(|i| Vec3A::from(mesh.positions[i]));
@@ -144,23 +144,25 @@ impl Instance {
         let weights = [1.0 - b1 - b2, b1, b2];
         let terms = [corners[0] * weights[0], corners[1] * weights[1], corners[2] * weights[2]];
         let local = terms[0] + terms[1] + terms[2];
-        // The distances of a ray that starts here come from differences to the corners: a triangle that lies in a plane
-        // of coordinate 0 has an exact point on it, and would still be met again by rays that leave it.
-        let reach = corners.map(|corner| (corner - local).abs().max_element());
-        let reach = reach[0].max(reach[1]).max(reach[2]) * gamma(16);
-        let error = (terms[0].abs() + terms[1].abs() + terms[2].abs()) * gamma(7) + Vec3A::splat(reach);
+        // Bound its error (PBRT, 4th ed., section 6.8.5). Rays that start here subtract it from the corners: in a plane of
+        // coordinate 0 the position is exact, but those differences are not
+        let extent = corners.map(|corner| (corner - local).abs().max_element());
+        let corner_error = extent[0].max(extent[1]).max(extent[2]) * gamma(16);
+        let error = (terms[0].abs() + terms[1].abs() + terms[2].abs()) * gamma(7) + Vec3A::splat(corner_error);
+        // Compute the geometric normal, and interpolate the shading normal
         let face = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
         let geometric_normal = (self.normal_matrix * face).normalize_or_zero();
-        let (normal, bulge) = if mesh.normals.is_empty() {
+        let (normal, smooth_offset) = if mesh.normals.is_empty() {
             (geometric_normal, Vec3A::ZERO)
         } else {
             let normals = indices.map(|i| Vec3A::from(mesh.normals[i]));
             let smooth = normals[0] * weights[0] + normals[1] * weights[1] + normals[2] * weights[2];
             let smooth = (self.normal_matrix * smooth).try_normalize().unwrap_or(geometric_normal);
-            // Normals that disagree with the winding: the winding says where outside is.
+            // The winding defines the outside, also for vertex normals on the other side.
             let smooth = if smooth.dot(geometric_normal) < 0.0 { -smooth } else { smooth };
-            (smooth, bulge(local, corners, normals, weights))
+            (smooth, smooth_surface_offset(local, corners, normals, weights))
         };
+        // Interpolate the texture coordinates
         let uv = if mesh.uvs.is_empty() {
             Vec2::ZERO
         } else {
@@ -171,7 +173,7 @@ impl Instance {
         SurfaceInteraction {
             position: self.world_from_object.transform_point3a(local).into(),
             position_error: self.world_error(local, error).into(),
-            smooth_offset: self.world_from_object.transform_vector3a(bulge).into(),
+            smooth_offset: self.world_from_object.transform_vector3a(smooth_offset).into(),
             geometric_normal: geometric_normal.into(),
             normal: normal.into(),
             uv,
@@ -180,23 +182,24 @@ impl Instance {
         }
     }
 
-    /// Error of a transformed point, and of the way back that a ray from there will take into this same mesh.
+    /// Returns the error bound of a transformed point, including that of the transform back to object space that a ray from
+    /// there undergoes.
     fn world_error(&self, local: Vec3A, local_error: Vec3A) -> Vec3A {
-        let (forward, backward) = (&self.forward_abs, &self.backward_abs);
+        let (forward, backward) = (&self.abs_world_from_object, &self.abs_object_from_world);
         let world = forward.transform_point3a(local.abs());
         let back = backward.transform_point3a(world) * gamma(4);
         forward.transform_vector3a(local_error + back) * (1.0 + gamma(3)) + world * gamma(4)
     }
 }
 
-/// The transform of absolute values.
+/// Returns the transform with absolute values.
 fn abs(transform: &Affine3A) -> Affine3A {
     Affine3A { matrix3: transform.matrix3.abs(), translation: transform.translation.abs() }
 }
 
-/// From the flat triangle to the curved surface its normals describe: the mean of the projections onto the planes at
-/// the corners (Hanika 2021, "Hacking the Shadow Terminator"). Zero on flat and on concave places.
-fn bulge(local: Vec3A, corners: [Vec3A; 3], normals: [Vec3A; 3], weights: [f32; 3]) -> Vec3A {
+/// Returns the offset from the flat triangle to the smooth surface that its normals describe: the mean of the projections onto
+/// the tangent planes at the corners (Hanika 2021, "Hacking the Shadow Terminator"). 0 on flat and concave surfaces.
+fn smooth_surface_offset(local: Vec3A, corners: [Vec3A; 3], normals: [Vec3A; 3], weights: [f32; 3]) -> Vec3A {
     let mut offset = Vec3A::ZERO;
     for k in 0..3 {
         let height = (local - corners[k]).dot(normals[k]).min(0.0);
@@ -205,32 +208,33 @@ fn bulge(local: Vec3A, corners: [Vec3A; 3], normals: [Vec3A; 3], weights: [f32; 
     offset
 }
 
-/// What a hit says about the surface, in world space.
+/// The surface at a hit, in world space.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceInteraction {
-    /// On the flat triangle.
+    /// Position on the flat triangle.
     pub position: Vec3,
-    /// Absolute error of `position`, an axis each.
+    /// Absolute error bound of `position` along each axis.
     pub position_error: Vec3,
-    /// From the flat triangle to the curved surface that the normals describe; rays towards the outside start there.
+    /// Offset to the smooth surface that the normals describe. Rays to the outside start there, which avoids the shadow
+    /// terminator artefact.
     pub smooth_offset: Vec3,
-    /// Of the triangle, unit length, to the side from which its corners run counter-clockwise.
+    /// Unit normal of the triangle, on the side from which its corners are counter-clockwise.
     pub geometric_normal: Vec3,
-    /// Interpolated, on the same side as `geometric_normal`.
+    /// Interpolated shading normal, on the same side as `geometric_normal`.
     pub normal: Vec3,
     /// Texture coordinates.
     pub uv: Vec2,
     /// Index into the material table.
     pub material: u32,
-    /// Of a mesh that encloses no space.
+    /// True for a clear mesh that encloses no volume: a thin pane.
     pub is_thin: bool,
 }
 
 impl SurfaceInteraction {
-    /// Start of a ray that leaves in `direction`, off the surface by its error bound.
+    /// Returns the origin of a ray that leaves the surface in `direction`, offset by the error bound.
     pub fn spawn_origin(&self, direction: Vec3) -> Vec3 {
-        let outside = direction.dot(self.geometric_normal) > 0.0;
-        let from = if outside { self.position + self.smooth_offset } else { self.position };
+        let is_outwards = direction.dot(self.geometric_normal) > 0.0;
+        let from = if is_outwards { self.position + self.smooth_offset } else { self.position };
         math::offset_origin(from, self.position_error, self.geometric_normal, direction)
     }
 }

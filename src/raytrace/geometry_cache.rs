@@ -1,7 +1,8 @@
-//! Trees kept from one `prepare` to the next: where a light or an object moved, no mesh's tree is built again.
+//! A cache of BLASes, material tables and the merged BLAS between calls of `prepare`: moving a light or an object builds no
+//! BLAS of a mesh again.
 //!
-//! A mesh is known by its address, or else by its content: shapes such as boxes are made into triangles anew each time.
-//! What the last `prepare` used is always kept; of the rest, as much as [`KEPT_TRIANGLES`].
+//! A mesh is found by its address, or else by its content: shapes such as boxes are tessellated anew each time. Meshes of the
+//! last `prepare` are never evicted; of the others, [`MAX_UNUSED_TRIANGLES`] are kept.
 
 use super::aggregate::MergedBlas;
 use super::bsdf::TracedMaterial;
@@ -12,69 +13,71 @@ use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Triangles whose trees are kept although the last scene did not use them: some 300 MB.
-const KEPT_TRIANGLES: usize = 2_000_000;
+/// Number of triangles that are kept although the last scene did not use them: some 300 MB.
+const MAX_UNUSED_TRIANGLES: usize = 2_000_000;
 
-/// Trees of the meshes that were prepared last.
+/// The BLASes, materials and merged BLAS of the last prepared scenes.
 #[derive(Debug, Default)]
-pub struct GeometryCache(Mutex<Kept>);
+pub struct GeometryCache(Mutex<CacheState>);
 
 #[derive(Debug, Default)]
-struct Kept {
-    by_content: HashMap<u64, Entry>,
-    /// Content of the meshes in `by_content`, by their addresses: these stay theirs as long as the entry holds the mesh.
+struct CacheState {
+    by_content: HashMap<u64, CachedGeometry>,
+    /// Content hashes of the meshes in `by_content`, by address. An address is valid as long as the entry holds the mesh.
     by_address: HashMap<usize, u64>,
     merged: Option<Arc<MergedBlas>>,
-    /// Materials of the last scene with their tables.
+    /// Materials of the last scene.
     materials: Vec<(Material, TracedMaterial)>,
-    /// Counts calls of [`GeometryCache::geometries`].
+    /// Number of calls of [`GeometryCache::geometries`]: the time of the LRU order.
     now: u64,
     builds: u64,
 }
 
 #[derive(Debug)]
-struct Entry {
+struct CachedGeometry {
     geometry: Arc<MeshGeometry>,
     last_used: u64,
 }
 
 impl GeometryCache {
-    /// Trees of meshes that were built so far, because they were not there.
+    /// Returns the number of BLASes that were built so far.
     pub fn builds(&self) -> u64 {
         self.lock().builds
     }
 
-    fn lock(&self) -> MutexGuard<'_, Kept> {
-        // Nothing in here is half done when a thread panics: at worst a tree is missing.
+    fn lock(&self) -> MutexGuard<'_, CacheState> {
+        // The state is consistent when a thread panics: at worst a BLAS is missing.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The geometry of each mesh, by its address; what is not there is built in parallel.
+    /// Returns the geometry of each mesh by its address. Missing ones are built in parallel.
     pub(super) fn geometries(&self, meshes: &[Arc<Mesh>]) -> HashMap<*const Mesh, Arc<MeshGeometry>> {
-        let contents: Vec<u64> = meshes.iter().map(|mesh| self.content_of(mesh)).collect();
-        let found = meshes.iter().zip(&contents).map(|(mesh, content)| self.find(mesh, *content));
-        // Boxes of the same size are one geometry: each content is built once.
+        // Look up the meshes
+        let hashes: Vec<u64> = meshes.iter().map(|mesh| self.content_hash(mesh)).collect();
+        let found = meshes.iter().zip(&hashes).map(|(mesh, content)| self.find(mesh, *content));
+        // Collect the missing ones; meshes of equal content share one geometry
         let mut missing: HashMap<u64, Arc<Mesh>> = HashMap::new();
         let mut geometries = HashMap::new();
-        for ((mesh, &content), found) in meshes.iter().zip(&contents).zip(found) {
+        for ((mesh, &content), found) in meshes.iter().zip(&hashes).zip(found) {
             match found {
                 Some(geometry) => drop(geometries.insert(Arc::as_ptr(mesh), geometry)),
                 None => drop(missing.entry(content).or_insert_with(|| mesh.clone())),
             }
         }
+        // Build them in parallel
         let missing: Vec<(u64, Arc<Mesh>)> = missing.into_iter().collect();
         let build = |(content, mesh): (u64, Arc<Mesh>)| (content, Arc::new(MeshGeometry::new(mesh)));
         let built: HashMap<u64, Arc<MeshGeometry>> = missing.into_par_iter().map(build).collect();
-        for (mesh, content) in meshes.iter().zip(&contents) {
+        for (mesh, content) in meshes.iter().zip(&hashes) {
             let Some(geometry) = built.get(content) else { continue };
             geometries.entry(Arc::as_ptr(mesh)).or_insert_with(|| geometry.clone());
         }
-        self.keep(&contents, built);
+        self.store(&hashes, built);
         geometries
     }
 
-    /// A number for what a mesh holds; equal meshes have equal numbers.
-    fn content_of(&self, mesh: &Arc<Mesh>) -> u64 {
+    /// Returns the content hash of a mesh.
+    fn content_hash(&self, mesh: &Arc<Mesh>) -> u64 {
         let known = self.lock().by_address.get(&address(mesh)).copied();
         known.unwrap_or_else(|| hash(mesh))
     }
@@ -84,47 +87,47 @@ impl GeometryCache {
         (Arc::ptr_eq(geometry.mesh(), mesh) || geometry.mesh() == mesh).then_some(geometry)
     }
 
-    fn keep(&self, used: &[u64], built: HashMap<u64, Arc<MeshGeometry>>) {
-        let mut kept = self.lock();
-        kept.now += 1;
-        kept.builds += built.len() as u64;
-        let now = kept.now;
+    fn store(&self, used: &[u64], built: HashMap<u64, Arc<MeshGeometry>>) {
+        let mut state = self.lock();
+        state.now += 1;
+        state.builds += built.len() as u64;
+        let now = state.now;
         for (content, geometry) in built {
-            kept.by_address.insert(address(geometry.mesh()), content);
-            kept.by_content.insert(content, Entry { geometry, last_used: now });
+            state.by_address.insert(address(geometry.mesh()), content);
+            state.by_content.insert(content, CachedGeometry { geometry, last_used: now });
         }
         for content in used {
-            if let Some(entry) = kept.by_content.get_mut(content) {
+            if let Some(entry) = state.by_content.get_mut(content) {
                 entry.last_used = now;
             }
         }
-        kept.forget_the_oldest(KEPT_TRIANGLES);
+        state.evict(MAX_UNUSED_TRIANGLES);
     }
 
-    /// A material's tables, if the last scene had it, and whatever its texture.
+    /// Returns a material of the last scene, with any texture.
     pub(super) fn material(&self, material: &Material) -> Option<TracedMaterial> {
         self.lock().materials.iter().find(|(known, _)| known == material).map(|(_, traced)| traced.clone())
     }
 
-    /// Keeps a scene's materials for the next `prepare`.
+    /// Stores a scene's materials for the next `prepare`.
     pub(super) fn store_materials(&self, materials: impl Iterator<Item = (Material, TracedMaterial)>) {
         self.lock().materials = materials.collect();
     }
 
-    /// The tree of small things that was kept last.
+    /// Returns the stored merged BLAS.
     pub(super) fn merged(&self) -> Option<Arc<MergedBlas>> {
         self.lock().merged.clone()
     }
 
-    /// Keeps the tree of small things for the next `prepare`.
+    /// Stores the merged BLAS for the next `prepare`.
     pub(super) fn store_merged(&self, merged: Arc<MergedBlas>) {
         self.lock().merged = Some(merged);
     }
 }
 
-impl Kept {
-    /// Keeps what was used last, and of the rest the newest, `most` triangles in all.
-    fn forget_the_oldest(&mut self, most: usize) {
+impl CacheState {
+    /// Evicts the least recently used meshes, so that at most `max_unused` triangles remain that the last scene did not use.
+    fn evict(&mut self, max_unused: usize) {
         let now = self.now;
         let mut unused: Vec<(u64, u64, usize)> = self
             .by_content
@@ -136,14 +139,14 @@ impl Kept {
         let mut triangles = 0;
         for (_, content, count) in unused {
             triangles += count;
-            if triangles > most {
+            if triangles > max_unused {
                 self.by_content.remove(&content);
             }
         }
         let by_content = &self.by_content;
-        // An address that is nobody's any more may become another mesh's.
-        self.by_address.retain(|address_of, content| {
-            by_content.get(content).is_some_and(|entry| address(entry.geometry.mesh()) == *address_of)
+        // The address of an evicted mesh may be reused by another.
+        self.by_address.retain(|known_address, content| {
+            by_content.get(content).is_some_and(|entry| address(entry.geometry.mesh()) == *known_address)
         });
     }
 }
@@ -172,7 +175,7 @@ mod tests {
     use crate::scene::{Assets, Emitter, Light, Object, ObjectId, Output, Room, Scene, Shape, Transform};
     use glam::Vec3;
 
-    /// A ball, a box, a model of 20 000 triangles and a light in a room.
+    /// Returns a room with a sphere, a box, a model of 20 000 triangles and a light.
     fn studio() -> (Scene, Assets) {
         let shapes = [
             Shape::Sphere { radius_m: 0.3 },
@@ -211,35 +214,35 @@ mod tests {
     }
 
     #[test]
-    fn what_moves_builds_no_tree_and_what_changes_does() {
+    fn moved_objects_build_no_blas_and_changed_ones_do() {
         let (mut scene, mut assets) = studio();
         let cache = GeometryCache::default();
         let builds = |scene: &Scene, assets: &Assets| {
             let before = cache.builds();
-            let small = cache.merged();
+            let merged = cache.merged();
             prepare_kept(scene, assets, &cache).unwrap();
-            let same_small = small.zip(cache.merged()).is_some_and(|(a, b)| Arc::ptr_eq(&a, &b));
-            (cache.builds() - before, same_small)
+            let same_merged = merged.zip(cache.merged()).is_some_and(|(a, b)| Arc::ptr_eq(&a, &b));
+            (cache.builds() - before, same_merged)
         };
-        assert_eq!(builds(&scene, &assets), (4, false), "room, ball, box, hill");
+        assert_eq!(builds(&scene, &assets), (4, false), "room, sphere, box, hill");
         scene.lights[0].position.x += 1.0;
-        assert_eq!(builds(&scene, &assets), (0, true), "a moved light re-uses everything");
+        assert_eq!(builds(&scene, &assets), (0, true), "a moved light reuses everything");
         scene.objects[2].transform.position.x += 1.0;
-        assert_eq!(builds(&scene, &assets), (0, true), "a moved model re-uses the tree of small things");
+        assert_eq!(builds(&scene, &assets), (0, true), "a moved model reuses the merged BLAS");
         scene.objects[1].transform.position.x += 1.0;
-        assert_eq!(builds(&scene, &assets), (0, false), "a moved box changes the tree of small things alone");
+        assert_eq!(builds(&scene, &assets), (0, false), "a moved box rebuilds the merged BLAS only");
         scene.objects[1].shape = Shape::Box { size_m: Vec3::new(0.4, 0.5, 0.4) };
         assert_eq!(builds(&scene, &assets).0, 1, "another box is another mesh");
         assets.meshes.insert("hill.obj".to_owned(), Arc::new(hill(100, 0.3)));
         assert_eq!(builds(&scene, &assets).0, 1, "a file that changed on disk");
         assets.meshes.insert("hill.obj".to_owned(), Arc::new(hill(100, 0.3)));
-        assert_eq!(builds(&scene, &assets).0, 0, "read again and the same");
+        assert_eq!(builds(&scene, &assets).0, 0, "loaded again with equal content");
         assets.meshes.insert("hill.obj".to_owned(), Arc::new(hill(100, 0.2)));
-        assert_eq!(builds(&scene, &assets).0, 0, "an undone change is still there");
+        assert_eq!(builds(&scene, &assets).0, 0, "an undone change is still cached");
     }
 
     #[test]
-    fn a_prepared_scene_is_the_same_with_and_without_what_was_kept() {
+    fn a_scene_renders_the_same_with_and_without_the_cache() {
         use crate::raytrace::{RenderControl, Settings, render};
         use std::ops::ControlFlow;
         let (mut scene, assets) = studio();
@@ -253,28 +256,28 @@ mod tests {
             let film = render(prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
             film.develop(&scene)
         };
-        let kept = picture(&prepare_kept(&scene, &assets, &cache).unwrap());
-        assert_eq!(kept, picture(&prepare(&scene, &assets).unwrap()));
+        let cached = picture(&prepare_kept(&scene, &assets, &cache).unwrap());
+        assert_eq!(cached, picture(&prepare(&scene, &assets).unwrap()));
     }
 
     #[test]
-    fn what_is_kept_beyond_need_is_bounded() {
+    fn the_number_of_unused_triangles_is_bounded() {
         let cache = GeometryCache::default();
         let hills: Vec<Arc<Mesh>> = (0..8).map(|i| Arc::new(hill(20, 0.1 * i as f32))).collect();
         for hill in &hills {
             cache.geometries(std::slice::from_ref(hill));
         }
-        let kept = |cache: &GeometryCache| {
-            let kept = cache.lock();
-            (kept.by_content.len(), kept.by_address.len())
+        let sizes = |cache: &GeometryCache| {
+            let state = cache.lock();
+            (state.by_content.len(), state.by_address.len())
         };
-        assert_eq!((cache.builds(), kept(&cache)), (8, (8, 8)));
-        // Each has 800 triangles: two of those that the last call did not use fit.
-        cache.lock().forget_the_oldest(1700);
-        assert_eq!(kept(&cache), (3, 3));
+        assert_eq!((cache.builds(), sizes(&cache)), (8, (8, 8)));
+        // Each has 800 triangles: two fit besides the one of the last call.
+        cache.lock().evict(1700);
+        assert_eq!(sizes(&cache), (3, 3));
         cache.geometries(&hills[5..8]);
-        assert_eq!(cache.builds(), 8, "the newest are there");
+        assert_eq!(cache.builds(), 8, "the most recently used are cached");
         cache.geometries(&hills[..1]);
-        assert_eq!(cache.builds(), 9, "the oldest went first");
+        assert_eq!(cache.builds(), 9, "the least recently used are evicted");
     }
 }

@@ -1,7 +1,7 @@
-//! Ways to find the closest hit in a mesh, from every triangle to our tree: what `catchlight chart --traversal` compares.
+//! Methods of finding the closest hit in a mesh, from brute force to the BVH, for `catchlight chart --traversal`.
 //!
-//! All use the same watertight triangle kernel, so they find the same distances to the bit; they differ only in how many
-//! triangles they test.
+//! All use the same watertight triangle kernel, so that distances have the same bits; they differ in the number of triangles
+//! that they test.
 
 use super::blas::Blas;
 use super::bvh::TraversalStack;
@@ -11,107 +11,107 @@ use crate::scene::Mesh;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// How the closest hit is found.
+/// A method of finding the closest hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum IntersectionMethod {
-    /// Every triangle of the mesh.
+    /// Tests every triangle of the mesh.
     BruteForce,
-    /// A box around each part of the mesh, tested by dividing by the direction; then every triangle of the part.
-    Box,
-    /// The same with the inverse direction and its signs computed once a ray.
-    BoxPrecomputed,
-    /// The eight-wide tree that renders use.
+    /// Tests the bounding box of each part of the mesh, dividing by the direction; then every triangle of the part.
+    PartBoxes,
+    /// The same, with the inverse direction and its signs computed once a ray.
+    PartBoxesPrecomputed,
+    /// Traverses the eight-wide BVH of the renderer.
     Bvh,
 }
 
 impl IntersectionMethod {
-    /// All, slowest first.
+    /// All methods, slowest first.
     pub const ALL: [IntersectionMethod; 4] = [
         IntersectionMethod::BruteForce,
-        IntersectionMethod::Box,
-        IntersectionMethod::BoxPrecomputed,
+        IntersectionMethod::PartBoxes,
+        IntersectionMethod::PartBoxesPrecomputed,
         IntersectionMethod::Bvh,
     ];
 
-    /// Its name in tables.
+    /// Returns the name in tables.
     pub fn label(self) -> &'static str {
         match self {
             IntersectionMethod::BruteForce => "brute",
-            IntersectionMethod::Box => "box",
-            IntersectionMethod::BoxPrecomputed => "box-precomputed",
+            IntersectionMethod::PartBoxes => "box",
+            IntersectionMethod::PartBoxesPrecomputed => "box-precomputed",
             IntersectionMethod::Bvh => "bvh",
         }
     }
 }
 
-/// A mesh prepared for one of the ways.
+/// A mesh prepared for a method.
 #[derive(Debug)]
 pub struct Intersector {
     method: IntersectionMethod,
-    parts: Vec<Part>,
+    parts: Vec<BoxedPart>,
     blas: Option<Blas>,
 }
 
-/// Triangles with a box around them.
+/// Triangles with their bounding box.
 #[derive(Debug)]
-struct Part {
+struct BoxedPart {
     low: Vec3,
     high: Vec3,
     packets: Vec<TrianglePacket>,
 }
 
-impl Part {
+impl BoxedPart {
     fn new(mesh: &Mesh, triangles: std::ops::Range<u32>) -> Self {
         let all: Vec<u32> = triangles.collect();
         let corners = all.iter().flat_map(|&t| mesh.corners(t as usize));
         let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let (low, high) = corners.fold(start, |(low, high), p| (low.min(p), high.max(p)));
         let pack = |chunk: &[u32]| TrianglePacket::new(chunk.iter().map(|&t| (t, mesh.corners(t as usize))));
-        Part { low, high, packets: all.chunks(LANES).map(pack).collect() }
+        BoxedPart { low, high, packets: all.chunks(LANES).map(pack).collect() }
     }
 
-    /// Slabs by division, each axis ordered by comparison.
-    fn is_met_by_division(&self, ray: &Ray) -> bool {
-        let (mut enter, mut leave) = (0.0_f32, ray.t_max);
+    /// Tests the box by dividing by the direction; min and max order the slabs.
+    fn is_hit_by_division(&self, ray: &Ray) -> bool {
+        let (mut enter, mut exit) = (0.0_f32, ray.t_max);
         for axis in 0..3 {
             let a = (self.low[axis] - ray.origin[axis]) / ray.direction[axis];
             let b = (self.high[axis] - ray.origin[axis]) / ray.direction[axis];
-            // min and max drop the NaN of an origin on a slab that the ray runs along.
+            // min and max drop the NaN of a ray in the plane of a slab.
             enter = a.min(b).max(enter);
-            leave = a.max(b).min(leave);
+            exit = a.max(b).min(exit);
         }
-        enter <= leave * (1.0 + 4.0 * f32::EPSILON)
+        enter <= exit * (1.0 + 4.0 * f32::EPSILON)
     }
 
-    /// Slabs with what is known of the ray beforehand.
-    fn is_met(&self, ray: &Ray, inverse: Vec3, negative: [bool; 3]) -> bool {
-        let (mut enter, mut leave) = (0.0_f32, ray.t_max);
+    /// Tests the box with the precomputed inverse direction and its signs.
+    fn is_hit(&self, ray: &Ray, inverse: Vec3, negative: [bool; 3]) -> bool {
+        let (mut enter, mut exit) = (0.0_f32, ray.t_max);
         for axis in 0..3 {
             let (near, far) =
                 if negative[axis] { (self.high[axis], self.low[axis]) } else { (self.low[axis], self.high[axis]) };
             enter = ((near - ray.origin[axis]) * inverse[axis]).max(enter);
-            leave = ((far - ray.origin[axis]) * inverse[axis]).min(leave);
+            exit = ((far - ray.origin[axis]) * inverse[axis]).min(exit);
         }
-        enter <= leave * (1.0 + 4.0 * f32::EPSILON)
+        enter <= exit * (1.0 + 4.0 * f32::EPSILON)
     }
 }
 
 impl Intersector {
-    /// Prepares a mesh.
+    /// Prepares a mesh for a method.
     pub fn new(mesh: &Arc<Mesh>, method: IntersectionMethod) -> Self {
         let whole: Vec<_> = std::iter::once(0..mesh.triangles.len() as u32).collect();
         let (ranges, blas) = match method {
             IntersectionMethod::BruteForce => (whole, None),
-            IntersectionMethod::Box | IntersectionMethod::BoxPrecomputed => {
+            IntersectionMethod::PartBoxes | IntersectionMethod::PartBoxesPrecomputed => {
                 (mesh.parts.iter().map(|part| part.triangles.clone()).collect(), None)
             }
             IntersectionMethod::Bvh => (Vec::new(), Some(Blas::new(mesh.triangles.len(), |t| mesh.corners(t)))),
         };
-        let parts = ranges.into_iter().map(|range| Part::new(mesh, range)).collect();
+        let parts = ranges.into_iter().map(|range| BoxedPart::new(mesh, range)).collect();
         Intersector { method, parts, blas }
     }
 
-    /// Distances of the closest hits, in multiples of each ray's direction; infinite for a miss.
+    /// Returns the distances of the closest hits, in multiples of each ray's direction; infinite for a miss.
     pub fn distances(&self, rays: &[Ray]) -> Vec<f32> {
         simd::dispatch(Distances { intersector: self, rays })
     }
@@ -127,12 +127,12 @@ impl Intersector {
         let mut nearest = None;
         let mut ray = *ray;
         for part in &self.parts {
-            let met = match self.method {
-                IntersectionMethod::Box => part.is_met_by_division(&ray),
-                IntersectionMethod::BoxPrecomputed => part.is_met(&ray, inverse, negative),
+            let is_hit = match self.method {
+                IntersectionMethod::PartBoxes => part.is_hit_by_division(&ray),
+                IntersectionMethod::PartBoxesPrecomputed => part.is_hit(&ray, inverse, negative),
                 IntersectionMethod::BruteForce | IntersectionMethod::Bvh => true,
             };
-            for packet in part.packets.iter().filter(|_| met) {
+            for packet in part.packets.iter().filter(|_| is_hit) {
                 if let Some(hit) = K::intersect_triangles(&sheared, packet, ray.t_max) {
                     ray.t_max = hit.t;
                     nearest = Some(hit.t);
@@ -143,7 +143,7 @@ impl Intersector {
     }
 }
 
-/// See [`Intersector::distances`].
+/// The task of [`Intersector::distances`].
 struct Distances<'a> {
     intersector: &'a Intersector,
     rays: &'a [Ray],
@@ -168,11 +168,11 @@ mod tests {
     use glam::Vec2;
 
     #[test]
-    fn all_ways_find_the_same_hits_to_the_bit() {
+    fn all_methods_return_the_same_bits() {
         let mut mesh = tessellate(&Shape::Sphere { radius_m: 1.0 }).unwrap();
         mesh.append(&tessellate(&Shape::Box { size_m: Vec3::new(3.0, 0.5, 0.5) }).unwrap());
         let mesh = Arc::new(mesh);
-        assert!(mesh.parts.len() > 1, "boxes a part need parts");
+        assert!(mesh.parts.len() > 1, "the test needs several parts");
         let ray = |i: u32| {
             let [a, b, c, d] = sobol_burley::sample_4d(i, 0, 1);
             let origin = 2.5 * warp::uniform_sphere(Vec2::new(a, b));

@@ -1,61 +1,64 @@
-//! Which clear bodies a path is inside of: glass in water, a bubble in glass, a drink in a tumbler.
+//! The medium stack: the clear bodies that a path is inside of, such as glass in water, or a drink in a tumbler.
 //!
-//! The body that was entered last fills the space. Where two overlap (a drink drawn a little wider than the hollow of
-//! its tumbler, as it should be, so that no air is between them), leaving the other one changes nothing.
+//! The body that was entered last is the current medium. Where two bodies overlap (a drink is modelled slightly wider than the
+//! hollow of its tumbler, so that there is no air between them), exiting the other one does not change the medium. Schmidt
+//! and Budge 2002, "Simple Nested Dielectrics in Ray Traced Images", give bodies priorities instead.
 
 use super::bsdf::{DielectricInterface, TracedMaterial};
 use glam::Vec3;
 
-/// Bodies that a path can be inside of at once; beyond, the innermost is replaced.
-const DEPTH: usize = 8;
+/// Capacity of the stack; a body beyond it replaces the innermost one.
+const CAPACITY: usize = 8;
 
-/// Bodies by their material, the innermost last.
+/// The bodies that a path is inside of, as indices of their materials, the innermost last.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MediumStack {
-    inside: [u32; DEPTH],
+    bodies: [u32; CAPACITY],
     count: u8,
 }
 
 impl MediumStack {
-    /// The innermost body's material.
+    /// Returns the material of the current medium; none in air.
     pub fn innermost(&self) -> Option<u32> {
-        self.count.checked_sub(1).map(|last| self.inside[usize::from(last)])
+        self.count.checked_sub(1).map(|last| self.bodies[usize::from(last)])
     }
 
-    /// What a path meets at the surface of a body, coming from its outside or inside.
-    pub fn interface(&self, materials: &[TracedMaterial], material: u32, outside: bool) -> DielectricInterface {
+    /// Returns the interface at the surface of a body, for a path that comes from its outside or inside.
+    pub fn interface(&self, materials: &[TracedMaterial], material: u32, from_outside: bool) -> DielectricInterface {
         let ior = |body: Option<u32>| body.map_or(1.0, |m| materials[m as usize].ior());
-        let this = materials[material as usize].ior();
-        if outside {
-            return DielectricInterface { eta: this / ior(self.innermost()), starts_inside: false };
+        let body_ior = materials[material as usize].ior();
+        // Entering: from the current medium into the body
+        if from_outside {
+            return DielectricInterface { eta: body_ior / ior(self.innermost()), starts_inside: false };
         }
+        // Exiting: into the medium that is current without the body; a path that started inside never entered it
         let mut after = *self;
-        let known = after.exit(material);
-        let before = if known { ior(self.innermost()) } else { this };
-        DielectricInterface { eta: ior(after.innermost()) / before, starts_inside: !known }
+        let was_entered = after.exit(material);
+        let before = if was_entered { ior(self.innermost()) } else { body_ior };
+        DielectricInterface { eta: ior(after.innermost()) / before, starts_inside: !was_entered }
     }
 
-    /// Goes through the surface of a body.
-    pub fn cross(&mut self, material: u32, outside: bool) {
-        if outside {
-            let slot = usize::from(self.count).min(DEPTH - 1);
-            self.inside[slot] = material;
+    /// Updates the stack for a path that crosses the surface of a body from outside or inside.
+    pub fn cross(&mut self, material: u32, from_outside: bool) {
+        if from_outside {
+            let slot = usize::from(self.count).min(CAPACITY - 1);
+            self.bodies[slot] = material;
             self.count = slot as u8 + 1;
         } else {
             self.exit(material);
         }
     }
 
-    /// Leaves the body of this material that was entered last; false when there is none.
+    /// Removes the innermost body of this material. Returns false if there is none.
     fn exit(&mut self, material: u32) -> bool {
         let count = usize::from(self.count);
-        let Some(at) = self.inside[..count].iter().rposition(|&m| m == material) else { return false };
-        self.inside.copy_within(at + 1..count, at);
+        let Some(at) = self.bodies[..count].iter().rposition(|&m| m == material) else { return false };
+        self.bodies.copy_within(at + 1..count, at);
         self.count -= 1;
         true
     }
 
-    /// Share of light left after a distance in the innermost body (Beer and Lambert); all of it in air.
+    /// Returns the transmittance over a distance in the current medium, metres (Beer-Lambert law); 1 in air.
     pub fn transmittance(&self, materials: &[TracedMaterial], distance: f32) -> Vec3 {
         self.innermost().map_or(Vec3::ONE, |m| materials[m as usize].transmittance(distance))
     }
@@ -74,26 +77,26 @@ mod tests {
     const WATER: u32 = 1;
 
     #[test]
-    fn water_in_glass_meets_glass_and_not_air() {
+    fn water_in_a_glass_has_an_interface_with_glass_and_not_with_air() {
         let materials = materials();
         let mut media = MediumStack::default();
         assert_eq!(media.interface(&materials, GLASS, true).eta, 1.5);
         media.cross(GLASS, true);
-        // The drink is a little wider than the hollow: entered inside the wall.
+        // The drink is slightly wider than the hollow: it is entered inside the wall.
         assert_eq!(media.interface(&materials, WATER, true).eta, 1.33 / 1.5);
         media.cross(WATER, true);
-        // The wall's inner face lies in the water and is no interface.
+        // The inner face of the wall is inside the water: no interface.
         assert_eq!(media.interface(&materials, GLASS, false), DielectricInterface { eta: 1.0, starts_inside: false });
         media.cross(GLASS, false);
         assert_eq!(media.innermost(), Some(WATER));
-        // Out through the top.
+        // The path exits at the top.
         assert_eq!(media.interface(&materials, WATER, false).eta, 1.0 / 1.33);
         media.cross(WATER, false);
         assert_eq!(media.innermost(), None);
     }
 
     #[test]
-    fn a_body_that_was_never_entered_ends_in_air() {
+    fn a_body_that_was_never_entered_is_exited_into_air() {
         let materials = materials();
         let mut media = MediumStack::default();
         let interface = media.interface(&materials, WATER, false);
@@ -103,11 +106,11 @@ mod tests {
     }
 
     #[test]
-    fn too_many_bodies_are_no_reason_to_fail() {
+    fn a_full_stack_does_not_fail() {
         let mut media = MediumStack::default();
         (0..100).for_each(|body| media.cross(body, true));
         assert_eq!(media.innermost(), Some(99));
         (0..100).rev().for_each(|body| media.cross(body, false));
-        assert!(media.count <= DEPTH as u8);
+        assert!(media.count <= CAPACITY as u8);
     }
 }

@@ -1,11 +1,11 @@
-//! Picture lookups: bilinear, repeating.
+//! Texture lookup: bilinear, repeating.
 
 use crate::color::srgb_decode;
 use crate::scene::Texture;
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
-/// A texture with its table of linear values.
+/// A texture with a lookup table from sRGB codes to linear values.
 #[derive(Clone, Debug)]
 pub struct TextureMap {
     texture: Arc<Texture>,
@@ -13,13 +13,13 @@ pub struct TextureMap {
 }
 
 impl TextureMap {
-    /// Shares the pixels.
+    /// Returns the lookup for a texture, whose pixels are shared.
     pub fn new(texture: &Arc<Texture>) -> Self {
         let linear = std::array::from_fn(|i| srgb_decode(i as f32 / 255.0));
         TextureMap { texture: texture.clone(), linear }
     }
 
-    /// Linear RGB at texture coordinates, (0, 0) at the picture's bottom left; repeats outside 0..1.
+    /// Returns linear RGB at texture coordinates; (0, 0) is at the bottom left. Repeats outside 0..1.
     pub fn at(&self, uv: Vec2) -> Vec3 {
         let (width, height) = (self.texture.width as i64, self.texture.height as i64);
         let wrapped = uv - uv.floor();
@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_run_from_the_top_and_the_picture_repeats() {
+    fn v_points_up_and_the_texture_repeats() {
         let rgb = vec![[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
         let map = TextureMap::new(&Arc::new(Texture { width: 2, height: 2, rgb }));
         assert_eq!(map.at(Vec2::new(0.25, 0.75)), Vec3::X);

@@ -89,7 +89,7 @@ impl ProcessorView {
             return ColorImage::filled(size, Color32::TRANSPARENT);
         }
         let shown = |(rgb, depth): (&[f32; 3], &f32)| {
-            let [r, g, b] = self.tone.shown(if *depth > 0.0 { *rgb } else { input.overlay.void_color.into() });
+            let [r, g, b] = self.tone.display_srgb8(if *depth > 0.0 { *rgb } else { input.overlay.void_color.into() });
             Color32::from_rgb(r, g, b)
         };
         ColorImage::new(size, picture.rgb.par_iter().zip(&drawing.inverse_depths).map(shown).collect())
