@@ -1,4 +1,4 @@
-//! The tracer against closed forms: what a meter would read, from rendered pictures.
+//! Rendered pictures against closed forms of illuminance.
 #![allow(clippy::unwrap_used)]
 
 mod studio;
@@ -18,7 +18,7 @@ fn render(scene: &Scene, settings: &Settings) -> Picture {
     film.develop(scene)
 }
 
-/// Illuminance of the card that fills the picture, by the exposure equation turned round: lux.
+/// Returns the illuminance of the card that fills the picture, lx, by inverting the exposure equation.
 fn illuminance(scene: &Scene, method: Method, spp: u32) -> f32 {
     let settings = Settings { width: 8, height: 8, method, spp, ..Settings::default() };
     let picture = render(scene, &settings);
@@ -27,7 +27,7 @@ fn illuminance(scene: &Scene, method: Method, spp: u32) -> f32 {
     mean * camera.meter_constant * camera.f_number * camera.f_number / (camera.iso * REFLECTANCE * camera.shutter_s)
 }
 
-/// A small card facing +Z at the origin, lit from the front by one light, which faces it.
+/// Returns a small card at the origin that faces +Z, and one light in front that faces it.
 fn lit_card(emitter: Emitter, distance_m: f32) -> Scene {
     let mut scene = card_at(Vec3::ZERO, 0.02);
     scene.lights.push(light(emitter, Output::Lumens(1000.0), Vec3::Z * distance_m));
@@ -35,9 +35,9 @@ fn lit_card(emitter: Emitter, distance_m: f32) -> Scene {
 }
 
 #[test]
-fn panels_on_their_axis_read_what_the_table_says() {
-    // light_and_camera.md, 1000 lm. 64 x 256 samples of a smooth integrand err by well under 0.5 %; the card is 2 cm
-    // wide, which matters by less than 0.1 % at half a metre.
+fn the_illuminance_on_the_axis_of_panels_matches_the_table() {
+    // light_and_camera.md, 1000 lm. The error of 64 x 256 samples of a smooth integrand is well under 0.5 %; that of the
+    // card's 2 cm is less than 0.1 % at half a metre.
     let small = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
     let large = Emitter::RectPanel { width_m: 0.9, height_m: 1.2 };
     let round = Emitter::RoundPanel { diameter_m: 1.2 };
@@ -55,19 +55,19 @@ fn panels_on_their_axis_read_what_the_table_says() {
 }
 
 #[test]
-fn points_and_bulbs_follow_the_inverse_square() {
+fn point_and_sphere_lights_follow_the_inverse_square_law() {
     for emitter in [Emitter::Point, Emitter::Sphere { radius_m: 0.05 }] {
         for distance in [0.5_f32, 1.0, 2.0, 4.0, 8.0] {
             let expected = 1000.0 / (4.0 * PI) / (distance * distance);
             let ours = illuminance(&lit_card(emitter, distance), Method::Direct, 64);
-            // A ball lights a facing card exactly as a point at its centre does.
+            // The illuminance of a facing card by a sphere is that of a point light at its centre.
             assert!((ours / expected - 1.0).abs() < 0.003, "{emitter:?} at {distance} m: {ours} for {expected} lx");
         }
     }
 }
 
 #[test]
-fn a_lamp_over_the_floor_obeys_inverse_square_and_cosine() {
+fn a_point_light_above_the_floor_follows_inverse_square_and_cosine_law() {
     // 10 000 lm, 3 m up: the five values of light_and_camera.md.
     for (r, expected) in [(0.0, 88.42), (1.0, 75.49), (2.0, 50.93), (3.0, 31.26), (4.0, 19.10)] {
         let mut scene = card_at(Vec3::new(r, 0.0, 0.0), 0.02);
@@ -89,7 +89,7 @@ fn spots_have_the_tabulated_intensity_on_their_axis() {
 }
 
 #[test]
-fn the_sun_lights_the_same_at_any_size_and_distance() {
+fn the_illuminance_of_the_sun_does_not_depend_on_its_angular_diameter() {
     for angular_diameter_deg in [0.0, 0.53, 10.0] {
         let mut scene = lit_card(Emitter::Sun { angular_diameter_deg }, 3.0);
         scene.lights[0].power.output = Output::Lux(5000.0);
@@ -99,7 +99,7 @@ fn the_sun_lights_the_same_at_any_size_and_distance() {
 }
 
 #[test]
-fn a_surround_lights_a_facing_card_with_its_lux() {
+fn the_illuminance_of_a_surround_is_its_lux() {
     let mut scene = lit_card(Emitter::Surround, 3.0);
     scene.lights[0].power.output = Output::Lux(2000.0);
     let ours = illuminance(&scene, Method::Path, 64);
@@ -107,12 +107,11 @@ fn a_surround_lights_a_facing_card_with_its_lux() {
 }
 
 #[test]
-fn a_closed_grey_box_gathers_light_as_the_geometric_series_says() {
-    // E = F / (S (1 - r)), a 4 m cube with 10 000 lm; a mean over all walls, seen by cameras at the centre. The picture
-    // of a pinhole weights its walls unevenly, so six square views of 90 degrees are combined by solid angle and cosine.
+fn the_illuminance_in_a_closed_grey_box_is_the_geometric_series() {
+    // E = F / (S (1 - r)) for a cube of 4 m with 10 000 lm: the mean over all walls, rendered by six cameras at the centre.
     for (reflectance, expected) in [(0.2_f32, 130.21), (0.5, 208.33), (0.8, 520.83), (0.9, 1041.67)] {
         let ours = box_illuminance(reflectance);
-        // 6 x 256 pixels x 64 samples with a lamp in the middle: under 1 %; roulette adds a little at 0.9.
+        // Error of 6 x 256 pixels x 64 samples: under 1 %; Russian roulette adds to it at 0.9.
         assert!((ours / expected - 1.0).abs() < 0.015, "r = {reflectance}: {ours} for {expected} lx");
     }
 }
@@ -121,13 +120,13 @@ fn box_illuminance(reflectance: f32) -> f32 {
     let paint = Material { base_color: [reflectance; 3], ior: 1.0, roughness: 1.0, ..Material::default() };
     let room = Room { size_m: Vec3::splat(4.0), floor: paint.clone(), walls: paint.clone(), ceiling: paint };
     let mut scene = Scene { room: Some(room), ..Scene::default() };
-    // Off the centre, so that the camera is not inside the lamp; the mean does not care.
+    // Off centre, so that the camera is not at the light; the mean does not depend on the position.
     scene.lights.push(light(Emitter::Point, Output::Lumens(10_000.0), Vec3::new(0.3, 2.2, 0.1)));
     let centre = Vec3::new(0.0, 2.0, 0.0);
     let (mut sum, mut weights) = (0.0, 0.0);
     for direction in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
-        // A square of 24 mm at 12 mm focal length is 90 degrees: one wall fills the picture exactly, so that its pixels
-        // are equal areas of wall.
+        // A square sensor of 24 mm at 12 mm focal length covers 90 degrees: one wall fills the picture, and pixels are equal
+        // areas of the wall.
         scene.camera = looking_at_card(centre + direction, direction);
         scene.camera.position = centre;
         scene.camera.aim = Aim::Point(centre + direction);
@@ -143,8 +142,8 @@ fn box_illuminance(reflectance: f32) -> f32 {
 }
 
 #[test]
-fn a_white_furnace_shows_nothing_of_what_is_in_it() {
-    // White, rough or polished, metal or glass, in even light of 1: every pixel is 1.
+fn a_white_sphere_is_invisible_in_a_white_furnace() {
+    // White, rough or smooth, metal or glass, in a uniform surround: every pixel has the same value.
     for (metallic, roughness, transmission) in
         [(0.0, 1.0, 0.0), (0.0, 0.2, 0.0), (1.0, 0.0, 0.0), (1.0, 0.5, 0.0), (1.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
     {
@@ -153,28 +152,28 @@ fn a_white_furnace_shows_nothing_of_what_is_in_it() {
         scene.camera.f_number = 4.0;
         let settings = Settings { width: 16, height: 16, spp: 256, max_depth: Some(64), ..Settings::default() };
         let picture = render(&scene, &settings);
-        // The corner shows the light itself.
-        let even = picture.at(0, 0)[1];
+        // The corner shows the surround.
+        let surround = picture.at(0, 0)[1];
         let mut mean = Vec3::ZERO;
         for pixel in &picture.rgb {
-            // Weights of rough metal scatter by about 0.3 a sample: 0.02 after 256; the worst of 256 pixels is 3 sigma.
-            let relative = Vec3::from(*pixel) / even;
+            // The standard deviation of rough metal is about 0.3 a sample, 0.02 after 256; the worst of 256 pixels is at 3 sigma.
+            let relative = Vec3::from(*pixel) / surround;
             assert!(
                 (relative - Vec3::ONE).abs().max_element() < 0.06,
-                "metallic {metallic}, roughness {roughness}, clear {transmission}: {relative}"
+                "metallic {metallic}, roughness {roughness}, transmission {transmission}: {relative}"
             );
             mean += relative / picture.rgb.len() as f32;
         }
-        // The energy tables are good to half a percent.
+        // The error of the albedo tables is half a percent.
         assert!(
             (mean - Vec3::ONE).abs().max_element() < 0.005,
-            "metallic {metallic}, roughness {roughness}, clear {transmission}: {mean}"
+            "metallic {metallic}, roughness {roughness}, transmission {transmission}: {mean}"
         );
     }
 }
 
 #[test]
-fn one_stop_is_one_stop() {
+fn one_stop_less_power_halves_the_illuminance() {
     let scene = lit_card(Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, 1.0);
     let mut darker = scene.clone();
     darker.lights[0].power.dial_stops = -1.0;
@@ -183,7 +182,7 @@ fn one_stop_is_one_stop() {
 }
 
 #[test]
-fn dragging_the_shutter_leaves_a_flash_picture_as_it_is_to_the_bit() {
+fn the_shutter_time_changes_continuous_light_and_not_flash() {
     let mut scene = lit_card(Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, 1.0);
     scene.lights[0].power.output = Output::FlashWs { energy_ws: 100.0, efficacy_lm_s_per_ws: 40.0 };
     let settings = Settings { width: 16, height: 16, spp: 4, ..Settings::default() };
@@ -200,16 +199,16 @@ fn dragging_the_shutter_leaves_a_flash_picture_as_it_is_to_the_bit() {
 }
 
 #[test]
-fn relighting_the_film_is_rendering_anew() {
+fn relighting_a_film_equals_rendering_again() {
     let mut scene = lit_card(Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, 1.0);
     let fill = Light { name: "Fill".into(), id: catchlight::scene::LightId(1), ..scene.lights[0].clone() };
     scene.lights.push(Light { position: Vec3::new(1.0, 0.5, 1.0), ..fill });
     let settings = Settings { width: 8, height: 8, spp: 64, ..Settings::default() };
     let prepared = raytrace::prepare(&scene, &Assets::default()).unwrap();
     let film = raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
-    let whole = film.develop(&scene);
+    let combined = film.develop(&scene);
     let layers = film.develop_layers(&scene);
-    for (i, pixel) in whole.rgb.iter().enumerate() {
+    for (i, pixel) in combined.rgb.iter().enumerate() {
         let sum: Vec3 = layers.iter().map(|(_, p)| Vec3::from(p.rgb[i])).sum();
         assert!((sum - Vec3::from(*pixel)).length() < 1e-5 * sum.length());
     }
@@ -217,14 +216,14 @@ fn relighting_the_film_is_rendering_anew() {
     scene.lights[1].on = false;
     scene.lights[0].color.source = catchlight::scene::ColorSource::Kelvin(3200.0);
     let relit = film.develop(&scene);
-    let anew = render(&scene, &settings);
+    let rendered = render(&scene, &settings);
     let mean = |p: &Picture| p.rgb.iter().map(|c| Vec3::from(*c)).sum::<Vec3>() / p.rgb.len() as f32;
-    // The light choice differs, so the noise does; 4096 samples of a smooth integrand agree to 0.5 %.
-    assert!((mean(&relit) / mean(&anew) - Vec3::ONE).abs().max_element() < 0.005);
+    // Light sampling differs, and so does the noise; 4096 samples of a smooth integrand agree within 0.5 %.
+    assert!((mean(&relit) / mean(&rendered) - Vec3::ONE).abs().max_element() < 0.005);
 }
 
 #[test]
-fn hidden_things_cast_no_shadow_and_shown_things_do() {
+fn hidden_objects_cast_no_shadow_and_visible_ones_do() {
     let mut scene = lit_card(Emitter::Point, 2.0);
     let shape = Shape::Box { size_m: Vec3::new(0.5, 0.5, 0.02) };
     let mut screen: Object = studio::object("Screen", shape, Vec3::Z * 1.5);
@@ -238,7 +237,7 @@ fn hidden_things_cast_no_shadow_and_shown_things_do() {
 #[test]
 fn a_texture_is_upright_on_a_card() {
     use catchlight::scene::Texture;
-    // A card that faces +Z, its far edge up: four quarters of a picture, red and green over blue and white.
+    // A card that faces +Z, with a texture of four quarters: red and green above blue and white.
     let mut scene = card_at(Vec3::ZERO, 0.02);
     scene.objects[0].material.base_color = [0.9; 3];
     scene.objects[0].material.base_color_texture = Some("quarters.png".into());
@@ -255,7 +254,7 @@ fn a_texture_is_upright_on_a_card() {
         let p = picture.at(x, y);
         (0..3).filter(|&c| p[c] > 0.5 * p[0].max(p[1]).max(p[2])).collect::<Vec<_>>()
     };
-    // Looking along -Z at a card turned up about X: its +Z edge is below, its texture's top is the -Z edge, above.
+    // The plane is rotated about X to face the camera: the top of the texture, its -Z edge, is up.
     assert_eq!(strongest(2, 2), [0]);
     assert_eq!(strongest(5, 2), [1]);
     assert_eq!(strongest(2, 5), [2]);
@@ -263,22 +262,22 @@ fn a_texture_is_upright_on_a_card() {
 }
 
 #[test]
-fn many_lights_add_up_to_one_and_none_is_black() {
-    // One light is a layer of its own; twenty share layers by role and are chosen one a hit.
+fn many_lights_sum_to_one_and_no_light_is_black() {
+    // One light has its own layer; twenty share layers by role, and one is sampled at each hit.
     let alone = lit_card(Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, 1.0);
-    let mut crowd = alone.clone();
-    crowd.lights.clear();
+    let mut many = alone.clone();
+    many.lights.clear();
     for i in 0..20 {
         let mut light = alone.lights[0].clone();
         light.id = catchlight::scene::LightId(i);
         light.name = format!("Light {i}");
         light.role = catchlight::scene::Role::ALL[i as usize % 6];
         light.power.output = Output::Lumens(1000.0 / 20.0);
-        crowd.lights.push(light);
+        many.lights.push(light);
     }
     for method in [Method::Direct, Method::Path] {
-        let ratio = illuminance(&crowd, method, 4096) / illuminance(&alone, method, 4096);
-        // 262144 samples that scatter by a quarter: 0.05 % standard error.
+        let ratio = illuminance(&many, method, 4096) / illuminance(&alone, method, 4096);
+        // 262144 samples with a standard deviation of a quarter: 0.05 % standard error.
         assert!((ratio - 1.0).abs() < 0.0015, "{method:?}: {ratio}");
     }
     for scene in [Scene { lights: Vec::new(), ..alone.clone() }, {
@@ -291,7 +290,7 @@ fn many_lights_add_up_to_one_and_none_is_black() {
 }
 
 #[test]
-fn a_glowing_wall_lights_a_card_as_a_panel_of_its_luminance_does() {
+fn an_emissive_wall_lights_a_card_like_a_panel_of_its_luminance() {
     // A wall of 4 x 4 m at 1 m with 100 cd/m2, by Lambert's formula for a rectangle on its axis.
     let mut scene = card_at(Vec3::ZERO, 0.02);
     let mut wall = studio::object("Wall", Shape::Plane { width_m: 4.0, depth_m: 4.0 }, Vec3::Z);
@@ -305,7 +304,7 @@ fn a_glowing_wall_lights_a_card_as_a_panel_of_its_luminance_does() {
     let expected = 4.0 * 100.0 * side * side.atan();
     for method in [Method::Direct, Method::Path] {
         let ours = illuminance(&scene, method, 1024);
-        // Found by the surface's own directions alone: 65536 samples, 0.4 % standard error.
+        // BSDF sampling only: 65536 samples have a standard error of 0.4 %.
         assert!((ours / expected - 1.0).abs() < 0.015, "{method:?}: {ours} for {expected} lx");
     }
 }

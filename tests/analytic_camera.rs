@@ -1,4 +1,4 @@
-//! Exposure, lens and shadows against closed forms, read from rendered pictures.
+//! Exposure, lens and shadows in rendered pictures against closed forms.
 #![allow(clippy::unwrap_used)]
 
 mod studio;
@@ -11,14 +11,14 @@ use std::f64::consts::PI;
 use studio::light;
 use studio::measure::{illuminance, meter_card, picture, square, values};
 
-fn thing(name: &str, shape: Shape, position: Vec3, rotation_deg: Vec3) -> Object {
+fn rotated_object(name: &str, shape: Shape, position: Vec3, rotation_deg: Vec3) -> Object {
     let transform = Transform { position, rotation_deg, ..Transform::default() };
     Object { transform, ..studio::object(name, shape, position) }
 }
 
 #[test]
-fn a_card_exposed_as_metered_is_018_for_continuous_light_flash_and_both() {
-    // N2 = (E t + H) S / C with E and H of a point at 2 m.
+fn a_card_exposed_as_metered_has_the_value_018_for_continuous_light_flash_and_both() {
+    // N2 = (E t + H) S / C, with E and H of a point light at 2 m.
     for (lumens, flash_ws) in [(20_000.0_f32, 0.0_f32), (0.0, 200.0), (20_000.0, 50.0)] {
         let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
         let at_2_m = 1.0 / (4.0 * std::f32::consts::PI * 4.0);
@@ -40,13 +40,13 @@ fn a_card_exposed_as_metered_is_018_for_continuous_light_flash_and_both() {
         scene.camera.iso = 200.0;
         scene.camera.f_number = exposure::f_number(lux_s, 200.0, scene.camera.meter_constant);
         let value = values(&picture(&scene, &square(Method::Path, 8, 4))).mean;
-        // Within 0.1 %: the card is the only thing there; its 0.4 mm and single precision remain.
+        // The card is the only object: its 0.4 mm and single precision give less than 0.1 %.
         assert!((value / 0.18 - 1.0).abs() < 1e-3, "{lumens} lm and {flash_ws} Ws: {value}");
     }
 }
 
 #[test]
-fn every_dial_moves_the_picture_by_its_stops() {
+fn every_setting_changes_the_exposure_by_its_stops() {
     let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
     scene.lights.push(light(Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, Output::Lumens(1000.0), Vec3::Z));
     let value = |scene: &Scene| values(&picture(scene, &square(Method::Path, 4, 16))).mean;
@@ -61,17 +61,17 @@ fn every_dial_moves_the_picture_by_its_stops() {
         ("a stop closed", -1.0, |s| s.camera.f_number *= 2_f32.sqrt()),
         ("dome constant", -(340.0_f64 / 250.0).log2(), |s| s.camera.meter_constant = 340.0),
     ];
-    for (what, stops, change) in changes {
+    for (name, stops, change) in changes {
         let mut changed = scene.clone();
         change(&mut changed);
         let ours = (value(&changed) / reference).log2();
-        // The samples are the same: only rounding is between them.
-        assert!((ours - stops).abs() < 1e-5, "{what}: {ours} stops for {stops}");
+        // The samples are the same: only rounding differs.
+        assert!((ours - stops).abs() < 1e-5, "{name}: {ours} stops for {stops}");
     }
 }
 
 #[test]
-fn ev_and_f_numbers_are_those_of_the_tables() {
+fn ev_and_f_numbers_match_the_tables() {
     // light_and_camera.md: ISO 100, 1/125 s, in nominal labels; flash at f/8 is 160 lux s; EV100 = log2(100 E / C).
     for (lux, label) in [(1000.0, "f/1.8"), (2000.0, "f/2.5"), (5000.0, "f/4"), (10_000.0, "f/5.6")] {
         let n = exposure::f_number(lux / 125.0, 100.0, 250.0);
@@ -84,9 +84,9 @@ fn ev_and_f_numbers_are_those_of_the_tables() {
     assert!((exposure::ev100(81_920.0, 250.0) - 15.0).abs() < 1e-5);
 }
 
-/// A sheet that fills the view straight on; 1 m of it is seen.
-fn sheet_view() -> Scene {
-    let mut floor = thing("Sheet", Shape::Plane { width_m: 6.0, depth_m: 6.0 }, Vec3::ZERO, Vec3::X * 90.0);
+/// Returns a view of 1 m of a perpendicular plane.
+fn plane_view() -> Scene {
+    let mut floor = rotated_object("Plane", Shape::Plane { width_m: 6.0, depth_m: 6.0 }, Vec3::ZERO, Vec3::X * 90.0);
     floor.material = Material { base_color: [0.5; 3], ior: 1.0, roughness: 1.0, ..Material::default() };
     let camera = Camera {
         position: Vec3::Z * 20.0,
@@ -99,27 +99,27 @@ fn sheet_view() -> Scene {
 }
 
 #[test]
-fn penumbras_are_as_wide_as_source_and_distances_say() {
-    // A panel of width D, an edge at d1 from it, a sheet d2 behind the edge: D d2 / d1. The profile across it: a square
-    // source's light grows linearly. The light comes from behind the sheet's camera, aside of the edge's blade.
+fn the_width_of_a_penumbra_follows_from_source_size_and_distances() {
+    // The penumbra of an edge at d1 from a panel of width D, on a plane d2 behind the edge, is D d2 / d1 wide. The illuminance
+    // across it grows linearly for a square panel.
     for (source, d1, d2) in [(0.3_f32, 2.0_f32, 1.0_f32), (0.1, 1.0, 1.0), (0.4, 3.0, 0.5)] {
-        let mut scene = sheet_view();
-        // Camera, light and blade are on one side; the blade covers x < 0 and hides the dark half of the penumbra.
+        let mut scene = plane_view();
+        // Camera, light and blade are on one side; the blade covers x < 0 and occludes the dark half of the penumbra.
         scene.camera.position = Vec3::Z * -20.0;
         let blade = Shape::Plane { width_m: 4.0, depth_m: 8.0 };
-        scene.objects.push(thing("Blade", blade, Vec3::new(-2.0, 0.0, -d2), Vec3::X * 90.0));
+        scene.objects.push(rotated_object("Blade", blade, Vec3::new(-2.0, 0.0, -d2), Vec3::X * 90.0));
         scene.objects[1].material.base_color = [0.0; 3];
         let panel = Emitter::RectPanel { width_m: source, height_m: source };
         scene.lights.push(light(panel, Output::Lumens(1e5), Vec3::Z * -(d1 + d2)));
         let settings = Settings { width: COLUMNS, height: 64, ..square(Method::Direct, 64, 16) };
-        let blocked = column_sums(&picture(&scene, &settings));
-        // Without the blade: what a column would get from the whole source.
+        let occluded = column_sums(&picture(&scene, &settings));
+        // Without the blade: the columns lit by the whole source.
         scene.objects[1].visible = false;
-        let open = column_sums(&picture(&scene, &settings));
-        let shares: Vec<f64> = blocked.iter().zip(&open).map(|(b, o)| b / o).collect();
+        let unoccluded = column_sums(&picture(&scene, &settings));
+        let fractions: Vec<f64> = occluded.iter().zip(&unoccluded).map(|(o, u)| o / u).collect();
         let width = f64::from(source * d2 / d1);
-        let ours = 1.0 / (bright_half_slope(&shares) * f64::from(COLUMNS));
-        // Columns of 4 mm in a penumbra of 7 to 15 cm, 1024 samples each of a source seen in part: 3 %.
+        let ours = 1.0 / (bright_half_slope(&fractions) * f64::from(COLUMNS));
+        // Columns of 4 mm in a penumbra of 7 to 15 cm, with 1024 samples each: an error of 3 %.
         assert!((ours / width - 1.0).abs() < 0.06, "D {source}, d1 {d1}, d2 {d2}: {ours} for {width} m");
     }
 }
@@ -131,10 +131,10 @@ fn column_sums(picture: &Picture) -> Vec<f64> {
     (0..picture.width).map(sum).collect()
 }
 
-/// Mean growth a column of the share of the source, over the shares from 0.6 to 0.95 (least squares).
-fn bright_half_slope(shares: &[f64]) -> f64 {
+/// Returns the slope of the visible fraction of the source per column, by least squares over fractions from 0.6 to 0.95.
+fn bright_half_slope(fractions: &[f64]) -> f64 {
     let points: Vec<(f64, f64)> =
-        shares.iter().enumerate().filter(|(_, s)| (0.6..0.95).contains(*s)).map(|(x, s)| (x as f64, *s)).collect();
+        fractions.iter().enumerate().filter(|(_, s)| (0.6..0.95).contains(*s)).map(|(x, s)| (x as f64, *s)).collect();
     let n = points.len() as f64;
     assert!(n > 4.0, "the penumbra is {n} columns wide");
     let (mx, my) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
@@ -144,8 +144,8 @@ fn bright_half_slope(shares: &[f64]) -> f64 {
 }
 
 #[test]
-fn a_small_light_out_of_focus_is_a_disc_of_the_thin_lens() {
-    // Blur in the plane of the point: aperture x |s - f| / f, for an aperture A = focal length / N, focus f, distance s.
+fn the_blur_disc_of_a_small_light_follows_the_thin_lens_equation() {
+    // Diameter of the blur in the plane of the light: A |s - f| / f, for an aperture A = focal length / N, focus f, distance s.
     for (f_number, focus_m, distance_m) in [(1.4_f32, 2.0_f32, 4.0_f32), (2.8, 3.0, 1.5), (1.4, 1.0, 10.0)] {
         let focal_length_mm = 85.0;
         let camera = Camera {
@@ -166,40 +166,40 @@ fn a_small_light_out_of_focus_is_a_disc_of_the_thin_lens() {
         let scene = Scene { camera, lights: vec![bulb], ..Scene::default() };
         let side = 128;
         let ours = picture(&scene, &square(Method::Path, side, 128));
-        // A disc of even light: the mean square of its radius is half the square of its edge's; the bulb's own adds.
+        // A uniform disc has a mean squared radius of half its squared radius; that of the light itself adds to it.
         let (mut sum, mut moment, mut mean) = (0.0, 0.0, [0.0; 2]);
         for y in 0..side {
             for x in 0..side {
                 let value = f64::from(ours.at(x, y)[1]);
-                let place = [x, y]
+                let position = [x, y]
                     .map(|i| (f64::from(i) + 0.5) / f64::from(side) * f64::from(width_m) - 0.5 * f64::from(width_m));
                 sum += value;
-                moment += value * (place[0] * place[0] + place[1] * place[1]);
-                (0..2).for_each(|k| mean[k] += value * place[k]);
+                moment += value * (position[0] * position[0] + position[1] * position[1]);
+                (0..2).for_each(|k| mean[k] += value * position[k]);
             }
         }
         assert!(mean.iter().all(|m| (m / sum).abs() < 0.02 * f64::from(blur_m)), "the disc is off the axis");
-        // Each sample puts its light evenly into a pixel: its square's moment is added.
+        // Samples are spread uniformly over a pixel, whose moment is subtracted.
         let pixel = f64::from(width_m) / f64::from(side);
         let moment = moment / sum - pixel * pixel / 6.0 - 0.5 * f64::from(radius_m).powi(2);
         let ours_m = 2.0 * (2.0 * moment).sqrt();
-        // Some 700 samples or more meet the bulb: 2 % for the root of the moment.
+        // Some 700 samples or more hit the light: 2 % for the root of the moment.
         assert!((ours_m / f64::from(blur_m) - 1.0).abs() < 0.05, "f/{f_number}: {ours_m} for {blur_m} m");
     }
 }
 
 #[test]
-fn what_is_in_focus_is_sharp_and_depth_of_field_keeps_the_exposure() {
+fn depth_of_field_does_not_change_the_exposure() {
     let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
     scene.lights.push(light(Emitter::Point, Output::Lumens(1000.0), Vec3::Z * 2.0));
     scene.objects[0].shape = Shape::Plane { width_m: 0.5, depth_m: 0.5 };
     scene.camera.focal_length_mm = 50.0;
     scene.camera.f_number = 16.0;
-    let sharp = illuminance(&scene, &square(Method::Path, 8, 64));
+    let pinhole = illuminance(&scene, &square(Method::Path, 8, 64));
     scene.camera.depth_of_field = true;
     scene.camera.focus = Focus::Distance(0.5);
     let blurred = illuminance(&scene, &square(Method::Path, 8, 64));
-    // An evenly lit card is as bright out of focus; the view of 4 cm at 2 m from the lamp varies by 0.1 %.
-    assert!((blurred.mean / sharp.mean - 1.0).abs() < 2e-3, "{blurred:?} for {sharp:?}");
-    assert!((sharp.mean / (1000.0 / (4.0 * PI) / 4.0) - 1.0).abs() < 2e-3, "{sharp:?}");
+    // A uniformly lit card has the same value out of focus; 4 cm at 2 m from the light vary by 0.1 %.
+    assert!((blurred.mean / pinhole.mean - 1.0).abs() < 2e-3, "{blurred:?} for {pinhole:?}");
+    assert!((pinhole.mean / (1000.0 / (4.0 * PI) / 4.0) - 1.0).abs() < 2e-3, "{pinhole:?}");
 }

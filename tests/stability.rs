@@ -1,4 +1,4 @@
-//! Where renderers break: each case is finite, the same for any number of threads, and as right as stated.
+//! Robustness: extreme scenes render finite values, the same for any number of threads, within the stated errors.
 #![allow(clippy::unwrap_used)]
 
 mod studio;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 use studio::light;
 use studio::measure::{BIAS, film_with, illuminance, meter_card, picture, square, values};
 
-fn thing(id: u32, name: &str, shape: Shape, position: Vec3) -> Object {
+fn object_with_id(id: u32, name: &str, shape: Shape, position: Vec3) -> Object {
     Object { id: ObjectId(id), ..studio::object(name, shape, position) }
 }
 
@@ -32,11 +32,11 @@ fn glass() -> Material {
     Material { transmission: 1.0, roughness: 0.0, ior: 1.5, ..Material::default() }
 }
 
-/// A ball on a floor under a small panel: the plain case that the tests bend.
-fn plain() -> Scene {
-    let mut floor = thing(0, "Floor", Shape::Plane { width_m: 4.0, depth_m: 4.0 }, Vec3::ZERO);
+/// Returns a sphere on a floor under a small panel: the base scene of the tests.
+fn base_scene() -> Scene {
+    let mut floor = object_with_id(0, "Floor", Shape::Plane { width_m: 4.0, depth_m: 4.0 }, Vec3::ZERO);
     floor.material = grey(0.5);
-    let mut ball = thing(1, "Ball", Shape::Sphere { radius_m: 0.3 }, Vec3::Y * 0.3);
+    let mut ball = object_with_id(1, "Ball", Shape::Sphere { radius_m: 0.3 }, Vec3::Y * 0.3);
     ball.material = grey(0.5);
     let mut key =
         light(Emitter::RectPanel { width_m: 0.3, height_m: 0.3 }, Output::Lumens(3000.0), Vec3::new(1.0, 2.0, 1.0));
@@ -50,8 +50,9 @@ fn plain() -> Scene {
     Scene { objects: vec![floor, ball], lights: vec![key], camera, ..Scene::default() }
 }
 
-/// Every pixel is a number and not negative, and one thread gives the bits of three.
-fn holds(scene: &Scene, assets: &Assets) -> Picture {
+/// Asserts that all methods render finite values that are not negative, with the same bits on one and three threads. Returns
+/// the path-traced picture.
+fn assert_robust(scene: &Scene, assets: &Assets) -> Picture {
     let prepared = raytrace::prepare(scene, assets).unwrap();
     let settings = Settings { width: 45, height: 30, spp: 4, ..Settings::default() };
     let with = |threads: usize, method: Method| {
@@ -67,7 +68,7 @@ fn holds(scene: &Scene, assets: &Assets) -> Picture {
         let picture = with(1, method);
         assert!(
             picture.rgb.iter().flatten().all(|v| v.is_finite() && *v >= 0.0),
-            "{method:?} has a pixel that is no light"
+            "{method:?} has a negative or non-finite pixel"
         );
         assert_eq!(picture, with(3, method), "{method:?} depends on the number of threads");
     }
@@ -79,11 +80,11 @@ fn mean(picture: &Picture) -> f64 {
 }
 
 #[test]
-fn a_studio_far_from_the_origin_is_the_same_picture() {
-    let here = holds(&plain(), &Assets::default());
+fn a_studio_far_from_the_origin_renders_the_same() {
+    let reference = assert_robust(&base_scene(), &Assets::default());
     for far in [1e3_f32, 1e5] {
         let offset = Vec3::new(far, 0.0, -far);
-        let mut scene = plain();
+        let mut scene = base_scene();
         scene.objects.iter_mut().for_each(|o| o.transform.position += offset);
         for light in &mut scene.lights {
             light.position += offset;
@@ -91,15 +92,20 @@ fn a_studio_far_from_the_origin_is_the_same_picture() {
         }
         scene.camera.position += offset;
         scene.camera.aim = Aim::Point(Vec3::Y * 0.3 + offset);
-        let there = holds(&scene, &Assets::default());
-        // The samples are the same; at 1e5 m places themselves are rounded to 8 mm, all by the same amount here.
-        assert!((mean(&there) / mean(&here) - 1.0).abs() < 0.01, "{far}: {} for {}", mean(&there), mean(&here));
+        let moved = assert_robust(&scene, &Assets::default());
+        // The samples are the same; at 1e5 m positions are rounded to 8 mm, here all by the same amount.
+        assert!(
+            (mean(&moved) / mean(&reference) - 1.0).abs() < 0.01,
+            "{far}: {} for {}",
+            mean(&moved),
+            mean(&reference)
+        );
     }
 }
 
 #[test]
-fn a_closed_body_leaks_no_light_wherever_it_stands() {
-    // A lamp in a closed ball and box: outside it is black, at the origin, at 1 km and at 100 km.
+fn a_closed_body_leaks_no_light_near_and_far_from_the_origin() {
+    // A light inside a closed body: the outside is black at the origin, at 1 km and at 100 km.
     for far in [0.0_f32, 1e3, 1e5] {
         let at = Vec3::new(far, far, -far);
         for shape in [
@@ -107,7 +113,7 @@ fn a_closed_body_leaks_no_light_wherever_it_stands() {
             Shape::Box { size_m: Vec3::ONE },
             Shape::Cylinder { radius_m: 0.4, height_m: 1.0 },
         ] {
-            let mut body = thing(0, "Body", shape.clone(), at);
+            let mut body = object_with_id(0, "Body", shape.clone(), at);
             body.transform.rotation_deg = Vec3::new(10.0, 20.0, 30.0);
             body.material = grey(0.8);
             let lamp = Light { aim: Aim::Point(at + Vec3::Z), ..light(Emitter::Point, Output::Lumens(1e6), at) };
@@ -125,13 +131,12 @@ fn a_closed_body_leaks_no_light_wherever_it_stands() {
 }
 
 #[test]
-fn a_millimetre_object_stands_on_a_ten_metre_cyclorama() {
-    // It casts its shadow and is lit as a large one: the same picture as of a ball a thousand times larger, seen from
-    // above, from a thousand times as far.
+fn a_millimetre_object_on_a_ten_metre_cyclorama_is_lit_and_casts_its_shadow() {
+    // The picture is that of a sphere a thousand times larger, seen from a thousand times as far.
     let view = |size: f32| {
-        let mut scene = plain();
+        let mut scene = base_scene();
         let cyclorama = Shape::Sweep { width_m: 10.0, height_m: 5.0, depth_m: 10.0, radius_m: 1.0 };
-        scene.objects[0] = Object { material: grey(0.5), ..thing(0, "Cyclorama", cyclorama, Vec3::Z * -5.0) };
+        scene.objects[0] = Object { material: grey(0.5), ..object_with_id(0, "Cyclorama", cyclorama, Vec3::Z * -5.0) };
         scene.objects[1].shape = Shape::Sphere { radius_m: 0.5 * size };
         scene.objects[1].transform.position = Vec3::Y * 0.5 * size;
         let sun = Emitter::Sun { angular_diameter_deg: 0.0 };
@@ -141,17 +146,17 @@ fn a_millimetre_object_stands_on_a_ten_metre_cyclorama() {
         picture(&scene, &square(Method::Direct, 32, 16))
     };
     let (large, small) = (view(1.0), view(1e-3));
-    let off: f64 = large.rgb.iter().zip(&small.rgb).map(|(a, b)| f64::from((a[1] - b[1]).abs())).sum();
-    // Single samples may fall on the other side of an edge.
-    assert!(off / large.rgb.len() as f64 / mean(&large) < 1e-3, "{off}");
+    let difference: f64 = large.rgb.iter().zip(&small.rgb).map(|(a, b)| f64::from((a[1] - b[1]).abs())).sum();
+    // A few samples are on the other side of an edge.
+    assert!(difference / large.rgb.len() as f64 / mean(&large) < 1e-3, "{difference}");
     let darkest = large.rgb.iter().map(|p| f64::from(p[1])).fold(f64::INFINITY, f64::min);
-    assert!(darkest < 0.01 * mean(&large), "the ball casts no shadow: {darkest}");
+    assert!(darkest < 0.01 * mean(&large), "the sphere casts no shadow: {darkest}");
 }
 
 #[test]
-fn softboxes_edge_on_touching_and_behind_a_surface() {
+fn softboxes_edge_on_facing_away_and_behind_a_card_do_not_light_it() {
     let panel = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
-    // Edge-on and facing away: nothing. Behind the card: nothing.
+    // Edge-on, facing away, behind the card, and edge-on in front of it.
     for (position, aim) in [
         (Vec3::new(1.0, 0.0, 0.0), Vec3::new(1.0, 1.0, 0.0)),
         (Vec3::Z, Vec3::Z * 2.0),
@@ -160,15 +165,15 @@ fn softboxes_edge_on_touching_and_behind_a_surface() {
     ] {
         let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
         scene.lights.push(Light { aim: Aim::Point(aim), ..light(panel, Output::Lumens(1000.0), position) });
-        // Facing it would read 267 lx. Half of the card's 0.4 mm lies before the plane of an edge-on panel.
+        // A panel that faces the card gives 267 lx. Half of the card's 0.4 mm is in front of the plane of an edge-on panel.
         let reading = illuminance(&scene, &square(Method::Path, 4, 16)).mean;
         assert!(reading < 0.05, "from {position} to {aim}: {reading} lx");
     }
 }
 
 #[test]
-fn a_panel_flush_with_wall_or_ceiling_gives_all_its_light() {
-    // The panel lies in the plane of a wall that stands behind it: neither its samples nor rays that meet it may be lost.
+fn a_panel_in_the_plane_of_a_wall_is_not_occluded_by_it() {
+    // Neither light samples nor emitter hits are lost to the wall in the panel's plane.
     for (tilt, origin) in [(0.0_f32, Vec3::ZERO), (33.0, Vec3::ZERO), (33.0, Vec3::new(313.7, 11.3, -77.1))] {
         let (sin, cos) = tilt.to_radians().sin_cos();
         let towards = Vec3::new(sin, 0.0, cos);
@@ -177,23 +182,23 @@ fn a_panel_flush_with_wall_or_ceiling_gives_all_its_light() {
         free.lights
             .push(Light { aim: Aim::Point(origin), ..light(panel, Output::Lumens(1000.0), origin + towards * 1.7) });
         let mut flush = free.clone();
-        let mut wall = thing(7, "Wall", Shape::Plane { width_m: 6.0, depth_m: 6.0 }, origin + towards * 1.7);
+        let mut wall = object_with_id(7, "Wall", Shape::Plane { width_m: 6.0, depth_m: 6.0 }, origin + towards * 1.7);
         wall.transform.set_rotation(glam::Quat::from_rotation_arc(Vec3::Y, -towards));
         wall.material = grey(0.0);
         flush.objects.push(wall);
         for method in [Method::Direct, Method::Path] {
-            let (open, ours) =
+            let (reference, ours) =
                 (illuminance(&free, &square(method, 16, 64)), illuminance(&flush, &square(method, 16, 64)));
             assert!(
-                (ours.mean / open.mean - 1.0).abs() < 1e-3,
-                "{method:?}, {tilt} degrees at {origin}: {ours:?} for {open:?}"
+                (ours.mean / reference.mean - 1.0).abs() < 1e-3,
+                "{method:?}, {tilt} degrees at {origin}: {ours:?} for {reference:?}"
             );
         }
     }
 }
 
 #[test]
-fn a_lamp_on_the_floor_or_ceiling_lights_the_room_and_one_behind_the_wall_does_not() {
+fn a_light_on_the_ceiling_lights_the_room_and_one_above_it_does_not() {
     let room = Room { size_m: Vec3::new(4.0, 3.0, 4.0), floor: grey(0.5), walls: grey(0.5), ceiling: grey(0.5) };
     let reading = |emitter: Emitter, at: Vec3| {
         let mut scene = meter_card(Vec3::new(0.0, 1.5, 0.0), Vec3::Y);
@@ -203,17 +208,17 @@ fn a_lamp_on_the_floor_or_ceiling_lights_the_room_and_one_behind_the_wall_does_n
     };
     let truth = 1000.0 / (4.0 * PI) / 1.5_f64.powi(2);
     assert!((reading(Emitter::Point, Vec3::Y * 3.0) / truth - 1.0).abs() < 1e-3);
-    assert_eq!(reading(Emitter::Point, Vec3::Y * 3.001), 0.0, "a lamp a millimetre above the ceiling");
+    assert_eq!(reading(Emitter::Point, Vec3::Y * 3.001), 0.0, "a light a millimetre above the ceiling");
     assert_eq!(reading(Emitter::RectPanel { width_m: 0.5, height_m: 0.5 }, Vec3::Y * 3.001), 0.0);
 }
 
 #[test]
-fn a_light_inside_an_object_and_at_the_camera() {
-    let mut inside = plain();
+fn lights_inside_an_object_and_at_the_camera_are_robust() {
+    let mut inside = base_scene();
     inside.lights[0].position = Vec3::Y * 0.3;
     inside.lights[0].emitter = Emitter::Point;
     inside.lights[0].aim = Aim::Point(Vec3::Y);
-    assert_eq!(mean(&holds(&inside, &Assets::default())), 0.0, "the ball holds the lamp");
+    assert_eq!(mean(&assert_robust(&inside, &Assets::default())), 0.0, "the light is inside of the sphere");
     for emitter in [
         Emitter::Point,
         Emitter::Sphere { radius_m: 0.05 },
@@ -221,30 +226,30 @@ fn a_light_inside_an_object_and_at_the_camera() {
         Emitter::RoundPanel { diameter_m: 0.3 },
         Emitter::Spot { inner_deg: 40.0, outer_deg: 60.0 },
     ] {
-        // A ring flash: the light is where the lens is, seen or not.
+        // A ring flash: the light is at the lens, visible to the camera or not.
         for visible_to_camera in [false, true] {
-            let mut scene = plain();
+            let mut scene = base_scene();
             scene.lights[0].position = scene.camera.position;
             scene.lights[0].emitter = emitter;
             scene.lights[0].visible_to_camera = visible_to_camera;
-            let picture = holds(&scene, &Assets::default());
-            assert!(mean(&picture) > 0.0, "{emitter:?} at the camera gives nothing");
+            let picture = assert_robust(&scene, &Assets::default());
+            assert!(mean(&picture) > 0.0, "{emitter:?} at the camera gives no light");
         }
     }
 }
 
 #[test]
-fn roughness_from_nothing_to_one() {
+fn roughness_from_zero_to_one_is_robust() {
     for roughness in [0.0, 1e-4, 0.0316, 0.032, 0.1, 1.0] {
         for (metallic, transmission) in [(0.0, 0.0), (1.0, 0.0), (0.5, 0.5), (0.0, 1.0)] {
-            let mut scene = plain();
+            let mut scene = base_scene();
             scene.objects[1].material = Material { metallic, transmission, ..metal(roughness) };
-            holds(&scene, &Assets::default());
+            assert_robust(&scene, &Assets::default());
         }
     }
-    // A mirror of roughness 1e-4 is the mirror of roughness 0.
+    // Roughness 1e-4 is below the limit of a delta lobe.
     let mirror = |roughness| {
-        let mut scene = plain();
+        let mut scene = base_scene();
         scene.objects[1].material = metal(roughness);
         picture(&scene, &square(Method::Path, 16, 8))
     };
@@ -252,16 +257,16 @@ fn roughness_from_nothing_to_one() {
 }
 
 #[test]
-fn equal_cones_and_a_cone_of_half_the_world() {
+fn spots_with_equal_cones_and_hemispherical_cones_are_robust() {
     for (inner_deg, outer_deg) in [(30.0, 30.0), (180.0, 180.0), (0.0, 180.0), (0.0, 0.1), (0.1, 0.1), (179.9, 180.0)] {
-        let mut scene = plain();
+        let mut scene = base_scene();
         scene.lights[0].emitter = Emitter::Spot { inner_deg, outer_deg };
-        holds(&scene, &Assets::default());
+        assert_robust(&scene, &Assets::default());
     }
 }
 
 fn model(mesh: Mesh, edit: impl Fn(&mut Scene)) -> (Scene, Assets) {
-    let mut scene = plain();
+    let mut scene = base_scene();
     scene.objects[1].shape = Shape::MeshFile { path: "model.obj".into() };
     scene.objects[1].transform = Transform::default();
     edit(&mut scene);
@@ -271,7 +276,7 @@ fn model(mesh: Mesh, edit: impl Fn(&mut Scene)) -> (Scene, Assets) {
 }
 
 #[test]
-fn triangles_without_area_repeated_vertices_and_missing_normals() {
+fn degenerate_triangles_and_normals_are_robust() {
     let corners = vec![
         Vec3::ZERO,
         Vec3::X,
@@ -287,12 +292,12 @@ fn triangles_without_area_repeated_vertices_and_missing_normals() {
     let nothing = Mesh { positions: corners, triangles: vec![[0, 1, 3], [4, 4, 4]], ..Mesh::default() };
     for mesh in [bare, zero_normals, nothing, Mesh::default()] {
         let (scene, assets) = model(mesh.with_single_part("surface"), |_| {});
-        holds(&scene, &assets);
+        assert_robust(&scene, &assets);
     }
 }
 
 #[test]
-fn normals_against_the_winding_light_the_side_that_is_seen() {
+fn normals_opposite_to_the_winding_light_the_visible_side() {
     let quad = |normal: Vec3| Mesh {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y],
         normals: vec![normal; 4],
@@ -303,39 +308,39 @@ fn normals_against_the_winding_light_the_side_that_is_seen() {
         let (scene, assets) = model(quad(normal).with_single_part("surface"), |_| {});
         film_with(&scene, &assets, &square(Method::Direct, 16, 4)).develop(&scene)
     };
-    // Turned round it is the same; nearly edge-on to the triangle it must stay finite and lit on the seen side.
+    // Reversed normals give the same picture; normals nearly in the plane keep the visible side lit.
     assert_eq!(view(Vec3::Z), view(Vec3::NEG_Z));
     assert!(mean(&view(Vec3::new(1.0, 0.0, -0.05).normalize())) > 0.0);
 }
 
 #[test]
-fn no_light_no_output_and_lights_that_are_off_are_black() {
-    let mut off = plain();
+fn scenes_without_light_are_black() {
+    let mut off = base_scene();
     off.lights[0].on = false;
-    let mut weak = plain();
+    let mut weak = base_scene();
     weak.lights[0].power.output = Output::Lumens(0.0);
-    let none = Scene { lights: Vec::new(), ..plain() };
+    let none = Scene { lights: Vec::new(), ..base_scene() };
     for scene in [off, weak, none] {
-        assert_eq!(mean(&holds(&scene, &Assets::default())), 0.0);
+        assert_eq!(mean(&assert_robust(&scene, &Assets::default())), 0.0);
     }
-    // An empty studio without anything at all.
-    holds(&Scene::default(), &Assets::default());
+    // An empty scene.
+    assert_robust(&Scene::default(), &Assets::default());
 }
 
 #[test]
-fn a_light_without_size_is_refused_by_name_and_the_smallest_is_right() {
+fn lights_of_size_zero_are_rejected_by_name_and_the_smallest_are_right() {
     for emitter in [
         Emitter::Sphere { radius_m: 0.0 },
         Emitter::RectPanel { width_m: 0.0, height_m: 0.5 },
         Emitter::RoundPanel { diameter_m: 0.0 },
         Emitter::RectPanel { width_m: f32::NAN, height_m: 0.5 },
     ] {
-        let mut scene = plain();
+        let mut scene = base_scene();
         scene.lights[0].emitter = emitter;
         let error = raytrace::prepare(&scene, &Assets::default()).unwrap_err().to_string();
         assert!(error.contains("emitter.") && error.contains("Light"), "{error}");
     }
-    // The smallest ones allowed shine as points do, the largest as walls.
+    // The smallest allowed lights have the illuminance of point lights.
     for (emitter, per_axial) in [
         (Emitter::Sphere { radius_m: 1e-5 }, 4.0 * PI),
         (Emitter::RectPanel { width_m: 1e-5, height_m: 1e-5 }, PI),
@@ -350,8 +355,8 @@ fn a_light_without_size_is_refused_by_name_and_the_smallest_is_right() {
 }
 
 #[test]
-fn a_light_as_large_as_a_town_is_an_even_sky() {
-    // Half a metre from the middle of a panel of 2 km, or of a ball of 2 km: E = pi L.
+fn lights_of_two_kilometres_light_like_a_uniform_hemisphere() {
+    // Half a metre from a panel or a sphere of 2 km: E = pi L.
     for (emitter, position) in [
         (Emitter::RectPanel { width_m: 2000.0, height_m: 2000.0 }, Vec3::Z * 0.5),
         (Emitter::RoundPanel { diameter_m: 2000.0 }, Vec3::Z * 0.5),
@@ -366,14 +371,14 @@ fn a_light_as_large_as_a_town_is_an_even_sky() {
         let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
         scene.lights.push(light(emitter, Output::Lumens(flux), position));
         let reading = illuminance(&scene, &square(Method::Path, 16, 256));
-        // A ball ends 0.05 % above the horizon.
+        // The limb of the sphere is 0.05 % above the horizon.
         assert!(reading.agrees_with(PI * luminance, 2e-3, 3), "{emitter:?}: {reading:?} for {}", PI * luminance);
-        assert!(reading.standard_error / reading.mean < 0.01, "{emitter:?}: {reading:?} says little");
+        assert!(reading.standard_error / reading.mean < 0.01, "{emitter:?}: {reading:?} is too noisy");
     }
 }
 
 #[test]
-fn a_camera_in_a_mesh_and_straight_up_and_down() {
+fn cameras_inside_meshes_and_vertical_cameras_are_robust() {
     for (position, aim) in [
         (Vec3::Y * 0.3, Vec3::new(0.0, 0.3, -1.0)),
         (Vec3::new(0.0, 0.01, 0.0), Vec3::Y * 5.0),
@@ -382,55 +387,63 @@ fn a_camera_in_a_mesh_and_straight_up_and_down() {
         (Vec3::new(0.0, 0.0, 1.0), Vec3::ZERO),
     ] {
         for material in [grey(0.5), glass(), metal(0.0)] {
-            let mut scene = plain();
+            let mut scene = base_scene();
             scene.objects[1].material = material;
             scene.camera.position = position;
             scene.camera.aim = Aim::Point(aim);
-            holds(&scene, &Assets::default());
+            assert_robust(&scene, &Assets::default());
         }
     }
 }
 
 #[test]
-fn mirrors_face_to_face_end_and_show_the_lamp_again_and_again() {
-    let mut scene = plain();
-    let wall = |id, z: f32, turn: f32| {
-        let mut mirror =
-            thing(id, if id == 2 { "Front" } else { "Back" }, Shape::Plane { width_m: 4.0, depth_m: 4.0 }, Vec3::Z * z);
-        mirror.transform.rotation_deg = Vec3::X * turn;
+fn paths_between_parallel_mirrors_end() {
+    let mut scene = base_scene();
+    let mirror = |id, z: f32, rotation_deg: f32| {
+        let mut mirror = object_with_id(
+            id,
+            if id == 2 { "Front" } else { "Back" },
+            Shape::Plane { width_m: 4.0, depth_m: 4.0 },
+            Vec3::Z * z,
+        );
+        mirror.transform.rotation_deg = Vec3::X * rotation_deg;
         mirror.material = Material { base_color: [0.999; 3], ..metal(0.0) };
         mirror
     };
-    scene.objects.extend([wall(2, -2.0, 90.0), wall(3, 4.0, -90.0)]);
-    assert!(mean(&holds(&scene, &Assets::default())) > 0.0);
+    scene.objects.extend([mirror(2, -2.0, 90.0), mirror(3, 4.0, -90.0)]);
+    assert!(mean(&assert_robust(&scene, &Assets::default())) > 0.0);
 }
 
 #[test]
-fn glass_in_glass_in_glass_is_finite_and_ends() {
-    let mut scene = plain();
+fn paths_through_nested_glass_end() {
+    let mut scene = base_scene();
     scene.objects.truncate(1);
     for i in 0..20 {
-        let mut shell =
-            thing(10 + i, &format!("Shell {i}"), Shape::Sphere { radius_m: 0.8 - 0.03 * i as f32 }, Vec3::Y * 0.9);
+        let mut shell = object_with_id(
+            10 + i,
+            &format!("Shell {i}"),
+            Shape::Sphere { radius_m: 0.8 - 0.03 * i as f32 },
+            Vec3::Y * 0.9,
+        );
         shell.material = Material { ior: 1.0 + 0.1 * i as f32, absorption_per_m: [0.1; 3], ..glass() };
         scene.objects.push(shell);
     }
-    assert!(mean(&holds(&scene, &Assets::default())) > 0.0);
+    assert!(mean(&assert_robust(&scene, &Assets::default())) > 0.0);
 }
 
 #[test]
-fn mirrors_with_smooth_normals_keep_their_rims() {
-    // A coarse ball whose interpolated normals send mirrored rays below the surface at its rim: in an even surround of 1 a
-    // mirror must be 1 there, too, and not black.
+fn mirrors_with_interpolated_normals_are_not_dark_at_the_rim() {
+    // A coarse sphere, whose interpolated normals reflect rays below the surface at its rim. In a uniform surround, a mirror has
+    // the value of the surround there, too.
     let mut coarse = Mesh::default();
     let (around, rows) = (10_u32, 6_u32);
     for row in 0..=rows {
         for column in 0..=around {
-            let (latitude, turn) = (
+            let (latitude, azimuth) = (
                 row as f32 / rows as f32 * std::f32::consts::PI,
                 column as f32 / around as f32 * std::f32::consts::TAU,
             );
-            let n = Vec3::new(latitude.sin() * turn.sin(), -latitude.cos(), latitude.sin() * turn.cos());
+            let n = Vec3::new(latitude.sin() * azimuth.sin(), -latitude.cos(), latitude.sin() * azimuth.cos());
             coarse.positions.push(n * 0.5);
             coarse.normals.push(n);
         }
@@ -447,25 +460,25 @@ fn mirrors_with_smooth_normals_keep_their_rims() {
     assets.meshes.insert("ball.obj".into(), Arc::new(coarse.with_single_part("surface")));
     let ours =
         film_with(&scene, &assets, &Settings { max_depth: Some(64), ..square(Method::Path, 48, 16) }).develop(&scene);
-    let even = ours.at(0, 0)[1];
-    let darkest = ours.rgb.iter().map(|p| p[1] / even).fold(f32::INFINITY, f32::min);
-    assert!(darkest > 0.99, "a pixel shows {darkest} of the light around");
+    let surround = ours.at(0, 0)[1];
+    let darkest = ours.rgb.iter().map(|p| p[1] / surround).fold(f32::INFINITY, f32::min);
+    assert!(darkest > 0.99, "a pixel has {darkest} of the surround");
 }
 
 #[test]
-fn odd_sizes_down_to_a_single_pixel() {
-    let prepared = raytrace::prepare(&plain(), &Assets::default()).unwrap();
+fn odd_picture_sizes_are_robust() {
+    let prepared = raytrace::prepare(&base_scene(), &Assets::default()).unwrap();
     for (width, height) in [(1, 1), (1, 100), (100, 1), (33, 31), (65, 1), (32, 32)] {
         let settings = Settings { width, height, spp: 3, ..Settings::default() };
         let film = raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
-        let picture = film.develop(&plain());
+        let picture = film.develop(&base_scene());
         assert_eq!(picture.rgb.len(), (width * height) as usize);
         assert!(picture.rgb.iter().flatten().all(|v| v.is_finite()));
     }
 }
 
 #[test]
-fn the_strongest_and_weakest_that_a_file_may_say_stay_numbers() {
+fn the_largest_and_smallest_values_of_a_file_render_finite() {
     for (output, emitter) in [
         (Output::Lumens(1e9), Emitter::RectPanel { width_m: 1e-5, height_m: 1e-5 }),
         (Output::Candela(1e9), Emitter::Sphere { radius_m: 1e-5 }),
@@ -474,47 +487,47 @@ fn the_strongest_and_weakest_that_a_file_may_say_stay_numbers() {
         (Output::FlashWs { energy_ws: 1e6, efficacy_lm_s_per_ws: 683.0 }, Emitter::Point),
     ] {
         for (dial_stops, iso, f_number) in [(10.0, 1e7, 0.5), (-20.0, 1.0, 1000.0)] {
-            let mut scene = plain();
+            let mut scene = base_scene();
             scene.lights[0].emitter = emitter;
             scene.lights[0].power = catchlight::scene::Power { output, dial_stops };
             scene.camera = Camera { iso, f_number, meter_constant: 1.0, shutter_s: 1e5, ..scene.camera };
-            holds(&scene, &Assets::default());
+            assert_robust(&scene, &Assets::default());
         }
     }
 }
 
 #[test]
-fn things_as_small_and_as_large_as_files_allow() {
+fn the_smallest_and_largest_objects_of_a_file_are_robust() {
     for (radius_m, scale) in [(1e-5, 1e-5), (1e5, 1e5), (1e-5, 1.0), (1.0, 1e-5), (1e5, 1.0)] {
-        let mut scene = plain();
+        let mut scene = base_scene();
         scene.objects[1].shape = Shape::Sphere { radius_m };
         scene.objects[1].transform.scale = Vec3::new(scale, 1.0, scale);
-        holds(&scene, &Assets::default());
+        assert_robust(&scene, &Assets::default());
         scene.objects[1].transform.scale = Vec3::splat(scale);
         scene.objects[1].material = glass();
         scene.camera.sensor = Sensor::Custom { width_mm: 1000.0, height_mm: 1.0 };
-        holds(&scene, &Assets::default());
+        assert_robust(&scene, &Assets::default());
     }
 }
 
 #[test]
-fn many_lights_at_the_same_place_share_it() {
-    let mut scene = plain();
+fn many_lights_at_one_position_sum_up() {
+    let mut scene = base_scene();
     let key = scene.lights[0].clone();
     for i in 1..40 {
         scene.lights.push(Light { id: LightId(i), name: format!("Light {i}"), ..key.clone() });
     }
-    let one = mean(&picture(&plain(), &square(Method::Direct, 24, 64)));
+    let one = mean(&picture(&base_scene(), &square(Method::Direct, 24, 64)));
     let many = mean(&picture(&scene, &square(Method::Direct, 24, 64)));
-    // 36 864 samples each; a pixel scatters by less than its own value.
+    // 36 864 samples each, with a standard deviation below the mean.
     assert!((many / one / 40.0 - 1.0).abs() < 0.02, "{many} for 40 times {one}");
 }
 
 #[test]
-fn paper_laid_flat_on_the_rooms_floor_hides_it_and_is_not_mottled() {
-    // Floor and paper both lie at y = 0. From every side, near and far, the paper is what is seen, as bright all over.
+fn paper_on_the_floor_plane_hides_the_floor_without_z_fighting() {
+    // Floor and paper are both at y = 0. From every side, near and far, only the paper is visible, uniformly lit.
     let paper = Shape::Sweep { width_m: 2.7, height_m: 2.0, depth_m: 3.0, radius_m: 0.5 };
-    let mut sweep = thing(1, "Paper", paper, Vec3::new(0.0, 0.0, -1.5));
+    let mut sweep = object_with_id(1, "Paper", paper, Vec3::new(0.0, 0.0, -1.5));
     sweep.material = grey(0.8);
     let mut scene = Scene { room: Some(Room::default()), objects: vec![sweep], ..Scene::default() };
     scene.lights.push(light(Emitter::Point, Output::Lumens(8000.0), Vec3::new(0.0, 2.4, 0.4)));
@@ -526,7 +539,7 @@ fn paper_laid_flat_on_the_rooms_floor_hides_it_and_is_not_mottled() {
             picture(&scene, &Settings { width: 60, height: 40, spp: 4, method: Method::Direct, ..Settings::default() });
         let (low, high) =
             picture.rgb.iter().fold((f32::MAX, 0.0_f32), |(low, high), p| (low.min(p[1]), high.max(p[1])));
-        // The lamp's distance and the cosine change by less than this over the patch; a shadow of the floor would be black.
+        // Distance and cosine vary by less than this over the patch; a shadow of the floor would be black.
         assert!(low > 0.3 * high, "{low} to {high} from {position}");
     }
 }
