@@ -1,5 +1,5 @@
-//! Glass, mirrors and water against closed forms, read from rendered pictures. Tolerances are standard errors of the
-//! pixels' scatter, as in `analytic_light`.
+//! Glass, mirrors and water against closed forms, measured in rendered pictures. Tolerances are standard errors of the
+//! pixels, as in `analytic_light`.
 #![allow(clippy::unwrap_used)]
 
 mod studio;
@@ -15,7 +15,7 @@ use studio::statistics::SampleMean;
 
 const LUMINANCE: f32 = 1000.0;
 
-/// A card on which photons can be counted.
+/// A card large enough for photons.
 const WIDE_CARD: Shape = Shape::Plane { width_m: 0.3, depth_m: 0.3 };
 
 fn glass(ior: f32) -> Material {
@@ -27,8 +27,8 @@ fn thing(name: &str, shape: Shape, material: Material, position: Vec3, rotation_
     Object { material, transform, ..studio::object(name, shape, position) }
 }
 
-/// A black wall that glows with 1000 cd/m2, seen straight on from `distance` by a camera with a tiny angle. Half a metre
-/// wide: what a tilted pane reflects misses it.
+/// A black wall that emits 1000 cd/m2, at normal incidence at `distance` before a camera with a tiny angle of view. Half a
+/// metre wide: reflections in a tilted pane miss it.
 fn glowing_wall(distance: f32) -> Scene {
     let black = Material { base_color: [0.0; 3], emission_cd_m2: [LUMINANCE; 3], ior: 1.0, ..Material::default() };
     let wall = thing("Wall", Shape::Plane { width_m: 0.5, depth_m: 0.5 }, black, Vec3::ZERO, Vec3::X * 90.0);
@@ -42,14 +42,14 @@ fn glowing_wall(distance: f32) -> Scene {
     Scene { objects: vec![wall], camera, ..Scene::default() }
 }
 
-/// Luminance of the picture over that of the wall.
+/// Luminance of the picture relative to the wall.
 fn relative_luminance(scene: &Scene, side: u32, spp: u32) -> SampleMean {
     values(&picture(scene, &square(Method::Path, side, spp)))
         .scaled(luminance_per_value(&scene.camera) / f64::from(LUMINANCE))
 }
 
 #[test]
-fn panes_let_through_by_angle_what_both_polarisations_pass_with_all_inner_reflections() {
+fn pane_transmittance_by_angle_is_the_mean_of_both_polarisations_with_all_inner_reflections() {
     // The four values of light_and_camera.md (n = 1.52: 0.918, 0.916, 0.844, 0.456), more angles and other glass.
     let table =
         [(0.0, 1.52, Some(0.918)), (30.0, 1.52, Some(0.916)), (60.0, 1.52, Some(0.844)), (80.0, 1.52, Some(0.456))];
@@ -70,7 +70,7 @@ fn panes_let_through_by_angle_what_both_polarisations_pass_with_all_inner_reflec
                 reading.agrees_with(truth, BIAS, 18),
                 "{deg} degrees, n {n}, sheet {sheet}: {reading:?} for {truth}"
             );
-            // Single interfaces, without memory of the polarisation, would be off by more than we allow from 60 degrees.
+            // Single interfaces that ignored polarisation would exceed the tolerance from 60 degrees on.
             let (s, p) = fresnel(f64::to_radians(deg), f64::from(n));
             let mean = 0.5 * (s + p);
             let forgetful = (1.0 - mean) / (1.0 + mean);
@@ -83,7 +83,7 @@ fn panes_let_through_by_angle_what_both_polarisations_pass_with_all_inner_reflec
 }
 
 #[test]
-fn a_point_light_shines_through_a_pane_as_much_as_the_pane_lets_through() {
+fn a_point_light_through_a_pane_has_the_transmittance_of_the_pane() {
     for (deg, sheet) in [(0.0_f32, false), (50.0, false), (0.0, true), (70.0, true)] {
         let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
         scene.lights.push(light(Emitter::Point, Output::Lumens(1000.0), Vec3::Z * 2.0));
@@ -97,7 +97,7 @@ fn a_point_light_shines_through_a_pane_as_much_as_the_pane_lets_through() {
         for method in [Method::Direct, Method::Path] {
             let reading = illuminance(&scene, &square(method, 8, 64));
             let truth = open * pane(f64::from(deg).to_radians(), 1.52);
-            // The pane brings the light's image closer by t (1 - 1/n) = 1.4 mm of 2 m: 0.14 %, which is left out. The card
+            // The pane shifts the light's image by t (1 - 1/n) = 1.4 mm of 2 m: 0.14 %, which is ignored. The card
             // of 18 % and the pane light each other by far less.
             assert!(
                 reading.agrees_with(truth, 2e-3, 8),
@@ -108,8 +108,8 @@ fn a_point_light_shines_through_a_pane_as_much_as_the_pane_lets_through() {
 }
 
 #[test]
-fn a_mirror_throws_light_where_its_image_would() {
-    // A card that looks up, a lamp 1 m above it and a mirror 1 m beside it, whose image of the lamp is 2 m away.
+fn a_mirrored_light_has_the_illuminance_of_its_image() {
+    // A card that faces up, a lamp 1 m above it and a mirror 1 m beside it, whose image of the lamp is 2 m away.
     let mirror = Material { metallic: 1.0, roughness: 0.0, base_color: [0.999; 3], ..Material::default() };
     let plane = Shape::Plane { width_m: 0.4, depth_m: 0.4 };
     for emitter in [Emitter::Point, Emitter::Sphere { radius_m: 0.01 }, Emitter::Sun { angular_diameter_deg: 0.5 }] {
@@ -124,7 +124,7 @@ fn a_mirror_throws_light_where_its_image_would() {
         let open = illuminance(&scene, &settings).mean;
         scene.objects.push(thing("Mirror", plane.clone(), mirror.clone(), Vec3::new(1.0, 0.5, 0.0), Vec3::Z * 90.0));
         let reading = illuminance_over(16, &scene, &settings);
-        // The image stands at (2, 1, 0): its light falls by the inverse square and the cosine. A sun's image is as bright.
+        // The image is at (2, 1, 0): inverse square and cosine. The image of a sun is as bright as the sun.
         let image = if let Emitter::Sun { .. } = emitter { 1.0 } else { 5.0_f64.powf(-1.5) };
         assert!(
             reading.agrees_with(open * (1.0 + 0.999 * image), 1e-3, 3),
@@ -135,7 +135,7 @@ fn a_mirror_throws_light_where_its_image_would() {
 }
 
 #[test]
-fn a_softbox_behind_a_thin_pane_loses_what_the_pane_takes_in_every_method() {
+fn a_softbox_behind_a_thin_pane_has_the_transmittance_of_the_pane_in_every_method() {
     for emitter in [Emitter::RectPanel { width_m: 0.3, height_m: 0.3 }, Emitter::Sphere { radius_m: 0.02 }] {
         let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
         scene.lights.push(light(emitter, Output::Lumens(1000.0), Vec3::Z * 3.0));
@@ -146,15 +146,15 @@ fn a_softbox_behind_a_thin_pane_loses_what_the_pane_takes_in_every_method() {
         for method in [Method::Direct, Method::Path] {
             let reading = illuminance(&scene, &square(method, 16, 64));
             let truth = open * pane(0.0, 1.52);
-            // Rays meet the pane at up to 4 degrees, where it takes as much to 0.01 %.
+            // Rays cross the pane at up to 4 degrees, where the transmittance is the same to 0.01 %.
             assert!(reading.agrees_with(truth, 1e-3, 4), "{emitter:?}, {method:?}: {reading:?} for {truth} lx");
         }
     }
 }
 
 #[test]
-fn a_softbox_behind_thick_glass_arrives_by_refraction() {
-    // Rays through a body of glass find a light with a size by themselves; light sampling must leave it to them.
+fn a_softbox_behind_thick_glass_is_found_by_refracted_rays() {
+    // Refracted rays find an area light through a body of glass; light sampling must not count it again.
     let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
     let panel = Emitter::RectPanel { width_m: 2.0, height_m: 2.0 };
     scene.lights.push(light(panel, Output::Lumens(1000.0), Vec3::Z * 1.5));
@@ -168,9 +168,9 @@ fn a_softbox_behind_thick_glass_arrives_by_refraction() {
 }
 
 #[test]
-fn water_in_glass_and_glass_in_glass_have_the_faces_that_they_have() {
-    // A slab of 10 cm with another of 4 cm in it, straight on. R of each face by the two indices it parts; the slab's
-    // transmittance is the sum over all ways between four faces, by 2 x 2 transfer of intensities.
+fn nested_water_and_glass_reflect_at_each_interface_by_both_indices() {
+    // A slab of 10 cm with another of 4 cm in it, at normal incidence. R of each face by the indices on both sides; the
+    // transmittance is the sum over all inner reflections between four faces.
     let cases = [
         (1.5_f32, 1.5_f32, 0.0_f32, 0.0_f32),
         (1.5, 1.33, 0.0, 0.0),
@@ -187,7 +187,7 @@ fn water_in_glass_and_glass_in_glass_have_the_faces_that_they_have() {
             let shape = Shape::Box { size_m: Vec3::new(2.0 + size, 2.0 + size, size) };
             scene.objects.push(thing(name, shape, material, Vec3::Z * 1.5, Vec3::ZERO));
         }
-        // The same material twice is one entry of the tracer's table; both bodies must be told apart all the same.
+        // Equal materials share one entry of the tracer's table; the medium stack must tell both bodies apart.
         let r = |a: f32, b: f32| ((f64::from(a) - f64::from(b)) / (f64::from(a) + f64::from(b))).powi(2);
         let faces = [r(1.0, outer), r(outer, inner), r(inner, outer), r(outer, 1.0)];
         let gaps = [0.03 * outer_per_m, 0.04 * inner_per_m, 0.03 * outer_per_m].map(|a| f64::from(-a).exp());
@@ -204,7 +204,7 @@ fn stack_transmittance(faces: &[f64], gaps: &[f64]) -> f64 {
     for (face, gap) in faces[1..].iter().zip(gaps) {
         let echo = 1.0 - back * gap * gap * face;
         let next = through * gap * (1.0 - face) / echo;
-        // Seen from behind: what returns there.
+        // Reflectance of the faces so far, from behind.
         back = face + (1.0 - face) * (1.0 - face) * gap * gap * back / echo;
         through = next;
     }
@@ -212,21 +212,21 @@ fn stack_transmittance(faces: &[f64], gaps: &[f64]) -> f64 {
 }
 
 #[test]
-fn what_stands_in_coloured_water_is_seen_through_it() {
-    // A glowing card in the middle of a tank: light from it crosses half of the water and one face.
+fn a_card_in_coloured_water_is_absorbed_along_half_of_the_tank() {
+    // An emissive card in the middle of a tank: its light crosses half of the water and one face.
     let mut scene = glowing_wall(3.0);
     let water = Material { absorption_per_m: [4.0; 3], ..glass(1.33) };
     let shape = Shape::Box { size_m: Vec3::new(10.0, 10.0, 1.0) };
     scene.objects.push(thing("Water", shape, water, Vec3::ZERO, Vec3::ZERO));
-    // Radiance that leaves water is spread out by n2; a glowing wall in it gives that much less.
+    // Radiance that leaves water is divided by n2.
     let truth = (1.0 - (0.33 / 2.33_f64).powi(2)) * (-0.5 * 4.0_f64).exp() / 1.33_f64.powi(2);
     let reading = relative_luminance(&scene, 32, 64);
     assert!(reading.agrees_with(truth, 1e-3, 1), "{reading:?} for {truth}");
 }
 
 #[test]
-fn a_camera_in_water_sees_no_more_light_than_there_is() {
-    // The camera stands in its own air: an even surround of 1 looks like 1 at most, from in a ball or a tank.
+fn a_camera_in_water_sees_at_most_the_radiance_of_the_surround() {
+    // The camera has air around it: a uniform surround of 1 appears as 1 at most, inside a ball or a tank.
     for shape in [Shape::Sphere { radius_m: 1.0 }, Shape::Box { size_m: Vec3::splat(2.0) }] {
         let mut scene = studio::ball_in_even_light(glass(1.33));
         let open = values(&picture(&Scene { objects: Vec::new(), ..scene.clone() }, &square(Method::Path, 8, 4))).mean;
@@ -241,9 +241,9 @@ fn a_camera_in_water_sees_no_more_light_than_there_is() {
 }
 
 #[test]
-fn a_slab_shifts_what_is_behind_it_by_snells_law() {
+fn a_slab_shifts_the_image_behind_it_by_snells_law() {
     // d = t sin(i) (1 - cos(i) / (n cos(r))) for a slab of thickness t under the angle i. The wall's edge is in the middle
-    // of the picture: the lit share of it moves with the edge.
+    // of the picture, whose lit part moves with the edge.
     for (deg, n) in [(30.0_f64, 1.5_f64), (60.0, 1.52), (45.0, 1.33)] {
         let mut scene = glowing_wall(3.0);
         scene.objects[0].transform.position.x = 0.25;
@@ -252,26 +252,26 @@ fn a_slab_shifts_what_is_behind_it_by_snells_law() {
         let before = relative_luminance(&scene, 64, 16).mean;
         let thickness = 0.02;
         let shape = Shape::Box { size_m: Vec3::new(4.0, 4.0, thickness as f32) };
-        // Turned about Y; its far ends are out of the picture.
+        // Rotated about Y; its far ends are outside of the picture.
         scene.objects.push(thing("Slab", shape, glass(n as f32), Vec3::Z * 1.5, Vec3::Y * deg as f32));
         let i = deg.to_radians();
         let after = relative_luminance(&scene, 64, 128).mean / pane(i, n);
         let r = (i.sin() / n).asin();
         let shift = thickness * i.sin() * (1.0 - i.cos() / (n * r.cos()));
-        // Every pair of inner reflections shows the edge again, 2 t tan(r) cos(i) back, with R2 of the light.
+        // Every pair of inner reflections repeats the edge, shifted back by 2 t tan(r) cos(i), with R2 of the light.
         let (s, p) = fresnel(i, n);
         let again = |face: f64| (1.0 - face) / (1.0 + face) * face * face / (1.0 - face * face);
         let ghosts = 0.5 * (again(s) + again(p)) / pane(i, n) * 2.0 * thickness * r.tan() * i.cos();
         let ours = ((after - before) * width_m).abs();
-        // The edge is seen 0.2 degrees off the axis, where the slab is tilted so much more: up to 1.5 %; sampling 0.5 %.
+        // The edge is 0.2 degrees off the axis, which changes the angle of incidence: up to 1.5 %; sampling 0.5 %.
         let truth = shift - ghosts;
         assert!((ours / truth - 1.0).abs() < 0.03, "{deg} degrees: shifted by {ours} for {truth} m");
     }
 }
 
 #[test]
-fn a_mirror_shows_the_softbox_where_the_angle_of_reflection_says_and_as_bright() {
-    // A mirror of reflectance 0.9 under 45 degrees; the panel hangs where the reflected axis goes, and fills the view.
+fn a_mirrored_softbox_is_at_the_angle_of_reflection_with_its_luminance() {
+    // A mirror of reflectance 0.9 at 45 degrees; the panel is on the reflected axis and fills the view.
     let metal = Material { base_color: [0.9; 3], metallic: 1.0, roughness: 0.0, ..Material::default() };
     let mut scene = glowing_wall(3.0);
     scene.objects.clear();
@@ -284,14 +284,14 @@ fn a_mirror_shows_the_softbox_where_the_angle_of_reflection_says_and_as_bright()
     let reading = relative_luminance(&scene, 8, 16);
     let schlick = 0.9 + 0.1 * (1.0 - 45_f64.to_radians().cos()).powi(5);
     assert!(reading.agrees_with(schlick, 1e-4, 1), "{reading:?} for {schlick}");
-    // The picture of 24 mm at 5 m focal length is 24 mm wide on the panel: 30 cm aside there is none of it.
+    // The view is 24 mm wide on the panel: moved aside by 30 cm, the panel is outside of it.
     scene.lights[0].position.z = 0.3;
     scene.lights[0].aim = Aim::Point(Vec3::Z * 0.3);
     assert_eq!(relative_luminance(&scene, 8, 16).mean, 0.0);
 }
 
 #[test]
-fn the_back_of_a_softbox_is_not_seen_in_a_mirror() {
+fn the_back_of_a_softbox_is_invisible_in_a_mirror() {
     let metal = Material { base_color: [0.9; 3], metallic: 1.0, roughness: 0.0, ..Material::default() };
     let mut scene = glowing_wall(3.0);
     scene.objects.clear();

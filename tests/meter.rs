@@ -1,4 +1,4 @@
-//! The light meter: against closed forms through the library, and as a process whose advice is then followed.
+//! The light meter: readings against closed forms, and the exposure that the command proposes against a render.
 #![allow(clippy::unwrap_used)]
 
 mod studio;
@@ -16,26 +16,26 @@ use std::process::{Command, Output as ProcessOutput};
 use studio::light;
 use studio::statistics::SampleMean;
 
-fn probe(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor) -> MeterResult {
-    probe_with(scene, position, facing, receptor, &MeterEffort::default())
+fn read(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor) -> MeterResult {
+    read_with(scene, position, facing, receptor, &MeterEffort::default())
 }
 
-fn probe_with(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor, effort: &MeterEffort) -> MeterResult {
-    let probe = LightMeter::new(scene, &Assets::default(), position).unwrap();
-    let probed = probe.read(&MeterPoint { position, facing, receptor }, effort, &RenderControl::new()).unwrap();
-    assert_eq!(probed.nonfinite.count, 0);
-    probed
+fn read_with(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor, effort: &MeterEffort) -> MeterResult {
+    let meter = LightMeter::new(scene, &Assets::default(), position).unwrap();
+    let result = meter.read(&MeterPoint { position, facing, receptor }, effort, &RenderControl::new()).unwrap();
+    assert_eq!(result.nonfinite.count, 0);
+    result
 }
 
 /// A meter at the origin that faces +Z, where the light comes from.
 fn lux_of(emitter: Emitter, output: Output, position: Vec3, receptor: Receptor) -> f32 {
     let scene = Scene { lights: vec![light(emitter, output, position)], ..Scene::default() };
-    probe(&scene, Vec3::ZERO, Vec3::Z, receptor).reading.total_lux().0
+    read(&scene, Vec3::ZERO, Vec3::Z, receptor).reading.total_lux().0
 }
 
 #[test]
-fn panels_from_a_centimetre_to_five_metres() {
-    // The first round of 1024 points errs by at most 0.05 % here; the receptor's lift of 0.02 mm by 0.004 % at 0.5 m.
+fn panels_match_lamberts_formula_from_a_centimetre_to_five_metres() {
+    // The first round of 1024 points has an error of at most 0.05 % here; the receptor's lift of 0.02 mm by 0.004 % at 0.5 m.
     let (rect, round) = (Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, Emitter::RoundPanel { diameter_m: 1.2 });
     for d in [0.01_f32, 0.1, 0.5, 1.0, 2.0, 5.0] {
         let (a, b) = (0.3_f32, 0.45_f32);
@@ -51,7 +51,7 @@ fn panels_from_a_centimetre_to_five_metres() {
 }
 
 #[test]
-fn a_dome_sees_half_of_a_light_at_its_side_and_nothing_behind() {
+fn a_dome_receives_half_of_a_light_at_its_side_and_nothing_from_behind() {
     for (degrees, flat, dome) in
         [(0.0_f32, 1.0, 1.0), (60.0, 0.5, 0.75), (90.0, 0.0, 0.5), (150.0, 0.0, 0.067), (180.0, 0.0, 0.0)]
     {
@@ -59,7 +59,7 @@ fn a_dome_sees_half_of_a_light_at_its_side_and_nothing_behind() {
         let from = Vec3::new(angle.sin(), 0.0, angle.cos()) * 2.0;
         let normal = 1000.0 / (4.0 * PI) / 4.0;
         for (receptor, share) in [(Receptor::Flat, flat), (Receptor::Dome, dome)] {
-            // A delta light takes one ray and no chance: only the lift and rounding are left.
+            // A delta light has no sampling error: only the lift and rounding are left.
             let ours = lux_of(Emitter::Point, Output::Lumens(1000.0), from, receptor) / normal;
             assert!((ours - share).abs() < 2e-4, "{receptor:?} at {degrees} degrees: {ours}");
         }
@@ -67,20 +67,20 @@ fn a_dome_sees_half_of_a_light_at_its_side_and_nothing_behind() {
 }
 
 #[test]
-fn sun_and_surround_read_their_lux() {
+fn sun_and_surround_are_read_with_their_illuminance() {
     for angular_diameter_deg in [0.0, 0.53, 10.0] {
         let sun = Emitter::Sun { angular_diameter_deg };
         let ours = lux_of(sun, Output::Lux(5000.0), Vec3::Z, Receptor::Flat);
         assert!((ours / 5000.0 - 1.0).abs() < 5e-4, "{angular_diameter_deg}: {ours}");
     }
-    // A flat receptor weights an even sky by pi, a dome (which sees all round) by 2 pi: no chance in either.
+    // The response to a uniform sky integrates to pi for a flat receptor and to 2 pi for a dome, without sampling error.
     for (receptor, lux) in [(Receptor::Flat, 2000.0), (Receptor::Dome, 4000.0)] {
         let ours = lux_of(Emitter::Surround, Output::Lux(2000.0), Vec3::Z, receptor);
         assert!((ours / lux - 1.0).abs() < 1e-4, "{receptor:?}: {ours}");
     }
 }
 
-/// A hollow ball of 2 m with a lamp in its middle: every place of its wall is alike.
+/// A hollow ball of 2 m with a lamp at its centre: every point of its wall has the same illuminance.
 fn hollow_ball(reflectance: f32) -> Scene {
     let mut ball: Object = studio::object("Ball", Shape::Sphere { radius_m: 2.0 }, Vec3::ZERO);
     ball.material = Material { base_color: [reflectance; 3], ior: 1.0, roughness: 1.0, ..Material::default() };
@@ -91,31 +91,31 @@ fn hollow_ball(reflectance: f32) -> Scene {
 }
 
 #[test]
-fn a_closed_ball_gathers_light_as_the_geometric_series_says() {
+fn a_closed_ball_sums_the_geometric_series_of_bounces() {
     for reflectance in [0.0_f32, 0.2, 0.5, 0.8, 0.95] {
-        let probed = probe(&hollow_ball(reflectance), Vec3::Y * -1.999, Vec3::Y, Receptor::Flat);
-        let light = &probed.reading.lights[0];
+        let result = read(&hollow_ball(reflectance), Vec3::Y * -1.999, Vec3::Y, Receptor::Flat);
+        let light = &result.reading.lights[0];
         let direct = 10_000.0 / (16.0 * PI);
-        // The ball is a polyhedron, 0.1 % nearer in the mean; three standard errors of what was reached.
-        let allowed = 0.0015 + 3.0 * probed.reading.relative_error().unwrap();
+        // The ball is a polyhedron, 0.1 % nearer on average; three standard errors of the reading.
+        let allowed = 0.0015 + 3.0 * result.reading.relative_error().unwrap();
         assert!((light.direct / direct - 1.0).abs() < 0.0015, "r = {reflectance}: direct {}", light.direct);
         let expected = direct / (1.0 - reflectance);
         assert!((light.sum() / expected - 1.0).abs() < allowed, "r = {reflectance}: {} for {expected}", light.sum());
-        assert!(probed.reading.relative_error().unwrap() < 0.004, "the default effort is good to 0.4 %");
-        assert_eq!(probed.inside, Some(0), "who meters inside of an object is told so");
+        assert!(result.reading.relative_error().unwrap() < 0.004, "the default effort is good to 0.4 %");
+        assert_eq!(result.inside, Some(0), "the object around the meter is reported");
     }
 }
 
 #[test]
-fn the_standard_error_is_as_large_as_the_readings_scatter() {
-    // Twenty readings with few paths each: their scatter is what each claims, to the chi-square of 19 degrees of freedom
-    // (0.4 to 2.1 times the variance at a false alarm rate under 1 %; the claims' own mean adds little).
+fn the_standard_error_matches_the_scatter_of_readings() {
+    // Twenty readings with few paths each: their variance matches the claims, by chi-square with 19 degrees of freedom
+    // (0.4 to 2.1 times the variance at a false alarm rate under 1 %; the error of the claims' mean is small).
     let scene = hollow_ball(0.8);
-    let probe = LightMeter::new(&scene, &Assets::default(), Vec3::NEG_Y).unwrap();
-    let place = MeterPoint { position: Vec3::Y * -1.999, facing: Vec3::Y, receptor: Receptor::Flat };
+    let meter = LightMeter::new(&scene, &Assets::default(), Vec3::NEG_Y).unwrap();
+    let point = MeterPoint { position: Vec3::Y * -1.999, facing: Vec3::Y, receptor: Receptor::Flat };
     let read = |seed| {
         let effort = MeterEffort { paths: Some(512), seed, ..MeterEffort::default() };
-        let reading = probe.read(&place, &effort, &RenderControl::new()).unwrap().reading;
+        let reading = meter.read(&point, &effort, &RenderControl::new()).unwrap().reading;
         (reading.lights[0].sum(), reading.lights[0].standard_error)
     };
     let readings: Vec<(f32, f32)> = (0..20).map(read).collect();
@@ -127,7 +127,7 @@ fn the_standard_error_is_as_large_as_the_readings_scatter() {
 }
 
 #[test]
-fn every_light_is_read_apart_and_all_threads_read_the_same() {
+fn lights_are_read_separately_with_the_same_bits_for_any_number_of_threads() {
     let named = |id, role, output, x| {
         let name = format!("Light {id}");
         Light {
@@ -140,13 +140,13 @@ fn every_light_is_read_apart_and_all_threads_read_the_same() {
     let mut scene = hollow_ball(0.3);
     scene.objects.clear();
     scene.objects.push(studio::object("Wall", Shape::Plane { width_m: 4.0, depth_m: 4.0 }, Vec3::Y * -0.5));
-    // More lights than film layers: the meter still tells them apart.
+    // More lights than film layers: the meter still reads them separately.
     scene.lights = (0..20).map(|i| named(i, Role::Accent, Output::Lumens(10.0 + i as f32), i as f32 * 0.1)).collect();
     scene.lights.push(named(20, Role::Key, Output::FlashWs { energy_ws: 10.0, efficacy_lm_s_per_ws: 40.0 }, -1.0));
     scene.lights.push(Light { on: false, ..named(21, Role::Fill, Output::Lumens(1e6), 0.5) });
     scene.lights.push(named(22, Role::Fill, Output::Lumens(0.0), 0.5));
     let effort = MeterEffort { paths: Some(2048), ..MeterEffort::default() };
-    let read = || probe_with(&scene, Vec3::ZERO, Vec3::Y, Receptor::Dome, &effort);
+    let read = || read_with(&scene, Vec3::ZERO, Vec3::Y, Receptor::Dome, &effort);
     let all = read();
     let names: Vec<&str> = all.reading.lights.iter().map(|l| l.name.as_str()).collect();
     assert_eq!(names.len(), 22, "those that are on, the dark one included: {names:?}");
@@ -154,13 +154,13 @@ fn every_light_is_read_apart_and_all_threads_read_the_same() {
     let dark: Vec<_> = all.reading.lights[..21].iter().filter(|l| l.direct <= 0.0 || l.bounced <= 0.0).collect();
     assert!(dark.is_empty(), "{dark:?}");
     assert_eq!(all.reading.key().unwrap().name, "Light 20");
-    // Alone, a light reads the same, whatever else shines.
+    // A light alone has the same reading.
     let mut alone = scene.clone();
     alone.lights = vec![scene.lights[7].clone()];
-    let one = probe_with(&alone, Vec3::ZERO, Vec3::Y, Receptor::Dome, &effort);
+    let one = read_with(&alone, Vec3::ZERO, Vec3::Y, Receptor::Dome, &effort);
     let (ours, theirs) = (&all.reading.lights[7], &one.reading.lights[0]);
     assert!((ours.direct / theirs.direct - 1.0).abs() < 1e-3);
-    // One light of 21 is chosen a hit, 2048 paths: the bounced part scatters by some percent.
+    // One light of 21 is sampled at each hit, 2048 paths: the bounced part has an error of some percent.
     let allowed = 4.0 * (ours.standard_error.powi(2) + theirs.standard_error.powi(2)).sqrt();
     assert!((ours.sum() - theirs.sum()).abs() < allowed, "{ours:?} {theirs:?}");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
@@ -168,15 +168,15 @@ fn every_light_is_read_apart_and_all_threads_read_the_same() {
 }
 
 #[test]
-fn what_stands_in_the_light_is_dark_and_what_glows_is_light() {
+fn an_object_in_the_light_casts_a_shadow_and_an_emissive_one_illuminates() {
     let mut scene = Scene::default();
     scene.lights.push(light(Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, Output::Lumens(1000.0), Vec3::Z * 2.0));
     let mut screen = studio::object("Screen", Shape::Box { size_m: Vec3::new(3.0, 3.0, 0.02) }, Vec3::Z);
     screen.material.base_color = [0.0; 3];
     screen.material.emission_cd_m2 = [50.0; 3];
     scene.objects.push(screen);
-    let probed = probe(&scene, Vec3::ZERO, Vec3::Z, Receptor::Flat);
-    let [panel, glow] = &probed.reading.lights[..] else { unreachable!("a light and the glow") };
+    let result = read(&scene, Vec3::ZERO, Vec3::Z, Receptor::Flat);
+    let [panel, glow] = &result.reading.lights[..] else { unreachable!("a light and the glow") };
     assert_eq!(panel.sum(), 0.0);
     // Lambert over the middle of a square of half side a = 1.5 at h = 0.99.
     let (a, h) = (1.5_f32, 0.99_f32);
@@ -185,29 +185,29 @@ fn what_stands_in_the_light_is_dark_and_what_glows_is_light() {
 }
 
 #[test]
-fn what_stands_in_the_sun_is_dark() {
-    // Endless distances once made shadow rays end nowhere: suns shone through everything.
+fn an_object_in_the_sun_casts_a_shadow() {
+    // Infinite distances once gave shadow rays a NaN end: suns shone through everything.
     for angular_diameter_deg in [0.0, 0.53] {
         let sun = light(Emitter::Sun { angular_diameter_deg }, Output::Lux(5000.0), Vec3::Z * 4.0);
         let flag = Shape::Box { size_m: Vec3::new(1.0, 1.0, 0.1) };
         let objects = vec![studio::object("Flag", flag, Vec3::Z)];
         let scene = Scene { lights: vec![sun], objects, ..Scene::default() };
-        let direct = |place| probe(&scene, place, Vec3::Z, Receptor::Flat).reading.lights[0].direct;
+        let direct = |point| read(&scene, point, Vec3::Z, Receptor::Flat).reading.lights[0].direct;
         assert_eq!(direct(Vec3::ZERO), 0.0, "{angular_diameter_deg}");
         assert!((direct(Vec3::X * 2.0) / 5000.0 - 1.0).abs() < 5e-4, "{angular_diameter_deg}");
     }
 }
 
 #[test]
-fn a_meter_laid_on_the_floor_reads_the_floor_even_far_from_the_origin() {
+fn a_meter_on_the_floor_is_precise_far_from_the_origin() {
     for far in [0.0, 1e3, 1e5] {
-        let place = Vec3::new(far, 0.0, -far);
-        let floor = studio::object("Floor", Shape::Plane { width_m: 10.0, depth_m: 10.0 }, place);
-        let lamp = light(Emitter::Point, Output::Lumens(10_000.0), place + Vec3::Y * 3.0);
+        let point = Vec3::new(far, 0.0, -far);
+        let floor = studio::object("Floor", Shape::Plane { width_m: 10.0, depth_m: 10.0 }, point);
+        let lamp = light(Emitter::Point, Output::Lumens(10_000.0), point + Vec3::Y * 3.0);
         let scene = Scene { objects: vec![floor], lights: vec![lamp], ..Scene::default() };
-        let reading = probe(&scene, place, Vec3::Y, Receptor::Flat).reading;
-        // 88.42 lx of light_and_camera.md, five digits less the lift: places are relative to the meter, and the lamp's
-        // is a whole number.
+        let reading = read(&scene, point, Vec3::Y, Receptor::Flat).reading;
+        // 88.42 lx of light_and_camera.md, to five digits but for the lift: positions are relative to the meter, and the
+        // lamp's is a whole number.
         assert!((reading.lights[0].direct / 88.42 - 1.0).abs() < 2e-4, "{far} m: {}", reading.lights[0].direct);
         assert_eq!(reading.lights[0].bounced, 0.0);
     }
@@ -223,8 +223,8 @@ fn json(output: &ProcessOutput) -> Value {
 }
 
 #[test]
-fn a_grey_card_exposed_as_the_meter_says_renders_to_its_value() {
-    // Flash through a softbox, a lamp beside it, a slow shutter: the meter joins them, the camera does as told.
+fn a_grey_card_at_the_metered_exposure_renders_to_its_value() {
+    // Flash through a softbox, a continuous lamp, a slow shutter: the meter adds them, the camera takes its f-number.
     let mut scene = studio::card_at(Vec3::new(0.0, 1.2, 0.3), 0.2);
     scene.objects[0].material = MaterialPreset::GreyCard.material();
     scene.camera.shutter_s = 1.0 / 8.0;
@@ -250,8 +250,8 @@ fn a_grey_card_exposed_as_the_meter_says_renders_to_its_value() {
     let picture = exr::prelude::read_first_rgba_layer_from_file(
         folder.path().join("card.exr"),
         |size, _| vec![[0.0_f32; 3]; size.area()],
-        |pixels: &mut Vec<[f32; 3]>, place, (r, g, b, _): (f32, f32, f32, f32)| {
-            let index = place.y() * 16 + place.x();
+        |pixels: &mut Vec<[f32; 3]>, pixel, (r, g, b, _): (f32, f32, f32, f32)| {
+            let index = pixel.y() * 16 + pixel.x();
             pixels[index] = [r, g, b];
         },
     );
@@ -262,7 +262,7 @@ fn a_grey_card_exposed_as_the_meter_says_renders_to_its_value() {
 }
 
 #[test]
-fn the_report_has_what_the_contract_names() {
+fn the_json_report_has_the_documented_keys() {
     let folder = tempfile::tempdir().unwrap();
     let report =
         json(&catchlight(folder.path(), &["meter", "three_point", "--at", "-0.05,1.55,0.2", "--dome", "--json"]));
@@ -289,7 +289,7 @@ fn the_report_has_what_the_contract_names() {
 }
 
 #[test]
-fn wrong_places_are_refused_with_a_reason_and_odd_ones_are_told() {
+fn wrong_positions_are_errors_with_a_reason_and_odd_ones_are_warnings() {
     let folder = tempfile::tempdir().unwrap();
     for (arguments, reason) in [
         (vec!["--at", "NaN,0,0"], "NaN"),
@@ -322,36 +322,36 @@ fn wrong_places_are_refused_with_a_reason_and_odd_ones_are_told() {
         let report = json(&output);
         let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(complaint.contains(told), "{at}: {complaint}");
-        // Darkness is no number.
+        // Darkness has no exposure value.
         assert!(report["total"]["ev100"].is_null() || report["total"]["lux"].as_f64().unwrap() > 0.0);
     }
 }
 
 #[test]
-fn a_room_gathers_more_than_what_comes_straight() {
+fn a_closed_room_reads_direct_plus_bounced_light() {
     let paint = Material { base_color: [0.5; 3], ior: 1.0, roughness: 1.0, ..Material::default() };
     let room = Room { size_m: Vec3::splat(4.0), floor: paint.clone(), walls: paint.clone(), ceiling: paint };
     let lamp = light(Emitter::Point, Output::Lumens(10_000.0), Vec3::new(0.0, 2.0, 0.0));
     let mut scene = Scene { room: Some(room), lights: vec![lamp], ..Scene::default() };
     scene.lights[0].aim = catchlight::scene::Aim::Point(Vec3::Y);
-    // Mean over a wall by a 4 x 4 grid: every wall is alike, and the mean is F / (S (1 - r)).
-    let probe = LightMeter::new(&scene, &Assets::default(), Vec3::ZERO).unwrap();
+    // Mean over a wall by a 4 x 4 grid: by symmetry that of all walls, F / (S (1 - r)).
+    let meter = LightMeter::new(&scene, &Assets::default(), Vec3::ZERO).unwrap();
     let (mut sum, n) = (0.0, 8);
     for i in 0..n * n {
         let at = |k: i32| (k as f32 + 0.5) / n as f32 * 4.0 - 2.0;
-        let place =
+        let point =
             MeterPoint { position: Vec3::new(at(i % n), 0.0, at(i / n)), facing: Vec3::Y, receptor: Receptor::Flat };
-        // A seed each: with one for all, the errors of the places would be alike.
+        // A seed per point, so that their errors are independent.
         let effort = MeterEffort { paths: Some(1024), seed: i as u32, ..MeterEffort::default() };
-        sum += probe.read(&place, &effort, &RenderControl::new()).unwrap().reading.total_lux_s() * 125.0;
+        sum += meter.read(&point, &effort, &RenderControl::new()).unwrap().reading.total_lux_s() * 125.0;
     }
     let mean = sum / (n * n) as f32;
-    // 208.33 lx by light_and_camera.md. The grid errs by 0.2 % in the lamp's peak, 64 x 1024 paths by 0.1 %.
+    // 208.33 lx by light_and_camera.md. The grid has an error of 0.2 % at the lamp's peak, 64 x 1024 paths one of 0.1 %.
     assert!((mean / 208.33 - 1.0).abs() < 0.006, "{mean}");
 }
 
 #[test]
-fn what_comes_straight_and_what_the_meter_reads_bounced_are_together_the_path_tracers_picture() {
+fn the_direct_picture_plus_the_metered_bounced_light_is_the_path_traced_picture() {
     // A card in a closed room with a grey ball, a softbox and a bulb. The picture by `direct`, the meter's bounced
     // light and the picture by `path` are three estimates that share no random number.
     let (position, normal) = (Vec3::new(0.2, 1.0, 0.1), Vec3::new(0.4, 0.3, 1.0).normalize());
@@ -362,10 +362,10 @@ fn what_comes_straight_and_what_the_meter_reads_bounced_are_together_the_path_tr
     ball.material.base_color = [0.6; 3];
     scene.objects.push(ball);
     let softbox = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
-    for (i, (emitter, place)) in
+    for (i, (emitter, point)) in
         [(softbox, Vec3::new(-1.2, 1.8, 1.4)), (Emitter::Point, Vec3::new(1.3, 2.2, 0.9))].into_iter().enumerate()
     {
-        let light = light(emitter, Output::Lumens(4000.0), place);
+        let light = light(emitter, Output::Lumens(4000.0), point);
         scene.lights.push(Light { id: LightId(i as u32), name: format!("Light {i}"), ..light });
     }
     let picture = |method, seed| {
@@ -374,7 +374,7 @@ fn what_comes_straight_and_what_the_meter_reads_bounced_are_together_the_path_tr
     };
     let (direct, path) = (picture(Method::Direct, 1), picture(Method::Path, 2));
     let effort = MeterEffort { paths: Some(1 << 16), ..MeterEffort::default() };
-    let read = probe_with(&scene, position, normal, Receptor::Flat, &effort).reading;
+    let read = read_with(&scene, position, normal, Receptor::Flat, &effort).reading;
     let bounced: f64 = read.lights.iter().map(|light| f64::from(light.bounced)).sum();
     let bounced_error = read.lights.iter().map(|light| f64::from(light.standard_error).powi(2)).sum::<f64>();
     assert!(bounced > 0.2 * direct.mean, "a room worth the test: {bounced} of {direct:?}");

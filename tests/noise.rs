@@ -1,4 +1,4 @@
-//! `--noise`: samples go where the noise is, and the picture stays right.
+//! Adaptive sampling by `--noise`: more samples where the noise is, without bias.
 #![allow(clippy::unwrap_used)]
 
 mod studio;
@@ -13,7 +13,7 @@ fn mean(picture: &Picture) -> f64 {
 }
 
 #[test]
-fn quiet_parts_stop_early_and_the_mean_stays() {
+fn tiles_with_little_noise_stop_early_without_bias() {
     let loaded = find_preset("three_point").unwrap().load().unwrap();
     let size = Settings { width: 128, height: 96, spp: 512, ..Settings::default() };
     let limit = 0.06;
@@ -21,8 +21,8 @@ fn quiet_parts_stop_early_and_the_mean_stays() {
     assert!(film.noise_stops() <= limit);
     assert!(f64::from(film.spp()) < 0.7 * film.mean_spp(), "{} of {}", film.spp(), film.mean_spp());
     let uniform = film_with(&loaded.scene, &loaded.assets, &Settings { spp: 64, seed: 5, ..size });
-    // Pixels err by up to 4 % (0.06 stops), a hundred rows of them: the means of 12 288 pixels agree within 0.04 % each,
-    // if stopping early favours neither bright nor dark.
+    // Pixels have an error of up to 4 % (0.06 stops), the mean of 12 288 pixels one of 0.04 %, if stopping early is
+    // unbiased.
     let (ours, truth) = (mean(&film.develop(&loaded.scene)), mean(&uniform.develop(&loaded.scene)));
     assert!((ours / truth - 1.0).abs() < 0.002, "{ours} for {truth}");
 }

@@ -1,4 +1,4 @@
-//! Whitted's method: right where it models what is there, off by design elsewhere.
+//! Whitted's method: exact for point lights, and wrong by design for area lights.
 #![allow(clippy::unwrap_used)]
 
 mod studio;
@@ -9,7 +9,7 @@ use glam::Vec3;
 use studio::light;
 use studio::measure::{illuminance, meter_card, square};
 
-/// Illuminance that a card facing the light from `height` metres shows, by a method.
+/// Illuminance of a card that faces the light at `height` metres, by a method.
 fn lux(method: Method, emitter: Emitter, height: f32) -> f64 {
     let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
     scene.lights.push(light(emitter, Output::Lumens(1000.0), Vec3::Z * height));
@@ -25,7 +25,7 @@ fn a_point_light_is_exact() {
 }
 
 #[test]
-fn a_near_panel_gives_the_far_field_limit_which_is_too_much() {
+fn a_near_panel_has_the_far_field_illuminance_which_is_too_high() {
     // light_and_camera.md: 90 x 120 cm, 1000 lm, half a metre away: 523.91 lx; by I / d^2, 1273.24.
     let panel = Emitter::RectPanel { width_m: 0.9, height_m: 1.2 };
     let whitted = lux(Method::Whitted, panel, 0.5);

@@ -1,24 +1,24 @@
-//! Camera rays: a pinhole, or a thin lens where depth of field is on.
+//! Camera rays: of a pinhole, or of a thin lens with depth of field.
 
 use crate::math::warp;
-use crate::scene::{CameraFrame, Focus, Scene};
+use crate::scene::{Camera, CameraFrame, Focus, Scene};
 use glam::{Vec2, Vec3};
 
-/// The opening of a lens and what lies sharp behind it.
+/// The aperture of a thin lens and its plane of focus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aperture {
-    /// Metres; 0 for a pinhole.
+    /// Radius, metres; 0 for a pinhole.
     radius_m: f32,
-    /// Distance of the plane in focus, along the axis, metres.
+    /// Distance of the plane of focus along the optical axis, metres.
     focus_m: f32,
 }
 
 impl Aperture {
-    /// Everything is sharp.
+    /// The aperture of a pinhole camera.
     pub const PINHOLE: Aperture = Aperture { radius_m: 0.0, focus_m: 0.0 };
 
     /// Origin, relative to the lens centre, and unit direction of the ray through a picture point (0..1, from the top
-    /// left); `u` chooses the place on the lens.
+    /// left); `u` samples the lens.
     pub fn ray(&self, frame: &CameraFrame, picture_point: Vec2, u: Vec2) -> (Vec3, Vec3) {
         let direction = frame.direction(picture_point);
         if self.radius_m <= 0.0 {
@@ -37,7 +37,7 @@ pub trait PixelCamera {
     fn ray(&self, point_px: Vec2, u: Vec2) -> (Vec3, Vec3);
 }
 
-/// The scene's camera at a picture size.
+/// The scene's camera at a picture size. The lens centre is the origin of the tracer's space.
 #[derive(Clone, Debug)]
 pub struct FilmCamera {
     aperture: Aperture,
@@ -63,25 +63,26 @@ impl PixelCamera for FilmCamera {
     }
 }
 
-/// Where camera rays start and go. The camera sits at the origin of the tracer's space.
+/// The lens of a scene's camera, for pictures of any size.
 #[derive(Clone, Debug)]
 pub struct Lens {
-    scene_camera: crate::scene::Camera,
+    camera: Camera,
+    /// World position at which the camera aims.
     target: Vec3,
     aperture: Aperture,
 }
 
 impl Lens {
-    /// The lens of a scene's camera.
+    /// The lens of a scene's camera. A focus behind the camera makes it a pinhole.
     pub fn new(scene: &Scene) -> Self {
         let camera = &scene.camera;
         let target = scene.aim_point(&camera.aim, camera.position);
         let frame = camera.frame(target, camera.aspect());
-        let along = |point: Vec3| (point - camera.position).dot(frame.forward());
+        let distance_along_axis = |point: Vec3| (point - camera.position).dot(frame.forward());
         let focus_m = match camera.focus {
-            Focus::OnAim => along(target),
+            Focus::OnAim => distance_along_axis(target),
             Focus::OnObject { object, offset } => {
-                along(scene.aim_point(&crate::scene::Aim::Object { object, offset }, camera.position))
+                distance_along_axis(scene.aim_point(&crate::scene::Aim::Object { object, offset }, camera.position))
             }
             Focus::Distance(distance) => distance,
         };
@@ -90,22 +91,22 @@ impl Lens {
         } else {
             Aperture::PINHOLE
         };
-        Lens { scene_camera: camera.clone(), target, aperture }
+        Lens { camera: camera.clone(), target, aperture }
     }
 
-    /// Whether lens samples are used.
+    /// Returns true if the lens is not a pinhole.
     pub fn has_aperture(&self) -> bool {
         self.aperture != Aperture::PINHOLE
     }
 
-    /// Opening and focus.
+    /// Aperture and focus.
     pub fn aperture(&self) -> Aperture {
         self.aperture
     }
 
-    /// The frame for a picture of this aspect.
+    /// The frame for a picture of this aspect ratio.
     pub fn frame(&self, aspect: f32) -> CameraFrame {
-        self.scene_camera.frame(self.target, aspect)
+        self.camera.frame(self.target, aspect)
     }
 
     /// The camera for a picture of so many pixels.
@@ -118,7 +119,7 @@ impl Lens {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Aim, Camera};
+    use crate::scene::Aim;
     use crate::statistics::{ChiSquare, TestRng, sidak_level};
 
     fn scene(focus: Focus) -> Scene {
@@ -128,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn the_aperture_is_filled_evenly_and_all_its_rays_meet_in_focus() {
+    fn lens_samples_are_uniform_and_their_rays_meet_in_the_plane_of_focus() {
         let lens = Lens::new(&scene(Focus::Distance(2.0)));
         let frame = lens.frame(1.5);
         let radius = 0.085 / (2.0 * 1.4);
@@ -156,7 +157,7 @@ mod tests {
         let mut behind = scene(Focus::OnObject { object: crate::scene::ObjectId(9), offset: Vec3::ZERO });
         behind.camera.position = Vec3::NEG_Z * 5.0;
         behind.camera.aim = Aim::Point(Vec3::NEG_Z * 9.0);
-        // An object that is gone counts as the origin, which lies behind.
+        // A missing object counts as the origin, which is behind the camera.
         assert!(!Lens::new(&behind).has_aperture());
     }
 }

@@ -19,7 +19,7 @@ use super::medium_stack::MediumStack;
 use super::ray_caster::RayCaster;
 use super::render_scene::RenderScene;
 use super::roulette::{survival_probability, survives};
-use super::sampler::{self, Purpose, Sampler};
+use super::sampler::{self, Dimensions, Sampler};
 use super::sink::RadianceSink;
 use crate::math::Ray;
 use glam::Vec3;
@@ -272,7 +272,7 @@ impl<'a> PathTracer<'a> {
         // Sample all lights once, or compute their importances once
         let mut importances = None;
         let lights = if self.samples_all_lights(path) {
-            let set = sampler.set(Purpose::Light { slot: 0, bounce: path.depth });
+            let set = sampler.set(Dimensions::Light { slot: 0, depth: path.depth });
             self.sample_lights(path, point, sampler, &set, split_factor, sink);
             LightSampling::Shared { paths: split_factor }
         } else {
@@ -286,7 +286,7 @@ impl<'a> PathTracer<'a> {
         path.roulette_scale /= split_factor;
         for index in 0..paths {
             sink.record(|| PathEvent::Branch { index });
-            let (mut path, sampler) = (*path, sampler.branch(index, paths));
+            let (mut path, sampler) = (*path, sampler.split(index, paths));
             if self.scatter(&mut path, point, lights, &sampler, limits, sink) {
                 self.extend(&mut path, &sampler, PathLimits { split_factor: 1, ..limits }, sink);
             }
@@ -333,8 +333,7 @@ impl<'a> PathTracer<'a> {
         let last_mis_vertex = path.mis_vertex;
 
         // Sample the lights
-        let [light_set, bsdf_set] =
-            sampler.pair(Purpose::Light { slot: 0, bounce: depth }, Purpose::Bsdf { bounce: depth });
+        let [light_set, bsdf_set] = sampler.pair(Dimensions::Light { slot: 0, depth }, Dimensions::Bsdf { depth });
         let paths_per_light_sample = match lights {
             LightSampling::Sample => {
                 self.sample_lights(path, point, sampler, &light_set, 1.0, sink);
@@ -349,8 +348,8 @@ impl<'a> PathTracer<'a> {
         };
 
         // Sample the BSDF
-        let [lobe, roulette] = sampler::rest(&bsdf_set);
-        let Some(sample) = bsdf.sample(point.lobe_choice.unwrap_or(lobe), sampler::point(&bsdf_set)) else {
+        let [lobe, roulette] = sampler::last_pair(&bsdf_set);
+        let Some(sample) = bsdf.sample(point.lobe_choice.unwrap_or(lobe), sampler::first_pair(&bsdf_set)) else {
             sink.record(|| PathEvent::End(PathEnd::Absorbed));
             return false;
         };
@@ -434,13 +433,13 @@ impl<'a> PathTracer<'a> {
         let scene = self.caster.scene;
         if self.samples_all_lights(path) {
             for (slot, _) in (0..).zip(&scene.lights).filter(|(_, light)| light.is_sampled()) {
-                let bounce = path.depth;
-                let set = if slot == 0 { *first_set } else { sampler.set(Purpose::Light { slot, bounce }) };
+                let depth = path.depth;
+                let set = if slot == 0 { *first_set } else { sampler.set(Dimensions::Light { slot, depth }) };
                 self.sample_light(slot, 1.0, path, point, &set, paths, sink);
             }
             return;
         }
-        let u = sampler::rest(first_set)[0];
+        let u = sampler::last_pair(first_set)[0];
         let chosen = match point.importances {
             Some(importances) => importances.sample(&scene.lights, u),
             None => self.light_importances(point).as_ref().and_then(|importances| importances.sample(&scene.lights, u)),
@@ -472,7 +471,7 @@ impl<'a> PathTracer<'a> {
         let ShadingPoint { surface, bsdf, .. } = *point;
 
         // Sample a direction towards the light and evaluate the BSDF
-        let Some(sample) = light.sample(surface.position, sampler::point(set)) else { return };
+        let Some(sample) = light.sample(surface.position, sampler::first_pair(set)) else { return };
         let (value, bsdf_pdf) = bsdf.eval(sample.direction);
         if value == Vec3::ZERO {
             return;

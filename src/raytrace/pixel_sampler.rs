@@ -3,7 +3,7 @@
 use super::lens::PixelCamera;
 use super::limits::PathLimits;
 use super::path_tracer::PathTracer;
-use super::sampler::{self, Purpose, SampleId, Sampler};
+use super::sampler::{self, Dimensions, SampleId, Sampler};
 use super::settings::Method;
 use super::sink::RadianceSink;
 use super::whitted;
@@ -39,6 +39,6 @@ impl<C: PixelCamera> PixelSampler<'_, C> {
 /// Origin and unit direction of the camera ray of a sample.
 pub fn camera_ray(camera: &impl PixelCamera, sampler: &Sampler) -> (Vec3, Vec3) {
     let SampleId { x, y, .. } = sampler.id();
-    let set = sampler.set(Purpose::Camera);
-    camera.ray(Vec2::new(x as f32, y as f32) + sampler::point(&set), sampler::rest(&set).into())
+    let set = sampler.set(Dimensions::Camera);
+    camera.ray(Vec2::new(x as f32, y as f32) + sampler::first_pair(&set), sampler::last_pair(&set).into())
 }

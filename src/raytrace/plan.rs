@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn darker_rooms_need_fewer_bounces() {
+    fn darker_rooms_have_a_smaller_depth() {
         assert_eq!(depth_for(0.0), 1);
         assert_eq!(depth_for(0.18), 5);
         assert!(depth_for(0.5) < depth_for(0.8) && depth_for(0.95) > 120 && depth_for(1.0) <= MAX_DEPTH);

@@ -1,37 +1,37 @@
-//! Random numbers that are no accident: Owen-scrambled Sobol points (Burley 2020), one sequence a pixel.
+//! The sampler: Owen-scrambled Sobol points (Burley 2020, "Practical Hash-based Owen Scrambling"), one sequence per pixel.
 //!
 //! A value is a function of (pixel, sample, dimension, seed) alone, so that a picture has the same bits for any number
-//! of threads and a single pixel can be replayed. Dimensions come in sets of four; each set is the best four-dimensional
-//! Sobol sequence under its own scramble ("padding"): within a set all samples of a pixel are stratified together.
+//! of threads and a single sample can be replayed. Dimensions come in sets of four; each set is the four-dimensional
+//! Sobol sequence under its own scramble (padding): within a set, all samples of a pixel are stratified together.
 //!
-//! The sequence is the one of the crate `sobol_burley`, bit by bit; here two sets come at once, in eight lanes.
+//! The sequence is that of the crate `sobol_burley`, to the bit; here two sets are computed at once, in eight lanes.
 
 use super::simd::{self, KernelTask, Kernels};
 use glam::Vec2;
 
-/// Four stratified numbers in [0, 1).
+/// Four stratified numbers in [0, 1): a sample of four dimensions.
 pub type Set = [f32; 4];
 
-/// The sets of a path, in the order in which the integrator asks.
+/// The sets of dimensions of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
-    /// Place in the pixel, place on the lens.
+pub enum Dimensions {
+    /// Point in the pixel, point on the lens.
     Camera,
-    /// Choice of a light, place on it.
+    /// Point on a light, choice of the light.
     Light {
-        /// Which of the lights, where several are sampled at one vertex.
+        /// Index among the lights that are sampled at the vertex.
         slot: u32,
-        /// Vertex of the path, from 0.
-        bounce: u32,
+        /// Depth of the vertex, from 0.
+        depth: u32,
     },
-    /// Choice of a lobe, direction, roulette.
+    /// Direction, choice of a lobe, Russian roulette.
     Bsdf {
-        /// Vertex of the path, from 0.
-        bounce: u32,
+        /// Depth of the vertex, from 0.
+        depth: u32,
     },
 }
 
-/// One sample of one pixel.
+/// The random numbers of one sample of one pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler {
     id: SampleId,
@@ -53,7 +53,7 @@ pub struct SampleId {
     pub seed: u32,
 }
 
-/// Mixes the bits of a number (Wellons' lowbias32).
+/// Hashes a number (Wellons' lowbias32).
 fn hash(mut x: u32) -> u32 {
     x ^= x >> 16;
     x = x.wrapping_mul(0x7feb_352d);
@@ -70,7 +70,7 @@ impl Sampler {
 
     /// The random numbers of the sample `index` of a pixel.
     pub fn new(x: u32, y: u32, index: u32, seed: u32) -> Self {
-        // The sequence has 2^16 points; further ones come from a fresh scramble.
+        // The sequence has 2^16 points; later samples have another scramble.
         let epoch = index >> 16;
         let pixel_seed = hash(x ^ hash(y ^ hash(seed ^ hash(epoch))));
         Sampler { id: SampleId { x, y, index, seed }, pixel_seed, index: index & 0xffff }
@@ -81,38 +81,39 @@ impl Sampler {
         self.id
     }
 
-    /// One of `count` ways on from this sample. The ways of all samples of a pixel are stratified together.
-    pub fn branch(&self, branch: u32, count: u32) -> Self {
+    /// The random numbers of one of `count` paths into which the sample's path splits. The paths of all samples of a pixel
+    /// are stratified together.
+    pub fn split(&self, path: u32, count: u32) -> Self {
         let SampleId { x, y, index, seed } = self.id;
-        Sampler::new(x, y, index.wrapping_mul(count).wrapping_add(branch), seed)
+        Sampler::new(x, y, index.wrapping_mul(count).wrapping_add(path), seed)
     }
 
-    /// The numbers for a purpose.
+    /// The numbers of a set of dimensions.
     #[inline]
-    pub fn set(&self, purpose: Purpose) -> Set {
-        self.pair(purpose, purpose)[0]
+    pub fn set(&self, dimensions: Dimensions) -> Set {
+        self.pair(dimensions, dimensions)[0]
     }
 
-    /// The numbers for two purposes, for the price of one.
+    /// The numbers of two sets of dimensions, at the cost of one.
     #[inline]
-    pub fn pair(&self, first: Purpose, second: Purpose) -> [Set; 2] {
-        let seed = |purpose: Purpose| hash(self.pixel_seed ^ hash(purpose.key()));
+    pub fn pair(&self, first: Dimensions, second: Dimensions) -> [Set; 2] {
+        let seed = |dimensions: Dimensions| hash(self.pixel_seed ^ hash(dimensions.key()));
         simd::dispatch(Pair { index: self.index, seeds: [seed(first), seed(second)] })
     }
 }
 
-impl Purpose {
-    /// A number of its own.
+impl Dimensions {
+    /// A number that identifies the set.
     fn key(self) -> u32 {
         match self {
-            Purpose::Camera => 0,
-            Purpose::Bsdf { bounce } => 1 + 2 * bounce,
-            Purpose::Light { slot, bounce } => (2 + 2 * bounce) | (slot << 16),
+            Dimensions::Camera => 0,
+            Dimensions::Bsdf { depth } => 1 + 2 * depth,
+            Dimensions::Light { slot, depth } => (2 + 2 * depth) | (slot << 16),
         }
     }
 }
 
-/// See [`Sampler::pair`].
+/// The computation of [`Sampler::pair`].
 struct Pair {
     index: u32,
     seeds: [u32; 2],
@@ -127,14 +128,14 @@ impl KernelTask for Pair {
     }
 }
 
-/// The first two numbers of a set, as a point of the unit square: the best pair of the sequence, with a point in each
-/// elementary interval.
-pub fn point(set: &Set) -> Vec2 {
+/// The first two numbers of a set, as a point of the unit square: the best stratified pair of the sequence, with a point in
+/// each elementary interval.
+pub fn first_pair(set: &Set) -> Vec2 {
     Vec2::new(set[0], set[1])
 }
 
-/// The two numbers of a set beside its [`point`].
-pub fn rest(set: &Set) -> [f32; 2] {
+/// The last two numbers of a set.
+pub fn last_pair(set: &Set) -> [f32; 2] {
     [set[2], set[3]]
 }
 
@@ -143,32 +144,32 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_value_depends_on_pixel_sample_purpose_and_seed_alone() {
-        let a = Sampler::new(3, 4, 5, 6).set(Purpose::Camera);
-        assert_eq!(a, Sampler::new(3, 4, 5, 6).set(Purpose::Camera));
+    fn a_value_depends_on_pixel_sample_dimensions_and_seed_alone() {
+        let a = Sampler::new(3, 4, 5, 6).set(Dimensions::Camera);
+        assert_eq!(a, Sampler::new(3, 4, 5, 6).set(Dimensions::Camera));
         for other in [Sampler::new(4, 3, 5, 6), Sampler::new(3, 4, 6, 6), Sampler::new(3, 4, 5, 7)] {
-            assert_ne!(a, other.set(Purpose::Camera));
+            assert_ne!(a, other.set(Dimensions::Camera));
         }
-        assert_ne!(a, Sampler::new(3, 4, 5, 6).set(Purpose::Bsdf { bounce: 0 }));
+        assert_ne!(a, Sampler::new(3, 4, 5, 6).set(Dimensions::Bsdf { depth: 0 }));
     }
 
     #[test]
     fn every_set_is_stratified_over_the_samples_of_a_pixel() {
-        for purpose in [Purpose::Camera, Purpose::Light { slot: 1, bounce: 2 }, Purpose::Bsdf { bounce: 3 }] {
-            for dimension in 0..4 {
-                let mut seen = [false; 64];
+        for dimensions in [Dimensions::Camera, Dimensions::Light { slot: 1, depth: 2 }, Dimensions::Bsdf { depth: 3 }] {
+            for index_in_set in 0..4 {
+                let mut is_sampled = [false; 64];
                 for index in 0..64 {
-                    let x = Sampler::new(10, 20, index, 1).set(purpose)[dimension];
-                    seen[(x * 64.0) as usize] = true;
+                    let x = Sampler::new(10, 20, index, 1).set(dimensions)[index_in_set];
+                    is_sampled[(x * 64.0) as usize] = true;
                 }
-                assert!(seen.iter().all(|&s| s), "one sample in each of 64 strata");
+                assert!(is_sampled.iter().all(|&s| s), "one sample in each of 64 strata");
             }
         }
     }
 
     #[test]
-    fn long_renders_go_on_past_the_sequence() {
-        let x = Sampler::new(0, 0, 1 << 16, 1).set(Purpose::Camera);
-        assert_ne!(x, Sampler::new(0, 0, 0, 1).set(Purpose::Camera));
+    fn samples_beyond_the_sequence_have_another_scramble() {
+        let x = Sampler::new(0, 0, 1 << 16, 1).set(Dimensions::Camera);
+        assert_ne!(x, Sampler::new(0, 0, 0, 1).set(Dimensions::Camera));
     }
 }

@@ -8,7 +8,7 @@ use crate::raytrace::medium_stack::MediumStack;
 use crate::raytrace::ray_caster::{RayCaster, are_parallel};
 use crate::raytrace::render_scene::RenderScene;
 use crate::raytrace::roulette::{survival_probability, survives};
-use crate::raytrace::sampler::{self, Purpose, Sampler};
+use crate::raytrace::sampler::{self, Dimensions, Sampler};
 use glam::Vec3;
 
 /// Least cosine to the surface by which a photon's flux is divided.
@@ -50,9 +50,9 @@ impl<'a> PhotonTracer<'a> {
         let scene = self.caster.scene;
 
         // Sample the point and the side of the surface
-        let [point_set, light_set] = sampler.pair(Purpose::Camera, Purpose::Light { slot: 0, bounce: 0 });
-        let [triangle_choice, side_choice] = sampler::rest(&point_set);
-        let hit = scene.casters.sample(triangle_choice, sampler::point(&point_set))?;
+        let [point_set, light_set] = sampler.pair(Dimensions::Camera, Dimensions::Light { slot: 0, depth: 0 });
+        let [triangle_choice, side_choice] = sampler::last_pair(&point_set);
+        let hit = scene.casters.sample(triangle_choice, sampler::first_pair(&point_set))?;
         let surface = scene.aggregate.surface(&hit);
         let inner = inner_side_probability(&surface);
         let (normal, side_probability) = if side_choice < inner {
@@ -62,10 +62,10 @@ impl<'a> PhotonTracer<'a> {
         };
 
         // Sample the light and a direction towards it
-        let light_choice = sampler::rest(&light_set)[0];
+        let light_choice = sampler::last_pair(&light_set)[0];
         let (light, pmf) = scene.light_sampler.sample(&scene.lights, surface.position, normal, light_choice)?;
         let light = &scene.lights[light as usize];
-        let sample = light.sample(surface.position, sampler::point(&light_set))?;
+        let sample = light.sample(surface.position, sampler::first_pair(&light_set))?;
         let (to_light, cos) = (sample.direction, sample.direction.dot(normal));
         if cos <= 0.0 {
             return None;
@@ -98,10 +98,10 @@ impl<'a> PhotonTracer<'a> {
         for depth in 0..scene.plan().max_depth {
             // Sample the BSDF; only specular scattering at casters is followed
             let material = &scene.materials[surface.material as usize];
-            let set = sampler.set(Purpose::Bsdf { bounce: depth });
-            let [lobe, roulette] = sampler::rest(&set);
+            let set = sampler.set(Dimensions::Bsdf { depth });
+            let [lobe, roulette] = sampler::last_pair(&set);
             let bsdf = scene.bsdf(&surface, wo, &media, polarisation);
-            let Some(sample) = bsdf.sample(lobe, sampler::point(&set)) else { return };
+            let Some(sample) = bsdf.sample(lobe, sampler::first_pair(&set)) else { return };
             let is_unscattered = sample.is_undeviated && specular_depth == 0;
             // Light sampling finds what is transmitted by a pane alone.
             if !sample.specular || !material.is_caustic_caster() || is_unscattered {

@@ -15,26 +15,26 @@ fn photon(position: Vec3) -> Photon {
 }
 
 #[test]
-fn the_grid_finds_what_looking_at_every_photon_finds() {
+fn grid_queries_match_brute_force() {
     let mut rng = TestRng::new(5);
-    // Around the origin, where cells change sign, and so many that cells share hashes.
+    // Around the origin, where cell coordinates change sign, and enough for hash collisions.
     let photons: Vec<Photon> = (0..3000).map(|_| photon(rng.direction() * rng.range(0.0, 2.0))).collect();
     for radius in [0.01, 0.2, 5.0] {
         let grid = PhotonGrid::new(photons.clone(), radius);
         let mut most = 0;
         for _ in 0..300 {
-            let place = rng.direction() * rng.range(0.0, 2.1);
+            let position = rng.direction() * rng.range(0.0, 2.1);
             let mut found = Vec::new();
-            grid.for_each_near(place, |photon, distance2| found.push((photon.position.to_array(), distance2)));
-            let near = |p: &&Photon| p.position.distance_squared(place) < radius * radius;
+            grid.for_each_near(position, |photon, distance2| found.push((photon.position.to_array(), distance2)));
+            let near = |p: &&Photon| p.position.distance_squared(position) < radius * radius;
             let mut all: Vec<_> = photons
                 .iter()
                 .filter(near)
-                .map(|p| (p.position.to_array(), p.position.distance_squared(place)))
+                .map(|p| (p.position.to_array(), p.position.distance_squared(position)))
                 .collect();
-            let by_place = |a: &([f32; 3], f32), b: &([f32; 3], f32)| a.partial_cmp(b).unwrap();
-            found.sort_by(by_place);
-            all.sort_by(by_place);
+            let by_position = |a: &([f32; 3], f32), b: &([f32; 3], f32)| a.partial_cmp(b).unwrap();
+            found.sort_by(by_position);
+            all.sort_by(by_position);
             assert_eq!(found, all);
             most = most.max(all.len());
         }
@@ -44,11 +44,11 @@ fn the_grid_finds_what_looking_at_every_photon_finds() {
 }
 
 #[test]
-fn a_smooth_normal_sends_on_as_much_as_the_paths_from_the_camera_see() {
+fn the_shading_correction_makes_photons_agree_with_camera_paths() {
     let (from, normal) = (Vec3::new(0.6, 0.8, 0.0), Vec3::new(0.1, 1.0, 0.05).normalize());
     let to = (2.0 * from.dot(normal) * normal - from).normalize();
     assert!((shading_correction(from, to, normal, normal) - 1.0).abs() < 1e-6);
-    // By reflection, the cosines to the smooth normal are the same: what is left is the triangle's foreshortening.
+    // Reflection has equal cosines to the shading normal: the triangle's foreshortening remains.
     let expected = to.y / from.y;
     assert!((shading_correction(from, to, normal, Vec3::Y) / expected - 1.0).abs() < 1e-5);
     assert_eq!(shading_correction(Vec3::X, to, normal, Vec3::Y), 0.0);
@@ -58,7 +58,7 @@ fn object(id: u32, shape: Shape, position: Vec3, material: Material) -> Object {
     let transform = crate::scene::Transform { position, ..Default::default() };
     Object {
         id: ObjectId(id),
-        name: format!("Thing {id}"),
+        name: format!("Object {id}"),
         transform,
         shape,
         material,
@@ -68,7 +68,7 @@ fn object(id: u32, shape: Shape, position: Vec3, material: Material) -> Object {
     }
 }
 
-/// A glass ball and a chrome ball on a floor, two lights without a size.
+/// A glass ball and a chrome ball on a floor, with two delta lights.
 fn still_life() -> Scene {
     let floor = Shape::Plane { width_m: 4.0, depth_m: 4.0 };
     let ball = Shape::Sphere { radius_m: 0.3 };
@@ -94,7 +94,7 @@ fn still_life() -> Scene {
 }
 
 #[test]
-fn casters_are_chosen_by_their_area() {
+fn casters_are_sampled_by_area() {
     let scene = prepare(&still_life(), &Assets::default()).unwrap();
     let sphere = 4.0 * PI * 0.3 * 0.3;
     assert!((scene.casters.area() / (2.0 * sphere) - 1.0).abs() < 0.02, "{} of flat triangles", scene.casters.area());
@@ -121,15 +121,15 @@ fn caustics_have_the_same_bits_for_any_number_of_threads() {
     let settings = Settings { width: 40, height: 30, spp: 4, ..Settings::default() };
     let picture = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let go = || render(&scene, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
-        pool.install(go).develop(&still_life())
+        let trace = || render(&scene, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
+        pool.install(trace).develop(&still_life())
     };
     let one = picture(1);
     assert!(one == picture(3) && one == picture(5));
 }
 
 #[test]
-fn every_light_casts_its_caustics_on_its_own_layer() {
+fn caustics_are_on_the_layer_of_their_light() {
     let studio = still_life();
     let settings = Settings { width: 40, height: 30, spp: 8, ..Settings::default() };
     let layers = |lights: &[Light]| {
@@ -151,7 +151,7 @@ fn every_light_casts_its_caustics_on_its_own_layer() {
 }
 
 #[test]
-fn a_cancelled_wave_is_not_waited_for() {
+fn a_cancelled_photon_pass_traces_nothing() {
     let scene = prepare(&still_life(), &Assets::default()).unwrap();
     let control = RenderControl::new();
     control.cancel();

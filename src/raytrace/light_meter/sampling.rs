@@ -12,7 +12,7 @@ use crate::raytrace::limits::PathLimits;
 use crate::raytrace::medium_stack::MediumStack;
 use crate::raytrace::path_tracer::PathTracer;
 use crate::raytrace::ray_caster::RayCaster;
-use crate::raytrace::sampler::{self, Purpose, SampleId, Sampler};
+use crate::raytrace::sampler::{self, Dimensions, SampleId, Sampler};
 use crate::raytrace::sink::RadianceSink;
 use glam::{DVec3, Vec3};
 
@@ -78,8 +78,8 @@ impl RoundSampler<'_> {
     /// Illuminance by one sample of a light.
     fn light_sample(&self, caster: &mut RayCaster<'_>, light: &TracedLight, sampler: &Sampler) -> f32 {
         let ReceptorFrame { origin, facing, receptor, .. } = self.receptor;
-        let set = sampler.set(Purpose::Camera);
-        let Some(sample) = light.sample(origin, sampler::point(&set)) else { return 0.0 };
+        let set = sampler.set(Dimensions::Camera);
+        let Some(sample) = light.sample(origin, sampler::first_pair(&set)) else { return 0.0 };
         let value = sample.value * receptor.response(sample.direction.dot(facing));
         if value <= 0.0 {
             return 0.0;
@@ -93,7 +93,7 @@ impl RoundSampler<'_> {
     fn trace_path(&self, replicate: &mut Replicate, tracer: &mut PathTracer<'_>, index: u32) {
         let receptor = &self.receptor;
         let sampler = Sampler::new(replicate.index, 0, index, self.seed);
-        let direction = receptor.sample(sampler::point(&sampler.set(Purpose::Camera)));
+        let direction = receptor.sample(sampler::first_pair(&sampler.set(Dimensions::Camera)));
         let weight = receptor.response_integral();
         replicate.paths += 1;
 
