@@ -159,3 +159,33 @@ impl Film {
         picture
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raytrace::{RenderControl, prepare, render};
+    use crate::scene::{Assets, Emitter, Light, Output, Room};
+    use std::ops::ControlFlow;
+
+    #[test]
+    fn a_snapshot_keeps_its_samples_while_the_render_goes_on() {
+        let light = Light::new(Emitter::Point, Output::Lumens(1000.0));
+        let scene = Scene { room: Some(Room::default()), lights: vec![light], ..Scene::default() };
+        let prepared = prepare(&scene, &Assets::default()).unwrap();
+        let settings = Settings { width: 40, height: 20, spp: 4, ..Settings::default() };
+        let mut snapshots = Vec::new();
+        let film = render(&prepared, &settings, &RenderControl::new(), &mut |film| {
+            let snapshot = film.clone();
+            assert!(snapshot.tiles.iter().zip(&film.tiles).all(|(a, b)| Arc::ptr_eq(a, b)), "the tiles are shared");
+            snapshots.push(snapshot);
+            ControlFlow::Continue(())
+        });
+        assert_eq!(snapshots.iter().map(Film::spp).collect::<Vec<_>>(), [1, 2, 4]);
+        for snapshot in &snapshots {
+            let settings = Settings { spp: snapshot.spp(), ..settings.clone() };
+            let alone = render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
+            assert_eq!(snapshot.develop(&scene), alone.develop(&scene));
+        }
+        assert_eq!(film.develop(&scene), snapshots[2].develop(&scene));
+    }
+}
