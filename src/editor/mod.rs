@@ -1,8 +1,34 @@
-//! The window: arrange the studio, see it live, render, save.
+//! The editor: an egui window to arrange the studio, see it live, render and save.
 //!
-//! Panels and viewport draw from the [`Document`] and push [`Command`]s; [`App::run`] carries them out. Every change of
-//! the scene is an [`Action`] inside a command, so menus, shortcuts, handles, undo and tests all take the same way.
-//! Files, renders and file dialogs work in threads of their own; their results are taken in at the start of a frame.
+//! Panels and viewport draw from the [`Document`] and push [`Command`]s; [`App::run`] executes them after the frame. Every
+//! change of the scene is an [`Action`] inside a command, so menus, shortcuts, handles, undo and tests share one path.
+//! Files, renders and file dialogs run in background threads; the window takes their results at the start of a frame.
+//!
+//! # Rooms
+//! An import never runs against an arrow, and no two files import each other:
+//! ```text
+//! document ── commands ──┬── viewport ──┬── panels ── window
+//!                  ui ───┴── picture ───┘
+//! ```
+//! - `document`: the open studio, its history and selection, the actions, the catalog, placement of new items.
+//! - `ui`: theme, widgets, units, messages; nothing about studios.
+//! - `commands`: the commands, their keys, and the menu entries of an item.
+//! - `viewport`: navigation and the live view; `live` makes the images, `overlays` paints over them, `tools` holds the
+//!   transform handles, the selection by click or box, and the placing of lights.
+//! - `picture`: render settings, the finished picture and its view.
+//! - `panels`: menu bar, catalog, item list, inspector, render panel, light meter, prompts.
+//! - `window`: [`App`], execution of commands, files, dialogs, recovery, the native window.
+//!
+//! # Where to add
+//! - A panel: a `*_ui` function in a new file of `panels`, its state in `window::app_state::PanelState`, its call in
+//!   `App::panels_ui`. A section of the inspector: a file in `panels::inspector` and an arm of `inspector_ui`.
+//! - A command: a variant in `commands::command`, an arm in `window::run_command` (files: `window::run_file_command`), its
+//!   key in `commands::shortcuts::KEY_BINDINGS`, its entry in `panels::menu` or `commands::item_menu`.
+//! - An action: a variant in `document::action` with its label and effect; undo follows by itself.
+//! - A transform handle: a variant of `commands::choices::HandleMode`, its modes in `viewport::tools::transform_handles`,
+//!   its effect in `viewport::tools::transform_selection`. Another tool: a file in `viewport::tools` that
+//!   `viewport::viewport_area` calls.
+//! - A catalog entry: a line in `document::catalog`.
 
 mod commands;
 mod document;
@@ -12,10 +38,10 @@ mod ui;
 mod viewport;
 mod window;
 
-pub use commands::choices::{Centre, Handle, LiveMode, Side, Swing};
+pub use commands::choices::{CentralView, HandleMode, LiveMode, PlaceLightBy, ViewSide};
 pub use commands::command::Command;
-pub use commands::file_purpose::Purpose;
-pub use commands::shortcuts::{BINDINGS, Binding};
+pub use commands::file_purpose::FilePurpose;
+pub use commands::shortcuts::{KEY_BINDINGS, KeyBinding};
 pub use document::action::Action;
 pub use document::action_error::ActionError;
 pub use document::item::Item;
@@ -23,48 +49,10 @@ pub use document::selection::Selection;
 pub use document::studio_document::Document;
 pub use panels::thumbnails::{Thumbnail, Thumbnails};
 pub use picture::rendering::{PictureSize, Quality, RenderSettings, Rendering};
-pub use ui::toasts::{Toasts, Tone};
-pub use viewport::live::traced_view::LiveView;
+pub use ui::toasts::{ToastKind, Toasts};
+pub use viewport::live::traced_view::TracedView;
 pub use viewport::studio_view::StudioView;
 pub use viewport::viewport_area::Viewport;
-pub use window::app::{App, Options};
-pub use window::dialogs::{Answer, FileDialogs};
-
-use std::path::PathBuf;
-use std::time::Instant;
-
-/// Why there is no window.
-#[derive(Debug, thiserror::Error)]
-pub enum EditorError {
-    /// There is no display to open a window on.
-    #[error("there is no display to open a window on: {0}")]
-    NoDisplay(String),
-    /// There is a display, but nothing that can draw on it.
-    #[error("no graphics adapter can draw the window (on Debian: apt-get install mesa-vulkan-drivers libvulkan1): {0}")]
-    NoGraphics(String),
-    /// Anything else that keeps the window from opening.
-    #[error("the window could not be opened: {0}")]
-    Window(String),
-}
-
-/// Opens the window and returns when it is closed. `initial` is the studio to open; none opens a shipped one.
-///
-/// # Errors
-/// When there is no display, no graphics adapter, or the window cannot be opened.
-pub fn run(initial: Option<PathBuf>) -> Result<(), EditorError> {
-    let started = Instant::now();
-    check_display()?;
-    let options =
-        Options { initial, settings_folder: window::recent::settings_folder(), started, ..Options::default() };
-    window::native_window::run(options)
-}
-
-/// On Linux a window needs a Wayland or X11 display; asking winit without one gives a less helpful message.
-fn check_display() -> Result<(), EditorError> {
-    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-    let is_linux = cfg!(all(unix, not(target_os = "macos")));
-    if is_linux && !set("DISPLAY") && !set("WAYLAND_DISPLAY") && !set("WAYLAND_SOCKET") {
-        return Err(EditorError::NoDisplay("neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned()));
-    }
-    Ok(())
-}
+pub use window::app::{App, EditorOptions};
+pub use window::dialogs::{DialogAnswer, FileDialogs};
+pub use window::native_window::{EditorError, run};

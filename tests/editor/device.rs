@@ -41,7 +41,7 @@ fn a_lost_device_costs_neither_the_studio_nor_its_history() {
         return;
     }
     let (first, device) = renderer();
-    let mut window = window_on(first, |creation| App::new(creation, Options::default()));
+    let mut window = window_on(first, |creation| App::new(creation, EditorOptions::default()));
     let begin = scene(&window).clone();
     click(&mut window, "Add Octa 120");
     press(&mut window, Modifiers::COMMAND, Key::D);
@@ -63,7 +63,7 @@ fn a_lost_device_costs_neither_the_studio_nor_its_history() {
     assert_eq!(*scene(&window), before);
     assert_eq!(window.state().selection().last(), selection);
     assert!(window.state().rendering().texture().is_some(), "the rendered picture came along");
-    assert_eq!(window.state().toasts().texts(Tone::Warning).len(), 1, "the user is told");
+    assert_eq!(window.state().toasts().texts(ToastKind::Warning).len(), 1, "the user is told");
     assert!(window.render().is_ok_and(|picture| picture.pixels().any(|p| p.0[0] > 200)), "letters and picture show");
     press(&mut window, Modifiers::COMMAND, Key::Z);
     press(&mut window, Modifiers::COMMAND, Key::Z);
@@ -89,7 +89,7 @@ fn a_device_that_is_lost_in_the_middle_of_a_frame_ends_that_frame() {
         return;
     }
     let (first, device) = renderer();
-    let mut window = window_on(first, |creation| App::new(creation, Options::default()));
+    let mut window = window_on(first, |creation| App::new(creation, EditorOptions::default()));
     let _ = device.poll(wgpu::PollType::wait_indefinitely());
     device.destroy();
     // The loss shows when the preview draws its next picture, in the frame that draws the window.
@@ -110,7 +110,7 @@ fn a_device_that_is_lost_behind_a_minimised_window_is_noticed_there() {
         return;
     }
     let (first, device) = renderer();
-    let mut window = window_on(first, |creation| App::new(creation, Options::default()));
+    let mut window = window_on(first, |creation| App::new(creation, EditorOptions::default()));
     click(&mut window, "Add Octa 120");
     destroy(&device);
     let commands = sizes::while_minimised(&mut window, Vec::new());
@@ -122,7 +122,7 @@ fn a_device_that_is_lost_behind_a_minimised_window_is_noticed_there() {
 /// A window whose renderer has no device at all.
 fn window_without_device() -> Window {
     let builder = Harness::builder().with_size(vec2(1200.0, 800.0)).with_max_steps(60);
-    let mut window = builder.build_eframe(|creation| App::new(creation, Options::default()));
+    let mut window = builder.build_eframe(|creation| App::new(creation, EditorOptions::default()));
     settle(&mut window);
     window
 }
@@ -155,8 +155,8 @@ fn without_a_device_the_processor_draws_the_view_and_everything_works_on_it() {
     assert!((scene(&window).lights[0].position - light.position).length() > 0.05);
     press(&mut window, Modifiers::NONE, Key::Num2);
     let began = Instant::now();
-    while !window.state().viewport().live.has_picture() {
-        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().live.status());
+    while !window.state().viewport().traced_view.has_picture() {
+        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().traced_view.status());
         window.step();
     }
     render_tiny(&mut window);

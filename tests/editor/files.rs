@@ -116,8 +116,8 @@ fn a_desktop_without_dialogs_gets_a_field_for_the_path() {
     }
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("typed.ron");
-    let answers = VecDeque::from([Answer::Unavailable, Answer::Cancelled]);
-    let mut window = window(Options { dialogs: FileDialogs::Scripted(answers), ..Options::default() });
+    let answers = VecDeque::from([DialogAnswer::Unavailable, DialogAnswer::Cancelled]);
+    let mut window = window(EditorOptions { dialogs: FileDialogs::Scripted(answers), ..EditorOptions::default() });
     press(&mut window, Modifiers::COMMAND, Key::S);
     let field = window.get_by_label("Path");
     field.set_text_value_accesskit(&file.to_string_lossy());

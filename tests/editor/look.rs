@@ -38,7 +38,7 @@ fn each_channel_chosen_changes_the_picture_and_lit_brings_it_back() {
     for channel in Channel::ALL.into_iter().filter(|channel| *channel != Channel::Lit) {
         let shown = seen.last().unwrap().0;
         choose(&mut window, shown, &[channel.label()]);
-        assert_eq!(window.state().viewport().preview.look.channel, channel);
+        assert_eq!(window.state().viewport().preview.view_options.channel, channel);
         let picture = view(&mut window);
         for (other, before) in &seen {
             assert!(apart(&picture, before) > 0.5, "{} looks like {other}", channel.label());
@@ -61,7 +61,7 @@ fn the_light_of_one_alone_is_shown_without_touching_the_studio() {
     entry.unwrap().click();
     settle(&mut window);
     press(&mut window, Modifiers::NONE, Key::Escape);
-    assert_eq!(window.state().viewport().preview.look.only_light, Some(light.id));
+    assert_eq!(window.state().viewport().preview.view_options.only_light, Some(light.id));
     let alone = view(&mut window);
     let sum = |picture: &RgbaImage| picture.pixels().map(|p| u64::from(p.0[1])).sum::<u64>();
     assert!(sum(&alone) < sum(&lit) && apart(&alone, &lit) > 1.0);
@@ -84,13 +84,13 @@ fn from_a_side_the_depth_channel_tells_near_from_far() {
 #[test]
 fn grain_is_smoothed_only_when_asked_for() {
     let Some(mut window) = preset_window() else { return };
-    assert!(!window.state().viewport().preview.look.smooth);
+    assert!(!window.state().viewport().preview.view_options.smooth);
     choose(&mut window, "Lit", &["Smooth grain until settled"]);
-    assert!(window.state().viewport().preview.look.smooth);
-    run(&mut window, Command::Live(LiveMode::True));
+    assert!(window.state().viewport().preview.view_options.smooth);
+    run(&mut window, Command::SetLiveMode(LiveMode::True));
     let began = Instant::now();
-    while !window.state().viewport().live.has_picture() {
-        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().live.status());
+    while !window.state().viewport().traced_view.has_picture() {
+        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().traced_view.status());
         window.step();
     }
     assert_eq!(undo_depth(&window), 0, "a look is no change of the studio");

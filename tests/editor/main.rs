@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
 
 use catchlight::editor::{
-    Action, Answer, App, Centre, Command, FileDialogs, Item, LiveMode, Options, PictureSize, Quality, Tone,
+    Action, App, CentralView, Command, DialogAnswer, EditorOptions, FileDialogs, Item, LiveMode, PictureSize, Quality,
+    ToastKind,
 };
 use catchlight::preview::Gpu;
 use catchlight::scene::{Aim, Scene, Shape};
@@ -45,7 +46,7 @@ fn has_adapter() -> bool {
     }
 }
 
-fn window(options: Options) -> Window {
+fn window(options: EditorOptions) -> Window {
     let builder = Harness::builder().with_size(vec2(1440.0, 900.0)).with_step_dt(1.0 / 30.0).with_max_steps(60);
     let mut window = builder.wgpu().build_eframe(move |creation| App::new(creation, options));
     settle(&mut window);
@@ -53,7 +54,7 @@ fn window(options: Options) -> Window {
 }
 
 fn window_with_answers(paths: impl IntoIterator<Item = PathBuf>) -> Window {
-    window(Options { dialogs: FileDialogs::scripted(paths), ..Options::default() })
+    window(EditorOptions { dialogs: FileDialogs::scripted(paths), ..EditorOptions::default() })
 }
 
 /// A window with the first preset; none without an adapter.
@@ -178,7 +179,7 @@ fn undo_depth(window: &Window) -> usize {
 }
 
 fn errors(window: &Window) -> Vec<&str> {
-    window.state().toasts().texts(Tone::Error)
+    window.state().toasts().texts(ToastKind::Error)
 }
 
 /// Renders a picture of a few pixels.
@@ -222,7 +223,7 @@ fn a_studio_from_the_shelf_to_a_picture_on_disk_and_back() {
     assert_eq!(scene(&window).light(id).unwrap().position.x, -1.5);
 
     render_tiny(&mut window);
-    assert_eq!(window.state().centre(), Centre::Picture);
+    assert_eq!(window.state().central_view(), CentralView::Picture);
     press(&mut window, Modifiers::COMMAND, Key::E);
     let written = image::open(&picture).unwrap();
     assert_eq!((written.width(), written.height()), (48, 32));

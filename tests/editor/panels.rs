@@ -43,18 +43,18 @@ fn keys_are_letters_while_a_name_is_typed() {
         window.event(Event::Key { key, physical_key: None, pressed: false, repeat: false, modifiers: Modifiers::NONE });
     }
     settle(&mut window);
-    assert!(window.state().rendering().job().is_none() && window.state().centre() == Centre::Studio);
+    assert!(window.state().rendering().job().is_none() && window.state().central_view() == CentralView::Studio);
     press(&mut window, Modifiers::NONE, Key::Enter);
     assert_eq!(scene(&window).lights[0].name, "rf1w");
     press(&mut window, Modifiers::NONE, Key::Num1);
-    assert_eq!(window.state().centre(), Centre::Camera);
+    assert_eq!(window.state().central_view(), CentralView::Camera);
 }
 
 #[test]
 fn a_name_that_is_taken_is_refused_in_plain_words() {
     let Some(mut window) = preset_window() else { return };
     let (first, second) = (scene(&window).lights[0].clone(), scene(&window).lights[1].name.clone());
-    let rename = Command::Do(Action::Rename(Item::Light(first.id), second));
+    let rename = Command::Apply(Action::Rename(Item::Light(first.id), second));
     window.state_mut().run(rename, None, &egui::Context::default());
     settle(&mut window);
     assert_eq!(scene(&window).lights[0].name, first.name);
@@ -159,7 +159,7 @@ fn the_light_meter_reads_in_the_background_follows_the_dial_and_can_be_undone() 
     // A stop less on the key is a stop less at the meter.
     let mut light = scene(&window).lights[0].clone();
     light.power.dial_stops -= 1.0;
-    window.state_mut().run(Command::Do(Action::SetLight(Box::new(light))), None, &egui::Context::default());
+    window.state_mut().run(Command::Apply(Action::SetLight(Box::new(light))), None, &egui::Context::default());
     settle(&mut window);
     let after = reading(&window);
     let stops = (after.lux_s(&after.lights[0]) / before.lux_s(&before.lights[0])).log2();

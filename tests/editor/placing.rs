@@ -12,7 +12,7 @@ fn with_a_ball() -> (Window, usize) {
     let mut ball = scene(&window).object(id).unwrap().clone();
     ball.transform.position = Vec3::new(0.9, 1.2, 0.8);
     ball.transform.scale = Vec3::splat(3.0);
-    run(&mut window, Command::Do(Action::SetObject(Box::new(ball))));
+    run(&mut window, Command::Apply(Action::SetObject(Box::new(ball))));
     let light = scene(&window).lights[0].id;
     select(&mut window, &[Item::Light(light)]);
     let index = scene(&window).objects.iter().position(|o| o.id == id).unwrap();
@@ -28,7 +28,7 @@ fn a_highlight_is_dragged_over_a_ball_and_the_light_follows_in_one_step() {
     let (start, depth) = (scene(&window).lights[0].clone(), undo_depth(&window));
     let centre = scene(&window).objects[ball].transform.position;
     press(&mut window, Modifiers::NONE, Key::P);
-    assert!(window.state().viewport().swing.is_some());
+    assert!(window.state().viewport().place_light.is_some());
     let [from, to] = [Vec3::new(0.0, 0.05, 0.2), Vec3::new(-0.1, 0.12, 0.2)].map(|p| shown_at(&window, centre + p));
     drag(&mut window, PointerButton::Primary, from, to);
     let (scene, light) = (scene(&window), &scene(&window).lights[0]);
@@ -41,7 +41,7 @@ fn a_highlight_is_dragged_over_a_ball_and_the_light_follows_in_one_step() {
     assert!((distance(light) - distance(&start)).abs() < 1e-3, "at its distance");
     assert_eq!(undo_depth(&window), depth + 1);
     press(&mut window, Modifiers::NONE, Key::Escape);
-    assert!(window.state().viewport().swing.is_none() && !window.state().selection().is_empty());
+    assert!(window.state().viewport().place_light.is_none() && !window.state().selection().is_empty());
     press(&mut window, Modifiers::COMMAND, Key::Z);
     assert_eq!(super::scene(&window).lights[0], start);
 }
@@ -68,7 +68,7 @@ fn looking_through_a_light_orbit_swings_it_at_its_distance_and_esc_goes_back() {
     let light = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(light.id)]);
     press(&mut window, Modifiers::NONE, Key::V);
-    assert_eq!(window.state().centre(), Centre::Light(light.id));
+    assert_eq!(window.state().central_view(), CentralView::Light(light.id));
     let middle = window.get_by_label("Viewport").rect().center();
     drag(&mut window, PointerButton::Middle, middle, middle + vec2(70.0, 15.0));
     let now = scene(&window).lights[0].clone();
@@ -77,7 +77,7 @@ fn looking_through_a_light_orbit_swings_it_at_its_distance_and_esc_goes_back() {
     assert!((distance(&now) - distance(&light)).abs() < 1e-4);
     assert_eq!((now.aim, undo_depth(&window)), (light.aim, 1));
     press(&mut window, Modifiers::NONE, Key::Escape);
-    assert_eq!(window.state().centre(), Centre::Studio);
+    assert_eq!(window.state().central_view(), CentralView::Studio);
 }
 
 #[test]
@@ -88,7 +88,7 @@ fn a_light_that_is_aimed_at_its_subject_stays_on_it_while_either_moves() {
     let Aim::Object { object, offset } = light.aim else { panic!("the preset's key is aimed at its subject") };
     let mut moved = scene(&window).object(object).unwrap().clone();
     moved.transform.position += Vec3::new(0.5, 0.0, 0.3);
-    run(&mut window, Command::Do(Action::SetObject(Box::new(moved.clone()))));
+    run(&mut window, Command::Apply(Action::SetObject(Box::new(moved.clone()))));
     let target = scene(&window).aim_point(&scene(&window).lights[0].aim, Vec3::ZERO);
     assert!((target - moved.transform.world_from_object().transform_point3(offset)).length() < 1e-6);
     // The lock is a switch in the inspector: let go, it stays where it is aimed at now; locked again, it follows.
@@ -119,9 +119,9 @@ fn esc_gives_up_a_highlight_that_is_dragged_and_then_the_mode() {
     button(&mut window, at + vec2(9.0, 0.0), false);
     settle(&mut window);
     assert_eq!((&scene(&window).lights[0], undo_depth(&window)), (&start, depth));
-    assert!(window.state().viewport().swing.is_some());
+    assert!(window.state().viewport().place_light.is_some());
     press(&mut window, Modifiers::NONE, Key::Escape);
-    assert!(window.state().viewport().swing.is_none());
+    assert!(window.state().viewport().place_light.is_none());
 }
 
 #[test]
@@ -179,7 +179,7 @@ fn through_a_light_the_wheel_takes_it_nearer_and_a_pan_aims_it_elsewhere() {
     drag(&mut window, PointerButton::Secondary, middle, middle + vec2(60.0, 0.0));
     assert!((target(&window) - begin).length() > 0.05, "looking around aims it elsewhere");
     press(&mut window, Modifiers::NONE, Key::V);
-    assert_eq!(window.state().centre(), Centre::Studio);
+    assert_eq!(window.state().central_view(), CentralView::Studio);
 }
 
 #[test]
@@ -190,9 +190,9 @@ fn a_locked_light_is_not_placed_and_the_user_is_told_why() {
     press(&mut window, Modifiers::NONE, Key::K);
     for key in [Key::P, Key::L] {
         press(&mut window, Modifiers::NONE, key);
-        assert!(window.state().viewport().swing.is_none());
+        assert!(window.state().viewport().place_light.is_none());
     }
-    assert!(window.state().toasts().texts(Tone::News).iter().any(|text| text.contains("locked")));
+    assert!(window.state().toasts().texts(ToastKind::Info).iter().any(|text| text.contains("locked")));
     press(&mut window, Modifiers::NONE, Key::X);
     assert_eq!((scene(&window).lights[0].position, errors(&window).len()), (light.position, 1));
 }

@@ -23,7 +23,7 @@ fn light_changes_develop_the_picture_anew_without_tracing() {
     assert_eq!(rays(&window), traced);
     let mut camera = dark.camera.clone();
     camera.position.x += 0.5;
-    window.state_mut().run(Command::Do(Action::SetCamera(Box::new(camera))), None, &egui::Context::default());
+    window.state_mut().run(Command::Apply(Action::SetCamera(Box::new(camera))), None, &egui::Context::default());
     settle(&mut window);
     let moved = scene(&window).clone();
     assert!(window.state().rendering().is_out_of_date(&moved), "a moved camera needs one");
@@ -49,13 +49,13 @@ fn muting_soloing_and_locking_after_a_render_show_no_out_of_date_mark() {
     ];
     for action in steps {
         let name = format!("{action:?}");
-        window.state_mut().run(Command::Do(action), None, &egui::Context::default());
+        window.state_mut().run(Command::Apply(action), None, &egui::Context::default());
         settle(&mut window);
         assert!(!is_marked(&window), "{name}");
     }
     let mut light = scene(&window).lights[1].clone();
     light.position.x += 0.5;
-    window.state_mut().run(Command::Do(Action::SetLight(Box::new(light))), None, &egui::Context::default());
+    window.state_mut().run(Command::Apply(Action::SetLight(Box::new(light))), None, &egui::Context::default());
     settle(&mut window);
     assert!(is_marked(&window), "a moved light needs a render");
 }

@@ -40,7 +40,7 @@ fn a_box_and_ctrl_a_select_what_is_there_and_not_locked() {
         .map(|l| Item::Light(l.id))
         .collect();
     assert!(inside.len() > 1, "the preset shows its lights");
-    run(&mut window, Command::Do(Action::Lock(vec![inside[0]], true)));
+    run(&mut window, Command::Apply(Action::Lock(vec![inside[0]], true)));
     drag(&mut window, PointerButton::Primary, view.left_bottom(), view.right_top() - vec2(110.0, -130.0));
     let boxed = window.state().selection().clone();
     let by_hand = scene(&window).lights.iter().filter(|l| {
@@ -108,7 +108,11 @@ fn a_typed_number_moves_by_exactly_that_and_esc_gives_a_drag_up() {
     settle(&mut window);
     let moved = (scene(&window).lights[0].position - light.position).length();
     assert!((moved - 1.5).abs() < 1e-4, "{moved} m");
-    assert_eq!((undo_depth(&window), window.state().centre()), (1, Centre::Studio), "the 1 was no key of its own");
+    assert_eq!(
+        (undo_depth(&window), window.state().central_view()),
+        (1, CentralView::Studio),
+        "the 1 was no key of its own"
+    );
     press(&mut window, Modifiers::COMMAND, Key::Z);
     begin(&mut window);
     assert_ne!(scene(&window).lights[0], light);
@@ -150,9 +154,9 @@ fn the_other_button_on_a_light_in_the_view_opens_its_menu() {
     assert_eq!(window.state().selection().items(), [Item::Light(light.id)]);
     window.get_by_label_contains("Place its highlight").click();
     settle(&mut window);
-    assert!(window.state().viewport().swing.is_some());
+    assert!(window.state().viewport().place_light.is_some());
     press(&mut window, Modifiers::NONE, Key::Escape);
-    assert!(window.state().viewport().swing.is_none());
+    assert!(window.state().viewport().place_light.is_none());
 }
 
 #[test]
@@ -173,7 +177,7 @@ fn esc_gives_a_box_up_and_keys_wait_for_its_end() {
         }
         button(&mut window, to, false);
         settle(&mut window);
-        assert_eq!(window.state().centre(), Centre::Studio);
+        assert_eq!(window.state().central_view(), CentralView::Studio);
         assert_eq!(window.state().selection().is_empty(), keys.contains(&Key::Escape));
     }
 }
@@ -227,7 +231,7 @@ fn lights_are_mirrored_about_the_face_of_a_figure_that_is_turned_or_hidden() {
     let mut subject = scene(&window).object(object).unwrap().clone();
     subject.transform.rotation_deg.y += 70.0;
     subject.visible = false;
-    run(&mut window, Command::Do(Action::SetObject(Box::new(subject.clone()))));
+    run(&mut window, Command::Apply(Action::SetObject(Box::new(subject.clone()))));
     select(&mut window, &[Item::Light(key.id)]);
     press(&mut window, Modifiers::NONE, Key::X);
     let own = subject.transform.world_from_object().inverse();
@@ -235,9 +239,9 @@ fn lights_are_mirrored_about_the_face_of_a_figure_that_is_turned_or_hidden() {
     assert!((after - before * Vec3::new(-1.0, 1.0, 1.0)).length() < 1e-4, "{after} of {before}");
     // Without any figure there is no face; the user is told and nothing moves.
     let all = scene(&window).objects.iter().map(|o| Item::Object(o.id)).collect();
-    run(&mut window, Command::Do(Action::Delete(all)));
+    run(&mut window, Command::Apply(Action::Delete(all)));
     let before = scene(&window).clone();
     press(&mut window, Modifiers::NONE, Key::X);
     assert_eq!(*scene(&window), before);
-    assert_eq!(window.state().toasts().texts(Tone::News).len(), 1);
+    assert_eq!(window.state().toasts().texts(ToastKind::Info).len(), 1);
 }

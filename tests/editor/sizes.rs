@@ -55,19 +55,20 @@ fn a_storm_of_sizes_leaves_the_traced_view_at_work() {
     press(&mut window, Modifiers::NONE, Key::Num2);
     storm(&mut window);
     let began = Instant::now();
-    let rays = window.state().viewport().live.rays();
-    while !(window.state().viewport().live.has_picture() && window.state().viewport().live.rays() > rays) {
-        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().live.status());
+    let rays = window.state().viewport().traced_view.rays();
+    while !(window.state().viewport().traced_view.has_picture() && window.state().viewport().traced_view.rays() > rays)
+    {
+        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().traced_view.status());
         window.step();
         std::thread::sleep(Duration::from_millis(5));
     }
-    assert!(!window.state().viewport().live.has_failed() && errors(&window).is_empty());
+    assert!(!window.state().viewport().traced_view.has_failed() && errors(&window).is_empty());
 }
 
 #[test]
 fn a_storm_of_sizes_without_a_device_and_while_a_picture_is_rendered() {
     let builder = Harness::builder().with_size(vec2(900.0, 600.0)).with_max_steps(60);
-    let mut window = builder.build_eframe(|creation| App::new(creation, Options::default()));
+    let mut window = builder.build_eframe(|creation| App::new(creation, EditorOptions::default()));
     settle(&mut window);
     let settings = &mut window.state_mut().rendering_mut().settings;
     (settings.size, settings.quality, settings.samples) = (PictureSize::Custom(96, 64), Quality::Custom, 16);
@@ -113,17 +114,17 @@ fn a_minimised_window_comes_back_to_ask_before_unsaved_work_is_lost() {
 fn a_minimised_window_traces_nothing_and_goes_on_when_it_is_back() {
     let Some(mut window) = preset_window() else { return };
     press(&mut window, Modifiers::NONE, Key::Num2);
-    let rays = |window: &Window| window.state().viewport().live.rays();
+    let rays = |window: &Window| window.state().viewport().traced_view.rays();
     let goes_on = |window: &mut Window, from: u64| {
         let began = Instant::now();
         while rays(window) <= from {
-            assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().live.status());
+            assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().traced_view.status());
             window.step();
             std::thread::sleep(Duration::from_millis(5));
         }
     };
     goes_on(&mut window, 0);
-    assert!(!window.state().viewport().live.is_settled(), "there is work left");
+    assert!(!window.state().viewport().traced_view.is_settled(), "there is work left");
     let mut last = u64::MAX;
     let began = Instant::now();
     // The slice under way may end first.

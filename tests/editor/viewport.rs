@@ -66,7 +66,7 @@ fn of_two_things_behind_each_other_a_click_means_the_nearer_at_any_scale_of_the_
         let Some(Item::Object(id)) = window.state().selection().last() else { panic!("the ball is selected") };
         let mut ball = scene(window).object(id).unwrap().clone();
         ball.transform.position = at;
-        run(window, Command::Do(Action::SetObject(Box::new(ball))));
+        run(window, Command::Apply(Action::SetObject(Box::new(ball))));
         Item::Object(id)
     };
     let eye = window.state().viewport().view.eye();
@@ -79,7 +79,7 @@ fn of_two_things_behind_each_other_a_click_means_the_nearer_at_any_scale_of_the_
             let Item::Object(id) = near else { unreachable!() };
             let mut ball = scene(&window).object(id).unwrap().clone();
             ball.visible = shown;
-            run(&mut window, Command::Do(Action::SetObject(Box::new(ball))));
+            run(&mut window, Command::Apply(Action::SetObject(Box::new(ball))));
             // Handles would take the click.
             select(&mut window, &[]);
             let at = shown_at(&window, far_at);
@@ -134,10 +134,10 @@ fn traced_window() -> Window {
     window
 }
 
-fn wait_until(window: &mut Window, enough: impl Fn(&catchlight::editor::LiveView) -> bool) {
+fn wait_until(window: &mut Window, enough: impl Fn(&catchlight::editor::TracedView) -> bool) {
     let began = Instant::now();
-    while !enough(&window.state().viewport().live) {
-        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().live.status());
+    while !enough(&window.state().viewport().traced_view) {
+        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().traced_view.status());
         window.step();
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -149,7 +149,7 @@ fn the_live_view_is_traced_on_demand_and_everything_works_on_top_of_it() {
         return;
     }
     let mut window = traced_window();
-    assert_eq!(window.state().viewport().live.mode, LiveMode::True);
+    assert_eq!(window.state().viewport().traced_view.mode, LiveMode::True);
     let (figure, light) = (scene(&window).objects[0].clone(), scene(&window).lights[0].clone());
     let view = window.get_by_label("Viewport").rect();
     let frame = window.state().viewport().view.frame(view.width() / view.height());
@@ -180,13 +180,13 @@ fn the_live_view_is_traced_on_demand_and_everything_works_on_top_of_it() {
     wait_until(&mut window, |live| live.has_picture());
     // Another studio, and back to the estimate: nothing is traced any more.
     click(&mut window, "Quick");
-    let rays = window.state().viewport().live.rays();
+    let rays = window.state().viewport().traced_view.rays();
     std::thread::sleep(Duration::from_millis(60));
     window.run_steps(3);
-    let now = window.state().viewport().live.rays();
+    let now = window.state().viewport().traced_view.rays();
     std::thread::sleep(Duration::from_millis(60));
     window.run_steps(3);
-    assert!(rays > 0 && window.state().viewport().live.rays() == now, "it goes on behind the estimate");
+    assert!(rays > 0 && window.state().viewport().traced_view.rays() == now, "it goes on behind the estimate");
 }
 
 #[test]
@@ -200,21 +200,21 @@ fn a_dimmed_light_shows_in_the_traced_view_without_a_ray_and_the_view_comes_to_r
     settle(&mut window);
     wait_until(&mut window, |live| live.is_settled());
     settle(&mut window);
-    let rays = window.state().viewport().live.rays();
+    let rays = window.state().viewport().traced_view.rays();
     let mut light = scene(&window).lights[0].clone();
     light.power.dial_stops -= 1.0;
     let context = egui::Context::default();
-    window.state_mut().run(Command::Do(Action::SetLight(Box::new(light))), None, &context);
+    window.state_mut().run(Command::Apply(Action::SetLight(Box::new(light))), None, &context);
     window.step();
     wait_until(&mut window, |live| live.is_settled());
     settle(&mut window);
-    assert_eq!(window.state().viewport().live.rays(), rays, "dimming is developed, not traced");
+    assert_eq!(window.state().viewport().traced_view.rays(), rays, "dimming is developed, not traced");
     window.step();
     let delay = window.output().viewport_output[&ViewportId::ROOT].repaint_delay;
     assert!(delay > Duration::from_secs(1), "asks for a frame in {delay:?}");
     let mut light = scene(&window).lights[0].clone();
     light.position.x += 0.2;
-    window.state_mut().run(Command::Do(Action::SetLight(Box::new(light))), None, &context);
+    window.state_mut().run(Command::Apply(Action::SetLight(Box::new(light))), None, &context);
     window.step();
     wait_until(&mut window, |live| live.rays() > rays);
 }

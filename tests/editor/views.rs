@@ -1,7 +1,7 @@
 //! Views from a side, orbit about the selection, and windows over the view.
 
 use super::*;
-use catchlight::editor::Side;
+use catchlight::editor::ViewSide;
 use catchlight::scene::Emitter;
 use glam::Vec3;
 
@@ -11,7 +11,7 @@ fn from_the_top_a_light_is_dragged_over_the_plan_and_keeps_its_height() {
     let light = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(light.id)]);
     press(&mut window, Modifiers::NONE, Key::Num7);
-    assert_eq!(window.state().viewport().view.side, Some(Side::Top));
+    assert_eq!(window.state().viewport().view.side, Some(ViewSide::Top));
     let from = shown_at(&window, light.position);
     drag(&mut window, PointerButton::Primary, from, from + vec2(80.0, 30.0));
     let moved = &scene(&window).lights[0];
@@ -27,9 +27,9 @@ fn sides_are_buttons_and_keys_and_an_orbit_leaves_them() {
     let Some(mut window) = preset_window() else { return };
     let view = |window: &Window| window.state().viewport().view;
     press(&mut window, Modifiers::NONE, Key::Num8);
-    assert_eq!(view(&window).side, Some(Side::Front));
+    assert_eq!(view(&window).side, Some(ViewSide::Front));
     click(&mut window, "Look from: Right side");
-    assert_eq!(view(&window).side, Some(Side::Right));
+    assert_eq!(view(&window).side, Some(ViewSide::Right));
     let frame = view(&window).frame(1.0);
     assert!((frame.forward() + Vec3::X).length() < 1e-5);
     let middle = window.get_by_label("Viewport").rect().center();
@@ -110,7 +110,7 @@ fn a_length_is_typed_in_any_unit() {
 fn the_list_of_keys_names_every_key() {
     let Some(mut window) = preset_window() else { return };
     press(&mut window, Modifiers::NONE, Key::F1);
-    for binding in &catchlight::editor::BINDINGS {
+    for binding in &catchlight::editor::KEY_BINDINGS {
         assert!(window.query_all_by_label(binding.meaning).next().is_some(), "{}", binding.meaning);
     }
 }
@@ -242,7 +242,7 @@ fn a_light_turned_by_its_ring_swings_round_what_it_is_aimed_at() {
 fn every_end_of_the_cross_looks_from_its_side() {
     let Some(mut window) = preset_window() else { return };
     let free = window.state().viewport().view;
-    for side in Side::ALL {
+    for side in ViewSide::ALL {
         click(&mut window, &format!("Look from: {}", side.label()));
         let view = window.state().viewport().view;
         assert_eq!((view.side, view.parallel), (Some(side), true));
@@ -279,7 +279,7 @@ fn the_plan_writes_the_distances_of_lights_and_camera_and_follows_a_move() {
     assert!(painted(&window).iter().any(|text| text.starts_with("Camera\n")));
     let mut key = scene(&window).lights[0].clone();
     key.position.x += 0.7;
-    run(&mut window, Command::Do(Action::SetLight(Box::new(key))));
+    run(&mut window, Command::Apply(Action::SetLight(Box::new(key))));
     let after = written(&window);
     assert!(after != before && painted(&window).contains(&after), "{after} in {:?}", painted(&window));
 }

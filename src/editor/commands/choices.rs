@@ -6,7 +6,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 /// What the middle of the window shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Centre {
+pub enum CentralView {
     /// The studio from anywhere.
     #[default]
     Studio,
@@ -20,14 +20,14 @@ pub enum Centre {
 
 /// What the handles in the viewport do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Handle {
+pub enum HandleMode {
     /// Move.
     #[default]
     Move,
     /// Rotate.
-    Turn,
+    Rotate,
     /// Scale.
-    Size,
+    Scale,
 }
 
 /// How the live view is made.
@@ -42,7 +42,7 @@ pub enum LiveMode {
 
 /// A side of the room that the studio is looked at from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Side {
+pub enum ViewSide {
     /// From above; the back of the room is up.
     Top,
     /// From the front (+Z).
@@ -57,50 +57,51 @@ pub enum Side {
     Bottom,
 }
 
-impl Side {
+impl ViewSide {
     /// All of them; the three with a key come first.
-    pub const ALL: [Side; 6] = [Side::Top, Side::Front, Side::Right, Side::Back, Side::Left, Side::Bottom];
+    pub const ALL: [ViewSide; 6] =
+        [ViewSide::Top, ViewSide::Front, ViewSide::Right, ViewSide::Back, ViewSide::Left, ViewSide::Bottom];
 
     /// Its name.
     pub fn label(self) -> &'static str {
         match self {
-            Side::Top => "Top",
-            Side::Front => "Front",
-            Side::Right => "Right side",
-            Side::Back => "Back",
-            Side::Left => "Left side",
-            Side::Bottom => "Below",
+            ViewSide::Top => "Top",
+            ViewSide::Front => "Front",
+            ViewSide::Right => "Right side",
+            ViewSide::Back => "Back",
+            ViewSide::Left => "Left side",
+            ViewSide::Bottom => "Below",
         }
     }
 
     /// Unit direction from the target to the eye.
     pub fn away(self) -> Vec3 {
         match self {
-            Side::Top => Vec3::Y,
-            Side::Front => Vec3::Z,
-            Side::Right => Vec3::X,
-            Side::Back => Vec3::NEG_Z,
-            Side::Left => Vec3::NEG_X,
-            Side::Bottom => Vec3::NEG_Y,
+            ViewSide::Top => Vec3::Y,
+            ViewSide::Front => Vec3::Z,
+            ViewSide::Right => Vec3::X,
+            ViewSide::Back => Vec3::NEG_Z,
+            ViewSide::Left => Vec3::NEG_X,
+            ViewSide::Bottom => Vec3::NEG_Y,
         }
     }
 
     /// Yaw and pitch, radians.
     pub fn angles(self) -> (f32, f32) {
         match self {
-            Side::Top => (0.0, FRAC_PI_2),
-            Side::Front => (0.0, 0.0),
-            Side::Right => (FRAC_PI_2, 0.0),
-            Side::Back => (PI, 0.0),
-            Side::Left => (-FRAC_PI_2, 0.0),
-            Side::Bottom => (0.0, -FRAC_PI_2),
+            ViewSide::Top => (0.0, FRAC_PI_2),
+            ViewSide::Front => (0.0, 0.0),
+            ViewSide::Right => (FRAC_PI_2, 0.0),
+            ViewSide::Back => (PI, 0.0),
+            ViewSide::Left => (-FRAC_PI_2, 0.0),
+            ViewSide::Bottom => (0.0, -FRAC_PI_2),
         }
     }
 }
 
 /// What is put on the point of a surface that the pointer shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Swing {
+pub enum PlaceLightBy {
     /// The highlight: the mirror image of the light, as the camera sees it.
     Highlight,
     /// The light itself: it falls on the point straight on.
@@ -109,25 +110,27 @@ pub enum Swing {
     Shadow,
 }
 
-impl Swing {
+impl PlaceLightBy {
     /// All of them, in menu order.
-    pub const ALL: [Swing; 3] = [Swing::Highlight, Swing::Light, Swing::Shadow];
+    pub const ALL: [PlaceLightBy; 3] = [PlaceLightBy::Highlight, PlaceLightBy::Light, PlaceLightBy::Shadow];
 
     /// What a menu calls it.
     pub fn label(self) -> &'static str {
         match self {
-            Swing::Highlight => "Place its highlight",
-            Swing::Light => "Place its light",
-            Swing::Shadow => "Place its shadow",
+            PlaceLightBy::Highlight => "Place its highlight",
+            PlaceLightBy::Light => "Place its light",
+            PlaceLightBy::Shadow => "Place its shadow",
         }
     }
 
     /// What a tip says of it.
     pub fn tip(self) -> &'static str {
         match self {
-            Swing::Highlight => "Drag over a face: the light swings round so that the camera sees its highlight there",
-            Swing::Light => "Drag over a face: the light swings round so that it falls there straight on",
-            Swing::Shadow => {
+            PlaceLightBy::Highlight => {
+                "Drag over a face: the light swings round so that the camera sees its highlight there"
+            }
+            PlaceLightBy::Light => "Drag over a face: the light swings round so that it falls there straight on",
+            PlaceLightBy::Shadow => {
                 "Drag to where the shadow of the point that it is aimed at shall fall: of a nose on a cheek, of a head on \
                  the paper"
             }
@@ -137,9 +140,9 @@ impl Swing {
     /// What the mouse does, for a light of this name.
     pub fn hint(self, light: &str) -> String {
         let what = match self {
-            Swing::Highlight => "where the camera shall see the highlight of",
-            Swing::Light => "where straight light shall fall from",
-            Swing::Shadow => "where the shadow of its aim shall fall from",
+            PlaceLightBy::Highlight => "where the camera shall see the highlight of",
+            PlaceLightBy::Light => "where straight light shall fall from",
+            PlaceLightBy::Shadow => "where the shadow of its aim shall fall from",
         };
         format!("Press or drag on a surface {what} {light}.    Esc ends")
     }

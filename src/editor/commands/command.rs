@@ -1,7 +1,7 @@
 //! What menus, shortcuts, panels and the viewport ask of the window. Changes of the scene travel inside as actions.
 
-use crate::editor::commands::choices::{Centre, Handle, LiveMode, Side, Swing};
-use crate::editor::commands::file_purpose::Purpose;
+use crate::editor::commands::choices::{CentralView, HandleMode, LiveMode, PlaceLightBy, ViewSide};
+use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
 use std::path::PathBuf;
@@ -10,9 +10,9 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Change the scene.
-    Do(Action),
+    Apply(Action),
     /// Change the scene after giving the new light or object a place in it.
-    Place(Box<crate::editor::document::catalog::Made>),
+    AddFromCatalog(Box<crate::editor::document::catalog::CatalogItem>),
     /// Select one thing, or nothing.
     Select(Option<Item>),
     /// Take a thing into the selection, or out of it.
@@ -43,13 +43,13 @@ pub enum Command {
     /// Lock the selection in its place, or let it go.
     LockSelected,
     /// Look at the studio from a side, without perspective.
-    LookFrom(Side),
+    LookFrom(ViewSide),
     /// Perspective on or off.
     ToggleParallel,
     /// Look through the last selected light, or back.
     ToggleLightView,
     /// Place the last selected light by its highlight or its light, or end that.
-    TogglePlacing(Swing),
+    TogglePlaceLight(PlaceLightBy),
     /// Snapping of handles on or off.
     ToggleSnap,
     /// Take the last step back.
@@ -77,7 +77,7 @@ pub enum Command {
     /// Ask where, then write the rendered picture.
     ExportPicture,
     /// A path was typed for a purpose, because the desktop has no dialog.
-    PathTyped(Purpose, PathBuf),
+    UseFile(FilePurpose, PathBuf),
     /// Empty the list of recent studios.
     ClearRecent,
     /// Close the window.
@@ -87,7 +87,7 @@ pub enum Command {
     /// Stop rendering, keep what is there.
     CancelRender,
     /// Show something in the middle.
-    Show(Centre),
+    ShowView(CentralView),
     /// Camera view on or off.
     ToggleCameraView,
     /// Bring the selection, or everything, into view.
@@ -95,11 +95,11 @@ pub enum Command {
     /// Put the camera where the studio view looks from.
     CameraFromView,
     /// The live view by the graphics card or by the tracer.
-    Live(LiveMode),
+    SetLiveMode(LiveMode),
     /// The other one of the two.
-    ToggleLive,
+    ToggleLiveMode,
     /// Choose the handles.
-    Handles(Handle),
+    SetHandles(HandleMode),
     /// Show or hide the list of keys.
     ToggleHelp,
 }

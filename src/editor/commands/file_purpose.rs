@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 /// What a file name is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
+pub enum FilePurpose {
     /// A scene to open.
     OpenScene,
     /// Where to save the scene.
@@ -18,30 +18,30 @@ pub enum Purpose {
     ExportPicture,
 }
 
-impl Purpose {
+impl FilePurpose {
     /// Title of the dialog.
     pub fn title(self) -> String {
         match self {
-            Purpose::OpenScene => "Open studio".to_owned(),
-            Purpose::SaveScene => "Save studio".to_owned(),
-            Purpose::ImportModel => format!("Import {} model", io::model_format_names()),
-            Purpose::OpenTexture => "Choose texture".to_owned(),
-            Purpose::ExportPicture => "Export picture".to_owned(),
+            FilePurpose::OpenScene => "Open studio".to_owned(),
+            FilePurpose::SaveScene => "Save studio".to_owned(),
+            FilePurpose::ImportModel => format!("Import {} model", io::model_format_names()),
+            FilePurpose::OpenTexture => "Choose texture".to_owned(),
+            FilePurpose::ExportPicture => "Export picture".to_owned(),
         }
     }
 
     /// Whether the file is one that is going to be written.
     pub fn is_save(self) -> bool {
-        matches!(self, Purpose::SaveScene | Purpose::ExportPicture)
+        matches!(self, FilePurpose::SaveScene | FilePurpose::ExportPicture)
     }
 
     /// Name and endings of the files.
     pub fn filter(self) -> (String, &'static [&'static str]) {
         match self {
-            Purpose::OpenScene | Purpose::SaveScene => ("Catchlight studio".to_owned(), &["ron"]),
-            Purpose::ImportModel => (format!("{} model", io::model_format_names()), io::model_extensions()),
-            Purpose::OpenTexture => ("Picture".to_owned(), io::TEXTURE_EXTENSIONS),
-            Purpose::ExportPicture => ("Picture".to_owned(), &["png", "jpg", "exr"]),
+            FilePurpose::OpenScene | FilePurpose::SaveScene => ("Catchlight studio".to_owned(), &["ron"]),
+            FilePurpose::ImportModel => (format!("{} model", io::model_format_names()), io::model_extensions()),
+            FilePurpose::OpenTexture => ("Picture".to_owned(), io::TEXTURE_EXTENSIONS),
+            FilePurpose::ExportPicture => ("Picture".to_owned(), &["png", "jpg", "exr"]),
         }
     }
 

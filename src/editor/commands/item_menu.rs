@@ -1,6 +1,6 @@
 //! What can be done to the selected things, for the context menus of list and view and the Edit menu.
 
-use crate::editor::commands::choices::Swing;
+use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::commands::command::Command;
 use crate::editor::commands::menu_entry::entry;
 use crate::editor::document::item::Item;
@@ -50,9 +50,9 @@ pub fn selection_entries(ui: &mut Ui, scene: &Scene, selection: &Selection, out:
     entry(ui, copyable, "Mirrored copy", tip, Command::MirrorSelected { copies: true }, out);
     entry(ui, !selection.is_empty(), "Bring into view", "Frames it in the studio view", Command::FrameSelection, out);
     ui.separator();
-    for swing in Swing::ALL {
-        let text = format!("{}\u{2026}", swing.label());
-        entry(ui, lights, &text, swing.tip(), Command::TogglePlacing(swing), out);
+    for by in PlaceLightBy::ALL {
+        let text = format!("{}\u{2026}", by.label());
+        entry(ui, lights, &text, by.tip(), Command::TogglePlaceLight(by), out);
     }
     entry(
         ui,

@@ -1,14 +1,14 @@
 //! The keys: what each means, for the window and for the list of keys alike.
 
-use crate::editor::commands::choices::Side;
-use crate::editor::commands::choices::Swing;
-use crate::editor::commands::choices::{Centre, Handle};
+use crate::editor::commands::choices::PlaceLightBy;
+use crate::editor::commands::choices::ViewSide;
+use crate::editor::commands::choices::{CentralView, HandleMode};
 use crate::editor::commands::command::Command;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
 /// A key, the command it gives, and what that does.
 #[derive(Clone, Copy, Debug)]
-pub struct Binding {
+pub struct KeyBinding {
     /// The key with what is held beside it.
     pub shortcut: KeyboardShortcut,
     /// What it gives.
@@ -17,8 +17,8 @@ pub struct Binding {
     pub meaning: &'static str,
 }
 
-const fn bind(shortcut: KeyboardShortcut, command: fn() -> Command, meaning: &'static str) -> Binding {
-    Binding { shortcut, command, meaning }
+const fn bind(shortcut: KeyboardShortcut, command: fn() -> Command, meaning: &'static str) -> KeyBinding {
+    KeyBinding { shortcut, command, meaning }
 }
 
 const fn key(key: Key) -> KeyboardShortcut {
@@ -38,7 +38,7 @@ const fn ctrl_shift(key: Key) -> KeyboardShortcut {
 }
 
 /// All keys with one fixed meaning, in the order of the list. Of two that match, the one with more modifiers comes first.
-pub const BINDINGS: [Binding; 38] = [
+pub const KEY_BINDINGS: [KeyBinding; 38] = [
     bind(ctrl_shift(Key::S), || Command::SaveAs, "Save the studio to another file"),
     bind(ctrl_shift(Key::Z), || Command::Redo, "Do the last step again"),
     bind(
@@ -48,7 +48,7 @@ pub const BINDINGS: [Binding; 38] = [
     ),
     bind(
         shift(Key::L),
-        || Command::TogglePlacing(Swing::Shadow),
+        || Command::TogglePlaceLight(PlaceLightBy::Shadow),
         "Place the light by the shadow of its aim: drag to where it shall fall",
     ),
     bind(shift(Key::H), || Command::ShowAll, "Show and unmute all"),
@@ -64,16 +64,20 @@ pub const BINDINGS: [Binding; 38] = [
     bind(key(Key::Escape), || Command::Escape, "Give up a drag, leave a mode, deselect"),
     bind(ctrl(Key::D), || Command::DuplicateSelected, "Duplicate"),
     bind(key(Key::Delete), || Command::DeleteSelected, "Delete"),
-    bind(key(Key::M), || Command::Handles(Handle::Move), "Handles that move"),
-    bind(key(Key::T), || Command::Handles(Handle::Turn), "Handles that turn"),
-    bind(key(Key::Z), || Command::Handles(Handle::Size), "Handles that size"),
+    bind(key(Key::M), || Command::SetHandles(HandleMode::Move), "Handles that move"),
+    bind(key(Key::T), || Command::SetHandles(HandleMode::Rotate), "Handles that turn"),
+    bind(key(Key::Z), || Command::SetHandles(HandleMode::Scale), "Handles that size"),
     bind(key(Key::G), || Command::ToggleSnap, "Snap handles to 0.1 m and 15\u{b0} (Ctrl: the other way round)"),
     bind(
         key(Key::P),
-        || Command::TogglePlacing(Swing::Highlight),
+        || Command::TogglePlaceLight(PlaceLightBy::Highlight),
         "Place the light by its highlight: drag over a face",
     ),
-    bind(key(Key::L), || Command::TogglePlacing(Swing::Light), "Place the light by where it falls: drag over a face"),
+    bind(
+        key(Key::L),
+        || Command::TogglePlaceLight(PlaceLightBy::Light),
+        "Place the light by where it falls: drag over a face",
+    ),
     bind(key(Key::V), || Command::ToggleLightView, "Look through the light, and back"),
     bind(key(Key::X), || Command::MirrorSelected { copies: false }, "Mirror to the other side of the subject's face"),
     bind(key(Key::O), || Command::SoloSelected, "Solo: only the selected lights; again: as before"),
@@ -81,12 +85,12 @@ pub const BINDINGS: [Binding; 38] = [
     bind(key(Key::K), || Command::LockSelected, "Lock in place; again: unlock"),
     bind(key(Key::F), || Command::FrameSelection, "Bring the selection, or everything, into view"),
     bind(key(Key::Num1), || Command::ToggleCameraView, "Camera view, and back"),
-    bind(key(Key::Num2), || Command::ToggleLive, "Live view: Quick, drawn at once, or True, traced"),
-    bind(key(Key::Num3), || Command::Show(Centre::Picture), "The rendered picture"),
+    bind(key(Key::Num2), || Command::ToggleLiveMode, "Live view: Quick, drawn at once, or True, traced"),
+    bind(key(Key::Num3), || Command::ShowView(CentralView::Picture), "The rendered picture"),
     bind(key(Key::Num5), || Command::ToggleParallel, "Perspective on or off"),
-    bind(key(Key::Num7), || Command::LookFrom(Side::Top), "Look from the top, with a metre grid"),
-    bind(key(Key::Num8), || Command::LookFrom(Side::Front), "Look from the front"),
-    bind(key(Key::Num9), || Command::LookFrom(Side::Right), "Look from the right"),
+    bind(key(Key::Num7), || Command::LookFrom(ViewSide::Top), "Look from the top, with a metre grid"),
+    bind(key(Key::Num8), || Command::LookFrom(ViewSide::Front), "Look from the front"),
+    bind(key(Key::Num9), || Command::LookFrom(ViewSide::Right), "Look from the right"),
     bind(key(Key::R), || Command::Render, "Render"),
     bind(key(Key::F1), || Command::ToggleHelp, "This list"),
 ];
@@ -94,7 +98,7 @@ pub const BINDINGS: [Binding; 38] = [
 impl Command {
     /// The key that gives it, where there is one.
     pub fn shortcut(&self) -> Option<KeyboardShortcut> {
-        BINDINGS.iter().find(|binding| (binding.command)() == *self).map(|binding| binding.shortcut)
+        KEY_BINDINGS.iter().find(|binding| (binding.command)() == *self).map(|binding| binding.shortcut)
     }
 }
 
@@ -105,18 +109,18 @@ mod tests {
 
     #[test]
     fn no_key_means_two_things() {
-        let keys: HashSet<String> = BINDINGS.iter().map(|binding| format!("{:?}", binding.shortcut)).collect();
-        assert_eq!(keys.len(), BINDINGS.len());
+        let keys: HashSet<String> = KEY_BINDINGS.iter().map(|binding| format!("{:?}", binding.shortcut)).collect();
+        assert_eq!(keys.len(), KEY_BINDINGS.len());
     }
 
     #[test]
     fn a_key_with_more_held_comes_before_the_key_alone() {
-        let held = |binding: &Binding| {
+        let held = |binding: &KeyBinding| {
             u8::from(binding.shortcut.modifiers.shift) + u8::from(binding.shortcut.modifiers.command)
         };
-        for (i, later) in BINDINGS.iter().enumerate() {
-            let same_key = |earlier: &&Binding| earlier.shortcut.logical_key == later.shortcut.logical_key;
-            let weaker = BINDINGS[..i].iter().filter(same_key).find(|earlier| held(earlier) < held(later));
+        for (i, later) in KEY_BINDINGS.iter().enumerate() {
+            let same_key = |earlier: &&KeyBinding| earlier.shortcut.logical_key == later.shortcut.logical_key;
+            let weaker = KEY_BINDINGS[..i].iter().filter(same_key).find(|earlier| held(earlier) < held(later));
             assert!(weaker.is_none(), "{:?} hides {:?}", weaker, later);
         }
     }

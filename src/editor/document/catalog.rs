@@ -9,7 +9,7 @@ use glam::Vec3;
 
 /// The shelves of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Shelf {
+pub enum CatalogTab {
     /// Everything that shines.
     Lights,
     /// Mannequins.
@@ -20,24 +20,25 @@ pub enum Shelf {
     Backdrops,
 }
 
-impl Shelf {
+impl CatalogTab {
     /// All shelves, in list order.
-    pub const ALL: [Shelf; 4] = [Shelf::Lights, Shelf::Figures, Shelf::Props, Shelf::Backdrops];
+    pub const ALL: [CatalogTab; 4] =
+        [CatalogTab::Lights, CatalogTab::Figures, CatalogTab::Props, CatalogTab::Backdrops];
 
     /// Its label.
     pub fn label(self) -> &'static str {
         match self {
-            Shelf::Lights => "Lights",
-            Shelf::Figures => "Figures",
-            Shelf::Props => "Props",
-            Shelf::Backdrops => "Backdrops",
+            CatalogTab::Lights => "Lights",
+            CatalogTab::Figures => "Figures",
+            CatalogTab::Props => "Props",
+            CatalogTab::Backdrops => "Backdrops",
         }
     }
 }
 
 /// What an entry of the list makes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum CatalogKind {
     /// A light with this emitter and modifier, and what it gives at full power.
     Light(Emitter, Modifier, Output),
     /// A mannequin.
@@ -70,44 +71,44 @@ pub enum PropShape {
 
 /// One entry of the list.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Entry {
+pub struct CatalogEntry {
     /// Its name in the list, and the name of what it makes.
     pub name: &'static str,
     /// One line on what it is for.
     pub tip: &'static str,
     /// What it makes.
-    pub kind: Kind,
+    pub kind: CatalogKind,
 }
 
 /// A studio flash head of 400 Ws.
 const HEAD: Output = Output::FlashWs { energy_ws: 400.0, efficacy_lm_s_per_ws: Output::DEFAULT_EFFICACY };
 
 /// A flash head with something of the rack before it.
-const fn modified(named: &NamedModifier) -> Entry {
-    Entry { name: named.name, tip: named.tip, kind: Kind::Light(named.emitter, named.modifier, HEAD) }
+const fn modified(named: &NamedModifier) -> CatalogEntry {
+    CatalogEntry { name: named.name, tip: named.tip, kind: CatalogKind::Light(named.emitter, named.modifier, HEAD) }
 }
 
 /// A light that shines all the time.
-const fn continuous(name: &'static str, tip: &'static str, emitter: Emitter, output: Output) -> Entry {
-    Entry { name, tip, kind: Kind::Light(emitter, Modifier::loss(0.0), output) }
+const fn continuous(name: &'static str, tip: &'static str, emitter: Emitter, output: Output) -> CatalogEntry {
+    CatalogEntry { name, tip, kind: CatalogKind::Light(emitter, Modifier::loss(0.0), output) }
 }
 
-const fn figure(name: &'static str, tip: &'static str, figure: Figure, pose: Pose) -> Entry {
-    Entry { name, tip, kind: Kind::Figure(Mannequin { figure, pose }) }
+const fn figure(name: &'static str, tip: &'static str, figure: Figure, pose: Pose) -> CatalogEntry {
+    CatalogEntry { name, tip, kind: CatalogKind::Figure(Mannequin { figure, pose }) }
 }
 
-const fn prop(name: &'static str, tip: &'static str, shape: PropShape, material: MaterialPreset) -> Entry {
-    Entry { name, tip, kind: Kind::Prop(shape, material) }
+const fn prop(name: &'static str, tip: &'static str, shape: PropShape, material: MaterialPreset) -> CatalogEntry {
+    CatalogEntry { name, tip, kind: CatalogKind::Prop(shape, material) }
 }
 
-const fn paper(name: &'static str, tip: &'static str, width_m: f32, paper: MaterialPreset) -> Entry {
-    Entry { name, tip, kind: Kind::Paper { width_m, paper } }
+const fn paper(name: &'static str, tip: &'static str, width_m: f32, paper: MaterialPreset) -> CatalogEntry {
+    CatalogEntry { name, tip, kind: CatalogKind::Paper { width_m, paper } }
 }
 
 const RACK: usize = NamedModifier::ALL.len();
 
 /// Flash heads with every modifier, then what shines all the time.
-const LIGHTS: [Entry; RACK + CONTINUOUS.len()] = {
+const LIGHTS: [CatalogEntry; RACK + CONTINUOUS.len()] = {
     let mut list = [CONTINUOUS[0]; RACK + CONTINUOUS.len()];
     let mut i = 0;
     while i < list.len() {
@@ -117,7 +118,7 @@ const LIGHTS: [Entry; RACK + CONTINUOUS.len()] = {
     list
 };
 
-const CONTINUOUS: [Entry; 4] = [
+const CONTINUOUS: [CatalogEntry; 4] = [
     continuous(
         "LED panel 30 x 30",
         "A continuous LED panel of 5000 lm: faint beside flash at a short shutter.",
@@ -144,7 +145,7 @@ const CONTINUOUS: [Entry; 4] = [
     ),
 ];
 
-const FIGURES: [Entry; 11] = [
+const FIGURES: [CatalogEntry; 11] = [
     figure("Bust", "Head and shoulders, looking ahead: for portrait light.", Figure::Bust, Pose::Standing),
     figure("Bust, head turned", "Head and shoulders, the head 30 degrees to its left.", Figure::Bust, Pose::HeadTurned),
     figure("Woman, standing", "1.68 m, upright, arms at the sides.", Figure::Woman, Pose::Standing),
@@ -158,7 +159,7 @@ const FIGURES: [Entry; 11] = [
     figure("Child, seated", "On a seat of 32 cm, which is not part of the child.", Figure::Child, Pose::Seated),
 ];
 
-const PROPS: [Entry; 16] = [
+const PROPS: [CatalogEntry; 16] = [
     prop("Box", "A box of 50 cm.", PropShape::Box([0.5, 0.5, 0.5]), MaterialPreset::MatteFabric),
     prop("Sphere", "A matte ball of 30 cm.", PropShape::Sphere(0.15), MaterialPreset::MatteFabric),
     prop("Cylinder", "An upright cylinder, 30 cm across.", PropShape::Cylinder(0.15, 0.4), MaterialPreset::MatteFabric),
@@ -212,7 +213,7 @@ const PROPS: [Entry; 16] = [
     prop("Gold bar", "A gold block.", PropShape::Box([0.16, 0.04, 0.07]), MaterialPreset::Gold),
 ];
 
-const BACKDROPS: [Entry; 9] = [
+const BACKDROPS: [CatalogEntry; 9] = [
     paper("White paper 1.35 m", "A narrow roll, for heads and busts.", 1.35, MaterialPreset::WhitePaper),
     paper("White paper 2.72 m", "The usual roll, for one full figure.", 2.72, MaterialPreset::WhitePaper),
     paper("White paper 3.55 m", "A wide roll, for groups.", 3.55, MaterialPreset::WhitePaper),
@@ -224,33 +225,35 @@ const BACKDROPS: [Entry; 9] = [
     paper("Black paper 3.55 m", "A wide roll, for groups.", 3.55, MaterialPreset::BlackPaper),
 ];
 
-/// The entries of a shelf.
-pub fn entries(shelf: Shelf) -> &'static [Entry] {
-    match shelf {
-        Shelf::Lights => &LIGHTS,
-        Shelf::Figures => &FIGURES,
-        Shelf::Props => &PROPS,
-        Shelf::Backdrops => &BACKDROPS,
+/// The entries of a tab.
+pub fn entries(tab: CatalogTab) -> &'static [CatalogEntry] {
+    match tab {
+        CatalogTab::Lights => &LIGHTS,
+        CatalogTab::Figures => &FIGURES,
+        CatalogTab::Props => &PROPS,
+        CatalogTab::Backdrops => &BACKDROPS,
     }
 }
 
 /// What an entry makes, at the origin.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Made {
+pub enum CatalogItem {
     /// A light.
     Light(Light),
     /// Anything else.
     Object(Object),
 }
 
-impl Entry {
+impl CatalogEntry {
     /// Makes it; `placement` then finds it a place.
-    pub fn make(&self) -> Made {
+    pub fn make(&self) -> CatalogItem {
         match self.kind {
-            Kind::Light(emitter, modifier, output) => Made::Light(new_light(self.name, emitter, modifier, output)),
-            Kind::Figure(mannequin) => Made::Object(new_figure(self.name, mannequin)),
-            Kind::Prop(shape, material) => Made::Object(new_prop(self.name, shape, material.material())),
-            Kind::Paper { width_m, paper } => Made::Object(Object {
+            CatalogKind::Light(emitter, modifier, output) => {
+                CatalogItem::Light(new_light(self.name, emitter, modifier, output))
+            }
+            CatalogKind::Figure(mannequin) => CatalogItem::Object(new_figure(self.name, mannequin)),
+            CatalogKind::Prop(shape, material) => CatalogItem::Object(new_prop(self.name, shape, material.material())),
+            CatalogKind::Paper { width_m, paper } => CatalogItem::Object(Object {
                 shape: Shape::Sweep { width_m, height_m: 2.75, depth_m: 3.0, radius_m: 0.6 },
                 material: paper.material(),
                 ..blank_object(self.name)
@@ -263,8 +266,8 @@ impl Entry {
 #[cfg(test)]
 pub fn light_named(name: &str) -> Option<Light> {
     LIGHTS.iter().find(|e| e.name == name).and_then(|e| match e.make() {
-        Made::Light(light) => Some(light),
-        Made::Object(_) => None,
+        CatalogItem::Light(light) => Some(light),
+        CatalogItem::Object(_) => None,
     })
 }
 
@@ -272,8 +275,8 @@ pub fn light_named(name: &str) -> Option<Light> {
 #[cfg(test)]
 pub fn object_named(name: &str) -> Option<Object> {
     [&FIGURES[..], &PROPS, &BACKDROPS].concat().iter().find(|e| e.name == name).and_then(|e| match e.make() {
-        Made::Object(object) => Some(object),
-        Made::Light(_) => None,
+        CatalogItem::Object(object) => Some(object),
+        CatalogItem::Light(_) => None,
     })
 }
 
@@ -333,8 +336,8 @@ mod tests {
     #[test]
     fn every_name_of_the_list_is_its_own() {
         let mut names = HashSet::new();
-        for shelf in Shelf::ALL {
-            for entry in entries(shelf) {
+        for tab in CatalogTab::ALL {
+            for entry in entries(tab) {
                 assert!(names.insert(entry.name), "{} twice", entry.name);
                 assert!(entry.tip.ends_with('.'), "{}: tips are sentences", entry.name);
             }
@@ -344,7 +347,7 @@ mod tests {
     #[test]
     fn props_stand_on_the_floor() {
         for entry in &PROPS {
-            let Made::Object(object) = entry.make() else { unreachable!() };
+            let CatalogItem::Object(object) = entry.make() else { unreachable!() };
             let mesh = crate::scene::tessellate(&object.shape).unwrap();
             let world = object.transform.world_from_object();
             let low = mesh.positions.iter().map(|p| world.transform_point3(*p).y).fold(f32::MAX, f32::min);

@@ -25,7 +25,7 @@ pub fn presets() -> Vec<PresetInfo> {
 
 /// A studio as it comes from a file or from the shelf.
 #[derive(Clone, Debug)]
-pub struct Opened {
+pub struct OpenedStudio {
     /// The studio.
     pub scene: Scene,
     /// Its meshes and textures.
@@ -38,7 +38,7 @@ pub struct Opened {
 
 /// A model that was brought in.
 #[derive(Clone, Debug)]
-pub struct Imported {
+pub struct ImportedModel {
     /// Its file.
     pub file: PathBuf,
     /// Its triangles.
@@ -51,40 +51,40 @@ pub struct Imported {
 
 /// Where a studio comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum StudioSource {
     /// A file.
     File(PathBuf),
     /// The shelf, by place in the list.
     Preset(usize),
 }
 
-impl Source {
+impl StudioSource {
     /// A file where there is one, else the shipped studio of that name.
     pub fn named(path: PathBuf) -> Self {
         let shipped = path.to_str().filter(|_| !path.exists()).and_then(io::find_preset);
         let place = shipped.and_then(|preset| io::presets().iter().position(|p| p.file_name == preset.file_name));
-        place.map_or(Source::File(path), Source::Preset)
+        place.map_or(StudioSource::File(path), StudioSource::Preset)
     }
 }
 
 /// Reads a studio with everything it needs.
-pub fn open(source: &Source) -> Result<Box<Opened>, String> {
+pub fn open(source: &StudioSource) -> Result<Box<OpenedStudio>, String> {
     let (loaded, path) = match source {
-        Source::File(path) => (io::load_scene(path).map_err(|e| sentence(&e))?, Some(path.clone())),
-        Source::Preset(index) => {
+        StudioSource::File(path) => (io::load_scene(path).map_err(|e| sentence(&e))?, Some(path.clone())),
+        StudioSource::Preset(index) => {
             let preset = io::presets().get(*index).ok_or("There is no such studio on the shelf.")?;
             (preset.load().map_err(|e| sentence(&e))?, None)
         }
     };
     let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
-    Ok(Box::new(Opened { scene: loaded.scene, assets: loaded.assets, warnings, path }))
+    Ok(Box::new(OpenedStudio { scene: loaded.scene, assets: loaded.assets, warnings, path }))
 }
 
 /// Reads a model.
-pub fn import(file: PathBuf) -> Result<Box<Imported>, String> {
+pub fn import(file: PathBuf) -> Result<Box<ImportedModel>, String> {
     let model = io::import_model(&file).map_err(|e| sentence(&e))?;
     let (mesh, part_materials, warnings) = (Arc::new(model.mesh), model.part_materials, model.warnings);
-    Ok(Box::new(Imported { file, mesh, part_materials, warnings }))
+    Ok(Box::new(ImportedModel { file, mesh, part_materials, warnings }))
 }
 
 /// Reads the assets that a scene needs and that are not loaded yet. `moved` are files that do not lie beside the scene

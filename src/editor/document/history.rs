@@ -10,13 +10,13 @@ const CAPACITY: usize = 300;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MergeKey {
     /// Number of the press.
-    pub gesture: u64,
+    pub press_id: u64,
     /// What is dragged.
     pub targets: Vec<Item>,
 }
 
 #[derive(Clone, Debug)]
-struct Step {
+struct HistoryStep {
     label: String,
     /// The scene on the other side of the step: before it in the undo list, after it in the redo list.
     scene: Scene,
@@ -26,8 +26,8 @@ struct Step {
 /// The undo and redo lists.
 #[derive(Clone, Debug, Default)]
 pub struct History {
-    undo: Vec<Step>,
-    redo: Vec<Step>,
+    undo: Vec<HistoryStep>,
+    redo: Vec<HistoryStep>,
 }
 
 impl History {
@@ -42,14 +42,14 @@ impl History {
         if self.undo.len() == CAPACITY {
             self.undo.remove(0);
         }
-        self.undo.push(Step { label, scene: before, merge });
+        self.undo.push(HistoryStep { label, scene: before, merge });
     }
 
     /// Takes the last step back; returns its label.
     pub fn undo(&mut self, scene: &mut Scene) -> Option<String> {
         let step = self.undo.pop()?;
         let after = std::mem::replace(scene, step.scene);
-        self.redo.push(Step { label: step.label.clone(), scene: after, merge: None });
+        self.redo.push(HistoryStep { label: step.label.clone(), scene: after, merge: None });
         Some(step.label)
     }
 
@@ -57,13 +57,13 @@ impl History {
     pub fn redo(&mut self, scene: &mut Scene) -> Option<String> {
         let step = self.redo.pop()?;
         let before = std::mem::replace(scene, step.scene);
-        self.undo.push(Step { label: step.label.clone(), scene: before, merge: None });
+        self.undo.push(HistoryStep { label: step.label.clone(), scene: before, merge: None });
         Some(step.label)
     }
 
     /// Takes the last step back for good if it belongs to this press; whether it did.
-    pub fn abandon(&mut self, scene: &mut Scene, gesture: u64) -> bool {
-        let belongs = self.undo.last().and_then(|step| step.merge.as_ref()).is_some_and(|key| key.gesture == gesture);
+    pub fn abandon(&mut self, scene: &mut Scene, press_id: u64) -> bool {
+        let belongs = self.undo.last().and_then(|step| step.merge.as_ref()).is_some_and(|key| key.press_id == press_id);
         if belongs {
             self.undo(scene);
             self.redo.pop();
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn one_drag_is_one_step_and_the_next_drag_another() {
         let mut history = History::default();
-        let key = |gesture, target| Some(MergeKey { gesture, targets: vec![target] });
+        let key = |press_id, target| Some(MergeKey { press_id, targets: vec![target] });
         for name in ["a", "b", "c"] {
             history.record(named(name), "drag".into(), key(1, Item::Camera));
         }

@@ -9,7 +9,7 @@ use std::f32::consts::PI;
 
 /// The reading of a light at its aim point, on a surface that faces it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AtAim {
+pub struct AimReadout {
     /// Distance to the aim point, metres; none for sun and surround.
     pub distance_m: Option<f32>,
     /// Illuminance in lux for continuous light; luminous exposure in lux seconds for flash.
@@ -19,11 +19,11 @@ pub struct AtAim {
 }
 
 /// Returns the reading of a light at its own aim point, on or off.
-pub fn at_aim(scene: &Scene, light: &Light) -> AtAim {
+pub fn at_aim(scene: &Scene, light: &Light) -> AimReadout {
     let distance = (scene.aim_point(&light.aim, light.position) - light.position).length();
     let light = PhotometricLight::new(scene, light);
     let illuminance = on_axis(&light, distance);
-    AtAim {
+    AimReadout {
         distance_m: (!light.shape.is_distant()).then_some(distance),
         illuminance,
         lux_s: illuminance * light.exposure_time_s,

@@ -83,13 +83,13 @@ impl Document {
         file.or(name).unwrap_or_else(|| "Untitled".to_owned())
     }
 
-    /// Does an action as one undo step; returns what should be selected then, if anything. Steps of one `gesture` (one
+    /// Does an action as one undo step; returns what should be selected then, if anything. Steps of one `press_id` (one
     /// press of the mouse) on the same things join. On an error the scene is as it was.
-    pub fn apply(&mut self, action: Action, gesture: Option<u64>) -> Result<Vec<Item>, ActionError> {
+    pub fn apply(&mut self, action: Action, press_id: Option<u64>) -> Result<Vec<Item>, ActionError> {
         let before = self.scene.clone();
         let label = action.label(&before);
         let targets = action.targets();
-        let merge = gesture.filter(|_| !targets.is_empty()).map(|gesture| MergeKey { gesture, targets });
+        let merge = press_id.filter(|_| !targets.is_empty()).map(|press_id| MergeKey { press_id, targets });
         let done = action.apply(&mut self.scene).and_then(|select| match new_error(&before, &self.scene) {
             Some(error) => Err(ActionError::Invalid(error.message)),
             None => Ok(select),
@@ -104,8 +104,8 @@ impl Document {
     }
 
     /// Gives up what a press has changed so far, as if it had never begun.
-    pub fn abandon(&mut self, gesture: u64) {
-        self.step_history(|history, scene| history.abandon(scene, gesture).then_some(()));
+    pub fn abandon(&mut self, press_id: u64) {
+        self.step_history(|history, scene| history.abandon(scene, press_id).then_some(()));
     }
 
     /// Takes the last step back; returns what it was.

@@ -1,7 +1,7 @@
 //! The list of things that can be added.
 
 use crate::editor::commands::command::Command;
-use crate::editor::document::catalog::{Entry, Kind, Shelf, entries};
+use crate::editor::document::catalog::{CatalogEntry, CatalogKind, CatalogTab, entries};
 use crate::editor::panels::thumbnails::{THING_POINTS, Thumbnails};
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets;
@@ -10,7 +10,7 @@ use crate::scene::{Emitter, MaterialPreset};
 use eframe::egui::{self, Button, Color32, CornerRadius, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, vec2};
 
 /// Draws the list; `shelf` is the one on show.
-pub fn add_ui(ui: &mut Ui, shelf: &mut Shelf, thumbnails: &mut Thumbnails, out: &mut Vec<Command>) {
+pub fn add_ui(ui: &mut Ui, tab: &mut CatalogTab, thumbnails: &mut Thumbnails, out: &mut Vec<Command>) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         ui.label(RichText::new("Add").strong());
@@ -31,35 +31,35 @@ pub fn add_ui(ui: &mut Ui, shelf: &mut Shelf, thumbnails: &mut Thumbnails, out: 
         ui.spacing_mut().item_spacing.x = 2.0;
         // In the narrowest window, too, the last name is whole.
         ui.spacing_mut().button_padding.x = if ui.available_width() < 228.0 { 4.0 } else { 6.0 };
-        for each in Shelf::ALL {
-            if ui.selectable_label(*shelf == each, each.label()).on_hover_text(shelf_tip(each)).clicked() {
-                *shelf = each;
+        for each in CatalogTab::ALL {
+            if ui.selectable_label(*tab == each, each.label()).on_hover_text(tab_tip(each)).clicked() {
+                *tab = each;
             }
         }
     });
     ui.separator();
     ScrollArea::vertical().id_salt("add list").auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
-        for entry in entries(*shelf) {
+        for entry in entries(*tab) {
             if entry_ui(ui, entry, thumbnails) {
-                out.push(Command::Place(Box::new(entry.make())));
+                out.push(Command::AddFromCatalog(Box::new(entry.make())));
             }
         }
     });
 }
 
-fn shelf_tip(shelf: Shelf) -> &'static str {
-    match shelf {
-        Shelf::Lights => "Softboxes, strips, dishes, bulbs, spots, windows, sun and sky",
-        Shelf::Figures => "Mannequins: woman, man, child and a portrait bust, in poses",
-        Shelf::Props => "Things to light: shapes, products, boards, reference balls and cards",
-        Shelf::Backdrops => "Paper rolls of 1.35, 2.72 and 3.55 m in white, grey and black",
+fn tab_tip(tab: CatalogTab) -> &'static str {
+    match tab {
+        CatalogTab::Lights => "Softboxes, strips, dishes, bulbs, spots, windows, sun and sky",
+        CatalogTab::Figures => "Mannequins: woman, man, child and a portrait bust, in poses",
+        CatalogTab::Props => "Things to light: shapes, products, boards, reference balls and cards",
+        CatalogTab::Backdrops => "Paper rolls of 1.35, 2.72 and 3.55 m in white, grey and black",
     }
 }
 
-fn entry_ui(ui: &mut Ui, entry: &'static Entry, thumbnails: &mut Thumbnails) -> bool {
+fn entry_ui(ui: &mut Ui, entry: &'static CatalogEntry, thumbnails: &mut Thumbnails) -> bool {
     // Lights have a drawing: what they look like tells less of them than their shape and size.
-    let side = if matches!(entry.kind, Kind::Light(..)) { 20.0 } else { THING_POINTS };
+    let side = if matches!(entry.kind, CatalogKind::Light(..)) { 20.0 } else { THING_POINTS };
     ui.horizontal(|ui| {
         let (icon, _) = ui.allocate_exact_size(vec2(side, side), Sense::hover());
         match thumbnails.thing(ui.ctx(), entry) {
@@ -76,40 +76,40 @@ fn entry_ui(ui: &mut Ui, entry: &'static Entry, thumbnails: &mut Thumbnails) -> 
 }
 
 /// A small drawing of what an entry is.
-fn paint_icon(painter: &egui::Painter, rect: egui::Rect, kind: &Kind) {
+fn paint_icon(painter: &egui::Painter, rect: egui::Rect, kind: &CatalogKind) {
     let (c, line) = (rect.center(), Stroke::new(1.3, Color32::from_gray(170)));
     let glow = theme::ACCENT;
     match kind {
-        Kind::Light(Emitter::RectPanel { width_m, height_m }, ..) => {
+        CatalogKind::Light(Emitter::RectPanel { width_m, height_m }, ..) => {
             let scale = 14.0 / width_m.max(*height_m);
             let panel = egui::Rect::from_center_size(c, vec2((width_m * scale).max(4.0), (height_m * scale).max(4.0)));
             painter.rect_stroke(panel, CornerRadius::same(1), Stroke::new(1.3, glow), StrokeKind::Middle);
         }
-        Kind::Light(Emitter::RoundPanel { diameter_m }, ..) => {
+        CatalogKind::Light(Emitter::RoundPanel { diameter_m }, ..) => {
             painter.circle_stroke(c, (4.0 + 2.0 * diameter_m).min(7.5), Stroke::new(1.3, glow));
         }
-        Kind::Light(Emitter::Spot { .. }, ..) => {
+        CatalogKind::Light(Emitter::Spot { .. }, ..) => {
             let cone = [c + vec2(-6.0, 0.0), c + vec2(6.0, -5.5), c + vec2(6.0, 5.5)];
             painter.add(egui::Shape::closed_line(cone.to_vec(), Stroke::new(1.3, glow)));
         }
-        Kind::Light(Emitter::Surround, ..) => {
+        CatalogKind::Light(Emitter::Surround, ..) => {
             painter.circle_stroke(c, 7.0, Stroke::new(1.0, glow));
             painter.circle_stroke(c, 4.0, Stroke::new(1.0, glow.gamma_multiply(0.6)));
         }
-        Kind::Light(Emitter::Point | Emitter::Sphere { .. } | Emitter::Sun { .. }, ..) => {
+        CatalogKind::Light(Emitter::Point | Emitter::Sphere { .. } | Emitter::Sun { .. }, ..) => {
             painter.circle_filled(c, 3.2, glow);
             for i in 0..8 {
                 let direction = egui::Vec2::angled(i as f32 * std::f32::consts::FRAC_PI_4);
                 painter.line_segment([c + direction * 5.0, c + direction * 7.5], Stroke::new(1.2, glow));
             }
         }
-        Kind::Figure(_) => {
+        CatalogKind::Figure(_) => {
             painter.circle_filled(c - vec2(0.0, 4.0), 3.2, line.color);
             let shoulders = [c + vec2(-6.0, 8.0), c + vec2(-3.5, 1.0), c + vec2(3.5, 1.0), c + vec2(6.0, 8.0)];
             painter.add(egui::Shape::convex_polygon(shoulders.to_vec(), line.color, Stroke::NONE));
         }
-        Kind::Prop(_, preset) => paint_patch(painter, c, *preset, vec2(12.0, 12.0)),
-        Kind::Paper { width_m, paper } => paint_patch(painter, c, *paper, vec2(5.0 * width_m.min(3.0), 14.0)),
+        CatalogKind::Prop(_, preset) => paint_patch(painter, c, *preset, vec2(12.0, 12.0)),
+        CatalogKind::Paper { width_m, paper } => paint_patch(painter, c, *paper, vec2(5.0 * width_m.min(3.0), 14.0)),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The list of keys and what the mouse does.
 
-use crate::editor::commands::shortcuts::{BINDINGS, Binding};
+use crate::editor::commands::shortcuts::{KEY_BINDINGS, KeyBinding};
 use eframe::egui::{self, Grid, RichText, ScrollArea, Ui, vec2};
 
 /// What the mouse does, and keys that are held.
@@ -39,8 +39,8 @@ pub fn help_ui(ctx: &egui::Context, open: &mut bool) {
             ScrollArea::both().show(ui, |ui| {
                 ui.horizontal_top(|ui| {
                     let mouse = MOUSE.map(|(keys, meaning)| (keys.to_owned(), meaning));
-                    let format = |binding: &Binding| (ui.ctx().format_shortcut(&binding.shortcut), binding.meaning);
-                    let keys: Vec<_> = BINDINGS.iter().map(format).collect();
+                    let format = |binding: &KeyBinding| (ui.ctx().format_shortcut(&binding.shortcut), binding.meaning);
+                    let keys: Vec<_> = KEY_BINDINGS.iter().map(format).collect();
                     // Two columns of about the same length.
                     let (left, right) = keys.split_at((keys.len().saturating_sub(mouse.len())).div_ceil(2));
                     list(ui, "left", mouse.iter().chain(left));

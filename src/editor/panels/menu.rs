@@ -1,8 +1,8 @@
 //! The menu bar.
 
 use crate::editor::commands::choices::LiveMode;
-use crate::editor::commands::choices::Side;
-use crate::editor::commands::choices::{Centre, Handle};
+use crate::editor::commands::choices::ViewSide;
+use crate::editor::commands::choices::{CentralView, HandleMode};
 use crate::editor::commands::command::Command;
 use crate::editor::commands::item_menu::selection_entries;
 use crate::editor::commands::menu_entry::entry;
@@ -22,9 +22,9 @@ pub struct MenuState<'a> {
     /// Studios opened before.
     pub recent: &'a [PathBuf],
     /// What the middle shows.
-    pub centre: Centre,
+    pub central_view: CentralView,
     /// The handles on show.
-    pub handles: Handle,
+    pub handles: HandleMode,
     /// Whether the handles snap.
     pub snap: bool,
     /// How the live view is made.
@@ -106,15 +106,15 @@ fn edit_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
 fn view_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     ui.set_min_width(240.0);
     entry(ui, true, "Camera view on or off", "What the picture will frame", Command::ToggleCameraView, out);
-    entry(ui, true, "Rendered picture", "The last render, large", Command::Show(Centre::Picture), out);
+    entry(ui, true, "Rendered picture", "The last render, large", Command::ShowView(CentralView::Picture), out);
     ui.menu_button("Look from", |ui| {
         ui.set_min_width(150.0);
-        for side in Side::ALL {
+        for side in ViewSide::ALL {
             entry(ui, true, side.label(), "Without perspective, with a metre grid", Command::LookFrom(side), out);
         }
     });
     entry(ui, true, "Perspective on or off", "Whether what is far looks small", Command::ToggleParallel, out);
-    let light = !state.selection.lights().is_empty() || matches!(state.centre, Centre::Light(_));
+    let light = !state.selection.lights().is_empty() || matches!(state.central_view, CentralView::Light(_));
     entry(
         ui,
         light,
@@ -128,16 +128,16 @@ fn view_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
         LiveMode::Quick => "Live view: trace it (True)",
         LiveMode::True => "Live view: estimate it (Quick)",
     };
-    entry(ui, true, other, "Quick is drawn at once; True is what the picture will be", Command::ToggleLive, out);
+    entry(ui, true, other, "Quick is drawn at once; True is what the picture will be", Command::ToggleLiveMode, out);
     ui.separator();
     entry(ui, true, "Bring selection into view", "Everything, when nothing is selected", Command::FrameSelection, out);
-    let in_studio = state.centre == Centre::Studio;
+    let in_studio = state.central_view == CentralView::Studio;
     let tip = "Puts the camera where the studio view looks from";
     entry(ui, in_studio, "Camera to this view", tip, Command::CameraFromView, out);
     ui.separator();
     for (handle, text, tip) in HANDLES {
         let text = if state.handles == handle { format!("{text} (on)") } else { text.to_owned() };
-        entry(ui, true, &text, tip, Command::Handles(handle), out);
+        entry(ui, true, &text, tip, Command::SetHandles(handle), out);
     }
     let text = if state.snap { "Snap (on)" } else { "Snap" };
     entry(ui, true, text, SNAP_TIP, Command::ToggleSnap, out);
@@ -147,10 +147,10 @@ fn view_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
 pub const SNAP_TIP: &str = "Handles go in steps of 0.1 m and 15\u{b0}; with Ctrl the other way round";
 
 /// The three kinds of handles, with label and tip.
-pub const HANDLES: [(Handle, &str, &str); 3] = [
-    (Handle::Move, "Move", "Handles that move the selected thing"),
-    (Handle::Turn, "Turn", "Handles that turn the selected thing; a light aimed at a thing swings round it"),
-    (Handle::Size, "Size", "Handles that scale the selected thing"),
+pub const HANDLES: [(HandleMode, &str, &str); 3] = [
+    (HandleMode::Move, "Move", "Handles that move the selected thing"),
+    (HandleMode::Rotate, "Turn", "Handles that turn the selected thing; a light aimed at a thing swings round it"),
+    (HandleMode::Scale, "Size", "Handles that scale the selected thing"),
 ];
 
 fn render_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {

@@ -27,7 +27,7 @@ impl OutlinerState {
 }
 
 /// What the rows of the list read, and where they put their requests.
-struct Rows<'a> {
+struct OutlinerRows<'a> {
     document: &'a Document,
     selection: &'a Selection,
     state: &'a mut OutlinerState,
@@ -48,7 +48,7 @@ pub fn outliner_ui(
     ScrollArea::vertical().id_salt("outliner").auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         let scene = document.scene();
-        let mut rows = Rows { document, selection, state, out };
+        let mut rows = OutlinerRows { document, selection, state, out };
         rows.fixed(ui, Item::Camera, "Camera", "Lens, exposure and framing");
         let room_tip =
             if scene.room.is_some() { "Floor, walls and ceiling" } else { "Switched off: an endless black void" };
@@ -91,7 +91,7 @@ fn between(scene: &Scene, from: Item, to: Item) -> Vec<Item> {
     }
 }
 
-impl Rows<'_> {
+impl OutlinerRows<'_> {
     fn fixed(&mut self, ui: &mut Ui, item: Item, name: &str, tip: &str) {
         ui.horizontal(|ui| {
             ui.add_space(16.0);
@@ -125,7 +125,7 @@ impl Rows<'_> {
             ui.label(RichText::new(text).color(theme::ACCENT).small());
             let button = ui.small_button("End solo");
             if button.on_hover_text("Bring back what was on before (O)").clicked() {
-                self.out.push(Command::Do(Action::Solo(Vec::new())));
+                self.out.push(Command::Apply(Action::Solo(Vec::new())));
             }
         });
     }
@@ -149,7 +149,7 @@ impl Rows<'_> {
                 let name = format!("{} alone", light.name);
                 if widgets::letter_toggle(ui, "S", alone, theme::ACCENT, &name).on_hover_text(tip).clicked() {
                     let lights = if alone { Vec::new() } else { vec![light.id] };
-                    self.out.push(Command::Do(Action::Solo(lights)));
+                    self.out.push(Command::Apply(Action::Solo(lights)));
                 }
                 let muted = light.muted && !light.on;
                 let tip = if muted {
@@ -159,7 +159,7 @@ impl Rows<'_> {
                 };
                 let name = format!("{} muted", light.name);
                 if widgets::letter_toggle(ui, "M", muted, theme::MUTED, &name).on_hover_text(tip).clicked() {
-                    self.out.push(Command::Do(Action::Mute(vec![light.id], !muted)));
+                    self.out.push(Command::Apply(Action::Mute(vec![light.id], !muted)));
                 }
                 let glow = widgets::display_color(light_rgb(&light.color, scene.camera.white_balance_k));
                 let tip = match (light.on, muted, scene.is_silenced(light)) {
@@ -171,7 +171,7 @@ impl Rows<'_> {
                 let lamp = widgets::lamp_toggle(ui, light.on, glow, &format!("{} on", light.name));
                 if lamp.on_hover_text(tip).clicked() {
                     let changed = Light { on: !light.on, ..light.clone() };
-                    self.out.push(Command::Do(Action::SetLight(Box::new(changed))));
+                    self.out.push(Command::Apply(Action::SetLight(Box::new(changed))));
                 }
             });
         });
@@ -189,7 +189,7 @@ impl Rows<'_> {
                 let name = format!("{} visible", object.name);
                 if widgets::eye_toggle(ui, object.visible, &name).on_hover_text(tip).clicked() {
                     let changed = Object { visible: !object.visible, ..object.clone() };
-                    self.out.push(Command::Do(Action::SetObject(Box::new(changed))));
+                    self.out.push(Command::Apply(Action::SetObject(Box::new(changed))));
                 }
             });
         });
@@ -202,7 +202,7 @@ impl Rows<'_> {
             "Lock it in its place (K)"
         };
         if widgets::lock_toggle(ui, locked, &format!("{name} locked")).on_hover_text(tip).clicked() {
-            self.out.push(Command::Do(Action::Lock(vec![item], !locked)));
+            self.out.push(Command::Apply(Action::Lock(vec![item], !locked)));
         }
     }
 
@@ -255,7 +255,7 @@ fn rename_ui(ui: &mut Ui, state: &mut OutlinerState, icons: f32, out: &mut Vec<C
     }
     if field.lost_focus() {
         if !ui.input(|i| i.key_pressed(Key::Escape)) {
-            out.push(Command::Do(Action::Rename(*item, text.clone())));
+            out.push(Command::Apply(Action::Rename(*item, text.clone())));
         }
         state.rename = None;
     }

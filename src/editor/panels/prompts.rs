@@ -1,13 +1,13 @@
 //! Questions in the middle of the window: unsaved changes, and a path where the desktop has no dialog.
 
-use crate::editor::commands::file_purpose::Purpose;
+use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::ui::widgets;
 use eframe::egui::{self, Button, Key, RichText, TextEdit};
 use std::path::{Path, PathBuf};
 
 /// The answer to "save the changes?".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GuardAnswer {
+pub enum UnsavedAnswer {
     /// Save, then go on.
     Save,
     /// Go on without.
@@ -17,7 +17,7 @@ pub enum GuardAnswer {
 }
 
 /// Asks whether to save before `what`.
-pub fn guard_ui(ctx: &egui::Context, title: &str, what: &str) -> Option<GuardAnswer> {
+pub fn unsaved_changes_ui(ctx: &egui::Context, title: &str, what: &str) -> Option<UnsavedAnswer> {
     let mut answer = None;
     let modal = widgets::dialog(ctx, "unsaved changes").show(ctx, |ui| {
         ui.set_width(420.0);
@@ -26,9 +26,9 @@ pub fn guard_ui(ctx: &egui::Context, title: &str, what: &str) -> Option<GuardAns
         ui.add_space(8.0);
         ui.horizontal(|ui| {
             let choices = [
-                ("Save", GuardAnswer::Save, "Write the studio to its file first"),
-                ("Don't save", GuardAnswer::Discard, "The changes are lost"),
-                ("Cancel", GuardAnswer::Cancel, "Stay here (Esc)"),
+                ("Save", UnsavedAnswer::Save, "Write the studio to its file first"),
+                ("Don't save", UnsavedAnswer::Discard, "The changes are lost"),
+                ("Cancel", UnsavedAnswer::Cancel, "Stay here (Esc)"),
             ];
             for (text, each, tip) in choices {
                 if ui.add(Button::new(text).min_size(egui::vec2(96.0, 26.0))).on_hover_text(tip).clicked() {
@@ -38,7 +38,7 @@ pub fn guard_ui(ctx: &egui::Context, title: &str, what: &str) -> Option<GuardAns
         });
     });
     if answer.is_none() && modal.should_close() {
-        answer = Some(GuardAnswer::Cancel);
+        answer = Some(UnsavedAnswer::Cancel);
     }
     answer
 }
@@ -47,7 +47,7 @@ pub fn guard_ui(ctx: &egui::Context, title: &str, what: &str) -> Option<GuardAns
 #[derive(Clone, Debug)]
 pub struct PathPrompt {
     /// What the path is for.
-    pub purpose: Purpose,
+    pub purpose: FilePurpose,
     text: String,
     had_focus: bool,
 }
@@ -63,7 +63,7 @@ pub enum PathAnswer {
 
 impl PathPrompt {
     /// A prompt that suggests a file in a folder.
-    pub fn new(purpose: Purpose, folder: Option<&Path>, file_name: &str) -> Self {
+    pub fn new(purpose: FilePurpose, folder: Option<&Path>, file_name: &str) -> Self {
         let folder = folder.map(Path::to_owned).or_else(|| std::env::current_dir().ok()).unwrap_or_default();
         let path = if purpose.is_save() { folder.join(file_name) } else { folder.join("") };
         PathPrompt { purpose, text: path.to_string_lossy().into_owned(), had_focus: false }

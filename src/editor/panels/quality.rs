@@ -46,7 +46,7 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
     let at = |samples: u32| forecast.estimate(pixels, samples);
     let marks: Vec<Estimate> = PRESETS.iter().filter_map(|(quality, _)| quality.samples()).map(at).collect();
     let line: Vec<Estimate> = (0..=14).map(|power| at(1 << power)).collect();
-    Chart::around(rect, &line[1..13]).paint(&ui.painter_at(rect), &line, &marks, chosen, forecaster.measured());
+    QualityChart::around(rect, &line[1..13]).paint(&ui.painter_at(rect), &line, &marks, chosen, forecaster.measured());
 }
 
 /// `6 s, 0.10 stops`.
@@ -71,7 +71,7 @@ const TIMES: [(f64, &str); 8] = [
 const ROOM_FOR_A_TIME: f32 = 30.0;
 
 /// Seconds across, stops upwards, both as logarithms.
-struct Chart {
+struct QualityChart {
     rect: Rect,
     /// Of time and noise, as powers of ten: least and most.
     time: [f32; 2],
@@ -82,13 +82,17 @@ fn power_of_ten(x: f64) -> f32 {
     x.max(1e-6).log10() as f32
 }
 
-impl Chart {
+impl QualityChart {
     fn around(rect: Rect, points: &[Estimate]) -> Self {
         let range = |of: &dyn Fn(&Estimate) -> f64| {
             let powers = || points.iter().map(|point| power_of_ten(of(point)));
             [powers().fold(f32::INFINITY, f32::min).floor(), powers().fold(f32::NEG_INFINITY, f32::max).ceil()]
         };
-        Chart { rect: rect.shrink2(vec2(4.0, 4.0)), time: range(&|p| p.seconds), noise: range(&|p| p.noise_stops) }
+        QualityChart {
+            rect: rect.shrink2(vec2(4.0, 4.0)),
+            time: range(&|p| p.seconds),
+            noise: range(&|p| p.noise_stops),
+        }
     }
 
     fn place(&self, estimate: &Estimate) -> Pos2 {

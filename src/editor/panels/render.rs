@@ -1,6 +1,6 @@
 //! The render panel: size, quality, the button, progress and a small picture.
 
-use crate::editor::commands::choices::Centre;
+use crate::editor::commands::choices::CentralView;
 use crate::editor::commands::command::Command;
 use crate::editor::document::studio_document::Document;
 use crate::editor::panels::quality;
@@ -8,7 +8,7 @@ use crate::editor::picture::rendering::{OUT_OF_DATE, PictureSize, Quality, Rende
 use crate::editor::ui::theme;
 use crate::editor::ui::units::duration_text;
 use crate::editor::ui::wake::wake;
-use crate::editor::ui::widgets::{self, Number, row};
+use crate::editor::ui::widgets::{self, NumberField, row};
 use crate::jobs::{ForecastSubject, Forecaster, Progress, RenderPhase};
 use crate::raytrace::Method;
 use crate::scene::Scene;
@@ -23,14 +23,14 @@ pub fn render_ui(
     rendering: &mut Rendering,
     forecaster: &mut Forecaster,
     document: &Document,
-    centre: Centre,
+    central_view: CentralView,
     out: &mut Vec<Command>,
 ) {
     let scene = document.scene();
     ui.add_space(4.0);
     ui.label(RichText::new("Render").strong());
     ui.separator();
-    if centre != Centre::Picture {
+    if central_view != CentralView::Picture {
         thumbnail_ui(ui, rendering, scene, out);
     }
     size_rows(ui, &mut rendering.settings, scene);
@@ -64,7 +64,7 @@ fn size_rows(ui: &mut Ui, settings: &mut RenderSettings, scene: &Scene) {
     });
     if let PictureSize::Custom(width, height) = &mut settings.size {
         row(ui, "", "", |ui| {
-            const PIXELS: Number = Number::new(4.0, 1.0, LARGEST, 0, " px");
+            const PIXELS: NumberField = NumberField::new(4.0, 1.0, LARGEST, 0, " px");
             for (name, value) in [("Picture width", width), ("Picture height", height)] {
                 let mut pixels = *value as f32;
                 ui.name_inputs(name, |ui| PIXELS.ui(ui, &mut pixels));
@@ -86,7 +86,7 @@ fn quality_rows(ui: &mut Ui, settings: &mut RenderSettings) {
     });
     row(ui, "Samples", "Light paths through each pixel", |ui| {
         let mut samples = settings.samples as f32;
-        Number::new(1.0, 1.0, 65_536.0, 0, "").ui(ui, &mut samples);
+        NumberField::new(1.0, 1.0, 65_536.0, 0, "").ui(ui, &mut samples);
         if samples as u32 != settings.samples {
             (settings.samples, settings.quality) = (samples as u32, Quality::Custom);
         }
@@ -177,7 +177,7 @@ fn thumbnail_ui(ui: &mut Ui, rendering: &Rendering, scene: &Scene, out: &mut Vec
         let response =
             ui.add(image).on_hover_text("Click to see it large (3)").on_hover_cursor(egui::CursorIcon::ZoomIn);
         if response.clicked() {
-            out.push(Command::Show(Centre::Picture));
+            out.push(Command::ShowView(CentralView::Picture));
         }
     });
     if rendering.is_out_of_date(scene) && !rendering.is_running() {

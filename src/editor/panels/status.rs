@@ -1,6 +1,6 @@
 //! The line at the foot of the window: what is selected, what the mouse does here.
 
-use crate::editor::commands::choices::Centre;
+use crate::editor::commands::choices::CentralView;
 use crate::editor::document::item::{Item, name_of_all};
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
@@ -8,7 +8,13 @@ use crate::scene::Scene;
 use eframe::egui::{self, RichText, Ui};
 
 /// Draws it.
-pub fn status_ui(ui: &mut Ui, document: &Document, selection: &Selection, centre: Centre, busy: Option<&str>) {
+pub fn status_ui(
+    ui: &mut Ui,
+    document: &Document,
+    selection: &Selection,
+    central_view: CentralView,
+    busy: Option<&str>,
+) {
     ui.horizontal_centered(|ui| {
         let scene = document.scene();
         match selection.items() {
@@ -21,7 +27,7 @@ pub fn status_ui(ui: &mut Ui, document: &Document, selection: &Selection, centre
             ui.label(RichText::new(busy).weak());
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.add(egui::Label::new(RichText::new(hint(centre)).weak().small()).truncate());
+            ui.add(egui::Label::new(RichText::new(hint(central_view)).weak().small()).truncate());
         });
     });
 }
@@ -34,17 +40,17 @@ fn selection_line(scene: &Scene, item: Item) -> String {
     }
 }
 
-fn hint(centre: Centre) -> &'static str {
-    match centre {
-        Centre::Studio => {
+fn hint(central_view: CentralView) -> &'static str {
+    match central_view {
+        CentralView::Studio => {
             "Drag: select in a box    Middle or Alt+left drag: orbit    Shift: pan    Wheel: closer    F1: all keys"
         }
-        Centre::Camera => {
+        CentralView::Camera => {
             "What the picture frames. Orbit to leave to the studio view    1: back and forth    F1: all keys"
         }
-        Centre::Light(_) => {
+        CentralView::Light(_) => {
             "What the light sees. Orbit: swing it    Wheel: nearer, farther    V, Esc: back    F1: all keys"
         }
-        Centre::Picture => "Wheel: zoom    Drag: pan    Double-click: fit or 100 %",
+        CentralView::Picture => "Wheel: zoom    Drag: pan    Double-click: fit or 100 %",
     }
 }

@@ -1,8 +1,8 @@
 //! Textures of thumbnails: shipped studios as their cameras see them, and the things that can be added. Each is requested
 //! when it is first shown.
 
-use crate::editor::document::catalog::{Entry, Made};
-use crate::editor::ui::image_texture::Canvas;
+use crate::editor::document::catalog::{CatalogEntry, CatalogItem};
+use crate::editor::ui::image_texture::ImageTexture;
 use crate::editor::ui::wake::wake;
 use crate::jobs::{ThumbnailImage, ThumbnailJob, ThumbnailSubject};
 use eframe::egui::{self, Color32, ColorImage, Context, Pos2, Rect, TextureId, pos2};
@@ -33,9 +33,9 @@ pub struct Thumbnail {
 }
 
 impl Thumbnail {
-    fn of(canvas: &Canvas) -> Option<Self> {
-        let size = canvas.size()?.map(|pixels| pixels as f32 / PIXELS_PER_POINT);
-        Some(Thumbnail { texture: canvas.id()?, size: size.into() })
+    fn of(image_texture: &ImageTexture) -> Option<Self> {
+        let size = image_texture.size()?.map(|pixels| pixels as f32 / PIXELS_PER_POINT);
+        Some(Thumbnail { texture: image_texture.id()?, size: size.into() })
     }
 
     /// Paints it in the middle of `rect`.
@@ -49,7 +49,7 @@ impl Thumbnail {
 #[derive(Debug, Default)]
 pub struct Thumbnails {
     /// Empty until they are drawn.
-    canvases: HashMap<ThumbnailKey, Canvas>,
+    canvases: HashMap<ThumbnailKey, ImageTexture>,
     job: ThumbnailJob<ThumbnailKey>,
 }
 
@@ -61,10 +61,10 @@ impl Thumbnails {
     }
 
     /// Returns the thumbnail of a figure, prop or backdrop; none until it is drawn, and none for lights.
-    pub fn thing(&mut self, ctx: &Context, entry: &'static Entry) -> Option<Thumbnail> {
+    pub fn thing(&mut self, ctx: &Context, entry: &'static CatalogEntry) -> Option<Thumbnail> {
         let subject = || match entry.make() {
-            Made::Object(object) => Some(ThumbnailSubject::Object(Box::new(object))),
-            Made::Light(_) => None,
+            CatalogItem::Object(object) => Some(ThumbnailSubject::Object(Box::new(object))),
+            CatalogItem::Light(_) => None,
         };
         self.thumbnail(ctx, ThumbnailKey::Thing(entry.name), THING_POINTS, subject)
     }
@@ -79,37 +79,37 @@ impl Thumbnails {
         for (key, ThumbnailImage { size, rgb }) in self.job.take() {
             self.canvases.entry(key).or_default().set(ctx, ColorImage::from_rgb(size, &rgb));
         }
-        if let Some(canvas) = self.canvases.get(&key) {
-            return Thumbnail::of(canvas);
+        if let Some(image_texture) = self.canvases.get(&key) {
+            return Thumbnail::of(image_texture);
         }
         let subject = subject()?;
-        self.canvases.insert(key, Canvas::default());
+        self.canvases.insert(key, ImageTexture::default());
         self.job.request(key, subject, (points * PIXELS_PER_POINT) as u32, &wake(ctx));
         None
     }
 
     /// Returns the number of drawn thumbnails, as of the last request.
     pub fn drawn(&self) -> usize {
-        self.canvases.values().filter(|canvas| canvas.id().is_some()).count()
+        self.canvases.values().filter(|image_texture| image_texture.id().is_some()).count()
     }
 
     /// Uploads all thumbnails to the device that the window has now.
     pub fn renew(&mut self, ctx: &Context) {
-        self.canvases.values_mut().for_each(|canvas| canvas.renew(ctx));
+        self.canvases.values_mut().for_each(|image_texture| image_texture.renew(ctx));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::editor::document::catalog::{Shelf, entries};
+    use crate::editor::document::catalog::{CatalogTab, entries};
     use crate::jobs::{BACKGROUND, draw_thumbnail};
 
     #[test]
     fn every_thing_in_the_catalog_fills_its_thumbnail_and_differs_from_the_background() {
-        for shelf in [Shelf::Figures, Shelf::Props, Shelf::Backdrops] {
-            for entry in entries(shelf) {
-                let Made::Object(object) = entry.make() else { panic!("{} is a light", entry.name) };
+        for tab in [CatalogTab::Figures, CatalogTab::Props, CatalogTab::Backdrops] {
+            for entry in entries(tab) {
+                let CatalogItem::Object(object) = entry.make() else { panic!("{} is a light", entry.name) };
                 let image = draw_thumbnail(ThumbnailSubject::Object(Box::new(object)), 60).unwrap();
                 let [width, height] = image.size;
                 let drawn = |x: usize, y: usize| image.rgb[3 * (y * width + x)..][..3] != BACKGROUND;

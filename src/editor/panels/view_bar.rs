@@ -1,7 +1,7 @@
 //! The row of buttons over the view: what it shows, how it is made, which handles there are.
 
 use super::menu::{HANDLES, MenuState, SNAP_TIP};
-use crate::editor::commands::choices::Centre;
+use crate::editor::commands::choices::CentralView;
 use crate::editor::commands::choices::LiveMode;
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
@@ -21,7 +21,7 @@ pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool,
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         centre_ui(ui, state, out);
-        if state.centre == Centre::Picture {
+        if state.central_view == CentralView::Picture {
             return;
         }
         ui.separator();
@@ -44,14 +44,14 @@ pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool,
 
 /// What the middle of the window shows.
 fn centre_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
-    let mut centre = state.centre;
+    let mut centre = state.central_view;
     let views = [
-        (Centre::Studio, "Studio", "Look at the studio from anywhere (1 switches to the camera and back)"),
-        (Centre::Camera, "Camera", "What the picture will frame (1)"),
-        (Centre::Picture, "Picture", "The rendered picture (3)"),
+        (CentralView::Studio, "Studio", "Look at the studio from anywhere (1 switches to the camera and back)"),
+        (CentralView::Camera, "Camera", "What the picture will frame (1)"),
+        (CentralView::Picture, "Picture", "The rendered picture (3)"),
     ];
     widgets::choice(ui, &mut centre, &views);
-    if let Centre::Light(id) = state.centre
+    if let CentralView::Light(id) = state.central_view
         && let Some(light) = state.document.scene().light(id)
     {
         let button = Button::selectable(true, format!("Through {}", light.name));
@@ -59,8 +59,8 @@ fn centre_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
             out.push(Command::ToggleLightView);
         }
     }
-    if centre != state.centre {
-        out.push(Command::Show(centre));
+    if centre != state.central_view {
+        out.push(Command::ShowView(centre));
     }
 }
 
@@ -72,16 +72,16 @@ fn live_ui(ui: &mut Ui, mode: LiveMode, out: &mut Vec<Command>) {
     ];
     widgets::choice(ui, &mut chosen, &modes);
     if chosen != mode {
-        out.push(Command::Live(chosen));
+        out.push(Command::SetLiveMode(chosen));
     }
 }
 
 fn handles_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     for (handle, text, tip) in HANDLES {
-        let key = Command::Handles(handle).shortcut().map(|s| ui.ctx().format_shortcut(&s)).unwrap_or_default();
+        let key = Command::SetHandles(handle).shortcut().map(|s| ui.ctx().format_shortcut(&s)).unwrap_or_default();
         let button = Button::selectable(state.handles == handle, text);
         if ui.add(button).on_hover_text(format!("{tip} ({key})")).clicked() {
-            out.push(Command::Handles(handle));
+            out.push(Command::SetHandles(handle));
         }
     }
     let snap = ui.add(Button::selectable(state.snap, "Snap"));
@@ -99,15 +99,15 @@ fn actions_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool, out:
         out.push(put_meter_up(state.document.scene()));
     }
     ui.separator();
-    if state.centre == Centre::Camera {
+    if state.central_view == CentralView::Camera {
         ui.checkbox(camera_follows, "Move the camera").on_hover_text(
             "On: orbit, pan, wheel and W A S D move the camera itself. Off: they leave to the studio view.",
         );
-    } else if state.centre == Centre::Studio
+    } else if state.central_view == CentralView::Studio
         && ui.button("Camera here").on_hover_text("Puts the camera where you look from now").clicked()
     {
         out.push(Command::CameraFromView);
-        out.push(Command::Show(Centre::Camera));
+        out.push(Command::ShowView(CentralView::Camera));
     }
 }
 
@@ -118,5 +118,5 @@ fn put_meter_up(scene: &Scene) -> Command {
     let target = scene.aim_point(&scene.camera.aim, scene.camera.position);
     let towards = (scene.camera.position - target).normalize_or_zero();
     let position = target + towards * METER_CLEARANCE_M;
-    Command::Do(Action::SetMeter(Some(Meter { position, facing: Facing::Camera, receptor: Receptor::Dome })))
+    Command::Apply(Action::SetMeter(Some(Meter { position, facing: Facing::Camera, receptor: Receptor::Dome })))
 }

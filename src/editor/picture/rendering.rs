@@ -1,6 +1,6 @@
 //! The render settings, the running job, and the picture it leaves behind.
 
-use crate::editor::ui::image_texture::Canvas;
+use crate::editor::ui::image_texture::ImageTexture;
 use crate::editor::ui::wake::wake;
 use crate::jobs::{Developed, FilmDeveloper, RenderJob, RenderOutcome, RenderPhase, RenderRequest};
 use crate::photo::Picture;
@@ -88,7 +88,7 @@ pub struct Rendering {
     requested: Option<(*const Film, Scene)>,
     developed: Option<Developed<Arc<ColorImage>>>,
     develop_failure: Option<String>,
-    canvas: Canvas,
+    image_texture: ImageTexture,
 }
 
 impl Rendering {
@@ -103,7 +103,7 @@ impl Rendering {
             requested: None,
             developed: None,
             develop_failure: None,
-            canvas: Canvas::default(),
+            image_texture: ImageTexture::default(),
         }
     }
 
@@ -151,12 +151,12 @@ impl Rendering {
 
     /// The picture as it is shown.
     pub fn texture(&self) -> Option<TextureId> {
-        self.canvas.id()
+        self.image_texture.id()
     }
 
     /// Brings the picture to the device that the window has now.
     pub fn move_to(&mut self, ctx: &Context) {
-        self.canvas.renew(ctx);
+        self.image_texture.renew(ctx);
     }
 
     /// The picture for export; not yet while only a small forerunner of a large one is on show.
@@ -196,7 +196,7 @@ impl Rendering {
         }
         match self.developer.take() {
             Some(Ok(developed)) => {
-                self.canvas.set(ctx, developed.image.clone());
+                self.image_texture.set(ctx, developed.image.clone());
                 self.developed = Some(developed);
             }
             Some(Err(message)) => self.develop_failure = Some(message),

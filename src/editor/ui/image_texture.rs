@@ -5,24 +5,26 @@ use std::sync::Arc;
 
 /// The picture and its texture.
 #[derive(Default)]
-pub struct Canvas {
+pub struct ImageTexture {
     image: Option<Arc<ColorImage>>,
     texture: Option<TextureHandle>,
 }
 
-impl std::fmt::Debug for Canvas {
+impl std::fmt::Debug for ImageTexture {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Canvas").field("size", &self.image.as_ref().map(|image| image.size)).finish_non_exhaustive()
+        f.debug_struct("ImageTexture")
+            .field("size", &self.image.as_ref().map(|image| image.size))
+            .finish_non_exhaustive()
     }
 }
 
-impl Canvas {
+impl ImageTexture {
     /// Shows another picture.
     pub fn set(&mut self, ctx: &Context, image: impl Into<Arc<ColorImage>>) {
         let image = image.into();
         match &mut self.texture {
             Some(texture) => texture.set(image.clone(), TextureOptions::LINEAR),
-            None => self.texture = Some(ctx.load_texture("canvas", image.clone(), TextureOptions::LINEAR)),
+            None => self.texture = Some(ctx.load_texture("image_texture", image.clone(), TextureOptions::LINEAR)),
         }
         self.image = Some(image);
     }
@@ -37,7 +39,7 @@ impl Canvas {
 
     /// Shows nothing.
     pub fn clear(&mut self) {
-        *self = Canvas::default();
+        *self = ImageTexture::default();
     }
 
     /// Pixels of the picture.

@@ -2,9 +2,9 @@
 
 use eframe::egui::{Panel, PanelState, Rangef, Ui};
 
-/// Widths of a panel, points.
+/// PanelWidths of a panel, points.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Widths {
+pub struct PanelWidths {
     /// Narrowest and widest.
     pub range: Rangef,
     /// Width at first.
@@ -13,7 +13,7 @@ pub struct Widths {
     pub share: f32,
 }
 
-impl Widths {
+impl PanelWidths {
     fn most(&self, window_width: f32) -> f32 {
         (self.share * window_width).clamp(self.range.min, self.range.max)
     }
@@ -28,7 +28,7 @@ pub struct SidePanel {
 
 impl SidePanel {
     /// Shows `panel`, which was made with this name.
-    pub fn show(&mut self, ui: &mut Ui, name: &str, panel: Panel, widths: Widths, contents: impl FnOnce(&mut Ui)) {
+    pub fn show(&mut self, ui: &mut Ui, name: &str, panel: Panel, widths: PanelWidths, contents: impl FnOnce(&mut Ui)) {
         let (ctx, id) = (ui.ctx().clone(), ui.scope_id().with(name));
         let range = Rangef { max: widths.most(ctx.content_rect().width()), ..widths.range };
         let wanted = range.clamp(self.wanted.unwrap_or(widths.first));

@@ -5,15 +5,15 @@ use eframe::egui::{self, Align2, Area, Frame, Id, Label, RichText};
 use std::time::Duration;
 
 /// How long news stay, seconds.
-const NEWS_S: f64 = 5.0;
+const INFO_S: f64 = 5.0;
 /// Messages shown at once; older ones make room.
 const SHOWN: usize = 5;
 
 /// What kind of message it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tone {
+pub enum ToastKind {
     /// Something was done.
-    News,
+    Info,
     /// Something is odd but usable.
     Warning,
     /// Something could not be done.
@@ -22,7 +22,7 @@ pub enum Tone {
 
 #[derive(Clone, Debug)]
 struct Toast {
-    tone: Tone,
+    kind: ToastKind,
     text: String,
     /// When news go, in egui's time; set when it is first shown.
     gone_at: Option<f64>,
@@ -36,41 +36,41 @@ pub struct Toasts {
 
 impl Toasts {
     /// Something was done.
-    pub fn news(&mut self, text: impl Into<String>) {
-        self.push(Tone::News, text.into());
+    pub fn info(&mut self, text: impl Into<String>) {
+        self.push(ToastKind::Info, text.into());
     }
 
     /// Something is odd but usable.
     pub fn warning(&mut self, text: impl Into<String>) {
-        self.push(Tone::Warning, text.into());
+        self.push(ToastKind::Warning, text.into());
     }
 
     /// Something could not be done.
     pub fn error(&mut self, text: impl Into<String>) {
         let text = text.into();
         log::error!("{text}");
-        self.push(Tone::Error, text);
+        self.push(ToastKind::Error, text);
     }
 
-    fn push(&mut self, tone: Tone, text: String) {
+    fn push(&mut self, kind: ToastKind, text: String) {
         // The same message again replaces the old one.
         self.toasts.retain(|toast| toast.text != text);
-        self.toasts.push(Toast { tone, text, gone_at: None });
+        self.toasts.push(Toast { kind, text, gone_at: None });
         if self.toasts.len() > SHOWN {
             self.toasts.remove(0);
         }
     }
 
-    /// The texts on show of one tone, oldest first.
-    pub fn texts(&self, tone: Tone) -> Vec<&str> {
-        self.toasts.iter().filter(|t| t.tone == tone).map(|t| t.text.as_str()).collect()
+    /// The texts on show of one kind, oldest first.
+    pub fn texts(&self, kind: ToastKind) -> Vec<&str> {
+        self.toasts.iter().filter(|t| t.kind == kind).map(|t| t.text.as_str()).collect()
     }
 
     /// Draws the messages over everything else, at the foot of a part of the window.
     pub fn ui(&mut self, ctx: &egui::Context, over: egui::Rect) {
         let now = ctx.time();
-        for toast in self.toasts.iter_mut().filter(|t| t.tone == Tone::News) {
-            let gone_at = *toast.gone_at.get_or_insert(now + NEWS_S);
+        for toast in self.toasts.iter_mut().filter(|t| t.kind == ToastKind::Info) {
+            let gone_at = *toast.gone_at.get_or_insert(now + INFO_S);
             ctx.request_repaint_after(Duration::from_secs_f64((gone_at - now).max(0.01)));
         }
         self.toasts.retain(|toast| toast.gone_at.is_none_or(|gone_at| now < gone_at));
@@ -99,10 +99,10 @@ impl Toasts {
 
 /// One message; true when it is dismissed.
 fn toast_ui(ui: &mut egui::Ui, toast: &Toast, width: f32) -> bool {
-    let color = match toast.tone {
-        Tone::News => theme::GOOD,
-        Tone::Warning => theme::ACCENT,
-        Tone::Error => theme::BAD,
+    let color = match toast.kind {
+        ToastKind::Info => theme::GOOD,
+        ToastKind::Warning => theme::ACCENT,
+        ToastKind::Error => theme::BAD,
     };
     let frame = Frame::popup(ui.style()).stroke(egui::Stroke::new(1.0, color)).inner_margin(10);
     frame

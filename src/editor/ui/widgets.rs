@@ -43,7 +43,7 @@ pub fn fact(ui: &mut Ui, label: &str, tip: &str, value: impl Into<RichText>) {
 
 /// A number field that is dragged or typed. What cannot be a number leaves the value as it was.
 #[derive(Clone, Copy, Debug)]
-pub struct Number {
+pub struct NumberField {
     speed: f64,
     low: f32,
     high: f32,
@@ -52,18 +52,18 @@ pub struct Number {
 }
 
 /// Places, metres.
-pub const METRES: Number = Number { speed: 0.01, low: -1000.0, high: 1000.0, decimals: 2, suffix: " m" };
+pub const METRES: NumberField = NumberField { speed: 0.01, low: -1000.0, high: 1000.0, decimals: 2, suffix: " m" };
 /// Distances, metres.
-pub const DISTANCE: Number = Number { speed: 0.01, low: 0.01, high: 1000.0, decimals: 2, suffix: " m" };
+pub const DISTANCE: NumberField = NumberField { speed: 0.01, low: 0.01, high: 1000.0, decimals: 2, suffix: " m" };
 /// Sizes, shown in centimetres of a value in metres.
-pub const SIZE_CM: Number = Number { speed: 0.5, low: 0.1, high: 10_000.0, decimals: 1, suffix: " cm" };
+pub const SIZE_CM: NumberField = NumberField { speed: 0.5, low: 0.1, high: 10_000.0, decimals: 1, suffix: " cm" };
 /// Angles, degrees.
-pub const DEGREES: Number = Number { speed: 0.5, low: -360.0, high: 360.0, decimals: 1, suffix: "\u{b0}" };
+pub const DEGREES: NumberField = NumberField { speed: 0.5, low: -360.0, high: 360.0, decimals: 1, suffix: "\u{b0}" };
 
-impl Number {
+impl NumberField {
     /// A field with these limits.
     pub const fn new(speed: f64, low: f32, high: f32, decimals: usize, suffix: &'static str) -> Self {
-        Number { speed, low, high, decimals, suffix }
+        NumberField { speed, low, high, decimals, suffix }
     }
 
     /// The field.
@@ -95,7 +95,7 @@ impl Number {
 }
 
 /// Three fields for a place or a size, with the axes' letters.
-pub fn vec3_ui(ui: &mut Ui, name: &str, number: Number, value: &mut Vec3) {
+pub fn vec3_ui(ui: &mut Ui, name: &str, number: NumberField, value: &mut Vec3) {
     const AXES: [(&str, Color32, &str); 3] = [
         ("x", Color32::from_rgb(222, 104, 96), "to the right of the room"),
         ("y", Color32::from_rgb(128, 190, 96), "up"),

@@ -1,6 +1,6 @@
 //! The free view of the studio: an eye that orbits, pans, zooms and flies, and the views from the room's axes.
 
-use crate::editor::commands::choices::Side;
+use crate::editor::commands::choices::ViewSide;
 use crate::math;
 use crate::scene::CameraFrame;
 use glam::{Affine3A, Quat, Vec2, Vec3};
@@ -32,7 +32,7 @@ pub struct StudioView {
     /// Without perspective: what is equally long looks equally long, near or far.
     pub parallel: bool,
     /// The side it looks from; none when it was turned from there.
-    pub side: Option<Side>,
+    pub side: Option<ViewSide>,
 }
 
 impl Default for StudioView {
@@ -99,7 +99,7 @@ impl StudioView {
     }
 
     /// Looks from a side, at the same scale, without perspective.
-    pub fn look_from(&mut self, side: Side) {
+    pub fn look_from(&mut self, side: ViewSide) {
         (self.yaw_rad, self.pitch_rad) = side.angles();
         (self.parallel, self.side) = (true, Some(side));
     }
@@ -220,7 +220,7 @@ mod tests {
 
     #[test]
     fn from_a_side_equal_lengths_look_equal_near_and_far() {
-        for side in Side::ALL {
+        for side in ViewSide::ALL {
             let mut view = StudioView { target: Vec3::new(0.3, 1.0, -0.4), ..StudioView::default() };
             view.look_from(side);
             let frame = view.frame(1.5);
@@ -238,7 +238,7 @@ mod tests {
     #[test]
     fn the_plan_has_the_back_of_the_room_up_and_the_right_on_the_right() {
         let mut view = StudioView::default();
-        view.look_from(Side::Top);
+        view.look_from(ViewSide::Top);
         let axes = view.frame(1.0).world_from_camera.matrix3;
         assert!((Vec3::from(axes.x_axis) - Vec3::X).length() < 1e-6);
         assert!((Vec3::from(axes.y_axis) - Vec3::NEG_Z).length() < 1e-6);

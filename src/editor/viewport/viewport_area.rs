@@ -1,6 +1,6 @@
 //! The middle of the window: the live preview with navigation, selection and handles.
 
-use crate::editor::commands::choices::{Centre, Handle};
+use crate::editor::commands::choices::{CentralView, HandleMode};
 use crate::editor::commands::command::Command;
 use crate::editor::commands::item_menu::{item_menu_ui, nothing_menu_ui};
 use crate::editor::document::action::Action;
@@ -9,9 +9,9 @@ use crate::editor::document::item::Item;
 use crate::editor::document::selection::{Selection, centre};
 use crate::editor::document::studio_document::Document;
 use crate::editor::ui::theme;
-use crate::editor::viewport::live::channel_menu::look_menu_ui;
+use crate::editor::viewport::live::channel_menu::channel_menu_ui;
 use crate::editor::viewport::live::preview_host::PreviewHost;
-use crate::editor::viewport::live::traced_view::LiveView;
+use crate::editor::viewport::live::traced_view::TracedView;
 use crate::editor::viewport::navigation::{camera_as_view, light_as_view, moved_camera, moved_light, steer};
 use crate::editor::viewport::overlays::axis_widget::{self, axis_cross_ui};
 use crate::editor::viewport::overlays::floor_plan;
@@ -19,10 +19,10 @@ use crate::editor::viewport::overlays::light_view;
 use crate::editor::viewport::overlays::markers;
 use crate::editor::viewport::studio_view::StudioView;
 use crate::editor::viewport::tools::click_pick;
-use crate::editor::viewport::tools::handle_pointer::Pointer;
-use crate::editor::viewport::tools::marquee_selection::Band;
-use crate::editor::viewport::tools::place_light_drag::SwingDrag;
-use crate::editor::viewport::tools::transform_handles::{HandleView, Handles};
+use crate::editor::viewport::tools::handle_pointer::HandlePointer;
+use crate::editor::viewport::tools::marquee_selection::MarqueeSelection;
+use crate::editor::viewport::tools::place_light_drag::PlaceLightDrag;
+use crate::editor::viewport::tools::transform_handles::{HandleView, TransformHandles};
 use crate::preview::{Overlay, Pick};
 use crate::scene::{Camera, CameraFrame, Scene};
 use eframe::egui::{self, Align2, Color32, EventFilter, FontId, Pos2, Rect, Response, RichText, Sense, Ui, vec2};
@@ -39,9 +39,9 @@ pub struct ViewportInput<'a> {
     /// What is selected.
     pub selection: &'a Selection,
     /// What is looked through: the studio's eye, the camera or a light.
-    pub centre: Centre,
+    pub central_view: CentralView,
     /// The handles to show.
-    pub handles: Handle,
+    pub handles: HandleMode,
     /// Width over height of the picture to be rendered.
     pub picture_aspect: f32,
 }
@@ -56,34 +56,34 @@ pub struct Viewport {
     /// Whether handles go in steps; Ctrl turns it round.
     pub snap: bool,
     /// The light that is placed by its highlight or its light, if one is.
-    pub swing: Option<SwingDrag>,
+    pub place_light: Option<PlaceLightDrag>,
     /// The live preview.
     pub preview: PreviewHost,
     /// The live view as the tracer sees it.
-    pub live: LiveView,
-    handles: Handles,
-    band: Option<Band>,
+    pub traced_view: TracedView,
+    handles: TransformHandles,
+    marquee: Option<MarqueeSelection>,
 }
 
 impl Viewport {
     /// A viewport with a preview to come.
-    pub fn new(preview: PreviewHost, live: LiveView) -> Self {
+    pub fn new(preview: PreviewHost, traced_view: TracedView) -> Self {
         Viewport {
             view: StudioView::default(),
             camera_follows: false,
             snap: false,
-            swing: None,
+            place_light: None,
             preview,
-            live,
-            handles: Handles::default(),
-            band: None,
+            traced_view,
+            handles: TransformHandles::default(),
+            marquee: None,
         }
     }
 
     /// Whether handles, a highlight or a box are dragged, so that keys are numbers and Esc gives the drag up.
     pub fn is_dragging(&self) -> bool {
-        let swings = self.swing.as_ref().is_some_and(SwingDrag::is_dragging);
-        self.handles.is_dragging() || swings || self.band.is_some()
+        let is_placing = self.place_light.as_ref().is_some_and(PlaceLightDrag::is_dragging);
+        self.handles.is_dragging() || is_placing || self.marquee.is_some()
     }
 
     /// Whether the pointer is on a handle.
@@ -93,10 +93,10 @@ impl Viewport {
 
     /// Ends a drag of handles, a highlight or a box; the button may still be held.
     pub fn give_up_drag(&mut self) {
-        self.band = None;
+        self.marquee = None;
         self.handles.give_up();
-        if let Some(swing) = &mut self.swing {
-            swing.give_up();
+        if let Some(place_light) = &mut self.place_light {
+            place_light.give_up();
         }
     }
 
@@ -110,24 +110,24 @@ impl Viewport {
         let (frame, picture) = self.frame(scene, input, rect);
         // Another choice ends what was about the light.
         let chosen = input.selection.lights().last().copied();
-        self.swing = self.swing.take().filter(|swing| Some(swing.placing().light) == chosen);
-        if let Some(swing) = &mut self.swing {
+        self.place_light = self.place_light.take().filter(|place_light| Some(place_light.placing().light) == chosen);
+        if let Some(place_light) = &mut self.place_light {
             self.handles.reset();
-            self.band = None;
-            if !swing.drag(ui, &response, input.document, &frame, out) {
-                self.swing = None;
+            self.marquee = None;
+            if !place_light.drag(ui, &response, input.document, &frame, out) {
+                self.place_light = None;
             }
         } else {
             self.handle_drag(ui, &response, rect, &frame, input, out);
-            self.band(ui, &response, &frame, input, out);
+            self.marquee(ui, &response, &frame, input, out);
             self.click(ui, &response, &frame, input, out);
             self.context_menu(ui, &response, &frame, input, out);
         }
         self.paint(ui, rect, frame, picture, input);
-        let on_processor = self.preview.failure().is_some();
-        look_menu_ui(ui, rect, scene, &mut self.preview.look, on_processor);
-        self.processor_ui(ui, rect);
-        if input.centre == Centre::Studio {
+        let on_cpu = self.preview.failure().is_some();
+        channel_menu_ui(ui, rect, scene, &mut self.preview.view_options, on_cpu);
+        self.cpu_notice_ui(ui, rect);
+        if input.central_view == CentralView::Studio {
             axis_cross_ui(ui, rect, &self.view, &frame, out);
         }
     }
@@ -135,19 +135,19 @@ impl Viewport {
     /// What the view frames, and where the picture's frame lies in it (camera view only).
     fn frame(&self, scene: &Scene, input: ViewportInput<'_>, rect: Rect) -> (CameraFrame, Option<Rect>) {
         let aspect = rect.width() / rect.height();
-        match input.centre {
-            Centre::Camera => {
+        match input.central_view {
+            CentralView::Camera => {
                 let mut frame = scene.camera_frame(input.picture_aspect);
                 let height = (rect.width() / input.picture_aspect).min(rect.height()) * FRAME_MARGIN;
                 let picture = Rect::from_center_size(rect.center(), vec2(height * input.picture_aspect, height));
                 frame.half_extent *= Vec2::new(rect.width() / picture.width(), rect.height() / picture.height());
                 (frame, Some(picture))
             }
-            Centre::Light(id) => {
+            CentralView::Light(id) => {
                 let frame = scene.light(id).map(|light| light_view::frame(scene, light, aspect));
                 (frame.unwrap_or_else(|| self.view.frame(aspect)), None)
             }
-            Centre::Studio | Centre::Picture => (self.view.frame(aspect), None),
+            CentralView::Studio | CentralView::Picture => (self.view.frame(aspect), None),
         }
     }
 
@@ -162,9 +162,9 @@ impl Viewport {
             ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
         }
         let scene = input.document.scene();
-        let light = if let Centre::Light(id) = input.centre { scene.light(id) } else { None };
-        let (mut view, pivot) = match (input.centre, light) {
-            (Centre::Camera, _) => (camera_as_view(scene), None),
+        let light = if let CentralView::Light(id) = input.central_view { scene.light(id) } else { None };
+        let (mut view, pivot) = match (input.central_view, light) {
+            (CentralView::Camera, _) => (camera_as_view(scene), None),
             (_, Some(light)) => (light_as_view(scene, light), None),
             _ => (self.view, input.selection.centre(scene)),
         };
@@ -174,12 +174,12 @@ impl Viewport {
             return;
         }
         if let Some(light) = light {
-            out.push(Command::Do(Action::SetLight(Box::new(moved_light(light, &view, kept_aim)))));
-        } else if input.centre == Centre::Camera && self.camera_follows {
-            out.push(Command::Do(Action::SetCamera(Box::new(moved_camera(scene, &view, kept_aim)))));
+            out.push(Command::Apply(Action::SetLight(Box::new(moved_light(light, &view, kept_aim)))));
+        } else if input.central_view == CentralView::Camera && self.camera_follows {
+            out.push(Command::Apply(Action::SetCamera(Box::new(moved_camera(scene, &view, kept_aim)))));
         } else {
-            if input.centre == Centre::Camera {
-                out.push(Command::Show(Centre::Studio));
+            if input.central_view == CentralView::Camera {
+                out.push(Command::ShowView(CentralView::Studio));
             }
             self.view = view;
         }
@@ -200,8 +200,8 @@ impl Viewport {
             self.handles.reset();
             return;
         };
-        let on_cross = input.centre == Centre::Studio && axis_widget::place(rect).contains(position);
-        let pointer = ui.input(|i| Pointer {
+        let on_cross = input.central_view == CentralView::Studio && axis_widget::place(rect).contains(position);
+        let pointer = ui.input(|i| HandlePointer {
             position,
             is_over: response.contains_pointer() && !on_cross && !i.modifiers.alt,
             pressed: i.pointer.primary_pressed(),
@@ -211,12 +211,12 @@ impl Viewport {
         let keys = if self.handles.is_dragging() { ui.input(|i| i.events.clone()) } else { Vec::new() };
         let view = HandleView { frame, rect };
         if let Some(action) = self.handles.update(scene, &items, input.handles, view, pointer, &keys) {
-            out.push(Command::Do(action));
+            out.push(Command::Apply(action));
         }
     }
 
     /// Draws and ends a box that selects what lies in it.
-    fn band(
+    fn marquee(
         &mut self,
         ui: &Ui,
         response: &Response,
@@ -225,7 +225,7 @@ impl Viewport {
         out: &mut Vec<Command>,
     ) {
         let taken = self.handles.wants_pointer();
-        if let Some(chosen) = Band::drag(&mut self.band, ui, response, taken, frame, input.document) {
+        if let Some(chosen) = MarqueeSelection::drag(&mut self.marquee, ui, response, taken, frame, input.document) {
             let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
             if !adds {
                 out.push(Command::Select(None));
@@ -289,8 +289,9 @@ impl Viewport {
         let pixels = rect.size() * ui.pixels_per_point();
         let size = ((pixels.x.round() as u32).max(1), (pixels.y.round() as u32).max(1));
         let overlay = self.overlay_of(input);
-        let through_camera = input.centre == Centre::Camera;
-        let traced = self.live.show(ui.ctx(), input.document, frame, size, through_camera, self.preview.look);
+        let through_camera = input.central_view == CentralView::Camera;
+        let traced =
+            self.traced_view.show(ui.ctx(), input.document, frame, size, through_camera, self.preview.view_options);
         let preview = self.preview.show(ui.ctx(), input.document, frame, size, overlay, traced.is_some());
         if traced.or(preview).is_none() {
             painter.rect_filled(rect, 0.0, theme::SURROUND);
@@ -314,15 +315,15 @@ impl Viewport {
         if let Some(picture) = picture {
             markers::paint_picture_frame(&painter, rect, picture);
         }
-        let side = self.view.side.filter(|_| input.centre == Centre::Studio);
+        let side = self.view.side.filter(|_| input.central_view == CentralView::Studio);
         if let Some(side) = side {
             floor_plan::paint_grid(&painter, &frame, rect, side, self.view.target, self.view.half_height_m());
             floor_plan::paint_distances(&painter, scene, &frame, rect, input.selection);
         }
-        if traced.is_some() || self.live.has_failed() {
-            markers::paint_note(&painter, rect, &self.live.status(), side.is_some());
+        if traced.is_some() || self.traced_view.has_failed() {
+            markers::paint_note(&painter, rect, &self.traced_view.status(), side.is_some());
         }
-        if let Centre::Light(id) = input.centre {
+        if let CentralView::Light(id) = input.central_view {
             if let Some(light) = scene.light(id) {
                 let distance_m = (scene.aim_point(&light.aim, light.position) - light.position).length();
                 light_view::paint(&painter, light, distance_m, &frame, rect);
@@ -331,23 +332,23 @@ impl Viewport {
                 markers::paint_banner(&painter, rect, &text);
             }
         } else {
-            let all = input.centre == Centre::Studio;
+            let all = input.central_view == CentralView::Studio;
             markers::paint_labels(&painter, scene, &frame, rect, input.selection, all, side.is_none());
         }
         markers::paint_meter(&painter, scene, &frame, rect);
-        if let Some(swing) = &self.swing {
-            swing.paint(&painter, scene, &frame, rect);
+        if let Some(place_light) = &self.place_light {
+            place_light.paint(&painter, scene, &frame, rect);
         } else if !handled(scene, input).is_empty() {
             let pointer = ui.input(|i| i.pointer.latest_pos());
             self.handles.paint(&painter, pointer);
         }
-        if let Some(band) = &self.band {
-            band.paint(&painter);
+        if let Some(marquee) = &self.marquee {
+            marquee.paint(&painter);
         }
     }
 
     /// Says that the processor draws the view, and why.
-    fn processor_ui(&mut self, ui: &mut Ui, rect: Rect) {
+    fn cpu_notice_ui(&mut self, ui: &mut Ui, rect: Rect) {
         let Some(why) = self.preview.failure().map(str::to_owned) else { return };
         let place = Rect::from_min_size(rect.min + vec2(8.0, 38.0), vec2((rect.width() - 16.0).min(420.0), 24.0));
         ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
@@ -375,7 +376,7 @@ impl Viewport {
     }
 
     fn overlay_of(&self, input: ViewportInput<'_>) -> Overlay {
-        let studio = input.centre == Centre::Studio;
+        let studio = input.central_view == CentralView::Studio;
         let pick = |item: &Item| match *item {
             Item::Object(id) => Some(Pick::Object(id)),
             Item::Light(id) => Some(Pick::Light(id)),
@@ -383,10 +384,10 @@ impl Viewport {
             Item::Camera | Item::Room | Item::Meter => None,
         };
         // In the camera view the picture counts: only a light that is being worked on shows itself.
-        let lights = match input.centre {
-            Centre::Studio => true,
-            Centre::Camera => !input.selection.lights().is_empty(),
-            Centre::Light(_) | Centre::Picture => false,
+        let lights = match input.central_view {
+            CentralView::Studio => true,
+            CentralView::Camera => !input.selection.lights().is_empty(),
+            CentralView::Light(_) | CentralView::Picture => false,
         };
         Overlay {
             // From a side the grid with numbers takes its place.
@@ -404,10 +405,10 @@ impl Viewport {
 /// handles would sit on the lens, and a light that is looked through is steered by the view.
 fn handled(scene: &Scene, input: ViewportInput<'_>) -> Vec<Item> {
     let mut items = input.selection.movable(scene);
-    match input.centre {
-        Centre::Camera => items.retain(|item| *item != Item::Camera),
-        Centre::Light(_) => items.clear(),
-        Centre::Studio | Centre::Picture => {}
+    match input.central_view {
+        CentralView::Camera => items.retain(|item| *item != Item::Camera),
+        CentralView::Light(_) => items.clear(),
+        CentralView::Studio | CentralView::Picture => {}
     }
     if centre(&items, scene).is_none() {
         items.clear();

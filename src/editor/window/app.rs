@@ -1,30 +1,25 @@
 //! The window: its state, and one frame of it. Commands are carried out in `commands` and `session`.
 
-use crate::editor::commands::choices::{Centre, Handle};
+use crate::editor::commands::choices::CentralView;
 use crate::editor::commands::command::Command;
-use crate::editor::commands::shortcuts::{BINDINGS, Binding};
-use crate::editor::document::catalog::Shelf;
+use crate::editor::commands::shortcuts::{KEY_BINDINGS, KeyBinding};
 use crate::editor::document::files;
-use crate::editor::document::files::{PresetInfo, Source};
+use crate::editor::document::files::StudioSource;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::panels::menu::MenuState;
-use crate::editor::panels::outliner::OutlinerState;
-use crate::editor::panels::presets::PresetPicker;
 use crate::editor::panels::thumbnails::Thumbnails;
 use crate::editor::panels::{self, add, help, inspector, menu, outliner, render, status, view_bar};
-use crate::editor::picture::picture_view::PictureView;
 use crate::editor::picture::rendering::Rendering;
-use crate::editor::ui::side_panel::{SidePanel, Widths};
+use crate::editor::ui::side_panel::PanelWidths;
 use crate::editor::ui::theme;
 use crate::editor::ui::toasts::Toasts;
 use crate::editor::ui::wake::wake;
 use crate::editor::viewport::live::preview_host::PreviewHost;
-use crate::editor::viewport::live::traced_view::LiveView;
+use crate::editor::viewport::live::traced_view::TracedView;
 use crate::editor::viewport::viewport_area::{Viewport, ViewportInput};
-use crate::editor::window::background_tasks::Tasks;
+use crate::editor::window::app_state::{BackgroundState, Diagnostics, PanelState, ViewState, WindowState};
 use crate::editor::window::dialogs::FileDialogs;
-use crate::editor::window::frame_log::FrameLog;
 use crate::editor::window::recent::RecentFiles;
 use crate::editor::window::rescue;
 use crate::editor::window::session::Session;
@@ -38,7 +33,7 @@ use std::time::{Duration, Instant};
 
 /// How the window begins.
 #[derive(Debug)]
-pub struct Options {
+pub struct EditorOptions {
     /// The studio to open; none opens the first shipped one.
     pub initial: Option<PathBuf>,
     /// Who is asked for file names.
@@ -49,101 +44,54 @@ pub struct Options {
     pub started: Instant,
 }
 
-impl Default for Options {
+impl Default for EditorOptions {
     fn default() -> Self {
-        Options { initial: None, dialogs: FileDialogs::Desktop, settings_folder: None, started: Instant::now() }
+        EditorOptions { initial: None, dialogs: FileDialogs::Desktop, settings_folder: None, started: Instant::now() }
     }
 }
 
-/// The editor's window.
+/// The editor: the open studio and everything that shows and changes it.
 #[derive(Debug)]
 pub struct App {
     pub(super) document: Document,
     pub(super) selection: Selection,
-    pub(super) centre: Centre,
-    /// What a light's view goes back to.
-    pub(super) before_light: Centre,
-    pub(super) handles: Handle,
-    pub(super) viewport: Viewport,
+    pub(super) views: ViewState,
+    pub(super) panels: PanelState,
     pub(super) rendering: Rendering,
-    forecaster: Forecaster,
+    pub(super) background: BackgroundState,
     pub(super) session: Session,
-    pub(super) tasks: Tasks,
-    pub(super) recent: RecentFiles,
     pub(super) toasts: Toasts,
-    pub(super) outliner: OutlinerState,
-    pub(super) picker: PresetPicker,
-    pub(super) meter: MeterJob,
-    pub(super) show_help: bool,
-    pub(super) presets: Vec<PresetInfo>,
-    shelf: Shelf,
-    thumbnails: Thumbnails,
-    left: SidePanel,
-    right: SidePanel,
-    picture_view: PictureView,
-    /// Number of the last press of mouse or key: what is dragged in one press is one undo step.
-    pub(super) gesture: u64,
-    told_failure: bool,
-    title: String,
-    started: Instant,
-    first_frame: Option<Duration>,
-    told_first_view: bool,
-    frame_log: FrameLog,
-    /// Why the window has to be opened anew; none while it can draw.
-    lost: Option<String>,
-    /// When the last device was lost.
-    last_loss: Option<Instant>,
+    pub(super) window: WindowState,
+    diagnostics: Diagnostics,
 }
 
 /// Two losses within this time are the preview's doing: the view is left to the processor.
 const SOON: Duration = Duration::from_secs(60);
 
 /// In the narrowest window they leave the view its tools in one row.
-const LEFT: Widths = Widths { range: Rangef { min: 200.0, max: 420.0 }, first: 270.0, share: 0.26 };
-const RIGHT: Widths = Widths { range: Rangef { min: 300.0, max: 560.0 }, first: 340.0, share: 0.342 };
+const LEFT: PanelWidths = PanelWidths { range: Rangef { min: 200.0, max: 420.0 }, first: 270.0, share: 0.26 };
+const RIGHT: PanelWidths = PanelWidths { range: Rangef { min: 300.0, max: 560.0 }, first: 340.0, share: 0.342 };
 
 impl App {
     /// A window that begins to load its first studio.
-    pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> Self {
+    pub fn new(creation: &eframe::CreationContext<'_>, options: EditorOptions) -> Self {
         let ctx = &creation.egui_ctx;
         theme::install(ctx);
-        let presets = files::presets();
         let preview = PreviewHost::new(creation.wgpu_render_state.as_ref(), ctx);
-        let trees: Arc<GeometryCache> = Arc::default();
+        let geometry: Arc<GeometryCache> = Arc::default();
         let mut app = App {
             document: Document::default(),
             selection: Selection::default(),
-            centre: Centre::default(),
-            before_light: Centre::default(),
-            handles: Handle::default(),
-            viewport: Viewport::new(preview, LiveView::new(trees.clone())),
-            rendering: Rendering::new(trees.clone()),
-            forecaster: Forecaster::new(trees, Clock::default()),
-            session: Session::new(options.dialogs),
-            tasks: Tasks::default(),
-            recent: RecentFiles::load(options.settings_folder),
+            views: ViewState::new(Viewport::new(preview, TracedView::new(geometry.clone()))),
+            panels: PanelState::new(files::presets()),
+            rendering: Rendering::new(geometry.clone()),
+            background: BackgroundState::new(Forecaster::new(geometry, Clock::default())),
+            session: Session::new(options.dialogs, RecentFiles::load(options.settings_folder)),
             toasts: Toasts::default(),
-            outliner: OutlinerState::default(),
-            picker: PresetPicker::default(),
-            meter: MeterJob::default(),
-            show_help: false,
-            presets,
-            shelf: Shelf::Lights,
-            thumbnails: Thumbnails::default(),
-            left: SidePanel::default(),
-            right: SidePanel::default(),
-            picture_view: PictureView::default(),
-            gesture: 0,
-            told_failure: false,
-            title: String::new(),
-            started: options.started,
-            first_frame: None,
-            told_first_view: false,
-            frame_log: FrameLog::default(),
-            lost: None,
-            last_loss: None,
+            window: WindowState::default(),
+            diagnostics: Diagnostics::new(options.started),
         };
-        let first = options.initial.map_or(Source::Preset(0), Source::named);
+        let first = options.initial.map_or(StudioSource::Preset(0), StudioSource::named);
         app.load(first, ctx);
         app
     }
@@ -153,32 +101,32 @@ impl App {
     pub fn move_to(&mut self, creation: &eframe::CreationContext<'_>) {
         let ctx = &creation.egui_ctx;
         theme::install(ctx);
-        self.viewport.preview.move_to(creation.wgpu_render_state.as_ref(), ctx);
-        self.viewport.live.move_to(ctx);
+        self.views.viewport.preview.move_to(creation.wgpu_render_state.as_ref(), ctx);
+        self.views.viewport.traced_view.move_to(ctx);
         self.rendering.move_to(ctx);
-        self.thumbnails.renew(ctx);
-        let why = self.lost.take().unwrap_or_default();
+        self.background.thumbnails.renew(ctx);
+        let why = self.window.device_loss.take().unwrap_or_default();
         let news = "The graphics device was lost and the window was opened anew; the studio is as you left it.";
-        if self.last_loss.replace(Instant::now()).is_some_and(|last| last.elapsed() < SOON) {
-            self.viewport.preview.give_up("The graphics device was lost twice within a minute.");
+        if self.window.last_loss.replace(Instant::now()).is_some_and(|last| last.elapsed() < SOON) {
+            self.views.viewport.preview.give_up("The graphics device was lost twice within a minute.");
         }
         self.toasts.warning(if why.is_empty() { news.to_owned() } else { format!("{news} ({why})") });
     }
 
     /// Whether the window's device is gone, so that it closes to be opened anew.
     pub fn has_lost_window(&self) -> bool {
-        self.lost.is_some()
+        self.window.device_loss.is_some()
     }
 
     /// Lets a device go that is gone, and tells whether it is: a window can end by that before a frame notices it.
     pub(super) fn let_lost_device_go(&mut self) -> bool {
-        if self.lost.is_none() {
-            self.lost = self.viewport.preview.lost_device().map(str::to_owned);
+        if self.window.device_loss.is_none() {
+            self.window.device_loss = self.views.viewport.preview.lost_device().map(str::to_owned);
         }
-        if self.lost.is_some() {
-            self.viewport.preview.let_device_go();
+        if self.window.device_loss.is_some() {
+            self.views.viewport.preview.let_device_go();
         }
-        self.lost.is_some()
+        self.window.device_loss.is_some()
     }
 
     /// Saves unsaved work under another name, because there is no window any more to save it from: beside the studio's
@@ -193,9 +141,9 @@ impl App {
     /// Closes a window that cannot draw any more. It draws nothing until then: egui's painter ends the program when it
     /// has something to draw and no device to draw it.
     fn leave_window(&mut self, ctx: &Context, why: String) {
-        if self.lost.is_none() {
+        if self.window.device_loss.is_none() {
             log::warn!("the graphics device was lost: {why}");
-            self.lost = Some(why);
+            self.window.device_loss = Some(why);
         }
         ctx.send_viewport_cmd(ViewportCommand::Close);
     }
@@ -227,48 +175,48 @@ impl App {
 
     /// The viewport with its preview.
     pub fn viewport(&self) -> &Viewport {
-        &self.viewport
+        &self.views.viewport
     }
 
     /// The readings of the studio's light meter.
     pub fn meter(&self) -> &MeterJob {
-        &self.meter
+        &self.background.meter
     }
 
     /// The pictures of what can be chosen.
     pub fn thumbnails(&self) -> &Thumbnails {
-        &self.thumbnails
+        &self.background.thumbnails
     }
 
     /// The title of the window.
     pub fn title(&self) -> &str {
-        &self.title
+        &self.window.title
     }
 
     /// What the middle of the window shows.
-    pub fn centre(&self) -> Centre {
-        self.centre
+    pub fn central_view(&self) -> CentralView {
+        self.views.central
     }
 
     /// Whether something is on its way in the background: files, a render, the preview's start or its
     /// picture in full, a file dialog.
     pub fn is_busy(&self) -> bool {
-        self.tasks.is_busy()
+        self.background.tasks.is_busy()
             || self.rendering.is_busy()
-            || self.meter.is_busy()
+            || self.background.meter.is_busy()
             || self.session.is_waiting()
-            || self.viewport.preview.is_starting()
-            || (self.viewport.preview.is_draft() && self.centre != Centre::Picture)
+            || self.views.viewport.preview.is_starting()
+            || (self.views.viewport.preview.is_draft() && self.views.central != CentralView::Picture)
     }
 
     /// From the start of the program to the end of the first frame.
     pub fn first_frame(&self) -> Option<Duration> {
-        self.first_frame
+        self.diagnostics.first_frame
     }
 
     /// Everything that came in from elsewhere since the last frame.
     pub(super) fn take_in(&mut self, ctx: &Context, out: &mut Vec<Command>) {
-        for done in self.tasks.finished() {
+        for done in self.background.tasks.finished() {
             self.take_done(done, ctx);
         }
         self.take_dialog_answer(out);
@@ -278,18 +226,18 @@ impl App {
         self.rendering.update(self.document.scene(), ctx);
         self.learn_from_render();
         let document = &self.document;
-        self.meter.update(document.scene(), document.assets(), document.revision(), &wake(ctx));
+        self.background.meter.update(document.scene(), document.assets(), document.revision(), &wake(ctx));
         match self.rendering.failure() {
-            Some(message) if !self.told_failure => {
+            Some(message) if !self.window.render_failure_reported => {
                 self.toasts.error(format!("The render failed. {message}"));
-                self.told_failure = true;
+                self.window.render_failure_reported = true;
             }
             Some(_) => {}
-            None => self.told_failure = false,
+            None => self.window.render_failure_reported = false,
         }
         self.selection.keep_existing(self.document.scene());
-        if matches!(self.centre, Centre::Light(id) if self.document.scene().light(id).is_none()) {
-            self.centre = Centre::Studio;
+        if matches!(self.views.central, CentralView::Light(id) if self.document.scene().light(id).is_none()) {
+            self.views.central = CentralView::Studio;
         }
     }
 
@@ -303,27 +251,27 @@ impl App {
             let forecast = Forecast::from_render(build_s, trace_s, pixels, spp, noise_stops);
             let measured = Estimate { seconds: build_s + trace_s, noise_stops: noise_stops.into() };
             let subject = ForecastSubject { revision: self.document.revisions().image, method };
-            self.forecaster.learn(subject, forecast, measured);
+            self.background.forecaster.learn(subject, forecast, measured);
         }
     }
 
     /// The forecast of renders, and what they really took.
     pub fn forecaster(&self) -> &Forecaster {
-        &self.forecaster
+        &self.background.forecaster
     }
 
     /// Keys that mean a command, unless text is being typed or a question is open.
     fn shortcuts(&mut self, ctx: &Context, out: &mut Vec<Command>) {
         // An open menu takes Esc itself.
         let menu = egui::Popup::is_any_open(ctx);
-        if ctx.text_edit_focused() || self.session.is_asking() || self.picker.is_open() || menu {
+        if ctx.text_edit_focused() || self.session.is_asking() || self.panels.preset_picker.is_open() || menu {
             return;
         }
-        if self.viewport.is_dragging() {
+        if self.views.viewport.is_dragging() {
             // What is typed now is the number of the drag.
             if ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, egui::Key::Escape)) {
                 // At once, or the drag would go on in this very frame.
-                self.viewport.give_up_drag();
+                self.views.viewport.give_up_drag();
                 out.push(Command::Escape);
             }
             return;
@@ -331,7 +279,7 @@ impl App {
         // A key that is kept down repeats itself: only steps back and forth are meant by that.
         let repeats =
             ctx.input(|i| i.events.iter().any(|e| matches!(e, egui::Event::Key { pressed: true, repeat: true, .. })));
-        for Binding { shortcut, command, .. } in &BINDINGS {
+        for KeyBinding { shortcut, command, .. } in &KEY_BINDINGS {
             if ctx.input_mut(|i| i.consume_shortcut(shortcut)) {
                 let command = command();
                 let may_repeat = matches!(command, Command::Undo | Command::Redo);
@@ -341,71 +289,71 @@ impl App {
     }
 
     /// The press that changes of this frame belong to; none where no button or key is held.
-    fn gesture(&mut self, ctx: &Context) -> Option<u64> {
+    fn press_id(&mut self, ctx: &Context) -> Option<u64> {
         let (began, held) = ctx.input(|i| {
             let key_began = i.events.iter().any(|e| matches!(e, egui::Event::Key { pressed: true, repeat: false, .. }));
             let held = i.pointer.any_down() || i.pointer.any_released() || !i.keys_down.is_empty();
             // A key that is pressed while a button is held belongs to the drag.
             (i.pointer.any_pressed() || (key_began && !i.pointer.any_down()), held)
         });
-        self.gesture += u64::from(began);
-        held.then_some(self.gesture)
+        self.window.press_id += u64::from(began);
+        held.then_some(self.window.press_id)
     }
 
     /// All panels; returns where the middle one is.
-    fn panels(&mut self, ui: &mut Ui, out: &mut Vec<Command>) -> Rect {
+    fn panels_ui(&mut self, ui: &mut Ui, out: &mut Vec<Command>) -> Rect {
         // The window is cleared to the panels' colour, and each view covers all of the middle. To fill them here, too,
         // would cost a processor that draws the window most of its time.
         let bar = Frame::new().inner_margin(Margin::symmetric(8, 3));
         let side = Frame::new().inner_margin(Margin::symmetric(10, 4));
         Panel::top("menu").frame(bar).show(ui, |ui| menu::menu_ui(ui, self.menu_state(), out));
         Panel::bottom("status").frame(bar).exact_size(26.0).show(ui, |ui| {
-            let busy = self.tasks.is_busy().then_some("Loading\u{2026}");
-            status::status_ui(ui, &self.document, &self.selection, self.centre, busy);
+            let busy = self.background.tasks.is_busy().then_some("Loading\u{2026}");
+            status::status_ui(ui, &self.document, &self.selection, self.views.central, busy);
         });
-        let (mut left, mut right) = (self.left, self.right);
+        let (mut left, mut right) = (self.panels.left, self.panels.right);
         left.show(ui, "things", Panel::left("things").frame(side), LEFT, |ui| {
             let add_height = (ui.available_height() * 0.46).max(120.0);
             Panel::top("add").frame(Frame::new()).default_size(add_height).resizable(true).show(ui, |ui| {
-                add::add_ui(ui, &mut self.shelf, &mut self.thumbnails, out);
+                add::add_ui(ui, &mut self.panels.catalog_tab, &mut self.background.thumbnails, out);
             });
-            outliner::outliner_ui(ui, &self.document, &self.selection, &mut self.outliner, out);
+            outliner::outliner_ui(ui, &self.document, &self.selection, &mut self.panels.outliner, out);
         });
         right.show(ui, "details", Panel::right("details").frame(side), RIGHT, |ui| {
             Panel::bottom("render").frame(Frame::new()).resizable(false).show(ui, |ui| {
-                let (rendering, forecaster) = (&mut self.rendering, &mut self.forecaster);
-                render::render_ui(ui, rendering, forecaster, &self.document, self.centre, out);
+                let (rendering, forecaster) = (&mut self.rendering, &mut self.background.forecaster);
+                render::render_ui(ui, rendering, forecaster, &self.document, self.views.central, out);
             });
             inspector::inspector_ui(ui, &self.document, &self.selection, out);
         });
-        (self.left, self.right) = (left, right);
+        (self.panels.left, self.panels.right) = (left, right);
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| self.middle(ui, out)).response.rect
     }
 
     fn middle(&mut self, ui: &mut Ui, out: &mut Vec<Command>) {
         let bar = Frame::new().inner_margin(Margin::symmetric(8, 4));
         Panel::top("views").frame(bar).show(ui, |ui| {
-            let mut follows = self.viewport.camera_follows;
+            let mut follows = self.views.viewport.camera_follows;
             view_bar::view_bar_ui(ui, self.menu_state(), &mut follows, out);
-            self.viewport.camera_follows = follows;
+            self.views.viewport.camera_follows = follows;
         });
-        if self.centre == Centre::Picture {
-            self.viewport.live.pause();
-            self.picture_view.ui(ui, &self.rendering, self.document.scene(), out);
+        if self.views.central == CentralView::Picture {
+            self.views.viewport.traced_view.pause();
+            self.views.picture.ui(ui, &self.rendering, self.document.scene(), out);
             return;
         }
         let (width, height) = self.rendering.settings.pixels(&self.document.scene().camera);
         let input = ViewportInput {
             document: &self.document,
             selection: &self.selection,
-            centre: self.centre,
-            handles: self.handles,
+            central_view: self.views.central,
+            handles: self.views.handles,
             picture_aspect: width as f32 / height as f32,
         };
         let view = ui.available_rect_before_wrap();
-        self.viewport.ui(ui, input, out);
+        self.views.viewport.ui(ui, input, out);
         if let Some(meter) = &self.document.scene().meter {
-            panels::meter::meter_ui(ui.ctx(), view, meter, self.meter.reading(), out);
+            panels::meter::meter_ui(ui.ctx(), view, meter, self.background.meter.reading(), out);
         }
     }
 
@@ -413,11 +361,11 @@ impl App {
         MenuState {
             document: &self.document,
             selection: &self.selection,
-            recent: self.recent.paths(),
-            centre: self.centre,
-            handles: self.handles,
-            snap: self.viewport.snap,
-            live: self.viewport.live.mode,
+            recent: self.session.recent.paths(),
+            central_view: self.views.central,
+            handles: self.views.handles,
+            snap: self.views.viewport.snap,
+            live: self.views.viewport.traced_view.mode,
             has_picture: self.rendering.developed().is_some(),
             rendering: self.rendering.is_running(),
         }
@@ -426,9 +374,9 @@ impl App {
     fn tell_title(&mut self, ctx: &Context) {
         let star = if self.document.is_dirty() { "*" } else { "" };
         let title = format!("{}{star} \u{2013} Catchlight", self.document.title());
-        if title != self.title {
+        if title != self.window.title {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
-            self.title = title;
+            self.window.title = title;
         }
     }
 }
@@ -445,8 +393,8 @@ impl eframe::App for App {
             return;
         }
         // Nobody looks at what would be traced.
-        self.viewport.live.pause();
-        if let Some(why) = self.viewport.preview.lost_device().map(str::to_owned) {
+        self.views.viewport.traced_view.pause();
+        if let Some(why) = self.views.viewport.preview.lost_device().map(str::to_owned) {
             self.leave_window(ctx, why);
         } else {
             self.take_close_request(ctx);
@@ -455,42 +403,47 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        if let Some(why) = self.viewport.preview.lost_device().map(str::to_owned) {
+        if let Some(why) = self.views.viewport.preview.lost_device().map(str::to_owned) {
             self.leave_window(&ctx, why);
             return;
         }
         let rendering = if self.rendering.is_running() { ", rendering" } else { "" };
         let has_input = ctx.input(|i| !i.events.is_empty());
-        self.frame_log.frame(has_input, &format!("{:?} view{rendering}", self.viewport.live.mode));
+        self.diagnostics
+            .frame_log
+            .frame(has_input, &format!("{:?} view{rendering}", self.views.viewport.traced_view.mode));
         let mut out = Vec::new();
-        let gesture = self.gesture(&ctx);
+        let press_id = self.press_id(&ctx);
         self.take_in(&ctx, &mut out);
         self.shortcuts(&ctx, &mut out);
-        let middle = self.panels(ui, &mut out);
-        self.picker.ui(&ctx, &self.presets, &mut self.thumbnails, &mut out);
-        help::help_ui(&ctx, &mut self.show_help);
+        let middle = self.panels_ui(ui, &mut out);
+        self.panels.preset_picker.ui(&ctx, &self.panels.presets, &mut self.background.thumbnails, &mut out);
+        help::help_ui(&ctx, &mut self.panels.show_help);
         self.ask(&ctx, &mut out);
         self.drop_hint(&ctx);
         self.toasts.ui(&ctx, middle);
         let changed = !out.is_empty();
         for command in out {
-            self.run(command, gesture, &ctx);
+            self.run(command, press_id, &ctx);
         }
         if changed {
             // What the commands changed was drawn before they ran.
             ctx.request_repaint();
         }
         self.tell_title(&ctx);
-        if self.first_frame.is_none() {
-            let elapsed = self.started.elapsed();
+        if self.diagnostics.first_frame.is_none() {
+            let elapsed = self.diagnostics.started.elapsed();
             log::debug!("first frame after {} ms", elapsed.as_millis());
-            self.first_frame = Some(elapsed);
+            self.diagnostics.first_frame = Some(elapsed);
         }
-        if !self.told_first_view && self.viewport.preview.draws() > 0 && !self.tasks.is_busy() {
-            log::debug!("first live view of the studio after {} ms", self.started.elapsed().as_millis());
-            self.told_first_view = true;
+        if !self.diagnostics.first_view_logged
+            && self.views.viewport.preview.draws() > 0
+            && !self.background.tasks.is_busy()
+        {
+            log::debug!("first live view of the studio after {} ms", self.diagnostics.started.elapsed().as_millis());
+            self.diagnostics.first_view_logged = true;
         }
-        if self.viewport.preview.lost_device().is_some() {
+        if self.views.viewport.preview.lost_device().is_some() {
             // It happened in this frame: the next pass draws nothing in its place.
             ctx.request_discard("the graphics device was lost");
         }

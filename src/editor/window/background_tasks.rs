@@ -1,6 +1,6 @@
 //! File operations in the background and their results.
 
-use crate::editor::document::files::{Imported, Opened, Source};
+use crate::editor::document::files::{ImportedModel, OpenedStudio, StudioSource};
 use crate::scene::Assets;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -8,11 +8,11 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 /// What came out of a background task.
 #[derive(Debug)]
-pub enum Done {
+pub enum TaskResult {
     /// A studio was read, or not; with what was asked for.
-    Opened(Source, Result<Box<Opened>, String>),
+    Opened(StudioSource, Result<Box<OpenedStudio>, String>),
     /// A model was read, or not.
-    Imported(Result<Box<Imported>, String>),
+    Imported(Result<Box<ImportedModel>, String>),
     /// Assets of the scene were read: what was loaded, what was asked for, what is odd.
     Assets(Assets, BTreeSet<String>, Vec<String>),
     /// A picture was written, or not.
@@ -21,22 +21,22 @@ pub enum Done {
 
 /// Background tasks and the channel their results come through.
 #[derive(Debug)]
-pub struct Tasks {
-    sender: Sender<Done>,
-    receiver: Receiver<Done>,
+pub struct BackgroundTasks {
+    sender: Sender<TaskResult>,
+    receiver: Receiver<TaskResult>,
     running: usize,
 }
 
-impl Default for Tasks {
+impl Default for BackgroundTasks {
     fn default() -> Self {
         let (sender, receiver) = channel();
-        Tasks { sender, receiver, running: 0 }
+        BackgroundTasks { sender, receiver, running: 0 }
     }
 }
 
-impl Tasks {
+impl BackgroundTasks {
     /// Runs `work` in a thread; `wake` is called when its result is there.
-    pub fn start(&mut self, work: impl FnOnce() -> Done + Send + 'static, wake: impl FnOnce() + Send + 'static) {
+    pub fn start(&mut self, work: impl FnOnce() -> TaskResult + Send + 'static, wake: impl FnOnce() + Send + 'static) {
         let sender = self.sender.clone();
         self.running += 1;
         std::thread::spawn(move || {
@@ -46,8 +46,8 @@ impl Tasks {
     }
 
     /// Results that have come in.
-    pub fn finished(&mut self) -> Vec<Done> {
-        let done: Vec<Done> = self.receiver.try_iter().collect();
+    pub fn finished(&mut self) -> Vec<TaskResult> {
+        let done: Vec<TaskResult> = self.receiver.try_iter().collect();
         self.running -= done.len();
         done
     }

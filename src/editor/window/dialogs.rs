@@ -1,6 +1,6 @@
 //! Asking for a file name: the desktop's dialog in a thread of its own, or a list of answers in tests.
 
-use crate::editor::commands::file_purpose::Purpose;
+use crate::editor::commands::file_purpose::FilePurpose;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 /// The user's answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Answer {
+pub enum DialogAnswer {
     /// This file.
     Chosen(PathBuf),
     /// Nothing: the dialog was closed.
@@ -23,27 +23,27 @@ pub enum FileDialogs {
     /// The desktop.
     Desktop,
     /// A list of answers, for tests; cancelled when it is used up.
-    Scripted(VecDeque<Answer>),
+    Scripted(VecDeque<DialogAnswer>),
 }
 
 impl FileDialogs {
     /// Answers with these paths, in turn.
     pub fn scripted(paths: impl IntoIterator<Item = PathBuf>) -> Self {
-        FileDialogs::Scripted(paths.into_iter().map(Answer::Chosen).collect())
+        FileDialogs::Scripted(paths.into_iter().map(DialogAnswer::Chosen).collect())
     }
 
     /// Asks without waiting: the answer comes through the channel, and `wake` is called when it is there.
     pub fn ask(
         &mut self,
-        purpose: Purpose,
+        purpose: FilePurpose,
         folder: Option<&Path>,
         file_name: &str,
         wake: impl FnOnce() + Send + 'static,
-    ) -> Receiver<Answer> {
+    ) -> Receiver<DialogAnswer> {
         let (sender, receiver) = channel();
         match self {
             FileDialogs::Scripted(answers) => {
-                let _ = sender.send(answers.pop_front().unwrap_or(Answer::Cancelled));
+                let _ = sender.send(answers.pop_front().unwrap_or(DialogAnswer::Cancelled));
                 wake();
             }
             FileDialogs::Desktop => {
@@ -58,7 +58,7 @@ impl FileDialogs {
     }
 }
 
-fn desktop_dialog(purpose: Purpose, folder: Option<&Path>, file_name: &str) -> rfd::FileDialog {
+fn desktop_dialog(purpose: FilePurpose, folder: Option<&Path>, file_name: &str) -> rfd::FileDialog {
     let (name, endings) = purpose.filter();
     let mut dialog = rfd::FileDialog::new().set_title(purpose.title()).add_filter(name, endings);
     if let Some(folder) = folder {
@@ -70,13 +70,13 @@ fn desktop_dialog(purpose: Purpose, folder: Option<&Path>, file_name: &str) -> r
 /// Nobody closes a dialog faster than this: an answer that comes sooner means that there was no dialog.
 const FASTEST_USER: Duration = Duration::from_millis(250);
 
-fn ask_desktop(purpose: Purpose, dialog: rfd::FileDialog) -> Answer {
+fn ask_desktop(purpose: FilePurpose, dialog: rfd::FileDialog) -> DialogAnswer {
     let asked = Instant::now();
     let path = if purpose.is_save() { dialog.save_file() } else { dialog.pick_file() };
     match path {
-        Some(path) => Answer::Chosen(path),
-        None if asked.elapsed() < FASTEST_USER => Answer::Unavailable,
-        None => Answer::Cancelled,
+        Some(path) => DialogAnswer::Chosen(path),
+        None if asked.elapsed() < FASTEST_USER => DialogAnswer::Unavailable,
+        None => DialogAnswer::Cancelled,
     }
 }
 
@@ -87,14 +87,14 @@ mod tests {
     #[test]
     fn scripted_answers_come_in_turn_and_then_end() {
         let mut dialogs = FileDialogs::scripted([PathBuf::from("a.ron")]);
-        let first = dialogs.ask(Purpose::OpenScene, None, "", || ()).recv().unwrap();
-        let second = dialogs.ask(Purpose::OpenScene, None, "", || ()).recv().unwrap();
-        assert_eq!((first, second), (Answer::Chosen("a.ron".into()), Answer::Cancelled));
+        let first = dialogs.ask(FilePurpose::OpenScene, None, "", || ()).recv().unwrap();
+        let second = dialogs.ask(FilePurpose::OpenScene, None, "", || ()).recv().unwrap();
+        assert_eq!((first, second), (DialogAnswer::Chosen("a.ron".into()), DialogAnswer::Cancelled));
     }
 
     #[test]
     fn a_saved_file_gets_its_ending() {
-        assert_eq!(Purpose::SaveScene.with_ending("studio".into()), PathBuf::from("studio.ron"));
-        assert_eq!(Purpose::ExportPicture.with_ending("a.jpg".into()), PathBuf::from("a.jpg"));
+        assert_eq!(FilePurpose::SaveScene.with_ending("studio".into()), PathBuf::from("studio.ron"));
+        assert_eq!(FilePurpose::ExportPicture.with_ending("a.jpg".into()), PathBuf::from("a.jpg"));
     }
 }

@@ -1,6 +1,7 @@
 //! The window: application state, execution of commands, sessions, files and recovery.
 
 pub mod app;
+pub mod app_state;
 pub mod background_tasks;
 pub mod dialogs;
 pub mod event_guard;

@@ -1,8 +1,7 @@
 //! The window that shows the app. The app outlives it: when its graphics device is lost, the window is opened anew.
 
-use crate::editor::EditorError;
-use crate::editor::window::app::{App, Options};
-use crate::editor::window::event_guard;
+use crate::editor::window::app::{App, EditorOptions};
+use crate::editor::window::{event_guard, recent};
 use crate::preview::Gpu;
 use eframe::UserEvent;
 use eframe::egui::{Context, Ui, ViewportBuilder, ViewportInfo, Visuals};
@@ -14,14 +13,50 @@ use std::time::{Duration, Instant};
 use winit::error::EventLoopError;
 use winit::event_loop::EventLoop;
 
+/// Why there is no window.
+#[derive(Debug, thiserror::Error)]
+pub enum EditorError {
+    /// There is no display to open a window on.
+    #[error("there is no display to open a window on: {0}")]
+    NoDisplay(String),
+    /// There is a display, but nothing that can draw on it.
+    #[error("no graphics adapter can draw the window (on Debian: apt-get install mesa-vulkan-drivers libvulkan1): {0}")]
+    NoGraphics(String),
+    /// Anything else that keeps the window from opening.
+    #[error("the window could not be opened: {0}")]
+    Window(String),
+}
+
+/// Opens the window and returns when it is closed. `initial` is the studio to open; none opens a shipped one.
+///
+/// # Errors
+/// When there is no display, no graphics adapter, or the window cannot be opened.
+pub fn run(initial: Option<PathBuf>) -> Result<(), EditorError> {
+    let started = Instant::now();
+    check_display()?;
+    let options =
+        EditorOptions { initial, settings_folder: recent::settings_folder(), started, ..EditorOptions::default() };
+    run_windows(options)
+}
+
+/// On Linux a window needs a Wayland or X11 display; asking winit without one gives a less helpful message.
+fn check_display() -> Result<(), EditorError> {
+    let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    let is_linux = cfg!(all(unix, not(target_os = "macos")));
+    if is_linux && !set("DISPLAY") && !set("WAYLAND_DISPLAY") && !set("WAYLAND_SOCKET") {
+        return Err(EditorError::NoDisplay("neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned()));
+    }
+    Ok(())
+}
+
 /// A window that lasted less was lost to something that a new one alone does not mend.
 const SHORT_LIFE: Duration = Duration::from_secs(3);
 
 /// A window onto an app that others hold, too.
 #[derive(Debug)]
-struct Window(Rc<RefCell<App>>);
+struct AppWindow(Rc<RefCell<App>>);
 
-impl eframe::App for Window {
+impl eframe::App for AppWindow {
     fn clear_color(&self, visuals: &Visuals) -> [f32; 4] {
         self.0.borrow().clear_color(visuals)
     }
@@ -37,16 +72,16 @@ impl eframe::App for Window {
 
 /// What outlives a window.
 #[derive(Default)]
-struct Outlives {
+struct AppHost {
     app: Option<Rc<RefCell<App>>>,
     /// What the first window begins with.
-    options: Option<Options>,
+    options: Option<EditorOptions>,
     ctx: Option<Context>,
     /// Windows that were opened.
     opened: u32,
 }
 
-impl Drop for Outlives {
+impl Drop for AppHost {
     /// A window that ends by a panic leaves the work in a file.
     fn drop(&mut self) {
         if std::thread::panicking()
@@ -57,7 +92,7 @@ impl Drop for Outlives {
     }
 }
 
-impl Outlives {
+impl AppHost {
     /// Saves unsaved work, if there is any; returns the file, or why there is none.
     fn rescue(&self) -> Option<Result<PathBuf, String>> {
         self.app.as_ref()?.try_borrow().ok()?.rescue()
@@ -71,25 +106,25 @@ impl Outlives {
 }
 
 /// Opens windows until one is closed by the user.
-pub(in crate::editor) fn run(options: Options) -> Result<(), EditorError> {
+fn run_windows(options: EditorOptions) -> Result<(), EditorError> {
     let mut events = EventLoop::with_user_event().build().map_err(no_display)?;
-    let outlives: Rc<RefCell<Outlives>> = Rc::default();
-    outlives.borrow_mut().options = Some(options);
+    let host: Rc<RefCell<AppHost>> = Rc::default();
+    host.borrow_mut().options = Some(options);
     let mut renderer = eframe::Renderer::Wgpu;
     let mut no_adapter = None;
     loop {
         let began = Instant::now();
-        let opened = outlives.borrow().opened;
-        let ended = open(&outlives, &mut events, renderer);
-        if outlives.borrow().opened == opened {
+        let opened = host.borrow().opened;
+        let ended = open(&host, &mut events, renderer);
+        if host.borrow().opened == opened {
             // What kept it from opening stands in the log.
             if renderer == eframe::Renderer::Glow {
-                return Err(no_graphics(no_adapter, outlives.borrow().rescue()));
+                return Err(no_graphics(no_adapter, host.borrow().rescue()));
             }
             no_adapter = Gpu::headless().err().map(|error| error.to_string());
             log::warn!("no graphics adapter draws the window: OpenGL draws it, and the processor the view");
             renderer = eframe::Renderer::Glow;
-        } else if outlives.borrow().is_lost() {
+        } else if host.borrow().is_lost() {
             // Lost within moments: to something that another window of the kind does not mend.
             if began.elapsed() < SHORT_LIFE {
                 renderer = eframe::Renderer::Glow;
@@ -98,18 +133,18 @@ pub(in crate::editor) fn run(options: Options) -> Result<(), EditorError> {
             match ended {
                 Ok(Ok(())) => return Ok(()),
                 Ok(Err(panic)) => resume_unwind(panic),
-                Err(error) => return Err(broken(&error.to_string(), outlives.borrow().rescue())),
+                Err(error) => return Err(broken(&error.to_string(), host.borrow().rescue())),
             }
         }
     }
 }
 
 fn open(
-    outlives: &Rc<RefCell<Outlives>>,
+    host: &Rc<RefCell<AppHost>>,
     events: &mut EventLoop<UserEvent>,
     renderer: eframe::Renderer,
 ) -> Result<Result<(), event_guard::Panic>, EventLoopError> {
-    let last = outlives.borrow().ctx.clone();
+    let last = host.borrow().ctx.clone();
     let viewport = ViewportBuilder::default()
         .with_title("Catchlight")
         .with_app_id("catchlight")
@@ -122,22 +157,22 @@ fn open(
     };
     // Nothing in the window is finer than its colours, so that dithering would only take time.
     let native = eframe::NativeOptions { viewport, renderer, dithering: false, ..Default::default() };
-    let outlives = outlives.clone();
+    let host = host.clone();
     let create: eframe::AppCreator<'_> = Box::new(move |creation| {
-        let mut outlives = outlives.borrow_mut();
-        let app = match outlives.app.clone() {
+        let mut host = host.borrow_mut();
+        let app = match host.app.clone() {
             Some(app) => {
                 app.borrow_mut().move_to(creation);
                 app
             }
-            None => Rc::new(RefCell::new(App::new(creation, outlives.options.take().unwrap_or_default()))),
+            None => Rc::new(RefCell::new(App::new(creation, host.options.take().unwrap_or_default()))),
         };
-        if let Some(last) = outlives.ctx.replace(creation.egui_ctx.clone()) {
+        if let Some(last) = host.ctx.replace(creation.egui_ctx.clone()) {
             inherit(&last, &creation.egui_ctx);
         }
-        outlives.app = Some(app.clone());
-        outlives.opened += 1;
-        Ok(Box::new(Window(app)))
+        host.app = Some(app.clone());
+        host.opened += 1;
+        Ok(Box::new(AppWindow(app)))
     });
     let window = eframe::create_native("Catchlight", native, create, events);
     event_guard::run(events, window)
@@ -205,7 +240,7 @@ mod tests {
         std::fs::write(file, io::presets()[0].text).unwrap();
         let ctx = Context::default();
         let creation = eframe::CreationContext::_new_kittest(ctx.clone());
-        let mut app = App::new(&creation, Options { initial: Some(file.to_owned()), ..Options::default() });
+        let mut app = App::new(&creation, EditorOptions { initial: Some(file.to_owned()), ..EditorOptions::default() });
         let began = Instant::now();
         while app.document().path().is_none() {
             assert!(began.elapsed() < Duration::from_secs(60));
@@ -213,7 +248,7 @@ mod tests {
             std::thread::sleep(Duration::from_millis(2));
         }
         let notes = Action::SetNotes { name: "Changed".to_owned(), description: String::new() };
-        app.run(Command::Do(notes), None, &ctx);
+        app.run(Command::Apply(notes), None, &ctx);
         app
     }
 
@@ -221,10 +256,10 @@ mod tests {
     fn a_window_that_panics_leaves_the_work_in_a_file() {
         let folder = tempfile::tempdir().unwrap();
         let app = Rc::new(RefCell::new(changed_app(&folder.path().join("a.ron"))));
-        let mut outlives = Outlives::default();
-        outlives.app = Some(app.clone());
+        let mut host = AppHost::default();
+        host.app = Some(app.clone());
         let ended = catch_unwind(AssertUnwindSafe(move || {
-            let _outlives = outlives;
+            let _host = host;
             // Windows hold the app while they draw.
             let _drawing = app.borrow_mut();
             resume_unwind(Box::new("a panic without its message"));

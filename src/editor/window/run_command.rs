@@ -1,30 +1,30 @@
 //! Commands carried out.
 
-use crate::editor::commands::choices::Centre;
-use crate::editor::commands::choices::Swing;
+use crate::editor::commands::choices::CentralView;
+use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::action_error::ActionError;
 use crate::editor::document::arrange::MirrorPlane;
-use crate::editor::document::catalog::Made;
-use crate::editor::document::files::Source;
+use crate::editor::document::catalog::CatalogItem;
+use crate::editor::document::files::StudioSource;
 use crate::editor::document::item::Item;
 use crate::editor::document::placement;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
-use crate::editor::viewport::tools::place_light::{Placing, can_swing};
-use crate::editor::viewport::tools::place_light_drag::SwingDrag;
+use crate::editor::viewport::tools::place_light::{LightPlacement, can_be_placed};
+use crate::editor::viewport::tools::place_light_drag::PlaceLightDrag;
 use crate::editor::window::app::App;
 use crate::scene::{Aim, Emitter, LightId, Object, Scene, Solo};
 use eframe::egui::{Context, ViewportCommand};
 use std::collections::HashSet;
 
 impl App {
-    /// Carries a command out. `gesture` is the press that it came from.
-    pub fn run(&mut self, command: Command, gesture: Option<u64>, ctx: &Context) {
+    /// Carries a command out. `press_id` is the press that it came from.
+    pub fn run(&mut self, command: Command, press_id: Option<u64>, ctx: &Context) {
         match command {
-            Command::Do(action) => self.apply(action, gesture),
-            Command::Place(made) => self.place(*made),
+            Command::Apply(action) => self.apply(action, press_id),
+            Command::AddFromCatalog(made) => self.place(*made),
             Command::Select(item) => self.selection = Selection::of(item),
             Command::ToggleSelected(item) => self.selection.toggle(item),
             Command::SelectAlso(items) => self.selection.add(items),
@@ -32,7 +32,7 @@ impl App {
             Command::Escape => self.escape(),
             Command::BeginRename(item) => {
                 self.selection = Selection::of([item]);
-                self.outliner.begin_rename(item, item.name(self.document.scene()));
+                self.panels.outliner.begin_rename(item, item.name(self.document.scene()));
             }
             Command::DeleteSelected => {
                 let can_go = |item: &Item| item.can_be_copied() || *item == Item::Meter;
@@ -65,38 +65,39 @@ impl App {
                 );
             }
             Command::LookFrom(side) => {
-                self.centre = Centre::Studio;
-                self.viewport.view.look_from(side);
+                self.views.central = CentralView::Studio;
+                self.views.viewport.view.look_from(side);
             }
-            Command::ToggleParallel => self.viewport.view.toggle_parallel(),
+            Command::ToggleParallel => self.views.viewport.view.toggle_parallel(),
             Command::ToggleLightView => self.toggle_light_view(),
-            Command::TogglePlacing(swing) => self.toggle_placing(swing),
-            Command::ToggleSnap => self.viewport.snap = !self.viewport.snap,
+            Command::TogglePlaceLight(by) => self.toggle_placing(by),
+            Command::ToggleSnap => self.views.viewport.snap = !self.views.viewport.snap,
             Command::Undo => self.step(Document::undo),
             Command::Redo => self.step(Document::redo),
-            Command::New => self.picker.open(),
-            Command::NewFromPreset(index) => self.replace_with(Source::Preset(index), ctx),
-            Command::OpenPath(path) => self.replace_with(Source::File(path), ctx),
-            Command::ClearRecent => self.recent.clear(),
+            Command::New => self.panels.preset_picker.open(),
+            Command::NewFromPreset(index) => self.replace_with(StudioSource::Preset(index), ctx),
+            Command::OpenPath(path) => self.replace_with(StudioSource::File(path), ctx),
+            Command::ClearRecent => self.session.recent.clear(),
             Command::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
             Command::Render => self.render(ctx),
             Command::CancelRender => self.rendering.cancel(),
-            Command::Show(centre) => self.centre = centre,
+            Command::ShowView(centre) => self.views.central = centre,
             Command::ToggleCameraView => {
-                self.centre = if self.centre == Centre::Camera { Centre::Studio } else { Centre::Camera };
+                self.views.central =
+                    if self.views.central == CentralView::Camera { CentralView::Studio } else { CentralView::Camera };
             }
             Command::FrameSelection => {
-                self.centre = Centre::Studio;
-                self.viewport.frame_selection(&self.document, &self.selection);
+                self.views.central = CentralView::Studio;
+                self.views.viewport.frame_selection(&self.document, &self.selection);
             }
             Command::CameraFromView => {
-                let camera = self.viewport.camera_from_view(self.document.scene());
+                let camera = self.views.viewport.camera_from_view(self.document.scene());
                 self.apply(Action::SetCamera(Box::new(camera)), None);
             }
-            Command::Live(mode) => self.viewport.live.mode = mode,
-            Command::ToggleLive => self.viewport.live.toggle(),
-            Command::Handles(handle) => self.handles = handle,
-            Command::ToggleHelp => self.show_help = !self.show_help,
+            Command::SetLiveMode(mode) => self.views.viewport.traced_view.mode = mode,
+            Command::ToggleLiveMode => self.views.viewport.traced_view.toggle(),
+            Command::SetHandles(handle) => self.views.handles = handle,
+            Command::ToggleHelp => self.panels.show_help = !self.panels.show_help,
             Command::Open
             | Command::Save
             | Command::SaveAs
@@ -104,7 +105,7 @@ impl App {
             | Command::ImportPath(_)
             | Command::ChooseTexture(..)
             | Command::ExportPicture
-            | Command::PathTyped(..) => self.run_file_command(command, ctx),
+            | Command::UseFile(..) => self.run_file_command(command, ctx),
         }
     }
 
@@ -119,8 +120,8 @@ impl App {
     }
 
     /// Changes the scene; what cannot be done is said.
-    pub(super) fn apply(&mut self, action: Action, gesture: Option<u64>) {
-        match self.document.apply(action, gesture) {
+    pub(super) fn apply(&mut self, action: Action, press_id: Option<u64>) {
+        match self.document.apply(action, press_id) {
             Ok(items) if items.is_empty() => {}
             Ok(items) => self.selection = Selection::of(items),
             Err(error) => self.toasts.error(error.to_string()),
@@ -136,7 +137,7 @@ impl App {
     ) {
         let items: Vec<Item> = self.selection.items().iter().copied().filter(can).collect();
         if items.is_empty() {
-            self.toasts.news(otherwise);
+            self.toasts.info(otherwise);
         } else {
             self.apply(action(self.document.scene(), items), None);
         }
@@ -145,11 +146,11 @@ impl App {
     fn mirror_selected(&mut self, copies: bool) {
         let scene = self.document.scene();
         let Some(subject) = mirror_subject(scene, &self.selection) else {
-            self.toasts.news("There is nothing that lights could be mirrored about: put a figure up first.");
+            self.toasts.info("There is nothing that lights could be mirrored about: put a figure up first.");
             return;
         };
         let Some(plane) = MirrorPlane::of_subject(subject) else {
-            self.toasts.news(format!("{} looks straight up or down: it has no left and right.", subject.name));
+            self.toasts.info(format!("{} looks straight up or down: it has no left and right.", subject.name));
             return;
         };
         let can = |item: &Item| item.can_be_copied() || (*item == Item::Meter && !copies);
@@ -165,7 +166,7 @@ impl App {
         let same = current.is_some_and(|solo| lights.is_empty() || equal(solo));
         match (same, lights.is_empty()) {
             (true, _) => self.apply(Action::Solo(Vec::new()), None),
-            (false, true) => self.toasts.news("Select the lights that shall shine alone."),
+            (false, true) => self.toasts.info("Select the lights that shall shine alone."),
             (false, false) => self.apply(Action::Solo(lights), None),
         }
     }
@@ -178,66 +179,66 @@ impl App {
             .last()
             .copied()
             .filter(|id| scene.light(*id).is_some_and(|light| light.emitter != Emitter::Surround));
-        match (self.centre, light) {
-            (Centre::Light(_), _) => self.leave_light(),
+        match (self.views.central, light) {
+            (CentralView::Light(_), _) => self.leave_light(),
             (_, Some(id)) => {
-                self.before_light = self.centre;
-                (self.centre, self.viewport.swing) = (Centre::Light(id), None);
+                self.views.before_light = self.views.central;
+                (self.views.central, self.views.viewport.place_light) = (CentralView::Light(id), None);
             }
-            (_, None) => self.toasts.news("Select the light to look through."),
+            (_, None) => self.toasts.info("Select the light to look through."),
         }
     }
 
     /// From a light's view back to what was looked at before.
     fn leave_light(&mut self) {
-        self.centre = std::mem::take(&mut self.before_light);
+        self.views.central = std::mem::take(&mut self.views.before_light);
     }
 
-    fn toggle_placing(&mut self, swing: Swing) {
-        if self.viewport.swing.take().is_some_and(|drag| drag.placing().swing == swing) {
+    fn toggle_placing(&mut self, by: PlaceLightBy) {
+        if self.views.viewport.place_light.take().is_some_and(|drag| drag.placing().by == by) {
             return;
         }
         let scene = self.document.scene();
         let Some(light) = self.selection.lights().last().and_then(|id| scene.light(*id)) else {
-            self.toasts.news("Select the light to place.");
+            self.toasts.info("Select the light to place.");
             return;
         };
         if light.locked {
-            self.toasts.news(ActionError::Locked(light.name.clone()).to_string());
-        } else if !can_swing(light) {
-            self.toasts.news("Light from all round has no place.");
+            self.toasts.info(ActionError::Locked(light.name.clone()).to_string());
+        } else if !can_be_placed(light) {
+            self.toasts.info("Light from all round has no place.");
         } else {
-            self.viewport.swing = Some(SwingDrag::new(Placing { light: light.id, swing }));
-            if !matches!(self.centre, Centre::Studio | Centre::Camera) {
-                self.centre = Centre::Studio;
+            self.views.viewport.place_light = Some(PlaceLightDrag::new(LightPlacement { light: light.id, by }));
+            if !matches!(self.views.central, CentralView::Studio | CentralView::Camera) {
+                self.views.central = CentralView::Studio;
             }
         }
     }
 
     /// The innermost thing under way ends; with nothing under way, nothing stays selected.
     fn escape(&mut self) {
-        if self.viewport.is_dragging() {
-            self.document.abandon(self.gesture);
-            self.viewport.give_up_drag();
-        } else if self.show_help {
-            self.show_help = false;
-        } else if self.viewport.swing.is_some() {
-            self.viewport.swing = None;
-        } else if matches!(self.centre, Centre::Light(_)) {
+        if self.views.viewport.is_dragging() {
+            self.document.abandon(self.window.press_id);
+            self.views.viewport.give_up_drag();
+        } else if self.panels.show_help {
+            self.panels.show_help = false;
+        } else if self.views.viewport.place_light.is_some() {
+            self.views.viewport.place_light = None;
+        } else if matches!(self.views.central, CentralView::Light(_)) {
             self.leave_light();
         } else {
             self.selection = Selection::default();
         }
     }
 
-    fn place(&mut self, made: Made) {
+    fn place(&mut self, made: CatalogItem) {
         let (scene, assets) = (self.document.scene(), self.document.assets());
         let action = match made {
-            Made::Light(mut light) => {
+            CatalogItem::Light(mut light) => {
                 placement::place_light(scene, assets, self.selection.last(), &mut light);
                 Action::AddLight(Box::new(light))
             }
-            Made::Object(mut object) => {
+            CatalogItem::Object(mut object) => {
                 placement::place_object(scene, self.selection.last(), &mut object);
                 Action::AddObject(Box::new(object))
             }
@@ -248,7 +249,7 @@ impl App {
     fn render(&mut self, ctx: &Context) {
         let folder = self.document.folder().map(std::path::Path::to_owned);
         self.rendering.start(self.document.scene(), self.document.assets(), folder, ctx);
-        self.centre = Centre::Picture;
+        self.views.central = CentralView::Picture;
     }
 }
 

@@ -1,19 +1,19 @@
 //! Files in and out of the window: open, save, import, export, drops, and the questions on the way.
 
-use crate::editor::commands::choices::Centre;
+use crate::editor::commands::choices::CentralView;
 use crate::editor::commands::command::Command;
-use crate::editor::commands::file_purpose::Purpose;
+use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::document::action::Action;
-use crate::editor::document::files::{self, Imported, Opened, Source};
+use crate::editor::document::files::{self, ImportedModel, OpenedStudio, StudioSource};
 use crate::editor::document::item::Item;
 use crate::editor::document::placement;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
-use crate::editor::panels::prompts::{self, GuardAnswer, PathAnswer, PathPrompt};
+use crate::editor::panels::prompts::{self, PathAnswer, PathPrompt, UnsavedAnswer};
 use crate::editor::window::app::App;
-use crate::editor::window::background_tasks::Done;
-use crate::editor::window::dialogs::Answer;
-use crate::editor::window::session::Intent;
+use crate::editor::window::background_tasks::TaskResult;
+use crate::editor::window::dialogs::DialogAnswer;
+use crate::editor::window::session::PendingOperation;
 use crate::io::{self, ModelFormat, PictureInfo};
 use crate::scene::{Assets, Material, MaterialPreset, Object, ObjectId, Shape, Transform};
 use eframe::egui::{self, Align2, Color32, Context, Id, LayerId, Order, ViewportCommand};
@@ -23,64 +23,64 @@ use std::sync::mpsc::TryRecvError;
 impl App {
     pub(super) fn run_file_command(&mut self, command: Command, ctx: &Context) {
         match command {
-            Command::Open => self.ask_for_path(Purpose::OpenScene, ctx),
+            Command::Open => self.ask_for_path(FilePurpose::OpenScene, ctx),
             Command::Save => match self.document.path().map(Path::to_owned) {
                 Some(path) => self.save_to(path, ctx),
-                None => self.ask_for_path(Purpose::SaveScene, ctx),
+                None => self.ask_for_path(FilePurpose::SaveScene, ctx),
             },
-            Command::SaveAs => self.ask_for_path(Purpose::SaveScene, ctx),
-            Command::Import => self.ask_for_path(Purpose::ImportModel, ctx),
+            Command::SaveAs => self.ask_for_path(FilePurpose::SaveScene, ctx),
+            Command::Import => self.ask_for_path(FilePurpose::ImportModel, ctx),
             Command::ImportPath(path) => {
-                self.tasks.start(move || Done::Imported(files::import(path)), waker(ctx));
+                self.background.tasks.start(move || TaskResult::Imported(files::import(path)), waker(ctx));
             }
             Command::ChooseTexture(item, part) => {
                 self.session.texture_for = Some((item, part));
-                self.ask_for_path(Purpose::OpenTexture, ctx);
+                self.ask_for_path(FilePurpose::OpenTexture, ctx);
             }
             Command::ExportPicture if self.rendering.developed().is_none() => {
-                self.toasts.news("There is no picture to export yet: press Render (R) first.");
+                self.toasts.info("There is no picture to export yet: press Render (R) first.");
             }
-            Command::ExportPicture => self.ask_for_path(Purpose::ExportPicture, ctx),
-            Command::PathTyped(purpose, path) => self.path_chosen(purpose, purpose.with_ending(path), ctx),
+            Command::ExportPicture => self.ask_for_path(FilePurpose::ExportPicture, ctx),
+            Command::UseFile(purpose, path) => self.path_chosen(purpose, purpose.with_ending(path), ctx),
             _ => {}
         }
     }
 
     /// Loads another studio in the background.
-    pub(super) fn load(&mut self, source: Source, ctx: &Context) {
+    pub(super) fn load(&mut self, source: StudioSource, ctx: &Context) {
         let work = move || {
             let result = files::open(&source);
-            Done::Opened(source, result)
+            TaskResult::Opened(source, result)
         };
-        self.tasks.start(work, waker(ctx));
+        self.background.tasks.start(work, waker(ctx));
     }
 
     /// Loads another studio, after asking about unsaved changes.
-    pub(super) fn replace_with(&mut self, source: Source, ctx: &Context) {
-        self.guarded(Intent::Load(source), ctx);
+    pub(super) fn replace_with(&mut self, source: StudioSource, ctx: &Context) {
+        self.confirm_unsaved(PendingOperation::Load(source), ctx);
     }
 
-    fn guarded(&mut self, intent: Intent, ctx: &Context) {
+    fn confirm_unsaved(&mut self, pending: PendingOperation, ctx: &Context) {
         if self.document.is_dirty() {
-            self.session.guard = Some(intent);
+            self.session.unsaved_prompt = Some(pending);
         } else {
-            self.go_on(intent, ctx);
+            self.execute_pending(pending, ctx);
         }
     }
 
-    fn go_on(&mut self, intent: Intent, ctx: &Context) {
-        match intent {
-            Intent::Load(source) => self.load(source, ctx),
-            Intent::Quit => {
+    fn execute_pending(&mut self, pending: PendingOperation, ctx: &Context) {
+        match pending {
+            PendingOperation::Load(source) => self.load(source, ctx),
+            PendingOperation::Quit => {
                 self.session.may_close = true;
                 ctx.send_viewport_cmd(ViewportCommand::Close);
             }
         }
     }
 
-    fn ask_for_path(&mut self, purpose: Purpose, ctx: &Context) {
+    fn ask_for_path(&mut self, purpose: FilePurpose, ctx: &Context) {
         if self.session.dialog.is_some() {
-            self.toasts.news("A file dialog is open already.");
+            self.toasts.info("A file dialog is open already.");
             return;
         }
         let (folder, name) = self.suggestion(purpose);
@@ -89,8 +89,8 @@ impl App {
     }
 
     /// Folder and name that a dialog begins with.
-    fn suggestion(&self, purpose: Purpose) -> (Option<PathBuf>, String) {
-        let recent = self.recent.paths().first().and_then(|path| path.parent());
+    fn suggestion(&self, purpose: FilePurpose) -> (Option<PathBuf>, String) {
+        let recent = self.session.recent.paths().first().and_then(|path| path.parent());
         let folder = self.document.folder().or(recent).filter(|folder| folder.is_dir()).map(Path::to_owned);
         let title = self.document.title();
         let stem = title.strip_suffix(".ron").unwrap_or(&title);
@@ -104,27 +104,27 @@ impl App {
         let purpose = *purpose;
         let answer = match receiver.try_recv() {
             Ok(answer) => answer,
-            Err(TryRecvError::Disconnected) => Answer::Unavailable,
+            Err(TryRecvError::Disconnected) => DialogAnswer::Unavailable,
             Err(TryRecvError::Empty) => return,
         };
         self.session.dialog = None;
         match answer {
-            Answer::Chosen(path) => out.push(Command::PathTyped(purpose, path)),
-            Answer::Cancelled => self.session.after_save = None,
-            Answer::Unavailable => {
+            DialogAnswer::Chosen(path) => out.push(Command::UseFile(purpose, path)),
+            DialogAnswer::Cancelled => self.session.after_save = None,
+            DialogAnswer::Unavailable => {
                 let (folder, name) = self.suggestion(purpose);
                 self.session.prompt = Some(PathPrompt::new(purpose, folder.as_deref(), &name));
             }
         }
     }
 
-    fn path_chosen(&mut self, purpose: Purpose, path: PathBuf, ctx: &Context) {
+    fn path_chosen(&mut self, purpose: FilePurpose, path: PathBuf, ctx: &Context) {
         match purpose {
-            Purpose::OpenScene => self.replace_with(Source::File(path), ctx),
-            Purpose::SaveScene => self.save_to(path, ctx),
-            Purpose::ImportModel => self.run_file_command(Command::ImportPath(path), ctx),
-            Purpose::OpenTexture => self.use_texture(&path),
-            Purpose::ExportPicture => self.export_to(path, ctx),
+            FilePurpose::OpenScene => self.replace_with(StudioSource::File(path), ctx),
+            FilePurpose::SaveScene => self.save_to(path, ctx),
+            FilePurpose::ImportModel => self.run_file_command(Command::ImportPath(path), ctx),
+            FilePurpose::OpenTexture => self.use_texture(&path),
+            FilePurpose::ExportPicture => self.export_to(path, ctx),
         }
     }
 
@@ -134,11 +134,11 @@ impl App {
             self.toasts.error(format!("The studio was not saved. {message}"));
             return;
         }
-        self.recent.push(&path);
-        self.toasts.news(format!("Saved to {}", path.display()));
+        self.session.recent.push(&path);
+        self.toasts.info(format!("Saved to {}", path.display()));
         self.document.mark_saved(path);
-        if let Some(intent) = self.session.after_save.take() {
-            self.go_on(intent, ctx);
+        if let Some(pending) = self.session.after_save.take() {
+            self.execute_pending(pending, ctx);
         }
     }
 
@@ -149,37 +149,41 @@ impl App {
         let info = PictureInfo::new(&self.document.scene().camera, developed.method, developed.spp, seed);
         let work = move || {
             let result = files::export(&path, &picture, &info);
-            Done::Exported(path, result)
+            TaskResult::Exported(path, result)
         };
-        self.tasks.start(work, waker(ctx));
+        self.background.tasks.start(work, waker(ctx));
     }
 
-    pub(super) fn take_done(&mut self, done: Done, ctx: &Context) {
+    pub(super) fn take_done(&mut self, done: TaskResult, ctx: &Context) {
         match done {
-            Done::Opened(_, Ok(opened)) => self.show_opened(*opened, ctx),
-            Done::Opened(source, Err(message)) => {
-                if let Source::File(path) = source
+            TaskResult::Opened(_, Ok(opened)) => self.show_opened(*opened, ctx),
+            TaskResult::Opened(source, Err(message)) => {
+                if let StudioSource::File(path) = source
                     && !path.exists()
                 {
-                    self.recent.forget(&path);
+                    self.session.recent.forget(&path);
                 }
                 self.toasts.error(format!("The studio could not be opened. {message}"));
             }
-            Done::Imported(Ok(imported)) => self.bring_in(*imported),
-            Done::Imported(Err(message)) => self.toasts.error(format!("The model could not be brought in. {message}")),
-            Done::Assets(assets, tried, warnings) => {
+            TaskResult::Imported(Ok(imported)) => self.bring_in(*imported),
+            TaskResult::Imported(Err(message)) => {
+                self.toasts.error(format!("The model could not be brought in. {message}"))
+            }
+            TaskResult::Assets(assets, tried, warnings) => {
                 self.document.insert_assets(assets, &tried);
                 warnings.into_iter().for_each(|warning| self.toasts.warning(warning));
             }
-            Done::Exported(path, Ok(())) => self.toasts.news(format!("Picture written to {}", path.display())),
-            Done::Exported(_, Err(message)) => self.toasts.error(format!("The picture was not written. {message}")),
+            TaskResult::Exported(path, Ok(())) => self.toasts.info(format!("Picture written to {}", path.display())),
+            TaskResult::Exported(_, Err(message)) => {
+                self.toasts.error(format!("The picture was not written. {message}"))
+            }
         }
     }
 
-    fn show_opened(&mut self, opened: Opened, ctx: &Context) {
+    fn show_opened(&mut self, opened: OpenedStudio, ctx: &Context) {
         const SHOWN: usize = 3;
         if let Some(path) = &opened.path {
-            self.recent.push(path);
+            self.session.recent.push(path);
         }
         let more = opened.warnings.len().saturating_sub(SHOWN);
         opened.warnings.iter().take(SHOWN).for_each(|warning| self.toasts.warning(warning.clone()));
@@ -187,19 +191,19 @@ impl App {
             self.toasts.warning(format!("And {more} more things are odd about this studio."));
         }
         self.rendering.clear();
-        self.viewport.live.clear();
+        self.views.viewport.traced_view.clear();
         self.document = Document::new(opened.scene, opened.assets, opened.path);
         self.selection = Selection::default();
-        self.viewport.swing = None;
-        if matches!(self.centre, Centre::Picture | Centre::Light(_)) {
-            self.centre = Centre::Studio;
+        self.views.viewport.place_light = None;
+        if matches!(self.views.central, CentralView::Picture | CentralView::Light(_)) {
+            self.views.central = CentralView::Studio;
         }
-        self.viewport.frame_selection(&self.document, &self.selection);
+        self.views.viewport.frame_selection(&self.document, &self.selection);
         ctx.request_repaint();
     }
 
-    fn bring_in(&mut self, imported: Imported) {
-        let Imported { file, mesh, part_materials, warnings } = imported;
+    fn bring_in(&mut self, imported: ImportedModel) {
+        let ImportedModel { file, mesh, part_materials, warnings } = imported;
         let path = self.document.asset_path_for(&file, "models");
         let stem = file.file_stem().map_or_else(|| "Model".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let mut assets = Assets::default();
@@ -264,7 +268,7 @@ impl App {
 
     /// Loads in the background what the scene needs and does not have: the mesh of a new figure, say.
     pub(super) fn load_wanted_assets(&mut self, ctx: &Context) {
-        if self.tasks.is_busy() {
+        if self.background.tasks.is_busy() {
             return;
         }
         let wanted = self.document.wanted_assets();
@@ -276,9 +280,9 @@ impl App {
         let moved = self.document.imported_files();
         let work = move || {
             let (assets, warnings) = files::load_assets(&scene, folder.as_deref(), &known, &moved);
-            Done::Assets(assets, wanted, warnings)
+            TaskResult::Assets(assets, wanted, warnings)
         };
-        self.tasks.start(work, waker(ctx));
+        self.background.tasks.start(work, waker(ctx));
     }
 
     /// Files that were dropped on the window.
@@ -318,7 +322,7 @@ impl App {
         }
         if self.document.is_dirty() {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.session.guard = Some(Intent::Quit);
+            self.session.unsaved_prompt = Some(PendingOperation::Quit);
             if ctx.input(|i| i.viewport().visible()) == Some(false) {
                 // A question that nobody sees would keep the window from closing for no reason.
                 ctx.send_viewport_cmd(ViewportCommand::Minimized(false));
@@ -329,17 +333,17 @@ impl App {
 
     /// The questions in the middle of the window.
     pub(super) fn ask(&mut self, ctx: &Context, out: &mut Vec<Command>) {
-        if let Some(intent) = self.session.guard.clone()
-            && let Some(answer) = prompts::guard_ui(ctx, &self.document.title(), intent.words())
+        if let Some(pending) = self.session.unsaved_prompt.clone()
+            && let Some(answer) = prompts::unsaved_changes_ui(ctx, &self.document.title(), pending.description())
         {
-            self.session.guard = None;
+            self.session.unsaved_prompt = None;
             match answer {
-                GuardAnswer::Save => {
-                    self.session.after_save = Some(intent);
+                UnsavedAnswer::Save => {
+                    self.session.after_save = Some(pending);
                     out.push(Command::Save);
                 }
-                GuardAnswer::Discard => self.go_on(intent, ctx),
-                GuardAnswer::Cancel => {}
+                UnsavedAnswer::Discard => self.execute_pending(pending, ctx),
+                UnsavedAnswer::Cancel => {}
             }
         }
         if let Some(prompt) = &mut self.session.prompt {
@@ -347,7 +351,7 @@ impl App {
             match prompt.ui(ctx) {
                 Some(PathAnswer::Chosen(path)) => {
                     self.session.prompt = None;
-                    out.push(Command::PathTyped(purpose, path));
+                    out.push(Command::UseFile(purpose, path));
                 }
                 Some(PathAnswer::Cancelled) => (self.session.prompt, self.session.after_save) = (None, None),
                 None => {}

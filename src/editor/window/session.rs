@@ -1,25 +1,26 @@
 //! Questions and file dialogs in progress.
 
-use crate::editor::commands::file_purpose::Purpose;
-use crate::editor::document::files::Source;
+use crate::editor::commands::file_purpose::FilePurpose;
+use crate::editor::document::files::StudioSource;
 use crate::editor::document::item::Item;
 use crate::editor::panels::prompts::PathPrompt;
-use crate::editor::window::dialogs::{Answer, FileDialogs};
+use crate::editor::window::dialogs::{DialogAnswer, FileDialogs};
+use crate::editor::window::recent::RecentFiles;
 use std::sync::mpsc::Receiver;
 
 /// What waits for the answer to "save the changes?".
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Intent {
-    Load(Source),
+pub enum PendingOperation {
+    Load(StudioSource),
     Quit,
 }
 
-impl Intent {
-    pub fn words(&self) -> &'static str {
+impl PendingOperation {
+    pub fn description(&self) -> &'static str {
         match self {
-            Intent::Load(Source::File(_)) => "opening another studio",
-            Intent::Load(Source::Preset(_)) => "starting a new studio",
-            Intent::Quit => "quitting",
+            PendingOperation::Load(StudioSource::File(_)) => "opening another studio",
+            PendingOperation::Load(StudioSource::Preset(_)) => "starting a new studio",
+            PendingOperation::Quit => "quitting",
         }
     }
 }
@@ -28,10 +29,12 @@ impl Intent {
 #[derive(Debug)]
 pub struct Session {
     pub(super) dialogs: FileDialogs,
-    pub(super) dialog: Option<(Purpose, Receiver<Answer>)>,
+    /// Studios opened recently.
+    pub(super) recent: RecentFiles,
+    pub(super) dialog: Option<(FilePurpose, Receiver<DialogAnswer>)>,
     pub(super) prompt: Option<PathPrompt>,
-    pub(super) guard: Option<Intent>,
-    pub(super) after_save: Option<Intent>,
+    pub(super) unsaved_prompt: Option<PendingOperation>,
+    pub(super) after_save: Option<PendingOperation>,
     /// Whose material the texture that is being chosen is for.
     pub(super) texture_for: Option<(Item, Option<String>)>,
     pub(super) may_close: bool,
@@ -39,12 +42,13 @@ pub struct Session {
 
 impl Session {
     /// A session that asks these dialogs for file names.
-    pub fn new(dialogs: FileDialogs) -> Self {
+    pub fn new(dialogs: FileDialogs, recent: RecentFiles) -> Self {
         Session {
             dialogs,
+            recent,
             dialog: None,
             prompt: None,
-            guard: None,
+            unsaved_prompt: None,
             after_save: None,
             texture_for: None,
             may_close: false,
@@ -58,6 +62,6 @@ impl Session {
 
     /// Whether a question is open in the window.
     pub fn is_asking(&self) -> bool {
-        self.prompt.is_some() || self.guard.is_some()
+        self.prompt.is_some() || self.unsaved_prompt.is_some()
     }
 }

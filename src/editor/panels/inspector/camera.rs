@@ -1,18 +1,18 @@
 //! The inspector of the camera.
 
 use super::light::kelvin_row;
-use super::{Context, aim, title};
+use super::{InspectorContext, aim, title};
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::placement::aim_offset;
-use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, Number, dial_ui, fact, row, section};
+use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, NumberField, dial_ui, fact, row, section};
 use crate::photo::exposure;
 use crate::photo::thirds::Dial;
 use crate::scene::{Assets, Camera, Focus, Orientation, Scene, Sensor};
 use eframe::egui::{ComboBox, Ui};
 
 /// Draws it.
-pub(super) fn camera_ui(ui: &mut Ui, context: &mut Context<'_>) {
+pub(super) fn camera_ui(ui: &mut Ui, context: &mut InspectorContext<'_>) {
     let (scene, assets) = (context.document.scene(), context.document.assets());
     let mut camera = scene.camera.clone();
     title(ui, "Camera", "");
@@ -28,12 +28,12 @@ pub(super) fn camera_ui(ui: &mut Ui, context: &mut Context<'_>) {
     });
     section(ui, "Focus", true, |ui| focus_rows(ui, scene, assets, &mut camera));
     section(ui, "Meter", false, |ui| {
-        let field = Number::new(1.0, 50.0, 1000.0, 0, " lx s");
+        let field = NumberField::new(1.0, 50.0, 1000.0, 0, " lx s");
         let tip = "Calibration constant C of the incident meter: 250 for a flat receptor, 340 for many domes";
         row(ui, "Constant C", tip, |ui| field.ui(ui, &mut camera.meter_constant));
     });
     if camera != scene.camera {
-        context.out.push(Command::Do(Action::SetCamera(Box::new(camera))));
+        context.out.push(Command::Apply(Action::SetCamera(Box::new(camera))));
     }
 }
 
@@ -58,7 +58,7 @@ const PRIMES: [f32; 12] = [14.0, 20.0, 24.0, 28.0, 35.0, 50.0, 70.0, 85.0, 105.0
 
 fn lens_rows(ui: &mut Ui, scene: &Scene, camera: &mut Camera) {
     row(ui, "Lens", "Focal length", |ui| {
-        Number::new(0.5, 4.0, 2000.0, 1, " mm").ui(ui, &mut camera.focal_length_mm);
+        NumberField::new(0.5, 4.0, 2000.0, 1, " mm").ui(ui, &mut camera.focal_length_mm);
         let menu = ui.menu_button("Primes", |ui| {
             for mm in PRIMES {
                 if ui.button(format!("{mm} mm")).clicked() {
@@ -83,7 +83,7 @@ fn lens_rows(ui: &mut Ui, scene: &Scene, camera: &mut Camera) {
     });
     if let Sensor::Custom { width_mm, height_mm } = &mut camera.sensor {
         row(ui, "Size", "Long and short side", |ui| {
-            let field = Number::new(0.1, 1.0, 300.0, 1, " mm");
+            let field = NumberField::new(0.1, 1.0, 300.0, 1, " mm");
             ui.name_inputs("Sensor width", |ui| field.ui(ui, width_mm));
             ui.name_inputs("Sensor height", |ui| field.ui(ui, height_mm));
         });

@@ -1,6 +1,6 @@
 //! The gel rows of a light's inspector.
 
-use crate::editor::ui::widgets::{self, Number, fact, row};
+use crate::editor::ui::widgets::{self, NumberField, fact, row};
 use crate::scene::{Gel, GelFamily};
 use eframe::egui::{ComboBox, Ui};
 
@@ -35,7 +35,7 @@ pub(super) fn gel_rows(ui: &mut Ui, gel: &mut Gel) {
         match gel {
             Gel::Tint(rgb) => drop(widgets::color_ui(ui, rgb)),
             Gel::Mired(shift) if !named => {
-                let field = Number::new(1.0, -400.0, 400.0, 0, " mired");
+                let field = NumberField::new(1.0, -400.0, 400.0, 0, " mired");
                 ui.name_inputs("Mired shift", |ui| field.ui(ui, shift));
             }
             _ => {}

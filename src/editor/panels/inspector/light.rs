@@ -1,15 +1,15 @@
 //! The inspector of a light.
 
-use super::power::{self, Unit};
-use super::{Context, aim, gel, modifier, text_ui, title};
+use super::power::{self, PowerUnit};
+use super::{InspectorContext, aim, gel, modifier, text_ui, title};
 use crate::color::rgb_from_kelvin;
-use crate::editor::commands::choices::Swing;
+use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
 use crate::editor::document::readout;
 use crate::editor::ui::theme;
-use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, Number, fact, row, section};
+use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, NumberField, fact, row, section};
 use crate::photo::light::axial_intensity;
 use crate::photo::light_rgb;
 use crate::photo::thirds::Dial;
@@ -18,14 +18,14 @@ use eframe::egui::{ComboBox, Label, RichText, Slider, SliderClamping, Ui, vec2};
 use glam::Vec3;
 
 /// Draws it.
-pub(super) fn light_ui(ui: &mut Ui, context: &mut Context<'_>, id: LightId) {
+pub(super) fn light_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: LightId) {
     let (scene, assets) = (context.document.scene(), context.document.assets());
     let Some(original) = scene.light(id) else { return };
     let mut light = original.clone();
     title(ui, &original.name, light.emitter.label());
     row(ui, "Name", "Names are unique in a studio", |ui| {
         if let Some(name) = text_ui(ui, "name", &original.name, false) {
-            context.out.push(Command::Do(Action::Rename(Item::Light(id), name)));
+            context.out.push(Command::Apply(Action::Rename(Item::Light(id), name)));
         }
     });
     row(ui, "Switch", "Whether it shines", |ui| {
@@ -61,7 +61,7 @@ pub(super) fn light_ui(ui: &mut Ui, context: &mut Context<'_>, id: LightId) {
     });
     section(ui, "Loss, grid and flaps", true, |ui| modifier::modifier_rows(ui, &mut light));
     if light != *original {
-        context.out.push(Command::Do(Action::SetLight(Box::new(light))));
+        context.out.push(Command::Apply(Action::SetLight(Box::new(light))));
     }
 }
 
@@ -76,18 +76,18 @@ fn role_row(ui: &mut Ui, light: &mut Light) {
     });
 }
 
-const WS: Number = Number::new(2.0, 0.0, 100_000.0, 1, " Ws");
-const EFFICACY: Number = Number::new(0.2, 1.0, 200.0, 1, " lm s/Ws");
-const GUIDE: Number = Number::new(0.2, 0.0, 10_000.0, 1, "");
-const LUMENS: Number = Number::new(20.0, 0.0, 100_000_000.0, 0, " lm");
-const CANDELA: Number = Number::new(20.0, 0.0, 100_000_000.0, 0, " cd");
-const LUX: Number = Number::new(20.0, 0.0, 100_000_000.0, 0, " lx");
+const WS: NumberField = NumberField::new(2.0, 0.0, 100_000.0, 1, " Ws");
+const EFFICACY: NumberField = NumberField::new(0.2, 1.0, 200.0, 1, " lm s/Ws");
+const GUIDE: NumberField = NumberField::new(0.2, 0.0, 10_000.0, 1, "");
+const LUMENS: NumberField = NumberField::new(20.0, 0.0, 100_000_000.0, 0, " lm");
+const CANDELA: NumberField = NumberField::new(20.0, 0.0, 100_000_000.0, 0, " cd");
+const LUX: NumberField = NumberField::new(20.0, 0.0, 100_000_000.0, 0, " lx");
 
 fn power_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     dial_rows(ui, scene, light);
-    let unit = Unit::of(&light.power.output);
+    let unit = PowerUnit::of(&light.power.output);
     row(ui, "Stated as", "The unit of its full power. Changing the unit keeps the exposure.", |ui| {
-        let units: &[Unit] = if light.emitter.is_infinite() { &Unit::INFINITE } else { &Unit::FINITE };
+        let units: &[PowerUnit] = if light.emitter.is_infinite() { &PowerUnit::INFINITE } else { &PowerUnit::FINITE };
         ComboBox::from_id_salt("unit").selected_text(unit.label()).width(ui.available_width() - 8.0).show_ui(
             ui,
             |ui| {
@@ -264,9 +264,13 @@ fn aiming_row(ui: &mut Ui, light: &Light, out: &mut Vec<Command>) {
     row(ui, "Place it by", "Keys P, L and Shift+L do the same for the selected light", |ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.add_enabled_ui(!light.locked, |ui| {
-            for (swing, text) in [(Swing::Highlight, "Highlight"), (Swing::Light, "Light"), (Swing::Shadow, "Shadow")] {
-                if ui.button(text).on_hover_text(swing.tip()).clicked() {
-                    out.push(Command::TogglePlacing(swing));
+            for (by, text) in [
+                (PlaceLightBy::Highlight, "Highlight"),
+                (PlaceLightBy::Light, "Light"),
+                (PlaceLightBy::Shadow, "Shadow"),
+            ] {
+                if ui.button(text).on_hover_text(by.tip()).clicked() {
+                    out.push(Command::TogglePlaceLight(by));
                 }
             }
         });
@@ -280,7 +284,7 @@ fn aiming_row(ui: &mut Ui, light: &Light, out: &mut Vec<Command>) {
         let mut locked = light.locked;
         ui.checkbox(&mut locked, "In its place");
         if locked != light.locked {
-            out.push(Command::Do(Action::Lock(vec![Item::Light(light.id)], locked)));
+            out.push(Command::Apply(Action::Lock(vec![Item::Light(light.id)], locked)));
         }
     });
 }

@@ -1,6 +1,6 @@
 //! The fields of a surface.
 
-use crate::editor::ui::widgets::{self, Number, row};
+use crate::editor::ui::widgets::{self, NumberField, row};
 use crate::scene::{Material, MaterialPreset};
 use eframe::egui::{ComboBox, Slider, SliderClamping, Ui};
 
@@ -51,21 +51,26 @@ pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> bool {
         unit_slider(ui, "Metal", "0 is skin, paper, plastic; 1 is metal", &mut material.metallic);
         unit_slider(ui, "Clear", "0 is opaque, 1 is clear glass or water", &mut material.transmission);
         row(ui, "Refraction", "Index of refraction: skin 1.4, glass 1.52, water 1.33", |ui| {
-            Number::new(0.005, 1.0, 3.0, 3, "").ui(ui, &mut material.ior)
+            NumberField::new(0.005, 1.0, 3.0, 3, "").ui(ui, &mut material.ior)
         });
         if material.transmission > 0.0 {
             row(ui, "Absorption", "What the inside takes away in a metre: red, green, blue", |ui| {
-                per_channel(ui, "Absorption", Number::new(0.1, 0.0, 10_000.0, 1, ""), &mut material.absorption_per_m);
+                per_channel(
+                    ui,
+                    "Absorption",
+                    NumberField::new(0.1, 0.0, 10_000.0, 1, ""),
+                    &mut material.absorption_per_m,
+                );
             });
         }
         row(ui, "Glow", "Luminance it gives off by itself, cd/m\u{b2}: red, green, blue", |ui| {
-            per_channel(ui, "Glow", Number::new(1.0, 0.0, 1e7, 0, ""), &mut material.emission_cd_m2);
+            per_channel(ui, "Glow", NumberField::new(1.0, 0.0, 1e7, 0, ""), &mut material.emission_cd_m2);
         });
     });
     choose
 }
 
-fn per_channel(ui: &mut Ui, name: &str, number: Number, value: &mut [f32; 3]) {
+fn per_channel(ui: &mut Ui, name: &str, number: NumberField, value: &mut [f32; 3]) {
     ui.spacing_mut().item_spacing.x = 3.0;
     for (channel, letter) in value.iter_mut().zip(["red", "green", "blue"]) {
         ui.name_inputs(format!("{name} {letter}"), |ui| number.ui(ui, channel)).on_hover_text(letter);

@@ -1,6 +1,6 @@
 //! The inspector of the light meter.
 
-use super::{Context, title};
+use super::{InspectorContext, title};
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
@@ -10,7 +10,7 @@ use crate::scene::{Aim, Facing, Meter, Receptor, Role, Scene};
 use eframe::egui::Ui;
 
 /// Draws it.
-pub(super) fn meter_ui(ui: &mut Ui, context: &mut Context<'_>) {
+pub(super) fn meter_ui(ui: &mut Ui, context: &mut InspectorContext<'_>) {
     let scene = context.document.scene();
     let Some(before) = scene.meter else { return };
     let mut meter = before;
@@ -29,10 +29,10 @@ pub(super) fn meter_ui(ui: &mut Ui, context: &mut Context<'_>) {
         facing_rows(ui, scene, &mut meter);
     });
     if ui.button("Take the meter away").clicked() {
-        context.out.push(Command::Do(Action::Delete(vec![Item::Meter])));
+        context.out.push(Command::Apply(Action::Delete(vec![Item::Meter])));
     }
     if meter != before {
-        context.out.push(Command::Do(Action::SetMeter(Some(meter))));
+        context.out.push(Command::Apply(Action::SetMeter(Some(meter))));
     }
 }
 

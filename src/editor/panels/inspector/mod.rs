@@ -21,7 +21,7 @@ use crate::scene::Light;
 use eframe::egui::{self, RichText, ScrollArea, TextEdit, Ui};
 
 /// What a section of the inspector reads and where it puts its requests.
-struct Context<'a> {
+struct InspectorContext<'a> {
     document: &'a Document,
     out: &'a mut Vec<Command>,
 }
@@ -30,7 +30,7 @@ struct Context<'a> {
 pub fn inspector_ui(ui: &mut Ui, document: &Document, selection: &Selection, out: &mut Vec<Command>) {
     ScrollArea::vertical().id_salt("inspector").auto_shrink([false, false]).show(ui, |ui| {
         ui.add_space(4.0);
-        let mut context = Context { document, out };
+        let mut context = InspectorContext { document, out };
         if selection.len() > 1 {
             several_ui(ui, &mut context, selection);
         }
@@ -47,7 +47,7 @@ pub fn inspector_ui(ui: &mut Ui, document: &Document, selection: &Selection, out
 }
 
 /// Shown over the values of the last thing when several are selected: what they are, and what all of them take.
-fn several_ui(ui: &mut Ui, context: &mut Context<'_>, selection: &Selection) {
+fn several_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, selection: &Selection) {
     let scene = context.document.scene();
     title(ui, &format!("{} selected", name_of_all(selection.items(), scene)), "");
     ui.horizontal_wrapped(|ui| {
@@ -99,14 +99,14 @@ fn several_lights_ui(ui: &mut Ui, out: &mut Vec<Command>, lights: &[&Light]) {
                     Action::SetLight(Box::new(light))
                 };
                 let actions = lights.iter().map(dimmed).collect();
-                out.push(Command::Do(Action::Together { label: format!("Turn {} lights", lights.len()), actions }));
+                out.push(Command::Apply(Action::Together { label: format!("Turn {} lights", lights.len()), actions }));
             }
         }
     });
 }
 
 /// Shown when nothing is selected: what the studio is about.
-fn studio_ui(ui: &mut Ui, context: &mut Context<'_>) {
+fn studio_ui(ui: &mut Ui, context: &mut InspectorContext<'_>) {
     let scene = context.document.scene();
     title(ui, "Studio", "");
     let mut notes = (scene.name.clone(), scene.description.clone());
@@ -117,7 +117,7 @@ fn studio_ui(ui: &mut Ui, context: &mut Context<'_>) {
     }
     let (name, description) = notes;
     if name != scene.name || description != scene.description {
-        context.out.push(Command::Do(Action::SetNotes { name, description }));
+        context.out.push(Command::Apply(Action::SetNotes { name, description }));
     }
     ui.add_space(8.0);
     let (lights, on) = (scene.lights.len(), scene.lights.iter().filter(|l| l.on).count());

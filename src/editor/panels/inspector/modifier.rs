@@ -1,16 +1,16 @@
 //! The modifier rows of a light's inspector: what shines, how large, what is lost.
 
 use super::power;
-use crate::editor::document::catalog::{self, Kind, Shelf};
-use crate::editor::ui::widgets::{Number, SIZE_CM, fact, row};
+use crate::editor::document::catalog::{self, CatalogKind, CatalogTab};
+use crate::editor::ui::widgets::{NumberField, SIZE_CM, fact, row};
 use crate::photo::beam::{Beam, beam_loss_stops};
 use crate::photo::emitter::EmitterShape;
 use crate::scene::{BarnDoors, Cone, Emitter, HARD_GRIDS_DEG, Light, Modifier, NamedModifier, SOFT_GRIDS_DEG, Scene};
 use eframe::egui::{ComboBox, Ui};
 
-const CONE: Number = Number::new(0.5, 0.5, 180.0, 1, "\u{b0}");
-const FLAP: Number = Number::new(0.5, 0.0, 90.0, 0, "\u{b0}");
-const STOPS: Number = Number::new(0.02, 0.0, 10.0, 1, " stops");
+const CONE: NumberField = NumberField::new(0.5, 0.5, 180.0, 1, "\u{b0}");
+const FLAP: NumberField = NumberField::new(0.5, 0.0, 90.0, 0, "\u{b0}");
+const STOPS: NumberField = NumberField::new(0.02, 0.0, 10.0, 1, " stops");
 
 /// What shapes the light, and its size: for the head of the inspector.
 pub(super) fn kind_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
@@ -30,8 +30,8 @@ pub(super) fn modifier_rows(ui: &mut Ui, light: &mut Light) {
 
 /// The rack by name. What the rack does not know is told by its emitter.
 fn kind_row(ui: &mut Ui, scene: &Scene, light: &mut Light) {
-    let listed = catalog::entries(Shelf::Lights).iter();
-    let is_current = |e: &catalog::Entry| matches!(e.kind, Kind::Light(emitter, modifier, _) if emitter == light.emitter && modifier == light.modifier);
+    let listed = catalog::entries(CatalogTab::Lights).iter();
+    let is_current = |e: &catalog::CatalogEntry| matches!(e.kind, CatalogKind::Light(emitter, modifier, _) if emitter == light.emitter && modifier == light.modifier);
     let known = NamedModifier::of(&light.emitter, &light.modifier).map(|named| named.name);
     let known = known.or_else(|| listed.clone().find(|e| is_current(e)).map(|e| e.name));
     // A softbox whose loss was set by hand is still that softbox.
@@ -46,7 +46,7 @@ fn kind_row(ui: &mut Ui, scene: &Scene, light: &mut Light) {
         let list = ComboBox::from_id_salt("emitter").selected_text(current).width(width).height(420.0);
         list.show_ui(ui, |ui| {
             for entry in listed {
-                let Kind::Light(emitter, modifier, _) = entry.kind else { continue };
+                let CatalogKind::Light(emitter, modifier, _) = entry.kind else { continue };
                 let label = ui.selectable_label(known == Some(entry.name), entry.name);
                 if label.on_hover_text(entry.tip).clicked() {
                     power::change_emitter(scene, light, emitter, modifier);
@@ -83,7 +83,7 @@ fn size_rows(ui: &mut Ui, emitter: &mut Emitter) {
             *inner_deg = inner_deg.min(*outer_deg);
         }
         Emitter::Sun { angular_diameter_deg } => {
-            let field = Number::new(0.02, 0.0, 90.0, 2, "\u{b0}");
+            let field = NumberField::new(0.02, 0.0, 90.0, 2, "\u{b0}");
             row(ui, "Disc", "Angular diameter: 0.53\u{b0} is the sun, 0 gives hard shadows", |ui| {
                 field.ui(ui, angular_diameter_deg)
             });

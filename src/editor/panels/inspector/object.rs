@@ -1,26 +1,26 @@
 //! The inspector of a mannequin, prop or backdrop.
 
 use super::material::{material_group, material_rows, preset_name};
-use super::{Context, text_ui, title};
+use super::{InspectorContext, text_ui, title};
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
 use crate::editor::document::placement::wrap_deg;
-use crate::editor::ui::widgets::{self, DEGREES, METRES, Number, SIZE_CM, row, section};
+use crate::editor::ui::widgets::{self, DEGREES, METRES, NumberField, SIZE_CM, row, section};
 use crate::figures;
 use crate::scene::{Assets, Figure, Mannequin, Object, ObjectId, Pose, Shape};
 use eframe::egui::{Button, ComboBox, RichText, Ui};
 use glam::Vec3;
 
 /// Draws it.
-pub(super) fn object_ui(ui: &mut Ui, context: &mut Context<'_>, id: ObjectId) {
+pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: ObjectId) {
     let (scene, assets) = (context.document.scene(), context.document.assets());
     let Some(original) = scene.object(id) else { return };
     let mut object = original.clone();
     title(ui, &original.name, object.shape.label());
     row(ui, "Name", "Names are unique in a studio", |ui| {
         if let Some(name) = text_ui(ui, "name", &original.name, false) {
-            context.out.push(Command::Do(Action::Rename(Item::Object(id), name)));
+            context.out.push(Command::Apply(Action::Rename(Item::Object(id), name)));
         }
     });
     row(ui, "Show", "Hidden things are neither seen nor do they cast shadows", |ui| {
@@ -37,7 +37,7 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut Context<'_>, id: ObjectId) {
             let mut locked = object.locked;
             ui.checkbox(&mut locked, "In its place");
             if locked != object.locked {
-                context.out.push(Command::Do(Action::Lock(vec![Item::Object(id)], locked)));
+                context.out.push(Command::Apply(Action::Lock(vec![Item::Object(id)], locked)));
             }
         });
         ui.add_enabled_ui(!object.locked, |ui| place_rows(ui, &mut object));
@@ -51,7 +51,7 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut Context<'_>, id: ObjectId) {
         context.out.push(Command::ChooseTexture(Item::Object(id), Some(part)));
     }
     if object != *original {
-        context.out.push(Command::Do(Action::SetObject(Box::new(object))));
+        context.out.push(Command::Apply(Action::SetObject(Box::new(object))));
     }
 }
 
@@ -137,10 +137,10 @@ fn scale_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
     let mut factor = before;
     match height_m {
         Some(height_m) => row(ui, "Height", "From the floor to the top of the head", |ui| {
-            Number::new(0.5, 5.0, 400.0, 1, " cm").scaled_ui(ui, &mut factor, 100.0 * height_m)
+            NumberField::new(0.5, 5.0, 400.0, 1, " cm").scaled_ui(ui, &mut factor, 100.0 * height_m)
         }),
         None => row(ui, "Scale", "Of the whole thing", |ui| {
-            Number::new(0.5, 0.1, 100_000.0, 1, " %").scaled_ui(ui, &mut factor, 100.0)
+            NumberField::new(0.5, 0.1, 100_000.0, 1, " %").scaled_ui(ui, &mut factor, 100.0)
         }),
     };
     if factor != before && before != 0.0 {
@@ -148,7 +148,7 @@ fn scale_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
     }
     if !is_uniform {
         row(ui, "Each axis", "Scale along its own axes", |ui| {
-            widgets::vec3_ui(ui, "Scale", Number::new(0.005, 0.001, 1000.0, 3, ""), scale);
+            widgets::vec3_ui(ui, "Scale", NumberField::new(0.005, 0.001, 1000.0, 3, ""), scale);
         });
         row(ui, "", "", |ui| {
             if ui.button("Same on all axes").on_hover_text("Undo the stretching").clicked() {

@@ -7,7 +7,7 @@ use crate::scene::{Camera, Emitter, Light, Modifier, Output, Scene};
 
 /// The units a power can be given in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
+pub enum PowerUnit {
     /// Lumens.
     Lumens,
     /// Candela on the axis.
@@ -22,40 +22,41 @@ pub enum Unit {
     GuideNumber,
 }
 
-impl Unit {
+impl PowerUnit {
     /// The units of things that have a place.
-    pub const FINITE: [Unit; 5] = [Unit::FlashWs, Unit::GuideNumber, Unit::Lumens, Unit::Candela, Unit::LuxAt];
+    pub const FINITE: [PowerUnit; 5] =
+        [PowerUnit::FlashWs, PowerUnit::GuideNumber, PowerUnit::Lumens, PowerUnit::Candela, PowerUnit::LuxAt];
     /// The units of sun and surround.
-    pub const INFINITE: [Unit; 1] = [Unit::Lux];
+    pub const INFINITE: [PowerUnit; 1] = [PowerUnit::Lux];
 
     /// Label in the list.
     pub fn label(self) -> &'static str {
         match self {
-            Unit::Lumens => "Continuous, lumens",
-            Unit::Candela => "Continuous, candela",
-            Unit::LuxAt => "Continuous, lux at a distance",
-            Unit::Lux => "Continuous, lux",
-            Unit::FlashWs => "Flash, watt seconds",
-            Unit::GuideNumber => "Flash, guide number",
+            PowerUnit::Lumens => "Continuous, lumens",
+            PowerUnit::Candela => "Continuous, candela",
+            PowerUnit::LuxAt => "Continuous, lux at a distance",
+            PowerUnit::Lux => "Continuous, lux",
+            PowerUnit::FlashWs => "Flash, watt seconds",
+            PowerUnit::GuideNumber => "Flash, guide number",
         }
     }
 
     /// The unit of an output.
-    pub fn of(output: &Output) -> Unit {
+    pub fn of(output: &Output) -> PowerUnit {
         match output {
-            Output::Lumens(_) => Unit::Lumens,
-            Output::Candela(_) => Unit::Candela,
-            Output::LuxAt { .. } => Unit::LuxAt,
-            Output::Lux(_) => Unit::Lux,
-            Output::FlashWs { .. } => Unit::FlashWs,
-            Output::FlashGuideNumber(_) => Unit::GuideNumber,
+            Output::Lumens(_) => PowerUnit::Lumens,
+            Output::Candela(_) => PowerUnit::Candela,
+            Output::LuxAt { .. } => PowerUnit::LuxAt,
+            Output::Lux(_) => PowerUnit::Lux,
+            Output::FlashWs { .. } => PowerUnit::FlashWs,
+            Output::FlashGuideNumber(_) => PowerUnit::GuideNumber,
         }
     }
 }
 
 /// The same light in another unit: the same intensity, and across flash and continuous light the same exposure at the
 /// camera's shutter.
-pub fn convert(light: &Light, camera: &Camera, unit: Unit) -> Output {
+pub fn convert(light: &Light, camera: &Camera, unit: PowerUnit) -> Output {
     // Power is stated before the modifier, whatever its unit.
     let full = Light {
         power: crate::scene::Power { dial_stops: 0.0, ..light.power },
@@ -64,7 +65,7 @@ pub fn convert(light: &Light, camera: &Camera, unit: Unit) -> Output {
     };
     let per_flux = EmitterShape::new(&light.emitter).intensity_per_flux().unwrap_or(1.0);
     let was_flash = light.power.output.is_flash();
-    let is_flash = matches!(unit, Unit::FlashWs | Unit::GuideNumber);
+    let is_flash = matches!(unit, PowerUnit::FlashWs | PowerUnit::GuideNumber);
     let time = match (was_flash, is_flash) {
         (true, false) => 1.0 / camera.shutter_s,
         (false, true) => camera.shutter_s,
@@ -72,16 +73,16 @@ pub fn convert(light: &Light, camera: &Camera, unit: Unit) -> Output {
     };
     let intensity = axial_intensity(&full) * time;
     match unit {
-        Unit::Lumens => Output::Lumens(intensity / per_flux),
-        Unit::Candela => Output::Candela(intensity),
-        Unit::LuxAt => Output::LuxAt { lux: intensity, distance_m: 1.0 },
-        Unit::Lux => Output::Lux(10_000.0),
-        Unit::FlashWs => {
+        PowerUnit::Lumens => Output::Lumens(intensity / per_flux),
+        PowerUnit::Candela => Output::Candela(intensity),
+        PowerUnit::LuxAt => Output::LuxAt { lux: intensity, distance_m: 1.0 },
+        PowerUnit::Lux => Output::Lux(10_000.0),
+        PowerUnit::FlashWs => {
             let efficacy_lm_s_per_ws = Output::DEFAULT_EFFICACY;
             Output::FlashWs { energy_ws: intensity / per_flux / efficacy_lm_s_per_ws, efficacy_lm_s_per_ws }
         }
         // H(1 m) = 2.5 GN^2 at ISO 100, C = 250 lux s.
-        Unit::GuideNumber => Output::FlashGuideNumber((intensity / 2.5).max(0.0).sqrt()),
+        PowerUnit::GuideNumber => Output::FlashGuideNumber((intensity / 2.5).max(0.0).sqrt()),
     }
 }
 
@@ -106,7 +107,7 @@ pub fn change_emitter(scene: &Scene, light: &mut Light, emitter: Emitter, modifi
                 ..light.clone()
             },
             &scene.camera,
-            Unit::FlashWs,
+            PowerUnit::FlashWs,
         )
     };
 }
@@ -121,7 +122,7 @@ mod tests {
         let scene = Scene::default();
         let mut light = catalog::light_named("Strip 30 x 120").unwrap();
         let lux_s = readout::at_aim(&scene, &light).lux_s;
-        for unit in Unit::FINITE.into_iter().chain(Unit::FINITE.into_iter().rev()) {
+        for unit in PowerUnit::FINITE.into_iter().chain(PowerUnit::FINITE.into_iter().rev()) {
             light.power.output = convert(&light, &scene.camera, unit);
             let now = readout::at_aim(&scene, &light).lux_s;
             assert!((now / lux_s - 1.0).abs() < 1e-4, "{unit:?}: {now}, not {lux_s}");

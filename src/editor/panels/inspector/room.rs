@@ -1,16 +1,16 @@
 //! The inspector of the room.
 
 use super::material::material_group;
-use super::{Context, title};
+use super::{InspectorContext, title};
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
-use crate::editor::ui::widgets::{Number, row};
+use crate::editor::ui::widgets::{NumberField, row};
 use crate::scene::Room;
 use eframe::egui::{RichText, Ui};
 
 /// Draws it.
-pub(super) fn room_ui(ui: &mut Ui, context: &mut Context<'_>) {
+pub(super) fn room_ui(ui: &mut Ui, context: &mut InspectorContext<'_>) {
     let original = &context.document.scene().room;
     title(ui, "Room", "");
     let mut is_there = original.is_some();
@@ -19,13 +19,13 @@ pub(super) fn room_ui(ui: &mut Ui, context: &mut Context<'_>) {
     if !is_there {
         ui.label(RichText::new("No room: nothing bounces light but the things in the studio.").weak());
         if original.is_some() {
-            context.out.push(Command::Do(Action::SetRoom(None)));
+            context.out.push(Command::Apply(Action::SetRoom(None)));
         }
         return;
     }
     let mut room = original.clone().unwrap_or_default();
     ui.add_space(4.0);
-    const SIDE: Number = Number::new(0.02, 0.5, 200.0, 2, " m");
+    const SIDE: NumberField = NumberField::new(0.02, 0.5, 200.0, 2, " m");
     let sides = [("Width", "Left to right", 0), ("Height", "Floor to ceiling", 1), ("Depth", "Back to front", 2)];
     for (label, tip, axis) in sides {
         row(ui, label, tip, |ui| SIDE.ui(ui, &mut room.size_m[axis]));
@@ -40,6 +40,6 @@ pub(super) fn room_ui(ui: &mut Ui, context: &mut Context<'_>) {
         }
     }
     if original.as_ref() != Some(&room) {
-        context.out.push(Command::Do(Action::SetRoom(Some(Box::new(room)))));
+        context.out.push(Command::Apply(Action::SetRoom(Some(Box::new(room)))));
     }
 }

@@ -1,7 +1,7 @@
 //! The menu in the corner of the view: which channel of the preview it shows, the light of which lamp, how things shine;
 //! and the legend of illuminance in false colour.
 
-use crate::editor::viewport::live::preview_host::Look;
+use crate::editor::viewport::live::preview_host::ViewOptions;
 use crate::photo::exposure;
 use crate::preview::{Channel, FALSE_STOPS, Gloss, false_color};
 use crate::scene::{Camera, Scene};
@@ -11,58 +11,58 @@ use std::f32::consts::PI;
 /// Size of a stop's colour in the legend, points.
 const SWATCH: (f32, f32) = (22.0, 18.0);
 
-/// Draws the menu over the upper left corner of the view and changes `look` as it is used. Where the processor draws
-/// the view (`on_processor`) it has neither channels nor a choice of highlights.
-pub fn look_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, look: &mut Look, on_processor: bool) {
-    if on_processor {
-        (look.channel, look.gloss) = (Channel::Lit, Gloss::Ggx);
+/// Draws the menu over the upper left corner of the view and changes `view_options` as it is used. Where the processor draws
+/// the view (`on_cpu`) it has neither channels nor a choice of highlights.
+pub fn channel_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, view_options: &mut ViewOptions, on_cpu: bool) {
+    if on_cpu {
+        (view_options.channel, view_options.gloss) = (Channel::Lit, Gloss::Ggx);
     }
     let place = Rect::from_min_size(view.min + vec2(8.0, 8.0), vec2(220.0, 24.0));
     ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
-        let title = title(scene, look);
+        let title = title(scene, view_options);
         ui.menu_button(title, |ui| {
             ui.set_min_width(210.0);
             for channel in Channel::ALL {
-                let radio = RadioButton::new(look.channel == channel, channel.label());
-                let response = ui.add_enabled(!on_processor || channel == Channel::Lit, radio);
+                let radio = RadioButton::new(view_options.channel == channel, channel.label());
+                let response = ui.add_enabled(!on_cpu || channel == Channel::Lit, radio);
                 if response.on_hover_text(tip(channel)).on_disabled_hover_text(NEEDS_DEVICE).clicked() {
-                    look.channel = channel;
+                    view_options.channel = channel;
                 }
             }
             ui.separator();
             let lights = ui.menu_button("Show the light of", |ui| {
                 ui.set_min_width(160.0);
-                ui.radio_value(&mut look.only_light, None, "All lights");
+                ui.radio_value(&mut view_options.only_light, None, "All lights");
                 for light in &scene.lights {
-                    ui.radio_value(&mut look.only_light, Some(light.id), &light.name);
+                    ui.radio_value(&mut view_options.only_light, Some(light.id), &light.name);
                 }
             });
             lights.response.on_hover_text(
                 "One light's share, in this view alone: meter and pictures keep them all. \
                  Solo (O) switches the others off.",
             );
-            let mut blinn_phong = look.gloss == Gloss::BlinnPhong;
+            let mut blinn_phong = view_options.gloss == Gloss::BlinnPhong;
             let tip = "Quicker highlights without the emitter's shape, instead of GGX";
             let checkbox = Checkbox::new(&mut blinn_phong, "Blinn-Phong highlights");
-            if ui.add_enabled(!on_processor, checkbox).on_hover_text(tip).changed() {
-                look.gloss = if blinn_phong { Gloss::BlinnPhong } else { Gloss::Ggx };
+            if ui.add_enabled(!on_cpu, checkbox).on_hover_text(tip).changed() {
+                view_options.gloss = if blinn_phong { Gloss::BlinnPhong } else { Gloss::Ggx };
             }
             let tip = "The traced view (True) shows smoothed light while it is worked on; settled, it is as traced. \
                        Pictures that are rendered are never smoothed.";
-            ui.checkbox(&mut look.smooth, "Smooth grain until settled").on_hover_text(tip);
+            ui.checkbox(&mut view_options.smooth, "Smooth grain until settled").on_hover_text(tip);
         })
         .response
         .on_hover_text("What the view shows of the studio");
     });
-    if look.channel == Channel::Illuminance {
+    if view_options.channel == Channel::Illuminance {
         paint_legend(&ui.painter_at(view), view, &scene.camera);
     }
 }
 
-fn title(scene: &Scene, look: &Look) -> String {
-    match look.only_light.and_then(|id| scene.light(id)) {
-        Some(light) => format!("{}: light of {} only", look.channel.label(), light.name),
-        None => look.channel.label().to_owned(),
+fn title(scene: &Scene, view_options: &ViewOptions) -> String {
+    match view_options.only_light.and_then(|id| scene.light(id)) {
+        Some(light) => format!("{}: light of {} only", view_options.channel.label(), light.name),
+        None => view_options.channel.label().to_owned(),
     }
 }
 

@@ -2,7 +2,7 @@
 //! shadows, with everything over it that the preview draws over its own.
 
 use crate::color::ToneTable;
-use crate::editor::ui::image_texture::Canvas;
+use crate::editor::ui::image_texture::ImageTexture;
 use crate::preview::{Gizmos, GpuLine, GpuTint, Pick, PreviewInput, REACH_PX};
 use crate::raster::{Framebuffer, NO_OBJECT, Rasterizer, Shading};
 use crate::scene::{CameraFrame, LightId, ObjectId, Scene};
@@ -23,16 +23,16 @@ const ASKED_PX: f32 = 4.0;
 
 /// Draws and keeps what was drawn last.
 #[derive(Debug, Default)]
-pub struct ProcessorView {
+pub struct CpuPreview {
     tone: ToneTable,
     /// The studio's surfaces and their revision.
     rasterizer: Option<(u64, Rasterizer)>,
-    drawn: Option<Drawn>,
-    canvas: Canvas,
+    drawn: Option<CpuFrame>,
+    image_texture: ImageTexture,
 }
 
 #[derive(Debug)]
-struct Drawn {
+struct CpuFrame {
     drawing: Framebuffer,
     frame: CameraFrame,
     gizmos: Gizmos,
@@ -47,7 +47,7 @@ fn moving_scale((width, height): (u32, u32)) -> u32 {
     (width as f32 * height as f32 / MOVING_PIXELS).sqrt().ceil().max(1.0) as u32
 }
 
-impl ProcessorView {
+impl CpuPreview {
     /// Whether a draft of a view of `size` is coarser than the picture in full.
     pub fn draws_drafts(size: (u32, u32)) -> bool {
         moving_scale(size) > 1
@@ -76,9 +76,9 @@ impl ProcessorView {
         let selected: Vec<bool> = objects.iter().map(selected).collect();
         let mut image = self.image(&drawing, input);
         outline(&mut image, &drawing.objects, &selected);
-        self.canvas.set(ctx, image);
+        self.image_texture.set(ctx, image);
         let gizmos = Gizmos::new(input.scene, &input.overlay, &input.frame);
-        self.drawn = Some(Drawn { drawing, frame: input.frame, gizmos, objects, scale });
+        self.drawn = Some(CpuFrame { drawing, frame: input.frame, gizmos, objects, scale });
     }
 
     /// The picture as it is shown; nothing where only what lies over it is wanted.
@@ -97,18 +97,18 @@ impl ProcessorView {
 
     /// The texture of the last picture.
     pub fn texture(&self) -> Option<TextureId> {
-        self.canvas.id()
+        self.image_texture.id()
     }
 
     /// Forgets everything, because the window has another device.
     pub fn clear(&mut self) {
         (self.drawn, self.rasterizer) = (None, None);
-        self.canvas.clear();
+        self.image_texture.clear();
     }
 
     /// What stands at a pixel of the last picture; a gizmo's line wins over what lies behind it.
     pub fn pick(&self, (x, y): (u32, u32)) -> Option<Pick> {
-        let Drawn { drawing, frame, gizmos, objects, scale } = self.drawn.as_ref()?;
+        let CpuFrame { drawing, frame, gizmos, objects, scale } = self.drawn.as_ref()?;
         let size = (drawing.picture.width, drawing.picture.height);
         let pixel = (x / scale, y / scale);
         let inside = pixel.0 < size.0 && pixel.1 < size.1;
@@ -130,7 +130,7 @@ impl ProcessorView {
     }
 }
 
-impl Drawn {
+impl CpuFrame {
     /// Where a point shows, in parts of the picture, and one over its distance along the axis; none behind the eye.
     fn place(&self, local: Vec3) -> Option<Vec3> {
         (local.z <= -NEAR_M).then(|| {

@@ -3,7 +3,7 @@
 
 use crate::editor::document::revisions::Revisions;
 use crate::editor::document::studio_document::Document;
-use crate::editor::viewport::live::cpu_preview::ProcessorView;
+use crate::editor::viewport::live::cpu_preview::CpuPreview;
 use crate::preview::{Channel, Gloss, LossFlag, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
 use crate::scene::{CameraFrame, LightId};
 use eframe::egui::{Context, Painter, Rect, TextureId};
@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 const SETTLED: Duration = Duration::from_millis(120);
 
 #[derive(Debug)]
-enum Stage {
+enum PreviewStage {
     /// The pipelines are being compiled.
     Starting(Receiver<Result<PreviewRenderer, PreviewError>>),
     Ready(Box<PreviewRenderer>),
@@ -27,7 +27,7 @@ enum Stage {
 
 /// Everything that the picture depends on.
 #[derive(Clone, Debug, PartialEq)]
-struct Shown {
+struct PreviewKey {
     revisions: Revisions,
     frame: CameraFrame,
     size: (u32, u32),
@@ -37,7 +37,7 @@ struct Shown {
 
 /// What the views of the studio show of it. No part of the scene: it is neither saved nor undone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Look {
+pub struct ViewOptions {
     /// What each pixel shows.
     pub channel: Channel,
     /// Leaves all other lights out.
@@ -51,14 +51,14 @@ pub struct Look {
 /// The preview and the texture it draws into.
 pub struct PreviewHost {
     /// What it shows.
-    pub look: Look,
-    stage: Stage,
+    pub view_options: ViewOptions,
+    stage: PreviewStage,
     state: Option<RenderState>,
     /// Raised when the window's device is gone.
     loss: LossFlag,
-    processor: ProcessorView,
+    cpu_preview: CpuPreview,
     texture: Option<(TextureId, u64)>,
-    shown: Option<Shown>,
+    shown: Option<PreviewKey>,
     /// When the picture on show was drawn, if it is a draft.
     draft_since: Option<Instant>,
     /// Pictures drawn so far.
@@ -76,11 +76,11 @@ impl PreviewHost {
     /// Starts to build the preview on the window's device.
     pub fn new(state: Option<&RenderState>, ctx: &Context) -> Self {
         let mut host = PreviewHost {
-            look: Look::default(),
-            stage: Stage::Failed(String::new()),
+            view_options: ViewOptions::default(),
+            stage: PreviewStage::Failed(String::new()),
             state: None,
             loss: LossFlag::default(),
-            processor: ProcessorView::default(),
+            cpu_preview: CpuPreview::default(),
             texture: None,
             shown: None,
             draft_since: None,
@@ -95,7 +95,7 @@ impl PreviewHost {
     pub fn let_device_go(&mut self) {
         (self.state, self.texture, self.loss) = (None, None, LossFlag::default());
         self.give_up("There is no graphics adapter that could draw the view.");
-        self.processor.clear();
+        self.cpu_preview.clear();
     }
 
     /// Goes over to the device of another window.
@@ -116,7 +116,7 @@ impl PreviewHost {
 
     /// Leaves the view to the processor until [`PreviewHost::restart`].
     pub fn give_up(&mut self, why: &str) {
-        (self.stage, self.shown, self.draft_since) = (Stage::Failed(why.to_owned()), None, None);
+        (self.stage, self.shown, self.draft_since) = (PreviewStage::Failed(why.to_owned()), None, None);
     }
 
     /// Whether there is a device to build the preview on.
@@ -127,14 +127,14 @@ impl PreviewHost {
     /// Why the processor draws the view.
     pub fn failure(&self) -> Option<&str> {
         match &self.stage {
-            Stage::Failed(message) => Some(message),
-            Stage::Starting(_) | Stage::Ready(_) => None,
+            PreviewStage::Failed(message) => Some(message),
+            PreviewStage::Starting(_) | PreviewStage::Ready(_) => None,
         }
     }
 
     /// Whether the preview is still being built.
     pub fn is_starting(&self) -> bool {
-        matches!(self.stage, Stage::Starting(_))
+        matches!(self.stage, PreviewStage::Starting(_))
     }
 
     /// Whether the picture on show is a draft that is about to be drawn in full.
@@ -173,17 +173,17 @@ impl PreviewHost {
     ) -> Option<TextureId> {
         self.finish_start();
         let drafts = match &self.stage {
-            Stage::Starting(_) => return None,
-            Stage::Ready(renderer) => renderer.draws_drafts(),
-            Stage::Failed(_) => ProcessorView::draws_drafts(size),
+            PreviewStage::Starting(_) => return None,
+            PreviewStage::Ready(renderer) => renderer.draws_drafts(),
+            PreviewStage::Failed(_) => CpuPreview::draws_drafts(size),
         };
-        let Look { channel, only_light, gloss, smooth: _ } = self.look;
+        let ViewOptions { channel, only_light, gloss, smooth: _ } = self.view_options;
         // A light that was deleted meanwhile leaves the others as they are.
         let only_light = only_light.filter(|id| document.scene().light(*id).is_some());
         let options = Options { channel, only_light, gloss, overlay_alone, ..Options::default() };
         // Names and locks show in no picture.
         let revisions = Revisions { document: 0, ..document.revisions() };
-        let wanted = Shown { revisions, frame, size, overlay, options };
+        let wanted = PreviewKey { revisions, frame, size, overlay, options };
         let changed = self.shown.as_ref() != Some(&wanted);
         let settled = self.draft_since.is_some_and(|since| since.elapsed() >= SETTLED);
         if changed || settled {
@@ -196,12 +196,12 @@ impl PreviewHost {
             ctx.request_repaint_after(SETTLED.saturating_sub(since.elapsed()));
         }
         match self.stage {
-            Stage::Failed(_) => self.processor.texture(),
-            Stage::Starting(_) | Stage::Ready(_) => self.texture.map(|(id, _)| id),
+            PreviewStage::Failed(_) => self.cpu_preview.texture(),
+            PreviewStage::Starting(_) | PreviewStage::Ready(_) => self.texture.map(|(id, _)| id),
         }
     }
 
-    fn draw(&mut self, ctx: &Context, document: &Document, wanted: Shown, draft: bool) {
+    fn draw(&mut self, ctx: &Context, document: &Document, wanted: PreviewKey, draft: bool) {
         let began = Instant::now();
         let input = PreviewInput {
             scene: document.scene(),
@@ -211,32 +211,32 @@ impl PreviewHost {
             overlay: wanted.overlay.clone(),
             options: Options { draft, ..wanted.options },
         };
-        if let Stage::Ready(renderer) = &mut self.stage {
+        if let PreviewStage::Ready(renderer) = &mut self.stage {
             match renderer.render(&input).map(|_| ()) {
                 Ok(()) => self.register(),
                 Err(error) => self.give_up(&crate::jobs::sentence(&error)),
             }
         }
-        if let Stage::Failed(_) = self.stage {
-            self.processor.draw(ctx, &input, wanted.revisions.surfaces);
+        if let PreviewStage::Failed(_) = self.stage {
+            self.cpu_preview.draw(ctx, &input, wanted.revisions.surfaces);
         }
         (self.draws, self.last_draw, self.shown) = (self.draws + 1, began.elapsed(), Some(wanted));
     }
 
     /// Lines and tints over the picture in `rect`, where the picture itself has none.
     pub fn paint_over(&self, painter: &Painter, rect: Rect) {
-        if let Stage::Failed(_) = self.stage {
-            self.processor.paint_over(painter, rect);
+        if let PreviewStage::Failed(_) = self.stage {
+            self.cpu_preview.paint_over(painter, rect);
         }
     }
 
     fn finish_start(&mut self) {
-        let Stage::Starting(receiver) = &self.stage else { return };
+        let PreviewStage::Starting(receiver) = &self.stage else { return };
         match receiver.try_recv() {
-            Ok(Ok(renderer)) => self.stage = Stage::Ready(Box::new(renderer)),
-            Ok(Err(error)) => self.stage = Stage::Failed(crate::jobs::sentence(&error)),
+            Ok(Ok(renderer)) => self.stage = PreviewStage::Ready(Box::new(renderer)),
+            Ok(Err(error)) => self.stage = PreviewStage::Failed(crate::jobs::sentence(&error)),
             Err(TryRecvError::Disconnected) => {
-                self.stage = Stage::Failed("The live view could not be built.".to_owned())
+                self.stage = PreviewStage::Failed("The live view could not be built.".to_owned())
             }
             Err(TryRecvError::Empty) => {}
         }
@@ -244,7 +244,7 @@ impl PreviewHost {
 
     /// Tells egui of the picture's texture, when it is a new one.
     fn register(&mut self) {
-        let (Stage::Ready(renderer), Some(state)) = (&self.stage, &self.state) else { return };
+        let (PreviewStage::Ready(renderer), Some(state)) = (&self.stage, &self.state) else { return };
         let generation = renderer.generation();
         let mut egui_renderer = state.renderer.write();
         match &mut self.texture {
@@ -264,14 +264,14 @@ impl PreviewHost {
     /// What stands at a pixel of the picture on show.
     pub fn pick(&self, pixel: (u32, u32)) -> Option<Pick> {
         match &self.stage {
-            Stage::Ready(renderer) => renderer.pick_blocking(pixel).ok().flatten(),
-            Stage::Failed(_) => self.processor.pick(pixel),
-            Stage::Starting(_) => None,
+            PreviewStage::Ready(renderer) => renderer.pick_blocking(pixel).ok().flatten(),
+            PreviewStage::Failed(_) => self.cpu_preview.pick(pixel),
+            PreviewStage::Starting(_) => None,
         }
     }
 }
 
-fn start(state: &RenderState, loss: LossFlag, ctx: &Context) -> Stage {
+fn start(state: &RenderState, loss: LossFlag, ctx: &Context) -> PreviewStage {
     let (sender, receiver) = channel();
     let (device, queue, ctx) = (state.device.clone(), state.queue.clone(), ctx.clone());
     std::thread::spawn(move || {
@@ -281,5 +281,5 @@ fn start(state: &RenderState, loss: LossFlag, ctx: &Context) -> Stage {
         let _ = sender.send(renderer);
         ctx.request_repaint();
     });
-    Stage::Starting(receiver)
+    PreviewStage::Starting(receiver)
 }

@@ -1,10 +1,10 @@
-//! The live view as the tracer sees it, *True*: asked for when something changed, shown while it grows.
+//! The live view as the tracer sees it, *True*: requested for when something changed, shown while it grows.
 
 use crate::editor::commands::choices::LiveMode;
 use crate::editor::document::studio_document::Document;
-use crate::editor::ui::image_texture::Canvas;
+use crate::editor::ui::image_texture::ImageTexture;
 use crate::editor::ui::wake::wake;
-use crate::editor::viewport::live::preview_host::Look;
+use crate::editor::viewport::live::preview_host::ViewOptions;
 use crate::jobs::{LiveImage, LiveJob, LiveRequest};
 use crate::preview::Channel;
 use crate::raytrace::{GeometryCache, LiveCamera, MAX_LIGHT_LAYERS};
@@ -17,32 +17,32 @@ const MOST_PIXELS: f32 = 1_300_000.0;
 /// Pixels times layers at most: 16 bytes each, twice while the view moves.
 const MOST_SUMS: f32 = 12_000_000.0;
 
-/// What a picture is made from; while it is the same, nothing is asked for.
+/// What a picture is made from; while it is the same, nothing is requested for.
 #[derive(Clone, Debug, PartialEq)]
-struct Asked {
+struct TracedViewKey {
     revision: u64,
     camera: LiveCamera,
     only_light: Option<LightId>,
     smooth: bool,
 }
 
-/// The thread, the picture it made last, and what it was asked for.
+/// The thread, the picture it made last, and what it was requested for.
 #[derive(Debug, Default)]
-pub struct LiveView {
+pub struct TracedView {
     /// Which of the two the viewport shows.
     pub mode: LiveMode,
     job: LiveJob,
-    asked: Option<Asked>,
-    canvas: Canvas,
-    /// The view that the picture on show belongs to is the one that was asked for.
+    requested: Option<TracedViewKey>,
+    image_texture: ImageTexture,
+    /// The view that the picture on show belongs to is the one that was requested for.
     shown: Option<(u32, bool)>,
     failure: Option<String>,
 }
 
-impl LiveView {
+impl TracedView {
     /// A view that shares meshes' trees with the renders.
     pub fn new(cache: Arc<GeometryCache>) -> Self {
-        LiveView { job: LiveJob::new(cache), ..LiveView::default() }
+        TracedView { job: LiveJob::new(cache), ..TracedView::default() }
     }
 
     /// The other mode.
@@ -55,13 +55,13 @@ impl LiveView {
 
     /// Forgets the picture, because another studio was opened.
     pub fn clear(&mut self) {
-        self.canvas.clear();
-        (self.shown, self.asked, self.failure) = (None, None, None);
+        self.image_texture.clear();
+        (self.shown, self.requested, self.failure) = (None, None, None);
     }
 
     /// Brings the picture to the device that the window has now.
     pub fn move_to(&mut self, ctx: &Context) {
-        self.canvas.renew(ctx);
+        self.image_texture.renew(ctx);
     }
 
     /// Stops the tracer while its picture is not on show.
@@ -77,10 +77,10 @@ impl LiveView {
         frame: CameraFrame,
         size: (u32, u32),
         through_camera: bool,
-        look: Look,
+        view_options: ViewOptions,
     ) -> Option<TextureId> {
         // What the G-buffer holds is the graphics card's affair.
-        if self.mode == LiveMode::Quick || look.channel != Channel::Lit {
+        if self.mode == LiveMode::Quick || view_options.channel != Channel::Lit {
             self.pause();
             return None;
         }
@@ -95,27 +95,31 @@ impl LiveView {
         } else {
             LiveCamera::pinhole(frame, size)
         };
-        let only_light = look.only_light.filter(|id| document.scene().light(*id).is_some());
-        let asked = Asked { revision: document.revisions().image, camera, only_light, smooth: look.smooth };
-        if self.asked.as_ref() != Some(&asked) {
+        let only_light = view_options.only_light.filter(|id| document.scene().light(*id).is_some());
+        let requested =
+            TracedViewKey { revision: document.revisions().image, camera, only_light, smooth: view_options.smooth };
+        if self.requested.as_ref() != Some(&requested) {
             let (mut scene, assets) = (document.scene().clone(), document.assets().clone());
             if let Some(only) = only_light {
                 scene.lights.iter_mut().for_each(|light| light.on &= light.id == only);
             }
-            self.job.request(LiveRequest { scene: Arc::new(scene), assets, camera, smooth: look.smooth }, &wake(ctx));
-            self.asked = Some(asked);
+            self.job.request(
+                LiveRequest { scene: Arc::new(scene), assets, camera, smooth: view_options.smooth },
+                &wake(ctx),
+            );
+            self.requested = Some(requested);
         }
         match self.job.take() {
             Some(Ok(image)) => self.take_in(image, ctx),
             Some(Err(message)) => self.failure = Some(message),
             None => {}
         }
-        self.canvas.id()
+        self.image_texture.id()
     }
 
     fn take_in(&mut self, image: LiveImage, ctx: &Context) {
         (self.shown, self.failure) = (Some((image.spp, image.is_done)), None);
-        self.canvas.set(ctx, ColorImage::from_rgb([image.width, image.height], &image.rgb));
+        self.image_texture.set(ctx, ColorImage::from_rgb([image.width, image.height], &image.rgb));
     }
 
     /// What the view says of itself: how far it is, or why there is none.
@@ -128,7 +132,7 @@ impl LiveView {
         }
     }
 
-    /// Whether all that was asked for has been traced and is on show.
+    /// Whether all that was requested for has been traced and is on show.
     pub fn is_settled(&self) -> bool {
         self.job.is_idle()
     }
@@ -140,7 +144,7 @@ impl LiveView {
 
     /// Whether there is a picture to show.
     pub fn has_picture(&self) -> bool {
-        self.canvas.id().is_some()
+        self.image_texture.id().is_some()
     }
 
     /// Rays traced so far.

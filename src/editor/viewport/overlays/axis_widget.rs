@@ -1,7 +1,7 @@
 //! The cross of the room's axes in the corner of the view: it shows how the view is turned, and its ends are buttons
 //! that look from there.
 
-use crate::editor::commands::choices::Side;
+use crate::editor::commands::choices::ViewSide;
 use crate::editor::commands::command::Command;
 use crate::editor::ui::widgets;
 use crate::editor::viewport::studio_view::StudioView;
@@ -21,14 +21,14 @@ pub fn place(view: Rect) -> Rect {
 }
 
 /// Colour and letter of an end: letters stand on the sides that have a key.
-fn look(side: Side) -> (Color32, &'static str) {
+fn look(side: ViewSide) -> (Color32, &'static str) {
     match side {
-        Side::Right => (Color32::from_rgb(222, 104, 96), "R"),
-        Side::Left => (Color32::from_rgb(222, 104, 96), ""),
-        Side::Top => (Color32::from_rgb(128, 190, 96), "T"),
-        Side::Bottom => (Color32::from_rgb(128, 190, 96), ""),
-        Side::Front => (Color32::from_rgb(96, 148, 222), "F"),
-        Side::Back => (Color32::from_rgb(96, 148, 222), ""),
+        ViewSide::Right => (Color32::from_rgb(222, 104, 96), "R"),
+        ViewSide::Left => (Color32::from_rgb(222, 104, 96), ""),
+        ViewSide::Top => (Color32::from_rgb(128, 190, 96), "T"),
+        ViewSide::Bottom => (Color32::from_rgb(128, 190, 96), ""),
+        ViewSide::Front => (Color32::from_rgb(96, 148, 222), "F"),
+        ViewSide::Back => (Color32::from_rgb(96, 148, 222), ""),
     }
 }
 
@@ -37,11 +37,11 @@ pub fn axis_cross_ui(ui: &mut Ui, view: Rect, studio: &StudioView, frame: &Camer
     let place = place(view);
     let middle = Pos2::new(place.center().x, place.min.y + ARM + END + 2.0);
     let axes = frame.world_from_camera.matrix3;
-    let seen = |side: Side| {
+    let seen = |side: ViewSide| {
         let away = side.away();
         Vec3::new(away.dot(axes.x_axis.into()), away.dot(axes.y_axis.into()), away.dot(axes.z_axis.into()))
     };
-    let mut sides = Side::ALL;
+    let mut sides = ViewSide::ALL;
     // The nearer end lies over the farther one.
     sides.sort_by(|a, b| seen(*a).z.total_cmp(&seen(*b).z));
     ui.painter().circle_filled(middle, ARM + END + 2.0, Color32::from_black_alpha(90));

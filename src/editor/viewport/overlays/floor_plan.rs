@@ -1,7 +1,7 @@
 //! What is drawn over a view from a side: a metre grid with numbers, and how far lights and camera are from what they
 //! are aimed at.
 
-use crate::editor::commands::choices::Side;
+use crate::editor::commands::choices::ViewSide;
 use crate::editor::document::item::Item;
 use crate::editor::document::readout;
 use crate::editor::document::selection::Selection;
@@ -23,7 +23,14 @@ const MOST_LINES: i32 = 200;
 const AXES: [(Vec3, &str); 3] = [(Vec3::X, "x"), (Vec3::Y, "height"), (Vec3::Z, "z")];
 
 /// The lines and their numbers, for a view of `side` whose middle is `target` and shows `half_height_m` above it.
-pub fn paint_grid(painter: &Painter, frame: &CameraFrame, rect: Rect, side: Side, target: Vec3, half_height_m: f32) {
+pub fn paint_grid(
+    painter: &Painter,
+    frame: &CameraFrame,
+    rect: Rect,
+    side: ViewSide,
+    target: Vec3,
+    half_height_m: f32,
+) {
     let points_a_metre = 0.5 * rect.height() / half_height_m.max(1e-6);
     let Some(step) = STEPS_M.into_iter().find(|step| step * points_a_metre >= LEAST_GAP) else { return };
     let half = vec2(0.5 * rect.width(), 0.5 * rect.height()) / points_a_metre;

@@ -1,7 +1,7 @@
 //! The ring with which a thing slides over the floor, at the height it stands at.
 
 use crate::editor::viewport::overlays::markers::place_of;
-use crate::editor::viewport::tools::handle_pointer::{Pointer, STEP_M};
+use crate::editor::viewport::tools::handle_pointer::{HandlePointer, STEP_M};
 use crate::scene::CameraFrame;
 use eframe::egui::{self, Color32, Pos2, Rect, Stroke};
 use glam::{Vec2, Vec3};
@@ -33,7 +33,7 @@ impl FloorHandle {
     }
 
     /// Takes the pointer in; returns how far a drag has moved the thing that is now at `position`.
-    pub fn update(&mut self, position: Vec3, frame: &CameraFrame, rect: Rect, pointer: Pointer) -> Option<Vec3> {
+    pub fn update(&mut self, position: Vec3, frame: &CameraFrame, rect: Rect, pointer: HandlePointer) -> Option<Vec3> {
         self.place = place_of(frame, rect, position);
         let on_ring = self.place.is_some_and(|place| place.distance(pointer.position) < REACH);
         self.hovered = on_ring && pointer.is_over && !(pointer.down && self.grip.is_none() && !pointer.pressed);
@@ -85,14 +85,15 @@ mod tests {
         let mut position = Vec3::new(0.2, 0.3, -0.4);
         let from = place_of(&frame, rect, position).unwrap() + egui::vec2(4.0, -3.0);
         let mut handle = FloorHandle::default();
-        let pointer = Pointer { position: from, is_over: true, pressed: true, down: true, snap: false };
+        let pointer = HandlePointer { position: from, is_over: true, pressed: true, down: true, snap: false };
         assert_eq!(handle.update(position, &frame, rect, pointer), Some(Vec3::ZERO), "a press moves nothing");
         let to = from + egui::vec2(120.0, 60.0);
-        position += handle.update(position, &frame, rect, Pointer { position: to, pressed: false, ..pointer }).unwrap();
+        position +=
+            handle.update(position, &frame, rect, HandlePointer { position: to, pressed: false, ..pointer }).unwrap();
         assert_eq!(position.y, 0.3);
         let place = place_of(&frame, rect, position).unwrap();
         assert!((place - to).length() < 6.0, "the thing is under the pointer");
-        handle.update(position, &frame, rect, Pointer { down: false, pressed: false, ..pointer });
+        handle.update(position, &frame, rect, HandlePointer { down: false, pressed: false, ..pointer });
         assert!(!handle.is_dragged());
     }
 

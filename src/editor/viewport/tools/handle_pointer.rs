@@ -9,7 +9,7 @@ pub const STEP_DEG: f32 = 15.0;
 
 /// What the mouse does over the handles.
 #[derive(Clone, Copy, Debug)]
-pub struct Pointer {
+pub struct HandlePointer {
     /// Where it is, points.
     pub position: egui::Pos2,
     /// Nothing covers the viewport there, and the mouse is not navigating.

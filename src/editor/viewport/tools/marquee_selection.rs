@@ -9,16 +9,16 @@ use eframe::egui::{Color32, CornerRadius, Painter, PointerButton, Pos2, Rect, Re
 
 /// A box that is drawn with the left button.
 #[derive(Clone, Copy, Debug)]
-pub struct Band {
+pub struct MarqueeSelection {
     from: Pos2,
     to: Pos2,
 }
 
-impl Band {
+impl MarqueeSelection {
     /// Takes the mouse in: begins, widens and ends the box. Returns what an ended one holds. `taken` is whether a handle
     /// has the button.
     pub fn drag(
-        band: &mut Option<Band>,
+        marquee: &mut Option<MarqueeSelection>,
         ui: &Ui,
         response: &Response,
         taken: bool,
@@ -32,15 +32,15 @@ impl Band {
             && !alt
             && let Some(from) = origin
         {
-            *band = Some(Band { from, to: from });
+            *marquee = Some(MarqueeSelection { from, to: from });
         }
-        let drawn = band.as_mut()?;
+        let drawn = marquee.as_mut()?;
         drawn.to = position.unwrap_or(drawn.to);
         if response.dragged_by(PointerButton::Primary) {
             return None;
         }
         let ended = Rect::from_two_pos(drawn.from, drawn.to);
-        *band = None;
+        *marquee = None;
         Some(held_by(document, frame, response.rect, ended))
     }
 
@@ -53,14 +53,14 @@ impl Band {
 }
 
 /// Things whose middle lies in a box on the screen: visible, and not locked.
-fn held_by(document: &Document, frame: &CameraFrame, view: Rect, band: Rect) -> Vec<Item> {
+fn held_by(document: &Document, frame: &CameraFrame, view: Rect, marquee: Rect) -> Vec<Item> {
     let scene = document.scene();
     let objects = scene.objects.iter().filter(|o| o.visible).filter_map(|object| {
         let (low, high) = document.assets().object_bounds(object)?;
         Some((Item::Object(object.id), 0.5 * (low + high)))
     });
     let lights = scene.lights.iter().filter(|l| !l.emitter.is_infinite()).map(|l| (Item::Light(l.id), l.position));
-    let inside = |point| place_of(frame, view, point).is_some_and(|place| band.contains(place));
+    let inside = |point| place_of(frame, view, point).is_some_and(|place| marquee.contains(place));
     let held = objects.chain(lights).filter(|(item, middle)| inside(*middle) && !item.is_locked(scene));
     held.map(|(item, _)| item).collect()
 }

@@ -1,22 +1,22 @@
 //! A light placed by what it does: where its highlight, its light, or the shadow of what it is aimed at falls on a
 //! surface.
 
-use crate::editor::commands::choices::Swing;
+use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::viewport::tools::surface_pick::SurfaceHit;
 use crate::scene::{Aim, Emitter, Light, LightId, Scene};
 
 /// A light that is being placed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Placing {
+pub struct LightPlacement {
     /// The light.
     pub light: LightId,
     /// By what.
-    pub swing: Swing,
+    pub by: PlaceLightBy,
 }
 
 /// Why a light cannot be put so.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum SwingError {
+pub enum PlaceLightError {
     /// The camera looks at the other side of the surface, or at its edge.
     #[error("The camera does not see this side: no highlight can show here.")]
     Unseen,
@@ -25,7 +25,7 @@ pub enum SwingError {
     Behind,
     /// The point is the one that the light is aimed at.
     #[error("This is what the light is aimed at: its shadow falls farther behind.")]
-    AtAim,
+    AimReadout,
     /// The light would have to stand in the floor.
     #[error("The light would have to stand in the floor.")]
     Floor,
@@ -46,26 +46,26 @@ const SAME_POINT_M: f32 = 0.002;
 /// With `n` the normal, `v` the direction to the camera and `l` that to the light, a mirror shows the light where
 /// `n` is the half vector: `l = 2 (n.v) n - v`. Straight light comes along the normal: `l = n`. The shadow of the aim `a`
 /// falls on the point `p` where the light lies beyond it: `l = a - p`.
-pub fn swung(scene: &Scene, start: &Light, at: &SurfaceHit, swing: Swing) -> Result<Light, SwingError> {
+pub fn placed_light(scene: &Scene, start: &Light, at: &SurfaceHit, by: PlaceLightBy) -> Result<Light, PlaceLightError> {
     let aimed_at = scene.aim_point(&start.aim, start.position);
-    let (centre, direction) = match swing {
-        Swing::Light => (at.point, at.normal),
-        Swing::Highlight => {
-            let view = (scene.camera.position - at.point).try_normalize().ok_or(SwingError::Unseen)?;
+    let (centre, direction) = match by {
+        PlaceLightBy::Light => (at.point, at.normal),
+        PlaceLightBy::Highlight => {
+            let view = (scene.camera.position - at.point).try_normalize().ok_or(PlaceLightError::Unseen)?;
             let cosine = at.normal.dot(view);
             if cosine <= 1e-3 {
-                return Err(SwingError::Unseen);
+                return Err(PlaceLightError::Unseen);
             }
             (at.point, 2.0 * cosine * at.normal - view)
         }
-        Swing::Shadow => {
+        PlaceLightBy::Shadow => {
             let ray = aimed_at - at.point;
             if ray.length() < SAME_POINT_M {
-                return Err(SwingError::AtAim);
+                return Err(PlaceLightError::AimReadout);
             }
-            let direction = ray.try_normalize().ok_or(SwingError::AtAim)?;
+            let direction = ray.try_normalize().ok_or(PlaceLightError::AimReadout)?;
             if direction.dot(at.normal) <= 0.0 {
-                return Err(SwingError::Behind);
+                return Err(PlaceLightError::Behind);
             }
             (aimed_at, direction)
         }
@@ -79,13 +79,13 @@ pub fn swung(scene: &Scene, start: &Light, at: &SurfaceHit, swing: Swing) -> Res
         distance_m = (centre.y - LOWEST_M) / -direction.y;
         // A point in the floor has a distance under zero, or none.
         if distance_m.is_nan() || distance_m < NEAREST_M {
-            return Err(SwingError::Floor);
+            return Err(PlaceLightError::Floor);
         }
     }
-    let aim = match (swing, start.aim) {
-        (Swing::Highlight | Swing::Light, _) => aim_on(scene, at),
-        (Swing::Shadow, Aim::Angles { .. }) => Aim::Point(aimed_at),
-        (Swing::Shadow, aim) => aim,
+    let aim = match (by, start.aim) {
+        (PlaceLightBy::Highlight | PlaceLightBy::Light, _) => aim_on(scene, at),
+        (PlaceLightBy::Shadow, Aim::Angles { .. }) => Aim::Point(aimed_at),
+        (PlaceLightBy::Shadow, aim) => aim,
     };
     Ok(Light { position: centre + direction * distance_m, aim, ..start.clone() })
 }
@@ -100,7 +100,7 @@ fn aim_on(scene: &Scene, at: &SurfaceHit) -> Aim {
 }
 
 /// Whether a light can be placed so: it must come from somewhere.
-pub fn can_swing(light: &Light) -> bool {
+pub fn can_be_placed(light: &Light) -> bool {
     light.emitter != Emitter::Surround
 }
 
@@ -138,7 +138,7 @@ mod tests {
         let distance = (start.position - scene.aim_point(&start.aim, start.position)).length();
         for direction in [Vec3::new(0.1, 0.2, 1.0), Vec3::new(-0.5, 0.6, 0.7), Vec3::new(0.7, -0.1, 0.5)] {
             let at = on_ball(&scene, direction);
-            let light = swung(&scene, &start, &at, Swing::Highlight).unwrap();
+            let light = placed_light(&scene, &start, &at, PlaceLightBy::Highlight).unwrap();
             let [to_light, to_camera] = [light.position, scene.camera.position].map(|p| (p - at.point).normalize());
             let half = (to_light + to_camera).normalize();
             assert!((half - at.normal).length() < 1e-5, "{direction}: {half}, not {}", at.normal);
@@ -154,7 +154,7 @@ mod tests {
     fn straight_light_comes_along_the_normal() {
         let (scene, start) = studio();
         let at = on_ball(&scene, Vec3::new(-0.9, 0.3, -0.2));
-        let light = swung(&scene, &start, &at, Swing::Light).unwrap();
+        let light = placed_light(&scene, &start, &at, PlaceLightBy::Light).unwrap();
         let from = (light.position - at.point).normalize();
         assert!((from - at.normal).length() < 1e-6);
         assert!((scene.aim_point(&light.aim, light.position) - at.point).length() < 1e-6);
@@ -169,28 +169,31 @@ mod tests {
         // On a paper behind, and on a cheek beside.
         for (point, normal) in [(Vec3::new(0.8, 1.1, -2.0), Vec3::Z), (nose + Vec3::new(0.02, -0.02, -0.01), Vec3::Z)] {
             let at = SurfaceHit { object: ObjectId(0), point, normal, t: 1.0 };
-            let light = swung(&scene, &start, &at, Swing::Shadow).unwrap();
+            let light = placed_light(&scene, &start, &at, PlaceLightBy::Shadow).unwrap();
             let (to_nose, to_shadow) = (nose - light.position, point - light.position);
             assert!(to_nose.cross(to_shadow).length() < 1e-4 && to_nose.dot(to_shadow) > 0.0, "{}", light.position);
             assert!((to_nose.length() - distance).abs() < 1e-5 && to_shadow.length() > distance);
             assert_eq!(light.aim, start.aim);
         }
         let cap = SurfaceHit { object: ObjectId(0), point: nose, normal: Vec3::Z, t: 1.0 };
-        assert_eq!(swung(&scene, &start, &cap, Swing::Shadow), Err(SwingError::AtAim));
+        assert_eq!(placed_light(&scene, &start, &cap, PlaceLightBy::Shadow), Err(PlaceLightError::AimReadout));
         let back = SurfaceHit { point: Vec3::new(0.2, 1.4, -2.0), normal: Vec3::NEG_Z, ..cap };
-        assert_eq!(swung(&scene, &start, &back, Swing::Shadow), Err(SwingError::Behind));
+        assert_eq!(placed_light(&scene, &start, &back, PlaceLightBy::Shadow), Err(PlaceLightError::Behind));
     }
 
     #[test]
     fn no_highlight_where_the_camera_sees_nothing_and_no_light_in_the_floor() {
         let (mut scene, start) = studio();
         let behind = on_ball(&scene, Vec3::NEG_Z);
-        assert_eq!(swung(&scene, &start, &behind, Swing::Highlight), Err(SwingError::Unseen));
+        assert_eq!(placed_light(&scene, &start, &behind, PlaceLightBy::Highlight), Err(PlaceLightError::Unseen));
         let below = on_ball(&scene, Vec3::new(0.0, -1.0, 0.1));
-        let nearer = swung(&scene, &start, &below, Swing::Light).unwrap();
+        let nearer = placed_light(&scene, &start, &below, PlaceLightBy::Light).unwrap();
         assert!((nearer.position.y - LOWEST_M).abs() < 1e-5, "{}", nearer.position);
         assert!(((nearer.position - below.point).normalize() - below.normal).length() < 1e-5, "the direction holds");
         scene.objects[0].transform.position.y = 0.15;
-        assert_eq!(swung(&scene, &start, &on_ball(&scene, Vec3::NEG_Y), Swing::Light), Err(SwingError::Floor));
+        assert_eq!(
+            placed_light(&scene, &start, &on_ball(&scene, Vec3::NEG_Y), PlaceLightBy::Light),
+            Err(PlaceLightError::Floor)
+        );
     }
 }

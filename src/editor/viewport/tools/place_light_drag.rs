@@ -1,12 +1,12 @@
 //! The mouse in the view while a light is placed by its highlight, its light or its shadow.
 
-use crate::editor::commands::choices::Swing;
+use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::studio_document::Document;
 use crate::editor::ui::theme;
 use crate::editor::viewport::overlays::markers::{paint_banner, paint_text, place_of};
-use crate::editor::viewport::tools::place_light::{Placing, SwingError, swung};
+use crate::editor::viewport::tools::place_light::{LightPlacement, PlaceLightError, placed_light};
 use crate::editor::viewport::tools::surface_pick::{self, SurfaceHit};
 use crate::scene::{CameraFrame, Light, ObjectId, Scene};
 use eframe::egui::{Align2, Color32, CursorIcon, Painter, Rect, Response, Stroke, Ui, vec2};
@@ -14,24 +14,24 @@ use glam::Vec2;
 
 /// A light that is placed, and where the mouse is with it.
 #[derive(Clone, Debug)]
-pub struct SwingDrag {
-    placing: Placing,
+pub struct PlaceLightDrag {
+    placing: LightPlacement,
     /// The light when the button went down, and the thing that was under the pointer then: a drag stays on it.
     held: Option<(Light, ObjectId)>,
     /// The drag was given up; what is left of the press does nothing.
     spent: bool,
     /// The surface under the pointer, and whether the light can be put so.
-    at: Option<(SurfaceHit, Option<SwingError>)>,
+    at: Option<(SurfaceHit, Option<PlaceLightError>)>,
 }
 
-impl SwingDrag {
+impl PlaceLightDrag {
     /// Begins.
-    pub fn new(placing: Placing) -> Self {
-        SwingDrag { placing, held: None, spent: false, at: None }
+    pub fn new(placing: LightPlacement) -> Self {
+        PlaceLightDrag { placing, held: None, spent: false, at: None }
     }
 
     /// What is placed.
-    pub fn placing(&self) -> Placing {
+    pub fn placing(&self) -> LightPlacement {
         self.placing
     }
 
@@ -82,11 +82,11 @@ impl SwingDrag {
         }
         // The distance is that of the press: what the floor made nearer comes back with the rest of the drag.
         let start = self.held.as_ref().map_or(light, |(start, _)| start);
-        let result = swung(scene, start, &hit, self.placing.swing);
+        let result = placed_light(scene, start, &hit, self.placing.by);
         self.at = Some((hit, result.as_ref().err().copied()));
         if let (true, Ok(swung)) = (self.held.is_some(), result) {
             let changed = Light { position: swung.position, aim: swung.aim, ..light.clone() };
-            out.push(Command::Do(Action::SetLight(Box::new(changed))));
+            out.push(Command::Apply(Action::SetLight(Box::new(changed))));
         }
         true
     }
@@ -94,7 +94,7 @@ impl SwingDrag {
     /// Draws the point, the way to light and camera, and what to do.
     pub fn paint(&self, painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect) {
         let Some(light) = scene.light(self.placing.light) else { return };
-        paint_banner(painter, rect, &self.placing.swing.hint(&light.name));
+        paint_banner(painter, rect, &self.placing.by.hint(&light.name));
         let Some((at, error)) = &self.at else { return };
         let Some(place) = place_of(frame, rect, at.point) else { return };
         if let Some(error) = error {
@@ -114,12 +114,12 @@ impl SwingDrag {
         line(at.point + 0.12 * at.normal, 2.0, Color32::WHITE);
         if self.held.is_some() {
             line(light.position, 1.0, color);
-            if self.placing.swing == Swing::Shadow
+            if self.placing.by == PlaceLightBy::Shadow
                 && let Some(aim) = place_of(frame, rect, scene.aim_point(&light.aim, light.position))
             {
                 painter.circle_stroke(aim, 4.0, Stroke::new(1.5, color));
             }
-            if self.placing.swing == Swing::Highlight {
+            if self.placing.by == PlaceLightBy::Highlight {
                 line(scene.camera.position, 1.0, Color32::from_gray(190));
             }
         }

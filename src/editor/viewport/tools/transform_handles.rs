@@ -1,12 +1,12 @@
 //! Handles for moving, turning and sizing the selected things, over the viewport.
 
-use crate::editor::commands::choices::Handle;
+use crate::editor::commands::choices::HandleMode;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
 use crate::editor::viewport::overlays::markers::paint_text;
 use crate::editor::viewport::tools::floor_handle::FloorHandle;
-use crate::editor::viewport::tools::handle_pointer::{Pointer, STEP_DEG, STEP_M};
-use crate::editor::viewport::tools::transform_selection::{Change, Held, pivot};
+use crate::editor::viewport::tools::handle_pointer::{HandlePointer, STEP_DEG, STEP_M};
+use crate::editor::viewport::tools::transform_selection::{DragSelection, DragTransform, pivot};
 use crate::editor::viewport::tools::typed_number::TypedNumber;
 use crate::scene::{CameraFrame, Scene};
 use eframe::egui::{self, Align2, Color32, Event, Rect, Rgba, vec2};
@@ -33,22 +33,24 @@ pub struct HandleView<'a> {
 
 /// A drag under way.
 #[derive(Clone, Debug)]
-struct Drag {
-    held: Held,
-    change: Change,
+struct HandleDrag {
+    held: DragSelection,
+    change: DragTransform,
     typed: TypedNumber,
 }
 
-impl Drag {
+impl HandleDrag {
     /// The change with the typed amount, where one is typed: it goes the way that the drag goes.
-    fn told(&self) -> Change {
+    fn told(&self) -> DragTransform {
         let Some(amount) = self.typed.value() else { return self.change };
         match self.change {
-            Change::Move(by) => Change::Move(by.normalize_or_zero() * amount),
-            Change::Turn(axis, angle) => Change::Turn(axis, amount.to_radians() * if angle < 0.0 { -1.0 } else { 1.0 }),
-            Change::Size(factor) => {
+            DragTransform::Move(by) => DragTransform::Move(by.normalize_or_zero() * amount),
+            DragTransform::Rotate(axis, angle) => {
+                DragTransform::Rotate(axis, amount.to_radians() * if angle < 0.0 { -1.0 } else { 1.0 })
+            }
+            DragTransform::Scale(factor) => {
                 let by = (factor - Vec3::ONE).abs();
-                Change::Size(Vec3::ONE + by / by.max_element().max(1e-6) * (amount - 1.0))
+                DragTransform::Scale(Vec3::ONE + by / by.max_element().max(1e-6) * (amount - 1.0))
             }
         }
     }
@@ -56,9 +58,9 @@ impl Drag {
 
 /// The handles of the selection.
 #[derive(Debug, Default)]
-pub struct Handles {
+pub struct TransformHandles {
     gizmo: Gizmo,
-    drag: Option<Drag>,
+    drag: Option<HandleDrag>,
     /// The drag was ended by a key; what is left of the press does nothing.
     spent: bool,
     /// Whether the selection has handles of the kind on show.
@@ -66,7 +68,7 @@ pub struct Handles {
     floor: FloorHandle,
 }
 
-impl Handles {
+impl TransformHandles {
     /// Whether the pointer is on a handle or drags one.
     pub fn wants_pointer(&self) -> bool {
         self.is_dragging() || (self.shown && (self.gizmo.is_focused() || self.floor.wants_pointer()))
@@ -82,9 +84,9 @@ impl Handles {
         &mut self,
         scene: &Scene,
         items: &[Item],
-        handle: Handle,
+        handle: HandleMode,
         view: HandleView<'_>,
-        pointer: Pointer,
+        pointer: HandlePointer,
         keys: &[Event],
     ) -> Option<Action> {
         let place = pivot(scene, items, handle);
@@ -100,8 +102,8 @@ impl Handles {
             return None;
         };
         if self.drag.is_none() {
-            let held = Held::new(scene, items, handle)?;
-            self.drag = Some(Drag { held, change, typed: TypedNumber::default() });
+            let held = DragSelection::new(scene, items, handle)?;
+            self.drag = Some(HandleDrag { held, change, typed: TypedNumber::default() });
         }
         let drag = self.drag.as_mut()?;
         drag.change = change;
@@ -118,13 +120,13 @@ impl Handles {
         &mut self,
         scene: &Scene,
         items: &[Item],
-        handle: Handle,
+        handle: HandleMode,
         place: Vec3,
         HandleView { frame, rect }: HandleView<'_>,
-        pointer: Pointer,
-    ) -> Option<Change> {
+        pointer: HandlePointer,
+    ) -> Option<DragTransform> {
         let mut config = config(handle, frame, rect, pointer.snap, place);
-        let on_floor = handle == Handle::Move
+        let on_floor = handle == HandleMode::Move
             && items.iter().any(|item| matches!(item, Item::Object(_)))
             && frame.forward().y.abs() > LEAST_TILT;
         if on_floor {
@@ -138,7 +140,7 @@ impl Handles {
                 let moved = self.floor.update(place, frame, rect, pointer);
                 if self.floor.wants_pointer() {
                     self.gizmo.update(GizmoInteraction::default(), &[target]);
-                    return moved.map(Change::Move);
+                    return moved.map(DragTransform::Move);
                 }
             }
         } else {
@@ -161,7 +163,7 @@ impl Handles {
 
     /// Forgets a drag, because there is nothing selected that has handles.
     pub fn reset(&mut self) {
-        *self = Handles::default();
+        *self = TransformHandles::default();
     }
 
     /// Draws them, and how far a drag has come.
@@ -185,17 +187,17 @@ impl Handles {
 }
 
 /// How far a drag has come: as typed, or as measured with a hint that it can be typed.
-fn amount(drag: &Drag) -> String {
+fn amount(drag: &HandleDrag) -> String {
     let unit = match drag.change {
-        Change::Move(_) => " m",
-        Change::Turn(..) => "\u{b0}",
-        Change::Size(_) => " times",
+        DragTransform::Move(_) => " m",
+        DragTransform::Rotate(..) => "\u{b0}",
+        DragTransform::Scale(_) => " times",
     };
     let number = match drag.change {
         _ if !drag.typed.text().is_empty() => return format!("{}{unit}    Enter sets it", drag.typed.text()),
-        Change::Move(by) => format!("{:.2}", by.length()),
-        Change::Turn(_, angle) => format!("{:.1}", angle.to_degrees().abs()),
-        Change::Size(factor) => {
+        DragTransform::Move(by) => format!("{:.2}", by.length()),
+        DragTransform::Rotate(_, angle) => format!("{:.1}", angle.to_degrees().abs()),
+        DragTransform::Scale(factor) => {
             let most = factor.to_array().into_iter().max_by(|a, b| (a - 1.0).abs().total_cmp(&(b - 1.0).abs()));
             format!("{:.2}", most.unwrap_or(1.0))
         }
@@ -203,26 +205,28 @@ fn amount(drag: &Drag) -> String {
     format!("{number}{unit}")
 }
 
-fn change_of(result: GizmoResult) -> Change {
+fn change_of(result: GizmoResult) -> DragTransform {
     let vector = |v: mint::Vector3<f64>| DVec3::new(v.x, v.y, v.z).as_vec3();
     match result {
-        GizmoResult::Translation { total, .. } => Change::Move(vector(total)),
+        GizmoResult::Translation { total, .. } => DragTransform::Move(vector(total)),
         // The library tells the angle on the screen, which runs the other way.
-        GizmoResult::Rotation { axis, total, .. } => Change::Turn(vector(axis).normalize_or(Vec3::Y), -total as f32),
-        GizmoResult::Scale { total } => Change::Size(vector(total)),
+        GizmoResult::Rotation { axis, total, .. } => {
+            DragTransform::Rotate(vector(axis).normalize_or(Vec3::Y), -total as f32)
+        }
+        GizmoResult::Scale { total } => DragTransform::Scale(vector(total)),
         GizmoResult::Arcball { total, .. } => {
             let turn = Quat::from_xyzw(total.v.x as f32, total.v.y as f32, total.v.z as f32, total.s as f32);
             let (axis, angle) = turn.normalize().to_axis_angle();
-            Change::Turn(axis, angle)
+            DragTransform::Rotate(axis, angle)
         }
     }
 }
 
 /// The things as the handles see them: a place, and the axes of what is sized.
-fn target(scene: &Scene, items: &[Item], handle: Handle, place: Vec3) -> Transform {
+fn target(scene: &Scene, items: &[Item], handle: HandleMode, place: Vec3) -> Transform {
     let rotation = match (handle, items) {
-        (Handle::Size, [Item::Object(id)]) => scene.object(*id).map(|object| object.transform.rotation()),
-        (Handle::Size, [Item::Light(id)]) => {
+        (HandleMode::Scale, [Item::Object(id)]) => scene.object(*id).map(|object| object.transform.rotation()),
+        (HandleMode::Scale, [Item::Light(id)]) => {
             scene.light(*id).map(|light| Quat::from_mat3a(&scene.light_frame(light).matrix3))
         }
         _ => None,
@@ -235,11 +239,11 @@ fn target(scene: &Scene, items: &[Item], handle: Handle, place: Vec3) -> Transfo
     )
 }
 
-fn config(handle: Handle, frame: &CameraFrame, rect: Rect, snap: bool, place: Vec3) -> GizmoConfig {
+fn config(handle: HandleMode, frame: &CameraFrame, rect: Rect, snap: bool, place: Vec3) -> GizmoConfig {
     let modes: EnumSet<GizmoMode> = match handle {
-        Handle::Move => GizmoMode::all_translate(),
-        Handle::Turn => GizmoMode::all_rotate(),
-        Handle::Size => GizmoMode::all_scale(),
+        HandleMode::Move => GizmoMode::all_translate(),
+        HandleMode::Rotate => GizmoMode::all_rotate(),
+        HandleMode::Scale => GizmoMode::all_scale(),
     };
     GizmoConfig {
         view_matrix: rows(frame.world_from_camera.inverse()),
@@ -249,7 +253,7 @@ fn config(handle: Handle, frame: &CameraFrame, rect: Rect, snap: bool, place: Ve
             Pos2::new(rect.max.x, rect.max.y),
         ),
         modes,
-        orientation: if handle == Handle::Size { GizmoOrientation::Local } else { GizmoOrientation::Global },
+        orientation: if handle == HandleMode::Scale { GizmoOrientation::Local } else { GizmoOrientation::Global },
         snapping: snap,
         snap_angle: STEP_DEG.to_radians(),
         snap_distance: STEP_M,
@@ -294,15 +298,15 @@ mod tests {
         let view = StudioView::default();
         let rect = Rect::from_min_size(egui::pos2(100.0, 50.0), vec2(800.0, 600.0));
         let frame = view.frame(800.0 / 600.0);
-        let mut handles = Handles::default();
+        let mut handles = TransformHandles::default();
         let start = rect.center();
-        let mut pointer = Pointer { position: start, is_over: true, pressed: false, down: false, snap: false };
+        let mut pointer = HandlePointer { position: start, is_over: true, pressed: false, down: false, snap: false };
         let view = HandleView { frame: &frame, rect };
-        handles.update(&scene, &[item], Handle::Move, view, pointer, &[]);
+        handles.update(&scene, &[item], HandleMode::Move, view, pointer, &[]);
         assert!(handles.wants_pointer(), "the pointer is on the middle handle");
         for (pressed, x) in [(true, 0.0), (false, 30.0), (false, 60.0)] {
-            pointer = Pointer { position: start + vec2(x, 0.0), pressed, down: true, ..pointer };
-            if let Some(action) = handles.update(&scene, &[item], Handle::Move, view, pointer, &[]) {
+            pointer = HandlePointer { position: start + vec2(x, 0.0), pressed, down: true, ..pointer };
+            if let Some(action) = handles.update(&scene, &[item], HandleMode::Move, view, pointer, &[]) {
                 action.apply(&mut scene).unwrap();
             }
         }
@@ -313,16 +317,17 @@ mod tests {
     #[test]
     fn a_typed_number_goes_the_way_of_the_drag() {
         let (scene, item) = scene_with_light();
-        let held = Held::new(&scene, &[item], Handle::Move).unwrap();
-        let mut drag = Drag { held, change: Change::Move(Vec3::new(0.0, -0.2, 0.0)), typed: TypedNumber::default() };
+        let held = DragSelection::new(&scene, &[item], HandleMode::Move).unwrap();
+        let mut drag =
+            HandleDrag { held, change: DragTransform::Move(Vec3::new(0.0, -0.2, 0.0)), typed: TypedNumber::default() };
         assert_eq!(drag.told(), drag.change);
         drag.typed.take(&[Event::Text("1.5".into())]);
-        assert_eq!(drag.told(), Change::Move(Vec3::new(0.0, -1.5, 0.0)));
-        drag.change = Change::Turn(Vec3::Y, -0.1);
-        assert_eq!(drag.told(), Change::Turn(Vec3::Y, -1.5_f32.to_radians()));
-        drag.change = Change::Size(Vec3::new(1.0, 0.8, 1.0));
-        assert_eq!(drag.told(), Change::Size(Vec3::new(1.0, 1.5, 1.0)));
-        drag.change = Change::Size(Vec3::splat(1.2));
-        assert_eq!(drag.told(), Change::Size(Vec3::splat(1.5)));
+        assert_eq!(drag.told(), DragTransform::Move(Vec3::new(0.0, -1.5, 0.0)));
+        drag.change = DragTransform::Rotate(Vec3::Y, -0.1);
+        assert_eq!(drag.told(), DragTransform::Rotate(Vec3::Y, -1.5_f32.to_radians()));
+        drag.change = DragTransform::Scale(Vec3::new(1.0, 0.8, 1.0));
+        assert_eq!(drag.told(), DragTransform::Scale(Vec3::new(1.0, 1.5, 1.0)));
+        drag.change = DragTransform::Scale(Vec3::splat(1.2));
+        assert_eq!(drag.told(), DragTransform::Scale(Vec3::splat(1.5)));
     }
 }

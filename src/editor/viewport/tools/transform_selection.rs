@@ -2,7 +2,7 @@
 //!
 //! Every change is told from the beginning of the drag, so that nothing adds up by rounding and a typed number is exact.
 
-use crate::editor::commands::choices::Handle;
+use crate::editor::commands::choices::HandleMode;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::{Item, name_of_all};
 use crate::editor::document::placement::{angles_towards, wrap_deg};
@@ -13,35 +13,35 @@ use glam::{Quat, Vec3};
 
 /// What a drag does to what it holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Change {
+pub enum DragTransform {
     /// Moves it so far, metres.
     Move(Vec3),
     /// Turns it about the pivot: unit axis and angle in radians.
-    Turn(Vec3, f32),
+    Rotate(Vec3, f32),
     /// Scales one thing along its own axes.
-    Size(Vec3),
+    Scale(Vec3),
 }
 
 /// Things and the scene that they were part of when the drag began.
 #[derive(Clone, Debug)]
-pub struct Held {
+pub struct DragSelection {
     items: Vec<Item>,
     scene: Scene,
     pivot: Vec3,
 }
 
-impl Held {
+impl DragSelection {
     /// Takes hold of things; none where these handles have nothing to hold.
-    pub fn new(scene: &Scene, items: &[Item], handle: Handle) -> Option<Self> {
-        Some(Held { items: items.to_vec(), pivot: pivot(scene, items, handle)?, scene: scene.clone() })
+    pub fn new(scene: &Scene, items: &[Item], handle: HandleMode) -> Option<Self> {
+        Some(DragSelection { items: items.to_vec(), pivot: pivot(scene, items, handle)?, scene: scene.clone() })
     }
 
     /// The things as they are after a change.
-    pub fn changed(&self, change: Change) -> Option<Action> {
+    pub fn changed(&self, change: DragTransform) -> Option<Action> {
         let finite = match change {
-            Change::Move(by) => by.is_finite(),
-            Change::Turn(axis, angle_rad) => axis.is_finite() && angle_rad.is_finite(),
-            Change::Size(factor) => factor.is_finite(),
+            DragTransform::Move(by) => by.is_finite(),
+            DragTransform::Rotate(axis, angle_rad) => axis.is_finite() && angle_rad.is_finite(),
+            DragTransform::Scale(factor) => factor.is_finite(),
         };
         if !finite {
             return None;
@@ -51,14 +51,14 @@ impl Held {
             return actions.pop();
         }
         let verb = match change {
-            Change::Move(_) => "Move",
-            Change::Turn(..) => "Turn",
-            Change::Size(_) => "Size",
+            DragTransform::Move(_) => "Move",
+            DragTransform::Rotate(..) => "Turn",
+            DragTransform::Scale(_) => "Size",
         };
         Some(Action::Together { label: format!("{verb} {}", name_of_all(&self.items, &self.scene)), actions })
     }
 
-    fn changed_item(&self, item: Item, change: Change) -> Option<Action> {
+    fn changed_item(&self, item: Item, change: DragTransform) -> Option<Action> {
         match item {
             Item::Object(id) => {
                 let object = changed_object(self.scene.object(id)?, self.pivot, change);
@@ -69,9 +69,9 @@ impl Held {
             Item::Meter => {
                 let meter = self.scene.meter?;
                 let position = match change {
-                    Change::Move(by) => meter.position + by,
-                    Change::Turn(axis, angle) => turned_about(self.pivot, axis, angle, meter.position),
-                    Change::Size(_) => return None,
+                    DragTransform::Move(by) => meter.position + by,
+                    DragTransform::Rotate(axis, angle) => turned_about(self.pivot, axis, angle, meter.position),
+                    DragTransform::Scale(_) => return None,
                 };
                 Some(Action::SetMeter(Some(Meter { position, ..meter })))
             }
@@ -84,44 +84,44 @@ impl Held {
         self.items.len() > 1 && self.items.iter().any(|item| matches!(item, Item::Object(_)))
     }
 
-    fn changed_light(&self, start: &Light, change: Change) -> Light {
+    fn changed_light(&self, start: &Light, change: DragTransform) -> Light {
         let mut light = start.clone();
         match change {
-            Change::Move(by) => {
+            DragTransform::Move(by) => {
                 light.position += by;
                 if let (Aim::Point(point), true) = (&mut light.aim, self.takes_points_along()) {
                     *point += by;
                 }
             }
-            Change::Turn(axis, angle) => {
+            DragTransform::Rotate(axis, angle) => {
                 let frame = self.scene.light_frame(start);
                 light.position = turned_about(self.pivot, axis, angle, start.position);
                 let (aim, roll_rad) = self.turned_aim(&start.aim, start.position, frame, axis, angle);
                 (light.aim, light.roll_deg) = (aim, settled(roll_rad.to_degrees(), start.roll_deg));
             }
-            Change::Size(factor) => resize(&mut light.emitter, factor),
+            DragTransform::Scale(factor) => resize(&mut light.emitter, factor),
         }
         light
     }
 
-    fn changed_camera(&self, change: Change) -> Option<Camera> {
+    fn changed_camera(&self, change: DragTransform) -> Option<Camera> {
         let start = &self.scene.camera;
         let mut camera = start.clone();
         match change {
-            Change::Move(by) => {
+            DragTransform::Move(by) => {
                 camera.position += by;
                 if let (Aim::Point(point), true) = (&mut camera.aim, self.takes_points_along()) {
                     *point += by;
                 }
             }
-            Change::Turn(axis, angle) => {
+            DragTransform::Rotate(axis, angle) => {
                 let frame = self.scene.camera_frame(1.0).world_from_camera;
                 camera.position = turned_about(self.pivot, axis, angle, start.position);
                 let (aim, roll_rad) = self.turned_aim(&start.aim, start.position, frame, axis, angle);
                 // A camera's roll is clockwise as seen from behind, a frame's is not.
                 (camera.aim, camera.roll_deg) = (aim, settled(-roll_rad.to_degrees(), start.roll_deg));
             }
-            Change::Size(_) => return None,
+            DragTransform::Scale(_) => return None,
         }
         Some(camera)
     }
@@ -153,21 +153,21 @@ impl Held {
 /// Where the handles for these things stand, and what a turn turns about: the common centre. For one thing that is its
 /// own place, and for one light that is aimed at a thing the point that it lights: a turn swings it round its subject.
 /// None where there is nothing to hold.
-pub fn pivot(scene: &Scene, items: &[Item], handle: Handle) -> Option<Vec3> {
+pub fn pivot(scene: &Scene, items: &[Item], handle: HandleMode) -> Option<Vec3> {
     let [item] = items else {
-        return centre(items, scene).filter(|_| handle != Handle::Size);
+        return centre(items, scene).filter(|_| handle != HandleMode::Scale);
     };
     let place = item.position(scene)?;
     let light = if let Item::Light(id) = item { scene.light(*id) } else { None };
     match (handle, item) {
-        (Handle::Move, _) | (Handle::Turn, Item::Object(_) | Item::Camera) | (Handle::Size, Item::Object(_)) => {
-            Some(place)
-        }
-        (Handle::Turn, _) => light.map(|light| match light.aim {
+        (HandleMode::Move, _)
+        | (HandleMode::Rotate, Item::Object(_) | Item::Camera)
+        | (HandleMode::Scale, Item::Object(_)) => Some(place),
+        (HandleMode::Rotate, _) => light.map(|light| match light.aim {
             Aim::Object { .. } => scene.aim_point(&light.aim, place),
             Aim::Point(_) | Aim::Angles { .. } => place,
         }),
-        (Handle::Size, _) => {
+        (HandleMode::Scale, _) => {
             light.filter(|light| !matches!(light.emitter, Emitter::Point | Emitter::Sun { .. })).map(|_| place)
         }
     }
@@ -182,11 +182,11 @@ fn settled(roll_deg: f32, start_deg: f32) -> f32 {
     if (roll_deg - start_deg).abs() < 0.01 { start_deg } else { roll_deg }
 }
 
-fn changed_object(start: &Object, pivot: Vec3, change: Change) -> Object {
+fn changed_object(start: &Object, pivot: Vec3, change: DragTransform) -> Object {
     let mut object = start.clone();
     match change {
-        Change::Move(by) => object.transform.position += by,
-        Change::Turn(axis, angle) => {
+        DragTransform::Move(by) => object.transform.position += by,
+        DragTransform::Rotate(axis, angle) => {
             object.transform.position = turned_about(pivot, axis, angle, start.transform.position);
             let upright = start.transform.rotation_deg.x == 0.0 && start.transform.rotation_deg.z == 0.0;
             if upright && axis.abs() == Vec3::Y {
@@ -197,7 +197,9 @@ fn changed_object(start: &Object, pivot: Vec3, change: Change) -> Object {
                 object.transform.set_rotation(Quat::from_axis_angle(axis, angle) * start.transform.rotation());
             }
         }
-        Change::Size(factor) => object.transform.scale = (start.transform.scale * factor).max(Vec3::splat(0.001)),
+        DragTransform::Scale(factor) => {
+            object.transform.scale = (start.transform.scale * factor).max(Vec3::splat(0.001))
+        }
     }
     object
 }
@@ -245,9 +247,9 @@ mod tests {
         (scene, [Item::Object(ObjectId(0)), Item::Light(LightId(0)), Item::Light(LightId(1))])
     }
 
-    fn after(scene: &Scene, items: &[Item], handle: Handle, change: Change) -> Scene {
+    fn after(scene: &Scene, items: &[Item], handle: HandleMode, change: DragTransform) -> Scene {
         let mut scene = scene.clone();
-        Held::new(&scene, items, handle).unwrap().changed(change).unwrap().apply(&mut scene).unwrap();
+        DragSelection::new(&scene, items, handle).unwrap().changed(change).unwrap().apply(&mut scene).unwrap();
         scene
     }
 
@@ -261,8 +263,10 @@ mod tests {
         let (scene, items) = studio();
         let face =
             |scene: &Scene| scene.objects[0].transform.world_from_object().transform_point3(Vec3::new(0.03, 0.4, 0.1));
-        let turn = Change::Turn(Vec3::Y, 0.8);
-        for (handle, change) in [(Handle::Turn, turn), (Handle::Move, Change::Move(Vec3::new(1.0, 0.2, -0.7)))] {
+        let turn = DragTransform::Rotate(Vec3::Y, 0.8);
+        for (handle, change) in
+            [(HandleMode::Rotate, turn), (HandleMode::Move, DragTransform::Move(Vec3::new(1.0, 0.2, -0.7)))]
+        {
             let moved = after(&scene, &items, handle, change);
             for light in 0..2 {
                 let (now, before) = (seen_by(&moved, light, face(&moved)), seen_by(&scene, light, face(&scene)));
@@ -275,7 +279,7 @@ mod tests {
     fn a_light_that_is_aimed_at_a_thing_swings_round_it_at_its_distance() {
         let (scene, [_, softbox, _]) = studio();
         let target = scene.aim_point(&scene.lights[0].aim, Vec3::ZERO);
-        let swung = after(&scene, &[softbox], Handle::Turn, Change::Turn(Vec3::Y, FRAC_PI_2));
+        let swung = after(&scene, &[softbox], HandleMode::Rotate, DragTransform::Rotate(Vec3::Y, FRAC_PI_2));
         let (now, before) = (swung.lights[0].position - target, scene.lights[0].position - target);
         assert!((now - Vec3::new(before.z, before.y, -before.x)).length() < 1e-5, "{now} from {before}");
         assert_eq!((swung.lights[0].aim, swung.lights[0].roll_deg), (scene.lights[0].aim, 0.0));
@@ -284,7 +288,7 @@ mod tests {
     #[test]
     fn a_light_that_is_aimed_at_a_point_turns_where_it_stands() {
         let (scene, [.., bulb]) = studio();
-        let turned = after(&scene, &[bulb], Handle::Turn, Change::Turn(Vec3::X, 0.3));
+        let turned = after(&scene, &[bulb], HandleMode::Rotate, DragTransform::Rotate(Vec3::X, 0.3));
         let (now, before) = (&turned.lights[1], &scene.lights[1]);
         assert_eq!(now.position, before.position);
         let turn = Quat::from_axis_angle(Vec3::X, 0.3);
@@ -298,7 +302,7 @@ mod tests {
     fn points_that_lights_aim_at_stay_when_only_the_lights_move() {
         let (scene, [_, softbox, bulb]) = studio();
         let by = Vec3::new(0.0, 0.5, 0.0);
-        let moved = after(&scene, &[softbox, bulb], Handle::Move, Change::Move(by));
+        let moved = after(&scene, &[softbox, bulb], HandleMode::Move, DragTransform::Move(by));
         assert_eq!(moved.lights[1].aim, scene.lights[1].aim);
         assert_eq!(moved.lights[1].position, scene.lights[1].position + by);
     }

@@ -1,0 +1,137 @@
+//! The state of the editor outside the document, grouped by what changes together.
+
+use crate::editor::commands::choices::{CentralView, HandleMode};
+use crate::editor::document::catalog::CatalogTab;
+use crate::editor::document::files::PresetInfo;
+use crate::editor::panels::outliner::OutlinerState;
+use crate::editor::panels::presets::PresetPicker;
+use crate::editor::panels::thumbnails::Thumbnails;
+use crate::editor::picture::picture_view::PictureView;
+use crate::editor::ui::side_panel::SidePanel;
+use crate::editor::viewport::viewport_area::Viewport;
+use crate::editor::window::background_tasks::BackgroundTasks;
+use crate::editor::window::frame_log::FrameLog;
+use crate::jobs::{Forecaster, MeterJob};
+use std::time::{Duration, Instant};
+
+/// The views in the middle of the window.
+#[derive(Debug)]
+pub struct ViewState {
+    /// The view on show.
+    pub central: CentralView,
+    /// The view that closing the view through a light returns to.
+    pub before_light: CentralView,
+    /// The kind of transform handles.
+    pub handles: HandleMode,
+    /// The live views of the studio.
+    pub viewport: Viewport,
+    /// Zoom and offset of the rendered picture.
+    pub picture: PictureView,
+}
+
+impl ViewState {
+    /// Starts in the studio view with handles that move.
+    pub fn new(viewport: Viewport) -> Self {
+        ViewState {
+            central: CentralView::default(),
+            before_light: CentralView::default(),
+            handles: HandleMode::default(),
+            viewport,
+            picture: PictureView::default(),
+        }
+    }
+}
+
+/// The panels and lists around the viewport.
+#[derive(Debug)]
+pub struct PanelState {
+    /// The name field of the list of items.
+    pub outliner: OutlinerState,
+    /// The list of shipped studios, open or closed.
+    pub preset_picker: PresetPicker,
+    /// The shipped studios.
+    pub presets: Vec<PresetInfo>,
+    /// The open tab of the catalog.
+    pub catalog_tab: CatalogTab,
+    /// True while the list of keys is open.
+    pub show_help: bool,
+    /// The panel of catalog and item list.
+    pub left: SidePanel,
+    /// The panel of inspector and render settings.
+    pub right: SidePanel,
+}
+
+impl PanelState {
+    /// Starts with the lights of the catalog.
+    pub fn new(presets: Vec<PresetInfo>) -> Self {
+        PanelState {
+            outliner: OutlinerState::default(),
+            preset_picker: PresetPicker::default(),
+            presets,
+            catalog_tab: CatalogTab::Lights,
+            show_help: false,
+            left: SidePanel::default(),
+            right: SidePanel::default(),
+        }
+    }
+}
+
+/// Background work other than renders and the live view.
+#[derive(Debug)]
+pub struct BackgroundState {
+    /// File operations.
+    pub tasks: BackgroundTasks,
+    /// The reading of the light meter.
+    pub meter: MeterJob,
+    /// The estimate of render time and noise.
+    pub forecaster: Forecaster,
+    /// The pictures of presets and catalog entries.
+    pub thumbnails: Thumbnails,
+}
+
+impl BackgroundState {
+    /// Starts idle.
+    pub fn new(forecaster: Forecaster) -> Self {
+        BackgroundState {
+            tasks: BackgroundTasks::default(),
+            meter: MeterJob::default(),
+            forecaster,
+            thumbnails: Thumbnails::default(),
+        }
+    }
+}
+
+/// The native window and its input.
+#[derive(Debug, Default)]
+pub struct WindowState {
+    /// The title as last sent to the window.
+    pub title: String,
+    /// Number of the last press of a button or key; the changes of one press are one undo step.
+    pub press_id: u64,
+    /// The reason why the window's device was lost; none while the window can draw.
+    pub device_loss: Option<String>,
+    /// Time of the last device loss.
+    pub last_loss: Option<Instant>,
+    /// True once the failure of the current render job has been reported.
+    pub render_failure_reported: bool,
+}
+
+/// Timings for the log.
+#[derive(Debug)]
+pub struct Diagnostics {
+    /// Start of the program.
+    pub started: Instant,
+    /// Time from the start of the program to the end of the first frame.
+    pub first_frame: Option<Duration>,
+    /// True once the time of the first live view has been logged.
+    pub first_view_logged: bool,
+    /// Times between frames.
+    pub frame_log: FrameLog,
+}
+
+impl Diagnostics {
+    /// Starts without any frame.
+    pub fn new(started: Instant) -> Self {
+        Diagnostics { started, first_frame: None, first_view_logged: false, frame_log: FrameLog::default() }
+    }
+}
