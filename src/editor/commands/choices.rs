@@ -4,21 +4,21 @@ use crate::scene::LightId;
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI};
 
-/// What the middle of the window shows.
+/// The view in the middle of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum CentralView {
-    /// The studio from anywhere.
+    /// The studio from a free viewpoint.
     #[default]
     Studio,
-    /// What the camera frames.
+    /// The camera's frame.
     Camera,
-    /// What a light sees along its axis.
+    /// The view along the axis of a light.
     Light(LightId),
     /// The rendered picture.
     Picture,
 }
 
-/// What the handles in the viewport do.
+/// The kind of transform handles in the viewport.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum HandleMode {
     /// Move.
@@ -30,17 +30,17 @@ pub enum HandleMode {
     Scale,
 }
 
-/// How the live view is made.
+/// The renderer of the live view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum LiveMode {
-    /// By the graphics card: at once, with bounced light and mirrors estimated.
+    /// The GPU preview: immediate, with estimated indirect light and reflections.
     #[default]
     Quick,
-    /// By the tracer: as the picture will be, out of grain within moments.
+    /// The path tracer: as the picture will be; the noise clears within moments.
     True,
 }
 
-/// A side of the room that the studio is looked at from.
+/// A side of the room from which the studio is viewed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ViewSide {
     /// From above; the back of the room is up.
@@ -58,11 +58,11 @@ pub enum ViewSide {
 }
 
 impl ViewSide {
-    /// All of them; the three with a key come first.
+    /// All sides; the three with a shortcut come first.
     pub const ALL: [ViewSide; 6] =
         [ViewSide::Top, ViewSide::Front, ViewSide::Right, ViewSide::Back, ViewSide::Left, ViewSide::Bottom];
 
-    /// Its name.
+    /// Returns the name in menus.
     pub fn label(self) -> &'static str {
         match self {
             ViewSide::Top => "Top",
@@ -74,7 +74,7 @@ impl ViewSide {
         }
     }
 
-    /// Unit direction from the target to the eye.
+    /// Returns the unit direction from the target to the eye, world space.
     pub fn away(self) -> Vec3 {
         match self {
             ViewSide::Top => Vec3::Y,
@@ -86,7 +86,7 @@ impl ViewSide {
         }
     }
 
-    /// Yaw and pitch, radians.
+    /// Returns yaw and pitch, radians.
     pub fn angles(self) -> (f32, f32) {
         match self {
             ViewSide::Top => (0.0, FRAC_PI_2),
@@ -99,22 +99,22 @@ impl ViewSide {
     }
 }
 
-/// What is put on the point of a surface that the pointer shows.
+/// The feature of a light's effect that is put on the surface point under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlaceLightBy {
-    /// The highlight: the mirror image of the light, as the camera sees it.
+    /// The specular highlight, as the camera sees it.
     Highlight,
-    /// The light itself: it falls on the point straight on.
+    /// The light at normal incidence.
     Light,
-    /// The shadow of the point that it is aimed at: of a nose on a cheek, of a head on the paper.
+    /// The shadow of the aim point: of a nose on a cheek, of a head on the paper.
     Shadow,
 }
 
 impl PlaceLightBy {
-    /// All of them, in menu order.
+    /// All features, in menu order.
     pub const ALL: [PlaceLightBy; 3] = [PlaceLightBy::Highlight, PlaceLightBy::Light, PlaceLightBy::Shadow];
 
-    /// What a menu calls it.
+    /// Returns the label in menus.
     pub fn label(self) -> &'static str {
         match self {
             PlaceLightBy::Highlight => "Place its highlight",
@@ -123,7 +123,7 @@ impl PlaceLightBy {
         }
     }
 
-    /// What a tip says of it.
+    /// Returns the tooltip.
     pub fn tip(self) -> &'static str {
         match self {
             PlaceLightBy::Highlight => {
@@ -137,7 +137,7 @@ impl PlaceLightBy {
         }
     }
 
-    /// What the mouse does, for a light of this name.
+    /// Returns the line of help in the view, for a light of this name.
     pub fn hint(self, light: &str) -> String {
         let what = match self {
             PlaceLightBy::Highlight => "where the camera shall see the highlight of",

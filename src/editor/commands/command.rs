@@ -1,4 +1,4 @@
-//! What menus, shortcuts, panels and the viewport ask of the window. Changes of the scene travel inside as actions.
+//! The commands of menus, shortcuts, panels and viewport. A change of the scene is an [`Action`] inside a command.
 
 use crate::editor::commands::choices::{CentralView, HandleMode, LiveMode, PlaceLightBy, ViewSide};
 use crate::editor::commands::file_purpose::FilePurpose;
@@ -6,100 +6,100 @@ use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
 use std::path::PathBuf;
 
-/// One request.
+/// A command of the user.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
-    /// Change the scene.
+    /// Changes the scene.
     Apply(Action),
-    /// Change the scene after giving the new light or object a place in it.
+    /// Adds a light or object of the catalog at a suitable position.
     AddFromCatalog(Box<crate::editor::document::catalog::CatalogItem>),
-    /// Select one thing, or nothing.
+    /// Selects one item, or nothing.
     Select(Option<Item>),
-    /// Take a thing into the selection, or out of it.
+    /// Adds an item to the selection or removes it.
     ToggleSelected(Item),
-    /// Select these things, too.
+    /// Adds these items to the selection.
     SelectAlso(Vec<Item>),
-    /// Select all lights and things that are not locked.
+    /// Selects all lights and visible objects that are not locked.
     SelectAll,
-    /// Leave what is under way: a drag, a mode, the selection.
+    /// Ends the current drag, mode or selection, whichever is innermost.
     Escape,
-    /// Begin to rename a thing in the list.
+    /// Opens the name field of an item in the list.
     BeginRename(Item),
-    /// Delete what is selected.
+    /// Deletes the selection.
     DeleteSelected,
-    /// Copy what is selected.
+    /// Duplicates the selection.
     DuplicateSelected,
-    /// Put what is selected, or copies of it, on the other side of the subject's face.
+    /// Mirrors the selection, or copies of it, about the plane through the subject's face.
     MirrorSelected {
-        /// Whether the originals stay.
+        /// True to mirror copies and keep the originals.
         copies: bool,
     },
-    /// Hide the selected things and mute the selected lights, or bring them back.
+    /// Hides the selected objects and mutes the selected lights, or reverts that.
     HideSelected,
-    /// Show every thing and unmute every light.
+    /// Shows every object and unmutes every light.
     ShowAll,
-    /// Let the selected lights shine alone, or bring back what was on before.
+    /// Solos the selected lights, or ends the solo.
     SoloSelected,
-    /// Lock the selection in its place, or let it go.
+    /// Locks the selection against moves, or unlocks it.
     LockSelected,
-    /// Look at the studio from a side, without perspective.
+    /// Views the studio from a side in parallel projection.
     LookFrom(ViewSide),
-    /// Perspective on or off.
+    /// Switches between perspective and parallel projection.
     ToggleParallel,
-    /// Look through the last selected light, or back.
+    /// Switches to the view through the last selected light, or back.
     ToggleLightView,
-    /// Place the last selected light by its highlight or its light, or end that.
+    /// Starts or ends placing the last selected light by one of its features.
     TogglePlaceLight(PlaceLightBy),
-    /// Snapping of handles on or off.
+    /// Switches the snapping of the handles.
     ToggleSnap,
-    /// Take the last step back.
+    /// Undoes the last step.
     Undo,
-    /// Do it again.
+    /// Redoes the step undone last.
     Redo,
-    /// Show the list of shipped studios.
+    /// Opens the list of shipped studios.
     New,
-    /// Open a shipped studio, by its place in the list.
+    /// Opens a shipped studio, by its index in the list.
     NewFromPreset(usize),
-    /// Ask for a scene and open it.
+    /// Opens a studio that a dialog selects.
     Open,
-    /// Open this scene.
+    /// Opens this studio.
     OpenPath(PathBuf),
-    /// Save to the scene's file; ask where if it has none.
+    /// Saves to the studio's file; a dialog selects one if it has none.
     Save,
-    /// Ask where, then save.
+    /// Saves to a file that a dialog selects.
     SaveAs,
-    /// Ask for a model and bring it in.
+    /// Imports a model that a dialog selects.
     Import,
-    /// Bring in this model.
+    /// Imports this model.
     ImportPath(PathBuf),
-    /// Ask for a texture for the material of this item's part (none: the item's own).
+    /// Sets the texture of the material of this item's part (none: the item's own) from a dialog.
     ChooseTexture(Item, Option<String>),
-    /// Ask where, then write the rendered picture.
+    /// Writes the rendered picture to a file that a dialog selects.
     ExportPicture,
-    /// A path was typed for a purpose, because the desktop has no dialog.
+    /// Uses a path that was chosen or typed for a purpose.
     UseFile(FilePurpose, PathBuf),
-    /// Empty the list of recent studios.
+    /// Clears the list of recent studios.
     ClearRecent,
-    /// Close the window.
+    /// Closes the window.
     Quit,
-    /// Start to render.
+    /// Starts a render.
     Render,
-    /// Stop rendering, keep what is there.
+    /// Cancels the render and keeps its samples.
     CancelRender,
-    /// Show something in the middle.
+    /// Shows a view in the middle of the window.
     ShowView(CentralView),
-    /// Camera view on or off.
+    /// Switches between camera view and studio view.
     ToggleCameraView,
-    /// Bring the selection, or everything, into view.
+    /// Frames the selection, or everything, in the studio view.
     FrameSelection,
-    /// Put the camera where the studio view looks from.
+    /// Moves the camera to the studio view's viewpoint.
     CameraFromView,
-    /// The live view by the graphics card or by the tracer.
+    /// Selects the renderer of the live view.
     SetLiveMode(LiveMode),
-    /// The other one of the two.
+    /// Switches to the other renderer of the live view.
     ToggleLiveMode,
-    /// Choose the handles.
+    /// Selects the kind of transform handles.
     SetHandles(HandleMode),
-    /// Show or hide the list of keys.
+    /// Shows or hides the list of keys.
     ToggleHelp,
 }

@@ -1,25 +1,25 @@
-//! The purposes a file name is asked for.
+//! The purposes of file dialogs: titles, filters and extensions.
 
 use crate::io;
 use std::path::PathBuf;
 
-/// What a file name is wanted for.
+/// The purpose of a file dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilePurpose {
     /// A scene to open.
     OpenScene,
-    /// Where to save the scene.
+    /// The file to save the scene to.
     SaveScene,
-    /// A model to bring in.
+    /// A model to import.
     ImportModel,
     /// A texture for a material.
     OpenTexture,
-    /// Where to write the finished picture.
+    /// The file to write the rendered picture to.
     ExportPicture,
 }
 
 impl FilePurpose {
-    /// Title of the dialog.
+    /// Returns the title of the dialog.
     pub fn title(self) -> String {
         match self {
             FilePurpose::OpenScene => "Open studio".to_owned(),
@@ -30,12 +30,12 @@ impl FilePurpose {
         }
     }
 
-    /// Whether the file is one that is going to be written.
+    /// Returns true if the file is written rather than read.
     pub fn is_save(self) -> bool {
         matches!(self, FilePurpose::SaveScene | FilePurpose::ExportPicture)
     }
 
-    /// Name and endings of the files.
+    /// Returns name and extensions of the file type.
     pub fn filter(self) -> (String, &'static [&'static str]) {
         match self {
             FilePurpose::OpenScene | FilePurpose::SaveScene => ("Catchlight studio".to_owned(), &["ron"]),
@@ -45,7 +45,7 @@ impl FilePurpose {
         }
     }
 
-    /// The path with the ending the files have, where the user typed none.
+    /// Returns the path with the default extension added to a file to write that has none.
     pub fn with_ending(self, path: PathBuf) -> PathBuf {
         if self.is_save() && path.extension().is_none() { path.with_extension(self.filter().1[0]) } else { path }
     }

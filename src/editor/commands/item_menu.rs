@@ -1,4 +1,4 @@
-//! What can be done to the selected things, for the context menus of list and view and the Edit menu.
+//! Menu entries for the selected items: context menus of item list and viewport, Edit menu.
 
 use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::commands::command::Command;
@@ -8,7 +8,8 @@ use crate::editor::document::selection::Selection;
 use crate::scene::Scene;
 use eframe::egui::Ui;
 
-/// The context menu of a thing. It is about the whole selection where the thing belongs to it, else about it alone.
+/// Draws the context menu of an item. It applies to the whole selection if the item is part of it, else to the item
+/// alone.
 pub fn item_menu_ui(ui: &mut Ui, scene: &Scene, item: Item, selection: &Selection, out: &mut Vec<Command>) {
     ui.set_min_width(230.0);
     let mut chosen = Vec::new();
@@ -31,15 +32,15 @@ pub fn item_menu_ui(ui: &mut Ui, scene: &Scene, item: Item, selection: &Selectio
     }
 }
 
-/// The menu of the view where nothing is selected.
-pub fn nothing_menu_ui(ui: &mut Ui, out: &mut Vec<Command>) {
+/// Draws the context menu of the viewport without a selection.
+pub fn empty_selection_menu_ui(ui: &mut Ui, out: &mut Vec<Command>) {
     ui.set_min_width(230.0);
     entry(ui, true, "Select all", "All lights and things that are not locked", Command::SelectAll, out);
     entry(ui, true, "Bring everything into view", "Figures, things and lights", Command::FrameSelection, out);
     entry(ui, true, "Show and unmute all", "Nothing is hidden or muted any more", Command::ShowAll, out);
 }
 
-/// The entries that are about a selection.
+/// Draws the entries that apply to a selection.
 pub fn selection_entries(ui: &mut Ui, scene: &Scene, selection: &Selection, out: &mut Vec<Command>) {
     let copyable = selection.items().iter().any(|item| item.can_be_copied());
     let lights = !selection.lights().is_empty();

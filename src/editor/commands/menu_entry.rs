@@ -3,7 +3,7 @@
 use crate::editor::commands::command::Command;
 use eframe::egui::{Button, Ui};
 
-/// One entry with its key.
+/// Draws a menu entry with the shortcut of its command.
 pub fn entry(ui: &mut Ui, enabled: bool, text: &str, tip: &str, command: Command, out: &mut Vec<Command>) {
     let shortcut = command.shortcut().map(|s| ui.ctx().format_shortcut(&s)).unwrap_or_default();
     let button = Button::new(text).shortcut_text(shortcut);

@@ -1,4 +1,4 @@
-//! The commands that menus, shortcuts, panels and the viewport give, their shortcuts and the menu of an item.
+//! The user's commands, their shortcuts, and the menu entries of an item.
 
 pub mod choices;
 pub mod command;

@@ -1,4 +1,4 @@
-//! The keys: what each means, for the window and for the list of keys alike.
+//! The keyboard shortcuts: bindings of keys to commands, shown in the list of keys.
 
 use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::commands::choices::ViewSide;
@@ -6,14 +6,14 @@ use crate::editor::commands::choices::{CentralView, HandleMode};
 use crate::editor::commands::command::Command;
 use eframe::egui::{Key, KeyboardShortcut, Modifiers};
 
-/// A key, the command it gives, and what that does.
+/// A key, its command, and a description.
 #[derive(Clone, Copy, Debug)]
 pub struct KeyBinding {
-    /// The key with what is held beside it.
+    /// The key with its modifiers.
     pub shortcut: KeyboardShortcut,
-    /// What it gives.
+    /// Returns the command.
     pub command: fn() -> Command,
-    /// In the list of keys.
+    /// Description in the list of keys.
     pub meaning: &'static str,
 }
 
@@ -37,7 +37,7 @@ const fn ctrl_shift(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
 }
 
-/// All keys with one fixed meaning, in the order of the list. Of two that match, the one with more modifiers comes first.
+/// All key bindings, in the order of the list. Of two with the same key, the one with more modifiers comes first.
 pub const KEY_BINDINGS: [KeyBinding; 38] = [
     bind(ctrl_shift(Key::S), || Command::SaveAs, "Save the studio to another file"),
     bind(ctrl_shift(Key::Z), || Command::Redo, "Do the last step again"),
@@ -96,7 +96,7 @@ pub const KEY_BINDINGS: [KeyBinding; 38] = [
 ];
 
 impl Command {
-    /// The key that gives it, where there is one.
+    /// Returns the shortcut of the command, if any.
     pub fn shortcut(&self) -> Option<KeyboardShortcut> {
         KEY_BINDINGS.iter().find(|binding| (binding.command)() == *self).map(|binding| binding.shortcut)
     }
@@ -108,13 +108,13 @@ mod tests {
     use std::collections::HashSet;
 
     #[test]
-    fn no_key_means_two_things() {
+    fn every_key_has_one_binding() {
         let keys: HashSet<String> = KEY_BINDINGS.iter().map(|binding| format!("{:?}", binding.shortcut)).collect();
         assert_eq!(keys.len(), KEY_BINDINGS.len());
     }
 
     #[test]
-    fn a_key_with_more_held_comes_before_the_key_alone() {
+    fn bindings_with_modifiers_come_before_the_plain_key() {
         let held = |binding: &KeyBinding| {
             u8::from(binding.shortcut.modifiers.shift) + u8::from(binding.shortcut.modifiers.command)
         };
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn the_contract_of_keys_holds() {
+    fn documented_shortcuts_are_bound() {
         assert_eq!(Command::Render.shortcut(), Some(key(Key::R)));
         assert_eq!(Command::ToggleCameraView.shortcut(), Some(key(Key::Num1)));
         assert_eq!(Command::SaveAs.shortcut(), Some(ctrl_shift(Key::S)));

@@ -1,4 +1,4 @@
-//! Every change to the scene. Menus, shortcuts, panels, gizmos, undo and tests all go through [`Action`].
+//! The actions: every change of the scene, from menus, shortcuts, panels, handles, undo and tests.
 
 use crate::editor::document::action_error::ActionError;
 use crate::editor::document::arrange::{self, MirrorPlane, add_light, add_object};
@@ -6,12 +6,12 @@ use crate::editor::document::item::{Item, name_of_all};
 use crate::editor::document::switches;
 use crate::scene::{Camera, Light, LightId, Meter, Object, Room, Scene};
 
-/// A change to the scene. New objects and lights get their id and a unique name when the action is applied.
+/// A change of the scene. New objects and lights get their id and a unique name when the action is applied.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
-    /// Puts a mannequin, prop or backdrop into the studio.
+    /// Adds a mannequin, prop or backdrop.
     AddObject(Box<Object>),
-    /// Puts a light into the studio.
+    /// Adds a light.
     AddLight(Box<Light>),
     /// Replaces the object of the same id.
     SetObject(Box<Object>),
@@ -19,41 +19,41 @@ pub enum Action {
     SetLight(Box<Light>),
     /// Replaces the camera.
     SetCamera(Box<Camera>),
-    /// Replaces the room; none takes it away.
+    /// Replaces the room; none removes it.
     SetRoom(Option<Box<Room>>),
-    /// Puts the light meter up or elsewhere; none takes it away.
+    /// Adds or replaces the light meter; none removes it.
     SetMeter(Option<Meter>),
-    /// Title and description of the studio.
+    /// Sets title and description of the studio.
     SetNotes {
         /// Title.
         name: String,
         /// One line.
         description: String,
     },
-    /// Gives an object or a light another name.
+    /// Renames an object or a light.
     Rename(Item, String),
-    /// Takes objects, lights or the meter away. What aimed at an object keeps aiming at where it was.
+    /// Deletes objects, lights or the meter. Aims at a deleted object become aims at the same point of the room.
     Delete(Vec<Item>),
-    /// Puts copies of objects and lights beside them.
+    /// Adds copies of objects and lights beside the originals.
     Duplicate(Vec<Item>),
-    /// Puts things, or copies of them, on the other side of a plane.
+    /// Mirrors items, or copies of them, about a plane.
     Mirror {
-        /// What is mirrored.
+        /// The items to mirror.
         items: Vec<Item>,
-        /// Where.
+        /// The mirror plane.
         plane: MirrorPlane,
-        /// Whether the originals stay.
+        /// True to mirror copies and keep the originals.
         copies: bool,
     },
-    /// Mutes lights, or brings those back that were muted.
+    /// Mutes lights, or unmutes those that were muted.
     Mute(Vec<LightId>, bool),
-    /// Lets lights shine alone; none brings back what was on before.
+    /// Solos lights; an empty list ends the solo.
     Solo(Vec<LightId>),
-    /// Locks things in their places, or lets them go.
+    /// Locks items against moves, or unlocks them.
     Lock(Vec<Item>, bool),
-    /// Several changes as one step, all or none.
+    /// Several changes as one undo step, all or none.
     Together {
-        /// What the undo menu calls it.
+        /// Label in the undo menu.
         label: String,
         /// The changes, in order.
         actions: Vec<Action>,
@@ -61,7 +61,7 @@ pub enum Action {
 }
 
 impl Action {
-    /// What the undo menu calls it.
+    /// Returns the label in the undo menu.
     pub fn label(&self, scene: &Scene) -> String {
         match self {
             Action::AddObject(object) => format!("Add {}", object.name),
@@ -89,7 +89,8 @@ impl Action {
         }
     }
 
-    /// What a drag of this action keeps changing; steps of one drag on the same things are one undo step.
+    /// Returns the items that a drag of this action changes; the steps of one drag with equal targets are one undo
+    /// step.
     pub fn targets(&self) -> Vec<Item> {
         match self {
             Action::SetObject(object) => vec![Item::Object(object.id)],
@@ -102,8 +103,8 @@ impl Action {
         }
     }
 
-    /// Changes the scene. Returns what should be selected afterwards; empty where the selection stays. On an error the
-    /// scene may be half changed: the caller keeps a copy.
+    /// Changes the scene. Returns the items to select; empty keeps the selection. On an error the scene may be half
+    /// changed: the caller keeps a copy.
     pub fn apply(self, scene: &mut Scene) -> Result<Vec<Item>, ActionError> {
         match self {
             Action::AddObject(object) => return Ok(vec![add_object(scene, *object)]),
@@ -213,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn deleting_an_object_leaves_its_lights_aimed_where_it_was() {
+    fn deleting_an_object_keeps_the_aim_point_of_its_lights() {
         let (mut scene, object, light) = studio();
         scene.object_mut(object).unwrap().transform.position = Vec3::new(1.0, 2.0, 3.0);
         scene.light_mut(light).unwrap().aim = Aim::Object { object, offset: Vec3::Y };
@@ -243,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_locked_keeps_its_place_and_can_still_be_dimmed() {
+    fn locked_items_cannot_move_but_can_be_dimmed() {
         let (mut scene, object, light) = studio();
         Action::Lock(vec![Item::Object(object), Item::Light(light)], true).apply(&mut scene).unwrap();
         let mut changed = scene.light(light).unwrap().clone();

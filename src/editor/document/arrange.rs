@@ -1,4 +1,4 @@
-//! Several things at once: taken away, copied, mirrored.
+//! Adds, deletes, duplicates and mirrors items of a scene.
 
 use crate::editor::document::action_error::ActionError;
 use crate::editor::document::item::Item;
@@ -9,10 +9,10 @@ use crate::scene::{Aim, BarnDoors, Emitter, Facing, Focus, Light, Object, Object
 use glam::{Quat, Vec3};
 use std::collections::HashMap;
 
-/// How far a copy stands from its original, metres.
+/// Offset of a copy from its original, metres.
 const COPY_OFFSET: Vec3 = Vec3::new(0.4, 0.0, 0.0);
 
-/// Adds an object under an id and a name of its own.
+/// Adds an object with a new id and a unique name.
 pub fn add_object(scene: &mut Scene, mut object: Object) -> Item {
     object.id = scene.fresh_object_id();
     object.name = scene.unique_name(&object.name);
@@ -21,7 +21,7 @@ pub fn add_object(scene: &mut Scene, mut object: Object) -> Item {
     item
 }
 
-/// Adds a light under an id and a name of its own.
+/// Adds a light with a new id and a unique name.
 pub fn add_light(scene: &mut Scene, mut light: Light) -> Item {
     light.id = scene.fresh_light_id();
     light.name = scene.unique_name(&light.name);
@@ -30,7 +30,7 @@ pub fn add_light(scene: &mut Scene, mut light: Light) -> Item {
     item
 }
 
-/// Takes things away. What aimed at an object keeps aiming at where it was.
+/// Deletes items. Aims at a deleted object become aims at the same point of the room.
 pub fn delete(scene: &mut Scene, items: &[Item]) -> Result<(), ActionError> {
     for &item in items {
         if item.is_locked(scene) {
@@ -51,11 +51,11 @@ pub fn delete(scene: &mut Scene, items: &[Item]) -> Result<(), ActionError> {
             Item::Room => return Err(ActionError::Fixed("room")),
         }
     }
-    switches::forget_gone(scene);
+    switches::remove_deleted_lights(scene);
     Ok(())
 }
 
-/// Turns every aim and focus on an object into one at the same point of the studio.
+/// Replaces every aim and focus on an object by one at the same point of the room.
 fn release_aims(scene: &mut Scene, id: ObjectId) {
     let fixed = |scene: &Scene, aim: Aim| match aim {
         Aim::Object { object, .. } if object == id => Aim::Point(scene.aim_point(&aim, Vec3::ZERO)),
@@ -70,7 +70,7 @@ fn release_aims(scene: &mut Scene, id: ObjectId) {
     }
 }
 
-/// Puts copies beside things; copied lights aim at the copies of what they aimed at. Returns the copies.
+/// Adds copies beside the items; copied lights aim at the copies of their subjects. Returns the copies.
 pub fn duplicate(scene: &mut Scene, items: &[Item]) -> Result<Vec<Item>, ActionError> {
     let copies = copy(scene, items)?;
     for &item in &copies {
@@ -85,7 +85,7 @@ pub fn duplicate(scene: &mut Scene, items: &[Item]) -> Result<Vec<Item>, ActionE
     Ok(copies)
 }
 
-/// Copies in the same places, in the order of the originals. They are not locked.
+/// Adds unlocked copies at the same positions; returns them in the order of the originals.
 fn copy(scene: &mut Scene, items: &[Item]) -> Result<Vec<Item>, ActionError> {
     let mut copy_of: HashMap<ObjectId, ObjectId> = HashMap::new();
     let mut copies = vec![Item::Room; items.len()];
@@ -121,18 +121,18 @@ fn copy(scene: &mut Scene, items: &[Item]) -> Result<Vec<Item>, ActionError> {
     Ok(copies)
 }
 
-/// A plane through which things are mirrored.
+/// A vertical mirror plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MirrorPlane {
-    /// A point of it, metres.
+    /// A point of the plane, metres.
     pub point: Vec3,
-    /// Its unit normal, level.
+    /// Horizontal unit normal.
     pub normal: Vec3,
 }
 
 impl MirrorPlane {
-    /// The upright plane that halves a subject's face: through its place, along the way it looks. What is no figure
-    /// looks along its own +Z. None for what looks straight up or down.
+    /// Returns the vertical plane through a subject's face along its facing direction; other objects face their own +Z.
+    /// None for a subject that faces straight up or down.
     pub fn of_subject(subject: &Object) -> Option<MirrorPlane> {
         let own = match subject.shape {
             Shape::Mannequin(figure) => figures::face_direction(figures::resolve(figure)),
@@ -147,26 +147,26 @@ impl MirrorPlane {
         Some(MirrorPlane { point: subject.transform.world_from_object().transform_point3(face), normal })
     }
 
-    /// A point on the other side.
+    /// Returns the mirror image of a point.
     pub fn mirror_point(&self, point: Vec3) -> Vec3 {
         point - 2.0 * (point - self.point).dot(self.normal) * self.normal
     }
 
-    /// A direction as the mirror shows it.
+    /// Returns the mirror image of a direction.
     pub fn mirror_direction(&self, direction: Vec3) -> Vec3 {
         direction - 2.0 * direction.dot(self.normal) * self.normal
     }
 
-    /// The rotation of a mirrored thing that is its own mirror image in its X = 0 plane, as figures, panels and papers
-    /// are (but for their poses).
+    /// Returns the mirrored rotation of an object that is symmetric about its own X = 0 plane, as figures (but for
+    /// their poses), panels and papers are.
     fn mirror_rotation(&self, rotation: Quat) -> Quat {
-        // Reflecting both the room and the thing's own X makes a rotation again.
+        // The reflection of the room times that of the object's own X is a rotation.
         let [x, y, z] = [-Vec3::X, Vec3::Y, Vec3::Z].map(|axis| self.mirror_direction(rotation * axis));
         Quat::from_mat3(&glam::Mat3::from_cols(x, y, z)).normalize()
     }
 }
 
-/// Puts things on the other side of a plane, position and aim, or copies of them. Returns what was put there.
+/// Mirrors items, or copies of them, about a plane: position, orientation and aim. Returns the mirrored items.
 pub fn mirror(scene: &mut Scene, items: &[Item], plane: &MirrorPlane, copies: bool) -> Result<Vec<Item>, ActionError> {
     let items = if copies { copy(scene, items)? } else { items.to_vec() };
     let before = scene.clone();
@@ -202,7 +202,8 @@ pub fn mirror(scene: &mut Scene, items: &[Item], plane: &MirrorPlane, copies: bo
     Ok(items)
 }
 
-/// A light's mirror image. Its aim at a thing that is mirrored with it stays; any other aim is mirrored itself.
+/// Returns the mirror image of a light. An aim at an object that is mirrored as well is kept; any other aim is
+/// mirrored.
 fn mirrored_light(scene: &Scene, light: &Light, together: &[Item], plane: &MirrorPlane) -> Light {
     let target = plane.mirror_point(scene.aim_point(&light.aim, light.position));
     let aim = match light.aim {
@@ -211,7 +212,7 @@ fn mirrored_light(scene: &Scene, light: &Light, together: &[Item], plane: &Mirro
             let direction = scene.aim_point(&light.aim, light.position) - light.position;
             angles_towards(plane.mirror_direction(direction))
         }
-        // Mirrored with its subject, it keeps its point on it but for the side.
+        // In the space of a subject that is mirrored as well, the aim point only changes the sign of x.
         Aim::Object { object, offset } if together.contains(&Item::Object(object)) => {
             Aim::Object { object, offset: offset * Vec3::new(-1.0, 1.0, 1.0) }
         }
@@ -243,7 +244,7 @@ mod tests {
     use crate::editor::document::catalog;
     use crate::scene::LightId;
 
-    /// A man who looks 30 degrees to his left, and a strip on his right.
+    /// A man turned 30 degrees to his left, with a strip light on his right.
     fn studio() -> (Scene, ObjectId, LightId) {
         let mut scene = Scene::default();
         let mut man = catalog::object_named("Man, standing").unwrap();
@@ -260,13 +261,13 @@ mod tests {
     }
 
     #[test]
-    fn a_mirrored_light_does_to_one_cheek_what_it_did_to_the_other() {
+    fn a_mirrored_light_is_symmetric_about_the_subjects_face() {
         let (mut scene, man, strip) = studio();
         let plane = MirrorPlane::of_subject(scene.object(man).unwrap()).unwrap();
         let face = |scene: &Scene| scene.object(man).unwrap().transform.world_from_object().inverse();
         let (before, seen_before) = (scene.clone(), face(&scene).transform_point3(scene.lights[0].position));
         mirror(&mut scene, &[Item::Light(strip)], &plane, false).unwrap();
-        // In the man's own space only x changes its sign: for place, aim, and the panel's axes.
+        // In the man's own space only x changes its sign: of position, aim and the panel's axes.
         let flip = Vec3::new(-1.0, 1.0, 1.0);
         let seen = face(&scene).transform_point3(scene.lights[0].position);
         assert!((seen - seen_before * flip).length() < 1e-5, "{seen} of {seen_before}");
@@ -304,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn locked_things_are_neither_deleted_nor_mirrored() {
+    fn locked_items_are_neither_deleted_nor_mirrored() {
         let (mut scene, man, strip) = studio();
         scene.lights[0].locked = true;
         let plane = MirrorPlane::of_subject(scene.object(man).unwrap()).unwrap();

@@ -1,4 +1,4 @@
-//! How much room things take up.
+//! World-space bounding boxes of objects and selections.
 
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
@@ -6,7 +6,7 @@ use crate::editor::document::studio_document::Document;
 use crate::scene::Shape;
 use glam::Vec3;
 
-/// The box around the selection, or around all figures, props and lights where nothing with a place is selected.
+/// Returns the bounding box of the selection, or of all figures, props and lights if no selected item has a position.
 pub fn bounds(document: &Document, selection: &Selection) -> Option<(Vec3, Vec3)> {
     let scene = document.scene();
     let point = |p: Vec3| (p - Vec3::splat(0.4), p + Vec3::splat(0.4));

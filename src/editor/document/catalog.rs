@@ -1,4 +1,4 @@
-//! The list of things that can be put into the studio, by the names a photographer knows.
+//! The catalog of lights, figures, props and backdrops that can be added to a studio.
 
 use crate::figures;
 use crate::scene::{
@@ -7,10 +7,10 @@ use crate::scene::{
 };
 use glam::Vec3;
 
-/// The shelves of the list.
+/// The tabs of the catalog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CatalogTab {
-    /// Everything that shines.
+    /// Lights.
     Lights,
     /// Mannequins.
     Figures,
@@ -21,11 +21,11 @@ pub enum CatalogTab {
 }
 
 impl CatalogTab {
-    /// All shelves, in list order.
+    /// All tabs, in order.
     pub const ALL: [CatalogTab; 4] =
         [CatalogTab::Lights, CatalogTab::Figures, CatalogTab::Props, CatalogTab::Backdrops];
 
-    /// Its label.
+    /// Returns the label.
     pub fn label(self) -> &'static str {
         match self {
             CatalogTab::Lights => "Lights",
@@ -36,20 +36,20 @@ impl CatalogTab {
     }
 }
 
-/// What an entry of the list makes.
+/// The light or object that a catalog entry creates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CatalogKind {
-    /// A light with this emitter and modifier, and what it gives at full power.
+    /// A light with this emitter and modifier, and its output at full power.
     Light(Emitter, Modifier, Output),
     /// A mannequin.
     Figure(Mannequin),
-    /// A formula shape of a material, standing on the floor.
+    /// A parametric shape with a material, on the floor.
     Prop(PropShape, MaterialPreset),
     /// A paper roll.
     Paper {
         /// Width, metres.
         width_m: f32,
-        /// Its paper.
+        /// Material of the paper.
         paper: MaterialPreset,
     },
 }
@@ -63,32 +63,32 @@ pub enum PropShape {
     Sphere(f32),
     /// Radius and height.
     Cylinder(f32, f32),
-    /// Width and depth, lying.
+    /// Width and depth, horizontal.
     Plane(f32, f32),
-    /// Width and height, upright, facing the front.
+    /// Width and height, vertical, facing the front.
     Card(f32, f32),
 }
 
-/// One entry of the list.
+/// An entry of the catalog.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CatalogEntry {
-    /// Its name in the list, and the name of what it makes.
+    /// Name of the entry and of the item it creates.
     pub name: &'static str,
-    /// One line on what it is for.
+    /// Tooltip: one line on its use.
     pub tip: &'static str,
-    /// What it makes.
+    /// The light or object to create.
     pub kind: CatalogKind,
 }
 
 /// A studio flash head of 400 Ws.
 const HEAD: Output = Output::FlashWs { energy_ws: 400.0, efficacy_lm_s_per_ws: Output::DEFAULT_EFFICACY };
 
-/// A flash head with something of the rack before it.
+/// Returns the entry of a flash head with a named modifier.
 const fn modified(named: &NamedModifier) -> CatalogEntry {
     CatalogEntry { name: named.name, tip: named.tip, kind: CatalogKind::Light(named.emitter, named.modifier, HEAD) }
 }
 
-/// A light that shines all the time.
+/// Returns the entry of a continuous light.
 const fn continuous(name: &'static str, tip: &'static str, emitter: Emitter, output: Output) -> CatalogEntry {
     CatalogEntry { name, tip, kind: CatalogKind::Light(emitter, Modifier::loss(0.0), output) }
 }
@@ -107,7 +107,7 @@ const fn paper(name: &'static str, tip: &'static str, width_m: f32, paper: Mater
 
 const RACK: usize = NamedModifier::ALL.len();
 
-/// Flash heads with every modifier, then what shines all the time.
+/// Flash heads with every modifier, then continuous lights.
 const LIGHTS: [CatalogEntry; RACK + CONTINUOUS.len()] = {
     let mut list = [CONTINUOUS[0]; RACK + CONTINUOUS.len()];
     let mut i = 0;
@@ -225,7 +225,7 @@ const BACKDROPS: [CatalogEntry; 9] = [
     paper("Black paper 3.55 m", "A wide roll, for groups.", 3.55, MaterialPreset::BlackPaper),
 ];
 
-/// The entries of a tab.
+/// Returns the entries of a tab.
 pub fn entries(tab: CatalogTab) -> &'static [CatalogEntry] {
     match tab {
         CatalogTab::Lights => &LIGHTS,
@@ -235,17 +235,17 @@ pub fn entries(tab: CatalogTab) -> &'static [CatalogEntry] {
     }
 }
 
-/// What an entry makes, at the origin.
+/// The light or object of a catalog entry, before placement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CatalogItem {
     /// A light.
     Light(Light),
-    /// Anything else.
+    /// A figure, prop or backdrop.
     Object(Object),
 }
 
 impl CatalogEntry {
-    /// Makes it; `placement` then finds it a place.
+    /// Creates the item at the origin; `placement` positions it.
     pub fn make(&self) -> CatalogItem {
         match self.kind {
             CatalogKind::Light(emitter, modifier, output) => {
@@ -262,7 +262,7 @@ impl CatalogEntry {
     }
 }
 
-/// The light of an entry, by its name.
+/// Returns the light of the entry of this name.
 #[cfg(test)]
 pub fn light_named(name: &str) -> Option<Light> {
     LIGHTS.iter().find(|e| e.name == name).and_then(|e| match e.make() {
@@ -271,7 +271,7 @@ pub fn light_named(name: &str) -> Option<Light> {
     })
 }
 
-/// The object of an entry, by its name.
+/// Returns the object of the entry of this name.
 #[cfg(test)]
 pub fn object_named(name: &str) -> Option<Object> {
     [&FIGURES[..], &PROPS, &BACKDROPS].concat().iter().find(|e| e.name == name).and_then(|e| match e.make() {
@@ -314,7 +314,7 @@ fn new_prop(name: &str, shape: PropShape, material: Material) -> Object {
 }
 
 fn new_light(name: &str, emitter: Emitter, modifier: Modifier, output: Output) -> Light {
-    // What the modifier swallows is dialled in, in thirds: all of them arrive about equally bright.
+    // The dial compensates for the modifier's loss in thirds, so that all modifiers are about equally bright.
     let loss_thirds = (3.0 * (modifier.loss_stops + modifier.scrim_stops)).round();
     Light {
         name: name.to_owned(),
@@ -334,7 +334,7 @@ mod tests {
     use std::collections::HashSet;
 
     #[test]
-    fn every_name_of_the_list_is_its_own() {
+    fn catalog_names_are_unique() {
         let mut names = HashSet::new();
         for tab in CatalogTab::ALL {
             for entry in entries(tab) {

@@ -1,4 +1,4 @@
-//! Files for the window: what `io` reads and writes, with errors in plain words, in threads of their own.
+//! Reads and writes studios, models, assets and pictures, with errors as messages to the user.
 
 use crate::editor::document::studio_document::Document;
 use crate::io::{self, PictureInfo};
@@ -8,58 +8,58 @@ use crate::scene::{Assets, Material, Mesh, Room, Scene, Texture};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A shipped studio in the list.
+/// Name and description of a shipped studio.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PresetInfo {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// One line on what it is for.
+    /// One line on its use.
     pub description: String,
 }
 
-/// The shipped studios, in list order.
+/// Returns the shipped studios, in list order.
 pub fn presets() -> Vec<PresetInfo> {
     let info = |p: &io::Preset| PresetInfo { name: p.name.to_string(), description: p.description.to_string() };
     io::presets().iter().map(info).collect()
 }
 
-/// A studio as it comes from a file or from the shelf.
+/// A studio loaded from a file or from the shipped ones.
 #[derive(Clone, Debug)]
 pub struct OpenedStudio {
     /// The studio.
     pub scene: Scene,
-    /// Its meshes and textures.
+    /// Meshes and textures.
     pub assets: Assets,
-    /// What is odd about it.
+    /// Warnings of loading.
     pub warnings: Vec<String>,
-    /// Its file; none for a shipped studio.
+    /// File; none for a shipped studio.
     pub path: Option<PathBuf>,
 }
 
-/// A model that was brought in.
+/// An imported model.
 #[derive(Clone, Debug)]
 pub struct ImportedModel {
-    /// Its file.
+    /// File.
     pub file: PathBuf,
-    /// Its triangles.
+    /// Triangles.
     pub mesh: Arc<Mesh>,
-    /// Its surfaces.
+    /// Materials by part.
     pub part_materials: Vec<(String, Material)>,
-    /// What was missing or mended.
+    /// Warnings of the importer.
     pub warnings: Vec<String>,
 }
 
-/// Where a studio comes from.
+/// The source of a studio.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StudioSource {
     /// A file.
     File(PathBuf),
-    /// The shelf, by place in the list.
+    /// A shipped studio, by its index in the list.
     Preset(usize),
 }
 
 impl StudioSource {
-    /// A file where there is one, else the shipped studio of that name.
+    /// Returns the file if it exists, else the shipped studio of that name.
     pub fn named(path: PathBuf) -> Self {
         let shipped = path.to_str().filter(|_| !path.exists()).and_then(io::find_preset);
         let place = shipped.and_then(|preset| io::presets().iter().position(|p| p.file_name == preset.file_name));
@@ -67,7 +67,7 @@ impl StudioSource {
     }
 }
 
-/// Reads a studio with everything it needs.
+/// Reads a studio with its assets.
 pub fn open(source: &StudioSource) -> Result<Box<OpenedStudio>, String> {
     let (loaded, path) = match source {
         StudioSource::File(path) => (io::load_scene(path).map_err(|e| sentence(&e))?, Some(path.clone())),
@@ -87,8 +87,8 @@ pub fn import(file: PathBuf) -> Result<Box<ImportedModel>, String> {
     Ok(Box::new(ImportedModel { file, mesh, part_materials, warnings }))
 }
 
-/// Reads the assets that a scene needs and that are not loaded yet. `moved` are files that do not lie beside the scene
-/// yet, by the path the scene names.
+/// Reads the assets that a scene refers to and that are not loaded yet. `moved` maps paths in the scene to imported
+/// files outside the scene's folder.
 pub fn load_assets(
     scene: &Scene,
     folder: Option<&Path>,
@@ -106,7 +106,7 @@ pub fn load_assets(
     (assets, warnings)
 }
 
-/// A texture that does not lie beside the scene: loaded as if its own folder were the scene's.
+/// Reads a texture outside the scene's folder: its own folder stands in for the scene's.
 fn load_texture(file: &Path) -> (Option<Arc<Texture>>, Vec<String>) {
     let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let floor = Material { base_color_texture: Some(name.clone()), ..Material::default() };
@@ -116,7 +116,7 @@ fn load_texture(file: &Path) -> (Option<Arc<Texture>>, Vec<String>) {
     (assets.textures.remove(&name), warnings.iter().map(ToString::to_string).collect())
 }
 
-/// Writes the studio and puts the files it needs beside it.
+/// Writes the studio and copies its assets beside it.
 pub fn save(document: &Document, path: &Path) -> Result<(), String> {
     let folder = path.parent().unwrap_or(Path::new(""));
     for (from, to) in document.files_to_copy(folder) {
@@ -125,7 +125,7 @@ pub fn save(document: &Document, path: &Path) -> Result<(), String> {
     io::save_scene(document.scene(), path).map_err(|e| sentence(&e))
 }
 
-/// Copies a file unless the same is there already. Another file of that name is never overwritten.
+/// Copies a file unless an identical one exists. A different file of that name is never overwritten.
 pub fn copy_asset(from: &Path, to: &Path) -> Result<(), String> {
     let failed = |error: std::io::Error| format!("{} could not be copied beside the studio: {error}.", from.display());
     if to.exists() {
@@ -141,7 +141,7 @@ pub fn copy_asset(from: &Path, to: &Path) -> Result<(), String> {
     std::fs::copy(from, to).map(|_| ()).map_err(failed)
 }
 
-/// Writes a picture, in the format of its ending.
+/// Writes a picture in the format of its extension.
 pub fn export(path: &Path, picture: &Picture, info: &PictureInfo) -> Result<(), String> {
     io::export_picture(path, picture, info).map_err(|e| sentence(&e))
 }

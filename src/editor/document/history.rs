@@ -1,24 +1,24 @@
-//! Undo and redo as snapshots: a scene is plain data and small, meshes and pictures live in the shared assets.
+//! Undo and redo lists of scene snapshots. A scene is small plain data; meshes and textures are shared assets.
 
 use crate::editor::document::item::Item;
 use crate::scene::Scene;
 
-/// Steps kept; the oldest are dropped.
+/// Most steps kept; the oldest are dropped.
 const CAPACITY: usize = 300;
 
-/// Tells the steps of one drag: the press of the mouse that began it, and what it changes.
+/// Identifies the steps of one drag, which are merged: the press that began it and the items it changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MergeKey {
     /// Number of the press.
     pub press_id: u64,
-    /// What is dragged.
+    /// The dragged items.
     pub targets: Vec<Item>,
 }
 
 #[derive(Clone, Debug)]
 struct HistoryStep {
     label: String,
-    /// The scene on the other side of the step: before it in the undo list, after it in the redo list.
+    /// The scene before the step in the undo list, after it in the redo list.
     scene: Scene,
     merge: Option<MergeKey>,
 }
@@ -31,8 +31,8 @@ pub struct History {
 }
 
 impl History {
-    /// Records that the scene was `before`. A step with the same merge key as the last one joins it. Forgets what was
-    /// undone.
+    /// Records a step from the scene `before`. A step with the merge key of the last one is merged with it. Clears the
+    /// redo list.
     pub fn record(&mut self, before: Scene, label: String, merge: Option<MergeKey>) {
         self.redo.clear();
         let joins = merge.is_some() && self.undo.last().is_some_and(|last| last.merge == merge);
@@ -45,7 +45,7 @@ impl History {
         self.undo.push(HistoryStep { label, scene: before, merge });
     }
 
-    /// Takes the last step back; returns its label.
+    /// Undoes the last step; returns its label.
     pub fn undo(&mut self, scene: &mut Scene) -> Option<String> {
         let step = self.undo.pop()?;
         let after = std::mem::replace(scene, step.scene);
@@ -53,7 +53,7 @@ impl History {
         Some(step.label)
     }
 
-    /// Does the last step taken back again; returns its label.
+    /// Redoes the step undone last; returns its label.
     pub fn redo(&mut self, scene: &mut Scene) -> Option<String> {
         let step = self.redo.pop()?;
         let before = std::mem::replace(scene, step.scene);
@@ -61,7 +61,7 @@ impl History {
         Some(step.label)
     }
 
-    /// Takes the last step back for good if it belongs to this press; whether it did.
+    /// Undoes and discards the last step if it belongs to this press; returns true if it did.
     pub fn abandon(&mut self, scene: &mut Scene, press_id: u64) -> bool {
         let belongs = self.undo.last().and_then(|step| step.merge.as_ref()).is_some_and(|key| key.press_id == press_id);
         if belongs {
@@ -71,17 +71,17 @@ impl History {
         belongs
     }
 
-    /// What undo would take back.
+    /// Returns the label of the step to undo.
     pub fn undo_label(&self) -> Option<&str> {
         self.undo.last().map(|step| step.label.as_str())
     }
 
-    /// What redo would do again.
+    /// Returns the label of the step to redo.
     pub fn redo_label(&self) -> Option<&str> {
         self.redo.last().map(|step| step.label.as_str())
     }
 
-    /// Number of steps that can be undone.
+    /// Returns the number of steps that can be undone.
     pub fn depth(&self) -> usize {
         self.undo.len()
     }
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn undo_and_redo_walk_the_same_path() {
+    fn undo_and_redo_are_inverse() {
         let (mut history, mut scene) = (History::default(), named("c"));
         history.record(named("a"), "first".into(), None);
         history.record(named("b"), "second".into(), None);
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn a_new_step_forgets_what_was_undone_and_the_list_ends() {
+    fn a_new_step_clears_redo_and_the_list_has_a_capacity() {
         let (mut history, mut scene) = (History::default(), Scene::default());
         for _ in 0..CAPACITY + 10 {
             history.record(Scene::default(), "step".into(), None);

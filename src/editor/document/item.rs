@@ -1,9 +1,9 @@
-//! What can be selected, moved, hidden and locked.
+//! The items of a studio that can be selected: camera, room, objects, lights, meter.
 
 use crate::scene::{Emitter, LightId, ObjectId, Scene};
 use glam::Vec3;
 
-/// Something that can be selected.
+/// A selectable item of the studio.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Item {
     /// The camera.
@@ -19,7 +19,7 @@ pub enum Item {
 }
 
 impl Item {
-    /// Whether the scene has it. The room counts as there even when it is switched off, so that it can be switched on.
+    /// Returns true if the scene has the item. The room always exists, so that it can be switched on.
     pub fn exists_in(self, scene: &Scene) -> bool {
         match self {
             Item::Camera | Item::Room => true,
@@ -29,7 +29,7 @@ impl Item {
         }
     }
 
-    /// Its name in lists and messages.
+    /// Returns the name in lists and messages.
     pub fn name(self, scene: &Scene) -> String {
         match self {
             Item::Camera => "Camera".to_owned(),
@@ -40,7 +40,7 @@ impl Item {
         }
     }
 
-    /// Where it stands, metres; none for what has no place (the room, light from all round) and what is gone.
+    /// Returns the position, metres; none for the room, surround light and missing items.
     pub fn position(self, scene: &Scene) -> Option<Vec3> {
         match self {
             Item::Camera => Some(scene.camera.position),
@@ -51,7 +51,7 @@ impl Item {
         }
     }
 
-    /// Whether it is locked in its place.
+    /// Returns true if the item is locked against moves.
     pub fn is_locked(self, scene: &Scene) -> bool {
         match self {
             Item::Object(id) => scene.object(id).is_some_and(|o| o.locked),
@@ -60,13 +60,13 @@ impl Item {
         }
     }
 
-    /// Whether there may be several of its kind, so that it can be copied.
+    /// Returns true for objects and lights, which can be copied.
     pub fn can_be_copied(self) -> bool {
         matches!(self, Item::Object(_) | Item::Light(_))
     }
 }
 
-/// `Key`, or `3 things` for several.
+/// Returns `Key`, or `3 things` for several items.
 pub fn name_of_all(items: &[Item], scene: &Scene) -> String {
     match items {
         [one] => one.name(scene),

@@ -1,4 +1,4 @@
-//! Where a new thing goes, so that it is in the picture and useful without further ado.
+//! Placement of new items: position, aim and power relative to the subject and the camera.
 
 use crate::editor::document::item::Item;
 use crate::editor::document::readout;
@@ -6,11 +6,11 @@ use crate::figures;
 use crate::scene::{Aim, Assets, Light, Object, ObjectId, Role, Scene, Shape};
 use glam::{Quat, Vec3};
 
-/// Height of the aim where there is nothing to aim at, metres.
+/// Height of the aim point without a subject, metres.
 const NOTHING_HEIGHT_M: f32 = 1.3;
 
-/// The point of an object that lights and camera aim at, in the object's own space: a mannequin's face, the middle of
-/// anything else.
+/// Returns the point of an object that lights and camera aim at, object space: a mannequin's face, the middle of any
+/// other.
 pub fn aim_offset(object: &Object, assets: &Assets) -> Vec3 {
     match &object.shape {
         Shape::Mannequin(figure) => figures::face_point(figures::resolve(*figure)),
@@ -22,7 +22,7 @@ pub fn aim_offset(object: &Object, assets: &Assets) -> Vec3 {
     }
 }
 
-/// What the set-up is about: the selected thing, else the first mannequin, else the first thing that is no backdrop.
+/// Returns the subject: the selected object, else the first mannequin, else the first object that is no backdrop.
 pub fn subject(scene: &Scene, selected: Option<Item>) -> Option<ObjectId> {
     let is_backdrop = |object: &Object| matches!(object.shape, Shape::Sweep { .. } | Shape::Plane { .. });
     let selected = match selected {
@@ -35,7 +35,7 @@ pub fn subject(scene: &Scene, selected: Option<Item>) -> Option<ObjectId> {
         .map(|o| o.id)
 }
 
-/// The aim at a subject's face or middle; a point over the origin where there is none.
+/// Returns the aim at a subject's face or middle; a point over the origin without a subject.
 pub fn aim_at(scene: &Scene, assets: &Assets, subject: Option<ObjectId>) -> Aim {
     match subject.and_then(|id| scene.object(id)) {
         Some(object) => Aim::Object { object: object.id, offset: aim_offset(object, assets) },
@@ -43,25 +43,25 @@ pub fn aim_at(scene: &Scene, assets: &Assets, subject: Option<ObjectId>) -> Aim 
     }
 }
 
-/// The angles that look along a direction; level to the back where there is none.
+/// Returns the aim along a direction as angles; horizontal to the back for the zero vector.
 pub fn angles_towards(direction: Vec3) -> Aim {
     let d = direction.try_normalize().unwrap_or(Vec3::NEG_Z);
     Aim::Angles { yaw_deg: (-d.x).atan2(-d.z).to_degrees(), pitch_deg: 90.0 - crate::math::safe_acos(d.y).to_degrees() }
 }
 
-/// The same angle in (-180, 180].
+/// Returns the angle wrapped to (-180, 180] degrees.
 pub fn wrap_deg(angle: f32) -> f32 {
     let wrapped = angle.rem_euclid(360.0);
     if wrapped > 180.0 { wrapped - 360.0 } else { wrapped }
 }
 
-/// Unit horizontal direction from a point to the camera; the front where the camera is straight above.
+/// Returns the horizontal unit direction from a point to the camera; +Z if the camera is straight above.
 fn towards_camera(scene: &Scene, point: Vec3) -> Vec3 {
     let direction = scene.camera.position - point;
     Vec3::new(direction.x, 0.0, direction.z).try_normalize().unwrap_or(Vec3::Z)
 }
 
-/// Gives a new light the part that is still free, a place for it, the aim at the subject and a power that suits the
+/// Sets the first unused role of a new light, its position, its aim at the subject and a power that matches the
 /// camera's exposure.
 pub fn place_light(scene: &Scene, assets: &Assets, selected: Option<Item>, light: &mut Light) {
     let has = |role| scene.lights.iter().any(|l| l.role == role);
@@ -82,19 +82,18 @@ pub fn place_light(scene: &Scene, assets: &Assets, selected: Option<Item>, light
     let around = Quat::from_rotation_y(azimuth_deg.to_radians()) * towards_camera(scene, target);
     light.position = target + (around * cos + Vec3::Y * sin) * distance_m;
     light.position.y = light.position.y.max(0.1);
-    // No head gives more than its full power.
+    // The dial ends at full power.
     light.power.dial_stops = readout::dial_for(scene, light, stops).min(0.0);
 }
 
-/// Finds a new object a free place: figures and props on the floor before the others, backdrops behind the subject and
-/// facing the camera.
+/// Positions a new object: figures and props on free floor, backdrops behind the subject and facing the camera.
 pub fn place_object(scene: &Scene, selected: Option<Item>, object: &mut Object) {
     if matches!(object.shape, Shape::Sweep { .. }) {
         let middle = subject(scene, selected)
             .and_then(|id| scene.object(id))
             .map_or(Vec3::ZERO, |o| Vec3::new(o.transform.position.x, 0.0, o.transform.position.z));
         let front = towards_camera(scene, middle);
-        // Paper lies on the floor, not in it.
+        // Slightly above the floor, to avoid coplanar surfaces.
         object.transform.position = middle - front * 1.5 + Vec3::Y * 0.002;
         object.transform.rotation_deg.y = front.x.atan2(front.z).to_degrees();
         return;
@@ -105,7 +104,7 @@ pub fn place_object(scene: &Scene, selected: Option<Item>, object: &mut Object) 
     object.transform.position = free + Vec3::Y * height_m;
 }
 
-/// Places in a row, outwards from the middle to both sides, then in further rows towards the front.
+/// Returns the candidate position `i`: in a row outwards from the middle, then in further rows towards the front.
 fn row_place(i: u32, step: f32) -> Vec3 {
     let (row, column) = (i / 8, i % 8);
     let side = if column % 2 == 1 { 1.0 } else { -1.0 };
@@ -132,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_point_where_the_point_was() {
+    fn aim_angles_reproduce_the_direction() {
         let scene = Scene::default();
         for direction in [Vec3::new(1.0, 2.0, -3.0), Vec3::new(-0.2, -5.0, 1.0), Vec3::X] {
             let aimed = scene.aim_point(&angles_towards(direction), Vec3::ZERO);
@@ -159,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn new_things_do_not_stand_in_each_other() {
+    fn new_objects_do_not_overlap() {
         let mut scene = Scene::default();
         for name in ["Bust", "Man, standing", "Chrome ball", "Can", "Box"] {
             add(&mut scene, name);
@@ -173,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_backdrop_hangs_behind_the_subject_and_faces_the_camera() {
+    fn a_backdrop_is_placed_behind_the_subject_and_faces_the_camera() {
         let mut scene = Scene::default();
         add(&mut scene, "Bust");
         scene.camera.position = Vec3::new(3.0, 1.4, 0.0);

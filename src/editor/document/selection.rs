@@ -1,49 +1,49 @@
-//! What is selected: any number of things, in the order in which they were chosen.
+//! The selection: any number of items, in the order in which they were selected.
 
 use crate::editor::document::item::Item;
 use crate::scene::{LightId, Scene};
 use glam::Vec3;
 
-/// The selected things. The last one chosen is the one whose values the inspector shows.
+/// The selected items. The inspector shows the last one.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Selection {
     items: Vec<Item>,
 }
 
 impl Selection {
-    /// These things; what comes twice is taken once.
+    /// Returns the selection of these items without duplicates.
     pub fn of(items: impl IntoIterator<Item = Item>) -> Self {
         let mut selection = Selection::default();
         selection.add(items);
         selection
     }
 
-    /// All of them, the last chosen last.
+    /// Returns the items, the last selected last.
     pub fn items(&self) -> &[Item] {
         &self.items
     }
 
-    /// The thing that was chosen last.
+    /// Returns the item selected last.
     pub fn last(&self) -> Option<Item> {
         self.items.last().copied()
     }
 
-    /// Whether nothing is selected.
+    /// Returns true if nothing is selected.
     pub fn is_empty(&self) -> bool {
         self.items.is_empty()
     }
 
-    /// Number of things.
+    /// Returns the number of items.
     pub fn len(&self) -> usize {
         self.items.len()
     }
 
-    /// Whether this thing is selected.
+    /// Returns true if this item is selected.
     pub fn contains(&self, item: Item) -> bool {
         self.items.contains(&item)
     }
 
-    /// Selects these, too; they become the last.
+    /// Adds items, or moves them to the end.
     pub fn add(&mut self, items: impl IntoIterator<Item = Item>) {
         for item in items {
             self.items.retain(|other| *other != item);
@@ -51,7 +51,7 @@ impl Selection {
         }
     }
 
-    /// Takes a thing in, or out if it is in.
+    /// Adds an item, or removes it if it is selected.
     pub fn toggle(&mut self, item: Item) {
         if self.contains(item) {
             self.items.retain(|other| *other != item);
@@ -60,30 +60,30 @@ impl Selection {
         }
     }
 
-    /// Forgets what the studio no longer has.
+    /// Removes items that no longer exist.
     pub fn keep_existing(&mut self, scene: &Scene) {
         self.items.retain(|item| item.exists_in(scene));
     }
 
-    /// The selected lights.
+    /// Returns the selected lights.
     pub fn lights(&self) -> Vec<LightId> {
         let light = |item: &Item| if let Item::Light(id) = item { Some(*id) } else { None };
         self.items.iter().filter_map(light).collect()
     }
 
-    /// What of it has a place and is not locked there.
+    /// Returns the selected items that have a position and are not locked.
     pub fn movable(&self, scene: &Scene) -> Vec<Item> {
         let can_move = |item: &Item| item.position(scene).is_some() && !item.is_locked(scene);
         self.items.iter().copied().filter(can_move).collect()
     }
 
-    /// The common centre: the mean of all places, metres.
+    /// Returns the mean position, metres.
     pub fn centre(&self, scene: &Scene) -> Option<Vec3> {
         centre(&self.items, scene)
     }
 }
 
-/// The mean of the places of things, metres; none where none has a place.
+/// Returns the mean position of items, metres; none if no item has one.
 pub fn centre(items: &[Item], scene: &Scene) -> Option<Vec3> {
     let places: Vec<Vec3> = items.iter().filter_map(|item| item.position(scene)).collect();
     (!places.is_empty()).then(|| places.iter().sum::<Vec3>() / places.len() as f32)
@@ -95,7 +95,7 @@ mod tests {
     use crate::scene::ObjectId;
 
     #[test]
-    fn the_last_chosen_thing_comes_last_and_nothing_twice() {
+    fn the_item_selected_last_comes_last_without_duplicates() {
         let thing = |i| Item::Object(ObjectId(i));
         let mut selection = Selection::of([thing(0), thing(1), thing(0)]);
         assert_eq!(selection.items(), [thing(1), thing(0)]);

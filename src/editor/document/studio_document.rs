@@ -9,7 +9,7 @@ use crate::scene::{AssetRef, Assets, Finding, Scene, SceneChange, Severity, vali
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// A studio that is open in the window.
+/// The open studio.
 #[derive(Clone, Debug, Default)]
 pub struct Document {
     scene: Scene,
@@ -18,73 +18,72 @@ pub struct Document {
     saved: Scene,
     history: History,
     revisions: Revisions,
-    /// Where the files behind asset paths lie, when they were imported and not yet saved beside the scene.
+    /// Imported files by asset path, until a save copies them beside the scene.
     imported: BTreeMap<String, PathBuf>,
-    /// Asset paths that could not be loaded; they are not tried again until the scene is opened again.
+    /// Assets that could not be loaded; they are not retried until the scene is opened again.
     failed: BTreeSet<String>,
 }
 
 impl Document {
-    /// A studio as it was loaded.
+    /// Returns the document of a loaded studio.
     pub fn new(scene: Scene, assets: Assets, path: Option<PathBuf>) -> Self {
         let saved = scene.clone();
         let revisions = Revisions::new();
         let mut document = Document { scene, assets, path, saved, revisions, ..Document::default() };
-        // What loading could not find has been reported by loading.
+        // Missing assets have been reported by loading.
         document.failed = document.missing_assets();
         document
     }
 
-    /// The studio now.
+    /// Returns the current scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// Its meshes and textures, as far as they are loaded.
+    /// Returns the loaded meshes and textures.
     pub fn assets(&self) -> &Assets {
         &self.assets
     }
 
-    /// Its file, once it has one.
+    /// Returns the file, if any.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
 
-    /// The folder that asset paths are relative to.
+    /// Returns the folder that asset paths are relative to.
     pub fn folder(&self) -> Option<&Path> {
         self.path.as_deref().and_then(Path::parent)
     }
 
-    /// Another number after every change of scene or assets, and for every studio that is opened: what is shown is up
-    /// to date when it was made from this number.
+    /// Returns the revision number: a new one after every change of scene or assets and for every opened studio.
     pub fn revision(&self) -> u64 {
         self.revisions.document
     }
 
-    /// Revision numbers by what a change makes stale.
+    /// Returns the revision numbers by what a change makes stale.
     pub fn revisions(&self) -> Revisions {
         self.revisions
     }
 
-    /// Whether there is something to save.
+    /// Returns true if there are unsaved changes.
     pub fn is_dirty(&self) -> bool {
         self.scene != self.saved
     }
 
-    /// The undo and redo lists.
+    /// Returns the undo and redo lists.
     pub fn history(&self) -> &History {
         &self.history
     }
 
-    /// The studio's title, or its file's name, or "Untitled".
+    /// Returns the file's name, else the studio's title, else "Untitled".
     pub fn title(&self) -> String {
         let file = self.path.as_deref().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
         let name = (!self.scene.name.is_empty()).then(|| self.scene.name.clone());
         file.or(name).unwrap_or_else(|| "Untitled".to_owned())
     }
 
-    /// Does an action as one undo step; returns what should be selected then, if anything. Steps of one `press_id` (one
-    /// press of the mouse) on the same things join. On an error the scene is as it was.
+    /// Applies an action as one undo step; returns the items to select. Steps of one `press_id` (one press of the
+    /// mouse) with equal targets are merged. On an error the scene is unchanged.
     pub fn apply(&mut self, action: Action, press_id: Option<u64>) -> Result<Vec<Item>, ActionError> {
         let before = self.scene.clone();
         let label = action.label(&before);
@@ -103,22 +102,22 @@ impl Document {
         done
     }
 
-    /// Gives up what a press has changed so far, as if it had never begun.
+    /// Discards the changes of a press.
     pub fn abandon(&mut self, press_id: u64) {
         self.step_history(|history, scene| history.abandon(scene, press_id).then_some(()));
     }
 
-    /// Takes the last step back; returns what it was.
+    /// Undoes the last step; returns its label.
     pub fn undo(&mut self) -> Option<String> {
         self.step_history(History::undo)
     }
 
-    /// Does a step again; returns what it was.
+    /// Redoes a step; returns its label.
     pub fn redo(&mut self) -> Option<String> {
         self.step_history(History::redo)
     }
 
-    /// Replaces the scene by one of the history, if there is one.
+    /// Steps through the history and updates the revisions.
     fn step_history<T>(&mut self, step: impl FnOnce(&mut History, &mut Scene) -> Option<T>) -> Option<T> {
         let before = self.scene.clone();
         let done = step(&mut self.history, &mut self.scene);
@@ -128,7 +127,7 @@ impl Document {
         done
     }
 
-    /// Asset paths and mannequins that the scene needs and that are neither loaded nor known to fail.
+    /// Returns the assets that the scene refers to and that are neither loaded nor failed.
     pub fn wanted_assets(&self) -> BTreeSet<String> {
         &self.missing_assets() - &self.failed
     }
@@ -138,7 +137,7 @@ impl Document {
         missing.map(|(_, asset)| asset_label(&asset)).collect()
     }
 
-    /// Takes in assets that were loaded in the background. What is still missing of `tried` has failed.
+    /// Adds assets that were loaded in the background. Those of `tried` that are still missing have failed.
     pub fn insert_assets(&mut self, loaded: Assets, tried: &BTreeSet<String>) {
         self.assets.meshes.extend(loaded.meshes);
         self.assets.mannequins.extend(loaded.mannequins);
@@ -147,19 +146,19 @@ impl Document {
         self.revisions = Revisions::new();
     }
 
-    /// Remembers where an imported file lies until a save puts it beside the scene.
+    /// Records the file behind an asset path until a save copies it beside the scene.
     pub fn note_import(&mut self, asset_path: String, file: PathBuf) {
         self.failed.remove(&asset_path);
         self.imported.insert(asset_path, file);
     }
 
-    /// Imported files that no save has put beside the scene yet, by the path the scene names.
+    /// Returns the imported files that no save has copied beside the scene, by asset path.
     pub fn imported_files(&self) -> Vec<(String, PathBuf)> {
         self.imported.iter().map(|(path, file)| (path.clone(), file.clone())).collect()
     }
 
-    /// The name by which the scene can refer to a file: its path under the scene's folder, or else a name of its own
-    /// in `models/` or `textures/`, where a save will copy it.
+    /// Returns the asset path of a file: its path under the scene's folder, or else a free name in `models/` or
+    /// `textures/`, where a save copies it.
     pub fn asset_path_for(&self, file: &Path, kind_folder: &str) -> String {
         let under = self.folder().and_then(|folder| {
             let (file, folder) = (file.canonicalize().ok()?, folder.canonicalize().ok()?);
@@ -184,7 +183,7 @@ impl Document {
         (1..10_000).map(name).find(is_free).unwrap_or_else(|| name(1))
     }
 
-    /// The files that must be copied so that a scene in `folder` finds its assets: (from, to).
+    /// Returns the files to copy for a scene in `folder`: (from, to).
     pub fn files_to_copy(&self, folder: &Path) -> Vec<(PathBuf, PathBuf)> {
         let used: BTreeSet<String> =
             self.scene.assets().filter_map(|(_, asset)| asset.path().map(str::to_owned)).collect();
@@ -195,7 +194,7 @@ impl Document {
             .collect()
     }
 
-    /// The scene as it is now is what the file at `path` holds.
+    /// Marks the current scene as saved to `path`.
     pub fn mark_saved(&mut self, path: PathBuf) {
         self.imported.clear();
         self.saved = self.scene.clone();
@@ -203,7 +202,7 @@ impl Document {
     }
 }
 
-/// A name for an asset: its path, or the figure and its pose.
+/// Returns the name of an asset: its path, or the figure and its pose.
 fn asset_label(asset: &AssetRef<'_>) -> String {
     match asset {
         AssetRef::Mesh(path) | AssetRef::Texture(path) => path.to_string(),
@@ -211,7 +210,7 @@ fn asset_label(asset: &AssetRef<'_>) -> String {
     }
 }
 
-/// An error of the scene that it did not have before.
+/// Returns an error of the scene that it did not have before.
 fn new_error(before: &Scene, after: &Scene) -> Option<Finding> {
     let errors = |scene| validate(scene).into_iter().filter(|f| f.severity == Severity::Error);
     let old: Vec<Finding> = errors(before).collect();
@@ -248,14 +247,14 @@ mod tests {
 
     #[test]
     fn two_studios_are_never_at_the_same_revision() {
-        // The meter went on showing the studio that was open before: both were at their first revision.
+        // Regression: the meter kept the reading of the previous studio, since both were at their first revision.
         let open = || Document::new(Scene::default(), Assets::default(), None);
         assert_ne!(open().revision(), open().revision());
         assert_ne!(open().revision(), Document::default().revision());
     }
 
     #[test]
-    fn a_refused_action_leaves_no_trace() {
+    fn a_rejected_action_changes_nothing() {
         let (mut document, _) = with_a_light();
         let (revision, depth) = (document.revision(), document.history().depth());
         assert!(document.apply(Action::Rename(Item::Camera, "Eye".into()), None).is_err());

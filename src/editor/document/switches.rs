@@ -1,10 +1,10 @@
-//! Switches of several things at once: mute, solo, lock. No power, colour or place is touched, so all of it goes back.
+//! Mute, solo and lock. They leave power, colour and position unchanged, so that they can be reverted.
 
 use crate::editor::document::action_error::ActionError;
 use crate::editor::document::item::Item;
 use crate::scene::{LightId, Scene, Solo};
 
-/// What a light does when its lamp is switched by hand: it is no longer muted, and a solo that ends leaves it so.
+/// Updates mute and solo after a light was switched directly: it is unmuted, and the end of a solo keeps the switch.
 pub fn switched_by_hand(scene: &mut Scene, id: LightId) {
     let Some(light) = scene.light_mut(id) else { return };
     light.muted = false;
@@ -15,7 +15,7 @@ pub fn switched_by_hand(scene: &mut Scene, id: LightId) {
     }
 }
 
-/// Darkens those that are on and remembers it, or brings back those that were muted. What is simply off stays off.
+/// Mutes the lights that are on, or unmutes the muted ones. Lights that are off stay off.
 pub fn mute(scene: &mut Scene, lights: &[LightId], mute: bool) -> Result<(), ActionError> {
     for &id in lights {
         let shines_alone = scene.solo.as_ref().is_none_or(|solo| solo.lights.contains(&id));
@@ -36,7 +36,7 @@ pub fn mute(scene: &mut Scene, lights: &[LightId], mute: bool) -> Result<(), Act
     Ok(())
 }
 
-/// Lets these lights shine alone; none ends it, and what was on before is on again.
+/// Solos these lights; an empty list ends the solo and restores the switches.
 pub fn solo(scene: &mut Scene, lights: Vec<LightId>) -> Result<(), ActionError> {
     end_solo(scene);
     if lights.is_empty() {
@@ -53,7 +53,7 @@ pub fn solo(scene: &mut Scene, lights: Vec<LightId>) -> Result<(), ActionError> 
     Ok(())
 }
 
-/// What came during the solo keeps its own switch.
+/// Ends the solo. Lights added during the solo keep their switch.
 fn end_solo(scene: &mut Scene) {
     let Some(solo) = scene.solo.take() else { return };
     for light in &mut scene.lights {
@@ -65,8 +65,8 @@ fn end_solo(scene: &mut Scene) {
     }
 }
 
-/// A solo forgets lights that are gone. One whose last light is gone ends.
-pub fn forget_gone(scene: &mut Scene) {
+/// Removes deleted lights from the solo and ends it with its last light.
+pub fn remove_deleted_lights(scene: &mut Scene) {
     let known: Vec<LightId> = scene.lights.iter().map(|light| light.id).collect();
     let Some(solo) = &mut scene.solo else { return };
     solo.lights.retain(|id| known.contains(id));
@@ -76,7 +76,7 @@ pub fn forget_gone(scene: &mut Scene) {
     }
 }
 
-/// Locks things in their places, or lets them go.
+/// Locks items against moves, or unlocks them.
 pub fn lock(scene: &mut Scene, items: &[Item], locked: bool) -> Result<(), ActionError> {
     for item in items {
         match *item {
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
     use crate::scene::{Emitter, Light, Output};
 
-    /// Lights of which the first two are on.
+    /// Four lights of which the first two are on.
     fn four_lights() -> (Scene, [LightId; 4]) {
         let ids = [0, 1, 2, 3].map(LightId);
         let light = |id| Light { id, on: id.0 < 2, ..Light::new(Emitter::Point, Output::Lumens(1000.0)) };
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_solo_gives_back_exactly_what_was_on() {
+    fn ending_a_solo_restores_the_switches() {
         let (mut scene, ids) = four_lights();
         let before = scene.clone();
         solo(&mut scene, vec![ids[2]]).unwrap();
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_switched_by_hand_during_a_solo_stays_so() {
+    fn a_switch_during_a_solo_outlasts_it() {
         let (mut scene, ids) = four_lights();
         solo(&mut scene, vec![ids[0]]).unwrap();
         scene.lights[3].on = true;
@@ -159,7 +159,7 @@ mod tests {
         let (mut scene, ids) = four_lights();
         solo(&mut scene, vec![ids[1]]).unwrap();
         scene.lights.remove(1);
-        forget_gone(&mut scene);
+        remove_deleted_lights(&mut scene);
         assert_eq!((on(&scene), &scene.solo), (vec![0], &None));
     }
 }

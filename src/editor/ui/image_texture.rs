@@ -1,9 +1,9 @@
-//! A picture of the processor's on the window's device: uploaded when it changes, and again when the device does.
+//! An image with its texture on the window's device, uploaded when image or device changes.
 
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
 use std::sync::Arc;
 
-/// The picture and its texture.
+/// An image and its texture.
 #[derive(Default)]
 pub struct ImageTexture {
     image: Option<Arc<ColorImage>>,
@@ -19,7 +19,7 @@ impl std::fmt::Debug for ImageTexture {
 }
 
 impl ImageTexture {
-    /// Shows another picture.
+    /// Sets another image.
     pub fn set(&mut self, ctx: &Context, image: impl Into<Arc<ColorImage>>) {
         let image = image.into();
         match &mut self.texture {
@@ -29,7 +29,7 @@ impl ImageTexture {
         self.image = Some(image);
     }
 
-    /// Uploads the picture to the device that the window has now.
+    /// Uploads the image to the window's current device.
     pub fn renew(&mut self, ctx: &Context) {
         self.texture = None;
         if let Some(image) = self.image.take() {
@@ -37,17 +37,17 @@ impl ImageTexture {
         }
     }
 
-    /// Shows nothing.
+    /// Removes the image.
     pub fn clear(&mut self) {
         *self = ImageTexture::default();
     }
 
-    /// Pixels of the picture.
+    /// Returns width and height, pixels.
     pub fn size(&self) -> Option<[usize; 2]> {
         self.image.as_ref().map(|image| image.size)
     }
 
-    /// The texture, when there is a picture.
+    /// Returns the texture, if there is an image.
     pub fn id(&self) -> Option<TextureId> {
         self.texture.as_ref().map(TextureHandle::id)
     }

@@ -1,4 +1,4 @@
-//! Elements that panels and viewport share: theme, widgets, units, toasts, the texture of a picture. They know nothing of a studio.
+//! UI elements without knowledge of studios: theme, widgets, units, messages, image textures.
 
 pub mod image_texture;
 pub mod side_panel;

@@ -1,15 +1,15 @@
-//! A panel beside the view: as wide as the user made it, and narrower only while the window is.
+//! A panel at the side of the window that keeps its width and shrinks only with the window.
 
 use eframe::egui::{Panel, PanelState, Rangef, Ui};
 
-/// PanelWidths of a panel, points.
+/// Widths of a side panel, points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PanelWidths {
-    /// Narrowest and widest.
+    /// Smallest and largest width.
     pub range: Rangef,
-    /// Width at first.
+    /// Initial width.
     pub first: f32,
-    /// Widest part of the window.
+    /// Largest fraction of the window's width.
     pub share: f32,
 }
 
@@ -19,15 +19,15 @@ impl PanelWidths {
     }
 }
 
-/// What a panel remembers from frame to frame.
+/// The state of a side panel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SidePanel {
-    /// The width that the user gave it.
+    /// The width that the user set.
     wanted: Option<f32>,
 }
 
 impl SidePanel {
-    /// Shows `panel`, which was made with this name.
+    /// Draws `panel`, which has this name as its id.
     pub fn show(&mut self, ui: &mut Ui, name: &str, panel: Panel, widths: PanelWidths, contents: impl FnOnce(&mut Ui)) {
         let (ctx, id) = (ui.ctx().clone(), ui.scope_id().with(name));
         let range = Rangef { max: widths.most(ctx.content_rect().width()), ..widths.range };

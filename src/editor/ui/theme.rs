@@ -1,20 +1,20 @@
-//! The look: dark and calm, so that the eye judges the picture and not the frame around it.
+//! The theme: colours and text styles. Dark and neutral, so that the eye judges the picture.
 
 use crate::scene::Role;
 use eframe::egui::{self, Color32, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, vec2};
 
-/// The one colour that asks for attention: selection, render button.
+/// Accent colour: selection, render button.
 pub const ACCENT: Color32 = Color32::from_rgb(232, 166, 60);
-/// What is silenced for now.
+/// Muted lights.
 pub const MUTED: Color32 = Color32::from_rgb(226, 104, 92);
-/// Something went well.
+/// Success.
 pub const GOOD: Color32 = Color32::from_rgb(120, 176, 120);
-/// Something went wrong.
+/// Errors.
 pub const BAD: Color32 = Color32::from_rgb(224, 96, 84);
 /// Around the picture and behind it.
 pub const SURROUND: Color32 = Color32::from_gray(22);
 
-/// The colours of the roles: key amber, fill blue, rim pink, hair violet, background green.
+/// Returns the colour of a role: key amber, fill blue, rim pink, hair violet, background green.
 pub fn role_color(role: Role) -> Color32 {
     match role {
         Role::Key => Color32::from_rgb(240, 176, 64),

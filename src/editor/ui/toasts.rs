@@ -1,22 +1,22 @@
-//! Messages to the user, at the lower edge of the window: errors stay until they are dismissed, news go by themselves.
+//! Messages at the lower edge of the window. Errors and warnings stay until they are dismissed; information expires.
 
 use crate::editor::ui::theme;
 use eframe::egui::{self, Align2, Area, Frame, Id, Label, RichText};
 use std::time::Duration;
 
-/// How long news stay, seconds.
+/// Display time of information, seconds.
 const INFO_S: f64 = 5.0;
-/// Messages shown at once; older ones make room.
+/// Most messages shown at once; the oldest is removed.
 const SHOWN: usize = 5;
 
-/// What kind of message it is.
+/// The kind of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ToastKind {
-    /// Something was done.
+    /// Information.
     Info,
-    /// Something is odd but usable.
+    /// A warning.
     Warning,
-    /// Something could not be done.
+    /// An error.
     Error,
 }
 
@@ -24,7 +24,7 @@ pub enum ToastKind {
 struct Toast {
     kind: ToastKind,
     text: String,
-    /// When news go, in egui's time; set when it is first shown.
+    /// Expiry time of information, in egui's time; set when it is first shown.
     gone_at: Option<f64>,
 }
 
@@ -35,17 +35,17 @@ pub struct Toasts {
 }
 
 impl Toasts {
-    /// Something was done.
+    /// Adds information.
     pub fn info(&mut self, text: impl Into<String>) {
         self.push(ToastKind::Info, text.into());
     }
 
-    /// Something is odd but usable.
+    /// Adds a warning.
     pub fn warning(&mut self, text: impl Into<String>) {
         self.push(ToastKind::Warning, text.into());
     }
 
-    /// Something could not be done.
+    /// Adds an error and logs it.
     pub fn error(&mut self, text: impl Into<String>) {
         let text = text.into();
         log::error!("{text}");
@@ -53,7 +53,7 @@ impl Toasts {
     }
 
     fn push(&mut self, kind: ToastKind, text: String) {
-        // The same message again replaces the old one.
+        // A repeated message replaces the old one.
         self.toasts.retain(|toast| toast.text != text);
         self.toasts.push(Toast { kind, text, gone_at: None });
         if self.toasts.len() > SHOWN {
@@ -61,12 +61,12 @@ impl Toasts {
         }
     }
 
-    /// The texts on show of one kind, oldest first.
+    /// Returns the texts of one kind, oldest first.
     pub fn texts(&self, kind: ToastKind) -> Vec<&str> {
         self.toasts.iter().filter(|t| t.kind == kind).map(|t| t.text.as_str()).collect()
     }
 
-    /// Draws the messages over everything else, at the foot of a part of the window.
+    /// Draws the messages in the foreground, at the lower edge of `over`.
     pub fn ui(&mut self, ctx: &egui::Context, over: egui::Rect) {
         let now = ctx.time();
         for toast in self.toasts.iter_mut().filter(|t| t.kind == ToastKind::Info) {
@@ -97,7 +97,7 @@ impl Toasts {
     }
 }
 
-/// One message; true when it is dismissed.
+/// Draws a message; returns true when it is dismissed.
 fn toast_ui(ui: &mut egui::Ui, toast: &Toast, width: f32) -> bool {
     let color = match toast.kind {
         ToastKind::Info => theme::GOOD,

@@ -1,4 +1,4 @@
-//! Numbers as they are typed into a field: with its unit, with another unit of the same kind, or with none.
+//! Parses typed numbers with units and formats durations.
 
 use std::time::Duration;
 
@@ -14,8 +14,7 @@ const LENGTHS: [(&str, f64); 8] = [
     ("'", 0.3048),
 ];
 
-/// The number that a text means in a field that shows numbers in `unit`. A comma is a point. None where it means nothing
-/// there: letters, or metres for an angle.
+/// Parses the text of a field in `unit`; a decimal comma is allowed. Returns none for letters and incompatible units.
 pub fn parse(text: &str, unit: &str) -> Option<f64> {
     let text = text.trim().replace('\u{2212}', "-").replace(',', ".");
     let end = text.rfind(|c: char| c.is_ascii_digit() || c == '.').map_or(0, |last| last + 1);
@@ -30,7 +29,7 @@ pub fn parse(text: &str, unit: &str) -> Option<f64> {
     }
 }
 
-/// `12 s`, `3 min 05 s`, `2 h 10 min`.
+/// Formats a duration: `12 s`, `3 min 05 s`, `2 h 10 min`.
 pub fn duration_text(duration: Duration) -> String {
     let seconds = duration.as_secs_f64();
     match seconds {
@@ -69,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn what_means_nothing_changes_nothing() {
+    fn invalid_text_has_no_value() {
         for (text, unit) in [("", " m"), ("m", " m"), ("3 m", "\u{b0}"), ("3 K", " m"), ("1.2.3", ""), ("abc", "")] {
             assert_eq!(parse(text, unit), None, "{text} in {unit}");
         }

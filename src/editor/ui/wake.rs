@@ -4,7 +4,7 @@ use crate::jobs::Wake;
 use eframe::egui::Context;
 use std::sync::Arc;
 
-/// A callback that repaints the window.
+/// Returns a callback that repaints the window.
 pub fn wake(ctx: &Context) -> Wake {
     let ctx = ctx.clone();
     Arc::new(move || ctx.request_repaint())

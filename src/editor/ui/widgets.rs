@@ -8,7 +8,7 @@ use glam::Vec3;
 /// Width of the label column, points.
 const LABEL_WIDTH: f32 = 96.0;
 
-/// A titled part of a panel that can be folded.
+/// Draws a collapsible section of a panel.
 pub fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
     ui.add_space(2.0);
     egui::CollapsingHeader::new(RichText::new(title).strong()).id_salt(title).default_open(open).show_unindented(
@@ -22,7 +22,7 @@ pub fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) 
     ui.separator();
 }
 
-/// A label with what it labels to its right. The label names every field of the row that has no name of its own.
+/// Draws a label with its fields to the right. The label names every field of the row without a name.
 pub fn row<R>(ui: &mut Ui, label: &str, tip: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         let size = vec2(LABEL_WIDTH, ui.spacing().interact_size.y);
@@ -36,12 +36,12 @@ pub fn row<R>(ui: &mut Ui, label: &str, tip: &str, add: impl FnOnce(&mut Ui) -> 
     .inner
 }
 
-/// A row that only tells something.
+/// Draws a row with a read-only value.
 pub fn fact(ui: &mut Ui, label: &str, tip: &str, value: impl Into<RichText>) {
     row(ui, label, tip, |ui| ui.label(value.into())).on_hover_text(tip);
 }
 
-/// A number field that is dragged or typed. What cannot be a number leaves the value as it was.
+/// A number field that is dragged or typed. Invalid text leaves the value unchanged.
 #[derive(Clone, Copy, Debug)]
 pub struct NumberField {
     speed: f64,
@@ -51,7 +51,7 @@ pub struct NumberField {
     suffix: &'static str,
 }
 
-/// Places, metres.
+/// Positions, metres.
 pub const METRES: NumberField = NumberField { speed: 0.01, low: -1000.0, high: 1000.0, decimals: 2, suffix: " m" };
 /// Distances, metres.
 pub const DISTANCE: NumberField = NumberField { speed: 0.01, low: 0.01, high: 1000.0, decimals: 2, suffix: " m" };
@@ -61,17 +61,17 @@ pub const SIZE_CM: NumberField = NumberField { speed: 0.5, low: 0.1, high: 10_00
 pub const DEGREES: NumberField = NumberField { speed: 0.5, low: -360.0, high: 360.0, decimals: 1, suffix: "\u{b0}" };
 
 impl NumberField {
-    /// A field with these limits.
+    /// Returns a field with these limits.
     pub const fn new(speed: f64, low: f32, high: f32, decimals: usize, suffix: &'static str) -> Self {
         NumberField { speed, low, high, decimals, suffix }
     }
 
-    /// The field.
+    /// Draws the field.
     pub fn ui(self, ui: &mut Ui, value: &mut f32) -> Response {
         self.scaled_ui(ui, value, 1.0)
     }
 
-    /// The field for a value shown `factor` times as large.
+    /// Draws the field of a value that is shown multiplied by `factor`.
     pub fn scaled_ui(self, ui: &mut Ui, value: &mut f32, factor: f32) -> Response {
         let mut shown = *value * factor;
         let before = shown;
@@ -84,9 +84,9 @@ impl NumberField {
             .custom_parser(move |text| crate::editor::ui::units::parse(text, self.suffix))
             .update_while_editing(false);
         let response = ui.add(field);
-        // The field would call itself by its unit; its row names it.
+        // The accessible name comes from the row, not from the unit.
         ui.ctx().accesskit_node_builder(response.id, |node| node.clear_label());
-        // Writing back only what changed keeps the file's own digits.
+        // An unchanged value keeps the digits of the file.
         if shown != before && shown.is_finite() {
             *value = shown / factor;
         }
@@ -94,7 +94,7 @@ impl NumberField {
     }
 }
 
-/// Three fields for a place or a size, with the axes' letters.
+/// Draws three fields for a position or a size, with the axes' letters.
 pub fn vec3_ui(ui: &mut Ui, name: &str, number: NumberField, value: &mut Vec3) {
     const AXES: [(&str, Color32, &str); 3] = [
         ("x", Color32::from_rgb(222, 104, 96), "to the right of the room"),
@@ -108,7 +108,7 @@ pub fn vec3_ui(ui: &mut Ui, name: &str, number: NumberField, value: &mut Vec3) {
     }
 }
 
-/// One of a few values, as buttons side by side.
+/// Draws a choice of values as buttons side by side.
 pub fn choice<T: Copy + PartialEq>(ui: &mut Ui, value: &mut T, options: &[(T, &str, &str)]) {
     ui.spacing_mut().item_spacing.x = 2.0;
     for (option, label, tip) in options {
@@ -118,7 +118,7 @@ pub fn choice<T: Copy + PartialEq>(ui: &mut Ui, value: &mut T, options: &[(T, &s
     }
 }
 
-/// A dial of the exposure: down and up in thirds, the nominal values as a list.
+/// Draws a dial of the exposure: buttons in thirds of a stop and a list of nominal values.
 pub fn dial_ui(ui: &mut Ui, name: &str, dial: Dial, value: &mut f32) {
     ui.spacing_mut().item_spacing.x = 2.0;
     if small_button(ui, "\u{2212}", &format!("{name} down")).on_hover_text("A third of a stop down the scale").clicked()
@@ -156,19 +156,19 @@ fn scroll_once(ui: &Ui, name: &str, response: &Response) {
     ui.data_mut(|data| data.insert_temp(id, pass));
 }
 
-/// A small button with a sign on it and a name.
+/// Draws a small button with a sign and an accessible name.
 pub fn small_button(ui: &mut Ui, sign: &str, name: &str) -> Response {
     let response = ui.add(Button::new(sign).min_size(vec2(22.0, 22.0)));
     named(ui, &response, name);
     response
 }
 
-/// Gives a widget a name for screen readers and tests.
+/// Sets the accessible name of a widget.
 pub fn named(ui: &Ui, response: &Response, name: &str) {
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));
 }
 
-/// A button that opens a colour picker; colours are scene-linear. The colour keeps its digits until it is changed.
+/// Draws a button that opens a colour picker; scene-linear. An unchanged colour keeps its digits.
 pub fn color_ui(ui: &mut Ui, rgb: &mut [f32; 3]) -> Response {
     let mut shown = *rgb;
     let response = ui.color_edit_button_rgb(&mut shown);
@@ -178,21 +178,21 @@ pub fn color_ui(ui: &mut Ui, rgb: &mut [f32; 3]) -> Response {
     response
 }
 
-/// A patch of a display colour.
+/// Draws a patch of a display colour.
 pub fn swatch(ui: &mut Ui, color: Color32, size: egui::Vec2) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     ui.painter().rect_filled(rect, CornerRadius::same(3), color);
     response
 }
 
-/// A scene-linear colour as it shows, scaled so that its largest channel is full.
+/// Returns the display colour of a scene-linear colour, scaled so that its largest channel is 1.
 pub fn display_color(linear: Vec3) -> Color32 {
     let scaled = linear.max(Vec3::ZERO) / linear.max_element().max(1e-6);
     let [r, g, b] = scaled.to_array().map(|c| (crate::color::srgb_encode(c.min(1.0)) * 255.0 + 0.5) as u8);
     Color32::from_rgb(r, g, b)
 }
 
-/// A toggle that shows an eye: drawn, so that it looks the same in every font.
+/// Draws a toggle with an eye.
 pub fn eye_toggle(ui: &mut Ui, seen: bool, name: &str) -> Response {
     icon_toggle(ui, name, |painter, rect, visuals| {
         let (c, color) = (rect.center(), visuals.fg_stroke.color.gamma_multiply(if seen { 1.0 } else { 0.35 }));
@@ -212,7 +212,7 @@ pub fn eye_toggle(ui: &mut Ui, seen: bool, name: &str) -> Response {
     })
 }
 
-/// A toggle that shows a lamp, lit in the light's colour when it is on.
+/// Draws a toggle with a lamp, in the light's colour when it is on.
 pub fn lamp_toggle(ui: &mut Ui, on: bool, glow: Color32, name: &str) -> Response {
     icon_toggle(ui, name, |painter, rect, visuals| {
         let c = rect.center();
@@ -227,7 +227,7 @@ pub fn lamp_toggle(ui: &mut Ui, on: bool, glow: Color32, name: &str) -> Response
     })
 }
 
-/// A toggle that shows a letter, on a patch of colour when it is on.
+/// Draws a toggle with a letter, on a patch of colour when it is on.
 pub fn letter_toggle(ui: &mut Ui, letter: &str, on: bool, color: Color32, name: &str) -> Response {
     icon_toggle(ui, name, |painter, rect, visuals| {
         let patch = egui::Rect::from_center_size(rect.center(), vec2(16.0, 16.0));
@@ -239,7 +239,7 @@ pub fn letter_toggle(ui: &mut Ui, letter: &str, on: bool, color: Color32, name: 
     })
 }
 
-/// A toggle that shows a padlock, closed or open.
+/// Draws a toggle with a padlock, closed or open.
 pub fn lock_toggle(ui: &mut Ui, locked: bool, name: &str) -> Response {
     icon_toggle(ui, name, |painter, rect, visuals| {
         let color = visuals.fg_stroke.color.gamma_multiply(if locked { 1.0 } else { 0.3 });
@@ -275,13 +275,13 @@ fn icon_toggle(
     response
 }
 
-/// Stops with their sign: `+0.3`, `-2.0`, `0.0`.
+/// Formats stops with their sign: `+0.3`, `-2.0`, `0.0`.
 pub fn signed_stops(stops: f32) -> String {
     let rounded = (stops * 10.0).round() / 10.0;
     if rounded == 0.0 { "0.0".to_owned() } else { format!("{rounded:+.1}").replace('-', "\u{2212}") }
 }
 
-/// A quantity with three significant digits and no more, so that fields do not jitter.
+/// Formats a quantity with three significant digits.
 pub fn three_digits(value: f32) -> String {
     match value.abs() {
         v if !v.is_finite() => "\u{2013}".to_owned(),
@@ -291,13 +291,13 @@ pub fn three_digits(value: f32) -> String {
     }
 }
 
-/// A question in the middle of the window.
+/// Returns a modal dialog in the middle of the window.
 pub fn dialog(ctx: &egui::Context, name: &str) -> egui::Modal {
     let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16);
     egui::Modal::new(egui::Id::unique(name)).frame(frame).backdrop_color(Color32::from_black_alpha(140))
 }
 
-/// The button that asks for attention.
+/// Draws the primary button of a panel.
 pub fn primary_button(ui: &mut Ui, text: &str, width: f32) -> Response {
     let label = RichText::new(text).color(Color32::from_gray(16)).strong();
     ui.add(Button::new(label).fill(theme::ACCENT).min_size(vec2(width, 28.0)))

@@ -2,7 +2,7 @@
 
 use crate::editor::commands::choices::{CentralView, HandleMode};
 use crate::editor::commands::command::Command;
-use crate::editor::commands::item_menu::{item_menu_ui, nothing_menu_ui};
+use crate::editor::commands::item_menu::{empty_selection_menu_ui, item_menu_ui};
 use crate::editor::document::action::Action;
 use crate::editor::document::bounds::bounds;
 use crate::editor::document::item::Item;
@@ -280,7 +280,7 @@ impl Viewport {
         }
         response.context_menu(|ui| match input.selection.last() {
             Some(item) => item_menu_ui(ui, scene, item, input.selection, out),
-            None => nothing_menu_ui(ui, out),
+            None => empty_selection_menu_ui(ui, out),
         });
     }
 
