@@ -131,7 +131,7 @@ fn window_without_device() -> Window {
 fn without_a_device_the_processor_draws_the_view_and_everything_works_on_it() {
     let mut window = window_without_device();
     assert!(window.state().viewport().preview.failure().is_some());
-    assert!(window.query_by_label("Drawn by the processor, without shadows").is_some());
+    assert!(window.query_by_label("Drawn by the CPU, without shadows").is_some());
     let draws = window.state().viewport().preview.draws();
     assert!(draws > 0);
     window.run_steps(5);

@@ -1,4 +1,4 @@
-//! The viewport: camera navigation, picking, overlays, the floor plan and the view through a light.
+//! The viewport: navigation, the images of the live view, overlays and tools.
 
 pub mod live;
 pub mod navigation;

@@ -1,4 +1,4 @@
-//! How mouse and keys move the eye: the studio's, and where it looks through camera or light, these themselves.
+//! Navigation with mouse and keys: it moves the studio view, or the camera or light that is looked through.
 
 use crate::editor::document::placement::angles_towards;
 use crate::editor::viewport::studio_view::StudioView;
@@ -6,11 +6,11 @@ use crate::scene::{Aim, Camera, Light, Scene};
 use eframe::egui::{Key, PointerButton, Response, Ui};
 use glam::{Vec2, Vec3};
 
-/// Speed of flying, metres a second; four times with Shift.
+/// Speed of flying, metres per second; four times with Shift.
 const FLY_M_S: f32 = 1.8;
 
-/// Mouse and keys to a new view. True when the target stayed what it was (orbit, zoom). `pivot` is what is turned about,
-/// if not the target; the left button orbits with Alt unless a handle has it.
+/// Updates a view from mouse and keys. Returns true if the target is unchanged (orbit, zoom). `pivot` is the centre of
+/// an orbit, if not the target; the left button orbits with Alt unless a handle has it.
 pub fn steer(
     ui: &Ui,
     response: &Response,
@@ -47,7 +47,7 @@ pub fn steer(
     keeps_target
 }
 
-/// Metres to fly this frame (right, up, ahead), while keys are held and nothing else listens to them.
+/// Returns the flight of this frame (right, up, ahead), metres, while its keys are held and no field has the focus.
 fn fly_step(ui: &Ui, response: &Response) -> Vec3 {
     let focused = ui.memory(|m| m.focused());
     let listens = response.has_focus() || (focused.is_none() && response.contains_pointer());
@@ -68,13 +68,13 @@ fn fly_step(ui: &Ui, response: &Response) -> Vec3 {
     step * FLY_M_S * dt * if fast { 4.0 } else { 1.0 }
 }
 
-/// The camera's place as a view that can be steered.
+/// Returns the camera as a view for navigation.
 pub fn camera_as_view(scene: &Scene) -> StudioView {
     let camera = &scene.camera;
     StudioView::looking(camera.position, scene.aim_point(&camera.aim, camera.position))
 }
 
-/// The camera where a view looks from. Its aim stays what it is when the target did.
+/// Returns the camera moved to a view. Its aim is kept if the target is unchanged.
 pub fn moved_camera(scene: &Scene, view: &StudioView, kept_aim: bool) -> Camera {
     let mut camera = scene.camera.clone();
     camera.position = view.eye();
@@ -84,12 +84,12 @@ pub fn moved_camera(scene: &Scene, view: &StudioView, kept_aim: bool) -> Camera 
     camera
 }
 
-/// A light's place as a view that can be steered.
+/// Returns a light as a view for navigation.
 pub fn light_as_view(scene: &Scene, light: &Light) -> StudioView {
     StudioView::looking(light.position, scene.aim_point(&light.aim, light.position))
 }
 
-/// The light where a view looks from. It stays aimed at what it was aimed at when the target stayed.
+/// Returns the light moved to a view. Its aim is kept if the target is unchanged.
 pub fn moved_light(light: &Light, view: &StudioView, kept_aim: bool) -> Light {
     let position = view.eye();
     let aim = match light.aim {

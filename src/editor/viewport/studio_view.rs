@@ -1,4 +1,4 @@
-//! The free view of the studio: an eye that orbits, pans, zooms and flies, and the views from the room's axes.
+//! The free view of the studio: orbit, pan, zoom and flight of its eye, and the parallel views from the sides.
 
 use crate::editor::commands::choices::ViewSide;
 use crate::math;
@@ -8,30 +8,30 @@ use std::f32::consts::FRAC_PI_2;
 
 /// Half the vertical field of view, as a tangent: a 35 mm lens on full frame.
 const HALF_HEIGHT: f32 = 12.0 / 35.0;
-/// Radians a point of mouse travel.
+/// Radians per point of mouse travel.
 const ORBIT_SPEED: f32 = 0.008;
-/// Steepest look up or down, radians: straight would make left and right meaningless.
+/// Largest pitch, radians; at 90 degrees the yaw would be undefined.
 const STEEPEST: f32 = 1.55;
 
-/// Where the eye of a parallel view stands, metres from its target: so far away, with a lens to match, that what lies
-/// 3 m before or behind the target shifts by less than a thousandth of its distance from the middle (0.7 pixels at the
-/// edge of 900), while single precision still tells a tenth of a millimetre.
+/// Distance of the eye of a parallel view from its target, metres. With the matching field of view, a point 3 m before
+/// or behind the target shifts by less than a thousandth of its distance from the middle (0.7 pixels at the edge of
+/// 900), while single precision still resolves 0.1 mm.
 const PARALLEL_EYE_M: f32 = 2000.0;
 
-/// An eye on a sphere about a target.
+/// A view from an eye on a sphere about a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StudioView {
-    /// What the eye turns about, metres.
+    /// Target, metres.
     pub target: Vec3,
-    /// Around the vertical, radians: 0 looks from the front (+Z), growing to the right.
+    /// Yaw of the eye about the vertical, radians: 0 is the front (+Z), positive to the right.
     pub yaw_rad: f32,
-    /// Above the level, radians.
+    /// Pitch of the eye above the horizontal, radians.
     pub pitch_rad: f32,
-    /// From eye to target, metres.
+    /// Distance from eye to target, metres.
     pub distance_m: f32,
-    /// Without perspective: what is equally long looks equally long, near or far.
+    /// True for parallel projection.
     pub parallel: bool,
-    /// The side it looks from; none when it was turned from there.
+    /// Side of the view; none after an orbit.
     pub side: Option<ViewSide>,
 }
 
@@ -49,7 +49,7 @@ impl Default for StudioView {
 }
 
 impl StudioView {
-    /// A view from `eye` that looks at `target`.
+    /// Returns a view from `eye` towards `target`.
     pub fn looking(eye: Vec3, target: Vec3) -> Self {
         let away = eye - target;
         let distance_m = away.length().max(0.05);
@@ -63,29 +63,28 @@ impl StudioView {
         }
     }
 
-    /// Unit direction from the target to the eye.
+    /// Returns the unit direction from the target to the eye.
     fn away(&self) -> Vec3 {
         let (sin, cos) = self.pitch_rad.sin_cos();
         Vec3::new(self.yaw_rad.sin() * cos, sin, self.yaw_rad.cos() * cos)
     }
 
-    /// Where the eye is, metres.
+    /// Returns the position of the eye, metres.
     pub fn eye(&self) -> Vec3 {
         self.target + self.away() * self.distance_m
     }
 
-    /// Half of what a view shows from bottom to top at its target, metres.
+    /// Returns half the height of the view at its target, metres.
     pub fn half_height_m(&self) -> f32 {
         HALF_HEIGHT * self.distance_m
     }
 
-    /// World from view: columns right, up, back. Unlike a frame made by looking at a point it has a right even straight
-    /// up and down.
+    /// Returns the rotation world from view: columns right, up, back. Defined even straight up and down.
     fn rotation(&self) -> Quat {
         Quat::from_rotation_y(self.yaw_rad) * Quat::from_rotation_x(-self.pitch_rad)
     }
 
-    /// The frame for a view of `aspect` (width / height).
+    /// Returns the camera frame for a view of `aspect` (width / height).
     pub fn frame(&self, aspect: f32) -> CameraFrame {
         let (eye_m, half_height) = match self.parallel {
             false => (self.distance_m, HALF_HEIGHT),
@@ -98,23 +97,23 @@ impl StudioView {
         }
     }
 
-    /// Looks from a side, at the same scale, without perspective.
+    /// Switches to the parallel view from a side, at the same scale.
     pub fn look_from(&mut self, side: ViewSide) {
         (self.yaw_rad, self.pitch_rad) = side.angles();
         (self.parallel, self.side) = (true, Some(side));
     }
 
-    /// Perspective or none; from a side it goes back to perspective and keeps the direction.
+    /// Switches between perspective and parallel projection and keeps the direction.
     pub fn toggle_parallel(&mut self) {
         (self.parallel, self.side) = (!self.parallel, None);
     }
 
-    /// Turns about the target, by mouse travel in points.
+    /// Orbits about the target, by mouse travel in points.
     pub fn orbit(&mut self, travel: Vec2) {
         self.orbit_about(self.target, travel);
     }
 
-    /// Turns about a point, which stays where it shows. From a side it goes back to perspective.
+    /// Orbits about a point, whose screen position is kept. A view from a side returns to perspective.
     pub fn orbit_about(&mut self, pivot: Vec3, travel: Vec2) {
         if travel == Vec2::ZERO {
             return;
@@ -131,7 +130,7 @@ impl StudioView {
         }
     }
 
-    /// Looks around from where the eye is; from a side, shifts instead.
+    /// Turns the view about the eye; pans a view from a side.
     pub fn look(&mut self, travel: Vec2, view_height: f32) {
         if self.side.is_some() {
             self.pan(travel, view_height);
@@ -142,18 +141,18 @@ impl StudioView {
         self.target = eye - self.away() * self.distance_m;
     }
 
-    /// Shifts sideways and up, so that what lies at the target follows the mouse. Travel and height in points.
+    /// Pans, so that the target follows the mouse. Travel and height in points.
     pub fn pan(&mut self, travel: Vec2, view_height: f32) {
         let metres = 2.0 * self.half_height_m() / view_height.max(1.0);
         self.target += self.rotation() * Vec3::new(-travel.x, travel.y, 0.0) * metres;
     }
 
-    /// Goes closer (positive) or farther; 1 is about a notch of a wheel.
+    /// Zooms in (positive) or out; 1 is about a notch of a wheel.
     pub fn zoom(&mut self, notches: f32) {
         self.distance_m = (self.distance_m * (-0.12 * notches).exp()).clamp(0.05, 200.0);
     }
 
-    /// Flies: right, up and ahead in metres. A parallel view knows no ahead: there it is up, too.
+    /// Moves the view right, up and ahead, metres. In a parallel view, ahead is up.
     pub fn fly(&mut self, right_up_ahead: Vec3) {
         if self.parallel {
             let up = right_up_ahead.y + right_up_ahead.z;
@@ -165,7 +164,7 @@ impl StudioView {
         self.target += step;
     }
 
-    /// Brings a box into view without turning.
+    /// Frames a box and keeps the direction.
     pub fn frame_box(&mut self, low: Vec3, high: Vec3) {
         self.target = 0.5 * (low + high);
         let radius = (0.5 * (high - low).length()).max(0.1);
@@ -178,7 +177,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_view_made_from_eye_and_target_looks_that_way() {
+    fn a_view_from_eye_and_target_reproduces_both() {
         let (eye, target) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(-1.0, 0.5, 0.2));
         let view = StudioView::looking(eye, target);
         assert!((view.eye() - eye).length() < 1e-5);
@@ -219,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn from_a_side_equal_lengths_look_equal_near_and_far() {
+    fn views_from_a_side_are_parallel_projections() {
         for side in ViewSide::ALL {
             let mut view = StudioView { target: Vec3::new(0.3, 1.0, -0.4), ..StudioView::default() };
             view.look_from(side);
@@ -228,7 +227,7 @@ mod tests {
             let axes = frame.world_from_camera.matrix3;
             let corner = Vec3::from(axes.x_axis) + Vec3::from(axes.y_axis);
             let at = |depth: f32| frame.project(view.target + corner + side.away() * depth).unwrap() - 0.5;
-            // A shift of under a pixel in a view of 900.
+            // Less than a pixel in a view of 900.
             assert!((at(3.0) - at(-3.0)).length() * 900.0 < 1.0, "{side:?}: {} and {}", at(3.0), at(-3.0));
             let expected = Vec2::new(1.0 / 1.5, -1.0) / (2.0 * view.half_height_m());
             assert!((at(0.0) - expected).length() < 1e-4, "{side:?}: a metre is a metre, {} not {expected}", at(0.0));
@@ -243,11 +242,11 @@ mod tests {
         assert!((Vec3::from(axes.x_axis) - Vec3::X).length() < 1e-6);
         assert!((Vec3::from(axes.y_axis) - Vec3::NEG_Z).length() < 1e-6);
         view.orbit(Vec2::new(1.0, 0.0));
-        assert_eq!((view.parallel, view.side), (false, None), "turned, it is a view like any other");
+        assert_eq!((view.parallel, view.side), (false, None), "an orbit returns to perspective");
     }
 
     #[test]
-    fn what_is_orbited_about_stays_where_it_shows() {
+    fn the_pivot_of_an_orbit_keeps_its_screen_position() {
         let mut view = StudioView::default();
         let pivot = Vec3::new(0.8, 1.7, -0.5);
         let before = view.frame(1.5).project(pivot).unwrap();

@@ -1,4 +1,4 @@
-//! The middle of the window: the live preview with navigation, selection and handles.
+//! The viewport: live view, navigation, selection, handles and overlays.
 
 use crate::editor::commands::choices::{CentralView, HandleMode};
 use crate::editor::commands::command::Command;
@@ -13,7 +13,7 @@ use crate::editor::viewport::live::channel_menu::channel_menu_ui;
 use crate::editor::viewport::live::preview_host::PreviewHost;
 use crate::editor::viewport::live::traced_view::TracedView;
 use crate::editor::viewport::navigation::{camera_as_view, light_as_view, moved_camera, moved_light, steer};
-use crate::editor::viewport::overlays::axis_widget::{self, axis_cross_ui};
+use crate::editor::viewport::overlays::axis_widget::{self, axis_widget_ui};
 use crate::editor::viewport::overlays::floor_plan;
 use crate::editor::viewport::overlays::light_view;
 use crate::editor::viewport::overlays::markers;
@@ -28,45 +28,45 @@ use crate::scene::{Camera, CameraFrame, Scene};
 use eframe::egui::{self, Align2, Color32, EventFilter, FontId, Pos2, Rect, Response, RichText, Sense, Ui, vec2};
 use glam::{Vec2, Vec3};
 
-/// Room around the picture's frame in the camera view.
+/// Fraction of the view that the picture's frame fills in the camera view.
 const FRAME_MARGIN: f32 = 0.92;
 
-/// What the viewport is told for one frame.
+/// The input of the viewport for one frame.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewportInput<'a> {
     /// The open studio.
     pub document: &'a Document,
-    /// What is selected.
+    /// The selection.
     pub selection: &'a Selection,
-    /// What is looked through: the studio's eye, the camera or a light.
+    /// The viewpoint: studio view, camera or a light.
     pub central_view: CentralView,
-    /// The handles to show.
+    /// Kind of transform handles.
     pub handles: HandleMode,
-    /// Width over height of the picture to be rendered.
+    /// Aspect (width / height) of the rendered picture.
     pub picture_aspect: f32,
 }
 
-/// The viewport's own state.
+/// The state of the viewport.
 #[derive(Debug)]
 pub struct Viewport {
-    /// The free view.
+    /// The studio view.
     pub view: StudioView,
-    /// Whether navigation in the camera view moves the camera.
+    /// True if navigation in the camera view moves the camera.
     pub camera_follows: bool,
-    /// Whether handles go in steps; Ctrl turns it round.
+    /// True if handles snap; Ctrl inverts it.
     pub snap: bool,
-    /// The light that is placed by its highlight or its light, if one is.
+    /// The drag that places a light, if active.
     pub place_light: Option<PlaceLightDrag>,
-    /// The live preview.
+    /// The GPU or CPU preview.
     pub preview: PreviewHost,
-    /// The live view as the tracer sees it.
+    /// The traced view.
     pub traced_view: TracedView,
     handles: TransformHandles,
     marquee: Option<MarqueeSelection>,
 }
 
 impl Viewport {
-    /// A viewport with a preview to come.
+    /// Returns a viewport with these renderers.
     pub fn new(preview: PreviewHost, traced_view: TracedView) -> Self {
         Viewport {
             view: StudioView::default(),
@@ -80,27 +80,28 @@ impl Viewport {
         }
     }
 
-    /// Whether handles, a highlight or a box are dragged, so that keys are numbers and Esc gives the drag up.
+    /// Returns true while handles, a light feature or a box are dragged: keys are numbers then, and Esc cancels the
+    /// drag.
     pub fn is_dragging(&self) -> bool {
         let is_placing = self.place_light.as_ref().is_some_and(PlaceLightDrag::is_dragging);
         self.handles.is_dragging() || is_placing || self.marquee.is_some()
     }
 
-    /// Whether the pointer is on a handle.
+    /// Returns true if the pointer is on a handle.
     pub fn is_over_handle(&self) -> bool {
         self.handles.wants_pointer()
     }
 
-    /// Ends a drag of handles, a highlight or a box; the button may still be held.
-    pub fn give_up_drag(&mut self) {
+    /// Cancels a drag of handles, a light feature or a box; the button may still be down.
+    pub fn cancel_drag(&mut self) {
         self.marquee = None;
-        self.handles.give_up();
+        self.handles.cancel();
         if let Some(place_light) = &mut self.place_light {
-            place_light.give_up();
+            place_light.cancel();
         }
     }
 
-    /// Draws it and takes mouse and keys in.
+    /// Draws the viewport and handles mouse and keys.
     pub fn ui(&mut self, ui: &mut Ui, input: ViewportInput<'_>, out: &mut Vec<Command>) {
         let size = ui.available_size().max(vec2(8.0, 8.0));
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
@@ -108,7 +109,7 @@ impl Viewport {
         self.navigate(ui, &response, input, out);
         let scene = input.document.scene();
         let (frame, picture) = self.frame(scene, input, rect);
-        // Another choice ends what was about the light.
+        // A change of the selection ends the placing of a light.
         let chosen = input.selection.lights().last().copied();
         self.place_light = self.place_light.take().filter(|place_light| Some(place_light.placing().light) == chosen);
         if let Some(place_light) = &mut self.place_light {
@@ -128,11 +129,11 @@ impl Viewport {
         channel_menu_ui(ui, rect, scene, &mut self.preview.view_options, on_cpu);
         self.cpu_notice_ui(ui, rect);
         if input.central_view == CentralView::Studio {
-            axis_cross_ui(ui, rect, &self.view, &frame, out);
+            axis_widget_ui(ui, rect, &self.view, &frame, out);
         }
     }
 
-    /// What the view frames, and where the picture's frame lies in it (camera view only).
+    /// Returns the camera frame of the view, and the rectangle of the picture (camera view only).
     fn frame(&self, scene: &Scene, input: ViewportInput<'_>, rect: Rect) -> (CameraFrame, Option<Rect>) {
         let aspect = rect.width() / rect.height();
         match input.central_view {
@@ -156,7 +157,7 @@ impl Viewport {
             response.request_focus();
         }
         if response.has_focus() {
-            // Esc is a command of its own here, not the way to leave the view.
+            // Esc is a command here and does not move the focus.
             let filter =
                 EventFilter { horizontal_arrows: true, vertical_arrows: true, escape: true, ..EventFilter::default() };
             ui.memory_mut(|m| m.set_focus_lock_filter(response.id, filter));
@@ -195,7 +196,7 @@ impl Viewport {
         out: &mut Vec<Command>,
     ) {
         let scene = input.document.scene();
-        let items = handled(scene, input);
+        let items = items_with_handles(scene, input);
         let Some(position) = ui.input(|i| i.pointer.latest_pos()).filter(|_| !items.is_empty()) else {
             self.handles.reset();
             return;
@@ -215,7 +216,7 @@ impl Viewport {
         }
     }
 
-    /// Draws and ends a box that selects what lies in it.
+    /// Handles the selection box.
     fn marquee(
         &mut self,
         ui: &Ui,
@@ -234,11 +235,11 @@ impl Viewport {
         }
     }
 
-    /// The thing under a place of the view.
+    /// Returns the item at a screen position.
     fn under(&self, ui: &Ui, rect: Rect, frame: &CameraFrame, scene: &Scene, position: Pos2) -> Option<Item> {
         let pixel = (position - rect.min) * ui.pixels_per_point();
         let picked = self.preview.pick((pixel.x.max(0.0) as u32, pixel.y.max(0.0) as u32));
-        click_pick::meant(scene, frame, rect, position, picked)
+        click_pick::item_at(scene, frame, rect, position, picked)
     }
 
     fn click(
@@ -257,13 +258,13 @@ impl Viewport {
         let item = self.under(ui, response.rect, frame, input.document.scene(), position);
         out.extend(match (item, adds) {
             (Some(item), true) => Some(Command::ToggleSelected(item)),
-            // A click beside with a key held keeps what was gathered.
+            // A click on nothing with Shift or Ctrl keeps the selection.
             (None, true) => None,
             (item, false) => Some(Command::Select(item)),
         });
     }
 
-    /// The other button selects what is under it, unless it is selected, and opens the menu of the selection.
+    /// Handles the right button: selects the item under it, unless selected, and opens the menu of the selection.
     fn context_menu(
         &self,
         ui: &Ui,
@@ -338,7 +339,7 @@ impl Viewport {
         markers::paint_meter(&painter, scene, &frame, rect);
         if let Some(place_light) = &self.place_light {
             place_light.paint(&painter, scene, &frame, rect);
-        } else if !handled(scene, input).is_empty() {
+        } else if !items_with_handles(scene, input).is_empty() {
             let pointer = ui.input(|i| i.pointer.latest_pos());
             self.handles.paint(&painter, pointer);
         }
@@ -347,16 +348,16 @@ impl Viewport {
         }
     }
 
-    /// Says that the processor draws the view, and why.
+    /// Draws the note that the CPU draws the view, with the reason.
     fn cpu_notice_ui(&mut self, ui: &mut Ui, rect: Rect) {
         let Some(why) = self.preview.failure().map(str::to_owned) else { return };
         let place = Rect::from_min_size(rect.min + vec2(8.0, 38.0), vec2((rect.width() - 16.0).min(420.0), 24.0));
         ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
             ui.horizontal(|ui| {
-                let text = RichText::new("Drawn by the processor, without shadows").small().color(theme::ACCENT);
+                let text = RichText::new("Drawn by the CPU, without shadows").small().color(theme::ACCENT);
                 ui.label(text).on_hover_text(&why);
                 let can_retry = self.preview.has_device();
-                let tip = format!("{why}\n\nBuild the view on the graphics device anew");
+                let tip = format!("{why}\n\nBuild the view on the GPU again");
                 if can_retry && ui.small_button("Try again").on_hover_text(tip).clicked() {
                     self.preview.restart(ui.ctx());
                 }
@@ -364,13 +365,13 @@ impl Viewport {
         });
     }
 
-    /// Brings the selection, or everything that stands in the studio, into view.
+    /// Frames the selection, or everything, in the studio view.
     pub fn frame_selection(&mut self, document: &Document, selection: &Selection) {
         let (low, high) = bounds(document, selection).unwrap_or((Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 2.0, 1.0)));
         self.view.frame_box(low, high);
     }
 
-    /// The camera at the studio view's eye, aimed the same way.
+    /// Returns the camera moved to the studio view.
     pub fn camera_from_view(&self, scene: &Scene) -> Camera {
         moved_camera(scene, &self.view, false)
     }
@@ -383,14 +384,14 @@ impl Viewport {
             Item::Camera if studio => Some(Pick::Camera),
             Item::Camera | Item::Room | Item::Meter => None,
         };
-        // In the camera view the picture counts: only a light that is being worked on shows itself.
+        // The camera view shows light gizmos only while a light is selected.
         let lights = match input.central_view {
             CentralView::Studio => true,
             CentralView::Camera => !input.selection.lights().is_empty(),
             CentralView::Light(_) | CentralView::Picture => false,
         };
         Overlay {
-            // From a side the grid with numbers takes its place.
+            // Views from a side have the grid with numbers instead.
             grid: studio && self.view.side.is_none(),
             light_gizmos: lights,
             camera_gizmo: studio.then_some(input.picture_aspect),
@@ -401,9 +402,9 @@ impl Viewport {
     }
 }
 
-/// What of the selection the handles hold: what has a place and is not locked there. From the camera's own view its
-/// handles would sit on the lens, and a light that is looked through is steered by the view.
-fn handled(scene: &Scene, input: ViewportInput<'_>) -> Vec<Item> {
+/// Returns the selected items that have handles: those with a position that are not locked, without the camera in its
+/// own view, and none in the view through a light.
+fn items_with_handles(scene: &Scene, input: ViewportInput<'_>) -> Vec<Item> {
     let mut items = input.selection.movable(scene);
     match input.central_view {
         CentralView::Camera => items.retain(|item| *item != Item::Camera),

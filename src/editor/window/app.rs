@@ -108,7 +108,7 @@ impl App {
         let why = self.window.device_loss.take().unwrap_or_default();
         let news = "The graphics device was lost and the window was opened anew; the studio is as you left it.";
         if self.window.last_loss.replace(Instant::now()).is_some_and(|last| last.elapsed() < SOON) {
-            self.views.viewport.preview.give_up("The graphics device was lost twice within a minute.");
+            self.views.viewport.preview.use_cpu("The graphics device was lost twice within a minute.");
         }
         self.toasts.warning(if why.is_empty() { news.to_owned() } else { format!("{news} ({why})") });
     }
@@ -119,12 +119,12 @@ impl App {
     }
 
     /// Lets a device go that is gone, and tells whether it is: a window can end by that before a frame notices it.
-    pub(super) fn let_lost_device_go(&mut self) -> bool {
+    pub(super) fn drop_lost_device(&mut self) -> bool {
         if self.window.device_loss.is_none() {
             self.window.device_loss = self.views.viewport.preview.lost_device().map(str::to_owned);
         }
         if self.window.device_loss.is_some() {
-            self.views.viewport.preview.let_device_go();
+            self.views.viewport.preview.drop_device();
         }
         self.window.device_loss.is_some()
     }
@@ -271,7 +271,7 @@ impl App {
             // What is typed now is the number of the drag.
             if ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, egui::Key::Escape)) {
                 // At once, or the drag would go on in this very frame.
-                self.views.viewport.give_up_drag();
+                self.views.viewport.cancel_drag();
                 out.push(Command::Escape);
             }
             return;

@@ -101,7 +101,7 @@ impl AppHost {
     /// Whether the last window was lost. What is left of its device goes before another window is made: OpenGL cannot
     /// take it apart while a window draws with OpenGL.
     fn is_lost(&self) -> bool {
-        self.app.as_ref().is_some_and(|app| app.borrow_mut().let_lost_device_go())
+        self.app.as_ref().is_some_and(|app| app.borrow_mut().drop_lost_device())
     }
 }
 

@@ -219,7 +219,7 @@ impl App {
     fn escape(&mut self) {
         if self.views.viewport.is_dragging() {
             self.document.abandon(self.window.press_id);
-            self.views.viewport.give_up_drag();
+            self.views.viewport.cancel_drag();
         } else if self.panels.show_help {
             self.panels.show_help = false;
         } else if self.views.viewport.place_light.is_some() {

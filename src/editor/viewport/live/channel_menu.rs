@@ -1,5 +1,5 @@
-//! The menu in the corner of the view: which channel of the preview it shows, the light of which lamp, how things shine;
-//! and the legend of illuminance in false colour.
+//! The menu of the live view's options (channel, single light, highlights) and the legend of the false-colour
+//! illuminance.
 
 use crate::editor::viewport::live::preview_host::ViewOptions;
 use crate::photo::exposure;
@@ -8,11 +8,11 @@ use crate::scene::{Camera, Scene};
 use eframe::egui::{Align2, Checkbox, Color32, FontId, Painter, Pos2, RadioButton, Rect, Ui, UiBuilder, vec2};
 use std::f32::consts::PI;
 
-/// Size of a stop's colour in the legend, points.
+/// Size of a colour swatch in the legend, points.
 const SWATCH: (f32, f32) = (22.0, 18.0);
 
-/// Draws the menu over the upper left corner of the view and changes `view_options` as it is used. Where the processor draws
-/// the view (`on_cpu`) it has neither channels nor a choice of highlights.
+/// Draws the menu in the upper left corner of the view and changes `view_options`. The CPU preview (`on_cpu`) has
+/// neither channels nor a choice of highlights.
 pub fn channel_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, view_options: &mut ViewOptions, on_cpu: bool) {
     if on_cpu {
         (view_options.channel, view_options.gloss) = (Channel::Lit, Gloss::Ggx);
@@ -66,8 +66,8 @@ fn title(scene: &Scene, view_options: &ViewOptions) -> String {
     }
 }
 
-/// Why there is nothing to choose.
-const NEEDS_DEVICE: &str = "Needs a graphics adapter: the processor draws this view";
+/// Tooltip of options that the CPU preview lacks.
+const NEEDS_DEVICE: &str = "Needs a GPU: the CPU draws this view";
 
 fn tip(channel: Channel) -> &'static str {
     match channel {
@@ -85,7 +85,8 @@ fn tip(channel: Channel) -> &'static str {
     }
 }
 
-/// Stops against the camera's exposure, and the light that they are: lux seconds, and lux at the camera's shutter.
+/// Returns the lines of the legend: stops against the camera's exposure, in lux seconds and in lux at the camera's
+/// shutter.
 fn legend_lines(camera: &Camera) -> Vec<([u8; 3], String)> {
     let lux_s = PI / exposure::pixel_per_cd_s_m2(camera);
     let line = |stops: i32| {
@@ -96,7 +97,7 @@ fn legend_lines(camera: &Camera) -> Vec<([u8; 3], String)> {
     (FALSE_STOPS.0..=FALSE_STOPS.1).rev().map(line).collect()
 }
 
-/// Two or three digits that matter.
+/// Formats two or three significant digits.
 fn rounded(value: f32) -> String {
     match value {
         v if v < 1.0 => format!("{v:.2}"),
@@ -126,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_legend_names_the_light_that_the_camera_is_set_for() {
+    fn the_legend_shows_the_illuminance_of_the_camera_setting() {
         // ISO 100, f/8: 160 lx s (light_and_camera.md), at 1/125 s 20 000 lx.
         let camera = Camera { iso: 100.0, f_number: 8.0, shutter_s: 0.008, ..Camera::default() };
         let lines = legend_lines(&camera);

@@ -1,5 +1,5 @@
-//! The studio as the processor draws it where there is no graphics device for that: `raster`'s picture, without
-//! shadows, with everything over it that the preview draws over its own.
+//! The CPU preview for windows without a GPU: the image of `raster`, without shadows, with the overlays of the GPU
+//! preview.
 
 use crate::color::ToneTable;
 use crate::editor::ui::image_texture::ImageTexture;
@@ -10,18 +10,18 @@ use eframe::egui::{Color32, ColorImage, Context, Mesh, Painter, Pos2, Rect, Shap
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
-/// A picture in motion has this many pixels at most: larger ones are drawn at a half, a third ... and enlarged.
+/// Most pixels of a draft; larger views are drawn at 1/2, 1/3 ... and enlarged.
 const MOVING_PIXELS: f32 = 1_000_000.0;
-/// Width of the outline around what is selected, pixels.
+/// Width of the outline around selected objects, pixels.
 const OUTLINE: usize = 2;
 /// sRGB of the outline; twin of `outline.wgsl`.
 const OUTLINE_COLOR: Color32 = Color32::from_rgb(255, 168, 41);
-/// What is nearer to the eye than this is cut off, metres.
+/// Distance of the near plane, metres.
 const NEAR_M: f32 = 0.02;
-/// Along a line, whether it is hidden is asked at points this far apart, pixels.
-const ASKED_PX: f32 = 4.0;
+/// Spacing of the occlusion tests along a line, pixels.
+const OCCLUSION_STEP_PX: f32 = 4.0;
 
-/// Draws and keeps what was drawn last.
+/// The CPU preview and its last frame.
 #[derive(Debug, Default)]
 pub struct CpuPreview {
     tone: ToneTable,
@@ -38,22 +38,22 @@ struct CpuFrame {
     gizmos: Gizmos,
     /// The objects of the scene, in its order.
     objects: Vec<ObjectId>,
-    /// Pixels of the view a pixel of the drawing, along each side.
+    /// Pixels of the view per pixel of the framebuffer, along each side.
     scale: u32,
 }
 
-/// Pixels of the view a pixel of a drawing in motion.
+/// Returns the pixels of the view per pixel of a draft, along each side.
 fn moving_scale((width, height): (u32, u32)) -> u32 {
     (width as f32 * height as f32 / MOVING_PIXELS).sqrt().ceil().max(1.0) as u32
 }
 
 impl CpuPreview {
-    /// Whether a draft of a view of `size` is coarser than the picture in full.
+    /// Returns true if a draft of a view of `size` is coarser than the full image.
     pub fn draws_drafts(size: (u32, u32)) -> bool {
         moving_scale(size) > 1
     }
 
-    /// Draws a picture; `revision` is that of the studio's surfaces.
+    /// Draws the image; `revision` is that of the studio's surfaces.
     pub fn draw(&mut self, ctx: &Context, input: &PreviewInput, revision: u64) {
         if self.rasterizer.as_ref().is_none_or(|(of, _)| *of != revision) {
             self.rasterizer = Some((revision, Rasterizer::new(input.scene, input.assets)));
@@ -81,7 +81,7 @@ impl CpuPreview {
         self.drawn = Some(CpuFrame { drawing, frame: input.frame, gizmos, objects, scale });
     }
 
-    /// The picture as it is shown; nothing where only what lies over it is wanted.
+    /// Returns the tone-mapped image; transparent if only the overlays are drawn.
     fn image(&self, drawing: &Framebuffer, input: &PreviewInput) -> ColorImage {
         let picture = &drawing.picture;
         let size = [picture.width as usize, picture.height as usize];
@@ -95,18 +95,18 @@ impl CpuPreview {
         ColorImage::new(size, picture.rgb.par_iter().zip(&drawing.inverse_depths).map(shown).collect())
     }
 
-    /// The texture of the last picture.
+    /// Returns the texture of the last image.
     pub fn texture(&self) -> Option<TextureId> {
         self.image_texture.id()
     }
 
-    /// Forgets everything, because the window has another device.
+    /// Clears all, because the window has another device.
     pub fn clear(&mut self) {
         (self.drawn, self.rasterizer) = (None, None);
         self.image_texture.clear();
     }
 
-    /// What stands at a pixel of the last picture; a gizmo's line wins over what lies behind it.
+    /// Returns the object or gizmo at a pixel of the last image; a gizmo's line precedes the objects behind it.
     pub fn pick(&self, (x, y): (u32, u32)) -> Option<Pick> {
         let CpuFrame { drawing, frame, gizmos, objects, scale } = self.drawn.as_ref()?;
         let size = (drawing.picture.width, drawing.picture.height);
@@ -118,7 +118,7 @@ impl CpuPreview {
         gizmo.or_else(|| object().filter(|_| inside).map(|id| Pick::Object(*id)))
     }
 
-    /// Lights, beams, camera and grid over the picture in `rect`; what is hidden shows faintly.
+    /// Paints lights, beams, camera and grid over the image in `rect`; occluded lines are faint.
     pub fn paint_over(&self, painter: &Painter, rect: Rect) {
         let Some(drawn) = &self.drawn else { return };
         for corners in drawn.gizmos.tints.chunks_exact(3) {
@@ -131,7 +131,7 @@ impl CpuPreview {
 }
 
 impl CpuFrame {
-    /// Where a point shows, in parts of the picture, and one over its distance along the axis; none behind the eye.
+    /// Projects a camera-space point: position in fractions of the image, and 1/w; none in front of the near plane.
     fn place(&self, local: Vec3) -> Option<Vec3> {
         (local.z <= -NEAR_M).then(|| {
             let inverse_w = -local.z.recip();
@@ -144,7 +144,7 @@ impl CpuFrame {
         self.frame.world_from_camera.inverse().transform_point3(point.into())
     }
 
-    /// Whether something of the picture lies before a place.
+    /// Returns true if a projected point is occluded or outside of the image.
     fn is_hidden(&self, place: Vec3) -> bool {
         let (width, height) = (self.drawing.picture.width, self.drawing.picture.height);
         let pixel = place.truncate() * Vec2::new(width as f32, height as f32);
@@ -152,7 +152,7 @@ impl CpuFrame {
             return true;
         }
         let depth = self.drawing.inverse_depths[pixel.y as usize * width as usize + pixel.x as usize];
-        // Half a percent of the distance, five centimetres at most: as in `overlay.wgsl`.
+        // Depth bias of 0.5 % of the distance, at most 5 cm: as in `overlay.wgsl`.
         place.z * (1.0 + 0.05 * place.z).min(1.005) < depth
     }
 
@@ -174,20 +174,20 @@ impl CpuFrame {
         if a.z.min(b.z) > -NEAR_M {
             return;
         }
-        // The part behind the eye is cut off before the division.
+        // Clip against the near plane.
         if a.z > -NEAR_M {
             a = a.lerp(b, (a.z + NEAR_M) / (a.z - b.z));
         }
         if b.z > -NEAR_M {
             b = b.lerp(a, (b.z + NEAR_M) / (b.z - a.z));
         }
-        // Ends that were cut may lie a rounding nearer.
+        // Clipped ends may be nearer by a rounding error.
         let cut = |end: Vec3| self.place(end.with_z(end.z.min(-NEAR_M)));
         let (Some(a), Some(b)) = (cut(a), cut(b)) else { return };
         let Some((a, b)) = inside(a, b) else { return };
         let width = line.width_px / painter.pixels_per_point();
         let length = (on_screen(rect, b) - on_screen(rect, a)).length() * painter.pixels_per_point();
-        let steps = (length / ASKED_PX).ceil().clamp(1.0, 1024.0) as usize;
+        let steps = (length / OCCLUSION_STEP_PX).ceil().clamp(1.0, 1024.0) as usize;
         let hidden = |step: usize| self.is_hidden(a.lerp(b, (step as f32 + 0.5) / steps as f32));
         let mut begin = (0, hidden(0));
         for step in 1..=steps {
@@ -215,7 +215,7 @@ fn on_screen(rect: Rect, place: Vec3) -> Pos2 {
     rect.min + vec2(place.x * rect.width(), place.y * rect.height())
 }
 
-/// The part of a line inside the picture and a little beyond (Liang and Barsky 1984); none if it lies outside.
+/// Clips a line to the image with a margin (Liang and Barsky 1984); none if it lies outside.
 fn inside(a: Vec3, b: Vec3) -> Option<(Vec3, Vec3)> {
     const BEYOND: f32 = 0.01;
     let (mut enter, mut leave) = (0.0_f32, 1.0_f32);
@@ -233,13 +233,13 @@ fn inside(a: Vec3, b: Vec3) -> Option<(Vec3, Vec3)> {
     (enter < leave).then(|| (a + along * enter, a + along * leave))
 }
 
-/// sRGB-encoded with straight alpha, as the gizmos have it.
+/// Converts a gizmo's colour: sRGB-encoded, straight alpha.
 fn color(color: [f32; 4], strength: f32) -> Color32 {
     let [r, g, b, a] = (Vec4::from(color).clamp(Vec4::ZERO, Vec4::ONE) * 255.0).round().to_array();
     Color32::from_rgba_unmultiplied(r as u8, g as u8, b as u8, (a * strength) as u8)
 }
 
-/// Marks the pixels around what is selected.
+/// Draws an outline around the selected objects.
 fn outline(image: &mut ColorImage, objects: &[u32], selected: &[bool]) {
     let is_selected = |object: u32| object != NO_OBJECT && selected.get(object as usize).is_some_and(|is| *is);
     if !selected.contains(&true) {

@@ -1,5 +1,5 @@
-//! The live preview as a texture of the window: built in the background, drawn only when something changed. Where the
-//! graphics device cannot draw it, the processor does.
+//! The GPU preview as a texture of the window: built in the background, drawn only after a change. Without a GPU the
+//! CPU preview replaces it.
 
 use crate::editor::document::revisions::Revisions;
 use crate::editor::document::studio_document::Document;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
-/// How long nothing must change before a draft gives way to the picture in full.
+/// Time without a change after which a draft is replaced by the full image.
 const SETTLED: Duration = Duration::from_millis(120);
 
 #[derive(Debug)]
@@ -21,11 +21,11 @@ enum PreviewStage {
     /// The pipelines are being compiled.
     Starting(Receiver<Result<PreviewRenderer, PreviewError>>),
     Ready(Box<PreviewRenderer>),
-    /// The processor draws instead, and why.
+    /// The CPU preview draws instead, for this reason.
     Failed(String),
 }
 
-/// Everything that the picture depends on.
+/// Everything that the image depends on.
 #[derive(Clone, Debug, PartialEq)]
 struct PreviewKey {
     revisions: Revisions,
@@ -35,33 +35,33 @@ struct PreviewKey {
     options: Options,
 }
 
-/// What the views of the studio show of it. No part of the scene: it is neither saved nor undone.
+/// Display options of the live view; not part of the scene, neither saved nor undone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ViewOptions {
-    /// What each pixel shows.
+    /// The channel on display.
     pub channel: Channel,
-    /// Leaves all other lights out.
+    /// Shows the light of this light alone.
     pub only_light: Option<LightId>,
-    /// How surfaces shine.
+    /// The specular model.
     pub gloss: Gloss,
-    /// Whether the traced view shows less grain than it has until it has settled.
+    /// True to denoise the traced view until it is finished.
     pub smooth: bool,
 }
 
 /// The preview and the texture it draws into.
 pub struct PreviewHost {
-    /// What it shows.
+    /// Display options.
     pub view_options: ViewOptions,
     stage: PreviewStage,
     state: Option<RenderState>,
-    /// Raised when the window's device is gone.
+    /// Set when the window's device is lost.
     loss: LossFlag,
     cpu_preview: CpuPreview,
     texture: Option<(TextureId, u64)>,
     shown: Option<PreviewKey>,
-    /// When the picture on show was drawn, if it is a draft.
+    /// Time at which the current draft was drawn; none for a full image.
     draft_since: Option<Instant>,
-    /// Pictures drawn so far.
+    /// Number of images drawn.
     draws: u64,
     last_draw: Duration,
 }
@@ -73,7 +73,7 @@ impl std::fmt::Debug for PreviewHost {
 }
 
 impl PreviewHost {
-    /// Starts to build the preview on the window's device.
+    /// Returns a host that builds the preview on the window's device.
     pub fn new(state: Option<&RenderState>, ctx: &Context) -> Self {
         let mut host = PreviewHost {
             view_options: ViewOptions::default(),
@@ -91,40 +91,40 @@ impl PreviewHost {
         host
     }
 
-    /// Drops the window's device and all that is on it.
-    pub fn let_device_go(&mut self) {
+    /// Drops the window's device and its resources.
+    pub fn drop_device(&mut self) {
         (self.state, self.texture, self.loss) = (None, None, LossFlag::default());
-        self.give_up("There is no graphics adapter that could draw the view.");
+        self.use_cpu("There is no GPU that could draw the view.");
         self.cpu_preview.clear();
     }
 
-    /// Goes over to the device of another window.
+    /// Moves to the device of another window.
     pub fn move_to(&mut self, state: Option<&RenderState>, ctx: &Context) {
-        self.let_device_go();
+        self.drop_device();
         if let Some(state) = state {
             (self.state, self.loss) = (Some(state.clone()), LossFlag::watch(&state.device));
-            // What nobody waits for, such as egui's own, is no reason to end the program, as wgpu would.
+            // An uncaptured error, for example of egui, is logged; wgpu's default would panic.
             state.device.on_uncaptured_error(Arc::new(|error| log::error!("the graphics driver: {error}")));
             self.restart(ctx);
         }
     }
 
-    /// Why the window's device is gone, if it is: nothing can be drawn in this window any more.
+    /// Returns the reason of a device loss, after which nothing can be drawn in this window.
     pub fn lost_device(&self) -> Option<&str> {
         self.state.as_ref().and_then(|state| self.loss.poll(&state.device))
     }
 
-    /// Leaves the view to the processor until [`PreviewHost::restart`].
-    pub fn give_up(&mut self, why: &str) {
+    /// Switches to the CPU preview until [`PreviewHost::restart`].
+    pub fn use_cpu(&mut self, why: &str) {
         (self.stage, self.shown, self.draft_since) = (PreviewStage::Failed(why.to_owned()), None, None);
     }
 
-    /// Whether there is a device to build the preview on.
+    /// Returns true if there is a device to build the preview on.
     pub fn has_device(&self) -> bool {
         self.state.is_some()
     }
 
-    /// Why the processor draws the view.
+    /// Returns the reason why the CPU draws the view, if it does.
     pub fn failure(&self) -> Option<&str> {
         match &self.stage {
             PreviewStage::Failed(message) => Some(message),
@@ -132,27 +132,27 @@ impl PreviewHost {
         }
     }
 
-    /// Whether the preview is still being built.
+    /// Returns true while the preview is being built.
     pub fn is_starting(&self) -> bool {
         matches!(self.stage, PreviewStage::Starting(_))
     }
 
-    /// Whether the picture on show is a draft that is about to be drawn in full.
+    /// Returns true if the current image is a draft.
     pub fn is_draft(&self) -> bool {
         self.draft_since.is_some()
     }
 
-    /// Pictures drawn so far; does not grow while nothing changes.
+    /// Returns the number of images drawn; constant while nothing changes.
     pub fn draws(&self) -> u64 {
         self.draws
     }
 
-    /// Time the last picture took to set up and submit.
+    /// Returns the time to set up and submit the last image.
     pub fn last_draw(&self) -> Duration {
         self.last_draw
     }
 
-    /// Builds the preview again after a failure.
+    /// Rebuilds the preview after a failure.
     pub fn restart(&mut self, ctx: &Context) {
         if let Some(state) = &self.state {
             self.stage = start(state, self.loss.clone(), ctx);
@@ -160,8 +160,8 @@ impl PreviewHost {
         }
     }
 
-    /// The picture of the studio from `frame`, drawn anew if anything of it changed: as a draft where the adapter is a
-    /// processor, and in full as soon as nothing has changed for a moment. With `overlay_alone`, only what lies over it.
+    /// Returns the image of the studio from `frame`, redrawn after a change: as a draft on a software adapter, and in
+    /// full as soon as nothing has changed for a moment. `overlay_alone` draws only the overlays.
     pub fn show(
         &mut self,
         ctx: &Context,
@@ -178,16 +178,16 @@ impl PreviewHost {
             PreviewStage::Failed(_) => CpuPreview::draws_drafts(size),
         };
         let ViewOptions { channel, only_light, gloss, smooth: _ } = self.view_options;
-        // A light that was deleted meanwhile leaves the others as they are.
+        // A deleted light no longer hides the others.
         let only_light = only_light.filter(|id| document.scene().light(*id).is_some());
         let options = Options { channel, only_light, gloss, overlay_alone, ..Options::default() };
-        // Names and locks show in no picture.
+        // Names and locks do not affect the image.
         let revisions = Revisions { document: 0, ..document.revisions() };
         let wanted = PreviewKey { revisions, frame, size, overlay, options };
         let changed = self.shown.as_ref() != Some(&wanted);
         let settled = self.draft_since.is_some_and(|since| since.elapsed() >= SETTLED);
         if changed || settled {
-            // The very first picture is drawn in full: there is no motion to keep up with.
+            // The first image is drawn in full: nothing is in motion.
             let draft = changed && drafts && self.shown.is_some() && !overlay_alone;
             self.draw(ctx, document, wanted, draft);
             self.draft_since = draft.then(Instant::now);
@@ -214,7 +214,7 @@ impl PreviewHost {
         if let PreviewStage::Ready(renderer) = &mut self.stage {
             match renderer.render(&input).map(|_| ()) {
                 Ok(()) => self.register(),
-                Err(error) => self.give_up(&crate::jobs::sentence(&error)),
+                Err(error) => self.use_cpu(&crate::jobs::sentence(&error)),
             }
         }
         if let PreviewStage::Failed(_) = self.stage {
@@ -223,7 +223,7 @@ impl PreviewHost {
         (self.draws, self.last_draw, self.shown) = (self.draws + 1, began.elapsed(), Some(wanted));
     }
 
-    /// Lines and tints over the picture in `rect`, where the picture itself has none.
+    /// Paints the overlays of the CPU preview in `rect`; those of the GPU preview are part of its image.
     pub fn paint_over(&self, painter: &Painter, rect: Rect) {
         if let PreviewStage::Failed(_) = self.stage {
             self.cpu_preview.paint_over(painter, rect);
@@ -242,7 +242,7 @@ impl PreviewHost {
         }
     }
 
-    /// Tells egui of the picture's texture, when it is a new one.
+    /// Registers the image's texture with egui after it was recreated.
     fn register(&mut self) {
         let (PreviewStage::Ready(renderer), Some(state)) = (&self.stage, &self.state) else { return };
         let generation = renderer.generation();
@@ -261,7 +261,7 @@ impl PreviewHost {
         }
     }
 
-    /// What stands at a pixel of the picture on show.
+    /// Returns the object or gizmo at a pixel of the current image.
     pub fn pick(&self, pixel: (u32, u32)) -> Option<Pick> {
         match &self.stage {
             PreviewStage::Ready(renderer) => renderer.pick_blocking(pixel).ok().flatten(),

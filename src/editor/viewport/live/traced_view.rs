@@ -1,4 +1,4 @@
-//! The live view as the tracer sees it, *True*: requested for when something changed, shown while it grows.
+//! The path-traced live view (*True*): requested after a change, displayed progressively.
 
 use crate::editor::commands::choices::LiveMode;
 use crate::editor::document::studio_document::Document;
@@ -12,12 +12,12 @@ use crate::scene::{CameraFrame, LightId};
 use eframe::egui::{ColorImage, Context, TextureId};
 use std::sync::Arc;
 
-/// Pixels of a traced view at most: larger ones are traced at a half, a third ... and enlarged.
+/// Most pixels of a traced view; larger views are traced at 1/2, 1/3 ... and enlarged.
 const MOST_PIXELS: f32 = 1_300_000.0;
-/// Pixels times layers at most: 16 bytes each, twice while the view moves.
+/// Most pixels times light layers: 16 bytes each, twice while the view moves.
 const MOST_SUMS: f32 = 12_000_000.0;
 
-/// What a picture is made from; while it is the same, nothing is requested for.
+/// Everything that the image depends on; an equal key needs no request.
 #[derive(Clone, Debug, PartialEq)]
 struct TracedViewKey {
     revision: u64,
@@ -26,26 +26,26 @@ struct TracedViewKey {
     smooth: bool,
 }
 
-/// The thread, the picture it made last, and what it was requested for.
+/// The traced view: its job, its last image and its last request.
 #[derive(Debug, Default)]
 pub struct TracedView {
-    /// Which of the two the viewport shows.
+    /// The renderer that the viewport shows.
     pub mode: LiveMode,
     job: LiveJob,
     requested: Option<TracedViewKey>,
     image_texture: ImageTexture,
-    /// The view that the picture on show belongs to is the one that was requested for.
+    /// Samples per pixel of the current image, and true if it is finished.
     shown: Option<(u32, bool)>,
     failure: Option<String>,
 }
 
 impl TracedView {
-    /// A view that shares meshes' trees with the renders.
+    /// Returns a view that shares the BLAS cache with the renders.
     pub fn new(cache: Arc<GeometryCache>) -> Self {
         TracedView { job: LiveJob::new(cache), ..TracedView::default() }
     }
 
-    /// The other mode.
+    /// Switches to the other renderer.
     pub fn toggle(&mut self) {
         self.mode = match self.mode {
             LiveMode::Quick => LiveMode::True,
@@ -53,23 +53,23 @@ impl TracedView {
         };
     }
 
-    /// Forgets the picture, because another studio was opened.
+    /// Clears the image, because another studio was opened.
     pub fn clear(&mut self) {
         self.image_texture.clear();
         (self.shown, self.requested, self.failure) = (None, None, None);
     }
 
-    /// Brings the picture to the device that the window has now.
+    /// Uploads the image to the window's current device.
     pub fn move_to(&mut self, ctx: &Context) {
         self.image_texture.renew(ctx);
     }
 
-    /// Stops the tracer while its picture is not on show.
+    /// Pauses the tracer while its image is not displayed.
     pub fn pause(&self) {
         self.job.pause(true);
     }
 
-    /// The traced picture of a view of `size` pixels, as far as there is one; asks for what has changed.
+    /// Returns the traced image of a view of `size` pixels, if any; requests a new one after a change.
     pub fn show(
         &mut self,
         ctx: &Context,
@@ -79,7 +79,7 @@ impl TracedView {
         through_camera: bool,
         view_options: ViewOptions,
     ) -> Option<TextureId> {
-        // What the G-buffer holds is the graphics card's affair.
+        // The other channels come from the G-buffer of the GPU preview.
         if self.mode == LiveMode::Quick || view_options.channel != Channel::Lit {
             self.pause();
             return None;
@@ -122,7 +122,7 @@ impl TracedView {
         self.image_texture.set(ctx, ColorImage::from_rgb([image.width, image.height], &image.rgb));
     }
 
-    /// What the view says of itself: how far it is, or why there is none.
+    /// Returns the status line: the progress, or the reason of a failure.
     pub fn status(&self) -> String {
         match (&self.failure, self.shown) {
             (Some(message), _) => message.clone(),
@@ -132,28 +132,28 @@ impl TracedView {
         }
     }
 
-    /// Whether all that was requested for has been traced and is on show.
+    /// Returns true if the last request has been traced and displayed.
     pub fn is_settled(&self) -> bool {
         self.job.is_idle()
     }
 
-    /// Whether there is no picture because the scene cannot be traced.
+    /// Returns true if the scene cannot be traced.
     pub fn has_failed(&self) -> bool {
         self.mode == LiveMode::True && self.failure.is_some()
     }
 
-    /// Whether there is a picture to show.
+    /// Returns true if there is an image.
     pub fn has_picture(&self) -> bool {
         self.image_texture.id().is_some()
     }
 
-    /// Rays traced so far.
+    /// Returns the number of rays traced.
     pub fn rays(&self) -> u64 {
         self.job.rays()
     }
 }
 
-/// The size at which a view under so many lights is traced.
+/// Returns the size at which a view with this number of lights is traced.
 fn traced_size((width, height): (u32, u32), lights: usize) -> (u32, u32) {
     let layers = lights.min(MAX_LIGHT_LAYERS) + 1;
     let most = MOST_PIXELS.min(MOST_SUMS / layers as f32);
@@ -166,7 +166,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn large_views_are_traced_at_a_part_of_their_size() {
+    fn large_views_are_traced_at_a_fraction_of_their_size() {
         for (size, traced) in
             [((850, 760), (850, 760)), ((1920, 1200), (960, 600)), ((3840, 2160), (1280, 720)), ((1, 1), (1, 1))]
         {

@@ -1,5 +1,5 @@
-//! The cross of the room's axes in the corner of the view: it shows how the view is turned, and its ends are buttons
-//! that look from there.
+//! The axis widget in the corner of the view: it shows the orientation; its ends are buttons for the views from the
+//! sides.
 
 use crate::editor::commands::choices::ViewSide;
 use crate::editor::commands::command::Command;
@@ -9,18 +9,18 @@ use crate::scene::CameraFrame;
 use eframe::egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, Ui, vec2};
 use glam::Vec3;
 
-/// From the middle of the cross to its ends, points.
+/// Distance of the ends from the middle, points.
 const ARM: f32 = 34.0;
 /// Radius of an end with a letter, points.
 const END: f32 = 9.5;
 
-/// What the cross takes of the view's corner.
+/// Returns the rectangle of the widget.
 pub fn place(view: Rect) -> Rect {
     let size = vec2(2.0 * (ARM + END) + 8.0, 2.0 * (ARM + END) + 34.0);
     Rect::from_min_size(view.right_top() + vec2(-size.x - 8.0, 8.0), size)
 }
 
-/// Colour and letter of an end: letters stand on the sides that have a key.
+/// Returns colour and letter of an end; sides with a shortcut have a letter.
 fn look(side: ViewSide) -> (Color32, &'static str) {
     match side {
         ViewSide::Right => (Color32::from_rgb(222, 104, 96), "R"),
@@ -32,8 +32,8 @@ fn look(side: ViewSide) -> (Color32, &'static str) {
     }
 }
 
-/// Draws it and takes clicks in.
-pub fn axis_cross_ui(ui: &mut Ui, view: Rect, studio: &StudioView, frame: &CameraFrame, out: &mut Vec<Command>) {
+/// Draws the widget and handles clicks.
+pub fn axis_widget_ui(ui: &mut Ui, view: Rect, studio: &StudioView, frame: &CameraFrame, out: &mut Vec<Command>) {
     let place = place(view);
     let middle = Pos2::new(place.center().x, place.min.y + ARM + END + 2.0);
     let axes = frame.world_from_camera.matrix3;
@@ -42,7 +42,7 @@ pub fn axis_cross_ui(ui: &mut Ui, view: Rect, studio: &StudioView, frame: &Camer
         Vec3::new(away.dot(axes.x_axis.into()), away.dot(axes.y_axis.into()), away.dot(axes.z_axis.into()))
     };
     let mut sides = ViewSide::ALL;
-    // The nearer end lies over the farther one.
+    // Back to front.
     sides.sort_by(|a, b| seen(*a).z.total_cmp(&seen(*b).z));
     ui.painter().circle_filled(middle, ARM + END + 2.0, Color32::from_black_alpha(90));
     for side in sides {

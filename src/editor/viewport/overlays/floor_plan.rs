@@ -1,5 +1,5 @@
-//! What is drawn over a view from a side: a metre grid with numbers, and how far lights and camera are from what they
-//! are aimed at.
+//! Overlays of a view from a side: a metre grid with numbers, and the distances of lights and camera from their aim
+//! points.
 
 use crate::editor::commands::choices::ViewSide;
 use crate::editor::document::item::Item;
@@ -12,17 +12,17 @@ use crate::scene::{CameraFrame, Light, Role, Scene};
 use eframe::egui::{Align2, Color32, Painter, Rect, Stroke, vec2};
 use glam::Vec3;
 
-/// Distances between lines, metres.
+/// Spacings of the grid, metres.
 const STEPS_M: [f32; 8] = [0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
-/// Least distance between lines on the screen, points.
+/// Least spacing on the screen, points.
 const LEAST_GAP: f32 = 46.0;
-/// Lines a view has at most, whatever its size.
+/// Most lines of a view.
 const MOST_LINES: i32 = 200;
 
 /// The room's axes with their letters.
 const AXES: [(Vec3, &str); 3] = [(Vec3::X, "x"), (Vec3::Y, "height"), (Vec3::Z, "z")];
 
-/// The lines and their numbers, for a view of `side` whose middle is `target` and shows `half_height_m` above it.
+/// Paints the grid and its numbers, for a view from `side` centred on `target` that shows `half_height_m` above it.
 pub fn paint_grid(
     painter: &Painter,
     frame: &CameraFrame,
@@ -68,7 +68,7 @@ pub fn paint_grid(
     }
 }
 
-/// `1.5`, with the digits that the step between lines asks for.
+/// Formats a coordinate with the digits of the spacing: `1.5`.
 fn label(metres: f32, step: f32) -> String {
     let text = match step {
         s if s < 0.5 && s != 0.1 => format!("{metres:.2}"),
@@ -78,8 +78,8 @@ fn label(metres: f32, step: f32) -> String {
     text.replace('-', "\u{2212}")
 }
 
-/// Lines from lights and camera to what they are aimed at. Under each name stand the metres; and of lights that are on,
-/// in stops against the key, what arrives there.
+/// Paints lines from lights and camera to their aim points, with the distance under each name and, for lights that are
+/// on, the stops against the key at the aim point.
 pub fn paint_distances(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect, selection: &Selection) {
     let key = key_light(scene);
     for light in scene.lights.iter().filter(|light| !light.emitter.is_infinite()) {
@@ -100,7 +100,7 @@ pub fn paint_distances(painter: &Painter, scene: &Scene, frame: &CameraFrame, re
     paint_text(painter, place + vec2(14.0, 6.0), Align2::LEFT_CENTER, &text, Color32::from_gray(200));
 }
 
-/// The light that others are told against: the first key that is on.
+/// Returns the reference for stops: the first key light that is on.
 fn key_light(scene: &Scene) -> Option<&Light> {
     scene.lights.iter().find(|light| light.on && light.role == Role::Key)
 }
@@ -123,7 +123,7 @@ mod tests {
     use crate::scene::Aim;
 
     #[test]
-    fn twice_as_far_a_bulb_is_two_stops_under_the_key() {
+    fn a_bulb_at_twice_the_distance_is_two_stops_under_the_key() {
         let mut scene = Scene::default();
         for (role, z) in [(Role::Key, 1.0), (Role::Fill, 2.0)] {
             let mut bulb = catalog::light_named("Bare bulb").unwrap();

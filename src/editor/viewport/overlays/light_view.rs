@@ -1,4 +1,4 @@
-//! The view through a light: along its axis, with the beam that it throws.
+//! The view through a light along its axis, with its beam angles and size.
 
 use crate::editor::ui::theme;
 use crate::editor::viewport::overlays::markers::paint_text;
@@ -6,10 +6,10 @@ use crate::scene::{CameraFrame, Emitter, Light, Scene};
 use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, pos2, vec2};
 use glam::Vec2;
 
-/// Half of what is seen from bottom to top, degrees, for a light that throws no cone.
+/// Half the vertical field of view for a light without a cone, degrees.
 const WIDE_DEG: f32 = 35.0;
 
-/// What is seen from the light for a view of `aspect` (width / height): its cone with some room about it.
+/// Returns the camera frame of the light for a view of `aspect` (width / height): its cone with a margin.
 pub fn frame(scene: &Scene, light: &Light, aspect: f32) -> CameraFrame {
     let cone_deg = match (light.emitter, light.modifier.beam) {
         (Emitter::Spot { outer_deg, .. }, _) => Some(outer_deg),
@@ -23,7 +23,7 @@ pub fn frame(scene: &Scene, light: &Light, aspect: f32) -> CameraFrame {
     }
 }
 
-/// The angles that a light's beam is told by: full angle in degrees, and what it is.
+/// Returns the beam angles of a light: full angle in degrees, and label.
 fn rings(light: &Light) -> Vec<(f32, &'static str)> {
     let mut rings = Vec::new();
     if let Emitter::Spot { inner_deg, outer_deg } = light.emitter {
@@ -36,7 +36,7 @@ fn rings(light: &Light) -> Vec<(f32, &'static str)> {
     rings
 }
 
-/// Half the size of what shines, metres, and whether it is round; none for what has none.
+/// Returns half the size of the emitter, metres, and true if it is round; none for point, spot, sun and surround.
 fn half_size(emitter: &Emitter) -> Option<(Vec2, bool)> {
     match *emitter {
         Emitter::RectPanel { width_m, height_m } => Some((0.5 * Vec2::new(width_m, height_m), false)),
@@ -46,13 +46,13 @@ fn half_size(emitter: &Emitter) -> Option<(Vec2, bool)> {
     }
 }
 
-/// How large a thing of this half size shows at a distance, points.
+/// Returns the projected size of an object of this half size at a distance, points.
 fn shown_size(half_m: Vec2, distance_m: f32, frame: &CameraFrame, rect: Rect) -> eframe::egui::Vec2 {
     let part = half_m / distance_m.max(1e-3) / frame.half_extent;
     vec2(part.x * rect.width(), part.y * rect.height())
 }
 
-/// The light's own size, held up where it is aimed: how it compares with what it lights.
+/// Paints the outline of the emitter at its aim point, for comparison with the subject.
 fn paint_size(painter: &Painter, light: &Light, distance_m: f32, frame: &CameraFrame, rect: Rect, color: Color32) {
     let Some((half_m, round)) = half_size(&light.emitter) else { return };
     let size = shown_size(half_m, distance_m, frame, rect);
@@ -74,7 +74,8 @@ fn paint_size(painter: &Painter, light: &Light, distance_m: f32, frame: &CameraF
     paint_text(painter, at + vec2(0.0, 4.0), Align2::CENTER_TOP, &text, color.gamma_multiply(0.8));
 }
 
-/// Cross-hair on the axis, rings where the beam is cut, and the light's own size at `distance_m`, where it is aimed.
+/// Paints a cross-hair on the axis, rings at the beam angles, and the emitter's size at the aim point, `distance_m`
+/// away.
 pub fn paint(painter: &Painter, light: &Light, distance_m: f32, frame: &CameraFrame, rect: Rect) {
     let color = theme::role_color(light.role);
     let (centre, stroke) = (rect.center(), Stroke::new(1.5, color));
@@ -83,7 +84,7 @@ pub fn paint(painter: &Painter, light: &Light, distance_m: f32, frame: &CameraFr
     }
     paint_size(painter, light, distance_m, frame, rect, color);
     for (full_deg, what) in rings(light) {
-        // Beyond this a ring lies outside of every view.
+        // Larger rings lie outside of every view.
         if full_deg > 170.0 {
             continue;
         }
@@ -102,14 +103,14 @@ mod tests {
     use glam::Vec3;
 
     #[test]
-    fn a_light_sees_what_it_is_aimed_at_in_the_middle_and_all_of_its_cone() {
+    fn the_view_through_a_light_centres_its_aim_and_shows_its_whole_cone() {
         let scene = Scene::default();
         let mut light = catalog::light_named("Bare bulb").unwrap();
         light.emitter = Emitter::Spot { inner_deg: 20.0, outer_deg: 50.0 };
         let frame = frame(&scene, &light, 1.6);
         let target = scene.aim_point(&light.aim, light.position);
         assert!((frame.project(target).unwrap() - 0.5).length() < 1e-5);
-        // A panel of 60 x 90 cm at 2 m is seen under the angles of its halves.
+        // The projected size of a panel of 60 x 90 cm at 2 m equals the projection of its corner.
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(1600.0, 1000.0));
         let size = shown_size(Vec2::new(0.3, 0.45), 2.0, &frame, rect);
         let corner = frame.world_from_camera.transform_point3(Vec3::new(0.3, 0.45, -2.0));

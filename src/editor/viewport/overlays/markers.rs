@@ -1,4 +1,5 @@
-//! What egui paints over the preview: the picture's frame, the lights' names, the selected light's distance.
+//! Markers over the live view: picture frame, light names, distances, light meter; and the projection of points to the
+//! screen.
 
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
@@ -7,19 +8,19 @@ use crate::scene::{CameraFrame, Light, Scene};
 use eframe::egui::{Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, vec2};
 use glam::Vec3;
 
-/// How near to a light's middle a click means the light, points.
+/// Radius of a click on a light or the meter, points.
 const CLICK_RADIUS: f32 = 9.0;
-/// Length of the line to where the meter faces, metres.
+/// Length of the line along the meter's facing direction, metres.
 const METER_NEEDLE_M: f32 = 0.15;
 
-/// Where a point of the studio shows in the view; none behind the eye or far outside.
+/// Returns the screen position of a world-space point; none behind the eye or far outside of the view.
 pub fn place_of(frame: &CameraFrame, rect: Rect, point: Vec3) -> Option<Pos2> {
     let place = frame.project(point)?;
     let inside = (-0.2..1.2).contains(&place.x) && (-0.2..1.2).contains(&place.y);
     inside.then(|| rect.min + vec2(place.x * rect.width(), place.y * rect.height()))
 }
 
-/// The light whose middle is under the pointer.
+/// Returns the light at a screen position.
 pub fn light_at(scene: &Scene, frame: &CameraFrame, rect: Rect, position: Pos2) -> Option<Item> {
     let lights = scene.lights.iter().filter(|light| !light.emitter.is_infinite());
     let near = lights.filter_map(|light| {
@@ -29,13 +30,13 @@ pub fn light_at(scene: &Scene, frame: &CameraFrame, rect: Rect, position: Pos2) 
     near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id)| Item::Light(id))
 }
 
-/// Whether the light meter is under the pointer.
+/// Returns true if the light meter is at a screen position.
 pub fn meter_at(scene: &Scene, frame: &CameraFrame, rect: Rect, position: Pos2) -> bool {
     let place = scene.meter.and_then(|meter| place_of(frame, rect, meter.position));
     place.is_some_and(|place| place.distance(position) < CLICK_RADIUS)
 }
 
-/// The light meter: a white receptor, and a line to where it faces.
+/// Paints the light meter: a white receptor and a line along its facing direction.
 pub fn paint_meter(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect) {
     let Some(meter) = scene.meter else { return };
     let Some(place) = place_of(frame, rect, meter.position) else { return };
@@ -49,7 +50,7 @@ pub fn paint_meter(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: 
     paint_text(painter, place + vec2(0.0, 8.0), Align2::CENTER_TOP, "meter", white);
 }
 
-/// Dims what the picture will not hold and draws the picture's edge.
+/// Dims the view outside of the picture and draws the picture's edge.
 pub fn paint_picture_frame(painter: &Painter, view: Rect, picture: Rect) {
     let dim = Color32::from_black_alpha(150);
     let bands = [
@@ -64,8 +65,8 @@ pub fn paint_picture_frame(painter: &Painter, view: Rect, picture: Rect) {
     painter.rect_stroke(picture, CornerRadius::ZERO, Stroke::new(1.0, Color32::from_gray(200)), StrokeKind::Outside);
 }
 
-/// The names of the lights (all of them, or the selected ones') beside them, and with `aims` how far the selected ones are
-/// from what they aim at.
+/// Paints the names of all or only the selected lights, and with `aims` the distances of the selected ones to their aim
+/// points.
 pub fn paint_labels(
     painter: &Painter,
     scene: &Scene,
@@ -80,7 +81,7 @@ pub fn paint_labels(
         if !(all || selected) {
             continue;
         }
-        // One selected light's handles need the room to its right.
+        // The label leaves room for the handles of a single selected light.
         let silent = scene.is_silenced(light);
         paint_light_label(painter, frame, rect, light, silent, selected, selection.len() == 1 && selected);
         if selected && aims {
@@ -114,8 +115,8 @@ fn paint_light_label(
     paint_text(painter, place + offset, align, &text, color);
 }
 
-/// Where the name of a light that shows at `place` stands from there: outwards from the middle of the view, where there
-/// is less to cover, and over its handles where it has them.
+/// Returns offset and alignment of the name of a light at `place`: outwards from the middle of the view, or above its
+/// handles.
 pub fn label_place(place: Pos2, view: Rect, has_handles: bool) -> (eframe::egui::Vec2, Align2) {
     match (has_handles, place.x < view.center().x) {
         (true, _) => (vec2(0.0, -84.0), Align2::CENTER_BOTTOM),
@@ -134,7 +135,7 @@ fn paint_aim(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect, 
     paint_text(painter, place, Align2::LEFT_CENTER, &text, color.gamma_multiply(0.7));
 }
 
-/// A dashed line from a light or the camera to what it is aimed at.
+/// Paints a dashed line from a light or the camera to its aim point.
 pub fn paint_aim_line(painter: &Painter, frame: &CameraFrame, rect: Rect, from: Vec3, target: Vec3, color: Color32) {
     let (Some(from), Some(to)) = (place_of(frame, rect, from), place_of(frame, rect, target)) else { return };
     let stroke = Stroke::new(1.0, color.gamma_multiply(0.7));
@@ -142,13 +143,13 @@ pub fn paint_aim_line(painter: &Painter, frame: &CameraFrame, rect: Rect, from: 
     painter.circle_stroke(to, 4.0, stroke);
 }
 
-/// A line about the view, in its lower left corner; over and beside the numbers there where it `has_rulers`.
+/// Paints a line of text in the lower left corner of the view; clear of the grid's numbers if it `has_rulers`.
 pub fn paint_note(painter: &Painter, view: Rect, text: &str, has_rulers: bool) {
     let place = view.left_bottom() + if has_rulers { vec2(52.0, -28.0) } else { vec2(10.0, -8.0) };
     paint_text(painter, place, Align2::LEFT_BOTTOM, text, Color32::from_gray(200));
 }
 
-/// Small text that stays readable over light and dark.
+/// Paints small text on a dark background.
 pub fn paint_text(painter: &Painter, place: Pos2, align: Align2, text: &str, color: Color32) {
     let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(11.5), color);
     let rect = align.anchor_size(place, galley.size());
@@ -156,7 +157,7 @@ pub fn paint_text(painter: &Painter, place: Pos2, align: Align2, text: &str, col
     painter.galley(rect.min, galley, color);
 }
 
-/// A line of help at the lower edge of the view, clear of the menus in its upper corners.
+/// Paints a line of help at the lower edge of the view.
 pub fn paint_banner(painter: &Painter, rect: Rect, text: &str) {
     let width = (rect.width() - 40.0).max(120.0);
     let galley = painter.layout(text.to_owned(), FontId::proportional(13.0), Color32::WHITE, width);

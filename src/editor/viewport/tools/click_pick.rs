@@ -6,8 +6,8 @@ use crate::preview::Pick;
 use crate::scene::{CameraFrame, Scene};
 use eframe::egui::{Pos2, Rect};
 
-/// The thing that a click at `position` means, when the id buffer shows `picked` there. What is locked is passed over.
-pub fn meant(scene: &Scene, frame: &CameraFrame, rect: Rect, position: Pos2, picked: Option<Pick>) -> Option<Item> {
+/// Returns the item that a click at `position` selects, given the id buffer's `picked`. Locked items are skipped.
+pub fn item_at(scene: &Scene, frame: &CameraFrame, rect: Rect, position: Pos2, picked: Option<Pick>) -> Option<Item> {
     if meter_at(scene, frame, rect, position) {
         return Some(Item::Meter);
     }

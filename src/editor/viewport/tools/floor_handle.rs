@@ -1,4 +1,4 @@
-//! The ring with which a thing slides over the floor, at the height it stands at.
+//! The ring that moves an object horizontally at its height.
 
 use crate::editor::viewport::overlays::markers::place_of;
 use crate::editor::viewport::tools::handle_pointer::{HandlePointer, STEP_M};
@@ -6,33 +6,33 @@ use crate::scene::CameraFrame;
 use eframe::egui::{self, Color32, Pos2, Rect, Stroke};
 use glam::{Vec2, Vec3};
 
-/// Size of the ring and reach of the pointer, points.
+/// Radius of the ring, and of the pointer's hits, points.
 const RADIUS: f32 = 12.0;
 const REACH: f32 = 15.0;
-/// Farthest that a thing is dragged at once, metres: near the horizon a point is a long way.
+/// Largest move of one drag, metres: near the horizon a pixel is a long distance.
 const FARTHEST_M: f32 = 60.0;
 
-/// The ring.
+/// The floor handle and its drag.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FloorHandle {
     place: Option<Pos2>,
     hovered: bool,
-    /// The thing and the point of its height under the pointer when the drag began.
+    /// Position of the object, and point at its height under the pointer, at the start of the drag.
     grip: Option<(Vec3, Vec3)>,
 }
 
 impl FloorHandle {
-    /// Whether the pointer is on the ring or drags it.
+    /// Returns true if the pointer is on the ring or drags it.
     pub fn wants_pointer(&self) -> bool {
         self.hovered || self.grip.is_some()
     }
 
-    /// Whether it is dragged.
+    /// Returns true during a drag.
     pub fn is_dragged(&self) -> bool {
         self.grip.is_some()
     }
 
-    /// Takes the pointer in; returns how far a drag has moved the thing that is now at `position`.
+    /// Handles the pointer; returns the move since the start of the drag of the object now at `position`.
     pub fn update(&mut self, position: Vec3, frame: &CameraFrame, rect: Rect, pointer: HandlePointer) -> Option<Vec3> {
         self.place = place_of(frame, rect, position);
         let on_ring = self.place.is_some_and(|place| place.distance(pointer.position) < REACH);
@@ -48,14 +48,14 @@ impl FloorHandle {
         if by.length() > FARTHEST_M {
             return None;
         }
-        // Steps are places in the room, so that things line up.
+        // Snapping is to room coordinates, so that objects line up.
         let snap = |from: f32, by: f32| {
             if pointer.snap { ((from + by) / STEP_M).round() * STEP_M - from } else { by }
         };
         Some(Vec3::new(snap(start.x, by.x), 0.0, snap(start.z, by.z)))
     }
 
-    /// Draws it.
+    /// Draws the ring.
     pub fn paint(&self, painter: &egui::Painter) {
         let Some(place) = self.place else { return };
         let strong = self.wants_pointer();
@@ -64,12 +64,12 @@ impl FloorHandle {
     }
 }
 
-/// The point at height `height_m` under the pointer; none above the horizon.
+/// Returns the point at height `height_m` under the pointer; none above the horizon.
 fn floor_point(height_m: f32, frame: &CameraFrame, rect: Rect, pointer: Pos2) -> Option<Vec3> {
     let at = (pointer - rect.min) / rect.size();
     let (eye, direction) = (frame.position(), frame.direction(Vec2::new(at.x, at.y)));
     let distance = (height_m - eye.y) / direction.y;
-    // Written so that a level direction, which gives no number, is none, too.
+    // A horizontal direction gives an infinity or NaN, and none.
     (distance > 0.0 && distance.is_finite()).then(|| eye + direction * distance)
 }
 
@@ -79,7 +79,7 @@ mod tests {
     use crate::editor::viewport::studio_view::StudioView;
 
     #[test]
-    fn a_thing_slides_under_the_pointer_and_stays_at_its_height() {
+    fn a_dragged_object_follows_the_pointer_at_its_height() {
         let frame = StudioView::default().frame(1.5);
         let rect = Rect::from_min_size(Pos2::new(10.0, 20.0), egui::vec2(900.0, 600.0));
         let mut position = Vec3::new(0.2, 0.3, -0.4);
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn there_is_no_floor_above_the_horizon() {
+    fn points_above_the_horizon_have_no_floor_point() {
         let view = StudioView { pitch_rad: 0.0, ..StudioView::default() };
         let rect = Rect::from_min_size(Pos2::ZERO, egui::vec2(400.0, 400.0));
         for y in [0.0, 100.0, 200.0] {

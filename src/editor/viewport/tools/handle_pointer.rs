@@ -2,22 +2,22 @@
 
 use eframe::egui;
 
-/// Snapping steps: metres, degrees, part of the scale.
+/// Snapping step of moves, metres.
 pub const STEP_M: f32 = 0.1;
-/// Degrees of a snapped turn.
+/// Snapping step of rotations, degrees.
 pub const STEP_DEG: f32 = 15.0;
 
-/// What the mouse does over the handles.
+/// The state of the mouse over the handles.
 #[derive(Clone, Copy, Debug)]
 pub struct HandlePointer {
-    /// Where it is, points.
+    /// Position, points.
     pub position: egui::Pos2,
-    /// Nothing covers the viewport there, and the mouse is not navigating.
+    /// True if nothing covers the viewport there and the mouse does not navigate.
     pub is_over: bool,
-    /// The left button went down just now.
+    /// True if the left button was pressed in this frame.
     pub pressed: bool,
-    /// The left button is down.
+    /// True while the left button is down.
     pub down: bool,
-    /// In steps.
+    /// True if moves snap.
     pub snap: bool,
 }

@@ -1,4 +1,4 @@
-//! What a click in the view means, and what a box that is drawn there holds.
+//! The marquee: a box drawn in the viewport that selects the items in it.
 
 use crate::editor::document::item::Item;
 use crate::editor::document::studio_document::Document;
@@ -7,7 +7,7 @@ use crate::editor::viewport::overlays::markers::place_of;
 use crate::scene::CameraFrame;
 use eframe::egui::{Color32, CornerRadius, Painter, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui};
 
-/// A box that is drawn with the left button.
+/// A selection box that is drawn with the left button.
 #[derive(Clone, Copy, Debug)]
 pub struct MarqueeSelection {
     from: Pos2,
@@ -15,8 +15,7 @@ pub struct MarqueeSelection {
 }
 
 impl MarqueeSelection {
-    /// Takes the mouse in: begins, widens and ends the box. Returns what an ended one holds. `taken` is whether a handle
-    /// has the button.
+    /// Handles the mouse. Returns the items in the box when the drag ends. `taken` is true if a handle has the button.
     pub fn drag(
         marquee: &mut Option<MarqueeSelection>,
         ui: &Ui,
@@ -41,10 +40,10 @@ impl MarqueeSelection {
         }
         let ended = Rect::from_two_pos(drawn.from, drawn.to);
         *marquee = None;
-        Some(held_by(document, frame, response.rect, ended))
+        Some(items_in(document, frame, response.rect, ended))
     }
 
-    /// Draws it.
+    /// Draws the box.
     pub fn paint(&self, painter: &Painter) {
         let rect = Rect::from_two_pos(self.from, self.to);
         painter.rect_filled(rect, 0.0, theme::ACCENT.gamma_multiply(0.07));
@@ -52,8 +51,8 @@ impl MarqueeSelection {
     }
 }
 
-/// Things whose middle lies in a box on the screen: visible, and not locked.
-fn held_by(document: &Document, frame: &CameraFrame, view: Rect, marquee: Rect) -> Vec<Item> {
+/// Returns the visible, unlocked items whose middle lies in a box on the screen.
+fn items_in(document: &Document, frame: &CameraFrame, view: Rect, marquee: Rect) -> Vec<Item> {
     let scene = document.scene();
     let objects = scene.objects.iter().filter(|o| o.visible).filter_map(|object| {
         let (low, high) = document.assets().object_bounds(object)?;

@@ -1,4 +1,5 @@
-//! Tools that move things in the viewport: transform handles, typed amounts, placing a light by its highlight or light.
+//! Tools of the viewport: selection by click and box, transform handles with typed amounts, placing a light by a
+//! feature.
 
 pub mod click_pick;
 pub mod floor_handle;

@@ -1,47 +1,46 @@
-//! A light placed by what it does: where its highlight, its light, or the shadow of what it is aimed at falls on a
-//! surface.
+//! Placement of a light by the surface point of its highlight, its light at normal incidence, or the shadow of its aim
+//! point.
 
 use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::viewport::tools::surface_pick::SurfaceHit;
 use crate::scene::{Aim, Emitter, Light, LightId, Scene};
 
-/// A light that is being placed.
+/// A light that is being placed, and by which feature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LightPlacement {
     /// The light.
     pub light: LightId,
-    /// By what.
+    /// The feature.
     pub by: PlaceLightBy,
 }
 
-/// Why a light cannot be put so.
+/// The reason why a light cannot be placed by a surface point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlaceLightError {
-    /// The camera looks at the other side of the surface, or at its edge.
+    /// The camera is on the other side of the surface.
     #[error("The camera does not see this side: no highlight can show here.")]
     Unseen,
-    /// The surface faces away from where the light would stand.
+    /// The surface faces away from the light's position.
     #[error("The light would stand behind this surface.")]
     Behind,
-    /// The point is the one that the light is aimed at.
+    /// The point is the aim point.
     #[error("This is what the light is aimed at: its shadow falls farther behind.")]
     AimReadout,
-    /// The light would have to stand in the floor.
+    /// The light's position is below the floor.
     #[error("The light would have to stand in the floor.")]
     Floor,
 }
 
-/// Height below which no light is put, metres.
+/// Smallest height of a light, metres.
 const LOWEST_M: f32 = 0.05;
-/// Distance below which no light is put because the floor is in the way, metres.
+/// Smallest distance to which the floor may shorten a light's distance, metres.
 const NEAREST_M: f32 = 0.2;
 
-/// Nearer than this a point is the one that a light is aimed at, metres.
+/// Distance within which a point counts as the aim point, metres.
 const SAME_POINT_M: f32 = 0.002;
 
-/// The light that does so, at the distance that `start` has from what it is aimed at. For highlight and light it is then
-/// aimed at the point: on its thing, so that it follows the thing. It stands nearer where it would otherwise stand in the
-/// floor.
+/// Returns the placed light, at the distance of `start` from its aim point. For highlight and light its new aim is the
+/// surface point, relative to the object. The distance is shortened where the light would be below the floor.
 ///
 /// With `n` the normal, `v` the direction to the camera and `l` that to the light, a mirror shows the light where
 /// `n` is the half vector: `l = 2 (n.v) n - v`. Straight light comes along the normal: `l = n`. The shadow of the aim `a`
@@ -77,7 +76,7 @@ pub fn placed_light(scene: &Scene, start: &Light, at: &SurfaceHit, by: PlaceLigh
     let mut distance_m = wanted_m.max(NEAREST_M);
     if !start.emitter.is_infinite() && centre.y + direction.y * distance_m < LOWEST_M {
         distance_m = (centre.y - LOWEST_M) / -direction.y;
-        // A point in the floor has a distance under zero, or none.
+        // A point below the floor has a negative or NaN distance.
         if distance_m.is_nan() || distance_m < NEAREST_M {
             return Err(PlaceLightError::Floor);
         }
@@ -90,7 +89,7 @@ pub fn placed_light(scene: &Scene, start: &Light, at: &SurfaceHit, by: PlaceLigh
     Ok(Light { position: centre + direction * distance_m, aim, ..start.clone() })
 }
 
-/// The aim at a point of a thing that follows the thing.
+/// Returns the aim at a surface point, relative to its object.
 fn aim_on(scene: &Scene, at: &SurfaceHit) -> Aim {
     let object_from_world = scene.object(at.object).map(|object| object.transform.world_from_object().inverse());
     match object_from_world.map(|m| m.transform_point3(at.point)).filter(|offset| offset.is_finite()) {
@@ -99,7 +98,7 @@ fn aim_on(scene: &Scene, at: &SurfaceHit) -> Aim {
     }
 }
 
-/// Whether a light can be placed so: it must come from somewhere.
+/// Returns true for lights that have a position or direction.
 pub fn can_be_placed(light: &Light) -> bool {
     light.emitter != Emitter::Surround
 }
@@ -125,7 +124,7 @@ mod tests {
         (scene, light)
     }
 
-    /// A point of the ball in a direction from its middle.
+    /// Returns the surface point of the ball in a direction from its middle.
     fn on_ball(scene: &Scene, direction: Vec3) -> SurfaceHit {
         let normal = direction.normalize();
         let point = scene.objects[0].transform.position + 0.1 * normal;
@@ -151,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn straight_light_comes_along_the_normal() {
+    fn light_at_normal_incidence_comes_along_the_normal() {
         let (scene, start) = studio();
         let at = on_ball(&scene, Vec3::new(-0.9, 0.3, -0.2));
         let light = placed_light(&scene, &start, &at, PlaceLightBy::Light).unwrap();
@@ -166,7 +165,7 @@ mod tests {
         start.aim = Aim::Object { object: ObjectId(0), offset: Vec3::new(0.0, 0.0, 0.1) };
         let nose = scene.aim_point(&start.aim, start.position);
         let distance = (start.position - nose).length();
-        // On a paper behind, and on a cheek beside.
+        // On a backdrop, and on a cheek beside the nose.
         for (point, normal) in [(Vec3::new(0.8, 1.1, -2.0), Vec3::Z), (nose + Vec3::new(0.02, -0.02, -0.01), Vec3::Z)] {
             let at = SurfaceHit { object: ObjectId(0), point, normal, t: 1.0 };
             let light = placed_light(&scene, &start, &at, PlaceLightBy::Shadow).unwrap();
@@ -182,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn no_highlight_where_the_camera_sees_nothing_and_no_light_in_the_floor() {
+    fn unseen_points_have_no_highlight_and_lights_stay_above_the_floor() {
         let (mut scene, start) = studio();
         let behind = on_ball(&scene, Vec3::NEG_Z);
         assert_eq!(placed_light(&scene, &start, &behind, PlaceLightBy::Highlight), Err(PlaceLightError::Unseen));

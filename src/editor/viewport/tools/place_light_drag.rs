@@ -1,4 +1,4 @@
-//! The mouse in the view while a light is placed by its highlight, its light or its shadow.
+//! The drag that places a light by its highlight, its light or its shadow.
 
 use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::commands::command::Command;
@@ -12,41 +12,41 @@ use crate::scene::{CameraFrame, Light, ObjectId, Scene};
 use eframe::egui::{Align2, Color32, CursorIcon, Painter, Rect, Response, Stroke, Ui, vec2};
 use glam::Vec2;
 
-/// A light that is placed, and where the mouse is with it.
+/// The state of placing a light.
 #[derive(Clone, Debug)]
 pub struct PlaceLightDrag {
     placing: LightPlacement,
-    /// The light when the button went down, and the thing that was under the pointer then: a drag stays on it.
+    /// The light and the object under the pointer at the press; the drag stays on this object.
     held: Option<(Light, ObjectId)>,
-    /// The drag was given up; what is left of the press does nothing.
-    spent: bool,
-    /// The surface under the pointer, and whether the light can be put so.
+    /// True after the drag was cancelled, until the button is released.
+    cancelled: bool,
+    /// The surface under the pointer, and the reason why the light cannot be placed there.
     at: Option<(SurfaceHit, Option<PlaceLightError>)>,
 }
 
 impl PlaceLightDrag {
-    /// Begins.
+    /// Starts without a drag.
     pub fn new(placing: LightPlacement) -> Self {
-        PlaceLightDrag { placing, held: None, spent: false, at: None }
+        PlaceLightDrag { placing, held: None, cancelled: false, at: None }
     }
 
-    /// What is placed.
+    /// Returns the light and the feature.
     pub fn placing(&self) -> LightPlacement {
         self.placing
     }
 
-    /// Whether a drag is under way.
+    /// Returns true during a drag.
     pub fn is_dragging(&self) -> bool {
-        self.held.is_some() || self.spent
+        self.held.is_some() || self.cancelled
     }
 
-    /// Ends a drag; the button may still be held.
-    pub fn give_up(&mut self) {
-        self.spent = self.is_dragging();
+    /// Cancels the drag; the button may still be down.
+    pub fn cancel(&mut self) {
+        self.cancelled = self.is_dragging();
         self.held = None;
     }
 
-    /// Takes the mouse in. False when the light has gone.
+    /// Handles the mouse. Returns false if the light no longer exists.
     pub fn drag(
         &mut self,
         ui: &Ui,
@@ -62,7 +62,7 @@ impl PlaceLightDrag {
             (pointer.latest_pos(), pointer.primary_pressed(), pointer.primary_down(), i.modifiers.alt)
         });
         if !down {
-            (self.held, self.spent) = (None, false);
+            (self.held, self.cancelled) = (None, false);
         }
         let Some(position) = position.filter(|_| response.contains_pointer() || self.held.is_some()) else {
             self.at = None;
@@ -73,14 +73,14 @@ impl PlaceLightDrag {
         let (eye, direction) = (frame.position(), frame.direction(Vec2::new(point.x, point.y)));
         let only = self.held.as_ref().map(|(_, object)| *object);
         let Some(hit) = surface_pick::hit(scene, document.assets(), eye, direction, only) else {
-            // Off the edge of the thing the light stays where the drag left it.
+            // Beyond the object's edge the light keeps its position.
             self.at = self.at.filter(|_| self.held.is_some());
             return true;
         };
         if pressed && !alt && response.contains_pointer() {
             self.held = Some((light.clone(), hit.object));
         }
-        // The distance is that of the press: what the floor made nearer comes back with the rest of the drag.
+        // The distance is that of the press, so that a distance shortened by the floor is restored later in the drag.
         let start = self.held.as_ref().map_or(light, |(start, _)| start);
         let result = placed_light(scene, start, &hit, self.placing.by);
         self.at = Some((hit, result.as_ref().err().copied()));
@@ -91,7 +91,7 @@ impl PlaceLightDrag {
         true
     }
 
-    /// Draws the point, the way to light and camera, and what to do.
+    /// Draws the surface point, lines to light and camera, and the line of help.
     pub fn paint(&self, painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect) {
         let Some(light) = scene.light(self.placing.light) else { return };
         paint_banner(painter, rect, &self.placing.by.hint(&light.name));

@@ -1,23 +1,23 @@
-//! The point of a thing that is seen under the pointer, and how its surface lies there.
+//! Ray casting against the objects of a scene for the surface point and normal under the pointer.
 
 use crate::scene::{Assets, Object, ObjectId, Scene};
 use glam::{Affine3A, Vec3};
 
-/// A point of a thing's surface.
+/// A surface point of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceHit {
-    /// The thing.
+    /// The object.
     pub object: ObjectId,
     /// The point, metres.
     pub point: Vec3,
-    /// Unit normal of the smooth surface, on the side that was hit.
+    /// Unit shading normal, on the side that was hit, world space.
     pub normal: Vec3,
-    /// Distance along the ray, in lengths of its direction.
+    /// Distance along the ray, in units of its direction.
     pub t: f32,
 }
 
-/// The nearest surface along a ray: of the visible things, or of one of them alone. All triangles of a thing whose box
-/// is hit are tried: one ray a frame of a drag is not worth a tree.
+/// Returns the nearest hit of a ray with the visible objects, or with one of them. Tests all triangles of an object
+/// whose box is hit: one ray per frame needs no BVH.
 pub fn hit(
     scene: &Scene,
     assets: &Assets,
@@ -48,18 +48,18 @@ fn hit_object(object: &Object, assets: &Assets, origin: Vec3, direction: Vec3) -
         .zip(weights.to_array())
         .map(|(vertex, weight)| mesh.normals.get(*vertex as usize).copied().unwrap_or(flat) * weight)
         .sum::<Vec3>();
-    // Normals go by the inverse transpose.
+    // Normals transform by the inverse transpose.
     let normal = object_from_world.matrix3.transpose() * glam::Vec3A::from(smooth);
     let normal = Vec3::from(normal).try_normalize()?;
     let normal = if normal.dot(direction) > 0.0 { -normal } else { normal };
     Some(SurfaceHit { object: object.id, point: origin + direction * t, normal, t })
 }
 
-/// Slabs; comparisons that a ray along a face cannot turn into a wrong miss.
+/// Slab test against a box; a ray along a face does not miss.
 fn crosses_box(origin: Vec3, direction: Vec3, low: Vec3, high: Vec3) -> bool {
     let inverse = direction.recip();
     let (a, b) = ((low - origin) * inverse, (high - origin) * inverse);
-    // A zero times an infinity is no bound.
+    // NaN from zero times infinity is no bound.
     let bound = |v: f32, otherwise: f32| if v.is_nan() { otherwise } else { v };
     let (mut enter, mut leave) = (0.0_f32, f32::INFINITY);
     for axis in 0..3 {
@@ -69,7 +69,7 @@ fn crosses_box(origin: Vec3, direction: Vec3, low: Vec3, high: Vec3) -> bool {
     enter <= leave * 1.000_01
 }
 
-/// Distance and barycentric weights (Möller and Trumbore 1997), from either side.
+/// Intersects a triangle from either side: distance and barycentric weights (Möller and Trumbore 1997).
 fn hit_triangle([a, b, c]: [Vec3; 3], origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
     let (edge_b, edge_c) = (b - a, c - a);
     let p = direction.cross(edge_c);
@@ -80,7 +80,7 @@ fn hit_triangle([a, b, c]: [Vec3; 3], origin: Vec3, direction: Vec3) -> Option<(
     let q = from_a.cross(edge_b);
     let v = direction.dot(q) * inverse;
     let t = edge_c.dot(q) * inverse;
-    // Phrased so that the numbers of an edge-on triangle, which are none, miss.
+    // NaN of an edge-on triangle compares as a miss.
     (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t.is_finite()).then(|| (t, Vec3::new(1.0 - u - v, u, v)))
 }
 
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stretched_ball_is_hit_where_it_is_and_lies_as_an_ellipsoid_does() {
+    fn a_scaled_ball_has_the_points_and_normals_of_an_ellipsoid() {
         let scene = Scene { objects: vec![ball(3, 0.0)], ..Scene::default() };
         let (origin, direction) = (Vec3::new(0.2, 1.5, 4.0), Vec3::new(-0.01, -0.05, -1.0));
         let hit = hit(&scene, &Assets::default(), origin, direction, None).unwrap();
@@ -113,14 +113,14 @@ mod tests {
         assert!((origin + direction * hit.t - hit.point).length() < 1e-6);
         let world_from_object = scene.objects[0].transform.world_from_object();
         let local = world_from_object.inverse().transform_point3(hit.point);
-        // 128 segments stray from the ball by 0.03 %, and normals between them by less than a degree.
+        // 128 segments deviate from the ball by 0.03 %, and normals between them by less than a degree.
         assert!((local.length() / 0.5 - 1.0).abs() < 1e-3, "{local}");
         let normal = Vec3::from(world_from_object.matrix3.inverse().transpose() * glam::Vec3A::from(local));
         assert!(hit.normal.dot(normal.normalize()) > 0.999_9, "{} and {normal}", hit.normal);
     }
 
     #[test]
-    fn the_nearest_visible_thing_is_hit_unless_another_is_asked_for() {
+    fn a_ray_hits_the_nearest_visible_object_or_the_requested_one() {
         let mut scene = Scene { objects: vec![ball(0, 0.0), ball(1, 3.0)], ..Scene::default() };
         let ask = |scene: &Scene, only| {
             hit(scene, &Assets::default(), Vec3::new(9.0, 1.0, 0.0), Vec3::NEG_X, only).map(|hit| hit.object.0)

@@ -1,4 +1,4 @@
-//! Handles for moving, turning and sizing the selected things, over the viewport.
+//! The transform handles in the viewport: move, rotate and scale the selection.
 
 use crate::editor::commands::choices::HandleMode;
 use crate::editor::document::action::Action;
@@ -17,21 +17,21 @@ use transform_gizmo::{
 };
 
 const STEP_SCALE: f32 = 0.1;
-/// The nearest that handles can be to the eye, metres.
+/// Near plane of the handles, metres.
 const NEAR_M: f64 = 0.02;
-/// Below this sine of the view's tilt the floor is seen too much from its edge to slide things over it.
+/// Smallest sine of the view's pitch at which objects are moved over the floor.
 const LEAST_TILT: f32 = 0.1;
 
-/// Where the handles are seen from.
+/// The view of the handles.
 #[derive(Clone, Copy, Debug)]
 pub struct HandleView<'a> {
-    /// What the view frames.
+    /// Camera frame of the view.
     pub frame: &'a CameraFrame,
-    /// The view on the screen, points.
+    /// Rectangle of the view, points.
     pub rect: Rect,
 }
 
-/// A drag under way.
+/// A drag of a handle.
 #[derive(Clone, Debug)]
 struct HandleDrag {
     held: DragSelection,
@@ -40,8 +40,8 @@ struct HandleDrag {
 }
 
 impl HandleDrag {
-    /// The change with the typed amount, where one is typed: it goes the way that the drag goes.
-    fn told(&self) -> DragTransform {
+    /// Returns the transform with the typed amount, if any, in the direction of the drag.
+    fn with_typed_amount(&self) -> DragTransform {
         let Some(amount) = self.typed.value() else { return self.change };
         match self.change {
             DragTransform::Move(by) => DragTransform::Move(by.normalize_or_zero() * amount),
@@ -56,30 +56,30 @@ impl HandleDrag {
     }
 }
 
-/// The handles of the selection.
+/// The transform handles of the selection.
 #[derive(Debug, Default)]
 pub struct TransformHandles {
     gizmo: Gizmo,
     drag: Option<HandleDrag>,
-    /// The drag was ended by a key; what is left of the press does nothing.
-    spent: bool,
-    /// Whether the selection has handles of the kind on show.
+    /// True after a key ended the drag, until the button is released.
+    cancelled: bool,
+    /// True if the selection has handles of the current kind.
     shown: bool,
     floor: FloorHandle,
 }
 
 impl TransformHandles {
-    /// Whether the pointer is on a handle or drags one.
+    /// Returns true if the pointer is on a handle or drags one.
     pub fn wants_pointer(&self) -> bool {
         self.is_dragging() || (self.shown && (self.gizmo.is_focused() || self.floor.wants_pointer()))
     }
 
-    /// Whether something is dragged by them, so that keys are numbers.
+    /// Returns true during a drag, when keys are numbers.
     pub fn is_dragging(&self) -> bool {
-        self.drag.is_some() || self.spent
+        self.drag.is_some() || self.cancelled
     }
 
-    /// Takes the pointer and keys in; returns the change that a drag makes of the things.
+    /// Handles pointer and keys; returns the action of a drag.
     pub fn update(
         &mut self,
         scene: &Scene,
@@ -95,8 +95,8 @@ impl TransformHandles {
             self.reset();
             return None;
         };
-        self.spent &= pointer.down;
-        let change = self.dragged(scene, items, handle, place, view, pointer).filter(|_| !self.spent);
+        self.cancelled &= pointer.down;
+        let change = self.dragged(scene, items, handle, place, view, pointer).filter(|_| !self.cancelled);
         let Some(change) = change else {
             self.drag = None;
             return None;
@@ -108,14 +108,14 @@ impl TransformHandles {
         let drag = self.drag.as_mut()?;
         drag.change = change;
         drag.typed.take(keys);
-        let action = drag.held.changed(drag.told());
+        let action = drag.held.changed(drag.with_typed_amount());
         if drag.typed.is_finished() {
-            self.give_up();
+            self.cancel();
         }
         action
     }
 
-    /// What the pointer has done to the things since the drag began.
+    /// Returns the transform since the start of the drag.
     fn dragged(
         &mut self,
         scene: &Scene,
@@ -135,7 +135,8 @@ impl TransformHandles {
         self.gizmo.update_config(config);
         let target = target(scene, items, handle, place);
         if on_floor {
-            // The ring in the middle slides things over the floor; the library's own would lift them off it.
+            // The ring in the middle moves objects over the floor; the library's own handle moves in the plane of the
+            // screen.
             if !self.gizmo.is_focused() || self.floor.is_dragged() {
                 let moved = self.floor.update(place, frame, rect, pointer);
                 if self.floor.wants_pointer() {
@@ -155,18 +156,18 @@ impl TransformHandles {
         self.gizmo.update(interaction, &[target]).map(|(result, _)| change_of(result))
     }
 
-    /// Ends the drag; the button may still be held.
-    pub fn give_up(&mut self) {
-        self.spent = self.is_dragging();
+    /// Cancels the drag; the button may still be down.
+    pub fn cancel(&mut self) {
+        self.cancelled = self.is_dragging();
         self.drag = None;
     }
 
-    /// Forgets a drag, because there is nothing selected that has handles.
+    /// Clears all state, because no selected item has handles.
     pub fn reset(&mut self) {
         *self = TransformHandles::default();
     }
 
-    /// Draws them, and how far a drag has come.
+    /// Draws the handles and the amount of a drag.
     pub fn paint(&self, painter: &egui::Painter, pointer: Option<egui::Pos2>) {
         if !self.shown {
             return;
@@ -186,7 +187,7 @@ impl TransformHandles {
     }
 }
 
-/// How far a drag has come: as typed, or as measured with a hint that it can be typed.
+/// Returns the amount of a drag as text, typed or measured.
 fn amount(drag: &HandleDrag) -> String {
     let unit = match drag.change {
         DragTransform::Move(_) => " m",
@@ -209,7 +210,7 @@ fn change_of(result: GizmoResult) -> DragTransform {
     let vector = |v: mint::Vector3<f64>| DVec3::new(v.x, v.y, v.z).as_vec3();
     match result {
         GizmoResult::Translation { total, .. } => DragTransform::Move(vector(total)),
-        // The library tells the angle on the screen, which runs the other way.
+        // The library measures the angle on the screen, with the opposite sign.
         GizmoResult::Rotation { axis, total, .. } => {
             DragTransform::Rotate(vector(axis).normalize_or(Vec3::Y), -total as f32)
         }
@@ -222,7 +223,7 @@ fn change_of(result: GizmoResult) -> DragTransform {
     }
 }
 
-/// The things as the handles see them: a place, and the axes of what is sized.
+/// Returns the transform of the handles: position, and the axes of a scaled item.
 fn target(scene: &Scene, items: &[Item], handle: HandleMode, place: Vec3) -> Transform {
     let rotation = match (handle, items) {
         (HandleMode::Scale, [Item::Object(id)]) => scene.object(*id).map(|object| object.transform.rotation()),
@@ -268,7 +269,7 @@ fn rows(affine: glam::Affine3A) -> mint::RowMatrix4<f64> {
     [m.row(0).to_array(), m.row(1).to_array(), m.row(2).to_array(), m.row(3).to_array()].into()
 }
 
-/// The frame's projection with depth from -1 to 1, which the handles' library expects, for handles so far away.
+/// Returns the projection with clip depth -1 to 1, as the library expects, for handles at this distance.
 fn projection(frame: &CameraFrame, distance_m: f64) -> mint::RowMatrix4<f64> {
     let (x, y) = (1.0 / f64::from(frame.half_extent.x), 1.0 / f64::from(frame.half_extent.y));
     let far = 2.0 * distance_m + 100.0;
@@ -315,19 +316,19 @@ mod tests {
     }
 
     #[test]
-    fn a_typed_number_goes_the_way_of_the_drag() {
+    fn a_typed_number_keeps_the_direction_of_the_drag() {
         let (scene, item) = scene_with_light();
         let held = DragSelection::new(&scene, &[item], HandleMode::Move).unwrap();
         let mut drag =
             HandleDrag { held, change: DragTransform::Move(Vec3::new(0.0, -0.2, 0.0)), typed: TypedNumber::default() };
-        assert_eq!(drag.told(), drag.change);
+        assert_eq!(drag.with_typed_amount(), drag.change);
         drag.typed.take(&[Event::Text("1.5".into())]);
-        assert_eq!(drag.told(), DragTransform::Move(Vec3::new(0.0, -1.5, 0.0)));
+        assert_eq!(drag.with_typed_amount(), DragTransform::Move(Vec3::new(0.0, -1.5, 0.0)));
         drag.change = DragTransform::Rotate(Vec3::Y, -0.1);
-        assert_eq!(drag.told(), DragTransform::Rotate(Vec3::Y, -1.5_f32.to_radians()));
+        assert_eq!(drag.with_typed_amount(), DragTransform::Rotate(Vec3::Y, -1.5_f32.to_radians()));
         drag.change = DragTransform::Scale(Vec3::new(1.0, 0.8, 1.0));
-        assert_eq!(drag.told(), DragTransform::Scale(Vec3::new(1.0, 1.5, 1.0)));
+        assert_eq!(drag.with_typed_amount(), DragTransform::Scale(Vec3::new(1.0, 1.5, 1.0)));
         drag.change = DragTransform::Scale(Vec3::splat(1.2));
-        assert_eq!(drag.told(), DragTransform::Scale(Vec3::splat(1.5)));
+        assert_eq!(drag.with_typed_amount(), DragTransform::Scale(Vec3::splat(1.5)));
     }
 }

@@ -1,4 +1,5 @@
-//! The things that are dragged together, as they were when the drag began, and what a drag makes of them.
+//! Moves, rotations and scalings of the selection, computed from its state at the start of a drag, so that rounding
+//! does not accumulate and typed amounts are exact.
 //!
 //! Every change is told from the beginning of the drag, so that nothing adds up by rounding and a typed number is exact.
 
@@ -11,18 +12,18 @@ use crate::math;
 use crate::scene::{Aim, Camera, Emitter, Light, Meter, Object, Scene};
 use glam::{Quat, Vec3};
 
-/// What a drag does to what it holds.
+/// The transform of a drag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DragTransform {
-    /// Moves it so far, metres.
+    /// Translation, metres.
     Move(Vec3),
-    /// Turns it about the pivot: unit axis and angle in radians.
+    /// Rotation about the pivot: unit axis, and angle in radians.
     Rotate(Vec3, f32),
-    /// Scales one thing along its own axes.
+    /// Scaling of one item along its own axes.
     Scale(Vec3),
 }
 
-/// Things and the scene that they were part of when the drag began.
+/// The dragged items and the scene at the start of the drag.
 #[derive(Clone, Debug)]
 pub struct DragSelection {
     items: Vec<Item>,
@@ -31,12 +32,12 @@ pub struct DragSelection {
 }
 
 impl DragSelection {
-    /// Takes hold of things; none where these handles have nothing to hold.
+    /// Starts a drag; none if the items have no such handles.
     pub fn new(scene: &Scene, items: &[Item], handle: HandleMode) -> Option<Self> {
         Some(DragSelection { items: items.to_vec(), pivot: pivot(scene, items, handle)?, scene: scene.clone() })
     }
 
-    /// The things as they are after a change.
+    /// Returns the action that transforms the items.
     pub fn changed(&self, change: DragTransform) -> Option<Action> {
         let finite = match change {
             DragTransform::Move(by) => by.is_finite(),
@@ -79,8 +80,8 @@ impl DragSelection {
         }
     }
 
-    /// Whether points that are aimed at go along: they belong to what is moved when a figure or a thing is.
-    fn takes_points_along(&self) -> bool {
+    /// Returns true if aim points move with the items: when objects are among several items.
+    fn moves_aim_points(&self) -> bool {
         self.items.len() > 1 && self.items.iter().any(|item| matches!(item, Item::Object(_)))
     }
 
@@ -89,7 +90,7 @@ impl DragSelection {
         match change {
             DragTransform::Move(by) => {
                 light.position += by;
-                if let (Aim::Point(point), true) = (&mut light.aim, self.takes_points_along()) {
+                if let (Aim::Point(point), true) = (&mut light.aim, self.moves_aim_points()) {
                     *point += by;
                 }
             }
@@ -110,7 +111,7 @@ impl DragSelection {
         match change {
             DragTransform::Move(by) => {
                 camera.position += by;
-                if let (Aim::Point(point), true) = (&mut camera.aim, self.takes_points_along()) {
+                if let (Aim::Point(point), true) = (&mut camera.aim, self.moves_aim_points()) {
                     *point += by;
                 }
             }
@@ -118,7 +119,7 @@ impl DragSelection {
                 let frame = self.scene.camera_frame(1.0).world_from_camera;
                 camera.position = turned_about(self.pivot, axis, angle, start.position);
                 let (aim, roll_rad) = self.turned_aim(&start.aim, start.position, frame, axis, angle);
-                // A camera's roll is clockwise as seen from behind, a frame's is not.
+                // A camera's roll is clockwise as seen from behind, a frame's is counter-clockwise.
                 (camera.aim, camera.roll_deg) = (aim, settled(-roll_rad.to_degrees(), start.roll_deg));
             }
             DragTransform::Scale(_) => return None,
@@ -126,7 +127,8 @@ impl DragSelection {
         Some(camera)
     }
 
-    /// Aim and roll of something at `position` with this frame after a turn about the pivot. An aim at a thing holds.
+    /// Returns aim and roll (radians) of an item at `position` with this frame, rotated about the pivot. An aim at an
+    /// object is kept.
     fn turned_aim(&self, aim: &Aim, position: Vec3, frame: glam::Affine3A, axis: Vec3, angle: f32) -> (Aim, f32) {
         let turn = Quat::from_axis_angle(axis, angle);
         let new_position = self.pivot + turn * (position - self.pivot);
@@ -142,7 +144,7 @@ impl DragSelection {
     }
 
     fn aimed_along(&self, aim: &Aim, position: Vec3, otherwise: Vec3) -> Vec3 {
-        // What it aims at may be turned with it, so that only the frame knows the new direction.
+        // If the subject is rotated as well, only the frame gives the new direction.
         match aim {
             Aim::Object { object, .. } if self.items.contains(&Item::Object(*object)) => otherwise,
             _ => self.scene.aim_point(aim, position) - position,
@@ -150,9 +152,8 @@ impl DragSelection {
     }
 }
 
-/// Where the handles for these things stand, and what a turn turns about: the common centre. For one thing that is its
-/// own place, and for one light that is aimed at a thing the point that it lights: a turn swings it round its subject.
-/// None where there is nothing to hold.
+/// Returns the position of the handles, which is the pivot of rotations: the mean position of the items. A single light
+/// aimed at an object rotates about its aim point. None if the items have no such handles.
 pub fn pivot(scene: &Scene, items: &[Item], handle: HandleMode) -> Option<Vec3> {
     let [item] = items else {
         return centre(items, scene).filter(|_| handle != HandleMode::Scale);
@@ -177,7 +178,7 @@ fn turned_about(pivot: Vec3, axis: Vec3, angle_rad: f32, point: Vec3) -> Vec3 {
     pivot + Quat::from_axis_angle(axis, angle_rad) * (point - pivot)
 }
 
-/// The roll that was meant, where only rounding lies between.
+/// Returns the original roll if the new one differs by rounding only.
 fn settled(roll_deg: f32, start_deg: f32) -> f32 {
     if (roll_deg - start_deg).abs() < 0.01 { start_deg } else { roll_deg }
 }
@@ -190,7 +191,7 @@ fn changed_object(start: &Object, pivot: Vec3, change: DragTransform) -> Object 
             object.transform.position = turned_about(pivot, axis, angle, start.transform.position);
             let upright = start.transform.rotation_deg.x == 0.0 && start.transform.rotation_deg.z == 0.0;
             if upright && axis.abs() == Vec3::Y {
-                // A figure that turns on the spot keeps its angles in whole numbers.
+                // A rotation about the vertical of an upright object changes its yaw only.
                 object.transform.rotation_deg.y =
                     wrap_deg(start.transform.rotation_deg.y + (angle * axis.y).to_degrees());
             } else {
@@ -204,10 +205,10 @@ fn changed_object(start: &Object, pivot: Vec3, change: DragTransform) -> Object 
     object
 }
 
-/// Makes an emitter larger or smaller by factors along its own axes.
+/// Scales an emitter by factors along its own axes.
 fn resize(emitter: &mut Emitter, factor: Vec3) {
     let factor = factor.clamp(Vec3::splat(0.01), Vec3::splat(100.0));
-    // The axis that is pulled says how much for things with one size.
+    // Emitters of one size use the factor of the dragged axis.
     let most = [factor.x, factor.y].into_iter().max_by(|a, b| a.ln().abs().total_cmp(&b.ln().abs())).unwrap_or(1.0);
     match emitter {
         Emitter::RectPanel { width_m, height_m } => {
@@ -231,7 +232,7 @@ mod tests {
     use crate::scene::{LightId, ObjectId};
     use std::f32::consts::FRAC_PI_2;
 
-    /// A bust, a softbox aimed at it and a bulb aimed at a point before it.
+    /// A bust, a softbox aimed at it and a bulb aimed at a point in front of it.
     fn studio() -> (Scene, [Item; 3]) {
         let mut scene = Scene::default();
         let mut bust = catalog::object_named("Bust").unwrap();
@@ -253,13 +254,13 @@ mod tests {
         scene
     }
 
-    /// The room's points as seen from a light: how it lies to what it lights.
+    /// Returns a world-space point in the space of a light.
     fn seen_by(scene: &Scene, light: usize, point: Vec3) -> Vec3 {
         scene.light_frame(&scene.lights[light]).inverse().transform_point3(point)
     }
 
     #[test]
-    fn a_set_up_that_is_turned_or_moved_whole_lights_its_subject_as_before() {
+    fn rotating_or_moving_a_whole_set_up_keeps_its_lighting() {
         let (scene, items) = studio();
         let face =
             |scene: &Scene| scene.objects[0].transform.world_from_object().transform_point3(Vec3::new(0.03, 0.4, 0.1));
@@ -276,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_light_that_is_aimed_at_a_thing_swings_round_it_at_its_distance() {
+    fn a_light_aimed_at_an_object_rotates_about_it() {
         let (scene, [_, softbox, _]) = studio();
         let target = scene.aim_point(&scene.lights[0].aim, Vec3::ZERO);
         let swung = after(&scene, &[softbox], HandleMode::Rotate, DragTransform::Rotate(Vec3::Y, FRAC_PI_2));
@@ -286,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn a_light_that_is_aimed_at_a_point_turns_where_it_stands() {
+    fn a_light_aimed_at_a_point_rotates_in_place() {
         let (scene, [.., bulb]) = studio();
         let turned = after(&scene, &[bulb], HandleMode::Rotate, DragTransform::Rotate(Vec3::X, 0.3));
         let (now, before) = (&turned.lights[1], &scene.lights[1]);
@@ -299,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn points_that_lights_aim_at_stay_when_only_the_lights_move() {
+    fn aim_points_are_kept_when_only_lights_move() {
         let (scene, [_, softbox, bulb]) = studio();
         let by = Vec3::new(0.0, 0.5, 0.0);
         let moved = after(&scene, &[softbox, bulb], HandleMode::Move, DragTransform::Move(by));
@@ -308,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn sizes_stay_sane() {
+    fn scaled_sizes_stay_in_range() {
         let mut panel = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
         resize(&mut panel, Vec3::new(2.0, 1.0, 1.0));
         assert_eq!(panel, Emitter::RectPanel { width_m: 1.2, height_m: 0.9 });

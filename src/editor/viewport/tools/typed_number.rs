@@ -1,8 +1,8 @@
-//! A number that is typed while something is dragged: `1.5`, then Enter.
+//! A number that is typed during a drag: `1.5`, then Enter.
 
 use eframe::egui::{Event, Key};
 
-/// The text so far.
+/// A number as typed so far.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TypedNumber {
     text: String,
@@ -10,7 +10,7 @@ pub struct TypedNumber {
 }
 
 impl TypedNumber {
-    /// Takes keys in.
+    /// Handles keys.
     pub fn take(&mut self, events: &[Event]) {
         for event in events {
             match event {
@@ -22,23 +22,23 @@ impl TypedNumber {
         }
     }
 
-    /// What is typed.
+    /// Returns the text.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The number, once it is one.
+    /// Returns the number, if the text is one.
     pub fn value(&self) -> Option<f32> {
         self.text.parse().ok().filter(|value: &f32| value.is_finite())
     }
 
-    /// Whether Enter ended it.
+    /// Returns true after Enter.
     pub fn is_finished(&self) -> bool {
         self.finished
     }
 }
 
-/// What can stand in a number; a comma is a point.
+/// Returns the character of a number; a comma becomes a point.
 fn digit(letter: char) -> Option<char> {
     match letter {
         ',' | '.' => Some('.'),
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_typed_with_point_or_comma_and_letters_are_passed_over() {
+    fn numbers_are_typed_with_point_or_comma_and_letters_are_skipped() {
         let mut typed = TypedNumber::default();
         typed.take(&[key(Key::Enter), Event::Text("-1,x5".into())]);
         assert_eq!((typed.value(), typed.is_finished()), (Some(-1.5), false));
@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn half_a_number_is_none_yet() {
+    fn an_incomplete_number_has_no_value() {
         let mut typed = TypedNumber::default();
         typed.take(&[Event::Text("-".into())]);
         assert_eq!(typed.value(), None);
