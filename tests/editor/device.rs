@@ -154,11 +154,7 @@ fn without_a_device_the_processor_draws_the_view_and_everything_works_on_it() {
     drag(&mut window, PointerButton::Primary, from, from + vec2(50.0, -20.0));
     assert!((scene(&window).lights[0].position - light.position).length() > 0.05);
     press(&mut window, Modifiers::NONE, Key::Num2);
-    let began = Instant::now();
-    while !window.state().viewport().traced_view.has_picture() {
-        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().traced_view.status());
-        window.step();
-    }
+    wait_until(&mut window, |app| app.viewport().traced_view.has_picture());
     render_tiny(&mut window);
 }
 

@@ -88,10 +88,6 @@ fn grain_is_smoothed_only_when_asked_for() {
     choose(&mut window, "Lit", &["Smooth grain until settled"]);
     assert!(window.state().viewport().preview.view_options.smooth);
     run(&mut window, Command::SetLiveMode(LiveMode::True));
-    let began = Instant::now();
-    while !window.state().viewport().traced_view.has_picture() {
-        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().traced_view.status());
-        window.step();
-    }
+    wait_until(&mut window, |app| app.viewport().traced_view.has_picture());
     assert_eq!(undo_depth(&window), 0, "a look is no change of the studio");
 }

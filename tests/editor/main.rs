@@ -15,6 +15,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Condvar, Mutex};
 use std::time::{Duration, Instant};
 
 mod device;
@@ -31,8 +32,66 @@ mod views;
 
 type Window = Harness<'static, App>;
 
-/// Longest wait for a background task: machines that test are slow and shared.
+/// Most frames of a wait for background work: far more than a slow, shared machine needs.
+const MOST_FRAMES: u32 = 20_000;
+/// Longest time between two frames of a wait, should a job end without a repaint request.
+const LONGEST_PAUSE: Duration = Duration::from_millis(100);
+/// Time limit for checks that something does not happen.
 const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The repaint requests of a window: background jobs request a repaint when they have a result.
+#[derive(Clone, Debug, Default)]
+struct RepaintRequests(Arc<(Mutex<bool>, Condvar)>);
+
+impl RepaintRequests {
+    /// Returns the requests of a window, and listens to them from the first call on.
+    fn of(ctx: &egui::Context) -> Self {
+        let id = egui::Id::unique("repaint requests");
+        if let Some(known) = ctx.data(|data| data.get_temp(id)) {
+            return known;
+        }
+        let requests = RepaintRequests::default();
+        let raised = requests.clone();
+        ctx.set_request_repaint_callback(move |info| {
+            // A repaint that is due later is awaited by `LONGEST_PAUSE`.
+            if info.delay.is_zero() {
+                *raised.0.0.lock().unwrap() = true;
+                raised.0.1.notify_one();
+            }
+        });
+        ctx.data_mut(|data| data.insert_temp(id, requests.clone()));
+        requests
+    }
+
+    /// Waits for a repaint request, or until the frame that egui has scheduled.
+    fn wait(&self, scheduled: Duration) {
+        let (raised, changed) = &*self.0;
+        let guard = raised.lock().unwrap();
+        let (mut guard, _) =
+            changed.wait_timeout_while(guard, scheduled.min(LONGEST_PAUSE), |raised| !*raised).unwrap();
+        *guard = false;
+    }
+}
+
+/// Waits until a background job or a scheduled repaint asks for the next frame.
+fn wait_for_next_frame(window: &Window) {
+    let output = window.output().viewport_output.get(&ViewportId::ROOT);
+    RepaintRequests::of(&window.ctx).wait(output.map_or(LONGEST_PAUSE, |output| output.repaint_delay));
+}
+
+/// Runs frames until a condition holds.
+fn wait_until(window: &mut Window, condition: impl Fn(&App) -> bool) {
+    for _ in 0..MOST_FRAMES {
+        if condition(window.state()) {
+            return;
+        }
+        window.step();
+        if !condition(window.state()) {
+            wait_for_next_frame(window);
+        }
+    }
+    panic!("not reached in {MOST_FRAMES} frames: {}", window.state().viewport().traced_view.status());
+}
 
 /// Whether there is a graphics adapter. Without one the test says so and passes, unless `CATCHLIGHT_REQUIRE_GPU` is set.
 fn has_adapter() -> bool {
@@ -64,10 +123,12 @@ fn preset_window() -> Option<Window> {
 
 /// Runs frames until nothing is on its way and nothing asks for another frame.
 fn settle(window: &mut Window) {
-    let began = Instant::now();
+    RepaintRequests::of(&window.ctx);
+    let mut frames = 0;
     while window.try_run().is_err() || window.state().is_busy() {
-        assert!(began.elapsed() < PATIENCE, "still busy after {PATIENCE:?}");
-        std::thread::sleep(Duration::from_millis(5));
+        frames += 1;
+        assert!(frames < MOST_FRAMES, "still busy after {frames} frames");
+        wait_for_next_frame(window);
     }
 }
 

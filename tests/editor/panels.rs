@@ -81,12 +81,7 @@ fn a_figure_from_the_list_comes_with_its_mesh_and_is_aimed_at() {
 fn shelves_and_the_list_of_studios_fill_with_pictures() {
     let Some(mut window) = preset_window() else { return };
     let wait_for = |window: &mut Window, count: usize| {
-        let began = Instant::now();
-        while window.state().thumbnails().drawn() < count {
-            assert!(began.elapsed() < PATIENCE, "{} of {count}", window.state().thumbnails().drawn());
-            std::thread::sleep(Duration::from_millis(5));
-            window.step();
-        }
+        wait_until(window, |app| app.thumbnails().drawn() >= count);
     };
     assert_eq!(window.state().thumbnails().drawn(), 0, "nothing is drawn before it is looked at");
     click(&mut window, "Figures");

@@ -69,12 +69,7 @@ fn a_render_can_be_cancelled_and_keeps_what_it_has() {
     rendering.settings.quality = Quality::Custom;
     settle(&mut window);
     window.get_by_label("Render the picture").click();
-    let began = Instant::now();
-    while window.state().rendering().developed().is_none() {
-        assert!(began.elapsed() < PATIENCE);
-        window.step();
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait_until(&mut window, |app| app.rendering().developed().is_some());
     // The small picture has just come into the panel: a frame for the layout to settle.
     window.run_steps(2);
     window.get_by_label("Cancel").click();
@@ -90,12 +85,7 @@ fn the_quality_view_foretells_time_and_grain_and_learns_from_renders() {
     window.state_mut().rendering_mut().settings.size = PictureSize::Custom(60, 40);
     settle(&mut window);
     click(&mut window, "Time and grain");
-    let began = Instant::now();
-    while window.state().forecaster().forecast().is_none() {
-        assert!(began.elapsed() < PATIENCE);
-        window.step();
-        std::thread::sleep(Duration::from_millis(10));
-    }
+    wait_until(&mut window, |app| app.forecaster().forecast().is_some());
     settle(&mut window);
     let forecast = *window.state().forecaster().forecast().unwrap();
     let [draft, fine] = [16, 1024].map(|samples| forecast.estimate(60 * 40, samples));

@@ -54,14 +54,11 @@ fn a_storm_of_sizes_leaves_the_traced_view_at_work() {
     let Some(mut window) = preset_window() else { return };
     press(&mut window, Modifiers::NONE, Key::Num2);
     storm(&mut window);
-    let began = Instant::now();
     let rays = window.state().viewport().traced_view.rays();
-    while !(window.state().viewport().traced_view.has_picture() && window.state().viewport().traced_view.rays() > rays)
-    {
-        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().traced_view.status());
-        window.step();
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait_until(&mut window, |app| {
+        let live = &app.viewport().traced_view;
+        live.has_picture() && live.rays() > rays
+    });
     assert!(!window.state().viewport().traced_view.has_failed() && errors(&window).is_empty());
 }
 
@@ -115,14 +112,7 @@ fn a_minimised_window_traces_nothing_and_goes_on_when_it_is_back() {
     let Some(mut window) = preset_window() else { return };
     press(&mut window, Modifiers::NONE, Key::Num2);
     let rays = |window: &Window| window.state().viewport().traced_view.rays();
-    let goes_on = |window: &mut Window, from: u64| {
-        let began = Instant::now();
-        while rays(window) <= from {
-            assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().traced_view.status());
-            window.step();
-            std::thread::sleep(Duration::from_millis(5));
-        }
-    };
+    let goes_on = |window: &mut Window, from: u64| wait_until(window, |app| app.viewport().traced_view.rays() > from);
     goes_on(&mut window, 0);
     assert!(!window.state().viewport().traced_view.is_settled(), "there is work left");
     let mut last = u64::MAX;

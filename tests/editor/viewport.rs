@@ -130,17 +130,8 @@ fn traced_window() -> Window {
     window.set_size(vec2(900.0, 600.0));
     settle(&mut window);
     press(&mut window, Modifiers::NONE, Key::Num2);
-    wait_until(&mut window, |live| live.has_picture());
+    wait_until(&mut window, |app| app.viewport().traced_view.has_picture());
     window
-}
-
-fn wait_until(window: &mut Window, enough: impl Fn(&catchlight::editor::TracedView) -> bool) {
-    let began = Instant::now();
-    while !enough(&window.state().viewport().traced_view) {
-        assert!(began.elapsed() < PATIENCE, "{}", window.state().viewport().traced_view.status());
-        window.step();
-        std::thread::sleep(Duration::from_millis(5));
-    }
 }
 
 #[test]
@@ -177,7 +168,7 @@ fn the_live_view_is_traced_on_demand_and_everything_works_on_top_of_it() {
     let before = window.state().viewport().view.yaw_rad;
     drag(&mut window, PointerButton::Middle, view.center(), view.center() + vec2(30.0, 0.0));
     assert!(window.state().viewport().view.yaw_rad != before);
-    wait_until(&mut window, |live| live.has_picture());
+    wait_until(&mut window, |app| app.viewport().traced_view.has_picture());
     // Another studio, and back to the estimate: nothing is traced any more.
     click(&mut window, "Quick");
     let rays = window.state().viewport().traced_view.rays();
@@ -198,7 +189,7 @@ fn a_dimmed_light_shows_in_the_traced_view_without_a_ray_and_the_view_comes_to_r
     // A view of few pixels settles soon: the window is as small as it gets, and the studio dark but for one bulb.
     window.set_size(vec2(640.0, 190.0));
     settle(&mut window);
-    wait_until(&mut window, |live| live.is_settled());
+    wait_until(&mut window, |app| app.viewport().traced_view.is_settled());
     settle(&mut window);
     let rays = window.state().viewport().traced_view.rays();
     let mut light = scene(&window).lights[0].clone();
@@ -206,7 +197,7 @@ fn a_dimmed_light_shows_in_the_traced_view_without_a_ray_and_the_view_comes_to_r
     let context = egui::Context::default();
     window.state_mut().run(Command::Apply(Action::SetLight(Box::new(light))), None, &context);
     window.step();
-    wait_until(&mut window, |live| live.is_settled());
+    wait_until(&mut window, |app| app.viewport().traced_view.is_settled());
     settle(&mut window);
     assert_eq!(window.state().viewport().traced_view.rays(), rays, "dimming is developed, not traced");
     window.step();
@@ -216,5 +207,5 @@ fn a_dimmed_light_shows_in_the_traced_view_without_a_ray_and_the_view_comes_to_r
     light.position.x += 0.2;
     window.state_mut().run(Command::Apply(Action::SetLight(Box::new(light))), None, &context);
     window.step();
-    wait_until(&mut window, |live| live.rays() > rays);
+    wait_until(&mut window, |app| app.viewport().traced_view.rays() > rays);
 }
