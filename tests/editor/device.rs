@@ -1,4 +1,4 @@
-//! Windows that lose their graphics device, and windows that never had one.
+//! Windows that lose their GPU device, and windows without one.
 
 use super::*;
 use eframe::wgpu;
@@ -23,7 +23,7 @@ fn destroy(device: &wgpu::Device) {
     let _ = device.poll(wgpu::PollType::wait_indefinitely());
 }
 
-/// Takes the device away and runs a frame, which must draw nothing and ask for another window.
+/// Destroys the device and runs a frame, which must draw nothing and request another window.
 fn lose(window: &mut Window, device: &wgpu::Device) {
     destroy(device);
     for _ in 0..2 {
@@ -36,7 +36,7 @@ fn lose(window: &mut Window, device: &wgpu::Device) {
 }
 
 #[test]
-fn a_lost_device_costs_neither_the_studio_nor_its_history() {
+fn a_device_loss_keeps_the_studio_and_its_history() {
     if !has_adapter() {
         return;
     }
@@ -69,7 +69,7 @@ fn a_lost_device_costs_neither_the_studio_nor_its_history() {
     press(&mut window, Modifiers::COMMAND, Key::Z);
     assert_eq!(*scene(&window), begin);
 
-    // Lost again at once: the preview may be the reason, so the processor draws the view until it is asked for anew.
+    // A second loss at once switches to the CPU preview until the user retries.
     lose(&mut window, &device);
     let mut app = window.into_state();
     let (third, _device) = renderer();
@@ -84,7 +84,7 @@ fn a_lost_device_costs_neither_the_studio_nor_its_history() {
 }
 
 #[test]
-fn a_device_that_is_lost_in_the_middle_of_a_frame_ends_that_frame() {
+fn a_device_loss_during_a_frame_ends_that_frame() {
     if !has_adapter() {
         return;
     }
@@ -105,7 +105,7 @@ fn a_device_that_is_lost_in_the_middle_of_a_frame_ends_that_frame() {
 }
 
 #[test]
-fn a_device_that_is_lost_behind_a_minimised_window_is_noticed_there() {
+fn a_device_loss_of_a_minimised_window_is_detected() {
     if !has_adapter() {
         return;
     }
@@ -128,7 +128,7 @@ fn window_without_device() -> Window {
 }
 
 #[test]
-fn without_a_device_the_processor_draws_the_view_and_everything_works_on_it() {
+fn without_a_device_the_cpu_preview_supports_all_tools() {
     let mut window = window_without_device();
     assert!(window.state().viewport().preview.failure().is_some());
     assert!(window.query_by_label("Drawn by the CPU, without shadows").is_some());

@@ -1,4 +1,4 @@
-//! Files that are opened, saved, dropped, broken or about to be lost.
+//! Opening, saving, dropping and importing of files, invalid files, unsaved changes.
 
 use super::*;
 
@@ -24,7 +24,7 @@ fn drop_file(window: &mut Window, path: &Path) {
 const PYRAMID: &str = "o Pyramid\nv 0 0 0\nv 1 0 0\nv 0 0 1\nv 0 1 0\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n";
 
 #[test]
-fn unsaved_changes_are_asked_about_before_they_are_lost() {
+fn unsaved_changes_prompt_before_they_are_lost() {
     if !has_adapter() {
         return;
     }
@@ -82,7 +82,7 @@ fn files_can_be_dropped_and_models_travel_with_the_studio() {
 }
 
 #[test]
-fn a_broken_file_is_told_and_leaves_the_open_studio_as_it_was() {
+fn an_invalid_file_is_reported_and_leaves_the_open_studio_unchanged() {
     if !has_adapter() {
         return;
     }
@@ -110,7 +110,7 @@ fn a_broken_file_is_told_and_leaves_the_open_studio_as_it_was() {
 }
 
 #[test]
-fn a_desktop_without_dialogs_gets_a_field_for_the_path() {
+fn without_desktop_dialogs_a_prompt_takes_the_path() {
     if !has_adapter() {
         return;
     }

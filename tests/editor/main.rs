@@ -20,13 +20,13 @@ use std::time::{Duration, Instant};
 
 mod device;
 mod files;
-mod look;
 mod panels;
 mod placing;
 mod rendering;
 mod selection;
 mod sizes;
 mod switches;
+mod view_options;
 mod viewport;
 mod views;
 
@@ -93,13 +93,14 @@ fn wait_until(window: &mut Window, condition: impl Fn(&App) -> bool) {
     panic!("not reached in {MOST_FRAMES} frames: {}", window.state().viewport().traced_view.status());
 }
 
-/// Whether there is a graphics adapter. Without one the test says so and passes, unless `CATCHLIGHT_REQUIRE_GPU` is set.
+/// Returns true if there is a GPU adapter. Without one the test prints that and passes, unless `CATCHLIGHT_REQUIRE_GPU`
+/// is set.
 fn has_adapter() -> bool {
     match Gpu::headless() {
         Ok(_) => true,
         Err(error) if std::env::var_os("CATCHLIGHT_REQUIRE_GPU").is_some() => panic!("{error}"),
         Err(error) => {
-            eprintln!("SKIPPED, no graphics adapter: {error}");
+            eprintln!("SKIPPED, no GPU adapter: {error}");
             false
         }
     }
@@ -121,7 +122,7 @@ fn preset_window() -> Option<Window> {
     has_adapter().then(|| window_with_answers([]))
 }
 
-/// Runs frames until nothing is on its way and nothing asks for another frame.
+/// Runs frames until all background work is done and no frame is requested.
 fn settle(window: &mut Window) {
     RepaintRequests::of(&window.ctx);
     let mut frames = 0;
@@ -142,7 +143,7 @@ fn press(window: &mut Window, modifiers: Modifiers, key: Key) {
     settle(window);
 }
 
-/// Presses the left button, or lets it go.
+/// Presses or releases the left button.
 fn button(window: &mut Window, pos: Pos2, pressed: bool) {
     let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
     window.event(Event::PointerButton { pos, button, pressed, modifiers });
@@ -168,7 +169,7 @@ fn wheel_closer(window: &mut Window, at: Pos2) {
     settle(window);
 }
 
-/// The first place of a way at which the pointer is on a handle.
+/// Returns the first position of a path at which the pointer is on a handle.
 fn handle_along(window: &mut Window, mut way: impl Iterator<Item = Pos2>) -> Pos2 {
     way.find(|at| {
         move_to(window, *at);
@@ -177,7 +178,7 @@ fn handle_along(window: &mut Window, mut way: impl Iterator<Item = Pos2>) -> Pos
     .unwrap()
 }
 
-/// Types a number while something is dragged, as the keyboard sends it: keys and letters.
+/// Types a number during a drag, as key and text events.
 fn type_number(window: &mut Window, number: &str) {
     for letter in number.chars() {
         let key = if letter == '.' { Key::Period } else { Key::from_name(&letter.to_string()).unwrap() };
@@ -187,7 +188,7 @@ fn type_number(window: &mut Window, number: &str) {
     }
 }
 
-/// Presses at a point, moves in steps, lets go.
+/// Presses at a point, moves in steps and releases.
 fn drag(window: &mut Window, button: PointerButton, from: Pos2, to: Pos2) {
     move_to(window, from);
     window.event(Event::PointerButton { pos: from, button, pressed: true, modifiers: Modifiers::NONE });
@@ -199,7 +200,7 @@ fn drag(window: &mut Window, button: PointerButton, from: Pos2, to: Pos2) {
     settle(window);
 }
 
-/// Presses at a point and lets go.
+/// Presses and releases at a point.
 fn click_at(window: &mut Window, at: Pos2, modifiers: Modifiers) {
     move_to(window, at);
     window.event(Event::ModifiersChanged(modifiers));
@@ -212,7 +213,7 @@ fn click_at(window: &mut Window, at: Pos2, modifiers: Modifiers) {
     settle(window);
 }
 
-/// Where a point of the studio shows on the screen.
+/// Returns the screen position of a world-space point.
 fn shown_at(window: &Window, point: glam::Vec3) -> Pos2 {
     let view = window.get_by_label("Viewport").rect();
     let frame = window.state().viewport().view.frame(view.width() / view.height());
@@ -220,7 +221,7 @@ fn shown_at(window: &Window, point: glam::Vec3) -> Pos2 {
     view.min + vec2(place.x * view.width(), place.y * view.height())
 }
 
-/// Carries a command out as the window would.
+/// Executes a command.
 fn run(window: &mut Window, command: Command) {
     window.state_mut().run(command, None, &egui::Context::default());
     settle(window);
@@ -266,7 +267,7 @@ fn close_requested(window: &mut Window) -> bool {
 }
 
 #[test]
-fn a_studio_from_the_shelf_to_a_picture_on_disk_and_back() {
+fn a_preset_is_edited_rendered_exported_saved_and_reopened() {
     if !has_adapter() {
         return;
     }

@@ -1,4 +1,4 @@
-//! Lights placed by where their highlight or their light falls, and by looking through them.
+//! Placing lights by highlight, light or shadow, and navigation through a light.
 
 use super::*;
 use glam::Vec3;
@@ -102,7 +102,7 @@ fn a_light_that_is_aimed_at_its_subject_stays_on_it_while_either_moves() {
 }
 
 #[test]
-fn esc_gives_up_a_highlight_that_is_dragged_and_then_the_mode() {
+fn esc_cancels_the_drag_of_a_highlight_and_then_the_mode() {
     if !has_adapter() {
         return;
     }

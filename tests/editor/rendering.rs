@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn light_changes_develop_the_picture_anew_without_tracing() {
+fn light_changes_redevelop_the_picture_without_tracing() {
     let Some(mut window) = preset_window() else { return };
     render_tiny(&mut window);
     let brightness = |window: &Window| -> f32 {
@@ -79,7 +79,7 @@ fn a_render_can_be_cancelled_and_keeps_what_it_has() {
 }
 
 #[test]
-fn the_quality_view_foretells_time_and_grain_and_learns_from_renders() {
+fn the_quality_chart_forecasts_time_and_noise_and_uses_measured_renders() {
     let Some(mut window) = preset_window() else { return };
     assert!(window.state().forecaster().forecast().is_none(), "nothing runs for it while it is folded");
     window.state_mut().rendering_mut().settings.size = PictureSize::Custom(60, 40);

@@ -1,4 +1,4 @@
-//! Several things at once: chosen in the view and in the list, moved, deleted, copied, mirrored together.
+//! Selections of several items: made in viewport and list; moved, deleted, copied, mirrored.
 
 use super::*;
 use glam::Vec3;
@@ -73,7 +73,7 @@ fn several_are_deleted_and_copied_in_one_step() {
 }
 
 #[test]
-fn the_list_gathers_by_ctrl_and_takes_ranges_by_shift() {
+fn the_list_toggles_with_ctrl_and_selects_ranges_with_shift() {
     let Some(mut window) = preset_window() else { return };
     let names: Vec<String> = scene(&window).lights.iter().map(|l| l.name.clone()).collect();
     assert!(names.len() >= 3);
@@ -89,7 +89,7 @@ fn the_list_gathers_by_ctrl_and_takes_ranges_by_shift() {
 }
 
 #[test]
-fn a_typed_number_moves_by_exactly_that_and_esc_gives_a_drag_up() {
+fn a_typed_number_is_the_exact_move_and_esc_cancels_a_drag() {
     let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(light.id)]);
@@ -140,7 +140,7 @@ fn a_mirrored_copy_stands_on_the_other_side_of_the_face() {
 }
 
 #[test]
-fn the_other_button_on_a_light_in_the_view_opens_its_menu() {
+fn a_right_click_on_a_light_in_the_viewport_opens_its_menu() {
     let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[1].clone();
     let at = shown_at(&window, light.position);
@@ -160,7 +160,7 @@ fn the_other_button_on_a_light_in_the_view_opens_its_menu() {
 }
 
 #[test]
-fn esc_gives_a_box_up_and_keys_wait_for_its_end() {
+fn esc_cancels_a_selection_box_and_other_keys_are_ignored_during_it() {
     let Some(mut window) = preset_window() else { return };
     let view = window.get_by_label("Viewport").rect().shrink(6.0);
     let to = view.right_top() + vec2(-120.0, 140.0);

@@ -1,4 +1,4 @@
-//! Windows of every size, one after the other: as they are dragged, minimised and moved between screens.
+//! Windows of many sizes: resized, minimised, moved between screens.
 
 use super::*;
 
@@ -21,7 +21,7 @@ const SIZES: [(f32, f32); 14] = [
 ];
 
 /// Goes through the sizes without waiting for anything, turning the view all the while; at the end all is as it was.
-fn storm(window: &mut Window) {
+fn resize_through_all(window: &mut Window) {
     for (i, (width, height)) in (0_i16..).zip(SIZES.into_iter().chain(SIZES.into_iter().rev())) {
         window.set_size(vec2(width, height));
         window.set_pixels_per_point([1.0, 2.0, 0.75][i as usize % 3]);
@@ -37,10 +37,10 @@ fn storm(window: &mut Window) {
 }
 
 #[test]
-fn a_storm_of_sizes_leaves_the_quick_view_as_it_was() {
+fn resizing_through_many_sizes_keeps_the_gpu_preview_working() {
     let Some(mut window) = preset_window() else { return };
     let before = scene(&window).clone();
-    storm(&mut window);
+    resize_through_all(&mut window);
     let draws = window.state().viewport().preview.draws();
     press(&mut window, Modifiers::NONE, Key::Num8);
     let preview = &window.state().viewport().preview;
@@ -50,10 +50,10 @@ fn a_storm_of_sizes_leaves_the_quick_view_as_it_was() {
 }
 
 #[test]
-fn a_storm_of_sizes_leaves_the_traced_view_at_work() {
+fn resizing_through_many_sizes_keeps_the_traced_view_working() {
     let Some(mut window) = preset_window() else { return };
     press(&mut window, Modifiers::NONE, Key::Num2);
-    storm(&mut window);
+    resize_through_all(&mut window);
     let rays = window.state().viewport().traced_view.rays();
     wait_until(&mut window, |app| {
         let live = &app.viewport().traced_view;
@@ -63,7 +63,7 @@ fn a_storm_of_sizes_leaves_the_traced_view_at_work() {
 }
 
 #[test]
-fn a_storm_of_sizes_without_a_device_and_while_a_picture_is_rendered() {
+fn resizing_through_many_sizes_works_on_the_cpu_and_during_a_render() {
     let builder = Harness::builder().with_size(vec2(900.0, 600.0)).with_max_steps(60);
     let mut window = builder.build_eframe(|creation| App::new(creation, EditorOptions::default()));
     settle(&mut window);
@@ -72,7 +72,7 @@ fn a_storm_of_sizes_without_a_device_and_while_a_picture_is_rendered() {
     window.key_press(Key::R);
     window.step();
     press(&mut window, Modifiers::NONE, Key::Num1);
-    storm(&mut window);
+    resize_through_all(&mut window);
     assert!(window.state().rendering().developed().is_some() && errors(&window).is_empty());
     // The large picture in a window of no size.
     press(&mut window, Modifiers::NONE, Key::Num3);
@@ -141,7 +141,7 @@ fn in_the_narrowest_window_the_tools_take_one_row_and_the_panels_come_back_with_
     drag(&mut window, PointerButton::Primary, edge, edge + vec2(40.0, 0.0));
     let before = side_widths(&window);
     assert!(before[0] > 300.0, "{before:?}");
-    storm(&mut window);
+    resize_through_all(&mut window);
     let row = |window: &Window| window.get_by_label("Quick").rect().center().y;
     assert!((row(&window) - window.get_by_label("Tools").rect().center().y).abs() < 1.0);
     let narrow = side_widths(&window);

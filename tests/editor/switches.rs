@@ -1,4 +1,4 @@
-//! Solo, mute, hide and lock: in the list and by key, and what they give back.
+//! Solo, mute, hide and lock: in the list and by key, and their reversal.
 
 use super::*;
 
@@ -7,7 +7,7 @@ fn on(window: &Window) -> Vec<bool> {
 }
 
 #[test]
-fn a_solo_in_the_list_gives_back_what_was_on() {
+fn ending_a_solo_in_the_list_restores_the_switches() {
     let Some(mut window) = preset_window() else { return };
     let names: Vec<String> = scene(&window).lights.iter().map(|l| l.name.clone()).collect();
     click(&mut window, &format!("{} on", names[1]));
@@ -24,7 +24,7 @@ fn a_solo_in_the_list_gives_back_what_was_on() {
 }
 
 #[test]
-fn mute_and_hide_bring_back_what_was_there_and_no_more() {
+fn unmute_and_show_restore_only_what_was_muted_or_hidden() {
     let Some(mut window) = preset_window() else { return };
     let names: Vec<String> = scene(&window).lights.iter().map(|l| l.name.clone()).collect();
     click(&mut window, &format!("{} on", names[1]));
@@ -42,7 +42,7 @@ fn mute_and_hide_bring_back_what_was_there_and_no_more() {
 }
 
 #[test]
-fn what_is_locked_is_neither_picked_nor_moved_and_the_file_remembers_it() {
+fn locked_items_are_neither_picked_nor_moved_and_stay_locked_in_the_file() {
     let Some(mut window) = preset_window() else { return };
     let figure = scene(&window).objects[0].clone();
     let at = shown_at(&window, figure.transform.position + glam::Vec3::Y);

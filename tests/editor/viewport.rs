@@ -1,4 +1,4 @@
-//! Handles, clicks, navigation, and when the live view is drawn.
+//! Handles, clicks, navigation, and the redraws of the live view.
 
 use super::*;
 
@@ -36,7 +36,7 @@ fn a_figure_slides_over_the_floor_by_the_ring_at_its_feet() {
 }
 
 #[test]
-fn a_click_selects_what_is_seen_there() {
+fn a_click_selects_the_visible_item() {
     let Some(mut window) = preset_window() else { return };
     let (figure, light) = (scene(&window).objects[0].clone(), scene(&window).lights[1].clone());
     let view = window.get_by_label("Viewport").rect();
@@ -90,7 +90,7 @@ fn of_two_things_behind_each_other_a_click_means_the_nearer_at_any_scale_of_the_
 }
 
 #[test]
-fn the_mouse_orbits_pans_and_zooms_without_touching_the_scene() {
+fn navigation_does_not_change_the_scene() {
     let Some(mut window) = preset_window() else { return };
     let before = scene(&window).clone();
     let middle = window.get_by_label("Viewport").rect().center();

@@ -1,4 +1,4 @@
-//! Views from a side, orbit about the selection, and windows over the view.
+//! Views from a side, orbits about the selection, and windows over the viewport.
 
 use super::*;
 use catchlight::editor::ViewSide;
@@ -51,7 +51,7 @@ fn a_click_selects_from_the_top_as_it_does_from_anywhere() {
 }
 
 #[test]
-fn the_view_turns_about_what_is_selected() {
+fn an_orbit_keeps_the_selection_at_its_screen_position() {
     let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(light.id)]);
@@ -79,7 +79,7 @@ fn the_meter_can_be_moved_out_of_the_way_and_folded() {
 }
 
 #[test]
-fn what_shapes_a_light_stands_over_its_power() {
+fn the_modifier_rows_come_before_the_power_rows() {
     let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].id;
     select(&mut window, &[Item::Light(light)]);

@@ -46,7 +46,7 @@ impl FilePurpose {
     }
 
     /// Returns the path with the default extension added to a file to write that has none.
-    pub fn with_ending(self, path: PathBuf) -> PathBuf {
+    pub fn with_extension_added(self, path: PathBuf) -> PathBuf {
         if self.is_save() && path.extension().is_none() { path.with_extension(self.filter().1[0]) } else { path }
     }
 }

@@ -1,4 +1,4 @@
-//! The list of things that can be added.
+//! The catalog panel: adds lights, figures, props and backdrops.
 
 use crate::editor::commands::command::Command;
 use crate::editor::document::catalog::{CatalogEntry, CatalogKind, CatalogTab, entries};
@@ -9,7 +9,7 @@ use crate::io;
 use crate::scene::{Emitter, MaterialPreset};
 use eframe::egui::{self, Button, Color32, CornerRadius, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, vec2};
 
-/// Draws the list; `shelf` is the one on show.
+/// Draws the catalog; `tab` is the open one.
 pub fn add_ui(ui: &mut Ui, tab: &mut CatalogTab, thumbnails: &mut Thumbnails, out: &mut Vec<Command>) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {
@@ -29,7 +29,7 @@ pub fn add_ui(ui: &mut Ui, tab: &mut CatalogTab, thumbnails: &mut Thumbnails, ou
     });
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        // In the narrowest window, too, the last name is whole.
+        // The last name fits in the narrowest window.
         ui.spacing_mut().button_padding.x = if ui.available_width() < 228.0 { 4.0 } else { 6.0 };
         for each in CatalogTab::ALL {
             if ui.selectable_label(*tab == each, each.label()).on_hover_text(tab_tip(each)).clicked() {
@@ -58,7 +58,7 @@ fn tab_tip(tab: CatalogTab) -> &'static str {
 }
 
 fn entry_ui(ui: &mut Ui, entry: &'static CatalogEntry, thumbnails: &mut Thumbnails) -> bool {
-    // Lights have a drawing: what they look like tells less of them than their shape and size.
+    // Lights have icons of shape and size instead of thumbnails.
     let side = if matches!(entry.kind, CatalogKind::Light(..)) { 20.0 } else { THING_POINTS };
     ui.horizontal(|ui| {
         let (icon, _) = ui.allocate_exact_size(vec2(side, side), Sense::hover());
@@ -75,7 +75,7 @@ fn entry_ui(ui: &mut Ui, entry: &'static CatalogEntry, thumbnails: &mut Thumbnai
     .inner
 }
 
-/// A small drawing of what an entry is.
+/// Paints the icon of an entry.
 fn paint_icon(painter: &egui::Painter, rect: egui::Rect, kind: &CatalogKind) {
     let (c, line) = (rect.center(), Stroke::new(1.3, Color32::from_gray(170)));
     let glow = theme::ACCENT;

@@ -1,9 +1,9 @@
-//! The list of keys and what the mouse does.
+//! The list of keys and mouse actions.
 
 use crate::editor::commands::shortcuts::{KEY_BINDINGS, KeyBinding};
 use eframe::egui::{self, Grid, RichText, ScrollArea, Ui, vec2};
 
-/// What the mouse does, and keys that are held.
+/// Mouse actions and held keys.
 const MOUSE: [(&str, &str); 18] = [
     ("Left click", "Select what is under the pointer"),
     ("Shift or Ctrl + click", "Take it in or out; in the list Shift takes all from the last to here"),
@@ -25,7 +25,7 @@ const MOUSE: [(&str, &str); 18] = [
     ("Esc in a dialog", "Close it"),
 ];
 
-/// Draws the window; `open` is cleared when it is closed.
+/// Draws the list; `open` becomes false when it is closed.
 pub fn help_ui(ctx: &egui::Context, open: &mut bool) {
     let room = ctx.content_rect().size() - vec2(60.0, 120.0);
     egui::Window::new("Keys and mouse")

@@ -12,30 +12,30 @@ use crate::io;
 use eframe::egui::{MenuBar, Ui};
 use std::path::PathBuf;
 
-/// What the menus show beside the document.
+/// The state that menus and view bar show.
 #[derive(Clone, Copy, Debug)]
 pub struct MenuState<'a> {
     /// The open studio.
     pub document: &'a Document,
-    /// What is selected.
+    /// The selection.
     pub selection: &'a Selection,
-    /// Studios opened before.
+    /// Recent studios.
     pub recent: &'a [PathBuf],
-    /// What the middle shows.
+    /// The central view.
     pub central_view: CentralView,
-    /// The handles on show.
+    /// The kind of transform handles.
     pub handles: HandleMode,
-    /// Whether the handles snap.
+    /// True if the handles snap.
     pub snap: bool,
-    /// How the live view is made.
+    /// The renderer of the live view.
     pub live: LiveMode,
-    /// Whether there is a picture to export.
+    /// True if there is a picture to export.
     pub has_picture: bool,
-    /// Whether a render is on its way.
+    /// True during a render.
     pub rendering: bool,
 }
 
-/// Draws it.
+/// Draws the menu bar.
 pub fn menu_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file_menu(ui, state, out));
@@ -143,10 +143,10 @@ fn view_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     entry(ui, true, text, SNAP_TIP, Command::ToggleSnap, out);
 }
 
-/// What the snap button says.
+/// Tooltip of the snap button.
 pub const SNAP_TIP: &str = "Handles go in steps of 0.1 m and 15\u{b0}; with Ctrl the other way round";
 
-/// The three kinds of handles, with label and tip.
+/// The kinds of transform handles, with label and tooltip.
 pub const HANDLES: [(HandleMode, &str, &str); 3] = [
     (HandleMode::Move, "Move", "Handles that move the selected thing"),
     (HandleMode::Rotate, "Turn", "Handles that turn the selected thing; a light aimed at a thing swings round it"),

@@ -1,4 +1,4 @@
-//! The read-out of the studio's light meter, over the view.
+//! The read-out of the light meter over the viewport.
 
 use crate::editor::commands::command::Command;
 use crate::editor::document::item::Item;
@@ -9,7 +9,7 @@ use crate::photo::thirds::Dial;
 use crate::scene::{Meter, Receptor};
 use eframe::egui::{self, Context, Frame, Grid, Id, Label, Rect, RichText, Ui, vec2};
 
-/// Draws it: a small window over the view that can be moved and folded. It begins in the view's upper left corner.
+/// Draws the read-out: a small movable window, initially in the upper left corner of the view.
 pub fn meter_ui(
     ctx: &Context,
     view: Rect,
@@ -82,7 +82,7 @@ fn reading_ui(ui: &mut Ui, reading: &Reading) {
     ui.label(RichText::new(quality).weak());
 }
 
-/// Role, name, stops against the key, part of the exposure.
+/// Draws a row of a light: role, name, stops against the key, fraction of the exposure.
 fn light_row(ui: &mut Ui, reading: &Reading, light: &LightReading) {
     let key = reading.key().is_some_and(|key| key.light == light.light);
     let color = light.role.map_or(egui::Color32::GRAY, theme::role_color);

@@ -1,4 +1,4 @@
-//! The panels around the viewport. Each is one function that draws from the document and pushes commands.
+//! The panels around the viewport. Each `*_ui` function draws from the document and pushes commands.
 
 pub mod add;
 pub mod help;

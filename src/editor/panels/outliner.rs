@@ -1,4 +1,4 @@
-//! The list of everything in the studio, with names, switches and a context menu.
+//! The list of the studio's items, with names, switches and context menus.
 
 use crate::editor::commands::command::Command;
 use crate::editor::commands::item_menu::item_menu_ui;
@@ -12,21 +12,21 @@ use crate::photo::light_rgb;
 use crate::scene::{Light, Object, Scene};
 use eframe::egui::{self, Button, Key, Response, RichText, ScrollArea, Sense, TextEdit, Ui, vec2};
 
-/// What the list remembers between frames.
+/// The state of the list.
 #[derive(Clone, Debug, Default)]
 pub struct OutlinerState {
-    /// The thing being renamed, the text so far, and whether the field has had the keyboard yet.
+    /// The item being renamed, the text, and true once the field has had the focus.
     rename: Option<(Item, String, bool)>,
 }
 
 impl OutlinerState {
-    /// Opens the name field of a thing.
+    /// Opens the name field of an item.
     pub fn begin_rename(&mut self, item: Item, name: String) {
         self.rename = Some((item, name, false));
     }
 }
 
-/// What the rows of the list read, and where they put their requests.
+/// The input of the rows and their commands.
 struct OutlinerRows<'a> {
     document: &'a Document,
     selection: &'a Selection,
@@ -73,14 +73,14 @@ fn heading(ui: &mut Ui, title: &str, count: usize) {
     ui.label(RichText::new(text).weak().small());
 }
 
-/// The rows from top to bottom.
+/// Returns the items of the rows from top to bottom.
 fn listed(scene: &Scene) -> Vec<Item> {
     let fixed = [Item::Camera, Item::Room].into_iter().chain(scene.meter.map(|_| Item::Meter));
     let lights = scene.lights.iter().map(|l| Item::Light(l.id));
     fixed.chain(lights).chain(scene.objects.iter().map(|o| Item::Object(o.id))).collect()
 }
 
-/// The rows from one to another, the other last.
+/// Returns the items between two rows, `to` last.
 fn between(scene: &Scene, from: Item, to: Item) -> Vec<Item> {
     let rows = listed(scene);
     let place = |item| rows.iter().position(|row| *row == item);
@@ -100,7 +100,7 @@ impl OutlinerRows<'_> {
         });
     }
 
-    /// A click selects; with Ctrl it takes in or out, with Shift it takes in all rows from the last chosen one.
+    /// Handles a click: it selects; with Ctrl it toggles, with Shift it adds all rows from the last selected one.
     fn clicked(&mut self, ui: &Ui, response: &Response, item: Item) {
         if !response.clicked() {
             return;
@@ -206,7 +206,7 @@ impl OutlinerRows<'_> {
         }
     }
 
-    /// The name of a thing: click selects, double click renames, the other button opens the menu.
+    /// Draws the name of an item: click selects, double click renames, right click opens the menu.
     fn name(&mut self, ui: &mut Ui, item: Item, name: &str, tip: String, faded: bool, icons: f32) {
         if self.state.rename.as_ref().is_some_and(|(renamed, ..)| *renamed == item) {
             rename_ui(ui, self.state, icons, self.out);
@@ -231,7 +231,7 @@ fn right(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), add);
 }
 
-/// Width of a row's name that leaves room for so many icons.
+/// Returns the width of a name next to this number of icons.
 fn name_width(ui: &Ui, icons: f32) -> f32 {
     (ui.available_width() - 24.0 * icons - 6.0).max(40.0)
 }

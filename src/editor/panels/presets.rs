@@ -6,7 +6,7 @@ use crate::editor::panels::thumbnails::{STUDIO_POINTS, Thumbnail, Thumbnails};
 use crate::editor::ui::widgets;
 use eframe::egui::{self, Atom, Button, Key, Modifiers, RichText, ScrollArea, Ui, vec2};
 
-/// Which studio of the list is marked; none while the list is closed.
+/// The marked studio of the list; none while the list is closed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PresetPicker {
     marked: Option<usize>,
@@ -18,7 +18,7 @@ impl PresetPicker {
         self.marked = Some(0);
     }
 
-    /// Whether the list is on show.
+    /// Returns true while the list is open.
     pub fn is_open(&self) -> bool {
         self.marked.is_some()
     }
@@ -86,7 +86,7 @@ impl PresetPicker {
     }
 }
 
-/// A row with the studio's picture, its name and what it is for.
+/// Draws a row with thumbnail, name and description of a studio.
 fn preset_row(ui: &mut Ui, preset: &PresetInfo, picture: Option<Thumbnail>, marked: bool) -> egui::Response {
     let (name, line) = (egui::TextStyle::Button.resolve(ui.style()), egui::TextStyle::Small.resolve(ui.style()));
     let visuals = ui.visuals();
@@ -96,7 +96,7 @@ fn preset_row(ui: &mut Ui, preset: &PresetInfo, picture: Option<Thumbnail>, mark
     text.append("\n", 0.0, egui::TextFormat::default());
     text.append(&preset.description, 0.0, egui::TextFormat::simple(line, visuals.weak_text_color()));
     text.wrap.max_width = ui.available_width() - STUDIO_POINTS - 40.0;
-    // Upright and wide pictures stand in squares of one size, so that the names stand under each other.
+    // Thumbnails are centred in squares of one size, so that the names are aligned.
     let picture = Atom::paint(egui::Vec2::splat(STUDIO_POINTS), move |ui, place| {
         picture.iter().for_each(|picture| picture.paint(ui, place.rect));
     });

@@ -1,22 +1,22 @@
-//! Questions in the middle of the window: unsaved changes, and a path where the desktop has no dialog.
+//! Modal prompts: unsaved changes, and a path on desktops without file dialogs.
 
 use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::ui::widgets;
 use eframe::egui::{self, Button, Key, RichText, TextEdit};
 use std::path::{Path, PathBuf};
 
-/// The answer to "save the changes?".
+/// The answer to the prompt for unsaved changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnsavedAnswer {
-    /// Save, then go on.
+    /// Save, then continue.
     Save,
-    /// Go on without.
+    /// Continue without saving.
     Discard,
-    /// Stay.
+    /// Cancel the operation.
     Cancel,
 }
 
-/// Asks whether to save before `what`.
+/// Draws the prompt to save before `what`.
 pub fn unsaved_changes_ui(ctx: &egui::Context, title: &str, what: &str) -> Option<UnsavedAnswer> {
     let mut answer = None;
     let modal = widgets::dialog(ctx, "unsaved changes").show(ctx, |ui| {
@@ -43,33 +43,33 @@ pub fn unsaved_changes_ui(ctx: &egui::Context, title: &str, what: &str) -> Optio
     answer
 }
 
-/// A field for a path.
+/// A prompt for a path.
 #[derive(Clone, Debug)]
 pub struct PathPrompt {
-    /// What the path is for.
+    /// The purpose of the path.
     pub purpose: FilePurpose,
     text: String,
     had_focus: bool,
 }
 
-/// What became of a path prompt.
+/// The answer to a path prompt.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PathAnswer {
     /// This path.
     Chosen(PathBuf),
-    /// Nothing.
+    /// Cancelled.
     Cancelled,
 }
 
 impl PathPrompt {
-    /// A prompt that suggests a file in a folder.
+    /// Returns a prompt that suggests a file in a folder.
     pub fn new(purpose: FilePurpose, folder: Option<&Path>, file_name: &str) -> Self {
         let folder = folder.map(Path::to_owned).or_else(|| std::env::current_dir().ok()).unwrap_or_default();
         let path = if purpose.is_save() { folder.join(file_name) } else { folder.join("") };
         PathPrompt { purpose, text: path.to_string_lossy().into_owned(), had_focus: false }
     }
 
-    /// Draws it.
+    /// Draws the prompt.
     pub fn ui(&mut self, ctx: &egui::Context) -> Option<PathAnswer> {
         let mut answer = None;
         let modal = widgets::dialog(ctx, "path prompt").show(ctx, |ui| {

@@ -1,4 +1,4 @@
-//! The Quality view: grain against time of this studio's picture, with draft, good, final and the user's own choice.
+//! The chart of noise against render time, with the draft, good, final and current settings.
 
 use crate::editor::picture::rendering::{Quality, RenderSettings};
 use crate::editor::ui::theme;
@@ -10,10 +10,10 @@ use std::time::Duration;
 
 /// Height of the chart, points.
 const HEIGHT: f32 = 110.0;
-/// The presets with their words.
+/// The quality presets with their labels.
 const PRESETS: [(Quality, &str); 3] = [(Quality::Draft, "Draft"), (Quality::Good, "Good"), (Quality::Final, "Final")];
 
-/// Draws it: a line a preset, which chooses it, and the chart.
+/// Draws a line per preset, which selects it, and the chart.
 pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, forecaster: &Forecaster) {
     let (width, height) = settings.pixels(camera);
     let pixels = u64::from(width) * u64::from(height);
@@ -49,14 +49,14 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
     QualityChart::around(rect, &line[1..13]).paint(&ui.painter_at(rect), &line, &marks, chosen, forecaster.measured());
 }
 
-/// `6 s, 0.10 stops`.
+/// Formats an estimate: `6 s, 0.10 stops`.
 pub fn estimate_text(estimate: Estimate) -> String {
     let duration = Duration::from_secs_f64(estimate.seconds.clamp(0.0, 1e7));
     let digits = if estimate.noise_stops < 0.095 { 3 } else { 2 };
     format!("{}, {:.digits$} stops", duration_text(duration), estimate.noise_stops)
 }
 
-/// Times with a line in the chart, seconds.
+/// Grid lines of time, seconds.
 const TIMES: [(f64, &str); 8] = [
     (0.1, "0.1 s"),
     (1.0, "1 s"),
@@ -67,13 +67,13 @@ const TIMES: [(f64, &str); 8] = [
     (36_000.0, "10 h"),
     (360_000.0, "100 h"),
 ];
-/// Width of the longest of them, points.
+/// Width of the longest time label, points.
 const ROOM_FOR_A_TIME: f32 = 30.0;
 
-/// Seconds across, stops upwards, both as logarithms.
+/// The chart: seconds to the right, stops upwards, both logarithmic.
 struct QualityChart {
     rect: Rect,
-    /// Of time and noise, as powers of ten: least and most.
+    /// Ranges of time and noise, as powers of ten.
     time: [f32; 2],
     noise: [f32; 2],
 }
@@ -118,7 +118,7 @@ impl QualityChart {
         painter.circle_filled(self.place(&chosen), 4.0, theme::ACCENT);
     }
 
-    /// A line a power of ten of noise, and a line a usual time, with their numbers.
+    /// Paints the grid: a line per power of ten of noise and per time, with labels.
     fn paint_grid(&self, painter: &Painter) {
         let (stroke, font) = (Stroke::new(0.5, Color32::from_gray(60)), FontId::proportional(9.5));
         let powers = |[least, most]: [f32; 2]| least as i32..=most as i32;

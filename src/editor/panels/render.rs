@@ -17,7 +17,7 @@ use eframe::egui::{self, Button, CollapsingHeader, ComboBox, Image, ProgressBar,
 /// Longest side of a picture, pixels.
 const LARGEST: f32 = 16_384.0;
 
-/// Draws it.
+/// Draws the render panel.
 pub fn render_ui(
     ui: &mut Ui,
     rendering: &mut Rendering,
@@ -38,12 +38,12 @@ pub fn render_ui(
     forecast_ui(ui, rendering, forecaster, document);
     progress_ui(ui, rendering);
     ui.add_space(4.0);
-    // Last, at the foot of the window: what comes and goes above does not move the buttons.
+    // The buttons come last, at the lower edge, so that changes above do not move them.
     button_row(ui, rendering, out);
     ui.add_space(4.0);
 }
 
-/// Long edges in the list, pixels.
+/// Selectable long edges, pixels.
 const EDGES: [(u32, &str); 4] = [(640, "small"), (1080, "screen"), (2160, "4K"), (4320, "print")];
 
 fn size_rows(ui: &mut Ui, settings: &mut RenderSettings, scene: &Scene) {
@@ -101,7 +101,7 @@ fn quality_rows(ui: &mut Ui, settings: &mut RenderSettings) {
     });
 }
 
-/// What the qualities cost here; nothing runs for it while it is folded.
+/// Draws the forecast of time and noise; the pilot runs only while the section is open.
 fn forecast_ui(ui: &mut Ui, rendering: &mut Rendering, forecaster: &mut Forecaster, document: &Document) {
     let header = CollapsingHeader::new("Time and grain").id_salt("time and grain");
     header.show_unindented(ui, |ui| {

@@ -1,4 +1,4 @@
-//! The line at the foot of the window: what is selected, what the mouse does here.
+//! The status line: the selection, and help on the mouse.
 
 use crate::editor::commands::choices::CentralView;
 use crate::editor::document::item::{Item, name_of_all};
@@ -7,7 +7,7 @@ use crate::editor::document::studio_document::Document;
 use crate::scene::Scene;
 use eframe::egui::{self, RichText, Ui};
 
-/// Draws it.
+/// Draws the status line.
 pub fn status_ui(
     ui: &mut Ui,
     document: &Document,

@@ -1,4 +1,4 @@
-//! The row of buttons over the view: what it shows, how it is made, which handles there are.
+//! The row of buttons over the viewport: central view, renderer of the live view, handles.
 
 use super::menu::{HANDLES, MenuState, SNAP_TIP};
 use crate::editor::commands::choices::CentralView;
@@ -10,12 +10,12 @@ use crate::editor::ui::widgets;
 use crate::scene::{Facing, Meter, Receptor, Scene};
 use eframe::egui::{Button, Ui};
 
-/// Narrower than this, tools and actions go into a menu, points.
+/// Width below which tools and actions move into a menu, points.
 const NARROW: f32 = 660.0;
-/// How far before the camera's aim a new meter stands, metres: clear of a face that is aimed at.
+/// Distance of a new light meter from the camera's aim point, metres, to clear a face.
 const METER_CLEARANCE_M: f32 = 0.12;
 
-/// Draws it.
+/// Draws the row.
 pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool, out: &mut Vec<Command>) {
     let is_narrow = ui.available_width() < NARROW;
     ui.horizontal_wrapped(|ui| {
@@ -42,7 +42,7 @@ pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool,
     });
 }
 
-/// What the middle of the window shows.
+/// Draws the choice of the central view.
 fn centre_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     let mut centre = state.central_view;
     let views = [

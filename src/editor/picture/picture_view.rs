@@ -1,4 +1,4 @@
-//! The rendered picture, large: fit to the window or at its own pixels, with zoom and pan.
+//! The view of the rendered picture: fitted or 1:1, with zoom and pan.
 
 use crate::editor::commands::command::Command;
 use crate::editor::picture::rendering::{OUT_OF_DATE, Rendering};
@@ -6,12 +6,12 @@ use crate::editor::ui::theme;
 use crate::scene::Scene;
 use eframe::egui::{self, Color32, Pos2, Rect, RichText, Sense, Ui, Vec2, vec2};
 
-/// How the picture lies in the view.
+/// Zoom and offset of the picture in the view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureView {
-    /// Screen pixels a picture pixel; none fits the picture to the view.
+    /// Screen pixels per picture pixel; none fits the picture to the view.
     zoom: Option<f32>,
-    /// The picture's middle from the view's middle, points.
+    /// Offset of the picture's middle from the view's middle, points.
     offset: Vec2,
 }
 
@@ -75,7 +75,7 @@ impl PictureView {
         if let Some(pointer) = response.hover_pos().filter(|_| scroll != 0.0) {
             let old = self.zoom.unwrap_or(fit);
             let new = (old * (scroll * 0.003).exp()).clamp(*ZOOM_RANGE.start(), *ZOOM_RANGE.end());
-            // What is under the pointer stays there.
+            // Keep the point under the pointer.
             let from_middle = pointer - rect.center() - self.offset;
             self.offset -= from_middle * (new / old - 1.0);
             self.zoom = Some(new);

@@ -1,4 +1,4 @@
-//! The render settings, the running job, and the picture it leaves behind.
+//! The render settings, the render job, and its picture.
 
 use crate::editor::ui::image_texture::ImageTexture;
 use crate::editor::ui::wake::wake;
@@ -11,21 +11,21 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// How good a render is to be.
+/// The quality of a render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quality {
-    /// To judge the light: seconds.
+    /// To judge the light, in seconds.
     Draft,
-    /// To show around.
+    /// To share.
     Good,
     /// To deliver.
     Final,
-    /// As many samples as typed.
+    /// The typed number of samples.
     Custom,
 }
 
 impl Quality {
-    /// Samples a pixel; none for custom.
+    /// Returns the samples per pixel; none for custom.
     pub fn samples(self) -> Option<u32> {
         match self {
             Quality::Draft => Some(16),
@@ -45,16 +45,16 @@ pub enum PictureSize {
     Custom(u32, u32),
 }
 
-/// What the render panel sets.
+/// The settings of the render panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderSettings {
     /// Size of the picture.
     pub size: PictureSize,
-    /// How good it is to be.
+    /// Quality.
     pub quality: Quality,
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub samples: u32,
-    /// How light is followed.
+    /// Rendering method.
     pub method: Method,
 }
 
@@ -65,7 +65,7 @@ impl Default for RenderSettings {
 }
 
 impl RenderSettings {
-    /// Pixels across and down.
+    /// Returns width and height, pixels.
     pub fn pixels(&self, camera: &Camera) -> (u32, u32) {
         match self.size {
             PictureSize::LongEdge(edge) => camera.picture_size(edge),
@@ -74,12 +74,12 @@ impl RenderSettings {
     }
 }
 
-/// Everything about the rendered picture.
+/// The state of the rendered picture: settings, job, film and developed image.
 #[derive(Debug)]
 pub struct Rendering {
     /// What the panel sets.
     pub settings: RenderSettings,
-    /// Meshes' trees, shared with the live view.
+    /// The BLAS cache, shared with the live view.
     trees: Arc<GeometryCache>,
     job: Option<RenderJob>,
     film: Option<Arc<Film>>,
@@ -92,7 +92,7 @@ pub struct Rendering {
 }
 
 impl Rendering {
-    /// No picture yet; meshes' trees are shared.
+    /// Returns the state without a picture; the BLAS cache is shared.
     pub fn new(trees: Arc<GeometryCache>) -> Self {
         Rendering {
             settings: RenderSettings::default(),
@@ -107,7 +107,7 @@ impl Rendering {
         }
     }
 
-    /// Starts to render.
+    /// Starts a render.
     pub fn start(&mut self, scene: &Scene, assets: &Assets, folder: Option<PathBuf>, ctx: &Context) {
         let (width, height) = self.settings.pixels(&scene.camera);
         let settings = Settings {
@@ -122,55 +122,55 @@ impl Rendering {
         (self.job, self.develop_failure) = (Some(RenderJob::start(request, &wake(ctx))), None);
     }
 
-    /// Stops the running job; what is complete is kept.
+    /// Cancels the job and keeps its samples.
     pub fn cancel(&self) {
         if let Some(job) = &self.job {
             job.cancel();
         }
     }
 
-    /// Forgets job and picture, because another studio was opened.
+    /// Clears job and picture, because another studio was opened.
     pub fn clear(&mut self) {
         *self = Rendering { settings: self.settings, ..Rendering::new(self.trees.clone()) };
     }
 
-    /// The job, running or ended.
+    /// Returns the job, running or ended.
     pub fn job(&self) -> Option<&RenderJob> {
         self.job.as_ref()
     }
 
-    /// Whether a render is on its way.
+    /// Returns true during a render.
     pub fn is_running(&self) -> bool {
         self.job.as_ref().is_some_and(|job| job.phase().is_running())
     }
 
-    /// Whether a render or the development of its film is on its way.
+    /// Returns true during a render or the development of its film.
     pub fn is_busy(&self) -> bool {
         self.job.as_ref().is_some_and(RenderJob::is_busy) || self.developer.is_busy()
     }
 
-    /// The picture as it is shown.
+    /// Returns the texture of the picture.
     pub fn texture(&self) -> Option<TextureId> {
         self.image_texture.id()
     }
 
-    /// Brings the picture to the device that the window has now.
+    /// Uploads the picture to the window's current device.
     pub fn move_to(&mut self, ctx: &Context) {
         self.image_texture.renew(ctx);
     }
 
-    /// The picture for export; not yet while only a small forerunner of a large one is on show.
+    /// Returns the picture for export; none while only a reduced one is available.
     pub fn developed(&self) -> Option<&Developed<Arc<ColorImage>>> {
         let (width, height) = self.size()?;
         self.developed.as_ref().filter(|d| (d.picture.width, d.picture.height) == (width, height))
     }
 
-    /// Pixels across and down of the picture that is on show or on its way.
+    /// Returns width and height of the picture of the job, pixels.
     pub fn size(&self) -> Option<(u32, u32)> {
         self.job.as_ref().map(|job| (job.settings.width, job.settings.height))
     }
 
-    /// Whether the picture is not what a render would show now.
+    /// Returns true if a new render would differ from the picture.
     pub fn is_out_of_date(&self, now: &Scene) -> bool {
         match (&self.film, &self.job) {
             (Some(film), Some(job)) => !raytrace::is_up_to_date(film.layers(), &job.scene, now),
@@ -178,7 +178,7 @@ impl Rendering {
         }
     }
 
-    /// Takes in what the threads have made and asks for what the scene needs now. Call once a frame.
+    /// Takes the results of the jobs and requests the development that the scene needs. Called once per frame.
     pub fn update(&mut self, scene: &Scene, ctx: &Context) {
         if let Some(job) = &mut self.job {
             job.update();
@@ -202,7 +202,7 @@ impl Rendering {
             Some(Err(message)) => self.develop_failure = Some(message),
             None => {}
         }
-        // Progress numbers move between snapshots, too.
+        // The progress changes between snapshots.
         if self.is_running() {
             ctx.request_repaint_after(Duration::from_millis(250));
         }
@@ -224,7 +224,7 @@ impl Rendering {
     }
 }
 
-/// The picture as it is shown: of a larger one than a texture can hold, the mean of each 2x2, 3x3 ... pixels.
+/// Returns the image of a picture; larger ones than a texture are reduced by means of 2x2, 3x3 ... pixels.
 fn shown_within(picture: &Picture, most: usize) -> ColorImage {
     let (size, codes) = ([picture.width as usize, picture.height as usize], picture.to_srgb8());
     let times = size[0].max(size[1]).div_ceil(most.max(1)).max(1);
@@ -249,10 +249,10 @@ fn shown_within(picture: &Picture, most: usize) -> ColorImage {
     image
 }
 
-/// Said of a picture that no longer shows the studio as it is.
+/// Message for an outdated picture.
 pub const OUT_OF_DATE: &str = "Out of date: the studio has changed since. Light power, colour and switches follow at once; the rest needs a render.";
 
-/// Name of a method in lists.
+/// Returns the name of a method in lists.
 pub fn method_label(method: Method) -> &'static str {
     match method {
         Method::Whitted => "Hard shadows, no bounced light",
@@ -266,13 +266,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_picture_larger_than_a_texture_is_shown_by_means_of_its_pixels() {
+    fn a_picture_larger_than_a_texture_is_reduced_by_pixel_means() {
         let rgb = (0..7 * 3).map(|i| if i % 7 < 4 { [0.0; 3] } else { [1e3; 3] }).collect();
         let picture = Picture { width: 7, height: 3, rgb };
         let whole = shown_within(&picture, 7);
         assert_eq!((whole.size, whole.pixels[3], whole.pixels[6]), ([7, 3], Color32::BLACK, Color32::WHITE));
         let shown = shown_within(&picture, 3);
-        // Of each 3x3: all black, one column of three black, and what is left at the edge.
+        // Means of 3x3 blocks: all black, one of three columns black, and the rest at the edge.
         assert_eq!(
             (shown.size, &shown.pixels[..]),
             ([3, 1], &[Color32::BLACK, Color32::from_gray(170), Color32::WHITE][..])

@@ -1,4 +1,4 @@
-//! The window: its state, and one frame of it. Commands are carried out in `commands` and `session`.
+//! The application: its state, and one frame of the window. `run_command` and `run_file_command` execute commands.
 
 use crate::editor::commands::choices::CentralView;
 use crate::editor::commands::command::Command;
@@ -31,16 +31,16 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How the window begins.
+/// The options of the editor.
 #[derive(Debug)]
 pub struct EditorOptions {
     /// The studio to open; none opens the first shipped one.
     pub initial: Option<PathBuf>,
-    /// Who is asked for file names.
+    /// The file dialogs.
     pub dialogs: FileDialogs,
-    /// Where the list of recent studios is kept; none keeps it in memory.
+    /// Folder of the list of recent studios; none keeps it in memory.
     pub settings_folder: Option<PathBuf>,
-    /// When the program was started, to tell how long the first frame took.
+    /// Start of the program, for the time to the first frame.
     pub started: Instant,
 }
 
@@ -65,15 +65,15 @@ pub struct App {
     diagnostics: Diagnostics,
 }
 
-/// Two losses within this time are the preview's doing: the view is left to the processor.
+/// Two device losses within this time switch to the CPU preview.
 const SOON: Duration = Duration::from_secs(60);
 
-/// In the narrowest window they leave the view its tools in one row.
+/// Widths that fit the tools of the view into one row in the narrowest window.
 const LEFT: PanelWidths = PanelWidths { range: Rangef { min: 200.0, max: 420.0 }, first: 270.0, share: 0.26 };
 const RIGHT: PanelWidths = PanelWidths { range: Rangef { min: 300.0, max: 560.0 }, first: 340.0, share: 0.342 };
 
 impl App {
-    /// A window that begins to load its first studio.
+    /// Creates the application and loads the first studio.
     pub fn new(creation: &eframe::CreationContext<'_>, options: EditorOptions) -> Self {
         let ctx = &creation.egui_ctx;
         theme::install(ctx);
@@ -96,8 +96,7 @@ impl App {
         app
     }
 
-    /// Goes over to a new window, because the device of the last one was lost: with the open studio, its history and
-    /// everything else.
+    /// Moves to a new window after a device loss, with the open studio, its history and all other state.
     pub fn move_to(&mut self, creation: &eframe::CreationContext<'_>) {
         let ctx = &creation.egui_ctx;
         theme::install(ctx);
@@ -113,12 +112,12 @@ impl App {
         self.toasts.warning(if why.is_empty() { news.to_owned() } else { format!("{news} ({why})") });
     }
 
-    /// Whether the window's device is gone, so that it closes to be opened anew.
+    /// Returns true after a device loss, when the window closes to be reopened.
     pub fn has_lost_window(&self) -> bool {
         self.window.device_loss.is_some()
     }
 
-    /// Lets a device go that is gone, and tells whether it is: a window can end by that before a frame notices it.
+    /// Drops a lost device; returns true if it is lost. A window can end by a loss before a frame detects it.
     pub(super) fn drop_lost_device(&mut self) -> bool {
         if self.window.device_loss.is_none() {
             self.window.device_loss = self.views.viewport.preview.lost_device().map(str::to_owned);
@@ -129,17 +128,15 @@ impl App {
         self.window.device_loss.is_some()
     }
 
-    /// Saves unsaved work under another name, because there is no window any more to save it from: beside the studio's
-    /// own file, else in the user's folder, else with what is temporary. Returns the file, or why there is none; none
-    /// if there is nothing to save.
+    /// Saves unsaved changes to a new file after the window is lost: beside the studio's file, else in the home folder,
+    /// else in the temporary folder. Returns the file or the error; none without unsaved changes.
     pub fn rescue(&self) -> Option<Result<PathBuf, String>> {
         let home = directories::UserDirs::new().map(|dirs| dirs.home_dir().to_owned());
         let elsewhere: Vec<PathBuf> = home.into_iter().chain([std::env::temp_dir()]).collect();
         rescue::rescue(&self.document, &elsewhere)
     }
 
-    /// Closes a window that cannot draw any more. It draws nothing until then: egui's painter ends the program when it
-    /// has something to draw and no device to draw it.
+    /// Closes a window whose device is lost. It draws nothing until then: egui's painter panics without a device.
     fn leave_window(&mut self, ctx: &Context, why: String) {
         if self.window.device_loss.is_none() {
             log::warn!("the graphics device was lost: {why}");
@@ -148,58 +145,57 @@ impl App {
         ctx.send_viewport_cmd(ViewportCommand::Close);
     }
 
-    /// The open studio.
+    /// Returns the open studio.
     pub fn document(&self) -> &Document {
         &self.document
     }
 
-    /// What is selected.
+    /// Returns the selection.
     pub fn selection(&self) -> &Selection {
         &self.selection
     }
 
-    /// Render settings, job and picture.
+    /// Returns render settings, job and picture.
     pub fn rendering(&self) -> &Rendering {
         &self.rendering
     }
 
-    /// Render settings, to be changed without the panel.
+    /// Returns the mutable render settings.
     pub fn rendering_mut(&mut self) -> &mut Rendering {
         &mut self.rendering
     }
 
-    /// The messages on show.
+    /// Returns the messages.
     pub fn toasts(&self) -> &Toasts {
         &self.toasts
     }
 
-    /// The viewport with its preview.
+    /// Returns the viewport.
     pub fn viewport(&self) -> &Viewport {
         &self.views.viewport
     }
 
-    /// The readings of the studio's light meter.
+    /// Returns the light meter's job.
     pub fn meter(&self) -> &MeterJob {
         &self.background.meter
     }
 
-    /// The pictures of what can be chosen.
+    /// Returns the thumbnails.
     pub fn thumbnails(&self) -> &Thumbnails {
         &self.background.thumbnails
     }
 
-    /// The title of the window.
+    /// Returns the title of the window.
     pub fn title(&self) -> &str {
         &self.window.title
     }
 
-    /// What the middle of the window shows.
+    /// Returns the central view.
     pub fn central_view(&self) -> CentralView {
         self.views.central
     }
 
-    /// Whether something is on its way in the background: files, a render, the preview's start or its
-    /// picture in full, a file dialog.
+    /// Returns true during background work: files, a render, the start of the preview or its full image, a file dialog.
     pub fn is_busy(&self) -> bool {
         self.background.tasks.is_busy()
             || self.rendering.is_busy()
@@ -209,12 +205,12 @@ impl App {
             || (self.views.viewport.preview.is_draft() && self.views.central != CentralView::Picture)
     }
 
-    /// From the start of the program to the end of the first frame.
+    /// Returns the time from the start of the program to the end of the first frame.
     pub fn first_frame(&self) -> Option<Duration> {
         self.diagnostics.first_frame
     }
 
-    /// Everything that came in from elsewhere since the last frame.
+    /// Takes all results and requests that arrived since the last frame.
     pub(super) fn take_in(&mut self, ctx: &Context, out: &mut Vec<Command>) {
         for done in self.background.tasks.finished() {
             self.take_done(done, ctx);
@@ -224,7 +220,7 @@ impl App {
         self.take_close_request(ctx);
         self.load_wanted_assets(ctx);
         self.rendering.update(self.document.scene(), ctx);
-        self.learn_from_render();
+        self.update_forecast();
         let document = &self.document;
         self.background.meter.update(document.scene(), document.assets(), document.revision(), &wake(ctx));
         match self.rendering.failure() {
@@ -241,8 +237,8 @@ impl App {
         }
     }
 
-    /// Lets the forecast know what a render took, if the studio is still what was rendered.
-    fn learn_from_render(&mut self) {
+    /// Updates the forecast from a finished render, if the studio has not changed.
+    fn update_forecast(&mut self) {
         let Some((job, outcome)) = self.rendering.take_outcome() else { return };
         if !SceneChange::between(&job.scene, self.document.scene()).needs_redraw() {
             let Settings { width, height, method, .. } = job.settings;
@@ -255,28 +251,28 @@ impl App {
         }
     }
 
-    /// The forecast of renders, and what they really took.
+    /// Returns the forecast of renders.
     pub fn forecaster(&self) -> &Forecaster {
         &self.background.forecaster
     }
 
-    /// Keys that mean a command, unless text is being typed or a question is open.
+    /// Collects the commands of shortcuts, unless a text field, prompt or menu has the keyboard.
     fn shortcuts(&mut self, ctx: &Context, out: &mut Vec<Command>) {
-        // An open menu takes Esc itself.
+        // An open menu handles Esc.
         let menu = egui::Popup::is_any_open(ctx);
         if ctx.text_edit_focused() || self.session.is_asking() || self.panels.preset_picker.is_open() || menu {
             return;
         }
         if self.views.viewport.is_dragging() {
-            // What is typed now is the number of the drag.
+            // Typed characters are the amount of the drag.
             if ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, egui::Key::Escape)) {
-                // At once, or the drag would go on in this very frame.
+                // Immediately, or the drag would continue in this frame.
                 self.views.viewport.cancel_drag();
                 out.push(Command::Escape);
             }
             return;
         }
-        // A key that is kept down repeats itself: only steps back and forth are meant by that.
+        // Only undo and redo repeat with a held key.
         let repeats =
             ctx.input(|i| i.events.iter().any(|e| matches!(e, egui::Event::Key { pressed: true, repeat: true, .. })));
         for KeyBinding { shortcut, command, .. } in &KEY_BINDINGS {
@@ -288,22 +284,22 @@ impl App {
         }
     }
 
-    /// The press that changes of this frame belong to; none where no button or key is held.
+    /// Returns the press that changes of this frame belong to; none without a held button or key.
     fn press_id(&mut self, ctx: &Context) -> Option<u64> {
         let (began, held) = ctx.input(|i| {
             let key_began = i.events.iter().any(|e| matches!(e, egui::Event::Key { pressed: true, repeat: false, .. }));
             let held = i.pointer.any_down() || i.pointer.any_released() || !i.keys_down.is_empty();
-            // A key that is pressed while a button is held belongs to the drag.
+            // A key pressed during a drag belongs to the drag.
             (i.pointer.any_pressed() || (key_began && !i.pointer.any_down()), held)
         });
         self.window.press_id += u64::from(began);
         held.then_some(self.window.press_id)
     }
 
-    /// All panels; returns where the middle one is.
+    /// Draws all panels; returns the rectangle of the central one.
     fn panels_ui(&mut self, ui: &mut Ui, out: &mut Vec<Command>) -> Rect {
-        // The window is cleared to the panels' colour, and each view covers all of the middle. To fill them here, too,
-        // would cost a processor that draws the window most of its time.
+        // The window is cleared to the panels' colour and each view covers the middle; filling the panels again would
+        // cost a software renderer most of its time.
         let bar = Frame::new().inner_margin(Margin::symmetric(8, 3));
         let side = Frame::new().inner_margin(Margin::symmetric(10, 4));
         Panel::top("menu").frame(bar).show(ui, |ui| menu::menu_ui(ui, self.menu_state(), out));
@@ -327,10 +323,10 @@ impl App {
             inspector::inspector_ui(ui, &self.document, &self.selection, out);
         });
         (self.panels.left, self.panels.right) = (left, right);
-        CentralPanel::default().frame(Frame::new()).show(ui, |ui| self.middle(ui, out)).response.rect
+        CentralPanel::default().frame(Frame::new()).show(ui, |ui| self.central_ui(ui, out)).response.rect
     }
 
-    fn middle(&mut self, ui: &mut Ui, out: &mut Vec<Command>) {
+    fn central_ui(&mut self, ui: &mut Ui, out: &mut Vec<Command>) {
         let bar = Frame::new().inner_margin(Margin::symmetric(8, 4));
         Panel::top("views").frame(bar).show(ui, |ui| {
             let mut follows = self.views.viewport.camera_follows;
@@ -371,7 +367,7 @@ impl App {
         }
     }
 
-    fn tell_title(&mut self, ctx: &Context) {
+    fn update_title(&mut self, ctx: &Context) {
         let star = if self.document.is_dirty() { "*" } else { "" };
         let title = format!("{}{star} \u{2013} Catchlight", self.document.title());
         if title != self.window.title {
@@ -382,17 +378,17 @@ impl App {
 }
 
 impl eframe::App for App {
-    /// The colour of the panels.
+    /// Returns the colour of the panels.
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
         visuals.panel_fill.to_normalized_gamma_f32()
     }
 
-    /// All that a window does while it is minimised or covered: its frames are not drawn.
+    /// Handles a minimised or covered window, whose frames are not drawn.
     fn logic(&mut self, ctx: &Context, _frame: &mut eframe::Frame) {
         if ctx.input(|i| i.viewport().visible()) != Some(false) {
             return;
         }
-        // Nobody looks at what would be traced.
+        // Nothing is visible: pause the tracer.
         self.views.viewport.traced_view.pause();
         if let Some(why) = self.views.viewport.preview.lost_device().map(str::to_owned) {
             self.leave_window(ctx, why);
@@ -427,10 +423,10 @@ impl eframe::App for App {
             self.run(command, press_id, &ctx);
         }
         if changed {
-            // What the commands changed was drawn before they ran.
+            // The panels were drawn before the commands ran.
             ctx.request_repaint();
         }
-        self.tell_title(&ctx);
+        self.update_title(&ctx);
         if self.diagnostics.first_frame.is_none() {
             let elapsed = self.diagnostics.started.elapsed();
             log::debug!("first frame after {} ms", elapsed.as_millis());
@@ -444,7 +440,7 @@ impl eframe::App for App {
             self.diagnostics.first_view_logged = true;
         }
         if self.views.viewport.preview.lost_device().is_some() {
-            // It happened in this frame: the next pass draws nothing in its place.
+            // The loss occurred in this frame: discard it.
             ctx.request_discard("the graphics device was lost");
         }
     }

@@ -6,20 +6,20 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-/// What came out of a background task.
+/// The result of a background task.
 #[derive(Debug)]
 pub enum TaskResult {
-    /// A studio was read, or not; with what was asked for.
+    /// An opened studio or an error, with the source.
     Opened(StudioSource, Result<Box<OpenedStudio>, String>),
-    /// A model was read, or not.
+    /// An imported model or an error.
     Imported(Result<Box<ImportedModel>, String>),
-    /// Assets of the scene were read: what was loaded, what was asked for, what is odd.
+    /// Assets of the scene: those loaded, those requested, and warnings.
     Assets(Assets, BTreeSet<String>, Vec<String>),
-    /// A picture was written, or not.
+    /// A written picture or an error.
     Exported(PathBuf, Result<(), String>),
 }
 
-/// Background tasks and the channel their results come through.
+/// The background tasks and the channel of their results.
 #[derive(Debug)]
 pub struct BackgroundTasks {
     sender: Sender<TaskResult>,
@@ -35,7 +35,7 @@ impl Default for BackgroundTasks {
 }
 
 impl BackgroundTasks {
-    /// Runs `work` in a thread; `wake` is called when its result is there.
+    /// Runs `work` in a thread and calls `wake` when it has its result.
     pub fn start(&mut self, work: impl FnOnce() -> TaskResult + Send + 'static, wake: impl FnOnce() + Send + 'static) {
         let sender = self.sender.clone();
         self.running += 1;
@@ -45,14 +45,14 @@ impl BackgroundTasks {
         });
     }
 
-    /// Results that have come in.
+    /// Returns the results since the last call.
     pub fn finished(&mut self) -> Vec<TaskResult> {
         let done: Vec<TaskResult> = self.receiver.try_iter().collect();
         self.running -= done.len();
         done
     }
 
-    /// Whether something is on its way.
+    /// Returns true while a task runs.
     pub fn is_busy(&self) -> bool {
         self.running > 0
     }

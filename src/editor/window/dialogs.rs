@@ -1,4 +1,4 @@
-//! Asking for a file name: the desktop's dialog in a thread of its own, or a list of answers in tests.
+//! File dialogs: the desktop's dialog in a thread, or scripted answers in tests.
 
 use crate::editor::commands::file_purpose::FilePurpose;
 use std::collections::VecDeque;
@@ -6,33 +6,33 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-/// The user's answer.
+/// The answer of a file dialog.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DialogAnswer {
-    /// This file.
+    /// A file.
     Chosen(PathBuf),
-    /// Nothing: the dialog was closed.
+    /// The dialog was cancelled.
     Cancelled,
-    /// The desktop has no dialog to show; the window asks for a path itself.
+    /// The desktop has no file dialog; the editor prompts for a path.
     Unavailable,
 }
 
-/// Who is asked for file names.
+/// The provider of file dialogs.
 #[derive(Debug)]
 pub enum FileDialogs {
-    /// The desktop.
+    /// The desktop's dialogs.
     Desktop,
-    /// A list of answers, for tests; cancelled when it is used up.
+    /// A list of answers, for tests; cancelled after the last one.
     Scripted(VecDeque<DialogAnswer>),
 }
 
 impl FileDialogs {
-    /// Answers with these paths, in turn.
+    /// Returns dialogs that answer with these paths, in turn.
     pub fn scripted(paths: impl IntoIterator<Item = PathBuf>) -> Self {
         FileDialogs::Scripted(paths.into_iter().map(DialogAnswer::Chosen).collect())
     }
 
-    /// Asks without waiting: the answer comes through the channel, and `wake` is called when it is there.
+    /// Opens a dialog without blocking: the answer arrives in the channel, then `wake` is called.
     pub fn ask(
         &mut self,
         purpose: FilePurpose,
@@ -67,7 +67,7 @@ fn desktop_dialog(purpose: FilePurpose, folder: Option<&Path>, file_name: &str) 
     if purpose.is_save() { dialog.set_file_name(file_name) } else { dialog }
 }
 
-/// Nobody closes a dialog faster than this: an answer that comes sooner means that there was no dialog.
+/// Shortest time in which a user closes a dialog; a faster answer means that no dialog was shown.
 const FASTEST_USER: Duration = Duration::from_millis(250);
 
 fn ask_desktop(purpose: FilePurpose, dialog: rfd::FileDialog) -> DialogAnswer {
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn scripted_answers_come_in_turn_and_then_end() {
+    fn scripted_answers_are_given_in_turn_then_cancelled() {
         let mut dialogs = FileDialogs::scripted([PathBuf::from("a.ron")]);
         let first = dialogs.ask(FilePurpose::OpenScene, None, "", || ()).recv().unwrap();
         let second = dialogs.ask(FilePurpose::OpenScene, None, "", || ()).recv().unwrap();
@@ -93,8 +93,8 @@ mod tests {
     }
 
     #[test]
-    fn a_saved_file_gets_its_ending() {
-        assert_eq!(FilePurpose::SaveScene.with_ending("studio".into()), PathBuf::from("studio.ron"));
-        assert_eq!(FilePurpose::ExportPicture.with_ending("a.jpg".into()), PathBuf::from("a.jpg"));
+    fn a_saved_file_gets_its_extension() {
+        assert_eq!(FilePurpose::SaveScene.with_extension_added("studio".into()), PathBuf::from("studio.ron"));
+        assert_eq!(FilePurpose::ExportPicture.with_extension_added("a.jpg".into()), PathBuf::from("a.jpg"));
     }
 }

@@ -1,5 +1,5 @@
-//! The event loop's way into a window. A panic in there ends the window and not the loop: libraries panic where a
-//! graphics device was lost, and a loop that was left by a panic opens no other window.
+//! Catches panics of a window inside the event loop: libraries panic on a device loss, and an event loop left by a
+//! panic cannot open another window.
 
 use eframe::{EframeWinitApplication, UserEvent};
 use std::any::Any;
@@ -10,10 +10,10 @@ use winit::event_loop::{ActiveEventLoop, EventLoop};
 use winit::platform::run_on_demand::EventLoopExtRunOnDemand;
 use winit::window::WindowId;
 
-/// What a panic said.
+/// The payload of a panic.
 pub type Panic = Box<dyn Any + Send>;
 
-/// A window, until it panics.
+/// A window until its panic.
 struct EventGuard<'a> {
     window: Option<EframeWinitApplication<'a>>,
     panic: Option<Panic>,
@@ -38,13 +38,13 @@ impl<'a> EventGuard<'a> {
         let Some(window) = &mut self.window else { return };
         if let Err(panic) = catch_unwind(AssertUnwindSafe(|| event(window))) {
             self.panic = Some(panic);
-            // While the loop runs, so that the window vanishes.
+            // Inside the loop, so that the window disappears.
             self.drop_window();
             events.exit();
         }
     }
 
-    /// A surface whose device was lost in the middle of a frame panics when it is dropped.
+    /// Drops the window. A surface whose device was lost during a frame panics when it is dropped.
     fn drop_window(&mut self) {
         let window = self.window.take();
         if let Err(panic) = catch_unwind(AssertUnwindSafe(|| drop(window))) {

@@ -1,37 +1,37 @@
-//! How the window keeps up with its user: told in the log (`RUST_LOG=catchlight=debug`).
+//! Frame times during input, for the log (`RUST_LOG=catchlight=debug`).
 
 use std::time::{Duration, Instant};
 
-/// How often it is told.
+/// Interval of the log lines.
 const EVERY: Duration = Duration::from_secs(2);
 
-/// Times from frame to frame while mouse or keys are at work.
+/// Times between frames during input.
 #[derive(Debug, Default)]
 pub struct FrameLog {
-    /// When the last frame began, if there was input in it.
+    /// Start of the last frame, if it had input.
     last: Option<Instant>,
-    told: Option<Instant>,
+    last_report: Option<Instant>,
     times_ms: Vec<f64>,
 }
 
 impl FrameLog {
-    /// A frame begins; `has_input` is whether the user does something.
+    /// Records the start of a frame; `has_input` is true if it has events.
     pub fn frame(&mut self, has_input: bool, what: &str) {
         let now = Instant::now();
         let last = std::mem::replace(&mut self.last, has_input.then_some(now));
         self.times_ms.extend(last.filter(|_| has_input).map(|last| (now - last).as_secs_f64() * 1e3));
-        let told = *self.told.get_or_insert(now);
-        if now - told > EVERY {
+        let last_report = *self.last_report.get_or_insert(now);
+        if now - last_report > EVERY {
             if let Some(line) = summary(&mut self.times_ms) {
                 log::debug!("{what}: {line}");
             }
             self.times_ms.clear();
-            self.told = Some(now);
+            self.last_report = Some(now);
         }
     }
 }
 
-/// Frames a second, and how long nine of ten and the slowest took.
+/// Formats frames per second, the 90th percentile and the slowest frame.
 fn summary(times_ms: &mut [f64]) -> Option<String> {
     times_ms.sort_by(f64::total_cmp);
     let most = times_ms.last()?;
@@ -45,14 +45,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_are_told_by_their_mean_and_their_slowest() {
+    fn the_summary_has_mean_percentile_and_maximum() {
         let mut times: Vec<f64> = [40.0; 9].into_iter().chain([140.0]).collect();
         assert_eq!(summary(&mut times).unwrap(), "20.0 frames/s, 90 % within 40 ms, all within 140 ms");
         assert_eq!(summary(&mut []), None);
     }
 
     #[test]
-    fn a_pause_is_no_slow_frame() {
+    fn pauses_without_input_are_not_counted() {
         let mut log = FrameLog::default();
         for has_input in [true, true, false, true] {
             log.frame(has_input, "test");

@@ -1,4 +1,4 @@
-//! The window: application state, execution of commands, sessions, files and recovery.
+//! The window: application state, execution of commands, files and dialogs, recovery, the native window.
 
 pub mod app;
 pub mod app_state;

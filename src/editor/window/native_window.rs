@@ -1,4 +1,4 @@
-//! The window that shows the app. The app outlives it: when its graphics device is lost, the window is opened anew.
+//! The native window. The app outlives it: after a device loss the window is reopened.
 
 use crate::editor::window::app::{App, EditorOptions};
 use crate::editor::window::{event_guard, recent};
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use winit::error::EventLoopError;
 use winit::event_loop::EventLoop;
 
-/// Why there is no window.
+/// The reason why no window could be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum EditorError {
     /// There is no display to open a window on.
@@ -22,7 +22,7 @@ pub enum EditorError {
     /// There is a display, but nothing that can draw on it.
     #[error("no graphics adapter can draw the window (on Debian: apt-get install mesa-vulkan-drivers libvulkan1): {0}")]
     NoGraphics(String),
-    /// Anything else that keeps the window from opening.
+    /// Any other error.
     #[error("the window could not be opened: {0}")]
     Window(String),
 }
@@ -39,7 +39,7 @@ pub fn run(initial: Option<PathBuf>) -> Result<(), EditorError> {
     run_windows(options)
 }
 
-/// On Linux a window needs a Wayland or X11 display; asking winit without one gives a less helpful message.
+/// Checks for a Wayland or X11 display on Linux; the error of winit is less helpful.
 fn check_display() -> Result<(), EditorError> {
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     let is_linux = cfg!(all(unix, not(target_os = "macos")));
@@ -49,10 +49,10 @@ fn check_display() -> Result<(), EditorError> {
     Ok(())
 }
 
-/// A window that lasted less was lost to something that a new one alone does not mend.
+/// Shortest lifetime after which a lost window is reopened with the same renderer.
 const SHORT_LIFE: Duration = Duration::from_secs(3);
 
-/// A window onto an app that others hold, too.
+/// A window of a shared app.
 #[derive(Debug)]
 struct AppWindow(Rc<RefCell<App>>);
 
@@ -70,42 +70,42 @@ impl eframe::App for AppWindow {
     }
 }
 
-/// What outlives a window.
+/// The state that outlives a window.
 #[derive(Default)]
 struct AppHost {
     app: Option<Rc<RefCell<App>>>,
-    /// What the first window begins with.
+    /// The options of the first window.
     options: Option<EditorOptions>,
     ctx: Option<Context>,
-    /// Windows that were opened.
+    /// Number of windows opened.
     opened: u32,
 }
 
 impl Drop for AppHost {
-    /// A window that ends by a panic leaves the work in a file.
+    /// Saves unsaved changes to a file if the window panics.
     fn drop(&mut self) {
         if std::thread::panicking()
             && let Some(rescued) = self.rescue()
         {
-            eprintln!("{}", told(&rescued));
+            eprintln!("{}", rescue_message(&rescued));
         }
     }
 }
 
 impl AppHost {
-    /// Saves unsaved work, if there is any; returns the file, or why there is none.
+    /// Saves unsaved changes, if any; returns the file or the error.
     fn rescue(&self) -> Option<Result<PathBuf, String>> {
         self.app.as_ref()?.try_borrow().ok()?.rescue()
     }
 
-    /// Whether the last window was lost. What is left of its device goes before another window is made: OpenGL cannot
-    /// take it apart while a window draws with OpenGL.
+    /// Returns true if the last window was lost. Drops its device before another window is created: OpenGL cannot
+    /// release it while a window draws with OpenGL.
     fn is_lost(&self) -> bool {
         self.app.as_ref().is_some_and(|app| app.borrow_mut().drop_lost_device())
     }
 }
 
-/// Opens windows until one is closed by the user.
+/// Opens windows until the user closes one.
 fn run_windows(options: EditorOptions) -> Result<(), EditorError> {
     let mut events = EventLoop::with_user_event().build().map_err(no_display)?;
     let host: Rc<RefCell<AppHost>> = Rc::default();
@@ -117,15 +117,15 @@ fn run_windows(options: EditorOptions) -> Result<(), EditorError> {
         let opened = host.borrow().opened;
         let ended = open(&host, &mut events, renderer);
         if host.borrow().opened == opened {
-            // What kept it from opening stands in the log.
+            // The log has the reason.
             if renderer == eframe::Renderer::Glow {
                 return Err(no_graphics(no_adapter, host.borrow().rescue()));
             }
             no_adapter = Gpu::headless().err().map(|error| error.to_string());
-            log::warn!("no graphics adapter draws the window: OpenGL draws it, and the processor the view");
+            log::warn!("no GPU adapter draws the window: OpenGL draws it, and the CPU the view");
             renderer = eframe::Renderer::Glow;
         } else if host.borrow().is_lost() {
-            // Lost within moments: to something that another window of the kind does not mend.
+            // Lost at once: the same renderer would fail again.
             if began.elapsed() < SHORT_LIFE {
                 renderer = eframe::Renderer::Glow;
             }
@@ -155,7 +155,7 @@ fn open(
         Some(ctx) => as_it_was(viewport, &ctx.input(|i| i.viewport().clone())),
         None => viewport,
     };
-    // Nothing in the window is finer than its colours, so that dithering would only take time.
+    // The window has no fine gradients: dithering would only cost time.
     let native = eframe::NativeOptions { viewport, renderer, dithering: false, ..Default::default() };
     let host = host.clone();
     let create: eframe::AppCreator<'_> = Box::new(move |creation| {
@@ -178,7 +178,7 @@ fn open(
     event_guard::run(events, window)
 }
 
-/// Panels as wide as they were, and threads that wake the last window wake this one.
+/// Copies egui's memory to the new window and redirects repaint requests of the last one.
 fn inherit(last: &Context, ctx: &Context) {
     let memory = last.memory(Clone::clone);
     ctx.memory_mut(|new| *new = memory);
@@ -186,7 +186,7 @@ fn inherit(last: &Context, ctx: &Context) {
     last.set_request_repaint_callback(move |_| ctx.request_repaint());
 }
 
-/// Where and as large as the last window was.
+/// Copies position and size of the last window.
 fn as_it_was(mut builder: ViewportBuilder, last: &ViewportInfo) -> ViewportBuilder {
     if let Some(rect) = last.inner_rect {
         builder = builder.with_inner_size(rect.size());
@@ -197,8 +197,8 @@ fn as_it_was(mut builder: ViewportBuilder, last: &ViewportInfo) -> ViewportBuild
     builder.with_maximized(last.maximized == Some(true)).with_fullscreen(last.fullscreen == Some(true))
 }
 
-/// What became of unsaved work, for the user who has no window any more.
-fn told(rescued: &Result<PathBuf, String>) -> String {
+/// Returns the message on the rescued changes.
+fn rescue_message(rescued: &Result<PathBuf, String>) -> String {
     match rescued {
         Ok(path) => format!("the studio was saved as {}", path.display()),
         Err(why) => format!("the studio's changes are lost, they could not be saved: {why}"),
@@ -206,12 +206,12 @@ fn told(rescued: &Result<PathBuf, String>) -> String {
 }
 
 fn no_display(error: EventLoopError) -> EditorError {
-    // The reason comes last, after places in source files.
+    // The reason comes last, after source locations.
     let text = error.to_string();
     EditorError::NoDisplay(text.rsplit(": ").next().unwrap_or(&text).to_owned())
 }
 
-/// `no_adapter` is why wgpu had nothing to draw with, if it was that.
+/// Returns the error without graphics; `no_adapter` is the error of wgpu, if any.
 fn no_graphics(no_adapter: Option<String>, rescued: Option<Result<PathBuf, String>>) -> EditorError {
     let why = no_adapter.unwrap_or_else(|| "neither Vulkan nor OpenGL can".to_owned());
     EditorError::NoGraphics(with_rescued(&why, rescued))
@@ -222,7 +222,7 @@ fn broken(why: &str, rescued: Option<Result<PathBuf, String>>) -> EditorError {
 }
 
 fn with_rescued(why: &str, rescued: Option<Result<PathBuf, String>>) -> String {
-    rescued.map_or_else(|| why.to_owned(), |rescued| format!("{why}; {}", told(&rescued)))
+    rescued.map_or_else(|| why.to_owned(), |rescued| format!("{why}; {}", rescue_message(&rescued)))
 }
 
 #[cfg(test)]
@@ -235,7 +235,7 @@ mod tests {
     use std::sync::Arc;
     use std::sync::atomic::{AtomicBool, Ordering};
 
-    /// An app with a studio from this file and a change that is not saved.
+    /// Returns an app with a studio from this file and an unsaved change.
     fn changed_app(file: &std::path::Path) -> App {
         std::fs::write(file, io::presets()[0].text).unwrap();
         let ctx = Context::default();
@@ -253,14 +253,14 @@ mod tests {
     }
 
     #[test]
-    fn a_window_that_panics_leaves_the_work_in_a_file() {
+    fn a_panicking_window_saves_unsaved_changes() {
         let folder = tempfile::tempdir().unwrap();
         let app = Rc::new(RefCell::new(changed_app(&folder.path().join("a.ron"))));
         let mut host = AppHost::default();
         host.app = Some(app.clone());
         let ended = catch_unwind(AssertUnwindSafe(move || {
             let _host = host;
-            // Windows hold the app while they draw.
+            // A window borrows the app while it draws.
             let _drawing = app.borrow_mut();
             resume_unwind(Box::new("a panic without its message"));
         }));
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_words_of_a_lost_window_name_the_file_or_the_loss() {
+    fn the_error_of_a_lost_window_names_the_rescued_file_or_the_loss() {
         let words = |rescued| broken("no device is left", rescued).to_string();
         let saved = words(Some(Ok("home/a (rescued 1).ron".into())));
         assert!(saved.contains("saved as home/a (rescued 1).ron") && saved.contains("no device is left"), "{saved}");
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn another_window_has_the_last_ones_panels_and_is_woken_in_its_place() {
+    fn a_reopened_window_inherits_memory_and_repaint_requests() {
         let (last, ctx) = (Context::default(), Context::default());
         last.memory_mut(|memory| memory.data.insert_temp(Id::unique("width"), 321.0_f32));
         inherit(&last, &ctx);

@@ -1,12 +1,12 @@
-//! The studios opened last, kept in the user's settings folder as JSON.
+//! The list of recent studios, stored in the user's settings folder as JSON.
 
 use std::path::{Path, PathBuf};
 
-/// Entries kept.
+/// Most entries.
 const CAPACITY: usize = 10;
 const FILE_NAME: &str = "recent.json";
 
-/// The list, newest first. Without a folder it is kept only while the window is open.
+/// The recent studios. Without a folder they are kept in memory only.
 #[derive(Clone, Debug, Default)]
 pub struct RecentFiles {
     folder: Option<PathBuf>,
@@ -22,12 +22,12 @@ impl RecentFiles {
         RecentFiles { folder, paths }
     }
 
-    /// The list, newest first.
+    /// Returns the paths, newest first.
     pub fn paths(&self) -> &[PathBuf] {
         &self.paths
     }
 
-    /// Puts a path on top and writes the list.
+    /// Adds a path at the top and writes the list.
     pub fn push(&mut self, path: &Path) {
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         self.paths.retain(|p| *p != path);
@@ -36,13 +36,13 @@ impl RecentFiles {
         self.store();
     }
 
-    /// Takes a path off the list, because it is gone.
+    /// Removes a path that no longer exists.
     pub fn forget(&mut self, path: &Path) {
         self.paths.retain(|p| p != path);
         self.store();
     }
 
-    /// Empties the list.
+    /// Clears the list.
     pub fn clear(&mut self) {
         self.paths.clear();
         self.store();
@@ -54,13 +54,13 @@ impl RecentFiles {
             .and_then(|()| serde_json::to_vec_pretty(&self.paths).map_err(std::io::Error::other))
             .and_then(|json| std::fs::write(folder.join(FILE_NAME), json));
         if let Err(error) = written {
-            // Losing a convenience list is no reason to bother anyone.
+            // The loss of this list needs no message to the user.
             log::warn!("the list of recent studios could not be written: {error}");
         }
     }
 }
 
-/// The user's settings folder of this program.
+/// Returns the user's settings folder of this program.
 pub fn settings_folder() -> Option<PathBuf> {
     directories::ProjectDirs::from("", "", "catchlight").map(|dirs| dirs.config_dir().to_owned())
 }

@@ -1,16 +1,16 @@
-//! What is not saved goes to a file of its own when no window is left to save it from.
+//! Saves unsaved changes to a new file when no window is left.
 
 use crate::editor::document::files;
 use crate::editor::document::studio_document::Document;
 use crate::io;
 use std::path::{Path, PathBuf};
 
-/// Names that are tried in a folder before it counts as full.
+/// Most names tried in a folder.
 const MOST_NAMES: u32 = 1000;
 
-/// Writes what is not saved to a new file beside the studio's own, which stays as it is; where that cannot be, into a
-/// new folder in the first of `elsewhere` that takes it, with the files that the studio needs. Returns the file, or why
-/// there is none. None when there is nothing to save.
+/// Writes unsaved changes to a new file beside the studio's own, which is unchanged; if that fails, into a new folder
+/// in the first writable folder of `elsewhere`, with the studio's assets. Returns the file or the error; none without
+/// unsaved changes.
 pub fn rescue(document: &Document, elsewhere: &[PathBuf]) -> Option<Result<PathBuf, String>> {
     if !document.is_dirty() {
         return None;
@@ -25,7 +25,7 @@ pub fn rescue(document: &Document, elsewhere: &[PathBuf]) -> Option<Result<PathB
     Some(Err(failure))
 }
 
-/// A new name in each folder, the best place first.
+/// Returns a new path in each folder, the preferred one first.
 fn places(document: &Document, elsewhere: &[PathBuf]) -> Vec<PathBuf> {
     let title = document.title();
     let stem = title.strip_suffix(".ron").unwrap_or(&title).replace(['/', '\\', ':'], "-");
@@ -34,7 +34,7 @@ fn places(document: &Document, elsewhere: &[PathBuf]) -> Vec<PathBuf> {
         (1..=MOST_NAMES).map(|n| folder.join(place(name(n)))).find(|path| !path.exists())
     };
     let beside = document.folder().and_then(|folder| new_in(folder, &|name| PathBuf::from(name + ".ron")));
-    // Models and textures come along, and must not meet others of their names.
+    // A new folder each, so that models and textures do not collide with others.
     let own_folders = elsewhere.iter().filter_map(|folder| new_in(folder, &PathBuf::from));
     beside.into_iter().chain(own_folders.map(|folder| folder.join(format!("{stem}.ron")))).collect()
 }
@@ -45,7 +45,7 @@ fn write(document: &Document, path: &Path) -> Result<(), String> {
         std::fs::create_dir(folder).map_err(|error| format!("{} could not be made: {error}", folder.display()))?;
     }
     for (from, to) in document.files_to_copy(folder) {
-        // A model that cannot be copied can be brought in again; the light cannot.
+        // A missing model can be imported again; the lighting cannot be recovered.
         if let Err(error) = files::copy_asset(&from, &to) {
             log::warn!("{error}");
         }
@@ -62,7 +62,7 @@ mod tests {
 
     const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-    /// A shipped studio with a light more and a model from elsewhere, which no save has put beside it yet.
+    /// Returns a shipped studio with an added light and an imported model that is not copied beside it yet.
     fn changed_studio(path: Option<PathBuf>, model: &Path) -> Document {
         let loaded = io::presets()[0].load().unwrap();
         let mut document = Document::new(loaded.scene, loaded.assets, path);
@@ -79,7 +79,7 @@ mod tests {
         document
     }
 
-    /// Whether the file holds the studio with all that it needs.
+    /// Returns true if the file holds the studio with its assets.
     fn holds(path: &Path, document: &Document) -> bool {
         let loaded = io::load_scene(path).unwrap();
         assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn unsaved_work_is_written_beside_its_file_which_stays_as_it_is() {
+    fn unsaved_changes_are_written_beside_the_unchanged_file() {
         let (home, desktop) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
         let file = home.path().join("studio.ron");
         std::fs::write(&file, "as it was").unwrap();
@@ -102,9 +102,9 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_takes_no_file_sends_the_work_to_the_next_one_with_its_models() {
+    fn an_unwritable_folder_falls_back_to_the_next_one_with_models() {
         let (home, desktop) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-        // A file where a folder was takes no file from any user, as a disk that is full or was taken out does.
+        // A file in place of the folder makes every write fail, as a full or removed disk does.
         let no_folder = desktop.path().join("a file");
         std::fs::write(&no_folder, "").unwrap();
         let document = changed_studio(Some(no_folder.join("studio.ron")), &desktop.path().join("cup.obj"));
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_model_that_is_gone_costs_the_model_alone() {
+    fn a_missing_model_does_not_prevent_the_rescue() {
         let (home, desktop) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
         let model = desktop.path().join("cup.obj");
         let document = changed_studio(None, &model);
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_saved_needs_no_rescue() {
+    fn saved_studios_are_not_rescued() {
         let home = tempfile::tempdir().unwrap();
         let mut document = changed_studio(None, &home.path().join("cup.obj"));
         document.mark_saved(home.path().join("studio.ron"));

@@ -1,4 +1,4 @@
-//! Commands carried out.
+//! Execution of commands.
 
 use crate::editor::commands::choices::CentralView;
 use crate::editor::commands::choices::PlaceLightBy;
@@ -20,7 +20,7 @@ use eframe::egui::{Context, ViewportCommand};
 use std::collections::HashSet;
 
 impl App {
-    /// Carries a command out. `press_id` is the press that it came from.
+    /// Executes a command. `press_id` is the press that it came from.
     pub fn run(&mut self, command: Command, press_id: Option<u64>, ctx: &Context) {
         match command {
             Command::Apply(action) => self.apply(action, press_id),
@@ -109,7 +109,7 @@ impl App {
         }
     }
 
-    /// A step back or forth. The things that it brings are selected, as they were when they were taken away or made.
+    /// Undoes or redoes a step and selects the items that it restores.
     fn step(&mut self, step: fn(&mut Document) -> Option<String>) {
         let known: HashSet<Item> = all_things(self.document.scene()).collect();
         step(&mut self.document);
@@ -119,7 +119,7 @@ impl App {
         }
     }
 
-    /// Changes the scene; what cannot be done is said.
+    /// Applies an action; reports its error.
     pub(super) fn apply(&mut self, action: Action, press_id: Option<u64>) {
         match self.document.apply(action, press_id) {
             Ok(items) if items.is_empty() => {}
@@ -128,7 +128,7 @@ impl App {
         }
     }
 
-    /// Does something to what of the selection it can be done to.
+    /// Applies an action to the selected items that satisfy `can`; shows `otherwise` if there are none.
     fn with_selected(
         &mut self,
         can: impl Fn(&Item) -> bool,
@@ -189,7 +189,7 @@ impl App {
         }
     }
 
-    /// From a light's view back to what was looked at before.
+    /// Returns from the view through a light to the previous view.
     fn leave_light(&mut self) {
         self.views.central = std::mem::take(&mut self.views.before_light);
     }
@@ -215,7 +215,7 @@ impl App {
         }
     }
 
-    /// The innermost thing under way ends; with nothing under way, nothing stays selected.
+    /// Ends the innermost drag, dialog or mode; without any, clears the selection.
     fn escape(&mut self) {
         if self.views.viewport.is_dragging() {
             self.document.abandon(self.window.press_id);
@@ -253,20 +253,21 @@ impl App {
     }
 }
 
-/// Every thing and every light.
+/// Returns every object and every light.
 fn all_things(scene: &Scene) -> impl Iterator<Item = Item> {
     let objects = scene.objects.iter().map(|o| Item::Object(o.id));
     objects.chain(scene.lights.iter().map(|l| Item::Light(l.id)))
 }
 
-/// Everything that Ctrl+A means: lights and visible things that are not locked.
+/// Returns the items of Ctrl+A: unlocked lights and visible, unlocked objects.
 fn selectable(scene: &Scene) -> Vec<Item> {
     let objects = scene.objects.iter().filter(|o| o.visible && !o.locked).map(|o| Item::Object(o.id));
     let lights = scene.lights.iter().filter(|l| !l.locked).map(|l| Item::Light(l.id));
     objects.chain(lights).collect()
 }
 
-/// Whose face halves the studio: what the last selected light is aimed at, else the subject of the set-up.
+/// Returns the subject of the mirror plane: the object that the last selected light is aimed at, else the subject of
+/// the set-up.
 fn mirror_subject<'a>(scene: &'a Scene, selection: &Selection) -> Option<&'a Object> {
     let aimed_at = selection.lights().last().and_then(|id| match scene.light(*id)?.aim {
         Aim::Object { object, .. } => scene.object(object),
@@ -275,7 +276,7 @@ fn mirror_subject<'a>(scene: &'a Scene, selection: &Selection) -> Option<&'a Obj
     aimed_at.or_else(|| placement::subject(scene, None).and_then(|id| scene.object(id)))
 }
 
-/// Hides things and mutes lights; brings them back if none of them is there.
+/// Hides objects and mutes lights; shows and unmutes them if all are hidden or muted.
 fn hide_or_show(scene: &Scene, items: Vec<Item>) -> Action {
     let is_there = |item: &Item| match item {
         Item::Object(id) => scene.object(*id).is_some_and(|o| o.visible),

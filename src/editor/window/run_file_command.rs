@@ -1,4 +1,4 @@
-//! Files in and out of the window: open, save, import, export, drops, and the questions on the way.
+//! Execution of file commands: open, save, import, export, drops, and their prompts.
 
 use crate::editor::commands::choices::CentralView;
 use crate::editor::commands::command::Command;
@@ -41,7 +41,7 @@ impl App {
                 self.toasts.info("There is no picture to export yet: press Render (R) first.");
             }
             Command::ExportPicture => self.ask_for_path(FilePurpose::ExportPicture, ctx),
-            Command::UseFile(purpose, path) => self.path_chosen(purpose, purpose.with_ending(path), ctx),
+            Command::UseFile(purpose, path) => self.path_chosen(purpose, purpose.with_extension_added(path), ctx),
             _ => {}
         }
     }
@@ -55,7 +55,7 @@ impl App {
         self.background.tasks.start(work, waker(ctx));
     }
 
-    /// Loads another studio, after asking about unsaved changes.
+    /// Loads another studio, after a prompt for unsaved changes.
     pub(super) fn replace_with(&mut self, source: StudioSource, ctx: &Context) {
         self.confirm_unsaved(PendingOperation::Load(source), ctx);
     }
@@ -88,7 +88,7 @@ impl App {
         self.session.dialog = Some((purpose, receiver));
     }
 
-    /// Folder and name that a dialog begins with.
+    /// Returns the initial folder and name of a dialog.
     fn suggestion(&self, purpose: FilePurpose) -> (Option<PathBuf>, String) {
         let recent = self.session.recent.paths().first().and_then(|path| path.parent());
         let folder = self.document.folder().or(recent).filter(|folder| folder.is_dir()).map(Path::to_owned);
@@ -228,7 +228,7 @@ impl App {
         warnings.into_iter().for_each(|warning| self.toasts.warning(warning));
     }
 
-    /// A material whose texture is named as the open studio can name it.
+    /// Returns a material whose texture has an asset path of the open studio.
     fn adopt_texture(&mut self, mut material: Material, folder: &Path) -> Material {
         if let Some(texture) = material.base_color_texture.take() {
             let file = folder.join(texture);
@@ -266,7 +266,7 @@ impl App {
         }
     }
 
-    /// Loads in the background what the scene needs and does not have: the mesh of a new figure, say.
+    /// Loads missing assets in the background, for example the mesh of a new figure.
     pub(super) fn load_wanted_assets(&mut self, ctx: &Context) {
         if self.background.tasks.is_busy() {
             return;
@@ -285,7 +285,7 @@ impl App {
         self.background.tasks.start(work, waker(ctx));
     }
 
-    /// Files that were dropped on the window.
+    /// Handles files dropped on the window.
     pub(super) fn take_drops(&mut self, ctx: &Context, out: &mut Vec<Command>) {
         for file in ctx.input(|i| i.raw.dropped_files.clone()) {
             let path = file.path().to_owned();
@@ -302,7 +302,7 @@ impl App {
         }
     }
 
-    /// Says what a drop would do while files hover over the window.
+    /// Draws the hint for files that hover over the window.
     pub(super) fn drop_hint(&self, ctx: &Context) {
         if ctx.input(|i| i.raw.hovered_files.is_empty()) {
             return;
@@ -315,7 +315,7 @@ impl App {
         painter.text(rect.center(), Align2::CENTER_CENTER, text, egui::FontId::proportional(20.0), Color32::WHITE);
     }
 
-    /// A window that is asked to close first asks about unsaved changes.
+    /// Handles a request to close the window: prompts for unsaved changes.
     pub(super) fn take_close_request(&mut self, ctx: &Context) {
         if !ctx.input(|i| i.viewport().close_requested()) || self.session.may_close {
             return;
@@ -324,14 +324,14 @@ impl App {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.session.unsaved_prompt = Some(PendingOperation::Quit);
             if ctx.input(|i| i.viewport().visible()) == Some(false) {
-                // A question that nobody sees would keep the window from closing for no reason.
+                // Restore a minimised window, so that the prompt is visible.
                 ctx.send_viewport_cmd(ViewportCommand::Minimized(false));
                 ctx.send_viewport_cmd(ViewportCommand::Focus);
             }
         }
     }
 
-    /// The questions in the middle of the window.
+    /// Draws the open prompts and handles their answers.
     pub(super) fn ask(&mut self, ctx: &Context, out: &mut Vec<Command>) {
         if let Some(pending) = self.session.unsaved_prompt.clone()
             && let Some(answer) = prompts::unsaved_changes_ui(ctx, &self.document.title(), pending.description())

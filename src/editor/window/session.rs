@@ -1,4 +1,4 @@
-//! Questions and file dialogs in progress.
+//! Prompts and file dialogs in progress.
 
 use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::document::files::StudioSource;
@@ -8,7 +8,7 @@ use crate::editor::window::dialogs::{DialogAnswer, FileDialogs};
 use crate::editor::window::recent::RecentFiles;
 use std::sync::mpsc::Receiver;
 
-/// What waits for the answer to "save the changes?".
+/// An operation that waits for the prompt for unsaved changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PendingOperation {
     Load(StudioSource),
@@ -25,7 +25,7 @@ impl PendingOperation {
     }
 }
 
-/// Questions and dialogs under way.
+/// Prompts and dialogs in progress.
 #[derive(Debug)]
 pub struct Session {
     pub(super) dialogs: FileDialogs,
@@ -35,13 +35,13 @@ pub struct Session {
     pub(super) prompt: Option<PathPrompt>,
     pub(super) unsaved_prompt: Option<PendingOperation>,
     pub(super) after_save: Option<PendingOperation>,
-    /// Whose material the texture that is being chosen is for.
+    /// The item and part whose material gets the chosen texture.
     pub(super) texture_for: Option<(Item, Option<String>)>,
     pub(super) may_close: bool,
 }
 
 impl Session {
-    /// A session that asks these dialogs for file names.
+    /// Returns a session with these dialogs and recent studios.
     pub fn new(dialogs: FileDialogs, recent: RecentFiles) -> Self {
         Session {
             dialogs,
@@ -55,12 +55,12 @@ impl Session {
         }
     }
 
-    /// Whether the desktop's dialog is open.
+    /// Returns true while the desktop's dialog is open.
     pub fn is_waiting(&self) -> bool {
         self.dialog.is_some()
     }
 
-    /// Whether a question is open in the window.
+    /// Returns true while a prompt is open in the window.
     pub fn is_asking(&self) -> bool {
         self.prompt.is_some() || self.unsaved_prompt.is_some()
     }

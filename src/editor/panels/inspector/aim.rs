@@ -1,4 +1,4 @@
-//! What a light or the camera points at.
+//! The aim rows of lights and camera.
 
 use crate::editor::document::placement::{aim_offset, angles_towards, subject};
 use crate::editor::ui::widgets::{self, DEGREES, METRES, row};
@@ -6,7 +6,7 @@ use crate::scene::{Aim, Assets, Scene};
 use eframe::egui::{ComboBox, Ui};
 use glam::Vec3;
 
-/// The rows of an aim, for something that stands at `position`.
+/// Draws the rows of an aim from `position`.
 pub fn aim_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, position: Vec3, aim: &mut Aim) {
     let now = scene.aim_point(aim, position);
     row(ui, "Aims at", "What it points at. Aimed at a thing, it follows the thing.", |ui| {
@@ -49,7 +49,7 @@ pub fn aim_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, position: Vec3, aim
     }
 }
 
-/// The lock that keeps an aim on its thing while either moves.
+/// Draws the lock that keeps an aim on its object.
 fn lock_row(ui: &mut Ui, scene: &Scene, now: Vec3, aim: &mut Aim) {
     let held = if let Aim::Object { object, .. } = aim { Some(*object) } else { None };
     let subject = held.or_else(|| subject(scene, None)).and_then(|id| scene.object(id));

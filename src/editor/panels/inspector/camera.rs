@@ -11,7 +11,7 @@ use crate::photo::thirds::Dial;
 use crate::scene::{Assets, Camera, Focus, Orientation, Scene, Sensor};
 use eframe::egui::{ComboBox, Ui};
 
-/// Draws it.
+/// Draws the inspector of the camera.
 pub(super) fn camera_ui(ui: &mut Ui, context: &mut InspectorContext<'_>) {
     let (scene, assets) = (context.document.scene(), context.document.assets());
     let mut camera = scene.camera.clone();
@@ -53,7 +53,7 @@ fn exposure_rows(ui: &mut Ui, camera: &mut Camera) {
     fact(ui, "Needs", tip, format!("EV {ev:.1}  ({lux} lx, or {} lx s)", widgets::three_digits(lux_s)));
 }
 
-/// Focal lengths that lenses are made in, millimetres.
+/// Focal lengths of prime lenses, millimetres.
 const PRIMES: [f32; 12] = [14.0, 20.0, 24.0, 28.0, 35.0, 50.0, 70.0, 85.0, 105.0, 135.0, 200.0, 300.0];
 
 fn lens_rows(ui: &mut Ui, scene: &Scene, camera: &mut Camera) {
@@ -151,7 +151,7 @@ fn focus_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, camera: &mut Camera) 
     }
 }
 
-/// Distance of the plane of focus along the optical axis, metres.
+/// Returns the distance of the plane of focus along the optical axis, metres.
 fn focus_distance(scene: &Scene, camera: &Camera) -> f32 {
     let target = scene.aim_point(&camera.aim, camera.position);
     let point = match camera.focus {
@@ -165,8 +165,8 @@ fn focus_distance(scene: &Scene, camera: &Camera) -> f32 {
     (point - camera.position).dot(axis).max(0.01)
 }
 
-/// Nearest and farthest sharp distance for focus at `distance_m`: the thin lens with a circle of confusion of 1/1500
-/// of the diagonal. The far end is infinite from the hyperfocal distance on.
+/// Returns the near and far limit of the depth of field for focus at `distance_m`: thin lens, circle of confusion of
+/// 1/1500 of the diagonal. The far limit is infinite from the hyperfocal distance on.
 fn sharp_range(camera: &Camera, distance_m: f32) -> (f32, f32) {
     let focal_m = camera.focal_length_mm * 1e-3;
     let circle_m = camera.sensor.size_mm().length() / 1500.0 * 1e-3;
@@ -182,7 +182,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn depth_of_field_is_what_lens_tables_print() {
+    fn depth_of_field_matches_lens_tables() {
         // 85 mm f/5.6 at 3 m on full frame, c = 0.029 mm: 2.83 to 3.20 m.
         let (near, far) = sharp_range(&Camera::default(), 3.0);
         assert!((near - 2.81).abs() < 0.03 && (far - 3.21).abs() < 0.03, "{near} {far}");

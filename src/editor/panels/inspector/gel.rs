@@ -4,7 +4,7 @@ use crate::editor::ui::widgets::{self, NumberField, fact, row};
 use crate::scene::{Gel, GelFamily};
 use eframe::egui::{ComboBox, Ui};
 
-/// Draws them.
+/// Draws the gel rows.
 pub(super) fn gel_rows(ui: &mut Ui, gel: &mut Gel) {
     let current = gel.name().unwrap_or(match gel {
         Gel::None => "None",

@@ -17,7 +17,7 @@ use crate::scene::{ColorSource, Emitter, Light, LightId, Output, Role, Scene};
 use eframe::egui::{ComboBox, Label, RichText, Slider, SliderClamping, Ui, vec2};
 use glam::Vec3;
 
-/// Draws it.
+/// Draws the inspector of a light.
 pub(super) fn light_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: LightId) {
     let (scene, assets) = (context.document.scene(), context.document.assets());
     let Some(original) = scene.light(id) else { return };
@@ -50,7 +50,7 @@ pub(super) fn light_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Ligh
             return;
         }
         aiming_row(ui, &light, context.out);
-        // What is locked shows where it is and takes no other place.
+        // A locked light shows its position but cannot be moved.
         ui.add_enabled_ui(!light.locked, |ui| {
             place_rows(ui, scene, &mut light);
             aim::aim_rows(ui, scene, assets, light.position, &mut light.aim);
@@ -120,7 +120,7 @@ fn power_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     });
 }
 
-/// The dial on the head: a slider in tenths of a stop, buttons in thirds, and a button that meters.
+/// Draws the power dial: a slider in tenths of a stop, buttons in thirds, and a button that meters.
 fn dial_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     let dial = &mut light.power.dial_stops;
     row(ui, "Dial", "Stops from full power: 0 is full, \u{2212}1 half, \u{2212}2 a quarter", |ui| {
@@ -161,7 +161,7 @@ fn dial_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     });
 }
 
-/// `1/4` for whole stops, a percentage between.
+/// Formats the fraction of full power: `1/4` for whole stops, else a percentage.
 fn power_fraction(stops: f32) -> String {
     let whole = stops.round();
     match stops {
@@ -205,7 +205,7 @@ const KELVINS: [(&str, f32); 6] = [
     ("Shade 7500 K", 7500.0),
 ];
 
-/// A slider of kelvin with a list of names.
+/// Draws a slider of kelvin with a list of named temperatures.
 pub(super) fn kelvin_row(ui: &mut Ui, label: &str, kelvin: &mut f32) {
     row(ui, label, "Colour temperature in kelvin: low is warm, high is cool", |ui| {
         ui.spacing_mut().slider_width = (ui.available_width() - 108.0).max(50.0);
@@ -259,7 +259,7 @@ fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
     }
 }
 
-/// Ways to place a light by what it does, and its lock.
+/// Draws the buttons that place a light by a feature, the view through it, and its lock.
 fn aiming_row(ui: &mut Ui, light: &Light, out: &mut Vec<Command>) {
     row(ui, "Place it by", "Keys P, L and Shift+L do the same for the selected light", |ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
@@ -319,7 +319,7 @@ fn elevation_deg(away: Vec3) -> f32 {
     away.y.atan2(away.x.hypot(away.z)).to_degrees()
 }
 
-/// Angle around the vertical from the camera's direction, positive to the camera's right.
+/// Returns the azimuth from the camera's direction, degrees, positive to the camera's right.
 fn azimuth_deg(scene: &Scene, target: Vec3, away: Vec3) -> f32 {
     let front = scene.camera.position - target;
     let angle = away.x.atan2(away.z) - front.x.atan2(front.z);
@@ -332,13 +332,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fractions_of_power_read_as_on_the_head() {
+    fn power_fractions_are_formatted_as_on_a_flash_head() {
         assert_eq!([0.0, -1.0, -4.0].map(power_fraction), ["1/1", "1/2", "1/16"]);
         assert_eq!(power_fraction(-0.5), "70.7 %");
     }
 
     #[test]
-    fn angles_are_seen_from_the_camera() {
+    fn azimuths_are_relative_to_the_camera() {
         let scene = Scene::default();
         let right = Vec3::new(1.0, 0.0, 1.0);
         assert!((azimuth_deg(&scene, Vec3::new(0.0, 1.5, 0.0), right) - 45.0).abs() < 1e-3);

@@ -1,16 +1,16 @@
-//! The fields of a surface.
+//! The rows of a material.
 
 use crate::editor::ui::widgets::{self, NumberField, row};
 use crate::scene::{Material, MaterialPreset};
 use eframe::egui::{ComboBox, Slider, SliderClamping, Ui};
 
-/// Name of the preset that a material is, or "Custom".
+/// Returns the name of the preset that equals a material, or "Custom".
 pub fn preset_name(material: &Material) -> &'static str {
     let preset = MaterialPreset::ALL.iter().find(|preset| preset.material() == *material);
     preset.map_or("Custom", |preset| preset.label())
 }
 
-/// A list of the shelf's materials.
+/// Draws the list of material presets.
 pub fn preset_combo(ui: &mut Ui, salt: &str, material: &mut Material) {
     let current = preset_name(material);
     ComboBox::from_id_salt(salt).selected_text(current).width(ui.available_width() - 8.0).show_ui(ui, |ui| {
@@ -22,7 +22,7 @@ pub fn preset_combo(ui: &mut Ui, salt: &str, material: &mut Material) {
     });
 }
 
-/// All rows of a surface; true when a texture is to be chosen.
+/// Draws the rows of a material; returns true to choose a texture.
 pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> bool {
     let mut choose = false;
     ui.push_id(salt, |ui| {
@@ -31,7 +31,7 @@ pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> bool {
         });
         row(ui, "Colour", "Base colour; of a metal, its reflection", |ui| {
             if widgets::color_ui(ui, &mut material.base_color).changed() {
-                // A surface that gives back everything it gets would never let the light end.
+                // An albedo of 1 would never absorb light.
                 material.base_color = material.base_color.map(|c| c.clamp(0.0, 0.99));
             }
             ui.label(format!("reflects {:.0} %", 100.0 * crate::color::luminance(material.base_color.into())))
@@ -88,7 +88,7 @@ fn unit_slider(ui: &mut Ui, label: &str, tip: &str, value: &mut f32) {
     });
 }
 
-/// The rows of one wall or part inside a foldable group.
+/// Draws the rows of a wall or part in a collapsible group.
 pub fn material_group(ui: &mut Ui, label: &str, material: &mut Material) -> bool {
     let mut choose = false;
     widgets::section(ui, label, false, |ui| choose = material_rows(ui, label, material));

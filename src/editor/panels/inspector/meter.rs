@@ -9,7 +9,7 @@ use crate::editor::ui::widgets::{self, DEGREES, METRES, row, section};
 use crate::scene::{Aim, Facing, Meter, Receptor, Role, Scene};
 use eframe::egui::Ui;
 
-/// Draws it.
+/// Draws the inspector of the light meter.
 pub(super) fn meter_ui(ui: &mut Ui, context: &mut InspectorContext<'_>) {
     let scene = context.document.scene();
     let Some(before) = scene.meter else { return };

@@ -1,4 +1,4 @@
-//! The inspector: everything about the selected thing, in photographers' units.
+//! The inspector: the properties of the selected item, in photographers' units.
 
 mod aim;
 mod camera;
@@ -20,7 +20,7 @@ use crate::editor::ui::widgets::{row, small_button};
 use crate::scene::Light;
 use eframe::egui::{self, RichText, ScrollArea, TextEdit, Ui};
 
-/// What a section of the inspector reads and where it puts its requests.
+/// The input of a section of the inspector and its commands.
 struct InspectorContext<'a> {
     document: &'a Document,
     out: &'a mut Vec<Command>,
@@ -34,7 +34,7 @@ pub fn inspector_ui(ui: &mut Ui, document: &Document, selection: &Selection, out
         if selection.len() > 1 {
             several_ui(ui, &mut context, selection);
         }
-        // Fields keep their state for the thing that they show, not for the place on the screen.
+        // The state of fields belongs to the item, not to the position on the screen.
         ui.push_id(selection.last(), |ui| match selection.last() {
             Some(Item::Light(id)) => light::light_ui(ui, &mut context, id),
             Some(Item::Object(id)) => object::object_ui(ui, &mut context, id),
@@ -46,7 +46,7 @@ pub fn inspector_ui(ui: &mut Ui, document: &Document, selection: &Selection, out
     });
 }
 
-/// Shown over the values of the last thing when several are selected: what they are, and what all of them take.
+/// Draws the head for several selected items: their number, and commands for all of them.
 fn several_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, selection: &Selection) {
     let scene = context.document.scene();
     title(ui, &format!("{} selected", name_of_all(selection.items(), scene)), "");
@@ -81,7 +81,7 @@ fn several_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, selection: &Selec
     ui.separator();
 }
 
-/// The power of several lights at once: all of them go up and down together, their ratios stay.
+/// Draws the buttons that change the power of several lights and keep their ratios.
 fn several_lights_ui(ui: &mut Ui, out: &mut Vec<Command>, lights: &[&Light]) {
     row(ui, "Dials", "All of them together: the ratios between the lights stay", |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
@@ -105,7 +105,7 @@ fn several_lights_ui(ui: &mut Ui, out: &mut Vec<Command>, lights: &[&Light]) {
     });
 }
 
-/// Shown when nothing is selected: what the studio is about.
+/// Draws title and description of the studio, without a selection.
 fn studio_ui(ui: &mut Ui, context: &mut InspectorContext<'_>) {
     let scene = context.document.scene();
     title(ui, "Studio", "");
@@ -129,7 +129,7 @@ fn studio_ui(ui: &mut Ui, context: &mut InspectorContext<'_>) {
     );
 }
 
-/// The head of the inspector: name of the thing and what it is.
+/// Draws the head of the inspector: name and kind of the item.
 fn title(ui: &mut Ui, name: &str, kind: &str) {
     ui.horizontal(|ui| {
         ui.add(egui::Label::new(RichText::new(name).heading().strong()).truncate());
@@ -140,7 +140,7 @@ fn title(ui: &mut Ui, name: &str, kind: &str) {
     ui.separator();
 }
 
-/// A field that gives its text when it is left, not at every key: one undo step.
+/// Draws a text field; returns its text when it loses the focus, as one undo step.
 fn text_ui(ui: &mut Ui, salt: &str, text: &str, is_long: bool) -> Option<String> {
     let id = ui.scope_id().with(salt);
     let mut edited = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_else(|| text.to_owned());

@@ -1,4 +1,4 @@
-//! The modifier rows of a light's inspector: what shines, how large, what is lost.
+//! The modifier rows of a light's inspector: modifier, size, losses, grid and barn doors.
 
 use super::power;
 use crate::editor::document::catalog::{self, CatalogKind, CatalogTab};
@@ -12,13 +12,13 @@ const CONE: NumberField = NumberField::new(0.5, 0.5, 180.0, 1, "\u{b0}");
 const FLAP: NumberField = NumberField::new(0.5, 0.0, 90.0, 0, "\u{b0}");
 const STOPS: NumberField = NumberField::new(0.02, 0.0, 10.0, 1, " stops");
 
-/// What shapes the light, and its size: for the head of the inspector.
+/// Draws the rows of modifier and size.
 pub(super) fn kind_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     kind_row(ui, scene, light);
     size_rows(ui, &mut light.emitter);
 }
 
-/// What is lost before the light leaves.
+/// Draws the rows of losses, grid, barn doors and visibility.
 pub(super) fn modifier_rows(ui: &mut Ui, light: &mut Light) {
     if light.emitter != Emitter::Surround {
         loss_rows(ui, light);
@@ -28,13 +28,13 @@ pub(super) fn modifier_rows(ui: &mut Ui, light: &mut Light) {
     });
 }
 
-/// The rack by name. What the rack does not know is told by its emitter.
+/// Draws the list of named modifiers; other lights show the name of their emitter.
 fn kind_row(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     let listed = catalog::entries(CatalogTab::Lights).iter();
     let is_current = |e: &catalog::CatalogEntry| matches!(e.kind, CatalogKind::Light(emitter, modifier, _) if emitter == light.emitter && modifier == light.modifier);
     let known = NamedModifier::of(&light.emitter, &light.modifier).map(|named| named.name);
     let known = known.or_else(|| listed.clone().find(|e| is_current(e)).map(|e| e.name));
-    // A softbox whose loss was set by hand is still that softbox.
+    // A softbox with another loss keeps its name.
     let by_shape = NamedModifier::ALL.iter().find(|named| {
         let of_same_beam = Modifier { loss_stops: named.modifier.loss_stops, ..light.modifier };
         named.emitter == light.emitter && named.modifier == Modifier { scrim_stops: 0.0, ..of_same_beam }

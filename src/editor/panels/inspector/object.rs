@@ -12,7 +12,7 @@ use crate::scene::{Assets, Figure, Mannequin, Object, ObjectId, Pose, Shape};
 use eframe::egui::{Button, ComboBox, RichText, Ui};
 use glam::Vec3;
 
-/// Draws it.
+/// Draws the inspector of an object.
 pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: ObjectId) {
     let (scene, assets) = (context.document.scene(), context.document.assets());
     let Some(original) = scene.object(id) else { return };
@@ -125,7 +125,7 @@ fn centimetres(ui: &mut Ui, sizes: &mut [(&str, &mut f32, f32)]) {
     }
 }
 
-/// Figures are sized by their height, other things by a percentage.
+/// Draws the scale: of figures as a height, of other objects as a percentage.
 fn scale_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
     let scale = &mut object.transform.scale;
     let is_uniform = scale.x == scale.y && scale.y == scale.z;
@@ -176,7 +176,7 @@ fn place_rows(ui: &mut Ui, object: &mut Object) {
     row(ui, "Roll", "Sideways", |ui| DEGREES.ui(ui, &mut transform.rotation_deg.z));
 }
 
-/// Materials of named parts; returns the part for which a texture is to be chosen.
+/// Draws the materials of named parts; returns the part to choose a texture for.
 fn part_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) -> Option<String> {
     let mesh = assets.mesh_of(&object.shape)?;
     if mesh.parts.len() < 2 {

@@ -1,11 +1,11 @@
-//! Units of power, and the change from one to another without a change of the picture.
+//! Units of power, and the conversion between them at equal exposure.
 
 use crate::editor::document::readout;
 use crate::photo::emitter::EmitterShape;
 use crate::photo::light::{axial_intensity, transmittance};
 use crate::scene::{Camera, Emitter, Light, Modifier, Output, Scene};
 
-/// The units a power can be given in.
+/// A unit of power.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PowerUnit {
     /// Lumens.
@@ -23,13 +23,13 @@ pub enum PowerUnit {
 }
 
 impl PowerUnit {
-    /// The units of things that have a place.
+    /// The units of lights with a position.
     pub const FINITE: [PowerUnit; 5] =
         [PowerUnit::FlashWs, PowerUnit::GuideNumber, PowerUnit::Lumens, PowerUnit::Candela, PowerUnit::LuxAt];
     /// The units of sun and surround.
     pub const INFINITE: [PowerUnit; 1] = [PowerUnit::Lux];
 
-    /// Label in the list.
+    /// Returns the label in the list.
     pub fn label(self) -> &'static str {
         match self {
             PowerUnit::Lumens => "Continuous, lumens",
@@ -41,7 +41,7 @@ impl PowerUnit {
         }
     }
 
-    /// The unit of an output.
+    /// Returns the unit of an output.
     pub fn of(output: &Output) -> PowerUnit {
         match output {
             Output::Lumens(_) => PowerUnit::Lumens,
@@ -54,8 +54,8 @@ impl PowerUnit {
     }
 }
 
-/// The same light in another unit: the same intensity, and across flash and continuous light the same exposure at the
-/// camera's shutter.
+/// Returns the output of a light in another unit: at equal intensity, and between flash and continuous light at equal
+/// exposure at the camera's shutter.
 pub fn convert(light: &Light, camera: &Camera, unit: PowerUnit) -> Output {
     // Power is stated before the modifier, whatever its unit.
     let full = Light {
@@ -86,8 +86,8 @@ pub fn convert(light: &Light, camera: &Camera, unit: PowerUnit) -> Output {
     }
 }
 
-/// Gives a light another emitter and modifier; its power stays. Between things with a place and sun or sky the exposure
-/// at the aim stays.
+/// Sets emitter and modifier of a light and keeps its power; between finite and infinite emitters it keeps the exposure
+/// at the aim.
 pub fn change_emitter(scene: &Scene, light: &mut Light, emitter: Emitter, modifier: Modifier) {
     let before = readout::at_aim(scene, light);
     let (was, is) = (light.emitter.is_infinite(), emitter.is_infinite());
@@ -118,7 +118,7 @@ mod tests {
     use crate::editor::document::catalog;
 
     #[test]
-    fn every_unit_says_the_same_exposure() {
+    fn every_unit_gives_the_same_exposure() {
         let scene = Scene::default();
         let mut light = catalog::light_named("Strip 30 x 120").unwrap();
         let lux_s = readout::at_aim(&scene, &light).lux_s;
@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bulb_that_becomes_the_sun_and_back_keeps_its_order_of_brightness() {
+    fn changing_a_bulb_to_sun_and_back_keeps_the_exposure() {
         let scene = Scene::default();
         let mut light = catalog::light_named("Bare bulb").unwrap();
         let lux_s = readout::at_aim(&scene, &light).lux_s;

@@ -9,7 +9,7 @@ use crate::editor::ui::widgets::{NumberField, row};
 use crate::scene::Room;
 use eframe::egui::{RichText, Ui};
 
-/// Draws it.
+/// Draws the inspector of the room.
 pub(super) fn room_ui(ui: &mut Ui, context: &mut InspectorContext<'_>) {
     let original = &context.document.scene().room;
     title(ui, "Room", "");

@@ -1,10 +1,10 @@
-//! The menu in the corner of the view: channels, one light's share, and back to the colours.
+//! The display options of the live view: channels, single light, denoising.
 
 use super::*;
 use catchlight::preview::Channel;
 use image::RgbaImage;
 
-/// What the viewport shows, without what lies at its edges: menus, the cross, messages.
+/// Returns the image of the viewport without menus, axis widget and messages.
 fn view(window: &mut Window) -> RgbaImage {
     let rect = window.get_by_label("Viewport").rect();
     move_to(window, rect.center());
@@ -15,13 +15,13 @@ fn view(window: &mut Window) -> RgbaImage {
     image::imageops::crop_imm(&picture, x, y, width, height).to_image()
 }
 
-/// Mean of all differences of two pictures, in codes.
+/// Returns the mean absolute difference of two images, in 8-bit codes.
 fn apart(a: &RgbaImage, b: &RgbaImage) -> f64 {
     let off = a.as_raw().iter().zip(b.as_raw()).map(|(a, b)| f64::from(a.abs_diff(*b)));
     off.sum::<f64>() / a.as_raw().len() as f64
 }
 
-/// Opens the menu, whose button says what is shown, and clicks through it.
+/// Opens the menu by its button and clicks entries.
 fn choose(window: &mut Window, button: &str, entries: &[&str]) {
     click(window, button);
     for entry in entries {
@@ -31,7 +31,7 @@ fn choose(window: &mut Window, button: &str, entries: &[&str]) {
 }
 
 #[test]
-fn each_channel_chosen_changes_the_picture_and_lit_brings_it_back() {
+fn every_channel_changes_the_image_and_lit_restores_it() {
     let Some(mut window) = preset_window() else { return };
     let lit = view(&mut window);
     let mut seen = vec![("Lit", lit.clone())];
@@ -51,7 +51,7 @@ fn each_channel_chosen_changes_the_picture_and_lit_brings_it_back() {
 }
 
 #[test]
-fn the_light_of_one_alone_is_shown_without_touching_the_studio() {
+fn showing_a_single_light_does_not_change_the_studio() {
     let Some(mut window) = preset_window() else { return };
     let (before, lit) = (scene(&window).clone(), view(&mut window));
     let light = before.lights[1].clone();
@@ -71,7 +71,7 @@ fn the_light_of_one_alone_is_shown_without_touching_the_studio() {
 }
 
 #[test]
-fn from_a_side_the_depth_channel_tells_near_from_far() {
+fn the_depth_channel_has_contrast_in_parallel_views() {
     let Some(mut window) = preset_window() else { return };
     press(&mut window, Modifiers::NONE, Key::Num8);
     choose(&mut window, "Lit", &["Depth"]);
@@ -82,7 +82,7 @@ fn from_a_side_the_depth_channel_tells_near_from_far() {
 }
 
 #[test]
-fn grain_is_smoothed_only_when_asked_for() {
+fn denoising_of_the_traced_view_is_off_by_default() {
     let Some(mut window) = preset_window() else { return };
     assert!(!window.state().viewport().preview.view_options.smooth);
     choose(&mut window, "Lit", &["Smooth grain until settled"]);
