@@ -84,7 +84,7 @@ fn the_quality_chart_forecasts_time_and_noise_and_uses_measured_renders() {
     assert!(window.state().forecaster().forecast().is_none(), "nothing runs for it while it is folded");
     window.state_mut().rendering_mut().settings.size = PictureSize::Custom(60, 40);
     settle(&mut window);
-    click(&mut window, "Time and grain");
+    click(&mut window, "Time and noise");
     wait_until(&mut window, |app| app.forecaster().forecast().is_some());
     settle(&mut window);
     let forecast = *window.state().forecaster().forecast().unwrap();
@@ -95,7 +95,7 @@ fn the_quality_chart_forecasts_time_and_noise_and_uses_measured_renders() {
     settle(&mut window);
     let settings = window.state().rendering().settings;
     assert_eq!((settings.quality, settings.samples), (Quality::Good, 128));
-    assert!(window.query_by_label_contains("Grain against time; chosen: ").is_some());
+    assert!(window.query_by_label_contains("Noise against time; chosen: ").is_some());
     // What a render took counts from then on.
     window.state_mut().rendering_mut().settings.samples = 32;
     window.state_mut().rendering_mut().settings.quality = Quality::Custom;

@@ -85,7 +85,7 @@ fn the_depth_channel_has_contrast_in_parallel_views() {
 fn denoising_of_the_traced_view_is_off_by_default() {
     let Some(mut window) = preset_window() else { return };
     assert!(!window.state().viewport().preview.view_options.smooth);
-    choose(&mut window, "Lit", &["Smooth grain until settled"]);
+    choose(&mut window, "Lit", &["Low-noise preview"]);
     assert!(window.state().viewport().preview.view_options.smooth);
     run(&mut window, Command::SetLiveMode(LiveMode::True));
     wait_until(&mut window, |app| app.viewport().traced_view.has_picture());

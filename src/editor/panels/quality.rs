@@ -38,7 +38,7 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
     }
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     let chosen = forecast.estimate(pixels, settings.samples);
-    let label = format!("Grain against time; chosen: {}", estimate_text(chosen));
+    let label = format!("Noise against time; chosen: {}", estimate_text(chosen));
     crate::editor::ui::widgets::named(ui, &response, &label);
     response.on_hover_text(
         "Line: estimate. Rings: draft, good, final. Dot: your choice. Crosses: renders as they came out.",

@@ -103,7 +103,7 @@ fn quality_rows(ui: &mut Ui, settings: &mut RenderSettings) {
 
 /// Draws the forecast of time and noise; the pilot runs only while the section is open.
 fn forecast_ui(ui: &mut Ui, rendering: &mut Rendering, forecaster: &mut Forecaster, document: &Document) {
-    let header = CollapsingHeader::new("Time and grain").id_salt("time and grain");
+    let header = CollapsingHeader::new("Time and noise").id_salt("time and noise");
     header.show_unindented(ui, |ui| {
         let (running, method) = (rendering.is_running(), rendering.settings.method);
         let (scene, assets) = (document.scene(), document.assets());

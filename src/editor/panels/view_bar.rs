@@ -68,7 +68,7 @@ fn live_ui(ui: &mut Ui, mode: LiveMode, out: &mut Vec<Command>) {
     let mut chosen = mode;
     let modes = [
         (LiveMode::Quick, "Quick", "Live: drawn at once; bounced light, mirrors and glass are estimated (2)"),
-        (LiveMode::True, "True", "Live: traced as the picture will be, out of grain within moments (2)"),
+        (LiveMode::True, "True", "Live: traced as the picture will be, the noise clears within moments (2)"),
     ];
     widgets::choice(ui, &mut chosen, &modes);
     if chosen != mode {

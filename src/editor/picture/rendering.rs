@@ -77,7 +77,7 @@ impl RenderSettings {
 /// The state of the rendered picture: settings, job, film and developed image.
 #[derive(Debug)]
 pub struct Rendering {
-    /// What the panel sets.
+    /// The settings of the render panel.
     pub settings: RenderSettings,
     /// The BLAS cache, shared with the live view.
     trees: Arc<GeometryCache>,

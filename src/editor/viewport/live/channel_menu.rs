@@ -49,7 +49,7 @@ pub fn channel_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, view_options: &mu
             }
             let tip = "The traced view (True) shows smoothed light while it is worked on; settled, it is as traced. \
                        Pictures that are rendered are never smoothed.";
-            ui.checkbox(&mut view_options.smooth, "Smooth grain until settled").on_hover_text(tip);
+            ui.checkbox(&mut view_options.smooth, "Low-noise preview").on_hover_text(tip);
         })
         .response
         .on_hover_text("What the view shows of the studio");

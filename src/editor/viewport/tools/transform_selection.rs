@@ -1,7 +1,5 @@
 //! Moves, rotations and scalings of the selection, computed from its state at the start of a drag, so that rounding
 //! does not accumulate and typed amounts are exact.
-//!
-//! Every change is told from the beginning of the drag, so that nothing adds up by rounding and a typed number is exact.
 
 use crate::editor::commands::choices::HandleMode;
 use crate::editor::document::action::Action;
