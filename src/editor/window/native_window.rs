@@ -240,7 +240,9 @@ mod tests {
         std::fs::write(file, io::presets()[0].text).unwrap();
         let ctx = Context::default();
         let (wake, woken) = std::sync::mpsc::channel();
-        ctx.set_request_repaint_callback(move |_| drop(wake.send(())));
+        ctx.set_request_repaint_callback(move |_| {
+            let _ = wake.send(());
+        });
         let creation = eframe::CreationContext::_new_kittest(ctx.clone());
         let mut app = App::new(&creation, EditorOptions { initial: Some(file.to_owned()), ..EditorOptions::default() });
         while app.document().path().is_none() {
