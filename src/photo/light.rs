@@ -3,10 +3,12 @@
 //! [`PhotometricLight`] is the only conversion from a [`Light`] to physics; the path tracer, the z-buffer renderer, the
 //! preview, the light meter and the editor's read-outs repack it.
 //!
-//! To add an emitter: a variant of [`EmitterShape`] and its arms in `photo/emitter.rs`. To add a luminous intensity
-//! distribution (an IES table): a variant of [`super::emitter::IntensityDistribution`] in the same file. Either takes one
-//! more arm a renderer, where the compiler reports the missing match: `TracedLight::new` (`raytrace/lights`),
-//! `Lights::add` (`raster/lights`), `gpu_light` and `illuminance_factor` (`preview`), `on_axis` (`editor/readout`).
+//! To add an emitter, add a variant to [`EmitterShape`] and its arms in `photo/emitter.rs`. To add a luminous intensity
+//! distribution, such as an IES table, add a variant to [`super::emitter::IntensityDistribution`] in the same file. The
+//! compiler then reports one missing arm per renderer: `TracedLight::new` (`raytrace/lights/mod.rs`), `RasterLights::add`
+//! (`raster/lights.rs`), `gpu_light` (`preview/lights/light_table.rs`); and, for a new shape only, `TracedLight`'s
+//! sampling, `irradiance_per_color` (`preview/lights/environment.rs`), `add_emitters` (`preview/geometry/draw_list.rs`)
+//! and the read-out `on_axis` (`editor/document/readout.rs`).
 
 use super::beam::{self, Beam};
 use super::emitter::EmitterShape;

@@ -48,7 +48,7 @@ impl LightMeter {
         let studio = MeteredStudio::new(scene, assets, around)?;
         let layer_of = |light: &Light| studio.lights.iter().position(|metered| metered.id == light.id);
         let on = scene.lights.iter().filter(|light| light.on);
-        let order = on.map(|light| (blank_reading(light), layer_of(light))).collect();
+        let order = on.map(|light| (blank_reading(scene, light), layer_of(light))).collect();
         Ok(LightMeter { studio, order, camera: scene.camera.clone() })
     }
 

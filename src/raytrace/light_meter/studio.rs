@@ -42,7 +42,7 @@ impl MeteredStudio {
         let metered = |layer: &Layer| {
             let light = layer.light.and_then(|id| scene.light(id))?;
             let rgb = PhotometricLight::new(scene, light).tint;
-            Some(MeteredLight { id: light.id, blank: blank_reading(light), rgb })
+            Some(MeteredLight { id: light.id, blank: blank_reading(scene, light), rgb })
         };
         let lights = prepared.layers.iter().filter_map(metered).collect();
         let has_emission = prepared.materials.iter().any(|material| material.is_emissive());
@@ -68,13 +68,13 @@ fn one_layer_per_light(scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> V
     lights.iter().map(|(_, light)| Layer::of_light(light)).chain([Layer::shared("Glow")]).collect()
 }
 
-/// The reading of a light that gives none.
-pub fn blank_reading(light: &Light) -> LightReading {
+/// Returns a reading without light.
+pub fn blank_reading(scene: &Scene, light: &Light) -> LightReading {
     LightReading {
         light: Some(light.id),
         name: light.name.clone(),
         role: Some(light.role),
-        flash: light.power.output.is_flash(),
+        flash: PhotometricLight::new(scene, light).is_flash,
         direct: 0.0,
         bounced: 0.0,
         standard_error: 0.0,
