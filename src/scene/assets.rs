@@ -16,7 +16,7 @@ pub struct Texture {
     pub rgb: Vec<[u8; 3]>,
 }
 
-/// What the scene's files and mannequins turned out to be. Cheap to clone: the contents are shared.
+/// The loaded assets of a scene. A clone shares the contents.
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
     /// Mesh files by the path the scene names.
@@ -27,8 +27,8 @@ pub struct Assets {
     pub textures: HashMap<String, Arc<Texture>>,
 }
 
-/// What is wrong with a path by which a scene names a file: it must be relative, `/` between folders, and must not
-/// lead out of the scene's folder.
+/// Returns the error message of an invalid asset path. Paths are relative, with `/` between folders, and stay inside the
+/// scene's folder.
 pub fn path_complaint(path: &str) -> Option<&'static str> {
     if path.is_empty() {
         Some("a path is needed")
