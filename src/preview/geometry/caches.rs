@@ -1,4 +1,4 @@
-//! What a scene has on the GPU: meshes, textures and draw records, and the draw calls that bind them.
+//! The GPU caches of a scene's meshes, textures and draw records, and the draw calls that bind them.
 
 use super::clusters::ObjectFrustum;
 use super::draw_item::DrawItem;

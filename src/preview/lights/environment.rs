@@ -196,7 +196,7 @@ mod tests {
         let mut table = LightTable::default();
         table.ambient.irradiance = Vec3::splat(PI);
         let environment = Environment::new(&scene, &table).unwrap();
-        // The room stands back a little.
+        // The walls are slightly outside of the room's size
         let slack = 1e-4 + crate::scene::ROOM_STANDS_BACK_M;
         assert!((environment.low - Vec3::new(-2.0, 0.0, -3.0)).abs().max_element() < slack);
         assert!((environment.high - Vec3::new(2.0, 3.0, 3.0)).abs().max_element() < slack);

@@ -292,7 +292,7 @@ mod tests {
         for (r, mean) in [(0.0, 104.17), (0.2, 130.21), (0.5, 208.33), (0.8, 520.83), (0.9, 1041.67)] {
             let paint = Material { base_color: [r; 3], ..Material::default() };
             let room = Room { size_m: Vec3::splat(4.0), floor: paint.clone(), walls: paint.clone(), ceiling: paint };
-            // What is not bounced is direct: 10 000 lm over 96 m2.
+            // The table includes the direct light: 10 000 lm over 96 m2.
             let total = 10_000.0 / 96.0 + bounced_irradiance(&room, Vec3::splat(10_000.0)).x;
             assert!((total / mean - 1.0).abs() < 1e-4, "r = {r}: {total}");
         }

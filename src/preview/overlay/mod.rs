@@ -1,4 +1,4 @@
-//! What is drawn over the lit picture, light and camera gizmos, grid, selection outline, and picking.
+//! The overlay over the lit picture (light and camera gizmos, grid, selection outline) and picking.
 
 pub mod gizmo;
 pub mod overlay_pass;

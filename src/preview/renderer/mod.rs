@@ -124,7 +124,7 @@ impl PreviewRenderer {
         &self.targets.current.color_view
     }
 
-    /// Increases when the texture of the picture is replaced, after a change of size: register the view anew.
+    /// Increases when the texture of the picture is replaced, after a change of size: register the new view.
     pub fn generation(&self) -> u64 {
         self.targets.generation
     }

@@ -30,7 +30,7 @@ impl ShadowView {
     }
 }
 
-/// What a layer was drawn from.
+/// The inputs from which a layer was drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct LayerContent {
     view: ShadowView,
