@@ -1,5 +1,6 @@
 //! Tests of modifiers: they only take light away, and meter, path tracer, preview and file agree about them.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
+#![allow(clippy::print_stderr, reason = "a skipped test is reported")]
 
 mod studio;
 

@@ -1,4 +1,5 @@
-//! Output to the terminal: results on stdout; progress, warnings and errors on stderr. Nothing else prints.
+//! Output to the terminal: results on stdout; progress, warnings and errors on stderr. No other module of the command
+//! line prints.
 //!
 //! A closed pipe (`catchlight presets | head -1`) is not an error.
 

@@ -1,6 +1,7 @@
 //! The real window, driven as a user would: egui_kittest with a wgpu device, so that the live preview runs, too.
 #![cfg(feature = "gui")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
+#![allow(clippy::print_stderr, reason = "a skipped test is reported")]
 
 use catchlight::editor::{
     Action, App, CentralView, Command, DialogAnswer, EditorOptions, FileDialogs, Item, LiveMode, PictureSize, Quality,

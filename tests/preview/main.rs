@@ -3,6 +3,7 @@
 //! Without a GPU adapter these tests print that they are skipped and pass; with `CATCHLIGHT_REQUIRE_GPU` set they fail.
 #![cfg(feature = "gui")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
+#![allow(clippy::print_stderr, clippy::print_stdout, reason = "measurements and skipped tests are reported")]
 
 use catchlight::color;
 use catchlight::photo::{Picture, exposure};

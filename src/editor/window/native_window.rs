@@ -6,6 +6,7 @@ use crate::preview::Gpu;
 use eframe::UserEvent;
 use eframe::egui::{Context, Ui, ViewportBuilder, ViewportInfo, Visuals};
 use std::cell::RefCell;
+use std::io::Write;
 use std::panic::resume_unwind;
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -87,7 +88,8 @@ impl Drop for AppHost {
         if std::thread::panicking()
             && let Some(rescued) = self.rescue()
         {
-            eprintln!("{}", rescue_message(&rescued));
+            // Unlike `eprintln`, this does not panic where stderr is closed.
+            let _ = writeln!(std::io::stderr(), "{}", rescue_message(&rescued));
         }
     }
 }
