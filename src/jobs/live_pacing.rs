@@ -233,14 +233,13 @@ mod tests {
         let scene = Arc::new(loaded.scene);
         let (clock, shown) = (ticking(), Arc::new(std::sync::Mutex::new(Vec::new())));
         let mut pacing = LivePacing::new(Arc::default(), clock.clone()).unwrap();
-        // Slow paths: the picture stays unfinished over many slices.
-        pacing.paths_s = 1.0;
         let camera = LiveCamera::pinhole(scene.camera_frame(1.5), (48, 32));
         pacing.update(scene.clone(), &loaded.assets, camera).unwrap();
         let control = RenderControl::new();
         for _ in 0..400 {
+            // The smallest slices: the picture is unfinished for long.
             pacing.paths_s = 1.0;
-            if pacing.step(true, &control).is_some() {
+            if pacing.step(true, &control).is_some_and(|image| !image.is_done) {
                 shown.lock().unwrap().push(clock.now());
             }
         }
