@@ -107,23 +107,23 @@ fn trace_ray(
         }
     };
     let mirrored = (2.0 * view_dir.dot(normal) * normal - view_dir).normalize_or_zero();
-    if phong.clear <= 0.0 {
-        spawn(mirrored, throughput * phong.mirror, media);
+    if phong.transmission <= 0.0 {
+        spawn(mirrored, throughput * phong.specular, media);
         return;
     }
     if surface.is_thin {
         let transmittance = pane_transmittance(view_dir.dot(normal), material.ior());
-        spawn(mirrored, throughput * (phong.mirror + phong.clear * (1.0 - transmittance)), media);
-        spawn(ray.direction, throughput * (phong.clear * transmittance), media);
+        spawn(mirrored, throughput * (phong.specular + phong.transmission * (1.0 - transmittance)), media);
+        spawn(ray.direction, throughput * (phong.transmission * transmittance), media);
         return;
     }
     let eta = media.interface(&scene.materials, surface.material, outside).eta;
     let reflectance = fresnel::dielectric(view_dir.dot(normal), eta);
-    spawn(mirrored, throughput * (phong.mirror + phong.clear * reflectance), media);
+    spawn(mirrored, throughput * (phong.specular + phong.transmission * reflectance), media);
     if let Some(refracted) = fresnel::refract_about(view_dir, normal, eta) {
         let mut media_beyond = media;
         media_beyond.cross(surface.material, outside);
-        spawn(refracted, throughput * (phong.clear * (1.0 - reflectance) / (eta * eta)), media_beyond);
+        spawn(refracted, throughput * (phong.transmission * (1.0 - reflectance) / (eta * eta)), media_beyond);
     }
 }
 

@@ -1,10 +1,10 @@
-//! Reflection at smooth interfaces.
+//! Fresnel reflection and refraction at smooth interfaces.
 
 use crate::math::safe_sqrt;
 use glam::Vec3;
 
-/// Reflected amplitudes (s, p) of a dielectric interface; `eta` is the index behind over the index before. Both 1 under
-/// total internal reflection, whose phase is left out.
+/// Returns the reflected amplitudes (s, p) of a dielectric interface; `eta` is the index of the transmitted side over that
+/// of the incident side. Both are 1 under total internal reflection, whose phase is left out.
 pub fn amplitudes(cos_incident: f32, eta: f32) -> (f32, f32) {
     let cos_i = cos_incident.clamp(0.0, 1.0);
     let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
@@ -17,32 +17,32 @@ pub fn amplitudes(cos_incident: f32, eta: f32) -> (f32, f32) {
     (s, p)
 }
 
-/// Unpolarised reflectance of a dielectric interface: the mean of both polarisations.
+/// Returns the reflectance of a dielectric interface for unpolarised light: the mean of both polarisations.
 pub fn dielectric(cos_incident: f32, eta: f32) -> f32 {
     let (s, p) = amplitudes(cos_incident, eta);
     0.5 * (s * s + p * p)
 }
 
-/// Schlick's approximation for a metal whose normal reflectance is `f0`; the angle is the one to the half vector.
+/// Returns Schlick's approximation (1994) for a metal of normal reflectance `f0`; `cos_half` is the cosine at the half vector.
 pub fn schlick(f0: Vec3, cos_half: f32) -> Vec3 {
     let x = (1.0 - cos_half).clamp(0.0, 1.0);
     let x2 = x * x;
     f0 + (Vec3::ONE - f0) * (x2 * x2 * x)
 }
 
-/// Refracted direction in a frame whose +Z is on the side of `wo`; none under total internal reflection. `eta` is the
-/// index behind over the index before.
+/// Refracts a direction in a frame whose +Z is on the side of `wo`; none under total internal reflection. `eta` is the index
+/// of the transmitted side over that of the incident side.
 pub fn refract(wo: Vec3, eta: f32) -> Option<Vec3> {
     let sin2_t = (1.0 - wo.z * wo.z).max(0.0) / (eta * eta);
     (sin2_t < 1.0).then(|| Vec3::new(-wo.x / eta, -wo.y / eta, -safe_sqrt(1.0 - sin2_t)))
 }
 
-/// The same about any unit normal on the side of the unit vector `wo`, in any space.
+/// Refracts a direction about a unit normal on the side of the unit vector `wo`, in any space.
 pub fn refract_about(wo: Vec3, normal: Vec3, eta: f32) -> Option<Vec3> {
     let cos = wo.dot(normal).clamp(0.0, 1.0);
     let sin2_t = (1.0 - cos * cos) / (eta * eta);
-    let across = normal * cos - wo;
-    (sin2_t < 1.0).then(|| (across / eta - normal * safe_sqrt(1.0 - sin2_t)).normalize_or_zero())
+    let tangential = normal * cos - wo;
+    (sin2_t < 1.0).then(|| (tangential / eta - normal * safe_sqrt(1.0 - sin2_t)).normalize_or_zero())
 }
 
 #[cfg(test)]
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn total_reflection_and_straight_through() {
+    fn refraction_at_normal_incidence_at_thirty_degrees_and_beyond_the_critical_angle() {
         assert_eq!(dielectric(0.3, 1.0 / 1.5), 1.0);
         assert!(refract(Vec3::new(0.95, 0.0, 0.3122), 1.0 / 1.5).is_none());
         assert!((refract(Vec3::Z, 1.5).unwrap() - Vec3::NEG_Z).length() < 1e-6);

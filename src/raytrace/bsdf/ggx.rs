@@ -1,50 +1,55 @@
 //! The GGX microfacet distribution with Smith's height-correlated masking (Walter et al. 2007, Heitz 2014), in a frame
-//! whose +Z is the normal. Isotropic; `alpha` is the square of the roughness.
+//! whose +Z is the normal. Isotropic; `alpha` is the square of the user's roughness.
 
 use crate::math::{safe_sqrt, sin_cos_turn};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
-/// Below this a surface is a perfect mirror: single floats no longer resolve the lobe.
-pub const MIRROR_ALPHA: f32 = 1e-3;
+/// Alpha below which the lobe is a delta function: single precision does not resolve it.
+pub const MIN_ALPHA: f32 = 1e-3;
 
-/// Density of facets with normal `m`, 1/sr.
+/// Returns the distribution of normals D(m), 1/sr (Walter et al. 2007, equation 33).
 pub fn distribution(m: Vec3, alpha: f32) -> f32 {
     let a2 = alpha * alpha;
-    // x2 + y2 keeps the digits that 1 - z2 loses near the pole.
+    // x2 + y2 is precise near the pole, where 1 - z2 is not.
     let sin2 = m.x * m.x + m.y * m.y;
     let d = m.z * m.z * a2 + sin2;
     if m.z > 0.0 && d > 0.0 { a2 / (PI * d * d) } else { 0.0 }
 }
 
-/// Smith's Lambda.
+/// Returns Smith's Lambda (Heitz 2014, equation 72).
 pub fn lambda(w: Vec3, alpha: f32) -> f32 {
     let cos2 = w.z * w.z;
     let tan2 = (1.0 - cos2).max(0.0) / cos2.max(f32::MIN_POSITIVE);
     0.5 * (safe_sqrt(1.0 + alpha * alpha * tan2) - 1.0)
 }
 
-/// Share of facets that `w` sees.
+/// Returns the masking G1: the fraction of facets that are visible from `w` (Heitz 2014, equation 43).
 pub fn masking(w: Vec3, alpha: f32) -> f32 {
     1.0 / (1.0 + lambda(w, alpha))
 }
 
-/// Share of facets that both directions see, heights correlated.
+/// Returns the height-correlated masking-shadowing G2: the fraction of facets that are visible from both directions (Heitz
+/// 2014, equation 99).
 pub fn masking_shadowing(wo: Vec3, wi: Vec3, alpha: f32) -> f32 {
     1.0 / (1.0 + lambda(wo, alpha) + lambda(wi, alpha))
 }
 
-/// A facet normal among those that `wo` sees (Dupuy and Benyoub 2023, spherical caps).
+/// Samples a facet normal among those that are visible from `wo` (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with
+/// Spherical Caps").
 pub fn sample_visible_normal(wo: Vec3, alpha: f32, u: Vec2) -> Vec3 {
+    // Warp to the hemisphere configuration
     let stretched = Vec3::new(wo.x * alpha, wo.y * alpha, wo.z).normalize_or(Vec3::Z);
+    // Sample a spherical cap and compute the half vector
     let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
     let radius = safe_sqrt(1.0 - z * z);
     let (sin, cos) = sin_cos_turn(u.x);
     let h = Vec3::new(radius * cos, radius * sin, z) + stretched;
+    // Warp back to the ellipsoid configuration
     Vec3::new(h.x * alpha, h.y * alpha, h.z.max(0.0)).normalize_or(Vec3::Z)
 }
 
-/// The mirrored direction about a facet normal.
+/// Reflects a direction about a facet normal.
 pub fn reflect(wo: Vec3, m: Vec3) -> Vec3 {
     2.0 * wo.dot(m) * m - wo
 }
@@ -54,8 +59,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn facets_project_to_the_whole_surface() {
-        // Integral of D(m) cos(m) over the hemisphere is 1; tan of the angle is substituted to follow the peak.
+    fn the_projected_area_of_all_facets_is_one() {
+        // The integral of D(m) cos(m) over the hemisphere is 1. The tangent is substituted, to resolve the peak.
         for alpha in [0.01_f32, 0.1, 0.5, 1.0] {
             let steps = 4000;
             let mut sum = 0.0_f64;
@@ -73,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn sampled_facets_face_the_viewer() {
+    fn sampled_facets_are_visible() {
         for alpha in [0.001, 0.3, 1.0] {
             for wo in [Vec3::Z, Vec3::new(0.999, 0.0, 0.0447), Vec3::new(0.6, 0.0, 0.8)] {
                 for i in 0..100 {

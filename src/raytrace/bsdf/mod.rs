@@ -1,4 +1,4 @@
-//! How surfaces scatter light.
+//! BSDFs: the scattering of light at surfaces.
 //!
 //! A surface is a mix of a metal (GGX with Schlick's Fresnel), a dielectric (GGX gloss over a diffuse body) and clear
 //! glass (smooth, Fresnel-weighted). Gloss and body share the energy through the gloss's directional albedo E:
@@ -27,7 +27,7 @@ const POLISHED_ALPHA: f32 = 0.05;
 /// A gloss that takes less of the light than this is none: rounding leaves 1e-13 of it to an index of refraction of 1.
 const NO_GLOSS: f32 = 1e-6;
 
-/// A material made ready for tracing.
+/// A material prepared for tracing.
 #[derive(Clone, Debug)]
 pub struct TracedMaterial {
     base_color: Vec3,
@@ -48,7 +48,7 @@ pub struct TracedMaterial {
 }
 
 impl TracedMaterial {
-    /// Tabulates what the material needs.
+    /// Tabulates the directional albedos of a material.
     pub fn new(material: &Material, texture: Option<u32>) -> Self {
         let alpha = material.roughness * material.roughness;
         // A metal is opaque: only the rest lets light through, and the metal is a larger part of what does not.
@@ -67,21 +67,21 @@ impl TracedMaterial {
             emission: material.emission_cd_m2.into(),
             reflects: metallic > 0.0 || gloss.mean > NO_GLOSS,
             gloss,
-            metal: AlbedoTable::perfect_mirror(alpha),
+            metal: AlbedoTable::perfect_reflector(alpha),
         }
     }
 
-    /// Whether the surface gives off light.
+    /// Returns true if the surface emits light.
     pub fn is_emissive(&self) -> bool {
         self.emission != Vec3::ZERO
     }
 
-    /// Whether some light goes through.
+    /// Returns true if the material transmits light.
     pub fn transmits(&self) -> bool {
         self.transmission > 0.0
     }
 
-    /// Share of light that goes through.
+    /// Returns the weight of the dielectric lobe, which transmits light.
     pub fn transmission(&self) -> f32 {
         self.transmission
     }
@@ -91,48 +91,48 @@ impl TracedMaterial {
         (self.base_color * texture).lerp(Vec3::ONE, self.transmission)
     }
 
-    /// Width of the gloss: roughness squared.
+    /// Returns the GGX roughness alpha: the square of the user's roughness.
     pub fn alpha(&self) -> f32 {
         self.alpha
     }
 
-    /// Index of refraction.
+    /// Returns the index of refraction.
     pub fn ior(&self) -> f32 {
         self.ior
     }
 
-    /// Share of light left after a distance inside.
+    /// Returns the transmittance over a distance inside of the body, metres (Beer-Lambert law).
     pub fn transmittance(&self, distance: f32) -> Vec3 {
         (-self.absorption_per_m * distance).exp()
     }
 
     fn is_smooth(&self) -> bool {
-        self.alpha < ggx::MIRROR_ALPHA
+        self.alpha < ggx::MIN_ALPHA
     }
 
-    /// Largest share of light that a bounce can keep. Textures only darken.
+    /// Returns an upper bound of the albedo. Textures only darken.
     pub fn max_albedo(&self) -> f32 {
         let body = self.base_color.max_element();
         if self.transmission > 0.0 { 1.0_f32.max(body) } else { body + (1.0 - body) * self.gloss.mean }
     }
 
-    /// Whether nearly all light leaves it in one direction for each it came from: clear glass, a mirror, polished metal.
+    /// Returns true if nearly all light is scattered into one direction: clear glass, mirrors and polished metal.
     pub fn is_nearly_specular(&self) -> bool {
         self.transmits() || (self.metallic > 0.5 && self.alpha < POLISHED_ALPHA)
     }
 
-    /// Whether it throws light on where paths would find it only by luck: clear glass, a perfect mirror.
+    /// Returns true for clear glass and perfect mirrors, which cast caustics.
     pub fn is_caustic_caster(&self) -> bool {
         self.transmits() || (self.metallic > 0.5 && self.is_smooth())
     }
 
-    /// Share of light that the gloss takes under a cosine.
+    /// Returns the directional albedo of the gloss.
     #[inline]
     fn gloss_albedo(&self, cos: f32) -> f32 {
         if self.reflects { self.gloss.at(cos) } else { 0.0 }
     }
 
-    /// Chance of the gloss against the body, where the gloss takes this share of the light.
+    /// Returns the probability of sampling the gloss rather than the diffuse body: its part of the albedo.
     fn gloss_choice(&self, base_color: Vec3, gloss_albedo: f32) -> f32 {
         let color = luminance(base_color);
         let gloss = (1.0 - self.metallic) * gloss_albedo + self.metallic * color.max(0.04);
@@ -145,14 +145,14 @@ impl TracedMaterial {
         base_color * ((1.0 - self.metallic) * (1.0 - gloss_albedo) / (PI * (1.0 - self.gloss.mean).max(1e-4)))
     }
 
-    /// Whether light sampling is of use: there is something besides perfect reflection and refraction.
+    /// Returns true if the BSDF has a lobe that is not a delta function, so that light sampling can contribute.
     pub fn has_non_specular_lobe(&self) -> bool {
         let body = self.metallic < 1.0 && self.base_color.max_element() > 0.0;
         self.transmission < 1.0 && (body || !self.is_smooth())
     }
 }
 
-/// A direction chosen by the surface.
+/// A direction sampled from a BSDF.
 #[derive(Clone, Copy, Debug)]
 pub struct BsdfSample {
     /// Unit direction, world space.
@@ -161,25 +161,25 @@ pub struct BsdfSample {
     pub weight: Vec3,
     /// Density in solid angle; meaningless for `specular`.
     pub pdf: f32,
-    /// From a perfect mirror or glass: no other technique can find it.
+    /// True for samples of a delta lobe, which no other technique can find.
     pub specular: bool,
     /// Square of the relative index crossed: radiance grows by it inside glass, and roulette must not see that.
     pub eta_scale: f32,
     /// Polarisation that is accepted from there on.
     pub polarisation: Polarisation,
-    /// To the other side of the surface.
+    /// True if the direction is on the other side of the surface.
     pub is_transmission: bool,
     /// Through a thin pane, straight on: other techniques can find it as if the pane were not there.
     pub is_undeviated: bool,
 }
 
 impl BsdfSample {
-    /// A direction that other techniques can find as well.
+    /// Returns a sample of a lobe that is not a delta function.
     pub fn non_specular(direction: Vec3, weight: Vec3, pdf: f32) -> Self {
         BsdfSample { weight, pdf, specular: false, ..BsdfSample::specular(direction) }
     }
 
-    /// All light from one direction.
+    /// Returns a sample of a delta lobe, of weight 1.
     fn specular(direction: Vec3) -> Self {
         BsdfSample {
             direction,
@@ -194,7 +194,7 @@ impl BsdfSample {
     }
 }
 
-/// The scattering at one point for one outgoing direction.
+/// The BSDF at a shading point for one outgoing direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Bsdf<'a> {
     material: &'a TracedMaterial,
@@ -209,7 +209,7 @@ pub struct Bsdf<'a> {
     wo: Vec3,
     /// Smith's Lambda of `wo`.
     lambda_o: f32,
-    /// Chance of the gloss against the body.
+    /// Probability of sampling the gloss rather than the diffuse body.
     gloss_choice: f32,
     /// The body's share of the BSDF, but for what the gloss keeps from the incoming light.
     body: Vec3,

@@ -1,50 +1,50 @@
-//! Surfaces as Whitted's method sees them: a diffuse body, a Phong lobe or a mirror, clear glass.
+//! The reflection model of Whitted's method: a diffuse base, a Phong lobe or specular reflection, clear glass.
 //!
-//! The lobe's exponent comes from the roughness by 2 / alpha^2 - 2 (the width of Beckmann's and GGX's middle), its colour
-//! is the reflectance at normal incidence. Body and lobe do not share their energy: that is what the method leaves out.
+//! The exponent is 2 / alpha2 - 2, which matches the width of the Beckmann and GGX lobes at their centre; the colour is the
+//! reflectance at normal incidence. Base and lobe do not share energy, unlike in [`super::Bsdf`].
 
 use super::{TracedMaterial, ggx};
 use glam::Vec3;
 use std::f32::consts::PI;
 
-/// A surface at a point.
+/// The Phong parameters at a shading point.
 #[derive(Clone, Copy, Debug)]
 pub struct Phong {
-    /// Reflectance of the body.
+    /// Albedo of the diffuse base.
     pub albedo: Vec3,
-    /// Colour of the lobe; zero for a mirror.
-    gloss: Vec3,
+    /// Reflectance of the Phong lobe; 0 for a smooth surface.
+    glossy: Vec3,
     exponent: f32,
-    /// Share that a mirrored ray brings.
-    pub mirror: Vec3,
-    /// Share that goes into clear glass, or is reflected there by Fresnel's law.
-    pub clear: f32,
+    /// Reflectance of specular reflection; 0 for a rough surface.
+    pub specular: Vec3,
+    /// Weight of clear glass, which reflects and refracts by Fresnel's equations.
+    pub transmission: f32,
 }
 
 impl TracedMaterial {
-    /// What is left of the material, with a texture value.
+    /// Returns the Phong parameters of the material with a texture value.
     pub fn phong(&self, texture: Vec3) -> Phong {
         let base = self.base_color * texture;
         let opaque = 1.0 - self.transmission;
         let f0 = ((self.ior - 1.0) / (self.ior + 1.0)).powi(2);
-        let specular = Vec3::splat(f0).lerp(base, self.metallic) * opaque;
-        let (gloss, mirror) = if self.is_smooth() { (Vec3::ZERO, specular) } else { (specular, Vec3::ZERO) };
-        let alpha = self.alpha.max(ggx::MIRROR_ALPHA);
+        let reflectance = Vec3::splat(f0).lerp(base, self.metallic) * opaque;
+        let (glossy, specular) = if self.is_smooth() { (Vec3::ZERO, reflectance) } else { (reflectance, Vec3::ZERO) };
+        let alpha = self.alpha.max(ggx::MIN_ALPHA);
         Phong {
             albedo: base * ((1.0 - self.metallic) * opaque),
-            gloss,
+            glossy,
             exponent: (2.0 / (alpha * alpha) - 2.0).max(0.0),
-            mirror,
-            clear: self.transmission,
+            specular,
+            transmission: self.transmission,
         }
     }
 }
 
 impl Phong {
-    /// BSDF for light from `light_dir` seen from `view_dir`, both unit and above the surface.
+    /// Returns the BSDF for unit directions above the surface, without specular reflection and glass.
     pub fn eval(&self, light_dir: Vec3, view_dir: Vec3, normal: Vec3) -> Vec3 {
         let mirrored = 2.0 * light_dir.dot(normal) * normal - light_dir;
         let lobe = mirrored.dot(view_dir).max(0.0).powf(self.exponent) * (self.exponent + 2.0) / (2.0 * PI);
-        self.albedo / PI + self.gloss * lobe
+        self.albedo / PI + self.glossy * lobe
     }
 }

@@ -1,59 +1,61 @@
-//! Linear polarisation between clear faces: what one face has taken from a polarisation, the next cannot take again.
-//! Without it a pane under 60 degrees lets through 1.6 % too little, under 80 degrees 4 %.
+//! Linear polarisation between dielectric interfaces: light that passed one interface is polarised at the next. Without it
+//! the transmittance of a pane is 1.6 % too small at 60 degrees, 4 % at 80 degrees.
 //!
-//! A path from the camera carries the polarisation that the sensor would accept (a Stokes vector of unit intensity
-//! without its circular part; Born and Wolf, "Principles of Optics", 1.5). Anything but clear glass makes it forget.
+//! A path from the camera carries the polarisation that the sensor accepts: a Stokes vector of unit intensity without its
+//! circular part (Born and Wolf, "Principles of Optics", section 1.4). Every lobe but the dielectric one resets it.
 
 use super::fresnel;
 use glam::Vec3;
 
-/// Accepted polarisation, relative to a direction across the path.
+/// The accepted linear polarisation, relative to a reference axis perpendicular to the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polarisation {
-    /// Unit vector across the path.
-    across: Vec3,
-    /// Share along `across` less the share at right angles to it.
+    /// Unit reference axis, perpendicular to the path.
+    axis: Vec3,
+    /// Stokes Q: intensity along the axis less that perpendicular to it.
     q: f32,
-    /// The same, turned by 45 degrees.
+    /// Stokes U: the same for an axis rotated by 45 degrees.
     u: f32,
 }
 
 impl Polarisation {
-    /// Every polarisation alike.
-    pub const NONE: Polarisation = Polarisation { across: Vec3::X, q: 0.0, u: 0.0 };
+    /// Accepts every polarisation alike.
+    pub const NONE: Polarisation = Polarisation { axis: Vec3::X, q: 0.0, u: 0.0 };
 
-    /// The same, expressed along another direction across the path, whose own unit direction is `path`.
-    fn along(self, across: Vec3, path: Vec3) -> Self {
-        let (cos, sin) = (self.across.dot(across), self.across.cross(across).dot(path));
-        // Twice the angle between the two.
+    /// Returns the same polarisation relative to another axis. `path` is the unit direction of the path.
+    fn relative_to(self, axis: Vec3, path: Vec3) -> Self {
+        let (cos, sin) = (self.axis.dot(axis), self.axis.cross(axis).dot(path));
+        // Cosine and sine of twice the angle between the axes.
         let (cos2, sin2) = (cos * cos - sin * sin, 2.0 * sin * cos);
-        Polarisation { across, q: self.q * cos2 + self.u * sin2, u: self.u * cos2 - self.q * sin2 }
+        Polarisation { axis, q: self.q * cos2 + self.u * sin2, u: self.u * cos2 - self.q * sin2 }
     }
 
-    /// Reflectance of a face for this polarisation, and the polarisations after reflection and transmission. `wo` points
-    /// back along the path, `normal` is on its side, `eta` is the index behind over the one before.
+    /// Returns the reflectance of an interface for this polarisation, and the polarisations after reflection and transmission
+    /// (Mueller matrices of an interface; Collett 2005, "Field Guide to Polarization"). `wo` points back along the path,
+    /// `normal` is on its side, `eta` is the index of the transmitted side over that of the incident side.
     pub fn at_interface(self, wo: Vec3, normal: Vec3, eta: f32) -> InterfaceReflection {
-        // Straight on there is no plane of incidence, and any will do.
-        let across = wo.cross(normal).try_normalize().unwrap_or_else(|| wo.any_orthonormal_vector());
-        let Polarisation { q, u, .. } = self.along(across, -wo);
+        // Rotate the reference axis to the s direction; at normal incidence any axis is one
+        let axis = wo.cross(normal).try_normalize().unwrap_or_else(|| wo.any_orthonormal_vector());
+        let Polarisation { q, u, .. } = self.relative_to(axis, -wo);
         let (s, p) = fresnel::amplitudes(wo.dot(normal), eta);
         let (rs, rp) = (s * s, p * p);
-        let mix = |a: f32, b: f32, cross: f32| {
-            let share = 0.5 * ((a + b) + q * (a - b));
-            let inverse = 1.0 / share.max(1e-12);
-            let after = Polarisation { across, q: 0.5 * ((a - b) + q * (a + b)) * inverse, u: u * cross * inverse };
-            (share, after)
+        // Apply the Mueller matrix of intensities a (s) and b (p), normalised to unit intensity
+        let apply = |a: f32, b: f32, cross: f32| {
+            let intensity = 0.5 * ((a + b) + q * (a - b));
+            let inverse = 1.0 / intensity.max(1e-12);
+            let after = Polarisation { axis, q: 0.5 * ((a - b) + q * (a + b)) * inverse, u: u * cross * inverse };
+            (intensity, after)
         };
-        let (reflectance, reflected) = mix(rs, rp, s * p);
-        let (_, transmitted) = mix(1.0 - rs, 1.0 - rp, ((1.0 - rs) * (1.0 - rp)).max(0.0).sqrt());
+        let (reflectance, reflected) = apply(rs, rp, s * p);
+        let (_, transmitted) = apply(1.0 - rs, 1.0 - rp, ((1.0 - rs) * (1.0 - rp)).max(0.0).sqrt());
         InterfaceReflection { reflectance: reflectance.clamp(0.0, 1.0), reflected, transmitted }
     }
 }
 
-/// What happens at a face.
+/// Reflectance and polarisations at an interface.
 #[derive(Clone, Copy, Debug)]
 pub struct InterfaceReflection {
-    /// Share that is reflected.
+    /// Reflectance for the incoming polarisation.
     pub reflectance: f32,
     /// Polarisation of the reflected path.
     pub reflected: Polarisation,
@@ -70,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn unpolarised_light_sees_fresnels_mean() {
+    fn the_reflectance_of_unpolarised_light_is_the_mean() {
         for deg in [0.0, 30.0, 56.0, 80.0] {
             let wo = incoming(deg);
             let ours = Polarisation::NONE.at_interface(wo, Vec3::Z, 1.5).reflectance;
@@ -79,24 +81,24 @@ mod tests {
     }
 
     #[test]
-    fn brewsters_angle_polarises_fully_and_crossed_panes_do_not_reflect() {
+    fn reflection_at_brewsters_angle_polarises_fully_and_a_crossed_pane_does_not_reflect() {
         let brewster = 1.5_f32.atan().to_degrees();
         let wo = incoming(brewster);
         let after = Polarisation::NONE.at_interface(wo, Vec3::Z, 1.5).reflected;
         assert!((after.q - 1.0).abs() < 1e-4, "{after:?}");
-        // A second plate at Brewster's angle, turned by 90 degrees about the ray, gives nothing back (Malus 1808).
+        // A second plate at Brewster's angle, rotated by 90 degrees about the ray, reflects nothing (Malus 1808).
         let path = wo;
-        let normal = (path * brewster.to_radians().cos() + after.across * brewster.to_radians().sin()).normalize();
+        let normal = (path * brewster.to_radians().cos() + after.axis * brewster.to_radians().sin()).normalize();
         assert!(after.at_interface(path, normal, 1.5).reflectance < 1e-4);
-        // Not turned, it gives back all of the s reflectance.
+        // Without rotation its reflectance is that of s polarisation.
         let same =
-            (path * brewster.to_radians().cos() + path.cross(after.across) * brewster.to_radians().sin()).normalize();
+            (path * brewster.to_radians().cos() + path.cross(after.axis) * brewster.to_radians().sin()).normalize();
         let (s, _) = fresnel::amplitudes(wo.z, 1.5);
         assert!((after.at_interface(path, same, 1.5).reflectance - s * s).abs() < 1e-4);
     }
 
     #[test]
-    fn two_faces_of_a_pane_pass_what_each_polarisation_passes() {
+    fn the_transmittance_of_two_faces_is_the_mean_over_polarisations() {
         let (wo, n) = (incoming(80.0), 1.52_f32);
         let first = Polarisation::NONE.at_interface(wo, Vec3::Z, n);
         let inside = Vec3::new(wo.x / n, 0.0, (1.0 - (wo.x / n).powi(2)).sqrt());

@@ -1,11 +1,11 @@
-//! Surfaces against their densities, their energy and their geometry.
+//! Statistical tests of BSDFs: densities, energy, and the geometry of specular directions.
 
 use super::*;
 use crate::scene::MaterialPreset;
 use crate::statistics::{ChiSquare, SampleMean, TestRng, sidak_level};
 use std::f32::consts::TAU;
 
-/// Mean weight of many stratified samples: the share of light that comes back from a white furnace.
+/// Returns the albedo in a white furnace: the mean weight of many stratified samples.
 fn furnace(material: &Material, cos: f32) -> Vec3 {
     let material = TracedMaterial::new(material, None);
     let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
@@ -22,8 +22,8 @@ fn furnace(material: &Material, cos: f32) -> Vec3 {
 }
 
 #[test]
-fn white_furnace() {
-    // 16384 Sobol samples err by less than 0.5 % here; the albedo tables by less than 0.5 %.
+fn white_materials_have_albedo_one_in_a_white_furnace() {
+    // The error of 16384 Sobol samples is less than 0.5 % here, that of the albedo tables less than 0.5 %.
     for roughness in [0.0, 0.01, 0.1, 0.3, 0.6, 1.0] {
         for cos in [1.0, 0.7, 0.3, 0.1] {
             let white = Material { base_color: [1.0; 3], roughness, ..Material::default() };
@@ -38,7 +38,7 @@ fn white_furnace() {
 }
 
 #[test]
-fn no_material_of_the_shelf_makes_light() {
+fn no_material_preset_has_an_albedo_above_one() {
     for preset in MaterialPreset::ALL {
         for cos in [1.0, 0.4, 0.05] {
             let albedo = furnace(&preset.material(), cos).max_element();
@@ -61,7 +61,7 @@ fn sample_and_eval_agree() {
 }
 
 #[test]
-fn densities_integrate_to_one() {
+fn pdfs_integrate_to_one() {
     for preset in [MaterialPreset::GlossyPlastic, MaterialPreset::BrushedAluminium, MaterialPreset::SkinLight] {
         let material = TracedMaterial::new(&preset.material(), None);
         let bsdf = Bsdf::new(&material, Vec3::ONE, Vec3::Z, Vec3::Z, Vec3::new(0.6, 0.0, 0.8));
@@ -73,27 +73,27 @@ fn densities_integrate_to_one() {
             sum += f64::from(bsdf.eval(direction).1) * 2.0 * std::f64::consts::PI;
         }
         let total = sum / f64::from(n * n);
-        // Samples of the gloss below the horizon are lost: the density may be a little short of 1, never above.
+        // Microfacet samples below the horizon are discarded: the integral may be slightly below 1, never above.
         assert!(total > 0.95 && total < 1.01, "{}: {total}", preset.label());
     }
 }
 
-/// Directions in cells about an axis: `1 - cos` runs from 0 to 2 as `k ((1 + 2/k)^s - 1)` over s in 0..1, which resolves
-/// both a narrow lobe (of `1 - cos` about `k`) and a wide one; azimuth evenly.
-struct Cells {
+/// Cells of directions about an axis. `1 - cos` is `k ((1 + 2/k)^s - 1)` for s in 0..1, which resolves both a narrow lobe
+/// (`1 - cos` about `k`) and a wide one; the azimuth is uniform.
+struct DirectionCells {
     axis: Vec3,
     tangent: Vec3,
     bitangent: Vec3,
     k: f64,
 }
 
-impl Cells {
+impl DirectionCells {
     const RINGS: usize = 12;
     const TURNS: usize = 16;
 
     fn about(axis: Vec3, k: f64) -> Self {
         let (tangent, bitangent) = orthonormal_basis(axis);
-        Cells { axis, tangent, bitangent, k }
+        DirectionCells { axis, tangent, bitangent, k }
     }
 
     fn index(&self, direction: Vec3) -> usize {
@@ -105,7 +105,7 @@ impl Cells {
         cell(s, Self::RINGS) * Self::TURNS + cell(turn, Self::TURNS)
     }
 
-    /// Integral of a density over each cell, by midpoints.
+    /// Integrates a density over each cell by the midpoint rule.
     fn integrate(&self, pdf: impl Fn(Vec3) -> f64) -> Vec<f64> {
         const FINE: usize = 40;
         let (rings, turns) = (Self::RINGS * FINE, Self::TURNS * FINE);
@@ -132,7 +132,7 @@ fn view(cos: f32) -> Vec3 {
 }
 
 #[test]
-fn directions_follow_their_density_for_every_lobe_roughness_and_angle() {
+fn sampled_directions_follow_their_pdf_for_every_lobe_roughness_and_angle() {
     let plain = Material { base_color: [0.6, 0.4, 0.2], ..Material::default() };
     let mut cases = Vec::new();
     for roughness in [0.05, 0.2, 0.5, 1.0] {
@@ -149,12 +149,12 @@ fn directions_follow_their_density_for_every_lobe_roughness_and_angle() {
         const SAMPLES: usize = 40_000;
         let material = TracedMaterial::new(material, None);
         let bsdf = Bsdf::new(&material, Vec3::ONE, Vec3::Z, Vec3::Z, view(*cos));
-        // Towards grazing angles the lobe gets narrower by the cosine, one way.
+        // Towards grazing angles the lobe narrows by the cosine in one direction.
         let width = f64::from(material.alpha.max(1e-3) * cos);
-        let cells = Cells::about(Vec3::new(-view(*cos).x, 0.0, *cos), 2.0 * width * width);
+        let cells = DirectionCells::about(Vec3::new(-view(*cos).x, 0.0, *cos), 2.0 * width * width);
         let expected = cells.integrate(|direction| f64::from(bsdf.eval(direction).1));
         let mut counts = vec![0.0; expected.len()];
-        // What goes nowhere, through glass or off a mirror has no density and makes one cell.
+        // Discarded and specular samples have no density and share one cell.
         let mut rest = 0.0;
         for _ in 0..SAMPLES {
             match bsdf.sample(rng.uniform(), rng.unit_square()) {
@@ -171,7 +171,7 @@ fn directions_follow_their_density_for_every_lobe_roughness_and_angle() {
 }
 
 #[test]
-fn glass_reflects_as_often_as_fresnel_says_and_refracts_as_snell_says() {
+fn glass_reflects_by_fresnels_equations_and_refracts_by_snells_law() {
     let glass = TracedMaterial::new(&Material { transmission: 1.0, ior: 1.52, ..Material::default() }, None);
     let mut rng = TestRng::new(22);
     let angles = [0.0_f64, 20.0, 41.0, 42.0, 60.0, 80.0, 89.0];
@@ -198,9 +198,9 @@ fn glass_reflects_as_often_as_fresnel_says_and_refracts_as_snell_says() {
             let d = sample.direction;
             if d.z * side as f32 > 0.0 {
                 reflected += 1.0;
-                assert!((d - Vec3::new(-wo.x, 0.0, wo.z)).length() < 1e-6, "{deg}: mirrored to {d}");
+                assert!((d - Vec3::new(-wo.x, 0.0, wo.z)).length() < 1e-6, "{deg}: reflected to {d}");
             } else {
-                // Single precision near the critical angle keeps half the digits of the cosine.
+                // Near the critical angle, single precision keeps half the digits of the cosine.
                 assert!((f64::from(d.x) + sin_t).abs() < 1e-5 && d.y == 0.0, "{deg}: refracted to {d}");
                 assert!((f64::from(d.z) * side + (1.0 - sin_t * sin_t).sqrt()).abs() < 1e-3, "{deg}: refracted to {d}");
             }
@@ -218,16 +218,16 @@ fn glass_reflects_as_often_as_fresnel_says_and_refracts_as_snell_says() {
 }
 
 #[test]
-fn the_furnace_never_shows_more_than_one_at_any_roughness_and_angle() {
-    // Independent samples: the tolerance is their standard error, and 0.5 % for the tables of albedo (48 angles, 256
-    // facets each). Only what should be 1 is held to 1 from below.
+fn no_material_has_an_albedo_above_one_at_any_roughness_and_angle() {
+    // The tolerance is the standard error of independent samples and 0.5 % for the albedo tables (48 angles, 256 facets each).
+    // Only white materials are also held to 1 from below.
     let roughness = [0.0, 1e-4, 0.01, 0.032, 0.1, 0.3, 0.5, 0.7, 1.0];
     let cosines = [1.0, 0.6, 0.2, 0.05, 0.01];
     let mut rng = TestRng::new(23);
     let tests = roughness.len() * cosines.len() * 6;
     for (roughness, cos) in roughness.into_iter().flat_map(|r| cosines.map(|c| (r, c))) {
         let white = Material { base_color: [1.0; 3], roughness, ..Material::default() };
-        for (material, whole) in [
+        for (material, is_white) in [
             (white.clone(), true),
             (Material { metallic: 1.0, ..white.clone() }, true),
             (Material { metallic: 0.5, ..white.clone() }, true),
@@ -242,16 +242,16 @@ fn the_furnace_never_shows_more_than_one_at_any_roughness_and_angle() {
                 sample.map_or(0.0, |s| f64::from(s.weight.x / s.eta_scale))
             }));
             let error = crate::statistics::critical_z(tests) * albedo.standard_error + 0.005;
-            assert!(albedo.mean < 1.0 + error, "{material:?} under {cos} makes light: {albedo:?}");
-            assert!(!whole || albedo.mean > 1.0 - error, "{material:?} under {cos} loses light: {albedo:?}");
+            assert!(albedo.mean < 1.0 + error, "{material:?} under {cos} gains energy: {albedo:?}");
+            assert!(!is_white || albedo.mean > 1.0 - error, "{material:?} under {cos} loses energy: {albedo:?}");
         }
     }
 }
 
 #[test]
-fn a_surface_with_the_index_of_air_has_no_gloss_at_all() {
+fn a_surface_with_the_index_of_air_has_no_microfacet_lobe() {
     let matt = TracedMaterial::new(&Material { ior: 1.0, roughness: 1.0, ..Material::default() }, None);
     assert!(!matt.reflects, "rounding alone made a gloss of {}", matt.gloss.mean);
-    // Nor is a faint one forgotten: an index of 1.1 reflects 0.2 % at right angles.
+    // A faint coat is kept: an index of 1.1 reflects 0.2 % at normal incidence.
     assert!(TracedMaterial::new(&Material { ior: 1.1, roughness: 1.0, ..Material::default() }, None).reflects);
 }
