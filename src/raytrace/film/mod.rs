@@ -169,7 +169,7 @@ mod tests {
 
     #[test]
     fn a_snapshot_keeps_its_samples_while_the_render_goes_on() {
-        let light = Light::new(Emitter::Point, Output::Lumens(1000.0));
+        let light = Light { position: Vec3::Y * 2.0, ..Light::new(Emitter::Point, Output::Lumens(1000.0)) };
         let scene = Scene { room: Some(Room::default()), lights: vec![light], ..Scene::default() };
         let prepared = prepare(&scene, &Assets::default()).unwrap();
         let settings = Settings { width: 40, height: 20, spp: 4, ..Settings::default() };
