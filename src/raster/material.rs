@@ -1,5 +1,4 @@
 //! Materials for shading: Lambert's diffuse lobe and the normalized Blinn-Phong specular lobe.
-#![expect(clippy::needless_range_loop, reason = "a pixel's index is the same in a dozen arrays")]
 
 use super::approx::{self, max, min};
 use super::gbuffer_row::{PADDED_WIDTH, RowScalar, RowVec3, WIDTH, splat};
