@@ -46,6 +46,12 @@ pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
     Ok((width, height))
 }
 
+/// Parses a pixel like `120,80`.
+pub fn parse_pixel(text: &str) -> Result<(u32, u32), String> {
+    let pixel = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
+    pixel.ok_or_else(|| format!("`{text}` is no pixel: write X,Y from the top left, such as 120,80"))
+}
+
 /// Parses a point or direction like `0,1.4,-0.1`.
 pub fn parse_vec3(text: &str) -> Result<Vec3, String> {
     let wrong = || format!("`{text}` is not a point: write X,Y,Z in metres, such as 0,1.4,-0.1");

@@ -58,6 +58,7 @@ impl MeterJob {
     pub fn update(&mut self, scene: &Scene, assets: &Assets, revision: u64, wake: &Wake) {
         let Some(meter) = scene.meter else {
             (self.requested, self.latest) = (None, None);
+            self.worker.reset();
             return;
         };
         if let Some(result) = self.worker.take() {

@@ -1,6 +1,5 @@
 //! Arguments of `catchlight render`, and the settings that follow from them.
 
-use super::explain_pixel::parse_pixel;
 use crate::cli::input;
 use crate::io::PictureFormat;
 use crate::raytrace::{Method, SampleId, Settings, Shortcut};
@@ -60,7 +59,7 @@ pub struct Arguments {
     #[arg(long)]
     pub aovs: bool,
     /// Trace one sample of a pixel again and print every step, instead of a picture.
-    #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
+    #[arg(long, value_name = "X,Y", value_parser = input::parse_pixel)]
     pub explain_pixel: Option<(u32, u32)>,
     /// The sample that --explain-pixel traces [default: the pixel's brightest].
     #[arg(long, value_name = "N", requires = "explain_pixel")]

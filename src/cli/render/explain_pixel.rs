@@ -9,12 +9,6 @@ use anyhow::{Context, anyhow};
 use glam::Vec3;
 use serde::Serialize;
 
-/// A pixel like `120,80`.
-pub fn parse_pixel(text: &str) -> Result<(u32, u32), String> {
-    let pixel = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
-    pixel.ok_or_else(|| format!("`{text}` is no pixel: write X,Y from the top left, such as 120,80"))
-}
-
 /// What `--json` prints.
 #[derive(Serialize)]
 struct Report<'a> {
@@ -182,9 +176,9 @@ mod tests {
 
     #[test]
     fn pixels_are_pairs_of_whole_numbers() {
-        assert_eq!(parse_pixel("12, 7"), Ok((12, 7)));
+        assert_eq!(crate::cli::input::parse_pixel("12, 7"), Ok((12, 7)));
         for wrong in ["12", "1,-2", "a,b", "1,2,3"] {
-            assert!(parse_pixel(wrong).unwrap_err().contains(wrong));
+            assert!(crate::cli::input::parse_pixel(wrong).unwrap_err().contains(wrong));
         }
     }
 }
