@@ -29,7 +29,7 @@ const RIM_LIGHTS: &[(&str, &str)] = &[
     ("interview", "Tungsten hair light"),
 ];
 /// Longer side of their pictures, pixels.
-const FINE_LONG_EDGE: u32 = 160;
+const FINE_LONG_EDGE: u32 = 240;
 /// Azimuth between light and camera at the subject, in a picture from the light's side.
 const BESIDE_RAD: f32 = 0.6;
 /// Side of a block, pixels.
