@@ -2,6 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
 #![allow(clippy::print_stderr, reason = "a skipped test is reported")]
 
+#[cfg(feature = "gui")]
+#[path = "studio/adapter.rs"]
+mod adapter;
 mod studio;
 
 use catchlight::photo::beam::{Beam, transmitted_flux_fraction};
@@ -153,23 +156,16 @@ fn impossible_modifiers_are_errors_that_name_the_field() {
 #[cfg(feature = "gui")]
 mod preview {
     use super::*;
+    use crate::adapter::headless_gpu;
     use catchlight::photo::exposure;
     use catchlight::preview::{Gpu, Options, PreviewInput, PreviewRenderer};
     use catchlight::scene::{Camera, MaterialPreset, Shape};
 
     /// Returns a renderer; without a graphics adapter it reports a skip, or fails if one is required.
     fn renderer() -> Option<(Gpu, PreviewRenderer)> {
-        match Gpu::headless() {
-            Ok(gpu) => {
-                let renderer = PreviewRenderer::new(&gpu.device, &gpu.queue).unwrap();
-                Some((gpu, renderer))
-            }
-            Err(error) if std::env::var_os("CATCHLIGHT_REQUIRE_GPU").is_some() => panic!("{error}"),
-            Err(error) => {
-                eprintln!("\n!!! SKIPPED, no graphics adapter: {error}\n");
-                None
-            }
-        }
+        let gpu = headless_gpu()?;
+        let renderer = PreviewRenderer::new(&gpu.device, &gpu.queue).unwrap();
+        Some((gpu, renderer))
     }
 
     #[test]

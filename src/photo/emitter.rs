@@ -173,12 +173,12 @@ mod tests {
     #[test]
     fn the_solid_angle_of_a_soft_cone_is_the_integral_of_its_falloff() {
         let (inner, outer) = (30.0, 70.0);
-        let steps = 200_000;
+        let steps = 200_000_u32;
         let flux: f64 = (0..steps)
             .map(|i| {
-                let theta = (i as f64 + 0.5) / steps as f64 * std::f64::consts::FRAC_PI_2;
+                let theta = (f64::from(i) + 0.5) / f64::from(steps) * std::f64::consts::FRAC_PI_2;
                 let weight = f64::from(cone_falloff(theta.cos() as f32, inner, outer));
-                weight * 2.0 * std::f64::consts::PI * theta.sin() * std::f64::consts::FRAC_PI_2 / steps as f64
+                weight * 2.0 * std::f64::consts::PI * theta.sin() * std::f64::consts::FRAC_PI_2 / f64::from(steps)
             })
             .sum();
         assert!((flux / f64::from(cone_solid_angle_sr(inner, outer)) - 1.0).abs() < 1e-4);

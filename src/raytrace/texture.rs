@@ -21,7 +21,7 @@ impl TextureMap {
 
     /// Returns linear RGB at texture coordinates; (0, 0) is at the bottom left. Repeats outside 0..1.
     pub fn at(&self, uv: Vec2) -> Vec3 {
-        let (width, height) = (self.texture.width as i64, self.texture.height as i64);
+        let (width, height) = (i64::from(self.texture.width), i64::from(self.texture.height));
         let wrapped = uv - uv.floor();
         if width == 0 || height == 0 || !wrapped.is_finite() {
             return Vec3::ONE;

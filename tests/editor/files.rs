@@ -17,7 +17,7 @@ impl egui::DroppedFile for Dropped {
 }
 
 fn drop_file(window: &mut Window, path: &Path) {
-    window.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(path.to_owned())));
+    window.input_mut().dropped_files.push(Arc::new(Dropped(path.to_owned())));
     settle(window);
 }
 

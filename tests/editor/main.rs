@@ -3,11 +3,11 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
 #![allow(clippy::print_stderr, reason = "a skipped test is reported")]
 
+use adapter::headless_gpu;
 use catchlight::editor::{
     Action, App, CentralView, Command, DialogAnswer, EditorOptions, FileDialogs, Item, LiveMode, PictureSize, Quality,
     ToastKind,
 };
-use catchlight::preview::Gpu;
 use catchlight::scene::{Aim, Scene, Shape};
 use eframe::egui::{
     self, Event, Key, Modifiers, PointerButton, Pos2, ViewportCommand, ViewportEvent, ViewportId, vec2,
@@ -19,6 +19,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex};
 use std::time::{Duration, Instant};
 
+#[path = "../studio/adapter.rs"]
+mod adapter;
 mod device;
 mod files;
 mod panels;
@@ -97,14 +99,7 @@ fn wait_until(window: &mut Window, condition: impl Fn(&App) -> bool) {
 /// Returns true if there is a GPU adapter. Without one the test prints that and passes, unless `CATCHLIGHT_REQUIRE_GPU`
 /// is set.
 fn has_adapter() -> bool {
-    match Gpu::headless() {
-        Ok(_) => true,
-        Err(error) if std::env::var_os("CATCHLIGHT_REQUIRE_GPU").is_some() => panic!("{error}"),
-        Err(error) => {
-            eprintln!("SKIPPED, no GPU adapter: {error}");
-            false
-        }
-    }
+    headless_gpu().is_some()
 }
 
 fn window(options: EditorOptions) -> Window {

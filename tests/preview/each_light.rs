@@ -132,7 +132,6 @@ impl Comparison {
             self.blocks,
             self.false_shadow * 100.0
         );
-        println!("{line}");
         let is_wrong = self.median_stops > median || self.worst_stops > worst || self.false_shadow > false_shadow;
         is_wrong.then_some(line)
     }

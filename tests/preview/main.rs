@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
 #![allow(clippy::print_stderr, clippy::print_stdout, reason = "measurements and skipped tests are reported")]
 
+use adapter::headless_gpu;
 use catchlight::color;
 use catchlight::photo::{Picture, exposure};
 use catchlight::preview::{Gpu, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
@@ -17,6 +18,8 @@ use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 
+#[path = "../studio/adapter.rs"]
+mod adapter;
 mod against_tracer;
 mod channels;
 mod closed_forms;
@@ -30,19 +33,9 @@ mod textures;
 
 /// Returns a renderer on a device of its own, or none with a message if the machine has no adapter.
 fn renderer() -> Option<(Gpu, PreviewRenderer)> {
-    match Gpu::headless() {
-        Ok(gpu) => {
-            let renderer = PreviewRenderer::new(&gpu.device, &gpu.queue).expect("the preview must start");
-            Some((gpu, renderer))
-        }
-        Err(error) if std::env::var_os("CATCHLIGHT_REQUIRE_GPU").is_some() => {
-            panic!("CATCHLIGHT_REQUIRE_GPU is set, but: {error}")
-        }
-        Err(error) => {
-            eprintln!("\n!!! SKIPPED, the preview is not tested here: {error}\n");
-            None
-        }
-    }
+    let gpu = headless_gpu()?;
+    let renderer = PreviewRenderer::new(&gpu.device, &gpu.queue).unwrap();
+    Some((gpu, renderer))
 }
 
 /// A renderer whose device and pipelines several tests use, one after the other.
