@@ -11,7 +11,7 @@ const HALF_HEIGHT: f32 = 12.0 / 35.0;
 /// Radians per point of mouse travel.
 const ORBIT_SPEED: f32 = 0.008;
 /// Largest pitch, radians; at 90 degrees the yaw would be undefined.
-const STEEPEST: f32 = 1.55;
+const MAX_PITCH_RAD: f32 = 1.55;
 
 /// Distance of the eye of a parallel view from its target, metres. With the matching field of view, a point 3 m before
 /// or behind the target shifts by less than a thousandth of its distance from the middle (0.7 pixels at the edge of
@@ -57,7 +57,7 @@ impl StudioView {
         StudioView {
             target,
             yaw_rad: away.x.atan2(away.z),
-            pitch_rad: (FRAC_PI_2 - math::safe_acos(up)).clamp(-STEEPEST, STEEPEST),
+            pitch_rad: (FRAC_PI_2 - math::safe_acos(up)).clamp(-MAX_PITCH_RAD, MAX_PITCH_RAD),
             distance_m,
             ..StudioView::default()
         }
@@ -123,7 +123,7 @@ impl StudioView {
         }
         let before = self.rotation();
         self.yaw_rad -= travel.x * ORBIT_SPEED;
-        self.pitch_rad = (self.pitch_rad + travel.y * ORBIT_SPEED).clamp(-STEEPEST, STEEPEST);
+        self.pitch_rad = (self.pitch_rad + travel.y * ORBIT_SPEED).clamp(-MAX_PITCH_RAD, MAX_PITCH_RAD);
         let turn = self.rotation() * before.inverse();
         if pivot != self.target {
             self.target = pivot + turn * (self.target - pivot);

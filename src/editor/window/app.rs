@@ -66,7 +66,7 @@ pub struct App {
 }
 
 /// Two device losses within this time switch to the CPU preview.
-const SOON: Duration = Duration::from_secs(60);
+const REPEATED_LOSS_TIME: Duration = Duration::from_secs(60);
 
 /// Widths that fit the tools of the view into one row in the narrowest window.
 const LEFT: PanelWidths = PanelWidths { range: Rangef { min: 200.0, max: 420.0 }, first: 270.0, share: 0.26 };
@@ -106,7 +106,7 @@ impl App {
         self.background.thumbnails.renew(ctx);
         let why = self.window.device_loss.take().unwrap_or_default();
         let news = "The graphics device was lost and the window was opened anew; the studio is as you left it.";
-        if self.window.last_loss.replace(Instant::now()).is_some_and(|last| last.elapsed() < SOON) {
+        if self.window.last_loss.replace(Instant::now()).is_some_and(|last| last.elapsed() < REPEATED_LOSS_TIME) {
             self.views.viewport.preview.use_cpu("The graphics device was lost twice within a minute.");
         }
         self.toasts.warning(if why.is_empty() { news.to_owned() } else { format!("{news} ({why})") });

@@ -6,7 +6,7 @@ use crate::io;
 use std::path::{Path, PathBuf};
 
 /// Most names tried in a folder.
-const MOST_NAMES: u32 = 1000;
+const MAX_NAMES: u32 = 1000;
 
 /// Writes unsaved changes to a new file beside the studio's own, which is unchanged; if that fails, into a new folder
 /// in the first writable folder of `elsewhere`, with the studio's assets. Returns the file or the error; none without
@@ -31,7 +31,7 @@ fn places(document: &Document, elsewhere: &[PathBuf]) -> Vec<PathBuf> {
     let stem = title.strip_suffix(".ron").unwrap_or(&title).replace(['/', '\\', ':'], "-");
     let name = |n: u32| format!("{stem} (rescued {n})");
     let new_in = |folder: &Path, place: &dyn Fn(String) -> PathBuf| {
-        (1..=MOST_NAMES).map(|n| folder.join(place(name(n)))).find(|path| !path.exists())
+        (1..=MAX_NAMES).map(|n| folder.join(place(name(n)))).find(|path| !path.exists())
     };
     let beside = document.folder().and_then(|folder| new_in(folder, &|name| PathBuf::from(name + ".ron")));
     // A new folder each, so that models and textures do not collide with others.

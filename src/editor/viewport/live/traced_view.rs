@@ -13,9 +13,9 @@ use eframe::egui::{ColorImage, Context, TextureId};
 use std::sync::Arc;
 
 /// Most pixels of a traced view; larger views are traced at 1/2, 1/3 ... and enlarged.
-const MOST_PIXELS: f32 = 1_300_000.0;
+const MAX_PIXELS: f32 = 1_300_000.0;
 /// Most pixels times light layers: 16 bytes each, twice while the view moves.
-const MOST_SUMS: f32 = 12_000_000.0;
+const MAX_LAYER_PIXELS: f32 = 12_000_000.0;
 
 /// Everything that the image depends on; an equal key needs no request.
 #[derive(Clone, Debug, PartialEq)]
@@ -156,7 +156,7 @@ impl TracedView {
 /// Returns the size at which a view with this number of lights is traced.
 fn traced_size((width, height): (u32, u32), lights: usize) -> (u32, u32) {
     let layers = lights.min(MAX_LIGHT_LAYERS) + 1;
-    let most = MOST_PIXELS.min(MOST_SUMS / layers as f32);
+    let most = MAX_PIXELS.min(MAX_LAYER_PIXELS / layers as f32);
     let times = (1..).find(|n| width as f32 * height as f32 <= most * (n * n) as f32).unwrap_or(1);
     (width.div_ceil(times).max(1), height.div_ceil(times).max(1))
 }

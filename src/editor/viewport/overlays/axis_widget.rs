@@ -21,7 +21,7 @@ pub fn place(view: Rect) -> Rect {
 }
 
 /// Returns colour and letter of an end; sides with a shortcut have a letter.
-fn look(side: ViewSide) -> (Color32, &'static str) {
+fn color_and_letter(side: ViewSide) -> (Color32, &'static str) {
     match side {
         ViewSide::Right => (Color32::from_rgb(222, 104, 96), "R"),
         ViewSide::Left => (Color32::from_rgb(222, 104, 96), ""),
@@ -46,7 +46,7 @@ pub fn axis_widget_ui(ui: &mut Ui, view: Rect, studio: &StudioView, frame: &Came
     sides.sort_by(|a, b| seen(*a).z.total_cmp(&seen(*b).z));
     ui.painter().circle_filled(middle, ARM + END + 2.0, Color32::from_black_alpha(90));
     for side in sides {
-        let (towards, (color, letter)) = (seen(side), look(side));
+        let (towards, (color, letter)) = (seen(side), color_and_letter(side));
         let end = middle + ARM * vec2(towards.x, -towards.y);
         let radius = if letter.is_empty() { 0.62 * END } else { END };
         let response = ui.interact(

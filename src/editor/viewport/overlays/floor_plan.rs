@@ -15,9 +15,9 @@ use glam::Vec3;
 /// Spacings of the grid, metres.
 const STEPS_M: [f32; 8] = [0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 /// Least spacing on the screen, points.
-const LEAST_GAP: f32 = 46.0;
+const MIN_SPACING: f32 = 46.0;
 /// Most lines of a view.
-const MOST_LINES: i32 = 200;
+const MAX_LINES: i32 = 200;
 
 /// The room's axes with their letters.
 const AXES: [(Vec3, &str); 3] = [(Vec3::X, "x"), (Vec3::Y, "height"), (Vec3::Z, "z")];
@@ -31,15 +31,15 @@ pub fn paint_grid(
     target: Vec3,
     half_height_m: f32,
 ) {
-    let points_a_metre = 0.5 * rect.height() / half_height_m.max(1e-6);
-    let Some(step) = STEPS_M.into_iter().find(|step| step * points_a_metre >= LEAST_GAP) else { return };
-    let half = vec2(0.5 * rect.width(), 0.5 * rect.height()) / points_a_metre;
+    let points_per_metre = 0.5 * rect.height() / half_height_m.max(1e-6);
+    let Some(step) = STEPS_M.into_iter().find(|step| step * points_per_metre >= MIN_SPACING) else { return };
+    let half = vec2(0.5 * rect.width(), 0.5 * rect.height()) / points_per_metre;
     for (axis, name) in AXES.into_iter().filter(|(axis, _)| axis.dot(side.away()).abs() < 0.5) {
         let upright = Vec3::from(frame.world_from_camera.matrix3.y_axis).dot(axis).abs() > 0.5;
         let reach = if upright { half.y } else { half.x };
         let middle = target.dot(axis);
         let [first, last] = [middle - reach, middle + reach].map(|m| (m / step).round() as i32);
-        for line in first..=last.min(first.saturating_add(MOST_LINES)) {
+        for line in first..=last.min(first.saturating_add(MAX_LINES)) {
             let metres = line as f32 * step;
             let Some(at) = place_of(frame, rect, target + axis * (metres - middle)) else { continue };
             let whole = metres == metres.round();

@@ -10,7 +10,7 @@ use glam::{Vec2, Vec3};
 const RADIUS: f32 = 12.0;
 const REACH: f32 = 15.0;
 /// Largest move of one drag, metres: near the horizon a pixel is a long distance.
-const FARTHEST_M: f32 = 60.0;
+const MAX_DRAG_M: f32 = 60.0;
 
 /// The floor handle and its drag.
 #[derive(Clone, Copy, Debug, Default)]
@@ -45,7 +45,7 @@ impl FloorHandle {
         }
         let (start, gripped) = self.grip?;
         let by = floor_point(start.y, frame, rect, pointer.position)? - gripped;
-        if by.length() > FARTHEST_M {
+        if by.length() > MAX_DRAG_M {
             return None;
         }
         // Snapping is to room coordinates, so that objects line up.

@@ -32,9 +32,9 @@ pub enum PlaceLightError {
 }
 
 /// Smallest height of a light, metres.
-const LOWEST_M: f32 = 0.05;
+const MIN_HEIGHT_M: f32 = 0.05;
 /// Smallest distance to which the floor may shorten a light's distance, metres.
-const NEAREST_M: f32 = 0.2;
+const MIN_DISTANCE_M: f32 = 0.2;
 
 /// Distance within which a point counts as the aim point, metres.
 const SAME_POINT_M: f32 = 0.002;
@@ -73,11 +73,11 @@ pub fn placed_light(scene: &Scene, start: &Light, at: &SurfaceHit, by: PlaceLigh
         Aim::Angles { .. } => (start.position - at.point).length(),
         Aim::Point(_) | Aim::Object { .. } => (start.position - aimed_at).length(),
     };
-    let mut distance_m = wanted_m.max(NEAREST_M);
-    if !start.emitter.is_infinite() && centre.y + direction.y * distance_m < LOWEST_M {
-        distance_m = (centre.y - LOWEST_M) / -direction.y;
+    let mut distance_m = wanted_m.max(MIN_DISTANCE_M);
+    if !start.emitter.is_infinite() && centre.y + direction.y * distance_m < MIN_HEIGHT_M {
+        distance_m = (centre.y - MIN_HEIGHT_M) / -direction.y;
         // A point below the floor has a negative or NaN distance.
-        if distance_m.is_nan() || distance_m < NEAREST_M {
+        if distance_m.is_nan() || distance_m < MIN_DISTANCE_M {
             return Err(PlaceLightError::Floor);
         }
     }
@@ -187,7 +187,7 @@ mod tests {
         assert_eq!(placed_light(&scene, &start, &behind, PlaceLightBy::Highlight), Err(PlaceLightError::Unseen));
         let below = on_ball(&scene, Vec3::new(0.0, -1.0, 0.1));
         let nearer = placed_light(&scene, &start, &below, PlaceLightBy::Light).unwrap();
-        assert!((nearer.position.y - LOWEST_M).abs() < 1e-5, "{}", nearer.position);
+        assert!((nearer.position.y - MIN_HEIGHT_M).abs() < 1e-5, "{}", nearer.position);
         assert!(((nearer.position - below.point).normalize() - below.normal).length() < 1e-5, "the direction holds");
         scene.objects[0].transform.position.y = 0.15;
         assert_eq!(

@@ -84,8 +84,8 @@ impl PlaceLightDrag {
         let start = self.held.as_ref().map_or(light, |(start, _)| start);
         let result = placed_light(scene, start, &hit, self.placing.by);
         self.at = Some((hit, result.as_ref().err().copied()));
-        if let (true, Ok(swung)) = (self.held.is_some(), result) {
-            let changed = Light { position: swung.position, aim: swung.aim, ..light.clone() };
+        if let (true, Ok(placed)) = (self.held.is_some(), result) {
+            let changed = Light { position: placed.position, aim: placed.aim, ..light.clone() };
             out.push(Command::Apply(Action::SetLight(Box::new(changed))));
         }
         true

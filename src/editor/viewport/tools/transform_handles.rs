@@ -20,7 +20,7 @@ const STEP_SCALE: f32 = 0.1;
 /// Near plane of the handles, metres.
 const NEAR_M: f64 = 0.02;
 /// Smallest sine of the view's pitch at which objects are moved over the floor.
-const LEAST_TILT: f32 = 0.1;
+const MIN_PITCH_SIN: f32 = 0.1;
 
 /// The view of the handles.
 #[derive(Clone, Copy, Debug)]
@@ -128,7 +128,7 @@ impl TransformHandles {
         let mut config = config(handle, frame, rect, pointer.snap, place);
         let on_floor = handle == HandleMode::Move
             && items.iter().any(|item| matches!(item, Item::Object(_)))
-            && frame.forward().y.abs() > LEAST_TILT;
+            && frame.forward().y.abs() > MIN_PITCH_SIN;
         if on_floor {
             config.modes.remove(GizmoMode::TranslateView);
         }

@@ -278,10 +278,10 @@ mod tests {
     fn a_light_aimed_at_an_object_rotates_about_it() {
         let (scene, [_, softbox, _]) = studio();
         let target = scene.aim_point(&scene.lights[0].aim, Vec3::ZERO);
-        let swung = after(&scene, &[softbox], HandleMode::Rotate, DragTransform::Rotate(Vec3::Y, FRAC_PI_2));
-        let (now, before) = (swung.lights[0].position - target, scene.lights[0].position - target);
+        let rotated = after(&scene, &[softbox], HandleMode::Rotate, DragTransform::Rotate(Vec3::Y, FRAC_PI_2));
+        let (now, before) = (rotated.lights[0].position - target, scene.lights[0].position - target);
         assert!((now - Vec3::new(before.z, before.y, -before.x)).length() < 1e-5, "{now} from {before}");
-        assert_eq!((swung.lights[0].aim, swung.lights[0].roll_deg), (scene.lights[0].aim, 0.0));
+        assert_eq!((rotated.lights[0].aim, rotated.lights[0].roll_deg), (scene.lights[0].aim, 0.0));
     }
 
     #[test]
