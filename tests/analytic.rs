@@ -236,16 +236,16 @@ fn hidden_objects_cast_no_shadow_and_visible_ones_do() {
 
 #[test]
 fn a_texture_is_upright_on_a_card() {
-    use catchlight::scene::Texture;
+    use catchlight::scene::{Texture, TextureRef};
     // A card that faces +Z, with a texture of four quarters: red and green above blue and white.
     let mut scene = card_at(Vec3::ZERO, 0.02);
     scene.objects[0].material.base_color = [0.9; 3];
-    scene.objects[0].material.base_color_texture = Some("quarters.png".into());
+    scene.objects[0].material.textures.base_color = Some(TextureRef::file("quarters.png"));
     scene.camera.position = Vec3::Z * 0.25;
     scene.lights.push(light(Emitter::Point, Output::Lumens(1000.0), Vec3::new(0.0, 0.3, 1.0)));
     let rgb = vec![[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
     let mut assets = Assets::default();
-    assets.textures.insert("quarters.png".into(), std::sync::Arc::new(Texture { width: 2, height: 2, rgb }));
+    assets.insert_texture(TextureRef::file("quarters.png"), std::sync::Arc::new(Texture { width: 2, height: 2, rgb }));
     let prepared = raytrace::prepare(&scene, &assets).unwrap();
     let settings = Settings { width: 8, height: 8, method: Method::Direct, spp: 4, ..Settings::default() };
     let film = raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));

@@ -271,7 +271,7 @@ fn model(mesh: Mesh, edit: impl Fn(&mut Scene)) -> (Scene, Assets) {
     scene.objects[1].transform = Transform::default();
     edit(&mut scene);
     let mut assets = Assets::default();
-    assets.meshes.insert("model.obj".into(), Arc::new(mesh));
+    assets.insert_mesh("model.obj", Arc::new(mesh));
     (scene, assets)
 }
 
@@ -457,7 +457,7 @@ fn mirrors_with_interpolated_normals_are_not_dark_at_the_rim() {
     let mut scene = studio::ball_in_even_light(Material { base_color: [0.999; 3], ..metal(0.0) });
     scene.objects[0].shape = Shape::MeshFile { path: "ball.obj".into() };
     let mut assets = Assets::default();
-    assets.meshes.insert("ball.obj".into(), Arc::new(coarse.with_single_part("surface")));
+    assets.insert_mesh("ball.obj", Arc::new(coarse.with_single_part("surface")));
     let ours =
         film_with(&scene, &assets, &Settings { max_depth: Some(64), ..square(Method::Path, 48, 16) }).develop(&scene);
     let surround = ours.at(0, 0)[1];

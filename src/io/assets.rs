@@ -1,111 +1,117 @@
-//! The files that a scene names, and its mannequins, into memory. What can't be loaded is left out with a warning.
+//! Loads the assets that a scene refers to. One that can't be loaded is left out with a warning.
 
+use super::asset_files::AssetFiles;
 use super::error::AssetError;
-use super::{importers, mannequins, texture};
-use crate::scene::{AssetRef, Assets, Finding, Mannequin, Mesh, Scene, Texture, path_complaint};
+use super::{figures, importers, texture};
+use crate::scene::{Asset, AssetField, AssetKey, AssetRef, Assets, Finding, Scene, TextureRef};
 use rayon::prelude::*;
-use std::path::{Path, PathBuf};
+use std::collections::HashSet;
+use std::path::Path;
 use std::sync::Arc;
 
-/// One thing to load, with the place in the scene that asks for it first.
-#[derive(Debug)]
-enum Wanted {
-    Mesh(String),
-    Mannequin(Mannequin),
-    Texture(String),
-}
-
-#[derive(Debug)]
-enum Asset {
-    Mesh(String, Arc<Mesh>),
-    Mannequin(Mannequin, Arc<Mesh>),
-    Texture(String, Arc<Texture>),
-}
-
-/// Loads what `scene` needs and `assets` does not have yet, on all cores. Paths are looked up in `folder`, the scene
-/// file's own; a scene that was never saved has none. Returns a warning for each thing that is left out.
+/// Loads the assets that `scene` refers to and `assets` does not hold yet, on all cores. Paths are relative to `folder`,
+/// the scene file's own; `None` for a scene without a file. Returns a warning for each asset that is left out.
 pub fn load_assets(scene: &Scene, folder: Option<&Path>, assets: &mut Assets) -> Vec<Finding> {
-    let results: Vec<Result<Asset, Finding>> = wanted(scene, assets)
-        .into_par_iter()
-        .map(|(wanted, place)| load(&wanted, folder).map_err(|error| complaint(&wanted, place, &error)))
-        .collect();
+    load_assets_from(scene, AssetFiles::in_folder(folder), assets)
+}
+
+/// As [`load_assets`], for a scene with imported files that lie elsewhere.
+pub fn load_assets_from(scene: &Scene, files: AssetFiles<'_>, assets: &mut Assets) -> Vec<Finding> {
+    let missing = missing_assets(scene, assets);
+    let loaded: Vec<Result<Asset, AssetError>> = missing.par_iter().map(|(_, key)| load(key, files)).collect();
     let mut warnings = Vec::new();
-    for result in results {
+    for ((field, key), result) in missing.into_iter().zip(loaded) {
         match result {
-            Ok(Asset::Mesh(path, mesh)) => drop(assets.meshes.insert(path, mesh)),
-            Ok(Asset::Mannequin(mannequin, mesh)) => drop(assets.mannequins.insert(mannequin, mesh)),
-            Ok(Asset::Texture(path, texture)) => drop(assets.textures.insert(path, texture)),
-            Err(warning) => warnings.push(warning),
+            Ok(asset) => assets.insert(key, asset),
+            Err(error) => {
+                let message = format!("{}: {error}", consequence(&key));
+                warnings.push(Finding::warning(scene.place_of(field), message));
+            }
         }
     }
     warnings
 }
 
-fn complaint(wanted: &Wanted, place: String, error: &AssetError) -> Finding {
-    let without = match wanted {
-        Wanted::Mesh(_) | Wanted::Mannequin(_) => "the object is left out",
-        Wanted::Texture(_) => "the surface is shown without its texture",
-    };
-    Finding::warning(place, format!("{without}: {error}"))
-}
-
-/// Everything that is missing, each once.
-fn wanted(scene: &Scene, assets: &Assets) -> Vec<(Wanted, String)> {
-    let mut listed = std::collections::HashSet::new();
+/// Returns the assets that a scene refers to and `assets` does not hold, each once, with the first field that refers to
+/// it.
+pub fn missing_assets(scene: &Scene, assets: &Assets) -> Vec<(AssetField, AssetKey)> {
+    let mut listed = HashSet::new();
     let missing = scene.assets().filter(|(_, asset)| !assets.contains(asset) && listed.insert(asset.clone()));
-    let wanted = |asset| match asset {
-        AssetRef::Mesh(path) => Wanted::Mesh(path.into_owned()),
-        AssetRef::Figure(figure) => Wanted::Mannequin(figure),
-        AssetRef::Texture(path) => Wanted::Texture(path.into_owned()),
-    };
-    missing.map(|(field, asset)| (wanted(asset), scene.place_of(field))).collect()
+    missing.map(|(field, asset)| (field, asset.into_owned())).collect()
 }
 
-fn load(wanted: &Wanted, folder: Option<&Path>) -> Result<Asset, AssetError> {
-    Ok(match wanted {
-        Wanted::Mesh(path) => {
-            let mesh = importers::import_model(&resolve(path, folder)?)?.mesh;
-            Asset::Mesh(path.clone(), Arc::new(mesh))
+/// Loads an asset with the loader of its kind.
+fn load(key: &AssetKey, files: AssetFiles<'_>) -> Result<Asset, AssetError> {
+    match key {
+        AssetRef::Mesh(path) => {
+            let model = importers::import_model(&files.find(path)?)?;
+            Ok(Asset::Mesh(Arc::new(model.mesh)))
         }
-        Wanted::Mannequin(mannequin) => Asset::Mannequin(*mannequin, mannequins::mesh(*mannequin)?),
-        Wanted::Texture(path) => Asset::Texture(path.clone(), Arc::new(texture::load(&resolve(path, folder)?)?)),
-    })
+        AssetRef::Figure(figure) => figures::mesh(*figure).map(Asset::Mesh),
+        AssetRef::Texture(reference) => {
+            let file = files.find(reference.path())?;
+            let image = match **reference {
+                TextureRef::File(_) => texture::load(&file)?,
+                TextureRef::Embedded { image, .. } => {
+                    texture::decode(&importers::embedded_image(&file, image)?, &file)?
+                }
+            };
+            Ok(Asset::Texture(Arc::new(image)))
+        }
+    }
 }
 
-/// The file that a scene's path means. It must lie in the scene's folder, also after links are followed.
-fn resolve(path: &str, folder: Option<&Path>) -> Result<PathBuf, AssetError> {
-    let bad_path = |reason| AssetError::BadPath { reason, path: path.to_owned() };
-    if let Some(reason) = path_complaint(path) {
-        return Err(bad_path(reason));
+/// Returns the first words of the warning for an asset that could not be loaded.
+fn consequence(key: &AssetKey) -> &'static str {
+    match key {
+        AssetRef::Mesh(_) | AssetRef::Figure(_) => "the object is left out",
+        AssetRef::Texture(_) => "the surface is shown without its texture",
     }
-    let folder = folder.ok_or_else(|| AssetError::NoFolder { path: path.to_owned() })?;
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let read_error = |source| AssetError::Read { source, path: folder.join(path) };
-    let root = folder.canonicalize().map_err(read_error)?;
-    let file = root.join(path).canonicalize().map_err(read_error)?;
-    if file.starts_with(&root) { Ok(file) } else { Err(bad_path("a link leads out of the scene's folder")) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Material, MaterialTextures, Room};
+
+    fn room_with(texture: TextureRef) -> Scene {
+        let floor = Material { textures: MaterialTextures::with_base_color(texture), ..Material::default() };
+        Scene { room: Some(Room { floor: floor.clone(), walls: floor, ..Room::default() }), ..Scene::default() }
+    }
 
     #[test]
-    fn paths_stay_in_the_folder() {
+    fn a_missing_file_is_one_warning_that_names_the_first_field() {
         let folder = tempfile::tempdir().unwrap();
-        let inside = folder.path().join("inside");
-        std::fs::create_dir(&inside).unwrap();
-        std::fs::write(inside.join("a.obj"), "").unwrap();
-        std::fs::write(folder.path().join("secret.obj"), "").unwrap();
-        assert!(resolve("a.obj", Some(&inside)).is_ok());
-        for path in ["../secret.obj", "/etc/passwd", "c:/x", "x\\y", "a/../../secret.obj", ""] {
-            assert!(matches!(resolve(path, Some(&inside)), Err(AssetError::BadPath { .. })), "{path}");
-        }
-        assert!(matches!(resolve("a.obj", None), Err(AssetError::NoFolder { .. })));
-        #[cfg(unix)]
-        {
-            std::os::unix::fs::symlink(folder.path().join("secret.obj"), inside.join("link.obj")).unwrap();
-            assert!(matches!(resolve("link.obj", Some(&inside)), Err(AssetError::BadPath { .. })));
-        }
+        let mut assets = Assets::default();
+        let warnings = load_assets(&room_with(TextureRef::file("wood.png")), Some(folder.path()), &mut assets);
+        let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+        assert_eq!(warning.place, "room.floor.base_color_texture");
+        assert!(warning.message.starts_with("the surface is shown without its texture: can't read it"), "{warning}");
+        assert_eq!(assets.iter().count(), 0);
+    }
+
+    #[test]
+    fn a_texture_from_bytes_inside_a_model_needs_no_file() {
+        let embedded = TextureRef::Embedded { model: "chair.glb".to_owned(), image: 2 };
+        let scene = room_with(embedded.clone());
+        let mut assets = Assets::default();
+        assert_eq!(missing_assets(&scene, &assets).len(), 1);
+        let mut png = std::io::Cursor::new(Vec::new());
+        let pixels = image::RgbImage::from_pixel(3, 2, image::Rgb([9, 8, 7]));
+        pixels.write_to(&mut png, image::ImageFormat::Png).unwrap();
+        let image = texture::decode(png.get_ref(), Path::new("chair.glb")).unwrap();
+        assets.insert_texture(embedded.clone(), Arc::new(image));
+        assert!(missing_assets(&scene, &assets).is_empty());
+        assert_eq!(load_assets(&scene, None, &mut assets), []);
+        assert_eq!(assets.texture(&embedded).unwrap().rgb, [[9, 8, 7]; 6]);
+    }
+
+    #[test]
+    fn an_embedded_texture_of_a_format_without_images_is_a_warning() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("chair.obj"), "").unwrap();
+        let scene = room_with(TextureRef::Embedded { model: "chair.obj".to_owned(), image: 0 });
+        let warnings = load_assets(&scene, Some(folder.path()), &mut Assets::default());
+        assert!(warnings[0].message.contains("OBJ files hold no images"), "{warnings:?}");
     }
 }

@@ -154,7 +154,21 @@ pub enum AssetError {
         /// The path as the scene names it.
         path: String,
     },
-    /// More than we are willing to load.
+    /// A file could not be copied beside the scene.
+    #[error("can't copy it beside the studio: {source}: {}", path.display())]
+    Copy {
+        /// The reason.
+        source: std::io::Error,
+        /// The file.
+        path: PathBuf,
+    },
+    /// A copy would overwrite another file, which is left as it is.
+    #[error("another file of this name is there and was left as it is; save to another folder: {}", path.display())]
+    NameTaken {
+        /// The file that is there.
+        path: PathBuf,
+    },
+    /// The file or the model is larger than the limit of its kind.
     #[error("{what} is too large: {amount}, at most {limit}: {}", path.display())]
     TooLarge {
         /// The file, its triangles, its pixels.

@@ -4,13 +4,14 @@
 //! does not pass leaves as an error that names the field, the value and the line. Odd but usable things become
 //! warnings beside the scene. A save writes a new file beside the old one and renames it.
 
+mod asset_files;
 mod assets;
 mod atomic;
 mod error;
+mod figures;
 mod importers;
 mod layout;
 mod locate;
-mod mannequins;
 mod model;
 mod obj;
 mod picture;
@@ -20,7 +21,8 @@ mod ron_v1;
 mod scene_file;
 mod texture;
 
-pub use assets::load_assets;
+pub use asset_files::{AssetCopy, AssetFiles};
+pub use assets::{load_assets, load_assets_from, missing_assets};
 pub use error::{AssetError, LoadError, Problem, SaveError};
 pub use importers::{
     MODEL_FORMATS, ModelFormat, import_model, model_extension_list, model_extensions, model_format_names,

@@ -16,9 +16,13 @@ const SIDE_LIMIT: u32 = 16_384;
 /// Most memory that decoding may take, bytes.
 const MEMORY_LIMIT_BYTES: u64 = 1 << 30;
 
-/// Loads a picture file as 8-bit sRGB.
+/// Loads an image file as 8-bit sRGB.
 pub(super) fn load(path: &Path) -> Result<Texture, AssetError> {
-    let bytes = read_limited(path, FILE_LIMIT_BYTES)?;
+    decode(&read_limited(path, FILE_LIMIT_BYTES)?, path)
+}
+
+/// Decodes the bytes of a PNG or JPEG image to 8-bit sRGB. `path` is the file that the bytes come from, for errors.
+pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<Texture, AssetError> {
     let bad = |message: String| AssetError::BadTexture { message, path: path.to_owned() };
     let mut reader = image::ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()

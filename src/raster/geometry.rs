@@ -3,7 +3,7 @@
 use super::binning::BATCH_TRIANGLES;
 use super::framebuffer::NO_OBJECT;
 use super::triangle::PrimitiveState;
-use crate::scene::{Assets, Material, Mesh, Scene, Texture, room_mesh};
+use crate::scene::{Assets, Material, Mesh, Scene, Texture, TextureSlot, room_mesh};
 use glam::Affine3A;
 use std::ops::Range;
 use std::sync::Arc;
@@ -29,7 +29,8 @@ pub(super) struct Surface {
     /// Index among the instances.
     pub instance: u32,
     pub material: Material,
-    pub texture: Option<Arc<Texture>>,
+    /// By slot.
+    pub textures: [Option<Arc<Texture>>; TextureSlot::COUNT],
 }
 
 /// The triangles of a batch: consecutive in a mesh, all of one surface.
@@ -80,7 +81,7 @@ impl SceneGeometry {
         let first_surface = self.surfaces.len() as u32;
         for part in &mesh.parts {
             let material = material(&part.name);
-            let texture = material.base_color_texture.as_ref().and_then(|path| assets.textures.get(path).cloned());
+            let textures = material.textures.look_up(|texture| assets.texture(texture));
             let end = (part.triangles.end as usize).min(mesh.triangles.len());
             let starts = (part.triangles.start as usize..end).step_by(BATCH_TRIANGLES);
             let surface = self.surfaces.len() as u32;
@@ -88,7 +89,7 @@ impl SceneGeometry {
                 let triangles = first..(first + BATCH_TRIANGLES).min(end);
                 BatchTriangles { surface, triangles }
             }));
-            self.surfaces.push(Surface { instance: self.instances.len() as u32, material, texture });
+            self.surfaces.push(Surface { instance: self.instances.len() as u32, material, textures });
         }
         self.instances.push(MeshInstance { mesh, world_from_object, object, first_surface, state });
     }

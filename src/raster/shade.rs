@@ -12,7 +12,7 @@ use super::triangle::TriangleId;
 use super::vertex_stage::VertexBuffer;
 use crate::color::srgb_decode;
 use crate::math::simd::{self, Avx2, SimdTask};
-use crate::scene::Texture;
+use crate::scene::{Texture, TextureSlot};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use std::f32::consts::PI;
@@ -222,7 +222,8 @@ impl<'a> FragmentShader<'a> {
     /// Multiplies the diffuse BRDF of pixels by the texture of their surface.
     #[inline(always)]
     fn apply_texture(&self, row: &GBufferRow, surface: u32, pixels: Range<usize>, diffuse: &mut RowVec3) {
-        let Some(texture) = &self.geometry.surfaces[surface as usize].texture else { return };
+        let textures = &self.geometry.surfaces[surface as usize].textures;
+        let Some(texture) = &textures[TextureSlot::BaseColor as usize] else { return };
         for i in pixels {
             if let Some(rgb) = nearest_texel(texture, Vec2::new(row.uv[0][i], row.uv[1][i])) {
                 let linear = Vec3::from(rgb.map(|c| self.linear_from_srgb[usize::from(c)]));

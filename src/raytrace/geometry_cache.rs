@@ -195,7 +195,7 @@ mod tests {
         let objects = shapes.into_iter().enumerate().map(object).collect();
         let lights = vec![Light::new(Emitter::Point, Output::Lumens(1000.0))];
         let mut assets = Assets::default();
-        assets.meshes.insert("hill.obj".to_owned(), Arc::new(hill(100, 0.2)));
+        assets.insert_mesh("hill.obj", Arc::new(hill(100, 0.2)));
         (Scene { room: Some(Room::default()), objects, lights, ..Scene::default() }, assets)
     }
 
@@ -233,11 +233,11 @@ mod tests {
         assert_eq!(builds(&scene, &assets), (0, false), "a moved box rebuilds the merged BLAS only");
         scene.objects[1].shape = Shape::Box { size_m: Vec3::new(0.4, 0.5, 0.4) };
         assert_eq!(builds(&scene, &assets).0, 1, "another box is another mesh");
-        assets.meshes.insert("hill.obj".to_owned(), Arc::new(hill(100, 0.3)));
+        assets.insert_mesh("hill.obj", Arc::new(hill(100, 0.3)));
         assert_eq!(builds(&scene, &assets).0, 1, "a file that changed on disk");
-        assets.meshes.insert("hill.obj".to_owned(), Arc::new(hill(100, 0.3)));
+        assets.insert_mesh("hill.obj", Arc::new(hill(100, 0.3)));
         assert_eq!(builds(&scene, &assets).0, 0, "loaded again with equal content");
-        assets.meshes.insert("hill.obj".to_owned(), Arc::new(hill(100, 0.2)));
+        assets.insert_mesh("hill.obj", Arc::new(hill(100, 0.2)));
         assert_eq!(builds(&scene, &assets).0, 0, "an undone change is still cached");
     }
 

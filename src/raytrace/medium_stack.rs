@@ -70,7 +70,7 @@ mod tests {
     use crate::scene::Material;
 
     fn materials() -> [TracedMaterial; 2] {
-        [1.5, 1.33].map(|ior| TracedMaterial::new(&Material { ior, transmission: 1.0, ..Material::default() }, None))
+        [1.5, 1.33].map(|ior| TracedMaterial::new(&Material { ior, transmission: 1.0, ..Material::default() }))
     }
 
     const GLASS: u32 = 0;

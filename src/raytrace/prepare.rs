@@ -12,7 +12,7 @@ use super::plan::RenderPlan;
 use super::render_scene::{ROOM, RenderScene};
 use super::texture::TextureMap;
 use crate::photo::{PhotometricLight, exposure};
-use crate::scene::{self, Assets, Light, LightId, Material, Mesh, Scene, Severity, Shape};
+use crate::scene::{self, Assets, Light, LightId, Material, Mesh, Scene, Severity, Shape, TextureRef};
 use glam::{Affine3A, Vec3};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -129,7 +129,7 @@ struct Tables<'a> {
     materials: Vec<TracedMaterial>,
     known: Vec<Material>,
     textures: Vec<TextureMap>,
-    texture_index: HashMap<String, u32>,
+    texture_index: HashMap<TextureRef, u32>,
 }
 
 impl<'a> Tables<'a> {
@@ -141,22 +141,21 @@ impl<'a> Tables<'a> {
         if let Some(index) = self.known.iter().position(|m| m == material) {
             return index as u32;
         }
-        let texture = material.base_color_texture.as_ref().and_then(|path| self.texture(path, assets));
+        let textures = material.textures.look_up(|texture| self.texture(texture, assets));
         self.known.push(material.clone());
-        let mut traced = self.cache.material(material).unwrap_or_else(|| TracedMaterial::new(material, texture));
-        traced.texture = texture;
+        let mut traced = self.cache.material(material).unwrap_or_else(|| TracedMaterial::new(material));
+        traced.textures = textures;
         self.materials.push(traced);
         self.known.len() as u32 - 1
     }
 
-    fn texture(&mut self, path: &str, assets: &Assets) -> Option<u32> {
-        if let Some(&index) = self.texture_index.get(path) {
+    fn texture(&mut self, texture: &TextureRef, assets: &Assets) -> Option<u32> {
+        if let Some(&index) = self.texture_index.get(texture) {
             return Some(index);
         }
-        let texture = assets.textures.get(path)?;
-        self.textures.push(TextureMap::new(texture));
+        self.textures.push(TextureMap::new(&assets.texture(texture)?));
         let index = self.textures.len() as u32 - 1;
-        self.texture_index.insert(path.to_owned(), index);
+        self.texture_index.insert(texture.clone(), index);
         Some(index)
     }
 }

@@ -12,7 +12,7 @@ use super::plan::RenderPlan;
 use super::sink::{FirstHit, FirstObject};
 use super::texture::TextureMap;
 use crate::math::Ray;
-use crate::scene::LightId;
+use crate::scene::{LightId, TextureSlot};
 use glam::Vec3;
 
 /// A scene ready for tracing. Positions are relative to `origin`.
@@ -101,7 +101,7 @@ impl RenderScene {
 
     /// Factor of the base colour from the texture at a surface.
     pub(super) fn texture_value(&self, surface: &SurfaceInteraction) -> Vec3 {
-        let texture = self.materials[surface.material as usize].texture;
+        let texture = self.materials[surface.material as usize].texture(TextureSlot::BaseColor);
         texture.map_or(Vec3::ONE, |texture| self.textures[texture as usize].at(surface.uv))
     }
 

@@ -1,34 +1,167 @@
-//! The loaded meshes and textures of a scene. `io` loads them; renderers read them.
+//! The meshes and textures that a scene refers to, in memory. `io` loads them; renderers only read.
 
-use super::{AssetRef, Mannequin, Mesh, Object, Shape, tessellate};
+use super::{Mannequin, Mesh, Object, Shape, Texture, TextureRef, tessellate};
 use glam::Vec3;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// An sRGB picture, decoded to 8 bits a channel, rows from the top.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Texture {
-    /// Pixels across.
-    pub width: u32,
-    /// Pixels down.
-    pub height: u32,
-    /// `width * height` pixels, red green blue, sRGB-encoded.
-    pub rgb: Vec<[u8; 3]>,
+/// A reference from a scene to an asset. Paths are relative to the scene file.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum AssetRef<'a> {
+    /// A mesh file, by its path.
+    Mesh(Cow<'a, str>),
+    /// A figure in a pose.
+    Figure(Mannequin),
+    /// A texture, by its file.
+    Texture(Cow<'a, TextureRef>),
 }
 
-/// The loaded assets of a scene. A clone shares the contents.
+/// An asset reference that owns its path.
+pub type AssetKey = AssetRef<'static>;
+
+impl AssetRef<'_> {
+    /// Returns the same reference with a path of its own.
+    pub fn into_owned(self) -> AssetKey {
+        match self {
+            AssetRef::Mesh(path) => AssetRef::Mesh(Cow::Owned(path.into_owned())),
+            AssetRef::Figure(figure) => AssetRef::Figure(figure),
+            AssetRef::Texture(texture) => AssetRef::Texture(Cow::Owned(texture.into_owned())),
+        }
+    }
+
+    /// Returns the path of the file that holds the asset; `None` for assets that are part of the program.
+    pub fn path(&self) -> Option<&str> {
+        match self {
+            AssetRef::Mesh(path) => Some(path),
+            AssetRef::Figure(_) => None,
+            AssetRef::Texture(texture) => Some(texture.path()),
+        }
+    }
+}
+
+/// A loaded asset, by kind.
+#[derive(Clone, Debug)]
+pub enum Asset {
+    /// The triangles of a mesh file or a figure.
+    Mesh(Arc<Mesh>),
+    /// An image.
+    Texture(Arc<Texture>),
+}
+
+impl Asset {
+    fn is_same(&self, other: &Asset) -> bool {
+        match (self, other) {
+            (Asset::Mesh(a), Asset::Mesh(b)) => Arc::ptr_eq(a, b),
+            (Asset::Texture(a), Asset::Texture(b)) => Arc::ptr_eq(a, b),
+            (Asset::Mesh(_), Asset::Texture(_)) | (Asset::Texture(_), Asset::Mesh(_)) => false,
+        }
+    }
+}
+
+/// The loaded assets of a scene. Cheap to clone: meshes and textures are shared.
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
-    /// Mesh files by the path the scene names.
-    pub meshes: HashMap<String, Arc<Mesh>>,
-    /// Mannequins in use.
-    pub mannequins: HashMap<Mannequin, Arc<Mesh>>,
-    /// Textures by the path the scene names.
-    pub textures: HashMap<String, Arc<Texture>>,
+    loaded: HashMap<AssetKey, Asset>,
 }
 
-/// Returns the error message of an invalid asset path. Paths are relative, with `/` between folders, and stay inside the
-/// scene's folder.
+impl Assets {
+    /// Adds an asset, in the place of an earlier one with the same key. The asset must be of the key's kind: no getter
+    /// finds another.
+    pub fn insert(&mut self, key: AssetKey, asset: Asset) {
+        self.loaded.insert(key, asset);
+    }
+
+    /// Adds the mesh of a mesh file.
+    pub fn insert_mesh(&mut self, path: impl Into<String>, mesh: Arc<Mesh>) {
+        self.insert(AssetRef::Mesh(Cow::Owned(path.into())), Asset::Mesh(mesh));
+    }
+
+    /// Adds a texture.
+    pub fn insert_texture(&mut self, texture: TextureRef, image: Arc<Texture>) {
+        self.insert(AssetRef::Texture(Cow::Owned(texture)), Asset::Texture(image));
+    }
+
+    /// Adds all assets of another collection.
+    pub fn extend(&mut self, other: Assets) {
+        self.loaded.extend(other.loaded);
+    }
+
+    /// Returns true if the asset is loaded.
+    pub fn contains(&self, asset: &AssetRef<'_>) -> bool {
+        self.get(asset).is_some()
+    }
+
+    /// Returns true if some loaded asset comes from the file at this path.
+    pub fn contains_file(&self, path: &str) -> bool {
+        self.loaded.keys().any(|key| key.path() == Some(path))
+    }
+
+    /// Returns the mesh of a mesh file, by its path.
+    pub fn mesh(&self, path: &str) -> Option<Arc<Mesh>> {
+        self.get_mesh(&AssetRef::Mesh(Cow::Borrowed(path)))
+    }
+
+    /// Returns the mesh of a figure.
+    pub fn figure(&self, figure: Mannequin) -> Option<Arc<Mesh>> {
+        self.get_mesh(&AssetRef::Figure(figure))
+    }
+
+    /// Returns a texture.
+    pub fn texture(&self, texture: &TextureRef) -> Option<Arc<Texture>> {
+        match self.get(&AssetRef::Texture(Cow::Borrowed(texture)))? {
+            Asset::Texture(image) => Some(image),
+            Asset::Mesh(_) => None,
+        }
+    }
+
+    /// Returns every loaded asset with its key, in no particular order.
+    pub fn iter(&self) -> impl Iterator<Item = (&AssetKey, &Asset)> {
+        self.loaded.iter()
+    }
+
+    /// Returns the triangles of a shape; `None` if its mesh is not loaded.
+    pub fn mesh_of(&self, shape: &Shape) -> Option<Arc<Mesh>> {
+        match shape {
+            Shape::MeshFile { path } => self.mesh(path),
+            Shape::Mannequin(figure) => self.figure(*figure),
+            primitive => tessellate(primitive).map(Arc::new),
+        }
+    }
+
+    /// Returns the axis-aligned box around an object in world space: lowest and highest corner. `None` if its mesh is not
+    /// loaded.
+    pub fn object_bounds(&self, object: &Object) -> Option<(Vec3, Vec3)> {
+        let (low, high) = self.mesh_of(&object.shape)?.bounds();
+        let world_from_object = object.transform.world_from_object();
+        let corner = |i: usize| Vec3::new([low.x, high.x][i & 1], [low.y, high.y][i >> 1 & 1], [low.z, high.z][i >> 2]);
+        let corners = (0..8).map(|i| world_from_object.transform_point3(corner(i))).map(|p| (p, p));
+        corners.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
+    }
+
+    /// Returns true if both collections share the very same meshes and textures under the same keys.
+    pub fn is_same(&self, other: &Assets) -> bool {
+        let same =
+            |(key, asset): (&AssetKey, &Asset)| other.loaded.get(key).is_some_and(|theirs| asset.is_same(theirs));
+        self.loaded.len() == other.loaded.len() && self.loaded.iter().all(same)
+    }
+
+    fn get<'k>(&self, key: &AssetRef<'k>) -> Option<Asset> {
+        // The map is covariant in its keys, so that a borrowed key needs no copy of its path.
+        let loaded: &HashMap<AssetRef<'k>, Asset> = &self.loaded;
+        loaded.get(key).cloned()
+    }
+
+    fn get_mesh(&self, key: &AssetRef<'_>) -> Option<Arc<Mesh>> {
+        match self.get(key)? {
+            Asset::Mesh(mesh) => Some(mesh),
+            Asset::Texture(_) => None,
+        }
+    }
+}
+
+/// Returns the reason why a scene can't name a file by this path; `None` for a usable one. A path is relative, has `/`
+/// between folders, and does not lead out of the scene's folder.
 pub fn path_complaint(path: &str) -> Option<&'static str> {
     if path.is_empty() {
         Some("a path is needed")
@@ -45,31 +178,45 @@ pub fn path_complaint(path: &str) -> Option<&'static str> {
     }
 }
 
-impl Assets {
-    /// Returns true if the asset is loaded.
-    pub fn contains(&self, asset: &AssetRef<'_>) -> bool {
-        match asset {
-            AssetRef::Mesh(path) => self.meshes.contains_key(path.as_ref()),
-            AssetRef::Figure(figure) => self.mannequins.contains_key(figure),
-            AssetRef::Texture(path) => self.textures.contains_key(path.as_ref()),
-        }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Figure, Pose};
+
+    fn image() -> Arc<Texture> {
+        Arc::new(Texture { width: 1, height: 1, rgb: vec![[7; 3]] })
     }
 
-    /// Returns the axis-aligned box around an object in world space; none while its mesh is not loaded.
-    pub fn object_bounds(&self, object: &Object) -> Option<(Vec3, Vec3)> {
-        let (low, high) = self.mesh_of(&object.shape)?.bounds();
-        let world_from_object = object.transform.world_from_object();
-        let corner = |i: usize| Vec3::new([low.x, high.x][i & 1], [low.y, high.y][i >> 1 & 1], [low.z, high.z][i >> 2]);
-        let corners = (0..8).map(|i| world_from_object.transform_point3(corner(i))).map(|p| (p, p));
-        corners.reduce(|(low, high), (l, h)| (low.min(l), high.max(h)))
+    #[test]
+    fn assets_of_different_kinds_with_one_path_are_kept_apart() {
+        let path = "chair.glb";
+        let embedded = |image| TextureRef::Embedded { model: path.to_owned(), image };
+        let mut assets = Assets::default();
+        assets.insert_mesh(path, Arc::new(Mesh::default()));
+        assert!(assets.mesh(path).is_some());
+        assert!(assets.texture(&TextureRef::file(path)).is_none());
+        assets.insert_texture(embedded(1), image());
+        assert!(assets.texture(&embedded(1)).is_some() && assets.texture(&embedded(0)).is_none());
+        assert!(assets.contains_file(path) && !assets.contains_file("chair"));
+        let figure = Mannequin { figure: Figure::Bust, pose: Pose::Standing };
+        assert!(assets.figure(figure).is_none());
+        assets.insert(AssetRef::Figure(figure), Asset::Mesh(Arc::new(Mesh::default())));
+        assert!(assets.mesh_of(&Shape::Mannequin(figure)).is_some());
     }
 
-    /// The triangles of a shape; none where its file is missing (loading has warned of it).
-    pub fn mesh_of(&self, shape: &Shape) -> Option<Arc<Mesh>> {
-        match shape {
-            Shape::MeshFile { path } => self.meshes.get(path).cloned(),
-            Shape::Mannequin(mannequin) => self.mannequins.get(mannequin).cloned(),
-            primitive => tessellate(primitive).map(Arc::new),
-        }
+    #[test]
+    fn collections_are_the_same_only_if_they_share_what_they_hold() {
+        let with = |image: &Arc<Texture>| {
+            let mut assets = Assets::default();
+            assets.insert_texture(TextureRef::file("a.png"), Arc::clone(image));
+            assets
+        };
+        let (one, equal) = (image(), image());
+        assert!(with(&one).is_same(&with(&one)));
+        assert!(!with(&one).is_same(&with(&equal)));
+        assert!(!with(&one).is_same(&Assets::default()));
+        let mut both = with(&one);
+        both.extend(with(&equal));
+        assert!(both.is_same(&with(&equal)));
     }
 }

@@ -164,18 +164,10 @@ impl SceneChange {
     }
 
     fn compare_materials(&mut self, old: &Material, new: &Material) {
-        let Material {
-            base_color,
-            base_color_texture,
-            metallic,
-            roughness,
-            ior,
-            transmission,
-            absorption_per_m,
-            emission_cd_m2,
-        } = old;
+        let Material { base_color, textures, metallic, roughness, ior, transmission, absorption_per_m, emission_cd_m2 } =
+            old;
         self.materials |= *base_color != new.base_color
-            || *base_color_texture != new.base_color_texture
+            || *textures != new.textures
             || *metallic != new.metallic
             || *roughness != new.roughness
             || *ior != new.ior

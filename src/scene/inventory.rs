@@ -1,6 +1,6 @@
 //! Enumerates the materials and the asset references of a scene. Nothing else in the crate lists them.
 
-use super::{Mannequin, Material, Object, Room, Scene, Shape};
+use super::{AssetRef, Material, Object, Room, Scene, Shape, TextureSlot};
 use std::borrow::Cow;
 
 /// The slot of a scene that holds one material.
@@ -26,36 +26,6 @@ pub enum MaterialSlot {
     },
 }
 
-/// A reference to an asset outside of the scene.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum AssetRef<'a> {
-    /// A mesh file, by its path relative to the scene file.
-    Mesh(Cow<'a, str>),
-    /// A figure in a pose.
-    Figure(Mannequin),
-    /// A texture file, by its path relative to the scene file.
-    Texture(Cow<'a, str>),
-}
-
-impl AssetRef<'_> {
-    /// Returns the same reference with a path of its own.
-    pub fn into_owned(self) -> AssetRef<'static> {
-        match self {
-            AssetRef::Mesh(path) => AssetRef::Mesh(Cow::Owned(path.into_owned())),
-            AssetRef::Figure(figure) => AssetRef::Figure(figure),
-            AssetRef::Texture(path) => AssetRef::Texture(Cow::Owned(path.into_owned())),
-        }
-    }
-
-    /// Returns the path relative to the scene file; `None` for assets that are not files.
-    pub fn path(&self) -> Option<&str> {
-        match self {
-            AssetRef::Mesh(path) | AssetRef::Texture(path) => Some(path),
-            AssetRef::Figure(_) => None,
-        }
-    }
-}
-
 /// The field of a scene that holds an asset reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AssetField {
@@ -68,8 +38,8 @@ pub enum AssetField {
     Texture {
         /// The material.
         material: MaterialSlot,
-        /// The material's field, as in the scene file.
-        field: &'static str,
+        /// The material's texture slot.
+        texture: TextureSlot,
     },
 }
 
@@ -101,15 +71,19 @@ impl Scene {
                 let is_file = self.objects.get(index).is_some_and(|o| matches!(o.shape, Shape::MeshFile { .. }));
                 self.object_place(index, if is_file { "shape.path" } else { "shape" })
             }
-            AssetField::Texture { material, field } => match material {
-                MaterialSlot::Floor => format!("room.floor.{field}"),
-                MaterialSlot::Walls => format!("room.walls.{field}"),
-                MaterialSlot::Ceiling => format!("room.ceiling.{field}"),
-                MaterialSlot::Object { index } => self.object_place(index, &format!("material.{field}")),
-                MaterialSlot::Part { index, part } => {
-                    self.object_place(index, &format!("part_materials[{part}].material.{field}"))
-                }
-            },
+            AssetField::Texture { material, texture } => self.texture_place(material, texture.field()),
+        }
+    }
+
+    fn texture_place(&self, material: MaterialSlot, field: &str) -> String {
+        match material {
+            MaterialSlot::Floor => format!("room.floor.{field}"),
+            MaterialSlot::Walls => format!("room.walls.{field}"),
+            MaterialSlot::Ceiling => format!("room.ceiling.{field}"),
+            MaterialSlot::Object { index } => self.object_place(index, &format!("material.{field}")),
+            MaterialSlot::Part { index, part } => {
+                self.object_place(index, &format!("part_materials[{part}].material.{field}"))
+            }
         }
     }
 
@@ -134,8 +108,9 @@ fn room_materials(scene: &Scene) -> impl Iterator<Item = (MaterialSlot, &Materia
 }
 
 fn texture_assets((slot, material): (MaterialSlot, &Material)) -> impl Iterator<Item = (AssetField, AssetRef<'_>)> {
-    let textures = material.textures();
-    textures.map(move |(field, path)| (AssetField::Texture { material: slot, field }, AssetRef::Texture(path.into())))
+    material.textures.iter().map(move |(texture, reference)| {
+        (AssetField::Texture { material: slot, texture }, AssetRef::Texture(Cow::Borrowed(reference)))
+    })
 }
 
 fn object_materials(index: usize, object: &Object) -> impl Iterator<Item = (MaterialSlot, &Material)> {
@@ -159,11 +134,14 @@ fn shape_asset(shape: &Shape) -> Option<AssetRef<'_>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Figure, ObjectId, Pose, Transform};
+    use crate::scene::{Figure, Mannequin, MaterialTextures, ObjectId, Pose, TextureRef, Transform};
 
     #[test]
     fn materials_and_assets_are_listed_with_the_fields_that_hold_them() {
-        let textured = |path: &str| Material { base_color_texture: Some(path.to_owned()), ..Material::default() };
+        let textured = |path: &str| Material {
+            textures: MaterialTextures::with_base_color(TextureRef::file(path)),
+            ..Material::default()
+        };
         let figure = Mannequin { figure: Figure::Bust, pose: Pose::Standing };
         let object = |name: &str, shape| Object {
             id: ObjectId(0),
@@ -185,13 +163,13 @@ mod tests {
         };
         assert_eq!(scene.materials().count(), 3 + 2 + 2);
         let assets: Vec<_> = scene.assets().map(|(field, asset)| (scene.place_of(field), asset.into_owned())).collect();
-        let file = |path: &str| Cow::Owned(path.to_owned());
+        let image = |path: &str| AssetRef::Texture(Cow::Owned(TextureRef::file(path)));
         let expected = [
-            ("room.ceiling.base_color_texture", AssetRef::Texture(file("sky.png"))),
-            ("objects[0] \"Chair\" shape.path", AssetRef::Mesh(file("chair.obj"))),
-            ("objects[0] \"Chair\" part_materials[0].material.base_color_texture", AssetRef::Texture(file("iris.png"))),
+            ("room.ceiling.base_color_texture", image("sky.png")),
+            ("objects[0] \"Chair\" shape.path", AssetRef::Mesh(Cow::Borrowed("chair.obj"))),
+            ("objects[0] \"Chair\" part_materials[0].material.base_color_texture", image("iris.png")),
             ("objects[1] \"Bust\" shape", AssetRef::Figure(figure)),
-            ("objects[1] \"Bust\" part_materials[0].material.base_color_texture", AssetRef::Texture(file("iris.png"))),
+            ("objects[1] \"Bust\" part_materials[0].material.base_color_texture", image("iris.png")),
         ];
         assert_eq!(assets, expected.map(|(place, asset)| (place.to_owned(), asset)));
     }

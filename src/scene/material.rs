@@ -1,12 +1,14 @@
 //! Materials: diffuse, metal, dielectric, glass and emissive surfaces in one model.
 
+use super::MaterialTextures;
+
 /// Surface properties. Colours are scene-linear RGB with Rec.709 primaries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Diffuse albedo, or the mirror colour of a metal; each channel in [0, 1).
     pub base_color: [f32; 3],
-    /// Picture file (PNG or JPEG, sRGB) that multiplies `base_color`; relative to the scene file, `/` between folders.
-    pub base_color_texture: Option<String>,
+    /// Textures, by the property that they vary.
+    pub textures: MaterialTextures,
     /// 0 dielectric, 1 metal.
     pub metallic: f32,
     /// 0 mirror, 1 matte; GGX alpha is its square.
@@ -25,7 +27,7 @@ impl Default for Material {
     fn default() -> Self {
         Material {
             base_color: [0.5; 3],
-            base_color_texture: None,
+            textures: MaterialTextures::default(),
             metallic: 0.0,
             roughness: 0.6,
             ior: 1.5,
@@ -37,11 +39,6 @@ impl Default for Material {
 }
 
 impl Material {
-    /// Returns the path of each texture with the name of its field in the scene file.
-    pub fn textures(&self) -> impl Iterator<Item = (&'static str, &str)> {
-        self.base_color_texture.iter().map(|path| ("base_color_texture", path.as_str()))
-    }
-
     /// Returns true if the surface emits light.
     pub fn is_emissive(&self) -> bool {
         self.emission_cd_m2 != [0.0; 3]

@@ -21,16 +21,17 @@ mod named_modifier;
 mod object;
 mod room;
 mod tessellate;
+mod texture;
 mod validate;
 
 pub use aim::Aim;
-pub use assets::{Assets, Texture, path_complaint};
+pub use assets::{Asset, AssetKey, AssetRef, Assets, path_complaint};
 pub use camera::{Camera, CameraFrame, Focus, Orientation, Sensor};
 pub use change::{LightChange, SceneChange};
 pub use emitter::Emitter;
 pub use gel::{Gel, GelFamily, NamedGel};
 pub use id::{LightId, ObjectId};
-pub use inventory::{AssetField, AssetRef, MaterialSlot};
+pub use inventory::{AssetField, MaterialSlot};
 pub use light::{ColorSource, Light, LightColor, Output, Power, Role, Solo};
 pub use material::{Material, MaterialPreset};
 pub use mesh::{Mesh, MeshPart};
@@ -40,6 +41,7 @@ pub use named_modifier::{HARD_GRIDS_DEG, NamedModifier, SOFT_GRIDS_DEG};
 pub use object::{Figure, Mannequin, Object, Pose, Shape, Transform};
 pub use room::Room;
 pub use tessellate::{ROOM_STANDS_BACK_M, room_mesh, tessellate};
+pub use texture::{MaterialTextures, Texture, TextureRef, TextureSlot};
 pub use validate::{Finding, LIST_LIMIT, Severity, placement, validate};
 
 use glam::Vec3;

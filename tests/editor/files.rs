@@ -78,7 +78,7 @@ fn files_can_be_dropped_and_models_travel_with_the_studio() {
     assert_eq!(window.state().document().path(), Some(other.as_path()));
     drop_file(&mut window, &file);
     let reopened = window.state().document();
-    assert!(reopened.assets().meshes.contains_key("models/pyramid.obj"));
+    assert!(reopened.assets().mesh("models/pyramid.obj").is_some());
 }
 
 #[test]

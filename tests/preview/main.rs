@@ -11,8 +11,8 @@ use catchlight::photo::{Picture, exposure};
 use catchlight::preview::{Gpu, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
 use catchlight::raytrace;
 use catchlight::scene::{
-    Aim, Assets, Camera, CameraFrame, Emitter, Light, LightId, Material, MaterialPreset, Object, ObjectId, Output,
-    Room, Scene, Shape, Texture, Transform,
+    Aim, Assets, Camera, CameraFrame, Emitter, Light, LightId, Material, MaterialPreset, MaterialTextures, Object,
+    ObjectId, Output, Room, Scene, Shape, Texture, TextureRef, Transform,
 };
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;

@@ -13,10 +13,10 @@ fn grazing_floor(renderer: &mut PreviewRenderer, is_white: impl Fn(u32, u32) -> 
     let mut assets = Assets::default();
     let code = |i: u32| if is_white(i % TEXELS, i / TEXELS) { [255; 3] } else { [0; 3] };
     let rgb = (0..TEXELS * TEXELS).map(code).collect();
-    assets.textures.insert("floor.png".to_owned(), Arc::new(Texture { width: TEXELS, height: TEXELS, rgb }));
+    assets.insert_texture(TextureRef::file("floor.png"), Arc::new(Texture { width: TEXELS, height: TEXELS, rgb }));
     let lamp = light(0, Vec3::Y * 3.0, Vec3::ZERO, Emitter::Point, Output::Candela(10.0));
     let mut scene = floor_under(lamp);
-    scene.objects[0].material.base_color_texture = Some("floor.png".to_owned());
+    scene.objects[0].material.textures.base_color = Some(TextureRef::file("floor.png"));
     let position = Vec3::new(0.0, 0.5, 6.0);
     scene.camera = Camera { position, aim: Aim::Point(position - Vec3::Z), ..scene.camera };
     let options = Options { channel: Channel::BaseColor, ..Options::direct_only() };

@@ -20,28 +20,33 @@ fn color(high: f32) -> impl Strategy<Value = [f32; 3]> {
     [number(0.001, high), number(0.001, high), number(0.001, high)]
 }
 
+fn texture() -> impl Strategy<Value = TextureRef> {
+    prop_oneof![
+        "[a-z]{1,8}/[a-z ]{1,8}\\.png".prop_map(TextureRef::File),
+        ("[a-z]{1,8}\\.glb", 0..9_u32).prop_map(|(model, image)| TextureRef::Embedded { model, image }),
+    ]
+}
+
 fn material() -> impl Strategy<Value = Material> {
     let custom = (
         color(0.999),
-        proptest::option::of("[a-z]{1,8}/[a-z ]{1,8}\\.png"),
+        proptest::option::of(texture()),
         number(0.0, 1.0),
         number(0.0, 1.0),
         number(1.0, 4.0),
         color(1e6),
         color(1e9),
     )
-        .prop_map(
-            |(base_color, base_color_texture, metallic, roughness, ior, absorption_per_m, emission_cd_m2)| Material {
-                base_color,
-                base_color_texture,
-                metallic,
-                roughness,
-                ior,
-                transmission: if metallic > 0.0 { 0.0 } else { 0.7 },
-                absorption_per_m,
-                emission_cd_m2,
-            },
-        );
+        .prop_map(|(base_color, texture, metallic, roughness, ior, absorption_per_m, emission_cd_m2)| Material {
+            base_color,
+            textures: MaterialTextures { base_color: texture },
+            metallic,
+            roughness,
+            ior,
+            transmission: if metallic > 0.0 { 0.0 } else { 0.7 },
+            absorption_per_m,
+            emission_cd_m2,
+        });
     prop_oneof![(0..MaterialPreset::ALL.len()).prop_map(|i| MaterialPreset::ALL[i].material()), custom]
 }
 

@@ -5,7 +5,8 @@ use crate::io::{self, Loaded, PictureInfo};
 use crate::jobs::render_all_passes;
 use crate::photo::Picture;
 use crate::raytrace::{RenderControl, RenderScene, Settings};
-use crate::scene::Mesh;
+use crate::scene::{Asset, AssetRef, Mesh};
+use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 
@@ -45,9 +46,12 @@ fn path(folder: &Path, loaded: &Loaded, settings: &Settings) -> PathBuf {
             hash_mesh(&mesh, &mut hasher);
         }
     }
-    let mut textures: Vec<_> = loaded.assets.textures.iter().collect();
-    textures.sort_by_key(|(path, _)| *path);
-    textures.into_iter().for_each(|(path, texture)| (path, &texture.rgb).hash(&mut hasher));
+    let textures = loaded.assets.iter().filter_map(|(key, asset)| match (key, asset) {
+        (AssetRef::Texture(texture), Asset::Texture(image)) => Some((texture.to_string(), &image.rgb)),
+        _ => None,
+    });
+    let by_text: BTreeMap<_, _> = textures.collect();
+    by_text.into_iter().for_each(|texture| texture.hash(&mut hasher));
     folder.join(format!("reference-{:016x}.exr", hasher.finish()))
 }
 

@@ -130,7 +130,7 @@ fn resident_mb() -> Option<f64> {
 fn bumpy_ball(triangles: u64) -> (Scene, Assets) {
     const NAME: &str = "bumpy ball";
     let mut assets = Assets::default();
-    assets.meshes.insert(NAME.to_owned(), Arc::new(bumpy_mesh(triangles)));
+    assets.insert_mesh(NAME, Arc::new(bumpy_mesh(triangles)));
     let ball = Object {
         id: ObjectId(1),
         name: "Ball".to_owned(),

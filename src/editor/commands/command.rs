@@ -4,6 +4,7 @@ use crate::editor::commands::choices::{CentralView, HandleMode, LiveMode, PlaceL
 use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
+use crate::scene::TextureSlot;
 use std::path::PathBuf;
 
 /// A command of the user.
@@ -73,7 +74,7 @@ pub enum Command {
     /// Imports this model.
     ImportPath(PathBuf),
     /// Sets the texture of the material of this item's part (none: the item's own) from a dialog.
-    ChooseTexture(Item, Option<String>),
+    ChooseTexture(Item, Option<String>, TextureSlot),
     /// Writes the rendered picture to a file that a dialog selects.
     ExportPicture,
     /// Uses a path that was chosen or typed for a purpose.

@@ -1,10 +1,11 @@
 //! Reads and writes studios, models, assets and pictures, with errors as messages to the user.
 
 use crate::editor::document::studio_document::Document;
-use crate::io::{self, PictureInfo};
+use crate::io::{self, AssetFiles, PictureInfo};
 use crate::jobs::sentence;
 use crate::photo::Picture;
-use crate::scene::{Assets, Material, Mesh, Room, Scene, Texture};
+use crate::scene::{Assets, Material, Mesh, Scene};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -87,58 +88,26 @@ pub fn import(file: PathBuf) -> Result<Box<ImportedModel>, String> {
     Ok(Box::new(ImportedModel { file, mesh, part_materials, warnings }))
 }
 
-/// Reads the assets that a scene refers to and that are not loaded yet. `moved` maps paths in the scene to imported
+/// Reads the assets that a scene refers to and that are not loaded yet. `imported` maps paths in the scene to imported
 /// files outside the scene's folder.
 pub fn load_assets(
     scene: &Scene,
     folder: Option<&Path>,
     known: &Assets,
-    moved: &[(String, PathBuf)],
+    imported: &BTreeMap<String, PathBuf>,
 ) -> (Assets, Vec<String>) {
     let mut assets = known.clone();
-    let mut warnings = Vec::new();
-    for (path, file) in moved.iter().filter(|(path, _)| !known.textures.contains_key(path)) {
-        let (texture, odd) = load_texture(file);
-        assets.textures.extend(texture.map(|texture| (path.clone(), texture)));
-        warnings.extend(odd);
-    }
-    warnings.extend(io::load_assets(scene, folder, &mut assets).iter().map(ToString::to_string));
-    (assets, warnings)
-}
-
-/// Reads a texture outside the scene's folder: its own folder stands in for the scene's.
-fn load_texture(file: &Path) -> (Option<Arc<Texture>>, Vec<String>) {
-    let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let floor = Material { base_color_texture: Some(name.clone()), ..Material::default() };
-    let scene = Scene { room: Some(Room { floor, ..Room::default() }), ..Scene::default() };
-    let mut assets = Assets::default();
-    let warnings = io::load_assets(&scene, file.parent(), &mut assets);
-    (assets.textures.remove(&name), warnings.iter().map(ToString::to_string).collect())
+    let warnings = io::load_assets_from(scene, AssetFiles { folder, imported }, &mut assets);
+    (assets, warnings.iter().map(ToString::to_string).collect())
 }
 
 /// Writes the studio and copies its assets beside it.
 pub fn save(document: &Document, path: &Path) -> Result<(), String> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    for (from, to) in document.files_to_copy(folder) {
-        copy_asset(&from, &to)?;
+    for copy in document.asset_files().copies_into(folder, document.scene()) {
+        copy.make().map_err(|e| sentence(&e))?;
     }
     io::save_scene(document.scene(), path).map_err(|e| sentence(&e))
-}
-
-/// Copies a file unless an identical one exists. A different file of that name is never overwritten.
-pub fn copy_asset(from: &Path, to: &Path) -> Result<(), String> {
-    let failed = |error: std::io::Error| format!("{} could not be copied beside the studio: {error}.", from.display());
-    if to.exists() {
-        let same = std::fs::read(from).map_err(failed)? == std::fs::read(to).map_err(failed)?;
-        let message = || {
-            format!("{} is another file of the same name; it was left as it is. Save to another folder.", to.display())
-        };
-        return if same { Ok(()) } else { Err(message()) };
-    }
-    if let Some(folder) = to.parent() {
-        std::fs::create_dir_all(folder).map_err(failed)?;
-    }
-    std::fs::copy(from, to).map(|_| ()).map_err(failed)
 }
 
 /// Writes a picture in the format of its extension.

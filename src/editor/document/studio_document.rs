@@ -5,7 +5,8 @@ use crate::editor::document::action_error::ActionError;
 use crate::editor::document::history::{History, MergeKey};
 use crate::editor::document::item::Item;
 use crate::editor::document::revisions::Revisions;
-use crate::scene::{AssetRef, Assets, Finding, Scene, SceneChange, Severity, validate};
+use crate::io::{self, AssetFiles};
+use crate::scene::{AssetKey, Assets, Finding, Scene, SceneChange, Severity, validate};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -21,7 +22,7 @@ pub struct Document {
     /// Imported files by asset path, until a save copies them beside the scene.
     imported: BTreeMap<String, PathBuf>,
     /// Assets that could not be loaded; they are not retried until the scene is opened again.
-    failed: BTreeSet<String>,
+    failed: BTreeSet<AssetKey>,
 }
 
 impl Document {
@@ -128,33 +129,30 @@ impl Document {
     }
 
     /// Returns the assets that the scene refers to and that are neither loaded nor failed.
-    pub fn wanted_assets(&self) -> BTreeSet<String> {
+    pub fn wanted_assets(&self) -> BTreeSet<AssetKey> {
         &self.missing_assets() - &self.failed
     }
 
-    fn missing_assets(&self) -> BTreeSet<String> {
-        let missing = self.scene.assets().filter(|(_, asset)| !self.assets.contains(asset));
-        missing.map(|(_, asset)| asset_label(&asset)).collect()
+    fn missing_assets(&self) -> BTreeSet<AssetKey> {
+        io::missing_assets(&self.scene, &self.assets).into_iter().map(|(_, key)| key).collect()
     }
 
     /// Adds assets that were loaded in the background. Those of `tried` that are still missing have failed.
-    pub fn insert_assets(&mut self, loaded: Assets, tried: &BTreeSet<String>) {
-        self.assets.meshes.extend(loaded.meshes);
-        self.assets.mannequins.extend(loaded.mannequins);
-        self.assets.textures.extend(loaded.textures);
+    pub fn insert_assets(&mut self, loaded: Assets, tried: &BTreeSet<AssetKey>) {
+        self.assets.extend(loaded);
         self.failed.extend(self.missing_assets().intersection(tried).cloned());
         self.revisions = Revisions::new();
     }
 
     /// Records the file behind an asset path until a save copies it beside the scene.
     pub fn note_import(&mut self, asset_path: String, file: PathBuf) {
-        self.failed.remove(&asset_path);
+        self.failed.retain(|key| key.path() != Some(&asset_path));
         self.imported.insert(asset_path, file);
     }
 
     /// Returns the imported files that no save has copied beside the scene, by asset path.
-    pub fn imported_files(&self) -> Vec<(String, PathBuf)> {
-        self.imported.iter().map(|(path, file)| (path.clone(), file.clone())).collect()
+    pub fn imported_files(&self) -> &BTreeMap<String, PathBuf> {
+        &self.imported
     }
 
     /// Returns the asset path of a file: its path under the scene's folder, or else a free name in `models/` or
@@ -176,22 +174,16 @@ impl Document {
         let is_free = |name: &String| match self.imported.get(name) {
             Some(other) => other == file,
             None => {
-                let in_use = self.assets.meshes.contains_key(name) || self.assets.textures.contains_key(name);
-                !in_use && !self.folder().is_some_and(|folder| folder.join(name).exists())
+                let exists = self.folder().is_some_and(|folder| folder.join(name).exists());
+                !exists && !self.assets.contains_file(name)
             }
         };
         (1..10_000).map(name).find(is_free).unwrap_or_else(|| name(1))
     }
 
-    /// Returns the files to copy for a scene in `folder`: (from, to).
-    pub fn files_to_copy(&self, folder: &Path) -> Vec<(PathBuf, PathBuf)> {
-        let used: BTreeSet<String> =
-            self.scene.assets().filter_map(|(_, asset)| asset.path().map(str::to_owned)).collect();
-        let source = |path: &String| self.imported.get(path).cloned().or_else(|| Some(self.folder()?.join(path)));
-        used.iter()
-            .filter_map(|path| Some((source(path)?, folder.join(path))))
-            .filter(|(from, to)| from != to && from.exists())
-            .collect()
+    /// Returns the places of the scene's asset files.
+    pub fn asset_files(&self) -> AssetFiles<'_> {
+        AssetFiles { folder: self.folder(), imported: &self.imported }
     }
 
     /// Marks the current scene as saved to `path`.
@@ -199,14 +191,6 @@ impl Document {
         self.imported.clear();
         self.saved = self.scene.clone();
         self.path = Some(path);
-    }
-}
-
-/// Returns the name of an asset: its path, or the figure and its pose.
-fn asset_label(asset: &AssetRef<'_>) -> String {
-    match asset {
-        AssetRef::Mesh(path) | AssetRef::Texture(path) => path.to_string(),
-        AssetRef::Figure(figure) => format!("{figure:?}"),
     }
 }
 

@@ -1,7 +1,7 @@
 //! File operations in the background and their results.
 
 use crate::editor::document::files::{ImportedModel, OpenedStudio, StudioSource};
-use crate::scene::Assets;
+use crate::scene::{AssetKey, Assets};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -14,7 +14,7 @@ pub enum TaskResult {
     /// An imported model or an error.
     Imported(Result<Box<ImportedModel>, String>),
     /// Assets of the scene: those loaded, those requested, and warnings.
-    Assets(Assets, BTreeSet<String>, Vec<String>),
+    Assets(Assets, BTreeSet<AssetKey>, Vec<String>),
     /// A written picture or an error.
     Exported(PathBuf, Result<(), String>),
 }

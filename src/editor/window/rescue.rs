@@ -1,6 +1,5 @@
 //! Saves unsaved changes to a new file when no window is left.
 
-use crate::editor::document::files;
 use crate::editor::document::studio_document::Document;
 use crate::io;
 use std::path::{Path, PathBuf};
@@ -44,9 +43,9 @@ fn write(document: &Document, path: &Path) -> Result<(), String> {
     if document.folder() != Some(folder) {
         std::fs::create_dir(folder).map_err(|error| format!("{} could not be made: {error}", folder.display()))?;
     }
-    for (from, to) in document.files_to_copy(folder) {
+    for copy in document.asset_files().copies_into(folder, document.scene()) {
         // A missing model can be imported again; the lighting cannot be recovered.
-        if let Err(error) = files::copy_asset(&from, &to) {
+        if let Err(error) = copy.make() {
             log::warn!("{error}");
         }
     }
@@ -58,7 +57,7 @@ mod tests {
     use super::*;
     use crate::editor::document::action::Action;
     use crate::editor::document::catalog;
-    use crate::scene::{Assets, Object, Shape};
+    use crate::scene::{Asset, Assets, Object, Shape};
 
     const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
@@ -71,7 +70,7 @@ mod tests {
         std::fs::write(model, TRIANGLE).unwrap();
         let name = document.asset_path_for(model, "models");
         let mut assets = Assets::default();
-        assets.meshes.insert(name.clone(), io::import_model(model).unwrap().mesh.into());
+        assets.insert_mesh(name.clone(), io::import_model(model).unwrap().mesh.into());
         document.insert_assets(assets, &Default::default());
         document.note_import(name.clone(), model.to_owned());
         let object = Object { shape: Shape::MeshFile { path: name }, ..catalog::object_named("Box").unwrap() };
@@ -84,7 +83,7 @@ mod tests {
         let loaded = io::load_scene(path).unwrap();
         assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
         io::write_scene(&loaded.scene) == io::write_scene(document.scene())
-            && loaded.assets.meshes.values().any(|mesh| mesh.triangles.len() == 1)
+            && loaded.assets.iter().any(|(_, asset)| matches!(asset, Asset::Mesh(mesh) if mesh.triangles.len() == 1))
     }
 
     #[test]

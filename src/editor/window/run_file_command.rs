@@ -15,7 +15,7 @@ use crate::editor::window::background_tasks::TaskResult;
 use crate::editor::window::dialogs::DialogAnswer;
 use crate::editor::window::session::PendingOperation;
 use crate::io::{self, ModelFormat, PictureInfo};
-use crate::scene::{Assets, Material, MaterialPreset, Object, ObjectId, Shape, Transform};
+use crate::scene::{Assets, Material, MaterialPreset, Object, ObjectId, Shape, TextureRef, TextureSlot, Transform};
 use eframe::egui::{self, Align2, Color32, Context, Id, LayerId, Order, ViewportCommand};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::TryRecvError;
@@ -33,8 +33,8 @@ impl App {
             Command::ImportPath(path) => {
                 self.background.tasks.start(move || TaskResult::Imported(files::import(path)), waker(ctx));
             }
-            Command::ChooseTexture(item, part) => {
-                self.session.texture_for = Some((item, part));
+            Command::ChooseTexture(item, part, slot) => {
+                self.session.texture_for = Some((item, part, slot));
                 self.ask_for_path(FilePurpose::OpenTexture, ctx);
             }
             Command::ExportPicture if self.rendering.developed().is_none() => {
@@ -207,12 +207,12 @@ impl App {
         let path = self.document.asset_path_for(&file, "models");
         let stem = file.file_stem().map_or_else(|| "Model".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let mut assets = Assets::default();
-        assets.meshes.insert(path.clone(), mesh);
+        assets.insert_mesh(path.clone(), mesh);
         self.document.insert_assets(assets, &Default::default());
         self.document.note_import(path.clone(), file.clone());
         let folder = file.parent().unwrap_or(Path::new("")).to_owned();
         let part_materials =
-            part_materials.into_iter().map(|(part, m)| (part, self.adopt_texture(m, &folder))).collect();
+            part_materials.into_iter().map(|(part, m)| (part, self.adopt_textures(m, &folder))).collect();
         let mut object = Object {
             id: ObjectId(0),
             name: stem,
@@ -228,26 +228,35 @@ impl App {
         warnings.into_iter().for_each(|warning| self.toasts.warning(warning));
     }
 
-    /// Returns a material whose texture has an asset path of the open studio.
-    fn adopt_texture(&mut self, mut material: Material, folder: &Path) -> Material {
-        if let Some(texture) = material.base_color_texture.take() {
-            let file = folder.join(texture);
-            let path = self.document.asset_path_for(&file, "textures");
-            self.document.note_import(path.clone(), file);
-            material.base_color_texture = Some(path);
+    /// Returns an imported model's material with textures named as the open studio can name them.
+    fn adopt_textures(&mut self, mut material: Material, folder: &Path) -> Material {
+        for slot in TextureSlot::ALL {
+            let texture = material.textures.get_mut(slot);
+            if let Some(reference) = texture.take() {
+                let file = folder.join(reference.path());
+                let kind_folder = match reference {
+                    TextureRef::File(_) => "textures",
+                    TextureRef::Embedded { .. } => "models",
+                };
+                let path = self.document.asset_path_for(&file, kind_folder);
+                self.document.note_import(path.clone(), file);
+                *texture = Some(reference.at_path(path));
+            }
         }
         material
     }
 
     fn use_texture(&mut self, file: &Path) {
-        let Some((item, part)) = self.session.texture_for.take() else { return };
+        let Some((item, part, slot)) = self.session.texture_for.take() else { return };
         let path = self.document.asset_path_for(file, "textures");
         self.document.note_import(path.clone(), file.to_owned());
+        let texture = Some(TextureRef::File(path));
         let scene = self.document.scene();
         let action = match item {
             Item::Object(id) => scene.object(id).cloned().map(|mut object| {
                 let own = object.part_materials.iter_mut().find(|(name, _)| Some(name) == part.as_ref());
-                own.map_or(&mut object.material, |(_, material)| material).base_color_texture = Some(path);
+                let material = own.map_or(&mut object.material, |(_, material)| material);
+                *material.textures.get_mut(slot) = texture;
                 Action::SetObject(Box::new(object))
             }),
             Item::Room => scene.room.clone().map(|mut room| {
@@ -256,7 +265,7 @@ impl App {
                     Some("ceiling") => &mut room.ceiling,
                     _ => &mut room.walls,
                 };
-                material.base_color_texture = Some(path);
+                *material.textures.get_mut(slot) = texture;
                 Action::SetRoom(Some(Box::new(room)))
             }),
             Item::Camera | Item::Light(_) | Item::Meter => None,
@@ -277,9 +286,9 @@ impl App {
         }
         let (scene, known) = (self.document.scene().clone(), self.document.assets().clone());
         let folder = self.document.folder().map(Path::to_owned);
-        let moved = self.document.imported_files();
+        let imported = self.document.imported_files().clone();
         let work = move || {
-            let (assets, warnings) = files::load_assets(&scene, folder.as_deref(), &known, &moved);
+            let (assets, warnings) = files::load_assets(&scene, folder.as_deref(), &known, &imported);
             TaskResult::Assets(assets, wanted, warnings)
         };
         self.background.tasks.start(work, waker(ctx));

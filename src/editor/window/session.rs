@@ -6,6 +6,7 @@ use crate::editor::document::item::Item;
 use crate::editor::panels::prompts::PathPrompt;
 use crate::editor::window::dialogs::{DialogAnswer, FileDialogs};
 use crate::editor::window::recent::RecentFiles;
+use crate::scene::TextureSlot;
 use std::sync::mpsc::Receiver;
 
 /// An operation that waits for the prompt for unsaved changes.
@@ -36,7 +37,7 @@ pub struct Session {
     pub(super) unsaved_prompt: Option<PendingOperation>,
     pub(super) after_save: Option<PendingOperation>,
     /// The item and part whose material gets the chosen texture.
-    pub(super) texture_for: Option<(Item, Option<String>)>,
+    pub(super) texture_for: Option<(Item, Option<String>, TextureSlot)>,
     pub(super) may_close: bool,
 }
 

@@ -1,7 +1,7 @@
 //! Surfaces from the MTL file of an OBJ model.
 
 use crate::io::read::read_limited;
-use crate::scene::{Material, path_complaint};
+use crate::scene::{Material, MaterialTextures, TextureRef, path_complaint};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -80,7 +80,7 @@ pub(super) fn surface(mtl: &tobj::Material) -> Material {
     let number = |value: Option<f32>| value.filter(|v| v.is_finite());
     Material {
         base_color: color,
-        base_color_texture: mtl.diffuse_texture.as_deref().and_then(texture_path),
+        textures: MaterialTextures { base_color: mtl.diffuse_texture.as_deref().and_then(texture_path) },
         // alpha^2 = 2 / (Ns + 2) (Walter et al. 2007), and alpha is the square of our roughness.
         roughness: number(mtl.shininess).map_or(plain.roughness, |ns| (2.0 / (ns.max(0.0) + 2.0)).powf(0.25)),
         ior: number(mtl.optical_density).filter(|n| *n > 1.0).map_or(plain.ior, |n| n.min(4.0)),
@@ -90,9 +90,9 @@ pub(super) fn surface(mtl: &tobj::Material) -> Material {
 }
 
 /// The path of `map_Kd`, which may follow options such as `-s 1 1 1`; none where it would lead out of the folder.
-fn texture_path(value: &str) -> Option<String> {
+fn texture_path(value: &str) -> Option<TextureRef> {
     let value = value.trim();
     let path = if value.starts_with('-') { value.split_whitespace().next_back()? } else { value };
     let path = path.replace('\\', "/");
-    path_complaint(&path).is_none().then_some(path)
+    path_complaint(&path).is_none().then_some(TextureRef::File(path))
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::io::importers::import_model;
-use crate::scene::MeshPart;
+use crate::scene::{MeshPart, TextureRef};
 use glam::Vec2;
 use std::path::PathBuf;
 
@@ -46,7 +46,7 @@ fn groups_become_parts_and_materials_follow() {
     assert_eq!(imported.mesh.uvs.len(), imported.mesh.positions.len());
     let [(_, red), (_, glass)] = &imported.part_materials[..] else { panic!("{:?}", imported.part_materials) };
     assert_eq!(red.base_color, [0.95, 0.0, 0.0]);
-    assert_eq!(red.base_color_texture.as_deref(), Some("red.png"));
+    assert_eq!(red.textures.base_color, Some(TextureRef::file("red.png")));
     assert!((red.roughness - 0.02_f32.powf(0.25)).abs() < 1e-6);
     assert_eq!((glass.ior, glass.transmission), (1.52, 0.9));
 }

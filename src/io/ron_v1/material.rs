@@ -1,7 +1,7 @@
 //! Materials in format 1: `Preset(Chrome)`, or `Custom(...)` with what differs from the plain one.
 
 use super::defaults::{Triple, default_ior, default_roughness, is_default, is_default_ior};
-use crate::scene::{Material, MaterialPreset};
+use crate::scene::{Material, MaterialPreset, MaterialTextures, TextureRef};
 use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -85,7 +85,7 @@ impl From<MaterialV1> for Material {
                 emission_cd_m2,
             } => Material {
                 base_color,
-                base_color_texture,
+                textures: MaterialTextures { base_color: base_color_texture.as_deref().map(TextureRef::parse) },
                 metallic,
                 roughness,
                 ior,
@@ -105,7 +105,7 @@ impl From<&Material> for MaterialV1 {
         }
         let Material {
             base_color,
-            base_color_texture,
+            textures: MaterialTextures { base_color: base_color_texture },
             metallic,
             roughness,
             ior,
@@ -115,7 +115,7 @@ impl From<&Material> for MaterialV1 {
         } = material.clone();
         MaterialV1::Custom {
             base_color,
-            base_color_texture,
+            base_color_texture: base_color_texture.map(|texture| texture.to_string()),
             metallic,
             roughness,
             ior,

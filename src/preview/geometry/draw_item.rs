@@ -1,7 +1,7 @@
 //! Draw items: a run of a mesh's triangles with its surface, its pass and its face culling.
 
 use super::mesh_cache::MeshKey;
-use crate::scene::Shape;
+use crate::scene::{Shape, TextureSlot};
 use eframe::wgpu;
 use glam::Affine3A;
 
@@ -12,7 +12,8 @@ pub(crate) struct DrawItem {
     pub indices: std::ops::Range<u32>,
     /// Index of its surface record; the id buffer stores it plus one.
     pub surface: u32,
-    pub texture: usize,
+    /// Keys of the cached textures, by slot.
+    pub textures: [usize; TextureSlot::COUNT],
     pub pass: DrawPass,
     pub shadow: ShadowCasting,
     /// Sides of glass in drawing order: the far side of a solid first.

@@ -61,7 +61,7 @@ impl DrawList {
         list.add_emitters(scene, uploads);
         list.caster_signature = signature.finish();
         // Sort by pass (opaque before glass), then by texture, to reduce state changes
-        list.items.sort_by_key(|item| (item.pass as u32, item.texture));
+        list.items.sort_by_key(|item| (item.pass as u32, item.textures));
         list
     }
 
@@ -177,15 +177,16 @@ impl DrawList {
     }
 
     fn add_item(&mut self, mesh: MeshKey, part: &MeshPart, surface: u32, material: &Material, uploads: &mut Uploads) {
-        let picture = material.base_color_texture.as_ref().and_then(|path| uploads.assets.textures.get(path));
-        let texture =
-            picture.map_or(WHITE, |p| uploads.caches.textures.ensure(&uploads.gpu.device, &uploads.gpu.queue, p));
+        let textures = material.textures.look_up(|texture| {
+            let image = uploads.assets.texture(texture)?;
+            Some(uploads.caches.textures.ensure(&uploads.gpu.device, &uploads.gpu.queue, &image))
+        });
         let glass = material.transmission > 0.0;
         self.items.push(DrawItem {
             mesh,
             indices: part.triangles.start * 3..part.triangles.end * 3,
             surface,
-            texture,
+            textures: textures.map(|texture| texture.unwrap_or(WHITE)),
             pass: if glass { DrawPass::Glass } else { DrawPass::Opaque },
             shadow: ShadowCasting::None,
             glass_sides: &[Sides::Both],

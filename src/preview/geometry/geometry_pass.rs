@@ -8,7 +8,7 @@ use super::texture_cache::WHITE;
 use crate::preview::frame_resources::FrameResources;
 use crate::preview::gpu::bindings::{color_attachment, depth_attachment};
 use crate::preview::scene_buffers::NEAR_M;
-use crate::scene::CameraFrame;
+use crate::scene::{CameraFrame, TextureSlot};
 use eframe::wgpu;
 use glam::Mat4;
 
@@ -34,8 +34,9 @@ pub(crate) fn draw(
     let clip_from_world = camera.clip_from_world(NEAR_M);
     for item in list.items.iter().filter(|item| item.pass != DrawPass::Glass) {
         let sides = list.sides(item, camera.position());
-        pass.set_pipeline(pipelines.get(item.texture != WHITE, sides));
-        pass.set_bind_group(2, caches.textures.get(item.texture), &[]);
+        let base_color = item.textures[TextureSlot::BaseColor as usize];
+        pass.set_pipeline(pipelines.get(base_color != WHITE, sides));
+        pass.set_bind_group(2, caches.textures.get(base_color), &[]);
         let world_from_object = list.transforms[item.surface as usize];
         let clip_from_object = clip_from_world * Mat4::from(world_from_object);
         let eye_object = world_from_object.inverse().transform_point3(camera.position());

@@ -93,7 +93,7 @@ impl FramePlan {
         bytemuck::bytes_of(&self.constants.size).hash(&mut hasher);
         bytemuck::cast_slice::<_, u8>(&self.list.draws).hash(&mut hasher);
         for item in &self.list.items {
-            (item.mesh, &item.indices, item.surface, item.texture, item.pass as u32).hash(&mut hasher);
+            (item.mesh, &item.indices, item.surface, item.textures, item.pass as u32).hash(&mut hasher);
         }
         hasher.finish()
     }

@@ -14,7 +14,7 @@ mod polarisation;
 
 use crate::color::luminance;
 use crate::math::{orthonormal_basis, warp};
-use crate::scene::Material;
+use crate::scene::{Material, TextureSlot};
 use albedo::AlbedoTable;
 pub use dielectric::{Boundary, DielectricInterface, pane_transmittance};
 use glam::{Vec2, Vec3};
@@ -31,8 +31,8 @@ const NO_GLOSS: f32 = 1e-6;
 #[derive(Clone, Debug)]
 pub struct TracedMaterial {
     base_color: Vec3,
-    /// Index into the scene's textures.
-    pub texture: Option<u32>,
+    /// Indices into the scene's textures, by slot.
+    pub textures: [Option<u32>; TextureSlot::COUNT],
     metallic: f32,
     alpha: f32,
     ior: f32,
@@ -48,8 +48,8 @@ pub struct TracedMaterial {
 }
 
 impl TracedMaterial {
-    /// Tabulates the directional albedos of a material.
-    pub fn new(material: &Material, texture: Option<u32>) -> Self {
+    /// Tabulates the directional albedos of a material. Its textures are set by the caller.
+    pub fn new(material: &Material) -> Self {
         let alpha = material.roughness * material.roughness;
         // A metal is opaque: only the rest lets light through, and the metal is a larger part of what does not.
         let transmission = material.transmission * (1.0 - material.metallic);
@@ -58,7 +58,7 @@ impl TracedMaterial {
         let gloss = AlbedoTable::dielectric(material.ior, alpha);
         TracedMaterial {
             base_color: material.base_color.into(),
-            texture,
+            textures: [None; TextureSlot::COUNT],
             metallic,
             alpha,
             ior: material.ior,
@@ -69,6 +69,11 @@ impl TracedMaterial {
             gloss,
             metal: AlbedoTable::perfect_reflector(alpha),
         }
+    }
+
+    /// Returns the texture of a slot, an index into the scene's textures.
+    pub fn texture(&self, slot: TextureSlot) -> Option<u32> {
+        self.textures[slot as usize]
     }
 
     /// Returns true if the surface emits light.

@@ -7,7 +7,7 @@ use std::f32::consts::TAU;
 
 /// Returns the albedo in a white furnace: the mean weight of many stratified samples.
 fn furnace(material: &Material, cos: f32) -> Vec3 {
-    let material = TracedMaterial::new(material, None);
+    let material = TracedMaterial::new(material);
     let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
     let bsdf = Bsdf::new(&material, Vec3::ONE, Vec3::Z, Vec3::Z, wo);
     let n = 128;
@@ -49,7 +49,7 @@ fn no_material_preset_has_an_albedo_above_one() {
 
 #[test]
 fn sample_and_eval_agree() {
-    let material = TracedMaterial::new(&MaterialPreset::GlossyPlastic.material(), None);
+    let material = TracedMaterial::new(&MaterialPreset::GlossyPlastic.material());
     let bsdf = Bsdf::new(&material, Vec3::ONE, Vec3::Z, Vec3::Z, Vec3::new(0.6, 0.0, 0.8));
     for i in 0..256 {
         let set = sobol_burley::sample_4d(i, 0, 3);
@@ -63,7 +63,7 @@ fn sample_and_eval_agree() {
 #[test]
 fn pdfs_integrate_to_one() {
     for preset in [MaterialPreset::GlossyPlastic, MaterialPreset::BrushedAluminium, MaterialPreset::SkinLight] {
-        let material = TracedMaterial::new(&preset.material(), None);
+        let material = TracedMaterial::new(&preset.material());
         let bsdf = Bsdf::new(&material, Vec3::ONE, Vec3::Z, Vec3::Z, Vec3::new(0.6, 0.0, 0.8));
         let n = 400;
         let mut sum = 0.0_f64;
@@ -147,7 +147,7 @@ fn sampled_directions_follow_their_pdf_for_every_lobe_roughness_and_angle() {
     let mut rng = TestRng::new(21);
     for (material, cos) in &cases {
         const SAMPLES: usize = 40_000;
-        let material = TracedMaterial::new(material, None);
+        let material = TracedMaterial::new(material);
         let bsdf = Bsdf::new(&material, Vec3::ONE, Vec3::Z, Vec3::Z, view(*cos));
         // Towards grazing angles the lobe narrows by the cosine in one direction.
         let width = f64::from(material.alpha.max(1e-3) * cos);
@@ -172,7 +172,7 @@ fn sampled_directions_follow_their_pdf_for_every_lobe_roughness_and_angle() {
 
 #[test]
 fn glass_reflects_by_fresnels_equations_and_refracts_by_snells_law() {
-    let glass = TracedMaterial::new(&Material { transmission: 1.0, ior: 1.52, ..Material::default() }, None);
+    let glass = TracedMaterial::new(&Material { transmission: 1.0, ior: 1.52, ..Material::default() });
     let mut rng = TestRng::new(22);
     let angles = [0.0_f64, 20.0, 41.0, 42.0, 60.0, 80.0, 89.0];
     for (deg, outside) in angles.into_iter().flat_map(|deg| [(deg, true), (deg, false)]) {
@@ -235,7 +235,7 @@ fn no_material_has_an_albedo_above_one_at_any_roughness_and_angle() {
             (Material { transmission: 0.5, ior: 2.4, ..white.clone() }, true),
             (Material { metallic: 1.0, base_color: [0.9, 0.5, 0.1], ..white.clone() }, false),
         ] {
-            let material = TracedMaterial::new(&material, None);
+            let material = TracedMaterial::new(&material);
             let bsdf = Bsdf::new(&material, Vec3::ONE, Vec3::Z, Vec3::Z, view(cos));
             let albedo = SampleMean::of((0..8000).map(|_| {
                 let sample = bsdf.sample(rng.uniform(), rng.unit_square());
@@ -250,8 +250,8 @@ fn no_material_has_an_albedo_above_one_at_any_roughness_and_angle() {
 
 #[test]
 fn a_surface_with_the_index_of_air_has_no_microfacet_lobe() {
-    let matt = TracedMaterial::new(&Material { ior: 1.0, roughness: 1.0, ..Material::default() }, None);
+    let matt = TracedMaterial::new(&Material { ior: 1.0, roughness: 1.0, ..Material::default() });
     assert!(!matt.reflects, "rounding alone made a gloss of {}", matt.gloss.mean);
     // A faint coat is kept: an index of 1.1 reflects 0.2 % at normal incidence.
-    assert!(TracedMaterial::new(&Material { ior: 1.1, roughness: 1.0, ..Material::default() }, None).reflects);
+    assert!(TracedMaterial::new(&Material { ior: 1.1, roughness: 1.0, ..Material::default() }).reflects);
 }

@@ -2,10 +2,7 @@
 
 use crate::raytrace::film::Layer;
 use crate::raytrace::retrace::Retrace;
-use crate::scene::{Assets, Scene, SceneChange};
-use std::collections::HashMap;
-use std::hash::Hash;
-use std::sync::Arc;
+use crate::scene::{Scene, SceneChange};
 
 /// Returns the scene to trace so that a film of `layers`, traced from `traced`, shows `now`, and what of it must be traced
 /// again. The scene's camera plays no part: the live view has its own. A light whose layer stays has the power, colour and
@@ -25,12 +22,4 @@ pub fn between(traced: &Scene, layers: &[Layer], now: &Scene) -> (Scene, Retrace
         }
     }
     (to_trace, retrace)
-}
-
-/// Returns true if two collections hold the very same meshes and textures.
-pub fn same_assets(a: &Assets, b: &Assets) -> bool {
-    fn same<K: Eq + Hash, V>(a: &HashMap<K, Arc<V>>, b: &HashMap<K, Arc<V>>) -> bool {
-        a.len() == b.len() && a.iter().all(|(key, value)| b.get(key).is_some_and(|other| Arc::ptr_eq(value, other)))
-    }
-    same(&a.meshes, &b.meshes) && same(&a.mannequins, &b.mannequins) && same(&a.textures, &b.textures)
 }

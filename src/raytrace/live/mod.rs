@@ -109,7 +109,7 @@ impl LivePicture {
             prepared.origin.distance(origin) > MAX_ORIGIN_DISTANCE_M
         };
         let kept = self.prepared.as_ref().zip(self.view.as_ref());
-        let kept = kept.filter(|(prepared, _)| !is_far(prepared) && change::same_assets(&prepared.assets, assets));
+        let kept = kept.filter(|(prepared, _)| !is_far(prepared) && prepared.assets.is_same(assets));
         let (to_trace, retrace) = match kept {
             Some((prepared, view)) => change::between(&prepared.scene, &view.film.layers, scene),
             None => (scene.clone(), Retrace::Everything),

@@ -165,7 +165,7 @@ impl<'a> TileTracer<'a> {
             object: scene.aggregate.instances()[hit.instance as usize].object,
             material: surface.material,
             alpha: if is_view_dependent { PrimaryHit::VIEW_DEPENDENT } else { material.alpha() },
-            texture: material.texture.map_or(Vec3::ONE, |t| scene.textures[t as usize].at(surface.uv)),
+            texture: scene.texture_value(&surface),
         }
     }
 }

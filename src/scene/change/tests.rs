@@ -3,7 +3,7 @@
 use super::*;
 use crate::scene::{
     Aim, BarnDoors, ColorSource, Cone, Emitter, Facing, Focus, Gel, ObjectId, Orientation, Output, Receptor, Role,
-    Sensor, Shape,
+    Sensor, Shape, TextureRef,
 };
 use glam::Vec3;
 
@@ -178,7 +178,7 @@ fn shapes_and_surfaces_need_preparation() {
             ("part_materials.part", |s| s.objects[0].part_materials[0].0.push('x')),
             ("part_materials.material", |s| s.objects[0].part_materials[0].1.ior = 1.1),
             ("base_color", |s| s.objects[0].material.base_color[0] = 0.1),
-            ("base_color_texture", |s| s.objects[0].material.base_color_texture = Some("a.png".to_owned())),
+            ("base_color_texture", |s| s.objects[0].material.textures.base_color = Some(TextureRef::file("a.png"))),
             ("metallic", |s| s.objects[0].material.metallic = 1.0),
             ("roughness", |s| s.objects[0].material.roughness = 0.1),
             ("ior", |s| s.objects[0].material.ior = 1.1),

@@ -10,8 +10,8 @@ const FRACTION: Allowed = Allowed::between(0.0, 1.0, "");
 pub(super) fn check_material(field: &str, material: &Material, check: &mut Check) {
     let name = |part: &str| format!("{field}.{part}");
     check.color(&name("base_color"), material.base_color, REFLECTANCE);
-    if let Some(path) = &material.base_color_texture {
-        check.asset_path(&name("base_color_texture"), path);
+    for (slot, texture) in material.textures.iter() {
+        check.asset_path(&name(slot.field()), texture.path());
     }
     check.number(&name("metallic"), material.metallic, FRACTION);
     check.number(&name("roughness"), material.roughness, FRACTION);

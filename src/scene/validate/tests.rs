@@ -1,7 +1,7 @@
 use super::*;
 use crate::scene::{
     Aim, Assets, Camera, ColorSource, Emitter, Focus, Gel, Light, LightId, Material, Object, ObjectId, Output, Room,
-    Sensor, Shape, Solo, Transform,
+    Sensor, Shape, Solo, TextureRef, Transform,
 };
 use glam::Vec3;
 
@@ -84,7 +84,7 @@ fn every_number_has_a_range() {
         ("objects[0] \"Box\" material.base_color", |s| s.objects[0].material.base_color = [0.5, 1.0, 0.5]),
         ("objects[0] \"Box\" material.ior", |s| s.objects[0].material.ior = 0.9),
         ("objects[0] \"Box\" material.base_color_texture", |s| {
-            s.objects[0].material.base_color_texture = Some("../secret.png".to_owned());
+            s.objects[0].material.textures.base_color = Some(TextureRef::file("../secret.png"));
         }),
         ("lights[0] \"Key\" emitter.inner_deg", |s| {
             s.lights[0].emitter = Emitter::Spot { inner_deg: 50.0, outer_deg: 30.0 };

@@ -1,7 +1,7 @@
 //! The rows of a material.
 
 use crate::editor::ui::widgets::{self, NumberField, row};
-use crate::scene::{Material, MaterialPreset};
+use crate::scene::{Material, MaterialPreset, TextureRef, TextureSlot};
 use eframe::egui::{ComboBox, Slider, SliderClamping, Ui};
 
 /// Returns the name of the preset that equals a material, or "Custom".
@@ -23,8 +23,8 @@ pub fn preset_combo(ui: &mut Ui, salt: &str, material: &mut Material) {
 }
 
 /// Draws the rows of a material; returns true to choose a texture.
-pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> bool {
-    let mut choose = false;
+pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> Option<TextureSlot> {
+    let mut choose = None;
     ui.push_id(salt, |ui| {
         row(ui, "Surface", "A material of the shelf; the rows below fine-tune it", |ui| {
             preset_combo(ui, "preset", material)
@@ -37,16 +37,11 @@ pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> bool {
             ui.label(format!("reflects {:.0} %", 100.0 * crate::color::luminance(material.base_color.into())))
                 .on_hover_text("How much of the light it gives back");
         });
-        row(ui, "Texture", "A picture that multiplies the colour", |ui| match material.base_color_texture.clone() {
-            Some(path) => {
-                let name = path.rsplit('/').next().unwrap_or(&path).to_owned();
-                choose = ui.button(name).on_hover_text(format!("{path}. Click to choose another.")).clicked();
-                if ui.button("Remove").on_hover_text("Take the texture away").clicked() {
-                    material.base_color_texture = None;
-                }
+        for slot in TextureSlot::ALL {
+            if texture_row(ui, slot, material.textures.get_mut(slot)) {
+                choose = Some(slot);
             }
-            None => choose = ui.button("Choose\u{2026}").on_hover_text("PNG or JPEG").clicked(),
-        });
+        }
         unit_slider(ui, "Roughness", "0 is a mirror or polished, 1 is matte", &mut material.roughness);
         unit_slider(ui, "Metal", "0 is skin, paper, plastic; 1 is metal", &mut material.metallic);
         unit_slider(ui, "Clear", "0 is opaque, 1 is clear glass or water", &mut material.transmission);
@@ -70,6 +65,25 @@ pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> bool {
     choose
 }
 
+/// Draws the row of a texture slot. Returns true if a texture is to be chosen.
+fn texture_row(ui: &mut Ui, slot: TextureSlot, texture: &mut Option<TextureRef>) -> bool {
+    let (label, tip) = match slot {
+        TextureSlot::BaseColor => ("Texture", "A picture that multiplies the colour"),
+    };
+    let mut choose = false;
+    row(ui, label, tip, |ui| match texture.as_ref().map(TextureRef::to_string) {
+        Some(path) => {
+            let name = path.rsplit('/').next().unwrap_or(&path).to_owned();
+            choose = ui.button(name).on_hover_text(format!("{path}. Click to choose another.")).clicked();
+            if ui.button("Remove").on_hover_text("Take the texture away").clicked() {
+                *texture = None;
+            }
+        }
+        None => choose = ui.button("Choose\u{2026}").on_hover_text("PNG or JPEG").clicked(),
+    });
+    choose
+}
+
 fn per_channel(ui: &mut Ui, name: &str, number: NumberField, value: &mut [f32; 3]) {
     ui.spacing_mut().item_spacing.x = 3.0;
     for (channel, letter) in value.iter_mut().zip(["red", "green", "blue"]) {
@@ -89,8 +103,8 @@ fn unit_slider(ui: &mut Ui, label: &str, tip: &str, value: &mut f32) {
 }
 
 /// Draws the rows of a wall or part in a collapsible group.
-pub fn material_group(ui: &mut Ui, label: &str, material: &mut Material) -> bool {
-    let mut choose = false;
+pub fn material_group(ui: &mut Ui, label: &str, material: &mut Material) -> Option<TextureSlot> {
+    let mut choose = None;
     widgets::section(ui, label, false, |ui| choose = material_rows(ui, label, material));
     choose
 }

@@ -8,7 +8,7 @@ use crate::editor::document::item::Item;
 use crate::editor::document::placement::wrap_deg;
 use crate::editor::ui::widgets::{self, DEGREES, METRES, NumberField, SIZE_CM, row, section};
 use crate::figures;
-use crate::scene::{Assets, Figure, Mannequin, Object, ObjectId, Pose, Shape};
+use crate::scene::{Assets, Figure, Mannequin, Object, ObjectId, Pose, Shape, TextureSlot};
 use eframe::egui::{Button, ComboBox, RichText, Ui};
 use glam::Vec3;
 
@@ -43,12 +43,12 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Obj
         ui.add_enabled_ui(!object.locked, |ui| place_rows(ui, &mut object));
     });
     section(ui, "Surface", true, |ui| {
-        if material_rows(ui, "own", &mut object.material) {
-            context.out.push(Command::ChooseTexture(Item::Object(id), None));
+        if let Some(slot) = material_rows(ui, "own", &mut object.material) {
+            context.out.push(Command::ChooseTexture(Item::Object(id), None, slot));
         }
     });
-    if let Some(part) = part_rows(ui, assets, &mut object) {
-        context.out.push(Command::ChooseTexture(Item::Object(id), Some(part)));
+    if let Some((part, slot)) = part_rows(ui, assets, &mut object) {
+        context.out.push(Command::ChooseTexture(Item::Object(id), Some(part), slot));
     }
     if object != *original {
         context.out.push(Command::Apply(Action::SetObject(Box::new(object))));
@@ -177,7 +177,7 @@ fn place_rows(ui: &mut Ui, object: &mut Object) {
 }
 
 /// Draws the materials of named parts; returns the part to choose a texture for.
-fn part_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) -> Option<String> {
+fn part_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) -> Option<(String, TextureSlot)> {
     let mesh = assets.mesh_of(&object.shape)?;
     if mesh.parts.len() < 2 {
         return None;
@@ -194,8 +194,8 @@ fn part_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) -> Option<String
             continue;
         };
         let label = format!("Surface of {}", part.name);
-        if material_group(ui, &label, &mut object.part_materials[own].1) {
-            choose = Some(part.name.clone());
+        if let Some(slot) = material_group(ui, &label, &mut object.part_materials[own].1) {
+            choose = Some((part.name.clone(), slot));
         }
         ui.horizontal(|ui| {
             ui.label(RichText::new(preset_name(&object.part_materials[own].1)).weak());

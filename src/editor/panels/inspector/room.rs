@@ -35,8 +35,8 @@ pub(super) fn room_ui(ui: &mut Ui, context: &mut InspectorContext<'_>) {
     for (label, part, material) in
         [("Floor", "floor", floor), ("Walls", "walls", walls), ("Ceiling", "ceiling", ceiling)]
     {
-        if material_group(ui, label, material) {
-            context.out.push(Command::ChooseTexture(Item::Room, Some(part.to_owned())));
+        if let Some(slot) = material_group(ui, label, material) {
+            context.out.push(Command::ChooseTexture(Item::Room, Some(part.to_owned()), slot));
         }
     }
     if original.as_ref() != Some(&room) {

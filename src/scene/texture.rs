@@ -1,0 +1,168 @@
+//! Texture images, references to them, and the texture slots of a material.
+
+use std::fmt;
+
+/// A decoded image: 8-bit sRGB, rows from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Texture {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// `width * height` pixels, red green blue, sRGB-encoded.
+    pub rgb: Vec<[u8; 3]>,
+}
+
+/// The source of a texture's bytes, a PNG or JPEG image. Paths are relative to the scene file, `/` between folders.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum TextureRef {
+    /// An image file.
+    File(String),
+    /// An image inside a model file.
+    Embedded {
+        /// Path of the model file.
+        model: String,
+        /// Index of the image in the model, from 0.
+        image: u32,
+    },
+}
+
+/// Separates a model's path from the index of its image: the JSON pointer to the image in glTF (RFC 6901, section 6).
+const IMAGE_POINTER: &str = "#/images/";
+
+impl TextureRef {
+    /// Returns a reference to an image file.
+    pub fn file(path: impl Into<String>) -> Self {
+        TextureRef::File(path.into())
+    }
+
+    /// Reads the text form that scene files use: `PATH`, or `MODEL#/images/N` for image N of a model.
+    pub fn parse(text: &str) -> Self {
+        let embedded = text.rsplit_once(IMAGE_POINTER).and_then(|(model, image)| {
+            let image: u32 = image.parse().ok()?;
+            let reference = TextureRef::Embedded { model: model.to_owned(), image };
+            // Other spellings of the number would change when they are written again.
+            (reference.to_string() == text).then_some(reference)
+        });
+        embedded.unwrap_or_else(|| TextureRef::file(text))
+    }
+
+    /// Returns the path of the file that holds the image: the image file, or the model.
+    pub fn path(&self) -> &str {
+        match self {
+            TextureRef::File(path) => path,
+            TextureRef::Embedded { model, .. } => model,
+        }
+    }
+
+    /// Returns the same image in a file at another path.
+    pub fn at_path(self, path: String) -> Self {
+        match self {
+            TextureRef::File(_) => TextureRef::File(path),
+            TextureRef::Embedded { image, .. } => TextureRef::Embedded { model: path, image },
+        }
+    }
+}
+
+impl fmt::Display for TextureRef {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            TextureRef::File(path) => f.write_str(path),
+            TextureRef::Embedded { model, image } => write!(f, "{model}{IMAGE_POINTER}{image}"),
+        }
+    }
+}
+
+/// A property of a material that a texture can vary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TextureSlot {
+    /// Multiplies [`super::Material::base_color`].
+    BaseColor,
+}
+
+impl TextureSlot {
+    /// Number of slots; `slot as usize` is an index below it.
+    pub const COUNT: usize = 1;
+
+    /// Every slot, by index.
+    pub const ALL: [TextureSlot; Self::COUNT] = [TextureSlot::BaseColor];
+
+    /// Returns the name of the slot's field in a scene file.
+    pub fn field(self) -> &'static str {
+        match self {
+            TextureSlot::BaseColor => "base_color_texture",
+        }
+    }
+}
+
+/// The textures of a material, at most one a slot.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MaterialTextures {
+    /// Multiplies [`super::Material::base_color`].
+    pub base_color: Option<TextureRef>,
+}
+
+impl MaterialTextures {
+    /// Returns textures with only the base colour's.
+    pub fn with_base_color(texture: TextureRef) -> Self {
+        MaterialTextures { base_color: Some(texture) }
+    }
+
+    /// Returns the texture of a slot.
+    pub fn get(&self, slot: TextureSlot) -> Option<&TextureRef> {
+        match slot {
+            TextureSlot::BaseColor => self.base_color.as_ref(),
+        }
+    }
+
+    /// Returns the texture of a slot, to be changed.
+    pub fn get_mut(&mut self, slot: TextureSlot) -> &mut Option<TextureRef> {
+        match slot {
+            TextureSlot::BaseColor => &mut self.base_color,
+        }
+    }
+
+    /// Returns the textures that are set, with their slots.
+    pub fn iter(&self) -> impl Iterator<Item = (TextureSlot, &TextureRef)> {
+        TextureSlot::ALL.into_iter().filter_map(|slot| Some((slot, self.get(slot)?)))
+    }
+
+    /// Looks every texture up. Returns the results by slot index; `None` for slots that are empty or not found.
+    pub fn look_up<T>(&self, mut find: impl FnMut(&TextureRef) -> Option<T>) -> [Option<T>; TextureSlot::COUNT] {
+        TextureSlot::ALL.map(|slot| self.get(slot).and_then(&mut find))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texture_references_are_written_as_they_are_read() {
+        let embedded = |model: &str, image| TextureRef::Embedded { model: model.to_owned(), image };
+        for (text, expected) in [
+            ("a/floor.png", TextureRef::file("a/floor.png")),
+            ("chair.glb#/images/3", embedded("chair.glb", 3)),
+            ("a#/images/1#/images/2", embedded("a#/images/1", 2)),
+            ("chair.glb#/images/03", TextureRef::file("chair.glb#/images/03")),
+            ("chair.glb#/images/x", TextureRef::file("chair.glb#/images/x")),
+            ("chair.glb#3", TextureRef::file("chair.glb#3")),
+        ] {
+            let reference = TextureRef::parse(text);
+            assert_eq!(reference, expected);
+            assert_eq!(reference.to_string(), text);
+        }
+    }
+
+    #[test]
+    fn slots_have_the_index_of_their_place_in_the_list() {
+        for (index, slot) in TextureSlot::ALL.into_iter().enumerate() {
+            assert_eq!(slot as usize, index);
+            let mut textures = MaterialTextures::default();
+            let reference = TextureRef::file(slot.field());
+            *textures.get_mut(slot) = Some(reference.clone());
+            assert_eq!(textures.iter().collect::<Vec<_>>(), [(slot, &reference)]);
+            assert_eq!(textures.look_up(|found| Some(found == &reference))[index], Some(true));
+        }
+    }
+}
