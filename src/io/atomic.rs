@@ -1,12 +1,12 @@
-//! Saving without a moment in which the file is half written or gone.
+//! Atomic file replacement: a reader sees the older file or the whole new one.
 
 use super::error::SaveError;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Writes `content` to a new file beside `path`, flushes it to the disk and renames it over `path`. Whatever fails, an
-/// older file at `path` stays whole. A symbolic link stays a link: its target is replaced. An older file's permissions
-/// are kept.
+/// Writes `content` to a new file beside `path`, flushes it to the disk and renames it over `path`. On failure an
+/// older file at `path` is unchanged. The target of a symbolic link is replaced, the link kept. An older file's
+/// permissions are kept.
 pub(super) fn write(path: &Path, content: &[u8]) -> Result<(), SaveError> {
     if path.file_name().is_none() || path.is_dir() {
         return Err(SaveError::NoFileName(path.to_owned()));
@@ -36,7 +36,7 @@ fn replace(target: &Path, folder: &Path, content: &[u8]) -> std::io::Result<()> 
     builder.prefix(".catchlight-").suffix(".tmp");
     #[cfg(unix)]
     {
-        // What `File::create` would ask for; the umask takes away from it. tempfile's own default is private.
+        // The mode of `File::create`, before the umask; the default of `tempfile` is 0o600.
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
@@ -52,7 +52,7 @@ fn replace(target: &Path, folder: &Path, content: &[u8]) -> std::io::Result<()> 
     Ok(())
 }
 
-/// Makes the rename itself last. Some file systems can't, and the file is whole either way: no error.
+/// Flushes the rename to the disk. Some file systems can't; the file is whole either way, so this is no error.
 fn sync_folder(folder: &Path) {
     if let Err(error) = std::fs::File::open(folder).and_then(|folder| folder.sync_all()) {
         log::debug!("{} can't be synced: {error}", folder.display());
@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn replaces_and_leaves_nothing_beside() {
+    fn a_write_replaces_the_file_and_leaves_no_other() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.ron");
         write(&path, b"one").unwrap();
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_folders_and_folders_as_files_are_named() {
+    fn a_missing_folder_and_a_folder_as_file_name_are_errors() {
         let folder = tempfile::tempdir().unwrap();
         let error = write(&folder.path().join("none/a.ron"), b"").unwrap_err();
         assert!(matches!(error, SaveError::NoFolder(_)), "{error}");
@@ -83,7 +83,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn links_stay_links_and_permissions_stay() {
+    fn symbolic_links_and_permissions_are_kept() {
         use std::os::unix::fs::PermissionsExt;
         let folder = tempfile::tempdir().unwrap();
         let (real, link) = (folder.path().join("real.ron"), folder.path().join("link.ron"));

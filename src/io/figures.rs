@@ -39,7 +39,7 @@ pub(super) fn mesh(figure: Mannequin) -> Result<Arc<Mesh>, AssetError> {
     let wanted = figures::resolve(figure);
     let file = figures::ALL.iter().position(|baked| *baked == wanted).map(|i| FILES[i]);
     let mesh = file
-        .and_then(obj::read_shipped)
+        .and_then(obj::parse_embedded)
         .map(Arc::new)
         .ok_or(AssetError::NoFigure { figure: figure.figure, pose: figure.pose })?;
     read().insert(figure, Arc::clone(&mesh));

@@ -1,27 +1,27 @@
-//! The studios that ship with the program, embedded in it.
+//! The studio presets, embedded in the program.
 
 use super::error::LoadError;
 use super::scene_file::{self, Loaded};
 use std::sync::LazyLock;
 
-/// A shipped studio.
+/// A studio preset.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Preset {
     /// Name of its file in `studio_presets`.
     pub file_name: &'static str,
     /// Title, as in the file.
     pub name: String,
-    /// One line that says what the set-up is for, as in the file.
+    /// Purpose of the set-up in one line, as in the file.
     pub description: String,
-    /// The file.
+    /// Content of the file.
     pub text: &'static str,
 }
 
 impl Preset {
-    /// The studio, ready to be used.
+    /// Loads the studio with its assets.
     ///
     /// # Errors
-    /// None, as far as the tests know: every preset is loaded by one.
+    /// As [`parse_scene`](super::parse_scene). A test loads every preset.
     pub fn load(&self) -> Result<Loaded, LoadError> {
         let (scene, warnings) = scene_file::parse_scene(self.text)?;
         Ok(scene_file::complete(scene, warnings, None))
@@ -34,7 +34,7 @@ macro_rules! embedded {
     };
 }
 
-/// In the order of menus: portraits from the plain to the special, then people, then things.
+/// File names and contents, in menu order: portraits from the plain to the special, then groups, then products.
 const FILES: &[(&str, &str)] = embedded![
     "three_point.ron",
     "rembrandt.ron",
@@ -51,14 +51,14 @@ const FILES: &[(&str, &str)] = embedded![
     "product_still_life.ron",
 ];
 
-/// All shipped studios, in menu order.
+/// Returns all presets, in menu order.
 pub fn presets() -> &'static [Preset] {
     static PRESETS: LazyLock<Vec<Preset>> =
         LazyLock::new(|| FILES.iter().map(|&(file, text)| preset(file, text)).collect());
     &PRESETS
 }
 
-/// The shipped studio with this file name, or this title, whatever the case; the file's ending may be left out.
+/// Returns the preset with this file name, with or without its extension, or with this title, in any case of letters.
 pub fn find_preset(name: &str) -> Option<&'static Preset> {
     let wanted = name.trim().to_lowercase();
     let stem = wanted.strip_suffix(".ron").unwrap_or(&wanted);

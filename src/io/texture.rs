@@ -1,4 +1,4 @@
-//! Textures: PNG and JPEG through `image`, with limits.
+//! Decodes textures: PNG and JPEG, with limits.
 
 use super::error::AssetError;
 use super::read::read_limited;
@@ -9,11 +9,11 @@ use std::path::Path;
 /// Extensions of texture files, without the dot.
 pub const TEXTURE_EXTENSIONS: &[&str] = &["png", "jpg", "jpeg"];
 
-/// Largest texture file, bytes.
+/// Largest image file, bytes.
 const FILE_LIMIT_BYTES: u64 = 512 << 20;
-/// Most pixels along a side.
+/// Largest width or height, pixels.
 const SIDE_LIMIT: u32 = 16_384;
-/// Most memory that decoding may take, bytes.
+/// Largest memory of the decoder, bytes.
 const MEMORY_LIMIT_BYTES: u64 = 1 << 30;
 
 /// Loads an image file as 8-bit sRGB.
@@ -46,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_png_is_read_as_it_was_written() {
+    fn a_png_is_decoded_to_its_pixels() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         let pixels = image::RgbImage::from_fn(3, 2, |x, y| image::Rgb([x as u8 * 50, y as u8 * 100, 7]));
@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn junk_is_an_error_that_names_the_file() {
+    fn malformed_images_are_errors_that_name_the_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         std::fs::write(&path, b"not a picture").unwrap();

@@ -1,52 +1,53 @@
-//! The faces of an OBJ file by group and material, and the mesh that they make.
+//! Groups the faces of an OBJ file by name and material, and welds the groups to one mesh.
 
-use super::lines::{ABSENT, Corner, Faces, Mark};
-use super::materials::Library;
-use super::pieces::Elements;
-use super::weld::Welder;
+use super::chunks::Elements;
+use super::lines::{CornerIndices, Directive, Faces, NO_INDEX};
+use super::materials::MaterialLibrary;
+use super::weld::VertexWelder;
 use crate::scene::{Mesh, MeshPart};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Faces with one name and one material.
+/// Faces with one group name and one material.
 #[derive(Debug)]
-pub(super) struct Group<'a> {
-    /// Of the group in the file; empty where it has none.
+pub(super) struct FaceGroup<'a> {
+    /// The group's name in the file; empty for faces before the first group.
     name: String,
-    /// In the library.
+    /// Index into the library.
     pub material: Option<usize>,
-    runs: Vec<&'a [[Corner; 3]]>,
+    /// Runs of triangles, by chunk.
+    runs: Vec<&'a [[CornerIndices; 3]]>,
 }
 
-/// All groups that have triangles, in the order of the file. Loads the materials on the way.
-pub(super) fn groups<'a>(faces: &'a [Faces], library: &mut Library) -> Vec<Group<'a>> {
+/// Returns the groups that have triangles, in file order. Loads the material libraries that the file names.
+pub(super) fn groups<'a>(faces: &'a [Faces], library: &mut MaterialLibrary) -> Vec<FaceGroup<'a>> {
     let mut groups = Vec::new();
-    let mut open = Group { name: String::new(), material: None, runs: Vec::new() };
-    for Faces { triangles, marks } in faces {
+    let mut open = FaceGroup { name: String::new(), material: None, runs: Vec::new() };
+    for Faces { triangles, directives } in faces {
         let mut from = 0;
-        for (at, mark) in marks {
+        for (at, directive) in directives {
             open.extend(&triangles[from..*at]);
             from = *at;
-            let (name, material) = match mark {
-                Mark::Group(name) => (name.clone(), open.material),
-                Mark::Material(name) if library.find(name) == open.material => continue,
-                Mark::Material(name) => (open.name.clone(), library.find(name)),
-                Mark::Library(name) => {
+            let (name, material) = match directive {
+                Directive::Group(name) => (name.clone(), open.material),
+                Directive::Material(name) if library.find(name) == open.material => continue,
+                Directive::Material(name) => (open.name.clone(), library.find(name)),
+                Directive::Library(name) => {
                     library.load(name);
                     continue;
                 }
             };
-            let closed = std::mem::replace(&mut open, Group { name, material, runs: Vec::new() });
-            groups.extend(Some(closed).filter(Group::has_triangles));
+            let closed = std::mem::replace(&mut open, FaceGroup { name, material, runs: Vec::new() });
+            groups.extend(Some(closed).filter(FaceGroup::has_triangles));
         }
         open.extend(&triangles[from..]);
     }
-    groups.extend(Some(open).filter(Group::has_triangles));
+    groups.extend(Some(open).filter(FaceGroup::has_triangles));
     groups
 }
 
-impl<'a> Group<'a> {
-    fn extend(&mut self, run: &'a [[Corner; 3]]) {
+impl<'a> FaceGroup<'a> {
+    fn extend(&mut self, run: &'a [[CornerIndices; 3]]) {
         if !run.is_empty() {
             self.runs.push(run);
         }
@@ -57,18 +58,18 @@ impl<'a> Group<'a> {
     }
 }
 
-/// A name a part: the group's, with the material's where a group has several, and the material's where there is no
-/// group.
-pub(super) fn part_names(groups: &[Group<'_>], library: &Library) -> Vec<String> {
-    let mut times = HashMap::new();
+/// Returns a part name for each group: the group's, followed by the material's if several groups have the name; the
+/// material's alone for groups without a name.
+pub(super) fn part_names(groups: &[FaceGroup<'_>], library: &MaterialLibrary) -> Vec<String> {
+    let mut uses = HashMap::new();
     for group in groups {
-        *times.entry(group.name.as_str()).or_insert(0_u32) += 1;
+        *uses.entry(group.name.as_str()).or_insert(0_u32) += 1;
     }
-    let name = |group: &Group<'_>| {
+    let name = |group: &FaceGroup<'_>| {
         let material = library.get(group.material).map(|m| m.name.as_str());
         match material {
             Some(material) if group.name.is_empty() => material.to_owned(),
-            Some(material) if times[group.name.as_str()] > 1 => format!("{} {material}", group.name),
+            Some(material) if uses[group.name.as_str()] > 1 => format!("{} {material}", group.name),
             _ if group.name.is_empty() => "surface".to_owned(),
             _ => group.name.clone(),
         }
@@ -76,10 +77,10 @@ pub(super) fn part_names(groups: &[Group<'_>], library: &Library) -> Vec<String>
     groups.iter().map(name).collect()
 }
 
-/// One mesh, a part a group with the given names. Texture coordinates and normals are left out where some corner has
-/// none.
-pub(super) fn weld(elements: &Elements, groups: &[Group<'_>], names: Vec<String>) -> Mesh {
-    let mut welder = Welder::new(elements.positions.len());
+/// Builds one mesh with a part for each group, named by `names`. Texture coordinates and normals are left out if some
+/// corner has none.
+pub(super) fn weld(elements: &Elements, groups: &[FaceGroup<'_>], names: Vec<String>) -> Mesh {
+    let mut welder = VertexWelder::new(elements.positions.len());
     let mut mesh = Mesh::default();
     for (group, name) in groups.iter().zip(names) {
         let first = mesh.triangles.len() as u32;
@@ -89,7 +90,7 @@ pub(super) fn weld(elements: &Elements, groups: &[Group<'_>], names: Vec<String>
         mesh.parts.push(MeshPart { name, triangles: first..mesh.triangles.len() as u32 });
     }
     let vertices = &welder.vertices;
-    let all_have = |kind: usize| vertices.par_iter().all(|vertex| vertex[kind] != ABSENT);
+    let all_have = |kind: usize| vertices.par_iter().all(|vertex| vertex[kind] != NO_INDEX);
     mesh.positions = gather(vertices, 0, &elements.positions);
     if all_have(1) {
         mesh.uvs = gather(vertices, 1, &elements.uvs);
@@ -100,7 +101,7 @@ pub(super) fn weld(elements: &Elements, groups: &[Group<'_>], names: Vec<String>
     mesh
 }
 
-/// What each vertex names of a kind.
-fn gather<T: Copy + Send + Sync>(vertices: &[Corner], kind: usize, values: &[T]) -> Vec<T> {
+/// Returns one element of each vertex: `kind` 0 positions, 1 texture coordinates, 2 normals.
+fn gather<T: Copy + Send + Sync>(vertices: &[CornerIndices], kind: usize, values: &[T]) -> Vec<T> {
     vertices.par_iter().map(|vertex| values[vertex[kind] as usize]).collect()
 }

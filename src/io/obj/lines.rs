@@ -1,43 +1,44 @@
-//! The lines of an OBJ file, one piece of it at a time.
+//! Parses the lines of an OBJ file, one chunk of the file at a time.
 
 use glam::{Vec2, Vec3};
 
-/// Where a corner has no texture coordinate or no normal.
-pub(super) const ABSENT: u32 = u32::MAX;
+/// Index of a texture coordinate or a normal that a face corner does not have.
+pub(super) const NO_INDEX: u32 = u32::MAX;
 
-/// What a corner of a face names: position, texture coordinate and normal, counted from 0 in the whole file.
-pub(super) type Corner = [u32; 3];
+/// Indices of a face corner's position, texture coordinate and normal, from 0 in the whole file.
+pub(super) type CornerIndices = [u32; 3];
 
-/// What the numbers of a corner count.
-const KINDS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+/// Names of the three elements in messages.
+const ELEMENT_NAMES: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 
-/// A line that concerns all faces after it.
+/// A line that applies to all faces after it.
 #[derive(Debug)]
-pub(super) enum Mark {
-    /// A group or an object begins; the name may be empty.
+pub(super) enum Directive {
+    /// Begins a group or an object; the name may be empty.
     Group(String),
-    /// A material of one of the libraries.
+    /// Selects a material by its name in the libraries.
     Material(String),
-    /// A file of materials.
+    /// Names a file of materials.
     Library(String),
 }
 
-/// The faces of a piece as triangles, and the marks among them.
+/// The faces of a chunk as triangles, and the directives among them.
 #[derive(Debug, Default)]
 pub(super) struct Faces {
-    pub triangles: Vec<[Corner; 3]>,
+    pub triangles: Vec<[CornerIndices; 3]>,
     /// Each with the number of triangles before it.
-    pub marks: Vec<(usize, Mark)>,
+    pub directives: Vec<(usize, Directive)>,
 }
 
-/// What a line should say, and its number in the piece, from 1.
+/// A mistake in a line.
 #[derive(Debug)]
-pub(super) struct Mistake {
+pub(super) struct LineError {
+    /// Number of the line in its chunk, from 1.
     pub line: usize,
     pub message: String,
 }
 
-/// A run of lines.
+/// Splits text into lines, without their ends.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     let mut rest = bytes;
     std::iter::from_fn(move || {
@@ -50,11 +51,11 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
 
 /// Numbers of positions, texture coordinates and normals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Counts(pub [u32; 3]);
+pub(super) struct ElementCounts(pub [u32; 3]);
 
-impl Counts {
-    /// What some lines bring. Faces may name what comes later, or count back from where they stand, so this must be
-    /// known before they are read.
+impl ElementCounts {
+    /// Counts the elements that lines define. Face indices may be forward or relative to the face, so the counts must be
+    /// known before faces are parsed.
     pub fn of(bytes: &[u8]) -> Self {
         let mut counts = [0; 3];
         for line in lines(bytes) {
@@ -66,65 +67,65 @@ impl Counts {
             };
             counts[kind] += 1;
         }
-        Counts(counts)
+        ElementCounts(counts)
     }
 
-    pub fn plus(self, more: &Counts) -> Self {
-        Counts(std::array::from_fn(|kind| self.0[kind] + more.0[kind]))
+    pub fn plus(self, more: &ElementCounts) -> Self {
+        ElementCounts(std::array::from_fn(|kind| self.0[kind] + more.0[kind]))
     }
 }
 
-/// What a run of lines says.
+/// The parsed content of a chunk.
 #[derive(Debug, Default)]
-pub(super) struct Piece {
+pub(super) struct ParsedChunk {
     pub positions: Vec<Vec3>,
     pub uvs: Vec<Vec2>,
     pub normals: Vec<Vec3>,
     pub faces: Faces,
 }
 
-impl Piece {
-    /// Reads lines that follow on what `before` counts, of a file that has `total`.
-    pub fn read(bytes: &[u8], before: Counts, total: Counts) -> Result<Self, Mistake> {
-        let mut piece = Piece::default();
+impl ParsedChunk {
+    /// Parses lines that follow `before` elements in a file with `total` elements.
+    pub fn parse(bytes: &[u8], before: ElementCounts, total: ElementCounts) -> Result<Self, LineError> {
+        let mut chunk = ParsedChunk::default();
         for (index, line) in lines(bytes).enumerate() {
-            piece
-                .read_line(line.trim_ascii(), &before, &total)
-                .map_err(|message| Mistake { line: index + 1, message })?;
+            chunk
+                .parse_line(line.trim_ascii(), &before, &total)
+                .map_err(|message| LineError { line: index + 1, message })?;
         }
-        Ok(piece)
+        Ok(chunk)
     }
 
-    fn read_line(&mut self, line: &[u8], before: &Counts, total: &Counts) -> Result<(), String> {
+    fn parse_line(&mut self, line: &[u8], before: &ElementCounts, total: &ElementCounts) -> Result<(), String> {
         let keyword_end = line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len());
         let (keyword, rest) = line.split_at(keyword_end);
         let text = || String::from_utf8_lossy(rest.trim_ascii()).into_owned();
-        let mark = match keyword {
+        let directive = match keyword {
             b"v" => return position(rest).map(|position| self.positions.push(position)),
             b"vt" => return numbers(rest, "texture coordinate").map(|uv| self.uvs.push(Vec2::from_array(uv))),
             b"vn" => return numbers(rest, "normal").map(|normal| self.normals.push(Vec3::from_array(normal))),
             b"f" => {
                 let here = before.plus(&self.counts());
-                return self.read_face(rest, &here, total);
+                return self.parse_face(rest, &here, total);
             }
-            // Objects and groups are the same to us.
-            b"o" | b"g" => Mark::Group(text()),
-            b"mtllib" => Mark::Library(text()),
+            // Objects are groups.
+            b"o" | b"g" => Directive::Group(text()),
+            b"mtllib" => Directive::Library(text()),
             b"usemtl" if rest.is_empty() => return Err("it names no material".to_owned()),
-            b"usemtl" => Mark::Material(text()),
-            // Lines, curves, comments, smoothing.
+            b"usemtl" => Directive::Material(text()),
+            // Lines, curves, comments and smoothing groups are skipped.
             _ => return Ok(()),
         };
-        self.faces.marks.push((self.faces.triangles.len(), mark));
+        self.faces.directives.push((self.faces.triangles.len(), directive));
         Ok(())
     }
 
-    fn counts(&self) -> Counts {
-        Counts([self.positions.len() as u32, self.uvs.len() as u32, self.normals.len() as u32])
+    fn counts(&self) -> ElementCounts {
+        ElementCounts([self.positions.len() as u32, self.uvs.len() as u32, self.normals.len() as u32])
     }
 
-    /// A polygon as a fan of triangles. Points and lines have none.
-    fn read_face(&mut self, rest: &[u8], here: &Counts, total: &Counts) -> Result<(), String> {
+    /// Triangulates a polygon as a fan. Points and lines have no triangles.
+    fn parse_face(&mut self, rest: &[u8], here: &ElementCounts, total: &ElementCounts) -> Result<(), String> {
         let mut corners = words(rest).map(|word| corner(word, here, total));
         let first = corners.next().ok_or("the polygon has no corners")??;
         let Some(mut last) = corners.next().transpose()? else { return Ok(()) };
@@ -141,7 +142,7 @@ fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
 }
 
-/// A whole number of at most 18 digits, more than the largest file could count.
+/// Parses an integer of at most 18 digits, more than the largest file can need.
 fn integer(word: &[u8]) -> Option<i64> {
     let (sign, digits) = match word {
         [b'-', digits @ ..] => (-1, digits),
@@ -156,7 +157,7 @@ fn number(word: &[u8]) -> Option<f32> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// The first numbers of a line; more may follow.
+/// Parses the first N numbers of a line; more may follow.
 fn numbers<const N: usize>(rest: &[u8], what: &str) -> Result<[f32; N], String> {
     let mut read = [0.0; N];
     let mut words = words(rest);
@@ -167,7 +168,7 @@ fn numbers<const N: usize>(rest: &[u8], what: &str) -> Result<[f32; N], String> 
     Ok(read)
 }
 
-/// Three numbers, and perhaps a fourth to divide them by, or a colour, which is not used.
+/// Parses three coordinates, optionally followed by a homogeneous fourth or by a colour, which is skipped.
 fn position(rest: &[u8]) -> Result<Vec3, String> {
     let position = Vec3::from_array(numbers(rest, "position")?);
     let mut more = words(rest).skip(3);
@@ -181,13 +182,14 @@ fn position(rest: &[u8]) -> Result<Vec3, String> {
     }
 }
 
-fn corner(word: &[u8], here: &Counts, total: &Counts) -> Result<Corner, String> {
+/// Parses a face corner, `v`, `v/vt`, `v//vn` or `v/vt/vn`. Negative indices count back from `here`.
+fn corner(word: &[u8], here: &ElementCounts, total: &ElementCounts) -> Result<CornerIndices, String> {
     let wrong = |why: &str| format!("the face's corner {:?} {why}", String::from_utf8_lossy(word));
     if word.starts_with(b"/") {
         return Err(wrong("names no vertex"));
     }
-    let mut corner = [ABSENT; 3];
-    // Told last: a corner that makes no sense names nothing.
+    let mut corner = [NO_INDEX; 3];
+    // Reported only if the rest of the corner is well formed.
     let mut missing = None;
     for (kind, text) in word.split(|&byte| byte == b'/').enumerate().filter(|(_, text)| !text.is_empty()) {
         let slot = corner.get_mut(kind).ok_or_else(|| wrong("has too many parts"))?;
@@ -196,14 +198,14 @@ fn corner(word: &[u8], here: &Counts, total: &Counts) -> Result<Corner, String> 
         if index == 0 {
             return Err(wrong("is 0, but indices begin at 1"));
         }
-        let place = if index > 0 { index - 1 } else { here + index };
-        if place < 0 {
+        let zero_based = if index > 0 { index - 1 } else { here + index };
+        if zero_based < 0 {
             return Err(wrong("points to before the first"));
         }
-        if place >= total {
-            missing = Some(format!("the face names {} {index}, but there are {total}", KINDS[kind]));
+        if zero_based >= total {
+            missing = Some(format!("the face names {} {index}, but there are {total}", ELEMENT_NAMES[kind]));
         }
-        *slot = place as u32;
+        *slot = zero_based as u32;
     }
     missing.map_or(Ok(corner), Err)
 }

@@ -1,4 +1,4 @@
-//! Surfaces from the MTL file of an OBJ model.
+//! Materials from the MTL files of an OBJ model.
 
 use crate::io::read::read_limited;
 use crate::scene::{Material, MaterialTextures, TextureRef, path_complaint};
@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 /// Largest MTL file, bytes.
 const FILE_LIMIT_BYTES: u64 = 16_000_000;
 
-/// The materials that a model names, from the libraries in its folder.
+/// The materials that a model refers to, from the MTL files in its folder.
 #[derive(Debug, Default)]
-pub(super) struct Library {
-    /// None where there are no libraries at all.
+pub(super) struct MaterialLibrary {
+    /// Folder of the model; `None` for models without MTL files.
     folder: Option<PathBuf>,
     loaded: HashSet<String>,
     materials: Vec<tobj::Material>,
@@ -19,26 +19,31 @@ pub(super) struct Library {
     warnings: Vec<String>,
 }
 
-impl Library {
+impl MaterialLibrary {
+    /// Returns an empty library for a model's folder.
     pub fn beside(model: &Path) -> Self {
-        Library { folder: Some(model.parent().unwrap_or(Path::new("")).to_owned()), ..Library::default() }
+        MaterialLibrary {
+            folder: Some(model.parent().unwrap_or(Path::new("")).to_owned()),
+            ..MaterialLibrary::default()
+        }
     }
 
+    /// Returns a sentence for each file that could not be read.
     pub fn into_warnings(self) -> Vec<String> {
         self.warnings
     }
 
-    /// Number of the material that now has this name.
+    /// Returns the index of the material with this name, the last one loaded.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.by_name.get(name).copied()
     }
 
-    /// A material that was found.
-    pub fn get(&self, number: Option<usize>) -> Option<&tobj::Material> {
-        self.materials.get(number?)
+    /// Returns a material by its index.
+    pub fn get(&self, index: Option<usize>) -> Option<&tobj::Material> {
+        self.materials.get(index?)
     }
 
-    /// Adds the materials of a file; none, and a warning, where it can't be read.
+    /// Adds the materials of an MTL file, once. A file that can't be read is a warning.
     pub fn load(&mut self, name: &str) {
         let Some(folder) = self.folder.as_ref().filter(|_| !self.loaded.contains(name)) else { return };
         let parse = |text: String| tobj::load_mtl_buf(&mut text.as_bytes()).map_err(|error| error.to_string());
@@ -46,7 +51,7 @@ impl Library {
             Ok((materials, by_name)) => {
                 let before = self.materials.len();
                 self.materials.extend(materials);
-                self.by_name.extend(by_name.into_iter().map(|(name, number)| (name, before + number)));
+                self.by_name.extend(by_name.into_iter().map(|(name, index)| (name, before + index)));
             }
             Err(reason) => self.warnings.push(format!("the materials {name:?} are left out: {reason}")),
         }
@@ -62,7 +67,7 @@ fn read(folder: &Path, name: &str) -> Result<String, String> {
     Ok(usable_lines(&String::from_utf8_lossy(&bytes)))
 }
 
-/// The lines that the parser can take: it expects three numbers for every colour without looking.
+/// Drops the lines that make `tobj` fail: it reads three numbers for every colour without a check.
 fn usable_lines(text: &str) -> String {
     let is_usable = |line: &&str| {
         let mut words = line.split_whitespace();
@@ -72,16 +77,17 @@ fn usable_lines(text: &str) -> String {
     text.lines().filter(is_usable).fold(String::with_capacity(text.len()), |all, line| all + line + "\n")
 }
 
-/// Our surface for one of MTL's: diffuse colour and texture, gloss from the Phong exponent, glass from the dissolve.
-pub(super) fn surface(mtl: &tobj::Material) -> Material {
+/// Converts an MTL material: base colour and texture from the diffuse ones, roughness from the Phong exponent,
+/// transmission from the dissolve.
+pub(super) fn convert(mtl: &tobj::Material) -> Material {
     let plain = Material::default();
-    // A white of 1 would give back all light.
+    // A reflectance of 1 would absorb nothing.
     let color = mtl.diffuse.map_or(plain.base_color, |kd| kd.map(|c| if c > 0.0 { c.min(0.95) } else { 0.0 }));
     let number = |value: Option<f32>| value.filter(|v| v.is_finite());
     Material {
         base_color: color,
         textures: MaterialTextures { base_color: mtl.diffuse_texture.as_deref().and_then(texture_path) },
-        // alpha^2 = 2 / (Ns + 2) (Walter et al. 2007), and alpha is the square of our roughness.
+        // alpha^2 = 2 / (Ns + 2) (Walter et al. 2007, section 5.2), and alpha is the square of the roughness.
         roughness: number(mtl.shininess).map_or(plain.roughness, |ns| (2.0 / (ns.max(0.0) + 2.0)).powf(0.25)),
         ior: number(mtl.optical_density).filter(|n| *n > 1.0).map_or(plain.ior, |n| n.min(4.0)),
         transmission: number(mtl.dissolve).map_or(0.0, |d| 1.0 - d.clamp(0.0, 1.0)),
@@ -89,7 +95,7 @@ pub(super) fn surface(mtl: &tobj::Material) -> Material {
     }
 }
 
-/// The path of `map_Kd`, which may follow options such as `-s 1 1 1`; none where it would lead out of the folder.
+/// Parses the path of `map_Kd`, which may follow options such as `-s 1 1 1`. `None` if it leads out of the folder.
 fn texture_path(value: &str) -> Option<TextureRef> {
     let value = value.trim();
     let path = if value.starts_with('-') { value.split_whitespace().next_back()? } else { value };

@@ -30,12 +30,12 @@ fn a_quad_becomes_two_triangles_with_normals() {
 }
 
 #[test]
-fn relative_and_forward_indices_are_fine() {
+fn relative_and_forward_indices_are_resolved() {
     assert_eq!(import(&format!("f 1 2 3\n{QUAD}f -4 -3 -2\n")).unwrap().mesh.triangles.len(), 2);
 }
 
 #[test]
-fn groups_become_parts_and_materials_follow() {
+fn groups_become_parts_with_their_materials() {
     let obj =
         format!("mtllib a.mtl\n{QUAD}vt 0 0\no body\nusemtl red\nf 1/1 2/1 3/1\no eyes\nusemtl glass\nf 1/1 3/1 4/1\n");
     let mtl = "newmtl red\nKd 1 0 0\nmap_Kd -s 1 1 1 red.png\nNs 98\nnewmtl glass\nKd 0.5\nd 0.1\nNi 1.52\n";
@@ -52,7 +52,7 @@ fn groups_become_parts_and_materials_follow() {
 }
 
 #[test]
-fn a_missing_library_is_a_warning() {
+fn a_missing_material_library_is_a_warning() {
     let imported = import(&format!("mtllib none.mtl\n{QUAD}usemtl x\nf 1 2 3\n")).unwrap();
     assert_eq!(imported.warnings.len(), 1, "{:?}", imported.warnings);
     let imported = import(&format!("mtllib ../../etc/passwd\n{QUAD}f 1 2 3\n")).unwrap();
@@ -60,7 +60,7 @@ fn a_missing_library_is_a_warning() {
 }
 
 #[test]
-fn mistakes_are_named_with_their_line() {
+fn errors_name_the_line() {
     for (faces, words) in [
         ("f 1 2 9", "line 5: the face names vertex 9, but there are 4"),
         ("f 1 2 -9", "line 5: the face's corner \"-9\" points to before the first"),
@@ -94,14 +94,14 @@ fn mistakes_are_named_with_their_line() {
 }
 
 #[test]
-fn bad_normals_are_computed_anew() {
+fn normals_without_direction_are_recomputed() {
     let imported = import(&format!("{QUAD}vn 0 0 0\nf 1//1 2//1 3//1\n")).unwrap();
     assert_eq!(imported.mesh.normals, [Vec3::Z; 3]);
     assert_eq!(imported.warnings.len(), 1);
 }
 
 #[test]
-fn computed_normals_do_not_see_texture_seams() {
+fn computed_normals_are_smooth_across_texture_seams() {
     // A flat tent whose ridge has two texture coordinates: its normal is the mean of both sides.
     let tent = "v -1 0 0\nv -1 0 1\nv 0 0.2 0\nv 0 0.2 1\nv 1 0 0\nv 1 0 1\nvt 0 0\nvt 1 1\n\
         f 1/1 2/1 4/1 3/1\nf 3/2 4/2 6/2 5/2\n";
@@ -113,14 +113,14 @@ fn computed_normals_do_not_see_texture_seams() {
 }
 
 #[test]
-fn a_cut_file_is_an_error_or_a_smaller_model() {
+fn a_truncated_file_is_an_error_or_a_smaller_model() {
     let whole = format!("{QUAD}vt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\n");
     for end in 0..whole.len() {
         let _ = import(&whole[..end]);
     }
 }
 
-/// A model of many pieces: strips of quads, every third counted back from its end, in groups that share corners.
+/// Returns a model of several chunks: a strip of quads, every third with relative indices, in groups that share corners.
 fn long_model(quads: u32) -> String {
     let mut text = "# a strip\r\nv 0 0 0\r\nv 0 0 1\r\nvt 0 0\r\nvn 0 1 0\r\n".to_owned();
     for i in 1..=quads {
@@ -137,10 +137,10 @@ fn long_model(quads: u32) -> String {
 }
 
 #[test]
-fn a_model_that_is_read_in_pieces_is_whole() {
+fn a_model_of_several_chunks_is_parsed_completely() {
     let quads = 40_000;
     let text = long_model(quads);
-    assert!(text.len() > 3 << 20, "no more than a piece or two");
+    assert!(text.len() > 3 << 20, "too few chunks");
     let mesh = import(&text).unwrap().mesh;
     assert_eq!(mesh.triangles.len(), 2 * quads as usize);
     assert_eq!(mesh.parts.len(), 40);
@@ -157,7 +157,7 @@ fn a_model_that_is_read_in_pieces_is_whole() {
 }
 
 #[test]
-fn a_mistake_deep_in_a_file_is_named_with_its_line_and_the_first_comes_first() {
+fn the_first_error_of_a_long_file_is_reported_with_its_line() {
     let mut lines: Vec<String> = long_model(60_000).lines().map(str::to_owned).collect();
     lines[200_000] = "f 1 2 x".to_owned();
     lines[150_000] = "v 1 2".to_owned();
@@ -166,26 +166,26 @@ fn a_mistake_deep_in_a_file_is_named_with_its_line_and_the_first_comes_first() {
 }
 
 #[test]
-fn lines_and_points_are_no_faces_and_a_polyline_is_no_polygon() {
+fn lines_and_points_make_no_triangles() {
     let imported = import(&format!("{QUAD}l 1 2 3 4\np 1\nf 1 2\nf 1\nf 1 2 3\n")).unwrap();
     assert_eq!(imported.mesh.triangles, [[0, 1, 2]]);
 }
 
 #[test]
-fn colours_and_weights_of_vertices_are_read_past() {
+fn vertex_colours_are_skipped_and_weights_divide() {
     let text = "v 0 0 0 1 0 0\nv 2 0 0 2\nv 0 1 0\nf 1 2 3\n";
     assert_eq!(import(text).unwrap().mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
 }
 
 #[test]
-fn a_library_that_is_named_again_and_again_is_read_once() {
+fn a_material_library_is_read_once_however_often_it_is_named() {
     let named = "mtllib none.mtl\n".repeat(1000);
     let imported = import(&format!("{named}{QUAD}f 1 2 3\n")).unwrap();
     assert_eq!(imported.warnings.len(), 1);
 }
 
 #[test]
-fn the_mesh_is_the_one_that_tobj_reads() {
+fn the_mesh_equals_that_of_tobj() {
     let text = long_model(5000);
     let (models, _) =
         tobj::load_obj_buf(&mut text.as_bytes(), &tobj::GPU_LOAD_OPTIONS, |_| Ok(Default::default())).unwrap();

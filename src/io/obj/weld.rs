@@ -1,37 +1,37 @@
-//! From corners that name a position, a texture coordinate and a normal each to vertices that have all three.
+//! Welds face corners with equal indices to shared vertices.
 
-use super::lines::Corner;
+use super::lines::CornerIndices;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-/// No vertex.
+/// Ends a chain of vertices.
 const NONE: u32 = u32::MAX;
-/// Vertices at a position that are looked through one by one; few have more.
-const CHAIN: usize = 16;
+/// Longest chain of vertices at a position that is searched in order; few positions have more.
+const CHAIN_LIMIT: usize = 16;
 
-/// Makes each combination a vertex, in the order in which they come.
+/// Assigns a vertex to each distinct combination of indices, in the order of their first use.
 #[derive(Debug)]
-pub(super) struct Welder {
-    /// All vertices so far.
-    pub vertices: Vec<Corner>,
-    /// First vertex of the group at each position.
+pub(super) struct VertexWelder {
+    /// The indices of each vertex.
+    pub vertices: Vec<CornerIndices>,
+    /// First vertex of the current group at each position.
     first: Vec<u32>,
-    /// The next vertex at the same position, for each vertex.
+    /// Next vertex at the same position, for each vertex.
     next: Vec<u32>,
-    /// Vertices beyond a position's first [`CHAIN`].
-    beyond: HashMap<Corner, u32>,
-    /// Where the group's vertices begin.
+    /// Vertices of the current group beyond a position's first [`CHAIN_LIMIT`].
+    beyond: HashMap<CornerIndices, u32>,
+    /// First vertex of the current group.
     group: usize,
 }
 
-impl Welder {
-    /// For corners that name so many positions.
+impl VertexWelder {
+    /// Returns a welder for corners with position indices below `positions`.
     pub fn new(positions: usize) -> Self {
         let first = vec![NONE; positions];
-        Welder { vertices: Vec::new(), first, next: Vec::new(), beyond: HashMap::new(), group: 0 }
+        VertexWelder { vertices: Vec::new(), first, next: Vec::new(), beyond: HashMap::new(), group: 0 }
     }
 
-    /// Begins a group: it shares no vertices with those before it.
+    /// Begins a group, which shares no vertices with the groups before it.
     pub fn begin_group(&mut self) {
         for vertex in &self.vertices[self.group..] {
             self.first[vertex[0] as usize] = NONE;
@@ -40,8 +40,8 @@ impl Welder {
         self.group = self.vertices.len();
     }
 
-    /// The corner's vertex.
-    pub fn vertex(&mut self, corner: Corner) -> u32 {
+    /// Returns the vertex of a corner.
+    pub fn vertex(&mut self, corner: CornerIndices) -> u32 {
         let new = self.vertices.len() as u32;
         let (mut at, mut last, mut length) = (self.first[corner[0] as usize], NONE, 0);
         while at != NONE {
@@ -52,7 +52,7 @@ impl Welder {
         }
         if last == NONE {
             self.first[corner[0] as usize] = new;
-        } else if length < CHAIN {
+        } else if length < CHAIN_LIMIT {
             self.next[last as usize] = new;
         } else {
             match self.beyond.entry(corner) {
@@ -71,8 +71,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equal_corners_of_a_group_are_one_vertex_however_many_there_are() {
-        let mut welder = Welder::new(2);
+    fn equal_corners_of_a_group_share_a_vertex() {
+        let mut welder = VertexWelder::new(2);
         for group in 0..2 {
             welder.begin_group();
             // Some positions with few combinations, one with many.
@@ -87,8 +87,8 @@ mod tests {
     }
 
     #[test]
-    fn vertices_are_numbered_as_they_come() {
-        let mut welder = Welder::new(3);
+    fn vertices_are_numbered_by_first_use() {
+        let mut welder = VertexWelder::new(3);
         let corners = [[2, 0, 0], [0, 0, 0], [2, 0, 0], [2, 1, 0], [1, 0, 0]];
         assert_eq!(corners.map(|corner| welder.vertex(corner)), [0, 1, 0, 2, 3]);
     }
