@@ -1,12 +1,12 @@
-//! How a scene file is laid out: one field a line down to the fields of each object and light, and below that as much
-//! on a line as fits. A changed number is then one changed line, and a vector never takes four.
+//! Pretty-prints scene files: one field a line down to the fields of each object and light, deeper values on one line
+//! where they fit. A changed number is one changed line of a diff, and a vector is one line.
 
-/// Longest line before a bracket is opened that need not be.
+/// Longest line, characters; a value that would exceed it is broken over several lines.
 const WIDTH: usize = 120;
-/// Spaces a level.
+/// Spaces of indentation for each level.
 const INDENT: usize = 4;
 
-/// Lays out RON as `ron::to_string` gives it: without spaces or line breaks outside strings.
+/// Pretty-prints RON in the form of `ron::to_string`, without spaces or line breaks outside of strings.
 pub(super) fn lay_out(compact: &str) -> String {
     let mut out = String::with_capacity(compact.len() * 2);
     put_value(compact, 0, 0, &mut out);
@@ -15,7 +15,7 @@ pub(super) fn lay_out(compact: &str) -> String {
 }
 
 /// Writes one value that starts in column `column` of a line indented by `depth` levels. The scene, its fields and the
-/// elements of its lists are always opened over several lines.
+/// elements of its lists are always broken over several lines.
 fn put_value(value: &str, depth: usize, column: usize, out: &mut String) {
     let Some(open) = group_start(value) else { return out.push_str(value) };
     let inner = &value[open + 1..value.len() - 1];
@@ -61,12 +61,13 @@ fn one_line_len(value: &str) -> usize {
         .sum()
 }
 
-/// Byte of the bracket that opens a value, past an enum variant's name; none for numbers, strings and bare names.
+/// Returns the byte of a value's opening bracket, after an enum variant's name; `None` for numbers, strings and bare
+/// names.
 fn group_start(value: &str) -> Option<usize> {
     if value.starts_with('"') { None } else { value.find(['(', '[', '{']) }
 }
 
-/// The characters outside of strings, one by one, and each string as a whole (with no character).
+/// Iterates over the characters outside of strings; a whole string is one item without a character.
 fn unquoted(text: &str) -> impl Iterator<Item = (std::ops::Range<usize>, Option<char>)> + '_ {
     let mut at = 0;
     std::iter::from_fn(move || {
@@ -89,7 +90,7 @@ fn unquoted(text: &str) -> impl Iterator<Item = (std::ops::Range<usize>, Option<
     })
 }
 
-/// Splits the inside of a bracket at its own commas.
+/// Splits the content of a bracket at its top-level commas.
 fn split_items(inner: &str) -> Vec<&str> {
     let (mut items, mut start, mut depth) = (Vec::new(), 0, 0_usize);
     for (range, character) in unquoted(inner) {
@@ -109,7 +110,7 @@ fn split_items(inner: &str) -> Vec<&str> {
     items
 }
 
-/// Splits `key:value`; a tuple's item has no key.
+/// Splits `key:value`; an item of a tuple has no key.
 fn split_key(item: &str) -> (Option<&str>, &str) {
     let colon = unquoted(item).take_while(|(_, c)| !matches!(c, Some('(' | '[' | '{'))).find(|(_, c)| *c == Some(':'));
     match colon {
@@ -123,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lists_open_and_vectors_stay_on_a_line() {
+    fn lists_are_broken_and_vectors_stay_on_a_line() {
         let compact = r#"(format:1,name:"a, (b): \"c\"",list:[(at:(1.0,2.0,3.0),kind:Spot(inner_deg:3.0))],none:[])"#;
         let expected = r#"(
     format: 1,
@@ -141,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_opened() {
+    fn values_that_do_not_fit_are_broken() {
         let long = format!("(a:(b:X({})))", ["value:123456.0"; 12].join(","));
         let lines: Vec<String> = lay_out(&long).lines().map(str::to_owned).collect();
         assert!(lines.iter().all(|line| line.len() <= WIDTH), "{lines:#?}");

@@ -1,114 +1,114 @@
-//! Where in a scene file a field stands. A walk over the text's brackets, without building anything: it serves to
-//! bound the nesting before the parser runs, and to give errors their field and their line.
+//! Locates fields in the text of a scene file, by scanning its brackets without building a tree. Bounds the nesting
+//! before the parser runs, and gives errors their field and line.
 
 use std::ops::Range;
 
-/// Deepest nesting of brackets that a scene file can need is 6; more than this is no scene.
+/// Deepest nesting of brackets that is read. Scene files need 6.
 pub(super) const NESTING_LIMIT: usize = 32;
 
-/// One step of a path: `lights`, `[2]`, `power`.
+/// A segment of a path: `lights`, `[2]`, `power`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Step<'a> {
+enum PathSegment<'a> {
     Name(&'a str),
     Index(usize),
 }
 
-/// An open bracket, or the file itself.
+/// An open bracket, or the whole file, during the scan.
 #[derive(Debug, Default)]
-struct Frame<'a> {
-    /// Name of the entry being read, once its colon was seen.
+struct OpenBracket<'a> {
+    /// Name of the current entry, once its colon is scanned.
     key: Option<&'a str>,
-    /// Number of the entry being read.
+    /// Index of the current entry.
     index: usize,
-    /// Where the entry's value (or what may turn out to be its name) starts.
+    /// First byte of the current entry's value, or of its name before the colon.
     value_start: Option<usize>,
 }
 
-impl<'a> Frame<'a> {
-    fn step(&self) -> Step<'a> {
-        self.key.map_or(Step::Index(self.index), Step::Name)
+impl<'a> OpenBracket<'a> {
+    fn segment(&self) -> PathSegment<'a> {
+        self.key.map_or(PathSegment::Index(self.index), PathSegment::Name)
     }
 }
 
-/// What the walk says when brackets nest deeper than [`NESTING_LIMIT`]: the byte of the bracket.
+/// Brackets nest deeper than [`NESTING_LIMIT`]; holds the byte of the first bracket that does.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct TooDeep(pub usize);
 
-/// What the nesting check has seen besides.
+/// Properties of the text that the nesting check finds.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Outline {
-    /// Whether there are comments, which a save would drop.
+pub(super) struct NestingInfo {
+    /// The text has comments, which a save would drop.
     pub has_comments: bool,
 }
 
-/// Checks the nesting of brackets. Linear in the text, needs no memory to speak of.
-pub(super) fn check_nesting(text: &str) -> Result<Outline, TooDeep> {
+/// Checks the nesting of brackets, in linear time and constant memory.
+pub(super) fn check_nesting(text: &str) -> Result<NestingInfo, TooDeep> {
     let mut has_comments = false;
     let mut depth = 0_usize;
-    for token in Tokens::new(text) {
+    for token in Lexer::new(text) {
         match token.kind {
-            Kind::Open => {
+            TokenKind::Open => {
                 depth += 1;
                 if depth > NESTING_LIMIT {
                     return Err(TooDeep(token.range.start));
                 }
             }
-            Kind::Close => depth = depth.saturating_sub(1),
-            Kind::Comment => has_comments = true,
+            TokenKind::Close => depth = depth.saturating_sub(1),
+            TokenKind::Comment => has_comments = true,
             _ => {}
         }
     }
-    Ok(Outline { has_comments })
+    Ok(NestingInfo { has_comments })
 }
 
-/// Bytes of the value at `path` (as in `lights[2].power.dial_stops`), or of the nearest thing around it.
+/// Returns the bytes of the value at `path`, such as `lights[2].power.dial_stops`, or of the innermost value around it.
 pub(super) fn value_at(text: &str, path: &str) -> Range<usize> {
     nearest_value(text, path).1
 }
 
-/// Bytes of the value at exactly `path`.
+/// Returns the bytes of the value at exactly `path`.
 pub(super) fn exact_value_at(text: &str, path: &str) -> Option<Range<usize>> {
-    let (steps, range) = nearest_value(text, path);
-    (steps == parse_path(path).len()).then_some(range)
+    let (segments, range) = nearest_value(text, path);
+    (segments == parse_path(path).len()).then_some(range)
 }
 
-/// The value whose path is the longest beginning of `path`, with the number of its steps.
+/// Returns the value whose path is the longest prefix of `path`, after the number of segments of that prefix.
 fn nearest_value(text: &str, path: &str) -> (usize, Range<usize>) {
-    let wanted = parse_path(path);
+    let target = parse_path(path);
     let mut best = (0, 0..text.len());
-    walk(text, |frames, value| {
-        let steps = &frames[1..];
-        if steps.len() > best.0
-            && steps.len() <= wanted.len()
-            && steps.iter().zip(&wanted).all(|(have, want)| have.step() == *want)
+    walk(text, |open, value| {
+        let segments = &open[1..];
+        if segments.len() > best.0
+            && segments.len() <= target.len()
+            && segments.iter().zip(&target).all(|(segment, expected)| segment.segment() == *expected)
         {
-            best = (steps.len(), value);
+            best = (segments.len(), value);
         }
-        best.0 < wanted.len()
+        best.0 < target.len()
     });
     best
 }
 
-/// Path and value bytes of the innermost entry that holds the byte `offset`.
+/// Returns path and value bytes of the innermost entry that contains the byte `offset`.
 pub(super) fn entry_at(text: &str, offset: usize) -> (String, Range<usize>) {
     let mut found = None;
-    let unfinished = walk(text, |frames, value| {
+    let unfinished = walk(text, |open, value| {
         if value.contains(&offset) && found.is_none() {
-            found = Some((path_of(frames), value));
+            found = Some((path_of(open), value));
         }
         found.is_none()
     });
     found.unwrap_or_else(|| (unfinished, offset.min(text.len())..text.len()))
 }
 
-/// Line and column of a byte, both from 1, columns in characters.
+/// Returns line and column of a byte, both from 1, columns in characters.
 pub(super) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     let before = &text[..text.floor_char_boundary(offset.min(text.len()))];
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
     (1 + before.matches('\n').count(), 1 + before[line_start..].chars().count())
 }
 
-/// The byte at a line and column.
+/// Returns the byte at a line and column, both from 1.
 pub(super) fn offset_of(text: &str, line: usize, column: usize) -> usize {
     let line_start = text.match_indices('\n').nth(line.wrapping_sub(2)).map_or(0, |(at, _)| at + 1);
     let line_start = if line <= 1 { 0 } else { line_start };
@@ -116,80 +116,80 @@ pub(super) fn offset_of(text: &str, line: usize, column: usize) -> usize {
     line_start + into
 }
 
-fn parse_path(path: &str) -> Vec<Step<'_>> {
+fn parse_path(path: &str) -> Vec<PathSegment<'_>> {
     path.split(['.', '['])
         .filter(|part| !part.is_empty())
         .map(|part| match part.strip_suffix(']').and_then(|index| index.parse().ok()) {
-            Some(index) => Step::Index(index),
-            None => Step::Name(part),
+            Some(index) => PathSegment::Index(index),
+            None => PathSegment::Name(part),
         })
         .collect()
 }
 
-fn path_of(frames: &[Frame<'_>]) -> String {
+fn path_of(open: &[OpenBracket<'_>]) -> String {
     let mut path = String::new();
-    for frame in frames.iter().skip(1) {
-        match frame.step() {
-            Step::Name(name) => {
+    for bracket in open.iter().skip(1) {
+        match bracket.segment() {
+            PathSegment::Name(name) => {
                 if !path.is_empty() {
                     path.push('.');
                 }
                 path.push_str(name);
             }
-            Step::Index(index) => path.push_str(&format!("[{index}]")),
+            PathSegment::Index(index) => path.push_str(&format!("[{index}]")),
         }
     }
     path
 }
 
-/// Calls `visit` with the open brackets and the bytes of each finished value, inner ones first, until it says stop,
-/// the text ends or makes no sense. Returns the path of the entry it ended in.
-fn walk<'a>(text: &'a str, mut visit: impl FnMut(&[Frame<'a>], Range<usize>) -> bool) -> String {
-    let mut frames: Vec<Frame<'a>> = vec![Frame::default()];
+/// Calls `visit` with the open brackets and the bytes of each complete value, inner values first, until it returns
+/// false, the text ends or its brackets do not match. Returns the path of the entry where the scan ended.
+fn walk<'a>(text: &'a str, mut visit: impl FnMut(&[OpenBracket<'a>], Range<usize>) -> bool) -> String {
+    let mut open: Vec<OpenBracket<'a>> = vec![OpenBracket::default()];
     let mut last_end = 0;
-    for token in Tokens::new(text) {
-        let Some(top) = frames.last_mut() else { break };
+    for token in Lexer::new(text) {
+        let Some(top) = open.last_mut() else { break };
         match token.kind {
-            Kind::Comment => continue,
-            Kind::Word | Kind::Text => top.value_start = top.value_start.or(Some(token.range.start)),
-            Kind::Colon => {
+            TokenKind::Comment => continue,
+            TokenKind::Word | TokenKind::Text => top.value_start = top.value_start.or(Some(token.range.start)),
+            TokenKind::Colon => {
                 top.key = top.value_start.take().map(|start| text[start..last_end].trim_matches('"'));
             }
-            Kind::Open => {
+            TokenKind::Open => {
                 top.value_start = top.value_start.or(Some(token.range.start));
-                if frames.len() > NESTING_LIMIT {
+                if open.len() > NESTING_LIMIT {
                     break;
                 }
-                frames.push(Frame::default());
+                open.push(OpenBracket::default());
             }
-            Kind::Comma | Kind::Close => {
+            TokenKind::Comma | TokenKind::Close => {
                 if let Some(start) = top.value_start
-                    && !visit(&frames, start..last_end)
+                    && !visit(&open, start..last_end)
                 {
                     break;
                 }
-                if token.kind == Kind::Close {
-                    if frames.len() == 1 {
+                if token.kind == TokenKind::Close {
+                    if open.len() == 1 {
                         break;
                     }
-                    frames.pop();
-                } else if let Some(top) = frames.last_mut() {
-                    *top = Frame { index: top.index + 1, ..Frame::default() };
+                    open.pop();
+                } else if let Some(top) = open.last_mut() {
+                    *top = OpenBracket { index: top.index + 1, ..OpenBracket::default() };
                 }
             }
         }
         last_end = token.range.end;
     }
-    if let [root] = &frames[..]
+    if let [root] = &open[..]
         && let Some(start) = root.value_start
     {
-        visit(&frames, start..last_end);
+        visit(&open, start..last_end);
     }
-    path_of(&frames)
+    path_of(&open)
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum TokenKind {
     Open,
     Close,
     Comma,
@@ -201,46 +201,46 @@ enum Kind {
 
 #[derive(Debug)]
 struct Token {
-    kind: Kind,
+    kind: TokenKind,
     range: Range<usize>,
 }
 
-/// Splits RON into brackets, separators, strings, comments and words (names, numbers and whatever else).
-struct Tokens<'a> {
+/// Splits RON into brackets, separators, strings, comments and words (names, numbers and all else).
+struct Lexer<'a> {
     text: &'a str,
     at: usize,
 }
 
-impl<'a> Tokens<'a> {
+impl<'a> Lexer<'a> {
     fn new(text: &'a str) -> Self {
-        Tokens { text, at: 0 }
+        Lexer { text, at: 0 }
     }
 
-    /// Length of the token of this kind at the start of `rest`, at least 1.
-    fn measure(rest: &[u8]) -> (Kind, usize) {
+    /// Returns kind and length, at least 1, of the token at the start of `rest`.
+    fn measure(rest: &[u8]) -> (TokenKind, usize) {
         match rest[0] {
-            b'(' | b'[' | b'{' => (Kind::Open, 1),
-            b')' | b']' | b'}' => (Kind::Close, 1),
-            b',' => (Kind::Comma, 1),
-            b':' => (Kind::Colon, 1),
-            b'"' => (Kind::Text, string_len(rest)),
-            b'\'' if rest.len() > 2 && rest[2] == b'\'' => (Kind::Text, 3),
-            b'/' if rest.starts_with(b"//") => (Kind::Comment, find(rest, b"\n", 2)),
-            b'/' if rest.starts_with(b"/*") => (Kind::Comment, block_comment_len(rest)),
+            b'(' | b'[' | b'{' => (TokenKind::Open, 1),
+            b')' | b']' | b'}' => (TokenKind::Close, 1),
+            b',' => (TokenKind::Comma, 1),
+            b':' => (TokenKind::Colon, 1),
+            b'"' => (TokenKind::Text, string_len(rest)),
+            b'\'' if rest.len() > 2 && rest[2] == b'\'' => (TokenKind::Text, 3),
+            b'/' if rest.starts_with(b"//") => (TokenKind::Comment, find(rest, b"\n", 2)),
+            b'/' if rest.starts_with(b"/*") => (TokenKind::Comment, block_comment_len(rest)),
             b'r' if raw_string_hashes(rest).is_some() => {
                 let hashes = raw_string_hashes(rest).unwrap_or(0);
                 let end: Vec<u8> = std::iter::once(b'"').chain(std::iter::repeat_n(b'#', hashes)).collect();
-                (Kind::Text, find(rest, &end, hashes + 2))
+                (TokenKind::Text, find(rest, &end, hashes + 2))
             }
             _ => {
                 let stops = |b: &u8| b.is_ascii_whitespace() || b"()[]{},:\"/".contains(b);
-                (Kind::Word, rest.iter().skip(1).position(stops).map_or(rest.len(), |n| n + 1))
+                (TokenKind::Word, rest.iter().skip(1).position(stops).map_or(rest.len(), |n| n + 1))
             }
         }
     }
 }
 
-impl Iterator for Tokens<'_> {
+impl Iterator for Lexer<'_> {
     type Item = Token;
 
     fn next(&mut self) -> Option<Token> {
@@ -325,30 +325,30 @@ mod tests {
     }
 
     #[test]
-    fn missing_fields_lead_to_what_is_around_them() {
+    fn a_missing_field_is_located_at_the_value_around_it() {
         assert_eq!(found("lights[0].emitter.outer_deg"), r#"(name: "a", power: (dial: 1.0))"#);
         assert!(found("camera").starts_with("(\n    format"));
     }
 
     #[test]
-    fn bytes_lead_to_paths() {
+    fn bytes_are_converted_to_paths_and_lines() {
         let at = TEXT.find("400.0").unwrap();
         assert_eq!(entry_at(TEXT, at), ("lights[1].emitter.outer_deg".to_owned(), at..at + 5));
         assert_eq!(line_and_column(TEXT, at), (6, 64));
         assert_eq!(offset_of(TEXT, 6, 64), at);
-        // A file that was cut off still knows where it was.
+        // In a truncated file, too.
         assert_eq!(entry_at(&TEXT[..at + 2], at + 1).0, "lights[1].emitter.outer_deg");
     }
 
     #[test]
-    fn nesting_is_bounded_and_comments_are_seen() {
-        assert_eq!(check_nesting(TEXT), Ok(Outline { has_comments: true }));
+    fn nesting_is_bounded_and_comments_are_found() {
+        assert_eq!(check_nesting(TEXT), Ok(NestingInfo { has_comments: true }));
         let bomb = "(".repeat(1_000_000);
         assert_eq!(check_nesting(&bomb), Err(TooDeep(NESTING_LIMIT)));
     }
 
     #[test]
-    fn any_cut_of_the_text_is_survived() {
+    fn every_truncated_text_is_scanned_without_panic() {
         for end in 0..TEXT.len() {
             let cut = &TEXT[..end];
             let _ = (check_nesting(cut), value_at(cut, "lights[1].at[2]"), entry_at(cut, end / 2), entry_at(cut, end));

@@ -1,8 +1,11 @@
-//! Files: scenes as versioned RON, models as OBJ, textures, shipped studios, finished pictures.
+//! Reads and writes files: scenes as versioned RON, models, textures, studio presets, finished pictures.
 //!
-//! A file is checked once, here at the border: what comes out of [`load_scene`] can go to every renderer, and what
-//! does not pass leaves as an error that names the field, the value and the line. Odd but usable things become
-//! warnings beside the scene. A save writes a new file beside the old one and renames it.
+//! Files are checked here and nowhere else. A scene from [`load_scene`] is valid for every renderer; an invalid file is
+//! an error that names the field, the value and the line; odd but usable values are warnings beside the scene. A save
+//! writes a new file beside the older one and renames it.
+//!
+//! To add a model format, write a module beside `obj` and list it in [`MODEL_FORMATS`]. To add a kind of asset, add a
+//! variant to [`AssetRef`](crate::scene::AssetRef) and follow the compiler to its loader in `assets`.
 
 mod asset_files;
 mod assets;
@@ -14,12 +17,14 @@ mod layout;
 mod locate;
 mod model;
 mod obj;
+mod parse_errors;
 mod picture;
 mod presets;
 mod read;
 mod ron_v1;
 mod scene_file;
 mod texture;
+mod unique_names;
 
 pub use asset_files::{AssetCopy, AssetFiles};
 pub use assets::{load_assets, load_assets_from, missing_assets};

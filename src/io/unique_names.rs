@@ -1,0 +1,47 @@
+//! Makes the names of a scene's objects and lights unique, which files need to refer to them.
+
+use crate::scene::{Finding, Scene};
+use std::collections::{HashMap, HashSet};
+
+/// Gives the later of two equal names a number, with a warning each. Aims refer to objects by id, so they are unaffected.
+pub(super) fn make_names_unique(scene: &mut Scene) -> Vec<Finding> {
+    let mut warnings = Vec::new();
+    let taken = scene.objects.iter().map(|o| &o.name).chain(scene.lights.iter().map(|l| &l.name)).cloned().collect();
+    let mut names = NameAllocator { taken, seen: HashSet::new(), numbers: HashMap::new() };
+    let objects = scene.objects.iter_mut().map(|o| &mut o.name).enumerate().map(|(i, name)| ("objects", i, name));
+    let lights = scene.lights.iter_mut().map(|l| &mut l.name).enumerate().map(|(i, name)| ("lights", i, name));
+    for (list, i, name) in objects.chain(lights) {
+        if names.seen.insert(name.clone()) {
+            continue;
+        }
+        let new = names.fresh(name);
+        let message = format!("another thing bears this name, too; this one is now {new:?}");
+        warnings.push(Finding::warning(format!("{list}[{i}] {name:?} name"), message));
+        *name = new;
+    }
+    warnings
+}
+
+/// Allocates unused names. Constant time a name, unlike `Scene::unique_name`: a file may hold ten thousand equal names.
+struct NameAllocator {
+    taken: HashSet<String>,
+    seen: HashSet<String>,
+    /// The last number given to each stem.
+    numbers: HashMap<String, u32>,
+}
+
+impl NameAllocator {
+    fn fresh(&mut self, name: &str) -> String {
+        let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
+        let stem = if stem.is_empty() { name } else { stem };
+        let number = self.numbers.entry(stem.to_owned()).or_insert(1);
+        loop {
+            *number += 1;
+            let candidate = format!("{stem} {number}");
+            if self.taken.insert(candidate.clone()) {
+                self.seen.insert(candidate.clone());
+                return candidate;
+            }
+        }
+    }
+}
