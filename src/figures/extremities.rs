@@ -1,13 +1,13 @@
 //! Hands and feet.
 
-use super::field::Group;
+use super::field::PrimitiveGroup;
+use super::primitive::Primitive;
 use super::proportions::Build;
-use super::shape::Shape;
 use super::skeleton::{Arm, Leg};
 use glam::{Mat3, Vec3};
 
-/// A finger: sideways place of its knuckle, its distance from the wrist, length of the finger, its radius at the
-/// knuckle; body units.
+/// Fingers: sideways position of the knuckle, its distance from the wrist, length of the finger, radius at the knuckle;
+/// body units.
 const FINGERS: [(f32, f32, f32, f32); 4] = [
     (0.031, 0.092, 0.078, 0.0100),
     (0.0105, 0.096, 0.086, 0.0104),
@@ -16,7 +16,7 @@ const FINGERS: [(f32, f32, f32, f32); 4] = [
 ];
 
 /// Adds a hand that is a little curled, its fingers side by side.
-pub fn add_hand(g: &mut Group, arm: &Arm, b: &Build, unit: f32) {
+pub fn add_hand(g: &mut PrimitiveGroup, arm: &Arm, b: &Build, unit: f32) {
     let size = (0.75 + 0.25 * b.limb) * unit;
     let thumb_side = arm.palm.cross(arm.fingers) * arm.side.sign();
     let axes = Mat3::from_cols(thumb_side, arm.fingers, arm.palm);
@@ -27,7 +27,7 @@ pub fn add_hand(g: &mut Group, arm: &Arm, b: &Build, unit: f32) {
         let knuckle = p(side, reach, -0.003);
         // Bones of the palm.
         g.cone(at(p(side * 0.55, 0.004, 0.0)), 0.0145 * size, at(knuckle), (r + 0.0012) * size, 0.018 * size);
-        // Three joints, each a little more curled, drawn together towards the middle finger.
+        // Three joints, each more curled than the one before, converging towards the middle finger.
         let mut from = knuckle;
         for (joint, (share, curl)) in [(0.46, 0.2_f32), (0.3, 0.5), (0.24, 0.75)].into_iter().enumerate() {
             let close = -0.13 * (side - 0.001) / 0.03;
@@ -38,7 +38,7 @@ pub fn add_hand(g: &mut Group, arm: &Arm, b: &Build, unit: f32) {
         }
     }
     // Ball of the thumb, heel of the hand.
-    let pad = |center: Vec3, radii: Vec3| Shape::Ellipsoid { center: at(center), axes, radii: radii * size };
+    let pad = |center: Vec3, radii: Vec3| Primitive::Ellipsoid { center: at(center), axes, radii: radii * size };
     g.add(pad(p(0.021, 0.036, 0.009), p(0.018, 0.032, 0.015)), 0.016 * size);
     g.add(pad(p(-0.021, 0.04, 0.006), p(0.015, 0.036, 0.013)), 0.016 * size);
     // Thumb.
@@ -48,7 +48,7 @@ pub fn add_hand(g: &mut Group, arm: &Arm, b: &Build, unit: f32) {
 }
 
 /// Adds a bare foot, flat on the floor.
-pub fn add_foot(g: &mut Group, leg: &Leg, b: &Build, unit: f32) {
+pub fn add_foot(g: &mut PrimitiveGroup, leg: &Leg, b: &Build, unit: f32) {
     let size = (0.7 + 0.3 * b.limb) * unit;
     let inner = -leg.side.sign();
     let at = |side: f32, y: f32, z: f32| leg.foot.transform_point3(Vec3::new(side * inner, y, z) * size);
@@ -75,5 +75,5 @@ pub fn add_foot(g: &mut Group, leg: &Leg, b: &Build, unit: f32) {
     }
     // Sole.
     let normal = Vec3::Y;
-    g.cut(Shape::HalfSpace { normal, offset: 0.000_5 }, 0.012 * size);
+    g.cut(Primitive::HalfSpace { normal, offset: 0.000_5 }, 0.012 * size);
 }

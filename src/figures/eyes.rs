@@ -1,4 +1,4 @@
-//! Eyeballs, irises and pupils: round meshes of their own, so that they can gloss and show catchlights.
+//! Eyeballs, irises and pupils: separate meshes, so that they have glossy materials and show catchlights.
 
 use super::face::{EYE_RADIUS, eye_center};
 use super::proportions::FaceShape;
@@ -22,7 +22,7 @@ pub fn add_eyes(mesh: &mut Mesh, world_from_head: Affine3A, scale: f32, face: &F
             (EYE_RADIUS * angle.sin(), EYE_RADIUS * angle.cos())
         })
         .collect();
-    // The rim lies a trace inside the ball, so that ball and iris meet in a clean line.
+    // The rim lies slightly inside of the ball, so that ball and iris meet in a clean line.
     let rim = (EYE_RADIUS * EYE_RADIUS - IRIS * IRIS).sqrt() - 0.12;
     let middle = rim - (CORNEA * CORNEA - IRIS * IRIS).sqrt();
     let parts =
@@ -38,7 +38,7 @@ pub fn add_eyes(mesh: &mut Mesh, world_from_head: Affine3A, scale: f32, face: &F
     }
 }
 
-/// Profile of a lens: the cap of a ball about (0, `middle`), closed by a shallow cone behind.
+/// Returns the profile of a lens: the cap of a ball about (0, `middle`), closed by a shallow cone behind.
 fn lens(half_width: f32, middle: f32, radius: f32, rings: u32) -> Vec<(f32, f32)> {
     let reach = (half_width / radius).asin();
     let mut profile: Vec<(f32, f32)> = (0..=rings)
@@ -50,7 +50,7 @@ fn lens(half_width: f32, middle: f32, radius: f32, rings: u32) -> Vec<(f32, f32)
     profile
 }
 
-/// Turns a profile of (distance from the axis, place along it) about Z; its first and last point lie on the axis.
+/// Rotates a profile of (distance from the axis, position along it) about Z. Its first and last point lie on the axis.
 fn lathe(profile: &[(f32, f32)], place: impl Fn(Vec3) -> Vec3) -> Mesh {
     let mut mesh = Mesh::default();
     let rings = profile.len() as u32 - 2;

@@ -1,22 +1,22 @@
-//! The face: what light patterns are judged by. Units and frame as in `head`.
+//! The face. Units and frame as in `head`.
 
-use super::field::Group;
+use super::field::PrimitiveGroup;
+use super::primitive::{Almond, Primitive};
 use super::proportions::FaceShape;
-use super::shape::{Almond, Shape};
 use glam::{Mat3, Vec3, vec3};
 
 /// Radius of an eyeball, head units.
 pub const EYE_RADIUS: f32 = 12.2;
 
-/// Centre of the eye at +X, head units.
+/// Returns the centre of the eye at +X, head units.
 pub fn eye_center(f: &FaceShape) -> Vec3 {
     vec3(31.5, 0.0, 71.5 + f.eye_forward)
 }
 
-/// Strokes on the face follow the surface whatever its depth.
+/// Axis weights of strokes on the face: nearly independent of depth.
 const ON_FACE: Vec3 = Vec3::new(1.0, 1.0, 0.45);
 
-pub(super) fn add_face(g: &mut Group, f: &FaceShape) {
+pub(super) fn add_face(g: &mut PrimitiveGroup, f: &FaceShape) {
     add_cheeks(g, f);
     add_sockets(g, f);
     add_nose(g, f);
@@ -24,7 +24,7 @@ pub(super) fn add_face(g: &mut Group, f: &FaceShape) {
     add_eyelids(g, f);
 }
 
-fn add_cheeks(g: &mut Group, f: &FaceShape) {
+fn add_cheeks(g: &mut PrimitiveGroup, f: &FaceShape) {
     // Cheekbone, from under the eye to the arch before the ear.
     g.cone(vec3(38.0, -26.0, 66.0), 13.0, vec3(60.0, -22.0, 32.0), 8.0, 22.0);
     g.cone(vec3(60.0, -22.0, 32.0), 6.5, vec3(65.0, -16.0, 4.0), 5.0, 18.0);
@@ -34,18 +34,18 @@ fn add_cheeks(g: &mut Group, f: &FaceShape) {
     g.brush(&[vec3(46.0, -56.0, 60.0), vec3(54.0, -48.0, 40.0)], 26.0, -2.5 * f.hollow, Vec3::ONE);
 }
 
-fn add_sockets(g: &mut Group, f: &FaceShape) {
+fn add_sockets(g: &mut PrimitiveGroup, f: &FaceShape) {
     // Brow ridge.
     g.cone(vec3(8.0, 15.0, 82.0), 10.0, vec3(30.0, 20.0, 80.0), 9.0, 18.0);
     g.cone(vec3(30.0, 20.0, 80.0), 9.0, vec3(50.0, 13.0, 60.0), 8.0, 18.0);
     g.brush(&[vec3(8.0, 16.0, 92.0), vec3(28.0, 21.0, 90.0), vec3(46.0, 17.0, 78.0)], 15.0, f.brow, ON_FACE);
     // Socket.
     let socket = Mat3::from_rotation_y(0.35);
-    g.cut(Shape::Ellipsoid { center: vec3(32.0, 0.5, 91.0), axes: socket, radii: vec3(20.0, 14.0, 14.0) }, 13.0);
+    g.cut(Primitive::Ellipsoid { center: vec3(32.0, 0.5, 91.0), axes: socket, radii: vec3(20.0, 14.0, 14.0) }, 13.0);
     g.brush(&[vec3(15.0, -2.0, 84.0), vec3(17.0, 6.0, 84.0)], 11.0, -2.0, ON_FACE);
 }
 
-fn add_nose(g: &mut Group, f: &FaceShape) {
+fn add_nose(g: &mut PrimitiveGroup, f: &FaceShape) {
     let n = f.nose;
     // Pyramid, then the bridge on it.
     g.cone(vec3(0.0, -2.0, 80.0), 9.0, vec3(0.0, -40.0, 88.0), 15.0 * f.nose_width, 12.0);
@@ -56,7 +56,7 @@ fn add_nose(g: &mut Group, f: &FaceShape) {
     // Wings.
     let wing = Mat3::from_rotation_y(-0.25);
     g.add(
-        Shape::Ellipsoid {
+        Primitive::Ellipsoid {
             center: vec3(11.5 * f.nose_width, -44.5, 88.0 + 10.5 * n),
             axes: wing,
             radii: vec3(6.0, 7.2, 11.0),
@@ -67,7 +67,7 @@ fn add_nose(g: &mut Group, f: &FaceShape) {
     g.cone(vec3(0.0, -48.0, 87.0 + 23.0 * n), 4.0, vec3(0.0, -53.0, 96.0), 4.5, 5.0);
     let nostril = Mat3::from_rotation_y(0.45);
     g.cut(
-        Shape::Ellipsoid {
+        Primitive::Ellipsoid {
             center: vec3(7.2 * f.nose_width, -52.0, 88.0 + 16.5 * n),
             axes: nostril,
             radii: vec3(3.2, 4.5, 6.0),
@@ -84,7 +84,7 @@ fn add_nose(g: &mut Group, f: &FaceShape) {
     );
 }
 
-fn add_mouth(g: &mut Group, f: &FaceShape) {
+fn add_mouth(g: &mut PrimitiveGroup, f: &FaceShape) {
     let l = f.lips;
     // The round of the teeth.
     g.ball(vec3(0.0, -70.0, 70.0), vec3(31.0, 22.0, 30.0), 18.0);
@@ -102,8 +102,8 @@ fn add_mouth(g: &mut Group, f: &FaceShape) {
         (vec3(16.0 * w, -74.8, 91.5), 3.9 * l),
         (vec3(24.0 * w, -71.8, 86.0), 1.8),
     ];
-    g.add(Shape::Tube(upper), 4.0);
-    g.add(Shape::Tube(lower), 4.0);
+    g.add(Primitive::Tube(upper), 4.0);
+    g.add(Primitive::Tube(lower), 4.0);
     // Line of the mouth, and its corners.
     let line = [
         vec3(0.0, -71.6, 101.0),
@@ -121,10 +121,10 @@ fn add_mouth(g: &mut Group, f: &FaceShape) {
     g.brush(&[vec3(21.0, -48.0, 90.0), vec3(29.0, -60.0, 86.0), vec3(33.0, -69.0, 82.0)], 9.0, -f.age, ON_FACE);
 }
 
-fn add_eyelids(g: &mut Group, f: &FaceShape) {
+fn add_eyelids(g: &mut PrimitiveGroup, f: &FaceShape) {
     let eye = eye_center(f);
     // Lids: a shell round the ball.
-    g.add(Shape::ball(eye, Vec3::splat(EYE_RADIUS + 1.9)), 6.0);
+    g.add(Primitive::ball(eye, Vec3::splat(EYE_RADIUS + 1.9)), 6.0);
     // Crease of the upper lid.
     let crease = [
         vec3(18.0, 3.0, 80.0),
@@ -144,5 +144,5 @@ fn add_eyelids(g: &mut Group, f: &FaceShape) {
         peak: -0.15,
         back: eye.z + 2.5,
     };
-    g.cut(Shape::Almond(slit), 1.6);
+    g.cut(Primitive::Almond(slit), 1.6);
 }

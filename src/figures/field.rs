@@ -1,51 +1,51 @@
-//! The figure as a signed distance field: groups of shapes, each group blended softly within itself.
+//! The signed distance field of a figure: groups of primitives, blended smoothly within each group.
 //!
-//! A group is a list of steps that run in order, like clay put on and taken off. `cull` drops the steps that cannot
-//! matter inside a ball, which makes a field of two hundred shapes cost about ten of them a sample.
+//! A group is a list of additions, subtractions and displacements that apply in order. `cull` drops those without effect
+//! inside a ball, so that a sample of two hundred primitives evaluates about ten.
 
-use super::shape::{Shape, Stroke, smooth_max, smooth_min};
+use super::primitive::{Primitive, Stroke, smooth_max, smooth_min};
 use glam::{Affine3A, Vec3};
 
-/// One step of modelling.
+/// An operation on the surface of a group.
 #[derive(Clone, Debug)]
-pub enum Step {
-    /// Puts a shape on, with a seam rounded over a width.
-    Add(Shape, f32),
-    /// Takes a shape off, with an edge rounded over a width.
-    Cut(Shape, f32),
-    /// Raises or presses in the surface along a line.
+pub enum SculptStep {
+    /// Adds a primitive, by a union smoothed over a width.
+    Add(Primitive, f32),
+    /// Subtracts a primitive, with an edge smoothed over a width.
+    Cut(Primitive, f32),
+    /// Displaces the surface along a line.
     Brush(Stroke),
 }
 
-/// Shapes that are blended with each other in a frame of their own.
+/// Primitives that are blended with each other in a local frame.
 #[derive(Clone, Debug)]
-pub struct Group {
-    /// A rigid motion.
+pub struct PrimitiveGroup {
+    /// Rigid transform from world space.
     group_from_world: Affine3A,
-    /// Metres a unit of the group's lengths.
+    /// Metres per unit of the group's lengths.
     scale: f32,
-    /// Folds the group at its X = 0 plane: what is modelled at +X is there at -X too.
+    /// Mirrors the group at its X = 0 plane: primitives at +X appear at -X, too.
     mirrored: bool,
-    steps: Vec<Step>,
-    /// How softly it joins the groups before it.
+    steps: Vec<SculptStep>,
+    /// Blend with the groups before it.
     join: Join,
 }
 
-/// How a group joins the ones before it: softly near a point (a shoulder), crisply away from it (a hand on a hip).
+/// The blend of a group with those before it: wide near a point (a shoulder), narrow away from it (a hand on a hip).
 #[derive(Clone, Copy, Debug)]
 pub struct Join {
-    /// Middle of the soft zone, world space.
+    /// Centre of the wide blend, world space.
     pub center: Vec3,
-    /// Radius of the soft zone, metres.
+    /// Radius of the wide blend, metres.
     pub radius: f32,
-    /// Width of the seam in the zone, metres.
+    /// Blend width inside the radius, metres.
     pub near: f32,
-    /// Width of the seam outside the zone, metres.
+    /// Blend width outside, metres.
     pub far: f32,
 }
 
 impl Join {
-    /// The same softness everywhere.
+    /// Returns a blend of constant width, metres.
     pub fn even(width: f32) -> Join {
         Join { center: Vec3::ZERO, radius: 1.0, near: width, far: width }
     }
@@ -57,54 +57,54 @@ impl Join {
     }
 }
 
-impl Group {
-    /// An empty group whose lengths are metres in world space.
-    pub fn in_world(join: Join) -> Group {
-        Group::new(Affine3A::IDENTITY, 1.0, join)
+impl PrimitiveGroup {
+    /// Returns an empty group in world space, its lengths in metres.
+    pub fn in_world(join: Join) -> PrimitiveGroup {
+        PrimitiveGroup::new(Affine3A::IDENTITY, 1.0, join)
     }
 
-    /// An empty group in a frame of its own, its lengths in units of `scale` metres.
-    pub fn new(world_from_group: Affine3A, scale: f32, join: Join) -> Group {
+    /// Returns an empty group in a local frame, its lengths in units of `scale` metres.
+    pub fn new(world_from_group: Affine3A, scale: f32, join: Join) -> PrimitiveGroup {
         let group_from_world = world_from_group.inverse();
-        Group { group_from_world, scale, mirrored: false, steps: Vec::new(), join }
+        PrimitiveGroup { group_from_world, scale, mirrored: false, steps: Vec::new(), join }
     }
 
-    /// The same group folded at its X = 0 plane.
-    pub fn mirrored(mut self) -> Group {
+    /// Returns the group mirrored at its X = 0 plane.
+    pub fn mirrored(mut self) -> PrimitiveGroup {
         self.mirrored = true;
         self
     }
 
-    /// Puts a shape on.
-    pub fn add(&mut self, shape: Shape, width: f32) {
-        self.steps.push(Step::Add(shape, width));
+    /// Adds a primitive.
+    pub fn add(&mut self, shape: Primitive, width: f32) {
+        self.steps.push(SculptStep::Add(shape, width));
     }
 
-    /// Puts the hull of two balls on.
+    /// Adds the hull of two balls.
     pub fn cone(&mut self, a: Vec3, ra: f32, b: Vec3, rb: f32, width: f32) {
-        self.add(Shape::Cone { a, b, ra, rb }, width);
+        self.add(Primitive::Cone { a, b, ra, rb }, width);
     }
 
-    /// Puts an ellipsoid along the group's axes on.
+    /// Adds an ellipsoid along the group's axes.
     pub fn ball(&mut self, center: Vec3, radii: Vec3, width: f32) {
-        self.add(Shape::ball(center, radii), width);
+        self.add(Primitive::ball(center, radii), width);
     }
 
-    /// Takes a shape off.
-    pub fn cut(&mut self, shape: Shape, width: f32) {
-        self.steps.push(Step::Cut(shape, width));
+    /// Subtracts a primitive.
+    pub fn cut(&mut self, shape: Primitive, width: f32) {
+        self.steps.push(SculptStep::Cut(shape, width));
     }
 
-    /// Raises or presses in the surface along a line.
+    /// Displaces the surface along a line, outwards for a positive height.
     pub fn brush(&mut self, path: &[Vec3], radius: f32, height: f32, weights: Vec3) {
-        self.steps.push(Step::Brush(Stroke { path: path.to_vec(), radius, height, weights }));
+        self.steps.push(SculptStep::Brush(Stroke { path: path.to_vec(), radius, height, weights }));
     }
 
-    /// World space to the group's units, folded if it is mirrored.
+    /// Converts from world space to the group's units, mirrored to +X.
     fn local(&self, world: Vec3) -> Vec3 {
         let mut p = self.group_from_world.transform_point3(world) / self.scale;
         if self.mirrored {
-            // A rounded fold: a plain |x| would leave a crease down the middle of the face.
+            // A smoothed |x|: the exact one would leave a crease along the middle of the face.
             const FOLD_M: f32 = 0.001_2;
             let fold = FOLD_M / self.scale;
             p.x = (p.x * p.x + fold * fold).sqrt();
@@ -116,34 +116,34 @@ impl Group {
         let p = self.local(world);
         let start = f32::MAX;
         let d = self.steps.iter().fold(start, |d, step| match step {
-            Step::Add(shape, k) => smooth_min(d, shape.distance(p), *k),
-            Step::Cut(shape, k) => smooth_max(d, -shape.distance(p), *k),
-            Step::Brush(stroke) => d - stroke.lift(p),
+            SculptStep::Add(shape, k) => smooth_min(d, shape.distance(p), *k),
+            SculptStep::Cut(shape, k) => smooth_max(d, -shape.distance(p), *k),
+            SculptStep::Brush(stroke) => d - stroke.lift(p),
         });
         if d == f32::MAX { FAR_M } else { d * self.scale }
     }
 
-    /// The group without the steps that leave a ball's near field as it is.
-    fn cull(&self, center: Vec3, radius: f32) -> Group {
-        // Ellipsoids and the fold may rise a little faster than a true distance.
+    /// Returns the group without the operations that have no effect inside a ball.
+    fn cull(&self, center: Vec3, radius: f32) -> PrimitiveGroup {
+        // The distances of ellipsoids and of the smoothed mirror have gradients slightly above 1.
         let (p, reach) = (self.local(center), 1.3 * radius / self.scale);
         let mut d = f32::MAX;
         let mut steps = Vec::new();
         for step in &self.steps {
             let keep = match step {
-                Step::Add(shape, k) => {
+                SculptStep::Add(shape, k) => {
                     let s = shape.distance(p);
                     let keep = s - reach < d + reach + k;
                     d = smooth_min(d, s, *k);
                     keep
                 }
-                Step::Cut(shape, k) => {
+                SculptStep::Cut(shape, k) => {
                     let s = -shape.distance(p);
                     let keep = s + reach > d - reach - k;
                     d = smooth_max(d, s, *k);
                     keep
                 }
-                Step::Brush(stroke) => {
+                SculptStep::Brush(stroke) => {
                     d -= stroke.lift(p);
                     stroke.reaches(p, reach)
                 }
@@ -152,32 +152,32 @@ impl Group {
                 steps.push(step.clone());
             }
         }
-        Group { steps, ..self.clone() }
+        PrimitiveGroup { steps, ..self.clone() }
     }
 }
 
-/// A distance that stands for "nowhere near".
+/// Distance of an empty field, metres.
 const FAR_M: f32 = 10.0;
 
-/// The whole figure.
+/// The distance field of a whole figure.
 #[derive(Clone, Debug, Default)]
 pub struct Field {
-    /// Joined in order.
-    pub groups: Vec<Group>,
-    /// Taken off at the end, with a rounding width: a bust's flat base.
-    pub cuts: Vec<(Shape, f32)>,
-    /// How far the surface lies outside what the groups make, metres: the cloth of a garment.
+    /// Blended in order.
+    pub groups: Vec<PrimitiveGroup>,
+    /// Primitives subtracted last, with their blend widths: a bust's flat base.
+    pub cuts: Vec<(Primitive, f32)>,
+    /// Offset of the surface outwards, metres: the thickness of a garment.
     pub inflate: f32,
 }
 
 impl Field {
-    /// Signed distance in metres, negative inside.
+    /// Returns the signed distance, metres, negative inside.
     pub fn distance(&self, p: Vec3) -> f32 {
         let joined = self.groups.iter().fold(FAR_M, |d, group| smooth_min(d, group.distance(p), group.join.width(p)));
         self.cuts.iter().fold(joined - self.inflate, |d, (shape, k)| smooth_max(d, -shape.distance(p), *k))
     }
 
-    /// Gradient by central differences.
+    /// Returns the gradient, by central differences.
     pub fn gradient(&self, p: Vec3) -> Vec3 {
         const STEP_M: f32 = 0.000_2;
         Vec3::from_array([Vec3::X, Vec3::Y, Vec3::Z].map(|axis| {
@@ -186,7 +186,7 @@ impl Field {
         }))
     }
 
-    /// The field as it is within a ball; elsewhere the result means nothing.
+    /// Returns a field that is equal inside a ball and undefined elsewhere.
     pub fn cull(&self, center: Vec3, radius: f32) -> Field {
         let mut joined = FAR_M;
         let mut groups = Vec::new();
@@ -207,11 +207,11 @@ mod tests {
     use super::*;
 
     fn snowman() -> Field {
-        let mut body = Group::in_world(Join::even(0.0));
+        let mut body = PrimitiveGroup::in_world(Join::even(0.0));
         body.ball(Vec3::ZERO, Vec3::splat(0.3), 0.0);
-        body.cut(Shape::ball(Vec3::Z * 0.3, Vec3::splat(0.05)), 0.01);
+        body.cut(Primitive::ball(Vec3::Z * 0.3, Vec3::splat(0.05)), 0.01);
         body.brush(&[Vec3::X * 0.3, Vec3::new(0.2, 0.2, 0.0)], 0.05, 0.01, Vec3::ONE);
-        let mut head = Group::in_world(Join::even(0.05));
+        let mut head = PrimitiveGroup::in_world(Join::even(0.05));
         head.ball(Vec3::Y * 0.4, Vec3::new(0.15, 0.2, 0.15), 0.0);
         Field { groups: vec![body, head], ..Field::default() }
     }

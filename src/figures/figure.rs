@@ -1,19 +1,19 @@
-//! A figure put together: skeleton, flesh, head, eyes.
+//! Assembles a figure from its skeleton, body, head, eyes and clothes.
 
-use super::cubes::Cubes;
-use super::field::{Field, Group, Join};
+use super::culled_field::CulledField;
+use super::field::{Field, Join, PrimitiveGroup};
 use super::garment::Garment;
 use super::head::{HEAD_UNITS, head};
+use super::meshing::WarpedGrid;
 use super::pose::PoseAngles;
+use super::primitive::Primitive;
 use super::proportions::Build;
-use super::shape::Shape;
 use super::skeleton::Skeleton;
-use super::surface::Grid;
-use super::{eyes, limbs, surface, torso};
+use super::{eyes, limbs, meshing, torso};
 use crate::scene::Mesh;
 use glam::{Affine3A, Vec3, vec3};
 
-/// How much of a figure is made.
+/// The part of a figure that is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// From head to foot.
@@ -22,24 +22,24 @@ pub enum Extent {
     Bust,
 }
 
-/// How fine the triangles are.
+/// The resolution of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Detail {
-    /// Length of edges against full detail.
+    /// Edge length as a multiple of full detail's.
     coarseness: f32,
 }
 
 impl Detail {
-    /// What is baked: fit for a portrait.
+    /// The resolution of the shipped files, for portraits.
     pub const FULL: Detail = Detail { coarseness: 1.0 };
 
-    /// Edges longer than in full detail by a factor of 1 to 4; beyond that the figure would fall apart.
+    /// Returns a resolution with edges longer than full detail's by a factor, clamped to 1 to 4: thin parts need no longer ones.
     pub fn new(coarseness: f32) -> Detail {
         Detail { coarseness: coarseness.clamp(1.0, 4.0) }
     }
 }
 
-/// Height over a standing figure's floor at which a bust is cut off, body units.
+/// Height above a standing figure's floor at which a bust is cut off, body units.
 const BUST_CUT: f32 = 1.19;
 
 /// A posed figure before it is meshed.
@@ -51,12 +51,12 @@ pub struct Sculpture {
 }
 
 impl Sculpture {
-    /// Strikes the pose.
+    /// Builds the skeleton of a posed figure.
     pub fn new(build: Build, pose: &PoseAngles, extent: Extent) -> Sculpture {
         Sculpture { build, skeleton: Skeleton::new(&build, pose), extent }
     }
 
-    /// Metres that the sculpture is lowered by to stand on y = 0.
+    /// Returns the height of the lowest point, metres, which the mesh is lowered by.
     fn base(&self) -> f32 {
         match self.extent {
             Extent::Whole => 0.0,
@@ -64,18 +64,18 @@ impl Sculpture {
         }
     }
 
-    /// World from head on the finished sculpture: origin between the eyes, +Z where it looks; metres.
+    /// Returns world from head on the finished mesh, metres: origin between the eyes, +Z the direction of view.
     pub fn head(&self) -> Affine3A {
         Affine3A::from_translation(Vec3::NEG_Y * self.base()) * self.skeleton.head
     }
 
-    /// The middle of the face, between the eyes and the tip of the nose, on the finished sculpture; metres.
+    /// Returns the middle of the face on the finished mesh, metres: between the eyes and the tip of the nose.
     pub fn face_point(&self) -> Vec3 {
         let scale = self.build.head / HEAD_UNITS;
         self.head().transform_point3(vec3(0.0, -18.0, 101.0) * scale)
     }
 
-    /// The whole shape, still at its standing height.
+    /// Builds the distance field of the body, at its standing height.
     fn field(&self) -> Field {
         let (s, b) = (&self.skeleton, &self.build);
         let mut groups = vec![torso::torso(s, b)];
@@ -88,7 +88,7 @@ impl Sculpture {
             }
             Extent::Bust => {
                 groups.extend(s.arms.iter().map(|arm| shoulder_cap(s, arm.shoulder, arm.elbow)));
-                cuts.push((Shape::HalfSpace { normal: Vec3::Y, offset: self.base() }, 0.012));
+                cuts.push((Primitive::HalfSpace { normal: Vec3::Y, offset: self.base() }, 0.012));
             }
         }
         Field { groups, cuts, ..Field::default() }
@@ -98,16 +98,16 @@ impl Sculpture {
     fn clothes(&self, detail: Detail, low: Vec3, high: Vec3) -> Mesh {
         let unit = self.skeleton.unit;
         let garment = Garment::new(&self.skeleton, &self.build);
-        let cubes = Cubes::new(&garment.field, low, high);
+        let culled = CulledField::new(&garment.field, low, high);
         let middle = self.skeleton.waist.transform_point3(Vec3::Y * 1.15 * unit);
-        let grid = Grid { focus: middle, cell_m: 0.006 * unit * detail.coarseness.min(1.5), core_m: 1.0 };
+        let grid = WarpedGrid { focus: middle, cell_m: 0.006 * unit * detail.coarseness.min(1.5), core_m: 1.0 };
         let target = |p: Vec3| {
             let hem = ramp(garment.to_hem(p) / unit, 0.005, 0.035, 0.004, 0.02);
             // Collar bones are thinner than the triangles of a flat back.
             let bones = ramp(garment.to_neckline(p) / unit, 0.01, 0.2, 0.006, 0.02);
             detail.coarseness * unit * hem.min(bones)
         };
-        surface::skin(&cubes, &grid, low, high, target).with_single_part("clothes")
+        meshing::skin(&culled, &grid, low, high, target).with_single_part("clothes")
     }
 
     /// Wanted length of the mesh's edges, metres: finest at lids and lips, finer than the trunk at hands and feet.
@@ -122,17 +122,17 @@ impl Sculpture {
         head.min(hand * unit).min(foot * unit)
     }
 
-    /// The closed surface with its parts.
+    /// Meshes the figure with its parts.
     pub fn mesh(&self, detail: Detail) -> Mesh {
         let (low, high) = self.skeleton.bounds();
         let low = low.with_y(low.y.max(self.base() - 0.03));
-        let cubes = Cubes::new(&self.field(), low, high);
+        let culled = CulledField::new(&self.field(), low, high);
         let scale = self.build.head / HEAD_UNITS;
         let focus = self.skeleton.head.transform_point3(vec3(0.0, -32.0, 80.0) * scale);
-        let grid = Grid { focus, cell_m: 0.001_5 * detail.coarseness, core_m: 0.1 };
+        let grid = WarpedGrid { focus, cell_m: 0.001_5 * detail.coarseness, core_m: 0.1 };
         let head_from_world = self.skeleton.head.inverse();
         let target = |p: Vec3| detail.coarseness * self.edge_length(p, &head_from_world);
-        let mut mesh = surface::skin(&cubes, &grid, low, high, target).with_single_part("skin");
+        let mut mesh = meshing::skin(&culled, &grid, low, high, target).with_single_part("skin");
         eyes::add_eyes(&mut mesh, self.skeleton.head, scale, &self.build.face);
         if self.extent == Extent::Whole {
             mesh.append(&self.clothes(detail, low, high));
@@ -144,21 +144,21 @@ impl Sculpture {
     }
 }
 
-/// The rounded stump of an arm on a bust.
-fn shoulder_cap(s: &Skeleton, shoulder: Vec3, elbow: Vec3) -> Group {
+/// Builds the rounded end of an arm on a bust.
+fn shoulder_cap(s: &Skeleton, shoulder: Vec3, elbow: Vec3) -> PrimitiveGroup {
     let u = s.unit;
-    let mut g = Group::in_world(Join { center: shoulder, radius: 0.085 * u, near: 0.05 * u, far: 0.05 * u });
+    let mut g = PrimitiveGroup::in_world(Join { center: shoulder, radius: 0.085 * u, near: 0.05 * u, far: 0.05 * u });
     let along = elbow - shoulder;
     g.cone(shoulder, 0.047 * u, shoulder + along * 0.22, 0.041 * u, 0.0);
     g
 }
 
-/// From `y0` at `x0` to `y1` at `x1`, level outside.
+/// Interpolates linearly from `y0` at `x0` to `y1` at `x1`, constant outside.
 fn ramp(x: f32, x0: f32, x1: f32, y0: f32, y1: f32) -> f32 {
     y0 + (y1 - y0) * ((x - x0) / (x1 - x0)).clamp(0.0, 1.0)
 }
 
-/// Wanted length of edges on and around a head, all in head units.
+/// Returns the target edge length on and around a head. All lengths in head units.
 fn head_edge_length(p: Vec3) -> f32 {
     let p = p.with_x(p.x.abs());
     let from_face = p.distance(vec3(0.0, -32.0, 80.0));
@@ -173,7 +173,7 @@ fn head_edge_length(p: Vec3) -> f32 {
         (p.distance(vec3(78.0, -18.0, -14.0)), 28.0, 2.2),
     ];
     fine.iter()
-        .fold(general, |length, &(d, radius, wanted)| length.min(ramp(d, radius, radius + 14.0, wanted, general)))
+        .fold(general, |length, &(d, radius, target)| length.min(ramp(d, radius, radius + 14.0, target, general)))
 }
 
 #[cfg(test)]
@@ -182,7 +182,7 @@ mod tests {
     use crate::scene::{Figure, Pose};
     use rayon::prelude::*;
 
-    /// Edges' and triangles' middles lie deepest where the body is round: there it would poke through the cloth.
+    /// Checks the midpoints of edges and triangles, where a round body would intersect the cloth first.
     #[test]
     fn the_suit_lies_outside_the_body() {
         let dressed = [
@@ -194,7 +194,7 @@ mod tests {
         for (figure, pose) in dressed {
             let sculpture = Sculpture::new(Build::of(figure), &PoseAngles::of(figure, pose), Extent::Whole);
             let (low, high) = sculpture.skeleton.bounds();
-            let body = Cubes::new(&sculpture.field(), low, high);
+            let body = CulledField::new(&sculpture.field(), low, high);
             let garment = Garment::new(&sculpture.skeleton, &sculpture.build);
             let suit = sculpture.clothes(Detail::FULL, low, high);
             let nearest = |i: usize| {

@@ -1,48 +1,48 @@
-//! What the whole figures wear: a plain suit with short sleeves and legs, a solid of its own a little outside the body.
+//! The suit of whole figures, with short sleeves and legs: a solid slightly outside of the body.
 //!
-//! The cloth follows the very shapes of the body, cut off at each hem, and stands off by its thickness; the
-//! skin comes out of the hems' flat ends, so the seam between cloth and skin is clean from every side.
+//! The cloth is the body's own primitives, cut off at each hem and offset outwards by its thickness. The skin emerges
+//! from the hems' flat ends, so that cloth and skin meet in a clean line.
 
-use super::field::{Field, Group};
+use super::field::{Field, PrimitiveGroup};
 use super::limbs;
+use super::primitive::Primitive;
 use super::proportions::Build;
-use super::shape::Shape;
 use super::skeleton::Skeleton;
 use super::torso;
 use glam::{Mat3, Vec3, vec3};
 
 /// Thickness of the cloth, body units.
 const CLOTH: f32 = 0.004;
-/// How far down the upper arm the sleeves reach.
+/// Length of the sleeves, as a fraction of the upper arm.
 const SLEEVE: f32 = 0.52;
-/// How far down the thigh the legs reach.
+/// Length of the trouser legs, as a fraction of the thigh.
 const LEG: f32 = 0.48;
 
 /// A suit before it is meshed.
 pub struct Garment {
-    /// Its shape.
+    /// The distance field.
     pub field: Field,
-    /// Where it ends: points and normals of the hems' planes.
+    /// Planes of the hems: point and normal.
     hems: Vec<(Vec3, Vec3)>,
-    /// The hollow that the neck comes out of.
-    neckline: Shape,
+    /// The ellipsoid subtracted for the neck.
+    neckline: Primitive,
 }
 
 impl Garment {
-    /// Cuts a suit for a posed figure.
+    /// Builds the suit of a posed figure.
     pub fn new(s: &Skeleton, b: &Build) -> Garment {
         let mut hems = Vec::new();
         let mut trunk = torso::torso(s, b);
-        let neckline = Shape::Ellipsoid {
+        let neckline = Primitive::Ellipsoid {
             center: s.chest.transform_point3(vec3(0.0, 1.565, -0.01) * s.unit),
             axes: Mat3::from(s.chest.matrix3),
             radii: vec3(0.082 + 0.3 * b.neck / s.unit, 0.155, 0.125) * s.unit,
         };
         trunk.cut(neckline.clone(), 0.003 * s.unit);
-        // Nothing of the neck is left above it.
+        // Remove the neck above the collar.
         let up = s.chest.transform_vector3(Vec3::Y);
         let collar = s.chest.transform_point3(vec3(0.0, 1.527, 0.0) * s.unit);
-        trunk.cut(Shape::HalfSpace { normal: -up, offset: -up.dot(collar) }, 0.003 * s.unit);
+        trunk.cut(Primitive::HalfSpace { normal: -up, offset: -up.dot(collar) }, 0.003 * s.unit);
         let mut groups = vec![trunk];
         for leg in &s.legs {
             let mut group = limbs::thigh(s, leg, b);
@@ -59,7 +59,7 @@ impl Garment {
         Garment { field: Field { groups, inflate: CLOTH * s.unit, ..Field::default() }, hems, neckline }
     }
 
-    /// Distance to the nearest hem, metres.
+    /// Returns the distance to the nearest hem, metres.
     pub fn to_hem(&self, p: Vec3) -> f32 {
         let planes = self
             .hems
@@ -70,14 +70,14 @@ impl Garment {
         planes.fold(self.to_neckline(p), f32::min)
     }
 
-    /// Distance to the hollow of the neck, metres.
+    /// Returns the distance to the neckline, metres.
     pub fn to_neckline(&self, p: Vec3) -> f32 {
         self.neckline.distance(p).abs()
     }
 }
 
-/// Takes off all of a group that lies beyond a plane.
-fn hem(group: &mut Group, hems: &mut Vec<(Vec3, Vec3)>, point: Vec3, beyond: Vec3, unit: f32) {
-    group.cut(Shape::HalfSpace { normal: -beyond, offset: -beyond.dot(point) }, 0.002 * unit);
+/// Cuts a group off at a plane, and records the plane.
+fn hem(group: &mut PrimitiveGroup, hems: &mut Vec<(Vec3, Vec3)>, point: Vec3, beyond: Vec3, unit: f32) {
+    group.cut(Primitive::HalfSpace { normal: -beyond, offset: -beyond.dot(point) }, 0.002 * unit);
     hems.push((point + beyond * CLOTH * unit, beyond));
 }

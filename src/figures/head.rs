@@ -1,26 +1,26 @@
-//! The head, modelled in a frame of its own: millimetres of a head 230 mm high, origin between the eyes, +Z ahead,
-//! +Y up, one half modelled and mirrored. Landmarks follow mean adult head measurements.
+//! The head, in head units: millimetres of a head 230 mm high, origin between the eyes, +Z forwards, +Y up. One half is
+//! modelled and mirrored. Landmarks follow mean adult head measurements.
 
 use super::face::add_face;
-use super::field::{Group, Join};
+use super::field::{Join, PrimitiveGroup};
+use super::primitive::Primitive;
 use super::proportions::FaceShape;
-use super::shape::Shape;
 use glam::{Affine3A, Mat3, Vec3, vec3};
 
-/// Height of the modelled head, chin to crown, in its own units.
+/// Height of the head, chin to crown, head units.
 pub const HEAD_UNITS: f32 = 230.0;
 
-/// Builds the head group. `height_m` is chin to crown.
-pub fn head(world_from_head: Affine3A, height_m: f32, face: &FaceShape) -> Group {
+/// Builds the head. `height_m` is its height from chin to crown, metres.
+pub fn head(world_from_head: Affine3A, height_m: f32, face: &FaceShape) -> PrimitiveGroup {
     let scale = height_m / HEAD_UNITS;
-    let mut group = Group::new(world_from_head, scale, Join::even(0.03)).mirrored();
+    let mut group = PrimitiveGroup::new(world_from_head, scale, Join::even(0.03)).mirrored();
     add_skull(&mut group, face);
     add_face(&mut group, face);
     add_ear(&mut group, face);
     group
 }
 
-fn add_skull(g: &mut Group, f: &FaceShape) {
+fn add_skull(g: &mut PrimitiveGroup, f: &FaceShape) {
     // Cranium: a broad back, a narrower forehead.
     g.ball(vec3(0.0, 36.0, -18.0), vec3(75.0 * f.skull, 79.0, 80.0), 0.0);
     g.ball(vec3(0.0, 32.0, 28.0), vec3(63.0 * f.skull, 72.0, 66.0), 40.0);
@@ -32,7 +32,7 @@ fn add_skull(g: &mut Group, f: &FaceShape) {
     g.cone(angle, 10.0, vec3(17.0 * f.jaw, -97.0 + f.chin_lift, 72.0), 14.0, 24.0);
     g.cone(angle, 10.0, vec3(58.0, -22.0, 2.0), 12.0, 24.0);
     g.ball(vec3(0.0, -98.0 + f.chin_lift, 77.0 + f.chin), vec3(21.0 * f.jaw, 16.0, 18.0), 20.0);
-    // The floor of the mouth, so that jaw and neck meet in a plane and not in a pit.
+    // The floor of the mouth, where jaw and neck meet.
     g.cone(vec3(0.0, -88.0, 52.0), 14.0, vec3(0.0, -78.0, 5.0), 34.0, 24.0);
     // Cheeks.
     g.ball(vec3(36.0, -52.0, 38.0), vec3(21.0, 30.0, 30.0) * f.fullness, 24.0);
@@ -42,7 +42,7 @@ fn add_skull(g: &mut Group, f: &FaceShape) {
 }
 
 /// Ear: a shell in its own plane, the back edge standing off the head.
-fn add_ear(g: &mut Group, f: &FaceShape) {
+fn add_ear(g: &mut PrimitiveGroup, f: &FaceShape) {
     // Columns: towards the back of the head, up along the ear, out of its plane.
     let (flare, lean) = (0.42_f32, 0.2_f32);
     let out = vec3(flare.cos(), 0.0, flare.sin());
@@ -53,12 +53,12 @@ fn add_ear(g: &mut Group, f: &FaceShape) {
     let size = f.ear;
     let place = |u: f32, w: f32, n: f32| vec3(71.0 * f.skull, -19.0, -9.0) + (back * u + up * w + out * n) * size;
     let axes = Mat3::from_cols(back, up, back.cross(up));
-    let ball = |c: Vec3, r: Vec3| Shape::Ellipsoid { center: c, axes, radii: r * size };
+    let ball = |c: Vec3, r: Vec3| Primitive::Ellipsoid { center: c, axes, radii: r * size };
     // Plate and lobe.
     let tilt = 0.3_f32;
     let (plate_back, plate_out) = (back * tilt.cos() + out * tilt.sin(), out * tilt.cos() - back * tilt.sin());
     let plate = Mat3::from_cols(plate_back, up, plate_out);
-    g.add(Shape::Ellipsoid { center: place(5.0, 6.0, 3.2), axes: plate, radii: vec3(17.0, 27.0, 4.2) * size }, 5.0);
+    g.add(Primitive::Ellipsoid { center: place(5.0, 6.0, 3.2), axes: plate, radii: vec3(17.0, 27.0, 4.2) * size }, 5.0);
     g.add(ball(place(-1.0, -23.0, 2.5), vec3(7.5, 9.0, 3.8)), 5.0);
     // Helix: the rolled rim, from the crus round the top to the lobe.
     let rim: Vec<(Vec3, f32)> = [
@@ -77,7 +77,7 @@ fn add_ear(g: &mut Group, f: &FaceShape) {
     .iter()
     .map(|&(u, w, n, r)| (place(u, w, n), r * size))
     .collect();
-    g.add(Shape::Tube(rim), 3.0);
+    g.add(Primitive::Tube(rim), 3.0);
     // The bowl in front of the canal, then the ridge between bowl and rim.
     g.cut(ball(place(0.5, -4.0, 10.0), vec3(8.5, 11.5, 8.0)), 3.0);
     let ridge: Vec<(Vec3, f32)> = [
@@ -90,7 +90,7 @@ fn add_ear(g: &mut Group, f: &FaceShape) {
     .iter()
     .map(|&(u, w, n, r)| (place(u, w, n), r * size))
     .collect();
-    g.add(Shape::Tube(ridge), 3.0);
+    g.add(Primitive::Tube(ridge), 3.0);
     // Tragus, and the knob across from it.
     g.add(ball(place(-10.0, -5.5, 4.5), vec3(3.2, 5.5, 3.6)), 4.0);
     g.add(ball(place(1.0, -16.5, 5.5), vec3(4.0, 3.0, 3.0)), 3.0);

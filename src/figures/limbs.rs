@@ -1,12 +1,12 @@
 //! Arms and legs.
 
-use super::field::{Group, Join};
+use super::field::{Join, PrimitiveGroup};
+use super::primitive::Primitive;
 use super::proportions::Build;
-use super::shape::Shape;
 use super::skeleton::{Arm, Leg, Skeleton};
 use glam::{Mat3, Vec3};
 
-/// A bone with its directions: flesh is placed by how far along it lies, how far to the front and to the outside.
+/// A bone with a local frame; muscles are placed along it, to the front and outwards.
 struct Bone {
     start: Vec3,
     end: Vec3,
@@ -27,16 +27,16 @@ impl Bone {
         self.start.lerp(self.end, along) + (self.front * front + self.out * out) * self.unit
     }
 
-    /// A muscle along the bone: radii outwards, along, to the front.
-    fn belly(&self, group: &mut Group, center: Vec3, radii: Vec3, width: f32) {
+    /// Adds a muscle along the bone: radii outwards, along, to the front.
+    fn belly(&self, group: &mut PrimitiveGroup, center: Vec3, radii: Vec3, width: f32) {
         let along = (self.end - self.start).normalize_or(Vec3::NEG_Y);
         let axes = Mat3::from_cols(self.out, along, self.front);
-        group.add(Shape::Ellipsoid { center, axes, radii: radii * self.unit }, width * self.unit);
+        group.add(Primitive::Ellipsoid { center, axes, radii: radii * self.unit }, width * self.unit);
     }
 }
 
-/// Upper arm, forearm and hand.
-pub fn arm(s: &Skeleton, arm: &Arm, b: &Build) -> Group {
+/// Builds upper arm, forearm and hand.
+pub fn arm(s: &Skeleton, arm: &Arm, b: &Build) -> PrimitiveGroup {
     let mut g = upper_arm(s, arm, b);
     let outwards = s.chest.transform_vector3(Vec3::X * arm.side.sign());
     add_forearm(&mut g, arm, b, outwards, s.unit);
@@ -44,11 +44,11 @@ pub fn arm(s: &Skeleton, arm: &Arm, b: &Build) -> Group {
     g
 }
 
-/// Shoulder to elbow.
-pub fn upper_arm(s: &Skeleton, arm: &Arm, b: &Build) -> Group {
+/// Builds the arm from shoulder to elbow.
+pub fn upper_arm(s: &Skeleton, arm: &Arm, b: &Build) -> PrimitiveGroup {
     let (u, l, m) = (s.unit, b.limb, b.muscle);
     let join = Join { center: arm.shoulder, radius: 0.085 * u, near: 0.05 * u, far: 0.004 * u };
-    let mut g = Group::in_world(join);
+    let mut g = PrimitiveGroup::in_world(join);
     let outwards = s.chest.transform_vector3(Vec3::X * arm.side.sign());
     let forwards = s.chest.transform_vector3(Vec3::Z);
     let upper = Bone::new(arm.shoulder, arm.elbow, forwards, outwards, u);
@@ -62,7 +62,7 @@ pub fn upper_arm(s: &Skeleton, arm: &Arm, b: &Build) -> Group {
     g
 }
 
-fn add_forearm(g: &mut Group, arm: &Arm, b: &Build, outwards: Vec3, u: f32) {
+fn add_forearm(g: &mut PrimitiveGroup, arm: &Arm, b: &Build, outwards: Vec3, u: f32) {
     let l = b.limb;
     let r = |metres: f32| metres * l * u;
     // Full below the elbow, flat at the wrist. Its broad side follows the palm.
@@ -74,19 +74,19 @@ fn add_forearm(g: &mut Group, arm: &Arm, b: &Build, outwards: Vec3, u: f32) {
     g.ball(arm.elbow - back.normalize_or(Vec3::ZERO) * 0.016 * u, Vec3::splat(r(0.024)), 0.02 * u);
 }
 
-/// Thigh, shin and foot.
-pub fn leg(s: &Skeleton, leg: &Leg, b: &Build) -> Group {
+/// Builds thigh, shin and foot.
+pub fn leg(s: &Skeleton, leg: &Leg, b: &Build) -> PrimitiveGroup {
     let mut g = thigh(s, leg, b);
     add_shin(&mut g, s, leg, b);
     super::extremities::add_foot(&mut g, leg, b, s.unit);
     g
 }
 
-/// Hip to knee.
-pub fn thigh(s: &Skeleton, leg: &Leg, b: &Build) -> Group {
+/// Builds the leg from hip to knee.
+pub fn thigh(s: &Skeleton, leg: &Leg, b: &Build) -> PrimitiveGroup {
     let (u, l, m) = (s.unit, b.limb, b.muscle);
     let join = Join { center: leg.hip, radius: 0.12 * u, near: 0.045 * u, far: 0.006 * u };
-    let mut g = Group::in_world(join);
+    let mut g = PrimitiveGroup::in_world(join);
     let outwards = s.pelvis.transform_vector3(Vec3::X * leg.side.sign());
     let thigh = Bone::new(leg.hip, leg.knee, leg.front, outwards, u);
     let r = |metres: f32| metres * l * u;
@@ -101,7 +101,7 @@ pub fn thigh(s: &Skeleton, leg: &Leg, b: &Build) -> Group {
     g
 }
 
-fn add_shin(g: &mut Group, s: &Skeleton, leg: &Leg, b: &Build) {
+fn add_shin(g: &mut PrimitiveGroup, s: &Skeleton, leg: &Leg, b: &Build) {
     let (u, l, m) = (s.unit, b.limb, b.muscle);
     let outwards = s.pelvis.transform_vector3(Vec3::X * leg.side.sign());
     let r = |metres: f32| metres * l * u;

@@ -1,16 +1,15 @@
-//! The figures of the wardrobe: a woman, a man, a child and a portrait bust, made from measures and a pose.
+//! Builds the shipped figures, a woman, a man, a child and a portrait bust, from body measures and poses.
 //!
 //! ```text
-//! Build (measures) + PoseAngles -> skeleton -> groups of shapes (head, trunk, limbs) = one signed distance field
-//!   -> surface nets -> even triangles on the surface -> Mesh with the parts skin, eyes, iris, pupil, clothes
+//! Build (measures) + PoseAngles -> Skeleton -> groups of primitives (head, trunk, limbs) = one signed distance field
+//!   -> surface nets -> isotropic remeshing -> Mesh with the parts skin, eyes, iris, pupil, clothes
 //! ```
 //!
-//! The field is one, so the skin is one closed surface. The head is modelled after mean adult landmarks, because a
-//! face is what a portrait light is judged by: brow, sockets and lids, bridge, tip and wings of the nose, cheekbones,
-//! lips, chin and jaw all stand where the light patterns need them. The result depends on nothing but the
-//! measures: any number of threads gives the same bits.
+//! The body is one distance field, so the skin is one closed surface. The head follows mean adult landmarks, since the
+//! light patterns of a portrait depend on them: brow, sockets and lids, bridge, tip and wings of the nose, cheekbones,
+//! lips, chin and jaw. The result is a function of measures and pose: the same bits for any number of threads.
 
-mod cubes;
+mod culled_field;
 mod extremities;
 mod eyes;
 mod face;
@@ -19,13 +18,13 @@ mod figure;
 mod garment;
 mod head;
 mod limbs;
+mod meshing;
 mod obj;
 mod pose;
+mod primitive;
 mod proportions;
 mod remesh;
-mod shape;
 mod skeleton;
-mod surface;
 #[cfg(test)]
 mod tests;
 mod torso;
@@ -40,7 +39,7 @@ use glam::Vec3;
 use std::io;
 use std::path::Path;
 
-/// Every figure that is baked, in list order.
+/// Every shipped figure, in list order.
 pub const ALL: [Mannequin; 14] = [
     Mannequin { figure: Figure::Woman, pose: Pose::Standing },
     Mannequin { figure: Figure::Woman, pose: Pose::Contrapposto },
@@ -58,7 +57,7 @@ pub const ALL: [Mannequin; 14] = [
     Mannequin { figure: Figure::Bust, pose: Pose::HeadTurned },
 ];
 
-/// The figure of [`ALL`] that stands for this one: a bust has neither hips nor seat, so those poses leave it upright.
+/// Returns the figure of [`ALL`] for a figure: a bust has neither hips nor seat, so it is upright in those poses.
 pub fn resolve(mannequin: Mannequin) -> Mannequin {
     match mannequin {
         Mannequin { figure: Figure::Bust, pose: Pose::Contrapposto | Pose::Seated } => {
@@ -68,24 +67,24 @@ pub fn resolve(mannequin: Mannequin) -> Mannequin {
     }
 }
 
-/// Makes a figure in full detail, with smooth normals. Takes seconds: the baked files hold the same.
+/// Builds the mesh of a figure in full detail, with smooth normals. Takes seconds; the shipped files hold the result.
 pub fn build(mannequin: Mannequin) -> Mesh {
     let mut mesh = sculpture(mannequin).mesh(Detail::FULL);
     mesh.compute_smooth_normals();
     mesh
 }
 
-/// The middle of the face in object space, between the eyes and the tip of the nose.
+/// Returns the middle of the face in object space, metres: between the eyes and the tip of the nose.
 pub fn face_point(mannequin: Mannequin) -> Vec3 {
     sculpture(mannequin).face_point()
 }
 
-/// Unit vector, in object space, in which the face looks.
+/// Returns the unit vector in object space in which the face looks.
 pub fn face_direction(mannequin: Mannequin) -> Vec3 {
     sculpture(mannequin).head().transform_vector3(Vec3::Z).normalize_or(Vec3::Z)
 }
 
-/// Name of the baked file: `woman_standing.obj`.
+/// Returns the name of the shipped file: `woman_standing.obj`.
 pub fn file_name(mannequin: Mannequin) -> String {
     let mannequin = resolve(mannequin);
     let figure = match mannequin.figure {
@@ -103,8 +102,8 @@ pub fn file_name(mannequin: Mannequin) -> String {
     format!("{figure}_{pose}.obj")
 }
 
-/// Surfaces of the parts that are not skin: eyes, iris, pupil and the suit that whole figures wear. `skin` is the object's own material; it is taken so
-/// that a dark skin gets dark eyes.
+/// Returns the materials of the parts that are not skin: eyes, iris, pupil and the suit of whole figures. A dark `skin`,
+/// the object's own material, gets darker eyes.
 pub fn default_parts(skin: &Material) -> Vec<(String, Material)> {
     let gloss = |base_color| Material { base_color, ..MaterialPreset::Eye.material() };
     let [r, g, b] = skin.base_color;
@@ -118,10 +117,11 @@ pub fn default_parts(skin: &Material) -> Vec<(String, Material)> {
     ]
 }
 
-/// Makes every figure of [`ALL`] and writes it into a folder, which is made if need be. Returns the files' names.
+/// Builds every figure of [`ALL`] and writes it as an OBJ file into a folder, which is created if need be. Returns the
+/// files' names.
 ///
 /// # Errors
-/// What the file system says.
+/// If the folder or a file can't be written.
 pub fn bake(dir: &Path) -> io::Result<Vec<String>> {
     std::fs::create_dir_all(dir)?;
     let mut names = Vec::new();

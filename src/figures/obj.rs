@@ -1,9 +1,9 @@
-//! The figures as OBJ text: the files in `assets/mannequins` are written by this.
+//! Writes figures as OBJ text, the files in `assets/mannequins`.
 
 use crate::scene::Mesh;
 use std::fmt::Write;
 
-/// OBJ text with a group a part, positions to a hundredth of a millimetre. Normals are left to the reader
+/// Returns OBJ text with a group for each part, positions rounded to 0.01 mm. Readers compute the normals
 /// (`Mesh::compute_smooth_normals`): the triangles are even and small, and the file is half as long.
 pub fn to_obj(mesh: &Mesh) -> String {
     let mut text = String::with_capacity(mesh.positions.len() * 28 + mesh.triangles.len() * 21);
@@ -11,7 +11,7 @@ pub fn to_obj(mesh: &Mesh) -> String {
     let mut written = 0;
     for part in &mesh.parts {
         let triangles = &mesh.triangles[part.triangles.start as usize..part.triangles.end as usize];
-        // Parts follow each other in the vertices too: each group starts with its own.
+        // The vertices of each part follow those of the part before.
         let end = triangles.iter().flatten().map(|&i| i as usize + 1).max().unwrap_or(written).max(written);
         put(&mut text, format_args!("g {}\n", part.name));
         for p in &mesh.positions[written..end] {
@@ -31,7 +31,7 @@ fn put(text: &mut String, line: std::fmt::Arguments) {
     let _ = text.write_fmt(line);
 }
 
-/// To the file's digits, and without a negative zero.
+/// Replaces values that round to zero by zero, which has no minus sign.
 fn rounded(x: f32) -> f32 {
     if x.abs() < 0.5e-5 { 0.0 } else { x }
 }

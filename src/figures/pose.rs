@@ -1,9 +1,9 @@
-//! How a figure holds itself: turns of its joints, places of its feet and hands.
+//! Poses: rotations of the joints, positions of feet and hands.
 
 use crate::scene::{Figure, Pose};
 use glam::{EulerRot, Quat, Vec2, Vec3};
 
-/// A joint's turn: pitch (nod), yaw (to the figure's left), roll (to its right shoulder), degrees.
+/// The rotation of a joint, degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Turn {
     /// Forwards.
@@ -19,17 +19,17 @@ impl Turn {
         Turn { pitch_deg, yaw_deg, roll_deg }
     }
 
-    /// As a rotation.
+    /// Returns the rotation: yaw, then pitch, then roll.
     pub fn rotation(self) -> Quat {
         let [yaw, pitch, roll] = [self.yaw_deg, self.pitch_deg, self.roll_deg].map(f32::to_radians);
         Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll)
     }
 }
 
-/// An arm.
+/// The pose of an arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ArmPose {
-    /// Hanging or lifted freely.
+    /// Given by the angles of its joints.
     Free {
         /// Away from the body, degrees.
         abduct_deg: f32,
@@ -38,11 +38,11 @@ pub enum ArmPose {
         /// Bend of the elbow, degrees.
         elbow_deg: f32,
     },
-    /// The hand laid somewhere; the elbow follows.
+    /// Given by the position of the hand; the elbow follows.
     Laid {
-        /// Place of the wrist from the middle of the hips, in body units (see `Skeleton`); +X is outwards.
+        /// Position of the wrist from the middle of the hips, in body units (see `Skeleton`); +X is outwards.
         wrist: Vec3,
-        /// Side to which the elbow points; +X is outwards.
+        /// BodySide to which the elbow points; +X is outwards.
         elbow: Vec3,
         /// Direction of the fingers; +X is outwards.
         fingers: Vec3,
@@ -51,10 +51,10 @@ pub enum ArmPose {
     },
 }
 
-/// A leg: the foot stands somewhere, the knee follows.
+/// The pose of a leg, given by the position of the foot; the knee follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LegPose {
-    /// Place of the ankle on the floor, in body units: outwards, forwards.
+    /// Position of the ankle on the floor, in body units: outwards, forwards.
     pub ankle: Vec2,
     /// Toes turned outwards, degrees.
     pub toes_out_deg: f32,
@@ -67,7 +67,7 @@ pub struct LegPose {
 pub struct PoseAngles {
     /// Height of the seat the figure sits on, metres; its hips then lie over the seat, a thigh's length behind the knees.
     pub seat_m: Option<f32>,
-    /// The hips' place against standing straight (or sitting), in body units.
+    /// Offset of the hips from standing straight (or sitting), in body units.
     pub hip_shift: Vec3,
     /// Turn of the pelvis.
     pub pelvis: Turn,
@@ -100,7 +100,7 @@ const STANDING: PoseAngles = PoseAngles {
 };
 
 impl PoseAngles {
-    /// The pose of a figure of the wardrobe.
+    /// Returns the pose of a shipped figure.
     pub fn of(figure: Figure, pose: Pose) -> PoseAngles {
         match pose {
             Pose::Standing => STANDING,
@@ -113,7 +113,7 @@ impl PoseAngles {
     }
 }
 
-/// Weight on the right leg, left knee loose, right hand on the hip that stands out.
+/// Contrapposto: weight on the right leg, left knee bent, right hand on the raised hip.
 fn contrapposto() -> PoseAngles {
     let on_hip = ArmPose::Laid {
         wrist: Vec3::new(0.205, 0.115, 0.005),
@@ -137,7 +137,7 @@ fn contrapposto() -> PoseAngles {
     }
 }
 
-/// On a seat, feet flat on the floor, hands on the thighs.
+/// Sitting, feet flat on the floor, hands on the thighs. `seat_m` is the seat's height, metres.
 fn seated(seat_m: f32) -> PoseAngles {
     let on_thigh = ArmPose::Laid {
         wrist: Vec3::new(0.135, 0.085, 0.245),

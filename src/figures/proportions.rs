@@ -1,17 +1,17 @@
-//! Measures of a figure. All lengths in metres; the four figures of the wardrobe are values of [`Build`].
+//! Body measures. The shipped figures are values of [`Build`]; all lengths in metres.
 
 use crate::scene::Figure;
 
-/// Character of a face, as factors and offsets on a mean adult's.
+/// The shape of a face, as factors and offsets relative to a mean adult's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaceShape {
     /// Width of the skull.
     pub skull: f32,
     /// Width of the lower jaw and chin.
     pub jaw: f32,
-    /// How far the chin stands forward, head units (a 230th of the head's height).
+    /// Offset of the chin forwards, head units (1/230 of the head's height).
     pub chin: f32,
-    /// How far the chin is drawn up, head units.
+    /// Offset of the chin upwards, head units.
     pub chin_lift: f32,
     /// Height of the brow ridge, head units.
     pub brow: f32,
@@ -27,9 +27,9 @@ pub struct FaceShape {
     pub mouth: f32,
     /// Fullness of the lips.
     pub lips: f32,
-    /// How wide the eyes are open.
+    /// Opening of the eyes.
     pub eye_open: f32,
-    /// How far the eyes stand forward, head units.
+    /// Offset of the eyes forwards, head units.
     pub eye_forward: f32,
     /// Fullness of the cheeks.
     pub fullness: f32,
@@ -62,9 +62,9 @@ pub struct Build {
     pub bust: f32,
     /// Radius of the neck.
     pub neck: f32,
-    /// Thickness of arms and legs against a mean man's of that size.
+    /// Thickness of arms and legs relative to a mean man's of that height.
     pub limb: f32,
-    /// How strongly muscles show, 0 to 1.
+    /// Definition of the muscles, 0 to 1.
     pub muscle: f32,
     /// The face.
     pub face: FaceShape,
@@ -90,7 +90,7 @@ const MEAN_FACE: FaceShape = FaceShape {
 };
 
 impl Build {
-    /// The measures of a figure of the wardrobe. A bust has the woman's.
+    /// Returns the measures of a shipped figure. A bust has the woman's.
     pub fn of(figure: Figure) -> Build {
         match figure {
             Figure::Woman | Figure::Bust => Build {

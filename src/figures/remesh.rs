@@ -1,48 +1,49 @@
-//! Even triangles of a wanted size: long edges are split, short ones collapsed, edges flipped towards six
-//! neighbours a vertex, vertices spread out along the surface and put back on it (Botsch and Kobbelt 2004).
+//! Isotropic remeshing (Botsch and Kobbelt 2004): splits long edges, collapses short ones, flips edges towards six
+//! neighbours a vertex, relaxes vertices along the surface and projects them back onto it.
 //!
-//! All passes visit edges in index order, so the result is the same every time. No step changes the topology: a
-//! closed surface stays closed.
+//! All passes visit edges in index order, so the result is deterministic. No operation changes the topology: a closed
+//! surface stays closed.
 
-use super::cubes::Cubes;
+use super::culled_field::CulledField;
 use crate::scene::Mesh;
 use glam::Vec3;
 use rayon::prelude::*;
 
+/// Index of a removed vertex.
 const GONE: u32 = u32::MAX;
 
-/// A closed surface under work.
-struct Net {
+/// A closed surface with its adjacency.
+struct EditableMesh {
     positions: Vec<Vec3>,
-    /// Triangles; `GONE` marks those that were collapsed away.
+    /// Triangles; `GONE` marks removed ones.
     triangles: Vec<[u32; 3]>,
-    /// Triangles around each vertex; empty for a vertex that is gone.
+    /// Triangles around each vertex; empty for a removed vertex.
     around: Vec<Vec<u32>>,
 }
 
-/// Gives a closed mesh edges about `target` long, its vertices on the surface of the field.
-pub fn remesh(mesh: Mesh, cubes: &Cubes, target: impl Fn(Vec3) -> f32) -> Mesh {
-    let mut net = Net::new(mesh);
+/// Remeshes a closed mesh to edges of about `target` metres, with its vertices on the surface of the field.
+pub fn remesh(mesh: Mesh, field: &CulledField, target: impl Fn(Vec3) -> f32) -> Mesh {
+    let mut net = EditableMesh::new(mesh);
     for round in 0..6 {
         net.split_long(&target);
         net.collapse_short(&target);
         net.flip_for_valence();
         let steps = if round == 5 { 3 } else { 1 };
-        net.relax(cubes, steps);
+        net.relax(field, steps);
     }
     net.into_mesh()
 }
 
-impl Net {
-    fn new(mesh: Mesh) -> Net {
+impl EditableMesh {
+    fn new(mesh: Mesh) -> EditableMesh {
         let mut around = vec![Vec::with_capacity(8); mesh.positions.len()];
         for (i, t) in mesh.triangles.iter().enumerate() {
             t.iter().for_each(|&v| around[v as usize].push(i as u32));
         }
-        Net { positions: mesh.positions, triangles: mesh.triangles, around }
+        EditableMesh { positions: mesh.positions, triangles: mesh.triangles, around }
     }
 
-    /// Every edge once, smaller index first.
+    /// Returns every edge once, smaller index first.
     fn edges(&self) -> Vec<(u32, u32)> {
         let mut edges = Vec::with_capacity(self.triangles.len() * 3 / 2);
         for t in self.triangles.iter().filter(|t| t[0] != GONE) {
@@ -55,12 +56,12 @@ impl Net {
         (self.positions[a as usize] - self.positions[b as usize]).length()
     }
 
-    /// Edge length over the wanted length there.
+    /// Returns the length of an edge relative to the target length there.
     fn excess(&self, a: u32, b: u32, target: &impl Fn(Vec3) -> f32) -> f32 {
         self.length(a, b) / target((self.positions[a as usize] + self.positions[b as usize]) * 0.5)
     }
 
-    /// The two triangles at an edge, if it (still) is one.
+    /// Returns the two triangles at an edge; `None` if there is no such edge any more.
     fn at_edge(&self, a: u32, b: u32) -> Option<[u32; 2]> {
         let mut found = self.around[a as usize].iter().copied().filter(|&t| self.triangles[t as usize].contains(&b));
         match (found.next(), found.next(), found.next()) {
@@ -69,7 +70,7 @@ impl Net {
         }
     }
 
-    /// The corner of a triangle that is neither `a` nor `b`.
+    /// Returns the corner of a triangle that is neither `a` nor `b`.
     fn opposite(&self, triangle: u32, a: u32, b: u32) -> u32 {
         let t = self.triangles[triangle as usize];
         t.into_iter().find(|&v| v != a && v != b).unwrap_or(GONE)
@@ -86,7 +87,7 @@ impl Net {
         ring
     }
 
-    /// Twice the area vector of a triangle.
+    /// Returns twice the area vector of a triangle.
     fn cross(&self, t: [u32; 3]) -> Vec3 {
         let [a, b, c] = t.map(|i| self.positions[i as usize]);
         (b - a).cross(c - a)
@@ -102,7 +103,7 @@ impl Net {
             self.positions.push((self.positions[a as usize] + self.positions[b as usize]) * 0.5);
             self.around.push(Vec::with_capacity(8));
             for side in sides {
-                // The old triangle keeps `a`, a new one gets `b`.
+                // The old triangle keeps `a`; the new one takes `b`.
                 let old = self.triangles[side as usize];
                 let new = self.triangles.len() as u32;
                 self.triangles.push(old.map(|v| if v == a { middle } else { v }));
@@ -124,7 +125,7 @@ impl Net {
         }
     }
 
-    /// Merges `b` into `a` where that keeps the surface a surface and no triangle turns over.
+    /// Merges `b` into `a` if the surface stays manifold and no triangle flips its normal.
     fn collapse(&mut self, a: u32, b: u32, target: &impl Fn(Vec3) -> f32) {
         let Some(sides) = self.at_edge(a, b) else { return };
         let (ring_a, ring_b) = (self.neighbours(a), self.neighbours(b));
@@ -178,7 +179,7 @@ impl Net {
         }
     }
 
-    /// Turns the edge `a b` into `c d` if the four corners lie flat enough and convex.
+    /// Flips the edge `a b` to `c d` if the four corners are nearly planar and convex.
     fn flip(&mut self, [a, b]: [u32; 2], [c, d]: [u32; 2], [left, right]: [u32; 2]) {
         if self.at_edge(c, d).is_some() || self.around[c as usize].iter().any(|t| self.around[d as usize].contains(t)) {
             return;
@@ -190,7 +191,7 @@ impl Net {
         for t in [new_left, new_right] {
             let n = self.cross(t);
             let longest = (0..3).map(|k| self.length(t[k], t[(k + 1) % 3])).fold(0.0, f32::max);
-            // Turned over, or a sliver.
+            // Reject a flipped normal or a sliver.
             if n.dot(facing) < 1.4 * n.length() || n.length() < 0.15 * longest * longest {
                 return;
             }
@@ -203,8 +204,8 @@ impl Net {
         self.around[c as usize].push(right);
     }
 
-    /// Moves each vertex along the surface towards the middle of its neighbours, then onto the surface.
-    fn relax(&mut self, cubes: &Cubes, newton_steps: u32) {
+    /// Moves each vertex along the surface towards the centroid of its neighbours, then projects it onto the surface.
+    fn relax(&mut self, field: &CulledField, newton_steps: u32) {
         let moved = (0..self.positions.len()).into_par_iter().map(|i| {
             let p = self.positions[i];
             if self.around[i].is_empty() {
@@ -215,7 +216,7 @@ impl Net {
             let normal = self.around[i].iter().map(|&t| self.cross(self.triangles[t as usize])).sum::<Vec3>();
             let normal = normal.normalize_or_zero();
             let slide = middle - p;
-            cubes.project(p + 0.6 * (slide - normal * slide.dot(normal)), newton_steps)
+            field.project(p + 0.6 * (slide - normal * slide.dot(normal)), newton_steps)
         });
         self.positions = moved.collect();
     }

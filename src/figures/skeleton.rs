@@ -1,24 +1,24 @@
-//! Bones: where the joints are once a pose is struck.
+//! Positions of the joints in a pose.
 
 use super::pose::{ArmPose, LegPose, PoseAngles};
 use super::proportions::Build;
 use glam::{Affine3A, Mat3, Quat, Vec3};
 
-/// Left is the figure's own left, at +X.
+/// A side of the body: left is the figure's own left, at +X.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum BodySide {
     /// At +X.
     Left,
     /// At -X.
     Right,
 }
 
-impl Side {
+impl BodySide {
     /// +1 for left, -1 for right.
     pub fn sign(self) -> f32 {
         match self {
-            Side::Left => 1.0,
-            Side::Right => -1.0,
+            BodySide::Left => 1.0,
+            BodySide::Right => -1.0,
         }
     }
 }
@@ -26,8 +26,8 @@ impl Side {
 /// An arm's joints.
 #[derive(Clone, Copy, Debug)]
 pub struct Arm {
-    /// Which.
-    pub side: Side,
+    /// Side of the body.
+    pub side: BodySide,
     /// Joint of the shoulder.
     pub shoulder: Vec3,
     /// Joint of the elbow.
@@ -43,22 +43,22 @@ pub struct Arm {
 /// A leg's joints.
 #[derive(Clone, Copy, Debug)]
 pub struct Leg {
-    /// Which.
-    pub side: Side,
+    /// Side of the body.
+    pub side: BodySide,
     /// Joint of the hip.
     pub hip: Vec3,
     /// Joint of the knee.
     pub knee: Vec3,
     /// Joint of the ankle.
     pub ankle: Vec3,
-    /// Side to which the knee points, square to the line from hip to ankle.
+    /// BodySide to which the knee points, square to the line from hip to ankle.
     pub front: Vec3,
     /// World from foot: origin on the floor under the ankle, +Z to the toes.
     pub foot: Affine3A,
 }
 
-/// Joints in world space. A body unit is the metre of a man of 1.80 m; other figures' units are as much
-/// smaller as their bodies below the neck are.
+/// Joints in world space. A body unit is a metre on a man of 1.80 m, and in proportion to the height of the neck on other
+/// figures.
 #[derive(Clone, Debug)]
 pub struct Skeleton {
     /// Metres a body unit.
@@ -85,9 +85,9 @@ pub mod rest {
     pub const NECK: f32 = 1.507;
     /// Shoulder joints.
     pub const SHOULDER: f32 = 1.425;
-    /// Where the chest turns.
+    /// Pivot of the chest.
     pub const CHEST: f32 = 1.20;
-    /// Where the waist turns.
+    /// Pivot of the waist.
     pub const WAIST: f32 = 1.04;
     /// Hip joints.
     pub const HIP: f32 = 0.925;
@@ -95,23 +95,23 @@ pub mod rest {
     pub const KNEE: f32 = 0.505;
     /// Ankles.
     pub const ANKLE: f32 = 0.08;
-    /// How far the neck's root lies behind the line of the shoulders.
+    /// Distance of the neck's root behind the line of the shoulders.
     pub const NECK_BACK: f32 = 0.04;
     /// Upper arm.
     pub const UPPER_ARM: f32 = 0.305;
     /// Forearm.
     pub const FOREARM: f32 = 0.255;
-    /// How far each hip joint lies from the middle.
+    /// Distance of each hip joint from the middle.
     pub const HIP_OUT: f32 = 0.088;
 }
 
-/// Turns about a point of space.
+/// Returns a rotation about a point.
 fn about(pivot: Vec3, rotation: Quat) -> Affine3A {
     Affine3A::from_translation(pivot) * Affine3A::from_quat(rotation) * Affine3A::from_translation(-pivot)
 }
 
 impl Skeleton {
-    /// Strikes a pose.
+    /// Poses a skeleton.
     pub fn new(build: &Build, pose: &PoseAngles) -> Skeleton {
         let neck_height = build.height - 1.22 * build.head;
         let unit = neck_height / rest::NECK;
@@ -123,11 +123,11 @@ impl Skeleton {
         let neck_root = Vec3::new(0.0, neck_height, -rest::NECK_BACK * unit);
         let neck = chest * about(neck_root, pose.neck.rotation());
         let eyes = Vec3::new(0.0, build.height - 0.5 * build.head, 0.004 * unit);
-        // The head turns where the spine meets the skull: between the ears, a little low.
+        // The head rotates about the top of the spine, between and slightly below the ears.
         let nod = eyes + Vec3::new(0.0, -0.14, -0.05) * build.head;
         let head = neck * about(nod, pose.head.rotation()) * Affine3A::from_translation(eyes);
-        let arm = |side: Side, arm: &ArmPose| pose_arm(side, arm, build, &chest, &pelvis, unit);
-        let leg = |side: Side, leg: &LegPose| pose_leg(side, leg, build, &pelvis, unit);
+        let arm = |side: BodySide, arm: &ArmPose| pose_arm(side, arm, build, &chest, &pelvis, unit);
+        let leg = |side: BodySide, leg: &LegPose| pose_leg(side, leg, build, &pelvis, unit);
         Skeleton {
             unit,
             pelvis,
@@ -135,12 +135,12 @@ impl Skeleton {
             chest,
             neck,
             head,
-            arms: [arm(Side::Left, &pose.arms[0]), arm(Side::Right, &pose.arms[1])],
-            legs: [leg(Side::Left, &pose.legs[0]), leg(Side::Right, &pose.legs[1])],
+            arms: [arm(BodySide::Left, &pose.arms[0]), arm(BodySide::Right, &pose.arms[1])],
+            legs: [leg(BodySide::Left, &pose.legs[0]), leg(BodySide::Right, &pose.legs[1])],
         }
     }
 
-    /// A box that holds the whole figure.
+    /// Returns a box that contains the whole figure: lowest and highest corner.
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let joints =
             self.arms.iter().flat_map(|a| [a.shoulder, a.elbow, a.wrist, a.wrist + a.fingers * 0.12 * self.unit]);
@@ -152,7 +152,7 @@ impl Skeleton {
     }
 }
 
-/// How far the pose moves the hips from where they are when standing.
+/// Returns the offset of the hips from standing, metres.
 fn hip_shift(build: &Build, pose: &PoseAngles, unit: f32) -> Vec3 {
     let shift = pose.hip_shift * unit;
     let Some(seat) = pose.seat_m else { return shift };
@@ -162,8 +162,8 @@ fn hip_shift(build: &Build, pose: &PoseAngles, unit: f32) -> Vec3 {
     shift + Vec3::new(0.0, seat + over_seat - rest::HIP * unit, -0.97 * thigh - 0.03 * unit)
 }
 
-/// Where two bones of given lengths meet between `a` and `b`, bent towards `pole`; and the side they bend to.
-/// Too far apart, they lie straight and `b` is not reached.
+/// Solves two-bone inverse kinematics: returns the joint between bones of given lengths from `a` to `b`, bent towards
+/// `pole`, and the unit direction of the bend. If `b` is out of reach, the bones lie straight.
 fn middle_joint(a: Vec3, b: Vec3, upper: f32, lower: f32, pole: Vec3) -> (Vec3, Vec3) {
     let reach = (b - a).length().clamp((upper - lower).abs() + 1e-4, upper + lower - 1e-4);
     let along = (b - a).normalize_or(Vec3::NEG_Y);
@@ -172,7 +172,7 @@ fn middle_joint(a: Vec3, b: Vec3, upper: f32, lower: f32, pole: Vec3) -> (Vec3, 
     (a + along * foot + bend * (upper * upper - foot * foot).max(0.0).sqrt(), bend)
 }
 
-fn pose_arm(side: Side, pose: &ArmPose, build: &Build, chest: &Affine3A, pelvis: &Affine3A, unit: f32) -> Arm {
+fn pose_arm(side: BodySide, pose: &ArmPose, build: &Build, chest: &Affine3A, pelvis: &Affine3A, unit: f32) -> Arm {
     let out = Vec3::new(side.sign(), 1.0, 1.0);
     let rest_shoulder = Vec3::new(0.5 * build.shoulder_width, rest::SHOULDER * unit, -0.012 * unit) * out;
     let shoulder = chest.transform_point3(rest_shoulder);
@@ -211,7 +211,7 @@ fn pose_arm(side: Side, pose: &ArmPose, build: &Build, chest: &Affine3A, pelvis:
     }
 }
 
-fn pose_leg(side: Side, pose: &LegPose, build: &Build, pelvis: &Affine3A, unit: f32) -> Leg {
+fn pose_leg(side: BodySide, pose: &LegPose, build: &Build, pelvis: &Affine3A, unit: f32) -> Leg {
     let sign = side.sign();
     let out = rest::HIP_OUT * unit * (0.6 + 0.4 * build.hip_width / (0.335 * unit));
     let hip = pelvis.transform_point3(Vec3::new(sign * out, rest::HIP * unit, 0.0));
@@ -221,7 +221,7 @@ fn pose_leg(side: Side, pose: &LegPose, build: &Build, pelvis: &Affine3A, unit: 
     let ankle = floor + Vec3::Y * ankle_height;
     let knee_yaw = Quat::from_rotation_y(sign * pose.knee_out_deg.to_radians());
     let pole = knee_yaw * yaw * Vec3::new(0.0, 0.25, 1.0);
-    // A trace longer than the way down, so that a straight leg keeps a knee.
+    // Slightly longer than the distance, so that a straight leg keeps a defined knee.
     let (upper, lower) = ((rest::HIP - rest::KNEE) * unit * 1.004, (rest::KNEE - rest::ANKLE) * unit * 1.004);
     let (knee, front) = middle_joint(hip, ankle, upper, lower, pole);
     let foot = Affine3A::from_mat3_translation(Mat3::from_quat(yaw), floor);
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn bones_too_short_lie_straight() {
+    fn bones_that_cannot_reach_lie_straight() {
         let (knee, _) = middle_joint(Vec3::ZERO, Vec3::X * 2.0, 0.5, 0.5, Vec3::Y);
         assert!(knee.is_finite() && knee.y < 0.02);
     }

@@ -1,14 +1,14 @@
 //! Trunk and neck. Shapes are placed where they are on a standing figure and carried along by their bone.
 
-use super::field::{Group, Join};
+use super::field::{Join, PrimitiveGroup};
+use super::primitive::Primitive;
 use super::proportions::Build;
-use super::shape::Shape;
 use super::skeleton::{Skeleton, rest};
 use glam::{Affine3A, Mat3, Vec3, vec3};
 
 /// Puts shapes given in standing coordinates (body units) on a bone, on both sides.
 struct Sculptor<'a> {
-    group: &'a mut Group,
+    group: &'a mut PrimitiveGroup,
     unit: f32,
 }
 
@@ -20,7 +20,7 @@ impl Sculptor<'_> {
     fn tilted(&mut self, bone: &Affine3A, center: Vec3, radii: Vec3, turn: Mat3, width: f32) {
         let axes = Mat3::from(bone.matrix3) * turn;
         let center = bone.transform_point3(center * self.unit);
-        self.group.add(Shape::Ellipsoid { center, axes, radii: radii * self.unit }, width * self.unit);
+        self.group.add(Primitive::Ellipsoid { center, axes, radii: radii * self.unit }, width * self.unit);
     }
 
     /// A pair of ellipsoids, the left one turned by `turn`.
@@ -51,8 +51,8 @@ impl Sculptor<'_> {
 }
 
 /// Builds pelvis, belly, chest, shoulders' root and neck.
-pub fn torso(s: &Skeleton, b: &Build) -> Group {
-    let mut group = Group::in_world(Join::even(0.0));
+pub fn torso(s: &Skeleton, b: &Build) -> PrimitiveGroup {
+    let mut group = PrimitiveGroup::in_world(Join::even(0.0));
     let mut clay = Sculptor { group: &mut group, unit: s.unit };
     add_trunk(&mut clay, s, b);
     add_chest(&mut clay, s, b);

@@ -1,4 +1,4 @@
-//! The wardrobe's figures, as OBJ files embedded in the program and read like anybody's model.
+//! The shipped figures' meshes, from OBJ files embedded in the program.
 
 use super::error::AssetError;
 use super::obj;
@@ -7,7 +7,7 @@ use crate::scene::{Mannequin, Mesh};
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-/// The baked figures, in the order of [`figures::ALL`].
+/// The shipped files, in the order of [`figures::ALL`].
 const FILES: [&[u8]; figures::ALL.len()] = [
     include_bytes!("../../assets/mannequins/woman_standing.obj"),
     include_bytes!("../../assets/mannequins/woman_contrapposto.obj"),
@@ -25,23 +25,23 @@ const FILES: [&[u8]; figures::ALL.len()] = [
     include_bytes!("../../assets/mannequins/bust_head_turned.obj"),
 ];
 
-/// Figures that were read already: they never change, and reading one takes a noticeable part of a start.
-static READ: LazyLock<Mutex<HashMap<Mannequin, Arc<Mesh>>>> = LazyLock::new(Mutex::default);
+/// Meshes that are parsed already. They never change, and parsing one takes a noticeable part of the start-up time.
+static CACHE: LazyLock<Mutex<HashMap<Mannequin, Arc<Mesh>>>> = LazyLock::new(Mutex::default);
 
-/// A figure's mesh.
+/// Returns the mesh of a figure in a pose, parsed on first use.
 pub(super) fn mesh(figure: Mannequin) -> Result<Arc<Mesh>, AssetError> {
-    // A thread that panicked with the lock held has not harmed the map: it only ever grows by whole entries.
-    let read = || READ.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(mesh) = read().get(&figure) {
+    // A panic with the lock held leaves the map intact: it only grows, by whole entries.
+    let cache = || CACHE.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(mesh) = cache().get(&figure) {
         return Ok(Arc::clone(mesh));
     }
-    // The lock is not held here, so that several figures are read at once.
-    let wanted = figures::resolve(figure);
-    let file = figures::ALL.iter().position(|baked| *baked == wanted).map(|i| FILES[i]);
+    // Parse without the lock, so that several figures are parsed in parallel.
+    let shipped = figures::resolve(figure);
+    let file = figures::ALL.iter().position(|each| *each == shipped).map(|i| FILES[i]);
     let mesh = file
         .and_then(obj::parse_embedded)
         .map(Arc::new)
         .ok_or(AssetError::NoFigure { figure: figure.figure, pose: figure.pose })?;
-    read().insert(figure, Arc::clone(&mesh));
+    cache().insert(figure, Arc::clone(&mesh));
     Ok(mesh)
 }

@@ -1,11 +1,11 @@
-//! Distance shapes the figure is modelled from. Negative inside; distances are exact or a little short, never long.
+//! Signed distance primitives. Distances are negative inside, and exact or slightly underestimated.
 
 use glam::{Mat3, Vec3};
 
-/// A solid with a signed distance.
+/// A solid with a signed distance function. Lengths in the units of its group.
 #[derive(Clone, Debug)]
-pub enum Shape {
-    /// An ellipsoid; `axes` turns its own axes into the group's.
+pub enum Primitive {
+    /// An ellipsoid; `axes` rotates its axes to the group's.
     Ellipsoid {
         /// Centre.
         center: Vec3,
@@ -25,11 +25,11 @@ pub enum Shape {
         /// Radius of the second ball.
         rb: f32,
     },
-    /// A rounded string of cones, each joined to the next.
+    /// A chain of cones, given by centres and radii of the balls between them.
     Tube(Vec<(Vec3, f32)>),
-    /// The slit between two eyelids: an almond in the XY plane, drawn out along Z from `back` forwards.
+    /// The slit between two eyelids: an almond in the XY plane, extruded along +Z from `back`.
     Almond(Almond),
-    /// Everything on the far side of a plane: inside where `normal . p < offset`.
+    /// A half space: inside where `normal . p < offset`.
     HalfSpace {
         /// Unit normal.
         normal: Vec3,
@@ -38,7 +38,7 @@ pub enum Shape {
     },
 }
 
-/// The slit between two eyelids; see [`Shape::Almond`].
+/// The slit between two eyelids; see [`Primitive::Almond`].
 #[derive(Clone, Debug)]
 pub struct Almond {
     /// Middle of the slit.
@@ -51,28 +51,28 @@ pub struct Almond {
     pub fall: f32,
     /// Slope of the line between the corners; positive lifts the end at +X.
     pub tilt: f32,
-    /// Where along X, -1 to 1, the upper lid is highest.
+    /// Position along X, -1 to 1, of the upper lid's highest point.
     pub peak: f32,
-    /// The slit ends behind this z.
+    /// Lowest z of the slit.
     pub back: f32,
 }
 
-impl Shape {
-    /// An ellipsoid along the group's own axes.
-    pub fn ball(center: Vec3, radii: Vec3) -> Shape {
-        Shape::Ellipsoid { center, axes: Mat3::IDENTITY, radii }
+impl Primitive {
+    /// Returns an ellipsoid along the group's axes.
+    pub fn ball(center: Vec3, radii: Vec3) -> Primitive {
+        Primitive::Ellipsoid { center, axes: Mat3::IDENTITY, radii }
     }
 
-    /// Signed distance from `p`.
+    /// Returns the signed distance of `p`.
     pub fn distance(&self, p: Vec3) -> f32 {
         match self {
-            Shape::Ellipsoid { center, axes, radii } => ellipsoid(axes.transpose() * (p - *center), *radii),
-            Shape::Cone { a, b, ra, rb } => cone(p, *a, *b, *ra, *rb),
-            Shape::Tube(points) => {
+            Primitive::Ellipsoid { center, axes, radii } => ellipsoid(axes.transpose() * (p - *center), *radii),
+            Primitive::Cone { a, b, ra, rb } => cone(p, *a, *b, *ra, *rb),
+            Primitive::Tube(points) => {
                 points.windows(2).map(|w| cone(p, w[0].0, w[1].0, w[0].1, w[1].1)).fold(f32::INFINITY, f32::min)
             }
-            Shape::Almond(almond) => almond.distance(p),
-            Shape::HalfSpace { normal, offset } => p.dot(*normal) - offset,
+            Primitive::Almond(almond) => almond.distance(p),
+            Primitive::HalfSpace { normal, offset } => p.dot(*normal) - offset,
         }
     }
 }
@@ -86,25 +86,25 @@ impl Almond {
         let arch = 1.0 - along * along;
         let upper = self.rise * arch * (1.0 + self.peak * along);
         let lower = -self.fall * arch * (1.0 + 0.25 * along);
-        // The slope of the lids shortens the true distance; 0.8 keeps it on the safe side.
+        // The slope of the lids makes the true distance shorter; 0.8 bounds it.
         let flat = 0.8 * (y - upper).max(lower - y).max(x.abs() - self.half_length);
         flat.max(self.back - p.z)
     }
 }
 
-/// First-order distance to an ellipsoid about the origin: exact on the surface, and on every axis of a ball.
+/// Returns the first-order distance to an ellipsoid about the origin: exact on the surface, and everywhere for a ball.
 fn ellipsoid(p: Vec3, radii: Vec3) -> f32 {
     let scaled = (p / radii).length();
     let slope = (p / (radii * radii)).length();
     if slope < 1e-9 { -radii.min_element() } else { scaled * (scaled - 1.0) / slope }
 }
 
-/// Distance to the hull of two balls: the nearest of the balls that roll from `a` to `b` with a linear radius.
+/// Returns the distance to the hull of two balls: the nearest of the balls between `a` and `b` with a linear radius.
 fn cone(p: Vec3, a: Vec3, b: Vec3, ra: f32, rb: f32) -> f32 {
     let (axis, from_a) = (b - a, p - a);
     let length = axis.length();
     let slope = (ra - rb) / length;
-    // One ball holds the other: its own distance is all there is.
+    // One ball contains the other.
     if length < 1e-9 || slope.abs() >= 1.0 {
         return (from_a.length() - ra).min((p - b).length() - rb);
     }
@@ -114,21 +114,21 @@ fn cone(p: Vec3, a: Vec3, b: Vec3, ra: f32, rb: f32) -> f32 {
     (across * across + (along - t) * (along - t)).sqrt() - (ra - slope * t)
 }
 
-/// A soft brush along a line: it raises (or presses in, with a negative height) the surface near it.
+/// A displacement of the surface near a polyline: outwards, or inwards with a negative height.
 #[derive(Clone, Debug)]
 pub struct Stroke {
-    /// Points of the line.
+    /// Points of the polyline.
     pub path: Vec<Vec3>,
-    /// Where the brush has faded to nothing.
+    /// Distance at which the displacement is zero.
     pub radius: f32,
-    /// How far the surface moves on the line.
+    /// Displacement on the line.
     pub height: f32,
-    /// Weight of each axis in the distance from the line; a small Z lets a face's stroke ignore depth.
+    /// Weight of each axis in the distance from the line; a small Z makes a stroke on the face nearly independent of depth.
     pub weights: Vec3,
 }
 
 impl Stroke {
-    /// How far the surface moves outwards at `p`.
+    /// Returns the displacement outwards at `p`.
     pub fn lift(&self, p: Vec3) -> f32 {
         let q = p * self.weights;
         let distance_sq = self
@@ -140,7 +140,7 @@ impl Stroke {
         self.height * fade * fade * fade
     }
 
-    /// Whether the brush can touch a ball.
+    /// Returns true if the displacement may be nonzero in a ball.
     pub fn reaches(&self, center: Vec3, radius: f32) -> bool {
         let q = center * self.weights;
         let reach = self.radius + radius * self.weights.max_element();
@@ -155,7 +155,7 @@ fn segment_distance_sq(p: Vec3, a: Vec3, b: Vec3) -> f32 {
     (p - a - axis * t).length_squared()
 }
 
-/// Union that rounds the seam over a width `k`; the third-degree form keeps highlights smooth across it.
+/// Smooth union over a width `k`; the cubic polynomial keeps highlights continuous across the seam.
 pub fn smooth_min(a: f32, b: f32, k: f32) -> f32 {
     let h = (k - (a - b).abs()).max(0.0);
     if h == 0.0 {
@@ -165,7 +165,7 @@ pub fn smooth_min(a: f32, b: f32, k: f32) -> f32 {
     a.min(b) - h * h * h * k / 6.0
 }
 
-/// Intersection that rounds the edge over a width `k`.
+/// Smooth intersection over a width `k`.
 pub fn smooth_max(a: f32, b: f32, k: f32) -> f32 {
     -smooth_min(-a, -b, k)
 }
@@ -187,14 +187,14 @@ mod tests {
     }
 
     #[test]
-    fn smooth_unions_leave_what_is_far_alone() {
+    fn smooth_unions_are_exact_away_from_the_seam() {
         assert_eq!(smooth_min(0.3, 0.1, 0.05), 0.1);
         assert!(smooth_min(0.1, 0.1, 0.05) < 0.1);
         assert_eq!(smooth_max(0.3, 0.1, 0.05), 0.3);
     }
 
     #[test]
-    fn a_stroke_fades_to_nothing_at_its_radius() {
+    fn a_stroke_is_zero_at_its_radius() {
         let stroke = Stroke { path: vec![Vec3::ZERO, Vec3::X], radius: 0.5, height: 0.1, weights: Vec3::ONE };
         assert_eq!(stroke.lift(Vec3::new(0.5, 0.0, 0.0)), 0.1);
         assert_eq!(stroke.lift(Vec3::new(0.5, 0.5, 0.0)), 0.0);
