@@ -1,4 +1,4 @@
-//! Every shipped studio, rendered: finite, lit, the same for any number of threads.
+//! Renders every studio preset: finite, lit, the same bits for any number of threads.
 #![allow(clippy::unwrap_used)]
 
 use catchlight::io;
@@ -11,7 +11,7 @@ fn render(scene: &RenderScene, settings: &Settings, threads: usize) -> Film {
 }
 
 #[test]
-fn each_shipped_studio_renders_finite_and_lit() {
+fn every_preset_renders_finite_and_lit() {
     assert!(io::presets().len() >= 8);
     for preset in io::presets() {
         let loaded = preset.load().unwrap();
@@ -23,7 +23,7 @@ fn each_shipped_studio_renders_finite_and_lit() {
         let picture = film.develop(&loaded.scene);
         assert!(picture.rgb.iter().flatten().all(|c| c.is_finite() && *c >= 0.0), "{}", preset.file_name);
         let brightest = picture.rgb.iter().map(|p| p[1]).fold(0.0, f32::max);
-        // Even a low key picture has an edge of a face near middle grey.
+        // A low-key picture, too, has an edge of a face near middle grey.
         assert!(brightest > 0.15, "{}: the brightest pixel is {brightest}", preset.file_name);
     }
 }
@@ -49,7 +49,7 @@ fn one_thread_and_many_give_the_same_bits() {
 }
 
 #[test]
-fn a_seed_changes_the_noise_and_nothing_else() {
+fn a_seed_changes_only_the_noise() {
     let loaded = io::find_preset("three_point").unwrap().load().unwrap();
     let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
     let picture = |seed| {
@@ -59,12 +59,12 @@ fn a_seed_changes_the_noise_and_nothing_else() {
     let (a, b) = (picture(1), picture(2));
     assert_ne!(a, b);
     let mean = |p: &catchlight::photo::Picture| p.rgb.iter().map(|c| c[1]).sum::<f32>() / p.rgb.len() as f32;
-    // 16384 samples: the means agree far better than the 1 % asked for here.
+    // With 16384 samples, the standard error of the mean is far below 1 %.
     assert!((mean(&a) / mean(&b) - 1.0).abs() < 0.01);
 }
 
 #[test]
-fn a_cancelled_render_keeps_its_complete_waves() {
+fn a_cancelled_render_keeps_its_complete_passes() {
     let loaded = io::find_preset("three_point").unwrap().load().unwrap();
     let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
     let settings = Settings { width: 40, height: 40, spp: 64, ..Settings::default() };
@@ -81,7 +81,7 @@ fn a_cancelled_render_keeps_its_complete_waves() {
 }
 
 #[test]
-fn noise_ends_a_render_early_and_falls_with_samples() {
+fn a_render_ends_at_its_noise_target() {
     let loaded = io::find_preset("three_point").unwrap().load().unwrap();
     let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
     let settings = Settings { width: 64, height: 64, spp: 4096, noise_stops: Some(0.1), ..Settings::default() };

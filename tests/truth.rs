@@ -1,21 +1,21 @@
-//! The README's table "how true is it": every row within its tolerance, and the README not older than the program.
+//! The README's table of closed forms: every row within its tolerance, and the README up to date.
 #![allow(clippy::unwrap_used)]
 
 use catchlight::truth;
 
 #[test]
-fn every_reading_matches_its_closed_form_and_the_readme_says_so() {
+fn measurements_match_their_closed_forms_and_the_readme() {
     let rows = truth::rows();
     for row in &rows {
         let off = row.difference().abs();
-        assert!(off <= row.tolerance, "{}: {} for {}, off by {off}", row.case, row.ours, row.closed_form);
+        assert!(off <= row.tolerance, "{}: {} for {}, off by {off}", row.case, row.measured, row.closed_form);
     }
-    // The same cases and closed forms; our numbers may differ in the digits that sampling decides.
+    // Cases and closed forms are equal; measured values may differ within the sampling error.
     let readme = include_str!("../README.md");
-    let mut wanted = truth::markdown(&rows);
-    wanted.truncate(wanted.trim_end().len());
+    let mut table = truth::markdown(&rows);
+    table.truncate(table.trim_end().len());
     let cells = |line: &str| -> Vec<String> { line.split('|').map(|cell| cell.trim().to_owned()).collect() };
-    for line in wanted.lines().skip(2) {
+    for line in table.lines().skip(2) {
         let [_, case, closed_form, ..] = &cells(line)[..] else { unreachable!("a row has four cells") };
         let found = readme.lines().map(cells).find(|row| row.get(1) == Some(case));
         let found = found.unwrap_or_else(|| vec![String::new(); 6]);

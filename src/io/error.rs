@@ -1,21 +1,21 @@
-//! What can go wrong with files. Messages say what first and where last.
+//! The errors of reading and writing files. Messages come first, paths last.
 
 use crate::scene::{Figure, Finding, Pose};
 use std::fmt;
 use std::path::PathBuf;
 
-/// One thing that is wrong with the text of a scene file.
+/// One mistake in the text of a scene file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// The field, as `lights[2] "Key" power.dial_stops`; empty where the text makes no sense at all.
+    /// The field, such as `lights[2] "Key" power.dial_stops`; empty if the text is not RON.
     pub field: String,
-    /// What is wrong with it, with the value.
+    /// The mistake in words, with the value.
     pub message: String,
     /// Line, from 1.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// What the file says there, cut to a few words.
+    /// The text at the position, cut to a few words.
     pub text: String,
 }
 
@@ -32,7 +32,7 @@ impl fmt::Display for Problem {
     }
 }
 
-/// Why a scene could not be loaded. The scene that was open stays as it was.
+/// The reason why a scene could not be loaded. The open scene is unchanged.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// The file could not be read.
@@ -43,7 +43,7 @@ pub enum LoadError {
         /// The file.
         path: PathBuf,
     },
-    /// The file is larger than any studio.
+    /// The file is larger than [`FILE_LIMIT_BYTES`](super::FILE_LIMIT_BYTES).
     #[error("a scene file has at most {} MB, this has {} MB", limit_bytes / 1_000_000, bytes / 1_000_000)]
     TooLarge {
         /// Its size.
@@ -54,7 +54,7 @@ pub enum LoadError {
     /// The file is not UTF-8 text.
     #[error("this is no scene file: byte {0} is not text")]
     NotText(usize),
-    /// The text is not a scene, or not one that can be used; at least one problem, in file order.
+    /// The text is no usable scene: at least one problem, in file order.
     #[error("{}", list(.0))]
     Content(Vec<Problem>),
     /// A problem with a named file.
@@ -68,7 +68,7 @@ pub enum LoadError {
 }
 
 impl LoadError {
-    /// The problems of the text, where that is what is wrong.
+    /// Returns the problems of the text; empty for other errors.
     pub fn problems(&self) -> &[Problem] {
         match self {
             LoadError::Content(problems) => problems,
@@ -78,7 +78,7 @@ impl LoadError {
     }
 }
 
-/// The first problems in full, the number of the others.
+/// Lists the first problems in full, and the number of the others.
 fn list(problems: &[Problem]) -> String {
     const SHOWN: usize = 3;
     let mut text = problems.iter().take(SHOWN).map(Problem::to_string).collect::<Vec<_>>().join("; ");
@@ -88,10 +88,10 @@ fn list(problems: &[Problem]) -> String {
     text
 }
 
-/// Why a file could not be written. The older file, if there was one, is still there and whole.
+/// The reason why a file could not be written. An older file is unchanged.
 #[derive(Debug, thiserror::Error)]
 pub enum SaveError {
-    /// The scene would not load again.
+    /// The scene has an error, and would not load again.
     #[error("the scene can't be saved before this is mended: {0}")]
     Invalid(Finding),
     /// The folder to write into does not exist.
@@ -100,10 +100,10 @@ pub enum SaveError {
     /// The path names a folder, or nothing.
     #[error("this is no file name: {}", .0.display())]
     NoFileName(PathBuf),
-    /// The ending of a picture's name is not one we write.
+    /// The extension of a picture's name belongs to no format that is written.
     #[error("a picture's name ends in .png, .jpg or .exr, not in {ending:?}: {}", path.display())]
     UnknownEnding {
-        /// What it ends in.
+        /// The extension, in lower case.
         ending: String,
         /// The file.
         path: PathBuf,
@@ -119,7 +119,7 @@ pub enum SaveError {
         /// The file.
         path: PathBuf,
     },
-    /// The disk is full, the folder is read-only ...
+    /// The file can't be written: a full disk, a read-only folder.
     #[error("can't write: {source}: {}", path.display())]
     Write {
         /// The reason.
@@ -129,7 +129,7 @@ pub enum SaveError {
     },
 }
 
-/// Why a model or a texture could not be loaded.
+/// The reason why a model or a texture could not be loaded or copied.
 #[derive(Debug, thiserror::Error)]
 pub enum AssetError {
     /// The file could not be read.
@@ -148,7 +148,7 @@ pub enum AssetError {
         /// The path as the scene names it.
         path: String,
     },
-    /// The scene has no file yet, so a relative path leads nowhere.
+    /// The scene has no file yet, so there is no folder for relative paths.
     #[error("save the scene first, then its folder is where files are looked for: {path:?}")]
     NoFolder {
         /// The path as the scene names it.
@@ -171,11 +171,11 @@ pub enum AssetError {
     /// The file or the model is larger than the limit of its kind.
     #[error("{what} is too large: {amount}, at most {limit}: {}", path.display())]
     TooLarge {
-        /// The file, its triangles, its pixels.
+        /// The quantity in words: the file's bytes, the model's triangles.
         what: &'static str,
-        /// How much.
+        /// The quantity of the file.
         amount: u64,
-        /// The most that is loaded.
+        /// The limit.
         limit: u64,
         /// The file.
         path: PathBuf,
@@ -221,7 +221,7 @@ pub enum AssetError {
     /// The texture could not be decoded.
     #[error("not a usable PNG or JPEG: {message}: {}", path.display())]
     BadTexture {
-        /// The decoder's words.
+        /// The decoder's message.
         message: String,
         /// The file.
         path: PathBuf,

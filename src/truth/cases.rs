@@ -1,6 +1,6 @@
-//! The set-ups of the table.
+//! The set-ups of the table, each measured by the light meter or rendered.
 
-use super::{Row, forms};
+use super::{TruthRow, closed_forms};
 use crate::photo::exposure;
 use crate::photo::meter::Receptor;
 use crate::raytrace::{self, LightMeter, MeterEffort, MeterPoint, RenderControl, Settings};
@@ -12,8 +12,8 @@ use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-/// Every case in the order of the table.
-pub(super) fn all() -> Vec<Row> {
+/// Measures every case, in the order of the table.
+pub(super) fn all() -> Vec<TruthRow> {
     let mut rows = Vec::new();
     rows.extend(bulbs());
     rows.extend(panels());
@@ -27,11 +27,11 @@ pub(super) fn all() -> Vec<Row> {
     rows
 }
 
-fn row(case: impl Into<String>, unit: &'static str, closed_form: f64, ours: f64, tolerance: f64) -> Row {
-    Row { case: case.into(), unit, closed_form, ours, tolerance }
+fn row(case: impl Into<String>, unit: &'static str, closed_form: f64, measured: f64, tolerance: f64) -> TruthRow {
+    TruthRow { case: case.into(), unit, closed_form, measured, tolerance }
 }
 
-/// A light at `position` that aims at `target`.
+/// Returns a light at `position` that aims at `target`.
 fn light(emitter: Emitter, output: Output, position: Vec3, target: Vec3) -> Light {
     Light { position, aim: Aim::Point(target), ..Light::new(emitter, output) }
 }
@@ -53,49 +53,55 @@ fn lit_by(light: Light) -> Scene {
     Scene { lights: vec![light], ..Scene::default() }
 }
 
-/// What the meter reads, in lux of all light; nothing where the scene cannot be traced.
+/// Returns the meter's total illuminance, lux; NaN if the scene can't be prepared.
 fn lux(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor, effort: &MeterEffort) -> f64 {
     let reading = LightMeter::new(scene, &Assets::default(), position)
         .ok()
-        .and_then(|probe| probe.read(&MeterPoint { position, facing, receptor }, effort, &RenderControl::new()));
-    reading.map_or(f64::NAN, |probed| f64::from(probed.reading.total_lux_s() / scene.camera.shutter_s))
+        .and_then(|meter| meter.read(&MeterPoint { position, facing, receptor }, effort, &RenderControl::new()));
+    reading.map_or(f64::NAN, |reading| f64::from(reading.reading.total_lux_s() / scene.camera.shutter_s))
 }
 
 fn flat(scene: &Scene, position: Vec3, facing: Vec3) -> f64 {
     lux(scene, position, facing, Receptor::Flat, &MeterEffort::default())
 }
 
-fn bulbs() -> Vec<Row> {
+fn bulbs() -> Vec<TruthRow> {
     let over_floor = |beside: f32| {
         let scene = lit_by(light(Emitter::Point, Output::Lumens(10_000.0), Vec3::Y * 3.0, Vec3::ZERO));
         let case = format!("bulb of 10 000 lm 3 m over the floor, {beside} m beside");
-        // One ray, no chance: rounding, and the receptor's 0.02 mm.
-        row(case, "lx", forms::bulb_over_floor(1e4, 3.0, beside.into()), flat(&scene, Vec3::X * beside, Vec3::Y), 1e-4)
+        // No sampling error: rounding, and the receptor's height of 0.02 mm.
+        row(
+            case,
+            "lx",
+            closed_forms::bulb_over_floor(1e4, 3.0, beside.into()),
+            flat(&scene, Vec3::X * beside, Vec3::Y),
+            1e-4,
+        )
     };
     vec![over_floor(0.0), over_floor(4.0)]
 }
 
-/// The standard error at which the meter stops is 0.15 %: four of them.
+/// Four of the standard errors at which the meter stops, 0.15 %.
 const SAMPLED: f64 = 0.006;
 
-fn panels() -> Vec<Row> {
+fn panels() -> Vec<TruthRow> {
     let rectangle = |width_m: f32, height_m: f32, distance: f32| {
         let emitter = Emitter::RectPanel { width_m, height_m };
         let scene = lit_by(light(emitter, Output::Lumens(1000.0), Vec3::Z * distance, Vec3::ZERO));
         let [w, h, d] = [width_m, height_m, distance].map(f64::from);
         let case = format!("softbox {:.0} x {:.0} cm at {distance} m", 100.0 * w, 100.0 * h);
-        row(case, "lx", forms::rectangle_on_axis(1000.0, w, h, d), flat(&scene, Vec3::ZERO, Vec3::Z), SAMPLED)
+        row(case, "lx", closed_forms::rectangle_on_axis(1000.0, w, h, d), flat(&scene, Vec3::ZERO, Vec3::Z), SAMPLED)
     };
     let octa =
         lit_by(light(Emitter::RoundPanel { diameter_m: 1.2 }, Output::Lumens(1000.0), Vec3::Z * 0.5, Vec3::ZERO));
     let near = "octa 120 cm at 0.5 m";
-    let near = row(near, "lx", forms::disc_on_axis(1000.0, 1.2, 0.5), flat(&octa, Vec3::ZERO, Vec3::Z), SAMPLED);
+    let near = row(near, "lx", closed_forms::disc_on_axis(1000.0, 1.2, 0.5), flat(&octa, Vec3::ZERO, Vec3::Z), SAMPLED);
     vec![rectangle(0.6, 0.9, 0.5), rectangle(0.9, 1.2, 1.0), rectangle(0.6, 0.9, 5.0), near, tilted_panel()]
 }
 
-/// A panel that half sinks under the horizon of a receiver beside it.
-fn tilted_panel() -> Row {
-    let (place, normal) = (Vec3::new(0.9, 0.2, 0.4), Vec3::new(0.8, 0.0, 0.6));
+/// A panel half below the horizon of a receiver beside it.
+fn tilted_panel() -> TruthRow {
+    let (position, normal) = (Vec3::new(0.9, 0.2, 0.4), Vec3::new(0.8, 0.0, 0.6));
     let panel = light(
         Emitter::RectPanel { width_m: 0.6, height_m: 0.9 },
         Output::Lumens(1000.0),
@@ -106,17 +112,17 @@ fn tilted_panel() -> Row {
     let frame = scene.light_frame(&scene.lights[0]);
     let corner = |x: f32, y: f32| frame.transform_point3(Vec3::new(0.3 * x, 0.45 * y, 0.0)).as_dvec3();
     let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-    let truth = forms::polygon(&corners, 1000.0 / (PI * 0.54), place.as_dvec3(), DVec3::new(0.8, 0.0, 0.6));
+    let truth = closed_forms::polygon(&corners, 1000.0 / (PI * 0.54), position.as_dvec3(), DVec3::new(0.8, 0.0, 0.6));
     row(
         "softbox 60 x 90 cm 0.7 m beside a turned receiver (Lambert's polygon)",
         "lx",
         truth,
-        flat(&scene, place, normal),
+        flat(&scene, position, normal),
         SAMPLED,
     )
 }
 
-fn cones() -> Vec<Row> {
+fn cones() -> Vec<TruthRow> {
     let spot = |inner_deg: f32, outer_deg: f32, truth: f64| {
         let emitter = Emitter::Spot { inner_deg, outer_deg };
         let scene = lit_by(light(emitter, Output::Lumens(1000.0), Vec3::Z * 2.0, Vec3::ZERO));
@@ -124,10 +130,13 @@ fn cones() -> Vec<Row> {
         let case = format!("spot of 1000 lm, {edge} cone of {outer_deg}\u{b0}, on its axis");
         row(case, "cd", truth, 4.0 * flat(&scene, Vec3::ZERO, Vec3::Z), 1e-4)
     };
-    vec![spot(15.0, 15.0, forms::hard_cone(1000.0, 15.0)), spot(40.0, 70.0, forms::soft_cone(1000.0, 40.0, 70.0))]
+    vec![
+        spot(15.0, 15.0, closed_forms::hard_cone(1000.0, 15.0)),
+        spot(40.0, 70.0, closed_forms::soft_cone(1000.0, 40.0, 70.0)),
+    ]
 }
 
-fn far_lights() -> Vec<Row> {
+fn far_lights() -> Vec<TruthRow> {
     let sun = Emitter::Sun { angular_diameter_deg: 0.53 };
     let sun = lit_by(light(sun, Output::Lux(80_000.0), Vec3::Y, Vec3::ZERO));
     let tilted = Vec3::new(0.0, 0.5, 0.75_f32.sqrt());
@@ -144,7 +153,7 @@ fn far_lights() -> Vec<Row> {
     ]
 }
 
-fn receptors() -> Vec<Row> {
+fn receptors() -> Vec<TruthRow> {
     let scene = lit_by(light(Emitter::Point, Output::Candela(1000.0), Vec3::Z, Vec3::ZERO));
     let aside = Vec3::new(0.75_f32.sqrt(), 0.0, 0.5);
     let dome = lux(&scene, Vec3::ZERO, aside, Receptor::Dome, &MeterEffort::default());
@@ -155,43 +164,43 @@ fn matte(reflectance: f32) -> Material {
     Material { base_color: [reflectance; 3], ior: 1.0, roughness: 1.0, ..Material::default() }
 }
 
-fn closed_rooms() -> Vec<Row> {
+fn closed_rooms() -> Vec<TruthRow> {
     let ball = |reflectance: f32| {
         let mut scene = lit_by(light(Emitter::Point, Output::Lumens(10_000.0), Vec3::ZERO, Vec3::Y));
         scene.objects.push(object(Shape::Sphere { radius_m: 2.0 }, matte(reflectance), Vec3::ZERO, Vec3::ZERO));
         let case = format!("closed white ball of 4 m, 10 000 lm, r = {reflectance}");
-        let truth = forms::closed_box(1e4, 16.0 * PI, reflectance.into());
-        // The ball is a polyhedron, 0.1 % nearer in the mean.
+        let truth = closed_forms::closed_box(1e4, 16.0 * PI, reflectance.into());
+        // The sphere is a polyhedron, with a mean radius 0.1 % smaller.
         row(case, "lx", truth, flat(&scene, Vec3::Y * -1.999, Vec3::Y), 0.01)
     };
     vec![cube(0.8), ball(0.5), ball(0.95)]
 }
 
-/// Mean over the floor of a cube with a lamp in its middle: all walls are alike.
-fn cube(reflectance: f32) -> Row {
+/// Mean illuminance on the floor of a cube with a lamp in its centre; all walls are equal.
+fn cube(reflectance: f32) -> TruthRow {
     let paint = matte(reflectance);
     let room = Room { size_m: Vec3::splat(4.0), floor: paint.clone(), walls: paint.clone(), ceiling: paint };
     let lamp = light(Emitter::Point, Output::Lumens(10_000.0), Vec3::Y * 2.0, Vec3::ZERO);
     let scene = Scene { room: Some(room), ..lit_by(lamp) };
     let n = 8;
     let at = |k: i32| (k as f32 + 0.5) / n as f32 * 4.0 - 2.0;
-    // A seed each: with one for all, the errors of the cells would be alike.
+    // A seed for each cell, so that the errors are independent.
     let read = |i: i32| {
         let effort = MeterEffort { paths: Some(2048), seed: i as u32, ..MeterEffort::default() };
         lux(&scene, Vec3::new(at(i % n), 0.0, at(i / n)), Vec3::Y, Receptor::Flat, &effort)
     };
     let mean = (0..n * n).map(read).sum::<f64>() / f64::from(n * n);
-    // Midpoints of 64 cells err by 0.1 % in the lamp's peak, 64 x 2048 paths by 0.2 %.
+    // The midpoint rule over 64 cells is off by 0.1 % at the lamp's peak, 64 x 2048 paths by 0.2 %.
     row(
         "closed cube of 4 m, 10 000 lm, r = 0.8, mean",
         "lx",
-        forms::closed_box(1e4, 96.0, reflectance.into()),
+        closed_forms::closed_box(1e4, 96.0, reflectance.into()),
         mean,
         0.008,
     )
 }
 
-fn panes() -> Vec<Row> {
+fn panes() -> Vec<TruthRow> {
     let pane = |degrees: f32| {
         let mut scene = lit_by(light(Emitter::Point, Output::Candela(1000.0), Vec3::Z * 10.0, Vec3::ZERO));
         let open = flat(&scene, Vec3::ZERO, Vec3::Z);
@@ -200,10 +209,10 @@ fn panes() -> Vec<Row> {
         scene.objects.push(object(shape, glass, Vec3::Z * 2.0, Vec3::X * degrees));
         let case = format!("clear pane, n = 1.52, under {degrees}\u{b0}");
         let angle = f64::from(degrees).to_radians();
-        // Its second face mirrors some light back and forth between pane and nothing: none of it is left out.
-        row(case, "", forms::pane(angle, 1.52), flat(&scene, Vec3::ZERO, Vec3::Z) / open, 2e-3)
+        // The closed form includes all interreflections between the faces, as the tracer does.
+        row(case, "", closed_forms::pane(angle, 1.52), flat(&scene, Vec3::ZERO, Vec3::Z) / open, 2e-3)
     };
-    // A softbox behind a window, over its whole area.
+    // A softbox behind a window.
     let mut window = lit_by(light(
         Emitter::RectPanel { width_m: 0.3, height_m: 0.3 },
         Output::Lumens(1000.0),
@@ -214,16 +223,16 @@ fn panes() -> Vec<Row> {
     let glass = Material { transmission: 1.0, roughness: 0.0, ior: 1.52, ..Material::default() };
     let sheet = Shape::Plane { width_m: 4.0, depth_m: 4.0 };
     window.objects.push(object(sheet, glass, Vec3::Z, Vec3::X * 90.0));
-    // Rays meet the window at up to 4 degrees, where it takes as much to 0.01 %.
+    // Angles of incidence up to 4 degrees change the transmittance by less than 0.01 %.
     let softbox = flat(&window, Vec3::ZERO, Vec3::Z) / open;
     vec![
         pane(0.0),
         pane(60.0),
-        row("softbox behind a window pane, n = 1.52", "", forms::pane(0.0, 1.52), softbox, 2e-3),
+        row("softbox behind a window pane, n = 1.52", "", closed_forms::pane(0.0, 1.52), softbox, 2e-3),
     ]
 }
 
-fn flash() -> Vec<Row> {
+fn flash() -> Vec<TruthRow> {
     let camera = Camera { iso: 100.0, shutter_s: 1.0 / 125.0, ..Camera::default() };
     let aperture = |scene: &Scene| {
         let lux_s = flat(scene, Vec3::ZERO, Vec3::Z) * f64::from(scene.camera.shutter_s);
@@ -242,8 +251,8 @@ fn flash() -> Vec<Row> {
     ]
 }
 
-/// A metered card, its picture, and the same a stop darker.
-fn pictures() -> Vec<Row> {
+/// A metered grey card, rendered, and rendered again one stop darker.
+fn pictures() -> Vec<TruthRow> {
     let emitter = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
     let mut scene = lit_by(light(emitter, Output::Lumens(200_000.0), Vec3::new(0.4, 0.3, 1.5), Vec3::ZERO));
     let card = Shape::Plane { width_m: 0.1, depth_m: 0.1 };
@@ -261,13 +270,13 @@ fn pictures() -> Vec<Row> {
     scene.lights[0].power.dial_stops = -1.0;
     let stops = (mean_pixel(&scene) / metered).log2();
     vec![
-        // 16 x 16 x 64 samples of a smooth light, and the meter's own error.
+        // The error of 16 x 16 x 64 samples, and that of the meter.
         row("18 % card, exposed as the meter says, rendered", "", 0.18, metered, SAMPLED),
         row("a light a stop down, rendered", "stops", -1.0, stops, 1e-4),
     ]
 }
 
-/// Mean green of a small rendered picture.
+/// Returns the mean green of a small rendered picture; NaN if the scene can't be prepared.
 fn mean_pixel(scene: &Scene) -> f64 {
     let Ok(prepared) = raytrace::prepare(scene, &Assets::default()) else { return f64::NAN };
     let settings = Settings { width: 16, height: 16, spp: 64, ..Settings::default() };

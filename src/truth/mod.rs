@@ -1,53 +1,53 @@
-//! How true is it: readings of the meter and of rendered pictures beside the closed forms that they should match.
+//! Compares readings of the light meter and of rendered pictures with closed forms.
 //!
-//! `catchlight truth` prints the table that stands in the README; a test holds every row to its tolerance, and the README
-//! to the table.
+//! `catchlight truth` prints the table in the README. A test holds every row to its tolerance, and the README to the
+//! table.
 
 mod cases;
-pub mod forms;
+pub mod closed_forms;
 
 use std::fmt::Write;
 
-/// One line of the table.
+/// A row of the table: one set-up.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
-    /// What was set up.
+pub struct TruthRow {
+    /// The set-up in words.
     pub case: String,
-    /// What both numbers are in.
+    /// Unit of both values; empty for ratios.
     pub unit: &'static str,
-    /// What mathematics says.
+    /// The exact value.
     pub closed_form: f64,
-    /// What Catchlight reads.
-    pub ours: f64,
-    /// Largest difference, relative, that sampling and tessellation explain.
+    /// The measured value.
+    pub measured: f64,
+    /// Largest relative difference that sampling and tessellation explain.
     pub tolerance: f64,
 }
 
-impl Row {
-    /// Difference, relative to the closed form.
+impl TruthRow {
+    /// Returns the difference relative to the closed form.
     pub fn difference(&self) -> f64 {
-        self.ours / self.closed_form - 1.0
+        self.measured / self.closed_form - 1.0
     }
 }
 
-/// All rows, measured now; takes some seconds.
-pub fn rows() -> Vec<Row> {
+/// Measures all rows. Takes some seconds.
+pub fn rows() -> Vec<TruthRow> {
     cases::all()
 }
 
-/// The rows as a Markdown table.
-pub fn markdown(rows: &[Row]) -> String {
+/// Returns the rows as a Markdown table.
+pub fn markdown(rows: &[TruthRow]) -> String {
     let mut text = "| case | closed form | Catchlight | difference |\n|---|---|---|---|\n".to_owned();
     for row in rows {
-        let [closed, ours] = [row.closed_form, row.ours].map(five_digits);
+        let [closed, measured] = [row.closed_form, row.measured].map(five_digits);
         let unit = if row.unit.is_empty() { String::new() } else { format!(" {}", row.unit) };
         let difference = format!("{:+.2} %", 100.0 * row.difference()).replace("-0.00", "+0.00");
-        let _ = writeln!(text, "| {} | {closed}{unit} | {ours}{unit} | {difference} |", row.case);
+        let _ = writeln!(text, "| {} | {closed}{unit} | {measured}{unit} | {difference} |", row.case);
     }
     text
 }
 
-/// Five significant digits.
+/// Formats a value with five significant digits.
 fn five_digits(value: f64) -> String {
     let before = value.abs().max(1e-9).log10().floor() as i32;
     let after = usize::try_from(4 - before).unwrap_or(0).min(6);

@@ -1,4 +1,4 @@
-//! Scenes drawn at random survive the round trip; junk and changed bytes do no harm.
+//! Property tests: random scenes round-trip, random text and changed bytes never panic.
 
 use super::preset_text;
 use catchlight::io::{parse_scene, write_scene};
@@ -280,7 +280,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
 
     #[test]
-    fn any_scene_survives_the_round_trip(scene in scene()) {
+    fn any_scene_is_unchanged_by_a_round_trip(scene in scene()) {
         let text = write_scene(&scene);
         let (read, _) = parse_scene(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
         prop_assert_eq!(&read, &scene, "{}", text);
@@ -288,7 +288,7 @@ proptest! {
     }
 
     #[test]
-    fn any_junk_is_an_error_or_a_scene(text in "\\PC{0,200}", bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+    fn any_text_is_an_error_or_a_scene(text in "\\PC{0,200}", bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
         let _ = parse_scene(&text);
         let _ = parse_scene(&String::from_utf8_lossy(&bytes));
     }

@@ -1,11 +1,11 @@
-//! Files that are wrong, cut, huge or lead out of their folder.
+//! Malformed, truncated and huge files, and paths that lead out of the scene's folder.
 
 use super::SMALL;
 use catchlight::io::{FILE_LIMIT_BYTES, LoadError, load_scene, parse_scene};
 use catchlight::scene::LIST_LIMIT;
 use std::time::{Duration, Instant};
 
-/// The message of a text that must not load.
+/// Returns the error message of a text that must not load.
 fn refused(text: &str) -> String {
     let read = parse_scene(text).map(|_| text);
     assert!(read.is_err(), "this was read without an error:\n{text}");
@@ -15,7 +15,7 @@ fn refused(text: &str) -> String {
 #[test]
 fn errors_name_the_field_the_value_and_the_line() {
     assert!(parse_scene(SMALL).unwrap().1.is_empty());
-    // What is changed to what, and what the message must hold.
+    // Text, its replacement, and the words of the message.
     let cases: &[(&str, &str, &[&str])] = &[
         ("f_number: 8.0", "f_number: NaN", &["camera.f_number", "NaN", "line 8"]),
         ("f_number: 8.0", "f_number: -8.0", &["camera.f_number", "-8", "line 8"]),
@@ -93,7 +93,7 @@ fn empty_and_binary_files_are_refused() {
 }
 
 #[test]
-fn a_file_cut_anywhere_is_refused() {
+fn a_truncated_file_is_refused() {
     let whole = SMALL.trim_end();
     for end in (0..whole.len()).filter(|end| whole.is_char_boundary(*end)) {
         refused(&whole[..end]);
@@ -101,7 +101,7 @@ fn a_file_cut_anywhere_is_refused() {
 }
 
 #[test]
-fn bracket_bombs_are_refused_at_once() {
+fn deeply_nested_brackets_are_refused_at_once() {
     let started = Instant::now();
     for bracket in ["(", "[", "{", "(a:", "Some(", "/*"] {
         refused(&format!("(format: 1, name: {}", bracket.repeat(1_000_000)));
@@ -119,7 +119,7 @@ fn bracket_bombs_are_refused_at_once() {
 }
 
 #[test]
-fn ten_thousand_equal_names_and_too_many_lights_do_not_hang() {
+fn ten_thousand_equal_names_and_too_many_lights_take_little_time() {
     let light = &SMALL[SMALL.find("        (\n            name: \"Key\"").unwrap()..SMALL.rfind("    ],").unwrap()];
     let with_lights = |n: usize| SMALL.replace(light, &light.repeat(n));
     let started = Instant::now();
@@ -129,7 +129,7 @@ fn ten_thousand_equal_names_and_too_many_lights_do_not_hang() {
 }
 
 #[test]
-fn missing_and_escaping_assets() {
+fn missing_assets_are_warnings_and_escaping_paths_errors() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("studio.ron");
     let with_mesh = |mesh: &str| SMALL.replace("Sphere(radius_m: 0.1)", &format!("MeshFile(path: {mesh:?})"));

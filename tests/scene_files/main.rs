@@ -1,4 +1,4 @@
-//! Scene files: what is written reads back the same, and nothing that a file can say does harm.
+//! Scene files: round trips, presets, and malformed input.
 
 mod any_scene;
 mod hostile;
@@ -12,7 +12,7 @@ fn preset_text() -> &'static str {
     presets()[0].text
 }
 
-/// A file as short as a whole studio can be, one field a line.
+/// A minimal scene file, one field a line.
 const SMALL: &str = r#"(
     format: 1,
     name: "Small",
@@ -47,7 +47,7 @@ const SMALL: &str = r#"(
 "#;
 
 #[test]
-fn every_shipped_studio_is_stored_as_we_write_it() {
+fn every_preset_is_stored_as_it_would_be_written() {
     assert!(presets().len() >= 10);
     for preset in presets() {
         // After a change of the layout, or of a preset by hand: CATCHLIGHT_ACCEPT=1 cargo test --test scene_files
@@ -68,7 +68,7 @@ fn every_shipped_studio_is_stored_as_we_write_it() {
 }
 
 #[test]
-fn every_shipped_studio_loads_without_a_warning() {
+fn every_preset_loads_without_a_warning() {
     for preset in presets() {
         let loaded = preset.load().unwrap_or_else(|e| panic!("{}: {e}", preset.file_name));
         assert_eq!(loaded.warnings, [], "{}", preset.file_name);
@@ -79,7 +79,7 @@ fn every_shipped_studio_loads_without_a_warning() {
 }
 
 #[test]
-fn a_hand_written_file_may_leave_out_what_is_as_usual() {
+fn a_hand_written_file_may_leave_out_default_values() {
     let text = r#"
         // Comments, odd spacing and a name for the struct are fine.
         Scene(
@@ -100,7 +100,7 @@ fn a_hand_written_file_may_leave_out_what_is_as_usual() {
 }
 
 #[test]
-fn windows_line_ends_and_a_byte_order_mark_are_read() {
+fn windows_line_ends_and_a_byte_order_mark_are_accepted() {
     let windows = format!("\u{feff}{}", preset_text().replace('\n', "\r\n"));
     assert_eq!(parse_scene(&windows).unwrap().0, parse_scene(preset_text()).unwrap().0);
 }

@@ -1,4 +1,4 @@
-//! A save gives the same scene back and never destroys the older file.
+//! Saving: loads back the same scene, and never destroys the older file.
 
 use super::SMALL;
 use catchlight::io::{SaveError, load_scene, parse_scene, presets, save_scene};
@@ -17,7 +17,7 @@ fn saving_and_loading_gives_the_same_scene() {
 }
 
 #[test]
-fn a_scene_that_would_not_load_is_not_saved_and_the_older_file_stays() {
+fn a_scene_with_errors_is_not_saved_and_the_older_file_is_unchanged() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("studio.ron");
     let (mut scene, _) = parse_scene(SMALL).unwrap();
@@ -30,7 +30,7 @@ fn a_scene_that_would_not_load_is_not_saved_and_the_older_file_stays() {
 }
 
 #[test]
-fn saving_into_a_missing_folder_says_so() {
+fn saving_into_a_missing_folder_is_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let (scene, _) = parse_scene(SMALL).unwrap();
     let error = save_scene(&scene, &folder.path().join("none/studio.ron")).unwrap_err();

@@ -2,7 +2,7 @@
 #![allow(dead_code)]
 #![allow(clippy::unwrap_used)]
 
-pub use catchlight::truth::forms as closed_forms;
+pub use catchlight::truth::closed_forms;
 pub mod measure;
 pub mod statistics;
 

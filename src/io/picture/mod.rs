@@ -1,4 +1,4 @@
-//! Finished pictures to files: PNG and JPEG as they are shown, EXR as the numbers they are.
+//! Writes pictures: tone-mapped PNG and JPEG, scene-linear EXR.
 
 mod exr_file;
 
@@ -9,15 +9,15 @@ use crate::scene::Camera;
 use std::io::Cursor;
 use std::path::Path;
 
-/// JPEG quality, of 100: no visible loss on skin.
+/// JPEG quality, 0 to 100: no visible loss on skin.
 const JPEG_QUALITY: u8 = 95;
 
-/// How a picture came about. EXR files carry it as attributes.
+/// The settings that a picture was rendered with. EXR files hold them as attributes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureInfo {
-    /// Time-integrated luminance, cd s/m2, of the picture value 1.
+    /// Time-integrated luminance of the picture value 1, cd s/m2.
     pub cd_s_m2_per_unit: f32,
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub spp: u32,
     /// Seed of the sampler.
     pub seed: u64,
@@ -26,14 +26,14 @@ pub struct PictureInfo {
 }
 
 impl PictureInfo {
-    /// The exposure scale follows from the camera.
+    /// Returns the settings of a render; the exposure scale is the camera's.
     pub fn new(camera: &Camera, method: &str, spp: u32, seed: u64) -> Self {
         let cd_s_m2_per_unit = 1.0 / exposure::pixel_per_cd_s_m2(camera);
         PictureInfo { cd_s_m2_per_unit, spp, seed, method: method.to_owned() }
     }
 }
 
-/// The kinds of picture files, by the ending of their name.
+/// The picture formats, chosen by the extension of the file name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureFormat {
     /// Tone-mapped 8-bit sRGB.
@@ -45,10 +45,10 @@ pub enum PictureFormat {
 }
 
 impl PictureFormat {
-    /// The format for a file name.
+    /// Returns the format of a file name.
     ///
     /// # Errors
-    /// When the name ends in none of `.png`, `.jpg`, `.jpeg`, `.exr`, in whatever case.
+    /// If the extension is none of `png`, `jpg`, `jpeg` and `exr`, in upper or lower case.
     pub fn of(path: &Path) -> Result<Self, SaveError> {
         let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         match ending.as_str() {
@@ -63,16 +63,16 @@ impl PictureFormat {
 /// Reads the picture of an EXR file.
 ///
 /// # Errors
-/// A message for a file that cannot be read or holds no red, green and blue.
+/// If the file can't be read, or has no red, green and blue channels.
 pub fn read_exr(path: &Path) -> Result<Picture, String> {
     let content = std::fs::read(path).map_err(|error| error.to_string())?;
     exr_file::decode(&content)
 }
 
-/// Writes a picture in the format that the file name asks for. An older file is replaced only by a whole new one.
+/// Writes a picture in the format of the file name's extension. An older file is replaced atomically.
 ///
 /// # Errors
-/// For an unknown ending, a missing folder, an empty picture, or a disk that refuses.
+/// If the extension is unknown, the folder missing or the picture empty, or if the file can't be written.
 pub fn export_picture(path: &Path, picture: &Picture, info: &PictureInfo) -> Result<(), SaveError> {
     export_layers(path, picture, &[], None, info)
 }
@@ -81,7 +81,7 @@ pub fn export_picture(path: &Path, picture: &Picture, info: &PictureInfo) -> Res
 /// channels beside the picture's. PNG and JPEG hold the picture alone.
 ///
 /// # Errors
-/// As [`export_picture`], and when layers or AOVs differ in size.
+/// As [`export_picture`], and if layers or AOVs differ in size from the picture.
 pub fn export_layers(
     path: &Path,
     picture: &Picture,
@@ -120,10 +120,10 @@ fn check_size(name: &str, picture: &Picture) -> Result<(), SaveError> {
     Ok(())
 }
 
-/// Writes sRGB bytes as they are, as PNG or JPEG. An older file is replaced only by a whole new one.
+/// Writes an sRGB image as PNG or JPEG, without tone mapping. An older file is replaced atomically.
 ///
 /// # Errors
-/// For an ending that is not of these two, a missing folder, an empty picture, or a disk that refuses.
+/// As [`export_picture`], and if the extension is `exr`.
 pub fn export_shown(path: &Path, shown: &image::RgbImage) -> Result<(), SaveError> {
     let format = PictureFormat::of(path)?;
     let content = if format == PictureFormat::Exr || shown.is_empty() {
@@ -135,7 +135,7 @@ pub fn export_shown(path: &Path, shown: &image::RgbImage) -> Result<(), SaveErro
     atomic::write(path, &content)
 }
 
-/// PNG or JPEG of the picture as it is shown.
+/// Encodes the tone-mapped picture as PNG or JPEG.
 fn encode_8bit(picture: &Picture, format: PictureFormat) -> Result<Vec<u8>, String> {
     encode_rgb8(picture.width, picture.height, picture.to_srgb8().as_flattened(), format)
 }

@@ -2,7 +2,7 @@ use super::*;
 use exr::meta::attribute::{AttributeValue, Text};
 use exr::prelude::{ReadChannels, ReadLayers, read};
 
-/// A ramp past white, so that the tone curve shows.
+/// Returns a ramp to above white, which the tone curve changes.
 fn ramp(width: u32, height: u32, gain: f32) -> Picture {
     let rgb = (0..width * height).map(|i| [gain * i as f32 / 10.0, 0.18, 1e-3 * i as f32]).collect();
     Picture { width, height, rgb }
@@ -13,7 +13,7 @@ fn info() -> PictureInfo {
 }
 
 #[test]
-fn png_holds_what_is_shown() {
+fn png_holds_the_tone_mapped_picture() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.PNG");
     let picture = ramp(7, 5, 1.0);
@@ -24,7 +24,7 @@ fn png_holds_what_is_shown() {
 }
 
 #[test]
-fn jpeg_is_close_to_what_is_shown() {
+fn jpeg_is_close_to_the_tone_mapped_picture() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.jpeg");
     let picture = Picture { width: 16, height: 16, rgb: vec![[0.18, 0.4, 0.1]; 256] };
@@ -75,7 +75,7 @@ fn one_pixel_and_odd_sizes_are_written() {
 }
 
 #[test]
-fn refusals_are_clear_and_leave_nothing_behind() {
+fn refused_pictures_leave_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let picture = ramp(2, 2, 1.0);
     let refused = |name: &str, picture: &Picture| {
