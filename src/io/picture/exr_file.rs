@@ -9,7 +9,7 @@ use exr::prelude::{
 };
 use std::io::Cursor;
 
-/// Name of the part with all light, beside the parts of single lights.
+/// Name of the part with all lights, before the parts of single lights.
 const WHOLE: &str = "picture";
 
 pub(super) fn encode(
@@ -28,7 +28,7 @@ pub(super) fn encode(
     Ok(content.into_inner())
 }
 
-/// The first picture of a file with red, green and blue.
+/// Decodes the first part with red, green and blue channels.
 pub(super) fn decode(content: &[u8]) -> Result<Picture, String> {
     let image = exr::prelude::read()
         .no_deep_data()
@@ -70,7 +70,7 @@ fn part(
     Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels.into()))
 }
 
-/// Channels of the AOVs, by the names of the OpenEXR conventions: normals in world space, `Z` in metres along the view
+/// Returns the channels of the AOVs, with the names of the OpenEXR conventions: normals in world space, `Z` in metres along the view
 /// axis, `id` as unsigned integers.
 fn aov_channels(aovs: &AovPicture) -> Vec<AnyChannel<FlatSamples>> {
     let mut all = channels(["albedo.R", "albedo.G", "albedo.B"], &aovs.albedo).to_vec();
@@ -80,7 +80,7 @@ fn aov_channels(aovs: &AovPicture) -> Vec<AnyChannel<FlatSamples>> {
     all
 }
 
-/// Three channels of pixels with three values.
+/// Splits pixels into three named channels.
 fn channels(names: [&str; 3], pixels: &[[f32; 3]]) -> [AnyChannel<FlatSamples>; 3] {
     let channel = |index: usize| {
         let values = pixels.iter().map(|pixel| pixel[index]).collect();
@@ -89,7 +89,7 @@ fn channels(names: [&str; 3], pixels: &[[f32; 3]]) -> [AnyChannel<FlatSamples>; 
     [0, 1, 2].map(channel)
 }
 
-/// Text in EXR is bytes; what does not fit is replaced. It must not be empty and not be long.
+/// Converts text to EXR's byte strings: at most 200 bytes, not empty, `_` for characters that are not printable ASCII.
 fn text(value: &str) -> Text {
     const LENGTH: usize = 200;
     let fitting = |c: char| if c.is_ascii() && !c.is_ascii_control() { c as u8 } else { b'_' };

@@ -1,4 +1,4 @@
-//! Format 1 to and from the scene. In a file, aims name their object; in the scene they hold its id. Ids follow the
+//! Converts format 1 to and from the scene. Files refer to objects and lights by name, the scene by id; ids follow the
 //! order of the file.
 
 use super::{
@@ -14,27 +14,27 @@ use crate::scene::{
 use glam::Vec3;
 use std::collections::HashMap;
 
-/// A name of an object or a light that the file does not have.
+/// A reference to an object or a light that the file does not have.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::io) struct UnknownName {
-    /// What it should name: `object` or `light`.
+    /// The kind it refers to: `object` or `light`.
     pub kind: &'static str,
-    /// The field that names it, as `lights[2] "Key" aim.name`.
+    /// The field that refers to it, such as `lights[2] "Key" aim.name`.
     pub place: String,
     /// The name.
     pub name: String,
-    /// All names that it could be.
+    /// All names of this kind.
     pub known: Vec<String>,
 }
 
-/// Ids by name: the object's place in the file. The first of two equal names counts.
-struct Names(HashMap<String, ObjectId>);
+/// Object ids by name, the index in the file. The first of two equal names counts.
+struct ObjectIds(HashMap<String, ObjectId>);
 
-impl Names {
+impl ObjectIds {
     fn of(objects: &[ObjectV1]) -> Self {
-        // Backwards, so that the first of two equal names stays.
+        // In reverse, so that the first of two equal names is kept.
         let ids = objects.iter().enumerate().rev().map(|(index, o)| (o.name.clone(), ObjectId(index as u32)));
-        Names(ids.collect())
+        ObjectIds(ids.collect())
     }
 
     fn id(&self, name: &str, place: &str) -> Result<ObjectId, UnknownName> {
@@ -66,25 +66,25 @@ impl Names {
     }
 }
 
-/// The scene of a file. Names may still clash; everything else about it is up to `scene::validate`.
+/// Converts a file to a scene. The scene may have equal names and other errors, which `scene::validate` finds.
 pub(in crate::io) fn scene_from_v1(file: SceneV1) -> Result<Scene, UnknownName> {
-    let names = Names::of(&file.objects);
+    let ids = ObjectIds::of(&file.objects);
     let solo = file.solo.map(|solo| solo_from(solo, &file.lights)).transpose()?;
     Ok(Scene {
         name: file.name,
         description: file.description,
-        camera: camera_from(file.camera, &names)?,
+        camera: camera_from(file.camera, &ids)?,
         room: file.room.map(Room::from),
         objects: file.objects.into_iter().enumerate().map(|(index, object)| object_from(object, index)).collect(),
         lights: (file.lights.into_iter().enumerate())
-            .map(|(index, light)| light_from(light, index, &names))
+            .map(|(index, light)| light_from(light, index, &ids))
             .collect::<Result<_, _>>()?,
         meter: file.meter.map(Meter::from),
         solo,
     })
 }
 
-/// Lights by name: their places in the file. The first of two equal names counts.
+/// Resolves the names of soloed lights to ids. The first of two equal names counts.
 fn solo_from(file: SoloV1, lights: &[LightV1]) -> Result<Solo, UnknownName> {
     let by_name: HashMap<&str, LightId> =
         lights.iter().enumerate().rev().map(|(index, light)| (light.name.as_str(), LightId(index as u32))).collect();
@@ -107,7 +107,7 @@ fn solo_to(scene: &Scene, solo: &Solo) -> SoloV1 {
     SoloV1 { lights: names(&solo.lights), restores: names(&solo.restores) }
 }
 
-/// The file of a scene. Its names must be unique. An aim at an object that is gone becomes the point it means.
+/// Converts a scene with unique names to a file. An aim at a deleted object becomes a point.
 pub(in crate::io) fn v1_from_scene(scene: &Scene) -> SceneV1 {
     SceneV1 {
         format: 1,
@@ -122,10 +122,10 @@ pub(in crate::io) fn v1_from_scene(scene: &Scene) -> SceneV1 {
     }
 }
 
-fn camera_from(file: CameraV1, names: &Names) -> Result<Camera, UnknownName> {
+fn camera_from(file: CameraV1, ids: &ObjectIds) -> Result<Camera, UnknownName> {
     Ok(Camera {
         position: Vec3::from(file.position),
-        aim: names.aim(file.aim, "camera.")?,
+        aim: ids.aim(file.aim, "camera.")?,
         roll_deg: file.roll_deg,
         sensor: file.sensor.into(),
         orientation: match file.orientation {
@@ -137,7 +137,7 @@ fn camera_from(file: CameraV1, names: &Names) -> Result<Camera, UnknownName> {
         shutter_s: file.shutter_s,
         iso: file.iso,
         white_balance_k: file.white_balance_k,
-        focus: names.focus(file.focus)?,
+        focus: ids.focus(file.focus)?,
         depth_of_field: file.depth_of_field,
         meter_constant: file.meter_constant,
     })
@@ -220,13 +220,13 @@ impl From<&Object> for ObjectV1 {
     }
 }
 
-fn light_from(file: LightV1, index: usize, names: &Names) -> Result<Light, UnknownName> {
+fn light_from(file: LightV1, index: usize, ids: &ObjectIds) -> Result<Light, UnknownName> {
     let place = format!("lights[{index}] {:?} ", file.name);
     Ok(Light {
         id: LightId(index as u32),
         role: file.role.into(),
         position: Vec3::from(file.position),
-        aim: names.aim(file.aim, &place)?,
+        aim: ids.aim(file.aim, &place)?,
         roll_deg: file.roll_deg,
         emitter: file.emitter.into(),
         modifier: file.modifier.into(),
@@ -374,7 +374,7 @@ impl From<&Shape> for ShapeV1 {
     }
 }
 
-/// Both conversions between an enum of the file and one of the scene whose variants correspond one to one.
+/// Implements both conversions between an enum of the file and one of the scene with the same variants.
 macro_rules! same_variants {
     ($file:ident <=> $scene:ident { $($variant:ident $(($x:ident))? $({ $($field:ident),+ })?),+ $(,)? }) => {
         impl From<$file> for $scene {

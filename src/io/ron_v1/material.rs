@@ -1,4 +1,4 @@
-//! Materials in format 1: `Preset(Chrome)`, or `Custom(...)` with what differs from the plain one.
+//! Materials in format 1: `Preset(Chrome)`, or `Custom(...)` with the values that differ from the default.
 
 use super::defaults::{Triple, default_ior, default_roughness, is_default, is_default_ior};
 use crate::scene::{Material, MaterialPreset, MaterialTextures, TextureRef};
@@ -27,7 +27,7 @@ pub(super) enum MaterialV1 {
     },
 }
 
-/// Declares the shelf's names in the file and both conversions.
+/// Declares the presets' names in the file and both conversions.
 macro_rules! presets {
     ($($name:ident),+ $(,)?) => {
         #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -98,7 +98,7 @@ impl From<MaterialV1> for Material {
 }
 
 impl From<&Material> for MaterialV1 {
-    /// A material that equals one of the shelf is written by its name.
+    /// Writes a material that equals a preset by the preset's name.
     fn from(material: &Material) -> Self {
         if let Some(preset) = MaterialPreset::ALL.into_iter().find(|preset| preset.material() == *material) {
             return MaterialV1::Preset(preset.into());

@@ -1,8 +1,8 @@
-//! Format 1 of the scene file: the structs that serde reads and writes, apart from the scene's own so that the scene
-//! may grow without breaking files. A later format gets its own folder, and this one an upgrade step.
+//! Format 1 of the scene file: the structs that serde reads and writes, separate from the scene's own, so that the scene
+//! can change without breaking files. A later format gets its own module, and this one an upgrade step.
 //!
-//! Lengths are metres, angles degrees; other units stand in the names. What is as usual may be left out (a scale of 1,
-//! a light that is on); [`convert`] says how names become ids.
+//! Lengths are metres, angles degrees; other units are part of the names. Default values may be left out (a scale of 1, a
+//! light that is on). [`convert`] resolves names to ids.
 
 mod convert;
 mod defaults;
@@ -37,7 +37,7 @@ pub(super) struct SceneV1 {
     solo: Option<SoloV1>,
 }
 
-/// Lights that shine alone, by name, and those that were on before.
+/// The soloed lights, by name, and those that were on before.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename = "Solo", deny_unknown_fields)]
 struct SoloV1 {
@@ -46,7 +46,7 @@ struct SoloV1 {
     restores: Vec<String>,
 }
 
-/// A light meter that stands in the studio.
+/// A light meter in the studio.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[serde(rename = "Meter", deny_unknown_fields)]
 struct MeterV1 {
@@ -123,7 +123,7 @@ enum OrientationV1 {
     Portrait,
 }
 
-/// What the lens is focused on.
+/// The plane of focus.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Focus", deny_unknown_fields)]
 enum FocusV1 {
@@ -137,7 +137,7 @@ enum FocusV1 {
     Distance(f32),
 }
 
-/// Where a camera or a light looks.
+/// The direction of a camera or a light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Aim", deny_unknown_fields)]
 enum AimV1 {
@@ -269,7 +269,7 @@ enum EmitterV1 {
     Surround,
 }
 
-/// What is lost before the light leaves.
+/// A light modifier: losses and beam shapers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Modifier", deny_unknown_fields)]
 struct ModifierV1 {
@@ -334,7 +334,7 @@ enum ColorV1 {
     Rgb(f32, f32, f32),
 }
 
-/// `NoGel`, because `None` means an absent value in RON.
+/// A gel. `NoGel`, since `None` is an absent value in RON.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Gel")]
 enum GelV1 {
