@@ -19,8 +19,11 @@ pub struct ModelFormat {
     pub limits: ModelLimits,
     import: fn(&Path, &ModelLimits) -> Result<ImportedModel, AssetError>,
     /// Returns the bytes of the PNG or JPEG file with this index inside a model file; `None` for formats without.
-    embedded_image: Option<fn(&Path, u32, &ModelLimits) -> Result<Vec<u8>, AssetError>>,
+    embedded_image: Option<EmbeddedImageReader>,
 }
+
+/// Reads the image with an index from a model file, within the format's limits.
+type EmbeddedImageReader = fn(&Path, u32, &ModelLimits) -> Result<Vec<u8>, AssetError>;
 
 /// Every model format, in the order of dialogs.
 pub const MODEL_FORMATS: &[ModelFormat] = &[ModelFormat {

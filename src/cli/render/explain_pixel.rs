@@ -172,7 +172,6 @@ fn end_name(end: PathEnd) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
 
     #[test]
     fn pixels_are_pairs_of_whole_numbers() {

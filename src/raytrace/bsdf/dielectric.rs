@@ -1,6 +1,9 @@
-//! Clear, smooth glass and water: bodies that refract, and sheets without thickness that stand for thin panes.
+//! The dielectric lobe: specular reflection and refraction by clear glass and water, and by thin panes.
 
-use super::{Bsdf, BsdfSample, fresnel};
+use super::fresnel;
+use super::polarisation::Polarisation;
+use super::sample::BsdfSample;
+use super::shading_geometry::ShadingGeometry;
 use glam::Vec3;
 
 /// The interface between two dielectric media, as a path crosses it.
@@ -8,77 +11,93 @@ use glam::Vec3;
 pub struct DielectricInterface {
     /// Relative index of refraction: transmitted side over incident side.
     pub eta: f32,
-    /// The path started inside this body, so that its first medium is unknown: radiance is not scaled by eta squared.
+    /// True if the path started inside this body, so that its first medium is unknown: radiance is not scaled by 1 / eta2.
     pub starts_inside: bool,
 }
 
 /// The boundary at a clear surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Boundary {
-    /// The inside of a body, or the outside, seen from within.
+    /// The surface of a body, from outside or inside.
     Interface(DielectricInterface),
-    /// The other face of a thin pane: an open mesh has no inside.
+    /// Both faces of a thin pane: an open mesh has no inside.
     ThinPane,
 }
 
-impl Bsdf<'_> {
-    /// Reflection or transmission at a clear surface, by chance `choice`.
-    pub(super) fn sample_glass(&self, choice: f32) -> Option<BsdfSample> {
+/// The dielectric lobe for one outgoing direction.
+#[derive(Clone, Copy, Debug)]
+pub struct DielectricLobe {
+    pub ior: f32,
+    pub boundary: Boundary,
+    /// Polarisation that the path accepts.
+    pub polarisation: Polarisation,
+}
+
+impl DielectricLobe {
+    /// Samples reflection (for `u` below [`DielectricLobe::reflectance`]) or transmission.
+    pub fn sample(&self, geometry: &ShadingGeometry, u: f32) -> Option<BsdfSample> {
         match self.boundary {
-            Boundary::ThinPane => self.sample_pane(choice),
-            Boundary::Interface(interface) => self.sample_interface(choice, interface),
+            Boundary::ThinPane => Some(self.sample_pane(geometry, u)),
+            Boundary::Interface(interface) => self.sample_interface(geometry, u, interface),
         }
     }
 
-    /// Share that clear glass reflects towards the viewer, by which [`Bsdf::sample`] chooses: numbers below it reflect. None
-    /// for what is more than glass.
-    pub fn dielectric_reflectance(&self) -> Option<f32> {
-        (self.material.transmission >= 1.0).then(|| match self.boundary {
-            Boundary::ThinPane => 1.0 - pane_transmittance(self.wo_world.dot(self.geometric_normal), self.material.ior),
+    /// Returns the Fresnel reflectance, which is the probability of sampling reflection.
+    pub fn reflectance(&self, geometry: &ShadingGeometry) -> f32 {
+        match self.boundary {
+            Boundary::ThinPane => 1.0 - pane_transmittance(geometry.wo_world.dot(geometry.geometric_normal), self.ior),
             Boundary::Interface(interface) => {
-                let wo = self.to_world(self.wo).normalize_or(self.normal);
-                self.polarisation.at_interface(wo, self.normal, interface.eta).reflectance
+                let wo = geometry.to_world(geometry.wo).normalize_or(geometry.normal);
+                self.polarisation.at_interface(wo, geometry.normal, interface.eta).reflectance
             }
-        })
+        }
     }
 
-    fn sample_interface(&self, choice: f32, interface: DielectricInterface) -> Option<BsdfSample> {
+    fn sample_interface(
+        &self,
+        geometry: &ShadingGeometry,
+        u: f32,
+        interface: DielectricInterface,
+    ) -> Option<BsdfSample> {
         let eta = interface.eta;
-        let wo = self.to_world(self.wo).normalize_or(self.normal);
-        let interface_reflection = self.polarisation.at_interface(wo, self.normal, eta);
-        if choice < interface_reflection.reflectance {
-            let mirrored = self.mirrored(Vec3::ONE)?;
-            return Some(BsdfSample { polarisation: interface_reflection.reflected, ..mirrored });
+        // Compute the reflectance for the accepted polarisation
+        let wo = geometry.to_world(geometry.wo).normalize_or(geometry.normal);
+        let fresnel = self.polarisation.at_interface(wo, geometry.normal, eta);
+        if u < fresnel.reflectance {
+            // Sample specular reflection
+            let direction = geometry.specular_reflection()?;
+            return Some(BsdfSample { polarisation: fresnel.reflected, ..BsdfSample::specular(direction) });
         }
-        let refracted = fresnel::refract(self.wo, eta).map(|wi| self.to_world(wi).normalize_or_zero());
-        // The direction must leave on the side that the triangle agrees with; where an interpolated normal says
-        // otherwise, the triangle's own decides.
+        // Sample specular transmission about the shading normal; about the geometric normal if the direction would not be
+        // below the surface
+        let refracted = fresnel::refract(geometry.wo, eta).map(|wi| geometry.to_world(wi).normalize_or_zero());
         let direction = refracted
-            .filter(|direction| direction.dot(self.geometric_normal) < 0.0)
-            .or_else(|| fresnel::refract_about(wo, self.geometric_normal, eta))?;
+            .filter(|direction| direction.dot(geometry.geometric_normal) < 0.0)
+            .or_else(|| fresnel::refract_about(wo, geometry.geometric_normal, eta))?;
+        // Radiance is scaled by 1 / eta2 (Veach 1997, section 5.2)
         let scale = if interface.starts_inside { 1.0 } else { 1.0 / (eta * eta) };
         Some(BsdfSample {
             weight: Vec3::splat(scale),
             eta_scale: scale,
-            polarisation: interface_reflection.transmitted,
+            polarisation: fresnel.transmitted,
             is_transmission: true,
             ..BsdfSample::specular(direction)
         })
     }
 
-    fn sample_pane(&self, choice: f32) -> Option<BsdfSample> {
-        let wo = self.wo_world;
-        let passing = pane_transmittance(wo.dot(self.geometric_normal), self.material.ior);
-        if choice < 1.0 - passing {
-            let direction = 2.0 * wo.dot(self.geometric_normal) * self.geometric_normal - wo;
-            return Some(BsdfSample::specular(direction.normalize_or_zero()));
+    fn sample_pane(&self, geometry: &ShadingGeometry, u: f32) -> BsdfSample {
+        let (wo, normal) = (geometry.wo_world, geometry.geometric_normal);
+        let transmittance = pane_transmittance(wo.dot(normal), self.ior);
+        if u < 1.0 - transmittance {
+            let direction = 2.0 * wo.dot(normal) * normal - wo;
+            return BsdfSample::specular(direction.normalize_or_zero());
         }
-        Some(BsdfSample { is_transmission: true, is_undeviated: true, ..BsdfSample::specular(-wo) })
+        BsdfSample { is_transmission: true, is_undeviated: true, ..BsdfSample::specular(-wo) }
     }
 }
 
-/// Transmittance of a clear pane in air with all inner reflections, the mean of both polarisations: (1 - R) / (1 + R)
-/// for each.
+/// Returns the transmittance of a clear pane in air: the geometric series over all internal reflections, (1 - R) / (1 + R),
+/// averaged over both polarisations.
 pub fn pane_transmittance(cos_incident: f32, ior: f32) -> f32 {
     let (s, p) = fresnel::amplitudes(cos_incident.abs(), ior);
     0.5 * ((1.0 - s * s) / (1.0 + s * s) + (1.0 - p * p) / (1.0 + p * p))
@@ -89,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pane_transmits_what_the_table_says() {
+    fn the_transmittance_of_a_pane_matches_the_table() {
         // light_and_camera.md, n = 1.52, to three decimals.
         for (deg, table) in [(0.0_f32, 0.918), (30.0, 0.916), (60.0, 0.844), (80.0, 0.456)] {
             let ours = pane_transmittance(deg.to_radians().cos(), 1.52);

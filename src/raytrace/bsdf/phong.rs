@@ -3,7 +3,8 @@
 //! The exponent is 2 / alpha2 - 2, which matches the width of the Beckmann and GGX lobes at their centre; the colour is the
 //! reflectance at normal incidence. Base and lobe do not share energy, unlike in [`super::Bsdf`].
 
-use super::{TracedMaterial, ggx};
+use super::ggx;
+use super::material::TracedMaterial;
 use glam::Vec3;
 use std::f32::consts::PI;
 

@@ -43,7 +43,7 @@ impl SubtreeCover {
         SubtreeCover { primitives, cost: [area * LEAF_COST; LANES], split }
     }
 
-    /// Combines the covers of two children into those of their parent (equations 1 to 4 of the paper).
+    /// Combines the covers of two children into those of their parent.
     fn parent(area: f32, left: &SubtreeCover, right: &SubtreeCover, max_leaf: u32) -> Self {
         let mut cover = SubtreeCover { primitives: left.primitives + right.primitives, ..SubtreeCover::EMPTY };
         // Find the cheapest distribution of `i + 1` nodes over both children. The right child's costs are padded with

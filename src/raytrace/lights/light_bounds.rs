@@ -1,7 +1,7 @@
 //! Bounds of a light or of a cluster of lights, and the importance that they give it at a shading point.
 //!
 //! The importance estimates the illuminance of a shading point up to a constant, as in Conty Estevez and Kulla 2018,
-//! "Importance Sampling of Many Lights with Adaptive Tree Splitting", section 4.2:
+//! "Importance Sampling of Many Lights with Adaptive Tree Splitting":
 //!
 //! importance = I t / d2 * clamp(cos_r, 0.05, 1) * clamp(f, 0.02, 1)
 //!

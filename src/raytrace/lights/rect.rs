@@ -140,13 +140,13 @@ impl SphericalRect<'_> {
             let pdf = self.area_pdf(from, target);
             return (pdf > 0.0 && pdf.is_finite()).then_some((target, pdf));
         }
-        // Sample x: the cumulative solid angle is inverted for u.x (equations 8 to 10)
+        // Sample x: the cumulative solid angle is inverted for u.x
         let angle = u.x * self.solid_angle + self.k;
         let (sin, cos) = angle.sin_cos();
         let f = (cos * self.b0 - self.b1) / sin;
         let cu = (1.0_f32.copysign(f) / safe_sqrt(f * f + self.b0 * self.b0)).clamp(-1.0, 1.0);
         let x = (-(cu * self.z) / safe_sqrt(1.0 - cu * cu).max(1e-7)).clamp(self.low.x, self.high.x);
-        // Sample y for u.y (equations 11 to 13)
+        // Sample y for u.y
         let distance = safe_sqrt(x * x + self.z * self.z);
         let h0 = self.low.y / safe_sqrt(distance * distance + self.low.y * self.low.y);
         let h1 = self.high.y / safe_sqrt(distance * distance + self.high.y * self.high.y);

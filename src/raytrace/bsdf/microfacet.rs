@@ -1,0 +1,62 @@
+//! The microfacet lobe: GGX reflection by the metal and by the dielectric coat. A delta lobe where the surface is smooth.
+
+use super::material::TracedMaterial;
+use super::{fresnel, ggx};
+use glam::{Vec2, Vec3};
+
+/// The microfacet lobe for one outgoing direction.
+#[derive(Clone, Copy, Debug)]
+pub struct MicrofacetLobe {
+    /// Smith's Lambda of the outgoing direction.
+    lambda_o: f32,
+}
+
+impl MicrofacetLobe {
+    /// Returns the lobe of a material for an outgoing direction, local frame.
+    #[inline(always)]
+    pub fn new(material: &TracedMaterial, wo: Vec3) -> Self {
+        MicrofacetLobe { lambda_o: if material.has_microfacets { ggx::lambda(wo, material.alpha) } else { 0.0 } }
+    }
+
+    /// Returns BSDF times cosine, and the pdf times the lobe's `probability`. Both are 0 for a delta lobe.
+    #[inline(always)]
+    pub fn eval(
+        &self,
+        material: &TracedMaterial,
+        base_color: Vec3,
+        wo: Vec3,
+        wi: Vec3,
+        probability: f32,
+    ) -> (Vec3, f32) {
+        if !material.has_microfacets || material.is_smooth() {
+            return (Vec3::ZERO, 0.0);
+        }
+        let m = (wo + wi).normalize_or(Vec3::Z);
+        let cos_half = wo.dot(m).clamp(0.0, 1.0);
+        // D / (4 cos_o): times G1(o) it is the density of visible normals, times F G2 the BSDF times cosine
+        let shape = ggx::distribution(m, material.alpha) / (4.0 * wo.z);
+        let value = reflectance(material, base_color, wo, cos_half)
+            * (shape / (1.0 + self.lambda_o + ggx::lambda(wi, material.alpha)));
+        (value, probability * shape / (1.0 + self.lambda_o))
+    }
+
+    /// Samples an incident direction of a rough lobe by visible normals, local frame.
+    pub fn sample(material: &TracedMaterial, wo: Vec3, u: Vec2) -> Vec3 {
+        ggx::reflect(wo, ggx::sample_visible_normal(wo, material.alpha, u))
+    }
+}
+
+/// Returns the Fresnel reflectance, mixed from metal and coat. The metal is scaled for light that is reflected between facets
+/// (Turquin 2019).
+pub fn reflectance(material: &TracedMaterial, base_color: Vec3, wo: Vec3, cos_half: f32) -> Vec3 {
+    let mut color = Vec3::ZERO;
+    if material.metallic < 1.0 {
+        color += Vec3::splat((1.0 - material.metallic) * fresnel::dielectric(cos_half, material.ior));
+    }
+    if material.metallic > 0.0 {
+        let missing = 1.0 / material.metal_albedo.at(wo.z).max(1e-3) - 1.0;
+        let compensation = Vec3::ONE + base_color * missing;
+        color += fresnel::schlick(base_color, cos_half) * compensation * material.metallic;
+    }
+    color
+}
