@@ -86,4 +86,12 @@ mod tests {
             assert!(parse_vec3(wrong).is_err(), "{wrong}");
         }
     }
+
+    #[test]
+    fn pixels_are_pairs_of_whole_numbers() {
+        assert_eq!(parse_pixel("12, 7"), Ok((12, 7)));
+        for wrong in ["12", "1,-2", "a,b", "1,2,3"] {
+            assert!(parse_pixel(wrong).unwrap_err().contains(wrong));
+        }
+    }
 }

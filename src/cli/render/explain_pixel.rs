@@ -169,15 +169,3 @@ fn end_name(end: PathEnd) -> &'static str {
         PathEnd::Roulette => "Russian roulette",
     }
 }
-
-#[cfg(test)]
-mod tests {
-
-    #[test]
-    fn pixels_are_pairs_of_whole_numbers() {
-        assert_eq!(crate::cli::input::parse_pixel("12, 7"), Ok((12, 7)));
-        for wrong in ["12", "1,-2", "a,b", "1,2,3"] {
-            assert!(crate::cli::input::parse_pixel(wrong).unwrap_err().contains(wrong));
-        }
-    }
-}
