@@ -7,8 +7,8 @@ pub fn luminance(rgb: Vec3) -> f32 {
     rgb.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// Returns the CIE 1931 xy chromaticity of a colour temperature: Planckian locus below 4000 K, CIE daylight above 5000 K, a
-/// continuous blend between. Clamped to 1000..25000 K.
+/// Returns the CIE 1931 xy chromaticity of a colour temperature: Planckian locus below 4000 K, CIE daylight above 5000
+/// K, a continuous blend between. Clamped to 1000..25000 K.
 pub fn xy_from_kelvin(kelvin: f64) -> (f64, f64) {
     let t = kelvin.clamp(1000.0, 25_000.0);
     let blend = ((t - 4000.0) / 1000.0).clamp(0.0, 1.0);
@@ -16,8 +16,8 @@ pub fn xy_from_kelvin(kelvin: f64) -> (f64, f64) {
     (planck.0 + (daylight.0 - planck.0) * blend, planck.1 + (daylight.1 - planck.1) * blend)
 }
 
-/// Returns the Planckian locus by Krystek's rational approximation in CIE 1960 uv (1985): within 1e-4 from 1000 to 15000 K.
-/// Used up to 5000 K.
+/// Returns the Planckian locus by Krystek's rational approximation in CIE 1960 uv (1985): within 1e-4 from 1000 to
+/// 15000 K. Used up to 5000 K.
 fn planckian_xy(t: f64) -> (f64, f64) {
     let u = (0.860_117_757 + 1.541_182_54e-4 * t + 1.286_412_12e-7 * t * t)
         / (1.0 + 8.424_202_35e-4 * t + 7.081_451_63e-7 * t * t);
@@ -62,8 +62,8 @@ fn bradford() -> DMat3 {
 
 const D65_XY: (f64, f64) = (0.312_727, 0.329_023);
 
-/// Returns RGB of a chromaticity for a camera balanced to `white`, scaled to luminance 1. Negative channels of colours outside
-/// Rec.709 are clamped to 0 before scaling.
+/// Returns RGB of a chromaticity for a camera balanced to `white`, scaled to luminance 1. Negative channels of colours
+/// outside Rec.709 are clamped to 0 before scaling.
 fn rgb_from_xy(xy: (f64, f64), white: (f64, f64)) -> Vec3 {
     let cone = bradford();
     let (from, to) = (cone * xyz_from_xy(white), cone * xyz_from_xy(D65_XY));
@@ -101,8 +101,8 @@ pub fn srgb_decode(encoded: f32) -> f32 {
 /// Value at which the shoulder of the tone curve begins.
 const SHOULDER: f32 = 0.6;
 
-/// Applies the tone curve to one channel: linear up to 0.6, so that meter and picture agree on skin and grey cards, then a
-/// smooth shoulder that approaches 1. White paper (0.9) becomes 0.81, one stop above it 0.97.
+/// Applies the tone curve to one channel: linear up to 0.6, so that meter and picture agree on skin and grey cards,
+/// then a smooth shoulder that approaches 1. White paper (0.9) becomes 0.81, one stop above it 0.97.
 pub fn tone_curve(x: f32) -> f32 {
     let x = if x > 0.0 { x } else { 0.0 };
     let range = 1.0 - SHOULDER;

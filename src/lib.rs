@@ -1,4 +1,5 @@
-//! Catchlight plans the light of a photo studio: arrange it, see it live, render the picture that the camera would take.
+//! Catchlight plans the light of a photo studio: arrange it, see it live, render the picture that the camera would
+//! take.
 //!
 //! A [`scene::Scene`] is what the user edits and what a file stores. Imports go one way, from right to left; rooms in
 //! braces do not import each other, except that `cli` opens the window of `editor`:
@@ -28,8 +29,8 @@
 //! Invariants:
 //! 1. `scene` does no I/O. `raytrace` has no clock, no entropy, no globals, and cannot fail once `prepare` succeeded.
 //! 2. A rendered value is a function of (scene, pixel, sample, dimension, seed): same bits for any number of threads.
-//! 3. Nothing that a file can say makes the program panic, hang or eat memory without bound. Loading is checked once, at
-//!    the border; a bad file names the field, the value and the line, and leaves the open scene as it was.
+//! 3. Nothing that a file can say makes the program panic, hang or eat memory without bound. Loading is checked once,
+//!    at the border; a bad file names the field, the value and the line, and leaves the open scene as it was.
 //! 4. A save never destroys the older file: write beside it, fsync, rename.
 //! 5. The editor changes the scene only through `Action`s: menus, shortcuts, gizmos, undo and tests all use them.
 //! 6. The UI thread never traces and never waits for a trace.

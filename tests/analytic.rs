@@ -36,8 +36,8 @@ fn lit_card(emitter: Emitter, distance_m: f32) -> Scene {
 
 #[test]
 fn the_illuminance_on_the_axis_of_panels_matches_the_table() {
-    // light_and_camera.md, 1000 lm. The error of 64 x 256 samples of a smooth integrand is well under 0.5 %; that of the
-    // card's 2 cm is less than 0.1 % at half a metre.
+    // light_and_camera.md, 1000 lm. The error of 64 x 256 samples of a smooth integrand is well under 0.5 %; that of
+    // the card's 2 cm is less than 0.1 % at half a metre.
     let small = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
     let large = Emitter::RectPanel { width_m: 0.9, height_m: 1.2 };
     let round = Emitter::RoundPanel { diameter_m: 1.2 };
@@ -108,7 +108,8 @@ fn the_illuminance_of_a_surround_is_its_lux() {
 
 #[test]
 fn the_illuminance_in_a_closed_grey_box_is_the_geometric_series() {
-    // E = F / (S (1 - r)) for a cube of 4 m with 10 000 lm: the mean over all walls, rendered by six cameras at the centre.
+    // E = F / (S (1 - r)) for a cube of 4 m with 10 000 lm: the mean over all walls, rendered by six cameras at the
+    // centre.
     for (reflectance, expected) in [(0.2_f32, 130.21), (0.5, 208.33), (0.8, 520.83), (0.9, 1041.67)] {
         let ours = box_illuminance(reflectance);
         // Error of 6 x 256 pixels x 64 samples: under 1 %; Russian roulette adds to it at 0.9.
@@ -125,8 +126,8 @@ fn box_illuminance(reflectance: f32) -> f32 {
     let centre = Vec3::new(0.0, 2.0, 0.0);
     let (mut sum, mut weights) = (0.0, 0.0);
     for direction in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
-        // A square sensor of 24 mm at 12 mm focal length covers 90 degrees: one wall fills the picture, and pixels are equal
-        // areas of the wall.
+        // A square sensor of 24 mm at 12 mm focal length covers 90 degrees: one wall fills the picture, and pixels are
+        // equal areas of the wall.
         scene.camera = looking_at_card(centre + direction, direction);
         scene.camera.position = centre;
         scene.camera.aim = Aim::Point(centre + direction);
@@ -156,7 +157,8 @@ fn a_white_sphere_is_invisible_in_a_white_furnace() {
         let surround = picture.at(0, 0)[1];
         let mut mean = Vec3::ZERO;
         for pixel in &picture.rgb {
-            // The standard deviation of rough metal is about 0.3 a sample, 0.02 after 256; the worst of 256 pixels is at 3 sigma.
+            // The standard deviation of rough metal is about 0.3 a sample, 0.02 after 256; the worst of 256 pixels is
+            // at 3 sigma.
             let relative = Vec3::from(*pixel) / surround;
             assert!(
                 (relative - Vec3::ONE).abs().max_element() < 0.06,

@@ -100,8 +100,8 @@ fn plane_view() -> Scene {
 
 #[test]
 fn the_width_of_a_penumbra_follows_from_source_size_and_distances() {
-    // The penumbra of an edge at d1 from a panel of width D, on a plane d2 behind the edge, is D d2 / d1 wide. The illuminance
-    // across it grows linearly for a square panel.
+    // The penumbra of an edge at d1 from a panel of width D, on a plane d2 behind the edge, is D d2 / d1 wide. The
+    // illuminance across it grows linearly for a square panel.
     for (source, d1, d2) in [(0.3_f32, 2.0_f32, 1.0_f32), (0.1, 1.0, 1.0), (0.4, 3.0, 0.5)] {
         let mut scene = plane_view();
         // Camera, light and blade are on one side; the blade covers x < 0 and occludes the dark half of the penumbra.
@@ -131,7 +131,8 @@ fn column_sums(picture: &Picture) -> Vec<f64> {
     (0..picture.width).map(sum).collect()
 }
 
-/// Returns the slope of the visible fraction of the source per column, by least squares over fractions from 0.6 to 0.95.
+/// Returns the slope of the visible fraction of the source per column, by least squares over fractions from 0.6 to
+/// 0.95.
 fn bright_half_slope(fractions: &[f64]) -> f64 {
     let points: Vec<(f64, f64)> =
         fractions.iter().enumerate().filter(|(_, s)| (0.6..0.95).contains(*s)).map(|(x, s)| (x as f64, *s)).collect();
@@ -145,7 +146,8 @@ fn bright_half_slope(fractions: &[f64]) -> f64 {
 
 #[test]
 fn the_blur_disc_of_a_small_light_follows_the_thin_lens_equation() {
-    // Diameter of the blur in the plane of the light: A |s - f| / f, for an aperture A = focal length / N, focus f, distance s.
+    // Diameter of the blur in the plane of the light: A |s - f| / f, for an aperture A = focal length / N, focus f,
+    // distance s.
     for (f_number, focus_m, distance_m) in [(1.4_f32, 2.0_f32, 4.0_f32), (2.8, 3.0, 1.5), (1.4, 1.0, 10.0)] {
         let focal_length_mm = 85.0;
         let camera = Camera {

@@ -27,8 +27,8 @@ fn thing(name: &str, shape: Shape, material: Material, position: Vec3, rotation_
     Object { material, transform, ..studio::object(name, shape, position) }
 }
 
-/// A black wall that emits 1000 cd/m2, at normal incidence at `distance` before a camera with a tiny angle of view. Half a
-/// metre wide: reflections in a tilted pane miss it.
+/// A black wall that emits 1000 cd/m2, at normal incidence at `distance` before a camera with a tiny angle of view.
+/// Half a metre wide: reflections in a tilted pane miss it.
 fn glowing_wall(distance: f32) -> Scene {
     let black = Material { base_color: [0.0; 3], emission_cd_m2: [LUMINANCE; 3], ior: 1.0, ..Material::default() };
     let wall = thing("Wall", Shape::Plane { width_m: 0.5, depth_m: 0.5 }, black, Vec3::ZERO, Vec3::X * 90.0);
@@ -242,8 +242,8 @@ fn a_camera_in_water_sees_at_most_the_radiance_of_the_surround() {
 
 #[test]
 fn a_slab_shifts_the_image_behind_it_by_snells_law() {
-    // d = t sin(i) (1 - cos(i) / (n cos(r))) for a slab of thickness t under the angle i. The wall's edge is in the middle
-    // of the picture, whose lit part moves with the edge.
+    // d = t sin(i) (1 - cos(i) / (n cos(r))) for a slab of thickness t under the angle i. The wall's edge is in the
+    // middle of the picture, whose lit part moves with the edge.
     for (deg, n) in [(30.0_f64, 1.5_f64), (60.0, 1.52), (45.0, 1.33)] {
         let mut scene = glowing_wall(3.0);
         scene.objects[0].transform.position.x = 0.25;

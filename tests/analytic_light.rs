@@ -1,6 +1,6 @@
-//! The illuminance of every emitter in rendered pictures against closed forms. Tolerances are multiples of the standard error,
-//! which is estimated from the variance of the pixels. The tests of a family share a false-alarm rate of 1 in 1000
-//! (`studio::statistics`). `BIAS` is the error of the measuring card.
+//! The illuminance of every emitter in rendered pictures against closed forms. Tolerances are multiples of the standard
+//! error, which is estimated from the variance of the pixels. The tests of a family share a false-alarm rate of 1 in
+//! 1000 (`studio::statistics`). `BIAS` is the error of the measuring card.
 #![allow(clippy::unwrap_used)]
 
 mod studio;
@@ -98,8 +98,8 @@ fn panels_are_right_from_a_centimetre_to_two_hundred_metres() {
 
 #[test]
 fn panels_seen_almost_edge_on_are_right() {
-    // A strip on the floor that faces along it, with receivers from 10 cm to 10 m in front; and a panel whose plane is just above
-    // the receiver. At these angles, solid angles lose precision.
+    // A strip on the floor that faces along it, with receivers from 10 cm to 10 m in front; and a panel whose plane is
+    // just above the receiver. At these angles, solid angles lose precision.
     let mut cases = Vec::new();
     for distance in [0.1, 0.5, 2.0, 10.0] {
         cases.push((Vec3::new(0.0, 0.15, -distance), Vec3::new(0.0, 0.15, 1.0), Vec3::Y, 1.6, 0.3));
@@ -183,7 +183,8 @@ fn the_inverse_square_law_holds_from_a_centimetre_to_a_kilometre() {
 
 #[test]
 fn the_intensity_of_a_spot_is_linear_in_angle_between_its_cones() {
-    // Full intensity up to 10 degrees off the axis, 0 beyond 35 degrees: I0 = F / (2 pi (1 - (sin b - sin a) / (b - a))).
+    // Full intensity up to 10 degrees off the axis, 0 beyond 35 degrees: I0 = F / (2 pi (1 - (sin b - sin a) / (b -
+    // a))).
     let (a, b) = (10_f64.to_radians(), 35_f64.to_radians());
     let axial = 1000.0 / (2.0 * PI * (1.0 - (b.sin() - a.sin()) / (b - a)));
     for (off_axis_deg, fraction) in
@@ -269,8 +270,8 @@ fn the_sun_follows_the_cosine_law_and_is_cut_by_the_horizon() {
 
 #[test]
 fn sampling_one_of_many_lights_gives_each_layer_its_own_light() {
-    // 14 point lights and panels over a range of six stops, near and far, one of them behind the card: too many to sample all at
-    // a hit, and few enough for a layer each. A wrong pmf would move light between layers.
+    // 14 point lights and panels over a range of six stops, near and far, one of them behind the card: too many to
+    // sample all at a hit, and few enough for a layer each. A wrong pmf would move light between layers.
     let (position, normal) = (Vec3::ZERO, Vec3::new(0.3, 0.9, 0.2).normalize());
     let mut scene = meter_card(position, normal);
     let mut rng = TestRng::new(77);

@@ -1,6 +1,6 @@
-//! Tests against common wrong formulas (methods.md): each test computes the wrong value, too, and shows that it lies outside
-//! of the tolerance. Triangles, boxes and error bounds are tested beside their code; clipping, depth and perspective-correct
-//! textures with the z-buffer.
+//! Tests against common wrong formulas (methods.md): each test computes the wrong value, too, and shows that it lies
+//! outside of the tolerance. Triangles, boxes and error bounds are tested beside their code; clipping, depth and
+//! perspective-correct textures with the z-buffer.
 #![allow(clippy::unwrap_used)]
 
 mod studio;
@@ -99,8 +99,8 @@ fn the_specular_reflectance_of_plastic_follows_from_its_index_of_refraction() {
 
 #[test]
 fn fresnel_uses_the_angle_to_the_half_vector() {
-    // A rough black plate, light from 80 degrees on the left, camera 80 degrees on the right: reflecting microfacets are
-    // level. Light from above: microfacets of 40 degrees. With the angle to the normal, F would be equal in both.
+    // A rough black plate, light from 80 degrees on the left, camera 80 degrees on the right: reflecting microfacets
+    // are level. Light from above: microfacets of 40 degrees. With the angle to the normal, F would be equal in both.
     let black = Material { base_color: [0.0; 3], roughness: 0.6, ior: 1.5, ..Material::default() };
     let seen = |light_deg: f64| {
         let plate = object("Plate", Shape::Plane { width_m: 4.0, depth_m: 4.0 }, black.clone(), Vec3::ZERO, Vec3::ZERO);
@@ -171,8 +171,8 @@ fn the_half_vector_is_normalised() {
 
 #[test]
 fn specular_and_diffuse_lobes_conserve_energy() {
-    // A white dielectric reflects all light at every angle. A diffuse lobe of (1 - F) beside a specular lobe of F does so in
-    // the mean at best; a diffuse lobe of 1 creates energy.
+    // A white dielectric reflects all light at every angle. A diffuse lobe of (1 - F) beside a specular lobe of F does
+    // so in the mean at best; a diffuse lobe of 1 creates energy.
     let white = Material { base_color: [0.999; 3], roughness: 0.0, ior: 1.5, ..Material::default() };
     for angle_deg in [0.0_f64, 60.0, 80.0] {
         let (s, p) = studio::closed_forms::fresnel(angle_deg.to_radians(), 1.5);
@@ -216,8 +216,8 @@ fn a_camera_inside_a_box_sees_the_box() {
 
 #[test]
 fn shadow_rays_do_not_depend_on_a_fixed_epsilon() {
-    // A cover over a card with a small gap: with an epsilon of 1e-3 m, a shadow ray from a card 0.5 mm below starts beyond
-    // the cover, and light leaks through.
+    // A cover over a card with a small gap: with an epsilon of 1e-3 m, a shadow ray from a card 0.5 mm below starts
+    // beyond the cover, and light leaks through.
     for gap in [1.0_f32, 1e-2, 5e-4, 2e-5] {
         let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
         let cover = Shape::Plane { width_m: 3.0, depth_m: 3.0 };
@@ -246,8 +246,8 @@ fn the_near_field_of_a_softbox_differs_from_a_clamped_point_light() {
     }
 }
 
-/// Returns the mean illuminance of the walls of a 4 m cube with 10 000 lm in it. Six views of 90 degrees show each wall as a
-/// square whose pixels are equal areas; each of eight seeds is an independent mean over all walls.
+/// Returns the mean illuminance of the walls of a 4 m cube with 10 000 lm in it. Six views of 90 degrees show each wall
+/// as a square whose pixels are equal areas; each of eight seeds is an independent mean over all walls.
 fn cube_illuminance(reflectance: f32, method: Method, max_depth: Option<u32>) -> SampleMean {
     let paint = Material { base_color: [reflectance; 3], ior: 1.0, roughness: 1.0, ..Material::default() };
     let room = Room { size_m: Vec3::splat(4.0), floor: paint.clone(), walls: paint.clone(), ceiling: paint };
@@ -270,8 +270,8 @@ fn is_within_error(ours: SampleMean, reference: f64) -> bool {
 
 #[test]
 fn the_path_depth_suffices_for_white_rooms() {
-    // light_and_camera.md: F / (S (1 - r)). A room of albedo 0.95 has 20 times the direct light: 34 % of it within depth 8,
-    // 96 % within depth 64.
+    // light_and_camera.md: F / (S (1 - r)). A room of albedo 0.95 has 20 times the direct light: 34 % of it within
+    // depth 8, 96 % within depth 64.
     for reflectance in [0.2, 0.5, 0.8, 0.9, 0.95] {
         let reference = 10_000.0 / 96.0 / (1.0 - f64::from(reflectance));
         let ours = cube_illuminance(reflectance, Method::Path, None);
@@ -306,10 +306,11 @@ fn the_direct_method_omits_indirect_light_alone() {
 
 #[test]
 fn photons_focus_a_point_light_through_a_glass_ball() {
-    // README, "where each method fails": without photons, shadow rays of a point light go straight through curved glass. A
-    // real caustic at the focus of a ball is many times brighter than the direct light; this approximation transmits what
-    // two faces do, 4 % less each. With photons, a ball lens has f = n R / (2 (n - 1)) = 15 cm from its centre, so the light
-    // at 2.6 m is in focus 15.92 cm behind it. At 40 cm the beam is 0.4 / 0.1592 - 1 = 1.513 times as wide as at the ball.
+    // README, "where each method fails": without photons, shadow rays of a point light go straight through curved
+    // glass. A real caustic at the focus of a ball is many times brighter than the direct light; this approximation
+    // transmits what two faces do, 4 % less each. With photons, a ball lens has f = n R / (2 (n - 1)) = 15 cm from its
+    // centre, so the light at 2.6 m is in focus 15.92 cm behind it. At 40 cm the beam is 0.4 / 0.1592 - 1 = 1.513 times
+    // as wide as at the ball.
     let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
     scene.lights.push(light(Emitter::Point, Output::Lumens(1e4), Vec3::Z * 3.0));
     let open = illuminance(&scene, &square(Method::Path, 4, 16)).mean;

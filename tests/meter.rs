@@ -35,7 +35,8 @@ fn lux_of(emitter: Emitter, output: Output, position: Vec3, receptor: Receptor) 
 
 #[test]
 fn panels_match_lamberts_formula_from_a_centimetre_to_five_metres() {
-    // The first round of 1024 points has an error of at most 0.05 % here; the receptor's lift of 0.02 mm by 0.004 % at 0.5 m.
+    // The first round of 1024 points has an error of at most 0.05 % here; the receptor's lift of 0.02 mm by 0.004 % at
+    // 0.5 m.
     let (rect, round) = (Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, Emitter::RoundPanel { diameter_m: 1.2 });
     for d in [0.01_f32, 0.1, 0.5, 1.0, 2.0, 5.0] {
         let (a, b) = (0.3_f32, 0.45_f32);
@@ -73,7 +74,8 @@ fn sun_and_surround_are_read_with_their_illuminance() {
         let ours = lux_of(sun, Output::Lux(5000.0), Vec3::Z, Receptor::Flat);
         assert!((ours / 5000.0 - 1.0).abs() < 5e-4, "{angular_diameter_deg}: {ours}");
     }
-    // The response to a uniform sky integrates to pi for a flat receptor and to 2 pi for a dome, without sampling error.
+    // The response to a uniform sky integrates to pi for a flat receptor and to 2 pi for a dome, without sampling
+    // error.
     for (receptor, lux) in [(Receptor::Flat, 2000.0), (Receptor::Dome, 4000.0)] {
         let ours = lux_of(Emitter::Surround, Output::Lux(2000.0), Vec3::Z, receptor);
         assert!((ours / lux - 1.0).abs() < 1e-4, "{receptor:?}: {ours}");
@@ -206,8 +208,8 @@ fn a_meter_on_the_floor_is_precise_far_from_the_origin() {
         let lamp = light(Emitter::Point, Output::Lumens(10_000.0), point + Vec3::Y * 3.0);
         let scene = Scene { objects: vec![floor], lights: vec![lamp], ..Scene::default() };
         let reading = read(&scene, point, Vec3::Y, Receptor::Flat).reading;
-        // 88.42 lx of light_and_camera.md, to five digits but for the lift: positions are relative to the meter, and the
-        // lamp's is a whole number.
+        // 88.42 lx of light_and_camera.md, to five digits but for the lift: positions are relative to the meter, and
+        // the lamp's is a whole number.
         assert!((reading.lights[0].direct / 88.42 - 1.0).abs() < 2e-4, "{far} m: {}", reading.lights[0].direct);
         assert_eq!(reading.lights[0].bounced, 0.0);
     }
@@ -346,7 +348,8 @@ fn a_closed_room_reads_direct_plus_bounced_light() {
         sum += meter.read(&point, &effort, &RenderControl::new()).unwrap().reading.total_lux_s() * 125.0;
     }
     let mean = sum / (n * n) as f32;
-    // 208.33 lx by light_and_camera.md. The grid has an error of 0.2 % at the lamp's peak, 64 x 1024 paths one of 0.1 %.
+    // 208.33 lx by light_and_camera.md. The grid has an error of 0.2 % at the lamp's peak, 64 x 1024 paths one of 0.1
+    // %.
     assert!((mean / 208.33 - 1.0).abs() < 0.006, "{mean}");
 }
 

@@ -50,8 +50,8 @@ fn base_scene() -> Scene {
     Scene { objects: vec![floor, ball], lights: vec![key], camera, ..Scene::default() }
 }
 
-/// Asserts that all methods render finite values that are not negative, with the same bits on one and three threads. Returns
-/// the path-traced picture.
+/// Asserts that all methods render finite values that are not negative, with the same bits on one and three threads.
+/// Returns the path-traced picture.
 fn assert_robust(scene: &Scene, assets: &Assets) -> Picture {
     let prepared = raytrace::prepare(scene, assets).unwrap();
     let settings = Settings { width: 45, height: 30, spp: 4, ..Settings::default() };
@@ -165,7 +165,8 @@ fn softboxes_edge_on_facing_away_and_behind_a_card_do_not_light_it() {
     ] {
         let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
         scene.lights.push(Light { aim: Aim::Point(aim), ..light(panel, Output::Lumens(1000.0), position) });
-        // A panel that faces the card gives 267 lx. Half of the card's 0.4 mm is in front of the plane of an edge-on panel.
+        // A panel that faces the card gives 267 lx. Half of the card's 0.4 mm is in front of the plane of an edge-on
+        // panel.
         let reading = illuminance(&scene, &square(Method::Path, 4, 16)).mean;
         assert!(reading < 0.05, "from {position} to {aim}: {reading} lx");
     }
@@ -433,8 +434,8 @@ fn paths_through_nested_glass_end() {
 
 #[test]
 fn mirrors_with_interpolated_normals_are_not_dark_at_the_rim() {
-    // A coarse sphere, whose interpolated normals reflect rays below the surface at its rim. In a uniform surround, a mirror has
-    // the value of the surround there, too.
+    // A coarse sphere, whose interpolated normals reflect rays below the surface at its rim. In a uniform surround, a
+    // mirror has the value of the surround there, too.
     let mut coarse = Mesh::default();
     let (around, rows) = (10_u32, 6_u32);
     for row in 0..=rows {

@@ -1,8 +1,8 @@
 //! The structure of `src/`: the direction of imports that lib.rs states, and import circles between files.
 //!
 //! The sources are parsed with `syn`. An edge leads from a file to the file that defines a name it imports, by `use` or
-//! by an inline `crate::` or `super::` path. Re-exports are followed to the defining file, test modules are left out, and
-//! a `mod.rs` that re-exports its children does not count as an importer of them.
+//! by an inline `crate::` or `super::` path. Re-exports are followed to the defining file, test modules are left out,
+//! and a `mod.rs` that re-exports its children does not count as an importer of them.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};

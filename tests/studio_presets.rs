@@ -95,7 +95,8 @@ fn angles(scene: &Scene, name: &str) -> (f32, f32) {
 
 #[test]
 fn portrait_patterns_have_their_textbook_angles() {
-    // light_and_camera.md, portrait patterns. Positions are rounded to the centimetre, so the tolerance is half a degree.
+    // light_and_camera.md, portrait patterns. Positions are rounded to the centimetre, so the tolerance is half a
+    // degree.
     for (file, light, azimuths, elevations) in [
         ("butterfly.ron", "Beauty dish", 0.0..=0.0, 25.0..=45.0),
         ("loop.ron", "Key dish", 20.0..=50.0, 25.0..=60.0),

@@ -1,8 +1,9 @@
 //! The editor: an egui window to arrange the studio, see it live, render and save.
 //!
-//! Panels and viewport draw from the [`Document`] and push [`Command`]s; [`App::run`] executes them after the frame. Every
-//! change of the scene is an [`Action`] inside a command, so menus, shortcuts, handles, undo and tests share one path.
-//! Files, renders and file dialogs run in background threads; the window takes their results at the start of a frame.
+//! Panels and viewport draw from the [`Document`] and push [`Command`]s; [`App::run`] executes them after the frame.
+//! Every change of the scene is an [`Action`] inside a command, so menus, shortcuts, handles, undo and tests share one
+//! path. Files, renders and file dialogs run in background threads; the window takes their results at the start of a
+//! frame.
 //!
 //! # Rooms
 //! An import never runs against an arrow, and no two files import each other:
@@ -22,12 +23,12 @@
 //! # Where to add
 //! - A panel: a `*_ui` function in a new file of `panels`, its state in `window::app_state::PanelState`, its call in
 //!   `App::panels_ui`. A section of the inspector: a file in `panels::inspector` and an arm of `inspector_ui`.
-//! - A command: a variant in `commands::command`, an arm in `window::run_command` (files: `window::run_file_command`), its
-//!   key in `commands::shortcuts::KEY_BINDINGS`, its entry in `panels::menu` or `commands::item_menu`.
+//! - A command: a variant in `commands::command`, an arm in `window::run_command` (files: `window::run_file_command`),
+//!   its key in `commands::shortcuts::KEY_BINDINGS`, its entry in `panels::menu` or `commands::item_menu`.
 //! - An action: a variant in `document::action` with its label and effect; undo follows by itself.
-//! - A transform handle: a variant of `commands::choices::HandleMode`, its modes in `viewport::tools::transform_handles`,
-//!   its effect in `viewport::tools::transform_selection`. Another tool: a file in `viewport::tools` that
-//!   `viewport::viewport_area` calls.
+//! - A transform handle: a variant of `commands::choices::HandleMode`, its modes in
+//!   `viewport::tools::transform_handles`, its effect in `viewport::tools::transform_selection`. Another tool: a file
+//!   in `viewport::tools` that `viewport::viewport_area` calls.
 //! - A catalog entry: a line in `document::catalog`.
 
 mod commands;

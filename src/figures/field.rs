@@ -1,7 +1,7 @@
 //! The signed distance field of a figure: groups of primitives, blended smoothly within each group.
 //!
-//! A group is a list of additions, subtractions and displacements that apply in order. `cull` drops those without effect
-//! inside a ball, so that a sample of two hundred primitives evaluates about ten.
+//! A group is a list of additions, subtractions and displacements that apply in order. `cull` drops those without
+//! effect inside a ball, so that a sample of two hundred primitives evaluates about ten.
 
 use super::primitive::{Primitive, Stroke, smooth_max, smooth_min};
 use glam::{Affine3A, Vec3};

@@ -33,7 +33,8 @@ impl Detail {
     /// The resolution of the shipped files, for portraits.
     pub const FULL: Detail = Detail { coarseness: 1.0 };
 
-    /// Returns a resolution with edges longer than full detail's by a factor, clamped to 1 to 4: thin parts need no longer ones.
+    /// Returns a resolution with edges longer than full detail's by a factor, clamped to 1 to 4: thin parts need no
+    /// longer ones.
     pub fn new(coarseness: f32) -> Detail {
         Detail { coarseness: coarseness.clamp(1.0, 4.0) }
     }

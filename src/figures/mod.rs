@@ -102,8 +102,8 @@ pub fn file_name(mannequin: Mannequin) -> String {
     format!("{figure}_{pose}.obj")
 }
 
-/// Returns the materials of the parts that are not skin: eyes, iris, pupil and the suit of whole figures. A dark `skin`,
-/// the object's own material, gets darker eyes.
+/// Returns the materials of the parts that are not skin: eyes, iris, pupil and the suit of whole figures. A dark
+/// `skin`, the object's own material, gets darker eyes.
 pub fn default_parts(skin: &Material) -> Vec<(String, Material)> {
     let gloss = |base_color| Material { base_color, ..MaterialPreset::Eye.material() };
     let [r, g, b] = skin.base_color;

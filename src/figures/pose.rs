@@ -65,7 +65,8 @@ pub struct LegPose {
 /// A whole pose. Pairs are left, right.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseAngles {
-    /// Height of the seat the figure sits on, metres; its hips then lie over the seat, a thigh's length behind the knees.
+    /// Height of the seat the figure sits on, metres; its hips then lie over the seat, a thigh's length behind the
+    /// knees.
     pub seat_m: Option<f32>,
     /// Offset of the hips from standing straight (or sitting), in body units.
     pub hip_shift: Vec3,

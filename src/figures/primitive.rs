@@ -123,7 +123,8 @@ pub struct Stroke {
     pub radius: f32,
     /// Displacement on the line.
     pub height: f32,
-    /// Weight of each axis in the distance from the line; a small Z makes a stroke on the face nearly independent of depth.
+    /// Weight of each axis in the distance from the line; a small Z makes a stroke on the face nearly independent of
+    /// depth.
     pub weights: Vec3,
 }
 

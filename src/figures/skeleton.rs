@@ -57,8 +57,8 @@ pub struct Leg {
     pub foot: Affine3A,
 }
 
-/// Joints in world space. A body unit is a metre on a man of 1.80 m, and in proportion to the height of the neck on other
-/// figures.
+/// Joints in world space. A body unit is a metre on a man of 1.80 m, and in proportion to the height of the neck on
+/// other figures.
 #[derive(Clone, Debug)]
 pub struct Skeleton {
     /// Metres a body unit.

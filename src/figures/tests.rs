@@ -45,7 +45,7 @@ fn assert_closed(triangles: &[[u32; 3]], what: &str) {
     }
 }
 
-/// How many pieces triangles that share vertices form.
+/// Returns the number of connected components of a mesh.
 fn pieces(triangles: &[[u32; 3]]) -> usize {
     let mut parent: HashMap<u32, u32> = triangles.iter().flatten().map(|&v| (v, v)).collect();
     fn root(parent: &mut HashMap<u32, u32>, mut v: u32) -> u32 {

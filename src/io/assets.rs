@@ -9,8 +9,9 @@ use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Loads the assets that `scene` refers to and `assets` does not hold yet, on all cores. Paths are relative to `folder`,
-/// the scene file's own; `None` for a scene without a file. Returns a warning for each asset that is left out.
+/// Loads the assets that `scene` refers to and `assets` does not hold yet, on all cores. Paths are relative to
+/// `folder`, the scene file's own; `None` for a scene without a file. Returns a warning for each asset that is left
+/// out.
 pub fn load_assets(scene: &Scene, folder: Option<&Path>, assets: &mut Assets) -> Vec<Finding> {
     load_assets_from(scene, AssetFiles::in_folder(folder), assets)
 }

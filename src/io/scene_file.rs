@@ -31,8 +31,8 @@ pub struct Loaded {
 /// Loads a scene and the assets it refers to, which lie in the scene's folder.
 ///
 /// # Errors
-/// If the file can't be read, is larger than [`FILE_LIMIT_BYTES`] or is no usable scene. A missing model or texture is a
-/// warning.
+/// If the file can't be read, is larger than [`FILE_LIMIT_BYTES`] or is no usable scene. A missing model or texture is
+/// a warning.
 pub fn load_scene(path: &Path) -> Result<Loaded, LoadError> {
     let in_file = |error| LoadError::InFile { error: Box::new(error), path: path.to_owned() };
     let text = read_text(path).map_err(|error| match error {

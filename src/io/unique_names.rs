@@ -3,7 +3,8 @@
 use crate::scene::{Finding, Scene};
 use std::collections::{HashMap, HashSet};
 
-/// Gives the later of two equal names a number, with a warning each. Aims refer to objects by id, so they are unaffected.
+/// Gives the later of two equal names a number, with a warning each. Aims refer to objects by id, so they are
+/// unaffected.
 pub(super) fn make_names_unique(scene: &mut Scene) -> Vec<Finding> {
     let mut warnings = Vec::new();
     let taken = scene.objects.iter().map(|o| &o.name).chain(scene.lights.iter().map(|l| &l.name)).cloned().collect();

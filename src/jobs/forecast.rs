@@ -1,7 +1,7 @@
 //! Forecasts of a render's time and noise, from one render of the same studio.
 //!
-//! Time grows with samples and pixels. Noise falls with the square root of the samples, or faster for stratified samples:
-//! the exponent is measured.
+//! Time grows with samples and pixels. Noise falls with the square root of the samples, or faster for stratified
+//! samples: the exponent is measured.
 
 /// Time and noise of a render.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,8 +30,8 @@ pub struct Forecast {
 const CONVERGENCE: [f64; 2] = [0.5, 0.8];
 
 impl Forecast {
-    /// Returns the forecast from one render: `spp` samples of `pixels` pixels took `trace_s` seconds and left this noise.
-    /// None if nothing was traced or the picture is black.
+    /// Returns the forecast from one render: `spp` samples of `pixels` pixels took `trace_s` seconds and left this
+    /// noise. None if nothing was traced or the picture is black.
     pub fn from_render(build_s: f64, trace_s: f64, pixels: u64, spp: u32, noise_stops: f32) -> Option<Self> {
         let (samples, error) = (pixels as f64 * f64::from(spp), relative_error(noise_stops));
         let is_known = samples > 0.0 && trace_s > 0.0 && error > 0.0 && error.is_finite();

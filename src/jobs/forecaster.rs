@@ -73,8 +73,8 @@ impl Forecaster {
         Forecaster { worker, clock, subject: None, changed: None, forecast: None, measured: Vec::new() }
     }
 
-    /// Runs a pilot when the studio has changed and [`PILOT_DELAY`] has passed, but not beside a render. To be called each
-    /// frame while the forecast is shown. Returns the time after which it is to be called again, if there is one.
+    /// Runs a pilot when the studio has changed and [`PILOT_DELAY`] has passed, but not beside a render. To be called
+    /// each frame while the forecast is shown. Returns the time after which it is to be called again, if there is one.
     pub fn update(
         &mut self,
         subject: ForecastSubject,

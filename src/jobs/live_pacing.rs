@@ -1,7 +1,7 @@
 //! Pacing of the live traced view: the work per slice, and the times at which a picture is shown.
 //!
-//! The first picture after an edit comes from a few short slices of work. Later slices are longer and pictures rarer, so
-//! that showing them costs little. While the user works, one core stays free.
+//! The first picture after an edit comes from a few short slices of work. Later slices are longer and pictures rarer,
+//! so that showing them costs little. While the user works, one core stays free.
 
 use super::clock::Clock;
 use super::threads::background_pool;
@@ -90,7 +90,8 @@ impl LivePacing {
         self.pools[0].current_num_threads()
     }
 
-    /// Switches smoothing of pictures that are not done on or off; see [`LivePicture::develop_filtered`]. It starts off.
+    /// Switches smoothing of pictures that are not done on or off; see [`LivePicture::develop_filtered`]. It starts
+    /// off.
     pub fn set_smooth(&mut self, smooth: bool) {
         self.filter = smooth.then(|| self.filter.take().unwrap_or_default());
     }

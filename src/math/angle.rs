@@ -1,9 +1,10 @@
-//! Sine and cosine for sampling warps, by polynomials that the compiler can inline. Unlike the standard library, they need no
-//! range reduction for large angles.
+//! Sine and cosine for sampling warps, by polynomials that the compiler can inline. Unlike the standard library, they
+//! need no range reduction for large angles.
 
 use std::f32::consts::FRAC_PI_2;
 
-/// Returns sine and cosine of an angle in -pi/4..pi/4, within 1.2e-7 (the minimax polynomials of Moshier's Cephes library).
+/// Returns sine and cosine of an angle in -pi/4..pi/4, within 1.2e-7 (the minimax polynomials of Moshier's Cephes
+/// library).
 #[inline]
 pub fn sin_cos_eighth(angle_rad: f32) -> (f32, f32) {
     let x2 = angle_rad * angle_rad;

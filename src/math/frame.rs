@@ -2,8 +2,8 @@
 
 use glam::{Affine3A, Vec3};
 
-/// Returns tangent and bitangent of a right-handed basis with `normal` as third axis: `t x b = n` (Duff et al. 2017, "Building
-/// an Orthonormal Basis, Revisited").
+/// Returns tangent and bitangent of a right-handed basis with `normal` as third axis: `t x b = n` (Duff et al. 2017,
+/// "Building an Orthonormal Basis, Revisited").
 pub fn orthonormal_basis(normal: Vec3) -> (Vec3, Vec3) {
     let sign = 1.0_f32.copysign(normal.z);
     let a = -1.0 / (sign + normal.z);
@@ -13,8 +13,9 @@ pub fn orthonormal_basis(normal: Vec3) -> (Vec3, Vec3) {
     (tangent, bitangent)
 }
 
-/// Returns the frame at `eye` that looks along its -Z at `target` with world +Y up, rotated by `roll_rad` about its own Z. The
-/// frame is finite for all arguments: vertical directions use world -Z or +Z as up, `target == eye` looks along world -Z.
+/// Returns the frame at `eye` that looks along its -Z at `target` with world +Y up, rotated by `roll_rad` about its own
+/// Z. The frame is finite for all arguments: vertical directions use world -Z or +Z as up, `target == eye` looks along
+/// world -Z.
 pub fn look_at(eye: Vec3, target: Vec3, roll_rad: f32) -> Affine3A {
     let back = (eye - target).try_normalize().unwrap_or(Vec3::Z);
     let right = Vec3::Y.cross(back);

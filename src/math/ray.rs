@@ -13,16 +13,16 @@ pub struct Ray {
     pub t_max: f32,
 }
 
-/// Returns the bound on the relative error of `n` rounded operations, n eps / (1 - n eps), with eps half an ulp of 1 (Higham
-/// 2002, "Accuracy and Stability of Numerical Algorithms", section 3.1).
+/// Returns the bound on the relative error of `n` rounded operations, n eps / (1 - n eps), with eps half an ulp of 1
+/// (Higham 2002, "Accuracy and Stability of Numerical Algorithms", section 3.1).
 pub const fn gamma(n: i32) -> f32 {
     let bound = n as f32 * (f32::EPSILON * 0.5);
     bound / (1.0 - bound)
 }
 
-/// Offsets the origin of a ray that leaves a surface in `direction`. `error` is the absolute error bound of `point` along each
-/// axis. The result is on the side of `direction` for every position inside the error box (Pharr, Jakob and Humphreys,
-/// "Physically Based Rendering", 4th ed., section 6.8.6).
+/// Offsets the origin of a ray that leaves a surface in `direction`. `error` is the absolute error bound of `point`
+/// along each axis. The result is on the side of `direction` for every position inside the error box (Pharr, Jakob and
+/// Humphreys, "Physically Based Rendering", 4th ed., section 6.8.6).
 pub fn offset_origin(point: Vec3, error: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
     let distance = normal.abs().dot(error);
     let offset = if direction.dot(normal) < 0.0 { -normal * distance } else { normal * distance };

@@ -12,8 +12,8 @@ pub fn safe_acos(x: f32) -> f32 {
     x.clamp(-1.0, 1.0).acos()
 }
 
-/// Returns the angle between two vectors of any length, radians; precise near 0 and pi (Kahan 2006, "How Futile are Mindless
-/// Assessments of Roundoff", section 12). pi/2 if one is zero.
+/// Returns the angle between two vectors of any length, radians; precise near 0 and pi (Kahan 2006, "How Futile are
+/// Mindless Assessments of Roundoff", section 12). pi/2 if one is zero.
 pub fn angle_between(a: Vec3, b: Vec3) -> f32 {
     let (a, b) = (a.normalize_or_zero(), b.normalize_or_zero());
     2.0 * (a - b).length().atan2((a + b).length())

@@ -35,8 +35,8 @@ pub fn uniform_sphere(u: Vec2) -> Vec3 {
     Vec3::new(radius * cos, radius * sin, z)
 }
 
-/// Samples a direction uniformly in a cone about +Z, given `1 - cos` of its half angle, which is precise for narrow cones.
-/// Density 1 / (2 pi (1 - cos)), 1/sr.
+/// Samples a direction uniformly in a cone about +Z, given `1 - cos` of its half angle, which is precise for narrow
+/// cones. Density 1 / (2 pi (1 - cos)), 1/sr.
 pub fn uniform_cone(u: Vec2, one_minus_cos: f32) -> Vec3 {
     let drop = u.x * one_minus_cos;
     let sin_theta = (drop * (2.0 - drop)).max(0.0).sqrt();
@@ -91,8 +91,8 @@ mod tests {
 
     #[test]
     fn every_warp_follows_its_density() {
-        // Each sample is mapped back to the unit square by the cumulative distribution (squared radius, sin2, height, 1 - cos) and
-        // the azimuth.
+        // Each sample is mapped back to the unit square by the cumulative distribution (squared radius, sin2, height, 1
+        // - cos) and the azimuth.
         let broad_cone = |w: Vec3| ((1.0 - w.z) / 0.5, turn(w.x, w.y));
         // 1 - cos of a narrow cone from the sine: its cosine rounds to 1.
         let narrow_cone = |w: Vec3| ((w.x * w.x + w.y * w.y) / 2e-8, turn(w.x, w.y));

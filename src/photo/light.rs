@@ -5,10 +5,10 @@
 //!
 //! To add an emitter, add a variant to [`EmitterShape`] and its arms in `photo/emitter.rs`. To add a luminous intensity
 //! distribution, such as an IES table, add a variant to [`super::emitter::IntensityDistribution`] in the same file. The
-//! compiler then reports one missing arm per renderer: `TracedLight::new` (`raytrace/lights/mod.rs`), `RasterLights::add`
-//! (`raster/lights.rs`), `gpu_light` (`preview/lights/light_table.rs`); and, for a new shape only, `TracedLight`'s
-//! sampling, `irradiance_per_color` (`preview/lights/environment.rs`), `add_emitters` (`preview/geometry/draw_list.rs`)
-//! and the read-out `on_axis` (`editor/document/readout.rs`).
+//! compiler then reports one missing arm per renderer: `TracedLight::new` (`raytrace/lights/mod.rs`),
+//! `RasterLights::add` (`raster/lights.rs`), `gpu_light` (`preview/lights/light_table.rs`); and, for a new shape only,
+//! `TracedLight`'s sampling, `irradiance_per_color` (`preview/lights/environment.rs`), `add_emitters`
+//! (`preview/geometry/draw_list.rs`) and the read-out `on_axis` (`editor/document/readout.rs`).
 
 use super::beam::{self, Beam};
 use super::emitter::EmitterShape;
@@ -141,8 +141,8 @@ impl PhotometricLight {
     }
 }
 
-/// Returns the luminous intensity of a light on its axis, cd (cd s for flash), dial and modifier included; 0 for distant
-/// lights.
+/// Returns the luminous intensity of a light on its axis, cd (cd s for flash), dial and modifier included; 0 for
+/// distant lights.
 pub fn axial_intensity(light: &Light) -> f32 {
     PhotometricLight::in_frame(light, Affine3A::IDENTITY, &Camera::default()).axial_intensity()
 }

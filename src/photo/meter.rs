@@ -1,8 +1,8 @@
 //! The arithmetic of an incident light meter (ISO 2720): from the illuminance of each light to f-number, EV and ratios.
 //!
-//! Continuous light is read in lux, flash in lux seconds. Their luminous exposures add up, E t + H in lux s, and give the
-//! f-number: N^2 = (E t + H) S / C. For a total in lux, a flash counts as the continuous light of the same exposure at
-//! the camera's shutter, H / t, so that `lux x shutter = lux s`.
+//! Continuous light is read in lux, flash in lux seconds. Their luminous exposures add up, E t + H in lux s, and give
+//! the f-number: N^2 = (E t + H) S / C. For a total in lux, a flash counts as the continuous light of the same exposure
+//! at the camera's shutter, H / t, so that `lux x shutter = lux s`.
 
 use super::exposure;
 use super::thirds::Dial;
@@ -13,8 +13,8 @@ use crate::scene::{Camera, LightId, Role};
 pub const LUX_PER_FOOT_CANDLE: f32 = 10.763_91;
 
 impl Receptor {
-    /// Returns the response to light relative to its normal illuminance, by the cosine between the light's direction and
-    /// the receptor's axis.
+    /// Returns the response to light relative to its normal illuminance, by the cosine between the light's direction
+    /// and the receptor's axis.
     pub fn response(self, cos: f32) -> f32 {
         match self {
             Receptor::Flat => cos.max(0.0),

@@ -1,6 +1,7 @@
 //! Scene-linear pictures, before the tone curve.
 
-/// A scene-linear RGB picture after exposure and white balance: a correctly metered grey card is 0.18. Rows from the top.
+/// A scene-linear RGB picture after exposure and white balance: a correctly metered grey card is 0.18. Rows from the
+/// top.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Picture {
     /// Width, pixels.

@@ -48,8 +48,8 @@ impl Dial {
         }
     }
 
-    /// Returns the exact value `thirds` of a stop from f/1, 1 s or ISO 100. More thirds are a smaller aperture, a shorter
-    /// time, a higher speed.
+    /// Returns the exact value `thirds` of a stop from f/1, 1 s or ISO 100. More thirds are a smaller aperture, a
+    /// shorter time, a higher speed.
     pub fn value(self, thirds: i32) -> f32 {
         let stops = f64::from(thirds) / 3.0;
         match self {
@@ -94,7 +94,8 @@ impl Dial {
     /// Returns the next whole third from `value` in a direction (+1 or -1), clamped to the scale.
     pub fn step(self, value: f32, direction: i32) -> f32 {
         let thirds = self.thirds(value);
-        // Files hold nominal values (5.6, 1/60), up to 0.3 thirds from the exact ones: such a value counts as its third.
+        // Files hold nominal values (5.6, 1/60), up to 0.3 thirds from the exact ones: such a value counts as its
+        // third.
         let nearest = thirds.round();
         let next = match (direction > 0, (thirds - nearest).abs() < 0.35) {
             (true, true) => nearest as i32 + 1,

@@ -17,9 +17,9 @@
 //! overlay pass          outline, tints, lines; depth from ids -> picture (Rgba8Unorm, or Rgba16Float without overlay)
 //! ```
 //!
-//! Light reaches the shaders in picture units (exposure, shutter and white balance folded in), so that a shader's sum is
-//! the scene-linear pixel. Unlike the path tracer, the preview estimates bounced light, filters soft shadows, and has no
-//! true reflection and refraction.
+//! Light reaches the shaders in picture units (exposure, shutter and white balance folded in), so that a shader's sum
+//! is the scene-linear pixel. Unlike the path tracer, the preview estimates bounced light, filters soft shadows, and
+//! has no true reflection and refraction.
 //!
 //! Where to extend it:
 //! - A pass: a pipeline constructor in the `pipelines.rs` of its room, a WGSL file joined in `shaders/mod.rs`, a `draw`

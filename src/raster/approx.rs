@@ -20,8 +20,8 @@ pub(super) fn pow(x: f32, n: f32) -> f32 {
     exp2(log2(x) * n)
 }
 
-/// Returns the base-2 logarithm of a normal positive number, with an absolute error of 2e-7: the exponent, plus the series
-/// of artanh((m - 1) / (m + 1)) for a mantissa m between sqrt(1/2) and sqrt(2).
+/// Returns the base-2 logarithm of a normal positive number, with an absolute error of 2e-7: the exponent, plus the
+/// series of artanh((m - 1) / (m + 1)) for a mantissa m between sqrt(1/2) and sqrt(2).
 #[inline(always)]
 fn log2(x: f32) -> f32 {
     const SQRT_HALF: i32 = FRAC_1_SQRT_2.to_bits() as i32;
@@ -48,8 +48,8 @@ fn exp2(x: f32) -> f32 {
     f32::from_bits((series.to_bits() as i32 + (whole << 23)) as u32)
 }
 
-/// Returns the arc cosine with an error of 1e-6; the argument is clamped to [-1, 1]. Hastings's polynomial (Abramowitz and
-/// Stegun 4.4.46).
+/// Returns the arc cosine with an error of 1e-6; the argument is clamped to [-1, 1]. Hastings's polynomial (Abramowitz
+/// and Stegun 4.4.46).
 #[inline(always)]
 pub(super) fn acos(x: f32) -> f32 {
     let m = min(x.abs(), 1.0);

@@ -1,7 +1,8 @@
 //! Clipping of triangles at the six planes of clip space, in homogeneous coordinates (Sutherland and Hodgman 1974).
 //!
-//! Depth is reversed and infinite: near at z = w, far at z = 0. An intersection is always computed from the vertex inside
-//! to the one outside, so that two triangles with a common edge clip it at the very same point and leave no crack.
+//! Depth is reversed and infinite: near at z = w, far at z = 0. An intersection is always computed from the vertex
+//! inside to the one outside, so that two triangles with a common edge clip it at the very same point and leave no
+//! crack.
 
 use glam::{Vec3, Vec4};
 

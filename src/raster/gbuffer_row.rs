@@ -51,8 +51,8 @@ pub(super) fn splat<T: Copy>(row: &mut [T; PADDED_WIDTH], pixels: &Range<usize>,
     }
 }
 
-/// Vertex attributes that are interpolated: two vectors (position from the eye and normal, or for Gouraud shading diffuse
-/// and specular light) and texture coordinates.
+/// Vertex attributes that are interpolated: two vectors (position from the eye and normal, or for Gouraud shading
+/// diffuse and specular light) and texture coordinates.
 pub(super) type VertexAttributes = [f32; 8];
 
 /// Consecutive pixels of a row that show one triangle. Barycentric coordinates over w are affine on the screen.

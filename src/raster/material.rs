@@ -84,8 +84,8 @@ impl RowMaterials {
         splat(&mut self.normalization, pixels, material.normalization);
     }
 
-    /// Adds the Blinn-Phong lobe with Schlick's Fresnel term, for light of this strength of which each point receives the
-    /// part `received`. Three short loops: the CPU overlaps more iterations of short loops.
+    /// Adds the Blinn-Phong lobe with Schlick's Fresnel term, for light of this strength of which each point receives
+    /// the part `received`. Three short loops: the CPU overlaps more iterations of short loops.
     #[inline(always)]
     pub fn add_specular(
         &self,

@@ -3,17 +3,17 @@
 //! World space -> camera-relative world space -> clip space -> screen space, in stages, each parallel over rayon:
 //!
 //! 1. [`vertex_stage`]: vertices of the mesh instances ([`geometry`]) to clip space;
-//! 2. [`primitive_stage`]: clipping at the six planes ([`clip`]), the perspective division and viewport transform to 1/256
-//!    of a pixel ([`viewport`]), triangle set-up ([`triangle`]) and tile binning ([`binning`]);
+//! 2. [`primitive_stage`]: clipping at the six planes ([`clip`]), the perspective division and viewport transform to
+//!    1/256 of a pixel ([`viewport`]), triangle set-up ([`triangle`]) and tile binning ([`binning`]);
 //! 3. [`tile`]: coverage by edge functions with the top-left rule ([`edge_function`]) and the depth test, then G-buffer
 //!    rows ([`gbuffer_row`]) and one evaluation of the fragment shader per pixel ([`shade`], [`material`], [`lights`]).
 //!
-//! Inner loops are branch-free code for one pixel that runs eight pixels wide: see [`crate::math::simd`] and [`approx`].
-//! Pictures have the exposure and the scene-linear units of every other rung.
+//! Inner loops are branch-free code for one pixel that runs eight pixels wide: see [`crate::math::simd`] and
+//! [`approx`]. Pictures have the exposure and the scene-linear units of every other rung.
 //!
-//! Models visibility and direct light. Leaves out shadows, bounces and reflections other than that of a uniform surround;
-//! panels shine from their centre, with a term that is exact on the axis of a disc at any distance; emitters themselves
-//! are not drawn.
+//! Models visibility and direct light. Leaves out shadows, bounces and reflections other than that of a uniform
+//! surround; panels shine from their centre, with a term that is exact on the axis of a disc at any distance; emitters
+//! themselves are not drawn.
 
 mod approx;
 mod binning;
@@ -67,8 +67,8 @@ impl Rasterizer {
         self.geometry.triangle_count()
     }
 
-    /// Draws into a framebuffer of any earlier size. The scene's objects are those of [`Rasterizer::new`]; its lights and
-    /// camera may have changed.
+    /// Draws into a framebuffer of any earlier size. The scene's objects are those of [`Rasterizer::new`]; its lights
+    /// and camera may have changed.
     pub fn draw(
         &mut self,
         scene: &Scene,

@@ -14,8 +14,8 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Longest side of the bounding box of a triangle whose pixels are tested one by one, pixels: products of its edges have
-/// 31 bits.
+/// Longest side of the bounding box of a triangle whose pixels are tested one by one, pixels: products of its edges
+/// have 31 bits.
 const SMALL_TRIANGLE: i32 = 48;
 
 /// Draws all tiles, a row of tiles per parallel task.

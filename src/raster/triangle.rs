@@ -96,8 +96,8 @@ impl ScreenTriangle {
         self.edges().map(|edge| EdgeFunction::new(edge, x, y))
     }
 
-    /// Returns the barycentric coordinates over w: at a pixel's centre, and their steps to the right and down. Their sum
-    /// is 1/w.
+    /// Returns the barycentric coordinates over w: at a pixel's centre, and their steps to the right and down. Their
+    /// sum is 1/w.
     #[inline(always)]
     pub fn barycentric_over_w(&self, x: usize, y: usize) -> [Vec3; 3] {
         let [a, b, c] = self.positions;

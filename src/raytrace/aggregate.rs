@@ -1,8 +1,8 @@
 //! The acceleration structure over the whole studio, in two levels.
 //!
-//! Large meshes are instances: the top-level BVH (TLAS) over their boxes refers to a BLAS a mesh. An instance costs a ray a
-//! transform and a new traversal, which is expensive for the dozen triangles of a wall. Small instances are therefore
-//! merged into one BLAS in world space. When one of them moves, that BLAS is built anew, which is quick.
+//! Large meshes are instances: the top-level BVH (TLAS) over their boxes refers to a BLAS a mesh. An instance costs a
+//! ray a transform and a new traversal, which is expensive for the dozen triangles of a wall. Small instances are
+//! therefore merged into one BLAS in world space. When one of them moves, that BLAS is built anew, which is quick.
 
 use super::blas::Blas;
 use super::bvh::{self, TraversalStack, WideBvh};
@@ -349,8 +349,8 @@ mod tests {
 
     #[test]
     fn rays_that_leave_a_floor_through_the_world_origin_do_not_hit_it_again() {
-        // A camera or a meter that lies on a floor: the coordinate along its normal is 0, and once its error bound was, too.
-        // Rays hit the floor that they had left, and a white room lost a fourteenth of its light.
+        // A camera or a meter that lies on a floor: the coordinate along its normal is 0, and once its error bound was,
+        // too. Rays hit the floor that they had left, and a white room lost a fourteenth of its light.
         let floor = tessellate(&Shape::Plane { width_m: 4.0, depth_m: 4.0 }).unwrap();
         let aggregate = Aggregate::new(vec![instance(floor, Affine3A::IDENTITY, 0)]);
         let mut stack = TraversalStack::default();

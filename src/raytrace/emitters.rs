@@ -21,8 +21,8 @@ pub struct MisVertex {
     pub ray_origin: Vec3,
     /// Distance from there through thin panes to the origin of the present ray, metres.
     pub travelled: f32,
-    /// Density of the sampled direction times the number of paths per light sample, 1/sr; none after specular scattering
-    /// and at the camera.
+    /// Density of the sampled direction times the number of paths per light sample, 1/sr; none after specular
+    /// scattering and at the camera.
     pub pdf: Option<f32>,
     /// One light is sampled at the vertex rather than all of them.
     pub samples_one_light: bool,

@@ -55,8 +55,8 @@ fn part_of_triangle(mesh: &Mesh) -> Vec<u16> {
     parts
 }
 
-/// A mesh with a transform and materials. World positions in the ray tracer are relative to the camera, so that precision near
-/// the camera does not depend on the distance from the origin.
+/// A mesh with a transform and materials. World positions in the ray tracer are relative to the camera, so that
+/// precision near the camera does not depend on the distance from the origin.
 #[derive(Debug)]
 pub struct Instance {
     /// The mesh.
@@ -144,8 +144,8 @@ impl Instance {
         let weights = [1.0 - b1 - b2, b1, b2];
         let terms = [corners[0] * weights[0], corners[1] * weights[1], corners[2] * weights[2]];
         let local = terms[0] + terms[1] + terms[2];
-        // Bound its error (PBRT, 4th ed., section 6.8.5). Rays that start here subtract it from the corners: in a plane of
-        // coordinate 0 the position is exact, but those differences are not
+        // Bound its error (PBRT, 4th ed., section 6.8.5). Rays that start here subtract it from the corners: in a plane
+        // of coordinate 0 the position is exact, but those differences are not
         let extent = corners.map(|corner| (corner - local).abs().max_element());
         let corner_error = extent[0].max(extent[1]).max(extent[2]) * gamma(16);
         let error = (terms[0].abs() + terms[1].abs() + terms[2].abs()) * gamma(7) + Vec3A::splat(corner_error);
@@ -182,8 +182,8 @@ impl Instance {
         }
     }
 
-    /// Returns the error bound of a transformed point, including that of the transform back to object space that a ray from
-    /// there undergoes.
+    /// Returns the error bound of a transformed point, including that of the transform back to object space that a ray
+    /// from there undergoes.
     fn world_error(&self, local: Vec3A, local_error: Vec3A) -> Vec3A {
         let (forward, backward) = (&self.abs_world_from_object, &self.abs_object_from_world);
         let world = forward.transform_point3a(local.abs());
@@ -197,8 +197,9 @@ fn abs(transform: &Affine3A) -> Affine3A {
     Affine3A { matrix3: transform.matrix3.abs(), translation: transform.translation.abs() }
 }
 
-/// Returns the offset from the flat triangle to the smooth surface that its normals describe: the mean of the projections onto
-/// the tangent planes at the corners (Hanika 2021, "Hacking the Shadow Terminator"). 0 on flat and concave surfaces.
+/// Returns the offset from the flat triangle to the smooth surface that its normals describe: the mean of the
+/// projections onto the tangent planes at the corners (Hanika 2021, "Hacking the Shadow Terminator"). 0 on flat and
+/// concave surfaces.
 fn smooth_surface_offset(local: Vec3A, corners: [Vec3A; 3], normals: [Vec3A; 3], weights: [f32; 3]) -> Vec3A {
     let mut offset = Vec3A::ZERO;
     for k in 0..3 {

@@ -1,8 +1,8 @@
-//! A cache of BLASes, material tables and the merged BLAS between calls of `prepare`: moving a light or an object builds no
-//! BLAS of a mesh again.
+//! A cache of BLASes, material tables and the merged BLAS between calls of `prepare`: moving a light or an object
+//! builds no BLAS of a mesh again.
 //!
-//! A mesh is found by its address, or else by its content: shapes such as boxes are tessellated anew each time. Meshes of the
-//! last `prepare` are never evicted; of the others, [`MAX_UNUSED_TRIANGLES`] are kept.
+//! A mesh is found by its address, or else by its content: shapes such as boxes are tessellated anew each time. Meshes
+//! of the last `prepare` are never evicted; of the others, [`MAX_UNUSED_TRIANGLES`] are kept.
 
 use super::aggregate::MergedBlas;
 use super::bsdf::TracedMaterial;
@@ -23,7 +23,8 @@ pub struct GeometryCache(Mutex<CacheState>);
 #[derive(Debug, Default)]
 struct CacheState {
     by_content: HashMap<u64, CachedGeometry>,
-    /// Content hashes of the meshes in `by_content`, by address. An address is valid as long as the entry holds the mesh.
+    /// Content hashes of the meshes in `by_content`, by address. An address is valid as long as the entry holds the
+    /// mesh.
     by_address: HashMap<usize, u64>,
     merged: Option<Arc<MergedBlas>>,
     /// Materials of the last scene.
@@ -126,7 +127,8 @@ impl GeometryCache {
 }
 
 impl CacheState {
-    /// Evicts the least recently used meshes, so that at most `max_unused` triangles remain that the last scene did not use.
+    /// Evicts the least recently used meshes, so that at most `max_unused` triangles remain that the last scene did not
+    /// use.
     fn evict(&mut self, max_unused: usize) {
         let now = self.now;
         let mut unused: Vec<(u64, u64, usize)> = self

@@ -1,7 +1,7 @@
 //! Methods of finding the closest hit in a mesh, from brute force to the BVH, for `catchlight chart --traversal`.
 //!
-//! All use the same watertight triangle kernel, so that distances have the same bits; they differ in the number of triangles
-//! that they test.
+//! All use the same watertight triangle kernel, so that distances have the same bits; they differ in the number of
+//! triangles that they test.
 
 use super::blas::Blas;
 use super::bvh::TraversalStack;

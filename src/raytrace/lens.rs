@@ -32,8 +32,8 @@ impl Aperture {
 
 /// A source of camera rays.
 pub trait PixelCamera {
-    /// Origin and unit direction of the ray through a point of the picture, in pixels from the top left; `u` samples the
-    /// lens.
+    /// Origin and unit direction of the ray through a point of the picture, in pixels from the top left; `u` samples
+    /// the lens.
     fn ray(&self, point_px: Vec2, u: Vec2) -> (Vec3, Vec3);
 }
 

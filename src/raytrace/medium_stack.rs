@@ -1,8 +1,8 @@
 //! The medium stack: the clear bodies that a path is inside of, such as glass in water, or a drink in a tumbler.
 //!
-//! The body that was entered last is the current medium. Where two bodies overlap (a drink is modelled slightly wider than the
-//! hollow of its tumbler, so that there is no air between them), exiting the other one does not change the medium. Schmidt
-//! and Budge 2002, "Simple Nested Dielectrics in Ray Traced Images", give bodies priorities instead.
+//! The body that was entered last is the current medium. Where two bodies overlap (a drink is modelled slightly wider
+//! than the hollow of its tumbler, so that there is no air between them), exiting the other one does not change the
+//! medium. Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced Images", give bodies priorities instead.
 
 use super::bsdf::{DielectricInterface, TracedMaterial};
 use glam::Vec3;

@@ -1,17 +1,17 @@
 //! The ray tracer.
 //!
 //! [`prepare()`] turns a scene into flat tables, [`render()`] adds sample passes to a [`Film`], [`Film::develop`] makes the
-//! picture. In a pass, `pixel_sampler` makes camera rays, `path_tracer` traces their paths with the help of `ray_caster`,
-//! `emitters`, `lights`, `bsdf` and `caustics`, and a `sink` receives the contributions behind the film's non-finite gate.
-//! [`LightMeter`] traces from a receptor instead of a camera, [`LivePicture`] keeps a film while the scene changes,
-//! [`replay()`] records every step of one sample.
+//! picture. In a pass, `pixel_sampler` makes camera rays, `path_tracer` traces their paths with the help of
+//! `ray_caster`, `emitters`, `lights`, `bsdf` and `caustics`, and a `sink` receives the contributions behind the film's
+//! non-finite gate. [`LightMeter`] traces from a receptor instead of a camera, [`LivePicture`] keeps a film while the
+//! scene changes, [`replay()`] records every step of one sample.
 //!
 //! No clock, no entropy, no globals. A rendered value is a function of scene, pixel, sample, dimension and seed: the
 //! same bits for any number of threads.
 //!
-//! To add a rendering method: [`Method`], `limits`, `pixel_sampler`. To add a film channel: `sink::FirstHit`, `film::aov`,
-//! `photo::AovPicture`, and its name in `io::picture`. To add a step to replays: `events`, and its line of text in the
-//! command line's `explain_pixel`.
+//! To add a rendering method: [`Method`], `limits`, `pixel_sampler`. To add a film channel: `sink::FirstHit`,
+//! `film::aov`, `photo::AovPicture`, and its name in `io::picture`. To add a step to replays: `events`, and its line of
+//! text in the command line's `explain_pixel`.
 
 mod aggregate;
 mod blas;

@@ -1,12 +1,12 @@
 //! The path tracer.
 //!
-//! Unidirectional path tracing with light sampling at every non-specular vertex, and multiple importance sampling (Veach
-//! 1997, power heuristic) where both techniques can find a light. The method `direct` is the same with one non-specular
-//! scattering event; specular surfaces are followed in both.
+//! Unidirectional path tracing with light sampling at every non-specular vertex, and multiple importance sampling
+//! (Veach 1997, power heuristic) where both techniques can find a light. The method `direct` is the same with one
+//! non-specular scattering event; specular surfaces are followed in both.
 //!
-//! Light sampling crosses thin panes on the straight line. It crosses bodies of glass only towards delta lights, which no
-//! refracted ray would ever hit: exact for flat glass. All other light that mirrors and glass throw on surfaces comes
-//! from the photon map, where there is one; without one, delta lights also shine straight through curved glass.
+//! Light sampling crosses thin panes on the straight line. It crosses bodies of glass only towards delta lights, which
+//! no refracted ray would ever hit: exact for flat glass. All other light that mirrors and glass throw on surfaces
+//! comes from the photon map, where there is one; without one, delta lights also shine straight through curved glass.
 
 use super::bsdf::{Bsdf, BsdfSample, Polarisation};
 use super::caustics::{CausticMis, GatherDensities, PhotonMap};
@@ -107,8 +107,8 @@ impl<'a> PathTracer<'a> {
         self.trace_from(origin, direction, sampler, limits, MisVertex::new(origin, direction), sink);
     }
 
-    /// Traces a path from a receptor that samples the lights by itself: emitters that are hit on the straight line, also
-    /// through thin panes, do not contribute.
+    /// Traces a path from a receptor that samples the lights by itself: emitters that are hit on the straight line,
+    /// also through thin panes, do not contribute.
     pub fn trace_without_direct_light(
         &mut self,
         origin: Vec3,

@@ -32,7 +32,8 @@ pub fn prepare(scene: &Scene, assets: &Assets) -> Result<RenderScene, PrepareErr
     prepare_around(scene, assets, scene.camera.position, film::assign_layers)
 }
 
-/// Prepares a scene with the acceleration structures that an earlier call left in `cache`: unchanged meshes cost nothing.
+/// Prepares a scene with the acceleration structures that an earlier call left in `cache`: unchanged meshes cost
+/// nothing.
 pub fn prepare_kept(scene: &Scene, assets: &Assets, cache: &GeometryCache) -> Result<RenderScene, PrepareError> {
     prepare_all(scene, assets, scene.camera.position, film::assign_layers, cache)
 }

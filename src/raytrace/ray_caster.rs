@@ -11,8 +11,9 @@ use glam::Vec3;
 /// Maximum number of clear surfaces on the straight line to a light.
 const MAX_CLEAR_SURFACES: u32 = 64;
 
-/// Relative tolerance of coordinates and distances to an emitter, larger than their rounding: some 20 micrometres at five
-/// metres. An emitter may lie on a surface (a panel on the wall, a lamp on the ceiling) and is visible all the same.
+/// Relative tolerance of coordinates and distances to an emitter, larger than their rounding: some 20 micrometres at
+/// five metres. An emitter may lie on a surface (a panel on the wall, a lamp on the ceiling) and is visible all the
+/// same.
 pub(super) const EMITTER_CONTACT: f32 = 32.0 * f32::EPSILON;
 
 /// Casts rays for one thread.

@@ -1,4 +1,5 @@
-//! The sampler: Owen-scrambled Sobol points (Burley 2020, "Practical Hash-based Owen Scrambling"), one sequence per pixel.
+//! The sampler: Owen-scrambled Sobol points (Burley 2020, "Practical Hash-based Owen Scrambling"), one sequence per
+//! pixel.
 //!
 //! A value is a function of (pixel, sample, dimension, seed) alone, so that a picture has the same bits for any number
 //! of threads and a single sample can be replayed. Dimensions come in sets of four; each set is the four-dimensional
@@ -81,8 +82,8 @@ impl Sampler {
         self.id
     }
 
-    /// The random numbers of one of `count` paths into which the sample's path splits. The paths of all samples of a pixel
-    /// are stratified together.
+    /// The random numbers of one of `count` paths into which the sample's path splits. The paths of all samples of a
+    /// pixel are stratified together.
     pub fn split(&self, path: u32, count: u32) -> Self {
         let SampleId { x, y, index, seed } = self.id;
         Sampler::new(x, y, index.wrapping_mul(count).wrapping_add(path), seed)
@@ -128,8 +129,8 @@ impl KernelTask for Pair {
     }
 }
 
-/// The first two numbers of a set, as a point of the unit square: the best stratified pair of the sequence, with a point in
-/// each elementary interval.
+/// The first two numbers of a set, as a point of the unit square: the best stratified pair of the sequence, with a
+/// point in each elementary interval.
 pub fn first_pair(set: &Set) -> Vec2 {
     Vec2::new(set[0], set[1])
 }

@@ -5,8 +5,8 @@
 pub enum Method {
     /// Whitted's recursion, for comparison: Phong lobes, hard shadows, mirrors and glass.
     Whitted,
-    /// Path tracing with one non-specular scattering event: soft shadows and gloss, no indirect light. Specular surfaces
-    /// are followed.
+    /// Path tracing with one non-specular scattering event: soft shadows and gloss, no indirect light. Specular
+    /// surfaces are followed.
     Direct,
     /// Path tracing with all indirect light: the reference.
     #[default]

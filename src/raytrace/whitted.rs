@@ -2,8 +2,8 @@
 //!
 //! Models Phong lobes, hard shadows, mirrored and refracted rays. Every light shines from its centre: there are no soft
 //! shadows, and a large panel nearby is too bright, as the inverse square of a point's distance. A surround is an even
-//! ambient light without shadows. No light bounces between surfaces but by mirrors and glass. The units are those of the
-//! path tracer.
+//! ambient light without shadows. No light bounces between surfaces but by mirrors and glass. The units are those of
+//! the path tracer.
 
 use super::bsdf::{fresnel, pane_transmittance};
 use super::emitters::MisVertex;

@@ -129,8 +129,8 @@ impl Assets {
         }
     }
 
-    /// Returns the axis-aligned box around an object in world space: lowest and highest corner. `None` if its mesh is not
-    /// loaded.
+    /// Returns the axis-aligned box around an object in world space: lowest and highest corner. `None` if its mesh is
+    /// not loaded.
     pub fn object_bounds(&self, object: &Object) -> Option<(Vec3, Vec3)> {
         let (low, high) = self.mesh_of(&object.shape)?.bounds();
         let world_from_object = object.transform.world_from_object();

@@ -149,8 +149,9 @@ impl Camera {
         if aspect >= 1.0 { (long_edge, short(1.0 / aspect)) } else { (short(aspect), long_edge) }
     }
 
-    /// Returns the frame of a camera that looks at `target`, for a picture of `aspect` (width / height). A picture of another
-    /// aspect than the sensor's is a crop of the sensor: the field of view stays the same along the side that fits.
+    /// Returns the frame of a camera that looks at `target`, for a picture of `aspect` (width / height). A picture of
+    /// another aspect than the sensor's is a crop of the sensor: the field of view stays the same along the side that
+    /// fits.
     pub fn frame(&self, target: Vec3, aspect: f32) -> CameraFrame {
         let film = self.film_size_mm();
         let (width_mm, height_mm) =
@@ -173,8 +174,8 @@ pub struct CameraFrame {
 }
 
 impl CameraFrame {
-    /// Returns the unnormalised world-space direction through a picture point: (0, 0) is the top left corner, (1, 1) the
-    /// bottom right. Its component along the optical axis is 1 m.
+    /// Returns the unnormalised world-space direction through a picture point: (0, 0) is the top left corner, (1, 1)
+    /// the bottom right. Its component along the optical axis is 1 m.
     pub fn direction(&self, picture_point: Vec2) -> Vec3 {
         let x = (2.0 * picture_point.x - 1.0) * self.half_extent.x;
         let y = (1.0 - 2.0 * picture_point.y) * self.half_extent.y;

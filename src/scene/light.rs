@@ -3,8 +3,8 @@
 use super::{Aim, Emitter, Gel, LightId, Modifier};
 use glam::Vec3;
 
-/// The role of a light in the set-up, as a lighting diagram names it. It labels the light, groups it and colours its gizmo;
-/// it does not change its output.
+/// The role of a light in the set-up, as a lighting diagram names it. It labels the light, groups it and colours its
+/// gizmo; it does not change its output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Hash)]
 pub enum Role {
     /// Main light: sets the exposure and shapes the subject.
@@ -53,8 +53,8 @@ pub enum Output {
         /// Distance from the light, metres.
         distance_m: f32,
     },
-    /// Continuous illuminance of a sun (normal to its direction) or of a surround (on a plane that sees half of it), lx.
-    /// Valid for these two alone.
+    /// Continuous illuminance of a sun (normal to its direction) or of a surround (on a plane that sees half of it),
+    /// lx. Valid for these two alone.
     Lux(f32),
     /// Flash energy with the head's efficacy.
     FlashWs {

@@ -72,8 +72,9 @@ impl Mesh {
         );
     }
 
-    /// Returns true if the mesh encloses a volume: every edge has as many triangles in one direction as in the other. Vertices
-    /// at the same position count as one. Up to 1 % of open edges is tolerated if the area-weighted normals cancel.
+    /// Returns true if the mesh encloses a volume: every edge has as many triangles in one direction as in the other.
+    /// Vertices at the same position count as one. Up to 1 % of open edges is tolerated if the area-weighted normals
+    /// cancel.
     pub fn is_closed(&self) -> bool {
         let position_bits = |i: u32| (self.positions[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
         let mut edges: HashMap<[[u32; 3]; 2], i32> = HashMap::with_capacity(self.triangles.len() * 3 / 2);

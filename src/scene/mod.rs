@@ -1,8 +1,8 @@
 //! The scene: a studio as plain data, which the user edits, files store and every renderer reads.
 //!
-//! All types are `Clone + PartialEq`, do no I/O and hold no GPU handles. Lengths are in metres. Angles are in degrees, in fields
-//! that end in `_deg`, so that file, panels and undo history keep the number that the user typed; renderers convert when
-//! they prepare. Axes are right-handed with Y up; cameras and lights look along their local -Z.
+//! All types are `Clone + PartialEq`, do no I/O and hold no GPU handles. Lengths are in metres. Angles are in degrees,
+//! in fields that end in `_deg`, so that file, panels and undo history keep the number that the user typed; renderers
+//! convert when they prepare. Axes are right-handed with Y up; cameras and lights look along their local -Z.
 
 mod aim;
 mod assets;

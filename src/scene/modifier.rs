@@ -1,9 +1,10 @@
 //! The loss and the beam shape of a light modifier.
 //!
-//! The shape and size of the luminous surface is the [`super::Emitter`]; a modifier only takes light away. The modifiers that
-//! are sold are pairs of both, in [`super::NamedModifier::ALL`].
+//! The shape and size of the luminous surface is the [`super::Emitter`]; a modifier only takes light away. The
+//! modifiers that are sold are pairs of both, in [`super::NamedModifier::ALL`].
 
-/// A cone about the light's axis: transmits all light inside the inner angle, falling linearly in angle to 0 at the outer one. Full (edge to edge) angles, degrees, up to 180.
+/// A cone about the light's axis: transmits all light inside the inner angle, falling linearly in angle to 0 at the
+/// outer one. Full (edge to edge) angles, degrees, up to 180.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cone {
     /// Full angle of full transmission.
@@ -12,8 +13,8 @@ pub struct Cone {
     pub outer_deg: f32,
 }
 
-/// Barn doors: the opening of each flap from the light's axis, degrees; 90 is fully open. Sides are seen from behind the light,
-/// along its axis.
+/// Barn doors: the opening of each flap from the light's axis, degrees; 90 is fully open. Sides are seen from behind
+/// the light, along its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BarnDoors {
     /// Left flap.
@@ -40,7 +41,8 @@ pub struct Modifier {
     pub scrim_stops: f32,
     /// Beam of a dish, a snoot or a reflector's rim; `None` for the emitter's own.
     pub beam: Option<Cone>,
-    /// Honeycomb grid: full angle of zero transmission, degrees. Transmission is 1 on the axis and falls linearly in angle.
+    /// Honeycomb grid: full angle of zero transmission, degrees. Transmission is 1 on the axis and falls linearly in
+    /// angle.
     pub grid_deg: Option<f32>,
     /// Barn doors.
     pub doors: Option<BarnDoors>,

@@ -43,8 +43,8 @@ const fn hard(name: &'static str, tip: &'static str, modifier: Modifier) -> Name
 const REFLECTOR_LOSS: Modifier = Modifier::loss(0.3);
 
 impl NamedModifier {
-    /// All modifiers, in list order. Losses are typical of makers' and testers' data: 1 to 2 stops for softboxes, more for
-    /// larger ones and for more cloth; half a stop for a white dish; 1 stop for a reflective umbrella, 1.7 for a
+    /// All modifiers, in list order. Losses are typical of makers' and testers' data: 1 to 2 stops for softboxes, more
+    /// for larger ones and for more cloth; half a stop for a white dish; 1 stop for a reflective umbrella, 1.7 for a
     /// shoot-through.
     pub const ALL: [NamedModifier; 32] = [
         NamedModifier {

@@ -72,8 +72,8 @@ pub enum Shape {
         /// Height.
         height_m: f32,
     },
-    /// Seamless paper: wall, curve and floor in one smooth surface. Its origin is on the floor below the front of the wall;
-    /// the floor extends to +Z.
+    /// Seamless paper: wall, curve and floor in one smooth surface. Its origin is on the floor below the front of the
+    /// wall; the floor extends to +Z.
     Sweep {
         /// Size along X.
         width_m: f32,

@@ -24,8 +24,8 @@ pub fn tessellate(shape: &Shape) -> Option<Mesh> {
     Some(mesh.with_single_part("surface"))
 }
 
-/// Offset of floor, walls and ceiling to the outside, metres, so that objects flush with them (paper on the floor, a light in
-/// the ceiling) lie in front and do not z-fight.
+/// Offset of floor, walls and ceiling to the outside, metres, so that objects flush with them (paper on the floor, a
+/// light in the ceiling) lie in front and do not z-fight.
 pub const ROOM_STANDS_BACK_M: f32 = 2e-4;
 
 /// Returns the mesh of a room, front faces inwards, with the parts `floor`, `walls` and `ceiling`.
@@ -64,8 +64,8 @@ fn cuboid(centre: Vec3, h: Vec3) -> Mesh {
     mesh
 }
 
-/// Returns a grid of `(columns + 1) x (rows + 1)` vertices; `vertex` maps (column, row) fractions in 0..=1 to position and
-/// normal. Front faces have columns to the right and rows upwards.
+/// Returns a grid of `(columns + 1) x (rows + 1)` vertices; `vertex` maps (column, row) fractions in 0..=1 to position
+/// and normal. Front faces have columns to the right and rows upwards.
 fn grid(columns: u32, rows: u32, vertex: impl Fn(f32, f32) -> (Vec3, Vec3)) -> Mesh {
     let mut mesh = Mesh::default();
     for row in 0..=rows {

@@ -1,5 +1,5 @@
-//! Closed forms of illuminance, intensity and transmittance, in double precision and independent of the code under test.
-//! Used by the README's table and by the tests.
+//! Closed forms of illuminance, intensity and transmittance, in double precision and independent of the code under
+//! test. Used by the README's table and by the tests.
 
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
@@ -9,9 +9,10 @@ pub fn vec3(v: Vec3) -> DVec3 {
     v.as_dvec3()
 }
 
-/// Returns the illuminance, lux, of a polygon of uniform luminance, cd/m2, at `point` on a plane with this normal (Lambert
-/// 1760): half the luminance times the sum over the edges of the angle they subtend, times the cosine between the normal
-/// and that of the plane through edge and point. Clips the polygon at the receiver's horizon. Independent of the winding.
+/// Returns the illuminance, lux, of a polygon of uniform luminance, cd/m2, at `point` on a plane with this normal
+/// (Lambert 1760): half the luminance times the sum over the edges of the angle they subtend, times the cosine between
+/// the normal and that of the plane through edge and point. Clips the polygon at the receiver's horizon. Independent of
+/// the winding.
 pub fn polygon(corners: &[DVec3], luminance: f64, point: DVec3, normal: DVec3) -> f64 {
     let above = clip(corners, point, normal);
     let sum: f64 = (0..above.len())
@@ -49,7 +50,8 @@ pub fn disc(centre: DVec3, right: DVec3, up: DVec3, radius: f64) -> Vec<DVec3> {
     (0..CORNERS).map(|i| centre + (right * (i as f64 * step).cos() + up * (i as f64 * step).sin()) * radius).collect()
 }
 
-/// Returns the reflectances (s, p) of a dielectric interface with relative index `n` at an angle of incidence (Fresnel).
+/// Returns the reflectances (s, p) of a dielectric interface with relative index `n` at an angle of incidence
+/// (Fresnel).
 pub fn fresnel(angle_rad: f64, n: f64) -> (f64, f64) {
     let cos_i = angle_rad.cos();
     let cos_t = (1.0 - (angle_rad.sin() / n).powi(2)).sqrt();
@@ -88,8 +90,8 @@ pub fn hard_cone(flux: f64, full_deg: f64) -> f64 {
     flux / (2.0 * PI * (1.0 - (0.5 * full_deg).to_radians().cos()))
 }
 
-/// Returns the axial intensity, cd, of a cone of uniform intensity inside one full angle that falls linearly in angle to
-/// zero at another.
+/// Returns the axial intensity, cd, of a cone of uniform intensity inside one full angle that falls linearly in angle
+/// to zero at another.
 pub fn soft_cone(flux: f64, inner_deg: f64, outer_deg: f64) -> f64 {
     let (a, b) = ((0.5 * inner_deg).to_radians(), (0.5 * outer_deg).to_radians());
     flux / (2.0 * PI * (1.0 - (b.sin() - a.sin()) / (b - a)))

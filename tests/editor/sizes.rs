@@ -82,7 +82,7 @@ fn resizing_through_many_sizes_works_on_the_cpu_and_during_a_render() {
     }
 }
 
-/// What becomes of a window that is minimised: no frame of it is drawn, only the app's logic goes on.
+/// Runs one update of a minimised window: no frame is drawn, the app's logic runs.
 pub fn while_minimised(window: &mut Window, events: Vec<ViewportEvent>) -> Vec<ViewportCommand> {
     let mut input = window.input_mut().clone();
     let info = input.viewports.entry(ViewportId::ROOT).or_default();

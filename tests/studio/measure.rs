@@ -1,7 +1,7 @@
 //! Readings from rendered pictures, each with its standard error.
 //!
-//! Every pixel has its own scramble of the random sequence and, on a tiny card, the same expected value: pixels are
-//! independent repetitions. Their scatter gives the standard error of the mean, and with it the tolerance of a test.
+//! Every pixel has its own scramble of the Sobol sequence and, on a tiny card, the same expected value: pixels are
+//! independent estimates. Their variance gives the standard error of the mean, and with it the tolerance of a test.
 
 use super::closed_forms::vec3;
 use super::statistics::SampleMean;
@@ -12,15 +12,15 @@ use catchlight::scene::{Assets, Camera, Scene, Shape};
 use glam::{DVec3, Quat, Vec3};
 use std::ops::ControlFlow;
 
-/// What a card of 0.4 mm, single precision and pictures in `f32` add to a reading, as a share of it.
+/// The relative error of a reading from the card's 0.4 mm, single precision and pictures in `f32`.
 pub const BIAS: f64 = 2e-4;
 
-/// A film with every sample of `settings`.
+/// Renders a film with all samples of `settings`.
 pub fn film(scene: &Scene, settings: &Settings) -> Film {
     film_with(scene, &Assets::default(), settings)
 }
 
-/// The same, of a scene with models.
+/// Renders a film of a scene with models.
 pub fn film_with(scene: &Scene, assets: &Assets, settings: &Settings) -> Film {
     let prepared = raytrace::prepare(scene, assets).unwrap();
     let film = raytrace::render(&prepared, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
@@ -28,40 +28,40 @@ pub fn film_with(scene: &Scene, assets: &Assets, settings: &Settings) -> Film {
     film
 }
 
-/// A square picture.
+/// Returns the settings of a square picture.
 pub fn square(method: Method, side: u32, spp: u32) -> Settings {
     Settings { width: side, height: side, method, spp, ..Settings::default() }
 }
 
-/// A finished picture; every pixel must be a number.
+/// Renders and develops a picture; every pixel must be finite and not negative.
 pub fn picture(scene: &Scene, settings: &Settings) -> Picture {
     let picture = film(scene, settings).develop(scene);
     assert!(picture.rgb.iter().flatten().all(|v| v.is_finite() && *v >= 0.0), "a pixel is no light");
     picture
 }
 
-/// Illuminance of a card of 18 % for a green picture value, by the exposure equation turned round, lux.
+/// Returns the illuminance of a card of 18 % for a green picture value of 1, lux: the exposure equation solved for it.
 pub fn lux_per_value(camera: &Camera) -> f64 {
     let n2 = f64::from(camera.f_number * camera.f_number);
     f64::from(camera.meter_constant) * n2 / f64::from(camera.iso * REFLECTANCE * camera.shutter_s)
 }
 
-/// Luminance for a green picture value of continuous light, cd/m2.
+/// Returns the luminance for a green picture value of 1 of continuous light, cd/m2.
 pub fn luminance_per_value(camera: &Camera) -> f64 {
     lux_per_value(camera) * f64::from(REFLECTANCE) / std::f64::consts::PI
 }
 
-/// Mean of the green values.
+/// Returns the mean of the green values.
 pub fn values(picture: &Picture) -> SampleMean {
     SampleMean::of(picture.rgb.iter().map(|p| f64::from(p[1])))
 }
 
-/// What a meter at the card reads, lux.
+/// Returns the illuminance of the card from a render, lux.
 pub fn illuminance(scene: &Scene, settings: &Settings) -> SampleMean {
     values(&picture(scene, settings)).scaled(lux_per_value(&scene.camera))
 }
 
-/// The same without photons.
+/// Returns the illuminance of the card from a render without photons, lux.
 pub fn illuminance_by_paths(scene: &Scene, settings: &Settings) -> SampleMean {
     let mut prepared = raytrace::prepare(scene, &Assets::default()).unwrap();
     prepared.set_plan(prepared.plan().clone().without(Shortcut::Photons));
@@ -69,13 +69,14 @@ pub fn illuminance_by_paths(scene: &Scene, settings: &Settings) -> SampleMean {
     values(&film.develop(scene)).scaled(lux_per_value(&scene.camera))
 }
 
-/// The same where pixels share photons: the scatter of several renders tells the error.
+/// Returns the illuminance from renders with several seeds, lux. Pixels share photons, so that only the variance
+/// between renders gives the standard error.
 pub fn illuminance_over(seeds: u32, scene: &Scene, settings: &Settings) -> SampleMean {
     let reading = |seed| illuminance(scene, &Settings { seed, ..settings.clone() }).mean;
     SampleMean::of((0..seeds).map(reading))
 }
 
-/// A card at `position` that faces `normal`, and a camera that sees 0.4 mm of it and nothing else.
+/// Returns a scene with a card at `position` that faces `normal`, and a camera that sees 0.4 mm of it and nothing else.
 pub fn meter_card(position: Vec3, normal: Vec3) -> Scene {
     let mut card = object("Card", Shape::Plane { width_m: 2e-3, depth_m: 2e-3 }, position);
     card.transform.set_rotation(Quat::from_rotation_arc(Vec3::Y, normal));
@@ -83,7 +84,7 @@ pub fn meter_card(position: Vec3, normal: Vec3) -> Scene {
     Scene { objects: vec![card], camera, ..Scene::default() }
 }
 
-/// Where a panel's corners are, counter-clockwise as seen from the side it shines to.
+/// Returns the corners of a panel in world space, counter-clockwise as seen from its front.
 pub fn corners(scene: &Scene, light: usize, width_m: f32, height_m: f32) -> [DVec3; 4] {
     let frame = scene.light_frame(&scene.lights[light]);
     [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)]

@@ -1,4 +1,4 @@
-//! Small scenes for tests: a grey card, a ball, a light.
+//! Small scenes for tests, readings from their renders, and statistics.
 #![allow(dead_code)]
 #![allow(clippy::unwrap_used)]
 
@@ -11,12 +11,13 @@ use catchlight::scene::{
 };
 use glam::Vec3;
 
-/// Of the card.
+/// Reflectance of the card.
 pub const REFLECTANCE: f32 = 0.18;
 
-/// A square sensor close to `target` on the side of `normal`, well balanced, framing less than a centimetre.
+/// Returns a camera with a square sensor close to `target`, on the side of `normal`, that frames less than a
+/// centimetre.
 pub fn looking_at_card(target: Vec3, normal: Vec3) -> Camera {
-    // From the side, so that the camera would not shade what it looks at if it could.
+    // Look from the side: the light comes along the normal.
     let side = if normal.x.abs() < 0.5 { Vec3::X } else { Vec3::Y };
     Camera {
         position: target + normal * 0.08 + side * 0.02,
@@ -27,7 +28,7 @@ pub fn looking_at_card(target: Vec3, normal: Vec3) -> Camera {
     }
 }
 
-/// An object with a grey matte surface.
+/// Returns an object with a grey matte surface.
 pub fn object(name: &str, shape: Shape, position: Vec3) -> Object {
     let material = Material { base_color: [REFLECTANCE; 3], ior: 1.0, roughness: 1.0, ..Material::default() };
     Object {
@@ -42,19 +43,19 @@ pub fn object(name: &str, shape: Shape, position: Vec3) -> Object {
     }
 }
 
-/// A square card that faces +Z, and a camera that sees nothing else.
+/// Returns a scene with a square card that faces +Z, and a camera that sees nothing else.
 pub fn card_at(position: Vec3, size_m: f32) -> Scene {
     let mut card = object("Card", Shape::Plane { width_m: size_m, depth_m: size_m }, position);
     card.transform.rotation_deg = Vec3::X * 90.0;
     Scene { objects: vec![card], camera: looking_at_card(position, Vec3::Z), ..Scene::default() }
 }
 
-/// A light that points at the origin, in the camera's white.
+/// Returns a light that points at the origin, in the camera's white.
 pub fn light(emitter: Emitter, output: Output, position: Vec3) -> Light {
     Light { position, aim: Aim::Point(Vec3::ZERO), ..Light::new(emitter, output) }
 }
 
-/// A ball of this material before an even white surround that the camera sees.
+/// Returns a scene with a ball of a material in a white furnace: a uniform surround that the camera sees.
 pub fn ball_in_even_light(material: Material) -> Scene {
     let mut ball = object("Ball", Shape::Sphere { radius_m: 0.5 }, Vec3::ZERO);
     ball.material = material;

@@ -1,4 +1,5 @@
-//! Hypothesis tests for samplers and estimators, with a stated false-alarm rate. Unit tests and integration tests use it.
+//! Hypothesis tests for samplers and estimators, with a stated false-alarm rate. Unit tests and integration tests use
+//! it.
 //!
 //! A family of tests shares one false-alarm rate, [`FALSE_ALARM`]: the Sidak correction gives the level of each test.
 //! Seeds are fixed, so results repeat; the rate is the probability that correct code failed when the test was written.

@@ -1,11 +1,11 @@
 //! `catchlight chart [SCENE ...] -o DIR`: the error of every method against its time, compared with the converged
 //! path-traced picture.
 //!
-//! Four errors are stated. The relative mean squared error is the mean over pixels and channels of
-//! (x - r)^2 / (r^2 + 0.01^2) with r from the reference; the constant, four stops below a grey card, bounds the error of
-//! black pixels. The median and the 95th percentile are those of the luminance error over the pixels, in stops. The bias
-//! is the error of the mean luminance, in stops, in which noise nearly vanishes. Time is that of tracing on all cores;
-//! BVHs are built once.
+//! Four errors are stated. The relative mean squared error is the mean over pixels and channels of (x - r)^2 / (r^2 +
+//! 0.01^2) with r from the reference; the constant, four stops below a grey card, bounds the error of black pixels. The
+//! median and the 95th percentile are those of the luminance error over the pixels, in stops. The bias is the error of
+//! the mean luminance, in stops, in which noise nearly vanishes. Time is that of tracing on all cores; BVHs are built
+//! once.
 
 use super::accuracy_row::{AccuracyRow, Study, csv, markdown};
 use super::picture_error::PictureError;

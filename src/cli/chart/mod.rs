@@ -20,8 +20,8 @@ pub struct Arguments {
     /// Studios: .ron files, or names of shipped ones [default: three_point, product_still_life].
     #[arg(conflicts_with = "traversal")]
     scenes: Vec<PathBuf>,
-    /// Folder for chart.csv, chart.md, one drawing (.svg) per studio, and the references, which are reused the next time.
-    /// It is created if it does not exist.
+    /// Folder for chart.csv, chart.md, one drawing (.svg) per studio, and the references, which are reused the next
+    /// time. It is created if it does not exist.
     #[arg(short, long, value_name = "DIR", required_unless_present_any = ["traversal", "scaling"], conflicts_with_all = ["traversal", "scaling"])]
     output: Option<PathBuf>,
     /// Picture size in pixels, WIDTHxHEIGHT.

@@ -9,7 +9,7 @@ use anyhow::{Context, anyhow};
 use glam::Vec3;
 use serde::Serialize;
 
-/// What `--json` prints.
+/// The JSON object of `--explain-pixel`.
 #[derive(Serialize)]
 struct Report<'a> {
     pixel: [u32; 2],

@@ -6,8 +6,8 @@ use anyhow::anyhow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Makes the first Ctrl+C cancel the render, which keeps its picture, and the second one end the program. Returns a flag
-/// that is set by the first one.
+/// Makes the first Ctrl+C cancel the render, which keeps its picture, and the second one end the program. Returns a
+/// flag that is set by the first one.
 pub fn cancel_on_ctrl_c(control: &Arc<RenderControl>) -> Result<Arc<AtomicBool>, Failure> {
     let interrupted = Arc::new(AtomicBool::new(false));
     let (flag, control) = (interrupted.clone(), control.clone());

@@ -90,7 +90,8 @@ pub fn stops_over_camera(camera: &Camera, lux_s: f32) -> f32 {
     2.0 * (f_number(camera, lux_s) / camera.f_number).log2()
 }
 
-/// Returns the power dial, in whole thirds of a stop, that puts this light `stops` over the camera's setting at its aim.
+/// Returns the power dial, in whole thirds of a stop, that puts this light `stops` over the camera's setting at its
+/// aim.
 pub fn dial_for(scene: &Scene, light: &Light, stops: f32) -> f32 {
     let over = stops_over_camera(&scene.camera, at_aim(scene, light).lux_s);
     if over.is_finite() {

@@ -1,5 +1,5 @@
-//! Textures of thumbnails: shipped studios as their cameras see them, and the things that can be added. Each is requested
-//! when it is first shown.
+//! Textures of thumbnails: shipped studios as their cameras see them, and the things that can be added. Each is
+//! requested when it is first shown.
 
 use crate::editor::document::catalog::{CatalogEntry, CatalogItem};
 use crate::editor::ui::image_texture::ImageTexture;

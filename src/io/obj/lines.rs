@@ -54,8 +54,8 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
 pub(super) struct ElementCounts(pub [u32; 3]);
 
 impl ElementCounts {
-    /// Counts the elements that lines define. Face indices may be forward or relative to the face, so the counts must be
-    /// known before faces are parsed.
+    /// Counts the elements that lines define. Face indices may be forward or relative to the face, so the counts must
+    /// be known before faces are parsed.
     pub fn of(bytes: &[u8]) -> Self {
         let mut counts = [0; 3];
         for line in lines(bytes) {

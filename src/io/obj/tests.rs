@@ -120,7 +120,8 @@ fn a_truncated_file_is_an_error_or_a_smaller_model() {
     }
 }
 
-/// Returns a model of several chunks: a strip of quads, every third with relative indices, in groups that share corners.
+/// Returns a model of several chunks: a strip of quads, every third with relative indices, in groups that share
+/// corners.
 fn long_model(quads: u32) -> String {
     let mut text = "# a strip\r\nv 0 0 0\r\nv 0 0 1\r\nvt 0 0\r\nvn 0 1 0\r\n".to_owned();
     for i in 1..=quads {

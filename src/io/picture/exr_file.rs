@@ -70,8 +70,8 @@ fn part(
     Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels.into()))
 }
 
-/// Returns the channels of the AOVs, with the names of the OpenEXR conventions: normals in world space, `Z` in metres along the view
-/// axis, `id` as unsigned integers.
+/// Returns the channels of the AOVs, with the names of the OpenEXR conventions: normals in world space, `Z` in metres
+/// along the view axis, `id` as unsigned integers.
 fn aov_channels(aovs: &AovPicture) -> Vec<AnyChannel<FlatSamples>> {
     let mut all = channels(["albedo.R", "albedo.G", "albedo.B"], &aovs.albedo).to_vec();
     all.extend(channels(["normal.X", "normal.Y", "normal.Z"], &aovs.normal));

@@ -77,8 +77,8 @@ pub fn export_picture(path: &Path, picture: &Picture, info: &PictureInfo) -> Res
     export_layers(path, picture, &[], None, info)
 }
 
-/// As [`export_picture`]; an EXR file also gets the light layers, each as a part under its light's name, and the AOVs as
-/// channels beside the picture's. PNG and JPEG hold the picture alone.
+/// As [`export_picture`]; an EXR file also gets the light layers, each as a part under its light's name, and the AOVs
+/// as channels beside the picture's. PNG and JPEG hold the picture alone.
 ///
 /// # Errors
 /// As [`export_picture`], and if layers or AOVs differ in size from the picture.

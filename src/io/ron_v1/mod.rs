@@ -1,8 +1,8 @@
-//! Format 1 of the scene file: the structs that serde reads and writes, separate from the scene's own, so that the scene
-//! can change without breaking files. A later format gets its own module, and this one an upgrade step.
+//! Format 1 of the scene file: the structs that serde reads and writes, separate from the scene's own, so that the
+//! scene can change without breaking files. A later format gets its own module, and this one an upgrade step.
 //!
-//! Lengths are metres, angles degrees; other units are part of the names. Default values may be left out (a scale of 1, a
-//! light that is on). [`convert`] resolves names to ids.
+//! Lengths are metres, angles degrees; other units are part of the names. Default values may be left out (a scale of 1,
+//! a light that is on). [`convert`] resolves names to ids.
 
 mod convert;
 mod defaults;

@@ -3,7 +3,8 @@
 use super::{fresnel, ggx};
 use glam::{Vec2, Vec3};
 
-/// Number of table entries, uniform over the square root of the cosine: denser at grazing angles, where the reflectance rises.
+/// Number of table entries, uniform over the square root of the cosine: denser at grazing angles, where the reflectance
+/// rises.
 const ENTRIES: usize = 48;
 /// Edge of the grid of facet normals that are integrated for an entry.
 const GRID: u32 = 16;

@@ -11,7 +11,8 @@ use glam::Vec3;
 pub struct DielectricInterface {
     /// Relative index of refraction: transmitted side over incident side.
     pub eta: f32,
-    /// True if the path started inside this body, so that its first medium is unknown: radiance is not scaled by 1 / eta2.
+    /// True if the path started inside this body, so that its first medium is unknown: radiance is not scaled by 1 /
+    /// eta2.
     pub starts_inside: bool,
 }
 
@@ -68,8 +69,8 @@ impl DielectricLobe {
             let direction = geometry.specular_reflection()?;
             return Some(BsdfSample { polarisation: fresnel.reflected, ..BsdfSample::specular(direction) });
         }
-        // Sample specular transmission about the shading normal; about the geometric normal if the direction would not be
-        // below the surface
+        // Sample specular transmission about the shading normal; about the geometric normal if the direction would not
+        // be below the surface
         let refracted = fresnel::refract(geometry.wo, eta).map(|wi| geometry.to_world(wi).normalize_or_zero());
         let direction = refracted
             .filter(|direction| direction.dot(geometry.geometric_normal) < 0.0)
@@ -96,8 +97,8 @@ impl DielectricLobe {
     }
 }
 
-/// Returns the transmittance of a clear pane in air: the geometric series over all internal reflections, (1 - R) / (1 + R),
-/// averaged over both polarisations.
+/// Returns the transmittance of a clear pane in air: the geometric series over all internal reflections, (1 - R) / (1 +
+/// R), averaged over both polarisations.
 pub fn pane_transmittance(cos_incident: f32, ior: f32) -> f32 {
     let (s, p) = fresnel::amplitudes(cos_incident.abs(), ior);
     0.5 * ((1.0 - s * s) / (1.0 + s * s) + (1.0 - p * p) / (1.0 + p * p))

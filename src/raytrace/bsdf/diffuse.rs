@@ -11,8 +11,8 @@ pub struct DiffuseLobe {
 }
 
 impl DiffuseLobe {
-    /// Returns BSDF times cosine, and the pdf times the lobe's `probability`. `coat_albedo` is that of the incident direction
-    /// `wi` (local frame).
+    /// Returns BSDF times cosine, and the pdf times the lobe's `probability`. `coat_albedo` is that of the incident
+    /// direction `wi` (local frame).
     #[inline(always)]
     pub fn eval(&self, wi: Vec3, coat_albedo: f32, probability: f32) -> (Vec3, f32) {
         (self.factor * ((1.0 - coat_albedo) * wi.z), probability * warp::cosine_hemisphere_pdf(wi.z))

@@ -3,8 +3,8 @@
 use crate::math::safe_sqrt;
 use glam::Vec3;
 
-/// Returns the reflected amplitudes (s, p) of a dielectric interface; `eta` is the index of the transmitted side over that
-/// of the incident side. Both are 1 under total internal reflection, whose phase is left out.
+/// Returns the reflected amplitudes (s, p) of a dielectric interface; `eta` is the index of the transmitted side over
+/// that of the incident side. Both are 1 under total internal reflection, whose phase is left out.
 pub fn amplitudes(cos_incident: f32, eta: f32) -> (f32, f32) {
     let cos_i = cos_incident.clamp(0.0, 1.0);
     let sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);
@@ -23,15 +23,16 @@ pub fn dielectric(cos_incident: f32, eta: f32) -> f32 {
     0.5 * (s * s + p * p)
 }
 
-/// Returns Schlick's approximation (1994) for a metal of normal reflectance `f0`; `cos_half` is the cosine at the half vector.
+/// Returns Schlick's approximation (1994) for a metal of normal reflectance `f0`; `cos_half` is the cosine at the half
+/// vector.
 pub fn schlick(f0: Vec3, cos_half: f32) -> Vec3 {
     let x = (1.0 - cos_half).clamp(0.0, 1.0);
     let x2 = x * x;
     f0 + (Vec3::ONE - f0) * (x2 * x2 * x)
 }
 
-/// Refracts a direction in a frame whose +Z is on the side of `wo`; none under total internal reflection. `eta` is the index
-/// of the transmitted side over that of the incident side.
+/// Refracts a direction in a frame whose +Z is on the side of `wo`; none under total internal reflection. `eta` is the
+/// index of the transmitted side over that of the incident side.
 pub fn refract(wo: Vec3, eta: f32) -> Option<Vec3> {
     let sin2_t = (1.0 - wo.z * wo.z).max(0.0) / (eta * eta);
     (sin2_t < 1.0).then(|| Vec3::new(-wo.x / eta, -wo.y / eta, -safe_sqrt(1.0 - sin2_t)))

@@ -29,14 +29,14 @@ pub fn masking(w: Vec3, alpha: f32) -> f32 {
     1.0 / (1.0 + lambda(w, alpha))
 }
 
-/// Returns the height-correlated masking-shadowing G2: the fraction of facets that are visible from both directions (Heitz
-/// 2014, equation 99).
+/// Returns the height-correlated masking-shadowing G2: the fraction of facets that are visible from both directions
+/// (Heitz 2014, equation 99).
 pub fn masking_shadowing(wo: Vec3, wi: Vec3, alpha: f32) -> f32 {
     1.0 / (1.0 + lambda(wo, alpha) + lambda(wi, alpha))
 }
 
-/// Samples a facet normal among those that are visible from `wo` (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with
-/// Spherical Caps").
+/// Samples a facet normal among those that are visible from `wo` (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals
+/// with Spherical Caps").
 pub fn sample_visible_normal(wo: Vec3, alpha: f32, u: Vec2) -> Vec3 {
     // Warp to the hemisphere configuration
     let stretched = Vec3::new(wo.x * alpha, wo.y * alpha, wo.z).normalize_or(Vec3::Z);

@@ -102,7 +102,8 @@ impl TracedMaterial {
         self.alpha < ggx::MIN_ALPHA
     }
 
-    /// Returns the reflectance for the albedo AOV: the base colour, and white for the transmitting part of the material.
+    /// Returns the reflectance for the albedo AOV: the base colour, and white for the transmitting part of the
+    /// material.
     pub fn albedo(&self, texture: Vec3) -> Vec3 {
         (self.base_color * texture).lerp(Vec3::ONE, self.transmission)
     }

@@ -1,4 +1,5 @@
-//! The microfacet lobe: GGX reflection by the metal and by the dielectric coat. A delta lobe where the surface is smooth.
+//! The microfacet lobe: GGX reflection by the metal and by the dielectric coat. A delta lobe where the surface is
+//! smooth.
 
 use super::material::TracedMaterial;
 use super::{fresnel, ggx};
@@ -46,8 +47,8 @@ impl MicrofacetLobe {
     }
 }
 
-/// Returns the Fresnel reflectance, mixed from metal and coat. The metal is scaled for light that is reflected between facets
-/// (Turquin 2019).
+/// Returns the Fresnel reflectance, mixed from metal and coat. The metal is scaled for light that is reflected between
+/// facets (Turquin 2019).
 pub fn reflectance(material: &TracedMaterial, base_color: Vec3, wo: Vec3, cos_half: f32) -> Vec3 {
     let mut color = Vec3::ZERO;
     if material.metallic < 1.0 {

@@ -1,17 +1,17 @@
 //! BSDFs: the scattering of light at surfaces.
 //!
-//! A surface is a mix of a metal (GGX with Schlick's Fresnel reflectance), a dielectric (a GGX coat over a diffuse base) and
-//! clear glass (smooth, Fresnel-weighted). Coat and base share the energy through the coat's directional albedo E: the base
-//! is scaled by (1 - E(o))(1 - E(i)) / (1 - mean E) (Kelemen and Szirmay-Kalos 2001, "A Microfacet Based Coupled
-//! Specular-Matte BRDF Model"), so that a white base under a coat reflects all light. The metal is scaled by
-//! 1 + F0 (1 / E - 1) for light that is reflected between facets (Turquin 2019, "Practical Multiple Scattering
+//! A surface is a mix of a metal (GGX with Schlick's Fresnel reflectance), a dielectric (a GGX coat over a diffuse
+//! base) and clear glass (smooth, Fresnel-weighted). Coat and base share the energy through the coat's directional
+//! albedo E: the base is scaled by (1 - E(o))(1 - E(i)) / (1 - mean E) (Kelemen and Szirmay-Kalos 2001, "A Microfacet
+//! Based Coupled Specular-Matte BRDF Model"), so that a white base under a coat reflects all light. The metal is scaled
+//! by 1 + F0 (1 / E - 1) for light that is reflected between facets (Turquin 2019, "Practical Multiple Scattering
 //! Compensation for Microfacet Models").
 //!
 //! A new lobe needs
-//! - a file with a `sample` (local direction, or a whole [`BsdfSample`] for a delta lobe) and an `eval` (BSDF times cosine,
-//!   pdf times probability; in the local frame, whose +Z is the shading normal);
+//! - a file with a `sample` (local direction, or a whole [`BsdfSample`] for a delta lobe) and an `eval` (BSDF times
+//!   cosine, pdf times probability; in the local frame, whose +Z is the shading normal);
 //! - a variant of [`Lobe`] with its probability in [`LobeProbabilities`], and the arms of [`Bsdf::sample`] and
-//!   `Bsdf::eval_lobe` that the compiler then asks for;
+//!   `Bsdf::eval_lobe`, whose matches are exhaustive;
 //! - its parameters in [`TracedMaterial`], with `max_albedo`, `has_non_specular_lobe`, `is_nearly_specular` and
 //!   `is_caustic_caster` kept true;
 //! - a case in `tests.rs` (chi-square of the density, white furnace).
@@ -55,8 +55,8 @@ pub struct Bsdf<'a> {
 }
 
 impl<'a> Bsdf<'a> {
-    /// Returns the BSDF for the outgoing direction `wo` (unit, world space), outward normals and a texture value. A clear
-    /// material is a body in air; see [`Bsdf::with_boundary`] for others.
+    /// Returns the BSDF for the outgoing direction `wo` (unit, world space), outward normals and a texture value. A
+    /// clear material is a body in air; see [`Bsdf::with_boundary`] for others.
     pub fn new(material: &'a TracedMaterial, texture: Vec3, normal: Vec3, geometric_normal: Vec3, wo: Vec3) -> Self {
         let is_outside = wo.dot(geometric_normal) >= 0.0;
         let geometry = ShadingGeometry::new(normal, geometric_normal, wo);
@@ -88,14 +88,14 @@ impl<'a> Bsdf<'a> {
         self.geometry.normal
     }
 
-    /// Returns the Fresnel reflectance of clear glass, which is the probability that [`Bsdf::sample`] samples reflection: for
-    /// lobe numbers below it. Returns none for materials with other lobes.
+    /// Returns the Fresnel reflectance of clear glass, which is the probability that [`Bsdf::sample`] samples
+    /// reflection: for lobe numbers below it. Returns none for materials with other lobes.
     pub fn dielectric_reflectance(&self) -> Option<f32> {
         (self.material.transmission >= 1.0).then(|| self.dielectric.reflectance(&self.geometry))
     }
 
-    /// Returns BSDF times cosine, and the density of [`Bsdf::sample`] (1/sr), for a unit world direction. Delta lobes are left
-    /// out of both.
+    /// Returns BSDF times cosine, and the density of [`Bsdf::sample`] (1/sr), for a unit world direction. Delta lobes
+    /// are left out of both.
     pub fn eval(&self, direction: Vec3) -> (Vec3, f32) {
         let wi = self.geometry.to_local(direction);
         if wi.z <= 0.0 || !self.geometry.is_above(direction) || self.material.transmission >= 1.0 {

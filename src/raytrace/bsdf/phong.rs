@@ -1,7 +1,7 @@
 //! The reflection model of Whitted's method: a diffuse base, a Phong lobe or specular reflection, clear glass.
 //!
-//! The exponent is 2 / alpha2 - 2, which matches the width of the Beckmann and GGX lobes at their centre; the colour is the
-//! reflectance at normal incidence. Base and lobe do not share energy, unlike in [`super::Bsdf`].
+//! The exponent is 2 / alpha2 - 2, which matches the width of the Beckmann and GGX lobes at their centre; the colour is
+//! the reflectance at normal incidence. Base and lobe do not share energy, unlike in [`super::Bsdf`].
 
 use super::ggx;
 use super::material::TracedMaterial;

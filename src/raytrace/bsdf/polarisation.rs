@@ -1,8 +1,8 @@
-//! Linear polarisation between dielectric interfaces: light that passed one interface is polarised at the next. Without it
-//! the transmittance of a pane is 1.6 % too small at 60 degrees, 4 % at 80 degrees.
+//! Linear polarisation between dielectric interfaces: light that passed one interface is polarised at the next. Without
+//! it the transmittance of a pane is 1.6 % too small at 60 degrees, 4 % at 80 degrees.
 //!
-//! A path from the camera carries the polarisation that the sensor accepts: a Stokes vector of unit intensity without its
-//! circular part (Born and Wolf, "Principles of Optics", section 1.4). Every lobe but the dielectric one resets it.
+//! A path from the camera carries the polarisation that the sensor accepts: a Stokes vector of unit intensity without
+//! its circular part (Born and Wolf, "Principles of Optics", section 1.4). Every lobe but the dielectric one resets it.
 
 use super::fresnel;
 use glam::Vec3;
@@ -30,9 +30,10 @@ impl Polarisation {
         Polarisation { axis, q: self.q * cos2 + self.u * sin2, u: self.u * cos2 - self.q * sin2 }
     }
 
-    /// Returns the reflectance of an interface for this polarisation, and the polarisations after reflection and transmission
-    /// (Mueller matrices of an interface; Collett 2005, "Field Guide to Polarization"). `wo` points back along the path,
-    /// `normal` is on its side, `eta` is the index of the transmitted side over that of the incident side.
+    /// Returns the reflectance of an interface for this polarisation, and the polarisations after reflection and
+    /// transmission (Mueller matrices of an interface; Collett 2005, "Field Guide to Polarization"). `wo` points back
+    /// along the path, `normal` is on its side, `eta` is the index of the transmitted side over that of the incident
+    /// side.
     pub fn at_interface(self, wo: Vec3, normal: Vec3, eta: f32) -> InterfaceReflection {
         // Rotate the reference axis to the s direction; at normal incidence any axis is one
         let axis = wo.cross(normal).try_normalize().unwrap_or_else(|| wo.any_orthonormal_vector());

@@ -20,8 +20,8 @@ pub struct BsdfSample {
     pub polarisation: Polarisation,
     /// True if the direction is on the other side of the surface.
     pub is_transmission: bool,
-    /// True for transmission by a thin pane, which does not change the direction: other techniques find the light behind it
-    /// as if there were no pane.
+    /// True for transmission by a thin pane, which does not change the direction: other techniques find the light
+    /// behind it as if there were no pane.
     pub is_undeviated: bool,
 }
 

@@ -79,8 +79,8 @@ fn pdfs_integrate_to_one() {
     }
 }
 
-/// Cells of directions about an axis. `1 - cos` is `k ((1 + 2/k)^s - 1)` for s in 0..1, which resolves both a narrow lobe
-/// (`1 - cos` about `k`) and a wide one; the azimuth is uniform.
+/// Cells of directions about an axis. `1 - cos` is `k ((1 + 2/k)^s - 1)` for s in 0..1, which resolves both a narrow
+/// lobe (`1 - cos` about `k`) and a wide one; the azimuth is uniform.
 struct DirectionCells {
     axis: Vec3,
     tangent: Vec3,
@@ -220,8 +220,8 @@ fn glass_reflects_by_fresnels_equations_and_refracts_by_snells_law() {
 
 #[test]
 fn no_material_has_an_albedo_above_one_at_any_roughness_and_angle() {
-    // The tolerance is the standard error of independent samples and 0.5 % for the albedo tables (48 angles, 256 facets each).
-    // Only white materials are also held to 1 from below.
+    // The tolerance is the standard error of independent samples and 0.5 % for the albedo tables (48 angles, 256 facets
+    // each). Only white materials are also held to 1 from below.
     let roughness = [0.0, 1e-4, 0.01, 0.032, 0.1, 0.3, 0.5, 0.7, 1.0];
     let cosines = [1.0, 0.6, 0.2, 0.05, 0.01];
     let mut rng = TestRng::new(23);

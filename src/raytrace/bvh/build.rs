@@ -1,5 +1,5 @@
-//! Building the BVH: PLOC and reinsertion (obvhs) build a binary BVH, [`super::collapse`] converts it to eight children a
-//! node.
+//! Building the BVH: PLOC and reinsertion (obvhs) build a binary BVH, [`super::collapse`] converts it to eight children
+//! a node.
 
 use super::collapse;
 use super::wide::WideBvh;
@@ -15,17 +15,17 @@ use std::collections::HashMap;
 /// Fraction of the nodes that reinsertion considers; larger ones improve the BVH little.
 const REINSERTION_RATIO: f32 = 0.05;
 
-/// Expected node visits of a random ray above which reinsertion is skipped (a few hundred are usual). Reinsertion prunes
-/// its search by surface area: where boxes overlap this much (copies of one triangle, a fan of needles), it visits most
-/// of the BVH for every node and takes minutes. No other order of such boxes is much better.
+/// Expected node visits of a random ray above which reinsertion is skipped (a few hundred are usual). Reinsertion
+/// prunes its search by surface area: where boxes overlap this much (copies of one triangle, a fan of needles), it
+/// visits most of the BVH for every node and takes minutes. No other order of such boxes is much better.
 const MAX_VISITS_FOR_REINSERTION: f32 = 2000.0;
 
-/// Number of equal boxes above which duplicates are grouped before the build. PLOC merges one pair of them a round, which
-/// takes minutes for 100 000 copies.
+/// Number of equal boxes above which duplicates are grouped before the build. PLOC merges one pair of them a round,
+/// which takes minutes for 100 000 copies.
 const MANY_COPIES: usize = 64;
 
-/// Builds the BVH over boxes, with at most `max_leaf` primitives a leaf. Deterministic. Boxes that are points or lines are
-/// left out: their primitives have no area, and no ray hits them.
+/// Builds the BVH over boxes, with at most `max_leaf` primitives a leaf. Deterministic. Boxes that are points or lines
+/// are left out: their primitives have no area, and no ray hits them.
 pub fn build(boxes: &[(Vec3, Vec3)], max_leaf: u32) -> WideBvh {
     // Leave out degenerate boxes and compute the bounds of the others
     let aabb = |b: &(Vec3, Vec3)| Aabb::new(b.0.to_array().into(), b.1.to_array().into());
@@ -143,8 +143,8 @@ mod tests {
 
     const MANY: usize = 100_000;
 
-    /// Largest build time relative to as many disjoint boxes, also on a machine under load. The needles take some 70 times
-    /// as long, the copies about as long; a build of minutes is a factor of thousands.
+    /// Largest build time relative to as many disjoint boxes, also on a machine under load. The needles take some 70
+    /// times as long, the copies about as long; a build of minutes is a factor of thousands.
     const MAX_SLOWDOWN: u32 = 200;
 
     fn build_in_time(boxes: &[(Vec3, Vec3)]) -> WideBvh {

@@ -1,9 +1,9 @@
 //! Conversion of a binary BVH to the wide BVH of least expected traversal cost.
 //!
-//! The cost is the surface area heuristic. Dynamic programming finds, for each binary subtree, the cheapest cover by one
-//! to eight wide nodes or leaves (Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through
-//! Compressed Wide BVHs", section 3.1). A packet test costs the same for any number of triangles, so that leaves come
-//! out full.
+//! The cost is the surface area heuristic. Dynamic programming finds, for each binary subtree, the cheapest cover by
+//! one to eight wide nodes or leaves (Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs
+//! Through Compressed Wide BVHs", section 3.1). A packet test costs the same for any number of triangles, so that
+//! leaves come out full.
 //!
 //! Subtrees are processed in parallel. Their choice depends on the BVH alone, so that the result is deterministic.
 
@@ -20,8 +20,8 @@ const LEAF_COST: f32 = 1.2;
 /// Number of subtrees that are processed in parallel: enough to keep all cores busy to the end.
 const PARALLEL_SUBTREES: usize = 256;
 
-/// The cheapest distribution of `i + 1` wide nodes over the children of a binary node: entry `i` is the number for the left
-/// child; 0 where `i` nodes are as cheap. Entry 0 is 1 where the subtree becomes a leaf.
+/// The cheapest distribution of `i + 1` wide nodes over the children of a binary node: entry `i` is the number for the
+/// left child; 0 where `i` nodes are as cheap. Entry 0 is 1 where the subtree becomes a leaf.
 type Split = [u8; LANES];
 
 /// The cheapest covers of a binary subtree.

@@ -1,8 +1,8 @@
 //! Bounding volume hierarchies with eight children a node.
 //!
-//! `build` builds a binary BVH with obvhs, `collapse` converts it to eight children a node, `wide` stores it, `traverse`
-//! intersects rays with it. One traversal serves the triangles of a mesh (BLAS), the instances of the studio (TLAS) and
-//! the emitters.
+//! `build` builds a binary BVH with obvhs, `collapse` converts it to eight children a node, `wide` stores it,
+//! `traverse` intersects rays with it. One traversal serves the triangles of a mesh (BLAS), the instances of the studio
+//! (TLAS) and the emitters.
 
 mod build;
 mod collapse;

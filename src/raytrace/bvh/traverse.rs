@@ -3,12 +3,12 @@
 use super::wide::{LEAF_BIT, WideBvh, WideNode};
 use crate::raytrace::simd::{Kernels, LANES, SlabRay};
 
-/// The stack of nodes still to visit. It is kept between rays, so that the inner loop does not allocate. A nested traversal
-/// (a BLAS inside the TLAS) uses the same stack above the entries of the outer one.
+/// The stack of nodes still to visit. It is kept between rays, so that the inner loop does not allocate. A nested
+/// traversal (a BLAS inside the TLAS) uses the same stack above the entries of the outer one.
 #[derive(Clone, Debug, Default)]
 pub struct TraversalStack {
-    /// Entry distance in the upper half (the bits of non-negative floats sort like their values), child reference in the
-    /// lower half.
+    /// Entry distance in the upper half (the bits of non-negative floats sort like their values), child reference in
+    /// the lower half.
     entries: Vec<u64>,
     /// Entries in use.
     top: usize,
@@ -41,8 +41,8 @@ fn enter_distance(entry: u64) -> f32 {
 }
 
 impl WideBvh {
-    /// Visits the leaves whose boxes a ray enters before `t_max`, roughly front to back. `visit` takes the leaf index and
-    /// the current `t_max`, and returns the new `t_max` (smaller after a hit).
+    /// Visits the leaves whose boxes a ray enters before `t_max`, roughly front to back. `visit` takes the leaf index
+    /// and the current `t_max`, and returns the new `t_max` (smaller after a hit).
     #[inline(always)]
     pub fn traverse_front_to_back<K: Kernels>(
         &self,

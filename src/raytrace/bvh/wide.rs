@@ -1,4 +1,5 @@
-//! The memory layout of the BVH: nodes of eight child boxes in four cache lines, and leaves as runs of primitive indices.
+//! The memory layout of the BVH: nodes of eight child boxes in four cache lines, and leaves as runs of primitive
+//! indices.
 
 use crate::raytrace::simd::{BoxPacket, LANES};
 use glam::Vec3;

@@ -46,8 +46,8 @@ impl CausticCasters {
         self.areas.last().copied().unwrap_or(0.0) as f32
     }
 
-    /// Density of photons that start uniformly on the casters with directions of density `pdf`, at `cos` to the surface:
-    /// in perpendicular area and solid angle, 1/(m2 sr).
+    /// Density of photons that start uniformly on the casters with directions of density `pdf`, at `cos` to the
+    /// surface: in perpendicular area and solid angle, 1/(m2 sr).
     pub fn density(&self, pdf: f32, cos: f32) -> f32 {
         pdf / (self.area() * cos)
     }

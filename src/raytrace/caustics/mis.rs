@@ -10,8 +10,8 @@ use glam::Vec3;
 pub struct GatherDensities {
     /// Density of the paths' directions times the number of paths, 1/sr.
     pub path_pdf: f32,
-    /// Gather area times number of photons times cosine, square metres: the factor from a photon's density (perpendicular
-    /// area and solid angle) to the density of gathered photons.
+    /// Gather area times number of photons times cosine, square metres: the factor from a photon's density
+    /// (perpendicular area and solid angle) to the density of gathered photons.
     pub photon_area: f32,
 }
 

@@ -16,8 +16,8 @@ pub struct Photon {
     pub flux: Vec3,
     /// Film layer of its light.
     pub layer: u16,
-    /// Density of its start in perpendicular area and solid angle, 1/(m2 sr), which specular scattering does not change;
-    /// infinite for a delta light.
+    /// Density of its start in perpendicular area and solid angle, 1/(m2 sr), which specular scattering does not
+    /// change; infinite for a delta light.
     pub density: f32,
     /// Number of reflections and refractions so far.
     pub specular_depth: u16,

@@ -122,8 +122,8 @@ impl PhotonLookup {
         PhotonLookup { grid: PhotonGrid::new(photons, radius), area: PI * radius * radius * emitted }
     }
 
-    /// Gather area times the number of emitted photons, square metres: the expected number of gathered photons where the
-    /// density of each is 1/m2.
+    /// Gather area times the number of emitted photons, square metres: the expected number of gathered photons where
+    /// the density of each is 1/m2.
     pub fn area(&self) -> f32 {
         self.area
     }

@@ -148,8 +148,8 @@ impl<'a> PhotonTracer<'a> {
     }
 }
 
-/// Factor of a photon's flux at a surface with an interpolated normal, by which photons agree with paths from the camera
-/// (Veach 1997, section 5.3). `wo` and `wi` are the directions towards the light and onwards.
+/// Factor of a photon's flux at a surface with an interpolated normal, by which photons agree with paths from the
+/// camera (Veach 1997, section 5.3). `wo` and `wi` are the directions towards the light and onwards.
 pub fn shading_correction(wo: Vec3, wi: Vec3, normal: Vec3, geometric_normal: Vec3) -> f32 {
     let cosines = |normal: Vec3| (wo.dot(normal).abs(), wi.dot(normal).abs());
     let ((wo_shading, wi_shading), (wo_geometric, wi_geometric)) = (cosines(normal), cosines(geometric_normal));

@@ -1,8 +1,8 @@
 //! AOVs: albedo, normal, depth and object of the first hit, for denoisers and compositing.
 //!
 //! The first hit is the first surface or visible emitter on the camera ray; mirrors and glass are not followed, as in
-//! pbrt's `GBufferFilm`. Albedo and normal are means of a pixel's samples, zero where nothing is hit, as denoisers expect.
-//! Depth and object are those of its first sample, as means across an edge belong to neither side.
+//! pbrt's `GBufferFilm`. Albedo and normal are means of a pixel's samples, zero where nothing is hit, as denoisers
+//! expect. Depth and object are those of its first sample, as means across an edge belong to neither side.
 
 use crate::photo::AovPicture;
 use crate::raytrace::sink::{FirstHit, FirstObject};

@@ -51,8 +51,8 @@ fn shared_layer_tint(light: &Light, scene: &Scene) -> Vec3 {
     light.tint * light.exposure_time_s
 }
 
-/// Assigns each light its layer: one per light, or one per role above [`MAX_LIGHT_LAYERS`]. The last layer holds emissive
-/// surfaces.
+/// Assigns each light its layer: one per light, or one per role above [`MAX_LIGHT_LAYERS`]. The last layer holds
+/// emissive surfaces.
 pub fn assign_layers(scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<Layer> {
     let mut layers: Vec<Layer> = Vec::new();
     let grouped = lights.len() > MAX_LIGHT_LAYERS;

@@ -70,8 +70,8 @@ impl FilmTile {
         self.halves.noise_stops(self.halves.mean())
     }
 
-    /// The sink of one sample of a pixel, behind the non-finite gate. `layer_times` are the seconds for which each layer
-    /// counts in the exposure, `view_axis` is the unit axis of the camera.
+    /// The sink of one sample of a pixel, behind the non-finite gate. `layer_times` are the seconds for which each
+    /// layer counts in the exposure, `view_axis` is the unit axis of the camera.
     pub fn sample_sink<'a>(
         &'a mut self,
         pixel: usize,

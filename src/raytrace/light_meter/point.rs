@@ -19,8 +19,8 @@ pub struct MeterPoint {
 pub struct MeterEffort {
     /// Number of paths, rounded up to a multiple of 16; none samples until the error is small.
     pub paths: Option<u32>,
-    /// Relative standard error of each light at which sampling stops. For lights under 1 % of the total it is relative to
-    /// 1 % of the total.
+    /// Relative standard error of each light at which sampling stops. For lights under 1 % of the total it is relative
+    /// to 1 % of the total.
     pub tolerance: f32,
     /// Number of rays after which no further round begins; a round at most doubles it.
     pub rays: u64,

@@ -6,8 +6,8 @@ use crate::photo::meter::Receptor;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
-/// Offset of the receptor along its direction, metres, so that a meter laid on a surface measures what falls on it. Larger
-/// than the rounding of positions within some ten metres; an error of 0.01 % half a metre from a light.
+/// Offset of the receptor along its direction, metres, so that a meter laid on a surface measures what falls on it.
+/// Larger than the rounding of positions within some ten metres; an error of 0.01 % half a metre from a light.
 const LIFT_M: f32 = 2e-5;
 
 /// A receptor with its coordinate frame.

@@ -1,8 +1,8 @@
 //! A flat round emitter.
 //!
-//! Points are sampled uniformly by area from far away. From near by, nearly all light comes from a small part of the disc:
-//! there, directions are sampled uniformly in solid angle over the circumscribed square, and those that miss the disc are
-//! rejected.
+//! Points are sampled uniformly by area from far away. From near by, nearly all light comes from a small part of the
+//! disc: there, directions are sampled uniformly in solid angle over the circumscribed square, and those that miss the
+//! disc are rejected.
 
 use super::rect::Rect;
 use crate::math::{safe_sqrt, warp};
@@ -62,8 +62,8 @@ impl Disc {
         height * height + lateral * lateral < 0.25 * self.radius * self.radius
     }
 
-    /// Samples a point of the disc. Returns it with the density of its direction, 1/sr; none for rejected samples and for a
-    /// disc seen edge-on.
+    /// Samples a point of the disc. Returns it with the density of its direction, 1/sr; none for rejected samples and
+    /// for a disc seen edge-on.
     pub fn sample(&self, from: Vec3, u: Vec2) -> Option<(Vec3, f32)> {
         if self.is_near(from) {
             let hit = self.bounding_square().seen_from(from).sample(from, u)?;

@@ -34,8 +34,8 @@ impl EmitterBvh {
         emitters
     }
 
-    /// Calls `found` for every light that the ray hits before its `t_max`, in no order. Hits beyond `t_max` may be included:
-    /// the caller compares the distance.
+    /// Calls `found` for every light that the ray hits before its `t_max`, in no order. Hits beyond `t_max` may be
+    /// included: the caller compares the distance.
     #[inline]
     pub fn for_each_hit(
         &self,

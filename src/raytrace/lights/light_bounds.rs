@@ -5,11 +5,11 @@
 //!
 //! importance = I t / d2 * clamp(cos_r, 0.05, 1) * clamp(f, 0.02, 1)
 //!
-//! with the axial intensity I (cd), the exposure time t (s), the distance d to the centre (at least the radius), the cosine
-//! cos_r at the receiver, and the falloff f of the emitter. The bounds differ from the paper's: a bounding sphere instead of
-//! a box; and instead of a cone of normals, a slack that is added to the cosine at the emitter. It bounds how far the axes
-//! and positions of the members differ from those of the cluster. The lower clamps keep the importance positive wherever
-//! part of the light reaches over a horizon. It is 0 only where no part can contribute.
+//! with the axial intensity I (cd), the exposure time t (s), the distance d to the centre (at least the radius), the
+//! cosine cos_r at the receiver, and the falloff f of the emitter. The bounds differ from the paper's: a bounding
+//! sphere instead of a box; and instead of a cone of normals, a slack that is added to the cosine at the emitter. It
+//! bounds how far the axes and positions of the members differ from those of the cluster. The lower clamps keep the
+//! importance positive wherever part of the light reaches over a horizon. It is 0 only where no part can contribute.
 
 use super::traced_light::{LightSource, TracedLight};
 use crate::math::safe_sqrt;
@@ -176,8 +176,8 @@ impl LightBoundsPacket {
     }
 }
 
-/// Returns the larger number in one instruction, unlike `f32::max`. A NaN makes the sum of all importances NaN, which is
-/// then discarded.
+/// Returns the larger number in one instruction, unlike `f32::max`. A NaN makes the sum of all importances NaN, which
+/// is then discarded.
 #[inline(always)]
 fn max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }

@@ -1,7 +1,7 @@
 //! A wide BVH over the bounds of lights, from which one light is sampled by importance.
 //!
-//! Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting", without the splitting,
-//! and with up to 64 children a node instead of two: up to 64 lights are compared one by one.
+//! Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting", without the
+//! splitting, and with up to 64 children a node instead of two: up to 64 lights are compared one by one.
 
 use super::light_bounds::{LightBounds, LightBoundsPacket};
 use super::traced_light::TracedLight;
@@ -220,8 +220,9 @@ impl ChildImportances {
     }
 }
 
-/// Returns the interval that contains `position` if intervals of these lengths are laid end to end: its index, its length,
-/// and the position in it. Returns the last interval that is not empty if rounding puts the position beyond the end.
+/// Returns the interval that contains `position` if intervals of these lengths are laid end to end: its index, its
+/// length, and the position in it. Returns the last interval that is not empty if rounding puts the position beyond the
+/// end.
 #[inline]
 fn find_interval(lengths: &[f32], mut position: f32) -> Option<(usize, f32, f32)> {
     let mut found = None;

@@ -16,8 +16,8 @@ impl LightSampler {
         LightSampler { bvh: LightBvh::new(lights) }
     }
 
-    /// Computes the importances at a shading point with this normal, from which several lights can be sampled. Returns none
-    /// without lights.
+    /// Computes the importances at a shading point with this normal, from which several lights can be sampled. Returns
+    /// none without lights.
     pub fn importances(&self, lights: &[TracedLight], point: Vec3, normal: Vec3) -> Option<LightImportances<'_>> {
         let importances = self.bvh.importances(lights, self.bvh.root()?, point, normal);
         Some(LightImportances { bvh: &self.bvh, point, normal, importances })

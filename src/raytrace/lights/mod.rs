@@ -5,12 +5,13 @@
 //! - [`LightSampler`]: chooses one light by its importance at a shading point, with a `LightBvh` over `LightBounds`
 //! - [`EmitterBvh`]: finds the emitters that a ray hits
 //!
-//! Values are photometric and white (luminance of an RGB of luminance 1). The light's colour is applied to its film layer.
+//! Values are photometric and white (luminance of an RGB of luminance 1). The light's colour is applied to its film
+//! layer.
 //!
 //! A new emitter shape needs a variant of [`photo::EmitterShape`](crate::photo::emitter::EmitterShape), a variant of
-//! `LightSource` with the arms that the compiler then asks for in `traced_light.rs` (construction, centre, sampling, pdf,
-//! intersection, bounds), and an arm in `light_bounds.rs`. A new intensity distribution needs no arm if `photo` evaluates
-//! it as the transmission of a beam.
+//! `LightSource` with its arms in the exhaustive matches of `traced_light.rs` (construction, centre, sampling, pdf,
+//! intersection, bounds), and an arm in `light_bounds.rs`. A new intensity distribution needs no arm if `photo`
+//! evaluates it as the transmission of a beam.
 
 mod disc;
 mod emitter_bvh;

@@ -22,12 +22,12 @@ pub struct Rect {
     normal: Vec3,
 }
 
-/// Solid angle (sr) below which the rectangle is sampled by area: the spherical formulas lose precision (1e-4 of the light
-/// here), and the variance is the same.
+/// Solid angle (sr) below which the rectangle is sampled by area: the spherical formulas lose precision (1e-4 of the
+/// light here), and the variance is the same.
 const MIN_SOLID_ANGLE: f32 = 4e-3;
 
-/// Distance from the plane, in half diagonals, beyond which the rectangle is sampled by area: distances and angles of its
-/// points differ by less than 20 %, so that the spherical formulas cost more than they save.
+/// Distance from the plane, in half diagonals, beyond which the rectangle is sampled by area: distances and angles of
+/// its points differ by less than 20 %, so that the spherical formulas cost more than they save.
 const MAX_SPHERICAL_DISTANCE: f32 = 2.5;
 
 /// The spherical rectangle that a rectangle subtends at a point.
@@ -88,9 +88,9 @@ impl Rect {
         if -z > MAX_SPHERICAL_DISTANCE * self.half_diagonal {
             return SphericalRect { rect: self, low, high, z, axis_z, b0: 0.0, b1: 0.0, k: 0.0, solid_angle: 0.0 };
         }
-        // Compute the solid angle: the sum of the four corner angles less 2 pi. The sums of pairs are known modulo 2 pi,
-        // which does not matter for k. From closer than some micrometres, the half space may come out as solid angle 0,
-        // and is then sampled by area.
+        // Compute the solid angle: the sum of the four corner angles less 2 pi. The sums of pairs are known modulo 2
+        // pi, which does not matter for k. From closer than some micrometres, the half space may come out as solid
+        // angle 0, and is then sampled by area.
         let (edge0, edge1) = (EdgePlane::new(-low.y, z), EdgePlane::new(high.x, z));
         let (edge2, edge3) = (EdgePlane::new(high.y, z), EdgePlane::new(-low.x, z));
         let upper = sum_of_angles(edge2.corner(edge3), edge3.corner(edge0));
@@ -102,8 +102,8 @@ impl Rect {
     }
 }
 
-/// The plane through the reference point and an edge of the rectangle: cosine between its normal and the rectangle's, and the
-/// squared sine, which keeps its precision where the rectangle is seen edge-on.
+/// The plane through the reference point and an edge of the rectangle: cosine between its normal and the rectangle's,
+/// and the squared sine, which keeps its precision where the rectangle is seen edge-on.
 #[derive(Clone, Copy, Debug)]
 struct EdgePlane {
     cos: f32,
@@ -123,8 +123,8 @@ impl EdgePlane {
     }
 }
 
-/// Returns the sum of two angles, given by cosine and sine, modulo 2 pi. One arc tangent is faster than two arc cosines, and
-/// precise near zero.
+/// Returns the sum of two angles, given by cosine and sine, modulo 2 pi. One arc tangent is faster than two arc
+/// cosines, and precise near zero.
 fn sum_of_angles((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> f32 {
     (sin_a * cos_b + cos_a * sin_b).atan2(cos_a * cos_b - sin_a * sin_b)
 }

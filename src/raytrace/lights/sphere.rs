@@ -32,8 +32,8 @@ impl Sphere {
         (half_chord2 >= 0.0 && along > 0.0 && is_outside).then(|| along - (half_chord2 / length2).sqrt())
     }
 
-    /// Samples a unit direction uniformly in the subtended cone. Returns it with the distance to the surface and the density,
-    /// 1/sr.
+    /// Samples a unit direction uniformly in the subtended cone. Returns it with the distance to the surface and the
+    /// density, 1/sr.
     pub fn sample(&self, from: Vec3, u: Vec2) -> Option<(Vec3, f32, f32)> {
         let one_minus_cos = self.one_minus_cos(from)?;
         let axis = (self.centre - from).try_normalize()?;

@@ -34,8 +34,8 @@ const POINTS: [Vec3; 10] = [
 
 const CELLS: usize = 10;
 
-/// Returns the p-value of a chi-square test of a flat emitter's sampling on a grid of its surface. `surface_point(u, v)` maps
-/// the unit square to the surface with a constant area density, `cell` inverts it.
+/// Returns the p-value of a chi-square test of a flat emitter's sampling on a grid of its surface.
+/// `surface_point(u, v)` maps the unit square to the surface with a constant area density, `cell` inverts it.
 fn flat_sampling_p_value(
     light: &TracedLight,
     from: Vec3,
@@ -45,8 +45,8 @@ fn flat_sampling_p_value(
     rng: &mut TestRng,
 ) -> f64 {
     const SAMPLES: usize = 40_000;
-    // Integrate the density over a cell on a finer grid: from near by it varies over a cell by orders of magnitude. Grid
-    // points are one or two millimetres apart for points that are some millimetres away.
+    // Integrate the density over a cell on a finer grid: from near by it varies over a cell by orders of magnitude.
+    // Grid points are one or two millimetres apart for points that are some millimetres away.
     let fine = if from.z.abs() < 0.01 { 100 } else { 40 };
     let mut counts = vec![0.0; CELLS * CELLS];
     let mut drawn = 0.0;
@@ -163,8 +163,8 @@ fn directions_to_spheres_and_suns_are_uniform_in_their_cones() {
 
 #[test]
 fn a_sphere_around_any_emitter_receives_its_whole_flux() {
-    // Each emits 1000 lm. The illuminance is estimated at random points of a sphere of 1.5 m, with one light sample each.
-    // The tolerance is the sampling error; single precision adds 1e-5.
+    // Each emits 1000 lm. The illuminance is estimated at random points of a sphere of 1.5 m, with one light sample
+    // each. The tolerance is the sampling error; single precision adds 1e-5.
     let emitters = [
         Emitter::Point,
         Emitter::Sphere { radius_m: 0.01 },

@@ -184,8 +184,8 @@ impl TracedLight {
         }
     }
 
-    /// Returns true if next-event estimation samples the light. A surround is left to BSDF sampling, which has as little
-    /// variance.
+    /// Returns true if next-event estimation samples the light. A surround is left to BSDF sampling, which has as
+    /// little variance.
     pub fn is_sampled(&self) -> bool {
         !matches!(self.source, LightSource::Surround { .. })
     }
@@ -293,7 +293,8 @@ impl TracedLight {
         }
     }
 
-    /// Returns the density with which [`TracedLight::sample`] samples a direction that hits the emitter at `distance`, 1/sr.
+    /// Returns the density with which [`TracedLight::sample`] samples a direction that hits the emitter at `distance`,
+    /// 1/sr.
     pub fn pdf(&self, point: Vec3, direction: Vec3, distance: f32) -> f32 {
         match self.source {
             LightSource::Rect { rect, .. } => rect.seen_from(point).pdf(point, point + direction * distance),

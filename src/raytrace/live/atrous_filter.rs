@@ -1,11 +1,12 @@
 //! An edge-aware filter for display while the live view converges. It never changes the accumulated samples.
 //!
-//! The à-trous wavelet filter of Dammertz, Sewtz, Hanika and Lensch (2010, "Edge-Avoiding À-Trous Wavelet Transform for fast
-//! Global Illumination Filtering"): each pass doubles the distance to its taps, here four, in turn along the axes and the
-//! diagonals. A tap's weight is the product of edge-stopping functions of the surface (object, material, normal, tangent
-//! plane) and of the irradiance. The texture is divided out before and multiplied after, so patterns stay sharp. The
-//! irradiance function's width is the noise expected of the pixel's samples, so the filter fades as the picture converges.
-//! Mirrors, glass and polished surfaces are left unfiltered: their reflections do not lie on the surface.
+//! The à-trous wavelet filter of Dammertz, Sewtz, Hanika and Lensch (2010, "Edge-Avoiding À-Trous Wavelet Transform for
+//! fast Global Illumination Filtering"): each pass doubles the distance to its taps, here four, in turn along the axes
+//! and the diagonals. A tap's weight is the product of edge-stopping functions of the surface (object, material,
+//! normal, tangent plane) and of the irradiance. The texture is divided out before and multiplied after, so patterns
+//! stay sharp. The irradiance function's width is the noise expected of the pixel's samples, so the filter fades as the
+//! picture converges. Mirrors, glass and polished surfaces are left unfiltered: their reflections do not lie on the
+//! surface.
 
 use super::primary_hit::PrimaryHit;
 use crate::math::simd::{self, Avx2, SimdTask};

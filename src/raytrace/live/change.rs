@@ -4,9 +4,9 @@ use crate::raytrace::film::Layer;
 use crate::raytrace::retrace::Retrace;
 use crate::scene::{Scene, SceneChange};
 
-/// Returns the scene to trace so that a film of `layers`, traced from `traced`, shows `now`, and what of it must be traced
-/// again. The scene's camera plays no part: the live view has its own. A light whose layer stays has the power, colour and
-/// switch that were traced; developing applies the current ones.
+/// Returns the scene to trace so that a film of `layers`, traced from `traced`, shows `now`, and what of it must be
+/// traced again. The scene's camera plays no part: the live view has its own. A light whose layer stays has the power,
+/// colour and switch that were traced; developing applies the current ones.
 pub fn between(traced: &Scene, layers: &[Layer], now: &Scene) -> (Scene, Retrace) {
     let retrace = Retrace::after(&SceneChange::between(traced, now), layers, traced, now);
     let mut to_trace = now.clone();

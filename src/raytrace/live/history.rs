@@ -1,11 +1,11 @@
 //! The history of the live view: the reverse-reprojection cache.
 //!
-//! Each pixel of the new view is projected into the view before the camera moved. Its value there is the mean of the four
-//! pixels around the projected position that show the same surface: object, material, normal and tangent plane agree
-//! (Nehab et al. 2007, "Accelerating Real-Time Shading with Reverse Reprojection Caching"). Disoccluded pixels find none
-//! and are traced. The weight of view-dependent reflection falls with the angle by which the view has turned about the
-//! surface, to zero at the width of the gloss. The weight is at most [`MAX_WEIGHT`] samples, so that the accumulated mean
-//! converges to the new view.
+//! Each pixel of the new view is projected into the view before the camera moved. Its value there is the mean of the
+//! four pixels around the projected position that show the same surface: object, material, normal and tangent plane
+//! agree (Nehab et al. 2007, "Accelerating Real-Time Shading with Reverse Reprojection Caching"). Disoccluded pixels
+//! find none and are traced. The weight of view-dependent reflection falls with the angle by which the view has turned
+//! about the surface, to zero at the width of the gloss. The weight is at most [`MAX_WEIGHT`] samples, so that the
+//! accumulated mean converges to the new view.
 
 use super::camera::LiveCamera;
 use super::live_film::LiveFilm;
@@ -31,8 +31,8 @@ pub struct ReprojectionHistory {
 }
 
 impl ReprojectionHistory {
-    /// Keeps a picture whose pixels have values at every `stride`th. Pixels at edges are excluded: their samples come from
-    /// both sides.
+    /// Keeps a picture whose pixels have values at every `stride`th. Pixels at edges are excluded: their samples come
+    /// from both sides.
     pub fn new(mut film: LiveFilm, camera: LiveCamera, stride: u32) -> Self {
         let edges: Vec<Vec<usize>> =
             film.tiles.par_iter().map(|tile| edge_pixels(&film, &camera, stride, tile)).collect();

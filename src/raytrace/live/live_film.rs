@@ -93,9 +93,9 @@ impl LiveFilm {
         self.layers = layers;
     }
 
-    /// Develops the picture with the exposure, white balance, and each light's power, colour and switch in `scene`; every
-    /// `stride`th pixel of every `stride`th row (a divisor of [`TILE`]). Pixels without a value are interpolated from
-    /// neighbours that show the same surface.
+    /// Develops the picture with the exposure, white balance, and each light's power, colour and switch in `scene`;
+    /// every `stride`th pixel of every `stride`th row (a divisor of [`TILE`]). Pixels without a value are interpolated
+    /// from neighbours that show the same surface.
     pub fn develop(&self, scene: &Scene, camera: &LiveCamera, stride: u32) -> Picture {
         // Weight of each layer, from means to picture values
         let scale = exposure::pixel_per_cd_s_m2(&scene.camera);

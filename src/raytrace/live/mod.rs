@@ -1,9 +1,10 @@
 //! The live view: the path tracer with progressive refinement while the user arranges the studio.
 //!
 //! [`LivePicture::update`] receives every edit and every camera move and keeps the samples that are still valid: all of them
-//! when a light is dimmed, coloured or switched; the other lights' layers when one light moves; the history, reprojected,
-//! when the camera moves. [`LivePicture::trace`] then traces a given number of paths, the coarsest tiles first, until every
-//! tile is converged. There is no clock here: the caller measures the speed and chooses the number of paths.
+//! when a light is dimmed, coloured or switched; the other lights' layers when one light moves; the history,
+//! reprojected, when the camera moves. [`LivePicture::trace`] then traces a given number of paths, the coarsest tiles
+//! first, until every tile is converged. There is no clock here: the caller measures the speed and chooses the number
+//! of paths.
 
 mod atrous_filter;
 mod camera;
@@ -39,7 +40,7 @@ use refinement::RefinementStep;
 use std::sync::Arc;
 use tile_tracer::{RefinementContext, refine};
 
-/// Noise at which a tile is converged, stops: barely visible grain.
+/// Noise at which a tile is converged, stops: barely visible.
 const CONVERGED_STOPS: f32 = 0.06;
 /// Distance between the camera and the tracer's origin at which the origin moves, metres, for floating-point accuracy.
 const MAX_ORIGIN_DISTANCE_M: f32 = 30.0;
@@ -288,8 +289,8 @@ impl LivePicture {
         self.view.iter().flat_map(|view| view.film.tiles.iter().map(|tile| &tile.nonfinite)).collect()
     }
 
-    /// Develops the picture with the exposure, and each light's power, colour and switch, in `scene`. Empty before there is
-    /// one.
+    /// Develops the picture with the exposure, and each light's power, colour and switch, in `scene`. Empty before
+    /// there is one.
     pub fn develop(&self, scene: &Scene) -> Picture {
         self.develop_strided(scene, 1)
     }
@@ -308,8 +309,8 @@ impl LivePicture {
         picture
     }
 
-    /// Refinement steps that every tile has completed: a coarse grid of paths, a finer one, primary hits at every fourth
-    /// pixel, every second, every one, paths at the pixels between, then sample passes.
+    /// Refinement steps that every tile has completed: a coarse grid of paths, a finer one, primary hits at every
+    /// fourth pixel, every second, every one, paths at the pixels between, then sample passes.
     pub fn completed_steps(&self) -> u32 {
         self.view.as_ref().map_or(0, |view| view.film.completed_steps())
     }

@@ -9,7 +9,8 @@ pub struct PrimaryHit {
     pub position: Vec3,
     /// Unit shading normal, on the camera's side.
     pub normal: Vec3,
-    /// Index into the scene's objects, `u32::MAX` for the room; [`PrimaryHit::MISS`], or unknown before the ray is traced.
+    /// Index into the scene's objects, `u32::MAX` for the room; [`PrimaryHit::MISS`], or unknown before the ray is
+    /// traced.
     pub object: u32,
     /// Index into the material table.
     pub material: u32,

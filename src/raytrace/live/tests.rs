@@ -126,7 +126,8 @@ fn caustics_of_a_point_light_through_a_glass_ball_agree_with_a_render() {
     converge(&mut live);
     let (live_view, rendered) = (live.develop(&scene), reference(&scene, &camera, 128));
     assert!((mean(&live_view) / mean(&rendered) - 1.0).abs() < 0.01, "{} for {}", mean(&live_view), mean(&rendered));
-    // Caustics are the pixels brighter than any pixel without the ball. The sharpness of their foci depends on the samples.
+    // Caustics are the pixels brighter than any pixel without the ball. The sharpness of their foci depends on the
+    // samples.
     scene.objects[1].visible = false;
     let open = reference(&scene, &camera, 16).rgb.iter().map(|rgb| rgb[1]).fold(0.0, f32::max);
     let caustics = |picture: &Picture| picture.rgb.iter().map(|rgb| rgb[1]).filter(|g| *g > 1.5 * open).sum::<f32>();
@@ -143,7 +144,8 @@ fn it_converges_to_the_picture_of_a_render() {
     let mut live = started(&scene);
     converge(&mut live);
     let (live_view, rendered) = (live.develop(&scene), reference(&scene, &view(&scene, 0.0), 256));
-    // A converged tile is within 0.06 stops, 4 %, of the reference in each pixel; the mean of thousands of pixels is closer.
+    // A converged tile is within 0.06 stops, 4 %, of the reference in each pixel; the mean of thousands of pixels is
+    // closer.
     assert_same(&live_view, &rendered);
     assert!((mean(&live_view) / mean(&rendered) - 1.0).abs() < 0.005, "{} for {}", mean(&live_view), mean(&rendered));
     assert_eq!((live.trace(1000, &RenderControl::new()), live.nonfinite().count), (0, 0), "every tile is converged");

@@ -46,7 +46,8 @@ pub struct RefinementContext<'a> {
     pub control: &'a RenderControl,
 }
 
-/// Traces the next step of a tile. A cancelled step leaves the tile as it was or partly done; tracing it again completes it.
+/// Traces the next step of a tile. A cancelled step leaves the tile as it was or partly done; tracing it again
+/// completes it.
 pub fn refine(tile: &mut LiveTile, context: &RefinementContext<'_>) {
     if context.control.is_cancelled() {
         return;

@@ -1,4 +1,5 @@
-//! The kernels in AVX2 intrinsics. All `unsafe` code of the crate is here and in [`crate::math::simd`], which detects AVX2.
+//! The kernels in AVX2 intrinsics. All `unsafe` code of the crate is here and in [`crate::math::simd`], which detects
+//! AVX2.
 #![expect(unsafe_code, reason = "intrinsics, and calls of functions compiled for AVX2")]
 
 use super::box_packet::{BoxPacket, SLAB_EXIT_SCALE, SlabRay};
@@ -14,19 +15,22 @@ pub struct Avx2;
 impl Kernels for Avx2 {
     #[inline(always)]
     fn intersect_boxes(ray: &SlabRay, boxes: &BoxPacket, t_max: f32, enter: &mut [f32; LANES]) -> u32 {
-        // SAFETY: `dispatch` uses this type only with the proof that the CPU supports AVX2, and no other code can name it.
+        // SAFETY: `dispatch` uses this type only with the proof that the CPU supports AVX2, and no other code can name
+        // it.
         unsafe { intersect_boxes(ray, boxes, t_max, enter) }
     }
 
     #[inline(always)]
     fn intersect_triangles(ray: &ShearedRay, triangles: &TrianglePacket, t_max: f32) -> Option<TriangleHit> {
-        // SAFETY: `dispatch` uses this type only with the proof that the CPU supports AVX2, and no other code can name it.
+        // SAFETY: `dispatch` uses this type only with the proof that the CPU supports AVX2, and no other code can name
+        // it.
         unsafe { intersect_triangles(ray, triangles, t_max) }
     }
 
     #[inline(always)]
     fn sobol_4d(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2] {
-        // SAFETY: `dispatch` uses this type only with the proof that the CPU supports AVX2, and no other code can name it.
+        // SAFETY: `dispatch` uses this type only with the proof that the CPU supports AVX2, and no other code can name
+        // it.
         unsafe { sobol_4d(index, seeds) }
     }
 }

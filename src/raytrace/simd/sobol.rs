@@ -4,11 +4,12 @@
 const INDEX_BITS: usize = 16;
 
 /// Points of the first four dimensions for each value of each four bits of a bit-reversed index, from its lowest used
-/// bits up; a point is the exclusive or of four entries. The entries are bit-reversed: the scramble works on reversed bits.
+/// bits up; a point is the exclusive or of four entries. The entries are bit-reversed: the scramble works on reversed
+/// bits.
 pub const NIBBLES: [[[u32; 4]; 16]; INDEX_BITS / 4] = nibbles();
 
-/// Parameters of the first four dimensions (Joe and Kuo 2008): degree and inner coefficients of the primitive polynomial,
-/// and the initial direction numbers m.
+/// Parameters of the first four dimensions (Joe and Kuo 2008): degree and inner coefficients of the primitive
+/// polynomial, and the initial direction numbers m.
 const DIMENSIONS: [(usize, u32, [u32; 3]); 4] =
     [(0, 0, [0; 3]), (1, 0, [1, 0, 0]), (2, 1, [1, 3, 0]), (3, 1, [1, 3, 1])];
 

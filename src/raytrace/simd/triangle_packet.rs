@@ -1,8 +1,8 @@
 //! Eight triangles as a structure of arrays, and a ray prepared for the watertight test against them.
 //!
-//! Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection" (JCGT 2, 1): the ray is sheared onto an axis, and
-//! the edge functions are evaluated in 2D. Both triangles of a shared edge evaluate the same function, so that no ray
-//! passes between them. Edge functions of exactly 0 are evaluated again in f64.
+//! Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection" (JCGT 2, 1): the ray is sheared onto an axis,
+//! and the edge functions are evaluated in 2D. Both triangles of a shared edge evaluate the same function, so that no
+//! ray passes between them. Edge functions of exactly 0 are evaluated again in f64.
 
 use crate::math::simd::LANES;
 use glam::Vec3;
@@ -17,7 +17,8 @@ pub struct TrianglePacket {
     triangles: [u32; LANES],
 }
 
-/// A ray prepared for the triangle test: axes permuted so that Z is the largest direction component, then sheared onto Z.
+/// A ray prepared for the triangle test: axes permuted so that Z is the largest direction component, then sheared onto
+/// Z.
 #[derive(Clone, Copy, Debug)]
 pub struct ShearedRay {
     pub(super) origin: [f32; 3],

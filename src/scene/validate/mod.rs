@@ -1,7 +1,7 @@
 //! Validates a scene; messages are in words that a photographer understands.
 //!
-//! Errors are what no renderer has to cope with: non-finite numbers, sizes of zero, equal names. Warnings are what can be
-//! rendered but was hardly meant. Places are named as in the scene file, so that `io` can find their line.
+//! Errors are what no renderer has to cope with: non-finite numbers, sizes of zero, equal names. Warnings are what can
+//! be rendered but was hardly meant. Places are named as in the scene file, so that `io` can find their line.
 
 mod aim;
 mod camera;

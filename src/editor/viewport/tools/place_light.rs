@@ -42,8 +42,8 @@ const SAME_POINT_M: f32 = 0.002;
 /// Returns the placed light, at the distance of `start` from its aim point. For highlight and light its new aim is the
 /// surface point, relative to the object. The distance is shortened where the light would be below the floor.
 ///
-/// With `n` the normal, `v` the direction to the camera and `l` that to the light, a mirror shows the light where
-/// `n` is the half vector: `l = 2 (n.v) n - v`. Straight light comes along the normal: `l = n`. The shadow of the aim `a`
+/// With `n` the normal, `v` the direction to the camera and `l` that to the light, a mirror shows the light where `n`
+/// is the half vector: `l = 2 (n.v) n - v`. Straight light comes along the normal: `l = n`. The shadow of the aim `a`
 /// falls on the point `p` where the light lies beyond it: `l = a - p`.
 pub fn placed_light(scene: &Scene, start: &Light, at: &SurfaceHit, by: PlaceLightBy) -> Result<Light, PlaceLightError> {
     let aimed_at = scene.aim_point(&start.aim, start.position);
