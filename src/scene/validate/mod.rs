@@ -29,7 +29,7 @@ const NAME_LIMIT: usize = 200;
 const DESCRIPTION_LIMIT: usize = 10_000;
 
 /// Returns every error and warning of a scene, in file order. A scene without errors can be rendered by every renderer.
-/// Warnings about positions, which need the meshes, come from [`placement`].
+/// Warnings about positions, which need the meshes, come from [`placement()`].
 pub fn validate(scene: &Scene) -> Vec<Finding> {
     let mut check = Check::default();
     check.text("name", &scene.name, NAME_LIMIT);
