@@ -162,7 +162,7 @@ mod preview {
     use catchlight::preview::{Gpu, Options, PreviewInput, PreviewRenderer};
     use catchlight::scene::{Camera, MaterialPreset, Shape};
 
-    /// Returns a renderer; without a graphics adapter it reports a skip, or fails if one is required.
+    /// Returns a renderer; without a GPU adapter it reports a skip, or fails if one is required.
     fn renderer() -> Option<(Gpu, PreviewRenderer)> {
         let gpu = headless_gpu()?;
         let renderer = PreviewRenderer::new(&gpu.device, &gpu.queue).unwrap();

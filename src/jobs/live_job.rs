@@ -92,6 +92,11 @@ impl LiveJob {
         !self.worker.is_busy()
     }
 
+    /// Returns true if the job is paused and traces no more.
+    pub fn is_stopped(&self) -> bool {
+        self.worker.is_stopped()
+    }
+
     /// Returns the number of rays traced so far.
     pub fn rays(&self) -> u64 {
         self.shared.rays.load(Ordering::Relaxed)

@@ -24,8 +24,7 @@ use super::sink::RadianceSink;
 use crate::math::Ray;
 use glam::Vec3;
 
-/// Faces of clear glass in front of the camera, one behind the other, at which both reflection and transmission are
-/// followed: what shines in them is bright, and a path that chose one would find it once in twenty times.
+/// Faces of clear glass, one behind the other, at which a camera path follows both reflection and transmission.
 const DIELECTRIC_SPLITS: u32 = 3;
 /// Part of the throughput below which a path after a dielectric split is not split again.
 const MIN_SPLIT_THROUGHPUT: f32 = 0.25;

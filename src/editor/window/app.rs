@@ -105,9 +105,9 @@ impl App {
         self.rendering.move_to(ctx);
         self.background.thumbnails.renew(ctx);
         let why = self.window.device_loss.take().unwrap_or_default();
-        let news = "The graphics device was lost and the window was opened anew; the studio is as you left it.";
+        let news = "The GPU was lost and the window was opened again; the studio is as you left it.";
         if self.window.last_loss.replace(Instant::now()).is_some_and(|last| last.elapsed() < REPEATED_LOSS_TIME) {
-            self.views.viewport.preview.use_cpu("The graphics device was lost twice within a minute.");
+            self.views.viewport.preview.use_cpu("The GPU was lost twice within a minute.");
         }
         self.toasts.warning(if why.is_empty() { news.to_owned() } else { format!("{news} ({why})") });
     }
@@ -139,7 +139,7 @@ impl App {
     /// Closes a window whose device is lost. It draws nothing until then: egui's painter panics without a device.
     fn leave_window(&mut self, ctx: &Context, why: String) {
         if self.window.device_loss.is_none() {
-            log::warn!("the graphics device was lost: {why}");
+            log::warn!("the GPU device was lost: {why}");
             self.window.device_loss = Some(why);
         }
         ctx.send_viewport_cmd(ViewportCommand::Close);
@@ -441,7 +441,7 @@ impl eframe::App for App {
         }
         if self.views.viewport.preview.lost_device().is_some() {
             // The loss occurred in this frame: discard it.
-            ctx.request_discard("the graphics device was lost");
+            ctx.request_discard("the GPU device was lost");
         }
     }
 }

@@ -21,7 +21,7 @@ pub enum EditorError {
     #[error("there is no display to open a window on: {0}")]
     NoDisplay(String),
     /// There is a display, but nothing that can draw on it.
-    #[error("no graphics adapter can draw the window (on Debian: apt-get install mesa-vulkan-drivers libvulkan1): {0}")]
+    #[error("no GPU adapter can draw the window (on Debian: apt-get install mesa-vulkan-drivers libvulkan1): {0}")]
     NoGraphics(String),
     /// Any other error.
     #[error("the window could not be opened: {0}")]
@@ -31,7 +31,7 @@ pub enum EditorError {
 /// Opens the window and returns when it is closed. `initial` is the studio to open; none opens a shipped one.
 ///
 /// # Errors
-/// When there is no display, no graphics adapter, or the window cannot be opened.
+/// When there is no display, no GPU adapter, or the window cannot be opened.
 pub fn run(initial: Option<PathBuf>) -> Result<(), EditorError> {
     let started = Instant::now();
     check_display()?;

@@ -31,20 +31,36 @@ pub(crate) struct LightingVariant {
     pub gloss: Gloss,
 }
 
+/// Returns a WGSL flag: 1 or 0.
+fn flag(set: bool) -> f64 {
+    f64::from(u8::from(set))
+}
+
+/// Returns the constants that the lighting and glass shaders share: the output encoding and the kinds of lights.
+fn light_constants(variant: &LightingVariant) -> [(&'static str, f64); 5] {
+    let [delta, spheres, rects, discs] = variant.light_kinds.map(flag);
+    [
+        ("LINEAR", flag(variant.output == Output::Linear)),
+        ("HAS_DELTA", delta),
+        ("HAS_SPHERES", spheres),
+        ("HAS_RECTS", rects),
+        ("HAS_DISCS", discs),
+    ]
+}
+
 /// Creates the pipeline of the lighting pass.
 pub(crate) fn lighting(
     device: &wgpu::Device,
     layouts: &BindGroupLayouts,
     variant: &LightingVariant,
 ) -> wgpu::RenderPipeline {
-    let flag = |set: bool| f64::from(u8::from(set));
-    let [delta, spheres, rects, discs] = variant.light_kinds.map(flag);
+    let [linear, delta, spheres, rects, discs] = light_constants(variant);
     let constants = [
-        ("LINEAR", flag(variant.output == Output::Linear)),
-        ("HAS_DELTA", delta),
-        ("HAS_SPHERES", spheres),
-        ("HAS_RECTS", rects),
-        ("HAS_DISCS", discs),
+        linear,
+        delta,
+        spheres,
+        rects,
+        discs,
         ("MASKS", variant.masks as f64),
         ("MASK_SCALE", f64::from(variant.mask_scale)),
         ("LIGHT_CULLING", flag(variant.light_radius)),
@@ -62,7 +78,7 @@ pub(crate) fn lighting(
 /// Creates the pipeline that upsamples coarse lighting to the display picture.
 pub(crate) fn resolve(device: &wgpu::Device, layouts: &BindGroupLayouts, illuminance: bool) -> wgpu::RenderPipeline {
     let layout = pipeline_layout(device, "resolve", &[&layouts.scene, &layouts.gbuffer, &layouts.coarse]);
-    let constants = [("ILLUMINANCE", f64::from(u8::from(illuminance)))];
+    let constants = [("ILLUMINANCE", flag(illuminance))];
     fullscreen(device, ("resolve", "fragment"), shaders::RESOLVE, &layout, &constants, Output::Display.format())
 }
 
@@ -74,8 +90,7 @@ pub(crate) fn channel(
     output: Output,
 ) -> wgpu::RenderPipeline {
     let layout = pipeline_layout(device, "channel", &[&layouts.scene, &layouts.gbuffer]);
-    let constants =
-        [("CHANNEL", f64::from(channel.number())), ("LINEAR", f64::from(u8::from(output == Output::Linear)))];
+    let constants = [("CHANNEL", f64::from(channel.number())), ("LINEAR", flag(output == Output::Linear))];
     fullscreen(device, ("channel", "fragment"), shaders::CHANNEL, &layout, &constants, output.format())
 }
 
@@ -86,16 +101,8 @@ pub(crate) fn glass(
     variant: &LightingVariant,
     (sides, inner): (Sides, bool),
 ) -> wgpu::RenderPipeline {
-    let flag = |set: bool| f64::from(u8::from(set));
-    let [delta, spheres, rects, discs] = variant.light_kinds.map(flag);
-    let constants = [
-        ("LINEAR", flag(variant.output == Output::Linear)),
-        ("HAS_DELTA", delta),
-        ("HAS_SPHERES", spheres),
-        ("HAS_RECTS", rects),
-        ("HAS_DISCS", discs),
-        ("INNER", flag(inner)),
-    ];
+    let [linear, delta, spheres, rects, discs] = light_constants(variant);
+    let constants = [linear, delta, spheres, rects, discs, ("INNER", flag(inner))];
     let module = shaders::module(device, "glass", shaders::GLASS);
     let layout = pipeline_layout(device, "glass", &[&layouts.scene, &layouts.draw]);
     let color = wgpu::ColorTargetState {

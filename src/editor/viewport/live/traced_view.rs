@@ -147,6 +147,11 @@ impl TracedView {
         self.image_texture.id().is_some()
     }
 
+    /// Returns true if tracing is paused and has stopped.
+    pub fn is_stopped(&self) -> bool {
+        self.job.is_stopped()
+    }
+
     /// Returns the number of rays traced.
     pub fn rays(&self) -> u64 {
         self.job.rays()
