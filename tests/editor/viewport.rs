@@ -171,13 +171,12 @@ fn the_live_view_is_traced_on_demand_and_everything_works_on_top_of_it() {
     wait_until(&mut window, |app| app.viewport().traced_view.has_picture());
     // Another studio, and back to the estimate: nothing is traced any more.
     click(&mut window, "Quick");
+    wait_until(&mut window, |app| app.viewport().traced_view.is_stopped());
     let rays = window.state().viewport().traced_view.rays();
-    std::thread::sleep(Duration::from_millis(60));
-    window.run_steps(3);
+    window.run_steps(6);
+    assert!(window.state().viewport().traced_view.is_stopped());
     let now = window.state().viewport().traced_view.rays();
-    std::thread::sleep(Duration::from_millis(60));
-    window.run_steps(3);
-    assert!(rays > 0 && window.state().viewport().traced_view.rays() == now, "it goes on behind the estimate");
+    assert!(rays > 0 && rays == now, "it goes on behind the estimate");
 }
 
 #[test]
