@@ -9,7 +9,7 @@ use catchlight::scene::{Aim, Camera, Emitter, Focus, Material, Object, Output, S
 use glam::Vec3;
 use std::f64::consts::PI;
 use studio::light;
-use studio::measure::{illuminance, meter_card, picture, square, values};
+use studio::measure::{film, illuminance, meter_card, picture, square, values};
 
 fn rotated_object(name: &str, shape: Shape, position: Vec3, rotation_deg: Vec3) -> Object {
     let transform = Transform { position, rotation_deg, ..Transform::default() };
@@ -52,13 +52,16 @@ fn every_setting_changes_the_exposure_by_its_stops() {
     let value = |scene: &Scene| values(&picture(scene, &square(Method::Path, 4, 16))).mean;
     let reference = value(&scene);
     type Change = fn(&mut Scene);
-    let changes: [(&str, f64, Change); 7] = [
+    let changes: [(&str, f64, Change); 10] = [
         ("power -1", -1.0, |s| s.lights[0].power.dial_stops = -1.0),
         ("power -1/10", -0.1, |s| s.lights[0].power.dial_stops = -0.1),
         ("power 1/256", -8.0, |s| s.lights[0].power.dial_stops = -8.0),
         ("shutter twice", 1.0, |s| s.camera.shutter_s *= 2.0),
         ("iso a third up", 1.0 / 3.0, |s| s.camera.iso *= 2_f32.powf(1.0 / 3.0)),
         ("a stop closed", -1.0, |s| s.camera.f_number *= 2_f32.sqrt()),
+        ("ND8", -3.0, |s| s.camera.nd_stops = 3.0),
+        ("a third of ND", -1.0 / 3.0, |s| s.camera.nd_stops = 1.0 / 3.0),
+        ("ND of 6.6 stops", -6.6, |s| s.camera.nd_stops = 6.6),
         ("dome constant", -(340.0_f64 / 250.0).log2(), |s| s.camera.meter_constant = 340.0),
     ];
     for (name, stops, change) in changes {
@@ -204,4 +207,104 @@ fn depth_of_field_does_not_change_the_exposure() {
     // A uniformly lit card has the same value out of focus; 4 cm at 2 m from the light vary by 0.1 %.
     assert!((blurred.mean / pinhole.mean - 1.0).abs() < 2e-3, "{blurred:?} for {pinhole:?}");
     assert!((pinhole.mean / (1000.0 / (4.0 * PI) / 4.0) - 1.0).abs() < 2e-3, "{pinhole:?}");
+}
+
+#[test]
+fn an_nd_filter_takes_its_stops_from_a_finished_picture() {
+    // A finished picture is developed again: the values of whole stops are the same bits, halved.
+    let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
+    scene.lights.push(light(Emitter::Point, Output::Lumens(1000.0), Vec3::Z * 2.0));
+    let flash = Output::FlashWs { energy_ws: 50.0, efficacy_lm_s_per_ws: 40.0 };
+    let flash = light(Emitter::Point, flash, Vec3::Z * 2.0);
+    scene.lights.push(catchlight::scene::Light { id: catchlight::scene::LightId(1), name: "Flash".into(), ..flash });
+    let finished = film(&scene, &square(Method::Path, 4, 16));
+    let unfiltered = finished.develop(&scene);
+    for stops in [1.0_f32, 3.0, 10.0] {
+        scene.camera.nd_stops = stops;
+        let filtered = finished.develop(&scene);
+        let halved = unfiltered.rgb.iter().map(|p| p.map(|v| v * (-stops).exp2()));
+        assert!(halved.eq(filtered.rgb.iter().copied()), "{stops} stops");
+        // A render with the filter has the same samples.
+        assert_eq!(picture(&scene, &square(Method::Path, 4, 16)).rgb, filtered.rgb, "{stops} stops");
+    }
+    scene.camera.nd_stops = 1.0 / 3.0;
+    let third = finished.develop(&scene);
+    let loss = (values(&unfiltered).mean / values(&third).mean).log2();
+    assert!((loss - 1.0 / 3.0).abs() < 1e-6, "{loss}");
+}
+
+/// Returns a glowing square card in the plane of focus, which fills 0.6 of the sensor's height at magnification `m`, and
+/// a camera that is focused on it.
+fn glowing_card(focal_length_mm: f32, distance_m: f32, m: f32) -> Scene {
+    let side_m = 0.6 * 24e-3 / m;
+    let mut card =
+        rotated_object("Card", Shape::Plane { width_m: side_m, depth_m: side_m }, Vec3::ZERO, Vec3::X * 90.0);
+    card.material = Material { base_color: [0.0; 3], ior: 1.0, emission_cd_m2: [100.0; 3], ..Material::default() };
+    let camera = Camera {
+        position: Vec3::Z * distance_m,
+        aim: Aim::Point(Vec3::ZERO),
+        sensor: Sensor::Custom { width_mm: 24.0, height_mm: 24.0 },
+        focal_length_mm,
+        focus: Focus::Distance(distance_m),
+        ..Camera::default()
+    };
+    Scene { objects: vec![card], camera, ..Scene::default() }
+}
+
+/// Returns the magnification in a picture of [`glowing_card`]: the side of its image over that of the card.
+fn measured_magnification(picture: &Picture, m: f32) -> f64 {
+    let middle = f64::from(picture.at(picture.width / 2, picture.height / 2)[1]);
+    let covered: f64 = picture.rgb.iter().map(|p| f64::from(p[1]) / middle).sum();
+    let sensor_per_pixel = 24e-3 / f64::from(picture.width);
+    covered.sqrt() * sensor_per_pixel / (0.6 * 24e-3 / f64::from(m))
+}
+
+#[test]
+fn the_magnification_in_the_plane_of_focus_is_that_of_a_thin_lens() {
+    // m = f / (d - f) with focus breathing, f / d without: the lens is then as far from the sensor as for infinity.
+    let lenses = [(35.0_f32, 0.25_f32), (50.0, 0.45), (85.0, 3.0), (100.0, 0.2), (100.0, 0.15), (180.0, 0.48)];
+    for (focal_length_mm, d) in lenses {
+        let f = focal_length_mm * 1e-3;
+        for (focus_breathing, m) in [(true, f / (d - f)), (false, f / d)] {
+            for depth_of_field in [false, true] {
+                let mut scene = glowing_card(focal_length_mm, d, m);
+                (scene.camera.focus_breathing, scene.camera.depth_of_field) = (focus_breathing, depth_of_field);
+                let ours = measured_magnification(&picture(&scene, &square(Method::Path, 64, 64)), m);
+                // Some 150 pixels on the edge of 1475 are covered in part, each to 1/8 by 64 samples: 0.1 % of the area.
+                let what = format!("{focal_length_mm} mm at {d} m, breathing {focus_breathing}, blur {depth_of_field}");
+                assert!((ours / f64::from(m) - 1.0).abs() < 2e-3, "{what}: {ours} for {m}");
+            }
+        }
+    }
+    // A macro lens of 100 mm at 0.2 m is at 1:1.
+    let mut life_size = glowing_card(100.0, 0.2, 1.0);
+    life_size.camera.focus_breathing = true;
+    let ours = measured_magnification(&picture(&life_size, &square(Method::Path, 64, 64)), 1.0);
+    assert!((ours - 1.0).abs() < 2e-3, "{ours}");
+}
+
+#[test]
+fn near_focus_loses_the_bellows_factor_and_infinity_nothing() {
+    // N_eff = N (1 + m): 2 log2(1 + m) stops, two at 1:1.
+    for (focal_length_mm, d, stops) in [(100.0_f32, 0.2_f32, 2.0_f64), (100.0, 0.15, 3.16993), (85.0, 3.0, 0.08297)] {
+        let f = focal_length_mm * 1e-3;
+        let mut scene = glowing_card(focal_length_mm, d, f / d);
+        let middle = |scene: &Scene| f64::from(picture(scene, &square(Method::Path, 9, 4)).at(4, 4)[1]);
+        let at_infinity = middle(&scene);
+        scene.camera.focus_breathing = true;
+        let loss = (at_infinity / middle(&scene)).log2();
+        assert!((loss - stops).abs() < 1e-4, "{focal_length_mm} mm at {d} m: {loss} stops for {stops}");
+        // A finished picture of the lens without breathing keeps its exposure.
+        let far = Camera { focus: Focus::Distance(1e5), ..scene.camera.clone() };
+        let loss = (at_infinity / middle(&Scene { camera: far, ..scene.clone() })).log2();
+        assert!(loss.abs() < 1e-4, "{loss} stops at infinity");
+    }
+}
+
+#[test]
+fn focus_changes_nothing_without_breathing_and_depth_of_field() {
+    let mut scene = glowing_card(100.0, 0.2, 0.5);
+    let near = picture(&scene, &square(Method::Path, 32, 4));
+    scene.camera.focus = Focus::Distance(10.0);
+    assert_eq!(picture(&scene, &square(Method::Path, 32, 4)), near);
 }

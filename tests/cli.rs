@@ -100,6 +100,15 @@ fn explain_prints_the_shortcuts_of_the_render_plan_with_reasons() {
     let arguments = ["render", "three_point", "-o", "x.png", "--size", "12x18", "--spp", "1", "--explain"];
     let output = catchlight(folder.path(), &arguments);
     assert!(stdout(&output).contains("no glass: no refraction"), "{}", stdout(&output));
+    assert!(!stdout(&output).contains("focus breathing"), "{}", stdout(&output));
+    let mut scene = catchlight::io::presets()[0].load().unwrap().scene;
+    scene.camera.focus_breathing = true;
+    scene.camera.focal_length_mm = 100.0;
+    scene.camera.focus = catchlight::scene::Focus::Distance(0.2);
+    std::fs::write(folder.path().join("near.ron"), catchlight::io::write_scene(&scene)).unwrap();
+    let output = catchlight(folder.path(), &[&["render", "near.ron"], &arguments[2..]].concat());
+    let line = "focused at 0.200 m, magnification 1.000, field 2.000 times narrower, 2.00 stops lost";
+    assert!(stdout(&output).contains(line), "{}", stdout(&output));
 }
 
 #[test]

@@ -231,6 +231,10 @@ fn a_grey_card_at_the_metered_exposure_renders_to_its_value() {
     scene.objects[0].material = MaterialPreset::GreyCard.material();
     scene.camera.shutter_s = 1.0 / 8.0;
     scene.camera.iso = 200.0;
+    // The f-number makes up for an ND filter and for the bellows factor of a lens of 100 mm, 0.3 m from the card.
+    (scene.camera.nd_stops, scene.camera.focus_breathing, scene.camera.focal_length_mm) = (2.0, true, 100.0);
+    scene.camera.position = Vec3::new(0.06, 1.2, 0.594);
+    scene.camera.sensor = catchlight::scene::Sensor::Custom { width_mm: 3.0, height_mm: 3.0 };
     let softbox = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
     let flash = Output::FlashWs { energy_ws: 100.0, efficacy_lm_s_per_ws: 40.0 };
     let mut key = light(softbox, flash, Vec3::new(0.5, 1.6, 1.9));
@@ -243,6 +247,9 @@ fn a_grey_card_at_the_metered_exposure_renders_to_its_value() {
     let meter = ["meter", "card.ron", "--at", "0,1.2,0.3", "--facing", "0,0,1", "--json"];
     let reading = json(&catchlight(folder.path(), &meter));
     let n = reading["total"]["f_number"].as_f64().unwrap();
+    let bellows_stops = reading["total"]["bellows_stops"].as_f64().unwrap();
+    assert!((bellows_stops - 2.0 * (0.3_f64 / 0.2).log2()).abs() < 1e-3, "{bellows_stops}");
+    assert_eq!(reading["total"]["nd_stops"].as_f64(), Some(2.0));
     let flash_percent = reading["flash_percent"].as_f64().unwrap();
     assert!((20.0..80.0).contains(&flash_percent), "both kinds of light count: {flash_percent} % flash");
     scene.camera.f_number = n as f32;

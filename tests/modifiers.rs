@@ -202,7 +202,7 @@ mod preview {
             let view = PreviewInput::camera_view(&scene, &assets, (600, 400));
             let input = PreviewInput { options: Options { shadows: false, ..Options::direct_only() }, ..view };
             let picture = renderer.linear_picture(&input).unwrap();
-            let per_lux = exposure::pixel_per_cd_s_m2(&scene.camera) * scene.camera.shutter_s * 0.18 / PI;
+            let per_lux = exposure::pixel_per_cd_s_m2(&scene) * scene.camera.shutter_s * 0.18 / PI;
             let positions: Vec<Vec3> =
                 (0..25).map(|i| Vec3::new((i % 5 - 2) as f32 * 0.4, 0.0, (i / 5 - 2) as f32 * 0.4)).collect();
             let meter = LightMeter::new(&scene, &assets, Vec3::ZERO).unwrap();

@@ -6,7 +6,7 @@ mod studio;
 use catchlight::photo::exposure;
 use catchlight::raster::{self, NO_OBJECT, Shading};
 use catchlight::raytrace;
-use catchlight::scene::{Aim, Assets, Camera, Emitter, Material, Object, Output, Scene, Shape};
+use catchlight::scene::{Aim, Assets, Camera, Emitter, Focus, Material, Object, Output, Scene, Shape};
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -81,8 +81,7 @@ fn the_illuminance_of_a_card_agrees_with_closed_forms() {
         let mut scene = studio::card_at(Vec3::ZERO, 2.0);
         scene.lights.push(studio::light(emitter, Output::Lumens(1000.0), Vec3::Z * distance));
         let picture = draw(&scene, (3, 3), Shading::BlinnPhong).picture;
-        let camera = &scene.camera;
-        let per_lux = exposure::pixel_per_cd_s_m2(camera) * camera.shutter_s * studio::REFLECTANCE / PI;
+        let per_lux = exposure::pixel_per_cd_s_m2(&scene) * scene.camera.shutter_s * studio::REFLECTANCE / PI;
         let reading = picture.at(1, 1)[1] / per_lux;
         // The table has four to five digits, and the pixel is a few millimetres off the axis.
         assert!((reading / lux - 1.0).abs() < 2e-3, "{emitter:?} at {distance} m: {reading} lx instead of {lux}");
@@ -135,4 +134,25 @@ fn a_camera_inside_a_mesh_or_with_its_near_plane_through_the_floor_draws_both() 
     let floor = draw(&scene, (40, 40), Shading::Lambert).objects;
     assert!(floor[20 * 40 + 40..].iter().all(|object| *object == 0), "the floor is below the horizon");
     assert!(floor[..19 * 40].iter().all(|object| *object == NO_OBJECT));
+}
+
+#[test]
+fn an_nd_filter_and_near_focus_show_as_in_the_tracer() {
+    // A glowing card of 12 mm before a lens of 100 mm: at 1:1 it fills a quarter of the 24 mm sensor, two stops darker.
+    let mut scene = studio::card_at(Vec3::ZERO, 0.012);
+    scene.objects[0].material.emission_cd_m2 = [100.0; 3];
+    scene.camera = Camera { focal_length_mm: 100.0, focus: Focus::Distance(0.2), ..front(0.2) };
+    let shown = |scene: &Scene| {
+        let picture = draw(scene, (128, 128), Shading::BlinnPhong).picture;
+        let value = picture.at(64, 64)[1];
+        let covered = picture.rgb.iter().filter(|p| p[1] > 0.5 * value).count();
+        (value, (covered as f32).sqrt() / 128.0 * 24e-3 / 0.012)
+    };
+    let (plain, magnification) = shown(&scene);
+    // An edge is exact to half a pixel of 64.
+    assert!((magnification - 0.5).abs() < 0.01, "{magnification} without breathing");
+    (scene.camera.focus_breathing, scene.camera.nd_stops) = (true, 3.0);
+    let (filtered, magnification) = shown(&scene);
+    assert!((magnification - 1.0).abs() < 0.01, "{magnification} with breathing");
+    assert!(((plain / filtered).log2() - 5.0).abs() < 1e-3, "{plain} and {filtered}");
 }

@@ -71,7 +71,7 @@ pub fn run(loaded: &Loaded, size: (u32, u32), frames: u32, output: Option<&Path>
         bench.work_until(|pacing| pacing.picture().is_converged());
         let picture = bench.pacing.picture().develop(&loaded.scene);
         let spp = bench.pacing.picture().spp();
-        io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene.camera, "path", spp, 0))?;
+        io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene, "path", spp, 0))?;
         return Ok(());
     }
     let report = bench.measure(frames.max(1) as usize)?;

@@ -80,6 +80,9 @@ struct TotalReport {
     f_number: f32,
     iso: f32,
     shutter_s: f32,
+    /// ND filter and bellows factor that `f_number` makes up for.
+    nd_stops: f32,
+    bellows_stops: f32,
 }
 
 #[derive(Debug, Serialize)]
@@ -185,6 +188,8 @@ fn report(point: &MeterPoint, result: &MeterResult) -> MeterReport {
             f_number: reading.f_number(),
             iso: reading.iso,
             shutter_s: reading.shutter_s,
+            nd_stops: reading.nd_stops,
+            bellows_stops: reading.bellows_stops,
         },
         lights: reading.lights.iter().map(|light| light_report(reading, light)).collect(),
         ratios: (reading.ratios().into_iter().flatten())
@@ -239,11 +244,12 @@ fn table(arguments: &Arguments, point: &MeterPoint, result: &MeterResult) -> Str
     let lux = direct + bounced;
     let _ = writeln!(
         text,
-        "\n{} ({:.2}) at ISO {} and {}   EV100 {:.2}",
+        "\n{} ({:.2}) at ISO {} and {}{}   EV100 {:.2}",
         nearest_third(reading.f_number()),
         reading.f_number(),
         Dial::Iso.label(reading.iso),
         Dial::Shutter.label(reading.shutter_s),
+        reading.compensation(),
         reading.ev100()
     );
     let _ = writeln!(

@@ -10,7 +10,7 @@ use crate::photo::exposure;
 use crate::preview::{
     Channel, FALSE_STOPS, Gloss, Gpu, Options, PreviewError, PreviewInput, PreviewRenderer, false_color,
 };
-use crate::scene::Camera;
+use crate::scene::Scene;
 use anyhow::anyhow;
 use std::f32::consts::PI;
 use std::path::{Path, PathBuf};
@@ -30,13 +30,13 @@ pub fn write_preview(loaded: &Loaded, size: (u32, u32), output: &Path, look: &Pr
     let (_, mut renderer) = start()?;
     let input = PreviewInput { options, ..PreviewInput::camera_view(&loaded.scene, &loaded.assets, size) };
     if options.channel == Channel::Illuminance {
-        legend(&loaded.scene.camera);
+        legend(&loaded.scene);
     }
     if options.channel != Channel::Lit && io::PictureFormat::of(output)? != io::PictureFormat::Exr {
         return Ok(io::export_shown(output, &renderer.picture(&input).map_err(machine)?)?);
     }
     let picture = renderer.linear_picture(&input).map_err(machine)?;
-    Ok(io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene.camera, "preview", 1, 0))?)
+    Ok(io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene, "preview", 1, 0))?)
 }
 
 fn options(loaded: &Loaded, look: &PreviewLook) -> Result<Options, Failure> {
@@ -52,12 +52,12 @@ fn options(loaded: &Loaded, look: &PreviewLook) -> Result<Options, Failure> {
 }
 
 /// Prints the legend of the false colours on stderr.
-fn legend(camera: &Camera) {
-    let lux_s = exposure::pixel_per_cd_s_m2(camera).recip() * PI;
+fn legend(scene: &Scene) {
+    let lux_s = exposure::pixel_per_cd_s_m2(scene).recip() * PI;
     for stops in FALSE_STOPS.0..=FALSE_STOPS.1 {
         let [r, g, b] = false_color(stops as f32);
         let lux_s = lux_s * (stops as f32).exp2();
-        let lux = lux_s / camera.shutter_s;
+        let lux = lux_s / scene.camera.shutter_s;
         terminal::progress(format_args!(
             "#{r:02x}{g:02x}{b:02x}  {stops:+} stops  {lux_s:.3} lx s, or {lux:.1} lx at the camera's shutter"
         ));

@@ -40,7 +40,7 @@ fn reduced(fine: &Picture, side: u32) -> Picture {
 /// Draws and writes the preview.
 pub fn write(loaded: &Loaded, size: (u32, u32), output: &Path) -> Result<(), Failure> {
     let (picture, _) = picture(loaded, size, 1);
-    Ok(io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene.camera, "zbuffer", 1, 0))?)
+    Ok(io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene, "zbuffer", 1, 0))?)
 }
 
 /// Measures frame times with a turning camera.

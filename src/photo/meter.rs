@@ -4,10 +4,10 @@
 //! the f-number: N^2 = (E t + H) S / C. For a total in lux, a flash counts as the continuous light of the same exposure
 //! at the camera's shutter, H / t, so that `lux x shutter = lux s`.
 
-use super::exposure;
 use super::thirds::Dial;
+use super::{exposure, nd_filter};
 pub use crate::scene::Receptor;
-use crate::scene::{Camera, LightId, Role};
+use crate::scene::{LightId, Role, Scene};
 
 /// Lux per foot-candle (lumen per square foot).
 pub const LUX_PER_FOOT_CANDLE: f32 = 10.763_91;
@@ -68,6 +68,10 @@ pub struct Reading {
     pub iso: f32,
     /// Meter constant C, lux seconds.
     pub meter_constant: f32,
+    /// ND filter of the camera, stops.
+    pub nd_stops: f32,
+    /// Light that the camera's lens loses by near focus (bellows factor), stops.
+    pub bellows_stops: f32,
 }
 
 /// A lighting ratio between groups of lights.
@@ -87,9 +91,17 @@ impl Ratio {
 }
 
 impl Reading {
-    /// Creates a reading for a camera's settings.
-    pub fn new(lights: Vec<LightReading>, camera: &Camera) -> Self {
-        Reading { lights, shutter_s: camera.shutter_s, iso: camera.iso, meter_constant: camera.meter_constant }
+    /// Creates a reading for the settings of a scene's camera.
+    pub fn new(lights: Vec<LightReading>, scene: &Scene) -> Self {
+        let camera = &scene.camera;
+        Reading {
+            lights,
+            shutter_s: camera.shutter_s,
+            iso: camera.iso,
+            meter_constant: camera.meter_constant,
+            nd_stops: camera.nd_stops,
+            bellows_stops: exposure::bellows_stops(&scene.focused_lens()),
+        }
     }
 
     /// Returns the time by which a light counts in the exposure, seconds.
@@ -124,9 +136,18 @@ impl Reading {
         exposure::ev100(self.total_lux_s() / self.shutter_s, self.meter_constant)
     }
 
-    /// Returns the f-number at the camera's ISO and shutter; 0 without light.
+    /// Returns the f-number to set at the camera's ISO and shutter; 0 without light. ND filter and bellows factor are
+    /// compensated, as in a meter with filter compensation.
     pub fn f_number(&self) -> f32 {
-        exposure::f_number(self.total_lux_s(), self.iso, self.meter_constant)
+        let on_sensor = self.total_lux_s() * (-self.nd_stops - self.bellows_stops).exp2();
+        exposure::f_number(on_sensor, self.iso, self.meter_constant)
+    }
+
+    /// Returns what the f-number is compensated for: `, ND 3 stops (ND8, 0.9), bellows factor 2.0 stops`; empty where
+    /// there is nothing.
+    pub fn compensation(&self) -> String {
+        let nd = if self.nd_stops > 0.0 { format!(", ND {}", nd_filter::label(self.nd_stops)) } else { String::new() };
+        if self.bellows_stops > 0.0 { format!("{nd}, bellows factor {:.2} stops", self.bellows_stops) } else { nd }
     }
 
     /// Returns the reference light of ratios: the strongest of the key lights, or of all where none has that role.
@@ -204,7 +225,7 @@ mod tests {
     }
 
     fn reading(lights: Vec<LightReading>) -> Reading {
-        Reading::new(lights, &Camera::default())
+        Reading::new(lights, &Scene::default())
     }
 
     #[test]
@@ -223,6 +244,17 @@ mod tests {
         assert!((both.total_lux().0 / 30_000.0 - 1.0).abs() < 1e-6);
         let slower = Reading { shutter_s: 1.0 / 60.0, ..both.clone() };
         assert_eq!(slower.lux_s(&slower.lights[0]), 160.0, "the exposure of a flash does not depend on the shutter");
+    }
+
+    #[test]
+    fn the_f_number_is_compensated_for_filter_and_bellows_factor_and_the_exposure_value_is_not() {
+        let plain = reading(vec![light(0, Role::Key, true, 160.0)]);
+        assert_eq!(plain.compensation(), "");
+        let filtered = Reading { nd_stops: 3.0, bellows_stops: 1.0, ..plain.clone() };
+        // f/8 without, four stops wider with both: f/2.
+        assert!((plain.f_number() - 8.0).abs() < 1e-5 && (filtered.f_number() - 2.0).abs() < 1e-5);
+        assert_eq!((filtered.ev100(), filtered.total_lux_s()), (plain.ev100(), plain.total_lux_s()));
+        assert_eq!(filtered.compensation(), ", ND 3 stops (ND8, 0.9), bellows factor 1.00 stops");
     }
 
     #[test]

@@ -7,6 +7,7 @@ pub mod exposure;
 pub mod light;
 mod light_color;
 pub mod meter;
+pub mod nd_filter;
 mod picture;
 pub mod thirds;
 

@@ -67,7 +67,7 @@ impl IncidentLight {
 
 impl RasterLights {
     pub fn new(scene: &Scene, eye: Vec3) -> Self {
-        let pixel_per_cd_s_m2 = exposure::pixel_per_cd_s_m2(&scene.camera);
+        let pixel_per_cd_s_m2 = exposure::pixel_per_cd_s_m2(scene);
         let mut all = RasterLights {
             lights: Vec::new(),
             ambient_irradiance: Vec3::ZERO,

@@ -1,7 +1,8 @@
 //! Camera rays: of a pinhole, or of a thin lens with depth of field.
 
 use crate::math::warp;
-use crate::scene::{Camera, CameraFrame, Focus, Scene};
+use crate::photo::exposure;
+use crate::scene::{Camera, CameraFrame, FocusedLens, Scene};
 use glam::{Vec2, Vec3};
 
 /// The aperture of a thin lens and its plane of focus.
@@ -67,8 +68,7 @@ impl PixelCamera for FilmCamera {
 #[derive(Clone, Debug)]
 pub struct Lens {
     camera: Camera,
-    /// World position at which the camera aims.
-    target: Vec3,
+    focused: FocusedLens,
     aperture: Aperture,
 }
 
@@ -76,27 +76,28 @@ impl Lens {
     /// The lens of a scene's camera. A focus behind the camera makes it a pinhole.
     pub fn new(scene: &Scene) -> Self {
         let camera = &scene.camera;
-        let target = scene.aim_point(&camera.aim, camera.position);
-        let frame = camera.frame(target, camera.aspect());
-        let distance_along_axis = |point: Vec3| (point - camera.position).dot(frame.forward());
-        let focus_m = match camera.focus {
-            Focus::OnAim => distance_along_axis(target),
-            Focus::OnObject { object, offset } => {
-                distance_along_axis(scene.aim_point(&crate::scene::Aim::Object { object, offset }, camera.position))
-            }
-            Focus::Distance(distance) => distance,
-        };
-        let aperture = if camera.depth_of_field && focus_m > 0.0 {
+        let focused = scene.focused_lens();
+        let aperture = focused.focus_m.filter(|_| camera.depth_of_field).map_or(Aperture::PINHOLE, |focus_m| {
             Aperture { radius_m: camera.focal_length_mm * 1e-3 / (2.0 * camera.f_number), focus_m }
-        } else {
-            Aperture::PINHOLE
-        };
-        Lens { camera: camera.clone(), target, aperture }
+        });
+        Lens { camera: camera.clone(), focused, aperture }
     }
 
     /// Returns true if the lens is not a pinhole.
     pub fn has_aperture(&self) -> bool {
         self.aperture != Aperture::PINHOLE
+    }
+
+    /// The effect of focus breathing in words; none without it.
+    pub fn breathing(&self) -> Option<String> {
+        let m = self.focused.magnification;
+        let focus_m = self.focused.focus_m.filter(|_| m > 0.0)?;
+        let stops = exposure::bellows_stops(&self.focused);
+        Some(format!(
+            "focus breathing: focused at {focus_m:.3} m, magnification {m:.3}, field {:.3} times narrower, {stops:.2} \
+             stops lost",
+            1.0 + m
+        ))
     }
 
     /// Aperture and focus.
@@ -106,7 +107,7 @@ impl Lens {
 
     /// The frame for a picture of this aspect ratio.
     pub fn frame(&self, aspect: f32) -> CameraFrame {
-        self.camera.frame(self.target, aspect)
+        self.camera.frame(&self.focused, aspect)
     }
 
     /// The camera for a picture of so many pixels.
@@ -119,7 +120,7 @@ impl Lens {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Aim;
+    use crate::scene::{Aim, Focus};
     use crate::statistics::{ChiSquare, TestRng, sidak_level};
 
     fn scene(focus: Focus) -> Scene {

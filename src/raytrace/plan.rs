@@ -1,6 +1,7 @@
 //! The render plan: the parts of the full model that a scene needs, with the reasons.
 
 use super::bsdf::TracedMaterial;
+use super::lens::Lens;
 use super::lights::TracedLight;
 use std::fmt;
 
@@ -101,7 +102,7 @@ impl RenderPlan {
     }
 
     /// Derives the plan from a scene's materials, lights and lens.
-    pub fn new(materials: &[TracedMaterial], lights: &[TracedLight], lens: bool) -> Self {
+    pub fn new(materials: &[TracedMaterial], lights: &[TracedLight], lens: &Lens) -> Self {
         let mut reasons = Vec::new();
 
         // Emitter hits
@@ -120,11 +121,13 @@ impl RenderPlan {
         } else {
             "no glass: no refraction".to_owned()
         });
-        reasons.push(if lens {
+        let has_aperture = lens.has_aperture();
+        reasons.push(if has_aperture {
             "depth of field: rays start on the lens".to_owned()
         } else {
             "pinhole: no lens samples".to_owned()
         });
+        reasons.extend(lens.breathing());
 
         // Caustics
         let sampled = sampled_lights(lights);
@@ -152,7 +155,16 @@ impl RenderPlan {
         let direct_is_noisy = has_area_lights && sample_all_lights && !has_noisy_caustics;
         let split_factor = if direct_is_noisy { LOW_SPLIT_FACTOR } else { HIGH_SPLIT_FACTOR };
         reasons.push(format!("indirect light is noisier than direct: {split_factor} paths from the first surface"));
-        RenderPlan { has_area_emitters, refraction, lens, sample_all_lights, photons, split_factor, max_depth, reasons }
+        RenderPlan {
+            has_area_emitters,
+            refraction,
+            lens: has_aperture,
+            sample_all_lights,
+            photons,
+            split_factor,
+            max_depth,
+            reasons,
+        }
     }
 }
 

@@ -85,7 +85,7 @@ pub(super) fn prepare_all(
     let (lights, light_ids, layers) = convert_lights(scene, origin, assign_layers);
     let layer_times = layer_times(&lights, &layers);
     let lens = Lens::new(scene);
-    let plan = RenderPlan::new(&tables.materials, &lights, lens.has_aperture());
+    let plan = RenderPlan::new(&tables.materials, &lights, &lens);
     let casters = match plan.photons {
         true => CausticCasters::new(&aggregate, &tables.materials),
         false => CausticCasters::default(),
@@ -104,7 +104,7 @@ pub(super) fn prepare_all(
         layers,
         layer_times,
         emission_time_s: scene.camera.shutter_s,
-        exposure: exposure::pixel_per_cd_s_m2(&scene.camera),
+        exposure: exposure::pixel_per_cd_s_m2(scene),
         lens,
         plan,
     })

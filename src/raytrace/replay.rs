@@ -34,7 +34,7 @@ pub struct Replay {
 impl Replay {
     /// Picture value of the sample, with the exposure, white balance and lights of `scene`.
     pub fn picture_value(&self, layers: &[Layer], scene: &Scene) -> Vec3 {
-        let scale = exposure::pixel_per_cd_s_m2(&scene.camera);
+        let scale = exposure::pixel_per_cd_s_m2(scene);
         layers.iter().zip(&self.sums).map(|(layer, sum)| *sum * (layer.weight(scene) * scale)).sum()
     }
 }

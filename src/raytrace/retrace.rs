@@ -90,7 +90,7 @@ pub fn is_up_to_date(layers: &[Layer], rendered: &Scene, now: &Scene) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{ColorSource, Emitter, Light, Material, Output, Room, Solo};
+    use crate::scene::{ColorSource, Emitter, Focus, Light, Material, Output, Room, Solo};
 
     fn studio(lights: u32) -> Scene {
         let light = |id| Light { id: LightId(id), ..Light::new(Emitter::Point, Output::Lumens(1000.0)) };
@@ -132,6 +132,9 @@ mod tests {
         assert!(up_to_date(&studio, |s| drop(s.lights.remove(1))), "a removed light has no weight");
         assert!(up_to_date(&studio, |s| (s.camera.shutter_s, s.camera.white_balance_k) = (1.0, 3000.0)));
         assert!(up_to_date(&studio, |s| s.camera.f_number = 1.4));
+        assert!(up_to_date(&studio, |s| s.camera.nd_stops = 6.0));
+        assert!(up_to_date(&studio, |s| s.camera.focus = Focus::Distance(1.0)), "a pinhole has no focus");
+        assert!(!up_to_date(&studio, |s| s.camera.focus_breathing = true));
         assert!(!up_to_date(&studio, |s| s.lights[0].position.x += 1.0));
         assert!(up_to_date(&studio, |s| (s.lights[0].on, s.lights[0].position.x) = (false, 1.0)), "it is off");
         assert!(!up_to_date(&studio, |s| s.camera.position.x += 1.0));

@@ -1,6 +1,6 @@
 //! The camera: sensor, lens, exposure settings, and the frame that all renderers share.
 
-use super::{Aim, ObjectId};
+use super::{Aim, FocusedLens, ObjectId};
 use crate::math;
 use glam::{Affine3A, Mat4, Vec2, Vec3};
 
@@ -98,10 +98,15 @@ pub struct Camera {
     pub iso: f32,
     /// White balance, kelvin.
     pub white_balance_k: f32,
-    /// Focus, used only with `depth_of_field`.
+    /// Neutral density filter before the lens, stops; 0 is none.
+    pub nd_stops: f32,
+    /// Focus, used only with `depth_of_field` and `focus_breathing`.
     pub focus: Focus,
     /// Depth of field of a thin lens; false is a pinhole.
     pub depth_of_field: bool,
+    /// The image distance follows the focus, as in a lens that moves as a whole: focused near, the field of view is
+    /// narrower and less light reaches the sensor; see [`FocusedLens`].
+    pub focus_breathing: bool,
     /// Calibration constant of the incident meter, lux seconds (ISO 2720): 250 for a flat receptor.
     pub meter_constant: f32,
 }
@@ -119,8 +124,10 @@ impl Default for Camera {
             shutter_s: 1.0 / 125.0,
             iso: 100.0,
             white_balance_k: 5500.0,
+            nd_stops: 0.0,
             focus: Focus::OnAim,
             depth_of_field: false,
+            focus_breathing: false,
             meter_constant: 250.0,
         }
     }
@@ -149,17 +156,16 @@ impl Camera {
         if aspect >= 1.0 { (long_edge, short(1.0 / aspect)) } else { (short(aspect), long_edge) }
     }
 
-    /// Returns the frame of a camera that looks at `target`, for a picture of `aspect` (width / height). A picture of
-    /// another aspect than the sensor's is a crop of the sensor: the field of view stays the same along the side that
-    /// fits.
-    pub fn frame(&self, target: Vec3, aspect: f32) -> CameraFrame {
+    /// Returns the frame of the camera with its lens, for a picture of `aspect` (width / height). A picture of another
+    /// aspect than the sensor's is a crop of the sensor: the field of view stays the same along the side that fits.
+    pub fn frame(&self, lens: &FocusedLens, aspect: f32) -> CameraFrame {
         let film = self.film_size_mm();
         let (width_mm, height_mm) =
             if aspect >= film.x / film.y { (film.x, film.x / aspect) } else { (film.y * aspect, film.y) };
-        let half_extent = Vec2::new(width_mm, height_mm) / (2.0 * self.focal_length_mm);
+        let image_distance_mm = self.focal_length_mm * (1.0 + lens.magnification);
         CameraFrame {
-            world_from_camera: math::look_at(self.position, target, -self.roll_deg.to_radians()),
-            half_extent,
+            world_from_camera: math::look_at(self.position, lens.target, -self.roll_deg.to_radians()),
+            half_extent: Vec2::new(width_mm, height_mm) / (2.0 * image_distance_mm),
         }
     }
 }
@@ -229,11 +235,16 @@ impl CameraFrame {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Scene;
+
+    fn looking_at(target: Vec3, focal_length_mm: f32) -> CameraFrame {
+        let camera = Camera { aim: Aim::Point(target), focal_length_mm, ..Camera::default() };
+        Scene { camera, ..Scene::default() }.camera_frame(1.5)
+    }
 
     #[test]
     fn project_inverts_direction() {
-        let camera = Camera::default();
-        let frame = camera.frame(Vec3::new(0.3, 1.2, -1.0), 1.5);
+        let frame = looking_at(Vec3::new(0.3, 1.2, -1.0), 85.0);
         for point in [Vec2::new(0.0, 0.0), Vec2::new(0.25, 0.8), Vec2::new(1.0, 1.0)] {
             let projected = frame.project(frame.position() + 3.0 * frame.direction(point));
             assert!((projected.unwrap() - point).length() < 1e-5);
@@ -242,7 +253,7 @@ mod tests {
 
     #[test]
     fn clip_matches_project_and_reverses_depth() {
-        let frame = Camera::default().frame(Vec3::ZERO, 1.5);
+        let frame = looking_at(Vec3::ZERO, 85.0);
         let world = frame.position() + 2.0 * frame.direction(Vec2::new(0.75, 0.25));
         let clip = frame.clip_from_world(0.01) * world.extend(1.0);
         assert!((clip.x / clip.w - 0.5).abs() < 1e-5 && (clip.y / clip.w - 0.5).abs() < 1e-5);
@@ -253,8 +264,7 @@ mod tests {
     fn a_standing_figure_fills_the_frame_at_the_tabulated_distances() {
         // light_and_camera.md: a 1.9 m figure fills 24 mm of height from 2.8 m at 35 mm, 4.0 at 50, 6.7 at 85.
         for (focal_length_mm, distance_m) in [(35.0, 2.8), (50.0, 4.0), (85.0, 6.7)] {
-            let camera = Camera { focal_length_mm, ..Camera::default() };
-            let height_m = 2.0 * camera.frame(Vec3::ZERO, 1.5).half_extent.y * distance_m;
+            let height_m = 2.0 * looking_at(Vec3::ZERO, focal_length_mm).half_extent.y * distance_m;
             assert!((height_m - 1.9).abs() < 0.03, "{focal_length_mm} mm: {height_m} m");
         }
     }

@@ -19,7 +19,7 @@ pub struct SceneChange {
     pub roles: bool,
     /// The light meter: its reading and its gizmo.
     pub meter: bool,
-    /// ISO and meter calibration: develop again.
+    /// ISO, meter calibration, ND filter, and the light that the lens loses by its focus: develop again.
     pub exposure: bool,
     /// The f-number: develop again; with depth of field, trace again.
     pub aperture: bool,
@@ -27,7 +27,7 @@ pub struct SceneChange {
     pub shutter: bool,
     /// The white balance: develop again; trace again where a film layer has it baked in.
     pub white_balance: bool,
-    /// Framing, and whether there is depth of field: the primary rays.
+    /// Framing, with the field that the focus leaves, and whether there is depth of field: the primary rays.
     pub view: bool,
     /// The plane of focus: trace again with depth of field.
     pub focus: bool,
@@ -65,6 +65,7 @@ impl SceneChange {
         let Scene { name, description, camera, room, objects, lights, meter, solo } = old;
         change.labels |= *name != new.name || *description != new.description;
         change.compare_cameras(camera, &new.camera);
+        change.compare_magnifications(old, new);
         match (room, &new.room) {
             (Some(room), Some(new)) => change.compare_rooms(room, new),
             (None, None) => {}
@@ -118,8 +119,10 @@ impl SceneChange {
             shutter_s,
             iso,
             white_balance_k,
+            nd_stops,
             focus,
             depth_of_field,
+            focus_breathing,
             meter_constant,
         } = old;
         self.view |= *position != new.position
@@ -129,11 +132,19 @@ impl SceneChange {
             || *orientation != new.orientation
             || *focal_length_mm != new.focal_length_mm
             || *depth_of_field != new.depth_of_field;
-        self.focus |= *focus != new.focus;
+        // Breathing moves a plane of focus that is too near; `compare_magnifications` covers the rest of it.
+        self.focus |= *focus != new.focus || *focus_breathing != new.focus_breathing;
         self.aperture |= *f_number != new.f_number;
         self.shutter |= *shutter_s != new.shutter_s;
-        self.exposure |= *iso != new.iso || *meter_constant != new.meter_constant;
+        self.exposure |= *iso != new.iso || *meter_constant != new.meter_constant || *nd_stops != new.nd_stops;
         self.white_balance |= *white_balance_k != new.white_balance_k;
+    }
+
+    /// Compares what focus breathing derives from camera, focus and the object in focus: field and loss of light.
+    fn compare_magnifications(&mut self, old: &Scene, new: &Scene) {
+        let differs = old.focused_lens().magnification != new.focused_lens().magnification;
+        self.view |= differs;
+        self.exposure |= differs;
     }
 
     fn compare_rooms(&mut self, old: &Room, new: &Room) {

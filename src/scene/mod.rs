@@ -9,6 +9,7 @@ mod assets;
 mod camera;
 mod change;
 mod emitter;
+mod focused_lens;
 mod gel;
 mod id;
 mod inventory;
@@ -29,6 +30,7 @@ pub use assets::{Asset, AssetKey, AssetRef, Assets, path_complaint};
 pub use camera::{Camera, CameraFrame, Focus, Orientation, Sensor};
 pub use change::{LightChange, SceneChange};
 pub use emitter::Emitter;
+pub use focused_lens::FocusedLens;
 pub use gel::{Gel, GelFamily, NamedGel};
 pub use id::{LightId, ObjectId};
 pub use inventory::{AssetField, MaterialSlot};
@@ -139,7 +141,11 @@ impl Scene {
 
     /// Returns the camera's frame for a picture aspect (width / height).
     pub fn camera_frame(&self, aspect: f32) -> CameraFrame {
-        let target = self.aim_point(&self.camera.aim, self.camera.position);
-        self.camera.frame(target, aspect)
+        self.camera.frame(&self.focused_lens(), aspect)
+    }
+
+    /// Returns the camera's lens at its focus.
+    pub fn focused_lens(&self) -> FocusedLens {
+        FocusedLens::new(self, &self.camera)
     }
 }

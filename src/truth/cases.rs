@@ -251,7 +251,7 @@ fn flash() -> Vec<TruthRow> {
     ]
 }
 
-/// A metered grey card, rendered, and rendered again one stop darker.
+/// A metered grey card, rendered, rendered again one stop darker, and behind a filter.
 fn pictures() -> Vec<TruthRow> {
     let emitter = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
     let mut scene = lit_by(light(emitter, Output::Lumens(200_000.0), Vec3::new(0.4, 0.3, 1.5), Vec3::ZERO));
@@ -268,11 +268,15 @@ fn pictures() -> Vec<TruthRow> {
     scene.camera.f_number = exposure::f_number(lux_s as f32, scene.camera.iso, scene.camera.meter_constant);
     let metered = mean_pixel(&scene);
     scene.lights[0].power.dial_stops = -1.0;
-    let stops = (mean_pixel(&scene) / metered).log2();
+    let darker = mean_pixel(&scene);
+    let stops = (darker / metered).log2();
+    scene.camera.nd_stops = 3.0;
+    let filtered_stops = (mean_pixel(&scene) / darker).log2();
     vec![
         // The error of 16 x 16 x 64 samples, and that of the meter.
         row("18 % card, exposed as the meter says, rendered", "", 0.18, metered, SAMPLED),
         row("a light a stop down, rendered", "stops", -1.0, stops, 1e-4),
+        row("an ND filter of 3 stops (ND8), rendered", "stops", -3.0, filtered_stops, 1e-4),
     ]
 }
 

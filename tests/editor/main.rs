@@ -21,6 +21,7 @@ use std::time::{Duration, Instant};
 
 #[path = "../studio/adapter.rs"]
 mod adapter;
+mod camera;
 mod device;
 mod files;
 mod panels;

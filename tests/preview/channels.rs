@@ -57,7 +57,7 @@ fn illuminance_is_in_lux_and_its_false_colours_are_stops_relative_to_the_exposur
     let picture = renderer.linear_picture(&input_with(&scene, options)).unwrap();
     let shown = renderer.picture(&input_with(&scene, options)).unwrap();
     let frame = direct(&scene, SIZE).frame;
-    let per_lux = exposure::pixel_per_cd_s_m2(&scene.camera) * scene.camera.shutter_s / PI;
+    let per_lux = exposure::pixel_per_cd_s_m2(&scene) * scene.camera.shutter_s / PI;
     // An isotropic source of 10 000 lm 3 m above the floor: E = I cos / d^2
     for (r, lux) in [(0.0, 88.42), (1.0, 75.49), (2.0, 50.93)] {
         let place = Vec3::new(r, 0.0, 0.0);
@@ -96,7 +96,7 @@ fn a_blinn_phong_highlight_on_a_floor_is_its_closed_form() {
     let options = Options { gloss: Gloss::BlinnPhong, ..Options::direct_only() };
     let input = PreviewInput { options, ..direct(&scene, (301, 201)) };
     let picture = renderer.linear_picture(&input).unwrap();
-    let per_cd_m2 = exposure::pixel_per_cd_s_m2(&scene.camera) * scene.camera.shutter_s;
+    let per_cd_m2 = exposure::pixel_per_cd_s_m2(&scene) * scene.camera.shutter_s;
 
     // L = F0 (n + 8) / (8 pi) (n.h)^n E with n = 2 / alpha^2 - 2 and alpha = roughness^2
     let f0 = ((ior - 1.0) / (ior + 1.0)).powi(2);

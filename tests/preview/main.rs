@@ -25,6 +25,7 @@ mod channels;
 mod closed_forms;
 mod drafts;
 mod each_light;
+mod lens;
 mod picture;
 mod room;
 mod shadow_cache;
@@ -137,9 +138,8 @@ fn unshadowed_lux_at(renderer: &mut PreviewRenderer, scene: &Scene, point: Vec3)
 }
 
 fn lux_of(renderer: &mut PreviewRenderer, input: &PreviewInput, point: Vec3) -> f32 {
-    let camera = &input.scene.camera;
     let picture = renderer.linear_picture(input).unwrap();
-    let per_lux = exposure::pixel_per_cd_s_m2(camera) * camera.shutter_s * 0.18 / PI;
+    let per_lux = exposure::pixel_per_cd_s_m2(input.scene) * input.scene.camera.shutter_s * 0.18 / PI;
     luminance_at(&picture, &input.frame, point) / per_lux
 }
 

@@ -76,7 +76,8 @@ fn a_floor_does_not_shadow_itself_under_grazing_light() {
 fn the_tone_curve_of_the_shader_equals_that_of_the_cpu() {
     let Some(mut renderer) = shared_renderer() else { return };
     let camera = Camera { position: Vec3::new(0.0, 0.0, 4.0), aim: Aim::Point(Vec3::ZERO), ..Camera::default() };
-    let per_cd_m2 = exposure::pixel_per_cd_s_m2(&camera) * camera.shutter_s;
+    let empty = Scene { camera, ..Scene::default() };
+    let per_cd_m2 = exposure::pixel_per_cd_s_m2(&empty) * empty.camera.shutter_s;
     for step in 0..24 {
         let value = 0.002 * 1.4_f32.powi(step);
         let glow = Material {
@@ -86,8 +87,7 @@ fn the_tone_curve_of_the_shader_equals_that_of_the_cpu() {
             ..Material::default()
         };
         let card = Shape::Box { size_m: Vec3::ONE };
-        let scene =
-            Scene { camera: camera.clone(), objects: vec![object(0, card, Vec3::ZERO, glow)], ..Scene::default() };
+        let scene = Scene { objects: vec![object(0, card, Vec3::ZERO, glow)], ..empty.clone() };
         let picture = renderer.picture(&direct(&scene, (9, 9))).unwrap();
         let expected = color::display_srgb8([value, 0.5 * value, 0.0]);
         for (channel, (ours, theirs)) in picture.get_pixel(4, 4).0.iter().zip(expected).enumerate() {

@@ -202,7 +202,7 @@ fn camera(objects: usize) -> impl Strategy<Value = Camera> {
         }
     });
     (
-        (vector(-10.0, 10.0), aim(objects), number(-180.0, 180.0), sensor, orientation, focus, any::<bool>()),
+        (vector(-10.0, 10.0), aim(objects), number(-180.0, 180.0), sensor, orientation, focus, any::<(bool, bool)>()),
         (
             number(1.0, 800.0),
             number(0.5, 64.0),
@@ -210,10 +210,11 @@ fn camera(objects: usize) -> impl Strategy<Value = Camera> {
             number(1.0, 1e5),
             number(1e3, 25e3),
             number(240.0, 340.0),
+            prop_oneof![Just(0.0), number(0.0, 30.0)],
         ),
     )
         .prop_map(
-            |((position, aim, roll_deg, sensor, orientation, focus, depth_of_field), (mm, n, t, s, k, c))| Camera {
+            |((position, aim, roll_deg, sensor, orientation, focus, lens), (mm, n, t, s, k, c, nd_stops))| Camera {
                 position,
                 aim,
                 roll_deg,
@@ -224,8 +225,10 @@ fn camera(objects: usize) -> impl Strategy<Value = Camera> {
                 shutter_s: t,
                 iso: s,
                 white_balance_k: k,
+                nd_stops,
                 focus,
-                depth_of_field,
+                depth_of_field: lens.0,
+                focus_breathing: lens.1,
                 meter_constant: c,
             },
         )

@@ -94,6 +94,7 @@ fn a_hand_written_file_may_leave_out_default_values() {
     assert_eq!(warnings.len(), 1, "comments are dropped by a save: {warnings:?}");
     assert_eq!(scene.lights[0].aim, Aim::Object { object: ObjectId(0), offset: Vec3::ZERO });
     assert_eq!(scene.objects[0].material, MaterialPreset::Gold.material());
+    assert_eq!((scene.camera.nd_stops, scene.camera.focus_breathing), (0.0, false), "older files look as before");
     let written = write_scene(&scene);
     assert_eq!(parse_scene(&written).unwrap().0, scene);
     assert_eq!(write_scene(&parse_scene(&written).unwrap().0), written);

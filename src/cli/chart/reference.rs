@@ -28,7 +28,7 @@ pub fn load_or_render(folder: &Path, loaded: &Loaded, scene: &RenderScene, setti
     terminal::progress(format_args!("{}: reference of {spp} samples a pixel ...", loaded.scene.name));
     let film = render_all_passes(scene, settings, &RenderControl::new());
     let picture = film.develop(&loaded.scene);
-    let info = PictureInfo::new(&loaded.scene.camera, "path", spp, u64::from(settings.seed));
+    let info = PictureInfo::new(&loaded.scene, "path", spp, u64::from(settings.seed));
     if let Err(error) = io::export_picture(&path, &picture, &info) {
         log::warn!("the reference is not kept: {error}");
     }
@@ -85,7 +85,7 @@ mod tests {
         io::export_picture(
             &path(folder.path(), &loaded, &settings),
             &dark,
-            &PictureInfo::new(&loaded.scene.camera, "path", 1, 0),
+            &PictureInfo::new(&loaded.scene, "path", 1, 0),
         )
         .unwrap();
         assert_eq!(made(&loaded), dark);

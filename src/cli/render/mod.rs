@@ -165,7 +165,7 @@ fn draw_zbuffer(
     let draw_started = Instant::now();
     let (picture, triangles) = pool.install(|| zbuffer::picture(loaded, (width, height), side));
     let trace_s = draw_started.elapsed().as_secs_f64();
-    let info = PictureInfo::new(&loaded.scene.camera, "zbuffer", side * side, arguments.seed.into());
+    let info = PictureInfo::new(&loaded.scene, "zbuffer", side * side, arguments.seed.into());
     let first_picture_s = started.elapsed().as_secs_f64();
     io::export_picture(arguments.output(), &picture, &info)?;
     let report = RenderReport {
@@ -197,8 +197,7 @@ fn draw_zbuffer(
 
 /// Writes the picture in the requested size, for a film of any size.
 fn write(arguments: &Arguments, loaded: &Loaded, film: &Film, settings: &Settings) -> anyhow::Result<()> {
-    let camera = &loaded.scene.camera;
-    let info = PictureInfo::new(camera, film.method(), film.spp(), arguments.seed.into());
+    let info = PictureInfo::new(&loaded.scene, film.method(), film.spp(), arguments.seed.into());
     let (width, height) = (settings.width, settings.height);
     let picture = film.develop(&loaded.scene).resized(width, height);
     let layers = if arguments.layers { film.develop_layers(&loaded.scene) } else { Vec::new() };

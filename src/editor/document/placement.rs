@@ -150,8 +150,7 @@ mod tests {
         }
         let roles: Vec<Role> = scene.lights.iter().map(|l| l.role).collect();
         assert_eq!(roles, [Role::Key, Role::Fill, Role::Rim]);
-        let over =
-            |i: usize| readout::stops_over_camera(&scene.camera, readout::at_aim(&scene, &scene.lights[i]).lux_s);
+        let over = |i: usize| readout::stops_over_camera(&scene, readout::at_aim(&scene, &scene.lights[i]).lux_s);
         assert!(over(0).abs() < 0.2 && (over(1) + 2.0).abs() < 0.2, "{} {}", over(0), over(1));
         assert!(scene.lights[0].position.x < 0.0, "the key comes from the camera's left");
         assert!(scene.lights[2].position.z < 0.0, "the rim comes from behind");

@@ -3,7 +3,7 @@
 use crate::photo::beam::Beam;
 use crate::photo::emitter::EmitterShape;
 use crate::photo::{PhotometricLight, Strength, exposure};
-use crate::scene::{Camera, Light, Scene};
+use crate::scene::{Light, Scene};
 use glam::Vec2;
 use std::f32::consts::PI;
 
@@ -80,20 +80,23 @@ fn beamed_panel(beam: &Beam, half_size_m: Vec2, is_disc: bool, h: f32) -> f32 {
     sum / cells.max(1) as f32
 }
 
-/// Returns the f-number that a meter at the aim point reads from this light alone, at the camera's ISO and shutter.
-pub fn f_number(camera: &Camera, lux_s: f32) -> f32 {
-    exposure::f_number(lux_s, camera.iso, camera.meter_constant)
+/// Returns the f-number to set for a luminous exposure, at the camera's ISO and shutter, behind its ND filter and at its
+/// focus.
+pub fn f_number(scene: &Scene, lux_s: f32) -> f32 {
+    let camera = &scene.camera;
+    let on_sensor = lux_s * exposure::lens_transmission(camera, &scene.focused_lens());
+    exposure::f_number(on_sensor, camera.iso, camera.meter_constant)
 }
 
 /// Returns the exposure over the camera's setting, stops: positive is brighter than a correctly metered grey card.
-pub fn stops_over_camera(camera: &Camera, lux_s: f32) -> f32 {
-    2.0 * (f_number(camera, lux_s) / camera.f_number).log2()
+pub fn stops_over_camera(scene: &Scene, lux_s: f32) -> f32 {
+    2.0 * (f_number(scene, lux_s) / scene.camera.f_number).log2()
 }
 
 /// Returns the power dial, in whole thirds of a stop, that puts this light `stops` over the camera's setting at its
 /// aim.
 pub fn dial_for(scene: &Scene, light: &Light, stops: f32) -> f32 {
-    let over = stops_over_camera(&scene.camera, at_aim(scene, light).lux_s);
+    let over = stops_over_camera(scene, at_aim(scene, light).lux_s);
     if over.is_finite() {
         ((light.power.dial_stops + stops - over) * 3.0).round() / 3.0
     } else {
@@ -155,9 +158,10 @@ mod tests {
         let mut scene = Scene::default();
         let mut light = light(Emitter::RectPanel { width_m: 0.6, height_m: 0.9 });
         light.aim = Aim::Point(Vec3::ZERO);
-        for stops in [0.0, -1.0, 1.5] {
+        for (stops, nd_stops) in [(0.0, 0.0), (-1.0, 0.0), (1.5, 0.0), (0.0, 3.0)] {
+            scene.camera.nd_stops = nd_stops;
             light.power.dial_stops = dial_for(&scene, &light, stops);
-            let over = stops_over_camera(&scene.camera, at_aim(&scene, &light).lux_s);
+            let over = stops_over_camera(&scene, at_aim(&scene, &light).lux_s);
             assert!((over - stops).abs() < 1.0 / 6.0 + 1e-3, "{over} for {stops}");
         }
         scene.camera.f_number = 0.0;

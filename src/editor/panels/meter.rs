@@ -51,9 +51,14 @@ fn reading_ui(ui: &mut Ui, reading: &Reading) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(nearest_third(n)).size(26.0).strong());
         ui.vertical(|ui| {
-            let settings =
-                format!("at ISO {}, {}", Dial::Iso.label(reading.iso), Dial::Shutter.label(reading.shutter_s));
-            ui.label(RichText::new(settings).weak());
+            let settings = format!(
+                "at ISO {}, {}{}",
+                Dial::Iso.label(reading.iso),
+                Dial::Shutter.label(reading.shutter_s),
+                reading.compensation()
+            );
+            ui.add(Label::new(RichText::new(settings).weak()).wrap())
+                .on_hover_text("The f-number to set on the lens: it makes up for ND filter and bellows factor");
             ui.label(RichText::new(format!("f/{n:.2} exactly, EV {:.1}", reading.ev100())).weak());
         });
     });

@@ -146,7 +146,7 @@ impl App {
         let (Some(developed), Some(job)) = (self.rendering.developed(), self.rendering.job()) else { return };
         let picture = developed.picture.clone();
         let seed = job.settings.seed.into();
-        let info = PictureInfo::new(&self.document.scene().camera, developed.method, developed.spp, seed);
+        let info = PictureInfo::new(self.document.scene(), developed.method, developed.spp, seed);
         let work = move || {
             let result = files::export(&path, &picture, &info);
             TaskResult::Exported(path, result)

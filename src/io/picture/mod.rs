@@ -5,7 +5,7 @@ mod exr_file;
 use super::atomic;
 use super::error::SaveError;
 use crate::photo::{AovPicture, Picture, exposure};
-use crate::scene::Camera;
+use crate::scene::Scene;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -26,9 +26,9 @@ pub struct PictureInfo {
 }
 
 impl PictureInfo {
-    /// Returns the settings of a render; the exposure scale is the camera's.
-    pub fn new(camera: &Camera, method: &str, spp: u32, seed: u64) -> Self {
-        let cd_s_m2_per_unit = 1.0 / exposure::pixel_per_cd_s_m2(camera);
+    /// Returns the settings of a render; the exposure scale is that of the scene's camera.
+    pub fn new(scene: &Scene, method: &str, spp: u32, seed: u64) -> Self {
+        let cd_s_m2_per_unit = 1.0 / exposure::pixel_per_cd_s_m2(scene);
         PictureInfo { cd_s_m2_per_unit, spp, seed, method: method.to_owned() }
     }
 }

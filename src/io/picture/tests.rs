@@ -9,7 +9,7 @@ fn ramp(width: u32, height: u32, gain: f32) -> Picture {
 }
 
 fn info() -> PictureInfo {
-    PictureInfo::new(&Camera::default(), "path", 64, u64::MAX)
+    PictureInfo::new(&Scene::default(), "path", 64, u64::MAX)
 }
 
 #[test]

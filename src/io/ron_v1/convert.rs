@@ -137,8 +137,10 @@ fn camera_from(file: CameraV1, ids: &ObjectIds) -> Result<Camera, UnknownName> {
         shutter_s: file.shutter_s,
         iso: file.iso,
         white_balance_k: file.white_balance_k,
+        nd_stops: file.nd_stops,
         focus: ids.focus(file.focus)?,
         depth_of_field: file.depth_of_field,
+        focus_breathing: file.focus_breathing,
         meter_constant: file.meter_constant,
     })
 }
@@ -159,6 +161,7 @@ fn camera_to(scene: &Scene) -> CameraV1 {
         shutter_s: camera.shutter_s,
         iso: camera.iso,
         white_balance_k: camera.white_balance_k,
+        nd_stops: camera.nd_stops,
         focus: match camera.focus {
             Focus::OnAim => FocusV1::OnAim,
             Focus::OnObject { object, offset } => scene.object(object).map_or(FocusV1::OnAim, |object| {
@@ -167,6 +170,7 @@ fn camera_to(scene: &Scene) -> CameraV1 {
             Focus::Distance(distance) => FocusV1::Distance(distance),
         },
         depth_of_field: camera.depth_of_field,
+        focus_breathing: camera.focus_breathing,
         meter_constant: camera.meter_constant,
     }
 }

@@ -93,9 +93,13 @@ struct CameraV1 {
     iso: f32,
     white_balance_k: f32,
     #[serde(default, skip_serializing_if = "is_default")]
+    nd_stops: f32,
+    #[serde(default, skip_serializing_if = "is_default")]
     focus: FocusV1,
     #[serde(default, skip_serializing_if = "is_default")]
     depth_of_field: bool,
+    #[serde(default, skip_serializing_if = "is_default")]
+    focus_breathing: bool,
     #[serde(default = "default_meter_constant", skip_serializing_if = "is_default_meter_constant")]
     meter_constant: f32,
 }

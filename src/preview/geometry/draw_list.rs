@@ -129,7 +129,7 @@ impl DrawList {
             };
             let Some(area_m2) = light.shape.projected_area_m2() else { continue };
             let world_from_emitter = light.world_from_light * Affine3A::from_scale(scale);
-            let luminance = picture_scale(&light, &scene.camera) * light.axial_intensity() / area_m2;
+            let luminance = picture_scale(&light, scene) * light.axial_intensity() / area_m2;
             if !world_from_emitter.is_finite() || !luminance.is_finite() {
                 continue;
             }
@@ -157,7 +157,7 @@ impl DrawList {
         flags: u32,
         pick: Option<Pick>,
     ) -> u32 {
-        let glow = emission(material, &scene.camera);
+        let glow = emission(material, scene);
         let glows = glow.is_finite() && glow.max_element() > 0.0;
         let surface = GpuSurface {
             base_color: material.base_color.map(|c| c.clamp(0.0, 1.0)),

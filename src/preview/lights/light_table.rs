@@ -4,7 +4,7 @@
 use crate::photo::beam::Beam;
 use crate::photo::emitter::{EmitterShape, IntensityDistribution};
 use crate::photo::{PhotometricLight, exposure};
-use crate::scene::{Camera, Cone, LightId, Material, Room, Scene};
+use crate::scene::{Cone, LightId, Material, Room, Scene};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
@@ -143,7 +143,7 @@ impl LightTable {
                 // A closed room blocks suns and surrounds
                 continue;
             }
-            let scale = picture_scale(&light, &scene.camera);
+            let scale = picture_scale(&light, scene);
             let Some(gpu) = gpu_light(&light, scale) else {
                 let irradiance = scale * light.illuminance();
                 table.ambient.irradiance += irradiance;
@@ -181,13 +181,13 @@ impl LightTable {
 }
 
 /// Returns the picture value of one unit of a light, per channel.
-pub(crate) fn picture_scale(light: &PhotometricLight, camera: &Camera) -> Vec3 {
-    light.tint * exposure::pixel_per_cd_s_m2(camera) * light.exposure_time_s
+pub(crate) fn picture_scale(light: &PhotometricLight, scene: &Scene) -> Vec3 {
+    light.tint * exposure::pixel_per_cd_s_m2(scene) * light.exposure_time_s
 }
 
 /// Returns the picture value of a surface's emission.
-pub(crate) fn emission(material: &Material, camera: &Camera) -> Vec3 {
-    Vec3::from(material.emission_cd_m2) * exposure::pixel_per_cd_s_m2(camera) * camera.shutter_s
+pub(crate) fn emission(material: &Material, scene: &Scene) -> Vec3 {
+    Vec3::from(material.emission_cd_m2) * exposure::pixel_per_cd_s_m2(scene) * scene.camera.shutter_s
 }
 
 /// Returns true if all values are finite and the light is not black.
@@ -266,7 +266,7 @@ fn bounced_irradiance(room: &Room, flux: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Aim, Emitter, Light, Output};
+    use crate::scene::{Aim, Camera, Emitter, Light, Output};
     use glam::Affine3A;
 
     fn light(emitter: Emitter, output: Output) -> Light {
@@ -277,13 +277,13 @@ mod tests {
     fn the_shutter_scales_continuous_light_and_not_flash() {
         let flash = light(Emitter::Point, Output::FlashWs { energy_ws: 100.0, efficacy_lm_s_per_ws: 40.0 });
         let lamp = light(Emitter::Point, Output::Lumens(1000.0));
-        let scale = |light: &Light, camera: &Camera| {
-            picture_scale(&PhotometricLight::in_frame(light, Affine3A::IDENTITY, camera), camera)
+        let scale = |light: &Light, shutter_s: f32| {
+            let scene = Scene { camera: Camera { shutter_s, ..Camera::default() }, ..Scene::default() };
+            picture_scale(&PhotometricLight::in_frame(light, Affine3A::IDENTITY, &scene.camera), &scene)
         };
-        let slow = Camera { shutter_s: 1.0 / 60.0, ..Camera::default() };
-        let fast = Camera { shutter_s: 1.0 / 120.0, ..Camera::default() };
-        assert_eq!(scale(&flash, &slow), scale(&flash, &fast));
-        assert!((scale(&lamp, &slow) / scale(&lamp, &fast) - 2.0).abs().max_element() < 1e-6);
+        let (slow, fast) = (1.0 / 60.0, 1.0 / 120.0);
+        assert_eq!(scale(&flash, slow), scale(&flash, fast));
+        assert!((scale(&lamp, slow) / scale(&lamp, fast) - 2.0).abs().max_element() < 1e-6);
     }
 
     #[test]

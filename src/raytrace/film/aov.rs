@@ -109,7 +109,7 @@ mod tests {
     fn aovs_hold_the_first_hits_object_depth_normal_and_albedo() {
         let scene = still_life();
         let camera = &scene.camera;
-        let frame = camera.frame(Vec3::ZERO, WIDTH as f32 / HEIGHT as f32);
+        let frame = scene.camera_frame(WIDTH as f32 / HEIGHT as f32);
         let prepared = prepare(&scene, &Assets::default()).unwrap();
         let objects = primary_objects(&prepared, WIDTH, HEIGHT);
         let at = |x: u32, y: u32| (y * WIDTH + x) as usize;

@@ -144,7 +144,7 @@ impl Film {
 
     /// Factor of each layer from means to picture values.
     fn weights(&self, scene: &Scene) -> Vec<Vec3> {
-        let scale = exposure::pixel_per_cd_s_m2(&scene.camera);
+        let scale = exposure::pixel_per_cd_s_m2(scene);
         self.layers.iter().map(|layer| layer.weight(scene) * scale).collect()
     }
 

@@ -13,7 +13,7 @@ use crate::raytrace::film::NonFiniteReport;
 use crate::raytrace::prepare::PrepareError;
 use crate::raytrace::ray_caster::RayCaster;
 use crate::raytrace::render_scene::ROOM;
-use crate::scene::{Assets, Camera, Light, Scene};
+use crate::scene::{Assets, Light, Scene};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -39,7 +39,8 @@ pub struct LightMeter {
     studio: MeteredStudio,
     /// Blank readings of all lights that are on, in the scene's order, with the layers of those with any output.
     order: Vec<(LightReading, Option<usize>)>,
-    camera: Camera,
+    /// A reading without lights, at the camera's settings.
+    blank: Reading,
 }
 
 impl LightMeter {
@@ -49,7 +50,7 @@ impl LightMeter {
         let layer_of = |light: &Light| studio.lights.iter().position(|metered| metered.id == light.id);
         let on = scene.lights.iter().filter(|light| light.on);
         let order = on.map(|light| (blank_reading(scene, light), layer_of(light))).collect();
-        Ok(LightMeter { studio, order, camera: scene.camera.clone() })
+        Ok(LightMeter { studio, order, blank: Reading::new(Vec::new(), scene) })
     }
 
     /// Reads the meter. None if cancelled.
@@ -71,7 +72,7 @@ impl LightMeter {
                 Some(next) => round = next,
                 None => {
                     return Some(MeterResult {
-                        reading: Reading::new(self.in_order(readings), &self.camera),
+                        reading: Reading { lights: self.in_order(readings), ..self.blank.clone() },
                         paths: replicates.iter().map(|replicate| u64::from(replicate.paths)).sum(),
                         rays,
                         nonfinite: replicates.iter().map(|replicate| &replicate.nonfinite).collect(),

@@ -98,7 +98,7 @@ impl LiveFilm {
     /// from neighbours that show the same surface.
     pub fn develop(&self, scene: &Scene, camera: &LiveCamera, stride: u32) -> Picture {
         // Weight of each layer, from means to picture values
-        let scale = exposure::pixel_per_cd_s_m2(&scene.camera);
+        let scale = exposure::pixel_per_cd_s_m2(scene);
         let weights: Vec<Vec3> = self.layers.iter().map(|layer| layer.weight(scene) * scale).collect();
 
         // Resolve the tiles in parallel

@@ -294,6 +294,9 @@ fn power_colour_and_switch_of_a_light_trace_no_ray() {
     assert!(((one + other) / dimmed - 1.0).abs() < 1e-5, "{one} + {other} = {dimmed}");
     edited(&|scene| scene.lights[0].color.source = crate::scene::ColorSource::Kelvin(3200.0));
     edited(&|scene| (scene.camera.iso, scene.camera.f_number, scene.camera.shutter_s) = (400.0, 8.0, 0.1));
+    let unfiltered = edited(&|_| {});
+    let filtered = edited(&|scene| scene.camera.nd_stops = 3.0);
+    assert!((filtered / unfiltered - 0.125).abs() < 1e-6, "3 stops of ND: {filtered} of {unfiltered}");
     edited(&|scene| scene.camera.position.x += 1.0);
     edited(&|scene| scene.objects[0].name = "Backdrop".to_owned());
     // A light that is off can move away and back.

@@ -114,7 +114,11 @@ fn exposure_and_white_balance_need_development() {
     let cases: [(SceneChange, &[(&str, Edit)]); 4] = [
         (
             SceneChange { exposure: true, ..SceneChange::default() },
-            &[("iso", |s| s.camera.iso = 400.0), ("meter_constant", |s| s.camera.meter_constant = 330.0)],
+            &[
+                ("iso", |s| s.camera.iso = 400.0),
+                ("meter_constant", |s| s.camera.meter_constant = 330.0),
+                ("nd_stops", |s| s.camera.nd_stops = 3.0),
+            ],
         ),
         (SceneChange { aperture: true, ..SceneChange::default() }, &[("f_number", |s| s.camera.f_number = 11.0)]),
         (SceneChange { shutter: true, ..SceneChange::default() }, &[("shutter_s", |s| s.camera.shutter_s = 0.5)]),
@@ -148,6 +152,25 @@ fn framing_and_focus_move_the_camera_rays() {
     let focus = SceneChange { focus: true, ..SceneChange::default() };
     assert!(focus.moves_camera_rays(true) && !focus.moves_camera_rays(false));
     assert_class(focus, &[("focus", |s| s.camera.focus = Focus::Distance(2.0))]);
+}
+
+#[test]
+fn with_breathing_the_focus_moves_rays_and_needs_development() {
+    let breathing = SceneChange { focus: true, view: true, exposure: true, ..SceneChange::default() };
+    assert!(breathing.moves_camera_rays(false) && breathing.needs_development());
+    assert_class(breathing.clone(), &[("focus_breathing", |s| s.camera.focus_breathing = true)]);
+    // The camera focuses on the vase, and the vase moves.
+    let focused = |z: f32| {
+        let mut scene = scene();
+        scene.camera.focus_breathing = true;
+        scene.camera.focus = Focus::OnObject { object: ObjectId(1), offset: Vec3::ZERO };
+        scene.objects[0].transform.position = Vec3::new(0.0, 1.5, z);
+        scene
+    };
+    let moved = SceneChange::between(&focused(0.0), &focused(1.0));
+    assert_eq!(moved, SceneChange { geometry: true, focus: false, ..breathing.clone() });
+    let refocused = Scene { camera: Camera { focus: Focus::Distance(1.0), ..focused(0.0).camera }, ..focused(0.0) };
+    assert_eq!(SceneChange::between(&focused(0.0), &refocused), breathing);
 }
 
 #[test]

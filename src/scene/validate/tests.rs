@@ -69,6 +69,8 @@ fn every_number_has_a_range() {
         ("camera.focal_length_mm", |s| s.camera.focal_length_mm = 0.0),
         ("camera.f_number", |s| s.camera.f_number = -8.0),
         ("camera.iso", |s| s.camera.iso = f32::INFINITY),
+        ("camera.nd_stops", |s| s.camera.nd_stops = -1.0),
+        ("camera.nd_stops", |s| s.camera.nd_stops = 31.0),
         ("camera.shutter_s", |s| s.camera.shutter_s = f32::NAN),
         ("camera.sensor.width_mm", |s| s.camera.sensor = Sensor::Custom { width_mm: -1.0, height_mm: 24.0 }),
         ("camera.focus", |s| s.camera.focus = Focus::OnObject { object: ObjectId(9), offset: Vec3::ZERO }),
@@ -131,6 +133,9 @@ fn unlikely_scenes_have_warnings() {
         }),
         ("gives 0", |s| s.lights[0].power.output = Output::Lumens(0.0)),
         ("looks past everything", |s| s.camera.aim = Aim::Point(Vec3::new(0.0, 1.5, 9.0))),
+        ("nearer than a lens of 85 mm focuses", |s| {
+            (s.camera.focus, s.camera.focus_breathing) = (Focus::Distance(0.05), true);
+        }),
         ("is inside \"Box\"", |s| s.lights[0].position = Vec3::splat(0.2)),
         ("is outside the room", |s| {
             s.room = Some(Room::default());

@@ -231,10 +231,13 @@ fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
     let at = readout::at_aim(scene, light);
     let camera = &scene.camera;
     let flash = light.power.output.is_flash();
-    let n = readout::f_number(camera, at.lux_s);
-    let over = readout::stops_over_camera(camera, at.lux_s);
+    let n = readout::f_number(scene, at.lux_s);
+    let over = readout::stops_over_camera(scene, at.lux_s);
     let settings = format!("at ISO {} and {}", Dial::Iso.label(camera.iso), Dial::Shutter.label(camera.shutter_s));
-    let tip = format!("What a meter at the aim asks for, {settings}, from this light alone");
+    let tip = format!(
+        "The f-number that a meter at the aim asks for, {settings}, from this light alone; it makes up for ND filter and \
+         bellows factor"
+    );
     fact(ui, "Meter reads", &tip, RichText::new(format!("f/{n:.1}")).strong());
     let reads = if over.is_finite() { format!("{} stops", widgets::signed_stops(over)) } else { "no light".to_owned() };
     let tip = format!("Against the camera's {}: positive is brighter", Dial::FNumber.label(camera.f_number));

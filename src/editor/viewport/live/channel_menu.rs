@@ -4,7 +4,7 @@
 use crate::editor::viewport::live::preview_host::ViewOptions;
 use crate::photo::exposure;
 use crate::preview::{Channel, FALSE_STOPS, Gloss, false_color};
-use crate::scene::{Camera, Scene};
+use crate::scene::Scene;
 use eframe::egui::{Align2, Checkbox, Color32, FontId, Painter, Pos2, RadioButton, Rect, Ui, UiBuilder, vec2};
 use std::f32::consts::PI;
 
@@ -55,7 +55,7 @@ pub fn channel_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, view_options: &mu
         .on_hover_text("What the view shows of the studio");
     });
     if view_options.channel == Channel::Illuminance {
-        paint_legend(&ui.painter_at(view), view, &scene.camera);
+        paint_legend(&ui.painter_at(view), view, scene);
     }
 }
 
@@ -87,11 +87,11 @@ fn tip(channel: Channel) -> &'static str {
 
 /// Returns the lines of the legend: stops against the camera's exposure, in lux seconds and in lux at the camera's
 /// shutter.
-fn legend_lines(camera: &Camera) -> Vec<([u8; 3], String)> {
-    let lux_s = PI / exposure::pixel_per_cd_s_m2(camera);
+fn legend_lines(scene: &Scene) -> Vec<([u8; 3], String)> {
+    let lux_s = PI / exposure::pixel_per_cd_s_m2(scene);
     let line = |stops: i32| {
         let lux_s = lux_s * (stops as f32).exp2();
-        let text = format!("{stops:+}   {} lx s   {} lx", rounded(lux_s), rounded(lux_s / camera.shutter_s));
+        let text = format!("{stops:+}   {} lx s   {} lx", rounded(lux_s), rounded(lux_s / scene.camera.shutter_s));
         (false_color(stops as f32), text)
     };
     (FALSE_STOPS.0..=FALSE_STOPS.1).rev().map(line).collect()
@@ -106,8 +106,8 @@ fn rounded(value: f32) -> String {
     }
 }
 
-fn paint_legend(painter: &Painter, view: Rect, camera: &Camera) {
-    let lines = legend_lines(camera);
+fn paint_legend(painter: &Painter, view: Rect, scene: &Scene) {
+    let lines = legend_lines(scene);
     let size = vec2(SWATCH.0 + 168.0, SWATCH.1 * lines.len() as f32 + 30.0);
     let place = Rect::from_min_size(view.left_bottom() + vec2(8.0, -size.y - 8.0), size);
     painter.rect_filled(place, 4.0, Color32::from_black_alpha(190));
@@ -125,12 +125,13 @@ fn paint_legend(painter: &Painter, view: Rect, camera: &Camera) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Camera;
 
     #[test]
     fn the_legend_shows_the_illuminance_of_the_camera_setting() {
         // ISO 100, f/8: 160 lx s (light_and_camera.md), at 1/125 s 20 000 lx.
         let camera = Camera { iso: 100.0, f_number: 8.0, shutter_s: 0.008, ..Camera::default() };
-        let lines = legend_lines(&camera);
+        let lines = legend_lines(&Scene { camera, ..Scene::default() });
         let set = lines.iter().find(|(_, line)| line.starts_with("+0")).unwrap();
         assert_eq!(set.1, "+0   160 lx s   20000 lx");
         assert_eq!(lines.len(), 10);
