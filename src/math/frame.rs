@@ -13,11 +13,17 @@ pub fn orthonormal_basis(normal: Vec3) -> (Vec3, Vec3) {
     (tangent, bitangent)
 }
 
-/// Returns the frame at `eye` that looks along its -Z at `target` with world +Y up, rotated by `roll_rad` about its own
-/// Z. The frame is finite for all arguments: vertical directions use world -Z or +Z as up, `target == eye` looks along
-/// world -Z.
+/// Returns the frame at `eye` that looks along its -Z at `target`; see [`look_along`]. `target == eye` looks along world
+/// -Z.
 pub fn look_at(eye: Vec3, target: Vec3, roll_rad: f32) -> Affine3A {
-    let back = (eye - target).try_normalize().unwrap_or(Vec3::Z);
+    look_along(eye, target - eye, roll_rad)
+}
+
+/// Returns the frame at `eye` that looks along its -Z in the direction `ahead`, of any length, with world +Y up, rotated
+/// by `roll_rad` about its own Z. The frame is finite for all arguments: vertical directions use world -Z or +Z as up,
+/// the zero vector looks along world -Z.
+pub fn look_along(eye: Vec3, ahead: Vec3, roll_rad: f32) -> Affine3A {
+    let back = (-ahead).try_normalize().unwrap_or(Vec3::Z);
     let right = Vec3::Y.cross(back);
     let right = if right.length_squared() > 1e-10 { right.normalize() } else { Vec3::X };
     let up = back.cross(right);

@@ -9,6 +9,6 @@ pub mod simd;
 pub mod warp;
 
 pub use angle::{sin_cos_eighth, sin_cos_turn};
-pub use frame::{look_at, orthonormal_basis};
+pub use frame::{look_along, look_at, orthonormal_basis};
 pub use ray::{Ray, gamma, offset_origin};
 pub use safe::{angle_between, safe_acos, safe_sqrt};

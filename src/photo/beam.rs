@@ -1,7 +1,7 @@
 //! The beam that a modifier leaves of a light: the transmission of a dish's or snoot's cone, a grid and barn doors by
 //! direction.
 
-use super::emitter::{EmitterShape, cone_falloff};
+use super::emitter::{EmitterShape, cone_falloff_at};
 use crate::scene::{BarnDoors, Cone, Modifier};
 use glam::Vec3;
 use std::f32::consts::TAU;
@@ -35,9 +35,10 @@ impl Beam {
 
     /// Returns the transmission in a unit direction of the light's frame (right, up, back: the axis is -Z), 0 to 1.
     pub fn transmission(&self, direction_light: Vec3) -> f32 {
-        let cos_axis = -direction_light.z;
-        let cone = self.cone.map_or(1.0, |cone| cone_falloff(cos_axis, cone.inner_deg, cone.outer_deg));
-        let grid = self.grid_deg.map_or(1.0, |full_deg| cone_falloff(cos_axis, 0.0, full_deg));
+        let Vec3 { x, y, z } = direction_light;
+        let angle_rad = x.hypot(y).atan2(-z);
+        let cone = self.cone.map_or(1.0, |cone| cone_falloff_at(angle_rad, cone.inner_deg, cone.outer_deg));
+        let grid = self.grid_deg.map_or(1.0, |full_deg| cone_falloff_at(angle_rad, 0.0, full_deg));
         let doors = self.doors.map_or(1.0, |doors| doors_transmission(&doors, direction_light));
         cone * grid * doors
     }

@@ -131,10 +131,16 @@ impl EmitterShape {
     }
 }
 
+/// Returns the falloff of a cone by the cosine against its axis; see [`cone_falloff_at`]. Within 0.03 degrees of the
+/// angle: the cosine rounds near the axis.
+pub fn cone_falloff(cos_axis: f32, inner_deg: f32, outer_deg: f32) -> f32 {
+    cone_falloff_at(safe_acos(cos_axis), inner_deg, outer_deg)
+}
+
 /// Returns the falloff of a cone at an angle from its axis: 1 inside, 0 outside, linear in angle between. Full angles,
 /// degrees.
-pub fn cone_falloff(cos_axis: f32, inner_deg: f32, outer_deg: f32) -> f32 {
-    let angle_deg = safe_acos(cos_axis).to_degrees();
+pub fn cone_falloff_at(angle_rad: f32, inner_deg: f32, outer_deg: f32) -> f32 {
+    let angle_deg = angle_rad.to_degrees();
     let (inner, outer) = (0.5 * inner_deg.min(outer_deg), 0.5 * outer_deg);
     if angle_deg <= inner {
         1.0

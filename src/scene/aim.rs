@@ -25,3 +25,10 @@ pub enum Aim {
         pitch_deg: f32,
     },
 }
+
+/// Returns the unit direction of a pan and a tilt, degrees; see [`Aim::Angles`].
+pub fn direction_of_angles(yaw_deg: f32, pitch_deg: f32) -> Vec3 {
+    let (sin_yaw, cos_yaw) = yaw_deg.to_radians().sin_cos();
+    let (sin_pitch, cos_pitch) = pitch_deg.to_radians().sin_cos();
+    Vec3::new(-sin_yaw * cos_pitch, sin_pitch, -cos_yaw * cos_pitch)
+}

@@ -164,7 +164,7 @@ impl Camera {
             if aspect >= film.x / film.y { (film.x, film.x / aspect) } else { (film.y * aspect, film.y) };
         let image_distance_mm = self.focal_length_mm * (1.0 + lens.magnification);
         CameraFrame {
-            world_from_camera: math::look_at(self.position, lens.target, -self.roll_deg.to_radians()),
+            world_from_camera: math::look_along(self.position, lens.ahead, -self.roll_deg.to_radians()),
             half_extent: Vec2::new(width_mm, height_mm) / (2.0 * image_distance_mm),
         }
     }
@@ -258,6 +258,18 @@ mod tests {
         let clip = frame.clip_from_world(0.01) * world.extend(1.0);
         assert!((clip.x / clip.w - 0.5).abs() < 1e-5 && (clip.y / clip.w - 0.5).abs() < 1e-5);
         assert!((clip.z / clip.w - 0.005).abs() < 1e-6, "depth is near / distance");
+    }
+
+    #[test]
+    fn a_camera_with_fixed_angles_looks_the_same_way_a_million_metres_away() {
+        let aim = Aim::Angles { yaw_deg: 31.0, pitch_deg: -12.0 };
+        let frame = |position: Vec3| {
+            let camera = Camera { position, aim, ..Camera::default() };
+            Scene { camera, ..Scene::default() }.camera_frame(1.5)
+        };
+        let far = Vec3::new(1e6, 1e5, -1e6);
+        assert_eq!(frame(far).world_from_camera.matrix3, frame(Vec3::ZERO).world_from_camera.matrix3);
+        assert_eq!(frame(far).position(), far);
     }
 
     #[test]

@@ -17,8 +17,8 @@ const MAX_MAGNIFICATION: f32 = 10.0;
 /// A camera's lens at its focus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FocusedLens {
-    /// World position at which the camera aims.
-    pub target: Vec3,
+    /// Vector along the optical axis, from the lens to what the camera aims at, metres; a unit vector for fixed angles.
+    pub ahead: Vec3,
     /// Distance from the lens to the plane of focus along the optical axis, metres; none if that is behind the camera.
     pub focus_m: Option<f32>,
     /// Magnification m that the image distance f (1 + m) follows; 0 without focus breathing.
@@ -30,18 +30,17 @@ pub struct FocusedLens {
 impl FocusedLens {
     /// Returns the lens of a camera in a scene, which may be another than the scene's own camera.
     pub fn new(scene: &Scene, camera: &Camera) -> Self {
-        let target = scene.aim_point(&camera.aim, camera.position);
-        let axis = crate::math::look_at(camera.position, target, 0.0).matrix3.z_axis;
-        let along_axis = |point: Vec3| (camera.position - point).dot(axis.into());
+        let ahead = scene.aim_vector(&camera.aim, camera.position);
+        let back: Vec3 = crate::math::look_along(camera.position, ahead, 0.0).matrix3.z_axis.into();
         let distance_m = match camera.focus {
-            Focus::OnAim => along_axis(target),
+            Focus::OnAim => -ahead.dot(back),
             Focus::OnObject { object, offset } => {
-                along_axis(scene.aim_point(&Aim::Object { object, offset }, camera.position))
+                -scene.aim_vector(&Aim::Object { object, offset }, camera.position).dot(back)
             }
             Focus::Distance(distance_m) => distance_m,
         };
         let lens = FocusedLens {
-            target,
+            ahead,
             focus_m: Some(distance_m).filter(|distance_m| *distance_m > 0.0),
             magnification: 0.0,
             focal_length_m: camera.focal_length_mm * 1e-3,

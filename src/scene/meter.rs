@@ -1,6 +1,7 @@
 //! The light meter in the studio. It casts no shadow and shows in no picture.
 
 use super::Scene;
+use super::aim::direction_of_angles;
 use glam::Vec3;
 
 /// The receptor of an incident meter.
@@ -46,11 +47,7 @@ impl Meter {
             Facing::Camera => (scene.camera.position - self.position)
                 .try_normalize()
                 .unwrap_or_else(|| scene.camera_frame(1.0).forward()),
-            Facing::Angles { yaw_deg, pitch_deg } => {
-                let (sin_yaw, cos_yaw) = yaw_deg.to_radians().sin_cos();
-                let (sin_pitch, cos_pitch) = pitch_deg.to_radians().sin_cos();
-                Vec3::new(-sin_yaw * cos_pitch, sin_pitch, -cos_yaw * cos_pitch)
-            }
+            Facing::Angles { yaw_deg, pitch_deg } => direction_of_angles(yaw_deg, pitch_deg),
         }
     }
 }

@@ -46,6 +46,7 @@ pub use tessellate::{ROOM_STANDS_BACK_M, room_mesh, tessellate};
 pub use texture::{MaterialTextures, Texture, TextureRef, TextureSlot};
 pub use validate::{Finding, LIST_LIMIT, Severity, placement, validate};
 
+use aim::direction_of_angles;
 use glam::Vec3;
 
 /// A whole studio.
@@ -117,26 +118,32 @@ impl Scene {
         (2..).map(|n| format!("{stem} {n}")).find(|name| !taken(name)).unwrap_or_default()
     }
 
-    /// Returns the world-space point of an aim from `position`. For an object that does not exist, it is the origin;
-    /// `validate` reports that.
+    /// Returns the world-space point of an aim from `position`; 1 m ahead for angles. For an object that does not
+    /// exist, it is the origin; `validate` reports that.
+    ///
+    /// A direction is to be computed by [`Scene::aim_vector`]: far from the origin the point rounds to centimetres.
     pub fn aim_point(&self, aim: &Aim, position: Vec3) -> Vec3 {
         match *aim {
             Aim::Point(point) => point,
             Aim::Object { object, offset } => {
                 self.object(object).map_or(Vec3::ZERO, |o| o.transform.world_from_object().transform_point3(offset))
             }
-            Aim::Angles { yaw_deg, pitch_deg } => {
-                let (sin_yaw, cos_yaw) = yaw_deg.to_radians().sin_cos();
-                let (sin_pitch, cos_pitch) = pitch_deg.to_radians().sin_cos();
-                position + Vec3::new(-sin_yaw * cos_pitch, sin_pitch, -cos_yaw * cos_pitch)
-            }
+            Aim::Angles { .. } => position + self.aim_vector(aim, position),
+        }
+    }
+
+    /// Returns the vector from `position` to the point of an aim, metres, world space; a unit vector for angles.
+    pub fn aim_vector(&self, aim: &Aim, position: Vec3) -> Vec3 {
+        match *aim {
+            Aim::Angles { yaw_deg, pitch_deg } => direction_of_angles(yaw_deg, pitch_deg),
+            Aim::Point(_) | Aim::Object { .. } => self.aim_point(aim, position) - position,
         }
     }
 
     /// Returns the world frame of a light: columns right, up, back (it faces -Z), and its position.
     pub fn light_frame(&self, light: &Light) -> glam::Affine3A {
-        let target = self.aim_point(&light.aim, light.position);
-        crate::math::look_at(light.position, target, light.roll_deg.to_radians())
+        let ahead = self.aim_vector(&light.aim, light.position);
+        crate::math::look_along(light.position, ahead, light.roll_deg.to_radians())
     }
 
     /// Returns the camera's frame for a picture aspect (width / height).

@@ -208,10 +208,7 @@ fn mirrored_light(scene: &Scene, light: &Light, together: &[Item], plane: &Mirro
     let target = plane.mirror_point(scene.aim_point(&light.aim, light.position));
     let aim = match light.aim {
         Aim::Point(_) => Aim::Point(target),
-        Aim::Angles { .. } => {
-            let direction = scene.aim_point(&light.aim, light.position) - light.position;
-            angles_towards(plane.mirror_direction(direction))
-        }
+        Aim::Angles { .. } => angles_towards(plane.mirror_direction(scene.aim_vector(&light.aim, light.position))),
         // In the space of a subject that is mirrored as well, the aim point only changes the sign of x.
         Aim::Object { object, offset } if together.contains(&Item::Object(object)) => {
             Aim::Object { object, offset: offset * Vec3::new(-1.0, 1.0, 1.0) }

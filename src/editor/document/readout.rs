@@ -20,7 +20,7 @@ pub struct AimReadout {
 
 /// Returns the reading of a light at its own aim point, on or off.
 pub fn at_aim(scene: &Scene, light: &Light) -> AimReadout {
-    let distance = (scene.aim_point(&light.aim, light.position) - light.position).length();
+    let distance = scene.aim_vector(&light.aim, light.position).length();
     let light = PhotometricLight::new(scene, light);
     let illuminance = on_axis(&light, distance);
     AimReadout {

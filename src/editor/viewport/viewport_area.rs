@@ -326,7 +326,7 @@ impl Viewport {
         }
         if let CentralView::Light(id) = input.central_view {
             if let Some(light) = scene.light(id) {
-                let distance_m = (scene.aim_point(&light.aim, light.position) - light.position).length();
+                let distance_m = scene.aim_vector(&light.aim, light.position).length();
                 light_view::paint(&painter, light, distance_m, &frame, rect);
                 let text =
                     format!("Through {}: orbit swings it, the wheel moves it nearer or away.    Esc ends", light.name);

@@ -174,8 +174,7 @@ impl Gizmos {
         self.add_emitter(light, &frame, style, size_m);
         self.handles.push((pick, first..self.lines.len()));
 
-        let target = scene.aim_point(&light.aim, light.position);
-        let reach = (target - light.position).length();
+        let reach = scene.aim_vector(&light.aim, light.position).length();
         if let Emitter::Spot { inner_deg, outer_deg } = light.emitter {
             self.add_cone(&frame, style, inner_deg.min(outer_deg), outer_deg, reach.clamp(0.4, 2.5));
         }
@@ -183,7 +182,7 @@ impl Gizmos {
             self.line(
                 LineStyle { through: 0.12, ..style.faint(if selected { 0.7 } else { 0.28 }) },
                 light.position,
-                target,
+                scene.aim_point(&light.aim, light.position),
             );
         }
     }

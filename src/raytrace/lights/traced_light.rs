@@ -4,9 +4,10 @@ use super::disc::Disc;
 use super::rect::Rect;
 use super::sphere::Sphere;
 use super::sun::SunDisc;
+use crate::math::angle_between;
 use crate::photo::PhotometricLight;
 use crate::photo::beam::Beam;
-use crate::photo::emitter::{EmitterShape, IntensityDistribution, cone_falloff};
+use crate::photo::emitter::{EmitterShape, IntensityDistribution, cone_falloff_at};
 use crate::scene::Cone;
 use glam::{Mat3, Vec2, Vec3, Vec3A};
 use std::f32::consts::PI;
@@ -231,8 +232,7 @@ impl TracedLight {
         match self.source {
             LightSource::Point { position, intensity } => sample_position(point, position, intensity),
             LightSource::Spot { position, axis, intensity, inner_deg, outer_deg } => {
-                let cos = (point - position).normalize_or_zero().dot(axis);
-                let falloff = cone_falloff(cos, inner_deg, outer_deg);
+                let falloff = cone_falloff_at(angle_between(point - position, axis), inner_deg, outer_deg);
                 if falloff > 0.0 { sample_position(point, position, intensity * falloff) } else { None }
             }
             LightSource::Rect { rect, luminance } => {

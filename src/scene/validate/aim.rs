@@ -19,7 +19,7 @@ pub(super) fn check_aim(scene: &Scene, aim: &Aim, position: Vec3, has_direction:
             check.number("aim.pitch_deg", pitch_deg, Allowed::between(-90.0, 90.0, "degrees"));
         }
     }
-    let offset = scene.aim_point(aim, position) - position;
+    let offset = scene.aim_vector(aim, position);
     if has_direction && position.is_finite() && offset.is_finite() && offset.length() < 1e-5 {
         check.error("aim", format!("it aims at its own place {position}, which is no direction"));
     }

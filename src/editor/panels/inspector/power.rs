@@ -100,7 +100,7 @@ pub fn change_emitter(scene: &Scene, light: &mut Light, emitter: Emitter, modifi
     light.power.output = if is {
         Output::Lux(full)
     } else {
-        let distance_m = (scene.aim_point(&light.aim, light.position) - light.position).length().max(0.1);
+        let distance_m = scene.aim_vector(&light.aim, light.position).length().max(0.1);
         convert(
             &Light {
                 power: crate::scene::Power { output: Output::LuxAt { lux: full, distance_m }, ..light.power },

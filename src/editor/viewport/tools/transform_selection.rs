@@ -136,7 +136,7 @@ impl DragSelection {
             Aim::Point(point) => Aim::Point(self.pivot + turn * (point - self.pivot)),
             Aim::Angles { .. } => angles_towards(ahead),
         };
-        let level = math::look_at(Vec3::ZERO, self.aimed_along(&new_aim, new_position, ahead), 0.0).matrix3;
+        let level = math::look_along(Vec3::ZERO, self.aimed_along(&new_aim, new_position, ahead), 0.0).matrix3;
         let right = turn * Vec3::from(frame.matrix3.x_axis);
         (new_aim, right.dot(level.y_axis.into()).atan2(right.dot(level.x_axis.into())))
     }
@@ -145,7 +145,7 @@ impl DragSelection {
         // If the subject is rotated as well, only the frame gives the new direction.
         match aim {
             Aim::Object { object, .. } if self.items.contains(&Item::Object(*object)) => otherwise,
-            _ => self.scene.aim_point(aim, position) - position,
+            _ => self.scene.aim_vector(aim, position),
         }
     }
 }
