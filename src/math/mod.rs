@@ -1,8 +1,9 @@
-//! Mathematics beyond glam: safe square roots and angles, frames, sampling warps with their densities, rays with error
+//! Mathematics beyond glam: safe square roots and angles, frames, quadrature, sampling warps with their densities, rays with error
 //! bounds, SIMD dispatch.
 
 mod angle;
 mod frame;
+mod quadrature;
 mod ray;
 mod safe;
 pub mod simd;
@@ -10,5 +11,6 @@ pub mod warp;
 
 pub use angle::{sin_cos_eighth, sin_cos_turn};
 pub use frame::{look_along, look_at, orthonormal_basis};
+pub use quadrature::gauss_legendre;
 pub use ray::{Ray, gamma, offset_origin};
 pub use safe::{angle_between, safe_acos, safe_sqrt};

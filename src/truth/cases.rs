@@ -22,6 +22,7 @@ pub(super) fn all() -> Vec<TruthRow> {
     rows.extend(receptors());
     rows.extend(closed_rooms());
     rows.extend(panes());
+    rows.extend(white_metal());
     rows.extend(flash());
     rows.extend(pictures());
     rows
@@ -130,9 +131,16 @@ fn cones() -> Vec<TruthRow> {
         let case = format!("spot of 1000 lm, {edge} cone of {outer_deg}\u{b0}, on its axis");
         row(case, "cd", truth, 4.0 * flat(&scene, Vec3::ZERO, Vec3::Z), 1e-4)
     };
+    // Half of the intensity at half of the outer angle, from so far away that coordinates have steps of 6 cm.
+    let far_m = 1e6;
+    let emitter = Emitter::Spot { inner_deg: 0.0, outer_deg: 20.0 };
+    let aim = Aim::Angles { yaw_deg: 5.0, pitch_deg: 0.0 };
+    let far = Light { aim, ..light(emitter, Output::Candela(1000.0), Vec3::Z * far_m, Vec3::ZERO) };
+    let intensity = f64::from(far_m).powi(2) * flat(&lit_by(far), Vec3::ZERO, Vec3::Z);
     vec![
         spot(15.0, 15.0, closed_forms::hard_cone(1000.0, 15.0)),
         spot(40.0, 70.0, closed_forms::soft_cone(1000.0, 40.0, 70.0)),
+        row("spot of 20\u{b0} at a fixed angle, 5\u{b0} off its axis, from 1000 km", "cd", 500.0, intensity, 1e-4),
     ]
 }
 
@@ -230,6 +238,29 @@ fn panes() -> Vec<TruthRow> {
         pane(60.0),
         row("softbox behind a window pane, n = 1.52", "", closed_forms::pane(0.0, 1.52), softbox, 2e-3),
     ]
+}
+
+/// The part of an even light that a white metal plane gives back: the mean of a rendered picture.
+fn white_metal() -> Vec<TruthRow> {
+    let plane = |roughness: f32, angle_deg: f32| {
+        let (sin, cos) = angle_deg.to_radians().sin_cos();
+        let mut scene = lit_by(light(Emitter::Surround, Output::Lux(1000.0), Vec3::Y, Vec3::ZERO));
+        let metal = Material { base_color: [0.999; 3], metallic: 1.0, roughness, ..Material::default() };
+        let shape = Shape::Plane { width_m: 100.0, depth_m: 100.0 };
+        scene.objects.push(object(shape, metal, Vec3::ZERO, Vec3::ZERO));
+        scene.camera = Camera {
+            position: Vec3::new(sin, cos, 0.0),
+            aim: Aim::Point(Vec3::ZERO),
+            sensor: Sensor::Custom { width_mm: 24.0, height_mm: 24.0 },
+            focal_length_mm: 5000.0,
+            ..Camera::default()
+        };
+        let white = f64::from(exposure::pixel_per_cd_s_m2(&scene) * scene.camera.shutter_s) * 1000.0 / PI;
+        let case = format!("white metal plane, roughness {roughness}, seen under {angle_deg}\u{b0}, in even light");
+        // The error of 16 x 16 x 64 stratified samples. The whitest base colour is 0.999.
+        row(case, "", 0.999, mean_pixel(&scene) / white, 1e-3)
+    };
+    vec![plane(0.45, 0.0), plane(0.5, 60.0)]
 }
 
 fn flash() -> Vec<TruthRow> {

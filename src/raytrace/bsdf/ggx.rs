@@ -17,22 +17,12 @@ pub fn distribution(m: Vec3, alpha: f32) -> f32 {
     if m.z > 0.0 && d > 0.0 { a2 / (PI * d * d) } else { 0.0 }
 }
 
-/// Returns Smith's Lambda (Heitz 2014, equation 72).
+/// Returns Smith's Lambda (Heitz 2014, equation 72). The masking G1 is 1 / (1 + Lambda(o)), the height-correlated
+/// masking-shadowing G2 is 1 / (1 + Lambda(o) + Lambda(i)) (equations 43 and 99).
 pub fn lambda(w: Vec3, alpha: f32) -> f32 {
     let cos2 = w.z * w.z;
     let tan2 = (1.0 - cos2).max(0.0) / cos2.max(f32::MIN_POSITIVE);
     0.5 * (safe_sqrt(1.0 + alpha * alpha * tan2) - 1.0)
-}
-
-/// Returns the masking G1: the fraction of facets that are visible from `w` (Heitz 2014, equation 43).
-pub fn masking(w: Vec3, alpha: f32) -> f32 {
-    1.0 / (1.0 + lambda(w, alpha))
-}
-
-/// Returns the height-correlated masking-shadowing G2: the fraction of facets that are visible from both directions
-/// (Heitz 2014, equation 99).
-pub fn masking_shadowing(wo: Vec3, wi: Vec3, alpha: f32) -> f32 {
-    1.0 / (1.0 + lambda(wo, alpha) + lambda(wi, alpha))
 }
 
 /// Samples a facet normal among those that are visible from `wo` (Dupuy and Benyoub 2023, "Sampling Visible GGX Normals

@@ -1,6 +1,6 @@
 //! A material prepared for tracing: its parameters and the directional albedo tables of its lobes.
 
-use super::albedo::AlbedoTable;
+use super::albedo::{AlbedoTable, AlbedoTables};
 use super::ggx;
 use crate::color::luminance;
 use crate::scene::{Material, TextureSlot};
@@ -46,7 +46,7 @@ impl TracedMaterial {
         let transmission = material.transmission * (1.0 - material.metallic);
         let opaque = 1.0 - transmission;
         let metallic = if opaque > 0.0 { (material.metallic / opaque).min(1.0) } else { 0.0 };
-        let coat_albedo = AlbedoTable::dielectric(material.ior, alpha);
+        let AlbedoTables { coat, perfect_reflector } = AlbedoTables::new(material.ior, alpha);
         TracedMaterial {
             base_color: material.base_color.into(),
             textures: [None; TextureSlot::COUNT],
@@ -56,9 +56,9 @@ impl TracedMaterial {
             transmission,
             absorption_per_m: material.absorption_per_m.into(),
             emission: material.emission_cd_m2.into(),
-            has_microfacets: metallic > 0.0 || coat_albedo.mean > MIN_COAT_ALBEDO,
-            coat_albedo,
-            metal_albedo: AlbedoTable::perfect_reflector(alpha),
+            has_microfacets: metallic > 0.0 || coat.mean > MIN_COAT_ALBEDO,
+            coat_albedo: coat,
+            metal_albedo: perfect_reflector,
         }
     }
 

@@ -24,7 +24,7 @@ fn furnace(material: &Material, cos: f32) -> Vec3 {
 
 #[test]
 fn white_materials_have_albedo_one_in_a_white_furnace() {
-    // The error of 16384 Sobol samples is less than 0.5 % here, that of the albedo tables less than 0.5 %.
+    // The error of 16384 Sobol samples is less than 0.2 % here, that of the albedo tables less than 1e-4.
     for roughness in [0.0, 0.01, 0.1, 0.3, 0.6, 1.0] {
         for cos in [1.0, 0.7, 0.3, 0.1] {
             let white = Material { base_color: [1.0; 3], roughness, ..Material::default() };
@@ -32,7 +32,7 @@ fn white_materials_have_albedo_one_in_a_white_furnace() {
             let glass = Material { transmission: 1.0, ..white.clone() };
             for material in [&white, &metal, &glass] {
                 let albedo = furnace(material, cos).x;
-                assert!((albedo - 1.0).abs() < 0.01, "{material:?} under {cos}: {albedo}");
+                assert!((albedo - 1.0).abs() < 0.003, "{material:?} under {cos}: {albedo}");
             }
         }
     }
@@ -220,8 +220,8 @@ fn glass_reflects_by_fresnels_equations_and_refracts_by_snells_law() {
 
 #[test]
 fn no_material_has_an_albedo_above_one_at_any_roughness_and_angle() {
-    // The tolerance is the standard error of independent samples and 0.5 % for the albedo tables (48 angles, 256 facets
-    // each). Only white materials are also held to 1 from below.
+    // The tolerance is the standard error of independent samples and 0.05 % for the albedo tables: they are good to
+    // 1e-4, and the metal is divided by albedos down to 0.3. Only white materials are also held to 1 from below.
     let roughness = [0.0, 1e-4, 0.01, 0.032, 0.1, 0.3, 0.5, 0.7, 1.0];
     let cosines = [1.0, 0.6, 0.2, 0.05, 0.01];
     let mut rng = TestRng::new(23);
@@ -242,7 +242,7 @@ fn no_material_has_an_albedo_above_one_at_any_roughness_and_angle() {
                 let sample = bsdf.sample(rng.uniform(), rng.unit_square());
                 sample.map_or(0.0, |s| f64::from(s.weight.x / s.eta_scale))
             }));
-            let error = crate::statistics::critical_z(tests) * albedo.standard_error + 0.005;
+            let error = crate::statistics::critical_z(tests) * albedo.standard_error + 5e-4;
             assert!(albedo.mean < 1.0 + error, "{material:?} under {cos} gains energy: {albedo:?}");
             assert!(!is_white || albedo.mean > 1.0 - error, "{material:?} under {cos} loses energy: {albedo:?}");
         }
