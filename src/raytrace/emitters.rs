@@ -4,13 +4,16 @@
 
 use super::caustics::CausticMis;
 use super::events::PathEvent;
+use super::lights::EmitterHit;
 use super::medium_stack::MediumStack;
 use super::ray_caster::{EMITTER_CONTACT, RayCaster, is_before};
+use super::render_scene::RenderScene;
 use super::sink::{FirstHit, FirstObject, RadianceSink};
+use super::straight_path::StraightPath;
 use crate::math::Ray;
 use glam::Vec3;
 
-/// The last vertex that sampled lights, as far as the MIS weight of a later emitter hit needs it.
+/// The last non-specular vertex, and the path since then, as far as the MIS weight of an emitter hit needs them.
 #[derive(Clone, Copy, Debug)]
 pub struct MisVertex {
     /// Position of the surface.
@@ -19,14 +22,17 @@ pub struct MisVertex {
     pub normal: Vec3,
     /// Origin of the ray that left the vertex.
     pub ray_origin: Vec3,
-    /// Distance from there through thin panes to the origin of the present ray, metres.
-    pub travelled: f32,
-    /// Density of the sampled direction times the number of paths per light sample, 1/sr; none after specular
-    /// scattering and at the camera.
+    /// Unit direction of that ray.
+    pub direction: Vec3,
+    /// Density of the direction times the number of paths per light sample, 1/sr; none at the camera.
     pub pdf: Option<f32>,
     /// One light is sampled at the vertex rather than all of them.
     pub samples_one_light: bool,
-    /// Photons that carry the same light, for a path that left through specular surfaces.
+    /// The specular surfaces since then.
+    pub path: StraightPath,
+    /// Distance from the last vertex through thin panes to the origin of the present ray, metres.
+    pub travelled: f32,
+    /// Photons that carry the same light, for a path that left through caustic casters.
     pub photons: Option<CausticMis>,
 }
 
@@ -37,9 +43,11 @@ impl MisVertex {
             position,
             normal,
             ray_origin: position,
-            travelled: 0.0,
+            direction: Vec3::ZERO,
             pdf: None,
             samples_one_light: false,
+            path: StraightPath::default(),
+            travelled: 0.0,
             photons: None,
         }
     }
@@ -108,25 +116,7 @@ impl RayCaster<'_> {
                 return;
             }
             let light = &scene.lights[index as usize];
-            let light_pdf = || light.pdf(vertex.ray_origin, ray.direction, vertex.travelled + hit.distance);
-            let mis_weight = match vertex.pdf {
-                // After specular scattering: against photons.
-                None if light.is_sampled() => vertex.photons.map_or(1.0, |photons| {
-                    let pdf = light_pdf();
-                    let pmf = scene.light_sampler.pmf(&scene.lights, index, vertex.position, photons.normal());
-                    photons.path_weight(&scene.casters, ray.direction, pdf * pmf)
-                }),
-                // After non-specular scattering: against light sampling.
-                Some(pdf) if light.is_sampled() => {
-                    let pmf = if vertex.samples_one_light {
-                        scene.light_sampler.pmf(&scene.lights, index, vertex.position, vertex.normal)
-                    } else {
-                        1.0
-                    };
-                    power_heuristic(pdf, pmf * light_pdf())
-                }
-                _ => 1.0,
-            };
+            let mis_weight = if light.is_sampled() { self.scene.mis_weight(vertex, ray, index, &hit) } else { 1.0 };
             let mut throughput = throughput;
             if hit.distance.is_finite() {
                 throughput *= media.transmittance(&scene.materials, hit.distance);
@@ -134,6 +124,33 @@ impl RayCaster<'_> {
             sink.record(|| PathEvent::EmitterHit { light: index, distance: hit.distance, mis_weight });
             sink.add(light.layer, throughput * light.tint * (hit.luminance * mis_weight));
         });
+    }
+}
+
+impl RenderScene {
+    /// MIS weight of an emitter hit of a sampled light: against light sampling on a straight path, against photons on a
+    /// caustic one.
+    fn mis_weight(&self, vertex: &MisVertex, ray: &Ray, index: u32, hit: &EmitterHit) -> f32 {
+        let light = &self.lights[index as usize];
+        let pmf = |position, normal| self.light_sampler.pmf(&self.lights, index, position, normal);
+        match (vertex.pdf, vertex.photons) {
+            (Some(pdf), _) if vertex.path.is_straight() => {
+                let light_pdf = if vertex.path.crosses_body() {
+                    // The density of the direction at the vertex, whose ray meets the emitter elsewhere or not at all
+                    let straight = light.intersect(vertex.ray_origin, vertex.direction);
+                    straight.map_or(0.0, |hit| light.pdf(vertex.ray_origin, vertex.direction, hit.distance))
+                } else {
+                    light.pdf(vertex.ray_origin, ray.direction, vertex.travelled + hit.distance)
+                };
+                let pmf = if vertex.samples_one_light { pmf(vertex.position, vertex.normal) } else { 1.0 };
+                power_heuristic(pdf, pmf * light_pdf)
+            }
+            (Some(_), Some(photons)) => {
+                let light_pdf = light.pdf(photons.ray_origin, ray.direction, vertex.travelled + hit.distance);
+                photons.path_weight(&self.casters, ray.direction, light_pdf * pmf(photons.position, photons.normal))
+            }
+            _ => 1.0,
+        }
     }
 }
 

@@ -4,12 +4,11 @@
 //! (Veach 1997, power heuristic) where both techniques can find a light. The method `direct` is the same with one
 //! non-specular scattering event; specular surfaces are followed in both.
 //!
-//! Light sampling crosses thin panes on the straight line. It crosses bodies of glass only towards delta lights, which
-//! no refracted ray would ever hit: exact for flat glass. All other light that mirrors and glass throw on surfaces
-//! comes from the photon map, where there is one; without one, delta lights also shine straight through curved glass.
+//! Which technique finds the light behind panes, bodies of glass and mirrors: `straight_path`.
 
 use super::bsdf::{Bsdf, BsdfSample, Polarisation};
 use super::caustics::{CausticMis, GatherDensities, PhotonMap};
+use super::connection::Connection;
 use super::emitters::{MisVertex, power_heuristic};
 use super::events::{Lobe, PathEnd, PathEvent, PathVertex};
 use super::geometry::SurfaceInteraction;
@@ -50,7 +49,7 @@ struct PathState {
     roulette_scale: f32,
     media: MediumStack,
     polarisation: Polarisation,
-    /// The last vertex that sampled lights.
+    /// The last non-specular vertex, and the path since then.
     mis_vertex: MisVertex,
     /// Densities of paths and photons at the last non-specular vertex, if all vertices since were caustic casters.
     gather: Option<GatherDensities>,
@@ -106,8 +105,8 @@ impl<'a> PathTracer<'a> {
         self.trace_from(origin, direction, sampler, limits, MisVertex::new(origin, direction), sink);
     }
 
-    /// Traces a path from a receptor that samples the lights by itself: emitters that are hit on the straight line,
-    /// also through thin panes, do not contribute.
+    /// Traces a path from a receptor that samples the lights by itself: emitters that are hit on a straight path do not
+    /// contribute.
     pub fn trace_without_direct_light(
         &mut self,
         origin: Vec3,
@@ -117,7 +116,7 @@ impl<'a> PathTracer<'a> {
         sink: &mut impl RadianceSink,
     ) {
         // With the least density, light sampling has all the MIS weight.
-        let vertex = MisVertex { pdf: Some(f32::MIN_POSITIVE), ..MisVertex::new(origin, direction) };
+        let vertex = MisVertex { direction, pdf: Some(f32::MIN_POSITIVE), ..MisVertex::new(origin, direction) };
         self.trace_from(origin, direction, sampler, limits, vertex, sink);
     }
 
@@ -205,9 +204,9 @@ impl<'a> PathTracer<'a> {
                 sink.add(scene.emission_layer(), path.throughput * material.emission * scene.emission_time_s);
             }
 
-            // End the path at its maximum depth, after thin panes, which light sampling at the last vertex crosses, too
+            // End the path at its maximum depth; the last non-specular vertex is followed by specular ones
             let is_last = path.non_specular_depth >= limits.max_non_specular_depth;
-            if path.depth >= limits.max_depth || (is_last && !(surface.is_thin && material.transmits())) {
+            if path.depth >= limits.max_depth || (is_last && !material.is_caustic_caster()) {
                 sink.record(|| PathEvent::End(PathEnd::Depth));
                 return;
             }
@@ -329,7 +328,6 @@ impl<'a> PathTracer<'a> {
     ) -> bool {
         let ShadingPoint { surface, bsdf, distance, outside, .. } = *point;
         let depth = path.depth;
-        let last_mis_vertex = path.mis_vertex;
 
         // Sample the lights
         let [light_set, bsdf_set] = sampler.pair(Dimensions::Light { slot: 0, depth }, Dimensions::Bsdf { depth });
@@ -341,10 +339,6 @@ impl<'a> PathTracer<'a> {
             LightSampling::Shared { paths } => paths,
             LightSampling::Skip => 1.0,
         };
-        path.mis_vertex = MisVertex {
-            samples_one_light: !self.samples_all_lights(path),
-            ..MisVertex::new(surface.position, bsdf.normal())
-        };
 
         // Sample the BSDF
         let [lobe, roulette] = sampler::last_pair(&bsdf_set);
@@ -353,7 +347,7 @@ impl<'a> PathTracer<'a> {
             return false;
         };
         let is_last = path.non_specular_depth >= limits.max_non_specular_depth;
-        if is_last && !sample.is_undeviated {
+        if is_last && !sample.specular {
             sink.record(|| PathEvent::End(PathEnd::Depth));
             return false;
         }
@@ -374,14 +368,28 @@ impl<'a> PathTracer<'a> {
         });
 
         // Update the densities for later MIS weights
+        let origin = surface.spawn_origin(sample.direction);
         if sample.is_undeviated {
-            path.mis_vertex = MisVertex { travelled: last_mis_vertex.travelled + distance, ..last_mis_vertex };
+            path.mis_vertex.travelled += distance;
         } else if sample.specular {
             let is_caster = self.caster.scene.materials[surface.material as usize].is_caustic_caster();
             path.gather = path.gather.filter(|_| is_caster);
-            path.mis_vertex.photons = path.gather.map(|gather| CausticMis::new(gather, surface, sample.direction));
+            let vertex = &mut path.mis_vertex;
+            vertex.photons = path.gather.map(|gather| CausticMis::new(gather, surface, sample.direction));
+            vertex.travelled = 0.0;
+            if !sample.is_transmission {
+                vertex.path.reflect(surface);
+            } else {
+                vertex.path.transmit(surface, outside);
+            }
         } else {
-            path.mis_vertex.pdf = Some(sample.pdf * paths_per_light_sample);
+            path.mis_vertex = MisVertex {
+                ray_origin: origin,
+                direction: sample.direction,
+                pdf: Some(sample.pdf * paths_per_light_sample),
+                samples_one_light: !self.samples_all_lights(path),
+                ..MisVertex::new(surface.position, bsdf.normal())
+            };
             path.gather = self.photon_map.map(|map| {
                 let cos = sample.direction.dot(surface.geometric_normal).abs();
                 let photons = map.for_depth(path.non_specular_depth);
@@ -404,11 +412,7 @@ impl<'a> PathTracer<'a> {
         }
 
         // Spawn the next ray
-        let origin = surface.spawn_origin(sample.direction);
         path.ray = Ray { origin, direction: sample.direction, t_max: f32::INFINITY };
-        if !sample.is_undeviated {
-            path.mis_vertex.ray_origin = origin;
-        }
         path.depth += 1;
         true
     }
@@ -476,14 +480,14 @@ impl<'a> PathTracer<'a> {
             return;
         }
 
-        // Weight against emitter hits, trace the shadow ray and add the contribution
+        // Weight against emitter hits, connect with the light and add the contribution
         let mis_weight = sample.pdf.map_or(1.0, |light_pdf| power_heuristic(light_pdf * pmf, bsdf_pdf * paths));
-        let (origin, is_delta) = (surface.spawn_origin(sample.direction), sample.pdf.is_none());
-        let visibility = self.caster.visibility(origin, sample.direction, sample.distance, is_delta, path.media);
-        let pdf = sample.pdf;
+        let connection = self.caster.connect(surface.spawn_origin(sample.direction), light, &sample, path.media);
+        let (pdf, visibility) = (sample.pdf, connection.map_or(Vec3::ZERO, |connection| connection.transmittance));
         sink.record(|| PathEvent::LightSample { light: index, pmf, pdf, bsdf_pdf, visibility, mis_weight });
-        if visibility != Vec3::ZERO {
-            let value = path.throughput * visibility * value * light.tint * (sample.value * mis_weight / pmf);
+        if let Some(Connection { direction, value: light_value, transmittance }) = connection {
+            let value = if direction == sample.direction { value } else { bsdf.eval(direction).0 };
+            let value = path.throughput * transmittance * value * light.tint * (light_value * mis_weight / pmf);
             sink.add(light.layer, value);
         }
     }

@@ -6,6 +6,7 @@
 //! the path tracer.
 
 use super::bsdf::{fresnel, pane_transmittance};
+use super::connection::Connection;
 use super::emitters::MisVertex;
 use super::events::{PathEvent, PathVertex};
 use super::geometry::SurfaceInteraction;
@@ -143,16 +144,19 @@ fn add_direct_light(
             continue;
         }
         let origin = surface.spawn_origin(sample.direction);
-        let visibility = caster.visibility(origin, sample.direction, sample.distance, light.is_delta(), *media);
+        let connection = caster.connect(origin, light, &sample, *media);
         sink.record(|| PathEvent::LightSample {
             light: index,
             pmf: 1.0,
             pdf: None,
             bsdf_pdf: 0.0,
-            visibility,
+            visibility: connection.map_or(Vec3::ZERO, |connection| connection.transmittance),
             mis_weight: 1.0,
         });
-        sink.add(light.layer, throughput * visibility * value * light.tint * sample.value);
+        if let Some(Connection { direction, value: light_value, transmittance }) = connection {
+            let value = if direction == sample.direction { value } else { scatter(direction) };
+            sink.add(light.layer, throughput * transmittance * value * light.tint * light_value);
+        }
     }
 }
 

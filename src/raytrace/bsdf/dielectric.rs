@@ -1,7 +1,7 @@
 //! The dielectric lobe: specular reflection and refraction by clear glass and water, and by thin panes.
 
 use super::fresnel;
-use super::polarisation::Polarisation;
+use super::polarisation::{InterfaceReflection, Polarisation};
 use super::sample::BsdfSample;
 use super::shading_geometry::ShadingGeometry;
 use glam::Vec3;
@@ -46,7 +46,7 @@ impl DielectricLobe {
     /// Returns the Fresnel reflectance, which is the probability of sampling reflection.
     pub fn reflectance(&self, geometry: &ShadingGeometry) -> f32 {
         match self.boundary {
-            Boundary::ThinPane => 1.0 - pane_transmittance(geometry.wo_world.dot(geometry.geometric_normal), self.ior),
+            Boundary::ThinPane => self.at_pane(geometry).reflectance,
             Boundary::Interface(interface) => {
                 let wo = geometry.to_world(geometry.wo).normalize_or(geometry.normal);
                 self.polarisation.at_interface(wo, geometry.normal, interface.eta).reflectance
@@ -86,22 +86,28 @@ impl DielectricLobe {
         })
     }
 
+    /// Returns the reflection by a thin pane, which has the geometric normal.
+    fn at_pane(&self, geometry: &ShadingGeometry) -> InterfaceReflection {
+        self.polarisation.at_pane(geometry.wo_world, geometry.geometric_normal, self.ior)
+    }
+
     fn sample_pane(&self, geometry: &ShadingGeometry, u: f32) -> BsdfSample {
         let (wo, normal) = (geometry.wo_world, geometry.geometric_normal);
-        let transmittance = pane_transmittance(wo.dot(normal), self.ior);
-        if u < 1.0 - transmittance {
-            let direction = 2.0 * wo.dot(normal) * normal - wo;
-            return BsdfSample::specular(direction.normalize_or_zero());
+        let pane = self.at_pane(geometry);
+        if u < pane.reflectance {
+            let direction = (2.0 * wo.dot(normal) * normal - wo).normalize_or_zero();
+            return BsdfSample { polarisation: pane.reflected, ..BsdfSample::specular(direction) };
         }
-        BsdfSample { is_transmission: true, is_undeviated: true, ..BsdfSample::specular(-wo) }
+        let polarisation = pane.transmitted;
+        BsdfSample { polarisation, is_transmission: true, is_undeviated: true, ..BsdfSample::specular(-wo) }
     }
 }
 
 /// Returns the transmittance of a clear pane in air: the geometric series over all internal reflections, (1 - R) / (1 +
 /// R), averaged over both polarisations.
 pub fn pane_transmittance(cos_incident: f32, ior: f32) -> f32 {
-    let (s, p) = fresnel::amplitudes(cos_incident.abs(), ior);
-    0.5 * ((1.0 - s * s) / (1.0 + s * s) + (1.0 - p * p) / (1.0 + p * p))
+    let [s, p] = fresnel::pane_reflectances(cos_incident, ior);
+    1.0 - 0.5 * (s + p)
 }
 
 #[cfg(test)]

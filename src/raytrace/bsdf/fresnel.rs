@@ -23,6 +23,13 @@ pub fn dielectric(cos_incident: f32, eta: f32) -> f32 {
     0.5 * (s * s + p * p)
 }
 
+/// Returns the reflectances (s, p) of a clear pane in air: the geometric series over all inner reflections, 2 R / (1 +
+/// R) for the reflectance R of a face.
+pub fn pane_reflectances(cos_incident: f32, ior: f32) -> [f32; 2] {
+    let (s, p) = amplitudes(cos_incident.abs(), ior);
+    [s * s, p * p].map(|r| 2.0 * r / (1.0 + r))
+}
+
 /// Returns Schlick's approximation (1994) for a metal of normal reflectance `f0`; `cos_half` is the cosine at the half
 /// vector.
 pub fn schlick(f0: Vec3, cos_half: f32) -> Vec3 {

@@ -31,7 +31,7 @@ mod shading_geometry;
 
 pub use dielectric::{Boundary, DielectricInterface, pane_transmittance};
 pub use material::TracedMaterial;
-pub use polarisation::Polarisation;
+pub use polarisation::{Polarisation, TransmittedLight};
 pub use sample::BsdfSample;
 
 use dielectric::DielectricLobe;

@@ -5,6 +5,7 @@
 //! its circular part (Born and Wolf, "Principles of Optics", section 1.4). Every lobe but the dielectric one resets it.
 
 use super::fresnel;
+use crate::math::safe_sqrt;
 use glam::Vec3;
 
 /// The accepted linear polarisation, relative to a reference axis perpendicular to the path.
@@ -35,11 +36,36 @@ impl Polarisation {
     /// along the path, `normal` is on its side, `eta` is the index of the transmitted side over that of the incident
     /// side.
     pub fn at_interface(self, wo: Vec3, normal: Vec3, eta: f32) -> InterfaceReflection {
-        // Rotate the reference axis to the s direction; at normal incidence any axis is one
-        let axis = wo.cross(normal).try_normalize().unwrap_or_else(|| wo.any_orthonormal_vector());
-        let Polarisation { q, u, .. } = self.relative_to(axis, -wo);
         let (s, p) = fresnel::amplitudes(wo.dot(normal), eta);
         let (rs, rp) = (s * s, p * p);
+        self.at_face(wo, normal, [rs, rp], [s * p, safe_sqrt((1.0 - rs) * (1.0 - rp))])
+    }
+
+    /// Returns the same for a thin pane of this index of refraction, all inner reflections included; their phases are
+    /// left out.
+    pub fn at_pane(self, wo: Vec3, normal: Vec3, ior: f32) -> InterfaceReflection {
+        let (s, p) = fresnel::amplitudes(wo.dot(normal), ior);
+        let (rs, rp) = (s * s, p * p);
+        let transmitted = (1.0 - rs) * (1.0 - rp) / (1.0 - rs * rp).max(f32::EPSILON);
+        self.at_face(
+            wo,
+            normal,
+            fresnel::pane_reflectances(wo.dot(normal), ior),
+            [s * p * (1.0 + transmitted), transmitted],
+        )
+    }
+
+    /// Returns the reflectance and the polarisations for the reflectances of s and p polarisation, and the factors of
+    /// Stokes U under reflection and transmission.
+    fn at_face(
+        self,
+        wo: Vec3,
+        normal: Vec3,
+        [rs, rp]: [f32; 2],
+        [cross_reflected, cross_transmitted]: [f32; 2],
+    ) -> InterfaceReflection {
+        let axis = s_axis(wo, normal);
+        let Polarisation { q, u, .. } = self.relative_to(axis, -wo);
         // Apply the Mueller matrix of intensities a (s) and b (p), normalised to unit intensity
         let apply = |a: f32, b: f32, cross: f32| {
             let intensity = 0.5 * ((a + b) + q * (a - b));
@@ -47,9 +73,57 @@ impl Polarisation {
             let after = Polarisation { axis, q: 0.5 * ((a - b) + q * (a + b)) * inverse, u: u * cross * inverse };
             (intensity, after)
         };
-        let (reflectance, reflected) = apply(rs, rp, s * p);
-        let (_, transmitted) = apply(1.0 - rs, 1.0 - rp, ((1.0 - rs) * (1.0 - rp)).max(0.0).sqrt());
+        let (reflectance, reflected) = apply(rs, rp, cross_reflected);
+        let (_, transmitted) = apply(1.0 - rs, 1.0 - rp, cross_transmitted);
         InterfaceReflection { reflectance: reflectance.clamp(0.0, 1.0), reflected, transmitted }
+    }
+}
+
+/// Returns the unit s direction of a plane of incidence; at normal incidence any axis is one.
+fn s_axis(wo: Vec3, normal: Vec3) -> Vec3 {
+    wo.cross(normal).try_normalize().unwrap_or_else(|| wo.any_orthonormal_vector())
+}
+
+/// Light that passed clear faces, in three colours: a Stokes vector without its circular part.
+#[derive(Clone, Copy, Debug)]
+pub struct TransmittedLight {
+    axis: Vec3,
+    intensity: Vec3,
+    q: Vec3,
+    u: Vec3,
+}
+
+impl TransmittedLight {
+    /// Unpolarised light of intensity 1.
+    pub const UNPOLARISED: TransmittedLight =
+        TransmittedLight { axis: Vec3::X, intensity: Vec3::ONE, q: Vec3::ZERO, u: Vec3::ZERO };
+
+    /// Returns the intensity.
+    pub fn intensity(&self) -> Vec3 {
+        self.intensity
+    }
+
+    /// Scales the light by a transmittance that does not depend on the polarisation.
+    pub fn absorb(&mut self, transmittance: Vec3) {
+        self.intensity *= transmittance;
+        self.q *= transmittance;
+        self.u *= transmittance;
+    }
+
+    /// Transmits the light through faces of this normal, with transmittances for s and p polarisation. `direction` is
+    /// the unit direction of the light.
+    pub fn transmit(&mut self, normal: Vec3, direction: Vec3, [ts, tp]: [Vec3; 2]) {
+        let axis = s_axis(direction, normal);
+        let (cos, sin) = (self.axis.dot(axis), self.axis.cross(axis).dot(direction));
+        let (cos2, sin2) = (cos * cos - sin * sin, 2.0 * sin * cos);
+        let (q, u) = (self.q * cos2 + self.u * sin2, self.u * cos2 - self.q * sin2);
+        let (sum, difference) = (0.5 * (ts + tp), 0.5 * (ts - tp));
+        *self = TransmittedLight {
+            axis,
+            intensity: sum * self.intensity + difference * q,
+            q: difference * self.intensity + sum * q,
+            u: u * (ts * tp).max(Vec3::ZERO).powf(0.5),
+        };
     }
 }
 

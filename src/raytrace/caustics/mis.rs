@@ -27,8 +27,12 @@ impl GatherDensities {
 #[derive(Clone, Copy, Debug)]
 pub struct CausticMis {
     gather: GatherDensities,
+    /// Position on the last caster.
+    pub position: Vec3,
+    /// Origin of the ray that left it.
+    pub ray_origin: Vec3,
     /// Geometric normal of the last caster, on the side where the path leaves.
-    normal: Vec3,
+    pub normal: Vec3,
     /// Probability with which a photon starts on that side.
     side_probability: f32,
 }
@@ -39,12 +43,9 @@ impl CausticMis {
         let outside = direction.dot(surface.geometric_normal) > 0.0;
         let normal = if outside { surface.geometric_normal } else { -surface.geometric_normal };
         let inner = inner_side_probability(surface);
-        CausticMis { gather, normal, side_probability: if outside { 1.0 - inner } else { inner } }
-    }
-
-    /// Geometric normal of the last caster, on the side where the path leaves.
-    pub fn normal(&self) -> Vec3 {
-        self.normal
+        let side_probability = if outside { 1.0 - inner } else { inner };
+        let ray_origin = surface.spawn_origin(direction);
+        CausticMis { gather, position: surface.position, ray_origin, normal, side_probability }
     }
 
     /// MIS weight of a path that hits an emitter in a direction which photons sample with density `pdf`, 1/sr.

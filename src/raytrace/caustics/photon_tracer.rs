@@ -5,10 +5,11 @@ use crate::math::Ray;
 use crate::raytrace::bsdf::Polarisation;
 use crate::raytrace::geometry::SurfaceInteraction;
 use crate::raytrace::medium_stack::MediumStack;
-use crate::raytrace::ray_caster::{RayCaster, are_parallel};
+use crate::raytrace::ray_caster::RayCaster;
 use crate::raytrace::render_scene::RenderScene;
 use crate::raytrace::roulette::{survival_probability, survives};
 use crate::raytrace::sampler::{self, Dimensions, Sampler};
+use crate::raytrace::straight_path::StraightPath;
 use glam::Vec3;
 
 /// Least cosine to the surface by which a photon's flux is divided.
@@ -26,8 +27,6 @@ struct FirstCaster {
     surface: SurfaceInteraction,
     /// Unit direction towards the light.
     to_light: Vec3,
-    /// No path can hit the light.
-    is_delta: bool,
     /// The photon as it arrives.
     photon: Photon,
 }
@@ -73,7 +72,7 @@ impl<'a> PhotonTracer<'a> {
 
         // Trace the shadow ray; bodies of glass block it, as photons through them start at the outer one
         let origin = surface.spawn_origin(to_light);
-        let visibility = self.caster.visibility(origin, to_light, sample.distance, false, MediumStack::default());
+        let visibility = self.caster.pane_transmittance(origin, to_light, sample.distance);
         let area = scene.casters.area() / (emitted as f32 * side_probability * pmf);
         let density = |pdf: f32| scene.casters.density(side_probability * pmf * pdf, cos);
         let photon = Photon {
@@ -85,15 +84,15 @@ impl<'a> PhotonTracer<'a> {
             density: sample.pdf.map_or(f32::INFINITY, density),
             specular_depth: 0,
         };
-        (photon.flux != Vec3::ZERO).then_some(FirstCaster { surface, to_light, is_delta: sample.pdf.is_none(), photon })
+        (photon.flux != Vec3::ZERO).then_some(FirstCaster { surface, to_light, photon })
     }
 
     /// Follows a photon through casters, and stores it at every non-specular surface, until it is absorbed.
     fn follow(&mut self, first: FirstCaster, sampler: &Sampler, stored: &mut Vec<Photon>) {
         let scene = self.caster.scene;
-        let FirstCaster { mut surface, to_light, is_delta, photon } = first;
+        let FirstCaster { mut surface, to_light, photon } = first;
         let mut wo = to_light;
-        let (mut specular_depth, mut was_reflected) = (0, false);
+        let (mut specular_depth, mut path) = (0, StraightPath::default());
         let (mut media, mut polarisation, mut throughput) = (MediumStack::default(), Polarisation::NONE, Vec3::ONE);
         for depth in 0..scene.plan().max_depth {
             // Sample the BSDF; only specular scattering at casters is followed
@@ -112,15 +111,18 @@ impl<'a> PhotonTracer<'a> {
             throughput *= sample.weight / sample.eta_scale;
             if !sample.is_undeviated {
                 specular_depth += 1;
-                was_reflected |= !sample.is_transmission;
                 throughput *= shading_correction(wo, sample.direction, surface.normal, surface.geometric_normal);
             }
             let survival = survival_probability(throughput, 1.0, depth);
             if !survives(&mut throughput, survival, roulette) {
                 return;
             }
-            if sample.is_transmission && !surface.is_thin {
-                media.cross(surface.material, wo.dot(surface.geometric_normal) >= 0.0);
+            if !sample.is_transmission {
+                path.reflect(&surface);
+            } else if !surface.is_thin {
+                let from_outside = wo.dot(surface.geometric_normal) >= 0.0;
+                media.cross(surface.material, from_outside);
+                path.transmit(&surface, from_outside);
             }
             polarisation = sample.polarisation;
 
@@ -131,10 +133,9 @@ impl<'a> PhotonTracer<'a> {
             surface = scene.aggregate.surface(&hit);
             wo = -sample.direction;
 
-            // Store the photon at a non-specular surface, unless light sampling finds the same light on a straight line
-            let is_straight = is_delta && !was_reflected && are_parallel(wo, to_light);
+            // Store the photon at a non-specular surface, unless light sampling finds the same light on a straight path
             let cos = wo.dot(surface.geometric_normal);
-            if !is_straight && cos != 0.0 && scene.materials[surface.material as usize].has_non_specular_lobe() {
+            if !path.is_straight() && cos != 0.0 && scene.materials[surface.material as usize].has_non_specular_lobe() {
                 stored.push(Photon {
                     position: surface.position,
                     direction: wo,

@@ -80,13 +80,12 @@ impl RoundSampler<'_> {
         let ReceptorFrame { origin, facing, receptor, .. } = self.receptor;
         let set = sampler.set(Dimensions::Camera);
         let Some(sample) = light.sample(origin, sampler::first_pair(&set)) else { return 0.0 };
-        let value = sample.value * receptor.response(sample.direction.dot(facing));
-        if value <= 0.0 {
+        if receptor.response(sample.direction.dot(facing)) <= 0.0 {
             return 0.0;
         }
-        // The paths find light of an area light through bodies of glass.
-        let (is_delta, media) = (light.is_delta(), MediumStack::default());
-        value * luminance(caster.visibility(origin, sample.direction, sample.distance, is_delta, media))
+        let Some(connection) = caster.connect(origin, light, &sample, MediumStack::default()) else { return 0.0 };
+        let response = receptor.response(connection.direction.dot(facing));
+        connection.value * response * luminance(connection.transmittance)
     }
 
     /// Traces one path for all lights.

@@ -25,7 +25,7 @@ mod traced_light;
 
 pub use emitter_bvh::EmitterBvh;
 pub use light_sampler::{LightImportances, LightSampler};
-pub use traced_light::TracedLight;
+pub use traced_light::{EmitterHit, LightSample, TracedLight};
 
 #[cfg(test)]
 mod tests;
