@@ -1,10 +1,9 @@
 //! The connection of a point with a light sample: shadow rays, and straight transmission through clear bodies.
 //!
 //! `straight_path` says which light these connections bring. A straight path through a body is displaced sideways: a
-//! connection refracts the ray at each face. Towards a sun or an area light the direction is given, and the refracted
-//! ray shows whether it arrives. Towards a point the direction is solved by Newton's method; the wavefront between both
-//! gives its derivative, and the illuminance (generalised ray tracing: Kneisly 1964, "Local Curvature of Wavefronts in
-//! an Optical System").
+//! connection refracts the ray at each face. Towards a sun the direction is given. Towards a point, of an area light,
+//! too, it is solved by Newton's method; the wavefront between both gives its derivative, the illuminance and the density
+//! of the direction (generalised ray tracing: Kneisly 1964, "Local Curvature of Wavefronts in an Optical System").
 //!
 //! Inner reflections of a body are counted as if they arrived from the same point; they are displaced by a part of its
 //! thickness. Without photons nothing else finds light without extent behind glass. It is then approximated: reflections
@@ -28,6 +27,9 @@ const MAX_NEWTON_STEPS: u32 = 8;
 /// Distance from the point, relative to that of the light, at which the solution is accepted.
 const NEWTON_TOLERANCE: f32 = 1e-5;
 
+/// Relative difference of distances at which a point of an emitter counts as hidden by the emitter's front.
+const HIDDEN_TOLERANCE: f32 = 1e-4;
+
 /// Light that arrives at a point from a light sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Connection {
@@ -35,6 +37,8 @@ pub struct Connection {
     pub direction: Vec3,
     /// Luminance over pdf, or illuminance normal to the direction, as [`LightSample::value`].
     pub value: f32,
+    /// Solid angle density of the direction, 1/sr; none for delta lights.
+    pub pdf: Option<f32>,
     /// Transmittance of panes and bodies.
     pub transmittance: Vec3,
 }
@@ -52,22 +56,19 @@ enum BodyMode {
 
 /// The end of a connection.
 #[derive(Clone, Copy, Debug)]
-enum Target<'a> {
+enum Target {
     /// A sun: every ray arrives.
     Infinity,
-    /// A point light, or the centre of a light.
+    /// A point light, a point of an area light, or the centre of a light.
     Point(Vec3),
-    /// An area light, which the ray may miss.
-    Emitter(&'a TracedLight),
 }
 
-impl Target<'_> {
+impl Target {
     /// Distance along a ray; none if the target is not ahead.
     fn distance(&self, origin: Vec3, direction: Vec3) -> Option<f32> {
         match self {
             Target::Infinity => Some(f32::INFINITY),
             Target::Point(point) => Some((*point - origin).dot(direction)).filter(|distance| *distance > 0.0),
-            Target::Emitter(light) => light.intersect(origin, direction).map(|hit| hit.distance),
         }
     }
 
@@ -95,8 +96,8 @@ struct Arrival {
 }
 
 /// A ray to follow.
-struct Walk<'a> {
-    target: Target<'a>,
+struct Walk {
+    target: Target,
     /// Distance of the target from the origin, metres.
     distance: f32,
     /// The bodies around the origin.
@@ -118,24 +119,20 @@ impl RayCaster<'_> {
         sample: &LightSample,
         media: MediumStack,
     ) -> Option<Connection> {
-        let LightSample { direction, distance, value, pdf } = *sample;
+        let LightSample { direction, distance, .. } = *sample;
         if !self.scene.plan().refraction {
-            let connection = Connection { direction, value, transmittance: Vec3::ONE };
-            return (!self.occluded(origin, direction, distance)).then_some(connection);
+            let is_visible = !self.occluded(origin, direction, distance);
+            return is_visible.then(|| Connection::on_line(sample, Vec3::ONE));
         }
-        let target = match pdf {
-            _ if distance.is_infinite() => Target::Infinity,
-            None => Target::Point(origin + direction * distance),
-            Some(_) => Target::Emitter(light),
-        };
-        let is_approximate = pdf.is_none() && !self.photon_caustics();
+        let target = if distance.is_finite() { Target::Point(origin + direction * distance) } else { Target::Infinity };
+        let is_approximate = sample.pdf.is_none() && !self.photon_caustics();
         let mut walk = Walk { target, distance, media, mode: BodyMode::Refract, between_bodies: is_approximate };
         match self.solve(&walk, origin, light, sample) {
             Ok(connection) => connection,
             Err(CausticPath) if is_approximate => {
                 walk.mode = BodyMode::Ignore;
                 let Passage::Arrived(arrival) = self.follow(&walk, origin, direction) else { return None };
-                Some(Connection { direction, value, transmittance: arrival.transmittance })
+                Some(Connection::on_line(sample, arrival.transmittance))
             }
             Err(CausticPath) => None,
         }
@@ -159,7 +156,7 @@ impl RayCaster<'_> {
     /// Finds the straight path to a light sample; towards a point by Newton's method.
     fn solve(
         &mut self,
-        walk: &Walk<'_>,
+        walk: &Walk,
         origin: Vec3,
         light: &TracedLight,
         sample: &LightSample,
@@ -171,29 +168,40 @@ impl RayCaster<'_> {
                 Passage::Caustic => return Err(CausticPath),
                 Passage::Arrived(arrival) => arrival,
             };
-            let transmittance = arrival.transmittance;
-            let Target::Point(point) = walk.target else {
-                return Ok(Some(Connection { direction, value: sample.value, transmittance }));
-            };
+            let on_line = Connection::on_line(sample, arrival.transmittance);
+            let Target::Point(point) = walk.target else { return Ok(Some(on_line)) };
             if !arrival.crosses_body {
                 // A solution beside the body is none of this sequence of faces.
-                let is_straight = direction == sample.direction;
-                return Ok(is_straight.then_some(Connection { direction, value: sample.value, transmittance }));
+                return Ok((direction == sample.direction).then_some(on_line));
             }
             if arrival.miss.length() < NEWTON_TOLERANCE * sample.distance {
-                // The light as it is seen in this direction, from the distance that the wavefront has
-                let seen = light.sample_centre(point - direction * sample.distance);
-                let value = seen.map_or(0.0, |seen| seen.value * sample.distance * sample.distance);
-                let value = value / arrival.wavefront.area().max(f32::MIN_POSITIVE);
-                return Ok(Some(Connection { direction, value, transmittance }));
+                return Ok(refracted_connection(light, sample, point, direction, &arrival));
             }
             direction = arrival.wavefront.correct(direction, arrival.miss);
         }
         Ok(None)
     }
 
+    /// The density with which [`RayCaster::connect`] samples the direction of a straight path from `origin` that crosses
+    /// bodies and hits a light at `point`, 1/sr. `media` are those at both ends.
+    pub fn straight_path_pdf(
+        &mut self,
+        light: &TracedLight,
+        origin: Vec3,
+        direction: Vec3,
+        point: Vec3,
+        media: MediumStack,
+    ) -> f32 {
+        let to_point = point - origin;
+        let (distance, target) = (to_point.length(), Target::Point(point));
+        let walk = Walk { target, distance, media, mode: BodyMode::Refract, between_bodies: false };
+        let Passage::Arrived(arrival) = self.follow(&walk, origin, direction) else { return 0.0 };
+        let line = to_point / distance;
+        light.pdf(origin, line, distance) * density_ratio(light, point, (line, distance), direction, &arrival)
+    }
+
     /// Follows a ray through clear surfaces to its target.
-    fn follow(&mut self, walk: &Walk<'_>, origin: Vec3, direction: Vec3) -> Passage {
+    fn follow(&mut self, walk: &Walk, origin: Vec3, direction: Vec3) -> Passage {
         let scene = self.scene;
         let mut media = walk.media;
         let mut path = StraightPath::default();
@@ -268,8 +276,55 @@ impl RayCaster<'_> {
     }
 }
 
+impl Connection {
+    /// The light sample itself, on the straight line.
+    fn on_line(sample: &LightSample, transmittance: Vec3) -> Self {
+        let LightSample { direction, value, pdf, .. } = *sample;
+        Connection { direction, value, pdf, transmittance }
+    }
+}
+
+/// The light of a sample at `point` that arrives in another direction, through bodies.
+fn refracted_connection(
+    light: &TracedLight,
+    sample: &LightSample,
+    point: Vec3,
+    direction: Vec3,
+    arrival: &Arrival,
+) -> Option<Connection> {
+    let LightSample { distance, .. } = *sample;
+    let transmittance = arrival.transmittance;
+    let viewpoint = point - direction * distance;
+    let Some(pdf) = sample.pdf else {
+        // The illuminance at the same distance, changed by the wavefront
+        let value = light.sample_centre(viewpoint)?.value * distance * distance / arrival.wavefront.area();
+        return Some(Connection { direction, value, pdf: None, transmittance });
+    };
+    // The point may be hidden in this direction: behind the front of a bulb, or at the back of a panel
+    let hit = light.intersect(viewpoint, direction)?;
+    if (hit.distance - distance).abs() > HIDDEN_TOLERANCE * distance {
+        return None;
+    }
+    let pdf = pdf * density_ratio(light, point, (sample.direction, distance), direction, arrival);
+    Some(Connection { direction, value: hit.luminance / pdf, pdf: Some(pdf), transmittance }).filter(|_| pdf > 0.0)
+}
+
+/// Density of a direction through bodies over that of the straight line to the same point of an emitter: the solid
+/// angles of its surface are cos / d2 on the line and cos / area by the wavefront.
+fn density_ratio(
+    light: &TracedLight,
+    point: Vec3,
+    (line, distance): (Vec3, f32),
+    direction: Vec3,
+    arrival: &Arrival,
+) -> f32 {
+    let Some(normal) = light.emitter_normal(point) else { return 0.0 };
+    let cosines = line.dot(normal).abs() / direction.dot(normal).abs().max(f32::MIN_POSITIVE);
+    cosines * arrival.wavefront.area() / (distance * distance)
+}
+
 impl Arrival {
-    fn new(walk: &Walk<'_>, ray: &Ray, transmittance: Vec3, crosses_body: bool, mut wavefront: Wavefront) -> Self {
+    fn new(walk: &Walk, ray: &Ray, transmittance: Vec3, crosses_body: bool, mut wavefront: Wavefront) -> Self {
         let mut miss = Vec3::ZERO;
         if let Target::Point(point) = walk.target {
             let to_point = point - ray.origin;

@@ -116,7 +116,7 @@ impl RayCaster<'_> {
                 return;
             }
             let light = &scene.lights[index as usize];
-            let mis_weight = if light.is_sampled() { self.scene.mis_weight(vertex, ray, index, &hit) } else { 1.0 };
+            let mis_weight = if light.is_sampled() { scene.mis_weight(vertex, ray, index, &hit, media) } else { 1.0 };
             let mut throughput = throughput;
             if hit.distance.is_finite() {
                 throughput *= media.transmittance(&scene.materials, hit.distance);
@@ -130,15 +130,15 @@ impl RayCaster<'_> {
 impl RenderScene {
     /// MIS weight of an emitter hit of a sampled light: against light sampling on a straight path, against photons on a
     /// caustic one.
-    fn mis_weight(&self, vertex: &MisVertex, ray: &Ray, index: u32, hit: &EmitterHit) -> f32 {
+    fn mis_weight(&self, vertex: &MisVertex, ray: &Ray, index: u32, hit: &EmitterHit, media: &MediumStack) -> f32 {
         let light = &self.lights[index as usize];
         let pmf = |position, normal| self.light_sampler.pmf(&self.lights, index, position, normal);
         match (vertex.pdf, vertex.photons) {
             (Some(pdf), _) if vertex.path.is_straight() => {
-                let light_pdf = if vertex.path.crosses_body() {
-                    // The density of the direction at the vertex, whose ray meets the emitter elsewhere or not at all
-                    let straight = light.intersect(vertex.ray_origin, vertex.direction);
-                    straight.map_or(0.0, |hit| light.pdf(vertex.ray_origin, vertex.direction, hit.distance))
+                let light_pdf = if vertex.path.crosses_body() && hit.distance.is_finite() {
+                    let point = ray.origin + ray.direction * hit.distance;
+                    let mut caster = RayCaster::new(self);
+                    caster.straight_path_pdf(light, vertex.ray_origin, vertex.direction, point, *media)
                 } else {
                     light.pdf(vertex.ray_origin, ray.direction, vertex.travelled + hit.distance)
                 };

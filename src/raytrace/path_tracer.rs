@@ -480,16 +480,29 @@ impl<'a> PathTracer<'a> {
             return;
         }
 
-        // Weight against emitter hits, connect with the light and add the contribution
-        let mis_weight = sample.pdf.map_or(1.0, |light_pdf| power_heuristic(light_pdf * pmf, bsdf_pdf * paths));
+        // Connect with the light, through panes and flat bodies in another direction
         let connection = self.caster.connect(surface.spawn_origin(sample.direction), light, &sample, path.media);
-        let (pdf, visibility) = (sample.pdf, connection.map_or(Vec3::ZERO, |connection| connection.transmittance));
-        sink.record(|| PathEvent::LightSample { light: index, pmf, pdf, bsdf_pdf, visibility, mis_weight });
-        if let Some(Connection { direction, value: light_value, transmittance }) = connection {
-            let value = if direction == sample.direction { value } else { bsdf.eval(direction).0 };
-            let value = path.throughput * transmittance * value * light.tint * (light_value * mis_weight / pmf);
-            sink.add(light.layer, value);
-        }
+        let Some(Connection { direction, value: light_value, pdf, transmittance }) = connection else {
+            let pdf = sample.pdf;
+            let event =
+                PathEvent::LightSample { light: index, pmf, pdf, bsdf_pdf, visibility: Vec3::ZERO, mis_weight: 0.0 };
+            sink.record(|| event);
+            return;
+        };
+        let (value, bsdf_pdf) = if direction == sample.direction { (value, bsdf_pdf) } else { bsdf.eval(direction) };
+
+        // Weight against emitter hits and add the contribution
+        let mis_weight = pdf.map_or(1.0, |light_pdf| power_heuristic(light_pdf * pmf, bsdf_pdf * paths));
+        sink.record(|| PathEvent::LightSample {
+            light: index,
+            pmf,
+            pdf,
+            bsdf_pdf,
+            visibility: transmittance,
+            mis_weight,
+        });
+        let value = path.throughput * transmittance * value * light.tint * (light_value * mis_weight / pmf);
+        sink.add(light.layer, value);
     }
 }
 

@@ -153,7 +153,7 @@ fn add_direct_light(
             visibility: connection.map_or(Vec3::ZERO, |connection| connection.transmittance),
             mis_weight: 1.0,
         });
-        if let Some(Connection { direction, value: light_value, transmittance }) = connection {
+        if let Some(Connection { direction, value: light_value, transmittance, .. }) = connection {
             let value = if direction == sample.direction { value } else { scatter(direction) };
             sink.add(light.layer, throughput * transmittance * value * light.tint * light_value);
         }

@@ -155,6 +155,19 @@ impl TracedLight {
         }
     }
 
+    /// Returns the unit normal of the emitter at a point on it; none for delta lights and lights at infinity.
+    pub fn emitter_normal(&self, point: Vec3) -> Option<Vec3> {
+        match self.source {
+            LightSource::Rect { rect, .. } => Some(rect.normal()),
+            LightSource::Disc { disc, .. } => Some(disc.normal()),
+            LightSource::Sphere { sphere, .. } => Some((point - sphere.centre).normalize_or_zero()),
+            LightSource::Point { .. }
+            | LightSource::Spot { .. }
+            | LightSource::Sun(_)
+            | LightSource::Surround { .. } => None,
+        }
+    }
+
     /// Returns the bounding box of the emitter, slightly enlarged; none for delta lights and lights at infinity.
     pub(super) fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let (centre, extent) = match self.source {
