@@ -3,9 +3,9 @@
 //! Direct light is estimated by light sampling: stratified points on each emitter with shadow rays; a delta light needs
 //! one. Bounced light is found by the path tracer, started in directions that the receptor weights. Both are sampled in
 //! sixteen independently scrambled replicates (randomized quasi-Monte Carlo), whose scatter is the reported standard
-//! error; rounds of samples follow until it is small or the ray budget is spent. Direct light passes thin panes. Light
-//! by way of mirrors counts as bounced, and so does light of an area light through bodies of glass, which is the
-//! noisiest.
+//! error; rounds of samples follow until it is small or the ray budget is spent. Direct light passes panes and flat bodies
+//! of glass (`straight_path`). Light by way of mirrors counts as bounced, and so does light of an area light through other
+//! glass, which is the noisiest.
 
 mod meter;
 mod point;
