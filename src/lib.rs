@@ -23,7 +23,7 @@
 //! | `truth` | closed forms beside what meter and renders give for them |
 //! | `editor`, `cli` | the window; the command line |
 //!
-//! `ARCHITECTURE.md` draws the data flow and names the files to touch for an extension. `tests/structure.rs` holds the
+//! `ARCHITECTURE.md` draws the data flow and names the files to touch for an extension. `tests/structure/` holds the
 //! direction of imports, and that only `editor` and `preview` use wgpu and only `editor` uses egui.
 //!
 //! Invariants:

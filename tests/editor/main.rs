@@ -17,7 +17,7 @@ use egui_kittest::kittest::Queryable;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 #[path = "../studio/adapter.rs"]
 mod adapter;
@@ -40,8 +40,6 @@ type Window = Harness<'static, App>;
 const MOST_FRAMES: u32 = 20_000;
 /// Longest time between two frames of a wait, should a job end without a repaint request.
 const LONGEST_PAUSE: Duration = Duration::from_millis(100);
-/// Time limit for checks that something does not happen.
-const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The repaint requests of a window: background jobs request a repaint when they have a result.
 #[derive(Clone, Debug, Default)]
@@ -103,8 +101,16 @@ fn has_adapter() -> bool {
     headless_gpu().is_some()
 }
 
+/// Pixels per point of a window unless a test is about pixels: the GPU is emulated, and its time grows with them.
+const FEW_PIXELS: f32 = 0.5;
+
 fn window(options: EditorOptions) -> Window {
+    window_at(FEW_PIXELS, options)
+}
+
+fn window_at(pixels_per_point: f32, options: EditorOptions) -> Window {
     let builder = Harness::builder().with_size(vec2(1440.0, 900.0)).with_step_dt(1.0 / 30.0).with_max_steps(60);
+    let builder = builder.with_pixels_per_point(pixels_per_point);
     let mut window = builder.wgpu().build_eframe(move |creation| App::new(creation, options));
     settle(&mut window);
     window
@@ -112,6 +118,13 @@ fn window(options: EditorOptions) -> Window {
 
 fn window_with_answers(paths: impl IntoIterator<Item = PathBuf>) -> Window {
     window(EditorOptions { dialogs: FileDialogs::scripted(paths), ..EditorOptions::default() })
+}
+
+/// A window with the first preset at one pixel a point, for drags and clicks that must be exact to a point; none without
+/// an adapter.
+fn sharp_preset_window() -> Option<Window> {
+    has_adapter()
+        .then(|| window_at(1.0, EditorOptions { dialogs: FileDialogs::scripted([]), ..EditorOptions::default() }))
 }
 
 /// A window with the first preset; none without an adapter.

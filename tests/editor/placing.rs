@@ -47,7 +47,7 @@ fn a_highlight_is_dragged_over_a_ball_and_the_light_follows_in_one_step() {
 }
 
 #[test]
-fn light_that_is_put_on_a_point_comes_along_its_normal() {
+fn a_light_placed_on_a_point_lies_along_its_normal() {
     if !has_adapter() {
         return;
     }
@@ -63,7 +63,7 @@ fn light_that_is_put_on_a_point_comes_along_its_normal() {
 }
 
 #[test]
-fn looking_through_a_light_orbit_swings_it_at_its_distance_and_esc_goes_back() {
+fn in_the_view_through_a_light_an_orbit_keeps_its_distance_and_esc_ends_the_view() {
     let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(light.id)]);
@@ -164,7 +164,7 @@ fn a_light_whose_subject_is_deleted_stays_aimed_at_its_place_and_undo_locks_it_a
 }
 
 #[test]
-fn through_a_light_the_wheel_takes_it_nearer_and_a_pan_aims_it_elsewhere() {
+fn in_the_view_through_a_light_the_wheel_moves_it_nearer_and_a_pan_changes_its_aim() {
     let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].clone();
     let target = |window: &Window| scene(window).aim_point(&scene(window).lights[0].aim, Vec3::ZERO);
@@ -183,7 +183,7 @@ fn through_a_light_the_wheel_takes_it_nearer_and_a_pan_aims_it_elsewhere() {
 }
 
 #[test]
-fn a_locked_light_is_not_placed_and_the_user_is_told_why() {
+fn a_locked_light_is_not_placed_and_a_message_says_why() {
     let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(light.id)]);

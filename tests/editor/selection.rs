@@ -125,7 +125,7 @@ fn a_typed_number_is_the_exact_move_and_esc_cancels_a_drag() {
 }
 
 #[test]
-fn a_mirrored_copy_stands_on_the_other_side_of_the_face() {
+fn a_mirrored_copy_is_on_the_other_side_of_the_face() {
     let Some(mut window) = preset_window() else { return };
     let key = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(key.id)]);
@@ -183,7 +183,7 @@ fn esc_cancels_a_selection_box_and_other_keys_are_ignored_during_it() {
 }
 
 #[test]
-fn a_copy_stands_beside_its_original_and_comes_and_goes_with_undo_and_redo() {
+fn a_copy_is_beside_its_original_and_undo_and_redo_remove_and_restore_it() {
     let Some(mut window) = preset_window() else { return };
     let before = scene(&window).clone();
     let (figure, key) = (before.objects[0].clone(), before.lights[0].clone());
@@ -204,7 +204,7 @@ fn a_copy_stands_beside_its_original_and_comes_and_goes_with_undo_and_redo() {
 }
 
 #[test]
-fn what_undo_brings_back_is_selected_and_what_stays_selected_is_what_is_there() {
+fn undo_selects_what_it_restores_and_deselects_what_it_removes() {
     let Some(mut window) = preset_window() else { return };
     let two = lights(&window)[1..3].to_vec();
     let other = lights(&window)[0];

@@ -65,7 +65,7 @@ fn locked_items_are_neither_picked_nor_moved_and_stay_locked_in_the_file() {
 }
 
 #[test]
-fn a_solo_goes_through_the_file_and_gives_back_after_it_what_was_on() {
+fn a_solo_is_kept_in_the_file_and_its_end_restores_what_was_on() {
     if !has_adapter() {
         return;
     }
@@ -89,7 +89,7 @@ fn a_solo_goes_through_the_file_and_gives_back_after_it_what_was_on() {
 }
 
 #[test]
-fn what_of_several_was_hidden_before_is_shown_with_the_rest_by_one_key() {
+fn one_key_shows_all_hidden_objects() {
     let Some(mut window) = preset_window() else { return };
     let before = scene(&window).clone();
     let things: Vec<Item> = before.objects.iter().map(|o| Item::Object(o.id)).collect();

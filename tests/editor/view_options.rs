@@ -11,7 +11,8 @@ fn view(window: &mut Window) -> RgbaImage {
     settle(window);
     let rect = rect.shrink2(vec2(120.0, 110.0));
     let picture = window.render().unwrap();
-    let [x, y, width, height] = [rect.min.x, rect.min.y, rect.width(), rect.height()].map(|v| v as u32);
+    let pixels = |points: f32| (points * window.ctx.pixels_per_point()) as u32;
+    let [x, y, width, height] = [rect.min.x, rect.min.y, rect.width(), rect.height()].map(pixels);
     image::imageops::crop_imm(&picture, x, y, width, height).to_image()
 }
 

@@ -21,7 +21,7 @@ fn a_light_moves_by_its_handles_in_one_step() {
 }
 
 #[test]
-fn a_figure_slides_over_the_floor_by_the_ring_at_its_feet() {
+fn a_figure_is_moved_over_the_floor_by_the_ring_at_its_feet() {
     let Some(mut window) = preset_window() else { return };
     let figure = scene(&window).objects[0].clone();
     click(&mut window, &figure.name);
@@ -58,8 +58,8 @@ fn a_click_selects_the_visible_item() {
 }
 
 #[test]
-fn of_two_things_behind_each_other_a_click_means_the_nearer_at_any_scale_of_the_screen() {
-    let Some(mut window) = preset_window() else { return };
+fn a_click_selects_the_nearer_of_two_objects_at_any_screen_scale() {
+    let Some(mut window) = sharp_preset_window() else { return };
     click(&mut window, "Props");
     let add = |window: &mut Window, at: glam::Vec3| {
         click(window, "Add Chrome ball");
@@ -135,7 +135,7 @@ fn traced_window() -> Window {
 }
 
 #[test]
-fn the_live_view_is_traced_on_demand_and_everything_works_on_top_of_it() {
+fn picking_handles_and_navigation_work_in_the_traced_view() {
     if !has_adapter() {
         return;
     }
@@ -180,7 +180,7 @@ fn the_live_view_is_traced_on_demand_and_everything_works_on_top_of_it() {
 }
 
 #[test]
-fn a_dimmed_light_shows_in_the_traced_view_without_a_ray_and_the_view_comes_to_rest() {
+fn dimming_a_light_traces_no_ray_and_a_settled_view_requests_no_frame() {
     if !has_adapter() {
         return;
     }

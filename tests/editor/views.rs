@@ -63,7 +63,7 @@ fn an_orbit_keeps_the_selection_at_its_screen_position() {
 
 #[test]
 fn the_meter_can_be_moved_out_of_the_way_and_folded() {
-    let Some(mut window) = preset_window() else { return };
+    let Some(mut window) = sharp_preset_window() else { return };
     click(&mut window, "Light meter");
     // The bar of the window, at its upper edge.
     let title = |window: &Window| window.get_by_label("Light meter, dome").rect().center_top() + vec2(0.0, 14.0);
@@ -116,7 +116,7 @@ fn the_list_of_keys_names_every_key() {
 }
 
 #[test]
-fn snapped_things_stand_on_tenths_of_a_metre_and_turn_by_fifteen_degrees() {
+fn snapped_moves_are_multiples_of_ten_centimetres_and_rotations_of_fifteen_degrees() {
     let Some(mut window) = preset_window() else { return };
     let figure = scene(&window).objects[0].clone();
     select(&mut window, &[Item::Object(figure.id)]);
@@ -138,7 +138,7 @@ fn snapped_things_stand_on_tenths_of_a_metre_and_turn_by_fifteen_degrees() {
 }
 
 #[test]
-fn a_thing_grows_by_its_handles_and_comes_back_by_undo() {
+fn a_scale_handle_enlarges_an_object_and_undo_restores_it() {
     let Some(mut window) = preset_window() else { return };
     click(&mut window, "Props");
     click(&mut window, "Add Chrome ball");
@@ -158,7 +158,7 @@ fn a_thing_grows_by_its_handles_and_comes_back_by_undo() {
 }
 
 #[test]
-fn a_turn_is_typed_in_degrees() {
+fn a_rotation_is_typed_in_degrees() {
     let Some(mut window) = preset_window() else { return };
     let figure = scene(&window).objects[0].clone();
     select(&mut window, &[Item::Object(figure.id)]);
@@ -178,7 +178,7 @@ fn a_turn_is_typed_in_degrees() {
 }
 
 #[test]
-fn a_size_is_typed_in_times_and_a_wrong_digit_is_taken_back() {
+fn a_scale_factor_is_typed_and_backspace_removes_a_digit() {
     let Some(mut window) = preset_window() else { return };
     click(&mut window, "Props");
     click(&mut window, "Add Chrome ball");
@@ -202,7 +202,7 @@ fn a_size_is_typed_in_times_and_a_wrong_digit_is_taken_back() {
 }
 
 #[test]
-fn ctrl_turns_snapping_round_for_one_drag() {
+fn ctrl_inverts_snapping_for_one_drag() {
     let Some(mut window) = preset_window() else { return };
     let figure = scene(&window).objects[0].clone();
     select(&mut window, &[Item::Object(figure.id)]);
@@ -219,7 +219,7 @@ fn ctrl_turns_snapping_round_for_one_drag() {
 }
 
 #[test]
-fn a_light_turned_by_its_ring_swings_round_what_it_is_aimed_at() {
+fn a_light_rotated_by_its_ring_orbits_its_target() {
     let Some(mut window) = preset_window() else { return };
     let light = scene(&window).lights[0].clone();
     let target = scene(&window).aim_point(&light.aim, light.position);
@@ -239,7 +239,7 @@ fn a_light_turned_by_its_ring_swings_round_what_it_is_aimed_at() {
 }
 
 #[test]
-fn every_end_of_the_cross_looks_from_its_side() {
+fn every_end_of_the_axis_widget_selects_its_side_view() {
     let Some(mut window) = preset_window() else { return };
     let free = window.state().viewport().view;
     for side in ViewSide::ALL {

@@ -5,7 +5,7 @@
 
 use super::closed_forms::vec3;
 use super::statistics::SampleMean;
-use super::{REFLECTANCE, looking_at_card, object};
+use super::{REFLECTANCE, looking_at_card, object, replay};
 use catchlight::photo::Picture;
 use catchlight::raytrace::{self, Film, Method, RenderControl, Settings, Shortcut};
 use catchlight::scene::{Assets, Camera, Scene, Shape};
@@ -22,8 +22,15 @@ pub fn film(scene: &Scene, settings: &Settings) -> Film {
 
 /// Renders a film of a scene with models.
 pub fn film_with(scene: &Scene, assets: &Assets, settings: &Settings) -> Film {
-    let prepared = raytrace::prepare(scene, assets).unwrap();
+    film_without(&[], scene, assets, settings)
+}
+
+/// Renders a film without some shortcuts of the render plan. A failure of the test prints how to trace it again.
+fn film_without(without: &'static [Shortcut], scene: &Scene, assets: &Assets, settings: &Settings) -> Film {
+    let mut prepared = raytrace::prepare(scene, assets).unwrap();
+    prepared.set_plan(without.iter().fold(prepared.plan().clone(), |plan, shortcut| plan.without(*shortcut)));
     let film = raytrace::render(&prepared, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
+    replay::remember(scene, assets, settings, without, &film.develop(scene));
     assert_eq!(film.nonfinite().count, 0, "{:?}", film.nonfinite().first);
     film
 }
@@ -63,9 +70,7 @@ pub fn illuminance(scene: &Scene, settings: &Settings) -> SampleMean {
 
 /// Returns the illuminance of the card from a render without photons, lux.
 pub fn illuminance_by_paths(scene: &Scene, settings: &Settings) -> SampleMean {
-    let mut prepared = raytrace::prepare(scene, &Assets::default()).unwrap();
-    prepared.set_plan(prepared.plan().clone().without(Shortcut::Photons));
-    let film = raytrace::render(&prepared, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
+    let film = film_without(&[Shortcut::Photons], scene, &Assets::default(), settings);
     values(&film.develop(scene)).scaled(lux_per_value(&scene.camera))
 }
 

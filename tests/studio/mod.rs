@@ -4,6 +4,7 @@
 
 pub use catchlight::truth::closed_forms;
 pub mod measure;
+pub mod replay;
 pub mod statistics;
 
 use catchlight::scene::{

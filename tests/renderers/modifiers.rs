@@ -1,12 +1,7 @@
 //! Tests of modifiers: they only take light away, and meter, path tracer, preview and file agree about them.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
-#![allow(clippy::print_stderr, reason = "a skipped test is reported")]
 
-#[cfg(feature = "gui")]
-#[path = "studio/adapter.rs"]
-mod adapter;
-mod studio;
-
+use crate::studio;
+use crate::studio::light;
 use catchlight::photo::beam::{Beam, transmitted_flux_fraction};
 use catchlight::photo::emitter::EmitterShape;
 use catchlight::photo::meter::Receptor;
@@ -16,7 +11,6 @@ use catchlight::scene::{
 };
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
-use studio::light;
 
 /// Returns a scene with a light at the origin that faces -Z, with this modifier.
 fn modified(emitter: Emitter, modifier: Modifier) -> Scene {

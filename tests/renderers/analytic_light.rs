@@ -1,18 +1,16 @@
 //! The illuminance of every emitter in rendered pictures against closed forms. Tolerances are multiples of the standard
 //! error, which is estimated from the variance of the pixels. The tests of a family share a false-alarm rate of 1 in
 //! 1000 (`studio::statistics`). `BIAS` is the error of the measuring card.
-#![allow(clippy::unwrap_used)]
 
-mod studio;
-
+use crate::studio;
+use crate::studio::closed_forms::{disc, polygon, vec3};
+use crate::studio::light;
+use crate::studio::measure::{BIAS, corners, film, illuminance, lux_per_value, meter_card, square, values};
+use crate::studio::statistics::{SampleMean, TestRng};
 use catchlight::raytrace::Method;
 use catchlight::scene::{Aim, Emitter, Output, Scene, Shape};
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
-use studio::closed_forms::{disc, polygon, vec3};
-use studio::light;
-use studio::measure::{BIAS, corners, film, illuminance, lux_per_value, meter_card, square, values};
-use studio::statistics::{SampleMean, TestRng};
 
 fn lit(emitter: Emitter, position: Vec3, aim: Vec3, receiver: Vec3, normal: Vec3) -> Scene {
     let mut scene = meter_card(receiver, normal);

@@ -1,5 +1,4 @@
 //! `catchlight chart` as a process: its files are complete, and its errors rank the methods.
-#![allow(clippy::unwrap_used)]
 
 use serde_json::Value;
 use std::path::Path;

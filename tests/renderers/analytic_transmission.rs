@@ -1,17 +1,15 @@
 //! Light through flat glass and water against Fresnel's equations and the Beer-Lambert law, summed independently, in
 //! every method that models it. Which technique brings which light: `raytrace/straight_path.rs`.
-#![allow(clippy::unwrap_used)]
 
-mod studio;
-
+use crate::studio;
+use crate::studio::closed_forms::fresnel;
+use crate::studio::light;
+use crate::studio::measure::{illuminance, illuminance_by_paths, illuminance_over, meter_card, square};
+use crate::studio::statistics::SampleMean;
 use catchlight::photo::meter::Receptor;
 use catchlight::raytrace::{LightMeter, MeterEffort, MeterPoint, Method, RenderControl};
 use catchlight::scene::{Aim, Assets, Emitter, Light, Material, Object, ObjectId, Output, Scene, Shape, Transform};
 use glam::{DVec3, Vec3};
-use studio::closed_forms::fresnel;
-use studio::light;
-use studio::measure::{illuminance, illuminance_by_paths, illuminance_over, meter_card, square};
-use studio::statistics::SampleMean;
 
 const GLASS: f64 = 1.52;
 const WATER: f64 = 1.33;

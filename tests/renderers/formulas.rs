@@ -1,10 +1,13 @@
 //! Tests against common wrong formulas (methods.md): each test computes the wrong value, too, and shows that it lies
 //! outside of the tolerance. Triangles, boxes and error bounds are tested beside their code; clipping, depth and
 //! perspective-correct textures with the z-buffer.
-#![allow(clippy::unwrap_used)]
 
-mod studio;
-
+use crate::studio;
+use crate::studio::light;
+use crate::studio::measure::{
+    illuminance, illuminance_by_paths, illuminance_over, luminance_per_value, meter_card, picture, square, values,
+};
+use crate::studio::statistics::SampleMean;
 use catchlight::photo::emitter::{cone_falloff, cone_solid_angle_sr};
 use catchlight::raytrace::{Method, Settings};
 use catchlight::scene::{
@@ -12,11 +15,6 @@ use catchlight::scene::{
 };
 use glam::Vec3;
 use std::f64::consts::PI;
-use studio::light;
-use studio::measure::{
-    illuminance, illuminance_by_paths, illuminance_over, luminance_per_value, meter_card, picture, square, values,
-};
-use studio::statistics::SampleMean;
 
 /// Asserts that a value is within a relative tolerance of the reference, and the wrong formula's value is not.
 fn assert_distinguishes(ours: f64, reference: f64, wrong: f64, limit: f64, what: &str) {

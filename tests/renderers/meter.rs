@@ -1,8 +1,8 @@
 //! The light meter: readings against closed forms, and the exposure that the command proposes against a render.
-#![allow(clippy::unwrap_used)]
 
-mod studio;
-
+use crate::studio;
+use crate::studio::light;
+use crate::studio::statistics::SampleMean;
 use catchlight::photo::meter::Receptor;
 use catchlight::raytrace::{LightMeter, MeterEffort, MeterPoint, MeterResult, Method, RenderControl, Settings};
 use catchlight::scene::{
@@ -13,8 +13,6 @@ use serde_json::Value;
 use std::f32::consts::PI;
 use std::path::Path;
 use std::process::{Command, Output as ProcessOutput};
-use studio::light;
-use studio::statistics::SampleMean;
 
 fn read(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor) -> MeterResult {
     read_with(scene, position, facing, receptor, &MeterEffort::default())

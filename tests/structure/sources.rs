@@ -1,9 +1,8 @@
-//! The structure of `src/`: the direction of imports that lib.rs states, and import circles between files.
+//! The files of `src/` and the edges between them, parsed with `syn`.
 //!
-//! The sources are parsed with `syn`. An edge leads from a file to the file that defines a name it imports, by `use` or
-//! by an inline `crate::` or `super::` path. Re-exports are followed to the defining file, test modules are left out,
-//! and a `mod.rs` that re-exports its children does not count as an importer of them.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
+//! An edge leads from a file to the file that defines a name it imports, by `use` or by an inline `crate::` or `super::`
+//! path. Re-exports are followed to the defining file, test modules are left out, and a `mod.rs` that re-exports its
+//! children does not count as an importer of them.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fs;
@@ -11,41 +10,17 @@ use std::path::{Path, PathBuf};
 use syn::visit::{self, Visit};
 use syn::{Attribute, ItemMod, ItemUse, UseTree, Visibility};
 
-/// Rooms from the lowest layer to the highest. A room imports from lower layers only, and not from its own.
-const LAYERS: [&[&str]; 8] = [
-    &["math", "color"],
-    &["scene"],
-    &["photo"],
-    &["figures", "raytrace", "raster", "preview"],
-    &["io"],
-    &["jobs", "truth"],
-    &["editor", "cli"],
-    &["main"],
-];
-
-/// The one import between rooms of one layer: the command line opens the window.
-const WITHIN_LAYER: [(&str, &str); 1] = [("cli", "editor")];
-
-/// Rooms that may use a crate which draws on the GPU or in a window.
-const GUI_CRATES: [(&[&str], &[&str]); 2] = [
-    (&["wgpu", "bytemuck"], &["preview", "editor"]),
-    (&["egui", "eframe", "winit", "rfd", "transform_gizmo"], &["editor"]),
-];
-
-/// Import circles that remain inside a room, each explained in the head of its `mod.rs`; the first file of each.
-const KNOWN_CIRCLES: [&str; 0] = [];
-
 /// A path of names, such as `["raytrace", "film", "Film"]`.
-type Names = Vec<String>;
+pub type Names = Vec<String>;
 
 /// A file of the crate: its module path and the names it imports.
-struct SourceFile {
-    module: Names,
+pub struct SourceFile {
+    pub module: Names,
     is_facade: bool,
     /// Imported absolute paths within the crate; true for `pub use`.
     imports: Vec<(bool, Names)>,
     /// First segments of imported paths of other crates.
-    crates: BTreeSet<String>,
+    pub crates: BTreeSet<String>,
     /// Names that the file re-exports, with the path of their definition.
     exports: HashMap<String, Names>,
 }
@@ -153,7 +128,7 @@ impl<'ast> Visit<'ast> for Collector<'_> {
     }
 }
 
-fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
+pub fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
@@ -165,7 +140,7 @@ fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 /// Parses `src/`. Files of tests alone (`tests.rs`) are left out.
-fn sources() -> BTreeMap<Names, SourceFile> {
+pub fn sources() -> BTreeMap<Names, SourceFile> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut paths = Vec::new();
     rust_files(&root, &mut paths);
@@ -211,109 +186,11 @@ fn defining_file(files: &BTreeMap<Names, SourceFile>, path: &[String], depth: u3
 }
 
 /// Returns the files that each file imports from.
-fn edges(files: &BTreeMap<Names, SourceFile>) -> BTreeMap<Names, BTreeSet<Names>> {
+pub fn edges(files: &BTreeMap<Names, SourceFile>) -> BTreeMap<Names, BTreeSet<Names>> {
     let targets = |file: &SourceFile| -> BTreeSet<Names> {
         let counted = file.imports.iter().filter(|(is_public, _)| !(*is_public && file.is_facade));
         let found = counted.filter_map(|(_, path)| defining_file(files, path, 0));
         found.filter(|target| *target != file.module && !target.is_empty()).collect()
     };
     files.iter().map(|(module, file)| (module.clone(), targets(file))).collect()
-}
-
-/// Returns all files that can be reached from one by imports.
-fn reachable<'a>(edges: &'a BTreeMap<Names, BTreeSet<Names>>, from: &'a Names) -> BTreeSet<&'a Names> {
-    let (mut seen, mut open) = (BTreeSet::new(), vec![from]);
-    while let Some(module) = open.pop() {
-        open.extend(edges[module].iter().filter(|target| seen.insert(*target)));
-    }
-    seen
-}
-
-fn layer(room: &str) -> usize {
-    let position = LAYERS.iter().position(|rooms| rooms.contains(&room));
-    position.unwrap_or_else(|| panic!("src/{room} has no layer: add it here and to the drawing in lib.rs"))
-}
-
-fn room(module: &[String]) -> &str {
-    module.first().map_or("lib", String::as_str)
-}
-
-#[test]
-fn rooms_import_only_from_lower_layers() {
-    let files = sources();
-    let mut wrong = Vec::new();
-    for (module, targets) in edges(&files).iter().filter(|(module, _)| !module.is_empty()) {
-        for target in targets {
-            let (from, to) = (room(module), room(target));
-            let allowed = from == to || layer(to) < layer(from) || WITHIN_LAYER.contains(&(from, to));
-            if !allowed {
-                wrong.push(format!("{} imports {}", module.join("::"), target.join("::")));
-            }
-        }
-    }
-    assert!(wrong.is_empty(), "against the direction of imports:\n{}", wrong.join("\n"));
-}
-
-#[test]
-fn only_editor_and_preview_use_the_gpu_and_only_the_editor_uses_egui() {
-    for file in sources().values() {
-        for (crates, rooms) in GUI_CRATES {
-            for name in crates {
-                let module = file.module.join("::");
-                assert!(!file.crates.contains(*name) || rooms.contains(&room(&file.module)), "{module} uses {name}");
-            }
-        }
-    }
-}
-
-#[test]
-fn files_do_not_import_each_other_in_circles() {
-    let files = sources();
-    assert!(files.len() > 200, "only {} files found", files.len());
-    let edges = edges(&files);
-    let reach: BTreeMap<&Names, BTreeSet<&Names>> = edges.keys().map(|m| (m, reachable(&edges, m))).collect();
-    let mut circles = BTreeSet::new();
-    for (module, reached) in reach.iter().filter(|(module, reached)| reached.contains(*module)) {
-        let circle: BTreeSet<String> =
-            reached.iter().filter(|other| reach[**other].contains(*module)).map(|other| other.join("::")).collect();
-        circles.insert(circle);
-    }
-    let unknown = circles.iter().filter(|circle| !circle.first().is_some_and(|m| KNOWN_CIRCLES.contains(&m.as_str())));
-    let unknown: Vec<String> = unknown.map(|circle| circle.iter().cloned().collect::<Vec<_>>().join(", ")).collect();
-    assert!(unknown.is_empty(), "import circles:\n{}", unknown.join("\n"));
-}
-
-#[test]
-fn the_gui_feature_is_named_in_three_places_at_most() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut paths = Vec::new();
-    rust_files(&root, &mut paths);
-    let count: usize =
-        paths.iter().map(|path| fs::read_to_string(path).unwrap().matches("feature = \"gui\"").count()).sum();
-    assert!((1..=3).contains(&count), "{count} cfg sites");
-}
-
-/// Returns the crates named in a section of `Cargo.toml`, as identifiers.
-fn dependencies(manifest: &str, section: &str) -> Vec<String> {
-    let body = manifest.split(&format!("\n[{section}]\n")).nth(1).unwrap();
-    let lines = body.lines().take_while(|line| !line.starts_with('['));
-    lines.filter_map(|line| line.split_once(" = ")).map(|(name, _)| name.replace('-', "_")).collect()
-}
-
-#[test]
-fn every_dependency_is_used() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let manifest = fs::read_to_string(root.join("Cargo.toml")).unwrap();
-    let used: BTreeSet<String> = sources().into_values().flat_map(|file| file.crates).collect();
-    for name in dependencies(&manifest, "dependencies") {
-        // wgpu comes with eframe.
-        assert!(used.contains(&name) || (name == "eframe" && used.contains("wgpu")), "src/ does not use {name}");
-    }
-    let mut paths = Vec::new();
-    rust_files(&root.join("tests"), &mut paths);
-    rust_files(&root.join("src"), &mut paths);
-    let texts: Vec<String> = paths.iter().map(|path| fs::read_to_string(path).unwrap()).collect();
-    for name in dependencies(&manifest, "dev-dependencies") {
-        assert!(texts.iter().any(|text| text.contains(&format!("{name}::"))), "no test uses {name}");
-    }
 }

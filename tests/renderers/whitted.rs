@@ -1,13 +1,10 @@
 //! Whitted's method: exact for point lights, and wrong by design for area lights.
-#![allow(clippy::unwrap_used)]
 
-mod studio;
-
+use crate::studio::light;
+use crate::studio::measure::{illuminance, meter_card, square};
 use catchlight::raytrace::Method;
 use catchlight::scene::{Emitter, Output};
 use glam::Vec3;
-use studio::light;
-use studio::measure::{illuminance, meter_card, square};
 
 /// Illuminance of a card that faces the light at `height` metres, by a method.
 fn lux(method: Method, emitter: Emitter, height: f32) -> f64 {

@@ -1,15 +1,13 @@
 //! Exposure, lens and shadows in rendered pictures against closed forms.
-#![allow(clippy::unwrap_used)]
 
-mod studio;
-
+use crate::studio;
+use crate::studio::light;
+use crate::studio::measure::{film, illuminance, meter_card, picture, square, values};
 use catchlight::photo::{Picture, exposure};
 use catchlight::raytrace::{Method, Settings};
 use catchlight::scene::{Aim, Camera, Emitter, Focus, Material, Object, Output, Scene, Sensor, Shape, Transform};
 use glam::Vec3;
 use std::f64::consts::PI;
-use studio::light;
-use studio::measure::{film, illuminance, meter_card, picture, square, values};
 
 fn rotated_object(name: &str, shape: Shape, position: Vec3, rotation_deg: Vec3) -> Object {
     let transform = Transform { position, rotation_deg, ..Transform::default() };

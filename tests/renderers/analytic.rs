@@ -1,27 +1,18 @@
 //! Rendered pictures against closed forms of illuminance.
-#![allow(clippy::unwrap_used)]
 
-mod studio;
-
+use crate::studio;
+use crate::studio::measure::{film, film_with, picture};
+use crate::studio::{REFLECTANCE, card_at, light, looking_at_card};
 use catchlight::photo::Picture;
-use catchlight::raytrace::{self, Method, RenderControl, Settings};
+use catchlight::raytrace::{Method, Settings};
 use catchlight::scene::{Aim, Assets, Emitter, Light, Material, Object, Output, Room, Scene, Shape};
 use glam::Vec3;
 use std::f32::consts::PI;
-use std::ops::ControlFlow;
-use studio::{REFLECTANCE, card_at, light, looking_at_card};
-
-fn render(scene: &Scene, settings: &Settings) -> Picture {
-    let prepared = raytrace::prepare(scene, &Assets::default()).unwrap();
-    let film = raytrace::render(&prepared, settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
-    assert_eq!(film.nonfinite().count, 0);
-    film.develop(scene)
-}
 
 /// Returns the illuminance of the card that fills the picture, lx, by inverting the exposure equation.
 fn illuminance(scene: &Scene, method: Method, spp: u32) -> f32 {
     let settings = Settings { width: 8, height: 8, method, spp, ..Settings::default() };
-    let picture = render(scene, &settings);
+    let picture = picture(scene, &settings);
     let mean = picture.rgb.iter().map(|p| p[1]).sum::<f32>() / picture.rgb.len() as f32;
     let camera = &scene.camera;
     mean * camera.meter_constant * camera.f_number * camera.f_number / (camera.iso * REFLECTANCE * camera.shutter_s)
@@ -133,7 +124,7 @@ fn box_illuminance(reflectance: f32) -> f32 {
         scene.camera.aim = Aim::Point(centre + direction);
         scene.camera.focal_length_mm = 12.0;
         let settings = Settings { width: 16, height: 16, spp: 64, ..Settings::default() };
-        let picture = render(&scene, &settings);
+        let picture = picture(&scene, &settings);
         sum += picture.rgb.iter().map(|p| p[1]).sum::<f32>();
         weights += picture.rgb.len() as f32;
     }
@@ -158,7 +149,7 @@ fn a_white_sphere_is_invisible_in_a_white_furnace() {
         let mut scene = studio::ball_in_even_light(white);
         scene.camera.f_number = 4.0;
         let settings = Settings { width: 16, height: 16, spp: 256, max_depth: Some(64), ..Settings::default() };
-        let picture = render(&scene, &settings);
+        let picture = picture(&scene, &settings);
         // The corner shows the surround.
         let surround = picture.at(0, 0)[1];
         let mut mean = Vec3::ZERO;
@@ -218,13 +209,13 @@ fn the_shutter_time_changes_continuous_light_and_not_flash() {
     let mut scene = lit_card(Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, 1.0);
     scene.lights[0].power.output = Output::FlashWs { energy_ws: 100.0, efficacy_lm_s_per_ws: 40.0 };
     let settings = Settings { width: 16, height: 16, spp: 4, ..Settings::default() };
-    let fast = render(&scene, &settings);
+    let fast = picture(&scene, &settings);
     scene.camera.shutter_s *= 2.0;
-    assert_eq!(fast, render(&scene, &settings));
+    assert_eq!(fast, picture(&scene, &settings));
     scene.lights[0].power.output = Output::Lumens(1000.0);
-    let continuous = render(&scene, &settings);
+    let continuous = picture(&scene, &settings);
     scene.camera.shutter_s *= 2.0;
-    let doubled = render(&scene, &settings);
+    let doubled = picture(&scene, &settings);
     for (a, b) in continuous.rgb.iter().zip(&doubled.rgb) {
         assert!((b[1] / a[1] - 2.0).abs() < 1e-5);
     }
@@ -236,8 +227,7 @@ fn relighting_a_film_equals_rendering_again() {
     let fill = Light { name: "Fill".into(), id: catchlight::scene::LightId(1), ..scene.lights[0].clone() };
     scene.lights.push(Light { position: Vec3::new(1.0, 0.5, 1.0), ..fill });
     let settings = Settings { width: 8, height: 8, spp: 64, ..Settings::default() };
-    let prepared = raytrace::prepare(&scene, &Assets::default()).unwrap();
-    let film = raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
+    let film = film(&scene, &settings);
     let combined = film.develop(&scene);
     let layers = film.develop_layers(&scene);
     for (i, pixel) in combined.rgb.iter().enumerate() {
@@ -248,7 +238,7 @@ fn relighting_a_film_equals_rendering_again() {
     scene.lights[1].on = false;
     scene.lights[0].color.source = catchlight::scene::ColorSource::Kelvin(3200.0);
     let relit = film.develop(&scene);
-    let rendered = render(&scene, &settings);
+    let rendered = picture(&scene, &settings);
     let mean = |p: &Picture| p.rgb.iter().map(|c| Vec3::from(*c)).sum::<Vec3>() / p.rgb.len() as f32;
     // Light sampling differs, and so does the noise; 4096 samples of a smooth integrand agree within 0.5 %.
     assert!((mean(&relit) / mean(&rendered) - Vec3::ONE).abs().max_element() < 0.005);
@@ -278,10 +268,8 @@ fn a_texture_is_upright_on_a_card() {
     let rgb = vec![[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
     let mut assets = Assets::default();
     assets.insert_texture(TextureRef::file("quarters.png"), std::sync::Arc::new(Texture { width: 2, height: 2, rgb }));
-    let prepared = raytrace::prepare(&scene, &assets).unwrap();
     let settings = Settings { width: 8, height: 8, method: Method::Direct, spp: 4, ..Settings::default() };
-    let film = raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
-    let picture = film.develop(&scene);
+    let picture = film_with(&scene, &assets, &settings).develop(&scene);
     let strongest = |x, y| {
         let p = picture.at(x, y);
         (0..3).filter(|&c| p[c] > 0.5 * p[0].max(p[1]).max(p[2])).collect::<Vec<_>>()

@@ -1,6 +1,6 @@
 //! Renders every studio preset: finite, lit, the same bits for any number of threads.
-#![allow(clippy::unwrap_used)]
 
+use crate::studio::measure::film_with;
 use catchlight::io;
 use catchlight::raytrace::{self, Film, Method, RenderControl, RenderScene, Settings};
 use std::ops::ControlFlow;
@@ -51,10 +51,9 @@ fn one_thread_and_many_give_the_same_bits() {
 #[test]
 fn a_seed_changes_only_the_noise() {
     let loaded = io::find_preset("three_point").unwrap().load().unwrap();
-    let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
     let picture = |seed| {
         let settings = Settings { width: 32, height: 32, spp: 16, seed, ..Settings::default() };
-        render(&prepared, &settings, 2).develop(&loaded.scene)
+        film_with(&loaded.scene, &loaded.assets, &settings).develop(&loaded.scene)
     };
     let (a, b) = (picture(1), picture(2));
     assert_ne!(a, b);

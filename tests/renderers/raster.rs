@@ -1,8 +1,6 @@
 //! The software rasterizer against the ray tracer's first hits, closed forms and itself.
-#![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
-mod studio;
-
+use crate::studio;
 use catchlight::photo::exposure;
 use catchlight::raster::{self, NO_OBJECT, Shading};
 use catchlight::raytrace;

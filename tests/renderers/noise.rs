@@ -1,12 +1,9 @@
 //! Adaptive sampling by `--noise`: more samples where the noise is, without bias.
-#![allow(clippy::unwrap_used)]
 
-mod studio;
-
+use crate::studio::measure::film_with;
 use catchlight::io::find_preset;
 use catchlight::photo::Picture;
 use catchlight::raytrace::Settings;
-use studio::measure::film_with;
 
 fn mean(picture: &Picture) -> f64 {
     picture.rgb.iter().flatten().map(|&x| f64::from(x)).sum::<f64>() / (3 * picture.rgb.len()) as f64

@@ -1,5 +1,7 @@
 //! The program as a process: arguments, files, exit codes, output to stdout and stderr.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
+
+mod chart;
 
 use serde_json::Value;
 use std::io::{BufRead, BufReader};

@@ -1,17 +1,17 @@
 //! Glass, mirrors and water against closed forms, measured in rendered pictures. Tolerances are standard errors of the
 //! pixels, as in `analytic_light`.
-#![allow(clippy::unwrap_used)]
 
-mod studio;
-
+use crate::studio;
+use crate::studio::closed_forms::{fresnel, pane};
+use crate::studio::light;
+use crate::studio::measure::{
+    BIAS, illuminance, illuminance_over, luminance_per_value, meter_card, picture, square, values,
+};
+use crate::studio::statistics::SampleMean;
 use catchlight::raytrace::Method;
 use catchlight::scene::{Aim, Camera, Emitter, Material, Object, Output, Scene, Sensor, Shape, Transform};
 use glam::Vec3;
 use std::f64::consts::PI;
-use studio::closed_forms::{fresnel, pane};
-use studio::light;
-use studio::measure::{BIAS, illuminance, illuminance_over, luminance_per_value, meter_card, picture, square, values};
-use studio::statistics::SampleMean;
 
 const LUMINANCE: f32 = 1000.0;
 
