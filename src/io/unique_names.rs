@@ -46,3 +46,19 @@ impl NameAllocator {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_is_tried_once() {
+        // Half of the numbers are taken by other names of the file.
+        let taken = std::iter::once("Key".to_owned()).chain((1..5_000).map(|i| format!("Key {}", 2 * i)));
+        let mut names = NameAllocator { taken: taken.collect(), seen: HashSet::new(), numbers: HashMap::new() };
+        let fresh: HashSet<String> = (0..10_000).map(|_| names.fresh("Key")).collect();
+        assert!(fresh.len() == 10_000 && fresh.contains("Key 3") && !fresh.contains("Key 4"));
+        // The search goes on after the last number given, whatever their order.
+        assert_eq!(names.numbers["Key"], 10_000 + 4_999 + 1);
+    }
+}
