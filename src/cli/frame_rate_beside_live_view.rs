@@ -29,13 +29,13 @@ impl FrameWork {
     /// Calibrates the work by the fastest of some trials, which other threads have disturbed least.
     pub fn new() -> Self {
         const TRIAL: u64 = 1 << 20;
-        let seconds = |_| {
+        let trial = |_| {
             let began = Instant::now();
             spin(TRIAL);
-            began.elapsed().as_secs_f64()
+            began.elapsed().as_nanos()
         };
-        let fastest = (0..20).map(seconds).fold(f64::INFINITY, f64::min);
-        FrameWork { rounds: (TRIAL as f64 * WORK.as_secs_f64() / fastest.max(1e-9)) as u64 }
+        let fastest_ns = (0..20).map(trial).min().unwrap_or(1).max(1);
+        FrameWork { rounds: u64::try_from(u128::from(TRIAL) * WORK.as_nanos() / fastest_ns).unwrap_or(u64::MAX) }
     }
 
     /// Measures the frame rate while `beside` runs.

@@ -4,7 +4,7 @@ use crate::scene::{Aim, Emitter, Light, LightId, Object, ObjectId, Output, Role,
 use glam::{Vec2, Vec3};
 
 /// Number of figures.
-const FIGURES: usize = 5;
+const FIGURES: u32 = 5;
 /// Distance between neighbours, metres.
 const APART_M: f32 = 0.75;
 /// Exposure of a figure by all lights together, each at a distance of `RING_M`, lx s: f/8 at ISO 100.
@@ -20,7 +20,7 @@ pub fn five_figures(scene: &Scene) -> Option<Scene> {
     let figures: Vec<Object> = scene.objects.iter().filter(is_figure).cloned().collect();
     let mut crowd = scene.clone();
     crowd.objects.retain(|object| !is_figure(&object));
-    for (position, figure) in figures.iter().cycle().take(FIGURES).enumerate() {
+    for (position, figure) in (0..FIGURES).zip(figures.iter().cycle()) {
         let mut figure = figure.clone();
         figure.id = ObjectId(crowd.fresh_object_id().0.max(1000));
         figure.name = crowd.unique_name(&figure.name);
@@ -40,13 +40,13 @@ pub fn five_figures(scene: &Scene) -> Option<Scene> {
 
 /// Returns the studio with `count` lights, which are panels, spots and bulbs in turn. Together they give the same
 /// exposure for any count.
-pub fn lit_by(crowd: &Scene, count: usize) -> Scene {
+pub fn lit_by(crowd: &Scene, count: u32) -> Scene {
     let mut scene = crowd.clone();
     scene.lights = (0..count).map(|index| small_light(index, count)).collect();
     scene
 }
 
-fn small_light(index: usize, count: usize) -> Light {
+fn small_light(index: u32, count: u32) -> Light {
     let turn = index as f32 * GOLDEN_ANGLE;
     let height_m = 0.6 + 2.0 * ((index as f32 + 0.5) / count as f32);
     // An ellipse around the group: every light has about the same distance to its nearest figure.
@@ -59,7 +59,7 @@ fn small_light(index: usize, count: usize) -> Light {
     };
     let intensity = EXPOSURE_LUX_S * RING_M * RING_M / count as f32;
     Light {
-        id: LightId(index as u32),
+        id: LightId(index),
         name: format!("Small light {}", index + 1),
         role: Role::Accent,
         position: Vec3::new(around.x, height_m, around.y),
@@ -79,12 +79,12 @@ mod tests {
         let loaded = crate::io::find_preset("three_point").unwrap().load().unwrap();
         let crowd = five_figures(&loaded.scene).unwrap();
         let figures = crowd.objects.iter().filter(|o| matches!(o.shape, Shape::Mannequin(_))).count();
-        assert_eq!(figures, FIGURES);
+        assert_eq!(figures, FIGURES as usize);
         for count in [1, 4, 60] {
             let scene = lit_by(&crowd, count);
             let total: f32 = scene.lights.iter().map(axial_intensity).sum();
             assert!((total / (EXPOSURE_LUX_S * RING_M * RING_M) - 1.0).abs() < 1e-3, "{count}: {total}");
-            assert_eq!((scene.lights.len(), crate::scene::validate(&scene).len()), (count, 0));
+            assert_eq!((scene.lights.len(), crate::scene::validate(&scene).len()), (count as usize, 0));
         }
         assert!(five_figures(&Scene::default()).is_none());
     }

@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::frame_rate_beside_live_view::{FrameRate, FrameWork};
+use super::percentile::percentile;
 use super::terminal;
 use crate::io::{self, Loaded, PictureInfo};
 use crate::jobs::{Clock, LivePacing, background_pool, render_all_passes};
@@ -264,10 +265,10 @@ impl LiveViewReport {
     }
 }
 
-/// Returns median and 90th percentile; there is at least one time.
+/// Returns median and 90th percentile.
 fn quantiles(times: &mut [f64]) -> [f64; 2] {
     times.sort_by(f64::total_cmp);
-    [0.5, 0.9].map(|part: f64| times[((times.len() - 1) as f64 * part).round() as usize])
+    [50, 90].map(|percent| percentile(times, percent))
 }
 
 /// Returns a view turned about the vertical line through the point ahead of it.

@@ -3,6 +3,9 @@
 //! Results go to stdout, progress, warnings and errors to stderr. Exit codes: 0 done, 1 the input is wrong, 2 the
 //! machine cannot do it, 130 interrupted.
 
+// A number of a file or an argument that does not fit is an error and never wraps.
+#![deny(clippy::cast_possible_truncation, clippy::cast_possible_wrap, clippy::cast_sign_loss)]
+
 mod bake;
 mod chart;
 mod check;
@@ -13,6 +16,7 @@ mod input;
 mod light_crowd;
 mod live_view_times;
 mod meter;
+mod percentile;
 mod presets;
 mod preview;
 mod preview_look;

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// Picture size of frame times.
 const TIMED_SIZE: (u32, u32) = (1280, 720);
 /// Numbers of lights of `--lights`.
-const LIGHT_COUNTS: [usize; 4] = [1, 4, 16, 60];
+const LIGHT_COUNTS: [u32; 4] = [1, 4, 16, 60];
 /// Number of timed frames without `--frames`.
 const FRAMES: u32 = 30;
 

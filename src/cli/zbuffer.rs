@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::frame_times::FrameTimeReport;
+use super::percentile::percentile;
 use crate::io::{self, Loaded, PictureInfo};
 use crate::photo::Picture;
 use crate::raster::{Framebuffer, Rasterizer, Shading};
@@ -65,7 +66,6 @@ pub fn time(loaded: &Loaded, (width, height): (u32, u32), frames: u32) -> FrameT
         .skip(1)
         .collect();
     times.sort_by(f64::total_cmp);
-    let quantile = |part: f64| times[((times.len() - 1) as f64 * part).round() as usize];
     FrameTimeReport {
         scene: loaded.scene.name.clone(),
         width,
@@ -76,8 +76,8 @@ pub fn time(loaded: &Loaded, (width, height): (u32, u32), frames: u32) -> FrameT
         light_radius: false,
         draft: false,
         frames: times.len(),
-        median_ms: quantile(0.5),
-        ninety_percent_ms: quantile(0.9),
-        full_median_ms: quantile(0.5),
+        median_ms: percentile(&times, 50),
+        ninety_percent_ms: percentile(&times, 90),
+        full_median_ms: percentile(&times, 50),
     }
 }

@@ -7,6 +7,9 @@
 //! To add a model format, write a module beside `obj` and list it in [`MODEL_FORMATS`]. To add a kind of asset, add a
 //! variant to [`AssetRef`](crate::scene::AssetRef) and follow the compiler to its loader in `assets`.
 
+// A number of a file or an argument that does not fit is an error and never wraps.
+#![deny(clippy::cast_possible_truncation, clippy::cast_possible_wrap, clippy::cast_sign_loss)]
+
 mod asset_files;
 mod assets;
 mod atomic;

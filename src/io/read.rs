@@ -16,7 +16,7 @@ pub(super) fn read_limited(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, Ass
         return Err(read_error(std::io::Error::new(ErrorKind::InvalidInput, "it is no regular file")));
     }
     let file = std::fs::File::open(path).map_err(read_error)?;
-    let mut bytes = Vec::with_capacity(metadata.len().min(limit_bytes) as usize);
+    let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(limit_bytes)).unwrap_or_default());
     file.take(limit_bytes + 1).read_to_end(&mut bytes).map_err(read_error)?;
     if bytes.len() as u64 > limit_bytes {
         let amount = metadata.len().max(bytes.len() as u64);

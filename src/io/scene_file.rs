@@ -58,7 +58,7 @@ fn read_text(path: &Path) -> Result<String, LoadError> {
     if bytes > FILE_LIMIT_BYTES {
         return Err(LoadError::TooLarge { bytes, limit_bytes: FILE_LIMIT_BYTES });
     }
-    let mut content = Vec::with_capacity(bytes as usize);
+    let mut content = Vec::with_capacity(usize::try_from(bytes).unwrap_or_default());
     // The size of a pipe or a growing file is not known beforehand.
     file.take(FILE_LIMIT_BYTES + 1).read_to_end(&mut content).map_err(read_error)?;
     String::from_utf8(content).map_err(|error| LoadError::NotText(error.utf8_error().valid_up_to()))

@@ -49,7 +49,12 @@ mod tests {
     fn a_png_is_decoded_to_its_pixels() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
-        let pixels = image::RgbImage::from_fn(3, 2, |x, y| image::Rgb([x as u8 * 50, y as u8 * 100, 7]));
+        let pixels = image::RgbImage::from_raw(
+            3,
+            2,
+            [[0, 0, 7], [50, 0, 7], [100, 0, 7], [0, 100, 7], [50, 100, 7], [100, 100, 7]].concat(),
+        )
+        .unwrap();
         pixels.save(&path).unwrap();
         let texture = load(&path).unwrap();
         assert_eq!((texture.width, texture.height), (3, 2));

@@ -1,5 +1,6 @@
 //! Errors of a picture against the reference.
 
+use crate::cli::percentile::percentile;
 use crate::color::luminance;
 use crate::photo::Picture;
 use glam::Vec3;
@@ -36,12 +37,10 @@ impl PictureError {
             stops.push((y.max(DARKEST) / reference_y.max(DARKEST)).log2().abs());
         }
         stops.sort_by(f64::total_cmp);
-        let last = stops.len().saturating_sub(1) as f64;
-        let quantile = |part: f64| stops.get((last * part).round() as usize).copied().unwrap_or(0.0);
         PictureError {
             rel_mse: sum / (3 * picture.rgb.len()).max(1) as f64,
-            median_stops: quantile(0.5),
-            stops_95: quantile(0.95),
+            median_stops: percentile(&stops, 50),
+            stops_95: percentile(&stops, 95),
             bias_stops: (mean.max(f64::MIN_POSITIVE) / reference_mean.max(f64::MIN_POSITIVE)).log2(),
         }
     }

@@ -27,8 +27,8 @@ pub struct ScalingRange {
     #[arg(long, value_delimiter = ',', value_name = "N,...", requires = "scaling", value_parser = clap::value_parser!(u64).range(8..=100_000_000), default_values_t = [10_000, 100_000, 1_000_000, 10_000_000])]
     triangles: Vec<u64>,
     /// Numbers of lights of --scaling, around five figures.
-    #[arg(long, value_delimiter = ',', value_name = "N,...", requires = "scaling", value_parser = clap::value_parser!(u64).range(1..=100_000), default_values_t = [1, 10, 100, 1000])]
-    lights: Vec<u64>,
+    #[arg(long, value_delimiter = ',', value_name = "N,...", requires = "scaling", value_parser = clap::value_parser!(u32).range(1..=100_000), default_values_t = [1, 10, 100, 1000])]
+    lights: Vec<u32>,
     /// Picture sizes of --scaling.
     #[arg(long, value_delimiter = ',', value_name = "WIDTHxHEIGHT,...", requires = "scaling", value_parser = input::parse_size, default_value = "640x480,1920x1080,3840x2160,7680x4320")]
     sizes: Vec<(u32, u32)>,
@@ -68,8 +68,8 @@ pub fn run(range: &ScalingRange, json: bool) -> Result<(), Failure> {
     let studio = io::find_preset("three_point").context("the studio three_point is not shipped")?.load()?;
     let crowd = light_crowd::five_figures(&studio.scene).context("the studio three_point has no figure")?;
     for &count in &range.lights {
-        let lit = light_crowd::lit_by(&crowd, count as usize);
-        rows.push(measure("lights", count, &lit, &studio.assets, SIZE, SPP)?);
+        let lit = light_crowd::lit_by(&crowd, count);
+        rows.push(measure("lights", count.into(), &lit, &studio.assets, SIZE, SPP)?);
     }
     for &(width, height) in &range.sizes {
         let pixels = u64::from(width) * u64::from(height);
@@ -155,7 +155,8 @@ fn bumpy_ball(triangles: u64) -> (Scene, Assets) {
 
 /// Returns a sphere of rings and sectors, two triangles each; those at the poles have no area.
 fn bumpy_mesh(triangles: u64) -> Mesh {
-    let rings = ((triangles as f64 / 4.0).sqrt().round() as u32).max(2);
+    // Four triangles a ring and sector pair; at most 100 million triangles are accepted
+    let rings = u32::try_from((triangles / 4).isqrt()).unwrap_or(u32::MAX).max(2);
     let sectors = 2 * rings;
     let point = |ring: u32, sector: u32| {
         let (down, around) = (ring as f32 / rings as f32 * PI, sector as f32 / sectors as f32 * TAU);

@@ -109,8 +109,8 @@ fn measure(
     let intersector = pool.install(|| Intersector::new(mesh, method));
     let build_s = started.elapsed().as_secs_f64();
     let tests_a_ray = if method == IntersectionMethod::Bvh { 1 } else { mesh.triangles.len() as u64 };
-    let step = (rays.len() as u64 * tests_a_ray).div_ceil(MOST_TESTS).max(1) as usize;
-    let rays: Vec<Ray> = rays.iter().step_by(step).copied().collect();
+    let step = (rays.len() as u64 * tests_a_ray).div_ceil(MOST_TESTS).max(1);
+    let rays: Vec<Ray> = rays.iter().step_by(usize::try_from(step).unwrap_or(usize::MAX)).copied().collect();
     let pass = || -> (Vec<f32>, f64) {
         let started = Instant::now();
         let distances =
@@ -167,13 +167,18 @@ fn generated_rays(mesh: &Arc<Mesh>, kind: RayKind) -> Vec<Ray> {
     let mut rays = bounced(mesh, &primary);
     if matches!(kind, RayKind::Shuffled) {
         // Fisher-Yates shuffle, with numbers from a scrambled Sobol sequence.
-        for i in (1..rays.len()).rev() {
-            let index = i as u32;
-            let u = sobol_burley::sample(index & 0xffff, 0, index >> 16);
-            rays.swap(i, ((i + 1) as f32 * u) as usize);
+        for index in (1..u32::try_from(rays.len()).unwrap_or(u32::MAX)).rev() {
+            let u = f64::from(sobol_burley::sample(index & 0xffff, 0, index >> 16));
+            rays.swap(index as usize, below(index + 1, u));
         }
     }
     rays
+}
+
+/// Returns the number below `count` at a fraction of 0 to 1 of it.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the product is positive and below count")]
+fn below(count: u32, fraction: f64) -> usize {
+    (f64::from(count) * fraction) as usize
 }
 
 /// Returns the rays of a square picture that the model fills, seen from the front and a little above.
@@ -195,9 +200,9 @@ fn camera_rays(mesh: &Mesh) -> Vec<Ray> {
 /// Returns one ray from each hit of `rays`, cosine-distributed about the incident direction, offset from the surface.
 fn bounced(mesh: &Arc<Mesh>, rays: &[Ray]) -> Vec<Ray> {
     let distances = Intersector::new(mesh, IntersectionMethod::Bvh).distances(rays);
-    let hits = rays.iter().zip(distances).enumerate().filter(|(_, (_, t))| t.is_finite());
+    let hits = (0_u32..).zip(rays.iter().zip(distances)).filter(|(_, (_, t))| t.is_finite());
     hits.map(|(i, (ray, t))| {
-        let [a, b, ..] = sobol_burley::sample_4d(i as u32 & 0xffff, 0, i as u32 >> 16);
+        let [a, b, ..] = sobol_burley::sample_4d(i & 0xffff, 0, i >> 16);
         let local = warp::cosine_hemisphere(Vec2::new(a, b));
         let (tangent, bitangent) = orthonormal_basis(-ray.direction);
         let direction = tangent * local.x + bitangent * local.y - ray.direction * local.z;

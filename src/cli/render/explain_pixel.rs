@@ -70,7 +70,7 @@ impl Names<'_> {
             seed,
             value: replay.picture_value(self.prepared.layers(), self.scene),
             nonfinite: replay.nonfinite.count,
-            lights: (0..self.prepared.light_count() as u32).map(|light| self.light(light)).collect(),
+            lights: (0..).take(self.prepared.light_count()).map(|light| self.light(light)).collect(),
             objects: self.scene.objects.iter().map(|object| object.name.as_str()).collect(),
             layers: self.prepared.layers().iter().map(|layer| layer.name.as_str()).collect(),
             events: &replay.events,

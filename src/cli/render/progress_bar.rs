@@ -37,6 +37,12 @@ impl Drop for ProgressDisplay {
     }
 }
 
+/// Returns a fraction, 0 to 1, of a number of samples.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the product is within 0 to total")]
+fn part_of(total: u64, fraction: f32) -> u64 {
+    (f64::from(fraction) * total as f64) as u64
+}
+
 fn draw(monitor: &RenderMonitor, ended: &Receiver<()>) {
     let total = monitor.total_samples();
     let bar = ProgressBar::new(total);
@@ -46,7 +52,7 @@ fn draw(monitor: &RenderMonitor, ended: &Receiver<()>) {
     while ended.recv_timeout(INTERVAL) == Err(RecvTimeoutError::Timeout) {
         let progress = monitor.progress();
         bar.set_message(format!("{:.0} samples a pixel, {:.1} Mrays/s", progress.samples.floor(), progress.mrays_s));
-        bar.set_position((f64::from(progress.fraction) * total as f64) as u64);
+        bar.set_position(part_of(total, progress.fraction));
     }
     bar.finish_and_clear();
 }

@@ -8,6 +8,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Bytes of a chunk: parsing it takes much longer than joining it.
 const CHUNK_BYTES: usize = 1 << 20;
 
+/// Largest file, bytes. Elements take two bytes or more, and a corner of a polygon, two bytes, at most three corners of
+/// triangles: their numbers and indices fit 32 bits.
+pub(super) const FILE_LIMIT_BYTES: usize = 1 << 31;
+
 /// The parsed content of a file.
 #[derive(Debug, Default)]
 pub(super) struct Elements {
@@ -21,6 +25,8 @@ pub(super) struct Elements {
 /// The reason why a file can't be used.
 #[derive(Debug)]
 pub(super) enum ReadError {
+    /// More bytes than [`FILE_LIMIT_BYTES`].
+    TooLarge(usize),
     /// A mistake in a line, with the line's number.
     BadLine(String),
     /// More triangles than the limit; at least this number.
@@ -29,6 +35,9 @@ pub(super) enum ReadError {
 
 /// Parses a whole file. Of several mistakes the first in the file is reported.
 pub(super) fn parse(bytes: &[u8], triangle_limit: usize) -> Result<Elements, ReadError> {
+    if bytes.len() > FILE_LIMIT_BYTES {
+        return Err(ReadError::TooLarge(bytes.len()));
+    }
     let chunks = split(bytes, CHUNK_BYTES);
     let counts: Vec<ElementCounts> = chunks.par_iter().map(|chunk| ElementCounts::of(chunk)).collect();
     let mut total = ElementCounts::default();

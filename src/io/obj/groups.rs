@@ -3,6 +3,7 @@
 use super::chunks::Elements;
 use super::lines::{CornerIndices, Directive, Faces, NO_INDEX};
 use super::materials::MaterialLibrary;
+use super::to_index;
 use super::weld::VertexWelder;
 use crate::scene::{Mesh, MeshPart};
 use rayon::prelude::*;
@@ -83,11 +84,11 @@ pub(super) fn weld(elements: &Elements, groups: &[FaceGroup<'_>], names: Vec<Str
     let mut welder = VertexWelder::new(elements.positions.len());
     let mut mesh = Mesh::default();
     for (group, name) in groups.iter().zip(names) {
-        let first = mesh.triangles.len() as u32;
+        let first = to_index(mesh.triangles.len());
         welder.begin_group();
         let triangles = group.runs.iter().copied().flatten();
         mesh.triangles.extend(triangles.map(|triangle| triangle.map(|corner| welder.vertex(corner))));
-        mesh.parts.push(MeshPart { name, triangles: first..mesh.triangles.len() as u32 });
+        mesh.parts.push(MeshPart { name, triangles: first..to_index(mesh.triangles.len()) });
     }
     let vertices = &welder.vertices;
     let all_have = |kind: usize| vertices.par_iter().all(|vertex| vertex[kind] != NO_INDEX);

@@ -1,5 +1,6 @@
 //! Parses the lines of an OBJ file, one chunk of the file at a time.
 
+use super::to_index;
 use glam::{Vec2, Vec3};
 
 /// Index of a texture coordinate or a normal that a face corner does not have.
@@ -121,7 +122,7 @@ impl ParsedChunk {
     }
 
     fn counts(&self) -> ElementCounts {
-        ElementCounts([self.positions.len() as u32, self.uvs.len() as u32, self.normals.len() as u32])
+        ElementCounts([self.positions.len(), self.uvs.len(), self.normals.len()].map(to_index))
     }
 
     /// Triangulates a polygon as a fan. Points and lines have no triangles.
@@ -194,7 +195,7 @@ fn corner(word: &[u8], here: &ElementCounts, total: &ElementCounts) -> Result<Co
     for (kind, text) in word.split(|&byte| byte == b'/').enumerate().filter(|(_, text)| !text.is_empty()) {
         let slot = corner.get_mut(kind).ok_or_else(|| wrong("has too many parts"))?;
         let index = integer(text).ok_or_else(|| wrong("is no index"))?;
-        let (here, total) = (i64::from(here.0[kind]), i64::from(total.0[kind]));
+        let (here, total) = (i64::from(here.0[kind]), total.0[kind]);
         if index == 0 {
             return Err(wrong("is 0, but indices begin at 1"));
         }
@@ -202,10 +203,10 @@ fn corner(word: &[u8], here: &ElementCounts, total: &ElementCounts) -> Result<Co
         if zero_based < 0 {
             return Err(wrong("points to before the first"));
         }
-        if zero_based >= total {
-            missing = Some(format!("the face names {} {index}, but there are {total}", ELEMENT_NAMES[kind]));
+        match u32::try_from(zero_based) {
+            Ok(zero_based) if zero_based < total => *slot = zero_based,
+            _ => missing = Some(format!("the face names {} {index}, but there are {total}", ELEMENT_NAMES[kind])),
         }
-        *slot = zero_based as u32;
     }
     missing.map_or(Ok(corner), Err)
 }

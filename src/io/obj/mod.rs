@@ -20,6 +20,14 @@ use std::path::Path;
 /// Largest absolute coordinate of a vertex, metres.
 const COORDINATE_LIMIT_M: f32 = 1e6;
 
+/// Returns an index or a number of elements as a mesh stores it. [`chunks::FILE_LIMIT_BYTES`] holds all of them within
+/// 32 bits.
+#[expect(clippy::cast_possible_truncation, reason = "chunks::parse refuses larger files")]
+fn to_index(count: usize) -> u32 {
+    debug_assert!(u32::try_from(count).is_ok());
+    count as u32
+}
+
 /// Imports an OBJ file: polygons become triangles, groups become parts; missing normals are computed, smooth except at
 /// hard edges. A missing MTL file is a warning.
 ///
@@ -30,6 +38,12 @@ pub(super) fn import(path: &Path, limits: &ModelLimits) -> Result<ImportedModel,
     let bad_model = |message: String| AssetError::BadModel { format: "OBJ", message, path: path.to_owned() };
     let elements = chunks::parse(&bytes, limits.triangles).map_err(|error| match error {
         ReadError::BadLine(message) => bad_model(message),
+        ReadError::TooLarge(bytes) => AssetError::TooLarge {
+            what: "the file's number of bytes",
+            amount: bytes as u64,
+            limit: chunks::FILE_LIMIT_BYTES as u64,
+            path: path.to_owned(),
+        },
         ReadError::TooManyTriangles(amount) => AssetError::TooLarge {
             what: "the model's number of triangles",
             amount: amount as u64,

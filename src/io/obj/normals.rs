@@ -1,6 +1,7 @@
 //! Computes vertex normals: smooth, except at edges sharper than a crease angle.
 
 use super::lines::CornerIndices;
+use super::to_index;
 use super::weld::VertexWelder;
 use crate::math::angle_between;
 use crate::scene::Mesh;
@@ -89,7 +90,7 @@ impl CornersByPosition {
 fn first_at_same_position(positions: &[Vec3]) -> Vec<u32> {
     // Adding zero turns -0 into 0.
     let bits = |p: &Vec3| (*p + Vec3::ZERO).to_array().map(f32::to_bits);
-    let mut sorted: Vec<([u32; 3], u32)> = positions.par_iter().map(bits).zip(0..positions.len() as u32).collect();
+    let mut sorted: Vec<([u32; 3], u32)> = positions.par_iter().map(bits).zip(0..to_index(positions.len())).collect();
     sorted.par_sort_unstable();
     let mut position_of = vec![0; positions.len()];
     for run in sorted.chunk_by(|a, b| a.0 == b.0) {

@@ -122,16 +122,15 @@ fn a_truncated_file_is_an_error_or_a_smaller_model() {
 
 /// Returns a model of several chunks: a strip of quads, every third with relative indices, in groups that share
 /// corners.
-fn long_model(quads: u32) -> String {
+fn long_model(quads: usize) -> String {
     let mut text = "# a strip\r\nv 0 0 0\r\nv 0 0 1\r\nvt 0 0\r\nvn 0 1 0\r\n".to_owned();
-    for i in 1..=quads {
+    for i in (1_i32..).take(quads) {
         if i % 1000 == 1 {
             text += &format!("g group {}\r\n", i / 1000);
         }
         text += &format!("v {i} 0 0\r\nv {i} 0 1\r\nvt {i} 0.5\r\n");
-        let corners =
-            if i % 3 == 0 { [-4, -3, -1, -2] } else { [2 * i - 1, 2 * i, 2 * i + 2, 2 * i + 1].map(|n| n as i32) };
-        let corners = corners.map(|n| format!("{n}/{}/1", if n < 0 { -1 } else { i as i32 + 1 }));
+        let corners = if i % 3 == 0 { [-4, -3, -1, -2] } else { [2 * i - 1, 2 * i, 2 * i + 2, 2 * i + 1] };
+        let corners = corners.map(|n| format!("{n}/{}/1", if n < 0 { -1 } else { i + 1 }));
         text += &format!("f {}\r\n", corners.join(" "));
     }
     text
@@ -143,11 +142,11 @@ fn a_model_of_several_chunks_is_parsed_completely() {
     let text = long_model(quads);
     assert!(text.len() > 3 << 20, "too few chunks");
     let mesh = import(&text).unwrap().mesh;
-    assert_eq!(mesh.triangles.len(), 2 * quads as usize);
+    assert_eq!(mesh.triangles.len(), 2 * quads);
     assert_eq!(mesh.parts.len(), 40);
     assert_eq!(mesh.parts[39], MeshPart::new("group 39", 78_000..80_000));
     // Each quad has a texture coordinate of its own, and so four vertices.
-    assert_eq!(mesh.positions.len(), 4 * quads as usize);
+    assert_eq!(mesh.positions.len(), 4 * quads);
     for (t, triangle) in mesh.triangles.iter().enumerate() {
         let i = (t / 2) as f32;
         let corners = mesh.corners(t);
@@ -199,7 +198,7 @@ fn the_mesh_equals_that_of_tobj() {
     let mut triangles = Vec::new();
     for model in &models {
         triangles.extend(model.mesh.indices.chunks_exact(3).map(|t| [t[0] + base, t[1] + base, t[2] + base]));
-        base += model.mesh.positions.len() as u32 / 3;
+        base += to_index(model.mesh.positions.len()) / 3;
     }
     assert_eq!(mesh.triangles, triangles);
 }

@@ -1,6 +1,7 @@
 //! Welds face corners with equal indices to shared vertices.
 
 use super::lines::CornerIndices;
+use super::to_index;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
@@ -42,7 +43,7 @@ impl VertexWelder {
 
     /// Returns the vertex of a corner.
     pub fn vertex(&mut self, corner: CornerIndices) -> u32 {
-        let new = self.vertices.len() as u32;
+        let new = to_index(self.vertices.len());
         let (mut at, mut last, mut length) = (self.first[corner[0] as usize], NONE, 0);
         while at != NONE {
             if self.vertices[at as usize] == corner {

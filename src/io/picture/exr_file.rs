@@ -2,6 +2,7 @@
 
 use super::PictureInfo;
 use crate::photo::{AovPicture, Picture};
+use exr::meta::MetaData;
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer, LayerAttributes,
@@ -28,16 +29,37 @@ pub(super) fn encode(
     Ok(content.into_inner())
 }
 
+/// Longest edge of a picture that is read, pixels.
+const LARGEST_EDGE: usize = 65_536;
+/// Most pixels of a picture that is read: 4 GB of them.
+const MOST_PIXELS: usize = 1 << 28;
+
+/// Returns the size of a picture, if it is small enough to be read.
+fn checked_size(size: exr::math::Vec2<usize>) -> Result<(u32, u32), String> {
+    let (width, height) = (size.width(), size.height());
+    let too_large = || format!("the picture of {width} x {height} pixels is too large");
+    if width.max(height) > LARGEST_EDGE || width * height > MOST_PIXELS {
+        return Err(too_large());
+    }
+    let edge = |pixels: usize| u32::try_from(pixels).map_err(|_| too_large());
+    Ok((edge(width)?, edge(height)?))
+}
+
 /// Decodes the first part with red, green and blue channels.
 pub(super) fn decode(content: &[u8]) -> Result<Picture, String> {
+    // Check the sizes before memory is allocated for any of them
+    let meta = MetaData::read_from_buffered(Cursor::new(content), false).map_err(|error| error.to_string())?;
+    meta.headers.iter().try_for_each(|header| checked_size(header.layer_size).map(|_| ()))?;
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
         .rgb_channels(
-            |size, _| Picture::new(size.width() as u32, size.height() as u32),
+            |size, _| checked_size(size).map_or(Picture::new(0, 0), |(width, height)| Picture::new(width, height)),
             |picture: &mut Picture, at, (r, g, b): (f32, f32, f32)| {
                 let index = at.y() * picture.width as usize + at.x();
-                picture.rgb[index] = [r, g, b];
+                if let Some(pixel) = picture.rgb.get_mut(index) {
+                    *pixel = [r, g, b];
+                }
             },
         )
         .first_valid_layer()
@@ -92,7 +114,8 @@ fn channels(names: [&str; 3], pixels: &[[f32; 3]]) -> [AnyChannel<FlatSamples>; 
 /// Converts text to EXR's byte strings: at most 200 bytes, not empty, `_` for characters that are not printable ASCII.
 fn text(value: &str) -> Text {
     const LENGTH: usize = 200;
-    let fitting = |c: char| if c.is_ascii() && !c.is_ascii_control() { c as u8 } else { b'_' };
+    let fitting =
+        |c: char| u8::try_from(c).ok().filter(|byte| byte.is_ascii() && !byte.is_ascii_control()).unwrap_or(b'_');
     let bytes: Vec<u8> = value.chars().take(LENGTH).map(fitting).collect();
     Text::from_slice_unchecked(if bytes.is_empty() { b"_" } else { &bytes })
 }

@@ -32,9 +32,11 @@ struct ObjectIds(HashMap<String, ObjectId>);
 
 impl ObjectIds {
     fn of(objects: &[ObjectV1]) -> Self {
-        // In reverse, so that the first of two equal names is kept.
-        let ids = objects.iter().enumerate().rev().map(|(index, o)| (o.name.clone(), ObjectId(index as u32)));
-        ObjectIds(ids.collect())
+        let mut ids = HashMap::new();
+        for (index, object) in (0..).zip(objects) {
+            ids.entry(object.name.clone()).or_insert(ObjectId(index));
+        }
+        ObjectIds(ids)
     }
 
     fn id(&self, name: &str, place: &str) -> Result<ObjectId, UnknownName> {
@@ -75,8 +77,9 @@ pub(in crate::io) fn scene_from_v1(file: SceneV1) -> Result<Scene, UnknownName> 
         description: file.description,
         camera: camera_from(file.camera, &ids)?,
         room: file.room.map(Room::from),
-        objects: file.objects.into_iter().enumerate().map(|(index, object)| object_from(object, index)).collect(),
-        lights: (file.lights.into_iter().enumerate())
+        objects: (0..).zip(file.objects).map(|(index, object)| object_from(object, index)).collect(),
+        lights: (0..)
+            .zip(file.lights)
             .map(|(index, light)| light_from(light, index, &ids))
             .collect::<Result<_, _>>()?,
         meter: file.meter.map(Meter::from),
@@ -86,8 +89,10 @@ pub(in crate::io) fn scene_from_v1(file: SceneV1) -> Result<Scene, UnknownName> 
 
 /// Resolves the names of soloed lights to ids. The first of two equal names counts.
 fn solo_from(file: SoloV1, lights: &[LightV1]) -> Result<Solo, UnknownName> {
-    let by_name: HashMap<&str, LightId> =
-        lights.iter().enumerate().rev().map(|(index, light)| (light.name.as_str(), LightId(index as u32))).collect();
+    let mut by_name = HashMap::new();
+    for (index, light) in (0..).zip(lights) {
+        by_name.entry(light.name.as_str()).or_insert(LightId(index));
+    }
     let ids = |names: Vec<String>, place: &str| {
         let id = |name: String| match by_name.get(name.as_str()) {
             Some(&id) => Ok(id),
@@ -187,9 +192,9 @@ fn aim_to(scene: &Scene, aim: &Aim, position: Vec3) -> AimV1 {
     }
 }
 
-fn object_from(file: ObjectV1, index: usize) -> Object {
+fn object_from(file: ObjectV1, index: u32) -> Object {
     Object {
-        id: ObjectId(index as u32),
+        id: ObjectId(index),
         name: file.name,
         transform: Transform {
             position: Vec3::from(file.position),
@@ -224,10 +229,10 @@ impl From<&Object> for ObjectV1 {
     }
 }
 
-fn light_from(file: LightV1, index: usize, ids: &ObjectIds) -> Result<Light, UnknownName> {
+fn light_from(file: LightV1, index: u32, ids: &ObjectIds) -> Result<Light, UnknownName> {
     let place = format!("lights[{index}] {:?} ", file.name);
     Ok(Light {
-        id: LightId(index as u32),
+        id: LightId(index),
         role: file.role.into(),
         position: Vec3::from(file.position),
         aim: ids.aim(file.aim, &place)?,
