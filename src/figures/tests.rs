@@ -1,13 +1,21 @@
 //! What must hold for every figure: closed, even, upright, of the stated size, the same every time.
 
 use super::*;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
+use std::sync::{Mutex, OnceLock};
 
-/// Coarse enough to make all figures in a test.
-fn coarse(mannequin: Mannequin) -> Mesh {
+/// Returns a mesh that is coarse enough to make all figures in a test.
+fn made_coarse(mannequin: Mannequin) -> Mesh {
     let mut mesh = sculpture(mannequin).mesh(Detail::new(2.5));
     mesh.compute_smooth_normals();
     mesh
+}
+
+/// Returns the coarse mesh of a figure, which is made once for all tests.
+fn coarse(mannequin: Mannequin) -> &'static Mesh {
+    static MESHES: Mutex<BTreeMap<String, &'static OnceLock<Mesh>>> = Mutex::new(BTreeMap::new());
+    let mesh = *MESHES.lock().unwrap().entry(file_name(mannequin)).or_insert_with(|| Box::leak(Box::default()));
+    mesh.get_or_init(|| made_coarse(mannequin))
 }
 
 fn part_names(mannequin: Mannequin) -> &'static [&'static str] {
@@ -85,14 +93,14 @@ fn every_figure_is_a_closed_solid_without_slivers() {
         let mesh = coarse(mannequin);
         assert_eq!(mesh.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>(), part_names(mannequin));
         for &part_name in part_names(mannequin) {
-            let triangles = part(&mesh, part_name);
+            let triangles = part(mesh, part_name);
             assert_closed(triangles, &format!("{name} {part_name}"));
             let wanted = if ["skin", "clothes"].contains(&part_name) { 1 } else { 2 };
             assert_eq!(pieces(triangles), wanted, "{name} {part_name}");
-            assert!(volume(&mesh, triangles) > 0.0, "{name} {part_name} is inside out");
+            assert!(volume(mesh, triangles) > 0.0, "{name} {part_name} is inside out");
         }
         // A body weighs about what water does: litres are kilograms.
-        let litres = 1000.0 * volume(&mesh, part(&mesh, "skin"));
+        let litres = 1000.0 * volume(mesh, part(mesh, "skin"));
         let range = match mannequin.figure {
             Figure::Woman => 42.0..75.0,
             Figure::Man => 58.0..95.0,
@@ -115,7 +123,7 @@ fn figures_have_their_height_and_their_head_fits_it() {
     for (figure, stated, heads) in [(Figure::Woman, 1.68, 7.5), (Figure::Man, 1.80, 7.5), (Figure::Child, 1.28, 6.0)] {
         let mannequin = Mannequin { figure, pose: Pose::Standing };
         let mesh = coarse(mannequin);
-        assert!((height(&mesh) - stated).abs() < 0.01 * stated, "{figure:?}: {}", height(&mesh));
+        assert!((height(mesh) - stated).abs() < 0.01 * stated, "{figure:?}: {}", height(mesh));
         // The chin: the lowest point of the skin well before the neck.
         let face = face_point(mannequin);
         let chin = mesh
@@ -132,8 +140,7 @@ fn figures_have_their_height_and_their_head_fits_it() {
 
 #[test]
 fn standing_is_the_same_left_and_right() {
-    let sculpture = sculpture(ALL[0]);
-    let mesh = sculpture.mesh(Detail::new(2.5));
+    let mesh = coarse(ALL[0]);
     // The mesh need not mirror vertex by vertex, but the solid does: every vertex's mirror image is on the surface.
     let grid: HashMap<[i32; 3], ()> =
         mesh.positions.iter().map(|p| ((*p / 0.03).round().as_ivec3().to_array(), ())).collect();
@@ -150,7 +157,7 @@ fn standing_is_the_same_left_and_right() {
 fn any_number_of_threads_gives_the_same_bits() {
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| coarse(Mannequin { figure: Figure::Bust, pose: Pose::HeadTurned }))
+        pool.install(|| made_coarse(Mannequin { figure: Figure::Bust, pose: Pose::HeadTurned }))
     };
     assert!(on(1) == on(2));
 }
@@ -205,8 +212,8 @@ fn a_turned_head_looks_to_its_own_left() {
 }
 
 #[test]
-fn a_bust_stands_on_a_flat_base() {
+fn a_bust_has_a_flat_base() {
     let mesh = coarse(Mannequin { figure: Figure::Bust, pose: Pose::Standing });
-    assert!((0.45..0.62).contains(&height(&mesh)), "{}", height(&mesh));
+    assert!((0.45..0.62).contains(&height(mesh)), "{}", height(mesh));
     assert!(mesh.positions.iter().filter(|p| p.y < 0.001).count() > 10);
 }

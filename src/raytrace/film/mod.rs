@@ -168,7 +168,7 @@ mod tests {
     use std::ops::ControlFlow;
 
     #[test]
-    fn a_snapshot_keeps_its_samples_while_the_render_goes_on() {
+    fn a_snapshot_keeps_its_samples_while_the_render_continues() {
         let light = Light { position: Vec3::Y * 2.0, ..Light::new(Emitter::Point, Output::Lumens(1000.0)) };
         let scene = Scene { room: Some(Room::default()), lights: vec![light], ..Scene::default() };
         let prepared = prepare(&scene, &Assets::default()).unwrap();

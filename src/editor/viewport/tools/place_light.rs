@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn light_at_normal_incidence_comes_along_the_normal() {
+    fn light_at_normal_incidence_lies_along_the_normal() {
         let (scene, start) = studio();
         let at = on_ball(&scene, Vec3::new(-0.9, 0.3, -0.2));
         let light = placed_light(&scene, &start, &at, PlaceLightBy::Light).unwrap();
