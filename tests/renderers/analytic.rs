@@ -1,7 +1,7 @@
 //! Rendered pictures against closed forms of illuminance.
 
 use crate::studio;
-use crate::studio::measure::{film, film_with, picture};
+use crate::studio::measure::{film, film_with, luminance_per_value, meter_card, picture, square, values};
 use crate::studio::{REFLECTANCE, card_at, light, looking_at_card};
 use catchlight::photo::Picture;
 use catchlight::raytrace::{Method, Settings};
@@ -179,15 +179,14 @@ fn a_white_metal_plane_gives_back_all_light_where_a_coarse_albedo_table_was_off_
     let tests = named.len() + others.len();
     for (roughness, angle_deg) in named.into_iter().chain(others) {
         let (sin, cos) = f32::to_radians(angle_deg).sin_cos();
-        let mut scene = studio::measure::meter_card(Vec3::ZERO, Vec3::Y);
+        let mut scene = meter_card(Vec3::ZERO, Vec3::Y);
         scene.objects[0].material =
             Material { base_color: [0.999; 3], metallic: 1.0, roughness, ..Material::default() };
         scene.camera.position = Vec3::new(0.08 * sin, 0.08 * cos, 0.0);
         let surround = light(Emitter::Surround, Output::Lux(1000.0), Vec3::ZERO);
         scene.lights.push(surround);
-        let reading =
-            studio::measure::values(&studio::measure::picture(&scene, &studio::measure::square(Method::Path, 32, 64)));
-        let white = studio::measure::luminance_per_value(&scene.camera) / (1000.0 / std::f64::consts::PI);
+        let reading = values(&picture(&scene, &square(Method::Path, 32, 64)));
+        let white = luminance_per_value(&scene.camera) / (1000.0 / std::f64::consts::PI);
         let albedo = reading.scaled(white);
         assert!(albedo.standard_error < 2e-3, "{albedo:?}");
         // The whitest base colour is 0.999; light between facets meets it twice.

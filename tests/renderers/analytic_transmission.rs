@@ -275,7 +275,8 @@ fn a_sharp_sun_lights_what_lies_under_water_and_glass() {
         }
         0.5 * (s + p) * deg.to_radians().cos()
     };
-    let cases: [(&str, &[(f64, f32, f32)], &[f64]); 3] = [
+    type Case<'a> = (&'a str, &'a [(f64, f32, f32)], &'a [f64]);
+    let cases: [Case<'_>; 3] = [
         ("in water", &[(WATER, -0.01, 0.05)], &[1.0, WATER]),
         ("in water under glass", &[(WATER, -0.01, 0.05), (GLASS, 0.02, 0.03)], &[1.0, WATER, GLASS, WATER]),
         ("in glass", &[(GLASS, -0.01, 0.03)], &[1.0, GLASS]),
