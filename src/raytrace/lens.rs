@@ -107,7 +107,7 @@ impl Lens {
 
     /// The frame for a picture of this aspect ratio.
     pub fn frame(&self, aspect: f32) -> CameraFrame {
-        self.camera.frame(&self.focused, aspect)
+        self.focused.frame(&self.camera, aspect)
     }
 
     /// The camera for a picture of so many pixels.

@@ -1,6 +1,6 @@
 //! The camera: sensor, lens, exposure settings, and the frame that all renderers share.
 
-use super::{Aim, FocusedLens, ObjectId};
+use super::{Aim, ObjectId};
 use crate::math;
 use glam::{Affine3A, Mat4, Vec2, Vec3};
 
@@ -105,7 +105,7 @@ pub struct Camera {
     /// Depth of field of a thin lens; false is a pinhole.
     pub depth_of_field: bool,
     /// The image distance follows the focus, as in a lens that moves as a whole: focused near, the field of view is
-    /// narrower and less light reaches the sensor; see [`FocusedLens`].
+    /// narrower and less light reaches the sensor; see `FocusedLens`.
     pub focus_breathing: bool,
     /// Calibration constant of the incident meter, lux seconds (ISO 2720): 250 for a flat receptor.
     pub meter_constant: f32,
@@ -156,15 +156,16 @@ impl Camera {
         if aspect >= 1.0 { (long_edge, short(1.0 / aspect)) } else { (short(aspect), long_edge) }
     }
 
-    /// Returns the frame of the camera with its lens, for a picture of `aspect` (width / height). A picture of another
-    /// aspect than the sensor's is a crop of the sensor: the field of view stays the same along the side that fits.
-    pub fn frame(&self, lens: &FocusedLens, aspect: f32) -> CameraFrame {
+    /// Returns the frame of a camera that looks along `ahead`, a vector of any length, for a picture of `aspect` (width /
+    /// height). The sensor is 1 + `magnification` focal lengths behind the lens. A picture of another aspect than the sensor's is a crop of the
+    /// sensor: the field of view stays the same along the side that fits.
+    pub fn frame(&self, ahead: Vec3, magnification: f32, aspect: f32) -> CameraFrame {
         let film = self.film_size_mm();
         let (width_mm, height_mm) =
             if aspect >= film.x / film.y { (film.x, film.x / aspect) } else { (film.y * aspect, film.y) };
-        let image_distance_mm = self.focal_length_mm * (1.0 + lens.magnification);
+        let image_distance_mm = self.focal_length_mm * (1.0 + magnification);
         CameraFrame {
-            world_from_camera: math::look_along(self.position, lens.ahead, -self.roll_deg.to_radians()),
+            world_from_camera: math::look_along(self.position, ahead, -self.roll_deg.to_radians()),
             half_extent: Vec2::new(width_mm, height_mm) / (2.0 * image_distance_mm),
         }
     }

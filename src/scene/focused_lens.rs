@@ -8,7 +8,7 @@
 //!
 //! All distances are measured from the centre of the lens. The scale of a real lens counts from the sensor: d + s'.
 
-use super::{Aim, Camera, Focus, Scene};
+use super::{Aim, Camera, CameraFrame, Focus, Scene};
 use glam::Vec3;
 
 /// The largest magnification: nearer than 1.1 focal lengths, no lens of the studio focuses.
@@ -64,6 +64,11 @@ impl FocusedLens {
     /// Returns true if the plane of focus is the nearest that the lens reaches.
     pub fn is_at_nearest_focus(&self) -> bool {
         self.has_breathing && self.focus_m == Some(self.nearest_focus_m())
+    }
+
+    /// Returns the frame of the lens's camera for a picture of `aspect` (width / height).
+    pub fn frame(&self, camera: &Camera, aspect: f32) -> CameraFrame {
+        camera.frame(self.ahead, self.magnification, aspect)
     }
 
     /// Returns the distance from the lens to the sensor, metres.

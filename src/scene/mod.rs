@@ -148,7 +148,7 @@ impl Scene {
 
     /// Returns the camera's frame for a picture aspect (width / height).
     pub fn camera_frame(&self, aspect: f32) -> CameraFrame {
-        self.camera.frame(&self.focused_lens(), aspect)
+        self.focused_lens().frame(&self.camera, aspect)
     }
 
     /// Returns the camera's lens at its focus.

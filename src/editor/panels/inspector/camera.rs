@@ -122,7 +122,7 @@ fn lens_rows(ui: &mut Ui, scene: &Scene, camera: &mut Camera) {
     ];
     row(ui, "Held", "How the camera is held", |ui| widgets::choice(ui, &mut camera.orientation, &held));
     let lens = FocusedLens::new(scene, camera);
-    let field = camera.frame(&lens, camera.aspect()).half_extent * 2.0 * lens.ahead.length();
+    let field = lens.frame(camera, camera.aspect()).half_extent * 2.0 * lens.ahead.length();
     fact(
         ui,
         "Field",
