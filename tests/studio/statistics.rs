@@ -5,7 +5,7 @@
 //! Seeds are fixed, so results repeat; the rate is the probability that correct code failed when the test was written.
 
 use glam::{Vec2, Vec3};
-use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 
 /// Probability that a family of tests rejects correct code.
 pub const FALSE_ALARM: f64 = 1e-3;
@@ -65,6 +65,11 @@ pub fn chi_square_tail(x: f64, degrees: usize) -> f64 {
 /// Returns the probability that a normal variable lies more than `z` standard deviations from its mean.
 pub fn normal_tails(z: f64) -> f64 {
     2.0 * Normal::standard().sf(z)
+}
+
+/// Returns the probability that a variable with Student's t-distribution lies more than `t` from 0.
+pub fn student_tails(t: f64, degrees: f64) -> f64 {
+    2.0 * StudentsT::new(0.0, 1.0, degrees).unwrap().sf(t)
 }
 
 /// Returns the significance level of one of `tests` tests that share [`FALSE_ALARM`] (Sidak 1967).
@@ -157,6 +162,10 @@ mod tests {
         // Abramowitz and Stegun, tables 26.1 and 26.8.
         for (z, p) in [(1.0, 0.317_311), (1.959_964, 0.05), (3.290_527, 0.001)] {
             assert!((normal_tails(z) - p).abs() < 1e-5, "{z}: {}", normal_tails(z));
+        }
+        // Student 1908, as in Abramowitz and Stegun, table 26.10.
+        for (t, degrees, p) in [(12.7062, 1.0, 0.05), (2.228_14, 10.0, 0.05), (3.290_53, 1e7, 0.001)] {
+            assert!((student_tails(t, degrees) - p).abs() < 1e-5, "{t}: {}", student_tails(t, degrees));
         }
         for (x, degrees, p) in [(3.841_46, 1, 0.05), (18.307, 10, 0.05), (149.449, 100, 0.001)] {
             assert!((chi_square_tail(x, degrees) - p).abs() < 1e-5, "{x}: {}", chi_square_tail(x, degrees));

@@ -1,0 +1,116 @@
+//! A differential test: random small scenes, rendered by the path tracer with photons, without photons, and by a
+//! brute-force tracer that shares neither code nor techniques with it (`brute_force.rs`).
+//!
+//! Blocks of the pictures are compared by t-tests (`comparison.rs`). All tests of a run share the false-alarm rate
+//! [`FALSE_ALARM`] (Sidak's correction): 1 in 1000 that a run rejects correct code. A failure prints the seed, writes
+//! the scene to `target/tmp/differential/SEED.ron` and prints the command that replays a sample of the worst pixel.
+//!
+//! The gate runs [`GATE_SCENES`] scenes, in less than a minute on two cores. Environment variables run more:
+//!
+//! ```text
+//! CATCHLIGHT_DIFFERENTIAL_SCENES=500 cargo test --test differential -- --nocapture
+//! CATCHLIGHT_DIFFERENTIAL_SEED=17    the first seed; with ..._SCENES=1 a single scene
+//! CATCHLIGHT_DIFFERENTIAL_EFFORT=8   so many times the samples, which resolves errors 8^0.5 times as small
+//! ```
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
+
+mod brute_force;
+mod comparison;
+mod reference_bsdf;
+mod scenes;
+#[path = "../studio/mod.rs"]
+mod studio;
+
+use brute_force::BruteForce;
+use catchlight::io::{load_scene, write_scene};
+use catchlight::raytrace;
+use comparison::{Difference, Effort, TESTS};
+use std::fs;
+use std::path::{Path, PathBuf};
+use studio::statistics::{critical_z, sidak_level};
+
+/// Scenes that the gate compares.
+const GATE_SCENES: u64 = 16;
+
+/// Returns the value of an environment variable.
+fn variable(name: &str, default: u64) -> u64 {
+    std::env::var(name).map_or(default, |text| text.parse().unwrap())
+}
+
+/// Returns the folder for scenes, with the models that they use.
+fn folder() -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("differential");
+    fs::create_dir_all(&folder).unwrap();
+    for (file, subdivisions) in scenes::BALLS {
+        fs::write(folder.join(file), scenes::ball_obj(subdivisions)).unwrap();
+    }
+    folder
+}
+
+/// The comparison of a scene.
+struct Compared {
+    file: PathBuf,
+    /// Differences, and whether the render had photons.
+    differences: Vec<(bool, Difference)>,
+}
+
+/// Renders the scene of a seed by all techniques. The scene goes through its file, so that the file shows the same.
+fn compare(seed: u64, folder: &Path, effort: Effort) -> Compared {
+    let file = folder.join(format!("{seed}.ron"));
+    fs::write(&file, write_scene(&scenes::scene(seed))).unwrap();
+    let loaded = load_scene(&file).unwrap();
+    let scene = &loaded.scene;
+    let expected = comparison::brute_force(&BruteForce::new(scene, &loaded.assets), effort.brute_force_spp, seed);
+    let mut prepared = raytrace::prepare(scene, &loaded.assets).unwrap();
+    let mut differences = Vec::new();
+    if prepared.plan().photons {
+        let photons = comparison::compare_photons(&prepared, scene, &expected, effort);
+        differences.extend(photons.into_iter().map(|difference| (true, difference)));
+    }
+    let paths = comparison::compare_paths(&mut prepared, scene, &expected, effort);
+    differences.extend(paths.into_iter().map(|difference| (false, difference)));
+    Compared { file, differences }
+}
+
+#[test]
+fn random_scenes_agree_with_brute_force() {
+    let first = variable("CATCHLIGHT_DIFFERENTIAL_SEED", 0);
+    let count = variable("CATCHLIGHT_DIFFERENTIAL_SCENES", GATE_SCENES);
+    let effort = Effort::GATE.times(variable("CATCHLIGHT_DIFFERENTIAL_EFFORT", 1) as u32);
+    let tests = count as usize * 2 * TESTS;
+    let (level, critical) = (sidak_level(tests), critical_z(tests));
+    let folder = folder();
+    let mut failures = Vec::new();
+    let (mut resolutions, mut tested) = (Vec::new(), 0);
+    for seed in first..first + count {
+        let Compared { file, mut differences } = compare(seed, &folder, effort);
+        tested += differences.len();
+        let whole = || differences.iter().filter(|(_, difference)| difference.region == 0);
+        resolutions.extend(whole().map(|(_, difference)| difference.resolution(critical)));
+        let smallest = differences.iter().map(|(_, difference)| difference.p_value).fold(1.0, f64::min);
+        let relative: Vec<String> =
+            whole().map(|(_, difference)| format!("{:+.2}", 100.0 * difference.relative())).collect();
+        println!(
+            "seed {seed}, {:?}: {} % of the whole picture, smallest p {smallest:.1e}",
+            scenes::kind(seed),
+            relative.join(" ")
+        );
+        differences.retain(|(_, difference)| difference.p_value < level);
+        differences.sort_by(|a, b| a.1.p_value.total_cmp(&b.1.p_value));
+        if differences.is_empty() {
+            fs::remove_file(&file).unwrap();
+            continue;
+        }
+        for (with_photons, difference) in differences.iter().take(3) {
+            let technique = if *with_photons { "with photons" } else { "without photons" };
+            let report = difference.report(&file.display().to_string(), *with_photons, effort);
+            let failure = format!("seed {seed}, {:?}, {technique}, {report}", scenes::kind(seed));
+            println!("{failure}");
+            failures.push(failure);
+        }
+    }
+    resolutions.sort_by(f64::total_cmp);
+    let typical = resolutions[resolutions.len() / 2];
+    println!("{tested} tests; errors of {:.2} % of a whole picture are found in half of the scenes", 100.0 * typical);
+    assert!(failures.is_empty(), "{} differences from brute force:\n{}", failures.len(), failures.join("\n"));
+}
