@@ -237,7 +237,12 @@ fn table(arguments: &Arguments, point: &MeterPoint, result: &MeterResult) -> Str
         let _ = writeln!(text, "{:width$}  {direct:>10}  {bounced:>10}  {sum:>10} {unit:<4}  {share:>11}", light.name);
     }
     if reading.total_lux_s() <= 0.0 {
-        text += "\nno light reaches the meter\n";
+        let missed = reading.missed_lux_s() / reading.shutter_s;
+        text += &if missed > 0.0 {
+            format!("\nno light was found; mirrors or glass may throw up to {} lx on the meter\n", digits(missed))
+        } else {
+            "\nno light reaches the meter\n".to_owned()
+        };
         return text;
     }
     let (direct, bounced) = reading.total_lux();

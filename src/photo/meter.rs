@@ -104,6 +104,11 @@ impl Reading {
         }
     }
 
+    /// Returns the luminous exposure that may be missing where no light was found, lux s: three standard errors.
+    pub fn missed_lux_s(&self) -> f32 {
+        3.0 * self.lights.iter().map(|light| light.standard_error * self.time_s(light)).sum::<f32>()
+    }
+
     /// Returns the time by which a light counts in the exposure, seconds.
     fn time_s(&self, light: &LightReading) -> f32 {
         if light.flash { 1.0 } else { self.shutter_s }

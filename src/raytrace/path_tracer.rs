@@ -102,22 +102,23 @@ impl<'a> PathTracer<'a> {
         limits: PathLimits,
         sink: &mut impl RadianceSink,
     ) {
-        self.trace_from(origin, direction, sampler, limits, MisVertex::new(origin, direction), sink);
+        self.trace_from(origin, direction, sampler, limits, (MisVertex::new(origin, direction), None), sink);
     }
 
     /// Traces a path from a receptor that samples the lights by itself: emitters that are hit on a straight path do not
-    /// contribute.
+    /// contribute. If it receives photons, too, `gather` holds their density and that of the path.
     pub fn trace_without_direct_light(
         &mut self,
         origin: Vec3,
         direction: Vec3,
         sampler: &Sampler,
         limits: PathLimits,
+        gather: Option<GatherDensities>,
         sink: &mut impl RadianceSink,
     ) {
         // With the least density, light sampling has all the MIS weight.
         let vertex = MisVertex { direction, pdf: Some(f32::MIN_POSITIVE), ..MisVertex::new(origin, direction) };
-        self.trace_from(origin, direction, sampler, limits, vertex, sink);
+        self.trace_from(origin, direction, sampler, limits, (vertex, gather), sink);
     }
 
     fn trace_from(
@@ -126,7 +127,7 @@ impl<'a> PathTracer<'a> {
         direction: Vec3,
         sampler: &Sampler,
         limits: PathLimits,
-        mis_vertex: MisVertex,
+        (mis_vertex, gather): (MisVertex, Option<GatherDensities>),
         sink: &mut impl RadianceSink,
     ) {
         sink.record(|| PathEvent::CameraRay { origin, direction });
@@ -137,7 +138,7 @@ impl<'a> PathTracer<'a> {
             media: MediumStack::default(),
             polarisation: Polarisation::NONE,
             mis_vertex,
-            gather: None,
+            gather,
             split_factor: 1.0,
             depth: 0,
             non_specular_depth: 0,

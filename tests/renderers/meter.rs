@@ -420,3 +420,79 @@ fn the_direct_picture_plus_the_metered_bounced_light_is_the_path_traced_picture(
     assert!(rest.standard_error < 0.01 * bounced, "{rest:?} for {bounced}");
     assert!(rest.agrees_with(bounced, 1e-3, 1), "{rest:?} for {bounced}");
 }
+
+/// An object of a material, turned.
+fn specular(shape: Shape, material: Material, position: Vec3, rotation_deg: Vec3) -> Object {
+    let mut object = studio::object("Specular", shape, position);
+    object.transform.rotation_deg = rotation_deg;
+    Object { material, ..object }
+}
+
+#[test]
+fn a_mirror_gives_the_meter_the_illuminance_of_the_lights_image() {
+    // The meter faces up under a lamp at 1 m; a mirror 1 m beside shows its image at (2, 1, 0). Flat: inverse square and
+    // cosine; a dome weights it by (1 + cos) / 2.
+    let mirror = Material { metallic: 1.0, roughness: 0.0, base_color: [0.999; 3], ..Material::default() };
+    let plane = Shape::Plane { width_m: 0.4, depth_m: 0.4 };
+    let cos = 0.2_f64.sqrt();
+    for emitter in [Emitter::Point, Emitter::Sphere { radius_m: 0.005 }, Emitter::Sun { angular_diameter_deg: 0.53 }] {
+        for receptor in [Receptor::Flat, Receptor::Dome] {
+            let mut lamp = light(emitter, Output::Lumens(12_566.37), Vec3::Y);
+            let mut image = 1000.0 / 5.0 * if receptor == Receptor::Flat { cos } else { 0.5 * (1.0 + cos) };
+            if let Emitter::Sun { .. } = emitter {
+                lamp.power.output = Output::Lux(1000.0);
+                lamp.aim = Aim::Angles { yaw_deg: -90.0, pitch_deg: -30.0 };
+                image = if receptor == Receptor::Flat { 500.0 } else { 750.0 };
+            }
+            let mut scene = Scene { lights: vec![lamp], ..Scene::default() };
+            let at = Vec3::new(1.0, 0.5, 0.0);
+            scene.objects.push(specular(plane.clone(), mirror.clone(), at, Vec3::Z * 90.0));
+            let reading = &read(&scene, Vec3::ZERO, Vec3::Y, receptor).reading.lights[0];
+            let (ours, error) = (f64::from(reading.bounced), f64::from(reading.standard_error));
+            // Over a receptor of 1 cm the image's illuminance changes by less than 0.1 %.
+            assert!(
+                (ours - 0.999 * image).abs() < 4.0 * error + 2e-3 * image,
+                "{emitter:?} {receptor:?}: {ours} of {image} lx"
+            );
+            assert!(error < 0.05 * image, "{emitter:?} {receptor:?}: {error} says little");
+        }
+    }
+}
+
+#[test]
+fn a_ball_of_glass_focuses_small_lamps_on_the_meter_with_every_seed() {
+    // The beam of `photons_focus_a_point_light_through_a_glass_ball`; a meter that found nothing would read 0 lx.
+    let glass = Material { transmission: 1.0, roughness: 0.0, ior: 1.5, ..Material::default() };
+    for emitter in [Emitter::Point, Emitter::Sphere { radius_m: 0.005 }] {
+        let mut scene =
+            Scene { lights: vec![light(emitter, Output::Lumens(12_566.37), Vec3::Z * 3.0)], ..Scene::default() };
+        let open = read(&scene, Vec3::ZERO, Vec3::Z, Receptor::Flat).reading.total_lux().0;
+        scene.objects.push(specular(Shape::Sphere { radius_m: 0.1 }, glass.clone(), Vec3::Z * 0.4, Vec3::ZERO));
+        let lens = (3.0 / 2.6 / 1.513_f32).powi(2) * 0.96_f32.powi(2);
+        for seed in 0..5 {
+            let effort = MeterEffort { seed, ..MeterEffort::default() };
+            let result = read_with(&scene, Vec3::ZERO, Vec3::Z, Receptor::Flat, &effort);
+            let ours = result.reading.total_lux().0 / open;
+            let error = result.reading.lights[0].standard_error / open;
+            // The ball is no thin lens: 4 %, as for renders.
+            assert!((ours / lens - 1.0).abs() < 0.04 + 4.0 * error, "{emitter:?}, seed {seed}: {ours} of {lens}");
+            assert!(error < 0.03, "{emitter:?}, seed {seed}: {error} says little");
+        }
+    }
+}
+
+#[test]
+fn a_meter_that_finds_no_light_says_what_mirrors_may_throw_on_it() {
+    // A lamp behind a wall; a mirror shows it to the meter from one direction of many, or from none.
+    let mirror = Material { metallic: 1.0, roughness: 0.0, ..Material::default() };
+    let wall = studio::object("Wall", Shape::Box { size_m: Vec3::new(1.0, 1.0, 0.1) }, Vec3::Z);
+    let lamp = light(Emitter::Point, Output::Lumens(12_566.37), Vec3::Z * 2.0);
+    let mut scene = Scene { objects: vec![wall], lights: vec![lamp], ..Scene::default() };
+    let dark = read(&scene, Vec3::ZERO, Vec3::Z, Receptor::Flat).reading;
+    assert_eq!((dark.total_lux_s(), dark.missed_lux_s()), (0.0, 0.0), "nothing can bring light here");
+    let plane = Shape::Plane { width_m: 0.5, depth_m: 0.5 };
+    scene.objects.push(specular(plane, mirror, Vec3::new(1.5, 0.0, 1.0), Vec3::ZERO));
+    let unknown = read(&scene, Vec3::ZERO, Vec3::Z, Receptor::Flat).reading;
+    assert!(unknown.total_lux_s() == 0.0 && unknown.missed_lux_s() > 0.0, "{unknown:?}");
+    assert!(unknown.missed_lux_s() * 125.0 < 30.0, "{} lx are more than it can be", unknown.missed_lux_s() * 125.0);
+}

@@ -21,4 +21,6 @@ mod tests;
 
 pub use casters::CausticCasters;
 pub use mis::{CausticMis, GatherDensities};
-pub use photon_map::{MIN_PHOTONS, PhotonMap, PhotonPass};
+pub use photon::Photon;
+pub use photon_map::{MIN_PHOTONS, PhotonMap, PhotonPass, filled_radius};
+pub use photon_tracer::{PhotonReceiver, PhotonSegment, PhotonTracer};

@@ -77,9 +77,9 @@ impl PhotonPass {
     /// Gather radius, metres.
     fn radius(&self, photons: &[Photon]) -> f32 {
         let blurred = FIRST_RADIUS_PX * self.pixel_m * median_distance(photons, self.eye);
-        let filled = neighbour_distance(photons) * (self.samples as f32).sqrt();
+        let filled = filled_radius(photons, self.samples);
         let shrink = ((self.first_sample + 1) as f32).powf(-1.0 / 6.0);
-        (blurred.max(filled.min(MAX_FILLED_RADIUS_M)) * shrink).max(f32::MIN_POSITIVE)
+        blurred.max(filled) * shrink
     }
 }
 
@@ -103,6 +103,12 @@ impl PhotonMap {
         let photons: Vec<Vec<Photon>> = (0..chunks).into_par_iter().map(trace_chunk).collect();
         let photons = photons.concat();
         let radius = pass.radius(&photons);
+        Self::new(photons, emitted, radius)
+    }
+
+    /// The map of photons of which so many were emitted, with a gather radius in metres.
+    pub fn new(photons: Vec<Photon>, emitted: u32, radius: f32) -> Self {
+        let radius = radius.max(f32::MIN_POSITIVE);
         let brighter = |photon: &Photon| Photon { flux: photon.flux * SPARSE_STRIDE as f32, ..*photon };
         let sparse = photons.iter().step_by(SPARSE_STRIDE).map(brighter).collect();
         PhotonMap {
@@ -169,6 +175,12 @@ impl PhotonLookup {
         });
         add(usize::from(layer), sum);
     }
+}
+
+/// Gather radius that holds enough photons of a pass with so many samples per pixel, up to [`MAX_FILLED_RADIUS_M`],
+/// metres.
+pub fn filled_radius(photons: &[Photon], samples: u32) -> f32 {
+    (neighbour_distance(photons) * (samples as f32).sqrt()).min(MAX_FILLED_RADIUS_M)
 }
 
 /// Median distance of the photons from the eye, metres.

@@ -22,6 +22,35 @@ pub struct PhotonTracer<'a> {
     pub caster: RayCaster<'a>,
 }
 
+/// Receives the photons that a tracer follows.
+pub trait PhotonReceiver {
+    /// Receives a photon that arrives at a non-specular surface by a caustic path.
+    fn arrive(&mut self, photon: Photon);
+
+    /// Receives a photon that arrives at its first caster. The default ignores it.
+    fn start(&mut self, _photon: &Photon) {}
+
+    /// Receives a photon on a caustic path on its way to the next surface. The default ignores it.
+    fn travel(&mut self, _segment: &PhotonSegment<'_>) {}
+}
+
+impl PhotonReceiver for Vec<Photon> {
+    fn arrive(&mut self, photon: Photon) {
+        self.push(photon);
+    }
+}
+
+/// A photon between two surfaces.
+#[derive(Clone, Copy, Debug)]
+pub struct PhotonSegment<'a> {
+    /// The ray, whose `t_max` is the distance to the next surface.
+    pub ray: Ray,
+    /// The photon at the ray's origin: position and direction are the ray's, flux is in lm.
+    pub photon: Photon,
+    /// The bodies that it is inside of.
+    pub media: &'a MediumStack,
+}
+
 /// A photon at its first caustic caster.
 struct FirstCaster {
     surface: SurfaceInteraction,
@@ -37,10 +66,11 @@ impl<'a> PhotonTracer<'a> {
         PhotonTracer { caster: RayCaster::new(scene) }
     }
 
-    /// Traces one of `emitted` photons, which share all light on casters, and appends its arrivals to `stored`.
-    pub fn trace(&mut self, sampler: &Sampler, emitted: u32, stored: &mut Vec<Photon>) {
+    /// Traces one of `emitted` photons, which share all light on casters.
+    pub fn trace(&mut self, sampler: &Sampler, emitted: u32, receiver: &mut impl PhotonReceiver) {
         if let Some(first) = self.sample_first_caster(sampler, emitted) {
-            self.follow(first, sampler, stored);
+            receiver.start(&first.photon);
+            self.follow(first, sampler, receiver);
         }
     }
 
@@ -87,8 +117,8 @@ impl<'a> PhotonTracer<'a> {
         (photon.flux != Vec3::ZERO).then_some(FirstCaster { surface, to_light, photon })
     }
 
-    /// Follows a photon through casters, and stores it at every non-specular surface, until it is absorbed.
-    fn follow(&mut self, first: FirstCaster, sampler: &Sampler, stored: &mut Vec<Photon>) {
+    /// Follows a photon through casters until it is absorbed.
+    fn follow(&mut self, first: FirstCaster, sampler: &Sampler, receiver: &mut impl PhotonReceiver) {
         let scene = self.caster.scene;
         let FirstCaster { mut surface, to_light, photon } = first;
         let mut wo = to_light;
@@ -128,15 +158,24 @@ impl<'a> PhotonTracer<'a> {
 
             // Trace the ray to the next surface
             let (origin, direction) = (surface.spawn_origin(sample.direction), sample.direction);
-            let Some(hit) = self.caster.intersect(&Ray { origin, direction, t_max: f32::INFINITY }) else { return };
+            let mut ray = Ray { origin, direction, t_max: f32::INFINITY };
+            let hit = self.caster.intersect(&ray);
+
+            // Hand the photon on, unless light sampling finds the same light on a straight path
+            let is_caustic = !path.is_straight();
+            if is_caustic {
+                ray.t_max = hit.map_or(f32::INFINITY, |hit| hit.triangle.t);
+                let flux = photon.flux * throughput;
+                let photon = Photon { position: origin, direction: -direction, flux, specular_depth, ..photon };
+                receiver.travel(&PhotonSegment { ray, photon, media: &media });
+            }
+            let Some(hit) = hit else { return };
             throughput *= media.transmittance(&scene.materials, hit.triangle.t);
             surface = scene.aggregate.surface(&hit);
-            wo = -sample.direction;
-
-            // Store the photon at a non-specular surface, unless light sampling finds the same light on a straight path
+            wo = -direction;
             let cos = wo.dot(surface.geometric_normal);
-            if !path.is_straight() && cos != 0.0 && scene.materials[surface.material as usize].has_non_specular_lobe() {
-                stored.push(Photon {
+            if is_caustic && cos != 0.0 && scene.materials[surface.material as usize].has_non_specular_lobe() {
+                receiver.arrive(Photon {
                     position: surface.position,
                     direction: wo,
                     normal: surface.geometric_normal * cos.signum(),

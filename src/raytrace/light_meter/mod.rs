@@ -4,10 +4,10 @@
 //! one. Bounced light is found by the path tracer, started in directions that the receptor weights. Both are sampled in
 //! sixteen independently scrambled replicates (randomized quasi-Monte Carlo), whose scatter is the reported standard
 //! error; rounds of samples follow until it is small or the ray budget is spent. Direct light passes panes and flat bodies
-//! of glass (`straight_path`). Light by way of mirrors counts as bounced, and so does light of an area light through other
-//! glass, which is the noisiest.
+//! of glass (`straight_path`). Light by way of mirrors and other glass counts as bounced; photons find it, too.
 
 mod meter;
+mod photons;
 mod point;
 mod receptor;
 mod replicate;

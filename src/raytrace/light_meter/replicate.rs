@@ -1,5 +1,6 @@
 //! Replicates: independently scrambled estimates, whose scatter is the standard error.
 
+use super::photons::PhotonSum;
 use crate::color::luminance;
 use crate::photo::meter::LightReading;
 use crate::raytrace::film::NonFiniteReport;
@@ -21,6 +22,10 @@ pub struct Replicate {
     pub straight: Vec<DVec3>,
     /// Number of paths.
     pub paths: u32,
+    /// Sum of the light of photons at the receptor, for each layer.
+    pub caustic: Vec<PhotonSum>,
+    /// Number of emitted photons.
+    pub photons: u32,
     /// Rays traced.
     pub rays: u64,
     /// Discarded non-finite contributions.
@@ -37,6 +42,8 @@ impl Replicate {
             bounced: zero.clone(),
             straight: zero,
             paths: 0,
+            caustic: vec![PhotonSum::default(); lights + 1],
+            photons: 0,
             rays: 0,
             nonfinite: NonFiniteReport::default(),
         }
@@ -48,17 +55,26 @@ impl Replicate {
         sum / f64::from(points.max(1))
     }
 
-    /// Mean illuminance of a sum over the paths, with the colour of its light.
-    fn path_mean(&self, sum: DVec3, rgb: Vec3) -> f64 {
-        let mean = sum / f64::from(self.paths.max(1));
-        f64::from(luminance(mean.as_vec3() * rgb))
+    /// Mean direct illuminance along the paths, with the colour of the light.
+    fn straight_mean(&self, layer: usize, rgb: Vec3) -> f64 {
+        mean(self.straight[layer], self.paths, rgb)
+    }
+
+    /// Mean bounced illuminance along the paths and by photons, with the colour of the light.
+    fn bounced_mean(&self, layer: usize, rgb: Vec3) -> f64 {
+        mean(self.bounced[layer], self.paths, rgb) + mean(self.caustic[layer].illuminance, self.photons, rgb)
     }
 
     /// Direct and bounced illuminance of a layer, with the colour of its light.
     fn illuminance(&self, layer: usize, rgb: Vec3) -> (f64, f64) {
-        let straight = self.path_mean(self.straight[layer], rgb);
-        (self.sampled(layer) + straight, self.path_mean(self.bounced[layer], rgb))
+        (self.sampled(layer) + self.straight_mean(layer, rgb), self.bounced_mean(layer, rgb))
     }
+}
+
+/// Luminance of the mean of a sum over so many samples, with the colour of its light.
+fn mean(sum: DVec3, count: u32, rgb: Vec3) -> f64 {
+    let mean = sum / f64::from(count.max(1));
+    f64::from(luminance(mean.as_vec3() * rgb))
 }
 
 /// Mean of the replicates' values, and its standard error.
@@ -75,8 +91,18 @@ pub fn reading(blank: &LightReading, rgb: Vec3, layer: usize, replicates: &[Repl
     let (direct, _) = mean_and_error(both.clone().map(|(direct, _)| direct));
     let (bounced, _) = mean_and_error(both.clone().map(|(_, bounced)| bounced));
     let (_, error) = mean_and_error(both.map(|(direct, bounced)| direct + bounced));
+    // Where nothing is found, a caustic may be missed for which one photon more would have been found.
+    let missed = illuminance_of_one_photon(replicates, layer, rgb);
+    let error = if direct + bounced < missed { error.max(missed) } else { error };
     let [direct, bounced, standard_error] = [direct, bounced, error].map(|x| x as f32);
     LightReading { direct, bounced, standard_error, ..blank.clone() }
+}
+
+/// Illuminance of a layer that one photon more at the receptor would have added.
+fn illuminance_of_one_photon(replicates: &[Replicate], layer: usize, rgb: Vec3) -> f64 {
+    let sum = replicates.iter().fold(PhotonSum::default(), |sum, replicate| sum.plus(&replicate.caustic[layer]));
+    let emitted: u32 = replicates.iter().map(|replicate| replicate.photons).sum();
+    f64::from(luminance(sum.illuminance_of_one(emitted).as_vec3() * rgb))
 }
 
 /// Standard error of a light's direct illuminance by light sampling.
@@ -84,8 +110,11 @@ pub fn light_sampling_error(replicates: &[Replicate], layer: usize) -> f32 {
     mean_and_error(replicates.iter().map(|replicate| replicate.sampled(layer))).1 as f32
 }
 
-/// Standard error of a layer's illuminance by paths.
+/// Standard error of a layer's illuminance by paths and photons.
 pub fn path_error(replicates: &[Replicate], layer: usize, rgb: Vec3) -> f32 {
-    let by_paths = |r: &Replicate| r.path_mean(r.bounced[layer] + r.straight[layer], rgb);
-    mean_and_error(replicates.iter().map(by_paths)).1 as f32
+    let by_paths = |r: &Replicate| r.straight_mean(layer, rgb) + r.bounced_mean(layer, rgb);
+    let (mean, error) = mean_and_error(replicates.iter().map(by_paths));
+    let missed = illuminance_of_one_photon(replicates, layer, rgb);
+    let direct = replicates.iter().map(|r| r.sampled(layer)).sum::<f64>();
+    if mean + direct < missed { error.max(missed) as f32 } else { error as f32 }
 }

@@ -1,10 +1,12 @@
 //! The samples of one round: emitter points with shadow rays, and paths from the receptor.
 
+use super::photons::{PHOTONS_PER_PATH, ReceptorPhotons, RoundDensities};
 use super::receptor::ReceptorFrame;
 use super::replicate::Replicate;
 use super::rounds::SamplingRound;
 use super::studio::MeteredStudio;
 use crate::color::luminance;
+use crate::raytrace::caustics::{PhotonMap, PhotonTracer, filled_radius};
 use crate::raytrace::control::RenderControl;
 use crate::raytrace::film::{NonFiniteGate, NonFiniteReport};
 use crate::raytrace::lights::TracedLight;
@@ -20,6 +22,8 @@ use glam::{DVec3, Vec3};
 const PATHS: PathLimits = PathLimits { max_non_specular_depth: 4096, max_depth: 4096, split_factor: 1 };
 /// Limits of a path that finds the emission of the first surface alone.
 const FIRST_SURFACE: PathLimits = PathLimits { max_non_specular_depth: 0, max_depth: 0, split_factor: 1 };
+/// Photons have this place in the random numbers of a replicate; lights count upwards from 1.
+const PHOTONS: u32 = u32::MAX;
 /// Paths between two checks for cancellation.
 const CHECK_EVERY: u32 = 256;
 
@@ -42,7 +46,8 @@ impl RoundSampler<'_> {
     /// Adds the round's samples to a replicate. Incomplete if the reading is cancelled.
     pub fn run(&self, replicate: &mut Replicate) {
         let scene = &self.studio.scene;
-        let mut tracer = PathTracer::new(scene, None);
+        let map = self.trace_photons(replicate);
+        let mut tracer = PathTracer::new(scene, map.as_ref());
         for (layer, light) in scene.lights.iter().enumerate() {
             if self.control.is_cancelled() {
                 return;
@@ -56,6 +61,44 @@ impl RoundSampler<'_> {
             self.trace_path(replicate, &mut tracer, index);
         }
         replicate.rays += tracer.caster.rays;
+    }
+
+    /// Numbers of paths and photons of the round; none where no photons are needed.
+    fn densities(&self) -> Option<RoundDensities> {
+        let paths = self.round.paths.len() as u32;
+        let round = RoundDensities { paths, photons: paths.saturating_mul(PHOTONS_PER_PATH) };
+        self.studio.scene.plan().photons.then_some(round)
+    }
+
+    /// Traces the round's photons, adds those at the receptor, and returns a map of those at surfaces.
+    fn trace_photons(&self, replicate: &mut Replicate) -> Option<PhotonMap> {
+        let scene = &self.studio.scene;
+        let round = self.densities()?;
+        let mut tracer = PhotonTracer::new(scene);
+        let first = self.round.paths.start.saturating_mul(PHOTONS_PER_PATH);
+        let sampler = |index: u32| Sampler::new(replicate.index, PHOTONS, first + index, self.seed);
+        let mut receiver = ReceptorPhotons {
+            receptor: &self.receptor,
+            round,
+            materials: &scene.materials,
+            stored: Vec::new(),
+            sums: &mut replicate.caustic,
+            sample: sampler(0).id(),
+            nonfinite: &mut replicate.nonfinite,
+        };
+        for index in 0..round.photons {
+            if index % CHECK_EVERY == 0 && self.control.is_cancelled() {
+                break;
+            }
+            let sampler = sampler(index);
+            receiver.sample = sampler.id();
+            tracer.trace(&sampler, round.photons, &mut receiver);
+        }
+        let stored = receiver.stored;
+        replicate.photons += round.photons;
+        replicate.rays += tracer.caster.rays;
+        let radius = filled_radius(&stored, 1);
+        Some(PhotonMap::new(stored, round.photons, radius))
     }
 
     /// Samples points of a light and adds their direct illuminance.
@@ -101,7 +144,8 @@ impl RoundSampler<'_> {
         let mut sink = WeightedSink::new(&mut replicate.straight, weight, sampler.id(), report);
         self.add_surrounds(&mut tracer.caster, direction, &mut sink);
         let mut sink = WeightedSink::new(&mut replicate.bounced, weight, sampler.id(), report);
-        tracer.trace_without_direct_light(receptor.origin, direction, &sampler, PATHS, &mut sink);
+        let gather = self.densities().map(|round| receptor.densities(direction, round));
+        tracer.trace_without_direct_light(receptor.origin, direction, &sampler, PATHS, gather, &mut sink);
 
         // The emission of the first surface, which the path includes, is direct light
         if self.studio.has_emission {
