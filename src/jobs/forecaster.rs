@@ -175,10 +175,10 @@ mod tests {
         let pilot = Pilot { scene: scene.clone(), assets: loaded.assets.clone(), method: Method::Path };
         let forecast = run(&pilot, &cache, &Arc::default()).unwrap();
         let (width, height) = scene.camera.picture_size(200);
-        let settings = Settings { width, height, spp: 48, ..pilot_settings(&scene.camera, Method::Path) };
+        let settings = Settings { width, height, spp: 24, ..pilot_settings(&scene.camera, Method::Path) };
         let prepared = raytrace::prepare_kept(&scene, &loaded.assets, &cache).unwrap();
         let film = render_all_passes(&prepared, &settings, &RenderControl::new());
-        let expected = forecast.estimate(u64::from(width) * u64::from(height), 48).noise_stops;
+        let expected = forecast.estimate(u64::from(width) * u64::from(height), 24).noise_stops;
         let ratio = expected / f64::from(film.noise_stops());
         // Smaller pixels hold fewer edges, and stratified samples do better the more there are.
         assert!((0.5..2.2).contains(&ratio), "{expected} stops expected, {} measured", film.noise_stops());

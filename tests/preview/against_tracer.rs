@@ -91,7 +91,7 @@ fn chrome_gold_and_glass_are_close_to_the_traced_picture() {
     let ours = renderer.linear_picture(&input).unwrap();
     let mask = renderer.object_mask().unwrap();
     let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
-    let settings = raytrace::Settings { width, height, spp: 64, ..raytrace::Settings::default() };
+    let settings = raytrace::Settings { width, height, spp: 32, ..raytrace::Settings::default() };
     let film = raytrace::render(&prepared, &settings, &raytrace::RenderControl::new(), &mut |_| {
         std::ops::ControlFlow::Continue(())
     });

@@ -17,7 +17,7 @@ const SUPERSAMPLES: u32 = 4;
 /// and an eighth of that in a block of 64 pixels.
 const SPP: u32 = 24;
 /// Samples per pixel where grazing light is noisier.
-const FINE_SPP: u32 = 192;
+const FINE_SPP: u32 = 96;
 /// Darker pixels count as unlit: a twentieth of them would be one code of an 8-bit picture.
 const LIT: f32 = 0.005;
 /// Rim lights whose lit area is too thin for a block: their pictures are larger and have more samples. Where still no
@@ -133,6 +133,7 @@ impl Comparison {
             self.false_shadow * 100.0
         );
         let is_wrong = self.median_stops > median || self.worst_stops > worst || self.false_shadow > false_shadow;
+        println!("{line}");
         is_wrong.then_some(line)
     }
 }
