@@ -1,6 +1,5 @@
 //! Tests of modifiers: they only take light away, and meter, path tracer, preview and file agree about them.
 
-use crate::studio;
 use crate::studio::light;
 use catchlight::photo::beam::{Beam, transmitted_flux_fraction};
 use catchlight::photo::emitter::EmitterShape;
@@ -181,7 +180,7 @@ mod preview {
         ] {
             let mut source = light(emitter, Output::Lumens(10_000.0), Vec3::new(0.3, 2.0, 0.4));
             (source.modifier, source.roll_deg) = (modifier, 20.0);
-            let mut floor = studio::object("Floor", Shape::Plane { width_m: 8.0, depth_m: 8.0 }, Vec3::ZERO);
+            let mut floor = crate::studio::object("Floor", Shape::Plane { width_m: 8.0, depth_m: 8.0 }, Vec3::ZERO);
             floor.material = MaterialPreset::GreyCard.material();
             let camera = Camera {
                 position: Vec3::new(0.0, 5.0, 5.0),
