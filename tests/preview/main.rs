@@ -31,6 +31,7 @@ mod room;
 mod shadow_cache;
 mod stored;
 mod textures;
+mod thin_shadows;
 
 /// Returns a renderer on a device of its own, or none with a message if the machine has no adapter.
 fn renderer() -> Option<(Gpu, PreviewRenderer)> {

@@ -53,7 +53,7 @@ impl FramePlan {
 
         // Fill the frame constants
         let mut constants = frame_constants(input, size, &lights);
-        constants.mask_scale = mask_scale(is_cpu, is_draft, lights.lights.len());
+        constants.mask_scale = mask_scale(size, is_cpu, is_draft, lights.lights.len());
         constants.coarse_scale = coarse_scale(&lights);
         constants.depth_range_m = depth_range_m(&input.frame, &list.casters);
         FramePlan { list, lights, shadows, tiles, constants, output, is_draft }
@@ -132,14 +132,20 @@ fn frame_constants(input: &PreviewInput, size: (u32, u32), lights: &LightTable) 
 }
 
 /// Returns the picture pixels per shadow mask pixel along each axis: 1 on a GPU; on a CPU rasteriser 2, in drafts 4,
-/// and 8 under many lights, each of which contributes little.
-fn mask_scale(is_cpu: bool, is_draft: bool, light_count: usize) -> u32 {
-    match (is_cpu, is_draft) {
+/// and 8 under many lights, each of which contributes little. Small pictures have finer masks, of up to as many pixels as
+/// those of 1280x720: there, a thin shadow is but a few pixels wide.
+fn mask_scale(size: (u32, u32), is_cpu: bool, is_draft: bool, light_count: usize) -> u32 {
+    const FULL_SIZE: u32 = 1280 * 720;
+    let coarsest = match (is_cpu, is_draft) {
         (false, _) => 1,
         (true, false) => 2,
         (true, true) if light_count > MANY_LIGHTS => 8,
         (true, true) => 4,
-    }
+    };
+    let fits = |scale: &u32| {
+        size.0 as f32 * size.1 as f32 / (scale * scale) as f32 <= (FULL_SIZE / (coarsest * coarsest)) as f32
+    };
+    (1..coarsest).find(fits).unwrap_or(coarsest)
 }
 
 /// Returns the picture pixels per coarse pixel along each axis of a draft: the more lights, the larger. Panels and
@@ -163,4 +169,24 @@ fn depth_range_m(frame: &CameraFrame, casters: &[OrientedBox]) -> [f32; 2] {
     let depths = casters.iter().flat_map(OrientedBox::corners).map(|corner| (corner - eye).dot(forward));
     let (near, far) = depths.fold((f32::INFINITY, 0.0_f32), |(near, far), depth| (near.min(depth), far.max(depth)));
     if near > FAR_M && far >= near { [near - MARGIN_M, far + MARGIN_M] } else { [0.0; 2] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn masks_of_small_pictures_are_as_fine_as_the_picture_and_cost_no_more_than_those_of_large_ones() {
+        for (size, full, draft, crowded) in [
+            ((300, 200), 1, 2, 3),
+            ((640, 360), 1, 2, 4),
+            ((800, 600), 2, 3, 6),
+            ((1280, 720), 2, 4, 8),
+            ((3840, 2160), 2, 4, 8),
+        ] {
+            let scale = |is_draft, lights| mask_scale(size, true, is_draft, lights);
+            assert_eq!((scale(false, 4), scale(true, 4), scale(true, 60)), (full, draft, crowded), "{size:?}");
+            assert_eq!(mask_scale(size, false, false, 4), 1, "a GPU has masks of full size");
+        }
+    }
 }
