@@ -6,6 +6,7 @@ use super::preview_look::PreviewLook;
 use super::terminal;
 use crate::editor;
 use crate::io::{self, Loaded, PictureInfo};
+use crate::jobs;
 use crate::photo::exposure;
 use crate::preview::{
     Channel, FALSE_STOPS, Gloss, Gpu, Options, PreviewError, PreviewInput, PreviewRenderer, false_color,
@@ -28,7 +29,10 @@ pub fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
 pub fn write_preview(loaded: &Loaded, size: (u32, u32), output: &Path, look: &PreviewLook) -> Result<(), Failure> {
     let options = options(loaded, look)?;
     let (_, mut renderer) = start()?;
-    let input = PreviewInput { options, ..PreviewInput::camera_view(&loaded.scene, &loaded.assets, size) };
+    let bounced_light = jobs::trace_bounced_light(&loaded.scene, &loaded.assets, options.only_light)
+        .map_err(|error| Failure::Input(error.into()))?;
+    let view = PreviewInput::camera_view(&loaded.scene, &loaded.assets, size);
+    let input = PreviewInput { options, bounced_light: bounced_light.as_ref(), ..view };
     if options.channel == Channel::Illuminance {
         legend(&loaded.scene);
     }

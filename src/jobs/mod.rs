@@ -1,10 +1,11 @@
-//! Background work for the window and the command line: renders, development of films, the live traced view, light
-//! meter readings, render forecasts and thumbnails.
+//! Background work for the window and the command line: renders, development of films, the live traced view, bounced
+//! light of the preview, light meter readings, render forecasts and thumbnails.
 //!
 //! It depends on neither egui nor wgpu. A job of the window is a [`worker`]: a thread with a request slot and a result
 //! slot, each of which holds the latest value only, and a [`Wake`] callback. The command line calls the functions that
 //! those threads run: [`render()`], [`read_meter`], [`LivePacing::step`].
 
+mod bounce;
 mod clock;
 mod film_developer;
 mod forecast;
@@ -20,6 +21,7 @@ mod threads;
 mod thumbnails;
 pub mod worker;
 
+pub use bounce::{BounceJob, trace_bounced_light};
 pub use clock::Clock;
 pub use film_developer::{Developed, FilmDeveloper};
 pub use forecast::{Estimate, Forecast};

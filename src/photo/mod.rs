@@ -4,6 +4,7 @@ mod aov;
 pub mod beam;
 pub mod emitter;
 pub mod exposure;
+pub mod irradiance_grid;
 pub mod light;
 mod light_color;
 pub mod meter;

@@ -1,6 +1,7 @@
 //! The input of a preview picture: scene, camera, overlay and options.
 
 use super::channel::{Channel, Gloss};
+use crate::photo::irradiance_grid::IrradianceGrid;
 use crate::scene::{Assets, CameraFrame, LightId, ObjectId, Scene};
 use glam::Vec3;
 
@@ -15,6 +16,8 @@ pub struct PreviewInput<'a> {
     pub frame: CameraFrame,
     /// Picture size in pixels, clamped to 1 and to the device's largest texture.
     pub size: (u32, u32),
+    /// Traced bounced light, which replaces the estimate of it.
+    pub bounced_light: Option<&'a IrradianceGrid>,
     /// Gizmos and outlines over the picture.
     pub overlay: Overlay,
     /// Shadows, estimates, channel and quality.
@@ -30,6 +33,7 @@ impl<'a> PreviewInput<'a> {
             assets,
             frame: scene.camera_frame(aspect),
             size,
+            bounced_light: None,
             overlay: Overlay::default(),
             options: Options::default(),
         }
@@ -76,9 +80,9 @@ impl Overlay {
 pub struct Options {
     /// Draws shadows of objects.
     pub shadows: bool,
-    /// Adds an estimate of bounced light: in a room, ambient light from the lights' total flux and the mean
-    /// reflectance; without one, light bounced from the backdrops to the subjects. Without it the picture has direct
-    /// light alone.
+    /// Adds bounced light: [`PreviewInput::bounced_light`], or an estimate: in a room, ambient light from the lights'
+    /// total flux and the mean reflectance; without one, light bounced from the backdrops to the subjects. Without it
+    /// the picture has direct light alone.
     pub bounce_estimate: bool,
     /// Reflects walls and backdrops in chrome and glass, as a box of six uniform faces.
     pub environment_estimate: bool,

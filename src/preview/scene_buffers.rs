@@ -1,9 +1,11 @@
-//! Bind group 0 of all passes: frame constants, surfaces, lights, light tiles.
+//! Bind group 0 of all passes: frame constants, surfaces, lights, light tiles, bounced light.
 
 use super::geometry::surface::GpuSurface;
+use super::lights::bounced_light::BouncedLightTexture;
 use super::lights::environment::Environment;
 use super::lights::light_table::{Ambient, GpuLight, MAX_LIGHTS};
 use super::lights::light_tiles::TILES_BYTES;
+use crate::photo::irradiance_grid::{GridLayout, IrradianceGrid};
 use crate::scene::CameraFrame;
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu;
@@ -36,7 +38,16 @@ pub(crate) struct GpuFrame {
     pub environment_high: [f32; 3],
     pub unused_1: f32,
     pub environment_radiance: [[f32; 4]; 6],
-    pub bounce: [[f32; 4]; 6],
+    /// Position of the first probe of the bounced light, world space.
+    pub grid_low: [f32; 3],
+    pub unused_4: f32,
+    /// Probes per metre along each axis.
+    pub grid_density: [f32; 3],
+    pub unused_5: f32,
+    /// Number of probes along each axis.
+    pub grid_counts: [f32; 3],
+    /// Distance from a surface at which its bounced light is looked up, metres.
+    pub grid_offset_m: f32,
     pub size: [f32; 2],
     /// Distances that show as white and as black in the depth channel, metres; both 0 for a perspective view, where
     /// they are fixed.
@@ -78,10 +89,25 @@ impl GpuFrame {
         self.environment_radiance = environment.radiance.map(|c| c.extend(0.0).into());
     }
 
-    /// Sets the irradiance bounced by backdrops.
-    pub fn set_bounce(&mut self, environment: &Environment) {
-        self.bounce = environment.irradiance.map(|c| c.extend(0.0).into());
+    /// Sets the place of the bounced light's probes.
+    pub fn set_grid(&mut self, layout: &GridLayout) {
+        self.grid_low = layout.low.into();
+        self.grid_density = layout.step_m.recip().into();
+        self.grid_counts = layout.counts.as_vec3().into();
+        // One cell from a surface, all probes around are on its side, where the surface is flat.
+        self.grid_offset_m = if layout.len() > 1 { layout.step_m.max_element() } else { 0.0 };
     }
+}
+
+/// A frame's data.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FrameData<'a> {
+    pub frame: &'a GpuFrame,
+    pub surfaces: &'a [GpuSurface],
+    pub lights: &'a [GpuLight],
+    /// Lights per tile; none where they are not read.
+    pub tiles: Option<&'a [[u32; 4]]>,
+    pub bounced_light: &'a IrradianceGrid,
 }
 
 /// Size of the light buffer, bytes.
@@ -127,6 +153,7 @@ pub(crate) struct SceneBuffers {
     /// A uniform rather than a storage buffer: CPU rasterisers read uniforms several times faster.
     lights: wgpu::Buffer,
     tiles: wgpu::Buffer,
+    bounced_light: BouncedLightTexture,
 }
 
 impl SceneBuffers {
@@ -138,6 +165,12 @@ impl SceneBuffers {
             ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
             count: None,
         };
+        let texture_entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::FRAGMENT,
+            ty,
+            count: None,
+        };
         let storage_type = wgpu::BufferBindingType::Storage { read_only: true };
         let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("scene"),
@@ -146,14 +179,24 @@ impl SceneBuffers {
                 entry(1, storage_type),
                 entry(2, wgpu::BufferBindingType::Uniform),
                 entry(3, wgpu::BufferBindingType::Uniform),
+                texture_entry(
+                    4,
+                    wgpu::BindingType::Texture {
+                        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                        view_dimension: wgpu::TextureViewDimension::D3,
+                        multisampled: false,
+                    },
+                ),
+                texture_entry(5, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
             ],
         });
         let frame = uniform(device, "frame", size_of::<GpuFrame>() as u64);
         let lights = uniform(device, "lights", LIGHTS_BYTES);
         let tiles = uniform(device, "light tiles", TILES_BYTES);
         let surfaces = GrowingBuffer::new(device, "surfaces", 64 * size_of::<GpuSurface>() as u64);
-        let bind_group = bind(device, &layout, [&frame, &surfaces.buffer, &lights, &tiles]);
-        SceneBuffers { layout, bind_group, frame, surfaces, lights, tiles }
+        let bounced_light = BouncedLightTexture::new(device);
+        let bind_group = bind(device, &layout, [&frame, &surfaces.buffer, &lights, &tiles], &bounced_light);
+        SceneBuffers { layout, bind_group, frame, surfaces, lights, tiles, bounced_light }
     }
 
     /// The layout of the bind group.
@@ -167,15 +210,8 @@ impl SceneBuffers {
     }
 
     /// Uploads a frame's data.
-    pub fn write(
-        &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        frame: &GpuFrame,
-        surfaces: &[GpuSurface],
-        lights: &[GpuLight],
-        tiles: Option<&[[u32; 4]]>,
-    ) {
+    pub fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, data: &FrameData) {
+        let FrameData { frame, surfaces, lights, tiles, bounced_light } = *data;
         queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(frame));
         let lights: &[u8] = bytemuck::cast_slice(&lights[..lights.len().min(MAX_LIGHTS)]);
         if !lights.is_empty() {
@@ -184,9 +220,11 @@ impl SceneBuffers {
         if let Some(tiles) = tiles {
             queue.write_buffer(&self.tiles, 0, bytemuck::cast_slice(tiles));
         }
-        if self.surfaces.write(device, queue, bytemuck::cast_slice(surfaces)) {
+        let new_surfaces = self.surfaces.write(device, queue, bytemuck::cast_slice(surfaces));
+        let new_bounced_light = self.bounced_light.write(device, queue, bounced_light);
+        if new_surfaces || new_bounced_light {
             let buffers = [&self.frame, &self.surfaces.buffer, &self.lights, &self.tiles];
-            self.bind_group = bind(device, &self.layout, buffers);
+            self.bind_group = bind(device, &self.layout, buffers, &self.bounced_light);
         }
     }
 }
@@ -196,10 +234,18 @@ fn uniform(device: &wgpu::Device, label: &str, size: u64) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
 }
 
-fn bind(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffers: [&wgpu::Buffer; 4]) -> wgpu::BindGroup {
-    let entries: Vec<_> = (0..)
-        .zip(buffers)
-        .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-        .collect();
+fn bind(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    buffers: [&wgpu::Buffer; 4],
+    bounced_light: &BouncedLightTexture,
+) -> wgpu::BindGroup {
+    let light = [
+        wgpu::BindingResource::TextureView(&bounced_light.view),
+        wgpu::BindingResource::Sampler(&bounced_light.sampler),
+    ];
+    let resources = buffers.map(wgpu::Buffer::as_entire_binding).into_iter().chain(light);
+    let entries: Vec<_> =
+        (0..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
     device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some("scene"), layout, entries: &entries })
 }

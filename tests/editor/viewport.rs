@@ -112,6 +112,10 @@ fn navigation_does_not_change_the_scene() {
 #[test]
 fn nothing_is_drawn_while_nothing_changes() {
     let Some(mut window) = preset_window() else { return };
+    // The last change of the picture is its bounced light, which is traced in the background.
+    wait_until(&mut window, |app| !app.viewport().preview.is_tracing_bounced_light());
+    settle(&mut window);
+    assert!(window.state().viewport().preview.has_bounced_light());
     let draws = window.state().viewport().preview.draws();
     assert!(draws > 0, "{:?}", window.state().viewport().preview.failure());
     for _ in 0..10 {

@@ -165,23 +165,29 @@ fn draw(renderer: &mut PreviewRenderer, loaded: &Loaded, blases: &GeometryCache,
     });
     Pictures {
         columns: width as usize,
-        traced: traced(loaded, blases, width, height, spp),
+        traced: traced_with(loaded, blases, (width, height), spp, raytrace::Method::Direct),
         preview,
         unshadowed,
         rasterable: rasterable.collect(),
     }
 }
 
-fn is_rasterable(scene: &Scene, id: ObjectId) -> bool {
+pub fn is_rasterable(scene: &Scene, id: ObjectId) -> bool {
     let is_mirror = |m: &Material| m.transmission > 0.0 || (m.metallic > 0.5 && m.roughness < 0.2);
     scene.object(id).is_none_or(|object| {
         !is_mirror(&object.material) && !object.part_materials.iter().any(|(_, material)| is_mirror(material))
     })
 }
 
-fn traced(loaded: &Loaded, blases: &GeometryCache, width: u32, height: u32, spp: u32) -> Vec<f32> {
+/// Returns the luminances of a traced picture.
+pub fn traced_with(
+    loaded: &Loaded,
+    blases: &GeometryCache,
+    (width, height): (u32, u32),
+    spp: u32,
+    method: raytrace::Method,
+) -> Vec<f32> {
     let prepared = raytrace::prepare_kept(&loaded.scene, &loaded.assets, blases).unwrap();
-    let method = raytrace::Method::Direct;
     let settings = raytrace::Settings { width, height, spp, method, ..raytrace::Settings::default() };
     let film =
         raytrace::render(&prepared, &settings, &raytrace::RenderControl::new(), &mut |_| ControlFlow::Continue(()));

@@ -46,7 +46,9 @@ impl Environment {
             let [a, b, c] = triangle.corners;
             let normal = (b - a).cross(c - a).normalize_or_zero();
             let facing = if normal.dot(direction) > 0.0 { -normal } else { normal };
-            let lit = irradiance(table, probe + distance * direction, facing) + table.ambient.irradiance;
+            let lit = irradiance(table, probe + distance * direction, facing)
+                + table.ambient.irradiance
+                + table.ambient.bounced;
             (distance, triangle.albedo * lit / PI)
         };
         // One ray per face of the box

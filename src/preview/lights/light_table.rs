@@ -110,8 +110,10 @@ impl GpuLight {
 /// Ambient light, picture units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Ambient {
-    /// Irradiance from a surround and from the bounce estimate.
+    /// Irradiance from a surround.
     pub irradiance: Vec3,
+    /// Irradiance from the bounces in a room, estimated.
+    pub bounced: Vec3,
     /// Radiance of a surround.
     pub surround_radiance: Vec3,
     /// Radiance of the surrounds that are visible to the camera.
@@ -166,7 +168,7 @@ impl LightTable {
             std::array::from_fn(|group| table.lights.partition_point(|light| light.kind_group() <= group) as u32);
         table.ambient.surround_radiance = table.ambient.irradiance / PI;
         if let Some(room) = scene.room.as_ref().filter(|_| bounce_estimate) {
-            table.ambient.irradiance += bounced_irradiance(room, flux);
+            table.ambient.bounced = bounced_irradiance(room, flux);
         }
         table
     }

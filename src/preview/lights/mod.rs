@@ -1,5 +1,6 @@
 //! Lights on the CPU side: the light buffer, light culling by screen tiles, the environment estimate.
 
+pub mod bounced_light;
 pub mod environment;
 pub mod light_table;
 pub mod light_tiles;

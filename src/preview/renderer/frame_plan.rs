@@ -1,5 +1,6 @@
 //! The plan of a frame: everything that is decided on the CPU before a pass is encoded.
 
+use crate::photo::irradiance_grid::IrradianceGrid;
 use crate::preview::channel::Channel;
 use crate::preview::geometry::draw_item::DrawPass;
 use crate::preview::geometry::draw_list::{DrawList, Uploads};
@@ -14,6 +15,7 @@ use crate::preview::shadows::focus::VisibleReceivers;
 use crate::preview::shadows::plan::ShadowPlan;
 use crate::preview::targets::Output;
 use crate::scene::CameraFrame;
+use glam::Vec3;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// With more lights than this, a draft uses its coarsest resolutions.
@@ -28,6 +30,7 @@ pub(super) struct FramePlan {
     /// Lights per tile; none where every tile reads all lights.
     pub tiles: Option<Vec<[u32; 4]>>,
     pub constants: GpuFrame,
+    pub bounced_light: IrradianceGrid,
     pub output: Output,
     /// Lighting at reduced resolution.
     pub is_draft: bool,
@@ -52,11 +55,14 @@ impl FramePlan {
         let tiles = if options.light_radius { light_tiles(&lights, &input.frame) } else { None };
 
         // Fill the frame constants
-        let mut constants = frame_constants(input, size, &lights);
+        let environment = Environment::new(input.scene, &lights);
+        let bounced_light = bounced_light(input, &lights, environment.as_ref());
+        let mut constants = frame_constants(input, size, &lights, environment.as_ref());
+        constants.set_grid(&bounced_light.layout);
         constants.mask_scale = mask_scale(size, is_cpu, is_draft, lights.lights.len());
         constants.coarse_scale = coarse_scale(&lights);
         constants.depth_range_m = depth_range_m(&input.frame, &list.casters);
-        FramePlan { list, lights, shadows, tiles, constants, output, is_draft }
+        FramePlan { list, lights, shadows, tiles, constants, bounced_light, output, is_draft }
     }
 
     /// Returns the specialisation of the lighting pass.
@@ -114,21 +120,32 @@ pub(super) fn needs_lighting(options: &Options) -> bool {
 }
 
 /// Returns the constants that depend on camera, lights and room alone.
-fn frame_constants(input: &PreviewInput, size: (u32, u32), lights: &LightTable) -> GpuFrame {
+fn frame_constants(
+    input: &PreviewInput,
+    size: (u32, u32),
+    lights: &LightTable,
+    environment: Option<&Environment>,
+) -> GpuFrame {
     let mut frame = GpuFrame::new(&input.frame, size);
     frame.light_ends = lights.ends;
     frame.set_ambient(&lights.ambient, input.overlay.void_color);
-    let Options { bounce_estimate, environment_estimate, .. } = input.options;
-    if let Some(environment) = Environment::new(input.scene, lights) {
-        if environment_estimate {
-            frame.set_environment(&environment);
-        }
-        // A room's ambient light already includes all bounces.
-        if bounce_estimate && input.scene.room.is_none() {
-            frame.set_bounce(&environment);
-        }
+    if let Some(environment) = environment.filter(|_| input.options.environment_estimate) {
+        frame.set_environment(environment);
     }
     frame
+}
+
+/// Returns the traced bounced light, or its estimate: in a room the same on all surfaces, without one that of the
+/// backdrops on a subject.
+fn bounced_light(input: &PreviewInput, lights: &LightTable, environment: Option<&Environment>) -> IrradianceGrid {
+    let environment = environment.filter(|_| input.scene.room.is_none());
+    match input.bounced_light.filter(|grid| !grid.layout.is_empty()) {
+        _ if !input.options.bounce_estimate => IrradianceGrid::uniform([Vec3::ZERO; 6]),
+        Some(grid) => grid.clone(),
+        None => {
+            IrradianceGrid::uniform(environment.map_or([lights.ambient.bounced; 6], |estimate| estimate.irradiance))
+        }
+    }
 }
 
 /// Returns the picture pixels per shadow mask pixel along each axis: 1 on a GPU; on a CPU rasteriser 2, in drafts 4,

@@ -16,7 +16,7 @@ use super::lights::light_tiles::TILES_BYTES;
 use super::overlay::gizmo::Gizmos;
 use super::overlay::overlay_pass::{self, OverlayPass};
 use super::overlay::pick::Picking;
-use super::scene_buffers::{LIGHTS_BYTES, SceneBuffers};
+use super::scene_buffers::{FrameData, LIGHTS_BYTES, SceneBuffers};
 use super::shadows::layers::StaleMap;
 use super::shadows::maps::ShadowMaps;
 use super::shadows::mask::ShadowMasks;
@@ -216,10 +216,17 @@ impl PreviewRenderer {
 
     /// Uploads the buffers of a frame, assigns its shadow map layers and returns the cached passes that must run again.
     fn upload(&mut self, plan: &mut FramePlan, shadow_resolution: u32) -> StalePasses {
-        let FramePlan { list, lights, shadows, tiles, constants, .. } = plan;
+        let FramePlan { list, lights, shadows, tiles, constants, bounced_light, .. } = plan;
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
         let shadow_maps = self.shadows.maps.prepare(&self.gpu, shadows, list, shadow_resolution);
-        self.buffers.write(device, queue, constants, &list.surfaces, &lights.lights, tiles.as_deref());
+        let data = FrameData {
+            frame: constants,
+            surfaces: &list.surfaces,
+            lights: &lights.lights,
+            tiles: tiles.as_deref(),
+            bounced_light,
+        };
+        self.buffers.write(device, queue, &data);
         self.caches.draws.write(device, queue, &list.draws);
         let new_masks = self.shadows.masks.prepare(&self.gpu, &plan.shadows, plan.mask_size(self.size()));
         let masks = self.drawn.masks != Some(plan.mask_signature()) || !shadow_maps.is_empty() || new_masks;

@@ -287,11 +287,17 @@ fn environment(position: vec3f, direction: vec3f, roughness: f32) -> vec3f {
     return mix(sharp, even, saturate(roughness * 2.0));
 }
 
-// Returns the ambient and bounced irradiance.
-fn ambient(normal: vec3f) -> vec3f {
+// Returns the ambient and bounced irradiance: interpolated between the probes around a point in front of the surface, and
+// between three of the six directions (ambient cube, McTaggart 2004).
+fn ambient(position: vec3f, normal: vec3f) -> vec3f {
+    let at = (position + normal * frame.grid_offset_m - frame.grid_low) * frame.grid_density;
+    let texel = clamp(at, vec3f(0.0), frame.grid_counts - 1.0) + 0.5;
+    let uv = texel.xy / frame.grid_counts.xy;
+    let face = select(vec3f(1.0, 3.0, 5.0), vec3f(0.0, 2.0, 4.0), normal > vec3f(0.0));
+    let z = (face * frame.grid_counts.z + texel.z) / (6.0 * frame.grid_counts.z);
     let weight = normal * normal;
     return frame.ambient
-        + select(frame.bounce[1].rgb, frame.bounce[0].rgb, normal.x > 0.0) * weight.x
-        + select(frame.bounce[3].rgb, frame.bounce[2].rgb, normal.y > 0.0) * weight.y
-        + select(frame.bounce[5].rgb, frame.bounce[4].rgb, normal.z > 0.0) * weight.z;
+        + textureSampleLevel(bounced_light, bounced_light_sampler, vec3f(uv, z.x), 0.0).rgb * weight.x
+        + textureSampleLevel(bounced_light, bounced_light_sampler, vec3f(uv, z.y), 0.0).rgb * weight.y
+        + textureSampleLevel(bounced_light, bounced_light_sampler, vec3f(uv, z.z), 0.0).rgb * weight.z;
 }

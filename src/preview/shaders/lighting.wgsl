@@ -129,7 +129,7 @@ fn shade(p: GBufferSample) -> ShadedLight {
     let position = frame.eye + ray * (frame.near_m / depth);
     let s = shading(position, unpack_direction(p.packed.x), -normalize(ray), unpack_color(p.packed.y), gloss);
     // Ambient and environment light
-    var diffuse = ambient(s.normal);
+    var diffuse = ambient(position, s.normal);
     if ILLUMINANCE {
         diffuse = vec3f(0.0);
     }

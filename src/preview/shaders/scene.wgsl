@@ -29,8 +29,16 @@ struct Frame {
     environment_high: vec3f,
     unused_1: f32,
     environment_radiance: array<vec4f, 6>,
-    // Bounced irradiance on a surface that faces +X, -X, +Y, -Y, +Z, -Z.
-    bounce: array<vec4f, 6>,
+    // Position of the first probe of the bounced light.
+    grid_low: vec3f,
+    unused_4: f32,
+    // Probes per metre along each axis.
+    grid_density: vec3f,
+    unused_5: f32,
+    // Number of probes along each axis.
+    grid_counts: vec3f,
+    // Distance from a surface at which its bounced light is looked up, metres.
+    grid_offset_m: f32,
     size: vec2f,
     // Distances shown as white and as black by the depth channel, metres; both 0 for a perspective view.
     depth_range_m: vec2f,
@@ -80,6 +88,11 @@ struct Light {
 @group(0) @binding(2) var<uniform> lights: array<Light, 256>;
 // The lights of each screen tile, row by row: one past the last light of each kind, then light indices, four per word.
 @group(0) @binding(3) var<uniform> tiles: array<vec4u, TILES_LENGTH>;
+
+// Bounced irradiance at the probes of a grid on surfaces that face +X, -X, +Y, -Y, +Z, -Z: six grids one behind the other
+// in z.
+@group(0) @binding(4) var bounced_light: texture_3d<f32>;
+@group(0) @binding(5) var bounced_light_sampler: sampler;
 
 const TILE_COLUMNS: u32 = 16u;
 const TILE_ROWS: u32 = 9u;

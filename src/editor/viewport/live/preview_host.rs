@@ -3,7 +3,9 @@
 
 use crate::editor::document::revisions::Revisions;
 use crate::editor::document::studio_document::Document;
+use crate::editor::ui::wake::wake;
 use crate::editor::viewport::live::cpu_preview::CpuPreview;
+use crate::jobs::BounceJob;
 use crate::preview::{Channel, Gloss, LossFlag, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
 use crate::scene::{CameraFrame, LightId};
 use eframe::egui::{Context, Painter, Rect, TextureId};
@@ -33,6 +35,8 @@ struct PreviewKey {
     size: (u32, u32),
     overlay: Overlay,
     options: Options,
+    /// Number of the bounced light's grid.
+    bounced_light: u64,
 }
 
 /// Display options of the live view; not part of the scene, neither saved nor undone.
@@ -57,6 +61,7 @@ pub struct PreviewHost {
     /// Set when the window's device is lost.
     loss: LossFlag,
     cpu_preview: CpuPreview,
+    bounced_light: BounceJob,
     texture: Option<(TextureId, u64)>,
     shown: Option<PreviewKey>,
     /// Time at which the current draft was drawn; none for a full image.
@@ -81,6 +86,7 @@ impl PreviewHost {
             state: None,
             loss: LossFlag::default(),
             cpu_preview: CpuPreview::default(),
+            bounced_light: BounceJob::default(),
             texture: None,
             shown: None,
             draft_since: None,
@@ -137,6 +143,16 @@ impl PreviewHost {
         matches!(self.stage, PreviewStage::Starting(_))
     }
 
+    /// Returns true while the bounced light is traced.
+    pub fn is_tracing_bounced_light(&self) -> bool {
+        self.bounced_light.is_busy()
+    }
+
+    /// Returns true if the image has traced bounced light rather than an estimate of it.
+    pub fn has_bounced_light(&self) -> bool {
+        self.bounced_light.grid().is_some()
+    }
+
     /// Returns true if the current image is a draft.
     pub fn is_draft(&self) -> bool {
         self.draft_since.is_some()
@@ -183,10 +199,17 @@ impl PreviewHost {
         let options = Options { channel, only_light, gloss, overlay_alone, ..Options::default() };
         // Names and locks do not affect the image.
         let revisions = Revisions { document: 0, ..document.revisions() };
-        let wanted = PreviewKey { revisions, frame, size, overlay, options };
-        let changed = self.shown.as_ref() != Some(&wanted);
+        if matches!(self.stage, PreviewStage::Ready(_)) && channel == Channel::Lit && !overlay_alone {
+            let numbers = (revisions.image, revisions.surfaces);
+            self.bounced_light.update(document.scene(), document.assets(), only_light, numbers, &wake(ctx));
+        }
+        let bounced_light = self.bounced_light.generation();
+        let wanted = PreviewKey { revisions, frame, size, overlay, options, bounced_light };
+        let changed = self.shown.as_ref().is_none_or(|shown| PreviewKey { bounced_light, ..shown.clone() } != wanted);
+        // New bounced light alone is no motion: it waits for the full image after a draft.
+        let brightened = self.draft_since.is_none() && self.shown.as_ref() != Some(&wanted);
         let settled = self.draft_since.is_some_and(|since| since.elapsed() >= SETTLED);
-        if changed || settled {
+        if changed || brightened || settled {
             // The first image is drawn in full: nothing is in motion.
             let draft = changed && drafts && self.shown.is_some() && !overlay_alone;
             self.draw(ctx, document, wanted, draft);
@@ -203,11 +226,13 @@ impl PreviewHost {
 
     fn draw(&mut self, ctx: &Context, document: &Document, wanted: PreviewKey, draft: bool) {
         let began = Instant::now();
+        let bounced_light = self.bounced_light.grid();
         let input = PreviewInput {
             scene: document.scene(),
             assets: document.assets(),
             frame: wanted.frame,
             size: wanted.size,
+            bounced_light: bounced_light.as_deref(),
             overlay: wanted.overlay.clone(),
             options: Options { draft, ..wanted.options },
         };
