@@ -3,7 +3,7 @@
 use super::chunks::Elements;
 use super::lines::{CornerIndices, Directive, Faces, NO_INDEX};
 use super::materials::MaterialLibrary;
-use super::to_index;
+use super::mesh_index::to_index;
 use super::weld::VertexWelder;
 use crate::scene::{Mesh, MeshPart};
 use rayon::prelude::*;

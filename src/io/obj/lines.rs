@@ -1,6 +1,6 @@
 //! Parses the lines of an OBJ file, one chunk of the file at a time.
 
-use super::to_index;
+use super::mesh_index::to_index;
 use glam::{Vec2, Vec3};
 
 /// Index of a texture coordinate or a normal that a face corner does not have.

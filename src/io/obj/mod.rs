@@ -4,6 +4,7 @@ mod chunks;
 mod groups;
 mod lines;
 mod materials;
+mod mesh_index;
 mod normals;
 mod weld;
 
@@ -19,14 +20,6 @@ use std::path::Path;
 
 /// Largest absolute coordinate of a vertex, metres.
 const COORDINATE_LIMIT_M: f32 = 1e6;
-
-/// Returns an index or a number of elements as a mesh stores it. [`chunks::FILE_LIMIT_BYTES`] holds all of them within
-/// 32 bits.
-#[expect(clippy::cast_possible_truncation, reason = "chunks::parse refuses larger files")]
-fn to_index(count: usize) -> u32 {
-    debug_assert!(u32::try_from(count).is_ok());
-    count as u32
-}
 
 /// Imports an OBJ file: polygons become triangles, groups become parts; missing normals are computed, smooth except at
 /// hard edges. A missing MTL file is a warning.

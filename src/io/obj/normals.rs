@@ -1,7 +1,7 @@
 //! Computes vertex normals: smooth, except at edges sharper than a crease angle.
 
 use super::lines::CornerIndices;
-use super::to_index;
+use super::mesh_index::to_index;
 use super::weld::VertexWelder;
 use crate::math::angle_between;
 use crate::scene::Mesh;

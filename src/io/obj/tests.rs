@@ -198,7 +198,7 @@ fn the_mesh_equals_that_of_tobj() {
     let mut triangles = Vec::new();
     for model in &models {
         triangles.extend(model.mesh.indices.chunks_exact(3).map(|t| [t[0] + base, t[1] + base, t[2] + base]));
-        base += to_index(model.mesh.positions.len()) / 3;
+        base += mesh_index::to_index(model.mesh.positions.len()) / 3;
     }
     assert_eq!(mesh.triangles, triangles);
 }

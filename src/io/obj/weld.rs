@@ -1,7 +1,7 @@
 //! Welds face corners with equal indices to shared vertices.
 
 use super::lines::CornerIndices;
-use super::to_index;
+use super::mesh_index::to_index;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
