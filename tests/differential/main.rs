@@ -22,30 +22,34 @@ mod scenes;
 mod studio;
 
 use brute_force::BruteForce;
-use catchlight::io::{load_scene, write_scene};
+use catchlight::io::{Loaded, load_scene, write_scene};
 use catchlight::raytrace;
+use catchlight::scene::Material;
 use comparison::{Difference, Effort, TESTS};
 use std::fs;
 use std::path::{Path, PathBuf};
 use studio::statistics::{critical_z, sidak_level};
 
 /// Scenes that the gate compares.
-const GATE_SCENES: u64 = 16;
+const GATE_SCENES: u64 = 18;
 
 /// Returns the value of an environment variable.
 fn variable(name: &str, default: u64) -> u64 {
     std::env::var(name).map_or(default, |text| text.parse().unwrap())
 }
 
-/// Returns the folder for scenes, with the models that they use.
-fn folder() -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("differential");
+/// Returns a folder for scenes, with the models that they use.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     fs::create_dir_all(&folder).unwrap();
     for (file, subdivisions) in scenes::BALLS {
         fs::write(folder.join(file), scenes::ball_obj(subdivisions)).unwrap();
     }
     folder
 }
+
+/// A change of a material.
+type Change = fn(&mut Material);
 
 /// The comparison of a scene.
 struct Compared {
@@ -54,14 +58,22 @@ struct Compared {
     differences: Vec<(bool, Difference)>,
 }
 
-/// Renders the scene of a seed by all techniques. The scene goes through its file, so that the file shows the same.
-fn compare(seed: u64, folder: &Path, effort: Effort) -> Compared {
+impl Compared {
+    fn smallest_p(&self) -> f64 {
+        self.differences.iter().map(|(_, difference)| difference.p_value).fold(1.0, f64::min)
+    }
+}
+
+/// Renders the scene of a seed by all techniques; the tracer renders it with a change of its materials. The scene goes
+/// through its file, so that the file shows the same.
+fn compare(seed: u64, folder: &Path, effort: Effort, change: Change) -> Compared {
     let file = folder.join(format!("{seed}.ron"));
     fs::write(&file, write_scene(&scenes::scene(seed))).unwrap();
-    let loaded = load_scene(&file).unwrap();
-    let scene = &loaded.scene;
-    let expected = comparison::brute_force(&BruteForce::new(scene, &loaded.assets), effort.brute_force_spp, seed);
-    let mut prepared = raytrace::prepare(scene, &loaded.assets).unwrap();
+    let Loaded { mut scene, assets, .. } = load_scene(&file).unwrap();
+    let expected = comparison::brute_force(&BruteForce::new(&scene, &assets), effort.brute_force_spp, seed);
+    scene.objects.iter_mut().for_each(|object| change(&mut object.material));
+    let scene = &scene;
+    let mut prepared = raytrace::prepare(scene, &assets).unwrap();
     let mut differences = Vec::new();
     if prepared.plan().photons {
         let photons = comparison::compare_photons(&prepared, scene, &expected, effort);
@@ -79,21 +91,25 @@ fn random_scenes_agree_with_brute_force() {
     let effort = Effort::GATE.times(variable("CATCHLIGHT_DIFFERENTIAL_EFFORT", 1) as u32);
     let tests = count as usize * 2 * TESTS;
     let (level, critical) = (sidak_level(tests), critical_z(tests));
-    let folder = folder();
+    let folder = folder("differential");
     let mut failures = Vec::new();
     let (mut resolutions, mut tested) = (Vec::new(), 0);
     for seed in first..first + count {
-        let Compared { file, mut differences } = compare(seed, &folder, effort);
+        let compared = compare(seed, &folder, effort, |_| ());
+        let smallest = compared.smallest_p();
+        let Compared { file, mut differences } = compared;
         tested += differences.len();
         let whole = || differences.iter().filter(|(_, difference)| difference.region == 0);
-        resolutions.extend(whole().map(|(_, difference)| difference.resolution(critical)));
-        let smallest = differences.iter().map(|(_, difference)| difference.p_value).fold(1.0, f64::min);
+        let found = whole().map(|(_, difference)| difference.resolution(critical)).fold(f64::INFINITY, f64::min);
+        resolutions.push(found);
         let relative: Vec<String> =
             whole().map(|(_, difference)| format!("{:+.2}", 100.0 * difference.relative())).collect();
         println!(
-            "seed {seed}, {:?}: {} % of the whole picture, smallest p {smallest:.1e}",
+            "seed {seed}, {:?}: {} % of the whole picture, where {:.2} % would be found; smallest p of {} {smallest:.1e}",
             scenes::kind(seed),
-            relative.join(" ")
+            relative.join(" "),
+            100.0 * found,
+            differences.len()
         );
         differences.retain(|(_, difference)| difference.p_value < level);
         differences.sort_by(|a, b| a.1.p_value.total_cmp(&b.1.p_value));
@@ -113,4 +129,16 @@ fn random_scenes_agree_with_brute_force() {
     let typical = resolutions[resolutions.len() / 2];
     println!("{tested} tests; errors of {:.2} % of a whole picture are found in half of the scenes", 100.0 * typical);
     assert!(failures.is_empty(), "{} differences from brute force:\n{}", failures.len(), failures.join("\n"));
+}
+
+#[test]
+fn surfaces_that_are_three_percent_too_dark_are_found() {
+    let folder = folder("differential_errors");
+    let level = sidak_level(GATE_SCENES as usize * 2 * TESTS);
+    let darker = |material: &mut Material| material.base_color = material.base_color.map(|channel| 0.97 * channel);
+    const CASES: u64 = 6;
+    let smallest: Vec<f64> = (0..CASES).map(|seed| compare(seed, &folder, Effort::GATE, darker).smallest_p()).collect();
+    println!("smallest p of scenes with dark surfaces: {smallest:?}");
+    let found = smallest.iter().filter(|p| **p < level).count();
+    assert!(2 * found >= CASES as usize, "found in {found} of {CASES} scenes: {smallest:?}");
 }

@@ -27,12 +27,23 @@ pub enum Kind {
     Room,
     /// Surfaces that are partly clear or partly metal.
     Mixed,
+    /// Nine lights: more than are all sampled at the first surface.
+    ManyLights,
 }
 
 impl Kind {
     /// All kinds; a seed has the one of its remainder.
-    pub const ALL: [Kind; 8] =
-        [Kind::Opaque, Kind::Mirrors, Kind::Panes, Kind::Glass, Kind::Enclosed, Kind::Balls, Kind::Room, Kind::Mixed];
+    pub const ALL: [Kind; 9] = [
+        Kind::Opaque,
+        Kind::Mirrors,
+        Kind::Panes,
+        Kind::Glass,
+        Kind::Enclosed,
+        Kind::Balls,
+        Kind::Room,
+        Kind::Mixed,
+        Kind::ManyLights,
+    ];
 }
 
 /// File names of the balls, with the subdivisions of their icosahedra: 80 and 320 triangles.
@@ -194,7 +205,8 @@ impl Builder {
     }
 
     fn add_lights(&mut self) {
-        for index in 0..self.choose(&[1, 1, 2, 3]) {
+        let count = if self.kind == Kind::ManyLights { 9 } else { self.choose(&[1, 1, 2, 3]) };
+        for index in 0..count {
             let is_inside = self.kind == Kind::Room;
             let direction = loop {
                 let direction = self.rng.direction();
@@ -207,13 +219,17 @@ impl Builder {
             let lumens = Output::Lumens(self.rng.range(3000.0, 10_000.0));
             let lux = Output::Lux(self.rng.range(300.0, 2000.0));
             // The first light is wide, so that paths hit it often
-            let (low, high) = if index == 0 { (1.1, 2.0) } else { (0.5, 1.0) };
+            let (low, high) = match (index, is_inside) {
+                (0, false) => (1.8, 3.0),
+                (0, true) => (1.2, 2.0),
+                _ => (0.5, 1.2),
+            };
             let (width_m, height_m) = (self.rng.range(low, high), self.rng.range(low, high));
             let kinds: &[u32] = if is_inside { &[0, 1, 2] } else { &[0, 0, 1, 2, 3, 4, 4, 4] };
             let (emitter, output) = match self.choose(kinds) {
                 0 => (Emitter::RectPanel { width_m, height_m }, lumens),
                 1 => (Emitter::RoundPanel { diameter_m: width_m }, lumens),
-                2 => (Emitter::Sphere { radius_m: 0.35 * width_m }, lumens),
+                2 => (Emitter::Sphere { radius_m: 0.22 * width_m }, lumens),
                 3 => (Emitter::Sun { angular_diameter_deg: 25.0 * width_m }, lux),
                 _ => (Emitter::Surround, lux),
             };
@@ -236,7 +252,7 @@ impl Builder {
             Kind::Opaque => self.opaque(),
             Kind::Mirrors => self.mirror(),
             Kind::Panes | Kind::Glass | Kind::Enclosed | Kind::Balls => self.clear(),
-            Kind::Room => match self.choose(&[0, 1, 2]) {
+            Kind::Room | Kind::ManyLights => match self.choose(&[0, 1, 2]) {
                 0 => self.opaque(),
                 1 => self.mirror(),
                 _ => self.clear(),
