@@ -224,12 +224,13 @@ impl RayCaster<'_> {
                 return Passage::Blocked;
             }
             let gap = media.transmittance(&scene.materials, hit.triangle.t);
+            let color = material.transmission_color(scene.texture_value(&surface), surface.is_thin);
             let is_inside = path.open_normal().is_some();
             wavefront.propagate(hit.triangle.t, ray.direction, path.open_normal());
 
             // Pass a thin pane
             if surface.is_thin {
-                faces.push(&pane_face(&surface, material, ray.direction), gap, is_inside);
+                faces.push(&pane_face(&surface, material, color, ray.direction), gap, is_inside);
                 let rest = ray.t_max - hit.triangle.t;
                 ray = Ray { origin: surface.spawn_origin(ray.direction), direction: ray.direction, t_max: rest };
                 continue;
@@ -241,7 +242,7 @@ impl RayCaster<'_> {
             media.cross(surface.material, from_outside);
             if walk.mode == BodyMode::Ignore {
                 // The angle of incidence is that on the thinner side.
-                faces.push(&body_face(&surface, material, ray.direction, eta.max(1.0 / eta)), gap, !from_outside);
+                faces.push(&body_face(&surface, color, ray.direction, eta.max(1.0 / eta)), gap, !from_outside);
                 let rest = ray.t_max - hit.triangle.t;
                 ray = Ray { origin: surface.spawn_origin(direction), direction, t_max: rest };
                 continue;
@@ -253,7 +254,7 @@ impl RayCaster<'_> {
             if path.is_caustic() {
                 return Passage::Caustic;
             }
-            faces.push(&body_face(&surface, material, ray.direction, eta), gap, is_inside);
+            faces.push(&body_face(&surface, color, ray.direction, eta), gap, is_inside);
             let side = if from_outside { 1.0 } else { -1.0 };
             let Some(refracted) = fresnel::refract_about(-ray.direction, surface.normal * side, eta) else {
                 return Passage::Blocked;
@@ -389,17 +390,21 @@ impl Wavefront {
 }
 
 /// A thin pane as a face.
-fn pane_face(surface: &SurfaceInteraction, material: &TracedMaterial, direction: Vec3) -> ClearFace {
+fn pane_face(
+    surface: &SurfaceInteraction,
+    material: &TracedMaterial,
+    transmission: Vec3,
+    direction: Vec3,
+) -> ClearFace {
     ClearFace {
         normal: surface.geometric_normal,
         reflectance: fresnel::pane_reflectances(direction.dot(surface.geometric_normal), material.ior()),
-        transmission: Vec3::splat(material.transmission()),
+        transmission,
     }
 }
 
 /// The face of a body; `eta` is the index of the transmitted side over that of the incident side.
-fn body_face(surface: &SurfaceInteraction, material: &TracedMaterial, direction: Vec3, eta: f32) -> ClearFace {
+fn body_face(surface: &SurfaceInteraction, transmission: Vec3, direction: Vec3, eta: f32) -> ClearFace {
     let (s, p) = fresnel::amplitudes(direction.dot(surface.normal).abs(), eta);
-    let transmission = Vec3::splat(material.transmission());
     ClearFace { normal: surface.normal, reflectance: [s * s, p * p], transmission }
 }

@@ -115,7 +115,7 @@ fn trace_ray(
     if surface.is_thin {
         let transmittance = pane_transmittance(view_dir.dot(normal), material.ior());
         spawn(mirrored, throughput * (phong.specular + phong.transmission * (1.0 - transmittance)), media);
-        spawn(ray.direction, throughput * (phong.transmission * transmittance), media);
+        spawn(ray.direction, throughput * phong.transmission_color(true) * transmittance, media);
         return;
     }
     let eta = media.interface(&scene.materials, surface.material, outside).eta;
@@ -124,7 +124,8 @@ fn trace_ray(
     if let Some(refracted) = fresnel::refract_about(view_dir, normal, eta) {
         let mut media_beyond = media;
         media_beyond.cross(surface.material, outside);
-        spawn(refracted, throughput * (phong.transmission * (1.0 - reflectance) / (eta * eta)), media_beyond);
+        let transmitted = phong.transmission_color(false) * ((1.0 - reflectance) / (eta * eta));
+        spawn(refracted, throughput * transmitted, media_beyond);
     }
 }
 

@@ -5,7 +5,8 @@ use super::MaterialTextures;
 /// Surface properties. Colours are scene-linear RGB with Rec.709 primaries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// Diffuse albedo, or the mirror colour of a metal; each channel in [0, 1).
+    /// Diffuse albedo, or the mirror colour of a metal; each channel in [0, 1). Of a transmitting surface, the colour of
+    /// what passes a thin pane, or both faces of a body; 1 for clear glass.
     pub base_color: [f32; 3],
     /// Textures, by the property that they vary.
     pub textures: MaterialTextures,
@@ -141,7 +142,7 @@ impl MaterialPreset {
     pub fn material(self) -> Material {
         let opaque = |base_color, roughness| Material { base_color, roughness, ..Material::default() };
         let metal = |base_color, roughness| Material { metallic: 1.0, ..opaque(base_color, roughness) };
-        let clear = |ior| Material { transmission: 1.0, ior, ..opaque([0.99; 3], 0.0) };
+        let clear = |ior| Material { transmission: 1.0, ior, ..opaque([1.0; 3], 0.0) };
         match self {
             MaterialPreset::SkinLight => Material { ior: 1.4, ..opaque([0.62, 0.43, 0.34], 0.48) },
             MaterialPreset::SkinMedium => Material { ior: 1.4, ..opaque([0.42, 0.25, 0.17], 0.45) },

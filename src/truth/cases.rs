@@ -212,7 +212,8 @@ fn panes() -> Vec<TruthRow> {
     let pane = |degrees: f32| {
         let mut scene = lit_by(light(Emitter::Point, Output::Candela(1000.0), Vec3::Z * 10.0, Vec3::ZERO));
         let open = flat(&scene, Vec3::ZERO, Vec3::Z);
-        let glass = Material { transmission: 1.0, roughness: 0.0, ior: 1.52, ..Material::default() };
+        let glass =
+            Material { base_color: [1.0; 3], transmission: 1.0, roughness: 0.0, ior: 1.52, ..Material::default() };
         let shape = Shape::Box { size_m: Vec3::new(8.0, 8.0, 0.004) };
         scene.objects.push(object(shape, glass, Vec3::Z * 2.0, Vec3::X * degrees));
         let case = format!("clear pane, n = 1.52, under {degrees}\u{b0}");
@@ -228,7 +229,7 @@ fn panes() -> Vec<TruthRow> {
         Vec3::ZERO,
     ));
     let open = flat(&window, Vec3::ZERO, Vec3::Z);
-    let glass = Material { transmission: 1.0, roughness: 0.0, ior: 1.52, ..Material::default() };
+    let glass = Material { base_color: [1.0; 3], transmission: 1.0, roughness: 0.0, ior: 1.52, ..Material::default() };
     let sheet = Shape::Plane { width_m: 4.0, depth_m: 4.0 };
     window.objects.push(object(sheet, glass, Vec3::Z, Vec3::X * 90.0));
     // Angles of incidence up to 4 degrees change the transmittance by less than 0.01 %.

@@ -144,7 +144,7 @@ impl BruteForce {
             let Some(sample) = surface.scatter(-ray.direction, normal, eta, accepted, rng) else { return sum };
             if let (true, Some(after)) = (sample.is_transmitted, after) {
                 bodies = after;
-                eta_scale *= sample.weight.x;
+                eta_scale /= eta.map_or(1.0, |eta| eta * eta);
             }
             throughput *= sample.weight;
             accepted = sample.accepted;

@@ -193,10 +193,13 @@ impl Surface {
         if f64::from(rng.uniform()) >= self.clear {
             return self.scatter_opaque(wo, normal, rng);
         }
-        Some(match eta {
-            Some(eta) => refract_or_reflect(wo, normal, eta, accepted, rng),
-            None => self.cross_pane(wo, normal, accepted, rng),
-        })
+        // A body has its colour at both faces together, a pane at once (Burley 2015)
+        let (sample, color) = match eta {
+            Some(eta) => (refract_or_reflect(wo, normal, eta, accepted, rng), self.base_color.map(f64::sqrt)),
+            None => (self.cross_pane(wo, normal, accepted, rng), self.base_color),
+        };
+        let weight = if sample.is_transmitted { sample.weight * color } else { sample.weight };
+        Some(Scattered { weight, ..sample })
     }
 
     /// Reflects at or crosses a thin pane: the sum of all inner reflections, (1 - R) / (1 + R) for each polarisation.

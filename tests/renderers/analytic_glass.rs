@@ -5,11 +5,13 @@ use crate::studio;
 use crate::studio::closed_forms::{fresnel, pane};
 use crate::studio::light;
 use crate::studio::measure::{
-    BIAS, illuminance, illuminance_over, luminance_per_value, meter_card, picture, square, values,
+    BIAS, illuminance, illuminance_by_paths, illuminance_over, luminance_per_value, meter_card, picture, square, values,
 };
 use crate::studio::statistics::SampleMean;
-use catchlight::raytrace::Method;
-use catchlight::scene::{Aim, Camera, Emitter, Material, Object, Output, Scene, Sensor, Shape, Transform};
+use catchlight::photo::Picture;
+use catchlight::photo::meter::Receptor;
+use catchlight::raytrace::{LightMeter, MeterEffort, MeterPoint, Method, RenderControl};
+use catchlight::scene::{Aim, Assets, Camera, Emitter, Material, Object, Output, Scene, Sensor, Shape, Transform};
 use glam::Vec3;
 use std::f64::consts::PI;
 
@@ -19,7 +21,7 @@ const LUMINANCE: f32 = 1000.0;
 const WIDE_CARD: Shape = Shape::Plane { width_m: 0.3, depth_m: 0.3 };
 
 fn glass(ior: f32) -> Material {
-    Material { transmission: 1.0, roughness: 0.0, ior, ..Material::default() }
+    Material { base_color: [1.0; 3], transmission: 1.0, roughness: 0.0, ior, ..Material::default() }
 }
 
 fn thing(name: &str, shape: Shape, material: Material, position: Vec3, rotation_deg: Vec3) -> Object {
@@ -300,4 +302,61 @@ fn the_back_of_a_softbox_is_invisible_in_a_mirror() {
     panel.aim = Aim::Point(Vec3::Y * 3.0);
     scene.lights.push(panel);
     assert_eq!(relative_luminance(&scene, 8, 4).mean, 0.0);
+}
+
+/// Returns the mean of each channel.
+fn channels(picture: &Picture) -> [SampleMean; 3] {
+    [0, 1, 2].map(|channel| SampleMean::of(picture.rgb.iter().map(|pixel| f64::from(pixel[channel]))))
+}
+
+#[test]
+fn tinted_glass_gives_light_and_view_its_base_color_once_a_pane_and_once_a_body_in_every_method() {
+    // The base color of clear glass was ignored: 0.5 and 0.99 rendered alike.
+    let tint = [0.9, 0.5, 0.2];
+    let tinted = Material { base_color: tint, ..glass(1.52) };
+    for sheet in [true, false] {
+        let (shape, turn) = if sheet {
+            (Shape::Plane { width_m: 3.0, depth_m: 3.0 }, Vec3::X * 90.0)
+        } else {
+            (Shape::Box { size_m: Vec3::new(3.0, 3.0, 0.004) }, Vec3::ZERO)
+        };
+        let behind = |scene: &Scene, material: &Material, z: f32| {
+            let mut scene = scene.clone();
+            scene.objects.push(thing("Pane", shape.clone(), material.clone(), Vec3::Z * z, turn));
+            scene
+        };
+
+        // The light of a point, on a card behind the glass, by each method
+        let mut lit = meter_card(Vec3::ZERO, Vec3::Z);
+        lit.lights.push(light(Emitter::Point, Output::Lumens(1000.0), Vec3::Z * 2.0));
+        let [clear, coloured] = [&glass(1.52), &tinted].map(|material| behind(&lit, material, 1.0));
+        for method in [Method::Whitted, Method::Direct, Method::Path] {
+            let settings = square(method, 8, 64);
+            let [clear, coloured] = [&clear, &coloured].map(|scene| channels(&picture(scene, &settings)));
+            for ((clear, coloured), tint) in clear.into_iter().zip(coloured).zip(tint) {
+                let ratio = coloured.mean / clear.mean;
+                // Both pictures have the same samples. The card and the pane light each other by less than 0.1 %.
+                assert!((ratio / f64::from(tint) - 1.0).abs() < 2e-3, "sheet {sheet}, {method:?}: {ratio} for {tint}");
+            }
+        }
+        let by_paths = [&clear, &coloured].map(|scene| illuminance_by_paths(scene, &square(Method::Path, 8, 64)).mean);
+        assert!((by_paths[1] / by_paths[0] / 0.5 - 1.0).abs() < 2e-3, "sheet {sheet}, paths: green {by_paths:?}");
+        let lux = [&clear, &coloured].map(|scene| {
+            let meter = LightMeter::new(scene, &Assets::default(), Vec3::ZERO).unwrap();
+            let point = MeterPoint { position: Vec3::ZERO, facing: Vec3::Z, receptor: Receptor::Flat };
+            meter.read(&point, &MeterEffort::default(), &RenderControl::new()).unwrap().reading.lights[0].direct
+        });
+        let luminance = 0.2126 * tint[0] + 0.7152 * tint[1] + 0.0722 * tint[2];
+        assert!((lux[1] / lux[0] / luminance - 1.0).abs() < 1e-4, "sheet {sheet}, meter: {lux:?}");
+
+        // The view of a wall behind the glass
+        let wall = behind(&glowing_wall(3.0), &tinted, 1.5);
+        for method in [Method::Whitted, Method::Direct, Method::Path] {
+            let relative = luminance_per_value(&wall.camera) / f64::from(LUMINANCE);
+            for (reading, tint) in channels(&picture(&wall, &square(method, 16, 64))).into_iter().zip(tint) {
+                let (reading, truth) = (reading.scaled(relative), pane(0.0, 1.52) * f64::from(tint));
+                assert!(reading.agrees_with(truth, 2e-3, 18), "sheet {sheet}, {method:?}: {reading:?} for {truth}");
+            }
+        }
+    }
 }

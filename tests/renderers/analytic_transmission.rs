@@ -16,7 +16,7 @@ const WATER: f64 = 1.33;
 const THICKNESS: f64 = 0.004;
 
 fn clear(ior: f64) -> Material {
-    Material { transmission: 1.0, roughness: 0.0, ior: ior as f32, ..Material::default() }
+    Material { base_color: [1.0; 3], transmission: 1.0, roughness: 0.0, ior: ior as f32, ..Material::default() }
 }
 
 fn thing(name: &str, shape: Shape, material: Material, position: Vec3, rotation_deg: Vec3) -> Object {

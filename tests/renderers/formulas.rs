@@ -312,7 +312,7 @@ fn photons_focus_a_point_light_through_a_glass_ball() {
     let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
     scene.lights.push(light(Emitter::Point, Output::Lumens(1e4), Vec3::Z * 3.0));
     let open = illuminance(&scene, &square(Method::Path, 4, 16)).mean;
-    let glass = Material { transmission: 1.0, roughness: 0.0, ior: 1.5, ..Material::default() };
+    let glass = Material { base_color: [1.0; 3], transmission: 1.0, roughness: 0.0, ior: 1.5, ..Material::default() };
     scene.objects.push(object("Ball", Shape::Sphere { radius_m: 0.1 }, glass, Vec3::Z * 0.4, Vec3::ZERO));
     let ours = illuminance_by_paths(&scene, &square(Method::Path, 4, 64)).mean / open;
     let pane = studio::closed_forms::pane(0.0, 1.5);

@@ -1,6 +1,7 @@
 //! The dielectric lobe: specular reflection and refraction by clear glass and water, and by thin panes.
 
 use super::fresnel;
+use super::material::transmission_tint;
 use super::polarisation::{InterfaceReflection, Polarisation};
 use super::sample::BsdfSample;
 use super::shading_geometry::ShadingGeometry;
@@ -29,6 +30,8 @@ pub enum Boundary {
 #[derive(Clone, Copy, Debug)]
 pub struct DielectricLobe {
     pub ior: f32,
+    /// Colour of transmitted light; see [`transmission_tint`].
+    pub base_color: Vec3,
     pub boundary: Boundary,
     /// Polarisation that the path accepts.
     pub polarisation: Polarisation,
@@ -78,7 +81,7 @@ impl DielectricLobe {
         // Radiance is scaled by 1 / eta2 (Veach 1997, section 5.2)
         let scale = if interface.starts_inside { 1.0 } else { 1.0 / (eta * eta) };
         Some(BsdfSample {
-            weight: Vec3::splat(scale),
+            weight: transmission_tint(self.base_color, false) * scale,
             eta_scale: scale,
             polarisation: fresnel.transmitted,
             is_transmission: true,
@@ -98,8 +101,8 @@ impl DielectricLobe {
             let direction = (2.0 * wo.dot(normal) * normal - wo).normalize_or_zero();
             return BsdfSample { polarisation: pane.reflected, ..BsdfSample::specular(direction) };
         }
-        let polarisation = pane.transmitted;
-        BsdfSample { polarisation, is_transmission: true, is_undeviated: true, ..BsdfSample::specular(-wo) }
+        let (weight, polarisation) = (transmission_tint(self.base_color, true), pane.transmitted);
+        BsdfSample { weight, polarisation, is_transmission: true, is_undeviated: true, ..BsdfSample::specular(-wo) }
     }
 }
 

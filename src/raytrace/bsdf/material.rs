@@ -3,6 +3,7 @@
 use super::albedo::{AlbedoTable, AlbedoTables};
 use super::ggx;
 use crate::color::luminance;
+use crate::math::safe_sqrt;
 use crate::scene::{Material, TextureSlot};
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -77,9 +78,10 @@ impl TracedMaterial {
         self.transmission > 0.0
     }
 
-    /// Returns the weight of the dielectric lobe, which transmits light.
-    pub fn transmission(&self) -> f32 {
-        self.transmission
+    /// Returns the factor on light that is transmitted at a surface, besides Fresnel's equations: the weight of the
+    /// dielectric lobe times [`transmission_tint`].
+    pub fn transmission_color(&self, texture: Vec3, is_thin: bool) -> Vec3 {
+        transmission_tint(self.base_color * texture, is_thin) * self.transmission
     }
 
     /// Returns the GGX roughness alpha: the square of the user's roughness.
@@ -102,10 +104,9 @@ impl TracedMaterial {
         self.alpha < ggx::MIN_ALPHA
     }
 
-    /// Returns the reflectance for the albedo AOV: the base colour, and white for the transmitting part of the
-    /// material.
+    /// Returns the reflectance for the albedo AOV: the base colour, which is also that of transmitted light.
     pub fn albedo(&self, texture: Vec3) -> Vec3 {
-        (self.base_color * texture).lerp(Vec3::ONE, self.transmission)
+        self.base_color * texture
     }
 
     /// Returns an upper bound of the albedo. Textures only darken.
@@ -148,4 +149,11 @@ impl TracedMaterial {
     pub(super) fn diffuse_factor(&self, base_color: Vec3, coat_albedo: f32) -> Vec3 {
         base_color * ((1.0 - self.metallic) * (1.0 - coat_albedo) / (PI * (1.0 - self.coat_albedo.mean).max(1e-4)))
     }
+}
+
+/// Returns the colour of light that is transmitted at a surface of this base colour: the base colour at a thin pane, its
+/// square root at each face of a body, so that both faces together have the base colour (Burley 2015, "Extending the
+/// Disney BRDF to a BSDF with Integrated Subsurface Scattering", section 5). Reflected light has no colour.
+pub(super) fn transmission_tint(base_color: Vec3, is_thin: bool) -> Vec3 {
+    if is_thin { base_color } else { base_color.map(safe_sqrt) }
 }

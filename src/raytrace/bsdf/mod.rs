@@ -72,7 +72,7 @@ impl<'a> Bsdf<'a> {
                 dielectric: material.transmission,
                 microfacet: material.microfacet_probability(base_color, coat_albedo),
             },
-            dielectric: DielectricLobe { ior: material.ior, boundary, polarisation: Polarisation::NONE },
+            dielectric: DielectricLobe { ior: material.ior, base_color, boundary, polarisation: Polarisation::NONE },
             microfacet: MicrofacetLobe::new(material, geometry.wo),
             diffuse: DiffuseLobe { factor: material.diffuse_factor(base_color, coat_albedo) },
         }

@@ -4,7 +4,7 @@
 //! the reflectance at normal incidence. Base and lobe do not share energy, unlike in [`super::Bsdf`].
 
 use super::ggx;
-use super::material::TracedMaterial;
+use super::material::{TracedMaterial, transmission_tint};
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -20,6 +20,8 @@ pub struct Phong {
     pub specular: Vec3,
     /// Weight of clear glass, which reflects and refracts by Fresnel's equations.
     pub transmission: f32,
+    /// Base colour, for the colour of transmitted light.
+    base_color: Vec3,
 }
 
 impl TracedMaterial {
@@ -37,11 +39,17 @@ impl TracedMaterial {
             exponent: (2.0 / (alpha * alpha) - 2.0).max(0.0),
             specular,
             transmission: self.transmission,
+            base_color: base,
         }
     }
 }
 
 impl Phong {
+    /// Returns the factor on light that is transmitted, besides Fresnel's equations.
+    pub fn transmission_color(&self, is_thin: bool) -> Vec3 {
+        transmission_tint(self.base_color, is_thin) * self.transmission
+    }
+
     /// Returns the BSDF for unit directions above the surface, without specular reflection and glass.
     pub fn eval(&self, light_dir: Vec3, view_dir: Vec3, normal: Vec3) -> Vec3 {
         let mirrored = 2.0 * light_dir.dot(normal) * normal - light_dir;

@@ -173,7 +173,8 @@ fn sampled_directions_follow_their_pdf_for_every_lobe_roughness_and_angle() {
 
 #[test]
 fn glass_reflects_by_fresnels_equations_and_refracts_by_snells_law() {
-    let glass = TracedMaterial::new(&Material { transmission: 1.0, ior: 1.52, ..Material::default() });
+    let glass =
+        TracedMaterial::new(&Material { base_color: [1.0; 3], transmission: 1.0, ior: 1.52, ..Material::default() });
     let mut rng = TestRng::new(22);
     let angles = [0.0_f64, 20.0, 41.0, 42.0, 60.0, 80.0, 89.0];
     for (deg, outside) in angles.into_iter().flat_map(|deg| [(deg, true), (deg, false)]) {
@@ -215,6 +216,30 @@ fn glass_reflects_by_fresnels_equations_and_refracts_by_snells_law() {
             "{deg} outside {outside}: p = {}",
             test.p_value()
         );
+    }
+}
+
+#[test]
+fn clear_glass_did_not_know_its_base_color_and_tints_what_it_transmits() {
+    let base = Vec3::new(0.81, 0.25, 0.0);
+    let tinted = Material { base_color: base.into(), transmission: 1.0, ior: 1.5, ..Material::default() };
+    let material = TracedMaterial::new(&tinted);
+    let wo = view(0.8);
+    let texture = Vec3::new(1.0, 0.64, 1.0);
+    // Both faces of a body together, or a pane alone, have the base color times its texture.
+    let face = Vec3::new(0.9, 0.4, 0.0);
+    assert!((material.transmission_color(texture, false) - face).abs().max_element() < 1e-6);
+    assert!((material.transmission_color(texture, true) - base * texture).abs().max_element() < 1e-6);
+    for (boundary, expected) in [
+        (Boundary::Interface(DielectricInterface { eta: 1.5, starts_inside: false }), face / 2.25),
+        (Boundary::Interface(DielectricInterface { eta: 1.0 / 1.5, starts_inside: false }), face * 2.25),
+        (Boundary::ThinPane, base * texture),
+    ] {
+        let bsdf = Bsdf::new(&material, texture, Vec3::Z, Vec3::Z, wo).with_boundary(boundary, Polarisation::NONE);
+        let (reflected, transmitted) = (bsdf.sample(0.0, Vec2::ZERO).unwrap(), bsdf.sample(0.999, Vec2::ZERO).unwrap());
+        assert!(!reflected.is_transmission && transmitted.is_transmission);
+        assert_eq!(reflected.weight, Vec3::ONE, "reflections have no colour");
+        assert!((transmitted.weight - expected).abs().max_element() < 1e-5, "{boundary:?}: {}", transmitted.weight);
     }
 }
 

@@ -72,7 +72,7 @@ fn object(id: u32, shape: Shape, position: Vec3, material: Material) -> Object {
 fn still_life() -> Scene {
     let floor = Shape::Plane { width_m: 4.0, depth_m: 4.0 };
     let ball = Shape::Sphere { radius_m: 0.3 };
-    let glass = Material { transmission: 1.0, roughness: 0.0, ..Material::default() };
+    let glass = Material { base_color: [1.0; 3], transmission: 1.0, roughness: 0.0, ..Material::default() };
     let chrome = Material { metallic: 1.0, roughness: 0.0, ..Material::default() };
     let lamp = |id, x| Light {
         id: LightId(id),

@@ -56,7 +56,7 @@ impl LightMeter {
     /// Reads the meter. None if cancelled.
     pub fn read(&self, point: &MeterPoint, effort: &MeterEffort, control: &RenderControl) -> Option<MeterResult> {
         let studio = &self.studio;
-        let receptor = ReceptorFrame::new(point, studio.scene.origin);
+        let receptor = ReceptorFrame::new(point, &studio.scene);
         let lights = studio.lights.len();
         let mut replicates: Vec<Replicate> = (0..REPLICATES).map(|index| Replicate::new(index, lights)).collect();
         let mut round = SamplingRound::first(effort, lights);

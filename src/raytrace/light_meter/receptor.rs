@@ -1,19 +1,23 @@
 //! The receptor of the light meter, in the tracer's space.
 
 use super::point::MeterPoint;
-use crate::math::{orthonormal_basis, safe_sqrt, sin_cos_turn, warp};
+use crate::math::{Ray, gamma, orthonormal_basis, safe_sqrt, sin_cos_turn, warp};
 use crate::photo::meter::Receptor;
+use crate::raytrace::ray_caster::RayCaster;
+use crate::raytrace::render_scene::RenderScene;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 
-/// Offset of the receptor along its direction, metres, so that a meter laid on a surface measures what falls on it.
-/// Larger than the rounding of positions within some ten metres; an error of 0.01 % half a metre from a light.
-const LIFT_M: f32 = 2e-5;
+/// Distance from a surface, metres, within which a receptor lies on it: larger than the rounding of positions within
+/// some ten metres.
+const CONTACT_M: f32 = 2e-5;
 
 /// A receptor with its coordinate frame.
 #[derive(Clone, Copy, Debug)]
 pub struct ReceptorFrame {
-    /// Origin of its rays, in the tracer's space.
+    /// Position, in the tracer's space.
+    pub position: Vec3,
+    /// Origin of its rays: the position, or just above the surface on which the meter lies.
     pub origin: Vec3,
     /// Unit direction that it faces.
     pub facing: Vec3,
@@ -24,11 +28,17 @@ pub struct ReceptorFrame {
 }
 
 impl ReceptorFrame {
-    /// The receptor at a point, for a tracer with this world origin.
-    pub fn new(point: &MeterPoint, tracer_origin: Vec3) -> Self {
+    /// The receptor at a point of a scene. A meter laid on a surface measures what falls on it: its rays start above the
+    /// surface by no more than its rounding. Elsewhere they start at the point.
+    pub fn new(point: &MeterPoint, scene: &RenderScene) -> Self {
         let (tangent, bitangent) = orthonormal_basis(point.facing);
-        let origin = (point.position - tracer_origin) + point.facing * LIFT_M;
-        ReceptorFrame { origin, facing: point.facing, tangent, bitangent, receptor: point.receptor }
+        let position = point.position - scene.origin;
+        let contact_m = CONTACT_M.max(gamma(4) * point.position.abs().max_element());
+        let above = position + point.facing * contact_m;
+        let ray = Ray { origin: above, direction: -point.facing, t_max: 2.0 * contact_m };
+        let hit = RayCaster::new(scene).intersect(&ray);
+        let origin = hit.map_or(position, |hit| scene.aggregate.surface(&hit).spawn_origin(point.facing));
+        ReceptorFrame { position, origin, facing: point.facing, tangent, bitangent, receptor: point.receptor }
     }
 
     /// Samples a unit direction with a density proportional to the receptor's response.

@@ -9,7 +9,7 @@ use crate::color::luminance;
 use crate::raytrace::caustics::{PhotonMap, PhotonTracer, filled_radius};
 use crate::raytrace::control::RenderControl;
 use crate::raytrace::film::{NonFiniteGate, NonFiniteReport};
-use crate::raytrace::lights::TracedLight;
+use crate::raytrace::lights::{LightSample, TracedLight};
 use crate::raytrace::limits::PathLimits;
 use crate::raytrace::medium_stack::MediumStack;
 use crate::raytrace::path_tracer::PathTracer;
@@ -120,12 +120,15 @@ impl RoundSampler<'_> {
 
     /// Illuminance by one sample of a light.
     fn light_sample(&self, caster: &mut RayCaster<'_>, light: &TracedLight, sampler: &Sampler) -> f32 {
-        let ReceptorFrame { origin, facing, receptor, .. } = self.receptor;
+        let ReceptorFrame { position, origin, facing, receptor, .. } = self.receptor;
         let set = sampler.set(Dimensions::Camera);
-        let Some(sample) = light.sample(origin, sampler::first_pair(&set)) else { return 0.0 };
+        let Some(sample) = light.sample(position, sampler::first_pair(&set)) else { return 0.0 };
         if receptor.response(sample.direction.dot(facing)) <= 0.0 {
             return 0.0;
         }
+        // Shadow rays start at the origin and end where the light is
+        let distance = (sample.distance - (origin - position).dot(sample.direction)).max(0.0);
+        let sample = LightSample { distance, ..sample };
         let Some(connection) = caster.connect(origin, light, &sample, MediumStack::default()) else { return 0.0 };
         let response = receptor.response(connection.direction.dot(facing));
         connection.value * response * luminance(connection.transmittance)

@@ -111,7 +111,7 @@ fn pixels_of(live: &LivePicture, object: u32) -> (usize, usize) {
 
 #[test]
 fn caustics_of_a_point_light_through_a_glass_ball_agree_with_a_render() {
-    let mut scene = studio(Material { transmission: 1.0, roughness: 0.0, ..Material::default() });
+    let mut scene = studio(Material { base_color: [1.0; 3], transmission: 1.0, roughness: 0.0, ..Material::default() });
     scene.lights.truncate(1);
     (scene.lights[0].emitter, scene.lights[0].power.output) = (Emitter::Point, Output::Lumens(2e6));
     // Behind the ball, seen from the light.
@@ -212,7 +212,7 @@ fn disoccluded_pixels_are_traced() {
 #[test]
 fn mirrors_and_glass_are_traced_and_the_weight_of_gloss_falls_with_the_view_angle() {
     let smooth = Material { roughness: 0.0, metallic: 1.0, base_color: [0.9; 3], ..Material::default() };
-    let glass = Material { roughness: 0.0, transmission: 1.0, ..Material::default() };
+    let glass = Material { base_color: [1.0; 3], roughness: 0.0, transmission: 1.0, ..Material::default() };
     let glossy = Material { roughness: 0.3, ..matte() };
     let reprojected_weight = |ball: &Material, aside_m: f32| {
         let scene = studio(ball.clone());

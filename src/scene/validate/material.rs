@@ -5,11 +5,14 @@ use crate::scene::Material;
 
 /// Reflectances lie in [0, 1): a closed room with reflectance 1 has no finite solution.
 const REFLECTANCE: Allowed = Allowed::between(0.0, 0.999, "");
+/// The colour of clear glass, which does not reflect by it.
+const TRANSMITTANCE: Allowed = Allowed::between(0.0, 1.0, "");
 const FRACTION: Allowed = Allowed::between(0.0, 1.0, "");
 
 pub(super) fn check_material(field: &str, material: &Material, check: &mut Check) {
     let name = |part: &str| format!("{field}.{part}");
-    check.color(&name("base_color"), material.base_color, REFLECTANCE);
+    let is_clear = material.transmission == 1.0 && material.metallic == 0.0;
+    check.color(&name("base_color"), material.base_color, if is_clear { TRANSMITTANCE } else { REFLECTANCE });
     for (slot, texture) in material.textures.iter() {
         check.asset_path(&name(slot.field()), texture.path());
     }

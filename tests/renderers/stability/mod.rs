@@ -24,7 +24,7 @@ fn metal(roughness: f32) -> Material {
 }
 
 fn glass() -> Material {
-    Material { transmission: 1.0, roughness: 0.0, ior: 1.5, ..Material::default() }
+    Material { base_color: [1.0; 3], transmission: 1.0, roughness: 0.0, ior: 1.5, ..Material::default() }
 }
 
 /// Returns a sphere on a floor under a small panel: the base scene of the tests.

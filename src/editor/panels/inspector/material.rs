@@ -24,18 +24,23 @@ pub fn preset_combo(ui: &mut Ui, salt: &str, material: &mut Material) {
 
 /// Draws the rows of a material; returns true to choose a texture.
 pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> Option<TextureSlot> {
+    let before = material.clone();
     let mut choose = None;
     ui.push_id(salt, |ui| {
         row(ui, "Surface", "A material of the shelf; the rows below fine-tune it", |ui| {
             preset_combo(ui, "preset", material)
         });
-        row(ui, "Colour", "Base colour; of a metal, its reflection", |ui| {
-            if widgets::color_ui(ui, &mut material.base_color).changed() {
-                // An albedo of 1 would never absorb light.
-                material.base_color = material.base_color.map(|c| c.clamp(0.0, 0.99));
-            }
-            ui.label(format!("reflects {:.0} %", 100.0 * crate::color::luminance(material.base_color.into())))
-                .on_hover_text("How much of the light it gives back");
+        let color_tip = "Base colour; of a metal, its reflection; of something clear, the colour of what passes a pane, \
+                         or both faces of a solid piece: white is clear glass";
+        row(ui, "Colour", color_tip, |ui| {
+            widgets::color_ui(ui, &mut material.base_color);
+            let percent = 100.0 * crate::color::luminance(material.base_color.into());
+            let (text, tip) = if material.transmission == 1.0 {
+                (format!("passes {percent:.0} %"), "How much of the light it lets through, reflections apart")
+            } else {
+                (format!("reflects {percent:.0} %"), "How much of the light it gives back")
+            };
+            ui.label(text).on_hover_text(tip);
         });
         for slot in TextureSlot::ALL {
             if texture_row(ui, slot, material.textures.get_mut(slot)) {
@@ -62,6 +67,11 @@ pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> Option
             per_channel(ui, "Glow", NumberField::new(1.0, 0.0, 1e7, 0, ""), &mut material.emission_cd_m2);
         });
     });
+    let is_clear = material.transmission == 1.0 && material.metallic == 0.0;
+    if *material != before && !is_clear {
+        // An albedo of 1 would never absorb light.
+        material.base_color = material.base_color.map(|c| c.min(0.99));
+    }
     choose
 }
 
