@@ -56,7 +56,7 @@ mod whitted;
 
 pub use control::RenderControl;
 pub use events::{Lobe, PathEnd, PathEvent, PathVertex};
-pub use film::{Film, Layer, MAX_LIGHT_LAYERS, NonFiniteReport};
+pub use film::{Film, Layer, MAX_LIGHT_LAYERS, NonFiniteReport, TILE};
 pub use geometry_cache::GeometryCache;
 pub use intersectors::{IntersectionMethod, Intersector};
 pub use irradiance_probes::{IrradianceProbes, ProbeScene};

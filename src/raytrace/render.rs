@@ -69,10 +69,11 @@ impl TileJob<'_> {
         }
         let Settings { method, max_depth, seed, .. } = *self.settings;
         let SamplePass { first_sample, samples } = self.pass;
-        let (half, view_axis) = (tile.halves.next_half(), self.camera.forward());
+        let view_axis = self.camera.forward();
         let limits = PathLimits::new(method, self.scene.plan(), max_depth);
         let tracer = PathTracer::new(self.scene, self.photon_map);
         let mut pixel_sampler = PixelSampler { tracer, camera: self.camera, method, limits };
+        tile.blocks.begin_pass();
         for pixel in 0..tile.pixels() {
             let (x, y) = tile.position(pixel);
             for index in first_sample..first_sample + samples {
@@ -80,10 +81,10 @@ impl TileJob<'_> {
                 let mut gate = tile.sample_sink(pixel, sample, &self.scene.layer_times, view_axis);
                 pixel_sampler.sample(sample, &mut gate);
                 let luminance = gate.sink.luminance * self.scene.exposure;
-                tile.halves.add(half, pixel, luminance);
+                tile.blocks.add(pixel, luminance);
             }
         }
-        tile.halves.finish_pass(half, samples);
+        tile.blocks.finish_pass(samples);
         self.control.count(pixel_sampler.tracer.caster.rays, tile.pixels() as u64 * u64::from(samples));
         true
     }

@@ -107,3 +107,16 @@ fn scaling_reports_one_row_per_number_of_triangles_lights_and_pixels() {
     assert!(triangles[1] - triangles[0] > 5000.0, "{triangles:?}");
     assert!(rows.iter().all(|row| row["trace_s"].as_f64().unwrap() > 0.0 && row["prepare_s"].as_f64().unwrap() > 0.0));
 }
+
+#[test]
+fn the_noise_study_compares_stated_noise_with_its_scatter() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = json(&chart(folder.path(), &["--noise", "rembrandt", "--size", "32x24", "--spp", "4", "--json"]));
+    assert_eq!(rows.iter().map(|row| row["spp"].as_u64().unwrap()).collect::<Vec<_>>(), [2, 4]);
+    for row in &rows {
+        let [scatter, ratio] = ["scatter", "ratio"].map(|key| row[key].as_f64().unwrap());
+        // A fifth of a stop or less, stated about right: 768 pixels, some of which hold most of the scatter.
+        assert!(scatter > 0.01 && scatter < 0.5 && ratio > 0.6 && ratio < 1.5, "{row}");
+    }
+    assert!(rows[1]["scatter"].as_f64() < rows[0]["scatter"].as_f64());
+}

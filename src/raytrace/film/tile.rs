@@ -1,7 +1,7 @@
 //! One tile of a film.
 
 use super::aov::AovTile;
-use super::{HalfBuffers, LayerSums, NonFiniteGate, NonFiniteReport};
+use super::{LayerSums, NonFiniteGate, NonFiniteReport, SampleBlocks};
 use crate::color::luminance;
 use crate::raytrace::sampler::SampleId;
 use crate::raytrace::sink::{FirstHit, RadianceSink};
@@ -21,8 +21,8 @@ pub struct FilmTile {
     pub width: u32,
     /// Sums of the contributions.
     pub sums: LayerSums<Vec3>,
-    /// Halves of the samples, for the noise estimate.
-    pub halves: HalfBuffers,
+    /// Blocks of the samples, for the noise estimate.
+    pub blocks: SampleBlocks,
     /// Albedo, normal, depth and object, if the render has AOVs.
     pub aovs: Option<Box<AovTile>>,
     /// Discarded non-finite contributions.
@@ -38,7 +38,7 @@ impl FilmTile {
             y,
             width,
             sums: LayerSums::new(pixels, layers),
-            halves: HalfBuffers::new(pixels),
+            blocks: SampleBlocks::new(pixels),
             aovs: aovs.then(|| Box::new(AovTile::new(pixels))),
             nonfinite: NonFiniteReport::default(),
         }
@@ -56,8 +56,7 @@ impl FilmTile {
 
     /// Samples per pixel.
     pub fn spp(&self) -> u32 {
-        let [a, b] = self.halves.samples();
-        a + b
+        self.blocks.samples()
     }
 
     /// Factor from sums to means.
@@ -65,9 +64,9 @@ impl FilmTile {
         1.0 / self.spp().max(1) as f32
     }
 
-    /// Estimated noise, see [`HalfBuffers::noise_stops`].
+    /// Estimated noise, see [`SampleBlocks::noise_stops`].
     pub fn noise_stops(&self) -> Option<f32> {
-        self.halves.noise_stops(self.halves.mean())
+        self.blocks.noise_stops(self.blocks.mean())
     }
 
     /// The sink of one sample of a pixel, behind the non-finite gate. `layer_times` are the seconds for which each

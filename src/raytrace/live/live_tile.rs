@@ -3,7 +3,7 @@
 use super::primary_hit::PrimaryHit;
 use super::refinement::{RefinementStep, TileProgress};
 use crate::color::luminance;
-use crate::raytrace::film::{HalfBuffers, LayerSums, NonFiniteReport, TILE};
+use crate::raytrace::film::{LayerSums, NonFiniteReport, SampleBlocks, TILE};
 use glam::Vec4;
 
 /// The samples and primary hits of a square of pixels.
@@ -25,10 +25,10 @@ pub struct LiveTile {
     pub progress: TileProgress,
     /// True once the noise is low enough, or the samples are the maximum.
     is_converged: bool,
-    /// Halves of the samples, for the noise estimate.
-    pub halves: HalfBuffers,
-    /// True if the halves hold samples of retraced layers alone.
-    halves_are_retraced: bool,
+    /// Blocks of the samples, for the noise estimate.
+    pub blocks: SampleBlocks,
+    /// True if the blocks hold samples of retraced layers alone.
+    blocks_are_retraced: bool,
     /// Discarded non-finite contributions.
     pub nonfinite: NonFiniteReport,
     /// Number of pixels that took their value from the history.
@@ -46,8 +46,8 @@ pub struct NoiseTarget<'a> {
     pub layer_times: &'a [f32],
 }
 
-/// Samples in each half before the noise is estimated.
-const MIN_HALF_SAMPLES: u32 = 4;
+/// Samples before the noise is estimated.
+const MIN_NOISE_SAMPLES: u32 = 8;
 /// Samples per pixel after which a tile takes no more.
 const MAX_SAMPLES: u32 = 512;
 
@@ -65,8 +65,8 @@ impl LiveTile {
             primary_hits: vec![PrimaryHit::NONE_YET; pixels],
             progress: TileProgress::default(),
             is_converged: false,
-            halves: HalfBuffers::new(pixels),
-            halves_are_retraced: false,
+            blocks: SampleBlocks::new(pixels),
+            blocks_are_retraced: false,
             nonfinite: NonFiniteReport::default(),
             reprojected: 0,
         }
@@ -104,7 +104,7 @@ impl LiveTile {
     pub fn clear(&mut self) {
         self.sums.clear();
         self.primary_hits.fill(PrimaryHit::NONE_YET);
-        self.reset_halves(false);
+        self.reset_blocks(false);
         (self.progress, self.is_converged, self.reprojected) = (TileProgress::default(), false, 0);
         self.nonfinite = NonFiniteReport::default();
     }
@@ -115,34 +115,34 @@ impl LiveTile {
         if from.iter().any(Option::is_none) {
             self.progress.retraced = 0;
         }
-        self.reset_halves(true);
+        self.reset_blocks(true);
     }
 
-    /// Discards the halves if they hold samples of the other layers.
+    /// Discards the blocks if they hold samples of the other layers.
     pub fn begin_sample_pass(&mut self, is_retracing: bool) {
-        if self.halves_are_retraced != is_retracing {
-            self.reset_halves(is_retracing);
+        if self.blocks_are_retraced != is_retracing {
+            self.reset_blocks(is_retracing);
         }
     }
 
-    fn reset_halves(&mut self, is_retracing: bool) {
-        self.halves.clear();
-        self.halves_are_retraced = is_retracing;
+    fn reset_blocks(&mut self, is_retracing: bool) {
+        self.blocks.clear();
+        self.blocks_are_retraced = is_retracing;
     }
 
     /// Counts a completed step, and decides whether the tile is converged.
     pub fn finish_step(&mut self, is_retracing: bool, target: &NoiseTarget<'_>) {
-        let has_samples = self.halves.samples().iter().all(|samples| *samples >= MIN_HALF_SAMPLES);
+        let has_samples = self.blocks.samples() >= MIN_NOISE_SAMPLES;
         let is_quiet = has_samples
-            && self.halves.noise_stops(self.mean_luminance(target)).is_none_or(|noise| noise <= target.noise_stops);
+            && self.blocks.noise_stops(self.mean_luminance(target)).is_none_or(|noise| noise <= target.noise_stops);
         let TileProgress { kept, retraced } = &mut self.progress;
         if is_retracing {
-            *retraced = if is_quiet && self.halves_are_retraced { *kept } else { *retraced + 1 };
+            *retraced = if is_quiet && self.blocks_are_retraced { *kept } else { *retraced + 1 };
         } else {
             *kept += 1;
             *retraced = *kept;
             self.is_converged =
-                (is_quiet && !self.halves_are_retraced) || RefinementStep::samples(*kept) >= MAX_SAMPLES;
+                (is_quiet && !self.blocks_are_retraced) || RefinementStep::samples(*kept) >= MAX_SAMPLES;
         }
     }
 

@@ -120,12 +120,12 @@ impl<'a> TileTracer<'a> {
     /// Traces one sample of every pixel.
     fn trace_pass(&mut self, tile: &mut LiveTile, sample: u32, is_retracing: bool) {
         tile.begin_sample_pass(is_retracing);
-        let half = (sample & 1) as usize;
+        tile.blocks.begin_pass();
         for pixel in 0..tile.pixels() {
             let exposed = self.trace_sample(tile, pixel, sample);
-            tile.halves.add(half, pixel, exposed);
+            tile.blocks.add(pixel, exposed);
         }
-        tile.halves.finish_pass(half, 1);
+        tile.blocks.finish_pass(1);
     }
 
     /// Traces one sample of a pixel; returns its exposed luminance.
