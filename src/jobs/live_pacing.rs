@@ -234,7 +234,7 @@ mod tests {
         let scene = Arc::new(loaded.scene);
         let (clock, shown) = (ticking(), Arc::new(std::sync::Mutex::new(Vec::new())));
         let mut pacing = LivePacing::new(Arc::default(), clock.clone()).unwrap();
-        let camera = LiveCamera::pinhole(scene.camera_frame(1.5), (48, 32));
+        let camera = LiveCamera::pinhole(scene.camera_frame(1.5), (96, 64));
         pacing.update(scene.clone(), &loaded.assets, camera).unwrap();
         let control = RenderControl::new();
         for _ in 0..400 {

@@ -2,7 +2,7 @@
 //!
 //! [`prepare()`] turns a scene into flat tables, [`render()`] adds sample passes to a [`Film`], [`Film::develop`] makes the
 //! picture. In a pass, `pixel_sampler` makes camera rays, `path_tracer` traces their paths with the help of
-//! `ray_caster`, `emitters`, `lights`, `bsdf` and `caustics`, and a `sink` receives the contributions behind the film's
+//! `ray_caster`, `connection`, `emitters`, `lights`, `bsdf` and `caustics`, and a `sink` receives the contributions behind the film's
 //! non-finite gate. [`LightMeter`] traces from a receptor instead of a camera, [`LivePicture`] keeps a film while the
 //! scene changes, [`replay()`] records every step of one sample.
 //!

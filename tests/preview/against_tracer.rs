@@ -48,7 +48,10 @@ fn direct_light_on_a_figure_agrees_with_the_tracer() {
         let mut loaded = catchlight::io::find_preset(name).unwrap().load().unwrap();
         // Replace mirrors and glass, since the preview does not trace reflections
         for object in &mut loaded.scene.objects {
-            object.material = Material { metallic: 0.0, transmission: 0.0, roughness: 0.7, ..object.material.clone() };
+            // Clear glass may be white, other surfaces not.
+            let base_color = object.material.base_color.map(|c| c.min(0.95));
+            let matte = Material { metallic: 0.0, transmission: 0.0, roughness: 0.7, ..object.material.clone() };
+            object.material = Material { base_color, ..matte };
             object.part_materials.clear();
         }
         let (width, height) = loaded.scene.camera.picture_size(96);

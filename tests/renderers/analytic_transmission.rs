@@ -4,12 +4,17 @@
 use crate::studio;
 use crate::studio::closed_forms::fresnel;
 use crate::studio::light;
-use crate::studio::measure::{illuminance, illuminance_by_paths, illuminance_over, meter_card, square};
+use crate::studio::measure::{
+    film_with, illuminance, illuminance_by_paths, illuminance_over, lux_per_value, meter_card, square, values,
+};
 use crate::studio::statistics::SampleMean;
 use catchlight::photo::meter::Receptor;
-use catchlight::raytrace::{LightMeter, MeterEffort, MeterPoint, Method, RenderControl};
-use catchlight::scene::{Aim, Assets, Emitter, Light, Material, Object, ObjectId, Output, Scene, Shape, Transform};
+use catchlight::raytrace::{LightMeter, MeterEffort, MeterPoint, Method, RenderControl, Settings};
+use catchlight::scene::{
+    Aim, Assets, Emitter, Light, Material, Mesh, MeshPart, Object, ObjectId, Output, Scene, Shape, Transform,
+};
 use glam::{DVec3, Vec3};
+use std::sync::Arc;
 
 const GLASS: f64 = 1.52;
 const WATER: f64 = 1.33;
@@ -293,4 +298,82 @@ fn a_sharp_sun_lights_what_lies_under_water_and_glass() {
             assert!(reading.standard_error < 0.015 * truth, "{story} at {deg}: {reading:?} says little");
         }
     }
+}
+
+#[test]
+fn a_lamp_inside_of_coloured_glass_is_absorbed_by_the_glass() {
+    // A bulb in the middle of a block of 10 cm that absorbs four fifths on the way to a face, 20 cm before the card. Its
+    // image is nearer by refraction, and its light spreads into a solid angle n2 times as large; the reflection in the
+    // back face brings another 0.2 %.
+    let half = 0.05_f64;
+    let per_m = 5.0_f64.ln() / half;
+    let block = Material { absorption_per_m: [per_m as f32; 3], ..clear(GLASS) };
+    let mut scene = meter_card(Vec3::ZERO, Vec3::Z);
+    scene.objects[0].shape = Shape::Plane { width_m: 0.3, depth_m: 0.3 };
+    let shape = Shape::Box { size_m: Vec3::splat(2.0 * half as f32) };
+    let block = thing("Block", shape, block, Vec3::Z * 0.25, Vec3::ZERO);
+    scene.objects.push(Object { id: ObjectId(400), ..block });
+    let passed = 1.0 - ((GLASS - 1.0) / (GLASS + 1.0)).powi(2);
+    let image = |glass: f64| passed * (-per_m * glass).exp() / (glass + GLASS * 0.2).powi(2);
+    let truth = 1000.0 * (image(half) + (1.0 - passed) * image(3.0 * half));
+    for emitter in [Emitter::Point, Emitter::Sphere { radius_m: 0.005 }] {
+        scene.lights = vec![light(emitter, Output::Lumens(12_566.37), Vec3::Z * 0.25)];
+        let reading = illuminance_over(12, &scene, &square(Method::Direct, 8, 512));
+        assert!(reading.agrees_with(truth, 1.5e-2, 2), "{emitter:?}: {reading:?} for {truth} lx");
+        assert!(reading.standard_error < 0.1 * truth, "{emitter:?}: {reading:?} says little");
+    }
+}
+
+/// A wedge with a flat top at `top` and a lower face that falls towards +Y by an angle, from `top - 0.02` at the middle.
+fn wedge(top: f32, tilt_deg: f32) -> Mesh {
+    let half = 0.1;
+    let fall = half * tilt_deg.to_radians().tan();
+    let corner = |x: f32, y: f32| [Vec3::new(x, y, top), Vec3::new(x, y, top - 0.02 - fall * y / half)];
+    let corners = [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| corner(x, y));
+    let positions: Vec<Vec3> = corners.into_iter().flatten().collect();
+    let (up, low) = (|i: u32| 2 * (i % 4), |i: u32| 2 * (i % 4) + 1);
+    let mut triangles =
+        vec![[up(0), up(1), up(2)], [up(0), up(2), up(3)], [low(0), low(2), low(1)], [low(0), low(3), low(2)]];
+    for i in 0..4 {
+        triangles.extend([[low(i), low(i + 1), up(i + 1)], [low(i), up(i + 1), up(i)]]);
+    }
+    let parts = vec![MeshPart { name: "Wedge".into(), triangles: 0..triangles.len() as u32 }];
+    Mesh { positions, triangles, parts, ..Mesh::default() }
+}
+
+#[test]
+fn a_wedge_bends_the_sun_and_compresses_its_light() {
+    // Snell's law at the tilted lower face: the light turns by d = asin(n sin a) - a towards the thick side. A row of
+    // rays is displaced by z tan d, where the face lies at z: the nearer the face, the less, so that the light is denser
+    // by 1 / (1 - tan a tan d).
+    let tilt = 10.0_f64.to_radians();
+    let turn = (GLASS * tilt.sin()).asin() - tilt;
+    let (rs, rp) = fresnel(tilt, 1.0 / GLASS);
+    let passed = (1.0 - ((GLASS - 1.0) / (GLASS + 1.0)).powi(2)) * (1.0 - 0.5 * (rs + rp));
+    let truth = 1000.0 * passed / (1.0 - tilt.tan() * turn.tan());
+    let mut scene = card();
+    scene.lights.push(sun(0.0));
+    let file = Shape::MeshFile { path: "wedge.obj".into() };
+    let wedge_object = thing("Wedge", file, clear(GLASS), Vec3::ZERO, Vec3::ZERO);
+    scene.objects.push(Object { id: ObjectId(500), ..wedge_object });
+    let mut assets = Assets::default();
+    assets.insert_mesh("wedge.obj", Arc::new(wedge(0.3, 10.0)));
+    for method in [Method::Path, Method::Direct] {
+        let reading = |seed| {
+            let settings = Settings { seed, ..square(method, 8, 64) };
+            let picture = film_with(&scene, &assets, &settings).develop(&scene);
+            values(&picture).scaled(lux_per_value(&scene.camera)).mean
+        };
+        let reading = SampleMean::of((0..24).map(reading));
+        assert!(reading.agrees_with(truth, 5e-3, 3), "{method:?}: {reading:?} for {truth} lx");
+        assert!(reading.standard_error < 0.015 * truth, "{method:?}: {reading:?} says little");
+    }
+    scene.objects.remove(0);
+    let meter = LightMeter::new(&scene, &assets, Vec3::ZERO).unwrap();
+    let point = MeterPoint { position: Vec3::ZERO, facing: Vec3::Z, receptor: Receptor::Flat };
+    let result = meter.read(&point, &MeterEffort::default(), &RenderControl::new()).unwrap();
+    let light = &result.reading.lights[0];
+    let reading = SampleMean { mean: f64::from(light.sum()), standard_error: f64::from(light.standard_error) };
+    assert!(reading.agrees_with(truth, 5e-3, 3), "meter: {reading:?} for {truth} lx");
+    assert!(reading.standard_error < 0.02 * truth, "meter: {reading:?} says little");
 }

@@ -56,6 +56,8 @@ struct FirstCaster {
     surface: SurfaceInteraction,
     /// Unit direction towards the light.
     to_light: Vec3,
+    /// The body around a light that lies inside of one.
+    media: MediumStack,
     /// The photon as it arrives.
     photon: Photon,
 }
@@ -84,11 +86,9 @@ impl<'a> PhotonTracer<'a> {
         let hit = scene.casters.sample(triangle_choice, sampler::first_pair(&point_set))?;
         let surface = scene.aggregate.surface(&hit);
         let inner = inner_side_probability(&surface);
-        let (normal, side_probability) = if side_choice < inner {
-            (-surface.geometric_normal, inner)
-        } else {
-            (surface.geometric_normal, 1.0 - inner)
-        };
+        let is_inner = side_choice < inner;
+        let (normal, side_probability) =
+            if is_inner { (-surface.geometric_normal, inner) } else { (surface.geometric_normal, 1.0 - inner) };
 
         // Sample the light and a direction towards it
         let light_choice = sampler::last_pair(&light_set)[0];
@@ -103,27 +103,38 @@ impl<'a> PhotonTracer<'a> {
         // Trace the shadow ray; bodies of glass block it, as photons through them start at the outer one
         let origin = surface.spawn_origin(to_light);
         let visibility = self.caster.pane_transmittance(origin, to_light, sample.distance);
+        if visibility == Vec3::ZERO {
+            return None;
+        }
+
+        // Only a light inside of a body reaches its inner side, through the body
+        let mut media = MediumStack::default();
+        let mut transmittance = visibility;
+        if is_inner && !surface.is_thin && sample.distance.is_finite() {
+            media.cross(surface.material, true);
+            transmittance *= media.transmittance(&scene.materials, sample.distance);
+        }
         let area = scene.casters.area() / (emitted as f32 * side_probability * pmf);
         let density = |pdf: f32| scene.casters.density(side_probability * pmf * pdf, cos);
         let photon = Photon {
             position: surface.position,
             direction: to_light,
             normal,
-            flux: light.tint * visibility * (sample.value * cos * area),
+            flux: light.tint * transmittance * (sample.value * cos * area),
             layer: light.layer as u16,
             density: sample.pdf.map_or(f32::INFINITY, density),
             specular_depth: 0,
         };
-        (photon.flux != Vec3::ZERO).then_some(FirstCaster { surface, to_light, photon })
+        (photon.flux != Vec3::ZERO).then_some(FirstCaster { surface, to_light, media, photon })
     }
 
     /// Follows a photon through casters until it is absorbed.
     fn follow(&mut self, first: FirstCaster, sampler: &Sampler, receiver: &mut impl PhotonReceiver) {
         let scene = self.caster.scene;
-        let FirstCaster { mut surface, to_light, photon } = first;
+        let FirstCaster { mut surface, to_light, mut media, photon } = first;
         let mut wo = to_light;
         let (mut specular_depth, mut path) = (0, StraightPath::default());
-        let (mut media, mut polarisation, mut throughput) = (MediumStack::default(), Polarisation::NONE, Vec3::ONE);
+        let (mut polarisation, mut throughput) = (Polarisation::NONE, Vec3::ONE);
         for depth in 0..scene.plan().max_depth {
             // Sample the BSDF; only specular scattering at casters is followed
             let material = &scene.materials[surface.material as usize];
