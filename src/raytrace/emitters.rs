@@ -4,6 +4,7 @@
 
 use super::caustics::CausticMis;
 use super::events::PathEvent;
+use super::geometry::SurfaceInteraction;
 use super::lights::EmitterHit;
 use super::medium_stack::MediumStack;
 use super::ray_caster::{EMITTER_CONTACT, RayCaster, is_before};
@@ -50,6 +51,19 @@ impl MisVertex {
             travelled: 0.0,
             photons: None,
         }
+    }
+
+    /// Continues the path by specular scattering, but for transmission by a thin pane. `photons` carry the same light.
+    pub fn scatter_specular(
+        &mut self,
+        surface: &SurfaceInteraction,
+        from_outside: bool,
+        is_transmission: bool,
+        photons: Option<CausticMis>,
+    ) {
+        self.path.scatter(surface, from_outside, is_transmission);
+        self.travelled = 0.0;
+        self.photons = photons;
     }
 }
 

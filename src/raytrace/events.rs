@@ -3,6 +3,7 @@
 //! The tracer records positions in its own space, relative to its origin; a replay moves them to world space.
 //! Throughputs and contributions are white luminance, as on the film's layers.
 
+use super::bsdf::BsdfSample;
 use glam::Vec3;
 use serde::Serialize;
 
@@ -151,6 +152,18 @@ pub enum Lobe {
     SpecularTransmission,
     /// Transmission through a thin pane, without a change of direction.
     Pane,
+}
+
+impl Lobe {
+    /// Returns the kind of scattering of a sample.
+    pub(super) fn of(sample: &BsdfSample) -> Self {
+        match sample {
+            BsdfSample { is_undeviated: true, .. } => Lobe::Pane,
+            BsdfSample { specular: true, is_transmission: true, .. } => Lobe::SpecularTransmission,
+            BsdfSample { specular: true, .. } => Lobe::SpecularReflection,
+            _ => Lobe::NonSpecular,
+        }
+    }
 }
 
 /// The reason for the end of a path.

@@ -2,8 +2,8 @@
 //!
 //! [`prepare()`] turns a scene into flat tables, [`render()`] adds sample passes to a [`Film`], [`Film::develop`] makes the
 //! picture. In a pass, `pixel_sampler` makes camera rays, `path_tracer` traces their paths with the help of
-//! `ray_caster`, `connection`, `emitters`, `lights`, `bsdf` and `caustics`, and a `sink` receives the contributions behind the film's
-//! non-finite gate. [`LightMeter`] traces from a receptor instead of a camera, [`LivePicture`] keeps a film while the
+//! `ray_caster`, `connection`, `emitters`, `lights`, `bsdf` and `caustics`, and a `sink` receives the contributions behind
+//! the film's non-finite gate. [`LightMeter`] traces from a receptor instead of a camera, [`LivePicture`] keeps a film while the
 //! scene changes, [`replay()`] records every step of one sample.
 //!
 //! No clock, no entropy, no globals. A rendered value is a function of scene, pixel, sample, dimension and seed: the
@@ -48,10 +48,12 @@ mod retrace;
 mod roulette;
 mod sampler;
 mod settings;
+mod shadow_ray;
 mod simd;
 mod sink;
 mod straight_path;
 mod texture;
+mod wavefront;
 mod whitted;
 
 pub use control::RenderControl;

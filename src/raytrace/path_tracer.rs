@@ -6,7 +6,7 @@
 //!
 //! Which technique finds the light behind panes, bodies of glass and mirrors: `straight_path`.
 
-use super::bsdf::{Bsdf, BsdfSample, Polarisation};
+use super::bsdf::{Bsdf, Polarisation};
 use super::caustics::{CausticMis, GatherDensities, PhotonMap};
 use super::connection::Connection;
 use super::emitters::{MisVertex, power_heuristic};
@@ -361,7 +361,7 @@ impl<'a> PathTracer<'a> {
             path.media.cross(surface.material, outside);
         }
         sink.record(|| PathEvent::BsdfSample {
-            lobe: lobe_of(&sample),
+            lobe: Lobe::of(&sample),
             direction: sample.direction,
             pdf: (!sample.specular).then_some(sample.pdf),
             weight: sample.weight,
@@ -375,14 +375,8 @@ impl<'a> PathTracer<'a> {
         } else if sample.specular {
             let is_caster = self.caster.scene.materials[surface.material as usize].is_caustic_caster();
             path.gather = path.gather.filter(|_| is_caster);
-            let vertex = &mut path.mis_vertex;
-            vertex.photons = path.gather.map(|gather| CausticMis::new(gather, surface, sample.direction));
-            vertex.travelled = 0.0;
-            if !sample.is_transmission {
-                vertex.path.reflect(surface);
-            } else {
-                vertex.path.transmit(surface, outside);
-            }
+            let photons = path.gather.map(|gather| CausticMis::new(gather, surface, sample.direction));
+            path.mis_vertex.scatter_specular(surface, outside, sample.is_transmission, photons);
         } else {
             path.mis_vertex = MisVertex {
                 ray_origin: origin,
@@ -481,38 +475,26 @@ impl<'a> PathTracer<'a> {
             return;
         }
 
-        // Connect with the light, through panes and flat bodies in another direction
+        // Connect with the light, through flat bodies in another direction
+        let event = |pdf, bsdf_pdf, visibility, mis_weight| PathEvent::LightSample {
+            light: index,
+            pmf,
+            pdf,
+            bsdf_pdf,
+            visibility,
+            mis_weight,
+        };
         let connection = self.caster.connect(surface.spawn_origin(sample.direction), light, &sample, path.media);
         let Some(Connection { direction, value: light_value, pdf, transmittance }) = connection else {
-            let pdf = sample.pdf;
-            let event =
-                PathEvent::LightSample { light: index, pmf, pdf, bsdf_pdf, visibility: Vec3::ZERO, mis_weight: 0.0 };
-            sink.record(|| event);
+            sink.record(|| event(sample.pdf, bsdf_pdf, Vec3::ZERO, 0.0));
             return;
         };
         let (value, bsdf_pdf) = if direction == sample.direction { (value, bsdf_pdf) } else { bsdf.eval(direction) };
 
         // Weight against emitter hits and add the contribution
         let mis_weight = pdf.map_or(1.0, |light_pdf| power_heuristic(light_pdf * pmf, bsdf_pdf * paths));
-        sink.record(|| PathEvent::LightSample {
-            light: index,
-            pmf,
-            pdf,
-            bsdf_pdf,
-            visibility: transmittance,
-            mis_weight,
-        });
+        sink.record(|| event(pdf, bsdf_pdf, transmittance, mis_weight));
         let value = path.throughput * transmittance * value * light.tint * (light_value * mis_weight / pmf);
         sink.add(light.layer, value);
-    }
-}
-
-/// The kind of scattering of a sample.
-fn lobe_of(sample: &BsdfSample) -> Lobe {
-    match sample {
-        BsdfSample { is_undeviated: true, .. } => Lobe::Pane,
-        BsdfSample { specular: true, is_transmission: true, .. } => Lobe::SpecularTransmission,
-        BsdfSample { specular: true, .. } => Lobe::SpecularReflection,
-        _ => Lobe::NonSpecular,
     }
 }

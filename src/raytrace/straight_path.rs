@@ -35,8 +35,13 @@ pub struct StraightPath {
 }
 
 impl StraightPath {
+    /// Continues by specular scattering at a surface from outside or inside, but for transmission by a thin pane.
+    pub fn scatter(&mut self, surface: &SurfaceInteraction, from_outside: bool, is_transmission: bool) {
+        if is_transmission { self.transmit(surface, from_outside) } else { self.reflect(surface) }
+    }
+
     /// Continues by reflection at a surface.
-    pub fn reflect(&mut self, surface: &SurfaceInteraction) {
+    fn reflect(&mut self, surface: &SurfaceInteraction) {
         self.is_caustic |= self.count == 0 || !self.is_parallel_face(surface);
     }
 

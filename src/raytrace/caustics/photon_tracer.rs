@@ -158,12 +158,12 @@ impl<'a> PhotonTracer<'a> {
             if !survives(&mut throughput, survival, roulette) {
                 return;
             }
-            if !sample.is_transmission {
-                path.reflect(&surface);
-            } else if !surface.is_thin {
-                let from_outside = wo.dot(surface.geometric_normal) >= 0.0;
+            let from_outside = wo.dot(surface.geometric_normal) >= 0.0;
+            if !sample.is_undeviated {
+                path.scatter(&surface, from_outside, sample.is_transmission);
+            }
+            if sample.is_transmission && !surface.is_thin {
                 media.cross(surface.material, from_outside);
-                path.transmit(&surface, from_outside);
             }
             polarisation = sample.polarisation;
 
