@@ -2,8 +2,8 @@
 //!
 //! `straight_path` says which light these connections bring. A straight path through a body is displaced sideways: a
 //! connection refracts the ray at each face. Towards a sun the direction is given. Towards a point, of an area light,
-//! too, it is solved by Newton's method; the wavefront between both
-//! gives its derivative, the illuminance and the density of the direction (`wavefront`).
+//! too, it is solved by Newton's method; the wavefront between both gives its derivative, the illuminance and the
+//! density of the direction.
 //!
 //! Inner reflections of a body are counted as if they arrived from the same point; they are displaced by a part of its
 //! thickness. Without photons nothing else finds light without extent behind glass. It is then approximated: reflections
