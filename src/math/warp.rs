@@ -29,9 +29,14 @@ pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
 
 /// Samples a direction uniformly on the sphere. Density 1 / 4 pi, 1/sr.
 pub fn uniform_sphere(u: Vec2) -> Vec3 {
-    let z = 1.0 - 2.0 * u.x;
+    about_z(1.0 - 2.0 * u.x, u.y)
+}
+
+/// Returns the unit vector with this Z, at a turn in [0, 1) about +Z.
+#[inline(always)]
+pub fn about_z(z: f32, turn: f32) -> Vec3 {
     let radius = (1.0 - z * z).max(0.0).sqrt();
-    let (sin, cos) = sin_cos_turn(u.y);
+    let (sin, cos) = sin_cos_turn(turn);
     Vec3::new(radius * cos, radius * sin, z)
 }
 

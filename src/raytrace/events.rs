@@ -73,6 +73,19 @@ pub enum PathEvent {
         /// Path throughput after the vertex, before Russian roulette.
         throughput: Vec3,
     },
+    /// The path walks under the surface and continues where it comes out.
+    Subsurface {
+        /// Position at which it comes out.
+        position: Vec3,
+        /// Number of rays of the walk.
+        rays: u32,
+        /// True if the walk did not find the surface and ends at its entry.
+        at_entry: bool,
+        /// Weight of the walk.
+        weight: Vec3,
+        /// Path throughput after the walk.
+        throughput: Vec3,
+    },
     /// Several paths continue from the vertex.
     PathSplit {
         /// Number of paths.
@@ -114,6 +127,9 @@ impl PathEvent {
                 PathEvent::CameraRay { origin: start + origin, direction }
             }
             PathEvent::Vertex(vertex) => PathEvent::Vertex(PathVertex { position: vertex.position + origin, ..vertex }),
+            PathEvent::Subsurface { position, rays, at_entry, weight, throughput } => {
+                PathEvent::Subsurface { position: position + origin, rays, at_entry, weight, throughput }
+            }
             other => other,
         }
     }

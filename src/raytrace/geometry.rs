@@ -1,7 +1,8 @@
 //! Meshes prepared for tracing, their instances, and the surface interaction at a hit.
 
 use super::blas::Blas;
-use super::simd::TriangleHit;
+use super::bvh::TraversalStack;
+use super::simd::{Kernels, SlabRay, TriangleHit};
 use crate::math::{self, Ray, gamma};
 use crate::scene::Mesh;
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
@@ -132,6 +133,13 @@ impl Instance {
             direction: self.object_from_world.transform_vector3(ray.direction),
             t_max: ray.t_max,
         }
+    }
+
+    /// Returns the closest hit of a ray with this instance alone.
+    #[inline(always)]
+    pub fn intersect<K: Kernels>(&self, ray: &Ray, stack: &mut TraversalStack) -> Option<TriangleHit> {
+        let local = self.to_object(ray);
+        self.geometry.blas.intersect::<K>(&local, &SlabRay::new(local.origin, local.direction), stack)
     }
 
     /// Returns the surface interaction at a hit, in world space.

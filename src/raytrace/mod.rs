@@ -52,6 +52,7 @@ mod shadow_ray;
 mod simd;
 mod sink;
 mod straight_path;
+mod subsurface;
 mod texture;
 mod wavefront;
 mod whitted;

@@ -41,9 +41,10 @@ pub struct PathTracer<'a> {
 
 /// The state of a path between two vertices.
 #[derive(Clone, Copy, Debug)]
-struct PathState {
+pub struct PathState {
     ray: Ray,
-    throughput: Vec3,
+    /// Radiance that the path carries per radiance at its end.
+    pub throughput: Vec3,
     /// Part of the throughput that Russian roulette ignores: the squared index of refraction by which glass scales
     /// radiance, and the division among split paths.
     roulette_scale: f32,
@@ -54,26 +55,30 @@ struct PathState {
     /// Densities of paths and photons at the last non-specular vertex, if all vertices since were caustic casters.
     gather: Option<GatherDensities>,
     /// Number of paths that leave the present vertex.
-    split_factor: f32,
+    pub split_factor: f32,
     /// Vertices so far.
-    depth: u32,
+    pub depth: u32,
     /// Non-specular vertices so far.
     non_specular_depth: u32,
 }
 
 /// A path vertex at which light scatters.
 #[derive(Clone, Copy, Debug)]
-struct ShadingPoint<'a> {
-    surface: &'a SurfaceInteraction,
-    bsdf: &'a Bsdf<'a>,
+pub struct ShadingPoint<'a> {
+    /// Index of the instance.
+    pub instance: u32,
+    /// The surface.
+    pub surface: &'a SurfaceInteraction,
+    /// The BSDF towards the last vertex.
+    pub bsdf: &'a Bsdf<'a>,
     /// Importances of the lights at the point, if they are known already.
-    importances: Option<&'a LightImportances<'a>>,
+    pub importances: Option<&'a LightImportances<'a>>,
     /// Lobe choice in [0, 1), where it is not random.
-    lobe_choice: Option<f32>,
+    pub lobe_choice: Option<f32>,
     /// Distance from the last vertex, metres.
-    distance: f32,
+    pub distance: f32,
     /// The ray arrives on the side of the geometric normal.
-    outside: bool,
+    pub outside: bool,
 }
 
 /// The light sampling at a vertex.
@@ -213,6 +218,7 @@ impl<'a> PathTracer<'a> {
             }
             let bsdf = scene.bsdf(&surface, wo, &path.media, path.polarisation);
             let point = ShadingPoint {
+                instance: hit.instance,
                 surface: &surface,
                 bsdf: &bsdf,
                 importances: None,
@@ -225,13 +231,8 @@ impl<'a> PathTracer<'a> {
             path.split_factor = paths as f32;
 
             // Gather the photons of caustics
-            if let (true, Some(map)) = (samples_lights, self.photon_map) {
-                let max_specular_depth = limits.max_depth - 1 - path.depth;
-                let photons = map.for_depth(path.non_specular_depth);
-                sink.record(|| PathEvent::PhotonGather { radius: photons.radius() });
-                photons.gather(&surface, &bsdf, path.split_factor, max_specular_depth, |layer, value| {
-                    sink.add(layer, path.throughput * value);
-                });
+            if samples_lights {
+                self.gather_photons(path, &surface, &bsdf, limits, sink);
             }
 
             // Continue with several paths, or with both lobes of clear glass
@@ -253,6 +254,24 @@ impl<'a> PathTracer<'a> {
                 return;
             }
         }
+    }
+
+    /// Gathers the photons of caustics at a surface, if there is a photon map.
+    pub fn gather_photons(
+        &self,
+        path: &PathState,
+        surface: &SurfaceInteraction,
+        bsdf: &Bsdf<'_>,
+        limits: PathLimits,
+        sink: &mut impl RadianceSink,
+    ) {
+        let Some(map) = self.photon_map else { return };
+        let max_specular_depth = limits.max_depth - 1 - path.depth;
+        let photons = map.for_depth(path.non_specular_depth);
+        sink.record(|| PathEvent::PhotonGather { radius: photons.radius() });
+        photons.gather(surface, bsdf, path.split_factor, max_specular_depth, |layer, value| {
+            sink.add(layer, path.throughput * value);
+        });
     }
 
     /// Continues with several paths from a vertex. Where all lights are sampled, one light sample serves all paths.
@@ -327,12 +346,13 @@ impl<'a> PathTracer<'a> {
         limits: PathLimits,
         sink: &mut impl RadianceSink,
     ) -> bool {
-        let ShadingPoint { surface, bsdf, distance, outside, .. } = *point;
+        let ShadingPoint { distance, outside, .. } = *point;
         let depth = path.depth;
+        let is_last = path.non_specular_depth >= limits.max_non_specular_depth;
 
         // Sample the lights
         let [light_set, bsdf_set] = sampler.pair(Dimensions::Light { slot: 0, depth }, Dimensions::Bsdf { depth });
-        let paths_per_light_sample = match lights {
+        let mut paths_per_light_sample = match lights {
             LightSampling::Sample => {
                 self.sample_lights(path, point, sampler, &light_set, 1.0, sink);
                 1.0
@@ -341,13 +361,27 @@ impl<'a> PathTracer<'a> {
             LightSampling::Skip => 1.0,
         };
 
-        // Sample the BSDF
+        // Walk under the surface, and continue where the walk comes out
         let [lobe, roulette] = sampler::last_pair(&bsdf_set);
-        let Some(sample) = bsdf.sample(point.lobe_choice.unwrap_or(lobe), sampler::first_pair(&bsdf_set)) else {
+        let lobe = point.lobe_choice.unwrap_or(lobe);
+        let exit;
+        let (surface, bsdf) = if point.bsdf.samples_subsurface(lobe) && !is_last {
+            let Some(end) = self.walk_under_surface(path, point, sampler, &light_set, limits, sink) else {
+                sink.record(|| PathEvent::End(PathEnd::Absorbed));
+                return false;
+            };
+            paths_per_light_sample = 1.0;
+            exit = end;
+            (&exit.0, &exit.1)
+        } else {
+            (point.surface, point.bsdf)
+        };
+
+        // Sample the BSDF
+        let Some(sample) = bsdf.sample(lobe, sampler::first_pair(&bsdf_set)) else {
             sink.record(|| PathEvent::End(PathEnd::Absorbed));
             return false;
         };
-        let is_last = path.non_specular_depth >= limits.max_non_specular_depth;
         if is_last && !sample.specular {
             sink.record(|| PathEvent::End(PathEnd::Depth));
             return false;
@@ -419,7 +453,7 @@ impl<'a> PathTracer<'a> {
     }
 
     /// Samples all lights, or one by its importance, at a vertex from which so many paths continue.
-    fn sample_lights(
+    pub fn sample_lights(
         &mut self,
         path: &PathState,
         point: &ShadingPoint<'_>,

@@ -27,6 +27,8 @@ pub struct RenderPlan {
     pub has_area_emitters: bool,
     /// Surfaces refract.
     pub refraction: bool,
+    /// Light scatters under surfaces.
+    pub subsurface: bool,
     /// The lens has an aperture.
     pub lens: bool,
     /// All lights are sampled at the first hit, rather than one by its importance.
@@ -48,6 +50,8 @@ pub enum Shortcut {
     NoEmitterHits,
     /// No refraction.
     NoRefraction,
+    /// No walks under surfaces.
+    NoSubsurface,
     /// No lens samples.
     Pinhole,
     /// All lights are sampled at the first hit.
@@ -62,9 +66,10 @@ pub enum Shortcut {
 
 impl Shortcut {
     /// All shortcuts.
-    pub const ALL: [Shortcut; 7] = [
+    pub const ALL: [Shortcut; 8] = [
         Shortcut::NoEmitterHits,
         Shortcut::NoRefraction,
+        Shortcut::NoSubsurface,
         Shortcut::Pinhole,
         Shortcut::AllLights,
         Shortcut::LimitedDepth,
@@ -77,6 +82,7 @@ impl Shortcut {
         match self {
             Shortcut::NoEmitterHits => "no emitter hits",
             Shortcut::NoRefraction => "no refraction",
+            Shortcut::NoSubsurface => "no walks under surfaces",
             Shortcut::Pinhole => "no lens samples",
             Shortcut::AllLights => "every light at the first hit",
             Shortcut::LimitedDepth => "depth from the largest reflectance",
@@ -92,6 +98,7 @@ impl RenderPlan {
         match shortcut {
             Shortcut::NoEmitterHits => self.has_area_emitters = true,
             Shortcut::NoRefraction => self.refraction = true,
+            Shortcut::NoSubsurface => self.subsurface = true,
             Shortcut::Pinhole => self.lens = true,
             Shortcut::AllLights => self.sample_all_lights = false,
             Shortcut::LimitedDepth => self.max_depth = MAX_DEPTH,
@@ -120,6 +127,12 @@ impl RenderPlan {
             "glass: paths refract and continue through it".to_owned()
         } else {
             "no glass: no refraction".to_owned()
+        });
+        let subsurface = materials.iter().any(|material| material.extinction_per_m().is_some());
+        reasons.push(if subsurface {
+            "skin or wax: paths walk under the surface".to_owned()
+        } else {
+            "nothing soft under its surface: no walks".to_owned()
         });
         let has_aperture = lens.has_aperture();
         reasons.push(if has_aperture {
@@ -158,6 +171,7 @@ impl RenderPlan {
         RenderPlan {
             has_area_emitters,
             refraction,
+            subsurface,
             lens: has_aperture,
             sample_all_lights,
             photons,

@@ -88,10 +88,13 @@ impl RenderScene {
         let material = &self.materials[surface.material as usize];
         let texture = self.texture_value(surface);
         let bsdf = Bsdf::new(material, texture, surface.normal, surface.geometric_normal, wo);
+        let outside = wo.dot(surface.geometric_normal) >= 0.0;
+        if self.plan.subsurface && outside && material.extinction_per_m().is_some() {
+            return bsdf.with_subsurface();
+        }
         if !material.transmits() {
             return bsdf;
         }
-        let outside = wo.dot(surface.geometric_normal) >= 0.0;
         let interface = || media.interface(&self.materials, surface.material, outside);
         bsdf.with_boundary(
             if surface.is_thin { Boundary::ThinPane } else { Boundary::Interface(interface()) },

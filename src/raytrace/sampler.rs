@@ -30,6 +30,33 @@ pub enum Dimensions {
         /// Depth of the vertex, from 0.
         depth: u32,
     },
+    /// Start of a walk under the surface: direction, distance, technique; and the stream of numbers for the rest of it.
+    Subsurface {
+        /// Depth of the vertex, from 0.
+        depth: u32,
+    },
+}
+
+/// Independent random numbers, for computations of unknown length.
+#[derive(Clone, Debug)]
+pub struct NumberStream(u64);
+
+impl NumberStream {
+    /// Returns the next number in [0, 1) (PCG-XSH-RR: O'Neill 2014, "PCG: A Family of Simple Fast Space-Efficient
+    /// Statistically Good Algorithms for Random Number Generation").
+    #[inline(always)]
+    pub fn next(&mut self) -> f32 {
+        let state = self.0;
+        self.0 = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let bits = ((((state >> 18) ^ state) >> 27) as u32).rotate_right((state >> 59) as u32);
+        (bits >> 8) as f32 * (1.0 / (1 << 24) as f32)
+    }
+
+    /// Returns the next two numbers.
+    #[inline(always)]
+    pub fn unit_square(&mut self) -> Vec2 {
+        Vec2::new(self.next(), self.next())
+    }
 }
 
 /// The random numbers of one sample of one pixel.
@@ -95,6 +122,14 @@ impl Sampler {
         self.pair(dimensions, dimensions)[0]
     }
 
+    /// The numbers of a set of dimensions, and a stream of others.
+    pub fn set_and_stream(&self, dimensions: Dimensions) -> (Set, NumberStream) {
+        let seed = hash(self.pixel_seed ^ hash(!dimensions.key()));
+        let mut stream = NumberStream(u64::from(seed) << 32 | u64::from(hash(seed ^ self.index)));
+        stream.next();
+        (self.set(dimensions), stream)
+    }
+
     /// The numbers of two sets of dimensions, at the cost of one.
     #[inline]
     pub fn pair(&self, first: Dimensions, second: Dimensions) -> [Set; 2] {
@@ -110,6 +145,7 @@ impl Dimensions {
             Dimensions::Camera => 0,
             Dimensions::Bsdf { depth } => 1 + 2 * depth,
             Dimensions::Light { slot, depth } => (2 + 2 * depth) | (slot << 16),
+            Dimensions::Subsurface { depth } => (1 + 2 * depth) | (1 << 16),
         }
     }
 }

@@ -175,8 +175,17 @@ impl SceneChange {
     }
 
     fn compare_materials(&mut self, old: &Material, new: &Material) {
-        let Material { base_color, textures, metallic, roughness, ior, transmission, absorption_per_m, emission_cd_m2 } =
-            old;
+        let Material {
+            base_color,
+            textures,
+            metallic,
+            roughness,
+            ior,
+            transmission,
+            absorption_per_m,
+            subsurface,
+            emission_cd_m2,
+        } = old;
         self.materials |= *base_color != new.base_color
             || *textures != new.textures
             || *metallic != new.metallic
@@ -184,6 +193,7 @@ impl SceneChange {
             || *ior != new.ior
             || *transmission != new.transmission
             || *absorption_per_m != new.absorption_per_m
+            || *subsurface != new.subsurface
             || *emission_cd_m2 != new.emission_cd_m2;
     }
 

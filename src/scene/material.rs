@@ -20,8 +20,24 @@ pub struct Material {
     pub transmission: f32,
     /// Absorption inside a transmitting object, per metre (Beer-Lambert).
     pub absorption_per_m: [f32; 3],
+    /// Scattering under the surface of an opaque body; none for a hard surface.
+    pub subsurface: Option<Subsurface>,
     /// Luminance that the surface gives off as it glows, cd/m2, times its RGB.
     pub emission_cd_m2: [f32; 3],
+}
+
+/// Scattering of light under the surface of skin, wax or marble. The base colour stays the albedo of a thick body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Subsurface {
+    /// Mean distance between two scattering events, millimetres: red, green, blue. Scattering is isotropic.
+    pub mean_free_path_mm: [f32; 3],
+}
+
+impl Subsurface {
+    /// Light skin. The reduced scattering coefficients of skin are 0.74, 0.88 and 1.01 per mm (Jensen et al. 2001, "A
+    /// Practical Model for Subsurface Light Transport", figure 5, "skin1"); the mean free path is the single-scattering
+    /// albedo that gives the preset's colour over them.
+    pub const SKIN: Self = Subsurface { mean_free_path_mm: [1.29, 0.99, 0.79] };
 }
 
 impl Default for Material {
@@ -34,6 +50,7 @@ impl Default for Material {
             ior: 1.5,
             transmission: 0.0,
             absorption_per_m: [0.0; 3],
+            subsurface: None,
             emission_cd_m2: [0.0; 3],
         }
     }

@@ -35,7 +35,7 @@ pub use gel::{Gel, GelFamily, NamedGel};
 pub use id::{LightId, ObjectId};
 pub use inventory::{AssetField, MaterialSlot};
 pub use light::{ColorSource, Light, LightColor, Output, Power, Role, Solo};
-pub use material::{Material, MaterialPreset};
+pub use material::{Material, MaterialPreset, Subsurface};
 pub use mesh::{Mesh, MeshPart};
 pub use meter::{Facing, Meter, Receptor};
 pub use modifier::{BarnDoors, Cone, Modifier};

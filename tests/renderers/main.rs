@@ -21,5 +21,6 @@ mod stability;
 #[path = "../studio/mod.rs"]
 mod studio;
 mod studio_presets;
+mod subsurface;
 mod truth;
 mod whitted;

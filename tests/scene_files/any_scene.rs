@@ -35,19 +35,25 @@ fn material() -> impl Strategy<Value = Material> {
         number(0.0, 1.0),
         number(1.0, 4.0),
         color(1e6),
+        proptest::option::of(vector(0.01, 1000.0)),
         color(1e9),
     )
-        .prop_map(|(base_color, texture, metallic, roughness, ior, absorption_per_m, emission_cd_m2)| Material {
-            base_color,
-            textures: MaterialTextures { base_color: texture },
-            metallic,
-            roughness,
-            ior,
-            transmission: if metallic > 0.0 { 0.0 } else { 0.7 },
-            absorption_per_m,
-            emission_cd_m2,
-        });
-    prop_oneof![(0..MaterialPreset::ALL.len()).prop_map(|i| MaterialPreset::ALL[i].material()), custom]
+        .prop_map(
+            |(base_color, texture, metallic, roughness, ior, absorption_per_m, free_path, emission_cd_m2)| Material {
+                base_color,
+                textures: MaterialTextures { base_color: texture },
+                metallic,
+                roughness,
+                ior,
+                transmission: if metallic > 0.0 { 0.0 } else { 0.7 },
+                absorption_per_m,
+                subsurface: free_path
+                    .map(|mean_free_path_mm| Subsurface { mean_free_path_mm: mean_free_path_mm.into() }),
+                emission_cd_m2,
+            },
+        );
+    // Boxed: a scene of several materials would overflow a test's stack.
+    prop_oneof![(0..MaterialPreset::ALL.len()).prop_map(|i| MaterialPreset::ALL[i].material()), custom].boxed()
 }
 
 fn shape() -> impl Strategy<Value = Shape> {

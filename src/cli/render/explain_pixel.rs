@@ -118,6 +118,15 @@ impl Names<'_> {
                     triple(*throughput)
                 )
             }
+            PathEvent::Subsurface { position, rays, at_entry, weight, throughput } => {
+                let end = if *at_entry { ", back at its entry" } else { "" };
+                format!(
+                    "  walk under the surface: {rays} rays, out at {}{end}, weight {}, throughput {}",
+                    triple(*position),
+                    triple(*weight),
+                    triple(*throughput)
+                )
+            }
             PathEvent::PathSplit { paths } => format!("  split into {paths} paths"),
             PathEvent::DielectricSplit { reflectance } => {
                 format!("  split into reflection ({reflectance}) and transmission")

@@ -1,7 +1,7 @@
 //! Materials in format 1: `Preset(Chrome)`, or `Custom(...)` with the values that differ from the default.
 
 use super::defaults::{Triple, default_ior, default_roughness, is_default, is_default_ior};
-use crate::scene::{Material, MaterialPreset, MaterialTextures, TextureRef};
+use crate::scene::{Material, MaterialPreset, MaterialTextures, Subsurface, TextureRef};
 use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -22,9 +22,17 @@ pub(super) enum MaterialV1 {
         transmission: f32,
         #[serde(default, skip_serializing_if = "is_default")]
         absorption_per_m: Triple,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        subsurface: Option<SubsurfaceV1>,
         #[serde(default, skip_serializing_if = "is_default")]
         emission_cd_m2: Triple,
     },
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "Subsurface", deny_unknown_fields)]
+pub(super) struct SubsurfaceV1 {
+    mean_free_path_mm: Triple,
 }
 
 /// Declares the presets' names in the file and both conversions.
@@ -82,6 +90,7 @@ impl From<MaterialV1> for Material {
                 ior,
                 transmission,
                 absorption_per_m,
+                subsurface,
                 emission_cd_m2,
             } => Material {
                 base_color,
@@ -91,6 +100,7 @@ impl From<MaterialV1> for Material {
                 ior,
                 transmission,
                 absorption_per_m,
+                subsurface: subsurface.map(|SubsurfaceV1 { mean_free_path_mm }| Subsurface { mean_free_path_mm }),
                 emission_cd_m2,
             },
         }
@@ -111,6 +121,7 @@ impl From<&Material> for MaterialV1 {
             ior,
             transmission,
             absorption_per_m,
+            subsurface,
             emission_cd_m2,
         } = material.clone();
         MaterialV1::Custom {
@@ -121,6 +132,7 @@ impl From<&Material> for MaterialV1 {
             ior,
             transmission,
             absorption_per_m,
+            subsurface: subsurface.map(|Subsurface { mean_free_path_mm }| SubsurfaceV1 { mean_free_path_mm }),
             emission_cd_m2,
         }
     }

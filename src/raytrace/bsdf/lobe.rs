@@ -9,6 +9,8 @@ pub enum Lobe {
     Microfacet,
     /// The diffuse base (`diffuse.rs`).
     Diffuse,
+    /// Scattering under the surface, in place of the diffuse base (`subsurface.rs`). The path continues elsewhere.
+    Subsurface,
 }
 
 impl Lobe {
@@ -23,6 +25,8 @@ pub struct LobeProbabilities {
     pub dielectric: f32,
     /// Of the microfacet lobe, given that the dielectric one was not sampled.
     pub microfacet: f32,
+    /// The lobe that is sampled otherwise: diffuse or subsurface.
+    pub base: Lobe,
 }
 
 impl LobeProbabilities {
@@ -32,7 +36,8 @@ impl LobeProbabilities {
         match lobe {
             Lobe::Dielectric => 0.0,
             Lobe::Microfacet => self.microfacet,
-            Lobe::Diffuse => 1.0 - self.microfacet,
+            Lobe::Diffuse | Lobe::Subsurface if lobe != self.base => 0.0,
+            Lobe::Diffuse | Lobe::Subsurface => 1.0 - self.microfacet,
         }
     }
 
@@ -43,6 +48,6 @@ impl LobeProbabilities {
             return (Lobe::Dielectric, u / self.dielectric);
         }
         let u = if self.dielectric > 0.0 { (u - self.dielectric) / (1.0 - self.dielectric) } else { u };
-        (if u < self.microfacet { Lobe::Microfacet } else { Lobe::Diffuse }, u)
+        (if u < self.microfacet { Lobe::Microfacet } else { self.base }, u)
     }
 }

@@ -29,6 +29,8 @@ pub struct TracedMaterial {
     pub(super) transmission: f32,
     /// Absorption coefficient inside of the body, 1/m.
     absorption_per_m: Vec3,
+    /// Extinction coefficient under the surface, 1/m; none where light does not scatter there.
+    extinction_per_m: Option<Vec3>,
     /// Emitted luminance times colour, cd/m2.
     pub emission: Vec3,
     /// Directional albedo of the dielectric coat.
@@ -56,6 +58,7 @@ impl TracedMaterial {
             ior: material.ior,
             transmission,
             absorption_per_m: material.absorption_per_m.into(),
+            extinction_per_m: extinction_per_m(material),
             emission: material.emission_cd_m2.into(),
             has_microfacets: metallic > 0.0 || coat.mean > MIN_COAT_ALBEDO,
             coat_albedo: coat,
@@ -97,6 +100,11 @@ impl TracedMaterial {
     /// Returns the transmittance over a distance inside of the body, metres (Beer-Lambert law).
     pub fn transmittance(&self, distance: f32) -> Vec3 {
         (-self.absorption_per_m * distance).exp()
+    }
+
+    /// Returns the extinction coefficient under the surface, 1/m, if light scatters there: the inverse mean free path.
+    pub fn extinction_per_m(&self) -> Option<Vec3> {
+        self.extinction_per_m
     }
 
     /// Returns true if the microfacet lobe is a delta function.
@@ -149,6 +157,13 @@ impl TracedMaterial {
     pub(super) fn diffuse_factor(&self, base_color: Vec3, coat_albedo: f32) -> Vec3 {
         base_color * ((1.0 - self.metallic) * (1.0 - coat_albedo) / (PI * (1.0 - self.coat_albedo.mean).max(1e-4)))
     }
+}
+
+/// Returns the extinction coefficient under the surface, 1/m. Clear materials and metals scatter no light there.
+fn extinction_per_m(material: &Material) -> Option<Vec3> {
+    let is_opaque = material.transmission == 0.0 && material.metallic < 1.0;
+    let subsurface = material.subsurface.filter(|_| is_opaque)?;
+    Some(1000.0 / Vec3::from(subsurface.mean_free_path_mm))
 }
 
 /// Returns the colour of light that is transmitted at a surface of this base colour: the base colour at a thin pane, its

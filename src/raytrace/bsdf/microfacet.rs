@@ -13,6 +13,9 @@ pub struct MicrofacetLobe {
 }
 
 impl MicrofacetLobe {
+    /// A lobe that reflects nothing: all of it is masked.
+    pub const NONE: Self = MicrofacetLobe { lambda_o: f32::INFINITY };
+
     /// Returns the lobe of a material for an outgoing direction, local frame.
     #[inline(always)]
     pub fn new(material: &TracedMaterial, wo: Vec3) -> Self {

@@ -7,6 +7,8 @@
 //! by 1 + F0 (1 / E - 1) for light that is reflected between facets (Turquin 2019, "Practical Multiple Scattering
 //! Compensation for Microfacet Models").
 //!
+//! Materials that scatter light under the surface have a walk (`super::subsurface`) in place of the diffuse lobe.
+//!
 //! A new lobe needs
 //! - a file with a `sample` (local direction, or a whole [`BsdfSample`] for a delta lobe) and an `eval` (BSDF times
 //!   cosine, pdf times probability; in the local frame, whose +Z is the shading normal);
@@ -28,6 +30,7 @@ mod phong;
 mod polarisation;
 mod sample;
 mod shading_geometry;
+mod subsurface;
 
 pub use dielectric::{Boundary, DielectricInterface, pane_transmittance};
 pub use material::TracedMaterial;
@@ -71,6 +74,7 @@ impl<'a> Bsdf<'a> {
             probabilities: LobeProbabilities {
                 dielectric: material.transmission,
                 microfacet: material.microfacet_probability(base_color, coat_albedo),
+                base: Lobe::Diffuse,
             },
             dielectric: DielectricLobe { ior: material.ior, base_color, boundary, polarisation: Polarisation::NONE },
             microfacet: MicrofacetLobe::new(material, geometry.wo),
@@ -121,7 +125,7 @@ impl<'a> Bsdf<'a> {
     fn eval_lobe(&self, lobe: Lobe, wi: Vec3) -> (Vec3, f32) {
         let probability = self.probabilities.opaque(lobe);
         match lobe {
-            Lobe::Dielectric => (Vec3::ZERO, 0.0),
+            Lobe::Dielectric | Lobe::Subsurface => (Vec3::ZERO, 0.0),
             Lobe::Microfacet => self.microfacet.eval(self.material, self.base_color, self.geometry.wo, wi, probability),
             Lobe::Diffuse => self.diffuse.eval(wi, self.material.coat_albedo(wi.z), probability),
         }
@@ -137,6 +141,7 @@ impl<'a> Bsdf<'a> {
             Lobe::Microfacet if self.material.is_smooth() => return self.sample_smooth_microfacet(),
             Lobe::Microfacet => MicrofacetLobe::sample(self.material, self.geometry.wo, u),
             Lobe::Diffuse => DiffuseLobe::sample(u),
+            Lobe::Subsurface => return None,
         };
         // Discard directions below the surface
         let direction = self.geometry.to_world(wi);

@@ -3,7 +3,7 @@
 use super::*;
 use crate::scene::{
     Aim, BarnDoors, ColorSource, Cone, Emitter, Facing, Focus, Gel, ObjectId, Orientation, Output, Receptor, Role,
-    Sensor, Shape, TextureRef,
+    Sensor, Shape, Subsurface, TextureRef,
 };
 use glam::Vec3;
 
@@ -207,6 +207,9 @@ fn shapes_and_surfaces_need_preparation() {
             ("ior", |s| s.objects[0].material.ior = 1.1),
             ("transmission", |s| s.objects[0].material.transmission = 1.0),
             ("absorption_per_m", |s| s.objects[0].material.absorption_per_m[0] = 1.0),
+            ("subsurface", |s| {
+                s.objects[0].material.subsurface = Some(Subsurface { mean_free_path_mm: [1.0; 3] });
+            }),
             ("emission_cd_m2", |s| s.objects[0].material.emission_cd_m2[0] = 1.0),
         ],
     );

@@ -21,6 +21,14 @@ pub(super) fn check_material(field: &str, material: &Material, check: &mut Check
     check.number(&name("ior"), material.ior, Allowed::between(1.0, 4.0, ""));
     check.number(&name("transmission"), material.transmission, FRACTION);
     check.color(&name("absorption_per_m"), material.absorption_per_m, Allowed::between(0.0, 1e6, "per m"));
+    if let Some(subsurface) = material.subsurface {
+        let field = name("subsurface.mean_free_path_mm");
+        check.color(&field, subsurface.mean_free_path_mm, Allowed::between(0.01, 1000.0, "mm"));
+        if material.transmission > 0.0 {
+            check
+                .warning(&field, "light passes through something clear: nothing scatters under its surface".to_owned());
+        }
+    }
     check.color(&name("emission_cd_m2"), material.emission_cd_m2, Allowed::between(0.0, 1e9, "cd/m2"));
     if material.metallic > 0.0 && material.transmission > 0.0 {
         check.warning(&name("transmission"), "a metal is not transparent; its share of metal stays opaque".to_owned());

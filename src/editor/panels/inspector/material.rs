@@ -1,7 +1,7 @@
 //! The rows of a material.
 
 use crate::editor::ui::widgets::{self, NumberField, row};
-use crate::scene::{Material, MaterialPreset, TextureRef, TextureSlot};
+use crate::scene::{Material, MaterialPreset, Subsurface, TextureRef, TextureSlot};
 use eframe::egui::{ComboBox, Slider, SliderClamping, Ui};
 
 /// Returns the name of the preset that equals a material, or "Custom".
@@ -63,6 +63,9 @@ pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> Option
                 );
             });
         }
+        if material.transmission == 0.0 {
+            subsurface_rows(ui, &mut material.subsurface);
+        }
         row(ui, "Glow", "Luminance it gives off by itself, cd/m\u{b2}: red, green, blue", |ui| {
             per_channel(ui, "Glow", NumberField::new(1.0, 0.0, 1e7, 0, ""), &mut material.emission_cd_m2);
         });
@@ -92,6 +95,25 @@ fn texture_row(ui: &mut Ui, slot: TextureSlot, texture: &mut Option<TextureRef>)
         None => choose = ui.button("Choose\u{2026}").on_hover_text("PNG or JPEG").clicked(),
     });
     choose
+}
+
+/// Draws the rows of scattering under the surface.
+fn subsurface_rows(ui: &mut Ui, subsurface: &mut Option<Subsurface>) {
+    let tip = "Light enters skin, wax or marble and comes out some way off: shadow edges turn soft and warm, ears glow \
+               against the light. The colour stays that of a thick piece";
+    row(ui, "Inside", tip, |ui| {
+        let mut is_soft = subsurface.is_some();
+        if ui.checkbox(&mut is_soft, "Soft under the surface").changed() {
+            *subsurface = is_soft.then_some(Subsurface::SKIN);
+        }
+    });
+    if let Some(Subsurface { mean_free_path_mm }) = subsurface {
+        let tip = "How far light goes inside before it turns, mm: red, green, blue. Skin is about 1.3, 1.0, 0.8; more is \
+                   waxier";
+        row(ui, "Light path", tip, |ui| {
+            per_channel(ui, "Light path", NumberField::new(0.02, 0.01, 1000.0, 2, ""), mean_free_path_mm);
+        });
+    }
 }
 
 fn per_channel(ui: &mut Ui, name: &str, number: NumberField, value: &mut [f32; 3]) {
