@@ -58,3 +58,8 @@ pub mod preview;
 #[path = "../tests/studio/statistics.rs"]
 #[allow(dead_code, reason = "integration tests use the rest")]
 mod statistics;
+
+/// Strands for tests of renderers.
+#[cfg(test)]
+#[path = "../tests/studio/strands.rs"]
+mod test_strands;

@@ -2,12 +2,14 @@
 //!
 //! Large meshes are instances: the top-level BVH (TLAS) over their boxes refers to a BLAS a mesh. An instance costs a
 //! ray a transform and a new traversal, which is expensive for the dozen triangles of a wall. Small instances are
-//! therefore merged into one BLAS in world space. When one of them moves, that BLAS is built anew, which is quick.
+//! therefore merged into one BLAS in world space. When one of them moves, that BLAS is built anew, which is quick. The
+//! strands of a mesh have a BLAS and a box in the TLAS of their own.
 
 use super::blas::Blas;
 use super::bvh::{self, TraversalStack, WideBvh};
 use super::geometry::{Instance, MeshGeometry, SurfaceInteraction};
 use super::simd::{self, KernelTask, Kernels, SlabRay, TriangleHit};
+use super::strand_geometry::StrandHit;
 use crate::math::Ray;
 use glam::Affine3A;
 use std::sync::Arc;
@@ -22,10 +24,10 @@ const MAX_MERGED_TOTAL: usize = 1 << 18;
 pub struct Aggregate {
     instances: Vec<Instance>,
     merged: Arc<MergedBlas>,
-    /// BVH over the bounding boxes of the other instances.
+    /// BVH over the bounding boxes of the other instances, and of the strands of all.
     tlas: WideBvh,
-    /// Instance of each box in `tlas`.
-    tlas_instances: Vec<u32>,
+    /// The content of each box in `tlas`.
+    tlas_entries: Vec<TlasEntry>,
 }
 
 /// The BLAS over the triangles of all small instances, in world space.
@@ -82,8 +84,28 @@ impl MergedBlas {
 pub struct Hit {
     /// Index of the instance.
     pub instance: u32,
-    /// The intersection with a triangle of its mesh.
-    pub triangle: TriangleHit,
+    /// Distance in multiples of the ray's direction vector.
+    pub t: f32,
+    /// The intersection with its mesh.
+    pub primitive: Primitive,
+}
+
+/// The intersection of a ray with a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Primitive {
+    /// With a triangle.
+    Triangle(TriangleHit),
+    /// With a strand.
+    Strand(StrandHit),
+}
+
+/// What a leaf of the TLAS refers to, by the index of the instance.
+#[derive(Clone, Copy, Debug)]
+enum TlasEntry {
+    /// All triangles of an instance.
+    Triangles(u32),
+    /// All strands of an instance.
+    Strands(u32),
 }
 
 impl Aggregate {
@@ -96,23 +118,27 @@ impl Aggregate {
     /// Builds the acceleration structures. Reuses the `cached` merged BLAS if it is over the same instances.
     pub fn with_merged(instances: Vec<Instance>, cached: Option<Arc<MergedBlas>>) -> Self {
         // Divide the instances into small ones, which are merged, and large ones
-        let (mut sources, mut tlas_instances, mut boxes, mut merged_total) = (Vec::new(), Vec::new(), Vec::new(), 0);
+        let (mut sources, mut tlas_entries, mut boxes, mut merged_total) = (Vec::new(), Vec::new(), Vec::new(), 0);
         for (index, instance) in instances.iter().enumerate() {
             let count = instance.geometry.mesh().triangles.len();
             if count <= MAX_MERGED_MESH && merged_total + count <= MAX_MERGED_TOTAL {
                 merged_total += count;
                 sources.push(MergedInstance::new(index as u32, instance));
-            } else if let Some(bounds) = instance.world_bounds() {
-                tlas_instances.push(index as u32);
-                boxes.push(bounds);
+            } else if let Some(bounds) = instance.geometry.blas.bounds() {
+                tlas_entries.push(TlasEntry::Triangles(index as u32));
+                boxes.push(instance.world_bounds(bounds));
+            }
+            if let Some(bounds) = instance.geometry.strands.blas.bounds() {
+                tlas_entries.push(TlasEntry::Strands(index as u32));
+                boxes.push(instance.world_bounds(bounds));
             }
         }
         // Build the merged BLAS, unless the cached one is still valid
         let cached = cached.filter(|merged| merged.is_over(&sources));
         let merged = cached.unwrap_or_else(|| Arc::new(MergedBlas::new(&instances, sources)));
-        // Build the TLAS over the large instances
+        // Build the TLAS over the large instances and the strands
         let tlas = bvh::build(&boxes, 1);
-        Aggregate { instances, merged, tlas, tlas_instances }
+        Aggregate { instances, merged, tlas, tlas_entries }
     }
 
     /// Returns the merged BLAS of the small instances.
@@ -123,6 +149,11 @@ impl Aggregate {
     /// Returns the instances, indexed by [`Hit::instance`].
     pub fn instances(&self) -> &[Instance] {
         &self.instances
+    }
+
+    /// Returns the number of strands, each instance counted.
+    pub fn strand_count(&self) -> usize {
+        self.instances.iter().map(|instance| instance.geometry.mesh().strands.len()).sum()
     }
 
     /// Returns the closest hit of a ray.
@@ -137,7 +168,34 @@ impl Aggregate {
 
     /// Returns the surface interaction at a hit.
     pub fn surface(&self, hit: &Hit) -> SurfaceInteraction {
-        self.instances[hit.instance as usize].surface(&hit.triangle)
+        let instance = &self.instances[hit.instance as usize];
+        match &hit.primitive {
+            Primitive::Triangle(triangle) => instance.surface(triangle),
+            Primitive::Strand(strand) => instance.geometry.strands.surface(instance, strand),
+        }
+    }
+}
+
+impl Aggregate {
+    /// Intersects the triangles of an instance in object space.
+    #[inline(always)]
+    fn intersect_triangles<K: Kernels>(&self, instance: u32, ray: &Ray, stack: &mut TraversalStack) -> Option<Hit> {
+        let placed = &self.instances[instance as usize];
+        let local = placed.to_object(ray);
+        let slab_ray = SlabRay::new(local.origin, local.direction);
+        let hit = placed.geometry.blas.intersect::<K>(&local, &slab_ray, stack)?;
+        Some(Hit { instance, t: hit.t, primitive: Primitive::Triangle(hit) })
+    }
+
+    /// Intersects the strands of an instance in object space.
+    #[inline(always)]
+    fn intersect_strands<K: Kernels>(&self, instance: u32, ray: &Ray, stack: &mut TraversalStack) -> Option<Hit> {
+        let placed = &self.instances[instance as usize];
+        let local = placed.to_object(ray);
+        let slab_ray = SlabRay::new(local.origin, local.direction);
+        let segment = placed.geometry.strands.blas.intersect::<K>(&local, &slab_ray, stack)?;
+        let hit = StrandHit { segment, ray_direction: ray.direction };
+        Some(Hit { instance, t: segment.t, primitive: Primitive::Strand(hit) })
     }
 }
 
@@ -158,9 +216,9 @@ impl KernelTask for Intersect<'_> {
         let slab_ray = SlabRay::new(ray.origin, ray.direction);
         let mut closest = aggregate.merged.blas.intersect::<K>(ray, &slab_ray, stack).map(|hit| {
             let (instance, triangle) = aggregate.merged.triangles[hit.triangle as usize];
-            Hit { instance, triangle: TriangleHit { triangle, ..hit } }
+            Hit { instance, t: hit.t, primitive: Primitive::Triangle(TriangleHit { triangle, ..hit }) }
         });
-        let t_max = closest.map_or(ray.t_max, |hit| hit.triangle.t);
+        let t_max = closest.map_or(ray.t_max, |hit| hit.t);
         // Traverse the TLAS and intersect the BLAS of each instance in object space
         aggregate.tlas.traverse_front_to_back::<K>(
             &slab_ray,
@@ -168,14 +226,18 @@ impl KernelTask for Intersect<'_> {
             stack,
             #[inline(always)]
             |leaf, mut t_max, stack| {
-                for &index in aggregate.tlas.leaf(leaf) {
-                    let index = aggregate.tlas_instances[index as usize];
-                    let instance = &aggregate.instances[index as usize];
-                    let local = instance.to_object(&Ray { t_max, ..*ray });
-                    let slab_ray = SlabRay::new(local.origin, local.direction);
-                    if let Some(triangle) = instance.geometry.blas.intersect::<K>(&local, &slab_ray, stack) {
-                        t_max = triangle.t;
-                        closest = Some(Hit { instance: index, triangle });
+                for &entry in aggregate.tlas.leaf(leaf) {
+                    let hit = match aggregate.tlas_entries[entry as usize] {
+                        TlasEntry::Triangles(instance) => {
+                            aggregate.intersect_triangles::<K>(instance, &Ray { t_max, ..*ray }, stack)
+                        }
+                        TlasEntry::Strands(instance) => {
+                            aggregate.intersect_strands::<K>(instance, &Ray { t_max, ..*ray }, stack)
+                        }
+                    };
+                    if let Some(hit) = hit {
+                        t_max = hit.t;
+                        closest = Some(hit);
                     }
                 }
                 t_max
@@ -208,11 +270,16 @@ impl KernelTask for Occluded<'_> {
             stack,
             #[inline(always)]
             |leaf, stack| {
-                aggregate.tlas.leaf(leaf).iter().any(|&index| {
-                    let instance = &aggregate.instances[aggregate.tlas_instances[index as usize] as usize];
+                aggregate.tlas.leaf(leaf).iter().any(|&entry| {
+                    let entry = aggregate.tlas_entries[entry as usize];
+                    let (TlasEntry::Triangles(index) | TlasEntry::Strands(index)) = entry;
+                    let instance = &aggregate.instances[index as usize];
                     let local = instance.to_object(ray);
                     let slab_ray = SlabRay::new(local.origin, local.direction);
-                    instance.geometry.blas.occluded::<K>(&local, &slab_ray, stack)
+                    match entry {
+                        TlasEntry::Triangles(_) => instance.geometry.blas.occluded::<K>(&local, &slab_ray, stack),
+                        TlasEntry::Strands(_) => instance.geometry.strands.blas.occluded::<K>(&local, &slab_ray, stack),
+                    }
                 })
             },
         )
@@ -227,6 +294,14 @@ mod tests {
     use crate::raytrace::simd::Scalar;
     use crate::scene::{Mesh, Shape, tessellate};
     use glam::{Quat, Vec2, Vec3, Vec3Swizzles};
+
+    impl Hit {
+        /// Returns the intersection with a triangle.
+        pub(in crate::raytrace) fn triangle(&self) -> TriangleHit {
+            let Primitive::Triangle(hit) = self.primitive else { panic!("not a triangle: {self:?}") };
+            hit
+        }
+    }
 
     /// Returns deterministic numbers in 0..1.
     fn numbers(seed: u32) -> impl FnMut() -> f32 {
@@ -307,11 +382,11 @@ mod tests {
             let ours = aggregate.intersect(ray, &mut stack);
             let truth = brute_force(aggregate.instances(), ray);
             // Of two triangles at one distance either may be returned; the distance has the same bits.
-            assert_eq!(ours.map(|h| h.triangle.t), truth.map(|(_, h)| h.t), "ray {i}: {ray:?}");
+            assert_eq!(ours.map(|h| h.t), truth.map(|(_, h)| h.t), "ray {i}: {ray:?}");
             assert_eq!(aggregate.occluded(ray, &mut stack), truth.is_some(), "ray {i}: {ray:?}");
             // The scalar kernels return the same bits.
             let scalar = Intersect { aggregate: &aggregate, ray, stack: &mut stack }.run::<Scalar>();
-            assert_eq!(scalar.map(|h| h.triangle), ours.map(|h| h.triangle), "ray {i}: {ray:?}");
+            assert_eq!(scalar.map(|h| h.primitive), ours.map(|h| h.primitive), "ray {i}: {ray:?}");
             let scalar = Occluded { aggregate: &aggregate, ray, stack: &mut stack }.run::<Scalar>();
             assert_eq!(scalar, truth.is_some(), "ray {i}: {ray:?}");
             hits += usize::from(truth.is_some());
@@ -326,10 +401,11 @@ mod tests {
         let instances: Vec<Instance> =
             (0..10_000).map(|i| Instance::new(sphere.clone(), transform(i), i, vec![0]).unwrap()).collect();
         let aggregate = Aggregate::new(instances);
-        assert!(aggregate.merged.triangles.len() <= MAX_MERGED_TOTAL && aggregate.tlas_instances.len() > 7_000);
+        assert!(aggregate.merged.triangles.len() <= MAX_MERGED_TOTAL && aggregate.tlas_entries.len() > 7_000);
         let mut stack = TraversalStack::default();
         for i in (0..10_000).step_by(333) {
-            let (low, high) = aggregate.instances()[i].world_bounds().unwrap();
+            let instance = &aggregate.instances()[i];
+            let (low, high) = instance.world_bounds(instance.geometry.blas.bounds().unwrap());
             let count = (0..64).filter(|&k| {
                 let offset = Vec3::new(((k % 8) as f32 + 0.5) / 8.0, ((k / 8) as f32 + 0.5) / 8.0, 0.0);
                 let origin = low + (high - low) * offset - Vec3::Z;
@@ -389,7 +465,7 @@ mod tests {
                 let away = Ray { origin: surface.spawn_origin(direction), direction, t_max: f32::INFINITY };
                 if let Some(again) = aggregate.intersect(&away, &mut stack) {
                     // The tessellated sphere is convex up to rounding: a grazing ray may hit an adjacent triangle.
-                    assert_ne!(again.triangle.triangle, hit.triangle.triangle, "left and hit the same triangle");
+                    assert_ne!(again.triangle().triangle, hit.triangle().triangle, "left and hit the same triangle");
                 }
                 // Inwards: the ray must hit the other side.
                 let inwards =

@@ -1,19 +1,22 @@
-//! Meshes prepared for tracing, their instances, and the surface interaction at a hit.
+//! Meshes prepared for tracing, their instances, and the surface interaction at a hit of a triangle.
 
 use super::blas::Blas;
 use super::bvh::TraversalStack;
 use super::simd::{Kernels, SlabRay, TriangleHit};
+use super::strand_geometry::{StrandCoordinates, StrandGeometry};
 use crate::math::{self, Ray, gamma};
 use crate::scene::Mesh;
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
 use std::sync::{Arc, OnceLock};
 
-/// A mesh with its BLAS.
+/// A mesh with its BLASes.
 #[derive(Debug)]
 pub struct MeshGeometry {
     mesh: Arc<Mesh>,
     /// Over all triangles, in object space.
     pub blas: Blas,
+    /// The strands.
+    pub strands: StrandGeometry,
     /// Part of each triangle; empty for meshes of one part.
     part_of_triangle: Vec<u16>,
     /// True if the mesh encloses a volume. Computed on first use, which is only for clear materials.
@@ -21,11 +24,12 @@ pub struct MeshGeometry {
 }
 
 impl MeshGeometry {
-    /// Builds the BLAS over all triangles.
+    /// Builds the BLASes over all triangles and strands.
     pub fn new(mesh: Arc<Mesh>) -> Self {
         let blas = Blas::new(mesh.triangles.len(), |t| mesh.corners(t));
         let part_of_triangle = part_of_triangle(&mesh);
-        MeshGeometry { mesh, blas, part_of_triangle, closed: OnceLock::new() }
+        let strands = StrandGeometry::new(&mesh.strands);
+        MeshGeometry { mesh, blas, strands, part_of_triangle, closed: OnceLock::new() }
     }
 
     /// Returns the mesh.
@@ -64,7 +68,8 @@ pub struct Instance {
     pub geometry: Arc<MeshGeometry>,
     /// Index into the scene's objects; `u32::MAX` for the room.
     pub object: u32,
-    /// Material of each part, as an index into the scene's material table.
+    /// Material of each part, as an index into the scene's material table: of the triangles' parts, then of the
+    /// strands'.
     pub materials: Vec<u32>,
     /// True for a clear mesh that encloses no volume: a thin pane.
     pub is_thin: bool,
@@ -106,9 +111,8 @@ impl Instance {
         &self.world_from_object
     }
 
-    /// Returns the world bounding box of the corners of the mesh's bounding box, rounded outwards.
-    pub fn world_bounds(&self) -> Option<(Vec3, Vec3)> {
-        let (low, high) = self.geometry.blas.bounds()?;
+    /// Returns the world bounding box of the corners of a bounding box in object space, rounded outwards.
+    pub fn world_bounds(&self, (low, high): (Vec3, Vec3)) -> (Vec3, Vec3) {
         let centre = (low + high) * 0.5;
         let half = (high - low) * 0.5;
         let matrix = self.world_from_object.matrix3;
@@ -117,7 +121,7 @@ impl Instance {
             + Vec3::from(matrix.z_axis).abs() * half.z;
         let world_centre = self.world_from_object.transform_point3(centre);
         let slack = (world_centre.abs() + extent) * gamma(8);
-        Some((world_centre - extent - slack, world_centre + extent + slack))
+        (world_centre - extent - slack, world_centre + extent + slack)
     }
 
     /// Returns the corners of a triangle in world space.
@@ -135,14 +139,14 @@ impl Instance {
         }
     }
 
-    /// Returns the closest hit of a ray with this instance alone.
+    /// Returns the closest hit of a ray with the triangles of this instance alone.
     #[inline(always)]
     pub fn intersect<K: Kernels>(&self, ray: &Ray, stack: &mut TraversalStack) -> Option<TriangleHit> {
         let local = self.to_object(ray);
         self.geometry.blas.intersect::<K>(&local, &SlabRay::new(local.origin, local.direction), stack)
     }
 
-    /// Returns the surface interaction at a hit, in world space.
+    /// Returns the surface interaction at a hit of a triangle, in world space.
     pub fn surface(&self, hit: &TriangleHit) -> SurfaceInteraction {
         // Interpolate the position
         let mesh = &*self.geometry.mesh;
@@ -187,12 +191,13 @@ impl Instance {
             uv,
             material: self.materials.get(part).copied().unwrap_or(0),
             is_thin: self.is_thin,
+            strand: None,
         }
     }
 
     /// Returns the error bound of a transformed point, including that of the transform back to object space that a ray
     /// from there undergoes.
-    fn world_error(&self, local: Vec3A, local_error: Vec3A) -> Vec3A {
+    pub(super) fn world_error(&self, local: Vec3A, local_error: Vec3A) -> Vec3A {
         let (forward, backward) = (&self.abs_world_from_object, &self.abs_object_from_world);
         let world = forward.transform_point3a(local.abs());
         let back = backward.transform_point3a(world) * gamma(4);
@@ -220,7 +225,7 @@ fn smooth_surface_offset(local: Vec3A, corners: [Vec3A; 3], normals: [Vec3A; 3],
 /// The surface at a hit, in world space.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceInteraction {
-    /// Position on the flat triangle.
+    /// Position on the flat triangle or ribbon.
     pub position: Vec3,
     /// Absolute error bound of `position` along each axis.
     pub position_error: Vec3,
@@ -235,8 +240,10 @@ pub struct SurfaceInteraction {
     pub uv: Vec2,
     /// Index into the material table.
     pub material: u32,
-    /// True for a clear mesh that encloses no volume: a thin pane.
+    /// True for a clear mesh that encloses no volume: a thin pane. True for strands.
     pub is_thin: bool,
+    /// Position on the strand, for hits of strands.
+    pub strand: Option<StrandCoordinates>,
 }
 
 impl SurfaceInteraction {

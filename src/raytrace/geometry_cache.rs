@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Number of triangles that are kept although the last scene did not use them: some 300 MB.
+/// Number of triangles and strand segments that are kept although the last scene did not use them: some 300 MB.
 const MAX_UNUSED_TRIANGLES: usize = 2_000_000;
 
 /// The BLASes, materials and merged BLAS of the last prepared scenes.
@@ -127,15 +127,15 @@ impl GeometryCache {
 }
 
 impl CacheState {
-    /// Evicts the least recently used meshes, so that at most `max_unused` triangles remain that the last scene did not
-    /// use.
+    /// Evicts the least recently used meshes, so that at most `max_unused` triangles and segments remain that the last
+    /// scene did not use.
     fn evict(&mut self, max_unused: usize) {
         let now = self.now;
         let mut unused: Vec<(u64, u64, usize)> = self
             .by_content
             .iter()
             .filter(|(_, entry)| entry.last_used < now)
-            .map(|(content, entry)| (entry.last_used, *content, entry.geometry.mesh().triangles.len()))
+            .map(|(content, entry)| (entry.last_used, *content, primitives(entry.geometry.mesh())))
             .collect();
         unused.sort_unstable_by_key(|(last_used, ..)| std::cmp::Reverse(*last_used));
         let mut triangles = 0;
@@ -157,6 +157,11 @@ fn address(mesh: &Arc<Mesh>) -> usize {
     Arc::as_ptr(mesh) as usize
 }
 
+/// Returns the number of triangles and strand segments.
+fn primitives(mesh: &Mesh) -> usize {
+    mesh.triangles.len() + mesh.strands.points().len() - mesh.strands.len()
+}
+
 fn hash(mesh: &Mesh) -> u64 {
     let mut hasher = DefaultHasher::new();
     let bits = |v: &glam::Vec3| [u64::from(v.x.to_bits()) << 32 | u64::from(v.y.to_bits()), v.z.to_bits().into()];
@@ -166,6 +171,13 @@ fn hash(mesh: &Mesh) -> u64 {
     mesh.triangles.hash(&mut hasher);
     for part in &mesh.parts {
         (&part.name, part.triangles.start, part.triangles.end).hash(&mut hasher);
+    }
+    for point in mesh.strands.points() {
+        (bits(&point.position), point.radius_m.to_bits()).hash(&mut hasher);
+    }
+    mesh.strands.starts().hash(&mut hasher);
+    for part in mesh.strands.parts() {
+        (&part.name, part.strands.start, part.strands.end).hash(&mut hasher);
     }
     hasher.finish()
 }

@@ -52,6 +52,10 @@ mod shadow_ray;
 mod simd;
 mod sink;
 mod straight_path;
+mod strand_blas;
+mod strand_geometry;
+#[cfg(test)]
+mod strand_tests;
 mod subsurface;
 mod texture;
 mod wavefront;

@@ -157,7 +157,7 @@ impl<'a> PathTracer<'a> {
         loop {
             // Intersect the ray with the studio
             let hit = self.caster.intersect(&path.ray);
-            let distance = hit.map_or(f32::INFINITY, |hit| hit.triangle.t);
+            let distance = hit.map_or(f32::INFINITY, |hit| hit.t);
 
             // Add the light of emitters in front of the surface
             if path.depth == 0 {
@@ -226,7 +226,7 @@ impl<'a> PathTracer<'a> {
                 distance,
                 outside,
             };
-            let samples_lights = material.has_non_specular_lobe() && !is_last;
+            let samples_lights = bsdf.has_non_specular_lobe() && !is_last;
             let paths = if samples_lights && path.non_specular_depth == 0 { limits.split_factor } else { 1 };
             path.split_factor = paths as f32;
 
@@ -265,7 +265,8 @@ impl<'a> PathTracer<'a> {
         limits: PathLimits,
         sink: &mut impl RadianceSink,
     ) {
-        let Some(map) = self.photon_map else { return };
+        // Strands are too thin for that, and their paths find the emitters
+        let (Some(map), None) = (self.photon_map, surface.strand) else { return };
         let max_specular_depth = limits.max_depth - 1 - path.depth;
         let photons = map.for_depth(path.non_specular_depth);
         sink.record(|| PathEvent::PhotonGather { radius: photons.radius() });
@@ -419,7 +420,7 @@ impl<'a> PathTracer<'a> {
                 samples_one_light: !self.samples_all_lights(path),
                 ..MisVertex::new(surface.position, bsdf.normal())
             };
-            path.gather = self.photon_map.map(|map| {
+            path.gather = self.photon_map.filter(|_| surface.strand.is_none()).map(|map| {
                 let cos = sample.direction.dot(surface.geometric_normal).abs();
                 let photons = map.for_depth(path.non_specular_depth);
                 GatherDensities { path_pdf: sample.pdf * path.split_factor, photon_area: photons.area() * cos }

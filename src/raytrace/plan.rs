@@ -108,8 +108,8 @@ impl RenderPlan {
         self
     }
 
-    /// Derives the plan from a scene's materials, lights and lens.
-    pub fn new(materials: &[TracedMaterial], lights: &[TracedLight], lens: &Lens) -> Self {
+    /// Derives the plan from a scene's materials, lights, lens and number of strands.
+    pub fn new(materials: &[TracedMaterial], lights: &[TracedLight], lens: &Lens, strands: usize) -> Self {
         let mut reasons = Vec::new();
 
         // Emitter hits
@@ -141,6 +141,13 @@ impl RenderPlan {
             "pinhole: no lens samples".to_owned()
         });
         reasons.extend(lens.breathing());
+
+        // Hair
+        if strands > 0 {
+            reasons.push(format!(
+                "{strands} strands of hair: light passes through them and scatters from strand to strand"
+            ));
+        }
 
         // Caustics
         let sampled = sampled_lights(lights);

@@ -85,7 +85,7 @@ pub(super) fn prepare_all(
     let (lights, light_ids, layers) = convert_lights(scene, origin, assign_layers);
     let layer_times = layer_times(&lights, &layers);
     let lens = Lens::new(scene);
-    let plan = RenderPlan::new(&tables.materials, &lights, &lens);
+    let plan = RenderPlan::new(&tables.materials, &lights, &lens, aggregate.strand_count());
     let casters = match plan.photons {
         true => CausticCasters::new(&aggregate, &tables.materials),
         false => CausticCasters::default(),
@@ -172,7 +172,7 @@ fn place_meshes(scene: &Scene, assets: &Assets, tables: &mut Tables<'_>) -> Vec<
     let mut round = RoundMeshes::default();
     for (index, object) in scene.objects.iter().enumerate().filter(|(_, o)| o.visible) {
         let Some((mesh, size)) = round.mesh_of(&object.shape, assets) else { continue };
-        let materials = mesh.parts.iter().map(|p| tables.material(object.material_of(&p.name), assets)).collect();
+        let materials = mesh.part_names().map(|part| tables.material(object.material_of(part), assets)).collect();
         let world_from_object = object.transform.world_from_object() * Affine3A::from_scale(size);
         placed.push(Placed { mesh, world_from_object, object: index as u32, materials });
     }

@@ -1,6 +1,6 @@
 //! The scene as the tracer reads it: flat tables.
 
-use super::aggregate::{Aggregate, Hit};
+use super::aggregate::{Aggregate, Hit, Primitive};
 use super::bsdf::{Boundary, Bsdf, Polarisation, TracedMaterial};
 use super::caustics::CausticCasters;
 use super::film::Layer;
@@ -86,10 +86,13 @@ impl RenderScene {
         polarisation: Polarisation,
     ) -> Bsdf<'_> {
         let material = &self.materials[surface.material as usize];
+        if let (Some(strand), Some(fibre)) = (&surface.strand, material.fibre()) {
+            return Bsdf::of_fibre(fibre, strand.tangent, strand.h, wo);
+        }
         let texture = self.texture_value(surface);
         let bsdf = Bsdf::new(material, texture, surface.normal, surface.geometric_normal, wo);
         let outside = wo.dot(surface.geometric_normal) >= 0.0;
-        if self.plan.subsurface && outside && material.extinction_per_m().is_some() {
+        if self.plan.subsurface && outside && surface.strand.is_none() && material.extinction_per_m().is_some() {
             return bsdf.with_subsurface();
         }
         if !material.transmits() {
@@ -108,6 +111,15 @@ impl RenderScene {
         texture.map_or(Vec3::ONE, |texture| self.textures[texture as usize].at(surface.uv))
     }
 
+    /// The reflectance at a surface, for the albedo AOV and ambient light.
+    pub(super) fn albedo(&self, surface: &SurfaceInteraction) -> Vec3 {
+        let material = &self.materials[surface.material as usize];
+        match material.fibre().filter(|_| surface.strand.is_some()) {
+            Some(fibre) => fibre.albedo(),
+            None => material.albedo(self.texture_value(surface)),
+        }
+    }
+
     /// The film layer of emissive surfaces.
     pub(super) fn emission_layer(&self) -> usize {
         self.layers.len() - 1
@@ -116,8 +128,15 @@ impl RenderScene {
     /// Index into the scene's objects of a hit, none for the room, and the name of the part.
     pub(super) fn object_and_part(&self, hit: &Hit) -> (Option<u32>, &str) {
         let instance = &self.aggregate.instances()[hit.instance as usize];
-        let part = instance.geometry.mesh().parts.get(instance.geometry.part(hit.triangle.triangle));
-        (Some(instance.object).filter(|object| *object != ROOM), part.map_or("", |part| &part.name))
+        let (mesh, geometry) = (instance.geometry.mesh(), &instance.geometry);
+        let part = match &hit.primitive {
+            Primitive::Triangle(hit) => mesh.parts.get(geometry.part(hit.triangle)).map(|part| part.name.as_str()),
+            Primitive::Strand(hit) => {
+                let part = geometry.strands.part(hit.segment.segment);
+                mesh.strands.parts().get(part).map(|part| part.name.as_str())
+            }
+        };
+        (Some(instance.object).filter(|object| *object != ROOM), part.unwrap_or(""))
     }
 
     /// The film's description of the first hit of a camera ray.
@@ -126,9 +145,9 @@ impl RenderScene {
         let side = if surface.normal.dot(ray.direction) > 0.0 { -1.0 } else { 1.0 };
         FirstHit {
             ray: *ray,
-            distance: hit.triangle.t,
+            distance: hit.t,
             normal: surface.normal * side,
-            albedo: self.materials[surface.material as usize].albedo(self.texture_value(surface)),
+            albedo: self.albedo(surface),
             object: object.map_or(FirstObject::Room, FirstObject::Object),
         }
     }

@@ -184,8 +184,8 @@ impl<'a> ShadowRay<'a> {
         let clear = ClearSurface {
             surface,
             color: material.transmission_color(self.scene.texture_value(surface), surface.is_thin),
-            gap: self.media.transmittance(&self.scene.materials, hit.triangle.t),
-            distance: hit.triangle.t,
+            gap: self.media.transmittance(&self.scene.materials, hit.t),
+            distance: hit.t,
             is_inside: self.path.open_normal().is_some(),
         };
         self.wavefront.propagate(clear.distance, self.ray.direction, self.path.open_normal());

@@ -123,6 +123,7 @@ mod tests {
             normal,
             uv: glam::Vec2::ZERO,
             material,
+            strand: None,
             is_thin: false,
         }
     }

@@ -5,7 +5,7 @@
 //! ambient light without shadows. No light bounces between surfaces but by mirrors and glass. The units are those of
 //! the path tracer.
 
-use super::bsdf::{fresnel, pane_transmittance};
+use super::bsdf::{Polarisation, fresnel, pane_transmittance};
 use super::connection::Connection;
 use super::emitters::MisVertex;
 use super::events::{PathEvent, PathVertex};
@@ -49,7 +49,7 @@ fn trace_ray(
 
     // Intersect the ray with the studio, and add the light of emitters in front of the surface
     let hit = caster.intersect(&ray);
-    let distance = hit.map_or(f32::INFINITY, |hit| hit.triangle.t);
+    let distance = hit.map_or(f32::INFINITY, |hit| hit.t);
     if depth > 0 {
         let vertex = MisVertex::new(ray.origin, ray.direction);
         caster.add_emitter_hits(&ray, distance, throughput, &vertex, &media, sink);
@@ -85,6 +85,14 @@ fn trace_ray(
     if material.is_emissive() {
         sink.record(|| PathEvent::Emission);
         sink.add(scene.emission_layer(), throughput * material.emission * scene.emission_time_s);
+    }
+
+    // Add direct and ambient light on fibres, from all sides
+    if surface.strand.is_some() && material.fibre().is_some() {
+        let bsdf = scene.bsdf(&surface, -ray.direction, &media, Polarisation::NONE);
+        add_direct_light(caster, &surface, &media, throughput, sink, |light_dir| bsdf.eval(light_dir).0);
+        add_ambient_light(caster, throughput * scene.albedo(&surface), sink);
+        return;
     }
 
     // Add direct and ambient light

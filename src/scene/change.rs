@@ -185,6 +185,7 @@ impl SceneChange {
             absorption_per_m,
             subsurface,
             emission_cd_m2,
+            fibre,
         } = old;
         self.materials |= *base_color != new.base_color
             || *textures != new.textures
@@ -194,7 +195,8 @@ impl SceneChange {
             || *transmission != new.transmission
             || *absorption_per_m != new.absorption_per_m
             || *subsurface != new.subsurface
-            || *emission_cd_m2 != new.emission_cd_m2;
+            || *emission_cd_m2 != new.emission_cd_m2
+            || *fibre != new.fibre;
     }
 
     fn compare_meters(&mut self, old: &Meter, new: &Meter) {

@@ -1,6 +1,6 @@
 //! Materials: diffuse, metal, dielectric, glass and emissive surfaces in one model.
 
-use super::MaterialTextures;
+use super::{Fibre, FibreColor, MaterialTextures};
 
 /// Surface properties. Colours are scene-linear RGB with Rec.709 primaries.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +24,8 @@ pub struct Material {
     pub subsurface: Option<Subsurface>,
     /// Luminance that the surface gives off as it glows, cd/m2, times its RGB.
     pub emission_cd_m2: [f32; 3],
+    /// Strands of this material are such fibres; they ignore the properties of surfaces above, emission excepted.
+    pub fibre: Option<Fibre>,
 }
 
 /// Scattering of light under the surface of skin, wax or marble. The base colour stays the albedo of a thick body.
@@ -52,6 +54,7 @@ impl Default for Material {
             absorption_per_m: [0.0; 3],
             subsurface: None,
             emission_cd_m2: [0.0; 3],
+            fibre: None,
         }
     }
 }
@@ -72,6 +75,20 @@ pub enum MaterialPreset {
     SkinMedium,
     /// Dark skin.
     SkinDark,
+    /// Black hair.
+    HairBlack,
+    /// Dark brown hair.
+    HairDarkBrown,
+    /// Brown hair.
+    HairBrown,
+    /// Blond hair.
+    HairBlond,
+    /// Red hair.
+    HairRed,
+    /// Grey hair.
+    HairGrey,
+    /// White hair.
+    HairWhite,
     /// Glossy white of an eye.
     Eye,
     /// Cotton.
@@ -108,10 +125,17 @@ pub enum MaterialPreset {
 
 impl MaterialPreset {
     /// All presets, in list order.
-    pub const ALL: [MaterialPreset; 19] = [
+    pub const ALL: [MaterialPreset; 26] = [
         MaterialPreset::SkinLight,
         MaterialPreset::SkinMedium,
         MaterialPreset::SkinDark,
+        MaterialPreset::HairBlack,
+        MaterialPreset::HairDarkBrown,
+        MaterialPreset::HairBrown,
+        MaterialPreset::HairBlond,
+        MaterialPreset::HairRed,
+        MaterialPreset::HairGrey,
+        MaterialPreset::HairWhite,
         MaterialPreset::Eye,
         MaterialPreset::MatteFabric,
         MaterialPreset::Satin,
@@ -136,6 +160,13 @@ impl MaterialPreset {
             MaterialPreset::SkinLight => "Skin, light",
             MaterialPreset::SkinMedium => "Skin, medium",
             MaterialPreset::SkinDark => "Skin, dark",
+            MaterialPreset::HairBlack => "Hair, black",
+            MaterialPreset::HairDarkBrown => "Hair, dark brown",
+            MaterialPreset::HairBrown => "Hair, brown",
+            MaterialPreset::HairBlond => "Hair, blond",
+            MaterialPreset::HairRed => "Hair, red",
+            MaterialPreset::HairGrey => "Hair, grey",
+            MaterialPreset::HairWhite => "Hair, white",
             MaterialPreset::Eye => "Eye",
             MaterialPreset::MatteFabric => "Matte fabric",
             MaterialPreset::Satin => "Satin",
@@ -159,11 +190,22 @@ impl MaterialPreset {
     pub fn material(self) -> Material {
         let opaque = |base_color, roughness| Material { base_color, roughness, ..Material::default() };
         let metal = |base_color, roughness| Material { metallic: 1.0, ..opaque(base_color, roughness) };
+        // Meshes and the outlines of views show the base colour, strands the fibre.
+        let hair = |fibre, base_color| Material { fibre: Some(fibre), ..opaque(base_color, 0.5) };
         let clear = |ior| Material { transmission: 1.0, ior, ..opaque([1.0; 3], 0.0) };
         match self {
             MaterialPreset::SkinLight => Material { ior: 1.4, ..opaque([0.62, 0.43, 0.34], 0.48) },
             MaterialPreset::SkinMedium => Material { ior: 1.4, ..opaque([0.42, 0.25, 0.17], 0.45) },
             MaterialPreset::SkinDark => Material { ior: 1.4, ..opaque([0.15, 0.08, 0.05], 0.42) },
+            MaterialPreset::HairBlack => hair(Fibre::of_melanin(0.98, 0.0), [0.03; 3]),
+            MaterialPreset::HairDarkBrown => hair(Fibre::of_melanin(0.9, 0.1), [0.06, 0.04, 0.03]),
+            MaterialPreset::HairBrown => hair(Fibre::of_melanin(0.72, 0.2), [0.15, 0.09, 0.05]),
+            MaterialPreset::HairBlond => hair(Fibre::of_melanin(0.27, 0.25), [0.5, 0.38, 0.23]),
+            MaterialPreset::HairRed => hair(Fibre::of_melanin(0.7, 0.95), [0.35, 0.13, 0.05]),
+            MaterialPreset::HairGrey => {
+                hair(Fibre { color: FibreColor::Dye([0.42, 0.41, 0.4]), ..Fibre::default() }, [0.3; 3])
+            }
+            MaterialPreset::HairWhite => hair(Fibre::of_melanin(0.03, 0.3), [0.7, 0.68, 0.64]),
             MaterialPreset::Eye => Material { ior: 1.38, ..opaque([0.7, 0.68, 0.65], 0.08) },
             MaterialPreset::MatteFabric => opaque([0.25, 0.27, 0.32], 0.95),
             MaterialPreset::Satin => opaque([0.35, 0.05, 0.08], 0.35),

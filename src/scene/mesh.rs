@@ -1,5 +1,6 @@
-//! Indexed triangle meshes.
+//! Indexed triangle meshes, with strands.
 
+use super::Strands;
 use glam::{Vec2, Vec3};
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -28,13 +29,22 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Named ranges of triangles.
     pub parts: Vec<MeshPart>,
+    /// Hair and the like, in the same space, with parts of its own.
+    pub strands: Strands,
 }
 
 impl Mesh {
-    /// Returns the lower and upper corner of the bounding box; both zero without vertices.
+    /// Returns the lower and upper corner of the bounding box, strands included; both zero without either.
     pub fn bounds(&self) -> (Vec3, Vec3) {
-        let Some(&first) = self.positions.first() else { return (Vec3::ZERO, Vec3::ZERO) };
-        self.positions.iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)))
+        let vertices = self.positions.iter().map(|&p| (p, p));
+        let bounds = vertices.chain(self.strands.bounds()).reduce(|(low, high), (l, h)| (low.min(l), high.max(h)));
+        bounds.unwrap_or((Vec3::ZERO, Vec3::ZERO))
+    }
+
+    /// Returns the names of the parts that can have a material: those of the triangles, then those of the strands.
+    pub fn part_names(&self) -> impl Iterator<Item = &str> {
+        let strands = self.strands.parts().iter().map(|part| part.name.as_str());
+        self.parts.iter().map(|part| part.name.as_str()).chain(strands)
     }
 
     /// Returns the vertex positions of a triangle.
@@ -48,8 +58,9 @@ impl Mesh {
         self
     }
 
-    /// Appends another mesh and its parts. Attributes that only one of the two has are dropped.
+    /// Appends another mesh, its strands and the parts of both. Attributes that only one of the two has are dropped.
     pub fn append(&mut self, other: &Mesh) {
+        self.strands.append(&other.strands);
         let (base, first) = (self.positions.len() as u32, self.triangles.len() as u32);
         let keep = |ours: usize, theirs: usize| (ours as u32 == base) && theirs == other.positions.len();
         if keep(self.normals.len(), other.normals.len()) {

@@ -51,7 +51,7 @@ fn quad(centre: Vec3, u: Vec3, v: Vec3) -> Mesh {
         normals: vec![normal; 4],
         uvs: vec![Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
-        parts: Vec::new(),
+        ..Mesh::default()
     }
 }
 

@@ -27,6 +27,17 @@ fn texture() -> impl Strategy<Value = TextureRef> {
     ]
 }
 
+fn fibre() -> impl Strategy<Value = Fibre> {
+    let melanin =
+        (number(0.0, 1.0), number(0.0, 1.0)).prop_map(|(melanin, redness)| FibreColor::Melanin { melanin, redness });
+    let fibre_color = prop_oneof![melanin, color(0.999).prop_map(FibreColor::Dye)];
+    (fibre_color, number(0.05, 1.0), number(0.05, 1.0)).prop_map(|(color, roughness_along, roughness_around)| Fibre {
+        color,
+        roughness_along,
+        roughness_around,
+    })
+}
+
 fn material() -> impl Strategy<Value = Material> {
     let custom = (
         color(0.999),
@@ -37,19 +48,23 @@ fn material() -> impl Strategy<Value = Material> {
         color(1e6),
         proptest::option::of(vector(0.01, 1000.0)),
         color(1e9),
+        proptest::option::of(fibre()),
     )
         .prop_map(
-            |(base_color, texture, metallic, roughness, ior, absorption_per_m, free_path, emission_cd_m2)| Material {
-                base_color,
-                textures: MaterialTextures { base_color: texture },
-                metallic,
-                roughness,
-                ior,
-                transmission: if metallic > 0.0 { 0.0 } else { 0.7 },
-                absorption_per_m,
-                subsurface: free_path
-                    .map(|mean_free_path_mm| Subsurface { mean_free_path_mm: mean_free_path_mm.into() }),
-                emission_cd_m2,
+            |(base_color, texture, metallic, roughness, ior, absorption_per_m, free_path, emission_cd_m2, fibre)| {
+                Material {
+                    base_color,
+                    textures: MaterialTextures { base_color: texture },
+                    metallic,
+                    roughness,
+                    ior,
+                    transmission: if metallic > 0.0 || fibre.is_some() { 0.0 } else { 0.7 },
+                    absorption_per_m,
+                    subsurface: free_path
+                        .map(|mean_free_path_mm| Subsurface { mean_free_path_mm: mean_free_path_mm.into() }),
+                    emission_cd_m2,
+                    fibre,
+                }
             },
         );
     // Boxed: a scene of several materials would overflow a test's stack.

@@ -1,7 +1,7 @@
 //! Materials in format 1: `Preset(Chrome)`, or `Custom(...)` with the values that differ from the default.
 
 use super::defaults::{Triple, default_ior, default_roughness, is_default, is_default_ior};
-use crate::scene::{Material, MaterialPreset, MaterialTextures, Subsurface, TextureRef};
+use crate::scene::{Fibre, FibreColor, Material, MaterialPreset, MaterialTextures, Subsurface, TextureRef};
 use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -26,6 +26,8 @@ pub(super) enum MaterialV1 {
         subsurface: Option<SubsurfaceV1>,
         #[serde(default, skip_serializing_if = "is_default")]
         emission_cd_m2: Triple,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        fibre: Option<FibreV1>,
     },
 }
 
@@ -33,6 +35,43 @@ pub(super) enum MaterialV1 {
 #[serde(rename = "Subsurface", deny_unknown_fields)]
 pub(super) struct SubsurfaceV1 {
     mean_free_path_mm: Triple,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "Fibre", deny_unknown_fields)]
+pub(super) struct FibreV1 {
+    color: FibreColorV1,
+    roughness_along: f32,
+    roughness_around: f32,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "FibreColor", deny_unknown_fields)]
+enum FibreColorV1 {
+    Melanin { melanin: f32, redness: f32 },
+    Dye(Triple),
+}
+
+impl From<FibreV1> for Fibre {
+    fn from(fibre: FibreV1) -> Self {
+        let FibreV1 { color, roughness_along, roughness_around } = fibre;
+        let color = match color {
+            FibreColorV1::Melanin { melanin, redness } => FibreColor::Melanin { melanin, redness },
+            FibreColorV1::Dye(color) => FibreColor::Dye(color),
+        };
+        Fibre { color, roughness_along, roughness_around }
+    }
+}
+
+impl From<Fibre> for FibreV1 {
+    fn from(fibre: Fibre) -> Self {
+        let Fibre { color, roughness_along, roughness_around } = fibre;
+        let color = match color {
+            FibreColor::Melanin { melanin, redness } => FibreColorV1::Melanin { melanin, redness },
+            FibreColor::Dye(color) => FibreColorV1::Dye(color),
+        };
+        FibreV1 { color, roughness_along, roughness_around }
+    }
 }
 
 /// Declares the presets' names in the file and both conversions.
@@ -60,6 +99,13 @@ presets!(
     SkinLight,
     SkinMedium,
     SkinDark,
+    HairBlack,
+    HairDarkBrown,
+    HairBrown,
+    HairBlond,
+    HairRed,
+    HairGrey,
+    HairWhite,
     Eye,
     MatteFabric,
     Satin,
@@ -92,6 +138,7 @@ impl From<MaterialV1> for Material {
                 absorption_per_m,
                 subsurface,
                 emission_cd_m2,
+                fibre,
             } => Material {
                 base_color,
                 textures: MaterialTextures { base_color: base_color_texture.as_deref().map(TextureRef::parse) },
@@ -102,6 +149,7 @@ impl From<MaterialV1> for Material {
                 absorption_per_m,
                 subsurface: subsurface.map(|SubsurfaceV1 { mean_free_path_mm }| Subsurface { mean_free_path_mm }),
                 emission_cd_m2,
+                fibre: fibre.map(Fibre::from),
             },
         }
     }
@@ -123,6 +171,7 @@ impl From<&Material> for MaterialV1 {
             absorption_per_m,
             subsurface,
             emission_cd_m2,
+            fibre,
         } = material.clone();
         MaterialV1::Custom {
             base_color,
@@ -134,6 +183,7 @@ impl From<&Material> for MaterialV1 {
             absorption_per_m,
             subsurface: subsurface.map(|Subsurface { mean_free_path_mm }| SubsurfaceV1 { mean_free_path_mm }),
             emission_cd_m2,
+            fibre: fibre.map(FibreV1::from),
         }
     }
 }

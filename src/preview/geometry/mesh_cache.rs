@@ -184,10 +184,9 @@ fn emitter_mesh(surface: EmitterSurface) -> Option<Mesh> {
         Mesh {
             normals: vec![Vec3::NEG_Z; outline.len()],
             positions: outline,
-            uvs: Vec::new(),
             // A triangle fan, counter-clockwise as seen from -Z
             triangles: (1..count - 1).map(|i| [0, i + 1, i]).collect(),
-            parts: Vec::new(),
+            ..Mesh::default()
         }
     };
     let mesh = match surface {

@@ -1,6 +1,7 @@
 //! A material prepared for tracing: its parameters and the directional albedo tables of its lobes.
 
 use super::albedo::{AlbedoTable, AlbedoTables};
+use super::fibre::TracedFibre;
 use super::ggx;
 use crate::color::luminance;
 use crate::math::safe_sqrt;
@@ -39,6 +40,8 @@ pub struct TracedMaterial {
     pub(super) metal_albedo: AlbedoTable,
     /// True if the material has a metal or a coat.
     pub(super) has_microfacets: bool,
+    /// The fibre that strands of the material are.
+    fibre: Option<TracedFibre>,
 }
 
 impl TracedMaterial {
@@ -46,7 +49,8 @@ impl TracedMaterial {
     pub fn new(material: &Material) -> Self {
         let alpha = material.roughness * material.roughness;
         // Metals are opaque: only the rest transmits, and the metal is a larger part of the opaque lobes.
-        let transmission = material.transmission * (1.0 - material.metallic);
+        let transmission =
+            if material.fibre.is_some() { 0.0 } else { material.transmission * (1.0 - material.metallic) };
         let opaque = 1.0 - transmission;
         let metallic = if opaque > 0.0 { (material.metallic / opaque).min(1.0) } else { 0.0 };
         let AlbedoTables { coat, perfect_reflector } = AlbedoTables::new(material.ior, alpha);
@@ -63,12 +67,18 @@ impl TracedMaterial {
             has_microfacets: metallic > 0.0 || coat.mean > MIN_COAT_ALBEDO,
             coat_albedo: coat,
             metal_albedo: perfect_reflector,
+            fibre: material.fibre.as_ref().map(TracedFibre::new),
         }
     }
 
     /// Returns the texture of a slot, an index into the scene's textures.
     pub fn texture(&self, slot: TextureSlot) -> Option<u32> {
         self.textures[slot as usize]
+    }
+
+    /// Returns the fibre that strands of the material are; none for materials of surfaces.
+    pub fn fibre(&self) -> Option<&TracedFibre> {
+        self.fibre.as_ref()
     }
 
     /// Returns true if the surface emits light.
@@ -117,8 +127,11 @@ impl TracedMaterial {
         self.base_color * texture
     }
 
-    /// Returns an upper bound of the albedo. Textures only darken.
+    /// Returns an upper bound of the albedo; of a fibre, the mean over all directions. Textures only darken.
     pub fn max_albedo(&self) -> f32 {
+        if let Some(fibre) = &self.fibre {
+            return fibre.albedo().max_element().max(self.base_color.max_element());
+        }
         let base = self.base_color.max_element();
         if self.transmission > 0.0 { 1.0_f32.max(base) } else { base + (1.0 - base) * self.coat_albedo.mean }
     }

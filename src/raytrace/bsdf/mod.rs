@@ -9,11 +9,13 @@
 //!
 //! Materials that scatter light under the surface have a walk (`super::subsurface`) in place of the diffuse lobe.
 //!
-//! A new lobe needs
+//! A strand of hair is a fibre instead (`fibre.rs`), which scatters light over the whole sphere.
+//!
+//! A new lobe of surfaces needs
 //! - a file with a `sample` (local direction, or a whole [`BsdfSample`] for a delta lobe) and an `eval` (BSDF times
 //!   cosine, pdf times probability; in the local frame, whose +Z is the shading normal);
-//! - a variant of [`Lobe`] with its probability in [`LobeProbabilities`], and the arms of [`Bsdf::sample`] and
-//!   `Bsdf::eval_lobe`, whose matches are exhaustive;
+//! - a variant of `Lobe` with its probability in `LobeProbabilities` (`lobe.rs`), and the arms of `sample` and
+//!   `eval_lobe` in `surface.rs`, whose matches are exhaustive;
 //! - its parameters in [`TracedMaterial`], with `max_albedo`, `has_non_specular_lobe`, `is_nearly_specular` and
 //!   `is_caustic_caster` kept true;
 //! - a case in `tests.rs` (chi-square of the density, white furnace).
@@ -21,6 +23,7 @@
 mod albedo;
 mod dielectric;
 mod diffuse;
+mod fibre;
 pub mod fresnel;
 mod ggx;
 mod lobe;
@@ -31,134 +34,113 @@ mod polarisation;
 mod sample;
 mod shading_geometry;
 mod subsurface;
+mod surface;
 
 pub use dielectric::{Boundary, DielectricInterface, pane_transmittance};
 pub use material::TracedMaterial;
 pub use polarisation::{Polarisation, TransmittedLight};
 pub use sample::BsdfSample;
 
-use dielectric::DielectricLobe;
-use diffuse::DiffuseLobe;
+use fibre::{FibreBsdf, TracedFibre};
 use glam::{Vec2, Vec3};
-use lobe::{Lobe, LobeProbabilities};
-use microfacet::MicrofacetLobe;
-use shading_geometry::ShadingGeometry;
+use surface::SurfaceBsdf;
 
 /// The BSDF at a shading point for one outgoing direction.
 #[derive(Clone, Copy, Debug)]
-pub struct Bsdf<'a> {
-    material: &'a TracedMaterial,
-    /// Of the material, times its texture.
-    base_color: Vec3,
-    geometry: ShadingGeometry,
-    probabilities: LobeProbabilities,
-    dielectric: DielectricLobe,
-    microfacet: MicrofacetLobe,
-    diffuse: DiffuseLobe,
+pub enum Bsdf<'a> {
+    /// Of a surface.
+    Surface(SurfaceBsdf<'a>),
+    /// Of a fibre.
+    Fibre(FibreBsdf<'a>),
 }
 
 impl<'a> Bsdf<'a> {
-    /// Returns the BSDF for the outgoing direction `wo` (unit, world space), outward normals and a texture value. A
-    /// clear material is a body in air; see [`Bsdf::with_boundary`] for others.
+    /// Returns the BSDF of a surface for the outgoing direction `wo` (unit, world space), outward normals and a texture
+    /// value. A clear material is a body in air; see [`Bsdf::with_boundary`] for others.
     pub fn new(material: &'a TracedMaterial, texture: Vec3, normal: Vec3, geometric_normal: Vec3, wo: Vec3) -> Self {
-        let is_outside = wo.dot(geometric_normal) >= 0.0;
-        let geometry = ShadingGeometry::new(normal, geometric_normal, wo);
-        let base_color = material.base_color * texture;
-        let eta = if is_outside { material.ior } else { 1.0 / material.ior };
-        let boundary = Boundary::Interface(DielectricInterface { eta, starts_inside: false });
-        let coat_albedo = material.coat_albedo(geometry.wo.z);
-        Bsdf {
-            material,
-            base_color,
-            geometry,
-            probabilities: LobeProbabilities {
-                dielectric: material.transmission,
-                microfacet: material.microfacet_probability(base_color, coat_albedo),
-                base: Lobe::Diffuse,
-            },
-            dielectric: DielectricLobe { ior: material.ior, base_color, boundary, polarisation: Polarisation::NONE },
-            microfacet: MicrofacetLobe::new(material, geometry.wo),
-            diffuse: DiffuseLobe { factor: material.diffuse_factor(base_color, coat_albedo) },
-        }
+        Bsdf::Surface(SurfaceBsdf::new(material, texture, normal, geometric_normal, wo))
     }
 
     /// Returns the same BSDF with this boundary, for a path that accepts this polarisation.
     pub fn with_boundary(self, boundary: Boundary, polarisation: Polarisation) -> Self {
-        Bsdf { dielectric: DielectricLobe { boundary, polarisation, ..self.dielectric }, ..self }
+        match self {
+            Bsdf::Surface(surface) => Bsdf::Surface(surface.with_boundary(boundary, polarisation)),
+            Bsdf::Fibre(_) => self,
+        }
     }
 
-    /// Returns the shading normal on the side of the outgoing direction.
+    /// Returns the shading normal on the side of the outgoing direction; zero for fibres, which scatter light from all
+    /// directions.
     pub fn normal(&self) -> Vec3 {
-        self.geometry.normal
+        match self {
+            Bsdf::Surface(surface) => surface.normal(),
+            Bsdf::Fibre(_) => Vec3::ZERO,
+        }
     }
 
     /// Returns the Fresnel reflectance of clear glass, which is the probability that [`Bsdf::sample`] samples
     /// reflection: for lobe numbers below it. Returns none for materials with other lobes.
     pub fn dielectric_reflectance(&self) -> Option<f32> {
-        (self.material.transmission >= 1.0).then(|| self.dielectric.reflectance(&self.geometry))
+        match self {
+            Bsdf::Surface(surface) => surface.dielectric_reflectance(),
+            Bsdf::Fibre(_) => None,
+        }
+    }
+
+    /// Returns true if it has a lobe that is not a delta function, so that light sampling can contribute.
+    pub fn has_non_specular_lobe(&self) -> bool {
+        match self {
+            Bsdf::Surface(surface) => surface.has_non_specular_lobe(),
+            Bsdf::Fibre(_) => true,
+        }
+    }
+
+    /// Returns the BSDF of a fibre for a unit outgoing direction at an offset `h`, -1 to 1, along `tangent` from root to
+    /// tip.
+    pub fn of_fibre(fibre: &'a TracedFibre, tangent: Vec3, h: f32, wo: Vec3) -> Self {
+        Bsdf::Fibre(FibreBsdf::new(fibre, tangent, h, wo))
+    }
+
+    /// Returns the same BSDF with scattering under the surface in place of the diffuse lobe.
+    pub fn with_subsurface(self) -> Self {
+        match self {
+            Bsdf::Surface(surface) => Bsdf::Surface(surface.with_subsurface()),
+            Bsdf::Fibre(_) => self,
+        }
+    }
+
+    /// Returns the BSDF where a walk under the surface comes out: a diffuse lobe under the coat, for any outgoing
+    /// direction.
+    pub fn at_exit(material: &'a TracedMaterial, normal: Vec3, geometric_normal: Vec3) -> Self {
+        Bsdf::Surface(SurfaceBsdf::at_exit(material, normal, geometric_normal))
+    }
+
+    /// Returns true if this lobe number samples scattering under the surface; [`Bsdf::sample`] returns none for it.
+    pub fn samples_subsurface(&self, u_lobe: f32) -> bool {
+        match self {
+            Bsdf::Surface(surface) => surface.samples_subsurface(u_lobe),
+            Bsdf::Fibre(_) => false,
+        }
     }
 
     /// Returns BSDF times cosine, and the density of [`Bsdf::sample`] (1/sr), for a unit world direction. Delta lobes
     /// are left out of both.
-    pub fn eval(&self, direction: Vec3) -> (Vec3, f32) {
-        let wi = self.geometry.to_local(direction);
-        if wi.z <= 0.0 || !self.geometry.is_above(direction) || self.material.transmission >= 1.0 {
-            return (Vec3::ZERO, 0.0);
-        }
-        self.eval_local(wi)
-    }
-
-    /// Sums the non-specular lobes for a direction in the local frame.
-    fn eval_local(&self, wi: Vec3) -> (Vec3, f32) {
-        let (mut value, mut pdf) = (Vec3::ZERO, 0.0);
-        for lobe in Lobe::NON_SPECULAR {
-            let (lobe_value, lobe_pdf) = self.eval_lobe(lobe, wi);
-            value += lobe_value;
-            pdf += lobe_pdf;
-        }
-        let opaque = 1.0 - self.material.transmission;
-        (value * opaque, pdf * opaque)
-    }
-
-    /// Returns BSDF times cosine and pdf times probability of one lobe. 0 for delta lobes.
     #[inline(always)]
-    fn eval_lobe(&self, lobe: Lobe, wi: Vec3) -> (Vec3, f32) {
-        let probability = self.probabilities.opaque(lobe);
-        match lobe {
-            Lobe::Dielectric | Lobe::Subsurface => (Vec3::ZERO, 0.0),
-            Lobe::Microfacet => self.microfacet.eval(self.material, self.base_color, self.geometry.wo, wi, probability),
-            Lobe::Diffuse => self.diffuse.eval(wi, self.material.coat_albedo(wi.z), probability),
+    pub fn eval(&self, direction: Vec3) -> (Vec3, f32) {
+        match self {
+            Bsdf::Surface(surface) => surface.eval(direction),
+            Bsdf::Fibre(fibre) => fibre.eval(direction),
         }
     }
 
     /// Samples a direction for a lobe number in 0..1 and a point of the unit square. Returns none for samples without
     /// contribution.
+    #[inline(always)]
     pub fn sample(&self, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
-        // Sample a lobe, and a direction from it
-        let (lobe, u_lobe) = self.probabilities.sample(u_lobe);
-        let wi = match lobe {
-            Lobe::Dielectric => return self.dielectric.sample(&self.geometry, u_lobe),
-            Lobe::Microfacet if self.material.is_smooth() => return self.sample_smooth_microfacet(),
-            Lobe::Microfacet => MicrofacetLobe::sample(self.material, self.geometry.wo, u),
-            Lobe::Diffuse => DiffuseLobe::sample(u),
-            Lobe::Subsurface => return None,
-        };
-        // Discard directions below the surface
-        let direction = self.geometry.to_world(wi);
-        if wi.z <= 0.0 || !self.geometry.is_above(direction) {
-            return None;
+        match self {
+            Bsdf::Surface(surface) => surface.sample(u_lobe, u),
+            Bsdf::Fibre(fibre) => fibre.sample(u_lobe, u),
         }
-        // Evaluate all lobes in that direction
-        let (value, pdf) = self.eval_local(wi);
-        (pdf > 0.0).then(|| BsdfSample::non_specular(direction, value / pdf, pdf))
-    }
-
-    /// Samples the microfacet lobe of a smooth surface: specular reflection.
-    fn sample_smooth_microfacet(&self) -> Option<BsdfSample> {
-        let wo = self.geometry.wo;
-        let reflectance = microfacet::reflectance(self.material, self.base_color, wo, wo.z);
-        let weight = reflectance / self.probabilities.microfacet;
-        Some(BsdfSample { weight, ..BsdfSample::specular(self.geometry.specular_reflection()?) })
     }
 }
 

@@ -1,6 +1,6 @@
 //! The surfaces that cast caustics.
 
-use crate::raytrace::aggregate::{Aggregate, Hit};
+use crate::raytrace::aggregate::{Aggregate, Hit, Primitive};
 use crate::raytrace::bsdf::TracedMaterial;
 use crate::raytrace::simd::TriangleHit;
 use glam::Vec2;
@@ -59,6 +59,7 @@ impl CausticCasters {
         let (instance, triangle) = self.triangles[index];
         // The square folded onto the triangle along its diagonal.
         let barycentric = if u.x + u.y < 1.0 { [u.x, u.y] } else { [1.0 - u.x, 1.0 - u.y] };
-        Some(Hit { instance, triangle: TriangleHit { t: 0.0, triangle, barycentric } })
+        let primitive = Primitive::Triangle(TriangleHit { t: 0.0, triangle, barycentric });
+        Some(Hit { instance, t: 0.0, primitive })
     }
 }

@@ -175,17 +175,19 @@ impl<'a> PhotonTracer<'a> {
             // Hand the photon on, unless light sampling finds the same light on a straight path
             let is_caustic = !path.is_straight();
             if is_caustic {
-                ray.t_max = hit.map_or(f32::INFINITY, |hit| hit.triangle.t);
+                ray.t_max = hit.map_or(f32::INFINITY, |hit| hit.t);
                 let flux = photon.flux * throughput;
                 let photon = Photon { position: origin, direction: -direction, flux, specular_depth, ..photon };
                 receiver.travel(&PhotonSegment { ray, photon, media: &media });
             }
             let Some(hit) = hit else { return };
-            throughput *= media.transmittance(&scene.materials, hit.triangle.t);
+            throughput *= media.transmittance(&scene.materials, hit.t);
             surface = scene.aggregate.surface(&hit);
             wo = -direction;
             let cos = wo.dot(surface.geometric_normal);
-            if is_caustic && cos != 0.0 && scene.materials[surface.material as usize].has_non_specular_lobe() {
+            let gathers =
+                surface.strand.is_none() && scene.materials[surface.material as usize].has_non_specular_lobe();
+            if is_caustic && cos != 0.0 && gathers {
                 receiver.arrive(Photon {
                     position: surface.position,
                     direction: wo,

@@ -103,7 +103,7 @@ fn casters_are_sampled_by_area() {
     let mut above = 0;
     for _ in 0..20_000 {
         let hit = scene.casters.sample(rng.uniform(), rng.unit_square()).unwrap();
-        let [b, c] = hit.triangle.barycentric;
+        let [b, c] = hit.triangle().barycentric;
         assert!(b >= 0.0 && c >= 0.0 && b + c <= 1.0);
         *counts.entry(scene.aggregate.instances()[hit.instance as usize].object).or_default() += 1;
         above += u32::from(scene.aggregate.surface(&hit).geometric_normal.y > 0.0);

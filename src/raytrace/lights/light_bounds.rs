@@ -148,10 +148,11 @@ impl LightBoundsPacket {
         self.falloff_scale[lane] = bounds.falloff_scale;
     }
 
-    /// Returns the importance of each lane at a shading point with this normal.
+    /// Returns the importance of each lane at a shading point with this normal; zero for fibres, which all lights reach.
     #[inline(always)]
     pub fn importances(&self, point: Vec3, normal: Vec3) -> [f32; LANES] {
         let mut importances = [0.0; LANES];
+        let slack = if normal.x == 0.0 && normal.y == 0.0 && normal.z == 0.0 { f32::INFINITY } else { 0.0 };
         // A plain loop: closures are not compiled for AVX2.
         for (i, lane) in importances.iter_mut().enumerate() {
             // Vector from the shading point to the centre
@@ -170,7 +171,7 @@ impl LightBoundsPacket {
             let falloff = (cos - self.cos_outer[i]) * self.falloff_scale[i];
             let illuminance = self.intensity[i] * inverse * inverse;
             let importance = illuminance * min(max(height * inverse, 0.05), 1.0) * min(max(falloff, 0.02), 1.0);
-            *lane = if height > -radius && falloff > 0.0 { importance } else { 0.0 };
+            *lane = if height + slack > -radius && falloff > 0.0 { importance } else { 0.0 };
         }
         importances
     }

@@ -155,9 +155,8 @@ impl<'a> TileTracer<'a> {
         };
         let surface = scene.aggregate.surface(&hit);
         let material = &scene.materials[surface.material as usize];
-        let is_in_front = |light: &TracedLight| {
-            light.intersect(origin, direction).is_some_and(|emitter| emitter.distance < hit.triangle.t)
-        };
+        let is_in_front =
+            |light: &TracedLight| light.intersect(origin, direction).is_some_and(|emitter| emitter.distance < hit.t);
         let shows_emitter = || scene.lights.iter().any(|light| light.visible_to_camera && is_in_front(light));
         let is_view_dependent = material.transmits() || shows_emitter();
         PrimaryHit {

@@ -4,6 +4,7 @@
 
 use super::box_packet::{BoxPacket, SLAB_EXIT_SCALE, SlabRay};
 use super::kernels::Kernels;
+use super::segment_packet::{NearestSegment, RibbonRay, SegmentHit, SegmentPacket};
 use super::sobol;
 use super::triangle_packet::{ShearedRay, TriangleHit, TrianglePacket, edges_in_f64};
 use crate::math::simd::LANES;
@@ -25,6 +26,13 @@ impl Kernels for Avx2 {
         // SAFETY: `dispatch` uses this type only with the proof that the CPU supports AVX2, and no other code can name
         // it.
         unsafe { intersect_triangles(ray, triangles, t_max) }
+    }
+
+    #[inline(always)]
+    fn intersect_segments(ray: &RibbonRay, segments: &SegmentPacket, t_max: f32) -> Option<SegmentHit> {
+        // SAFETY: `dispatch` uses this type only with the proof that the CPU supports AVX2, and no other code can name
+        // it.
+        unsafe { intersect_segments(ray, segments, t_max) }
     }
 
     #[inline(always)]
@@ -128,6 +136,69 @@ fn intersect_triangles(ray: &ShearedRay, triangles: &TrianglePacket, t_max: f32)
         }
     }
     Some(triangles.hit(nearest, t[nearest], e.map(|e| store(e)[nearest])))
+}
+
+#[inline]
+#[target_feature(enable = "avx2")]
+fn intersect_segments(ray: &RibbonRay, segments: &SegmentPacket, t_max: f32) -> Option<SegmentHit> {
+    // Transform both ends to the frame of the ray
+    let offset = |end: usize, k: usize| _mm256_sub_ps(load(&segments.ends[end][k]), _mm256_set1_ps(ray.origin[k]));
+    let offsets = [[offset(0, 0), offset(0, 1), offset(0, 2)], [offset(1, 0), offset(1, 1), offset(1, 2)]];
+    let end = |end: usize, axis: usize| {
+        let [x, y, z] = ray.axes[axis].map(|a| _mm256_set1_ps(a));
+        let o = &offsets[end];
+        _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(o[0], x), _mm256_mul_ps(o[1], y)), _mm256_mul_ps(o[2], z))
+    };
+    let ([x0, y0], [x1, y1]) = ([end(0, 0), end(0, 1)], [end(1, 0), end(1, 1)]);
+    // Find the point of the axis that is nearest to the ray
+    let (ex, ey) = (_mm256_sub_ps(x1, x0), _mm256_sub_ps(y1, y0));
+    let length2 = _mm256_add_ps(_mm256_mul_ps(ex, ex), _mm256_mul_ps(ey, ey));
+    let dot = _mm256_add_ps(_mm256_mul_ps(x0, ex), _mm256_mul_ps(y0, ey));
+    let minus_dot = _mm256_xor_ps(dot, _mm256_set1_ps(-0.0));
+    // Both instructions return their second operand when the first is NaN.
+    let s = _mm256_max_ps(_mm256_div_ps(minus_dot, length2), _mm256_setzero_ps());
+    let s = _mm256_min_ps(s, _mm256_set1_ps(1.0));
+    let (cx, cy) = (_mm256_add_ps(x0, _mm256_mul_ps(s, ex)), _mm256_add_ps(y0, _mm256_mul_ps(s, ey)));
+    // Compare its distance with the radius; unused lanes are NaN and fail
+    let r0 = load(&segments.ends[0][3]);
+    let radius = _mm256_add_ps(r0, _mm256_mul_ps(s, _mm256_sub_ps(load(&segments.ends[1][3]), r0)));
+    let distance2 = _mm256_add_ps(_mm256_mul_ps(cx, cx), _mm256_mul_ps(cy, cy));
+    let is_near = _mm256_cmp_ps::<_CMP_LE_OQ>(distance2, _mm256_mul_ps(radius, radius));
+    if _mm256_movemask_ps(is_near) == 0 {
+        return None;
+    }
+    // Compute the hit distance
+    let (z0, z1) = (end(0, 2), end(1, 2));
+    let t = _mm256_add_ps(z0, _mm256_mul_ps(s, _mm256_sub_ps(z1, z0)));
+    let in_range = _mm256_and_ps(
+        _mm256_cmp_ps::<_CMP_GT_OQ>(t, _mm256_setzero_ps()),
+        _mm256_cmp_ps::<_CMP_LT_OQ>(t, _mm256_set1_ps(t_max)),
+    );
+    let mut hits = _mm256_movemask_ps(_mm256_and_ps(is_near, in_range)) as u32;
+    if hits == 0 {
+        return None;
+    }
+    // Select the nearest hit
+    let t = store(t);
+    let mut lane = hits.trailing_zeros() as usize % LANES;
+    hits &= hits - 1;
+    while hits != 0 {
+        let other = hits.trailing_zeros() as usize % LANES;
+        hits &= hits - 1;
+        if t[other] < t[lane] {
+            lane = other;
+        }
+    }
+    let at = |values: __m256| store(values)[lane];
+    let nearest = NearestSegment {
+        lane,
+        t: t[lane],
+        s: at(s),
+        along: [at(ex), at(ey)],
+        to_axis: [at(cx), at(cy)],
+        radius: at(radius),
+    };
+    Some(segments.hit(&nearest))
 }
 
 #[inline]

@@ -1,6 +1,7 @@
 //! The interface of the SIMD kernels, which is implemented once for each instruction set.
 
 use super::box_packet::{BoxPacket, SlabRay};
+use super::segment_packet::{RibbonRay, SegmentHit, SegmentPacket};
 use super::triangle_packet::{ShearedRay, TriangleHit, TrianglePacket};
 use crate::math::simd::LANES;
 
@@ -12,6 +13,9 @@ pub trait Kernels {
 
     /// Returns the nearest hit with 0 < t < `t_max` of a ray with eight triangles. Degenerate triangles are never hit.
     fn intersect_triangles(ray: &ShearedRay, triangles: &TrianglePacket, t_max: f32) -> Option<TriangleHit>;
+
+    /// Returns the nearest hit with 0 < t < `t_max` of a ray with eight strand segments.
+    fn intersect_segments(ray: &RibbonRay, segments: &SegmentPacket, t_max: f32) -> Option<SegmentHit>;
 
     /// Returns the first four dimensions of the Owen-scrambled Sobol point `index` (under 2^16) for each of two seeds.
     fn sobol_4d(index: u32, seeds: [u32; 2]) -> [[f32; 4]; 2];

@@ -1,4 +1,4 @@
-//! SIMD kernels: a ray against eight boxes, a ray against eight triangles, two sets of Sobol points.
+//! SIMD kernels: a ray against eight boxes, eight triangles or eight strand segments, two sets of Sobol points.
 //!
 //! [`Avx2`](avx2::Avx2) is written in intrinsics, [`Scalar`] in portable Rust. Neither fuses or reorders operations, so
 //! both return the same bits; tests compare them. A [`KernelTask`] is compiled once for each, and [`dispatch`] runs
@@ -11,6 +11,7 @@ mod avx2;
 mod box_packet;
 mod kernels;
 mod scalar;
+mod segment_packet;
 #[cfg(target_arch = "x86_64")]
 mod sobol;
 #[cfg(test)]
@@ -22,6 +23,7 @@ pub use box_packet::{BoxPacket, SlabRay};
 pub use kernels::{KernelTask, Kernels};
 pub use math::simd::LANES;
 pub use scalar::Scalar;
+pub use segment_packet::{RibbonRay, SegmentHit, SegmentPacket};
 pub use triangle_packet::{ShearedRay, TriangleHit, TrianglePacket};
 
 /// Runs a task with the widest kernels that the CPU supports.

@@ -2,6 +2,7 @@
 
 use super::box_packet::{BoxPacket, SLAB_EXIT_SCALE, SlabRay};
 use super::kernels::Kernels;
+use super::segment_packet::{NearestSegment, RibbonRay, SegmentHit, SegmentPacket};
 use super::triangle_packet::{ShearedRay, TriangleHit, TrianglePacket, edges_in_f64};
 use crate::math::simd::LANES;
 use std::array::from_fn;
@@ -72,6 +73,35 @@ impl Kernels for Scalar {
         let hits = (0..LANES).filter(|&i| inside(i) && t[i] > 0.0 && t[i] < t_max);
         let nearest = hits.min_by(|&a, &b| t[a].total_cmp(&t[b]))?;
         Some(triangles.hit(nearest, t[nearest], edges.map(|e| e[nearest])))
+    }
+
+    #[inline(always)]
+    fn intersect_segments(ray: &RibbonRay, segments: &SegmentPacket, t_max: f32) -> Option<SegmentHit> {
+        let mut nearest: Option<NearestSegment> = None;
+        for lane in 0..LANES {
+            // Transform both ends to the frame of the ray
+            let end = |end: usize, axis: usize| {
+                let offset = |k: usize| segments.ends[end][k][lane] - ray.origin[k];
+                let axis = &ray.axes[axis];
+                offset(0) * axis[0] + offset(1) * axis[1] + offset(2) * axis[2]
+            };
+            let ([x0, y0, z0], [x1, y1, z1]) = ([end(0, 0), end(0, 1), end(0, 2)], [end(1, 0), end(1, 1), end(1, 2)]);
+            // Find the point of the axis that is nearest to the ray
+            let along = [x1 - x0, y1 - y0];
+            let length2 = along[0] * along[0] + along[1] * along[1];
+            let s = min_or(max_or((-(x0 * along[0] + y0 * along[1])) / length2, 0.0), 1.0);
+            let to_axis = [x0 + s * along[0], y0 + s * along[1]];
+            // Compare its distance with the radius
+            let [r0, r1] = [segments.ends[0][3][lane], segments.ends[1][3][lane]];
+            let radius = r0 + s * (r1 - r0);
+            let t = z0 + s * (z1 - z0);
+            let distance2 = to_axis[0] * to_axis[0] + to_axis[1] * to_axis[1];
+            let is_hit = distance2 <= radius * radius && t > 0.0 && t < t_max;
+            if is_hit && nearest.as_ref().is_none_or(|nearest| t < nearest.t) {
+                nearest = Some(NearestSegment { lane, t, s, along, to_axis, radius });
+            }
+        }
+        nearest.map(|nearest| segments.hit(&nearest))
     }
 
     #[inline(always)]

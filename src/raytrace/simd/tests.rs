@@ -93,3 +93,43 @@ fn the_sobol_kernel_returns_the_bits_of_the_reference_library() {
         }
     }
 }
+
+/// The segment test with the kernels of this CPU.
+struct SegmentTest<'a>(&'a SegmentPacket, &'a RibbonRay, f32);
+
+impl KernelTask for SegmentTest<'_> {
+    type Output = Option<SegmentHit>;
+
+    #[inline(always)]
+    fn run<K: Kernels>(self) -> Self::Output {
+        K::intersect_segments(self.1, self.0, self.2)
+    }
+}
+
+impl SegmentPacket {
+    pub(in crate::raytrace) fn intersect(&self, ray: &RibbonRay, t_max: f32) -> Option<SegmentHit> {
+        let hit = dispatch(SegmentTest(self, ray, t_max));
+        assert_eq!(hit, Scalar::intersect_segments(ray, self, t_max), "AVX2 and scalar kernels differ");
+        hit
+    }
+}
+
+#[test]
+fn a_segment_is_hit_within_its_radius_and_at_its_round_ends() {
+    let point = |x, radius_m| crate::scene::StrandPoint { position: Vec3::X * x, radius_m };
+    let packet = SegmentPacket::new([(9, [point(0.0, 0.1), point(2.0, 0.3)])]);
+    let hit = |x: f32, y: f32| {
+        let ray = RibbonRay::new(Vec3::new(x, y, 4.0), Vec3::new(0.0, 0.0, -2.0));
+        packet.intersect(&ray, 10.0)
+    };
+    let middle = hit(1.0, 0.1).unwrap();
+    assert_eq!((middle.t, middle.segment, middle.s), (2.0, 9, 0.5));
+    // N = Z and T = X: N x T = Y.
+    assert!((middle.h - 0.5).abs() < 1e-6 && (hit(1.0, -0.1).unwrap().h + 0.5).abs() < 1e-6);
+    assert!(hit(1.0, 0.21).is_none() && hit(2.0, 0.29).is_some() && hit(0.0, 0.11).is_none());
+    assert!(hit(2.29, 0.0).is_some() && hit(2.31, 0.0).is_none() && hit(-0.09, 0.0).is_some());
+    let behind = RibbonRay::new(Vec3::new(1.0, 0.0, -4.0), Vec3::NEG_Z);
+    assert!(packet.intersect(&behind, 10.0).is_none());
+    let along = RibbonRay::new(Vec3::new(-1.0, 0.05, 0.0), Vec3::X);
+    assert_eq!(packet.intersect(&along, 10.0).map(|hit| (hit.s, hit.h)), Some((0.0, 0.0)));
+}

@@ -24,6 +24,7 @@ impl<'a> PathTracer<'a> {
         sink: &mut impl RadianceSink,
     ) -> Option<(SurfaceInteraction, Bsdf<'a>)> {
         let scene = self.caster.scene;
+        let Bsdf::Surface(entry) = point.bsdf else { return None };
 
         // Walk from the vertex to where the light enters
         let material = &scene.materials[point.surface.material as usize];
@@ -31,14 +32,14 @@ impl<'a> PathTracer<'a> {
         let end = simd::dispatch(Walk {
             instance: &scene.aggregate.instances()[point.instance as usize],
             materials: &scene.materials,
-            medium: Medium::new(material.extinction_per_m()?, point.bsdf.base_color()),
+            medium: Medium::new(material.extinction_per_m()?, entry.base_color()),
             entry: point.surface,
             set,
             numbers,
             stack: &mut self.caster.stack,
         })?;
         self.caster.rays += u64::from(end.rays);
-        path.throughput *= end.weight * point.bsdf.entry_weight();
+        path.throughput *= end.weight * entry.entry_weight();
         sink.record(|| PathEvent::Subsurface {
             position: end.surface.position,
             rays: end.rays,

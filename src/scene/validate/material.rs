@@ -1,13 +1,15 @@
 //! Checks materials.
 
 use super::check::{Allowed, Check};
-use crate::scene::Material;
+use crate::scene::{Fibre, FibreColor, Material};
 
 /// Reflectances lie in [0, 1): a closed room with reflectance 1 has no finite solution.
 const REFLECTANCE: Allowed = Allowed::between(0.0, 0.999, "");
 /// The colour of clear glass, which does not reflect by it.
 const TRANSMITTANCE: Allowed = Allowed::between(0.0, 1.0, "");
 const FRACTION: Allowed = Allowed::between(0.0, 1.0, "");
+/// Smoother fibres have lobes of less than a degree.
+const FIBRE_ROUGHNESS: Allowed = Allowed::between(0.05, 1.0, "");
 
 pub(super) fn check_material(field: &str, material: &Material, check: &mut Check) {
     let name = |part: &str| format!("{field}.{part}");
@@ -30,7 +32,26 @@ pub(super) fn check_material(field: &str, material: &Material, check: &mut Check
         }
     }
     check.color(&name("emission_cd_m2"), material.emission_cd_m2, Allowed::between(0.0, 1e9, "cd/m2"));
+    if let Some(fibre) = &material.fibre {
+        check_fibre(&name("fibre"), fibre, check);
+        if material.transmission > 0.0 {
+            check.warning(&name("transmission"), "a fibre is opaque as a surface; its colour is in fibre".to_owned());
+        }
+    }
     if material.metallic > 0.0 && material.transmission > 0.0 {
         check.warning(&name("transmission"), "a metal is not transparent; its share of metal stays opaque".to_owned());
     }
+}
+
+fn check_fibre(field: &str, fibre: &Fibre, check: &mut Check) {
+    let name = |part: &str| format!("{field}.{part}");
+    match fibre.color {
+        FibreColor::Melanin { melanin, redness } => {
+            check.number(&name("color.melanin"), melanin, FRACTION);
+            check.number(&name("color.redness"), redness, FRACTION);
+        }
+        FibreColor::Dye(color) => check.color(&name("color"), color, REFLECTANCE),
+    }
+    check.number(&name("roughness_along"), fibre.roughness_along, FIBRE_ROUGHNESS);
+    check.number(&name("roughness_around"), fibre.roughness_around, FIBRE_ROUGHNESS);
 }

@@ -1,0 +1,288 @@
+//! The BSDF of fibres: Chiang et al. 2016, "A Practical and Controllable Hair and Fur Model for Production Path
+//! Tracing", as PBRT, 4th ed., section 9.9, describes it.
+//!
+//! A fibre is a rough dielectric cylinder with pigment. Light leaves it by reflection (R), straight through (TT), after
+//! one internal reflection (TRT), or after more; the last lobe holds all of these. A lobe is the product of a
+//! longitudinal density M, an azimuthal density N and an attenuation A. The model is a far-field one: light leaves where
+//! it entered, in any direction of the sphere. M and N are normalised, and the attenuations of a fibre without pigment
+//! add up to 1, so that it reflects all light.
+//!
+//! The local frame has the fibre's tangent as X and the outgoing direction in the XY plane: the outgoing azimuth is 0,
+//! and the offset h across the fibre counts along -Z. Values include the cosine, which the model divides by.
+//!
+//! The absorption is that of colour channels, not of wavelengths. Reciprocity holds for M without tilt alone, as in the
+//! paper: the attenuation depends on the outgoing direction.
+
+use super::fresnel;
+use super::sample::BsdfSample;
+use crate::color::luminance;
+use crate::math::{orthonormal_basis, safe_sqrt, sin_cos_turn};
+use crate::scene::Fibre;
+use glam::{Vec2, Vec3};
+use std::f32::consts::{PI, TAU};
+
+/// Index of refraction of keratin (Marschner et al. 2003, "Light Scattering from Human Hair Fibers").
+const IOR: f32 = 1.55;
+/// Angle of the scales to the fibre, degrees: 2 to 3 (Marschner et al. 2003). They open towards the tip.
+const TILT_DEG: f32 = 2.0;
+/// Number of lobes: R, TT, TRT, and all others.
+const LOBES: usize = 4;
+/// Roughness below which lobes are too narrow for single precision.
+const MIN_ROUGHNESS: f32 = 0.05;
+
+/// A fibre material prepared for tracing.
+#[derive(Clone, Copy, Debug)]
+pub struct TracedFibre {
+    /// Per fibre radius.
+    absorption: Vec3,
+    longitudinal: [Longitudinal; LOBES],
+    azimuthal: TrimmedLogistic,
+    /// Sine and cosine of the tilt of R, TT and TRT.
+    tilts: [(f32, f32); LOBES],
+    /// Mean albedo over all directions and offsets.
+    albedo: Vec3,
+}
+
+impl TracedFibre {
+    /// Prepares a fibre.
+    pub fn new(fibre: &Fibre) -> Self {
+        // Variance of each longitudinal lobe (Chiang et al. 2016, equation 7)
+        let m = fibre.roughness_along.clamp(MIN_ROUGHNESS, 1.0);
+        let v = (0.726 * m + 0.812 * m * m + 3.7 * m.powi(20)).powi(2);
+        // Scale of the azimuthal lobes (equation 8)
+        let n = fibre.roughness_around.clamp(MIN_ROUGHNESS, 1.0);
+        let s = (PI / 8.0).sqrt() * (0.265 * n + 1.194 * n * n + 5.372 * n.powi(22));
+        // The scales tilt R by twice their angle towards the root, TT and TRT by one and four angles towards the tip
+        let tilt = |factor: f32| (factor * TILT_DEG).to_radians().sin_cos();
+        let mut traced = TracedFibre {
+            absorption: fibre.absorption_per_radius(),
+            longitudinal: [v, 0.25 * v, 4.0 * v, 4.0 * v].map(Longitudinal::new),
+            azimuthal: TrimmedLogistic::new(s),
+            tilts: [tilt(2.0), tilt(-1.0), tilt(-4.0), tilt(0.0)],
+            albedo: Vec3::ZERO,
+        };
+        traced.albedo = traced.mean_albedo();
+        traced
+    }
+
+    /// Returns the mean albedo over all directions and offsets.
+    pub fn albedo(&self) -> Vec3 {
+        self.albedo
+    }
+
+    /// Averages the albedo over offsets and directions by the midpoint rule. A fibre's area in a direction is
+    /// proportional to the cosine of its longitude.
+    fn mean_albedo(&self) -> Vec3 {
+        const STEPS: usize = 16;
+        let midpoint = |i: usize| (i as f32 + 0.5) / STEPS as f32;
+        let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
+        for (i, k) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |k| (i, k))) {
+            let sin_theta = midpoint(i);
+            let cos_theta = safe_sqrt(1.0 - sin_theta * sin_theta);
+            let (attenuation, _) = attenuations(self.absorption, sin_theta, cos_theta, 2.0 * midpoint(k) - 1.0);
+            sum += attenuation.into_iter().sum::<Vec3>() * cos_theta;
+            weights += cos_theta;
+        }
+        sum / weights
+    }
+}
+
+/// A fibre's BSDF for one outgoing direction and offset.
+#[derive(Clone, Copy, Debug)]
+pub struct FibreBsdf<'a> {
+    fibre: &'a TracedFibre,
+    tangent: Vec3,
+    /// Perpendicular to the tangent, towards the outgoing direction.
+    facing: Vec3,
+    /// Perpendicular to both.
+    across: Vec3,
+    /// Sine and cosine of the outgoing direction's longitude, tilted for each lobe.
+    outgoing: [(f32, f32); LOBES],
+    /// Azimuth of each of R, TT and TRT that the cylinder's surface would give.
+    azimuths: [f32; LOBES - 1],
+    attenuation: [Vec3; LOBES],
+    /// Probability of each lobe.
+    probability: [f32; LOBES],
+}
+
+impl<'a> FibreBsdf<'a> {
+    /// Returns the BSDF for a unit outgoing direction at an offset `h`, -1 to 1, of a fibre along `tangent`, from root to
+    /// tip.
+    pub fn new(fibre: &'a TracedFibre, tangent: Vec3, h: f32, wo: Vec3) -> Self {
+        // Build the local frame
+        let sin_theta = wo.dot(tangent).clamp(-1.0, 1.0);
+        let cos_theta = safe_sqrt(1.0 - sin_theta * sin_theta);
+        let facing = (wo - tangent * sin_theta).try_normalize().unwrap_or_else(|| orthonormal_basis(tangent).0);
+        let across = tangent.cross(facing);
+        // Refract the ray into the cylinder
+        let (attenuation, sin_gamma_t) = attenuations(fibre.absorption, sin_theta, cos_theta, h);
+        let (gamma_o, gamma_t) = (h.clamp(-1.0, 1.0).asin(), sin_gamma_t.clamp(-1.0, 1.0).asin());
+        let azimuths = [0.0, 1.0, 2.0].map(|p| 2.0 * p * gamma_t - 2.0 * gamma_o + p * PI);
+        // Sample the lobes by their luminance
+        let total = attenuation.into_iter().map(luminance).sum::<f32>();
+        let probability = attenuation.map(|a| luminance(a) / total);
+        let tilted =
+            |(sin, cos): (f32, f32)| (sin_theta * cos + cos_theta * sin, (cos_theta * cos - sin_theta * sin).abs());
+        FibreBsdf {
+            fibre,
+            tangent,
+            facing,
+            across,
+            outgoing: fibre.tilts.map(tilted),
+            azimuths,
+            attenuation,
+            probability,
+        }
+    }
+
+    /// Returns BSDF times cosine, and the density of [`FibreBsdf::sample`] (1/sr), for a unit direction.
+    pub fn eval(&self, direction: Vec3) -> (Vec3, f32) {
+        let sin_theta = direction.dot(self.tangent).clamp(-1.0, 1.0);
+        let azimuth = direction.dot(self.across).atan2(direction.dot(self.facing));
+        self.eval_local(sin_theta, safe_sqrt(1.0 - sin_theta * sin_theta), azimuth)
+    }
+
+    fn eval_local(&self, sin_theta: f32, cos_theta: f32, azimuth: f32) -> (Vec3, f32) {
+        let (mut value, mut pdf) = (Vec3::ZERO, 0.0);
+        for lobe in 0..LOBES {
+            let (sin_o, cos_o) = self.outgoing[lobe];
+            let along = self.fibre.longitudinal[lobe].density(sin_theta, cos_theta, sin_o, cos_o);
+            let around =
+                self.azimuths.get(lobe).map_or(1.0 / TAU, |&mean| self.fibre.azimuthal.density(azimuth - mean));
+            value += self.attenuation[lobe] * (along * around);
+            pdf += self.probability[lobe] * (along * around);
+        }
+        (value, pdf)
+    }
+
+    /// Samples a direction for a lobe number in 0..1 and a point of the unit square.
+    pub fn sample(&self, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        // Sample a lobe; the rest of the number is uniform again
+        let (mut lobe, mut u_lobe) = (0, u_lobe);
+        while lobe + 1 < LOBES && u_lobe >= self.probability[lobe] {
+            u_lobe -= self.probability[lobe];
+            lobe += 1;
+        }
+        let u_azimuth = (u_lobe / self.probability[lobe]).clamp(0.0, 1.0 - f32::EPSILON);
+        // Sample its longitude and azimuth
+        let (sin_theta, cos_theta) = self.fibre.longitudinal[lobe].sample(self.outgoing[lobe], u);
+        let azimuth = match self.azimuths.get(lobe) {
+            Some(mean) => mean + self.fibre.azimuthal.sample(u_azimuth),
+            None => TAU * u_azimuth,
+        };
+        // Evaluate all lobes in that direction
+        let (value, pdf) = self.eval_local(sin_theta, cos_theta, azimuth);
+        let (sin, cos) = azimuth.sin_cos();
+        let direction = self.tangent * sin_theta + (self.facing * cos + self.across * sin) * cos_theta;
+        (pdf > 0.0).then(|| BsdfSample::non_specular(direction.normalize_or(self.facing), value / pdf, pdf))
+    }
+}
+
+/// Returns the attenuation of each lobe, and the sine of the azimuth of the ray inside of the fibre. The fourth lobe is
+/// the geometric series of all internal reflections.
+fn attenuations(absorption: Vec3, sin_theta: f32, cos_theta: f32, h: f32) -> ([Vec3; LOBES], f32) {
+    // Refract the ray; the azimuth has the modified index of refraction of the ray's projection
+    let cos_theta_t = safe_sqrt(1.0 - (sin_theta / IOR).powi(2));
+    let projected_ior = safe_sqrt(IOR * IOR - sin_theta * sin_theta) / cos_theta.max(1e-6);
+    let sin_gamma_t = h / projected_ior;
+    let cos_gamma_t = safe_sqrt(1.0 - sin_gamma_t * sin_gamma_t);
+    // Absorb light on one way through the fibre
+    let transmittance = (-absorption * (2.0 * cos_gamma_t / cos_theta_t)).exp();
+    // Divide it among the lobes
+    let reflectance = fresnel::dielectric(cos_theta * safe_sqrt(1.0 - h * h), IOR);
+    let straight = transmittance * (1.0 - reflectance).powi(2);
+    let reflected = straight * transmittance * reflectance;
+    let others =
+        reflected * transmittance * reflectance / (Vec3::ONE - transmittance * reflectance).max(Vec3::splat(1e-6));
+    ([Vec3::splat(reflectance), straight, reflected, others], sin_gamma_t)
+}
+
+/// The longitudinal density M of a lobe (d'Eon et al. 2011, "An Energy-Conserving Hair Reflectance Model", equation 7):
+/// its integral over the sine of the longitude is 1.
+#[derive(Clone, Copy, Debug)]
+struct Longitudinal {
+    variance: f32,
+    inverse_variance: f32,
+    /// e^(-2 / variance).
+    floor: f32,
+    /// 1 / (variance (1 - e^(-2 / variance))).
+    scale: f32,
+}
+
+impl Longitudinal {
+    fn new(variance: f32) -> Self {
+        let floor = (-2.0 / variance).exp();
+        Longitudinal { variance, inverse_variance: 1.0 / variance, floor, scale: 1.0 / (variance * (1.0 - floor)) }
+    }
+
+    /// Returns the density for the incident and the tilted outgoing longitude.
+    fn density(&self, sin_i: f32, cos_i: f32, sin_o: f32, cos_o: f32) -> f32 {
+        let a = cos_i * cos_o * self.inverse_variance;
+        // Without overflow: the factor e^a of the Bessel function is in the exponent.
+        let exponent = (cos_i * cos_o - sin_i * sin_o - 1.0) * self.inverse_variance;
+        scaled_bessel_i0(a) * exponent.exp() * self.scale
+    }
+
+    /// Samples sine and cosine of the incident longitude (d'Eon 2013, "Importance Sampling for Physically-Based Hair
+    /// Fiber Models").
+    fn sample(&self, (sin_o, cos_o): (f32, f32), u: Vec2) -> (f32, f32) {
+        let u_x = u.x.max(1e-7);
+        let cos = 1.0 + self.variance * (u_x + (1.0 - u_x) * self.floor).ln();
+        let sin = safe_sqrt(1.0 - cos * cos);
+        let (_, cos_turn) = sin_cos_turn(u.y);
+        let sin_theta = (-cos * sin_o + sin * cos_turn * cos_o).clamp(-1.0, 1.0);
+        (sin_theta, safe_sqrt(1.0 - sin_theta * sin_theta))
+    }
+}
+
+/// The azimuthal density N: a logistic distribution of a scale, trimmed to -pi to pi.
+#[derive(Clone, Copy, Debug)]
+struct TrimmedLogistic {
+    scale: f32,
+    /// Cumulative density of the untrimmed distribution at -pi.
+    low: f32,
+}
+
+impl TrimmedLogistic {
+    fn new(scale: f32) -> Self {
+        TrimmedLogistic { scale, low: 1.0 / (1.0 + (PI / scale).exp()) }
+    }
+
+    /// Returns the density at any angle, wrapped to -pi to pi.
+    fn density(&self, angle: f32) -> f32 {
+        let wrapped = angle - TAU * (angle / TAU).round();
+        let e = (-wrapped.abs() / self.scale).exp();
+        e / (self.scale * (1.0 + e) * (1.0 + e) * (1.0 - 2.0 * self.low))
+    }
+
+    /// Samples an angle.
+    fn sample(&self, u: f32) -> f32 {
+        let cumulative = self.low + u * (1.0 - 2.0 * self.low);
+        (-self.scale * (1.0 / cumulative - 1.0).ln()).clamp(-PI, PI)
+    }
+}
+
+/// Returns the modified Bessel function I0(x) e^-x for x >= 0, within 2e-7 (Abramowitz and Stegun 1964, 9.8.1 and 9.8.2).
+fn scaled_bessel_i0(x: f32) -> f32 {
+    let horner = |t: f32, coefficients: &[f32]| coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c);
+    if x < 3.75 {
+        let t = (x / 3.75) * (x / 3.75);
+        horner(t, &[1.0, 3.515_622_9, 3.089_942_4, 1.206_749_2, 0.265_973_2, 0.036_076_8, 0.004_581_3]) * (-x).exp()
+    } else {
+        let coefficients = [
+            0.398_942_28,
+            0.013_285_92,
+            0.002_253_19,
+            -0.001_575_65,
+            0.009_162_81,
+            -0.020_577_06,
+            0.026_355_37,
+            -0.016_476_33,
+            0.003_923_77,
+        ];
+        horner(3.75 / x, &coefficients) / x.sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests;

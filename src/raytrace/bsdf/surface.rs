@@ -1,0 +1,134 @@
+//! The BSDF of surfaces: a mix of metal, coated diffuse base and clear glass. Its head in [`super`] names the sources.
+
+use super::dielectric::{Boundary, DielectricInterface, DielectricLobe};
+use super::diffuse::DiffuseLobe;
+use super::lobe::{Lobe, LobeProbabilities};
+use super::material::TracedMaterial;
+use super::microfacet::{self, MicrofacetLobe};
+use super::polarisation::Polarisation;
+use super::sample::BsdfSample;
+use super::shading_geometry::ShadingGeometry;
+use glam::{Vec2, Vec3};
+
+/// The BSDF at a point of a surface for one outgoing direction.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceBsdf<'a> {
+    pub(super) material: &'a TracedMaterial,
+    /// Of the material, times its texture.
+    pub(super) base_color: Vec3,
+    pub(super) geometry: ShadingGeometry,
+    pub(super) probabilities: LobeProbabilities,
+    pub(super) dielectric: DielectricLobe,
+    pub(super) microfacet: MicrofacetLobe,
+    pub(super) diffuse: DiffuseLobe,
+}
+
+impl<'a> SurfaceBsdf<'a> {
+    /// Returns the BSDF for the outgoing direction `wo` (unit, world space), outward normals and a texture value. A
+    /// clear material is a body in air; see [`SurfaceBsdf::with_boundary`] for others.
+    pub fn new(material: &'a TracedMaterial, texture: Vec3, normal: Vec3, geometric_normal: Vec3, wo: Vec3) -> Self {
+        let is_outside = wo.dot(geometric_normal) >= 0.0;
+        let geometry = ShadingGeometry::new(normal, geometric_normal, wo);
+        let base_color = material.base_color * texture;
+        let eta = if is_outside { material.ior } else { 1.0 / material.ior };
+        let boundary = Boundary::Interface(DielectricInterface { eta, starts_inside: false });
+        let coat_albedo = material.coat_albedo(geometry.wo.z);
+        SurfaceBsdf {
+            material,
+            base_color,
+            geometry,
+            probabilities: LobeProbabilities {
+                dielectric: material.transmission,
+                microfacet: material.microfacet_probability(base_color, coat_albedo),
+                base: Lobe::Diffuse,
+            },
+            dielectric: DielectricLobe { ior: material.ior, base_color, boundary, polarisation: Polarisation::NONE },
+            microfacet: MicrofacetLobe::new(material, geometry.wo),
+            diffuse: DiffuseLobe { factor: material.diffuse_factor(base_color, coat_albedo) },
+        }
+    }
+
+    /// Returns the same BSDF with this boundary, for a path that accepts this polarisation.
+    pub fn with_boundary(self, boundary: Boundary, polarisation: Polarisation) -> Self {
+        SurfaceBsdf { dielectric: DielectricLobe { boundary, polarisation, ..self.dielectric }, ..self }
+    }
+
+    /// Returns the shading normal on the side of the outgoing direction.
+    pub fn normal(&self) -> Vec3 {
+        self.geometry.normal
+    }
+
+    /// Returns the Fresnel reflectance of clear glass, which is the probability that [`SurfaceBsdf::sample`] samples
+    /// reflection: for lobe numbers below it. Returns none for materials with other lobes.
+    pub fn dielectric_reflectance(&self) -> Option<f32> {
+        (self.material.transmission >= 1.0).then(|| self.dielectric.reflectance(&self.geometry))
+    }
+
+    /// Returns true if it has a lobe that is not a delta function.
+    pub fn has_non_specular_lobe(&self) -> bool {
+        self.material.has_non_specular_lobe()
+    }
+
+    /// Returns BSDF times cosine, and the density of [`SurfaceBsdf::sample`] (1/sr), for a unit world direction. Delta lobes
+    /// are left out of both.
+    pub fn eval(&self, direction: Vec3) -> (Vec3, f32) {
+        let wi = self.geometry.to_local(direction);
+        if wi.z <= 0.0 || !self.geometry.is_above(direction) || self.material.transmission >= 1.0 {
+            return (Vec3::ZERO, 0.0);
+        }
+        self.eval_local(wi)
+    }
+
+    /// Sums the non-specular lobes for a direction in the local frame.
+    fn eval_local(&self, wi: Vec3) -> (Vec3, f32) {
+        let (mut value, mut pdf) = (Vec3::ZERO, 0.0);
+        for lobe in Lobe::NON_SPECULAR {
+            let (lobe_value, lobe_pdf) = self.eval_lobe(lobe, wi);
+            value += lobe_value;
+            pdf += lobe_pdf;
+        }
+        let opaque = 1.0 - self.material.transmission;
+        (value * opaque, pdf * opaque)
+    }
+
+    /// Returns BSDF times cosine and pdf times probability of one lobe. 0 for delta lobes.
+    #[inline(always)]
+    fn eval_lobe(&self, lobe: Lobe, wi: Vec3) -> (Vec3, f32) {
+        let probability = self.probabilities.opaque(lobe);
+        match lobe {
+            Lobe::Dielectric | Lobe::Subsurface => (Vec3::ZERO, 0.0),
+            Lobe::Microfacet => self.microfacet.eval(self.material, self.base_color, self.geometry.wo, wi, probability),
+            Lobe::Diffuse => self.diffuse.eval(wi, self.material.coat_albedo(wi.z), probability),
+        }
+    }
+
+    /// Samples a direction for a lobe number in 0..1 and a point of the unit square. Returns none for samples without
+    /// contribution.
+    pub fn sample(&self, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
+        // Sample a lobe, and a direction from it
+        let (lobe, u_lobe) = self.probabilities.sample(u_lobe);
+        let wi = match lobe {
+            Lobe::Dielectric => return self.dielectric.sample(&self.geometry, u_lobe),
+            Lobe::Microfacet if self.material.is_smooth() => return self.sample_smooth_microfacet(),
+            Lobe::Microfacet => MicrofacetLobe::sample(self.material, self.geometry.wo, u),
+            Lobe::Diffuse => DiffuseLobe::sample(u),
+            Lobe::Subsurface => return None,
+        };
+        // Discard directions below the surface
+        let direction = self.geometry.to_world(wi);
+        if wi.z <= 0.0 || !self.geometry.is_above(direction) {
+            return None;
+        }
+        // Evaluate all lobes in that direction
+        let (value, pdf) = self.eval_local(wi);
+        (pdf > 0.0).then(|| BsdfSample::non_specular(direction, value / pdf, pdf))
+    }
+
+    /// Samples the microfacet lobe of a smooth surface: specular reflection.
+    fn sample_smooth_microfacet(&self) -> Option<BsdfSample> {
+        let wo = self.geometry.wo;
+        let reflectance = microfacet::reflectance(self.material, self.base_color, wo, wo.z);
+        let weight = reflectance / self.probabilities.microfacet;
+        Some(BsdfSample { weight, ..BsdfSample::specular(self.geometry.specular_reflection()?) })
+    }
+}
