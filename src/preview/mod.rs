@@ -8,7 +8,8 @@
 //!   |  uploads: meshes, textures, draw records, frame constants, surfaces, lights, tiles, shadow slots
 //!   v
 //! [shadow map pass]     one per stale view and side  -> shadow map array (Depth32Float)
-//! [geometry pass]       opaque items, culled clusters-> G-buffer (Rgba32Uint), ids (Rg32Uint), depth (Depth32Float)
+//! [geometry pass]       opaque items, culled clusters, strands as ribbons
+//!                                               -> G-buffer (Rgba32Uint), ids (Rg32Uint), depth (Depth32Float)
 //! [shadow mask + blur]  four lights per mask         -> mask array (Rg32Uint), from G-buffer, ids, shadow maps
 //! lighting pass         full-screen, lights per tile -> picture; in a draft -> coarse lighting (Rgba32Uint)
 //!   resolve pass        drafts: joint bilateral upsampling of the coarse lighting -> picture

@@ -11,6 +11,9 @@ use std::sync::Arc;
 /// Depth bias of the room: paper that lies on its floor is drawn over it.
 const ROOM_DEPTH_FACTOR: f32 = 1.0 - 1e-4;
 
+/// Number of strands of a mesh that are drawn, as ribbons that are wider for those left out.
+const MAX_RIBBONS: usize = 4000;
+
 /// An instance of a mesh.
 #[derive(Debug)]
 pub(super) struct MeshInstance {
@@ -64,7 +67,12 @@ impl SceneGeometry {
                 continue;
             };
             let state = PrimitiveState { cull_back_faces: false, depth_factor: 1.0 };
-            geometry.add(mesh, world_from_object, index, state, assets, |part| object.material_of(part).clone());
+            let material = |part: &str| object.material_of(part).clone();
+            if !mesh.strands.is_empty() {
+                let ribbons = Arc::new(mesh.strands.ribbons(MAX_RIBBONS));
+                geometry.add(ribbons, world_from_object, index, state, assets, material);
+            }
+            geometry.add(mesh, world_from_object, index, state, assets, material);
         }
         geometry
     }

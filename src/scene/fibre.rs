@@ -1,12 +1,15 @@
 //! Fibres: the hair of people and animals, and dyed threads.
 
 use glam::Vec3;
+use std::f32::consts::PI;
 
 /// Absorption of eumelanin (black and brown) of concentration 1, per fibre radius, linear RGB (d'Eon et al. 2011, "An
 /// Energy-Conserving Hair Reflectance Model", as given in PBRT, 4th ed., section 9.9).
 const EUMELANIN: Vec3 = Vec3::new(0.419, 0.697, 1.37);
 /// Absorption of pheomelanin (red and yellow) of concentration 1, per fibre radius, linear RGB (same source).
 const PHEOMELANIN: Vec3 = Vec3::new(0.187, 0.4, 1.05);
+/// Roughness below which lobes are too narrow for single precision.
+pub(super) const MIN_ROUGHNESS: f32 = 0.05;
 /// Part of a melanin amount of 1 that gives black hair the finite concentration of 8.
 const MAX_MELANIN: f32 = 0.99966;
 
@@ -49,6 +52,18 @@ impl Fibre {
     /// Returns natural hair of this pigment.
     pub fn of_melanin(melanin: f32, redness: f32) -> Self {
         Fibre { color: FibreColor::Melanin { melanin, redness }, ..Fibre::default() }
+    }
+
+    /// Returns the variance of the longitudinal lobe of reflected light (Chiang et al. 2016, equation 7).
+    pub fn longitudinal_variance(&self) -> f32 {
+        let m = self.roughness_along.clamp(MIN_ROUGHNESS, 1.0);
+        (0.726 * m + 0.812 * m * m + 3.7 * m.powi(20)).powi(2)
+    }
+
+    /// Returns the scale of the logistic azimuthal lobes, radians (Chiang et al. 2016, equation 8).
+    pub fn azimuthal_scale(&self) -> f32 {
+        let n = self.roughness_around.clamp(MIN_ROUGHNESS, 1.0);
+        (PI / 8.0).sqrt() * (0.265 * n + 1.194 * n * n + 5.372 * n.powi(22))
     }
 
     /// Returns the absorption coefficient inside of the fibre, per fibre radius, linear RGB.

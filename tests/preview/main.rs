@@ -26,11 +26,14 @@ mod channels;
 mod closed_forms;
 mod drafts;
 mod each_light;
+mod hair;
 mod lens;
 mod picture;
 mod room;
 mod shadow_cache;
 mod stored;
+#[path = "../studio/strands.rs"]
+mod strands;
 mod textures;
 mod thin_shadows;
 

@@ -4,6 +4,7 @@ use super::clusters::ObjectFrustum;
 use super::draw_item::DrawItem;
 use super::draw_uniforms::DrawUniforms;
 use super::mesh_cache::{GpuMesh, MeshCache};
+use super::strands::StrandItem;
 use super::texture_cache::TextureCache;
 use eframe::wgpu;
 
@@ -37,6 +38,13 @@ impl GeometryCaches {
         for run in frustum.visible(mesh.clusters(&item.indices)) {
             pass.draw_indexed(run, 0, 0..1);
         }
+    }
+
+    /// Draws a run of instances of a part of a mesh's strands.
+    pub fn draw_strands(&self, pass: &mut wgpu::RenderPass, item: &StrandItem, instances: std::ops::Range<u32>) {
+        let Some(strands) = self.meshes.get(item.mesh).and_then(|mesh| mesh.strands.as_ref()) else { return };
+        self.draws.bind(pass, item.surface);
+        strands.draw(pass, instances);
     }
 
     fn bind(&self, pass: &mut wgpu::RenderPass, item: &DrawItem) -> Option<&GpuMesh> {

@@ -4,6 +4,7 @@ use super::caches::GeometryCaches;
 use super::draw_item::{DrawItem, DrawPass, ShadowCasting, Sides};
 use super::mesh_cache::{EmitterSurface, MeshKey};
 use super::oriented_box::OrientedBox;
+use super::strands::StrandItem;
 use super::surface::{FLAG_EMITTER, FLAG_GLOWS, FLAG_HOVERED, FLAG_SELECTED, GpuDraw, GpuSurface};
 use super::texture_cache::WHITE;
 use crate::photo::PhotometricLight;
@@ -11,7 +12,7 @@ use crate::photo::emitter::EmitterShape;
 use crate::preview::gpu::context::GpuContext;
 use crate::preview::input::{Overlay, Pick};
 use crate::preview::lights::light_table::{emission, picture_scale};
-use crate::scene::{Assets, Material, MeshPart, Scene};
+use crate::scene::{Assets, Fibre, FibreColor, Material, MeshPart, Object, Scene};
 use glam::{Affine3A, Vec3};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -25,6 +26,8 @@ pub(crate) struct DrawList {
     /// The thing that a click on the surface selects.
     pub picks: Vec<Option<Pick>>,
     pub items: Vec<DrawItem>,
+    /// Hair and the like.
+    pub strands: Vec<StrandItem>,
     /// Boxes of the objects that cast shadows.
     pub casters: Vec<OrientedBox>,
     /// Hash of the meshes and transforms of all casters.
@@ -107,6 +110,7 @@ impl DrawList {
                     item.glass_sides = shadow.glass_sides();
                 }
             }
+            self.add_strands(scene, object, mesh, flags, uploads);
             if self.items.iter().rev().take(parts.len()).any(|item| item.shadow != ShadowCasting::None) {
                 self.casters.push(caster);
                 mesh.hash(signature);
@@ -115,6 +119,23 @@ impl DrawList {
             if flags != 0 {
                 self.outlined.push(caster);
             }
+        }
+    }
+
+    /// Adds the strands of an object, whose box is the next among the casters.
+    fn add_strands(&mut self, scene: &Scene, object: &Object, mesh: MeshKey, flags: u32, uploads: &Uploads) {
+        let strands = uploads.caches.meshes.get(mesh).and_then(|mesh| mesh.strands.as_ref());
+        for (name, instances, mean_radius_m) in strands.map(|strands| &strands.parts).into_iter().flatten() {
+            let (material, world_from_object) = (object.material_of(name), object.transform.world_from_object());
+            let surface = self.add_surface(&world_from_object, material, scene, flags, Some(Pick::Object(object.id)));
+            // Strands without a fibre material have the hair of a default fibre in their colour
+            let color = |material: &Material| FibreColor::Dye(material.base_color);
+            let fibre = material.fibre.unwrap_or(Fibre { color: color(material), ..Fibre::default() });
+            let record = &mut self.surfaces[surface as usize];
+            record.base_color = fibre.absorption_per_radius().into();
+            (record.roughness, record.metallic) = (fibre.longitudinal_variance(), fibre.azimuthal_scale());
+            let (instances, mean_radius_m, caster) = (instances.clone(), *mean_radius_m, self.casters.len());
+            self.strands.push(StrandItem { mesh, instances, mean_radius_m, surface, caster });
         }
     }
 

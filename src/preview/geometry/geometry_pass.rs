@@ -4,6 +4,7 @@ use super::clusters::ObjectFrustum;
 use super::draw_item::{DrawPass, Sides};
 use super::draw_list::DrawList;
 use super::pipelines::GeometryPipelines;
+use super::strands::StrandPipelines;
 use super::texture_cache::WHITE;
 use crate::preview::frame_resources::FrameResources;
 use crate::preview::gpu::bindings::{color_attachment, depth_attachment};
@@ -12,14 +13,15 @@ use crate::scene::{CameraFrame, TextureSlot};
 use eframe::wgpu;
 use glam::Mat4;
 
-/// Draws the opaque items of a list as `camera` sees them. `clear_gbuffer` clears the G-buffer besides ids and depth.
+/// Draws the opaque items of a list as `camera` sees them. `clear_gbuffer` clears the G-buffer besides ids and depth;
+/// `pixel_angle` is half the width of a pixel at 1 m.
 pub(crate) fn draw(
     encoder: &mut wgpu::CommandEncoder,
-    pipelines: &GeometryPipelines,
+    (pipelines, strand_pipelines): (&GeometryPipelines, &StrandPipelines),
     resources: FrameResources,
     list: &DrawList,
     camera: &CameraFrame,
-    clear_gbuffer: bool,
+    (clear_gbuffer, pixel_angle): (bool, f32),
 ) {
     let FrameResources { scene, targets, caches } = resources;
     let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
@@ -42,5 +44,12 @@ pub(crate) fn draw(
         let eye_object = world_from_object.inverse().transform_point3(camera.position());
         let cull_back_faces = matches!(sides, Sides::Front | Sides::Back);
         caches.draw_culled(&mut pass, item, &ObjectFrustum::new(eye_object, clip_from_object, cull_back_faces));
+    }
+    for item in &list.strands {
+        let world_from_object = &list.transforms[item.surface as usize];
+        let distance = list.casters.get(item.caster).map_or(1.0, |caster| caster.distance(camera.position()));
+        let pixel_m = 2.0 * pixel_angle * distance.max(NEAR_M);
+        pass.set_pipeline(&strand_pipelines.geometry);
+        caches.draw_strands(&mut pass, item, item.visible(pixel_m, world_from_object));
     }
 }

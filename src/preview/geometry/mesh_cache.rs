@@ -1,6 +1,7 @@
 //! The mesh cache: vertex and index buffers, uploaded once and kept while in use.
 
 use super::clusters::{Cluster, Clustered};
+use super::strands::GpuStrands;
 use crate::scene::{Assets, Mesh, MeshPart, Room, Shape, room_mesh, tessellate};
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu::{self, util::DeviceExt as _};
@@ -54,6 +55,7 @@ pub(crate) struct GpuMesh {
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
     pub parts: Vec<MeshPart>,
+    pub strands: Option<GpuStrands>,
     /// Clusters of all triangles, in index order.
     clusters: Vec<Cluster>,
     /// Corners in object space.
@@ -171,6 +173,7 @@ fn upload(device: &wgpu::Device, mesh: &Mesh, frame: u64) -> Option<GpuMesh> {
         vertices: buffer("vertices", bytemuck::cast_slice(&vertices), wgpu::BufferUsages::VERTEX),
         indices: buffer("indices", bytemuck::cast_slice(&clustered.triangles), wgpu::BufferUsages::INDEX),
         parts: mesh.parts.iter().map(inside).filter(|part| !part.triangles.is_empty()).collect(),
+        strands: GpuStrands::upload(device, &mesh.strands),
         clusters: clustered.clusters,
         bounds: mesh.bounds(),
         last_used: frame,

@@ -9,5 +9,6 @@ pub mod geometry_pass;
 pub mod mesh_cache;
 pub mod oriented_box;
 pub mod pipelines;
+pub mod strands;
 pub mod surface;
 pub mod texture_cache;

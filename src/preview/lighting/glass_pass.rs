@@ -30,6 +30,7 @@ pub(crate) fn draw(
         coarse: false,
         illuminance: false,
         gloss: Gloss::Ggx,
+        has_fibres: false,
     };
     let mut draws = Vec::new();
     for item in list.items.iter().filter(|item| item.pass == DrawPass::Glass) {

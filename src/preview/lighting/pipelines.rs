@@ -29,6 +29,8 @@ pub(crate) struct LightingVariant {
     /// Writes the illuminance in false colour.
     pub illuminance: bool,
     pub gloss: Gloss,
+    /// Strands are present.
+    pub has_fibres: bool,
 }
 
 /// Returns a WGSL flag: 1 or 0.
@@ -67,6 +69,7 @@ pub(crate) fn lighting(
         ("TILED", flag(variant.tiled)),
         ("HAS_BEAMS", flag(variant.has_beams)),
         ("ILLUMINANCE", flag(variant.illuminance)),
+        ("HAS_FIBRES", flag(variant.has_fibres && !variant.illuminance)),
         ("BLINN_PHONG", flag(variant.gloss == Gloss::BlinnPhong)),
     ];
     let layout = pipeline_layout(device, "lighting", &[&layouts.scene, &layouts.gbuffer, &layouts.masks]);

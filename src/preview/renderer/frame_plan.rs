@@ -78,6 +78,7 @@ impl FramePlan {
             coarse: self.is_draft,
             illuminance: options.channel == Channel::Illuminance,
             gloss: options.gloss,
+            has_fibres: !self.list.strands.is_empty(),
         }
     }
 
@@ -100,6 +101,9 @@ impl FramePlan {
         bytemuck::cast_slice::<_, u8>(&self.list.draws).hash(&mut hasher);
         for item in &self.list.items {
             (item.mesh, &item.indices, item.surface, item.textures, item.pass as u32).hash(&mut hasher);
+        }
+        for item in &self.list.strands {
+            (item.mesh, &item.instances, item.surface).hash(&mut hasher);
         }
         hasher.finish()
     }

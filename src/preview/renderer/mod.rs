@@ -247,7 +247,9 @@ impl PreviewRenderer {
         // rasterisers save its clear
         if stale.gbuffer {
             let clear = !self.gpu.is_cpu;
-            geometry_pass::draw(&mut encoder, &self.geometry, resources, &plan.list, &input.frame, clear);
+            let pipelines = (&self.geometry, &self.shadows.strands);
+            let pixel_angle = plan.constants.pixel_angle;
+            geometry_pass::draw(&mut encoder, pipelines, resources, &plan.list, &input.frame, (clear, pixel_angle));
         }
         // Filter the shadow maps into the shadow masks
         if stale.masks {

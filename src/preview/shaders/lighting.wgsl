@@ -22,6 +22,8 @@ override LIGHT_CULLING: bool = true;
 override HAS_BEAMS: bool = true;
 // Writes the irradiance, as reflected by a white Lambertian surface.
 override ILLUMINANCE: bool = false;
+// Strands are present.
+override HAS_FIBRES: bool = false;
 // Uses Blinn-Phong highlights instead of GGX.
 override BLINN_PHONG: bool = false;
 
@@ -119,6 +121,31 @@ fn load_visibility(p: GBufferSample) {
     }
 }
 
+// Returns the light that a fibre scatters from a light; nothing for other surfaces. `from_light` is the colour times
+// normal irradiance, without visibility; `a` has the light's centre and half axes.
+fn fibre_light(f: Fibre, is_fibre: bool, light: u32, from_light: vec3f, direction: vec3f, angle2: f32) -> vec3f {
+    var sum = vec3f(0.0);
+    // A loop, for CPU rasterisers execute both sides of a branch
+    for (var i = 0u; i < select(0u, 1u, is_fibre); i++) {
+        sum = fibre_scatter(f, direction, angle2) * scattered_visibility(f, light_visibility(light)) * from_light;
+    }
+    return sum;
+}
+
+// Returns the squared angular radius of an emitter.
+fn emitter_angle2(a: IncidentLight) -> f32 {
+    return max(dot(a.right, a.right), dot(a.up, a.up)) / max(dot(a.centre, a.centre), 1e-6);
+}
+
+// Returns the normal that a light is received with: towards the light for a fibre.
+fn receiving_normal(s: Shading, is_fibre: bool, light: u32) -> vec3f {
+    if !HAS_FIBRES {
+        return s.normal;
+    }
+    let to_light = lights[light].position - s.position;
+    return select(s.normal, to_light * inverseSqrt(max(dot(to_light, to_light), 1e-12)), is_fibre);
+}
+
 // Shades a pixel. The loops test at their end: there is at least one light of each kind, and a CPU rasteriser would pay
 // for the extra iteration that a test at the start costs.
 fn shade(p: GBufferSample) -> ShadedLight {
@@ -135,6 +162,17 @@ fn shade(p: GBufferSample) -> ShadedLight {
     }
     var specular = environment(position, reflect(-s.view, s.normal), gloss.x) * s.material.reflectance;
 
+    // Fibres have their tangent in place of the normal, and scatter light over the whole sphere
+    let is_fibre = HAS_FIBRES && p.packed.y >> 30u == 3u;
+    var f: Fibre;
+    var scattered = vec3f(0.0);
+    if HAS_FIBRES {
+        for (var i = 0u; i < select(0u, 1u, is_fibre); i++) {
+            f = fibre(s.normal, s.view, surfaces[(p.id.x & ID_INDEX_MASK) - 1u]);
+            scattered = f.albedo * (0.5 / PI) * (ambient(position, f.facing) + ambient(position, -f.facing));
+        }
+    }
+
     let tile = tile_offset(p.at);
     // Points, spots and suns
     if HAS_DELTA {
@@ -143,6 +181,11 @@ fn shade(p: GBufferSample) -> ShadedLight {
             let light = tile_light(tile, k);
             let a = delta_light(light, position);
             let color = lights[light].color * (a.w * light_visibility(light) * present(k, deltas_end(tile)));
+            if HAS_FIBRES {
+                let angle2 = lights[light].radius * lights[light].radius;
+                let from_light = lights[light].color * (a.w * present(k, deltas_end(tile)));
+                scattered += fibre_light(f, is_fibre, light, from_light, a.xyz, angle2);
+            }
             let cosine = max(dot(s.normal, a.xyz), 0.0);
             diffuse += color * (cosine * coat_factor(s, cosine, 0.0));
             if BLINN_PHONG {
@@ -161,7 +204,13 @@ fn shade(p: GBufferSample) -> ShadedLight {
         var k = deltas_end(tile);
         loop {
             let light = tile_light(tile, k);
-            let a = sphere_light(light, position, s.normal);
+            let a = sphere_light(light, position, receiving_normal(s, is_fibre, light));
+            if HAS_FIBRES {
+                let from_light = lights[light].color
+                    * (present(k, spheres_end(tile)) * radius_window(light, a.centre) * a.transmission * a.irradiance);
+                let direction = a.centre * inverseSqrt(max(dot(a.centre, a.centre), 1e-12));
+                scattered += fibre_light(f, is_fibre, light, from_light, direction, emitter_angle2(a));
+            }
             let color = lights[light].color
                 * (light_visibility(light) * present(k, spheres_end(tile)) * radius_window(light, a.centre) * a.transmission);
             diffuse += color * (a.irradiance * coat_factor(s, a.cosine, a.irradiance / PI));
@@ -177,7 +226,13 @@ fn shade(p: GBufferSample) -> ShadedLight {
         var k = spheres_end(tile);
         loop {
             let light = tile_light(tile, k);
-            let a = panel_light(light, position, s.normal, false);
+            let a = panel_light(light, position, receiving_normal(s, is_fibre, light), false);
+            if HAS_FIBRES {
+                let from_light = lights[light].color
+                    * (present(k, rects_end(tile)) * panel_radius_window(light, a.centre) * a.transmission * a.irradiance);
+                let direction = a.centre * inverseSqrt(max(dot(a.centre, a.centre), 1e-12));
+                scattered += fibre_light(f, is_fibre, light, from_light, direction, emitter_angle2(a));
+            }
             let color = lights[light].color
                 * (light_visibility(light) * present(k, rects_end(tile)) * panel_radius_window(light, a.centre) * a.transmission);
             diffuse += color * (a.irradiance * coat_factor(s, a.cosine, a.irradiance / PI));
@@ -193,7 +248,13 @@ fn shade(p: GBufferSample) -> ShadedLight {
         var k = rects_end(tile);
         loop {
             let light = tile_light(tile, k);
-            let a = panel_light(light, position, s.normal, true);
+            let a = panel_light(light, position, receiving_normal(s, is_fibre, light), true);
+            if HAS_FIBRES {
+                let from_light = lights[light].color
+                    * (present(k, discs_end(tile)) * panel_radius_window(light, a.centre) * a.transmission * a.irradiance);
+                let direction = a.centre * inverseSqrt(max(dot(a.centre, a.centre), 1e-12));
+                scattered += fibre_light(f, is_fibre, light, from_light, direction, emitter_angle2(a));
+            }
             let color = lights[light].color
                 * (light_visibility(light) * present(k, discs_end(tile)) * panel_radius_window(light, a.centre) * a.transmission);
             diffuse += color * (a.irradiance * coat_factor(s, a.cosine, a.irradiance / PI));
@@ -210,6 +271,10 @@ fn shade(p: GBufferSample) -> ShadedLight {
     diffuse *= s.material.diffuse / PI;
     // Add emission. Surface kinds: 1 lit and emissive, 2 the front of an emitter
     let kind = p.packed.y >> 30u;
+    if HAS_FIBRES && is_fibre {
+        diffuse = vec3f(0.0);
+        specular = scattered;
+    }
     if kind != 0u {
         specular = select(specular, vec3f(0.0), kind == 2u) + surfaces[(p.id.x & ID_INDEX_MASK) - 1u].emission;
     }

@@ -5,6 +5,12 @@ use eframe::wgpu;
 /// The geometry pass.
 pub(crate) const GEOMETRY: &str =
     concat!(include_str!("scene.wgsl"), include_str!("draw.wgsl"), include_str!("geometry.wgsl"));
+/// The geometry pass of strands.
+pub(crate) const STRANDS: &str =
+    concat!(include_str!("scene.wgsl"), include_str!("draw.wgsl"), include_str!("strands.wgsl"));
+/// The shadow map pass of strands.
+pub(crate) const SHADOW_STRANDS: &str =
+    concat!(include_str!("scene.wgsl"), include_str!("draw.wgsl"), include_str!("shadow_strands.wgsl"));
 /// The shadow map pass.
 pub(crate) const SHADOW_MAP: &str =
     concat!(include_str!("scene.wgsl"), include_str!("draw.wgsl"), include_str!("shadow_map.wgsl"));
@@ -17,6 +23,7 @@ pub(crate) const LIGHTING: &str = concat!(
     include_str!("scene.wgsl"),
     include_str!("light.wgsl"),
     include_str!("brdf.wgsl"),
+    include_str!("fibre.wgsl"),
     include_str!("tone.wgsl"),
     include_str!("false_color.wgsl"),
     include_str!("lighting.wgsl")
@@ -62,6 +69,8 @@ mod tests {
     fn every_module_is_valid_wgsl() {
         let modules = [
             ("geometry", GEOMETRY),
+            ("strands", STRANDS),
+            ("strand shadows", SHADOW_STRANDS),
             ("shadow map", SHADOW_MAP),
             ("shadow mask", SHADOW_MASK),
             ("shadow blur", SHADOW_BLUR),

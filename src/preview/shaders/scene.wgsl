@@ -47,6 +47,8 @@ struct Frame {
     light_ends: vec4u,
 }
 
+// A fibre has its absorption per radius as base colour, its longitudinal variance as roughness, its azimuthal scale as
+// metallic.
 struct Surface {
     base_color: vec3f,
     roughness: f32,

@@ -223,14 +223,23 @@ fn slot_weight(slot: u32, position: vec3f, normal: vec3f) -> f32 {
     return above * max(-dot(to_part, shadows.slots[slot].forward), 0.0) / (squared * squared);
 }
 
+// Returns the plane that a fibre receives light with: it faces the light.
+fn facing_light(slot: u32, position: vec3f) -> vec3f {
+    let towards = select(shadows.slots[slot].position - position, -shadows.slots[slot].forward, shadows.slots[slot].kind == 2u);
+    return towards * inverseSqrt(max(dot(towards, towards), 1e-12));
+}
+
 // Returns the visibility of a light: the weighted mean over the parts of its emitter.
-fn visibility(light: u32, position: vec3f, normal: vec3f, geometric_normal: vec3f, turn: vec2f, dither: f32) -> f32 {
+fn visibility(light: u32, position: vec3f, surface_normal: vec3f, plane: vec3f, is_fibre: bool, turn: vec2f, dither: f32) -> f32 {
     let count = shadows.counts[light];
     var sum = 0.0;
     var total = 0.0;
     var part = 0u;
     loop {
         let slot = MAX_PARTS * light + part;
+        let towards = facing_light(slot, position);
+        let normal = select(surface_normal, towards, is_fibre);
+        let geometric_normal = select(plane, towards, is_fibre);
         var weight = 1.0;
         if SUBDIVIDED {
             weight = select(1.0, slot_weight(slot, position, normal), count > 1u);
@@ -250,7 +259,9 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec2u {
     let mask_pixel = vec2u(at.xy);
     let pixel = min(mask_pixel * frame.mask_scale, vec2u(frame.size) - 1u);
     let depth = textureLoad(ids, pixel, 0).y;
-    let packed = textureLoad(gbuffer, pixel, 0).xz;
+    let texel = textureLoad(gbuffer, pixel, 0).xyz;
+    let packed = texel.xz;
+    let is_fibre = texel.y >> 30u == 3u;
     let normal = unpack_direction(packed.x);
     let geometric_normal = unpack_direction(packed.y);
     let ray = pixel_ray(vec2f(pixel) + 0.5);
@@ -262,10 +273,10 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec2u {
     let dither = (f32((u32(ninth) * 4u) % 9u) + 0.5) / 9.0;
     let turn = vec2f(cos(angle), sin(angle));
     let lit = vec4f(
-        visibility(0u, position, normal, geometric_normal, turn, dither),
-        visibility(1u, position, normal, geometric_normal, turn, dither),
-        visibility(2u, position, normal, geometric_normal, turn, dither),
-        visibility(3u, position, normal, geometric_normal, turn, dither),
+        visibility(0u, position, normal, geometric_normal, is_fibre, turn, dither),
+        visibility(1u, position, normal, geometric_normal, is_fibre, turn, dither),
+        visibility(2u, position, normal, geometric_normal, is_fibre, turn, dither),
+        visibility(3u, position, normal, geometric_normal, is_fibre, turn, dither),
     );
     return vec2u(pack4x8unorm(lit), depth);
 }

@@ -1,7 +1,7 @@
 //! Culling of shadow casters by shadow map views.
 
 use super::layers::ShadowView;
-use crate::preview::geometry::draw_item::{DrawItem, ShadowCasting};
+use crate::preview::geometry::draw_item::ShadowCasting;
 use crate::preview::geometry::draw_list::DrawList;
 use glam::Vec4;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -9,16 +9,18 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// Returns a hash of the meshes and transforms of the casters that a view may contain.
 pub(crate) fn caster_signature(list: &DrawList, view: &ShadowView) -> u64 {
     let mut hasher = DefaultHasher::new();
-    for item in list.items.iter().filter(|item| item.shadow != ShadowCasting::None && is_visible(list, item, view)) {
+    for item in
+        list.items.iter().filter(|item| item.shadow != ShadowCasting::None && is_visible(list, item.caster, view))
+    {
         (item.mesh, &item.indices, item.shadow as u32).hash(&mut hasher);
         list.casters[item.caster].world_from_object.to_cols_array().map(f32::to_bits).hash(&mut hasher);
     }
     hasher.finish()
 }
 
-/// Returns true if an item's box may intersect the view's frustum and is closer than the light's radius.
-pub(crate) fn is_visible(list: &DrawList, item: &DrawItem, view: &ShadowView) -> bool {
-    let Some(caster) = list.casters.get(item.caster) else { return false };
+/// Returns true if a caster's box may intersect the view's frustum and is closer than the light's radius.
+pub(crate) fn is_visible(list: &DrawList, caster: usize, view: &ShadowView) -> bool {
+    let Some(caster) = list.casters.get(caster) else { return false };
     if !view.is_in_radius(caster.distance(view.eye)) {
         return false;
     }

@@ -2,27 +2,36 @@
 
 use super::culling;
 use super::layers::StaleMap;
-use super::maps::{MapSide, ShadowMaps};
+use super::maps::{self, MapSide, ShadowMaps};
 use super::mask::ShadowMasks;
 use super::pipelines::ShadowPipelines;
 use super::plan::ShadowPlan;
 use crate::preview::frame_resources::FrameResources;
 use crate::preview::geometry::draw_item::DrawItem;
 use crate::preview::geometry::draw_list::DrawList;
+use crate::preview::geometry::strands::{SHADOW_FRACTION, StrandItem, StrandPipelines};
 use crate::preview::gpu::pipeline::BindGroupLayouts;
 use eframe::wgpu;
 
-/// The shadow maps, the shadow masks and their pipelines.
+/// The shadow maps, the shadow masks and their pipelines, and the pipelines of strands.
 #[derive(Debug)]
 pub(crate) struct ShadowPasses {
     pub maps: ShadowMaps,
     pub masks: ShadowMasks,
     pipelines: ShadowPipelines,
+    pub strands: StrandPipelines,
+}
+
+/// The casters that a view may contain.
+struct VisibleCasters<'a> {
+    items: Vec<&'a DrawItem>,
+    strands: Vec<&'a StrandItem>,
 }
 
 impl ShadowPasses {
     pub fn new(device: &wgpu::Device, layouts: &BindGroupLayouts, maps: ShadowMaps, masks: ShadowMasks) -> Self {
-        ShadowPasses { maps, masks, pipelines: ShadowPipelines::new(device, layouts) }
+        let strands = StrandPipelines::new(device, layouts, maps::FORMAT);
+        ShadowPasses { maps, masks, pipelines: ShadowPipelines::new(device, layouts), strands }
     }
 
     /// Draws the stale shadow maps, both sides of each.
@@ -34,9 +43,13 @@ impl ShadowPasses {
         stale: &[StaleMap],
     ) {
         for StaleMap { layer, view } in stale {
-            let items: Vec<_> = list.items.iter().filter(|item| culling::is_visible(list, item, view)).collect();
-            self.draw_map(encoder, resources, &items, *layer, MapSide::Near);
-            self.draw_map(encoder, resources, &items, *layer, MapSide::Far);
+            let visible = |caster| culling::is_visible(list, caster, view);
+            let casters = VisibleCasters {
+                items: list.items.iter().filter(|item| visible(item.caster)).collect(),
+                strands: list.strands.iter().filter(|item| visible(item.caster)).collect(),
+            };
+            self.draw_map(encoder, resources, &casters, *layer, MapSide::Near);
+            self.draw_map(encoder, resources, &casters, *layer, MapSide::Far);
         }
     }
 
@@ -44,17 +57,21 @@ impl ShadowPasses {
         &self,
         encoder: &mut wgpu::CommandEncoder,
         resources: FrameResources,
-        items: &[&DrawItem],
+        casters: &VisibleCasters,
         layer: usize,
         side: MapSide,
     ) {
         let mut pass = self.maps.begin_pass(encoder, layer, side);
         pass.set_bind_group(0, resources.scene, &[]);
-        for item in items {
+        for item in &casters.items {
             if let Some(pipeline) = self.pipelines.map(item.shadow, side) {
                 pass.set_pipeline(pipeline);
                 resources.caches.draw(&mut pass, item);
             }
+        }
+        for item in &casters.strands {
+            pass.set_pipeline(&self.strands.shadow_map);
+            resources.caches.draw_strands(&mut pass, item, item.first(SHADOW_FRACTION));
         }
     }
 

@@ -27,8 +27,6 @@ const IOR: f32 = 1.55;
 const TILT_DEG: f32 = 2.0;
 /// Number of lobes: R, TT, TRT, and all others.
 const LOBES: usize = 4;
-/// Roughness below which lobes are too narrow for single precision.
-const MIN_ROUGHNESS: f32 = 0.05;
 
 /// A fibre material prepared for tracing.
 #[derive(Clone, Copy, Debug)]
@@ -46,18 +44,13 @@ pub struct TracedFibre {
 impl TracedFibre {
     /// Prepares a fibre.
     pub fn new(fibre: &Fibre) -> Self {
-        // Variance of each longitudinal lobe (Chiang et al. 2016, equation 7)
-        let m = fibre.roughness_along.clamp(MIN_ROUGHNESS, 1.0);
-        let v = (0.726 * m + 0.812 * m * m + 3.7 * m.powi(20)).powi(2);
-        // Scale of the azimuthal lobes (equation 8)
-        let n = fibre.roughness_around.clamp(MIN_ROUGHNESS, 1.0);
-        let s = (PI / 8.0).sqrt() * (0.265 * n + 1.194 * n * n + 5.372 * n.powi(22));
+        let v = fibre.longitudinal_variance();
         // The scales tilt R by twice their angle towards the root, TT and TRT by one and four angles towards the tip
         let tilt = |factor: f32| (factor * TILT_DEG).to_radians().sin_cos();
         let mut traced = TracedFibre {
             absorption: fibre.absorption_per_radius(),
             longitudinal: [v, 0.25 * v, 4.0 * v, 4.0 * v].map(Longitudinal::new),
-            azimuthal: TrimmedLogistic::new(s),
+            azimuthal: TrimmedLogistic::new(fibre.azimuthal_scale()),
             tilts: [tilt(2.0), tilt(-1.0), tilt(-4.0), tilt(0.0)],
             albedo: Vec3::ZERO,
         };

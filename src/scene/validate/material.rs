@@ -1,6 +1,7 @@
 //! Checks materials.
 
 use super::check::{Allowed, Check};
+use crate::scene::fibre::MIN_ROUGHNESS;
 use crate::scene::{Fibre, FibreColor, Material};
 
 /// Reflectances lie in [0, 1): a closed room with reflectance 1 has no finite solution.
@@ -9,7 +10,7 @@ const REFLECTANCE: Allowed = Allowed::between(0.0, 0.999, "");
 const TRANSMITTANCE: Allowed = Allowed::between(0.0, 1.0, "");
 const FRACTION: Allowed = Allowed::between(0.0, 1.0, "");
 /// Smoother fibres have lobes of less than a degree.
-const FIBRE_ROUGHNESS: Allowed = Allowed::between(0.05, 1.0, "");
+const FIBRE_ROUGHNESS: Allowed = Allowed::between(MIN_ROUGHNESS, 1.0, "");
 
 pub(super) fn check_material(field: &str, material: &Material, check: &mut Check) {
     let name = |part: &str| format!("{field}.{part}");

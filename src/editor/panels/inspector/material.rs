@@ -1,5 +1,6 @@
 //! The rows of a material.
 
+use super::fibre::fibre_rows;
 use crate::editor::ui::widgets::{self, NumberField, row};
 use crate::scene::{Material, MaterialPreset, Subsurface, TextureRef, TextureSlot};
 use eframe::egui::{ComboBox, Slider, SliderClamping, Ui};
@@ -66,6 +67,9 @@ pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> Option
         if material.transmission == 0.0 {
             subsurface_rows(ui, &mut material.subsurface);
         }
+        if material.transmission == 0.0 {
+            fibre_rows(ui, &mut material.fibre);
+        }
         row(ui, "Glow", "Luminance it gives off by itself, cd/m\u{b2}: red, green, blue", |ui| {
             per_channel(ui, "Glow", NumberField::new(1.0, 0.0, 1e7, 0, ""), &mut material.emission_cd_m2);
         });
@@ -123,7 +127,8 @@ fn per_channel(ui: &mut Ui, name: &str, number: NumberField, value: &mut [f32; 3
     }
 }
 
-fn unit_slider(ui: &mut Ui, label: &str, tip: &str, value: &mut f32) {
+/// Draws a slider from 0 to 1.
+pub(super) fn unit_slider(ui: &mut Ui, label: &str, tip: &str, value: &mut f32) {
     row(ui, label, tip, |ui| {
         ui.spacing_mut().slider_width = (ui.available_width() - 64.0).max(60.0);
         let mut shown = *value;

@@ -2,6 +2,7 @@
 
 mod aim;
 mod camera;
+mod fibre;
 mod gel;
 mod light;
 mod material;

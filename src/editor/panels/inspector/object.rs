@@ -179,23 +179,23 @@ fn place_rows(ui: &mut Ui, object: &mut Object) {
 /// Draws the materials of named parts; returns the part to choose a texture for.
 fn part_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) -> Option<(String, TextureSlot)> {
     let mesh = assets.mesh_of(&object.shape)?;
-    if mesh.parts.len() < 2 {
+    if mesh.part_names().count() < 2 {
         return None;
     }
     let mut choose = None;
-    for part in &mesh.parts {
-        let own = object.part_materials.iter().position(|(name, _)| *name == part.name);
+    for part in mesh.part_names() {
+        let own = object.part_materials.iter().position(|(name, _)| name == part);
         let Some(own) = own else {
-            row(ui, &part.name, "A part of the model that has the surface of the whole", |ui| {
+            row(ui, part, "A part of the model that has the surface of the whole", |ui| {
                 if ui.button("Own surface").on_hover_text("Give this part a surface of its own").clicked() {
-                    object.part_materials.push((part.name.clone(), object.material.clone()));
+                    object.part_materials.push((part.to_owned(), object.material.clone()));
                 }
             });
             continue;
         };
-        let label = format!("Surface of {}", part.name);
+        let label = format!("Surface of {part}");
         if let Some(slot) = material_group(ui, &label, &mut object.part_materials[own].1) {
-            choose = Some((part.name.clone(), slot));
+            choose = Some((part.to_owned(), slot));
         }
         ui.horizontal(|ui| {
             ui.label(RichText::new(preset_name(&object.part_materials[own].1)).weak());

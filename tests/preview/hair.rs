@@ -1,0 +1,112 @@
+//! Hair in the preview against the path tracer: the light of hair, its shadow, and a rim of light from behind.
+
+use super::*;
+use catchlight::raytrace::{Method, RenderControl, Settings};
+use catchlight::scene::{Mesh, Orientation, StrandPoint, tessellate};
+use std::ops::ControlFlow;
+
+/// Side of a compared block, pixels: hair is noise from pixel to pixel.
+const BLOCK: u32 = 6;
+const SPP: u32 = 8;
+/// Part of a block that hair must cover to be compared.
+const HAIR: f32 = 0.5;
+
+/// A ball with a head of hair, lit from the front and from behind.
+fn hairy(preset: MaterialPreset, lights: &[(Vec3, f32)]) -> (Scene, Assets) {
+    let mut mesh: Mesh = tessellate(&Shape::Sphere { radius_m: 0.1 }).unwrap();
+    for strand in (strands::HairyBall { strands: 10_000, strand_radius_m: 100e-6, ..strands::HairyBall::HEAD }).grow() {
+        mesh.strands.push(strand.into_iter().map(|(position, radius_m)| StrandPoint { position, radius_m }));
+    }
+    mesh.strands.end_part("hair");
+    let mut assets = Assets::default();
+    assets.insert_mesh("head.obj", Arc::new(mesh));
+    let mut head = object(1, Shape::MeshFile { path: "head.obj".into() }, Vec3::Y, grey_card());
+    head.part_materials = vec![("hair".into(), preset.material())];
+    let panel = Emitter::RectPanel { width_m: 0.5, height_m: 0.5 };
+    let lamp = |(i, &(position, lumens)): (usize, &(Vec3, f32))| {
+        light(10 + i as u32, position, Vec3::Y, panel, Output::Lumens(lumens))
+    };
+    let camera = Camera {
+        position: Vec3::new(0.0, 1.0, 1.3),
+        aim: Aim::Point(Vec3::Y),
+        focal_length_mm: 85.0,
+        orientation: Orientation::Portrait,
+        iso: 400.0,
+        f_number: 8.0,
+        shutter_s: 0.02,
+        ..Camera::default()
+    };
+    let scene = Scene {
+        camera,
+        objects: vec![head],
+        lights: lights.iter().enumerate().map(lamp).collect(),
+        ..Scene::default()
+    };
+    (scene, assets)
+}
+
+/// Returns the errors of the blocks of hair, preview over tracer, in stops, sorted.
+fn errors(renderer: &mut PreviewRenderer, scene: &Scene, assets: &Assets) -> Vec<f32> {
+    let size = (120, 180);
+    let input = PreviewInput { options: Options::direct_only(), ..PreviewInput::camera_view(scene, assets, size) };
+    let preview = renderer.linear_picture(&input).unwrap();
+    let prepared = raytrace::prepare(scene, assets).unwrap();
+    let settings = Settings { width: size.0, height: size.1, spp: SPP, method: Method::Path, ..Settings::default() };
+    let film = raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
+    let traced = film.develop(scene);
+    let eye = scene.camera.position;
+    let frame = scene.camera_frame(size.0 as f32 / size.1 as f32);
+    let blocks = (0..size.1 / BLOCK).flat_map(|y| (0..size.0 / BLOCK).map(move |x| (x, y)));
+    let mut errors: Vec<f32> = blocks
+        .filter_map(|(bx, by)| {
+            let pixels = || (0..BLOCK * BLOCK).map(move |k| (bx * BLOCK + k % BLOCK, by * BLOCK + k / BLOCK));
+            let luminance = |picture: &Picture| {
+                pixels().map(|(x, y)| color::luminance(picture.at(x, y).into())).sum::<f32>() / (BLOCK * BLOCK) as f32
+            };
+            // Beside the ball, all that is lit is hair
+            let is_hair = |(x, y): (u32, u32)| {
+                let uv = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / Vec2::new(size.0 as f32, size.1 as f32);
+                let (direction, to_ball) = (frame.direction(uv).normalize(), Vec3::Y - eye);
+                let aside = (to_ball - direction * to_ball.dot(direction)).length();
+                aside > 0.103 && color::luminance(traced.at(x, y).into()) > 0.0
+            };
+            let hair = pixels().filter(|&pixel| is_hair(pixel)).count() as f32 / (BLOCK * BLOCK) as f32;
+            let value = luminance(&traced);
+            (hair > HAIR && value > 0.002).then(|| (luminance(&preview).max(1e-6) / value).log2())
+        })
+        .collect();
+    errors.sort_by(f32::total_cmp);
+    errors
+}
+
+#[test]
+fn hair_has_the_light_of_the_tracer_from_the_front_and_a_rim_from_behind() {
+    let Some(mut renderer) = shared_renderer() else { return };
+    let (front, behind) = ((Vec3::new(0.7, 1.6, 1.2), 40_000.0), (Vec3::new(-0.5, 1.8, -0.9), 20_000.0));
+    let mut wrong = Vec::new();
+    // The preview evaluates single scattering and estimates the rest: bright hair that is lit from behind is too dark
+    let (near, far) = (0.7, 1.1);
+    for (preset, behind_limit) in
+        [(MaterialPreset::HairBlack, far), (MaterialPreset::HairBrown, near), (MaterialPreset::HairBlond, far)]
+    {
+        for (name, light, limit) in [("front", front, near), ("behind", behind, behind_limit)] {
+            let lights = &[light];
+            let (scene, assets) = hairy(preset, lights);
+            let errors = errors(&mut renderer, &scene, &assets);
+            assert!(errors.len() > 30, "{} blocks of hair", errors.len());
+            let median = errors[errors.len() / 2];
+            let line = format!(
+                "{:18} {name:6} median {median:+.2}, tenths {:+.2} {:+.2} stops over {} blocks",
+                preset.label(),
+                errors[errors.len() / 10],
+                errors[errors.len() * 9 / 10],
+                errors.len()
+            );
+            println!("{line}");
+            if median.abs() > limit {
+                wrong.push(line);
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "too far from the tracer:\n{}", wrong.join("\n"));
+}
