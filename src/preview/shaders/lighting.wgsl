@@ -127,7 +127,7 @@ fn fibre_light(f: Fibre, is_fibre: bool, light: u32, from_light: vec3f, directio
     var sum = vec3f(0.0);
     // A loop, for CPU rasterisers execute both sides of a branch
     for (var i = 0u; i < select(0u, 1u, is_fibre); i++) {
-        sum = fibre_scatter(f, direction, angle2) * scattered_visibility(f, light_visibility(light)) * from_light;
+        sum = hair_scatter(f, direction, angle2) * scattered_visibility(f, light_visibility(light)) * from_light;
     }
     return sum;
 }
