@@ -149,7 +149,7 @@ fn add_ribbon(mesh: &mut Mesh, points: &[StrandPoint], middle: Vec3, widening: f
     }
     for i in 0..points.len() as u32 - 1 {
         let a = base + 2 * i;
-        mesh.triangles.extend([[a, a + 2, a + 1], [a + 1, a + 2, a + 3]]);
+        mesh.triangles.extend([[a, a + 1, a + 2], [a + 1, a + 3, a + 2]]);
     }
 }
 

@@ -125,8 +125,8 @@ impl DrawList {
     /// Adds the strands of an object, whose box is the next among the casters.
     fn add_strands(&mut self, scene: &Scene, object: &Object, mesh: MeshKey, flags: u32, uploads: &Uploads) {
         let strands = uploads.caches.meshes.get(mesh).and_then(|mesh| mesh.strands.as_ref());
-        for (name, instances, mean_radius_m) in strands.map(|strands| &strands.parts).into_iter().flatten() {
-            let (material, world_from_object) = (object.material_of(name), object.transform.world_from_object());
+        for part in strands.map(|strands| &strands.parts).into_iter().flatten() {
+            let (material, world_from_object) = (object.material_of(&part.name), object.transform.world_from_object());
             let surface = self.add_surface(&world_from_object, material, scene, flags, Some(Pick::Object(object.id)));
             // Strands without a fibre material have the hair of a default fibre in their colour
             let color = |material: &Material| FibreColor::Dye(material.base_color);
@@ -134,8 +134,8 @@ impl DrawList {
             let record = &mut self.surfaces[surface as usize];
             record.base_color = fibre.absorption_per_radius().into();
             (record.roughness, record.metallic) = (fibre.longitudinal_variance(), fibre.azimuthal_scale());
-            let (instances, mean_radius_m, caster) = (instances.clone(), *mean_radius_m, self.casters.len());
-            self.strands.push(StrandItem { mesh, instances, mean_radius_m, surface, caster });
+            let (instances, caster) = (part.instances.clone(), self.casters.len());
+            self.strands.push(StrandItem { mesh, instances, mean_radius_m: part.mean_radius_m, surface, caster });
         }
     }
 

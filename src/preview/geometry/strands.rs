@@ -46,8 +46,15 @@ const POINT_LAYOUTS: [Option<wgpu::VertexBufferLayout<'static>>; 4] = [
 #[derive(Debug)]
 pub(crate) struct GpuStrands {
     points: wgpu::Buffer,
-    /// Name, range of instances and mean radius of each part.
-    pub parts: Vec<(String, Range<u32>, f32)>,
+    pub parts: Vec<GpuStrandPart>,
+}
+
+/// A part of the strands of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct GpuStrandPart {
+    pub name: String,
+    pub instances: Range<u32>,
+    pub mean_radius_m: f32,
 }
 
 /// A part of a mesh's strands with its surface.
@@ -103,7 +110,7 @@ impl StrandItem {
 }
 
 /// Returns the points of all strands, those of each part in a shuffled order, and the parts.
-fn shuffled(strands: &Strands) -> (Vec<Point>, Vec<(String, Range<u32>, f32)>) {
+fn shuffled(strands: &Strands) -> (Vec<Point>, Vec<GpuStrandPart>) {
     let none = Point { position: [0.0; 3], radius: -1.0 };
     // The first segment reads a point before it.
     let mut points = vec![none];
@@ -119,9 +126,11 @@ fn shuffled(strands: &Strands) -> (Vec<Point>, Vec<(String, Range<u32>, f32)>) {
                 last.radius = -last.radius;
             }
         }
-        let mean = points[start..].iter().map(|p| p.radius.abs()).sum::<f32>() / (points.len() - start).max(1) as f32;
+        let mean_radius_m =
+            points[start..].iter().map(|p| p.radius.abs()).sum::<f32>() / (points.len() - start).max(1) as f32;
         // An instance starts at the point before its segment
-        parts.push((part.name.clone(), start as u32 - 1..points.len() as u32 - 1, mean));
+        let instances = start as u32 - 1..points.len() as u32 - 1;
+        parts.push(GpuStrandPart { name: part.name.clone(), instances, mean_radius_m });
     }
     points.extend([none; 3]);
     (points, parts)
@@ -187,15 +196,15 @@ mod tests {
         }
         strands.end_part("hair");
         let (points, parts) = shuffled(&strands);
-        assert_eq!((points.len(), parts[0].1.clone()), (5004, 0..5000));
+        assert_eq!((points.len(), parts[0].instances.clone()), (5004, 0..5000));
         let ends = points.iter().filter(|p| p.radius < 0.0).count();
         assert_eq!(ends, 1000 + 4, "the last points of strands, and four beyond all");
         let mean = points[1..501].iter().map(|p| p.position[0]).sum::<f32>() / 500.0;
         assert!((mean - 500.0).abs() < 120.0, "a hundred strands from one side alone: {mean}");
         let item = StrandItem {
             mesh: MeshKey::Shared(0),
-            instances: parts[0].1.clone(),
-            mean_radius_m: parts[0].2,
+            instances: parts[0].instances.clone(),
+            mean_radius_m: parts[0].mean_radius_m,
             surface: 0,
             caster: 0,
         };
