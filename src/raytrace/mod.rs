@@ -35,6 +35,7 @@ mod limits;
 mod live;
 mod medium_stack;
 mod passes;
+mod path_lights;
 mod path_tracer;
 mod pixel_sampler;
 mod plan;

@@ -6,10 +6,9 @@
 //!
 //! Which technique finds the light behind panes, bodies of glass and mirrors: `straight_path`.
 
-use super::bsdf::{Bsdf, Polarisation};
+use super::bsdf::{Bsdf, Polarisation, SurfaceBsdf};
 use super::caustics::{CausticMis, GatherDensities, PhotonMap};
-use super::connection::Connection;
-use super::emitters::{MisVertex, power_heuristic};
+use super::emitters::MisVertex;
 use super::events::{Lobe, PathEnd, PathEvent, PathVertex};
 use super::geometry::SurfaceInteraction;
 use super::lights::LightImportances;
@@ -47,8 +46,8 @@ pub struct PathState {
     pub throughput: Vec3,
     /// Part of the throughput that Russian roulette ignores: the squared index of refraction by which glass scales
     /// radiance, and the division among split paths.
-    roulette_scale: f32,
-    media: MediumStack,
+    pub roulette_scale: f32,
+    pub media: MediumStack,
     polarisation: Polarisation,
     /// The last non-specular vertex, and the path since then.
     mis_vertex: MisVertex,
@@ -59,7 +58,7 @@ pub struct PathState {
     /// Vertices so far.
     pub depth: u32,
     /// Non-specular vertices so far.
-    non_specular_depth: u32,
+    pub non_specular_depth: u32,
 }
 
 /// A path vertex at which light scatters.
@@ -73,12 +72,23 @@ pub struct ShadingPoint<'a> {
     pub bsdf: &'a Bsdf<'a>,
     /// Importances of the lights at the point, if they are known already.
     pub importances: Option<&'a LightImportances<'a>>,
+    /// A BSDF whose direct light is added besides: a control variate of walks under the surface.
+    pub control: Option<&'a Bsdf<'a>>,
     /// Lobe choice in [0, 1), where it is not random.
     pub lobe_choice: Option<f32>,
     /// Distance from the last vertex, metres.
     pub distance: f32,
     /// The ray arrives on the side of the geometric normal.
     pub outside: bool,
+}
+
+/// A path vertex at which light scatters under the surface.
+#[derive(Clone, Copy, Debug)]
+pub struct SoftPoint<'a> {
+    /// The vertex.
+    pub point: &'a ShadingPoint<'a>,
+    /// The BSDF of its surface.
+    pub bsdf: &'a SurfaceBsdf<'a>,
 }
 
 /// The light sampling at a vertex.
@@ -152,7 +162,13 @@ impl<'a> PathTracer<'a> {
     }
 
     /// Extends a path, vertex by vertex, to its end, and all paths into which it splits.
-    fn extend(&mut self, path: &mut PathState, sampler: &Sampler, limits: PathLimits, sink: &mut impl RadianceSink) {
+    pub fn extend(
+        &mut self,
+        path: &mut PathState,
+        sampler: &Sampler,
+        limits: PathLimits,
+        sink: &mut impl RadianceSink,
+    ) {
         let scene = self.caster.scene;
         loop {
             // Intersect the ray with the studio
@@ -222,6 +238,7 @@ impl<'a> PathTracer<'a> {
                 surface: &surface,
                 bsdf: &bsdf,
                 importances: None,
+                control: None,
                 lobe_choice: None,
                 distance,
                 outside,
@@ -235,7 +252,14 @@ impl<'a> PathTracer<'a> {
                 self.gather_photons(path, &surface, &bsdf, limits, sink);
             }
 
-            // Continue with several paths, or with both lobes of clear glass
+            // Continue under the surface, with several paths, or with both lobes of clear glass
+            if let (Some(entry), false) = (bsdf.soft_surface(), is_last) {
+                let point = SoftPoint { point: &point, bsdf: entry };
+                if !self.scatter_soft(path, point, paths, sampler, limits, sink) {
+                    return;
+                }
+                continue;
+            }
             if paths > 1 {
                 self.split_path(path, &point, paths, sampler, limits, sink);
                 return;
@@ -347,13 +371,10 @@ impl<'a> PathTracer<'a> {
         limits: PathLimits,
         sink: &mut impl RadianceSink,
     ) -> bool {
-        let ShadingPoint { distance, outside, .. } = *point;
-        let depth = path.depth;
-        let is_last = path.non_specular_depth >= limits.max_non_specular_depth;
-
         // Sample the lights
+        let depth = path.depth;
         let [light_set, bsdf_set] = sampler.pair(Dimensions::Light { slot: 0, depth }, Dimensions::Bsdf { depth });
-        let mut paths_per_light_sample = match lights {
+        let paths_per_light_sample = match lights {
             LightSampling::Sample => {
                 self.sample_lights(path, point, sampler, &light_set, 1.0, sink);
                 1.0
@@ -361,28 +382,30 @@ impl<'a> PathTracer<'a> {
             LightSampling::Shared { paths } => paths,
             LightSampling::Skip => 1.0,
         };
+        self.leave(path, point, paths_per_light_sample, &bsdf_set, limits, sink)
+    }
 
-        // Walk under the surface, and continue where the walk comes out
-        let [lobe, roulette] = sampler::last_pair(&bsdf_set);
-        let lobe = point.lobe_choice.unwrap_or(lobe);
-        let exit;
-        let (surface, bsdf) = if point.bsdf.samples_subsurface(lobe) && !is_last {
-            let Some(end) = self.walk_under_surface(path, point, sampler, &light_set, limits, sink) else {
-                sink.record(|| PathEvent::End(PathEnd::Absorbed));
-                return false;
-            };
-            paths_per_light_sample = 1.0;
-            exit = end;
-            (&exit.0, &exit.1)
-        } else {
-            (point.surface, point.bsdf)
-        };
+    /// Samples the BSDF at a vertex and updates the path to leave it. Returns false if the path ends.
+    #[inline(always)]
+    pub fn leave(
+        &mut self,
+        path: &mut PathState,
+        point: &ShadingPoint<'_>,
+        paths_per_light_sample: f32,
+        bsdf_set: &sampler::Set,
+        limits: PathLimits,
+        sink: &mut impl RadianceSink,
+    ) -> bool {
+        let ShadingPoint { surface, bsdf, distance, outside, .. } = *point;
+        let depth = path.depth;
 
         // Sample the BSDF
-        let Some(sample) = bsdf.sample(lobe, sampler::first_pair(&bsdf_set)) else {
+        let [lobe, roulette] = sampler::last_pair(bsdf_set);
+        let Some(sample) = bsdf.sample(point.lobe_choice.unwrap_or(lobe), sampler::first_pair(bsdf_set)) else {
             sink.record(|| PathEvent::End(PathEnd::Absorbed));
             return false;
         };
+        let is_last = path.non_specular_depth >= limits.max_non_specular_depth;
         if is_last && !sample.specular {
             sink.record(|| PathEvent::End(PathEnd::Depth));
             return false;
@@ -445,91 +468,5 @@ impl<'a> PathTracer<'a> {
         path.ray = Ray { origin, direction: sample.direction, t_max: f32::INFINITY };
         path.depth += 1;
         true
-    }
-
-    /// Returns true if all lights are sampled at the path's vertex rather than one of them.
-    fn samples_all_lights(&self, path: &PathState) -> bool {
-        let scene = self.caster.scene;
-        scene.lights.len() == 1 || (path.non_specular_depth == 0 && scene.plan().sample_all_lights)
-    }
-
-    /// Samples all lights, or one by its importance, at a vertex from which so many paths continue.
-    pub fn sample_lights(
-        &mut self,
-        path: &PathState,
-        point: &ShadingPoint<'_>,
-        sampler: &Sampler,
-        first_set: &sampler::Set,
-        paths: f32,
-        sink: &mut impl RadianceSink,
-    ) {
-        let scene = self.caster.scene;
-        if self.samples_all_lights(path) {
-            for (slot, _) in (0..).zip(&scene.lights).filter(|(_, light)| light.is_sampled()) {
-                let depth = path.depth;
-                let set = if slot == 0 { *first_set } else { sampler.set(Dimensions::Light { slot, depth }) };
-                self.sample_light(slot, 1.0, path, point, &set, paths, sink);
-            }
-            return;
-        }
-        let u = sampler::last_pair(first_set)[0];
-        let chosen = match point.importances {
-            Some(importances) => importances.sample(&scene.lights, u),
-            None => self.light_importances(point).as_ref().and_then(|importances| importances.sample(&scene.lights, u)),
-        };
-        if let Some((light, pmf)) = chosen {
-            self.sample_light(light, pmf, path, point, first_set, paths, sink);
-        }
-    }
-
-    /// Importances of the lights at a vertex.
-    fn light_importances(&self, point: &ShadingPoint<'_>) -> Option<LightImportances<'a>> {
-        let scene = self.caster.scene;
-        scene.light_sampler.importances(&scene.lights, point.surface.position, point.bsdf.normal())
-    }
-
-    /// Samples a light that was chosen with probability `pmf`, and adds its contribution.
-    #[expect(clippy::too_many_arguments, reason = "called in two places; no two of them belong together")]
-    fn sample_light(
-        &mut self,
-        index: u32,
-        pmf: f32,
-        path: &PathState,
-        point: &ShadingPoint<'_>,
-        set: &sampler::Set,
-        paths: f32,
-        sink: &mut impl RadianceSink,
-    ) {
-        let light = &self.caster.scene.lights[index as usize];
-        let ShadingPoint { surface, bsdf, .. } = *point;
-
-        // Sample a direction towards the light and evaluate the BSDF
-        let Some(sample) = light.sample(surface.position, sampler::first_pair(set)) else { return };
-        let (value, bsdf_pdf) = bsdf.eval(sample.direction);
-        if value == Vec3::ZERO {
-            return;
-        }
-
-        // Connect with the light, through flat bodies in another direction
-        let event = |pdf, bsdf_pdf, visibility, mis_weight| PathEvent::LightSample {
-            light: index,
-            pmf,
-            pdf,
-            bsdf_pdf,
-            visibility,
-            mis_weight,
-        };
-        let connection = self.caster.connect(surface.spawn_origin(sample.direction), light, &sample, path.media);
-        let Some(Connection { direction, value: light_value, pdf, transmittance }) = connection else {
-            sink.record(|| event(sample.pdf, bsdf_pdf, Vec3::ZERO, 0.0));
-            return;
-        };
-        let (value, bsdf_pdf) = if direction == sample.direction { (value, bsdf_pdf) } else { bsdf.eval(direction) };
-
-        // Weight against emitter hits and add the contribution
-        let mis_weight = pdf.map_or(1.0, |light_pdf| power_heuristic(light_pdf * pmf, bsdf_pdf * paths));
-        sink.record(|| event(pdf, bsdf_pdf, transmittance, mis_weight));
-        let value = path.throughput * transmittance * value * light.tint * (light_value * mis_weight / pmf);
-        sink.add(light.layer, value);
     }
 }

@@ -37,13 +37,12 @@ mod subsurface;
 mod surface;
 
 pub use dielectric::{Boundary, DielectricInterface, pane_transmittance};
+pub use fibre::{FibreBsdf, TracedFibre};
+use glam::{Vec2, Vec3};
 pub use material::TracedMaterial;
 pub use polarisation::{Polarisation, TransmittedLight};
 pub use sample::BsdfSample;
-
-use fibre::{FibreBsdf, TracedFibre};
-use glam::{Vec2, Vec3};
-use surface::SurfaceBsdf;
+pub use surface::SurfaceBsdf;
 
 /// The BSDF at a shading point for one outgoing direction.
 #[derive(Clone, Copy, Debug)]
@@ -115,11 +114,11 @@ impl<'a> Bsdf<'a> {
         Bsdf::Surface(SurfaceBsdf::at_exit(material, normal, geometric_normal))
     }
 
-    /// Returns true if this lobe number samples scattering under the surface; [`Bsdf::sample`] returns none for it.
-    pub fn samples_subsurface(&self, u_lobe: f32) -> bool {
+    /// Returns the BSDF of the surface if it samples scattering under the surface.
+    pub fn soft_surface(&self) -> Option<&SurfaceBsdf<'a>> {
         match self {
-            Bsdf::Surface(surface) => surface.samples_subsurface(u_lobe),
-            Bsdf::Fibre(_) => false,
+            Bsdf::Surface(surface) => Some(surface).filter(|surface| surface.samples_walks()),
+            Bsdf::Fibre(_) => None,
         }
     }
 

@@ -17,16 +17,24 @@ impl<'a> SurfaceBsdf<'a> {
         SurfaceBsdf { diffuse: DiffuseLobe { factor: Vec3::ZERO }, probabilities, ..self }
     }
 
+    /// Returns true if some lobe number samples scattering under the surface.
+    pub fn samples_walks(&self) -> bool {
+        self.probabilities.base == Lobe::Subsurface && self.walk_probability() > 0.0
+    }
+
     /// Returns true if this lobe number samples scattering under the surface; [`SurfaceBsdf::sample`] returns none for it.
-    pub fn samples_subsurface(&self, u_lobe: f32) -> bool {
+    pub fn samples_walk(&self, u_lobe: f32) -> bool {
         self.probabilities.sample(u_lobe).0 == Lobe::Subsurface
     }
 
-    /// Returns the part of the light that the coat transmits towards the outgoing direction, over the probability of
-    /// sampling a walk.
-    pub fn entry_weight(&self) -> f32 {
-        let probability = (1.0 - self.probabilities.dielectric) * (1.0 - self.probabilities.microfacet);
-        (1.0 - self.material.coat_albedo(self.geometry.wo.z)) / probability.max(f32::MIN_POSITIVE)
+    /// Returns the probability with which a lobe number samples scattering under the surface.
+    pub fn walk_probability(&self) -> f32 {
+        (1.0 - self.probabilities.dielectric) * (1.0 - self.probabilities.microfacet)
+    }
+
+    /// Returns the part of the light that the coat transmits towards the outgoing direction.
+    pub fn coat_transmission(&self) -> f32 {
+        1.0 - self.material.coat_albedo(self.geometry.wo.z)
     }
 
     /// Returns the base colour: of the material, times its texture.
@@ -36,12 +44,21 @@ impl<'a> SurfaceBsdf<'a> {
 
     /// Returns the BSDF where a walk comes out: a diffuse lobe under the coat, for any outgoing direction.
     pub fn at_exit(material: &'a TracedMaterial, normal: Vec3, geometric_normal: Vec3) -> Self {
-        let bsdf = SurfaceBsdf::new(material, Vec3::ONE, normal, geometric_normal, normal);
+        let factor = material.diffuse_factor(Vec3::ONE, 0.0);
+        SurfaceBsdf::new(material, Vec3::ONE, normal, geometric_normal, normal).with_diffuse_lobe_alone(factor)
+    }
+
+    /// Returns the BSDF of a diffuse lobe under the coat, with a base colour that may be negative, at the same point.
+    pub fn with_diffuse_base(self, base_color: Vec3) -> Self {
+        self.with_diffuse_lobe_alone(self.material.diffuse_factor(base_color, 1.0 - self.coat_transmission()))
+    }
+
+    fn with_diffuse_lobe_alone(self, factor: Vec3) -> Self {
         SurfaceBsdf {
             probabilities: LobeProbabilities { dielectric: 0.0, microfacet: 0.0, base: Lobe::Diffuse },
             microfacet: MicrofacetLobe::NONE,
-            diffuse: DiffuseLobe { factor: material.diffuse_factor(Vec3::ONE, 0.0) },
-            ..bsdf
+            diffuse: DiffuseLobe { factor },
+            ..self
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Walks against closed forms and published profiles.
 
 use super::medium::Medium;
-use super::walk::{Walk, WalkEnd};
+use super::walk::{Walk, WalkEnd, WalkPair};
 use crate::math::{Ray, warp};
 use crate::raytrace::bsdf::TracedMaterial;
 use crate::raytrace::bvh::TraversalStack;
@@ -54,7 +54,7 @@ impl Body {
     }
 
     /// Walks from a surface.
-    fn walk(&mut self, entry: &SurfaceInteraction, base_color: Vec3, index: u32) -> Option<WalkEnd> {
+    fn walk(&mut self, entry: &SurfaceInteraction, base_color: Vec3, index: u32) -> WalkPair {
         let extinction = self.materials[0].extinction_per_m().unwrap();
         let sampler = Sampler::new(3, index >> 12, index & 0xfff, 5);
         let (set, numbers) = sampler.set_and_stream(Dimensions::Subsurface { depth: 0 });
@@ -90,12 +90,17 @@ fn the_albedo_of_a_thick_flat_body_is_the_base_colour() {
     for color in colors {
         for mean_free_path_mm in [[1.0; 3], [1.3, 0.95, 0.67], [20.0, 5.0, 1.0], [0.2; 3]] {
             let (mut body, entry) = half_space(mean_free_path_mm);
-            let ends: Vec<Option<WalkEnd>> = (0..WALKS).map(|i| body.walk(&entry, color, i)).collect();
+            let walks: Vec<WalkPair> = (0..WALKS).map(|i| body.walk(&entry, color, i)).collect();
             for channel in 0..3 {
-                let weight = |end: &Option<WalkEnd>| end.map_or(0.0, |end| f64::from(end.weight[channel]));
-                let mean = SampleMean::of(ends.iter().map(weight));
                 let expected = f64::from(color[channel]);
-                assert!(mean.agrees_with(expected, 0.002, 36), "{mean:?} for {expected}");
+                let weight = |walk: &WalkPair| walk.end.map_or(0.0, |end| f64::from(end.weight[channel]));
+                let mean = SampleMean::of(walks.iter().map(weight));
+                assert!(mean.agrees_with(expected, 0.002, 72), "{mean:?} for {expected}");
+                // The control variate: the same walk under the tangent plane, which is the surface here.
+                let flat = SampleMean::of(walks.iter().map(|walk| f64::from(walk.flat_weight[channel])));
+                assert!(flat.agrees_with(expected, 0.0005, 72), "{flat:?} for {expected}");
+                let difference = SampleMean::of(walks.iter().map(|w| weight(w) - f64::from(w.flat_weight[channel])));
+                assert!(difference.standard_error < 0.1 * mean.standard_error, "{difference:?}");
             }
         }
     }
@@ -143,7 +148,7 @@ fn light_around_a_thin_beam_has_the_published_profile() {
         let (mut body, entry) = half_space([mean_free_path_mm; 3]);
         let (mut within, mut total) = ([0.0; RADII.len()], 0.0);
         for index in 0..30_000 {
-            let Some(end) = body.walk(&entry, Vec3::splat(albedo), index) else { continue };
+            let Some(end) = body.walk(&entry, Vec3::splat(albedo), index).end else { continue };
             let weight = f64::from(end.weight.y);
             let radius = f64::from(end.surface.position.distance(entry.position) / mean_free_path_mm) * 1e3;
             total += weight;
@@ -175,7 +180,7 @@ fn walks_that_do_not_find_the_surface_end_at_their_entry_with_all_of_their_light
     for (mesh, materials) in [(strip, vec![white.clone()]), (layer, vec![white, hard])] {
         let mut body = Body::new(mesh, &materials);
         let entry = body.surface(Vec3::new(1e-4, 1.0, 0.1), Vec3::NEG_Y);
-        let ends: Vec<WalkEnd> = (0..500).map(|i| body.walk(&entry, Vec3::ONE, i).unwrap()).collect();
+        let ends: Vec<WalkEnd> = (0..500).map(|i| body.walk(&entry, Vec3::ONE, i).end.unwrap()).collect();
         assert!(ends.iter().filter(|end| end.is_entry).count() > 250);
         for end in &ends {
             assert!(end.surface.material == 0 && (!end.is_entry || end.surface.position == entry.position));

@@ -5,6 +5,9 @@
 //! Sampling Scheme for Monte Carlo Subsurface Scattering"). The weight is the contribution of each channel over the
 //! density of the walk under all techniques (balance heuristic, Veach 1997), so that guided walks have about the same
 //! weight on a flat surface, and classical ones bound it where the body is thin or curved.
+//!
+//! The same walk is followed under the tangent plane of its entry, without rays. Its expected weight is known, which
+//! makes it a control variate: see `path`.
 
 use super::medium::Medium;
 use crate::math::{Ray, orthonormal_basis, warp};
@@ -12,7 +15,7 @@ use crate::raytrace::bsdf::TracedMaterial;
 use crate::raytrace::bvh::TraversalStack;
 use crate::raytrace::geometry::{Instance, SurfaceInteraction};
 use crate::raytrace::sampler::{self, NumberStream, Set};
-use crate::raytrace::simd::{KernelTask, Kernels};
+use crate::raytrace::simd::{KernelTask, Kernels, TriangleHit};
 use glam::Vec3;
 
 /// Scattering events after which a walk ends at its entry. In a white half-space, one of 110 walks takes more.
@@ -21,8 +24,8 @@ pub const MAX_STEPS: u32 = 4096;
 const CLASSICAL: f32 = 0.1;
 /// Probabilities of the channels: about their parts of luminance, less uneven.
 const CHANNELS: Vec3 = Vec3::new(0.3, 0.5, 0.2);
-/// Largest weight of walks that Russian roulette ends.
-const ROULETTE_WEIGHT: f32 = 0.05;
+/// Weight under which Russian roulette ends walks, relative to the albedo of the body.
+const ROULETTE_WEIGHT: f32 = 0.1;
 /// Least mean free path, in error bounds of the position.
 const MIN_FREE_PATH: f32 = 16.0;
 /// Least cosine of the direction of entry that counts for the offset of its origin.
@@ -47,17 +50,45 @@ pub struct Walk<'a> {
     pub stack: &'a mut TraversalStack,
 }
 
-/// The end of a walk.
+/// The end of a walk that is not absorbed.
 #[derive(Clone, Copy, Debug)]
 pub struct WalkEnd {
     /// The surface at which light leaves to the outside.
     pub surface: SurfaceInteraction,
     /// Contribution over density, for an entry with a cosine distribution.
     pub weight: Vec3,
-    /// Number of rays.
-    pub rays: u32,
     /// True if the walk did not find the surface and ends at its entry.
     pub is_entry: bool,
+}
+
+/// A walk in the body, and the same walk under the tangent plane of its entry.
+#[derive(Clone, Copy, Debug)]
+pub struct WalkPair {
+    /// The end of the walk in the body; none if it is absorbed.
+    pub end: Option<WalkEnd>,
+    /// Weight of the walk under the plane; its expected value is the diffuse albedo of the medium.
+    pub flat_weight: Vec3,
+    /// Number of rays.
+    pub rays: u32,
+}
+
+/// The state of a pair of walks.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ends {
+    body: Option<WalkEnd>,
+    flat_weight: Option<Vec3>,
+    rays: u32,
+}
+
+impl Ends {
+    fn is_complete(&self) -> bool {
+        self.body.is_some() && self.flat_weight.is_some()
+    }
+
+    /// Returns the pair where no walk goes on: light that has not left is absorbed.
+    fn finish(self) -> WalkPair {
+        WalkPair { end: self.body, flat_weight: self.flat_weight.unwrap_or(Vec3::ZERO), rays: self.rays }
+    }
 }
 
 /// The sampling technique of a walk.
@@ -86,6 +117,23 @@ struct Weights {
 }
 
 impl Weights {
+    /// The weights after a flight by a distance, of transmittances `exp(-rate distance)`.
+    #[inline(always)]
+    fn after_flight(mut self, extinction: Vec3, stretched: Vec3, distance: f32) -> Self {
+        let transmittance = (-extinction * distance).exp();
+        self.contribution *= transmittance;
+        self.classical *= transmittance;
+        self.guided *= (-stretched * distance).exp();
+        self
+    }
+
+    /// Returns the contribution over the density of the mixture.
+    #[inline(always)]
+    fn weight(mut self) -> Vec3 {
+        self.normalize();
+        self.contribution
+    }
+
     /// Divides by the density of the mixture.
     #[inline(always)]
     fn normalize(&mut self) {
@@ -123,15 +171,15 @@ impl Guide {
 }
 
 impl KernelTask for Walk<'_> {
-    /// None for a walk that is absorbed.
-    type Output = Option<WalkEnd>;
+    type Output = WalkPair;
 
     #[inline(always)]
-    fn run<K: Kernels>(mut self) -> Option<WalkEnd> {
-        let Medium { extinction, albedo, decay } = self.medium;
-        let min_free_path = 1.0 / extinction.max_element();
-        if min_free_path < MIN_FREE_PATH * self.entry.position_error.max_element() {
-            return self.end_at_entry(Vec3::ONE, 0);
+    fn run<K: Kernels>(mut self) -> WalkPair {
+        let Medium { diffuse_albedo, extinction, albedo, decay } = self.medium;
+        let mut ends = Ends::default();
+        if 1.0 / extinction.max_element() < MIN_FREE_PATH * self.entry.position_error.max_element() {
+            (ends.body, ends.flat_weight) = (Some(self.end_at_entry(diffuse_albedo)), Some(diffuse_albedo));
+            return ends.finish();
         }
 
         // Sample the technique, and a direction of entry about the geometric normal
@@ -141,47 +189,48 @@ impl KernelTask for Walk<'_> {
         let [mut u_distance, u_technique] = sampler::last_pair(&self.set);
         let technique = Technique::sample(u_technique);
         let guide = Guide::new(decay);
-        let mut direction = -to_world(warp::cosine_hemisphere(sampler::first_pair(&self.set)));
+        let mut local = -warp::cosine_hemisphere(sampler::first_pair(&self.set));
+        let mut direction = to_world(local);
         let mut origin = self.entry.spawn_origin(direction);
         // Rays start inside by the error bound of the position: count the way to there as travelled
-        let mut travelled = (self.entry.position - origin).dot(normal) / (-direction.dot(normal)).max(MIN_COSINE);
+        let mut travelled = (self.entry.position - origin).dot(normal) / (-local.z).max(MIN_COSINE);
+        let mut height = 0.0;
         let mut weights = Weights { contribution: Vec3::ONE, classical: Vec3::ONE, guided: Vec3::ONE };
+        let threshold = ROULETTE_WEIGHT * diffuse_albedo.max_element();
 
-        for step in 1..=MAX_STEPS {
+        for _ in 0..MAX_STEPS {
             // Sample a distance
-            let stretched = extinction * (Vec3::ONE - decay * direction.dot(normal));
+            let stretched = extinction * (Vec3::ONE - decay * local.z);
             let rates = if technique.is_guided { stretched } else { extinction };
             let distance = -(1.0 - u_distance).ln() / rates[technique.channel];
 
-            // Leave the body, if its surface is nearer
-            let ray = Ray { origin, direction, t_max: (distance - travelled).max(0.0) };
-            let hit = self.instance.intersect::<K>(&ray, self.stack);
-            let t = hit.map_or(distance, |hit| hit.t + travelled);
-            let (transmittance, guided) = ((-extinction * t).exp(), (-stretched * t).exp());
-            weights.contribution *= transmittance;
-            weights.classical *= transmittance;
-            weights.guided *= guided;
-            if let Some(hit) = hit {
-                weights.normalize();
-                let surface = self.instance.surface(&hit);
-                let is_soft = self.materials[surface.material as usize].extinction_per_m().is_some();
-                if is_soft && direction.dot(surface.geometric_normal) > 0.0 {
-                    return Some(WalkEnd { surface, weight: weights.contribution, rays: step, is_entry: false });
+            // Leave the body by its surface and the half-space by its plane
+            let t_max = (distance - travelled).max(0.0);
+            if ends.body.is_none() {
+                ends.rays += 1;
+                if let Some(hit) = self.instance.intersect::<K>(&Ray { origin, direction, t_max }, self.stack) {
+                    let weight = weights.after_flight(extinction, stretched, hit.t + travelled).weight();
+                    ends.body = Some(self.end_at(&hit, direction, weight));
                 }
-                return self.end_at_entry(weights.contribution, step);
+            }
+            let next_height = height + local.z * distance;
+            if ends.flat_weight.is_none() && next_height > 0.0 {
+                ends.flat_weight = Some(weights.after_flight(extinction, stretched, -height / local.z).weight());
+            }
+            if ends.is_complete() {
+                return ends.finish();
             }
 
             // Scatter
             let u = self.numbers.unit_square();
-            let local = if technique.is_guided {
-                let cos = guide.sample_cos(decay, technique.channel, u.x);
-                warp::about_z(cos, u.y)
+            (origin, travelled, height) = (origin + direction * t_max, 0.0, next_height);
+            local = if technique.is_guided {
+                warp::about_z(guide.sample_cos(decay, technique.channel, u.x), u.y)
             } else {
                 warp::uniform_sphere(u)
             };
             direction = to_world(local);
-            origin += ray.direction * ray.t_max;
-            travelled = 0.0;
+            weights = weights.after_flight(extinction, stretched, distance);
             weights.contribution *= extinction * albedo;
             weights.classical *= extinction;
             weights.guided *= stretched * guide.direction / (Vec3::ONE - decay * local.z);
@@ -189,21 +238,32 @@ impl KernelTask for Walk<'_> {
 
             // Play Russian roulette
             let largest = weights.contribution.max_element();
-            if largest < ROULETTE_WEIGHT {
-                if self.numbers.next() * ROULETTE_WEIGHT >= largest {
-                    return None;
-                }
-                weights.contribution *= ROULETTE_WEIGHT / largest;
+            if largest.is_nan() || largest <= self.numbers.next() * threshold {
+                return ends.finish();
+            }
+            if largest < threshold {
+                weights.contribution *= threshold / largest;
             }
             u_distance = self.numbers.next();
         }
-        self.end_at_entry(weights.contribution, MAX_STEPS)
+        ends.body.get_or_insert(self.end_at_entry(weights.contribution));
+        ends.flat_weight.get_or_insert(weights.contribution);
+        ends.finish()
     }
 }
 
 impl Walk<'_> {
+    /// Returns the end of a walk whose ray hits the object.
     #[inline(always)]
-    fn end_at_entry(&self, weight: Vec3, rays: u32) -> Option<WalkEnd> {
-        Some(WalkEnd { surface: *self.entry, weight, rays, is_entry: true })
+    fn end_at(&self, hit: &TriangleHit, direction: Vec3, weight: Vec3) -> WalkEnd {
+        let surface = self.instance.surface(hit);
+        let is_soft = self.materials[surface.material as usize].extinction_per_m().is_some();
+        let leaves = is_soft && direction.dot(surface.geometric_normal) > 0.0;
+        if leaves { WalkEnd { surface, weight, is_entry: false } } else { self.end_at_entry(weight) }
+    }
+
+    #[inline(always)]
+    fn end_at_entry(&self, weight: Vec3) -> WalkEnd {
+        WalkEnd { surface: *self.entry, weight, is_entry: true }
     }
 }
