@@ -12,6 +12,7 @@
 //!                                               -> G-buffer (Rgba32Uint), ids (Rg32Uint), depth (Depth32Float)
 //! [shadow mask + blur]  four lights per mask         -> mask array (Rg32Uint), from G-buffer, ids, shadow maps
 //! lighting pass         full-screen, lights per tile -> picture; in a draft -> coarse lighting (Rgba32Uint)
+//!   diffusion pass      with skin: spreads diffuse light under soft surfaces -> picture; drafts leave it out
 //!   resolve pass        drafts: joint bilateral upsampling of the coarse lighting -> picture
 //! glass pass            forward, blended             -> picture, ids, depth
 //! channel pass          instead of lighting, for views of the G-buffer -> picture

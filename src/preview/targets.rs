@@ -53,6 +53,8 @@ impl TargetLayouts {
 pub(crate) struct Targets {
     pub size: (u32, u32),
     pub output: Output,
+    /// The coarse lighting has the picture's size, for the diffusion pass; else half of it.
+    pub is_coarse_full: bool,
     pub gbuffer: wgpu::TextureView,
     pub ids: wgpu::Texture,
     pub ids_view: wgpu::TextureView,
@@ -67,7 +69,13 @@ pub(crate) struct Targets {
 }
 
 impl Targets {
-    pub fn new(device: &wgpu::Device, layouts: &TargetLayouts, size: (u32, u32), output: Output) -> Self {
+    pub fn new(
+        device: &wgpu::Device,
+        layouts: &TargetLayouts,
+        size: (u32, u32),
+        output: Output,
+        is_coarse_full: bool,
+    ) -> Self {
         let sized = |label, size: (u32, u32), format, usage| {
             device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
@@ -89,10 +97,12 @@ impl Targets {
         let color = texture("preview", output.format(), read | copy);
         // Drafts shade at most one pixel in 2 x 2.
         let half = (size.0.div_ceil(2), size.1.div_ceil(2));
-        let coarse = view(&sized("coarse lighting", half, COARSE_FORMAT, read));
+        let coarse_size = if is_coarse_full { size } else { half };
+        let coarse = view(&sized("coarse lighting", coarse_size, COARSE_FORMAT, read));
         Targets {
             size,
             output,
+            is_coarse_full,
             gbuffer_group: texture_group(device, "G-buffer", &layouts.gbuffer, &[&gbuffer, &ids_view]),
             gbuffer,
             ids_view,
@@ -118,18 +128,21 @@ pub(crate) struct RenderTargets {
 impl RenderTargets {
     /// Targets of one pixel.
     pub fn new(device: &wgpu::Device, layouts: TargetLayouts) -> Self {
-        let current = Targets::new(device, &layouts, (1, 1), Output::Display);
+        let current = Targets::new(device, &layouts, (1, 1), Output::Display, false);
         RenderTargets { layouts, current, generation: 0 }
     }
 
-    /// Recreates the targets if size or output differ from the current ones; returns true if it did. The size is
-    /// clamped to what the device supports, and to at least one pixel.
-    pub fn resize(&mut self, device: &wgpu::Device, size: (u32, u32), output: Output) -> bool {
+    /// Recreates the targets if size or output differ from the current ones, or if the diffusion pass needs a coarse
+    /// target of full size; returns true if it did. The size is clamped to what the device supports, and to at least
+    /// one pixel.
+    pub fn resize(&mut self, device: &wgpu::Device, size: (u32, u32), output: Output, diffuses: bool) -> bool {
         let largest = device.limits().max_texture_dimension_2d;
         let size = (size.0.clamp(1, largest), size.1.clamp(1, largest));
-        let stale = self.current.size != size || self.current.output != output;
+        let is_coarse_full = self.current.is_coarse_full || diffuses;
+        let stale =
+            self.current.size != size || self.current.output != output || self.current.is_coarse_full != is_coarse_full;
         if stale {
-            self.current = Targets::new(device, &self.layouts, size, output);
+            self.current = Targets::new(device, &self.layouts, size, output, is_coarse_full);
             self.generation += 1;
         }
         stale

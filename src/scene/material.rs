@@ -40,6 +40,11 @@ impl Subsurface {
     /// Practical Model for Subsurface Light Transport", figure 5, "skin1"); the mean free path is the single-scattering
     /// albedo that gives the preset's colour over them.
     pub const SKIN: Self = Subsurface { mean_free_path_mm: [1.29, 0.99, 0.79] };
+    /// Medium skin, from the same coefficients: more is absorbed, so that light goes less far.
+    pub const MEDIUM_SKIN: Self = Subsurface { mean_free_path_mm: [1.17, 0.78, 0.55] };
+    /// Dark skin, from the same coefficients. Its pigment is taken to be spread evenly; in truth it lies near the
+    /// surface, and red light goes further below it.
+    pub const DARK_SKIN: Self = Subsurface { mean_free_path_mm: [0.69, 0.36, 0.21] };
 }
 
 impl Default for Material {
@@ -192,11 +197,16 @@ impl MaterialPreset {
         let metal = |base_color, roughness| Material { metallic: 1.0, ..opaque(base_color, roughness) };
         // Meshes and the outlines of views show the base colour, strands the fibre.
         let hair = |fibre, base_color| Material { fibre: Some(fibre), ..opaque(base_color, 0.5) };
+        let skin = |base_color, roughness, subsurface| Material {
+            ior: 1.4,
+            subsurface: Some(subsurface),
+            ..opaque(base_color, roughness)
+        };
         let clear = |ior| Material { transmission: 1.0, ior, ..opaque([1.0; 3], 0.0) };
         match self {
-            MaterialPreset::SkinLight => Material { ior: 1.4, ..opaque([0.62, 0.43, 0.34], 0.48) },
-            MaterialPreset::SkinMedium => Material { ior: 1.4, ..opaque([0.42, 0.25, 0.17], 0.45) },
-            MaterialPreset::SkinDark => Material { ior: 1.4, ..opaque([0.15, 0.08, 0.05], 0.42) },
+            MaterialPreset::SkinLight => skin([0.62, 0.43, 0.34], 0.48, Subsurface::SKIN),
+            MaterialPreset::SkinMedium => skin([0.42, 0.25, 0.17], 0.45, Subsurface::MEDIUM_SKIN),
+            MaterialPreset::SkinDark => skin([0.15, 0.08, 0.05], 0.42, Subsurface::DARK_SKIN),
             MaterialPreset::HairBlack => hair(Fibre::of_melanin(0.98, 0.0), [0.03; 3]),
             MaterialPreset::HairDarkBrown => hair(Fibre::of_melanin(0.9, 0.1), [0.06, 0.04, 0.03]),
             MaterialPreset::HairBrown => hair(Fibre::of_melanin(0.72, 0.2), [0.15, 0.09, 0.05]),

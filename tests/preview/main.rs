@@ -31,6 +31,7 @@ mod lens;
 mod picture;
 mod room;
 mod shadow_cache;
+mod soft_surfaces;
 mod stored;
 #[path = "../studio/strands.rs"]
 mod strands;

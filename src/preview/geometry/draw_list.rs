@@ -5,7 +5,7 @@ use super::draw_item::{DrawItem, DrawPass, ShadowCasting, Sides};
 use super::mesh_cache::{EmitterSurface, MeshKey};
 use super::oriented_box::OrientedBox;
 use super::strands::StrandItem;
-use super::surface::{FLAG_EMITTER, FLAG_GLOWS, FLAG_HOVERED, FLAG_SELECTED, GpuDraw, GpuSurface};
+use super::surface::{FLAG_EMITTER, FLAG_GLOWS, FLAG_HOVERED, FLAG_SELECTED, GpuDraw, GpuSurface, diffusion_m};
 use super::texture_cache::WHITE;
 use crate::photo::PhotometricLight;
 use crate::photo::emitter::EmitterShape;
@@ -189,6 +189,8 @@ impl DrawList {
             transmission: material.transmission.clamp(0.0, 1.0),
             flags: flags | if glows { FLAG_GLOWS } else { 0 },
             unused: 0,
+            diffusion_m: diffusion_m(material),
+            unused_1: 0,
         };
         self.draws.push(GpuDraw::new(self.surfaces.len() as u32, world_from_object, &surface));
         self.surfaces.push(surface);

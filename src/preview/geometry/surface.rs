@@ -1,5 +1,6 @@
 //! Surface records as the shaders read them.
 
+use crate::scene::Material;
 use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Vec3};
 
@@ -25,6 +26,9 @@ pub(crate) struct GpuSurface {
     pub transmission: f32,
     pub flags: u32,
     pub unused: u32,
+    /// Shape parameters of the diffusion profile, metres; 0 for hard surfaces.
+    pub diffusion_m: [f32; 3],
+    pub unused_1: u32,
 }
 
 impl GpuSurface {
@@ -43,6 +47,18 @@ impl GpuSurface {
         let bit_of = |flag: u32, bit: u32| if self.flags & flag != 0 { 1 << bit } else { 0 };
         bit_of(FLAG_SELECTED, 31) | bit_of(FLAG_HOVERED, 30)
     }
+}
+
+/// Returns the shape parameters of a material's diffusion profile, metres: the mean free paths over a fit in the albedo
+/// (Christensen and Burley 2015, equation 6); zeros for hard surfaces.
+pub(crate) fn diffusion_m(material: &Material) -> [f32; 3] {
+    let opaque = material.subsurface.filter(|_| material.transmission == 0.0 && material.metallic < 1.0);
+    let Some(subsurface) = opaque else { return [0.0; 3] };
+    std::array::from_fn(|channel| {
+        let albedo = material.base_color[channel].clamp(0.0, 1.0);
+        let scale = 1.9 - albedo + 3.5 * (albedo - 0.8).powi(2);
+        1e-3 * subsurface.mean_free_path_mm[channel] / scale
+    })
 }
 
 /// The record of a draw call; twin of `Draw` in `draw.wgsl`.

@@ -19,13 +19,21 @@ pub(crate) struct LightingPasses {
     glass: HashMap<(LightingVariant, (Sides, bool)), wgpu::RenderPipeline>,
     /// For pictures and for illuminance.
     resolve: [wgpu::RenderPipeline; 2],
+    diffusion: HashMap<Output, wgpu::RenderPipeline>,
     channels: HashMap<(Channel, Output), wgpu::RenderPipeline>,
 }
 
 impl LightingPasses {
     pub fn new(device: &wgpu::Device, layouts: BindGroupLayouts) -> Self {
         let resolve = [false, true].map(|illuminance| pipelines::resolve(device, &layouts, illuminance));
-        LightingPasses { layouts, lighting: HashMap::new(), glass: HashMap::new(), resolve, channels: HashMap::new() }
+        LightingPasses {
+            layouts,
+            lighting: HashMap::new(),
+            glass: HashMap::new(),
+            resolve,
+            diffusion: HashMap::new(),
+            channels: HashMap::new(),
+        }
     }
 
     /// Returns the pipeline that draws these sides of glass over the lit picture. `inner` sides are seen through
@@ -41,7 +49,8 @@ impl LightingPasses {
         self.glass.entry((variant, (sides, inner))).or_insert_with(make)
     }
 
-    /// Lights the picture. `coarse_scale` is the side of a coarse pixel in picture pixels, at least 2.
+    /// Lights the picture. `coarse_scale` is the side of a coarse pixel in picture pixels: 1 for the diffusion pass, at
+    /// least 2 for drafts.
     pub fn draw(
         &mut self,
         device: &wgpu::Device,
@@ -59,11 +68,16 @@ impl LightingPasses {
         let side = if variant.coarse { coarse_scale } else { 1 };
         let area = (targets.size.0.div_ceil(side), targets.size.1.div_ceil(side));
         fullscreen_pass(encoder, "lighting", (target, area), lighting, [scene, &targets.gbuffer_group, masks]);
-        // Upsample the coarse target to the picture
+        // Upsample the coarse target to the picture, or spread its light under soft surfaces
         if variant.coarse {
-            let resolve = &self.resolve[usize::from(variant.illuminance)];
             let groups = [scene, &targets.gbuffer_group, &targets.coarse_group];
-            fullscreen_pass(encoder, "resolve", (&targets.color_view, targets.size), resolve, groups);
+            let (label, pipeline) = if coarse_scale == 1 {
+                let make = || pipelines::diffusion(device, &self.layouts, variant.output);
+                ("diffusion", &*self.diffusion.entry(variant.output).or_insert_with(make))
+            } else {
+                ("resolve", &self.resolve[usize::from(variant.illuminance)])
+            };
+            fullscreen_pass(encoder, label, (&targets.color_view, targets.size), pipeline, groups);
         }
     }
 

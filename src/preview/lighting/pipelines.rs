@@ -24,7 +24,7 @@ pub(crate) struct LightingVariant {
     pub tiled: bool,
     /// A modifier narrows the beam of at least one light.
     pub has_beams: bool,
-    /// Shades one pixel of each coarse pixel, for a draft.
+    /// Shades one pixel of each coarse pixel, for a draft or for the diffusion pass.
     pub coarse: bool,
     /// Writes the illuminance in false colour.
     pub illuminance: bool,
@@ -83,6 +83,13 @@ pub(crate) fn resolve(device: &wgpu::Device, layouts: &BindGroupLayouts, illumin
     let layout = pipeline_layout(device, "resolve", &[&layouts.scene, &layouts.gbuffer, &layouts.coarse]);
     let constants = [("ILLUMINANCE", flag(illuminance))];
     fullscreen(device, ("resolve", "fragment"), shaders::RESOLVE, &layout, &constants, Output::Display.format())
+}
+
+/// Creates the pipeline that spreads light under soft surfaces.
+pub(crate) fn diffusion(device: &wgpu::Device, layouts: &BindGroupLayouts, output: Output) -> wgpu::RenderPipeline {
+    let layout = pipeline_layout(device, "diffusion", &[&layouts.scene, &layouts.gbuffer, &layouts.coarse]);
+    let constants = [("LINEAR", flag(output == Output::Linear))];
+    fullscreen(device, ("diffusion", "fragment"), shaders::DIFFUSION, &layout, &constants, output.format())
 }
 
 /// Creates the pipeline that shows one channel of the G-buffer.

@@ -5,6 +5,7 @@ use crate::preview::channel::Channel;
 use crate::preview::geometry::draw_item::DrawPass;
 use crate::preview::geometry::draw_list::{DrawList, Uploads};
 use crate::preview::geometry::oriented_box::OrientedBox;
+use crate::preview::geometry::surface::diffusion_m;
 use crate::preview::input::{Options, PreviewInput};
 use crate::preview::lighting::pipelines::LightingVariant;
 use crate::preview::lights::environment::Environment;
@@ -14,7 +15,7 @@ use crate::preview::scene_buffers::GpuFrame;
 use crate::preview::shadows::focus::VisibleReceivers;
 use crate::preview::shadows::plan::ShadowPlan;
 use crate::preview::targets::Output;
-use crate::scene::CameraFrame;
+use crate::scene::{CameraFrame, Object};
 use glam::Vec3;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -34,6 +35,8 @@ pub(super) struct FramePlan {
     pub output: Output,
     /// Lighting at reduced resolution.
     pub is_draft: bool,
+    /// Light spreads under soft surfaces. Drafts leave it out.
+    pub is_diffused: bool,
 }
 
 impl FramePlan {
@@ -60,9 +63,10 @@ impl FramePlan {
         let mut constants = frame_constants(input, size, &lights, environment.as_ref());
         constants.set_grid(&bounced_light.layout);
         constants.mask_scale = mask_scale(size, is_cpu, is_draft, lights.lights.len());
-        constants.coarse_scale = coarse_scale(&lights);
+        let is_diffused = diffuses(input) && !is_draft;
+        constants.coarse_scale = if is_diffused { 1 } else { coarse_scale(&lights) };
         constants.depth_range_m = depth_range_m(&input.frame, &list.casters);
-        FramePlan { list, lights, shadows, tiles, constants, bounced_light, output, is_draft }
+        FramePlan { list, lights, shadows, tiles, constants, bounced_light, output, is_draft, is_diffused }
     }
 
     /// Returns the specialisation of the lighting pass.
@@ -75,7 +79,7 @@ impl FramePlan {
             light_radius: options.light_radius,
             tiled: self.tiles.is_some(),
             has_beams: self.lights.lights.iter().any(|light| light.has_beam != 0),
-            coarse: self.is_draft,
+            coarse: self.is_draft || self.is_diffused,
             illuminance: options.channel == Channel::Illuminance,
             gloss: options.gloss,
             has_fibres: !self.list.strands.is_empty(),
@@ -121,6 +125,17 @@ impl FramePlan {
 /// Returns true if the lighting pass and its shadows are drawn.
 pub(super) fn needs_lighting(options: &Options) -> bool {
     options.channel.is_lit() && !options.overlay_alone
+}
+
+/// Returns true if a visible object scatters light under its surface, in a picture that shows it.
+pub(super) fn diffuses(input: &PreviewInput) -> bool {
+    let is_soft = |object: &Object| {
+        let parts = object.part_materials.iter().map(|(_, material)| material);
+        object.visible && parts.chain([&object.material]).any(|material| diffusion_m(material) != [0.0; 3])
+    };
+    needs_lighting(&input.options)
+        && input.options.channel != Channel::Illuminance
+        && input.scene.objects.iter().any(is_soft)
 }
 
 /// Returns the constants that depend on camera, lights and room alone.

@@ -24,7 +24,7 @@ use super::shadows::shadow_passes::ShadowPasses;
 use super::targets::{Output, RenderTargets, TargetLayouts};
 use super::{ObjectMask, Pick, PickHit, PreviewError, PreviewInput};
 use eframe::wgpu;
-use frame_plan::{FramePlan, needs_lighting};
+use frame_plan::{FramePlan, diffuses, needs_lighting};
 
 /// Draws scenes on a GPU and keeps what it uploaded and drew between frames.
 #[derive(Debug)]
@@ -185,7 +185,7 @@ impl PreviewRenderer {
     }
 
     fn draw(&mut self, input: &PreviewInput, output: Output) {
-        if self.targets.resize(&self.gpu.device, input.size, output) {
+        if self.targets.resize(&self.gpu.device, input.size, output, diffuses(input)) {
             self.drawn = DrawnFrame::default();
         }
         let mut plan = self.plan(input, output);

@@ -35,6 +35,9 @@ pub(crate) const RESOLVE: &str = concat!(
     include_str!("false_color.wgsl"),
     include_str!("resolve.wgsl")
 );
+/// The diffusion pass, which spreads light under soft surfaces.
+pub(crate) const DIFFUSION: &str =
+    concat!(include_str!("scene.wgsl"), include_str!("tone.wgsl"), include_str!("diffusion.wgsl"));
 /// The channel pass.
 pub(crate) const CHANNEL: &str =
     concat!(include_str!("scene.wgsl"), include_str!("tone.wgsl"), include_str!("channel.wgsl"));
@@ -76,6 +79,7 @@ mod tests {
             ("shadow blur", SHADOW_BLUR),
             ("lighting", LIGHTING),
             ("resolve", RESOLVE),
+            ("diffusion", DIFFUSION),
             ("channel", CHANNEL),
             ("glass", GLASS),
             ("overlay", OVERLAY),

@@ -58,6 +58,9 @@ struct Surface {
     transmission: f32,
     flags: u32,
     unused: u32,
+    // Shape parameters of the diffusion profile, metres: red, green, blue; 0 for hard surfaces.
+    diffusion_m: vec3f,
+    unused_1: u32,
 }
 
 // Outline flags in the id buffer; the other bits hold the surface index plus one, 0 for the background.

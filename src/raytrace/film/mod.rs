@@ -124,7 +124,7 @@ impl Film {
         })
     }
 
-    /// Develops each layer by itself; their sum is [`Film::develop`].
+    /// Develops each layer by itself; their sum is [`Film::develop`], but for pixels of few samples that are negative.
     pub fn develop_layers(&self, scene: &Scene) -> Vec<(String, Picture)> {
         let weights = self.weights(scene);
         let one = |(layer, info): (usize, &Layer)| {
@@ -154,12 +154,15 @@ impl Film {
         self.layers.iter().map(|layer| layer.weight(scene) * scale).collect()
     }
 
+    /// Collects pixel values. The mean of a few samples of skin may be negative (`subsurface`): it is noise, and shown
+    /// black.
     fn picture(&self, value: impl Fn(&FilmTile, usize) -> Vec3) -> Picture {
         let mut picture = Picture::new(self.width, self.height);
         for tile in &self.tiles {
             for pixel in 0..tile.pixels() {
                 let (x, y) = tile.position(pixel);
-                picture.rgb[y as usize * self.width as usize + x as usize] = value(tile, pixel).to_array();
+                picture.rgb[y as usize * self.width as usize + x as usize] =
+                    value(tile, pixel).max(Vec3::ZERO).to_array();
             }
         }
         picture

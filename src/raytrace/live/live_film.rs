@@ -101,10 +101,10 @@ impl LiveFilm {
         let scale = exposure::pixel_per_cd_s_m2(scene);
         let weights: Vec<Vec3> = self.layers.iter().map(|layer| layer.weight(scene) * scale).collect();
 
-        // Resolve the tiles in parallel
+        // Resolve the tiles in parallel. The mean of a few samples of skin may be negative: it is shown black
         let resolve = |tile: &LiveTile| -> Vec<[f32; 3]> {
             let pixels = tile.grid(stride);
-            pixels.map(|pixel| self.resolve_pixel(tile, pixel, &weights, camera).to_array()).collect()
+            pixels.map(|pixel| self.resolve_pixel(tile, pixel, &weights, camera).max(Vec3::ZERO).to_array()).collect()
         };
         let resolved: Vec<Vec<[f32; 3]>> = self.tiles.par_iter().map(resolve).collect();
 

@@ -19,6 +19,33 @@ pub struct Medium {
     /// Rate at which light decays with depth, relative to the extinction: the inverse of the asymptotic relaxation
     /// length in mean free paths. Walks are guided by it; its precision does not matter.
     pub decay: Vec3,
+    /// The directions of guided walks.
+    pub guide: Guide,
+}
+
+/// The directions of guided walks.
+#[derive(Clone, Copy, Debug)]
+pub struct Guide {
+    /// Ratio of the densities of guided and of uniform directions, without its dependence on the direction:
+    /// 2 k / ln((1 + k) / (1 - k)) for a decay k.
+    pub direction: Vec3,
+    log_ratio: Vec3,
+}
+
+impl Guide {
+    #[inline(always)]
+    fn new(decay: Vec3) -> Self {
+        let log_ratio = decay.map(|k| k.ln_1p() - (-k).ln_1p());
+        Guide { direction: 2.0 * decay / log_ratio, log_ratio }
+    }
+
+    /// Samples the cosine to the outward normal, with density proportional to 1 / (1 - k cos).
+    #[inline(always)]
+    pub fn sample_cos(&self, decay: Vec3, channel: usize, u: f32) -> f32 {
+        let (k, log_ratio) = (decay[channel], self.log_ratio[channel]);
+        let e = (-u * log_ratio).exp_m1();
+        ((-e - k * (1.0 + e)) / k).clamp(-1.0, 1.0)
+    }
 }
 
 impl Medium {
@@ -31,7 +58,7 @@ impl Medium {
         let decay = s * (Vec3::splat(sqrt3) - s * s * (sqrt3 - 1.0));
         let (low, high) = GUIDED_DECAY;
         let decay = decay.clamp(Vec3::splat(low), Vec3::splat(high));
-        Medium { diffuse_albedo, extinction, albedo: Vec3::ONE - s * s, decay }
+        Medium { diffuse_albedo, extinction, albedo: Vec3::ONE - s * s, decay, guide: Guide::new(decay) }
     }
 }
 

@@ -3,7 +3,8 @@
 //! Walks have weights of their own, which would be noise. The weight of the same walk in a half-space has a known mean,
 //! the base colour. Times the direct light at the entry, the difference between mean and weight is a control variate
 //! (Glasserman 2003, "Monte Carlo Methods in Financial Engineering", section 4.1): it is zero on average, and cancels the
-//! noise where the light at the exit is about that at the entry. Samples may be negative.
+//! noise where the light at the exit is about that at the entry. Samples may be negative; films show negative means
+//! black.
 
 use super::medium::Medium;
 use super::walk::{Walk, WalkEnd, WalkPair};
@@ -28,8 +29,9 @@ impl PathTracer<'_> {
         limits: PathLimits,
         sink: &mut impl RadianceSink,
     ) -> bool {
+        let medium = self.medium_at(soft);
         if paths == 1 {
-            return self.continue_alone(path, soft, sampler, limits, sink);
+            return self.continue_alone(path, soft, &medium, sampler, limits, sink);
         }
         sink.record(|| PathEvent::PathSplit { paths });
         let split_factor = paths as f32;
@@ -40,7 +42,7 @@ impl PathTracer<'_> {
         let walks_first = self.samples_all_lights(path);
         let (mut walks, mut importances) = (Vec::new(), None);
         if walks_first {
-            walks.extend(samplers.iter().map(|sampler| self.sample_walk(path.depth, soft, sampler)));
+            walks.extend(samplers.iter().map(|sampler| self.sample_walk(path.depth, soft, &medium, sampler)));
             self.sample_entry_lights(path, soft, &walks, sampler, sink);
         } else {
             importances = self.light_importances(soft.point);
@@ -55,7 +57,7 @@ impl PathTracer<'_> {
             let mut path = *path;
             let goes_on = match walks.get(index) {
                 Some(walk) => self.continue_soft(&mut path, soft, walk, split_factor, (own, sampler), limits, sink),
-                None => self.continue_alone(&mut path, soft, own, limits, sink),
+                None => self.continue_alone(&mut path, soft, &medium, own, limits, sink),
             };
             if goes_on {
                 self.extend(&mut path, own, limits, sink);
@@ -69,26 +71,34 @@ impl PathTracer<'_> {
         &mut self,
         path: &mut PathState,
         soft: SoftPoint<'_>,
+        medium: &Medium,
         sampler: &Sampler,
         limits: PathLimits,
         sink: &mut impl RadianceSink,
     ) -> bool {
-        let walk = self.sample_walk(path.depth, soft, sampler);
+        let walk = self.sample_walk(path.depth, soft, medium, sampler);
         self.sample_entry_lights(path, soft, &[walk], sampler, sink);
         self.continue_soft(path, soft, &walk, 1.0, (sampler, sampler), limits, sink)
     }
 
+    /// Returns the medium under a soft surface.
+    fn medium_at(&self, soft: SoftPoint<'_>) -> Medium {
+        let material = &self.caster.scene.materials[soft.point.surface.material as usize];
+        Medium::new(material.extinction_per_m().unwrap_or(Vec3::ONE), soft.bsdf.base_color())
+    }
+
     /// Samples a lobe at a soft surface, and a walk if it is that under the surface.
-    fn sample_walk(&mut self, depth: u32, soft: SoftPoint<'_>, sampler: &Sampler) -> Option<WalkPair> {
+    fn sample_walk(&mut self, depth: u32, soft: SoftPoint<'_>, medium: &Medium, sampler: &Sampler) -> Option<WalkPair> {
         let scene = self.caster.scene;
         let [lobe, _] = sampler::last_pair(&sampler.set(Dimensions::Bsdf { depth }));
-        let material = &scene.materials[soft.point.surface.material as usize];
-        let extinction = material.extinction_per_m().filter(|_| soft.bsdf.samples_walk(lobe))?;
+        if !soft.bsdf.samples_walk(lobe) {
+            return None;
+        }
         let (set, numbers) = sampler.set_and_stream(Dimensions::Subsurface { depth });
         let pair = simd::dispatch(Walk {
             instance: &scene.aggregate.instances()[soft.point.instance as usize],
             materials: &scene.materials,
-            medium: Medium::new(extinction, soft.bsdf.base_color()),
+            medium,
             entry: soft.point.surface,
             set,
             numbers,

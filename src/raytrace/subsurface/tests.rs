@@ -61,7 +61,7 @@ impl Body {
         simd::dispatch(Walk {
             instance: &self.instance,
             materials: &self.materials,
-            medium: Medium::new(extinction, base_color),
+            medium: &Medium::new(extinction, base_color),
             entry,
             set,
             numbers,

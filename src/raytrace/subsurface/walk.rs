@@ -39,7 +39,7 @@ pub struct Walk<'a> {
     /// The scene's materials.
     pub materials: &'a [TracedMaterial],
     /// Inside of the object.
-    pub medium: Medium,
+    pub medium: &'a Medium,
     /// Where the walk enters.
     pub entry: &'a SurfaceInteraction,
     /// Stratified numbers for its start.
@@ -145,37 +145,12 @@ impl Weights {
     }
 }
 
-/// The densities by which a walk is guided, for one direction.
-#[derive(Clone, Copy, Debug)]
-struct Guide {
-    /// Ratio of the densities of guided and of uniform directions, without its dependence on the direction:
-    /// 2 k / ln((1 + k) / (1 - k)) for a decay k.
-    direction: Vec3,
-    log_ratio: Vec3,
-}
-
-impl Guide {
-    #[inline(always)]
-    fn new(decay: Vec3) -> Self {
-        let log_ratio = decay.map(|k| k.ln_1p() - (-k).ln_1p());
-        Guide { direction: 2.0 * decay / log_ratio, log_ratio }
-    }
-
-    /// Samples the cosine to the outward normal, with density proportional to 1 / (1 - k cos).
-    #[inline(always)]
-    fn sample_cos(&self, decay: Vec3, channel: usize, u: f32) -> f32 {
-        let (k, log_ratio) = (decay[channel], self.log_ratio[channel]);
-        let e = (-u * log_ratio).exp_m1();
-        ((-e - k * (1.0 + e)) / k).clamp(-1.0, 1.0)
-    }
-}
-
 impl KernelTask for Walk<'_> {
     type Output = WalkPair;
 
     #[inline(always)]
     fn run<K: Kernels>(mut self) -> WalkPair {
-        let Medium { diffuse_albedo, extinction, albedo, decay } = self.medium;
+        let Medium { diffuse_albedo, extinction, albedo, decay, guide } = *self.medium;
         let mut ends = Ends::default();
         if 1.0 / extinction.max_element() < MIN_FREE_PATH * self.entry.position_error.max_element() {
             (ends.body, ends.flat_weight) = (Some(self.end_at_entry(diffuse_albedo)), Some(diffuse_albedo));
@@ -188,7 +163,6 @@ impl KernelTask for Walk<'_> {
         let to_world = |w: Vec3| tangent * w.x + bitangent * w.y + normal * w.z;
         let [mut u_distance, u_technique] = sampler::last_pair(&self.set);
         let technique = Technique::sample(u_technique);
-        let guide = Guide::new(decay);
         let mut local = -warp::cosine_hemisphere(sampler::first_pair(&self.set));
         let mut direction = to_world(local);
         let mut origin = self.entry.spawn_origin(direction);
