@@ -3,7 +3,7 @@
 use super::binning::BATCH_TRIANGLES;
 use super::framebuffer::NO_OBJECT;
 use super::triangle::PrimitiveState;
-use crate::scene::{Assets, Material, Mesh, Scene, Texture, TextureSlot, room_mesh};
+use crate::scene::{Assets, Material, Mesh, Scene, Texture, TextureSlot, room_mesh, strand_ribbons};
 use glam::Affine3A;
 use std::ops::Range;
 use std::sync::Arc;
@@ -69,7 +69,7 @@ impl SceneGeometry {
             let state = PrimitiveState { cull_back_faces: false, depth_factor: 1.0 };
             let material = |part: &str| object.material_of(part).clone();
             if !mesh.strands.is_empty() {
-                let ribbons = Arc::new(mesh.strands.ribbons(MAX_RIBBONS));
+                let ribbons = Arc::new(strand_ribbons(&mesh.strands, MAX_RIBBONS));
                 geometry.add(ribbons, world_from_object, index, state, assets, material);
             }
             geometry.add(mesh, world_from_object, index, state, assets, material);

@@ -10,6 +10,7 @@ use super::bvh::{self, TraversalStack, WideBvh};
 use super::geometry::{Instance, MeshGeometry, SurfaceInteraction};
 use super::simd::{self, KernelTask, Kernels, SlabRay, TriangleHit};
 use super::strand_geometry::StrandHit;
+use super::strand_surface;
 use crate::math::Ray;
 use glam::Affine3A;
 use std::sync::Arc;
@@ -171,7 +172,7 @@ impl Aggregate {
         let instance = &self.instances[hit.instance as usize];
         match &hit.primitive {
             Primitive::Triangle(triangle) => instance.surface(triangle),
-            Primitive::Strand(strand) => instance.geometry.strands.surface(instance, strand),
+            Primitive::Strand(strand) => strand_surface::surface(instance, strand),
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::blas::Blas;
 use super::bvh::TraversalStack;
 use super::simd::{Kernels, SlabRay, TriangleHit};
-use super::strand_geometry::{StrandCoordinates, StrandGeometry};
+use super::strand_geometry::StrandGeometry;
 use crate::math::{self, Ray, gamma};
 use crate::scene::Mesh;
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
@@ -244,6 +244,17 @@ pub struct SurfaceInteraction {
     pub is_thin: bool,
     /// Position on the strand, for hits of strands.
     pub strand: Option<StrandCoordinates>,
+}
+
+/// The position on a strand, in world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrandCoordinates {
+    /// Unit direction of the strand towards its tip, interpolated between segments.
+    pub tangent: Vec3,
+    /// Offset across the width, -1 to 1, along N x T for the direction N towards the ray's origin.
+    pub h: f32,
+    /// Position along the strand: 0 at its root, 1 at its tip.
+    pub u: f32,
 }
 
 impl SurfaceInteraction {

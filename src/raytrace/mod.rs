@@ -55,6 +55,7 @@ mod sink;
 mod straight_path;
 mod strand_blas;
 mod strand_geometry;
+mod strand_surface;
 #[cfg(test)]
 mod strand_tests;
 mod subsurface;

@@ -1,16 +1,10 @@
-//! The strands of a mesh prepared for tracing, and the surface interaction at a hit of one.
+//! The strands of a mesh prepared for tracing.
 
-use super::geometry::{Instance, SurfaceInteraction};
 use super::simd::SegmentHit;
 use super::strand_blas::StrandBlas;
-use crate::math::orthonormal_basis;
 use crate::scene::Strands;
-use glam::{Mat3A, Vec2, Vec3, Vec3A};
+use glam::Vec3;
 use std::ops::Range;
-
-/// Ray origins are offset by this many radii, so that a ray leaves the fibre that it starts on: 1, and a margin for the
-/// rounding of a narrow ribbon's width.
-const SPAWN_RADII: f32 = 1.05;
 
 /// The strands of a mesh, if it has any, with their BLAS.
 #[derive(Debug)]
@@ -30,17 +24,6 @@ pub struct StrandHit {
     pub segment: SegmentHit,
     /// Direction of the ray in world space, which the ribbon faces.
     pub ray_direction: Vec3,
-}
-
-/// The position on a strand, in world space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StrandCoordinates {
-    /// Unit direction of the strand towards its tip, interpolated between segments.
-    pub tangent: Vec3,
-    /// Offset across the width, -1 to 1, along N x T for the direction N towards the ray's origin.
-    pub h: f32,
-    /// Position along the strand: 0 at its root, 1 at its tip.
-    pub u: f32,
 }
 
 impl StrandGeometry {
@@ -65,7 +48,7 @@ impl StrandGeometry {
     }
 
     /// Returns the first point of the strand that a point belongs to.
-    fn start_of(&self, point: u32) -> u32 {
+    pub fn start_of(&self, point: u32) -> u32 {
         let mut word = point as usize / 64;
         let mut bits = self.starts[word] << (63 - point % 64);
         if bits != 0 {
@@ -79,12 +62,12 @@ impl StrandGeometry {
     }
 
     /// Returns the point after the last one of the strand that a point belongs to.
-    fn end_of(&self, point: u32, point_count: u32) -> u32 {
+    pub fn end_of(&self, point: u32, point_count: u32) -> u32 {
         (point + 1..point_count).find(|&next| self.is_start(next)).unwrap_or(point_count)
     }
 
     /// Returns the unit direction of a strand at a position on a segment, interpolated between those at its points.
-    fn tangent(&self, strands: &Strands, segment: u32, s: f32) -> Vec3 {
+    pub fn tangent(&self, strands: &Strands, segment: u32, s: f32) -> Vec3 {
         let points = strands.points();
         let position = |point: u32| points[point as usize].position;
         let chord = position(segment + 1) - position(segment);
@@ -94,57 +77,4 @@ impl StrandGeometry {
         let chord = chord.normalize_or(Vec3::Y);
         before.normalize_or(chord).lerp(after.normalize_or(chord), s).normalize_or(chord)
     }
-
-    /// Returns the surface interaction at a hit, in world space.
-    pub fn surface(&self, instance: &Instance, hit: &StrandHit) -> SurfaceInteraction {
-        let mesh = instance.geometry.mesh();
-        let SegmentHit { segment, s, h, .. } = hit.segment;
-        let [a, b] = [0, 1].map(|end| mesh.strands.points()[segment as usize + end]);
-        let local = Vec3A::from(a.position.lerp(b.position, s));
-        let matrix = instance.world_from_object().matrix3;
-
-        // Build the frame of the ribbon, which faces the ray
-        let along = matrix * Vec3A::from(b.position - a.position);
-        let (facing, along) = frame(along.into(), hit.ray_direction);
-        // A mirrored instance swaps the sides of the ribbon.
-        let h = if matrix.determinant() < 0.0 { -h } else { h };
-        let across = facing.cross(along) * h;
-
-        // Bound the error so that rays which leave in any direction clear the fibre
-        let radius = (a.radius_m + s * (b.radius_m - a.radius_m)) * largest_scale(&matrix);
-        let rounding = instance.world_error(local, local.abs() * crate::math::gamma(8));
-        let position_error = Vec3::from(rounding) + SPAWN_RADII * radius;
-
-        // A round fibre, for materials that are not fibres
-        let normal = across + facing * (1.0 - h * h).max(0.0).sqrt();
-        let tangent: Vec3 = (matrix * Vec3A::from(self.tangent(&mesh.strands, segment, s))).into();
-        let (start, end) = (self.start_of(segment), self.end_of(segment, mesh.strands.points().len() as u32));
-        let u = ((segment - start) as f32 + s) / (end - start - 1).max(1) as f32;
-        let part = mesh.parts.len() + self.part(segment);
-        let position: Vec3 = instance.world_from_object().transform_point3a(local).into();
-        SurfaceInteraction {
-            position: position + across * radius,
-            position_error,
-            smooth_offset: Vec3::ZERO,
-            geometric_normal: facing,
-            normal: normal.normalize_or(facing),
-            uv: Vec2::new(u, 0.5 + 0.5 * h),
-            material: instance.materials.get(part).copied().unwrap_or(0),
-            is_thin: true,
-            strand: Some(StrandCoordinates { tangent: tangent.normalize_or(along), h, u }),
-        }
-    }
-}
-
-/// Returns the unit directions towards the origin of a ray, perpendicular to a fibre, and along the fibre.
-fn frame(along: Vec3, ray_direction: Vec3) -> (Vec3, Vec3) {
-    let along = along.normalize_or(Vec3::Y);
-    let perpendicular = along * along.dot(ray_direction) - ray_direction;
-    // A ray along the fibre hits its end from no side in particular.
-    (perpendicular.try_normalize().unwrap_or_else(|| orthonormal_basis(along).0), along)
-}
-
-fn largest_scale(matrix: &Mat3A) -> f32 {
-    let columns = [matrix.x_axis, matrix.y_axis, matrix.z_axis];
-    columns.into_iter().map(Vec3A::length_squared).fold(0.0, f32::max).sqrt()
 }

@@ -1,10 +1,9 @@
 //! The GPU caches of a scene's meshes, textures and draw records, and the draw calls that bind them.
 
 use super::clusters::ObjectFrustum;
-use super::draw_item::DrawItem;
+use super::draw_item::{DrawItem, StrandItem};
 use super::draw_uniforms::DrawUniforms;
 use super::mesh_cache::{GpuMesh, MeshCache};
-use super::strands::StrandItem;
 use super::texture_cache::TextureCache;
 use eframe::wgpu;
 

@@ -4,12 +4,13 @@ use super::mesh_cache::MeshKey;
 use crate::scene::{Shape, TextureSlot};
 use eframe::wgpu;
 use glam::Affine3A;
+use std::ops::Range;
 
 /// A run of triangles of one surface.
 #[derive(Clone, Debug)]
 pub(crate) struct DrawItem {
     pub mesh: MeshKey,
-    pub indices: std::ops::Range<u32>,
+    pub indices: Range<u32>,
     /// Index of its surface record; the id buffer stores it plus one.
     pub surface: u32,
     /// Keys of the cached textures, by slot.
@@ -93,5 +94,51 @@ impl ShadowCasting {
             ShadowCasting::MirroredSolid => &[Sides::Front, Sides::Back],
             ShadowCasting::None | ShadowCasting::Sheet => &[Sides::Both],
         }
+    }
+}
+
+/// Fraction of the strands that is drawn at least.
+const MIN_FRACTION: f32 = 0.02;
+
+/// A part of a mesh's strands with its surface.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct StrandItem {
+    pub mesh: MeshKey,
+    pub instances: Range<u32>,
+    pub mean_radius_m: f32,
+    /// Index of its surface record.
+    pub surface: u32,
+    /// Index of its box among the casters.
+    pub caster: usize,
+}
+
+impl StrandItem {
+    /// Returns the instances that cover the area of all where a pixel is `pixel_m` wide, for a transform to the world.
+    pub fn visible(&self, pixel_m: f32, world_from_object: &Affine3A) -> Range<u32> {
+        let scale = world_from_object.matrix3.determinant().abs().cbrt();
+        let width_px = 2.0 * self.mean_radius_m * scale / pixel_m.max(1e-9);
+        self.first(width_px.clamp(MIN_FRACTION, 1.0))
+    }
+
+    /// Returns the instances of a fraction of the strands.
+    pub fn first(&self, fraction: f32) -> Range<u32> {
+        let count = self.instances.len() as f32 * fraction;
+        self.instances.start..self.instances.start + count.ceil() as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    #[test]
+    fn thin_strands_are_as_many_as_cover_the_area_of_all() {
+        let item =
+            StrandItem { mesh: MeshKey::Shared(0), instances: 0..5000, mean_radius_m: 4e-5, surface: 0, caster: 0 };
+        // A pixel of 0.4 mm is five hairs wide; at twice the scale they are twice as wide.
+        assert_eq!(item.visible(4e-4, &Affine3A::IDENTITY), 0..1000);
+        assert_eq!(item.visible(4e-4, &Affine3A::from_scale(Vec3::splat(2.0))), 0..2000);
+        assert_eq!(item.visible(1e-5, &Affine3A::IDENTITY), 0..5000);
     }
 }

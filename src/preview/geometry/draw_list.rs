@@ -1,10 +1,9 @@
 //! The draw list of a frame: one surface record and one or more draw items per part of a mesh.
 
 use super::caches::GeometryCaches;
-use super::draw_item::{DrawItem, DrawPass, ShadowCasting, Sides};
+use super::draw_item::{DrawItem, DrawPass, ShadowCasting, Sides, StrandItem};
 use super::mesh_cache::{EmitterSurface, MeshKey};
 use super::oriented_box::OrientedBox;
-use super::strands::StrandItem;
 use super::surface::{FLAG_EMITTER, FLAG_GLOWS, FLAG_HOVERED, FLAG_SELECTED, GpuDraw, GpuSurface, diffusion_m};
 use super::texture_cache::WHITE;
 use crate::photo::PhotometricLight;
@@ -133,6 +132,7 @@ impl DrawList {
             let fibre = material.fibre.unwrap_or(Fibre { color: color(material), ..Fibre::default() });
             let record = &mut self.surfaces[surface as usize];
             record.base_color = fibre.absorption_per_radius().into();
+            record.diffusion_m = [0.0; 3];
             (record.roughness, record.metallic) = (fibre.longitudinal_variance(), fibre.azimuthal_scale());
             let (instances, caster) = (part.instances.clone(), self.casters.len());
             self.strands.push(StrandItem { mesh, instances, mean_radius_m: part.mean_radius_m, surface, caster });

@@ -4,22 +4,17 @@
 //! are drawn that they cover the same area: the strands of a part are shuffled, and a fraction of them is a run from the
 //! first one.
 
-use super::mesh_cache::MeshKey;
 use crate::preview::gpu::pipeline::{BindGroupLayouts, pipeline_layout, reversed_depth};
 use crate::preview::shaders;
 use crate::preview::targets::{DEPTH_FORMAT, GBUFFER_FORMAT, ID_FORMAT};
 use crate::scene::Strands;
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu::{self, util::DeviceExt as _};
-use glam::Affine3A;
 use std::ops::Range;
 
 /// Fraction of the strands in shadow maps, where each is wider by the reciprocal; twin of `SHADOW_WIDTH` in
 /// `shadow_strands.wgsl`.
 pub(crate) const SHADOW_FRACTION: f32 = 0.25;
-/// Fraction of the strands that is drawn at least.
-const MIN_FRACTION: f32 = 0.02;
-
 /// A control point; twin of the vertex input in `strands.wgsl`. The radius of the last point of a strand is negative.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -57,18 +52,6 @@ pub(crate) struct GpuStrandPart {
     pub mean_radius_m: f32,
 }
 
-/// A part of a mesh's strands with its surface.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct StrandItem {
-    pub mesh: MeshKey,
-    pub instances: Range<u32>,
-    pub mean_radius_m: f32,
-    /// Index of its surface record.
-    pub surface: u32,
-    /// Index of its box among the casters.
-    pub caster: usize,
-}
-
 impl GpuStrands {
     /// Uploads strands; none without any, or if they do not fit into a buffer.
     pub fn upload(device: &wgpu::Device, strands: &Strands) -> Option<Self> {
@@ -91,21 +74,6 @@ impl GpuStrands {
             pass.set_vertex_buffer(slot, self.points.slice(u64::from(slot) * size_of::<Point>() as u64..));
         }
         pass.draw(0..4, instances);
-    }
-}
-
-impl StrandItem {
-    /// Returns the instances that cover the area of all where a pixel is `pixel_m` wide, for a transform to the world.
-    pub fn visible(&self, pixel_m: f32, world_from_object: &Affine3A) -> Range<u32> {
-        let scale = world_from_object.matrix3.determinant().abs().cbrt();
-        let width_px = 2.0 * self.mean_radius_m * scale / pixel_m.max(1e-9);
-        self.first(width_px.clamp(MIN_FRACTION, 1.0))
-    }
-
-    /// Returns the instances of a fraction of the strands.
-    pub fn first(&self, fraction: f32) -> Range<u32> {
-        let count = self.instances.len() as f32 * fraction;
-        self.instances.start..self.instances.start + count.ceil() as u32
     }
 }
 
@@ -189,7 +157,7 @@ mod tests {
     use glam::Vec3;
 
     #[test]
-    fn a_run_of_instances_has_strands_from_all_over_the_part_and_covers_their_area() {
+    fn a_run_of_instances_has_strands_from_all_over_the_part() {
         let mut strands = Strands::default();
         for x in 0..1000 {
             strands.push((0..5).map(|y| StrandPoint { position: Vec3::new(x as f32, y as f32, 0.0), radius_m: 4e-5 }));
@@ -201,16 +169,5 @@ mod tests {
         assert_eq!(ends, 1000 + 4, "the last points of strands, and four beyond all");
         let mean = points[1..501].iter().map(|p| p.position[0]).sum::<f32>() / 500.0;
         assert!((mean - 500.0).abs() < 120.0, "a hundred strands from one side alone: {mean}");
-        let item = StrandItem {
-            mesh: MeshKey::Shared(0),
-            instances: parts[0].instances.clone(),
-            mean_radius_m: parts[0].mean_radius_m,
-            surface: 0,
-            caster: 0,
-        };
-        // A pixel of 0.4 mm is five hairs wide; at twice the scale they are twice as wide.
-        assert_eq!(item.visible(4e-4, &Affine3A::IDENTITY), 0..1000);
-        assert_eq!(item.visible(4e-4, &Affine3A::from_scale(Vec3::splat(2.0))), 0..2000);
-        assert_eq!(item.visible(1e-5, &Affine3A::IDENTITY), 0..5000);
     }
 }

@@ -7,9 +7,9 @@ use super::mask::ShadowMasks;
 use super::pipelines::ShadowPipelines;
 use super::plan::ShadowPlan;
 use crate::preview::frame_resources::FrameResources;
-use crate::preview::geometry::draw_item::DrawItem;
+use crate::preview::geometry::draw_item::{DrawItem, StrandItem};
 use crate::preview::geometry::draw_list::DrawList;
-use crate::preview::geometry::strands::{SHADOW_FRACTION, StrandItem, StrandPipelines};
+use crate::preview::geometry::strands::{SHADOW_FRACTION, StrandPipelines};
 use crate::preview::gpu::pipeline::BindGroupLayouts;
 use eframe::wgpu;
 

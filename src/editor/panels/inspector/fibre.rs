@@ -1,6 +1,6 @@
 //! The rows of a fibre: the hair that strands of a material are.
 
-use super::material::unit_slider;
+use super::unit_slider::unit_slider;
 use crate::editor::ui::widgets::{self, row};
 use crate::scene::{Fibre, FibreColor};
 use eframe::egui::{ComboBox, Ui};

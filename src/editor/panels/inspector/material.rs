@@ -1,9 +1,10 @@
 //! The rows of a material.
 
 use super::fibre::fibre_rows;
+use super::unit_slider::unit_slider;
 use crate::editor::ui::widgets::{self, NumberField, row};
 use crate::scene::{Material, MaterialPreset, Subsurface, TextureRef, TextureSlot};
-use eframe::egui::{ComboBox, Slider, SliderClamping, Ui};
+use eframe::egui::{ComboBox, Ui};
 
 /// Returns the name of the preset that equals a material, or "Custom".
 pub fn preset_name(material: &Material) -> &'static str {
@@ -125,18 +126,6 @@ fn per_channel(ui: &mut Ui, name: &str, number: NumberField, value: &mut [f32; 3
     for (channel, letter) in value.iter_mut().zip(["red", "green", "blue"]) {
         ui.name_inputs(format!("{name} {letter}"), |ui| number.ui(ui, channel)).on_hover_text(letter);
     }
-}
-
-/// Draws a slider from 0 to 1.
-pub(super) fn unit_slider(ui: &mut Ui, label: &str, tip: &str, value: &mut f32) {
-    row(ui, label, tip, |ui| {
-        ui.spacing_mut().slider_width = (ui.available_width() - 64.0).max(60.0);
-        let mut shown = *value;
-        let slider = Slider::new(&mut shown, 0.0..=1.0).max_decimals(2).clamping(SliderClamping::Edits);
-        if ui.add(slider.update_while_editing(false)).changed() && shown.is_finite() {
-            *value = shown;
-        }
-    });
 }
 
 /// Draws the rows of a wall or part in a collapsible group.

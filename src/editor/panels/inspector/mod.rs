@@ -11,6 +11,7 @@ mod modifier;
 mod object;
 mod power;
 mod room;
+mod unit_slider;
 
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
