@@ -13,7 +13,7 @@
 //!
 //! since the weighted squares of A and B exceed that of their weighted mean by (p q / n2) (A - B)2. Every doubling of the
 //! samples gives such a difference; a and b are fitted to all of them. On the shipped studios, the estimate is within
-//! 9 % of the error from 4 samples on.
+//! 9 % of the error from 4 samples on, and within 13 % on one.
 
 /// Mean picture value (8 stops below middle grey) under which a tile is too dark for a noise estimate.
 const DARK: f32 = 0.18 / 256.0;
