@@ -1,4 +1,4 @@
-//! The bottom-level acceleration structure (BLAS): a BVH over triangles.
+//! The bottom-level acceleration structure (BLAS): a BVH over triangles or other primitives.
 
 use super::bvh::{self, TraversalStack, WideBvh};
 use super::simd::{Kernels, LANES, ShearedRay, SlabRay, TriangleHit, TrianglePacket};
@@ -6,12 +6,55 @@ use crate::math::Ray;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Triangles and the BVH over them, in the space of the caller's corners.
-#[derive(Debug, Default)]
-pub struct Blas {
+/// The primitives of a leaf, which are intersected together.
+pub trait LeafPacket: Send {
+    /// A ray prepared for their intersection.
+    type PreparedRay;
+    /// Their intersection with a ray.
+    type Hit: Copy;
+
+    /// Prepares a ray.
+    fn prepare(ray: &Ray) -> Self::PreparedRay;
+
+    /// Returns the closest hit nearer than `t_max`.
+    fn intersect<K: Kernels>(&self, ray: &Self::PreparedRay, t_max: f32) -> Option<Self::Hit>;
+
+    /// Returns the distance of a hit, in multiples of the ray's direction vector.
+    fn distance(hit: &Self::Hit) -> f32;
+}
+
+impl LeafPacket for TrianglePacket {
+    type PreparedRay = ShearedRay;
+    type Hit = TriangleHit;
+
+    #[inline(always)]
+    fn prepare(ray: &Ray) -> ShearedRay {
+        ShearedRay::new(ray.origin, ray.direction)
+    }
+
+    #[inline(always)]
+    fn intersect<K: Kernels>(&self, ray: &ShearedRay, t_max: f32) -> Option<TriangleHit> {
+        K::intersect_triangles(ray, self, t_max)
+    }
+
+    #[inline(always)]
+    fn distance(hit: &TriangleHit) -> f32 {
+        hit.t
+    }
+}
+
+/// Primitives and the BVH over them, in the space of the caller's bounding boxes.
+#[derive(Debug)]
+pub struct Blas<P = TrianglePacket> {
     bvh: WideBvh,
     /// One packet a leaf.
-    packets: Vec<TrianglePacket>,
+    packets: Vec<P>,
+}
+
+impl<P> Default for Blas<P> {
+    fn default() -> Self {
+        Blas { bvh: WideBvh::default(), packets: Vec::new() }
+    }
 }
 
 impl Blas {
@@ -22,38 +65,38 @@ impl Blas {
             (a.min(b).min(c), a.max(b).max(c))
         };
         let boxes: Vec<(Vec3, Vec3)> = (0..count).into_par_iter().map(bounds).collect();
-        let bvh = bvh::build(&boxes, LANES as u32);
-        let packets = (0..bvh.leaf_count() as u32)
-            .into_par_iter()
-            .map(|leaf| TrianglePacket::new(bvh.leaf(leaf).iter().map(|&t| (t, corners(t as usize)))))
-            .collect();
+        Blas::build(&boxes, |leaf| TrianglePacket::new(leaf.iter().map(|&t| (t, corners(t as usize)))))
+    }
+}
+
+impl<P: LeafPacket> Blas<P> {
+    /// Builds the BVH over primitives with these bounding boxes. `pack` makes the packet of a leaf from the indices of
+    /// its primitives.
+    pub fn build(boxes: &[(Vec3, Vec3)], pack: impl Fn(&[u32]) -> P + Sync) -> Self {
+        let bvh = bvh::build(boxes, LANES as u32);
+        let packets = (0..bvh.leaf_count() as u32).into_par_iter().map(|leaf| pack(bvh.leaf(leaf))).collect();
         Blas { bvh, packets }
     }
 
-    /// Returns the bounding box of all triangles; none without triangles.
+    /// Returns the bounding box of all primitives; none without primitives.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         self.bvh.bounds
     }
 
     /// Returns the closest hit. `slab_ray` is the same ray, prepared for the slab test.
     #[inline(always)]
-    pub fn intersect<K: Kernels>(
-        &self,
-        ray: &Ray,
-        slab_ray: &SlabRay,
-        stack: &mut TraversalStack,
-    ) -> Option<TriangleHit> {
-        let sheared = ShearedRay::new(ray.origin, ray.direction);
+    pub fn intersect<K: Kernels>(&self, ray: &Ray, slab_ray: &SlabRay, stack: &mut TraversalStack) -> Option<P::Hit> {
+        let prepared = P::prepare(ray);
         let mut closest = None;
         self.bvh.traverse_front_to_back::<K>(
             slab_ray,
             ray.t_max,
             stack,
             #[inline(always)]
-            |leaf, t_max, _| match K::intersect_triangles(&sheared, &self.packets[leaf as usize], t_max) {
+            |leaf, t_max, _| match self.packets[leaf as usize].intersect::<K>(&prepared, t_max) {
                 Some(hit) => {
                     closest = Some(hit);
-                    hit.t
+                    P::distance(&hit)
                 }
                 None => t_max,
             },
@@ -64,13 +107,13 @@ impl Blas {
     /// Returns true if the ray hits anything. `slab_ray` is the same ray, prepared for the slab test.
     #[inline(always)]
     pub fn occluded<K: Kernels>(&self, ray: &Ray, slab_ray: &SlabRay, stack: &mut TraversalStack) -> bool {
-        let sheared = ShearedRay::new(ray.origin, ray.direction);
+        let prepared = P::prepare(ray);
         self.bvh.traverse_any::<K>(
             slab_ray,
             ray.t_max,
             stack,
             #[inline(always)]
-            |leaf, _| K::intersect_triangles(&sheared, &self.packets[leaf as usize], ray.t_max).is_some(),
+            |leaf, _| self.packets[leaf as usize].intersect::<K>(&prepared, ray.t_max).is_some(),
         )
     }
 }

@@ -1,7 +1,7 @@
 //! The strands of a mesh prepared for tracing.
 
 use super::simd::SegmentHit;
-use super::strand_blas::StrandBlas;
+use super::strand_blas::{StrandBlas, strand_blas};
 use crate::scene::Strands;
 use glam::Vec3;
 use std::ops::Range;
@@ -35,7 +35,7 @@ impl StrandGeometry {
             strands.range(range.start as usize).start as u32..strands.range(range.end as usize - 1).end as u32
         };
         let parts = strands.parts().iter().map(|part| points_of(&part.strands)).collect();
-        StrandGeometry { blas: StrandBlas::new(strands), starts, parts }
+        StrandGeometry { blas: strand_blas(strands), starts, parts }
     }
 
     /// Returns the index of the part of a segment, among the strands' parts.

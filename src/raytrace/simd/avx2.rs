@@ -120,12 +120,19 @@ fn intersect_triangles(ray: &ShearedRay, triangles: &TrianglePacket, t_max: f32)
     let t = _mm256_div_ps(weighted, determinant);
     let in_range =
         _mm256_and_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(t, zero), _mm256_cmp_ps::<_CMP_LT_OQ>(t, _mm256_set1_ps(t_max)));
-    let mut hits = _mm256_movemask_ps(_mm256_and_ps(inside, in_range)) as u32;
+    let hits = _mm256_movemask_ps(_mm256_and_ps(inside, in_range)) as u32;
     if hits == 0 {
         return None;
     }
-    // Select the nearest hit
     let t = store(t);
+    let nearest = nearest_lane(&t, hits);
+    Some(triangles.hit(nearest, t[nearest], e.map(|e| store(e)[nearest])))
+}
+
+/// Returns the lane with the smallest distance among those whose bit is set in `hits`, which is not 0. The lowest of
+/// equal ones.
+#[inline(always)]
+fn nearest_lane(t: &[f32; LANES], mut hits: u32) -> usize {
     let mut nearest = hits.trailing_zeros() as usize % LANES;
     hits &= hits - 1;
     while hits != 0 {
@@ -135,7 +142,7 @@ fn intersect_triangles(ray: &ShearedRay, triangles: &TrianglePacket, t_max: f32)
             nearest = other;
         }
     }
-    Some(triangles.hit(nearest, t[nearest], e.map(|e| store(e)[nearest])))
+    nearest
 }
 
 #[inline]
@@ -174,21 +181,12 @@ fn intersect_segments(ray: &RibbonRay, segments: &SegmentPacket, t_max: f32) -> 
         _mm256_cmp_ps::<_CMP_GT_OQ>(t, _mm256_setzero_ps()),
         _mm256_cmp_ps::<_CMP_LT_OQ>(t, _mm256_set1_ps(t_max)),
     );
-    let mut hits = _mm256_movemask_ps(_mm256_and_ps(is_near, in_range)) as u32;
+    let hits = _mm256_movemask_ps(_mm256_and_ps(is_near, in_range)) as u32;
     if hits == 0 {
         return None;
     }
-    // Select the nearest hit
     let t = store(t);
-    let mut lane = hits.trailing_zeros() as usize % LANES;
-    hits &= hits - 1;
-    while hits != 0 {
-        let other = hits.trailing_zeros() as usize % LANES;
-        hits &= hits - 1;
-        if t[other] < t[lane] {
-            lane = other;
-        }
-    }
+    let lane = nearest_lane(&t, hits);
     let at = |values: __m256| store(values)[lane];
     let nearest = NearestSegment {
         lane,
