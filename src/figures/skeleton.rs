@@ -1,248 +1,284 @@
-//! Positions of the joints in a pose.
+//! The posed skeleton: a rotation and a position for every bone.
+//!
+//! Rotations are about the axes of the rest pose, which are those of the world: X to the figure's left, Y up, Z forwards.
 
-use super::pose::{ArmPose, LegPose, PoseAngles};
-use super::proportions::Build;
-use glam::{Affine3A, Mat3, Quat, Vec3};
+use super::body_data::BodyData;
+use super::two_bone_ik::{Chain, aligned, solve};
+use crate::scene::{Arm, Figure, Leg, Torso};
+use glam::{Affine3A, EulerRot, Quat, Vec3};
 
-/// A side of the body: left is the figure's own left, at +X.
+/// Bones of the spine, from the pelvis up.
+const SPINE: [&str; 5] = ["spine05", "spine04", "spine03", "spine02", "spine01"];
+const NECK: [&str; 3] = ["neck01", "neck02", "neck03"];
+/// Part of the head's turn that the neck makes.
+const NECK_SHARE: f32 = 0.45;
+/// Straightest leg, as a part of its length: a locked knee looks stiff and makes the direction of the knee unsteady.
+const REACH: f32 = 0.995;
+/// Height of the pelvis over the seat, as a part of the distance from the pelvis to the knee.
+const SEAT_DEPTH: f32 = 0.2;
+/// Bend of a finger joint of a fist, degrees.
+const FIST_DEG: f32 = 78.0;
+
+/// A side of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BodySide {
-    /// At +X.
+pub enum Side {
+    /// The figure's own left, +X.
     Left,
-    /// At -X.
+    /// The figure's own right.
     Right,
 }
 
-impl BodySide {
-    /// +1 for left, -1 for right.
-    pub fn sign(self) -> f32 {
+impl Side {
+    /// Both sides, in the order of pairs.
+    pub const BOTH: [Side; 2] = [Side::Left, Side::Right];
+
+    /// Returns 1 for left and -1 for right.
+    fn sign(self) -> f32 {
         match self {
-            BodySide::Left => 1.0,
-            BodySide::Right => -1.0,
+            Side::Left => 1.0,
+            Side::Right => -1.0,
         }
+    }
+
+    fn bone(self, stem: &str) -> String {
+        format!("{stem}.{}", if self == Side::Left { "L" } else { "R" })
     }
 }
 
-/// An arm's joints.
-#[derive(Clone, Copy, Debug)]
-pub struct Arm {
-    /// Side of the body.
-    pub side: BodySide,
-    /// Joint of the shoulder.
-    pub shoulder: Vec3,
-    /// Joint of the elbow.
-    pub elbow: Vec3,
-    /// Joint of the wrist.
-    pub wrist: Vec3,
-    /// Direction of the fingers.
-    pub fingers: Vec3,
-    /// Direction the palm faces, square to the fingers.
-    pub palm: Vec3,
+/// Positions of the bones' ends in the rest pose.
+#[derive(Clone, Debug)]
+struct RestBones<'a> {
+    data: &'a BodyData,
+    positions: &'a [Vec3],
 }
 
-/// A leg's joints.
-#[derive(Clone, Copy, Debug)]
-pub struct Leg {
-    /// Side of the body.
-    pub side: BodySide,
-    /// Joint of the hip.
-    pub hip: Vec3,
-    /// Joint of the knee.
-    pub knee: Vec3,
-    /// Joint of the ankle.
-    pub ankle: Vec3,
-    /// BodySide to which the knee points, square to the line from hip to ankle.
-    pub front: Vec3,
-    /// World from foot: origin on the floor under the ankle, +Z to the toes.
-    pub foot: Affine3A,
+impl RestBones<'_> {
+    fn head(&self, bone: &str) -> Vec3 {
+        self.end(bone, |bone| bone.head)
+    }
+
+    fn tail(&self, bone: &str) -> Vec3 {
+        self.end(bone, |bone| bone.tail)
+    }
+
+    fn end(&self, bone: &str, end: impl Fn(&super::body_data::Bone) -> u16) -> Vec3 {
+        let bone = self.data.bone(bone).map(|index| &self.data.bones[index]);
+        bone.map_or(Vec3::ZERO, |bone| self.positions[usize::from(end(bone))])
+    }
 }
 
-/// Joints in world space. A body unit is a metre on a man of 1.80 m, and in proportion to the height of the neck on
-/// other figures.
+/// A skeleton in a pose.
 #[derive(Clone, Debug)]
 pub struct Skeleton {
-    /// Metres a body unit.
-    pub unit: f32,
-    /// World from the standing pose, for what is fixed to the pelvis.
-    pub pelvis: Affine3A,
-    /// World from the standing pose, for what is fixed to the waist.
-    pub waist: Affine3A,
-    /// World from the standing pose, for what is fixed to the chest.
-    pub chest: Affine3A,
-    /// World from the standing pose, for what is fixed to the neck.
-    pub neck: Affine3A,
-    /// World from head: origin between the eyes.
-    pub head: Affine3A,
-    /// Left, right.
-    pub arms: [Arm; 2],
-    /// Left, right.
-    pub legs: [Leg; 2],
-}
-
-/// Heights of joints over the floor when standing, in body units.
-pub mod rest {
-    /// Root of the neck.
-    pub const NECK: f32 = 1.507;
-    /// Shoulder joints.
-    pub const SHOULDER: f32 = 1.425;
-    /// Pivot of the chest.
-    pub const CHEST: f32 = 1.20;
-    /// Pivot of the waist.
-    pub const WAIST: f32 = 1.04;
-    /// Hip joints.
-    pub const HIP: f32 = 0.925;
-    /// Knees.
-    pub const KNEE: f32 = 0.505;
-    /// Ankles.
-    pub const ANKLE: f32 = 0.08;
-    /// Distance of the neck's root behind the line of the shoulders.
-    pub const NECK_BACK: f32 = 0.04;
-    /// Upper arm.
-    pub const UPPER_ARM: f32 = 0.305;
-    /// Forearm.
-    pub const FOREARM: f32 = 0.255;
-    /// Distance of each hip joint from the middle.
-    pub const HIP_OUT: f32 = 0.088;
-}
-
-/// Returns a rotation about a point.
-fn about(pivot: Vec3, rotation: Quat) -> Affine3A {
-    Affine3A::from_translation(pivot) * Affine3A::from_quat(rotation) * Affine3A::from_translation(-pivot)
+    /// World from rest for each bone of the body data.
+    pub transforms: Vec<Affine3A>,
 }
 
 impl Skeleton {
-    /// Poses a skeleton.
-    pub fn new(build: &Build, pose: &PoseAngles) -> Skeleton {
-        let neck_height = build.height - 1.22 * build.head;
-        let unit = neck_height / rest::NECK;
-        let up = |y: f32| Vec3::new(0.0, y * unit, 0.0);
-        let hips = up(rest::HIP);
-        let pelvis = Affine3A::from_translation(hip_shift(build, pose, unit)) * about(hips, pose.pelvis.rotation());
-        let waist = pelvis * about(up(rest::WAIST), pose.waist.rotation());
-        let chest = waist * about(up(rest::CHEST), pose.chest.rotation());
-        let neck_root = Vec3::new(0.0, neck_height, -rest::NECK_BACK * unit);
-        let neck = chest * about(neck_root, pose.neck.rotation());
-        let eyes = Vec3::new(0.0, build.height - 0.5 * build.head, 0.004 * unit);
-        // The head rotates about the top of the spine, between and slightly below the ears.
-        let nod = eyes + Vec3::new(0.0, -0.14, -0.05) * build.head;
-        let head = neck * about(nod, pose.head.rotation()) * Affine3A::from_translation(eyes);
-        let arm = |side: BodySide, arm: &ArmPose| pose_arm(side, arm, build, &chest, &pelvis, unit);
-        let leg = |side: BodySide, leg: &LegPose| pose_leg(side, leg, build, &pelvis, unit);
-        Skeleton {
-            unit,
-            pelvis,
-            waist,
-            chest,
-            neck,
-            head,
-            arms: [arm(BodySide::Left, &pose.arms[0]), arm(BodySide::Right, &pose.arms[1])],
-            legs: [leg(BodySide::Left, &pose.legs[0]), leg(BodySide::Right, &pose.legs[1])],
+    /// Poses the bones of a body. `positions` are those of the rest pose.
+    pub fn new(data: &BodyData, positions: &[Vec3], figure: &Figure) -> Skeleton {
+        let rest = RestBones { data, positions };
+        let pose = &figure.pose;
+        // Turn the joints of trunk and arms
+        let mut turns = Turns { data, local: vec![Quat::IDENTITY; data.bones.len()] };
+        turns.torso(&pose.torso);
+        for (side, arm) in Side::BOTH.into_iter().zip(&pose.arms) {
+            turns.arm(&rest, side, arm);
+        }
+        // Place the pelvis over the feet or on the seat, then the legs
+        let pelvis_turn = turns.global("root");
+        let feet = Side::BOTH.map(|side| Foot::new(&rest, side, &pose.legs[side as usize]));
+        let pelvis = place_pelvis(&rest, pelvis_turn, &feet, figure);
+        for foot in &feet {
+            turns.leg(&rest, foot, pelvis, pelvis_turn);
+        }
+        // Chain the bones
+        let mut transforms: Vec<Affine3A> = Vec::with_capacity(data.bones.len());
+        for (bone, local) in data.bones.iter().zip(&turns.local) {
+            let head = positions[usize::from(bone.head)];
+            let transform = match bone.parent {
+                None => about(rest.head("pelvis.L"), *local, pelvis),
+                Some(parent) => {
+                    let parent = transforms[usize::from(parent)];
+                    let turned = Quat::from_mat3a(&parent.matrix3) * *local;
+                    about(head, turned, parent.transform_point3(head))
+                }
+            };
+            transforms.push(transform);
+        }
+        Skeleton { transforms }
+    }
+}
+
+/// Returns the transform that turns about a rest point and moves it to a place.
+fn about(rest_point: Vec3, turn: Quat, place: Vec3) -> Affine3A {
+    Affine3A::from_translation(place) * Affine3A::from_quat(turn) * Affine3A::from_translation(-rest_point)
+}
+
+/// Returns the rotation by pitch (forwards), yaw (to the left) and roll (left side up), degrees.
+fn turn(pitch_deg: f32, yaw_deg: f32, roll_deg: f32) -> Quat {
+    let [pitch, yaw, roll] = [pitch_deg, yaw_deg, roll_deg].map(f32::to_radians);
+    Quat::from_euler(EulerRot::YXZ, yaw, pitch, roll)
+}
+
+/// Returns the part `share` of a rotation.
+fn part(rotation: Quat, share: f32) -> Quat {
+    Quat::IDENTITY.slerp(rotation, share)
+}
+
+/// The rotation of each bone against its parent.
+struct Turns<'a> {
+    data: &'a BodyData,
+    local: Vec<Quat>,
+}
+
+impl Turns<'_> {
+    fn set(&mut self, bone: &str, turn: Quat) {
+        if let Some(index) = self.data.bone(bone) {
+            self.local[index] = turn;
         }
     }
 
-    /// Returns a box that contains the whole figure: lowest and highest corner.
-    pub fn bounds(&self) -> (Vec3, Vec3) {
-        let joints =
-            self.arms.iter().flat_map(|a| [a.shoulder, a.elbow, a.wrist, a.wrist + a.fingers * 0.12 * self.unit]);
-        let joints = joints.chain(self.legs.iter().flat_map(|l| [l.hip, l.knee, l.ankle]));
-        let joints = joints.chain([Vec3::from(self.head.translation), Vec3::from(self.pelvis.translation)]);
-        let (low, high) = joints.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-        let room = Vec3::new(0.14, 0.16, 0.26) * self.unit.max(0.9);
-        ((low - room).with_y(-0.02), high + room)
+    /// Returns the rotation of a bone in the world.
+    fn global(&self, bone: &str) -> Quat {
+        let mut turn = Quat::IDENTITY;
+        let mut next = self.data.bone(bone);
+        while let Some(index) = next {
+            turn = self.local[index] * turn;
+            next = self.data.bones[index].parent.map(usize::from);
+        }
+        turn
     }
-}
 
-/// Returns the offset of the hips from standing, metres.
-fn hip_shift(build: &Build, pose: &PoseAngles, unit: f32) -> Vec3 {
-    let shift = pose.hip_shift * unit;
-    let Some(seat) = pose.seat_m else { return shift };
-    // The joints lie over the seat by the flesh of the thighs.
-    let over_seat = 0.088 * unit * build.limb.max(0.9);
-    let thigh = (rest::HIP - rest::KNEE) * unit;
-    shift + Vec3::new(0.0, seat + over_seat - rest::HIP * unit, -0.97 * thigh - 0.03 * unit)
-}
+    fn torso(&mut self, t: &Torso) {
+        self.set("root", turn(t.pelvis_pitch_deg, t.pelvis_yaw_deg, t.pelvis_roll_deg));
+        let chest = turn(t.chest_pitch_deg, t.chest_yaw_deg, t.chest_roll_deg);
+        for bone in SPINE {
+            self.set(bone, part(chest, 1.0 / SPINE.len() as f32));
+        }
+        let head = turn(t.head_pitch_deg, t.head_yaw_deg, t.head_roll_deg);
+        for bone in NECK {
+            self.set(bone, part(head, NECK_SHARE / NECK.len() as f32));
+        }
+        self.set("head", part(head, 1.0 - NECK_SHARE));
+    }
 
-/// Solves two-bone inverse kinematics: returns the joint between bones of given lengths from `a` to `b`, bent towards
-/// `pole`, and the unit direction of the bend. If `b` is out of reach, the bones lie straight.
-fn middle_joint(a: Vec3, b: Vec3, upper: f32, lower: f32, pole: Vec3) -> (Vec3, Vec3) {
-    let reach = (b - a).length().clamp((upper - lower).abs() + 1e-4, upper + lower - 1e-4);
-    let along = (b - a).normalize_or(Vec3::NEG_Y);
-    let bend = (pole - along * pole.dot(along)).normalize_or(Vec3::Z);
-    let foot = (upper * upper - lower * lower + reach * reach) / (2.0 * reach);
-    (a + along * foot + bend * (upper * upper - foot * foot).max(0.0).sqrt(), bend)
-}
+    fn arm(&mut self, rest: &RestBones, side: Side, arm: &Arm) {
+        let sign = side.sign();
+        let bone = |stem: &str| side.bone(stem);
+        // The shoulder rises with an arm that is raised above 40 degrees.
+        let raised = arm.out_deg.max(arm.forward_deg).max(0.0);
+        let lift = arm.shoulder_deg + 0.22 * (raised - 40.0).max(0.0);
+        let shoulder = Quat::from_rotation_z(sign * lift.to_radians());
+        self.set(&bone("clavicle"), shoulder);
+        // Upper arm: from the rest direction to hanging, twisted, then out and forwards
+        let (top, elbow, wrist) =
+            (rest.head(&bone("upperarm01")), rest.head(&bone("lowerarm01")), rest.head(&bone("wrist")));
+        let along = (elbow - top).normalize_or_zero();
+        let hang = Quat::from_rotation_arc(along, Vec3::NEG_Y);
+        let out = Quat::from_rotation_z(sign * arm.out_deg.to_radians());
+        let forward = Quat::from_rotation_x(-arm.forward_deg.to_radians());
+        let twist = Quat::from_rotation_y(sign * arm.twist_deg.to_radians());
+        self.set(&bone("upperarm01"), shoulder.inverse() * forward * out * twist * hang);
+        // Elbow: a hinge that bends the forearm forwards; the rest pose is bent already
+        let forearm = (wrist - elbow).normalize_or_zero();
+        let hinge = along.cross(forearm).normalize_or(Vec3::NEG_X);
+        let bent = along.angle_between(forearm);
+        self.set(&bone("lowerarm01"), Quat::from_axis_angle(hinge, arm.elbow_deg.to_radians() - bent));
+        // Forearm and wrist
+        let roll = Quat::from_axis_angle(forearm, -sign * arm.forearm_deg.to_radians());
+        self.set(&bone("lowerarm02"), part(roll, 0.5));
+        let knuckles = rest.head(&bone("finger2-1")) - rest.head(&bone("finger5-1"));
+        let across = (knuckles - forearm * knuckles.dot(forearm)).normalize_or(Vec3::Z);
+        let flex = Quat::from_axis_angle(across, sign * arm.wrist_deg.to_radians());
+        self.set(&bone("wrist"), flex * part(roll, 0.5));
+        self.fingers(rest, side, arm.fingers);
+    }
 
-fn pose_arm(side: BodySide, pose: &ArmPose, build: &Build, chest: &Affine3A, pelvis: &Affine3A, unit: f32) -> Arm {
-    let out = Vec3::new(side.sign(), 1.0, 1.0);
-    let rest_shoulder = Vec3::new(0.5 * build.shoulder_width, rest::SHOULDER * unit, -0.012 * unit) * out;
-    let shoulder = chest.transform_point3(rest_shoulder);
-    let (upper, lower) = (rest::UPPER_ARM * unit, rest::FOREARM * unit);
-    match *pose {
-        ArmPose::Free { abduct_deg, lift_deg, elbow_deg } => {
-            let (abduct, lift, bend) = (abduct_deg.to_radians(), lift_deg.to_radians(), elbow_deg.to_radians());
-            let along = |lift: f32, abduct: f32| {
-                let hanging = Vec3::new(abduct.sin(), -abduct.cos() * lift.cos(), abduct.cos() * lift.sin()) * out;
-                chest.transform_vector3(hanging)
-            };
-            let elbow = shoulder + along(lift, abduct) * upper;
-            let fingers = along(lift + bend, abduct * 0.55);
-            let inwards = chest.transform_vector3(Vec3::new(-1.0, 0.0, -0.35) * out);
-            let palm = (inwards - fingers * inwards.dot(fingers)).normalize_or(Vec3::X);
-            Arm {
-                side,
-                shoulder,
-                elbow,
-                wrist: elbow + fingers * lower,
-                fingers: along(lift + bend * 1.1, abduct * 0.3),
-                palm,
+    /// Bends all fingers to a part of a fist. A finger bends about the axis across its own rest curl.
+    fn fingers(&mut self, rest: &RestBones, side: Side, fist: f32) {
+        let palm_across = rest.head(&side.bone("finger2-1")) - rest.head(&side.bone("finger5-1"));
+        for finger in 1..=5 {
+            let joint = |k: usize| side.bone(&format!("finger{finger}-{k}"));
+            let first = (rest.tail(&joint(1)) - rest.head(&joint(1))).normalize_or_zero();
+            let last = (rest.tail(&joint(3)) - rest.head(&joint(3))).normalize_or_zero();
+            let curl = first.cross(last);
+            let axis = if finger == 1 { curl } else { palm_across * curl.dot(palm_across).signum() };
+            let axis = axis.normalize_or(Vec3::X);
+            let bent = first.angle_between(last) / 2.0;
+            let share = if finger == 1 { 0.45 } else { 1.0 };
+            for k in 1..=3 {
+                let wanted = fist * FIST_DEG.to_radians() * share;
+                let rest_bend = if k == 1 { 0.0 } else { bent };
+                self.set(&joint(k), Quat::from_axis_angle(axis, wanted - rest_bend));
             }
         }
-        ArmPose::Laid { wrist, elbow, fingers, palm } => {
-            let hips = pelvis.transform_point3(Vec3::Y * rest::HIP * unit);
-            let wrist = hips + pelvis.transform_vector3(wrist * out * unit);
-            let pole = chest.transform_vector3(elbow * out);
-            let (elbow, _) = middle_joint(shoulder, wrist, upper, lower, pole);
-            let fingers = pelvis.transform_vector3(fingers * out).normalize_or(Vec3::NEG_Y);
-            let palm = pelvis.transform_vector3(palm * out);
-            let palm = (palm - fingers * palm.dot(fingers)).normalize_or(Vec3::X);
-            let wrist = elbow + (wrist - elbow).normalize_or(Vec3::NEG_Y) * lower;
-            Arm { side, shoulder, elbow, wrist, fingers, palm }
-        }
+    }
+
+    /// Bends hip and knee so that the ankle is where the foot wants it, and keeps the sole level.
+    fn leg(&mut self, rest: &RestBones, foot: &Foot, pelvis: Vec3, pelvis_turn: Quat) {
+        let bone = |stem: &str| foot.side.bone(stem);
+        let [hip, knee, ankle] = foot.rest_joints;
+        let top = pelvis + pelvis_turn * (hip - rest.head("pelvis.L"));
+        let chain = Chain { root: top, lengths: [hip.distance(knee), knee.distance(ankle)], pole: foot.knee_direction };
+        let bent = solve(&chain, foot.ankle);
+        let thigh = aligned([knee - hip, Vec3::Z], [bent.middle - top, foot.knee_direction]);
+        let shank = aligned([ankle - knee, Vec3::Z], [bent.end - bent.middle, foot.knee_direction]);
+        self.set(&bone("upperleg01"), pelvis_turn.inverse() * thigh);
+        self.set(&bone("lowerleg01"), thigh.inverse() * shank);
+        self.set(&bone("foot"), shank.inverse() * foot.turn);
+        self.set(&bone("toe1-1"), Quat::from_rotation_x(-foot.heel));
     }
 }
 
-fn pose_leg(side: BodySide, pose: &LegPose, build: &Build, pelvis: &Affine3A, unit: f32) -> Leg {
-    let sign = side.sign();
-    let out = rest::HIP_OUT * unit * (0.6 + 0.4 * build.hip_width / (0.335 * unit));
-    let hip = pelvis.transform_point3(Vec3::new(sign * out, rest::HIP * unit, 0.0));
-    let yaw = Quat::from_rotation_y(sign * pose.toes_out_deg.to_radians());
-    let ankle_height = rest::ANKLE * unit;
-    let floor = Vec3::new(sign * pose.ankle.x, 0.0, pose.ankle.y) * unit;
-    let ankle = floor + Vec3::Y * ankle_height;
-    let knee_yaw = Quat::from_rotation_y(sign * pose.knee_out_deg.to_radians());
-    let pole = knee_yaw * yaw * Vec3::new(0.0, 0.25, 1.0);
-    // Slightly longer than the distance, so that a straight leg keeps a defined knee.
-    let (upper, lower) = ((rest::HIP - rest::KNEE) * unit * 1.004, (rest::KNEE - rest::ANKLE) * unit * 1.004);
-    let (knee, front) = middle_joint(hip, ankle, upper, lower, pole);
-    let foot = Affine3A::from_mat3_translation(Mat3::from_quat(yaw), floor);
-    Leg { side, hip, knee, ankle, front, foot }
+/// The place of a foot.
+struct Foot {
+    side: Side,
+    /// Hip, knee and ankle of the rest pose.
+    rest_joints: [Vec3; 3],
+    /// Place of the ankle, before the figure is put on the floor; the floor is at height 0.
+    ankle: Vec3,
+    /// Direction of the knee from the line between hip and ankle, unit.
+    knee_direction: Vec3,
+    turn: Quat,
+    /// Angle of the raised heel, radians.
+    heel: f32,
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn two_bones_keep_their_lengths() {
-        let (a, b) = (Vec3::new(0.1, 0.9, 0.0), Vec3::new(0.15, 0.1, 0.1));
-        let (knee, bend) = middle_joint(a, b, 0.45, 0.42, Vec3::Z);
-        assert!(((knee - a).length() - 0.45).abs() < 1e-5 && ((b - knee).length() - 0.42).abs() < 1e-5);
-        assert!(bend.z > 0.9);
+impl Foot {
+    fn new(rest: &RestBones, side: Side, leg: &Leg) -> Foot {
+        let rest_joints = ["upperleg01", "lowerleg01", "foot"].map(|stem| rest.head(&side.bone(stem)));
+        let sign = side.sign();
+        let yaw = Quat::from_rotation_y(sign * leg.toes_out_deg.to_radians());
+        let heel = leg.heel_deg.to_radians();
+        let turn = yaw * Quat::from_rotation_x(heel);
+        let [.., ankle] = rest_joints;
+        // A raised heel turns about the ball of the foot.
+        let ball = rest.tail(&side.bone("foot")) - ankle;
+        let lifted = yaw * (ball - Quat::from_rotation_x(heel) * ball);
+        let ankle = Vec3::new(sign * leg.out_m, ankle.y + leg.up_m, ankle.z + leg.forward_m) + lifted;
+        let knee_yaw = sign * (leg.toes_out_deg + leg.knee_out_deg).to_radians();
+        Foot { side, rest_joints, ankle, knee_direction: Quat::from_rotation_y(knee_yaw) * Vec3::Z, turn, heel }
     }
+}
 
-    #[test]
-    fn bones_that_cannot_reach_lie_straight() {
-        let (knee, _) = middle_joint(Vec3::ZERO, Vec3::X * 2.0, 0.5, 0.5, Vec3::Y);
-        assert!(knee.is_finite() && knee.y < 0.02);
+/// Returns the place of the pelvis: over the seat and a thigh's length behind the feet, or as high as the shorter leg allows.
+fn place_pelvis(rest: &RestBones, turn: Quat, feet: &[Foot; 2], figure: &Figure) -> Vec3 {
+    let pose = &figure.pose;
+    let pelvis = rest.head("pelvis.L");
+    let across = Vec3::new(pose.torso.pelvis_left_m, 0.0, pelvis.z);
+    if let Some(seat_m) = pose.seat_m {
+        let [hip, knee, _] = feet[0].rest_joints;
+        let thigh = hip.distance(knee);
+        return across + Vec3::new(0.0, seat_m + SEAT_DEPTH * thigh + (pelvis.y - hip.y), -thigh);
     }
+    let highest = |foot: &Foot| {
+        let [hip, knee, ankle] = foot.rest_joints;
+        let to_hip = turn * (hip - pelvis);
+        let length = (hip.distance(knee) + knee.distance(ankle)) * REACH;
+        let level = (across + to_hip - foot.ankle) * Vec3::new(1.0, 0.0, 1.0);
+        foot.ankle.y + (length * length - level.length_squared()).max(0.0).sqrt() - to_hip.y
+    };
+    // A foot that is raised on purpose does not pull the pelvis up.
+    across + Vec3::Y * feet.iter().map(highest).fold(f32::INFINITY, f32::min)
 }

@@ -48,7 +48,7 @@ fn load(key: &AssetKey, files: AssetFiles<'_>) -> Result<Asset, AssetError> {
             let model = importers::import_model(&files.find(path)?)?;
             Ok(Asset::Mesh(Arc::new(model.mesh)))
         }
-        AssetRef::Figure(figure) => figures::mesh(*figure).map(Asset::Mesh),
+        AssetRef::Figure(figure) => Ok(Asset::Figure(figures::meshes(figure))),
         AssetRef::Texture(reference) => {
             let file = files.find(reference.path())?;
             let image = match **reference {

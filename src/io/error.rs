@@ -1,6 +1,6 @@
 //! The errors of reading and writing files. Messages come first, paths last.
 
-use crate::scene::{Figure, Finding, Pose};
+use crate::scene::Finding;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -209,14 +209,6 @@ pub enum AssetError {
         image: u32,
         /// The model file.
         path: PathBuf,
-    },
-    /// No mesh of this figure in this pose is embedded in the program.
-    #[error("this version has no such figure: {figure:?} {pose:?}")]
-    NoFigure {
-        /// The figure.
-        figure: Figure,
-        /// Its pose.
-        pose: Pose,
     },
     /// The texture could not be decoded.
     #[error("not a usable PNG or JPEG: {message}: {}", path.display())]

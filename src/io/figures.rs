@@ -1,47 +1,26 @@
-//! The shipped figures' meshes, from OBJ files embedded in the program.
+//! The meshes of figures, built on first use.
 
-use super::error::AssetError;
-use super::obj;
 use crate::figures;
-use crate::scene::{Mannequin, Mesh};
-use std::collections::HashMap;
-use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use crate::scene::{Figure, FigureMeshes};
+use std::sync::{LazyLock, Mutex, PoisonError};
 
-/// The shipped files, in the order of [`figures::ALL`].
-const FILES: [&[u8]; figures::ALL.len()] = [
-    include_bytes!("../../assets/mannequins/woman_standing.obj"),
-    include_bytes!("../../assets/mannequins/woman_contrapposto.obj"),
-    include_bytes!("../../assets/mannequins/woman_seated.obj"),
-    include_bytes!("../../assets/mannequins/woman_head_turned.obj"),
-    include_bytes!("../../assets/mannequins/man_standing.obj"),
-    include_bytes!("../../assets/mannequins/man_contrapposto.obj"),
-    include_bytes!("../../assets/mannequins/man_seated.obj"),
-    include_bytes!("../../assets/mannequins/man_head_turned.obj"),
-    include_bytes!("../../assets/mannequins/child_standing.obj"),
-    include_bytes!("../../assets/mannequins/child_contrapposto.obj"),
-    include_bytes!("../../assets/mannequins/child_seated.obj"),
-    include_bytes!("../../assets/mannequins/child_head_turned.obj"),
-    include_bytes!("../../assets/mannequins/bust_standing.obj"),
-    include_bytes!("../../assets/mannequins/bust_head_turned.obj"),
-];
+/// Number of figures that are kept: some 30 MB each.
+const CAPACITY: usize = 8;
 
-/// Meshes that are parsed already. They never change, and parsing one takes a noticeable part of the start-up time.
-static CACHE: LazyLock<Mutex<HashMap<Mannequin, Arc<Mesh>>>> = LazyLock::new(Mutex::default);
+/// The last meshes that were asked for, the latest last.
+static CACHE: LazyLock<Mutex<Vec<(Figure, FigureMeshes)>>> = LazyLock::new(Mutex::default);
 
-/// Returns the mesh of a figure in a pose, parsed on first use.
-pub(super) fn mesh(figure: Mannequin) -> Result<Arc<Mesh>, AssetError> {
-    // A panic with the lock held leaves the map intact: it only grows, by whole entries.
+/// Returns the meshes of a figure.
+pub(super) fn meshes(figure: &Figure) -> FigureMeshes {
+    // A panic with the lock held leaves the list intact: it changes by whole entries.
     let cache = || CACHE.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(mesh) = cache().get(&figure) {
-        return Ok(Arc::clone(mesh));
-    }
-    // Parse without the lock, so that several figures are parsed in parallel.
-    let shipped = figures::resolve(figure);
-    let file = figures::ALL.iter().position(|each| *each == shipped).map(|i| FILES[i]);
-    let mesh = file
-        .and_then(obj::parse_embedded)
-        .map(Arc::new)
-        .ok_or(AssetError::NoFigure { figure: figure.figure, pose: figure.pose })?;
-    cache().insert(figure, Arc::clone(&mesh));
-    Ok(mesh)
+    let known = cache().iter().find(|(known, _)| known == figure).map(|(_, meshes)| meshes.clone());
+    // Build without the lock, so that several figures are built in parallel.
+    let meshes = known.unwrap_or_else(|| figures::build(figure));
+    let mut cache = cache();
+    cache.retain(|(known, _)| known != figure);
+    let excess = (cache.len() + 1).saturating_sub(CAPACITY);
+    cache.drain(..excess);
+    cache.push((*figure, meshes.clone()));
+    meshes
 }

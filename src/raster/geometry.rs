@@ -62,7 +62,8 @@ impl SceneGeometry {
         }
         for (index, object) in (0..).zip(&scene.objects) {
             let world_from_object = object.transform.world_from_object();
-            let Some(mesh) = assets.mesh_of(&object.shape).filter(|_| object.visible && world_from_object.is_finite())
+            let Some(mesh) =
+                assets.coarse_mesh_of(&object.shape).filter(|_| object.visible && world_from_object.is_finite())
             else {
                 continue;
             };

@@ -13,7 +13,7 @@ pub enum Aim {
     Object {
         /// The subject.
         object: ObjectId,
-        /// The point in object space, metres before the object's scale: a mannequin's face, say.
+        /// The point in object space, metres before the object's scale: a figure's face, say.
         offset: Vec3,
     },
     /// Keeps its angles wherever the stand goes, degrees: pan 0 looks along -Z and grows counter-clockwise from above,

@@ -1,6 +1,6 @@
 //! The meshes and textures that a scene refers to, in memory. `io` loads them; renderers only read.
 
-use super::{Mannequin, Mesh, Object, Shape, Texture, TextureRef, tessellate};
+use super::{Figure, Mesh, Object, Scene, Shape, Texture, TextureRef, tessellate};
 use glam::Vec3;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -11,8 +11,8 @@ use std::sync::Arc;
 pub enum AssetRef<'a> {
     /// A mesh file, by its path.
     Mesh(Cow<'a, str>),
-    /// A figure in a pose.
-    Figure(Mannequin),
+    /// A figure.
+    Figure(Cow<'a, Figure>),
     /// A texture, by its file.
     Texture(Cow<'a, TextureRef>),
 }
@@ -25,7 +25,7 @@ impl AssetRef<'_> {
     pub fn into_owned(self) -> AssetKey {
         match self {
             AssetRef::Mesh(path) => AssetRef::Mesh(Cow::Owned(path.into_owned())),
-            AssetRef::Figure(figure) => AssetRef::Figure(figure),
+            AssetRef::Figure(figure) => AssetRef::Figure(Cow::Owned(figure.into_owned())),
             AssetRef::Texture(texture) => AssetRef::Texture(Cow::Owned(texture.into_owned())),
         }
     }
@@ -43,10 +43,21 @@ impl AssetRef<'_> {
 /// A loaded asset, by kind.
 #[derive(Clone, Debug)]
 pub enum Asset {
-    /// The triangles of a mesh file or a figure.
+    /// The triangles of a mesh file.
     Mesh(Arc<Mesh>),
+    /// The meshes of a figure.
+    Figure(FigureMeshes),
     /// An image.
     Texture(Arc<Texture>),
+}
+
+/// The meshes of a figure.
+#[derive(Clone, Debug)]
+pub struct FigureMeshes {
+    /// For renders.
+    pub fine: Arc<Mesh>,
+    /// For the live view, with a quarter of the triangles.
+    pub coarse: Arc<Mesh>,
 }
 
 impl Asset {
@@ -54,7 +65,8 @@ impl Asset {
         match (self, other) {
             (Asset::Mesh(a), Asset::Mesh(b)) => Arc::ptr_eq(a, b),
             (Asset::Texture(a), Asset::Texture(b)) => Arc::ptr_eq(a, b),
-            (Asset::Mesh(_), Asset::Texture(_)) | (Asset::Texture(_), Asset::Mesh(_)) => false,
+            (Asset::Figure(a), Asset::Figure(b)) => Arc::ptr_eq(&a.fine, &b.fine),
+            (Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_), _) => false,
         }
     }
 }
@@ -87,6 +99,17 @@ impl Assets {
         self.loaded.extend(other.loaded);
     }
 
+    /// Drops the figures that a scene does not refer to: each change of a parameter makes another.
+    pub fn drop_unused_figures(&mut self, scene: &Scene) {
+        let is_used = |key: &AssetKey| match key {
+            AssetRef::Figure(figure) => {
+                scene.objects.iter().any(|o| matches!(&o.shape, Shape::Figure(used) if **used == **figure))
+            }
+            AssetRef::Mesh(_) | AssetRef::Texture(_) => true,
+        };
+        self.loaded.retain(|key, _| is_used(key));
+    }
+
     /// Returns true if the asset is loaded.
     pub fn contains(&self, asset: &AssetRef<'_>) -> bool {
         self.get(asset).is_some()
@@ -102,16 +125,19 @@ impl Assets {
         self.get_mesh(&AssetRef::Mesh(Cow::Borrowed(path)))
     }
 
-    /// Returns the mesh of a figure.
-    pub fn figure(&self, figure: Mannequin) -> Option<Arc<Mesh>> {
-        self.get_mesh(&AssetRef::Figure(figure))
+    /// Returns the meshes of a figure.
+    pub fn figure(&self, figure: &Figure) -> Option<FigureMeshes> {
+        match self.get(&AssetRef::Figure(Cow::Borrowed(figure)))? {
+            Asset::Figure(meshes) => Some(meshes),
+            Asset::Mesh(_) | Asset::Texture(_) => None,
+        }
     }
 
     /// Returns a texture.
     pub fn texture(&self, texture: &TextureRef) -> Option<Arc<Texture>> {
         match self.get(&AssetRef::Texture(Cow::Borrowed(texture)))? {
             Asset::Texture(image) => Some(image),
-            Asset::Mesh(_) => None,
+            Asset::Mesh(_) | Asset::Figure(_) => None,
         }
     }
 
@@ -124,15 +150,23 @@ impl Assets {
     pub fn mesh_of(&self, shape: &Shape) -> Option<Arc<Mesh>> {
         match shape {
             Shape::MeshFile { path } => self.mesh(path),
-            Shape::Mannequin(figure) => self.figure(*figure),
+            Shape::Figure(figure) => self.figure(figure).map(|meshes| meshes.fine),
             primitive => tessellate(primitive).map(Arc::new),
+        }
+    }
+
+    /// Returns the triangles of a shape as the live view draws it; see [`Assets::mesh_of`].
+    pub fn coarse_mesh_of(&self, shape: &Shape) -> Option<Arc<Mesh>> {
+        match shape {
+            Shape::Figure(figure) => self.figure(figure).map(|meshes| meshes.coarse),
+            other => self.mesh_of(other),
         }
     }
 
     /// Returns the axis-aligned box around an object in world space: lowest and highest corner. `None` if its mesh is
     /// not loaded.
     pub fn object_bounds(&self, object: &Object) -> Option<(Vec3, Vec3)> {
-        let (low, high) = self.mesh_of(&object.shape)?.bounds();
+        let (low, high) = self.coarse_mesh_of(&object.shape)?.bounds();
         let world_from_object = object.transform.world_from_object();
         let corner = |i: usize| Vec3::new([low.x, high.x][i & 1], [low.y, high.y][i >> 1 & 1], [low.z, high.z][i >> 2]);
         let corners = (0..8).map(|i| world_from_object.transform_point3(corner(i))).map(|p| (p, p));
@@ -155,7 +189,7 @@ impl Assets {
     fn get_mesh(&self, key: &AssetRef<'_>) -> Option<Arc<Mesh>> {
         match self.get(key)? {
             Asset::Mesh(mesh) => Some(mesh),
-            Asset::Texture(_) => None,
+            Asset::Texture(_) | Asset::Figure(_) => None,
         }
     }
 }
@@ -181,7 +215,6 @@ pub fn path_complaint(path: &str) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Figure, Pose};
 
     fn image() -> Arc<Texture> {
         Arc::new(Texture { width: 1, height: 1, rgb: vec![[7; 3]] })
@@ -198,10 +231,12 @@ mod tests {
         assets.insert_texture(embedded(1), image());
         assert!(assets.texture(&embedded(1)).is_some() && assets.texture(&embedded(0)).is_none());
         assert!(assets.contains_file(path) && !assets.contains_file("chair"));
-        let figure = Mannequin { figure: Figure::Bust, pose: Pose::Standing };
-        assert!(assets.figure(figure).is_none());
-        assets.insert(AssetRef::Figure(figure), Asset::Mesh(Arc::new(Mesh::default())));
-        assert!(assets.mesh_of(&Shape::Mannequin(figure)).is_some());
+        let figure = Figure::default();
+        assert!(assets.figure(&figure).is_none());
+        let (fine, coarse) = (Arc::new(Mesh::default()), Arc::new(Mesh::default()));
+        let meshes = FigureMeshes { fine, coarse };
+        assets.insert(AssetRef::Figure(Cow::Owned(figure)), Asset::Figure(meshes));
+        assert!(assets.mesh_of(&Shape::Figure(Box::new(figure))).is_some());
     }
 
     #[test]

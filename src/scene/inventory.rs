@@ -122,7 +122,7 @@ fn object_materials(index: usize, object: &Object) -> impl Iterator<Item = (Mate
 fn shape_asset(shape: &Shape) -> Option<AssetRef<'_>> {
     match shape {
         Shape::MeshFile { path } => Some(AssetRef::Mesh(Cow::Borrowed(path))),
-        Shape::Mannequin(figure) => Some(AssetRef::Figure(*figure)),
+        Shape::Figure(figure) => Some(AssetRef::Figure(Cow::Borrowed(figure))),
         Shape::Plane { .. }
         | Shape::Box { .. }
         | Shape::Sphere { .. }
@@ -134,7 +134,7 @@ fn shape_asset(shape: &Shape) -> Option<AssetRef<'_>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Figure, Mannequin, MaterialTextures, ObjectId, Pose, TextureRef, Transform};
+    use crate::scene::{Extent, Figure, MaterialTextures, ObjectId, TextureRef, Transform};
 
     #[test]
     fn materials_and_assets_are_listed_with_the_fields_that_hold_them() {
@@ -142,7 +142,7 @@ mod tests {
             textures: MaterialTextures::with_base_color(TextureRef::file(path)),
             ..Material::default()
         };
-        let figure = Mannequin { figure: Figure::Bust, pose: Pose::Standing };
+        let figure = Figure { extent: Extent::Bust, ..Figure::default() };
         let object = |name: &str, shape| Object {
             id: ObjectId(0),
             name: name.to_owned(),
@@ -157,7 +157,7 @@ mod tests {
             room: Some(Room { ceiling: textured("sky.png"), ..Room::default() }),
             objects: vec![
                 object("Chair", Shape::MeshFile { path: "chair.obj".to_owned() }),
-                object("Bust", Shape::Mannequin(figure)),
+                object("Bust", Shape::Figure(Box::new(figure))),
             ],
             ..Scene::default()
         };
@@ -168,7 +168,7 @@ mod tests {
             ("room.ceiling.base_color_texture", image("sky.png")),
             ("objects[0] \"Chair\" shape.path", AssetRef::Mesh(Cow::Borrowed("chair.obj"))),
             ("objects[0] \"Chair\" part_materials[0].material.base_color_texture", image("iris.png")),
-            ("objects[1] \"Bust\" shape", AssetRef::Figure(figure)),
+            ("objects[1] \"Bust\" shape", AssetRef::Figure(Cow::Owned(figure))),
             ("objects[1] \"Bust\" part_materials[0].material.base_color_texture", image("iris.png")),
         ];
         assert_eq!(assets, expected.map(|(place, asset)| (place.to_owned(), asset)));

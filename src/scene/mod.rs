@@ -10,6 +10,7 @@ mod camera;
 mod change;
 mod emitter;
 mod fibre;
+mod figure;
 mod focused_lens;
 mod gel;
 mod id;
@@ -29,11 +30,15 @@ mod texture;
 mod validate;
 
 pub use aim::Aim;
-pub use assets::{Asset, AssetKey, AssetRef, Assets, path_complaint};
+pub use assets::{Asset, AssetKey, AssetRef, Assets, FigureMeshes, path_complaint};
 pub use camera::{Camera, CameraFrame, Focus, Orientation, Sensor};
 pub use change::{LightChange, SceneChange};
 pub use emitter::Emitter;
 pub use fibre::{Fibre, FibreColor};
+pub use figure::{
+    Arm, Beard, Body, Bottom, Expression, Extent, Face, Figure, HairStyle, Leg, Parameter, ParameterSet, Pose,
+    SEAT_RANGE_M, Top, Torso,
+};
 pub use focused_lens::FocusedLens;
 pub use gel::{Gel, GelFamily, NamedGel};
 pub use id::{LightId, ObjectId};
@@ -44,7 +49,7 @@ pub use mesh::{Mesh, MeshPart};
 pub use meter::{Facing, Meter, Receptor};
 pub use modifier::{BarnDoors, Cone, Modifier};
 pub use named_modifier::{HARD_GRIDS_DEG, NamedModifier, SOFT_GRIDS_DEG};
-pub use object::{Figure, Mannequin, Object, Pose, Shape, Transform};
+pub use object::{Object, Shape, Transform};
 pub use ribbons::strand_ribbons;
 pub use room::Room;
 pub use strands::{StrandPart, StrandPoint, Strands};
@@ -66,7 +71,7 @@ pub struct Scene {
     pub camera: Camera,
     /// Floor, walls and ceiling; `None` is an empty black space.
     pub room: Option<Room>,
-    /// Mannequins, props and backdrops, in list order.
+    /// Figures, props and backdrops, in list order.
     pub objects: Vec<Object>,
     /// Lights, in list order; film layers have the same order.
     pub lights: Vec<Light>,

@@ -1,42 +1,7 @@
-//! Objects: mannequins, props, backdrops.
+//! Objects: figures, props, backdrops.
 
-use super::{Material, ObjectId};
+use super::{Figure, Material, ObjectId};
 use glam::{Affine3A, EulerRot, Quat, Vec3};
-
-/// A mannequin's figure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Figure {
-    /// A grown woman, 1.68 m.
-    Woman,
-    /// A grown man, 1.80 m.
-    Man,
-    /// A child of eight, 1.28 m.
-    Child,
-    /// Head and shoulders, for portraits.
-    Bust,
-}
-
-/// A mannequin's pose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Pose {
-    /// Upright, arms at the sides.
-    Standing,
-    /// Weight on one leg, hand on the hip.
-    Contrapposto,
-    /// On a seat of 45 cm (child 32 cm), which is not part of the figure.
-    Seated,
-    /// Head turned 30 degrees to its left.
-    HeadTurned,
-}
-
-/// A mannequin: its origin is the floor between its feet (for a bust the base's centre); it looks along +Z.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Mannequin {
-    /// Figure.
-    pub figure: Figure,
-    /// Pose.
-    pub pose: Pose,
-}
 
 /// Geometry of an object in its own space, metres.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,8 +11,8 @@ pub enum Shape {
         /// Relative path.
         path: String,
     },
-    /// A mannequin.
-    Mannequin(Mannequin),
+    /// A person.
+    Figure(Box<Figure>),
     /// A rectangle in the XZ plane about the origin, facing +Y.
     Plane {
         /// Size along X.
@@ -91,7 +56,7 @@ impl Shape {
     pub fn label(&self) -> &'static str {
         match self {
             Shape::MeshFile { .. } => "Model",
-            Shape::Mannequin(_) => "Mannequin",
+            Shape::Figure(_) => "Figure",
             Shape::Plane { .. } => "Plane",
             Shape::Box { .. } => "Box",
             Shape::Sphere { .. } => "Sphere",
@@ -150,7 +115,7 @@ pub struct Object {
     pub shape: Shape,
     /// Material.
     pub material: Material,
-    /// Materials of named parts of its mesh: a mannequin's `eyes`, a group of an OBJ file.
+    /// Materials of named parts of its mesh: a figure's `eyes`, a group of an OBJ file.
     pub part_materials: Vec<(String, Material)>,
     /// False hides the object and its shadow.
     pub visible: bool,

@@ -132,7 +132,7 @@ fn a_mirrored_copy_is_on_the_other_side_of_the_face() {
     press(&mut window, Modifiers::COMMAND | Modifiers::SHIFT, Key::D);
     let copy = scene(&window).lights.last().unwrap().clone();
     assert_eq!(window.state().selection().items(), [Item::Light(copy.id)]);
-    let subject = scene(&window).objects.iter().find(|o| matches!(o.shape, Shape::Mannequin(_))).unwrap();
+    let subject = scene(&window).objects.iter().find(|o| matches!(o.shape, Shape::Figure(_))).unwrap();
     let own = subject.transform.world_from_object().inverse();
     let [original, mirrored] = [key.position, copy.position].map(|p| own.transform_point3(p));
     let flip = Vec3::new(-1.0, 1.0, 1.0);

@@ -1,6 +1,7 @@
 //! Property tests: random scenes round-trip, random text and changed bytes never panic.
 
 use super::preset_text;
+use catchlight::figures::{NamedPose, READY, randomised};
 use catchlight::io::{parse_scene, write_scene};
 use catchlight::scene::*;
 use glam::Vec3;
@@ -75,10 +76,10 @@ fn shape() -> impl Strategy<Value = Shape> {
     let size = || number(1e-5, 1e5);
     prop_oneof![
         "[a-z]{1,8}\\.obj".prop_map(|path| Shape::MeshFile { path }),
-        (0..4_usize, 0..4_usize).prop_map(|(f, p)| {
-            let figure = [Figure::Woman, Figure::Man, Figure::Child, Figure::Bust][f];
-            let pose = [Pose::Standing, Pose::Contrapposto, Pose::Seated, Pose::HeadTurned][p];
-            Shape::Mannequin(Mannequin { figure, pose })
+        (0..READY.len(), 0..NamedPose::ALL.len()).prop_map(|(f, p)| {
+            let model = READY[f].figure();
+            let pose = NamedPose::ALL[p].pose();
+            Shape::Figure(Box::new(Figure { pose, ..randomised(&model, p as u32) }))
         }),
         (size(), size()).prop_map(|(width_m, depth_m)| Shape::Plane { width_m, depth_m }),
         vector(1e-5, 1e5).prop_map(|size_m| Shape::Box { size_m }),

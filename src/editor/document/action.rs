@@ -9,7 +9,7 @@ use crate::scene::{Camera, Light, LightId, Meter, Object, Room, Scene};
 /// A change of the scene. New objects and lights get their id and a unique name when the action is applied.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
-    /// Adds a mannequin, prop or backdrop.
+    /// Adds a figure, prop or backdrop.
     AddObject(Box<Object>),
     /// Adds a light.
     AddLight(Box<Light>),

@@ -135,11 +135,11 @@ impl MirrorPlane {
     /// None for a subject that faces straight up or down.
     pub fn of_subject(subject: &Object) -> Option<MirrorPlane> {
         let own = match subject.shape {
-            Shape::Mannequin(figure) => figures::face_direction(figures::resolve(figure)),
+            Shape::Figure(ref figure) => figures::face_direction(figure),
             _ => Vec3::Z,
         };
         let face = match subject.shape {
-            Shape::Mannequin(figure) => figures::face_point(figures::resolve(figure)),
+            Shape::Figure(ref figure) => figures::face_point(figure),
             _ => Vec3::ZERO,
         };
         let looks = subject.transform.rotation() * own;
@@ -244,7 +244,7 @@ mod tests {
     /// A man turned 30 degrees to his left, with a strip light on his right.
     fn studio() -> (Scene, ObjectId, LightId) {
         let mut scene = Scene::default();
-        let mut man = catalog::object_named("Man, standing").unwrap();
+        let mut man = catalog::object_named("Man, 30, crop").unwrap();
         man.transform.position = Vec3::new(0.5, 0.0, -0.3);
         man.transform.rotation_deg.y = 30.0;
         let Item::Object(man) = add_object(&mut scene, man) else { unreachable!() };

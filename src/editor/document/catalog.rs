@@ -1,9 +1,9 @@
 //! The catalog of lights, figures, props and backdrops that can be added to a studio.
 
-use crate::figures;
+use crate::figures::{self, ReadyFigure};
 use crate::scene::{
-    Aim, ColorSource, Emitter, Figure, Gel, Light, LightColor, Mannequin, Material, MaterialPreset, Modifier,
-    NamedModifier, Object, ObjectId, Output, Pose, Power, Shape, Transform,
+    Aim, ColorSource, Emitter, Gel, Light, LightColor, Material, MaterialPreset, Modifier, NamedModifier, Object,
+    ObjectId, Output, Power, Shape, Transform,
 };
 use glam::Vec3;
 
@@ -12,7 +12,7 @@ use glam::Vec3;
 pub enum CatalogTab {
     /// Lights.
     Lights,
-    /// Mannequins.
+    /// People.
     Figures,
     /// Props and products.
     Props,
@@ -41,8 +41,8 @@ impl CatalogTab {
 pub enum CatalogKind {
     /// A light with this emitter and modifier, and its output at full power.
     Light(Emitter, Modifier, Output),
-    /// A mannequin.
-    Figure(Mannequin),
+    /// A person: an index into [`figures::READY`].
+    Figure(usize),
     /// A parametric shape with a material, on the floor.
     Prop(PropShape, MaterialPreset),
     /// A paper roll.
@@ -93,8 +93,9 @@ const fn continuous(name: &'static str, tip: &'static str, emitter: Emitter, out
     CatalogEntry { name, tip, kind: CatalogKind::Light(emitter, Modifier::loss(0.0), output) }
 }
 
-const fn figure(name: &'static str, tip: &'static str, figure: Figure, pose: Pose) -> CatalogEntry {
-    CatalogEntry { name, tip, kind: CatalogKind::Figure(Mannequin { figure, pose }) }
+const fn figure(index: usize) -> CatalogEntry {
+    let ReadyFigure { name, tip, .. } = figures::READY[index];
+    CatalogEntry { name, tip, kind: CatalogKind::Figure(index) }
 }
 
 const fn prop(name: &'static str, tip: &'static str, shape: PropShape, material: MaterialPreset) -> CatalogEntry {
@@ -145,19 +146,15 @@ const CONTINUOUS: [CatalogEntry; 4] = [
     ),
 ];
 
-const FIGURES: [CatalogEntry; 11] = [
-    figure("Bust", "Head and shoulders, looking ahead: for portrait light.", Figure::Bust, Pose::Standing),
-    figure("Bust, head turned", "Head and shoulders, the head 30 degrees to its left.", Figure::Bust, Pose::HeadTurned),
-    figure("Woman, standing", "1.68 m, upright, arms at the sides.", Figure::Woman, Pose::Standing),
-    figure("Woman, hand on hip", "1.68 m, weight on one leg.", Figure::Woman, Pose::Contrapposto),
-    figure("Woman, seated", "On a seat of 45 cm, which is not part of her.", Figure::Woman, Pose::Seated),
-    figure("Man, standing", "1.80 m, upright, arms at the sides.", Figure::Man, Pose::Standing),
-    figure("Man, hand on hip", "1.80 m, weight on one leg.", Figure::Man, Pose::Contrapposto),
-    figure("Man, seated", "On a seat of 45 cm, which is not part of him.", Figure::Man, Pose::Seated),
-    figure("Child, standing", "A child of eight, 1.28 m.", Figure::Child, Pose::Standing),
-    figure("Child, hand on hip", "A child of eight, weight on one leg.", Figure::Child, Pose::Contrapposto),
-    figure("Child, seated", "On a seat of 32 cm, which is not part of the child.", Figure::Child, Pose::Seated),
-];
+const FIGURES: [CatalogEntry; figures::READY.len()] = {
+    let mut entries = [figure(0); figures::READY.len()];
+    let mut index = 1;
+    while index < entries.len() {
+        entries[index] = figure(index);
+        index += 1;
+    }
+    entries
+};
 
 const PROPS: [CatalogEntry; 16] = [
     prop("Box", "A box of 50 cm.", PropShape::Box([0.5, 0.5, 0.5]), MaterialPreset::MatteFabric),
@@ -251,7 +248,7 @@ impl CatalogEntry {
             CatalogKind::Light(emitter, modifier, output) => {
                 CatalogItem::Light(new_light(self.name, emitter, modifier, output))
             }
-            CatalogKind::Figure(mannequin) => CatalogItem::Object(new_figure(self.name, mannequin)),
+            CatalogKind::Figure(index) => CatalogItem::Object(new_figure(&figures::READY[index])),
             CatalogKind::Prop(shape, material) => CatalogItem::Object(new_prop(self.name, shape, material.material())),
             CatalogKind::Paper { width_m, paper } => CatalogItem::Object(Object {
                 shape: Shape::Sweep { width_m, height_m: 2.75, depth_m: 3.0, radius_m: 0.6 },
@@ -293,10 +290,10 @@ fn blank_object(name: &str) -> Object {
     }
 }
 
-fn new_figure(name: &str, figure: Mannequin) -> Object {
-    let material = MaterialPreset::SkinLight.material();
-    let part_materials = figures::default_parts(&material);
-    Object { shape: Shape::Mannequin(figure), material, part_materials, ..blank_object(name) }
+fn new_figure(ready: &ReadyFigure) -> Object {
+    let figure = ready.figure();
+    let (material, part_materials) = ready.materials();
+    Object { shape: Shape::Figure(Box::new(figure)), material, part_materials, ..blank_object(ready.name) }
 }
 
 fn new_prop(name: &str, shape: PropShape, material: Material) -> Object {

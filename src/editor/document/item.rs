@@ -10,7 +10,7 @@ pub enum Item {
     Camera,
     /// Floor, walls and ceiling.
     Room,
-    /// A mannequin, prop or backdrop.
+    /// A figure, prop or backdrop.
     Object(ObjectId),
     /// A light.
     Light(LightId),

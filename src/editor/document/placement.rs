@@ -9,11 +9,11 @@ use glam::{Quat, Vec3};
 /// Height of the aim point without a subject, metres.
 const NOTHING_HEIGHT_M: f32 = 1.3;
 
-/// Returns the point of an object that lights and camera aim at, object space: a mannequin's face, the middle of any
+/// Returns the point of an object that lights and camera aim at, object space: a figure's face, the middle of any
 /// other.
 pub fn aim_offset(object: &Object, assets: &Assets) -> Vec3 {
     match &object.shape {
-        Shape::Mannequin(figure) => figures::face_point(figures::resolve(*figure)),
+        Shape::Figure(figure) => figures::face_point(figure),
         Shape::Sweep { height_m, depth_m, .. } => Vec3::new(0.0, 0.5 * height_m, 0.2 * depth_m),
         _ => assets.mesh_of(&object.shape).map_or(Vec3::ZERO, |mesh| {
             let (low, high) = mesh.bounds();
@@ -22,7 +22,7 @@ pub fn aim_offset(object: &Object, assets: &Assets) -> Vec3 {
     }
 }
 
-/// Returns the subject: the selected object, else the first mannequin, else the first object that is no backdrop.
+/// Returns the subject: the selected object, else the first figure, else the first object that is no backdrop.
 pub fn subject(scene: &Scene, selected: Option<Item>) -> Option<ObjectId> {
     let is_backdrop = |object: &Object| matches!(object.shape, Shape::Sweep { .. } | Shape::Plane { .. });
     let selected = match selected {
@@ -30,7 +30,7 @@ pub fn subject(scene: &Scene, selected: Option<Item>) -> Option<ObjectId> {
         _ => None,
     };
     selected
-        .or_else(|| scene.objects.iter().find(|o| matches!(o.shape, Shape::Mannequin(_))))
+        .or_else(|| scene.objects.iter().find(|o| matches!(o.shape, Shape::Figure(_))))
         .or_else(|| scene.objects.iter().find(|o| !is_backdrop(o)))
         .map(|o| o.id)
 }
@@ -98,7 +98,7 @@ pub fn place_object(scene: &Scene, selected: Option<Item>, object: &mut Object) 
         object.transform.rotation_deg.y = front.x.atan2(front.z).to_degrees();
         return;
     }
-    let step = if matches!(object.shape, Shape::Mannequin(_)) { 0.9 } else { 0.5 };
+    let step = if matches!(object.shape, Shape::Figure(_)) { 0.9 } else { 0.5 };
     let height_m = object.transform.position.y;
     let free = (0..64).map(|i| row_place(i, step)).find(|place| is_free(scene, *place, step)).unwrap_or(Vec3::ZERO);
     object.transform.position = free + Vec3::Y * height_m;
@@ -142,7 +142,7 @@ mod tests {
     #[test]
     fn three_lights_become_key_fill_and_rim_at_their_ratio() {
         let mut scene = Scene::default();
-        add(&mut scene, "Bust");
+        add(&mut scene, "Boy, 10, short hair");
         for _ in 0..3 {
             let mut light = catalog::light_named("Softbox 60 x 90").unwrap();
             place_light(&scene, &Assets::default(), None, &mut light);
@@ -159,7 +159,7 @@ mod tests {
     #[test]
     fn new_objects_do_not_overlap() {
         let mut scene = Scene::default();
-        for name in ["Bust", "Man, standing", "Chrome ball", "Can", "Box"] {
+        for name in ["Boy, 10, short hair", "Man, 30, crop", "Chrome ball", "Can", "Box"] {
             add(&mut scene, name);
         }
         for (i, a) in scene.objects.iter().enumerate() {
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn a_backdrop_is_placed_behind_the_subject_and_faces_the_camera() {
         let mut scene = Scene::default();
-        add(&mut scene, "Bust");
+        add(&mut scene, "Boy, 10, short hair");
         scene.camera.position = Vec3::new(3.0, 1.4, 0.0);
         add(&mut scene, "Grey paper 2.72 m");
         let paper = &scene.objects[1].transform;

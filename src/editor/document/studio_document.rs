@@ -140,6 +140,7 @@ impl Document {
     /// Adds assets that were loaded in the background. Those of `tried` that are still missing have failed.
     pub fn insert_assets(&mut self, loaded: Assets, tried: &BTreeSet<AssetKey>) {
         self.assets.extend(loaded);
+        self.assets.drop_unused_figures(&self.scene);
         self.failed.extend(self.missing_assets().intersection(tried).cloned());
         self.revisions = Revisions::new();
     }

@@ -51,7 +51,7 @@ pub fn add_ui(ui: &mut Ui, tab: &mut CatalogTab, thumbnails: &mut Thumbnails, ou
 fn tab_tip(tab: CatalogTab) -> &'static str {
     match tab {
         CatalogTab::Lights => "Softboxes, strips, dishes, bulbs, spots, windows, sun and sky",
-        CatalogTab::Figures => "Mannequins: woman, man, child and a portrait bust, in poses",
+        CatalogTab::Figures => "People, ready dressed and posed; everything about them can be changed",
         CatalogTab::Props => "Things to light: shapes, products, boards, reference balls and cards",
         CatalogTab::Backdrops => "Paper rolls of 1.35, 2.72 and 3.55 m in white, grey and black",
     }

@@ -50,12 +50,6 @@ pub(super) fn import(path: &Path, limits: &ModelLimits) -> Result<ImportedModel,
     Ok(imported)
 }
 
-/// Parses an OBJ file that is embedded in the program: without MTL file, smooth all over. `None` for a mistake.
-pub(super) fn parse_embedded(text: &[u8]) -> Option<Mesh> {
-    let elements = chunks::parse(text, usize::MAX).ok()?;
-    assemble(&elements, &mut MaterialLibrary::default(), 180.0).ok().map(|imported| imported.mesh)
-}
-
 /// Builds the mesh of all groups and collects their materials.
 fn assemble(elements: &Elements, library: &mut MaterialLibrary, crease_deg: f32) -> Result<ImportedModel, String> {
     let groups = groups::groups(&elements.faces, library);

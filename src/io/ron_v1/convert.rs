@@ -1,15 +1,16 @@
 //! Converts format 1 to and from the scene. Files refer to objects and lights by name, the scene by id; ids follow the
 //! order of the file.
 
+use super::mannequin;
 use super::{
-    AimV1, BarnDoorsV1, CameraV1, ColorV1, ConeV1, EmitterV1, FacingV1, FigureV1, FocusV1, GelV1, LightV1, MaterialV1,
-    MeterV1, ModifierV1, ObjectV1, OrientationV1, OutputV1, PartMaterialV1, PoseV1, PowerV1, ReceptorV1, RoleV1,
-    RoomV1, SceneV1, SensorV1, ShapeV1, SoloV1,
+    AimV1, BarnDoorsV1, CameraV1, ColorV1, ConeV1, EmitterV1, FacingV1, FocusV1, GelV1, LightV1, MaterialV1, MeterV1,
+    ModifierV1, ObjectV1, OrientationV1, OutputV1, PartMaterialV1, PersonV1, PowerV1, ReceptorV1, RoleV1, RoomV1,
+    SceneV1, SensorV1, ShapeV1, SoloV1,
 };
 use crate::scene::{
-    Aim, BarnDoors, Camera, ColorSource, Cone, Emitter, Facing, Figure, Focus, Gel, Light, LightColor, LightId,
-    Mannequin, Material, Meter, Modifier, Object, ObjectId, Orientation, Output, Pose, Power, Receptor, Role, Room,
-    Scene, Sensor, Shape, Solo, Transform,
+    Aim, BarnDoors, Camera, ColorSource, Cone, Emitter, Facing, Focus, Gel, Light, LightColor, LightId, Material,
+    Meter, Modifier, Object, ObjectId, Orientation, Output, Power, Receptor, Role, Room, Scene, Sensor, Shape, Solo,
+    Transform,
 };
 use glam::Vec3;
 use std::collections::HashMap;
@@ -193,7 +194,8 @@ fn aim_to(scene: &Scene, aim: &Aim, position: Vec3) -> AimV1 {
 }
 
 fn object_from(file: ObjectV1, index: u32) -> Object {
-    Object {
+    let is_mannequin = matches!(file.shape, ShapeV1::Mannequin { .. });
+    let mut object = Object {
         id: ObjectId(index),
         name: file.name,
         transform: Transform {
@@ -206,7 +208,11 @@ fn object_from(file: ObjectV1, index: u32) -> Object {
         part_materials: file.part_materials.into_iter().map(|part| (part.part, part.material.into())).collect(),
         visible: file.visible,
         locked: file.locked,
+    };
+    if is_mannequin {
+        mannequin::complete_parts(&mut object);
     }
+    object
 }
 
 impl From<&Object> for ObjectV1 {
@@ -351,9 +357,8 @@ impl From<ShapeV1> for Shape {
     fn from(file: ShapeV1) -> Self {
         match file {
             ShapeV1::MeshFile { path } => Shape::MeshFile { path },
-            ShapeV1::Mannequin { figure, pose } => {
-                Shape::Mannequin(Mannequin { figure: figure.into(), pose: pose.into() })
-            }
+            ShapeV1::Figure(person) => Shape::Figure(Box::new(person.into())),
+            ShapeV1::Mannequin { figure, pose } => Shape::Figure(Box::new(mannequin::person(figure, pose))),
             ShapeV1::Plane { width_m, depth_m } => Shape::Plane { width_m, depth_m },
             ShapeV1::Box { size_m } => Shape::Box { size_m: Vec3::from(size_m) },
             ShapeV1::Sphere { radius_m } => Shape::Sphere { radius_m },
@@ -369,9 +374,7 @@ impl From<&Shape> for ShapeV1 {
     fn from(shape: &Shape) -> Self {
         match shape.clone() {
             Shape::MeshFile { path } => ShapeV1::MeshFile { path },
-            Shape::Mannequin(Mannequin { figure, pose }) => {
-                ShapeV1::Mannequin { figure: figure.into(), pose: pose.into() }
-            }
+            Shape::Figure(figure) => ShapeV1::Figure(PersonV1::from(&*figure)),
             Shape::Plane { width_m, depth_m } => ShapeV1::Plane { width_m, depth_m },
             Shape::Box { size_m } => ShapeV1::Box { size_m: size_m.to_array() },
             Shape::Sphere { radius_m } => ShapeV1::Sphere { radius_m },
@@ -404,8 +407,6 @@ macro_rules! same_variants {
     };
 }
 
-same_variants!(FigureV1 <=> Figure { Woman, Man, Child, Bust });
-same_variants!(PoseV1 <=> Pose { Standing, Contrapposto, Seated, HeadTurned });
 same_variants!(RoleV1 <=> Role { Key, Fill, Rim, Hair, Background, Accent });
 same_variants!(SensorV1 <=> Sensor {
     FullFrame, ApsC, MicroFourThirds, Medium44x33, Medium54x40, Custom { width_mm, height_mm },

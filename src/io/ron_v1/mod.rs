@@ -6,6 +6,8 @@
 
 mod convert;
 mod defaults;
+mod figure;
+mod mannequin;
 mod material;
 
 pub(super) use convert::{UnknownName, scene_from_v1, v1_from_scene};
@@ -13,6 +15,8 @@ pub(super) use convert::{UnknownName, scene_from_v1, v1_from_scene};
 use defaults::{
     Triple, default_efficacy, default_meter_constant, is_default, is_default_meter_constant, is_one, is_true, one, yes,
 };
+use figure::PersonV1;
+use mannequin::{MannequinPoseV1, MannequinV1};
 use material::MaterialV1;
 use serde::{Deserialize, Serialize};
 
@@ -196,31 +200,35 @@ struct PartMaterialV1 {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename = "Shape", deny_unknown_fields)]
 enum ShapeV1 {
-    MeshFile { path: String },
-    Mannequin { figure: FigureV1, pose: PoseV1 },
-    Plane { width_m: f32, depth_m: f32 },
-    Box { size_m: Triple },
-    Sphere { radius_m: f32 },
-    Cylinder { radius_m: f32, height_m: f32 },
-    Sweep { width_m: f32, height_m: f32, depth_m: f32, radius_m: f32 },
-}
-
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(rename = "Figure")]
-enum FigureV1 {
-    Woman,
-    Man,
-    Child,
-    Bust,
-}
-
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(rename = "Pose")]
-enum PoseV1 {
-    Standing,
-    Contrapposto,
-    Seated,
-    HeadTurned,
+    MeshFile {
+        path: String,
+    },
+    Figure(PersonV1),
+    /// Read as a figure; written no more.
+    Mannequin {
+        figure: MannequinV1,
+        pose: MannequinPoseV1,
+    },
+    Plane {
+        width_m: f32,
+        depth_m: f32,
+    },
+    Box {
+        size_m: Triple,
+    },
+    Sphere {
+        radius_m: f32,
+    },
+    Cylinder {
+        radius_m: f32,
+        height_m: f32,
+    },
+    Sweep {
+        width_m: f32,
+        height_m: f32,
+        depth_m: f32,
+        radius_m: f32,
+    },
 }
 
 #[derive(Debug, Serialize, Deserialize)]

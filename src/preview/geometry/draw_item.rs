@@ -80,7 +80,7 @@ impl ShadowCasting {
     pub fn of(shape: &Shape, world_from_object: &Affine3A) -> Self {
         match shape {
             Shape::Plane { .. } | Shape::Sweep { .. } | Shape::MeshFile { .. } => ShadowCasting::Sheet,
-            Shape::Mannequin(_) | Shape::Box { .. } | Shape::Sphere { .. } | Shape::Cylinder { .. } => {
+            Shape::Figure(_) | Shape::Box { .. } | Shape::Sphere { .. } | Shape::Cylinder { .. } => {
                 let mirrored = world_from_object.matrix3.determinant() < 0.0;
                 if mirrored { ShadowCasting::MirroredSolid } else { ShadowCasting::Solid }
             }

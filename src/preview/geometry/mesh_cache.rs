@@ -98,7 +98,7 @@ impl MeshCache {
         if let Some(key) = parametric_key(shape) {
             return self.ensure(device, key, || tessellate(shape));
         }
-        let shared = assets.mesh_of(shape)?;
+        let shared = assets.coarse_mesh_of(shape)?;
         let key = MeshKey::Shared(Arc::as_ptr(&shared) as usize);
         self.ensure(device, key, || Some(Mesh::clone(&shared)))?;
         if let Some(mesh) = self.meshes.get_mut(&key) {
@@ -131,7 +131,7 @@ impl MeshCache {
 
 fn parametric_key(shape: &Shape) -> Option<MeshKey> {
     let (tag, numbers) = match *shape {
-        Shape::MeshFile { .. } | Shape::Mannequin(_) => return None,
+        Shape::MeshFile { .. } | Shape::Figure(_) => return None,
         Shape::Plane { width_m, depth_m } => (0, [width_m, depth_m, 0.0, 0.0]),
         Shape::Box { size_m } => (1, [size_m.x, size_m.y, size_m.z, 0.0]),
         Shape::Sphere { radius_m } => (2, [radius_m, 0.0, 0.0, 0.0]),

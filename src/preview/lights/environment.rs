@@ -82,7 +82,7 @@ fn probe(scene: &Scene) -> Option<Vec3> {
     let (mut sum, mut count) = (Vec3::ZERO, 0.0);
     for object in subjects {
         // The origin of a figure is between its feet
-        let centre = if matches!(object.shape, Shape::Mannequin(_)) { Vec3::Y * 0.5 } else { Vec3::ZERO };
+        let centre = if matches!(object.shape, Shape::Figure(_)) { Vec3::Y * 0.5 } else { Vec3::ZERO };
         sum += object.transform.world_from_object().transform_point3(centre);
         count += 1.0;
     }

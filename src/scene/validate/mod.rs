@@ -6,6 +6,7 @@
 mod aim;
 mod camera;
 mod check;
+mod figure;
 mod finding;
 mod light;
 mod light_warnings;

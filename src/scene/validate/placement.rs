@@ -62,7 +62,7 @@ struct ObjectBounds<'a> {
 impl<'a> ObjectBounds<'a> {
     fn of(object: &'a Object, assets: &Assets) -> Option<Self> {
         let (low, high) = match object.shape {
-            Shape::MeshFile { .. } | Shape::Mannequin(_) => assets.mesh_of(&object.shape)?.bounds(),
+            Shape::MeshFile { .. } | Shape::Figure(_) => assets.coarse_mesh_of(&object.shape)?.bounds(),
             Shape::Plane { width_m, depth_m } => centred(Vec3::new(width_m, 0.0, depth_m)),
             Shape::Box { size_m } => centred(size_m),
             Shape::Sphere { radius_m } => centred(Vec3::splat(2.0 * radius_m)),
@@ -81,7 +81,7 @@ impl<'a> ObjectBounds<'a> {
         let across = Vec2::new(p.x, p.z).length();
         self.object.material.transmission == 0.0
             && match self.object.shape {
-                Shape::Box { .. } | Shape::Mannequin(_) => in_box,
+                Shape::Box { .. } | Shape::Figure(_) => in_box,
                 Shape::Sphere { radius_m } => p.length() < radius_m,
                 Shape::Cylinder { radius_m, .. } => in_box && across < radius_m,
                 Shape::MeshFile { .. } | Shape::Plane { .. } | Shape::Sweep { .. } => false,

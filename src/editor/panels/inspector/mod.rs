@@ -3,6 +3,7 @@
 mod aim;
 mod camera;
 mod fibre;
+mod figure;
 mod gel;
 mod light;
 mod material;

@@ -1,5 +1,6 @@
-//! The inspector of a mannequin, prop or backdrop.
+//! The inspector of a figure, prop or backdrop.
 
+use super::figure::figure_ui;
 use super::material::{material_group, material_rows, preset_name};
 use super::{InspectorContext, text_ui, title};
 use crate::editor::commands::command::Command;
@@ -7,9 +8,8 @@ use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
 use crate::editor::document::placement::wrap_deg;
 use crate::editor::ui::widgets::{self, DEGREES, METRES, NumberField, SIZE_CM, row, section};
-use crate::figures;
-use crate::scene::{Assets, Figure, Mannequin, Object, ObjectId, Pose, Shape, TextureSlot};
-use eframe::egui::{Button, ComboBox, RichText, Ui};
+use crate::scene::{Assets, Object, ObjectId, Shape, TextureSlot};
+use eframe::egui::{Button, RichText, Ui};
 use glam::Vec3;
 
 /// Draws the inspector of an object.
@@ -31,7 +31,10 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Obj
         );
     });
     ui.separator();
-    section(ui, "Shape and size", true, |ui| shape_rows(ui, assets, &mut object));
+    match object.shape {
+        Shape::Figure(_) => figure_ui(ui, &mut object),
+        _ => section(ui, "Shape and size", true, |ui| shape_rows(ui, assets, &mut object)),
+    }
     section(ui, "Place", true, |ui| {
         row(ui, "Lock", "Locked it cannot be moved, and clicks in the view go past it (K)", |ui| {
             let mut locked = object.locked;
@@ -55,18 +58,10 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Obj
     }
 }
 
-const FIGURES: [(Figure, &str); 4] =
-    [(Figure::Woman, "Woman"), (Figure::Man, "Man"), (Figure::Child, "Child"), (Figure::Bust, "Bust")];
-const POSES: [(Pose, &str); 4] = [
-    (Pose::Standing, "Standing"),
-    (Pose::Contrapposto, "Hand on hip"),
-    (Pose::Seated, "Seated"),
-    (Pose::HeadTurned, "Head turned"),
-];
-
 fn shape_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
     match &mut object.shape {
-        Shape::Mannequin(mannequin) => mannequin_rows(ui, mannequin),
+        // A figure has sections of its own.
+        Shape::Figure(_) => {}
         Shape::MeshFile { path } => {
             row(ui, "File", "The model, relative to the studio's file", |ui| ui.label(path.as_str()));
         }
@@ -98,27 +93,6 @@ fn shape_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
     scale_rows(ui, assets, object);
 }
 
-fn mannequin_rows(ui: &mut Ui, figure: &mut Mannequin) {
-    row(ui, "Figure", "Who", |ui| {
-        let current = FIGURES.iter().find(|(each, _)| *each == figure.figure).map_or("", |(_, name)| name);
-        ComboBox::from_id_salt("figure").selected_text(current).show_ui(ui, |ui| {
-            for (who, name) in FIGURES {
-                ui.selectable_value(&mut figure.figure, who, name);
-            }
-        });
-    });
-    row(ui, "Pose", "How", |ui| {
-        let current = POSES.iter().find(|(each, _)| *each == figure.pose).map_or("", |(_, name)| name);
-        ComboBox::from_id_salt("pose").selected_text(current).show_ui(ui, |ui| {
-            let has = |pose| figures::ALL.contains(&Mannequin { pose, ..*figure });
-            for (pose, name) in POSES.into_iter().filter(|(pose, _)| has(*pose)) {
-                ui.selectable_value(&mut figure.pose, pose, name);
-            }
-        });
-    });
-    *figure = figures::resolve(*figure);
-}
-
 fn centimetres(ui: &mut Ui, sizes: &mut [(&str, &mut f32, f32)]) {
     for (label, value, factor) in sizes {
         row(ui, label, "Size of the thing itself, before its scale", |ui| SIZE_CM.scaled_ui(ui, value, *factor));
@@ -130,7 +104,7 @@ fn scale_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
     let scale = &mut object.transform.scale;
     let is_uniform = scale.x == scale.y && scale.y == scale.z;
     let height_m = match &object.shape {
-        Shape::Mannequin(_) => assets.mesh_of(&object.shape).map(|mesh| mesh.bounds().1.y).filter(|h| *h > 0.0),
+        Shape::Figure(_) => assets.mesh_of(&object.shape).map(|mesh| mesh.bounds().1.y).filter(|h| *h > 0.0),
         _ => None,
     };
     let before = scale.y;

@@ -34,7 +34,7 @@ fn hit_object(object: &Object, assets: &Assets, origin: Vec3, direction: Vec3) -
     let world_from_object = object.transform.world_from_object();
     let object_from_world = Some(world_from_object.inverse()).filter(Affine3A::is_finite)?;
     let (o, d) = (object_from_world.transform_point3(origin), object_from_world.transform_vector3(direction));
-    let mesh = assets.mesh_of(&object.shape)?;
+    let mesh = assets.coarse_mesh_of(&object.shape)?;
     let (low, high) = mesh.bounds();
     if !crosses_box(o, d, low, high) {
         return None;

@@ -233,7 +233,7 @@ mod tests {
     /// A bust, a softbox aimed at it and a bulb aimed at a point in front of it.
     fn studio() -> (Scene, [Item; 3]) {
         let mut scene = Scene::default();
-        let mut bust = catalog::object_named("Bust").unwrap();
+        let mut bust = catalog::object_named("Boy, 10, short hair").unwrap();
         bust.transform.position = Vec3::new(0.4, 0.0, 0.2);
         Action::AddObject(Box::new(bust)).apply(&mut scene).unwrap();
         let mut softbox = catalog::light_named("Softbox 60 x 90").unwrap();

@@ -1,0 +1,146 @@
+//! The sections of a figure: body, face, expression, pose, clothes and hair.
+
+use crate::editor::ui::widgets::{row, section, swatch};
+use crate::figures::{self, NamedExpression, NamedPose, SKIN_TONES};
+use crate::scene::{
+    Arm, Beard, Body, Bottom, Figure, HairStyle, Leg, Object, Parameter, ParameterSet, SEAT_RANGE_M, Shape, Top,
+};
+use eframe::egui::{Color32, ComboBox, Sense, Slider, Ui, vec2};
+
+/// Draws the sections of an object that is a figure.
+pub(super) fn figure_ui(ui: &mut Ui, object: &mut Object) {
+    section(ui, "Person", true, |ui| person_rows(ui, object));
+    let Shape::Figure(figure) = &mut object.shape else { return };
+    section(ui, "Face", false, |ui| set_rows(ui, &mut figure.face));
+    section(ui, "Expression", false, |ui| {
+        row(ui, "Expression", "A starting point for the sliders below", |ui| {
+            let named = NamedExpression::ALL.into_iter().map(|e| (e.label(), e.expression()));
+            picker(ui, "expression", named, &mut figure.expression);
+        });
+        set_rows(ui, &mut figure.expression);
+    });
+    section(ui, "Pose", true, |ui| pose_rows(ui, figure));
+    section(ui, "Clothes and hair", false, |ui| clothes_rows(ui, figure));
+}
+
+fn person_rows(ui: &mut Ui, object: &mut Object) {
+    let Shape::Figure(figure) = &mut object.shape else { return };
+    row(ui, "Somebody", "Another body, face and hair by chance; undo brings the last one back", |ui| {
+        if ui.button("Randomise").clicked() {
+            **figure = figures::randomised(figure, figure.seed.wrapping_add(1));
+        }
+    });
+    let body = &mut figure.body;
+    for (value, parameter) in body.values_mut().into_iter().zip(Body::PARAMETERS) {
+        match parameter.name {
+            "height_m" => row(ui, parameter.label, "Without shoes", |ui| {
+                ui.add(Slider::new(value, parameter.low..=parameter.high).suffix(" m").fixed_decimals(2));
+            }),
+            "age_years" => row(ui, parameter.label, "Years", |ui| {
+                ui.add(Slider::new(value, parameter.low..=parameter.high).fixed_decimals(0));
+            }),
+            "sex" => row(ui, parameter.label, "From female to male", |ui| slider(ui, value, parameter)),
+            _ => row(ui, parameter.label, "", |ui| slider(ui, value, parameter)),
+        }
+    }
+    row(ui, "Skin tone", "Classes of the individual typology angle, from very light to dark", |ui| {
+        for tone in SKIN_TONES {
+            let color = tone.base_color();
+            let square = swatch(ui, shown(color), vec2(20.0, 20.0)).interact(Sense::click()).on_hover_text(tone.label);
+            if square.clicked() {
+                object.material = tone.material();
+            }
+        }
+    });
+}
+
+fn pose_rows(ui: &mut Ui, figure: &mut Figure) {
+    row(ui, "Pose", "A starting point for the sliders below", |ui| {
+        picker(ui, "pose", NamedPose::ALL.into_iter().map(|p| (p.label(), p.pose())), &mut figure.pose);
+        if ui.button("Mirror").on_hover_text("Exchanges left and right").clicked() {
+            figure.pose = figure.pose.mirrored();
+        }
+    });
+    let pose = &mut figure.pose;
+    if let Some(seat_m) = &mut pose.seat_m {
+        row(ui, "Seat", "Height of what the figure sits on", |ui| {
+            let mut seat_cm = *seat_m * 100.0;
+            let range = SEAT_RANGE_M[0] * 100.0..=SEAT_RANGE_M[1] * 100.0;
+            if ui.add(Slider::new(&mut seat_cm, range).suffix(" cm").fixed_decimals(0)).changed() {
+                *seat_m = seat_cm / 100.0;
+            }
+        });
+    }
+    section(ui, "Head and body", true, |ui| set_rows(ui, &mut pose.torso));
+    for (name, arm) in ["Left arm", "Right arm"].into_iter().zip(&mut pose.arms) {
+        section(ui, name, false, |ui| set_rows::<Arm>(ui, arm));
+    }
+    for (name, leg) in ["Left leg", "Right leg"].into_iter().zip(&mut pose.legs) {
+        section(ui, name, false, |ui| set_rows::<Leg>(ui, leg));
+    }
+}
+
+fn clothes_rows(ui: &mut Ui, figure: &mut Figure) {
+    row(ui, "Top", "Colours are those of its parts, below", |ui| {
+        let choices =
+            [("Long sleeves", Top::LongSleeves), ("Short sleeves", Top::ShortSleeves), ("Straps", Top::Straps)];
+        picker(ui, "top", choices.into_iter(), &mut figure.top);
+    });
+    row(ui, "Below", "", |ui| {
+        let choices = [("Trousers", Bottom::Trousers), ("Shorts", Bottom::Shorts), ("Skirt", Bottom::Skirt)];
+        picker(ui, "bottom", choices.into_iter(), &mut figure.bottom);
+    });
+    row(ui, "Hair", "", |ui| {
+        let choices = [
+            ("Bald", HairStyle::Bald),
+            ("Crop", HairStyle::Crop),
+            ("Short", HairStyle::Short),
+            ("Bob", HairStyle::Bob),
+            ("Long", HairStyle::Long),
+            ("Tied back", HairStyle::TiedBack),
+            ("Curly", HairStyle::Curly),
+        ];
+        picker(ui, "hair", choices.into_iter(), &mut figure.hair);
+    });
+    row(ui, "Beard", "", |ui| {
+        let choices = [("None", Beard::None), ("Stubble", Beard::Stubble), ("Full", Beard::Full)];
+        picker(ui, "beard", choices.into_iter(), &mut figure.beard);
+    });
+}
+
+/// Draws a slider for each parameter of a set.
+fn set_rows<S: ParameterSet>(ui: &mut Ui, set: &mut S) {
+    for (value, parameter) in set.values_mut().into_iter().zip(S::PARAMETERS) {
+        row(ui, parameter.label, "", |ui| slider(ui, value, parameter));
+    }
+}
+
+fn slider(ui: &mut Ui, value: &mut f32, parameter: &Parameter) {
+    let slider = Slider::new(value, parameter.low..=parameter.high);
+    // Names of parameters end in their unit.
+    let slider = match parameter.name.rsplit_once('_') {
+        Some((_, "deg")) => slider.suffix("°").fixed_decimals(0),
+        Some((_, "m")) => slider.suffix(" m").fixed_decimals(2),
+        _ => slider.fixed_decimals(2),
+    };
+    if ui.add(slider).double_clicked() {
+        *value = parameter.default;
+    }
+}
+
+/// Draws a list of named values. One that is none of them is shown as "Own".
+fn picker<T: PartialEq>(ui: &mut Ui, id: &str, choices: impl Iterator<Item = (&'static str, T)>, value: &mut T) {
+    let choices: Vec<(&str, T)> = choices.collect();
+    let current = choices.iter().find(|(_, choice)| choice == value).map_or("Own", |(name, _)| name);
+    ComboBox::from_id_salt(id).selected_text(current).show_ui(ui, |ui| {
+        for (name, choice) in choices {
+            ui.selectable_value(value, choice, name);
+        }
+    });
+}
+
+/// Returns the display colour of a reflectance under the light that a white card shows as white.
+fn shown(base_color: [f32; 3]) -> Color32 {
+    let [r, g, b] = base_color.map(|c| (crate::color::srgb_encode(c.min(1.0)) * 255.0 + 0.5) as u8);
+    Color32::from_rgb(r, g, b)
+}

@@ -1,0 +1,97 @@
+//! The body data that every figure is made from: a base mesh with targets (shape offsets), bones and weights.
+//!
+//! The data are MakeHuman's, converted by `catchlight bake-figures`; `assets/figures/README.md` names source, version
+//! and licence. Positions are in metres, Y up; the body looks along +Z, and its left is +X.
+
+use glam::{Vec2, Vec3};
+use std::collections::HashMap;
+
+/// Offsets of vertices that change the shape of the base mesh.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Target {
+    /// Vertices with their offsets at full strength, metres; in ascending order of the vertices.
+    pub offsets: Vec<(u16, Vec3)>,
+}
+
+/// A group of quads of the base mesh: `body`, `helper-tights` ...
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct QuadGroup {
+    /// Name in the source.
+    pub name: String,
+    /// Corners, counter-clockwise from outside.
+    pub quads: Vec<[u16; 4]>,
+    /// Texture coordinates of the corners, as indices into [`BodyData::uvs`].
+    pub uvs: Vec<[u16; 4]>,
+}
+
+/// A grey picture in the base mesh's texture coordinates: where a region of the skin is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mask {
+    /// Width and height, pixels.
+    pub size: usize,
+    /// Strengths, 0 to 255, row by row from the top.
+    pub values: Vec<u8>,
+}
+
+/// A bone of the skeleton.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bone {
+    /// Name in the source: `upperarm01.L`.
+    pub name: String,
+    /// Index of the parent, which is listed before its children; none for the root.
+    pub parent: Option<u8>,
+    /// Vertex (of no quad) at the joint with the parent.
+    pub head: u16,
+    /// Vertex (of no quad) at the other end.
+    pub tail: u16,
+}
+
+/// Bones that move a vertex, with weights in 1/255 that sum to 255.
+pub type BoneWeights = [(u8, u8); 4];
+
+impl Mask {
+    /// Returns the strength at texture coordinates, 0 to 1; 0 without a picture.
+    pub fn at(&self, uv: Vec2) -> f32 {
+        let pixel = |x: f32| ((x.clamp(0.0, 1.0) * self.size as f32) as usize).min(self.size.saturating_sub(1));
+        let index = pixel(1.0 - uv.y) * self.size + pixel(uv.x);
+        self.values.get(index).map_or(0.0, |&value| f32::from(value) / 255.0)
+    }
+}
+
+/// The base mesh of all figures with its targets, bones, weights and masks.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BodyData {
+    /// Vertices of the base mesh, then those of the joints, metres.
+    pub positions: Vec<Vec3>,
+    /// Texture coordinates.
+    pub uvs: Vec<Vec2>,
+    /// The vertex on the other side of the body for each vertex.
+    pub mirror: Vec<u16>,
+    /// Groups of quads.
+    pub groups: Vec<QuadGroup>,
+    /// Targets by name.
+    pub targets: HashMap<String, Target>,
+    /// The skeleton.
+    pub bones: Vec<Bone>,
+    /// Bones that move each vertex.
+    pub weights: Vec<BoneWeights>,
+    /// Regions of the skin: `lips`, `ears` ...
+    pub masks: HashMap<String, Mask>,
+}
+
+impl BodyData {
+    /// Returns a group of quads; none of this name.
+    pub fn group(&self, name: &str) -> Option<&QuadGroup> {
+        self.groups.iter().find(|each| each.name == name)
+    }
+
+    /// Returns the quads of a group; empty if there is none of this name.
+    pub fn quads(&self, group: &str) -> &[[u16; 4]] {
+        self.group(group).map_or(&[], |each| &each.quads)
+    }
+
+    /// Returns the index of a bone.
+    pub fn bone(&self, name: &str) -> Option<usize> {
+        self.bones.iter().position(|bone| bone.name == name)
+    }
+}

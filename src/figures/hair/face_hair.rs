@@ -1,0 +1,122 @@
+//! Brows, lashes and beards.
+
+use super::hair_body::HairBody;
+use super::roots::{Root, scatter};
+use super::style::{BROW, Style, beard_density};
+use crate::figures::random::Random;
+use crate::scene::{Figure, StrandPoint, Strands};
+use glam::Vec3;
+
+/// Hairs of both brows.
+const BROW_HAIRS: usize = 1100;
+/// Upper and lower lashes of an eye.
+const LASHES: [usize; 2] = [130, 70];
+
+/// Grows a beard: down and out of the skin.
+pub fn grow_beard(body: &HairBody, figure: &Figure, style: &Style, strands: &mut Strands) {
+    let roots = scatter(body, style.strands, figure.seed.wrapping_add(1), &beard_density);
+    for (index, root) in roots.iter().enumerate() {
+        let mut random = Random::new(figure.seed, 300_000 + index as u32);
+        let [chin, cheek] = style.length_m;
+        let length =
+            (cheek + (chin - cheek) * ((-root.place.y - 0.05) / 0.06).clamp(0.0, 1.0)) * (0.7 + 0.5 * random.unit());
+        let comb = Vec3::new(0.0, -1.0, 0.15);
+        strands.push(bent(body, root, comb, length, style, &mut random));
+    }
+}
+
+/// Grows both brows: from the nose outwards, along the arch.
+pub fn grow_brows(body: &HairBody, figure: &Figure, strands: &mut Strands) {
+    let style = Style { radius_m: 45e-6, lift: 0.35, frizz: 0.12, ..BROW };
+    let roots = scatter(body, BROW_HAIRS, figure.seed.wrapping_add(2), &brow_density);
+    for (index, root) in roots.iter().enumerate() {
+        let mut random = Random::new(figure.seed, 400_000 + index as u32);
+        let outwards = root.place.x.signum();
+        // Hairs at the inner end stand up.
+        let inner = (1.0 - (root.place.x.abs() - 0.012) / 0.02).clamp(0.0, 1.0);
+        let comb = Vec3::new(outwards * (1.0 - 0.6 * inner), 0.25 + 0.7 * inner, -0.2);
+        let length = 0.009 * (0.7 + 0.4 * random.unit());
+        strands.push(bent(body, root, comb, length, &style, &mut random));
+    }
+}
+
+/// Returns how much brow grows at a place of the face, metres from between the eyes.
+fn brow_density(place: Vec3) -> f32 {
+    let x = place.x.abs();
+    // The arch rises to two thirds of its length and falls to the tail.
+    let middle = if x < 0.042 { 0.019 + 0.23 * (x - 0.012) } else { 0.0259 - 0.45 * (x - 0.042) };
+    let half = 0.0045 - 0.0026 * ((x - 0.03) / 0.028).clamp(0.0, 1.0);
+    let is_brow = (0.0115..0.0575).contains(&x) && place.z > -0.03;
+    if is_brow { (1.6 * (1.0 - (place.y - middle).abs() / half)).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// Returns a short hair that leaves the skin and bends towards the comb.
+fn bent(body: &HairBody, root: &Root, comb: Vec3, length: f32, style: &Style, random: &mut Random) -> Vec<StrandPoint> {
+    const STEPS: usize = 5;
+    let along = (comb - root.normal * comb.dot(root.normal)).normalize_or(Vec3::NEG_Y);
+    let jitter = Vec3::new(random.bell(), random.bell(), random.bell()) * style.frizz;
+    let mut direction = (root.normal * style.lift + along * (1.0 - style.lift) + jitter).normalize_or(along);
+    let mut position = root.position;
+    let mut points = Vec::with_capacity(STEPS + 1);
+    for k in 0..=STEPS {
+        let t = k as f32 / STEPS as f32;
+        let radius_m = style.radius_m * (1.0 - 0.75 * t);
+        points.push(StrandPoint { position: body.head.transform_point3(position), radius_m });
+        position += direction * length / STEPS as f32;
+        direction = (direction + along * 0.12 + Vec3::NEG_Y * style.weight * 0.3).normalize_or(along);
+    }
+    points
+}
+
+/// Grows the lashes along the edges of the lids, which the body data mark by strips of quads.
+pub fn grow_lashes(body: &HairBody, figure: &Figure, strands: &mut Strands) {
+    let to_head = body.head.inverse();
+    for (side, eye) in ["l", "r"].into_iter().zip(body.eyes) {
+        let eye = to_head.transform_point3(eye);
+        for (row, count) in LASHES.into_iter().enumerate() {
+            let group = format!("helper-{side}-eyelashes-{}", row + 1);
+            let quads = body.data.quads(&group);
+            let point = |v: u16| to_head.transform_point3(body.positions[usize::from(v)]);
+            // The lid's edge: the corners of a strip that lie nearest to the eyeball
+            let mut rims: Vec<[Vec3; 2]> = quads
+                .iter()
+                .map(|quad| {
+                    let mut corners = quad.map(point);
+                    corners.sort_by(|a, b| a.distance(eye).total_cmp(&b.distance(eye)));
+                    [corners[0], corners[1]]
+                })
+                .collect();
+            let nearest = rims.iter().map(|[a, _]| a.distance(eye)).fold(f32::INFINITY, f32::min);
+            rims.retain(|[a, b]| a.distance(eye).max(b.distance(eye)) < nearest + 0.0022);
+            if rims.is_empty() {
+                continue;
+            }
+            let is_upper = rims.iter().map(|[a, _]| a.y - eye.y).sum::<f32>() > 0.0;
+            let length = if is_upper { 0.0085 } else { 0.005 };
+            let mut random = Random::new(figure.seed, 500_000 + row as u32 * 2 + u32::from(side == "r"));
+            for _ in 0..count {
+                let [a, b] = rims[((random.unit() * rims.len() as f32) as usize).min(rims.len() - 1)];
+                let root = a.lerp(b, random.unit());
+                strands.push(lash(body, root, eye, is_upper, length * (0.75 + 0.4 * random.unit()), &mut random));
+            }
+        }
+    }
+}
+
+/// Returns a lash: out of the lid, curved up for the upper and down for the lower lid.
+fn lash(body: &HairBody, root: Vec3, eye: Vec3, is_upper: bool, length: f32, random: &mut Random) -> Vec<StrandPoint> {
+    const STEPS: usize = 6;
+    let up = if is_upper { 1.0 } else { -0.8 };
+    let fan = (root.x - eye.x) * 22.0;
+    let mut direction = Vec3::new(fan + 0.12 * random.bell(), 0.1 * random.bell() - 0.1, 1.0).normalize_or(Vec3::Z);
+    let mut position = root;
+    let mut points = Vec::with_capacity(STEPS + 1);
+    for k in 0..=STEPS {
+        let t = k as f32 / STEPS as f32;
+        let radius_m = 55e-6 * (1.0 - 0.8 * t);
+        points.push(StrandPoint { position: body.head.transform_point3(position), radius_m });
+        position += direction * length / STEPS as f32;
+        direction = (direction + Vec3::Y * up * 0.22).normalize_or(Vec3::Z);
+    }
+    points
+}

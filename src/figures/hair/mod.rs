@@ -1,0 +1,91 @@
+//! Hair of head and face as strands, grown from a seed.
+//!
+//! ```text
+//! roots on the skin (roots.rs) -> guide strands that follow the style and stay outside of head and shoulders
+//!   (style.rs, growth.rs) -> strands between the guides, in clumps (growth.rs)
+//! ```
+//!
+//! Real heads have some 100 000 hairs of 0.07 mm; ours have fewer and thicker ones that cover as much.
+
+mod face_hair;
+mod growth;
+mod hair_body;
+mod obstacles;
+mod roots;
+mod style;
+
+pub use hair_body::HairBody;
+
+use crate::scene::{Figure, StrandPoint, Strands};
+
+/// Every so many strands of hair and beard are drawn in the live view.
+const THINNING: usize = 10;
+/// Factor on the radius of those strands. Strands hide each other, so that it is less than [`THINNING`].
+const THICKENING: f32 = 4.0;
+/// Points of a strand in the live view, at most.
+const COARSE_POINTS: usize = 8;
+
+/// Returns fewer and thicker strands with fewer points, for the live view.
+pub fn thinned(strands: &Strands) -> Strands {
+    let mut coarse = Strands::default();
+    for part in strands.parts() {
+        let is_dense = part.name == "hair" || part.name == "beard";
+        let (every, factor) = if is_dense { (THINNING, THICKENING) } else { (2, 2.0) };
+        for strand in (part.strands.start as usize..part.strands.end as usize).step_by(every) {
+            let points = strands.strand(strand);
+            let last = points.len() - 1;
+            let count = points.len().min(COARSE_POINTS);
+            let kept = (0..count).map(|k| points[k * last / (count - 1)]);
+            coarse.push(kept.map(|p| StrandPoint { radius_m: p.radius_m * factor, ..p }));
+        }
+        coarse.end_part(&part.name);
+    }
+    coarse
+}
+
+/// Returns the hair of a figure: parts `hair`, `beard`, `brows` and `lashes`.
+pub fn grow(body: &HairBody, figure: &Figure) -> Strands {
+    let mut strands = Strands::default();
+    if let Some(style) = style::of_head(figure.hair) {
+        growth::grow_head(body, figure, &style, &mut strands);
+    }
+    strands.end_part("hair");
+    if let Some(style) = style::of_beard(figure.beard) {
+        face_hair::grow_beard(body, figure, &style, &mut strands);
+    }
+    strands.end_part("beard");
+    face_hair::grow_brows(body, figure, &mut strands);
+    strands.end_part("brows");
+    face_hair::grow_lashes(body, figure, &mut strands);
+    strands.end_part("lashes");
+    strands
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::figures::{READY, build};
+
+    #[test]
+    fn hair_grows_on_every_ready_figure_and_the_live_view_has_a_tenth_of_it() {
+        for ready in [&READY[0], &READY[1], &READY[5]] {
+            let figure = ready.figure();
+            let meshes = build(&figure);
+            let parts = |strands: &crate::scene::Strands| -> Vec<(String, usize)> {
+                strands.parts().iter().map(|p| (p.name.clone(), p.strands.len())).collect()
+            };
+            let (fine, coarse) = (parts(&meshes.fine.strands), parts(&meshes.coarse.strands));
+            assert!(fine.iter().any(|(part, count)| part == "hair" && *count > 20_000), "{}: {fine:?}", ready.name);
+            assert!(fine.iter().any(|(part, count)| part == "brows" && *count > 800), "{}: {fine:?}", ready.name);
+            assert!(fine.iter().any(|(part, count)| part == "lashes" && *count > 200), "{}: {fine:?}", ready.name);
+            for ((part, all), (_, some)) in fine.iter().zip(&coarse) {
+                let share = *some as f32 / *all as f32;
+                assert!(share < if part == "hair" || part == "beard" { 0.11 } else { 0.51 }, "{part}: {share}");
+            }
+            // All hair lies round the head and shoulders of a standing person.
+            let height = figure.body.height_m;
+            let (low, high) = meshes.fine.strands.bounds().unwrap();
+            assert!(low.y > 0.5 * height && high.y < height + 0.06, "{low} {high}");
+            assert_eq!(build(&figure).fine, meshes.fine, "equal parameters make equal meshes");
+        }
+    }
+}

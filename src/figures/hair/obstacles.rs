@@ -1,0 +1,85 @@
+//! What hair must not enter: skull, neck, shoulders and chest, as ellipsoid and capsules in the head's frame.
+
+use super::hair_body::HairBody;
+use super::roots::Root;
+use glam::Vec3;
+
+/// A rounded cylinder.
+#[derive(Clone, Copy, Debug)]
+struct Capsule {
+    ends: [Vec3; 2],
+    radius: f32,
+}
+
+impl Capsule {
+    fn pushed_out(&self, p: Vec3) -> Vec3 {
+        let [a, b] = self.ends;
+        let t = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-9)).clamp(0.0, 1.0);
+        let nearest = a.lerp(b, t);
+        let away = p - nearest;
+        if away.length() < self.radius { nearest + away.normalize_or(Vec3::Z) * self.radius } else { p }
+    }
+}
+
+/// Head and shoulders.
+#[derive(Clone, Debug)]
+pub struct Obstacles {
+    skull_centre: Vec3,
+    skull_radii: Vec3,
+    body: Vec<Capsule>,
+}
+
+impl Obstacles {
+    /// Returns the obstacles round the roots of a head of hair.
+    pub fn new(body: &HairBody, roots: &[Root]) -> Obstacles {
+        let to_head = body.head.inverse();
+        let joint = |name: &str| {
+            let bone = body.data.bone(name).map(|b| usize::from(body.data.bones[b].head));
+            bone.map_or(Vec3::ZERO, |v| to_head.transform_point3(body.positions[v]))
+        };
+        let (low, high) =
+            roots.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), r| (l.min(r.position), h.max(r.position)));
+        let depth = (high.z - low.z) / 2.0;
+        let skull_radii = Vec3::new((high.x - low.x) / 2.0, depth * 1.02, depth);
+        let skull_centre = Vec3::new(0.0, high.y - skull_radii.y, (high.z + low.z) / 2.0);
+        let (neck, left, right) = (joint("neck01"), joint("upperarm01.L"), joint("upperarm01.R"));
+        let chest = joint("spine02");
+        let span = left.distance(right);
+        let capsule = |a, b, radius| Capsule { ends: [a, b], radius };
+        let body = vec![
+            capsule(joint("head"), neck, 0.19 * span),
+            capsule(left, right, 0.16 * span),
+            capsule(neck.lerp(left, 0.35), chest.lerp(left, 0.25), 0.27 * span),
+            capsule(neck.lerp(right, 0.35), chest.lerp(right, 0.25), 0.27 * span),
+        ];
+        Obstacles { skull_centre, skull_radii, body }
+    }
+
+    /// Returns the middle of the skull.
+    pub fn skull_centre(&self) -> Vec3 {
+        self.skull_centre
+    }
+
+    /// Returns the half axes of the skull.
+    pub fn skull_radii(&self) -> Vec3 {
+        self.skull_radii
+    }
+
+    /// Returns the height of a point over the skull, metres, about; negative inside.
+    pub fn height_over_skull(&self, p: Vec3) -> f32 {
+        (self.level(p) - 1.0) * self.skull_radii.min_element()
+    }
+
+    /// Returns the size of the ellipsoid through a point, as a part of the skull's.
+    pub fn level(&self, p: Vec3) -> f32 {
+        ((p - self.skull_centre) / self.skull_radii).length()
+    }
+
+    /// Returns a point moved out of all obstacles, `margin` metres away from the ellipsoid of a level.
+    pub fn pushed_out(&self, p: Vec3, level: f32, margin: f32) -> Vec3 {
+        let radii = self.skull_radii * level + Vec3::splat(margin);
+        let scaled = (p - self.skull_centre) / radii;
+        let outside = if scaled.length() < 1.0 { self.skull_centre + scaled.normalize_or(Vec3::Y) * radii } else { p };
+        self.body.iter().fold(outside, |p, capsule| capsule.pushed_out(p))
+    }
+}

@@ -1,0 +1,191 @@
+//! Hair styles as numbers.
+
+use crate::scene::{Beard, HairStyle};
+use glam::Vec3;
+
+/// How the hair of the head is combed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Comb {
+    /// Away from the whorl at the back of the crown: forwards on top, down at the sides.
+    FromWhorl,
+    /// Away from a parting, at this distance to the left of the middle, and down.
+    FromParting(f32),
+    /// To a tie behind the head.
+    ToTie,
+    /// Straight out of the skin.
+    Out,
+}
+
+/// A style of hair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Style {
+    /// Number of strands.
+    pub strands: usize,
+    /// Radius of a strand at its root, metres.
+    pub radius_m: f32,
+    /// Lengths on top of the head and at the sides, metres.
+    pub length_m: [f32; 2],
+    /// Direction of the comb.
+    pub comb: Comb,
+    /// Part of the normal in the first direction: 0 lies flat, 1 stands up.
+    pub lift: f32,
+    /// Pull of gravity: 0 none, 1 falls at once.
+    pub weight: f32,
+    /// Distance at which the hair stays from the skull, metres.
+    pub volume_m: f32,
+    /// Radius of curls, metres.
+    pub curl_m: f32,
+    /// Turns of a curl in a metre.
+    pub turns_per_m: f32,
+    /// How much strands gather round their guide towards the tips, 0 to 1.
+    pub clumping: f32,
+    /// Spread of directions, radians.
+    pub frizz: f32,
+}
+
+const SHORT: Style = Style {
+    strands: 30_000,
+    radius_m: 65e-6,
+    length_m: [0.05, 0.018],
+    comb: Comb::FromWhorl,
+    lift: 0.55,
+    weight: 0.12,
+    volume_m: 0.004,
+    curl_m: 0.0,
+    turns_per_m: 0.0,
+    clumping: 0.45,
+    frizz: 0.16,
+};
+
+/// The hairs of a brow.
+pub const BROW: Style = Style { weight: 0.0, ..SHORT };
+
+/// Returns the style of a head; none for a bald one.
+pub fn of_head(hair: HairStyle) -> Option<Style> {
+    Some(match hair {
+        HairStyle::Bald => return None,
+        HairStyle::Crop => Style {
+            strands: 36_000,
+            radius_m: 50e-6,
+            length_m: [0.007, 0.004],
+            lift: 0.8,
+            weight: 0.0,
+            clumping: 0.0,
+            frizz: 0.3,
+            volume_m: 0.0,
+            ..SHORT
+        },
+        HairStyle::Short => SHORT,
+        HairStyle::Bob => Style {
+            strands: 34_000,
+            radius_m: 75e-6,
+            length_m: [0.24, 0.15],
+            comb: Comb::FromParting(0.025),
+            lift: 0.15,
+            weight: 0.7,
+            volume_m: 0.008,
+            clumping: 0.55,
+            frizz: 0.06,
+            ..SHORT
+        },
+        HairStyle::Long => Style {
+            strands: 38_000,
+            radius_m: 80e-6,
+            length_m: [0.44, 0.38],
+            comb: Comb::FromParting(0.02),
+            lift: 0.12,
+            weight: 0.7,
+            volume_m: 0.007,
+            curl_m: 0.003,
+            turns_per_m: 5.0,
+            clumping: 0.65,
+            frizz: 0.06,
+        },
+        HairStyle::TiedBack => Style {
+            strands: 32_000,
+            radius_m: 70e-6,
+            length_m: [0.4, 0.34],
+            comb: Comb::ToTie,
+            lift: 0.12,
+            weight: 0.3,
+            volume_m: 0.004,
+            clumping: 0.5,
+            frizz: 0.04,
+            ..SHORT
+        },
+        HairStyle::Curly => Style {
+            strands: 30_000,
+            radius_m: 75e-6,
+            length_m: [0.13, 0.11],
+            comb: Comb::Out,
+            lift: 0.7,
+            weight: 0.3,
+            volume_m: 0.014,
+            curl_m: 0.009,
+            turns_per_m: 38.0,
+            clumping: 0.75,
+            frizz: 0.3,
+        },
+    })
+}
+
+/// Returns the style of a beard; none for a shaved face.
+pub fn of_beard(beard: Beard) -> Option<Style> {
+    Some(match beard {
+        Beard::None => return None,
+        Beard::Stubble => Style {
+            strands: 9_000,
+            radius_m: 45e-6,
+            length_m: [0.0022, 0.0022],
+            lift: 0.7,
+            weight: 0.2,
+            frizz: 0.35,
+            ..SHORT
+        },
+        Beard::Full => Style {
+            strands: 16_000,
+            radius_m: 60e-6,
+            length_m: [0.03, 0.02],
+            lift: 0.45,
+            weight: 0.25,
+            frizz: 0.28,
+            ..SHORT
+        },
+    })
+}
+
+/// Returns how much hair grows at a place of the scalp (from between the eyes, metres on the base mesh): 1 inside of the
+/// hairline, fading out within some millimetres.
+pub fn scalp_density(place: Vec3) -> f32 {
+    // Height of the hairline over the eyes by the angle from the front, which turns about the middle of the head.
+    const HAIRLINE: [(f32, f32); 8] = [
+        (0.0, 0.072),
+        (25.0, 0.069),
+        (45.0, 0.055),
+        (62.0, 0.028),
+        (80.0, 0.012),
+        (98.0, 0.018),
+        (125.0, -0.045),
+        (180.0, -0.075),
+    ];
+    let angle = place.x.abs().atan2(place.z + 0.085).to_degrees();
+    let upper = HAIRLINE.iter().position(|(at, _)| *at >= angle).unwrap_or(HAIRLINE.len() - 1).max(1);
+    let ((a0, h0), (a1, h1)) = (HAIRLINE[upper - 1], HAIRLINE[upper]);
+    let line = h0 + (h1 - h0) * ((angle - a0) / (a1 - a0)).clamp(0.0, 1.0);
+    // Ears stick out of the scalp.
+    let is_ear = place.x.abs() > 0.075 && place.y < 0.03 && (-0.125..-0.055).contains(&place.z);
+    if is_ear { 0.0 } else { ((place.y - line) / 0.006).clamp(0.0, 1.0) }
+}
+
+/// Returns how much beard grows at a place of the face; see [`scalp_density`].
+pub fn beard_density(place: Vec3) -> f32 {
+    let Vec3 { x, y, z } = place;
+    let x = x.abs();
+    // From the sideburns along the jaw to the chin, round the mouth; down to the throat
+    let upper = if x > 0.055 { 0.005 } else { -0.038 - 0.25 * (0.055 - x).max(0.0) };
+    let lower = -0.128 - 0.35 * (z + 0.02).min(0.0).abs().min(0.05) + 0.9 * (x - 0.03).max(0.0);
+    let lips = (x / 0.027).powi(2) + ((y + 0.068) / 0.0115).powi(2);
+    let is_skin = z > -0.075 && lips > 1.0 && !(x < 0.02 && y > -0.052);
+    let edge = ((upper - y) / 0.008).min((y - lower) / 0.012).clamp(0.0, 1.0);
+    if is_skin { edge } else { 0.0 }
+}

@@ -1,0 +1,116 @@
+//! The materials of a figure's parts, and skin tones.
+
+use crate::scene::{Figure, Material, MaterialPreset};
+
+/// A skin tone: a class of the individual typology angle ITA = atan((L* - 50) / b*) (Chardon et al. 1991, "Skin colour
+/// typology and suntanning pathways"), with the reflectance of its middle. Redness a* is a typical value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SkinTone {
+    /// Name of the class.
+    pub label: &'static str,
+    /// CIE 1976 L*, a*, b* (D65).
+    lab: [f32; 3],
+}
+
+/// Skin tones from light to dark. The angles are 60, 48, 34, 19, -10 and -45 degrees.
+pub const SKIN_TONES: [SkinTone; 6] = [
+    SkinTone { label: "Very light", lab: [70.0, 9.0, 11.5] },
+    SkinTone { label: "Light", lab: [66.5, 10.5, 15.0] },
+    SkinTone { label: "Intermediate", lab: [62.0, 11.5, 17.5] },
+    SkinTone { label: "Tan", lab: [56.5, 12.5, 19.0] },
+    SkinTone { label: "Brown", lab: [47.0, 12.5, 17.0] },
+    SkinTone { label: "Dark", lab: [37.0, 10.0, 13.0] },
+];
+
+impl SkinTone {
+    /// Returns skin of this tone. Skin with more melanin lets light less far in.
+    pub fn material(&self) -> Material {
+        let [lightness, ..] = self.lab;
+        let preset = match lightness {
+            l if l > 60.0 => MaterialPreset::SkinLight,
+            l if l > 50.0 => MaterialPreset::SkinMedium,
+            _ => MaterialPreset::SkinDark,
+        };
+        Material { base_color: self.base_color(), ..preset.material() }
+    }
+
+    /// Returns the reflectance, scene-linear Rec.709.
+    pub fn base_color(&self) -> [f32; 3] {
+        let [l, a, b] = self.lab;
+        let fy = (l + 16.0) / 116.0;
+        let inverse =
+            |f: f32| if f > 6.0 / 29.0 { f * f * f } else { 3.0 * (6.0_f32 / 29.0).powi(2) * (f - 4.0 / 29.0) };
+        // D65 white
+        let [x, y, z] = [0.950_47 * inverse(fy + a / 500.0), inverse(fy), 1.088_83 * inverse(fy - b / 200.0)];
+        [
+            3.240_454_2 * x - 1.537_138_5 * y - 0.498_531_4 * z,
+            -0.969_266 * x + 1.876_010_8 * y + 0.041_556 * z,
+            0.055_643_4 * x - 0.204_025_9 * y + 1.057_225_2 * z,
+        ]
+        .map(|c| c.clamp(0.0, 0.95))
+    }
+}
+
+/// Natural colours of hair.
+pub const HAIR_COLORS: [MaterialPreset; 7] = [
+    MaterialPreset::HairBlack,
+    MaterialPreset::HairDarkBrown,
+    MaterialPreset::HairBrown,
+    MaterialPreset::HairRed,
+    MaterialPreset::HairBlond,
+    MaterialPreset::HairGrey,
+    MaterialPreset::HairWhite,
+];
+
+/// Returns the materials of the parts that are not skin. A dark `skin`, the object's own material, gets darker eyes.
+pub fn default_parts(skin: &Material, figure: &Figure) -> Vec<(String, Material)> {
+    let gloss = |base_color| Material { base_color, ..MaterialPreset::Eye.material() };
+    let cloth = |base_color| Material { base_color, ..MaterialPreset::MatteFabric.material() };
+    let [r, g, b] = skin.base_color;
+    let light = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    let iris = if light > 0.3 { [0.11, 0.085, 0.05] } else { [0.06, 0.03, 0.015] };
+    // Eyes of old people are less white.
+    let age = ((figure.body.age_years - 40.0) / 50.0).clamp(0.0, 1.0);
+    let white = MaterialPreset::Eye.material();
+    let white = Material { base_color: white.base_color.map(|c| c * (1.0 - 0.12 * age)), ..white };
+    // Lips are skin with less melanin and more blood near the surface.
+    let lips = Material { base_color: [0.86 * r, 0.56 * g, 0.6 * b], roughness: 0.34, ..skin.clone() };
+    let parts = [
+        ("eyes", white),
+        ("iris", gloss(iris)),
+        ("pupil", gloss([0.005; 3])),
+        ("teeth", Material { base_color: [0.62, 0.58, 0.49], roughness: 0.25, ..gloss([0.0; 3]) }),
+        ("tongue", Material { base_color: [0.35, 0.12, 0.1], roughness: 0.3, ..gloss([0.0; 3]) }),
+        ("top", cloth([0.16, 0.2, 0.26])),
+        ("bottom", cloth([0.035, 0.045, 0.07])),
+        ("lips", lips),
+        ("nails", Material { roughness: 0.3, ..skin.clone() }),
+        ("mouth", Material { base_color: [0.25, 0.07, 0.06], roughness: 0.3, ..gloss([0.0; 3]) }),
+        ("hair", MaterialPreset::HairDarkBrown.material()),
+        ("beard", MaterialPreset::HairDarkBrown.material()),
+        ("brows", MaterialPreset::HairDarkBrown.material()),
+        ("lashes", MaterialPreset::HairBlack.material()),
+        ("shoes", Material { base_color: [0.03, 0.025, 0.02], roughness: 0.4, ..Material::default() }),
+    ];
+    parts.into_iter().map(|(part, material)| (part.to_owned(), material)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn skin_tones_darken_in_order_and_have_the_luminance_of_their_lightness() {
+        let luminance = |tone: &SkinTone| {
+            let [r, g, b] = tone.base_color();
+            0.2126 * r + 0.7152 * g + 0.0722 * b
+        };
+        assert!(SKIN_TONES.windows(2).all(|pair| luminance(&pair[0]) > luminance(&pair[1])));
+        // L* 50 is a luminance factor of 0.184; L* 70 of 0.407 (CIE 15).
+        assert!((luminance(&SKIN_TONES[0]) - 0.407).abs() < 0.002);
+        for tone in SKIN_TONES {
+            let [r, g, b] = tone.base_color();
+            assert!(r > g && g > b && b > 0.0, "{}", tone.label);
+        }
+    }
+}

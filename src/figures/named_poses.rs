@@ -1,0 +1,313 @@
+//! Named poses and expressions.
+
+use crate::scene::{Arm, Expression, Leg, Pose, Torso};
+
+/// A pose with a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum NamedPose {
+    /// Upright, arms at the sides.
+    Standing,
+    /// Weight on one leg.
+    Relaxed,
+    /// Weight on one leg, hand on the raised hip.
+    HandOnHip,
+    /// Both hands on the hips.
+    HandsOnHips,
+    /// Body turned a third away, face to the front.
+    ThreeQuarter,
+    /// Body turned away, face over the shoulder.
+    OverShoulder,
+    /// Arms crossed.
+    ArmsCrossed,
+    /// Hands joined in front.
+    HandsJoined,
+    /// Hands behind the back.
+    HandsBehind,
+    /// Hand at the chin.
+    HandAtChin,
+    /// Hand in the hair.
+    HandInHair,
+    /// A step forwards.
+    Walking,
+    /// Leaning against something behind.
+    Leaning,
+    /// Arms up.
+    ArmsUp,
+    /// On a seat, hands on the thighs.
+    Seated,
+    /// On a seat, leaning forwards, forearms on the thighs.
+    SeatedForward,
+    /// On a seat, one leg over the other.
+    LegsCrossed,
+    /// On a high stool, one foot on its ring.
+    HighStool,
+    /// On a low box, knees together, hands on the knees.
+    LowSeat,
+    /// A child with a hand raised.
+    Waving,
+}
+
+impl NamedPose {
+    /// All poses, in list order.
+    pub const ALL: [NamedPose; 20] = [
+        NamedPose::Standing,
+        NamedPose::Relaxed,
+        NamedPose::HandOnHip,
+        NamedPose::HandsOnHips,
+        NamedPose::ThreeQuarter,
+        NamedPose::OverShoulder,
+        NamedPose::ArmsCrossed,
+        NamedPose::HandsJoined,
+        NamedPose::HandsBehind,
+        NamedPose::HandAtChin,
+        NamedPose::HandInHair,
+        NamedPose::Walking,
+        NamedPose::Leaning,
+        NamedPose::ArmsUp,
+        NamedPose::Waving,
+        NamedPose::Seated,
+        NamedPose::SeatedForward,
+        NamedPose::LegsCrossed,
+        NamedPose::HighStool,
+        NamedPose::LowSeat,
+    ];
+
+    /// Returns the label in lists.
+    pub fn label(self) -> &'static str {
+        match self {
+            NamedPose::Standing => "Standing",
+            NamedPose::Relaxed => "Relaxed",
+            NamedPose::HandOnHip => "Hand on hip",
+            NamedPose::HandsOnHips => "Hands on hips",
+            NamedPose::ThreeQuarter => "Turned a third",
+            NamedPose::OverShoulder => "Over the shoulder",
+            NamedPose::ArmsCrossed => "Arms crossed",
+            NamedPose::HandsJoined => "Hands joined",
+            NamedPose::HandsBehind => "Hands behind",
+            NamedPose::HandAtChin => "Hand at chin",
+            NamedPose::HandInHair => "Hand in hair",
+            NamedPose::Walking => "Walking",
+            NamedPose::Leaning => "Leaning",
+            NamedPose::ArmsUp => "Arms up",
+            NamedPose::Seated => "Seated",
+            NamedPose::SeatedForward => "Seated, leaning",
+            NamedPose::LegsCrossed => "Seated, legs crossed",
+            NamedPose::HighStool => "On a high stool",
+            NamedPose::LowSeat => "On a low seat",
+            NamedPose::Waving => "Waving",
+        }
+    }
+
+    /// Returns the pose.
+    pub fn pose(self) -> Pose {
+        let standing = Pose::default();
+        let relaxed = relaxed();
+        match self {
+            NamedPose::Standing => standing,
+            NamedPose::Relaxed => relaxed,
+            NamedPose::HandOnHip => Pose { arms: [relaxed.arms[0], ON_HIP], ..relaxed },
+            NamedPose::HandsOnHips => Pose { arms: [ON_HIP; 2], ..standing },
+            NamedPose::ThreeQuarter => turned(relaxed, 25.0, 12.0, -30.0),
+            NamedPose::OverShoulder => turned(relaxed, 55.0, 25.0, -70.0),
+            NamedPose::ArmsCrossed => Pose { arms: [CROSSED_UNDER, CROSSED_OVER], ..standing },
+            NamedPose::HandsJoined => Pose { arms: [JOINED; 2], ..standing },
+            NamedPose::HandsBehind => Pose { arms: [BEHIND; 2], ..standing },
+            NamedPose::HandAtChin => Pose { arms: [CROSSED_UNDER, AT_CHIN], ..relaxed },
+            NamedPose::HandInHair => Pose { arms: [relaxed.arms[0], IN_HAIR], ..relaxed },
+            NamedPose::Walking => walking(),
+            NamedPose::Leaning => leaning(),
+            NamedPose::ArmsUp => Pose { arms: [UP; 2], ..standing },
+            NamedPose::Waving => Pose { arms: [standing.arms[0], WAVING], ..relaxed },
+            NamedPose::Seated => seated(0.45),
+            NamedPose::SeatedForward => seated_forward(),
+            NamedPose::LegsCrossed => legs_crossed(),
+            NamedPose::HighStool => high_stool(),
+            NamedPose::LowSeat => Pose { arms: [ON_KNEE; 2], legs: [TOGETHER; 2], ..seated(0.32) },
+        }
+    }
+}
+
+const HANGING: Arm = Arm {
+    shoulder_deg: 0.0,
+    out_deg: 10.0,
+    forward_deg: 2.0,
+    twist_deg: 0.0,
+    elbow_deg: 14.0,
+    forearm_deg: 0.0,
+    wrist_deg: 0.0,
+    fingers: 0.25,
+};
+const PLANTED: Leg = Leg { out_m: 0.1, forward_m: 0.0, up_m: 0.0, toes_out_deg: 9.0, knee_out_deg: 0.0, heel_deg: 0.0 };
+const ON_HIP: Arm =
+    Arm { out_deg: 48.0, forward_deg: -22.0, twist_deg: -52.0, elbow_deg: 96.0, wrist_deg: 20.0, ..HANGING };
+const CROSSED_UNDER: Arm = Arm { out_deg: 4.0, forward_deg: 34.0, twist_deg: -58.0, elbow_deg: 100.0, ..HANGING };
+const CROSSED_OVER: Arm = Arm { out_deg: 8.0, forward_deg: 44.0, twist_deg: -62.0, elbow_deg: 104.0, ..HANGING };
+const JOINED: Arm = Arm { out_deg: 4.0, forward_deg: 14.0, twist_deg: -38.0, elbow_deg: 52.0, fingers: 0.4, ..HANGING };
+const BEHIND: Arm = Arm { out_deg: 12.0, forward_deg: -36.0, twist_deg: -75.0, elbow_deg: 52.0, ..HANGING };
+const AT_CHIN: Arm =
+    Arm { out_deg: 2.0, forward_deg: 52.0, twist_deg: -22.0, elbow_deg: 138.0, fingers: 0.55, ..HANGING };
+const IN_HAIR: Arm =
+    Arm { out_deg: 105.0, forward_deg: 30.0, twist_deg: 70.0, elbow_deg: 140.0, fingers: 0.3, ..HANGING };
+const UP: Arm = Arm { out_deg: 160.0, forward_deg: 10.0, elbow_deg: 20.0, fingers: 0.1, ..HANGING };
+const WAVING: Arm =
+    Arm { out_deg: 80.0, forward_deg: 15.0, twist_deg: 88.0, elbow_deg: 110.0, fingers: 0.05, ..HANGING };
+const ON_THIGH: Arm =
+    Arm { out_deg: 12.0, forward_deg: 22.0, twist_deg: -18.0, elbow_deg: 58.0, forearm_deg: -55.0, ..HANGING };
+const ON_KNEE: Arm =
+    Arm { out_deg: 8.0, forward_deg: 38.0, twist_deg: -12.0, elbow_deg: 36.0, forearm_deg: -60.0, ..HANGING };
+const TOGETHER: Leg = Leg { out_m: 0.07, toes_out_deg: 2.0, ..PLANTED };
+
+fn relaxed() -> Pose {
+    Pose {
+        seat_m: None,
+        torso: Torso {
+            pelvis_left_m: -0.05,
+            pelvis_roll_deg: -5.0,
+            pelvis_yaw_deg: -4.0,
+            chest_roll_deg: 7.0,
+            chest_yaw_deg: 4.0,
+            head_roll_deg: -3.0,
+            head_yaw_deg: 2.0,
+            ..Torso::default()
+        },
+        arms: [Arm { out_deg: 13.0, elbow_deg: 20.0, ..HANGING }, HANGING],
+        legs: [
+            Leg { out_m: 0.13, forward_m: 0.07, toes_out_deg: 24.0, ..PLANTED },
+            Leg { out_m: 0.07, forward_m: -0.03, toes_out_deg: 10.0, ..PLANTED },
+        ],
+    }
+}
+
+/// Turns hips and shoulders to the figure's left and the head back.
+fn turned(pose: Pose, hips_deg: f32, shoulders_deg: f32, head_deg: f32) -> Pose {
+    let mut pose = pose;
+    pose.torso.pelvis_yaw_deg += hips_deg;
+    pose.torso.chest_yaw_deg += shoulders_deg;
+    pose.torso.head_yaw_deg += head_deg;
+    // The feet turn with the hips.
+    pose.legs[0].toes_out_deg += hips_deg * 0.8;
+    pose.legs[1].toes_out_deg -= hips_deg * 0.7;
+    pose
+}
+
+fn walking() -> Pose {
+    Pose {
+        torso: Torso { pelvis_yaw_deg: 6.0, chest_yaw_deg: -12.0, head_yaw_deg: 6.0, ..Torso::default() },
+        arms: [Arm { forward_deg: 22.0, elbow_deg: 28.0, ..HANGING }, Arm { forward_deg: -20.0, ..HANGING }],
+        legs: [
+            Leg { out_m: 0.06, forward_m: -0.28, heel_deg: 38.0, toes_out_deg: 4.0, ..PLANTED },
+            Leg { out_m: 0.06, forward_m: 0.28, toes_out_deg: 4.0, ..PLANTED },
+        ],
+        ..Pose::default()
+    }
+}
+
+fn leaning() -> Pose {
+    Pose {
+        torso: Torso { pelvis_pitch_deg: -6.0, chest_pitch_deg: -4.0, head_pitch_deg: 8.0, ..Torso::default() },
+        arms: CROSSED,
+        legs: [
+            Leg { out_m: 0.1, forward_m: 0.22, toes_out_deg: 14.0, ..PLANTED },
+            Leg { out_m: 0.02, forward_m: 0.34, toes_out_deg: 12.0, ..PLANTED },
+        ],
+        ..Pose::default()
+    }
+}
+
+const CROSSED: [Arm; 2] = [CROSSED_UNDER, CROSSED_OVER];
+
+fn seated(seat_m: f32) -> Pose {
+    Pose {
+        seat_m: Some(seat_m),
+        torso: Torso { chest_pitch_deg: 4.0, head_pitch_deg: -3.0, ..Torso::default() },
+        arms: [ON_THIGH; 2],
+        legs: [Leg { out_m: 0.14, toes_out_deg: 10.0, ..PLANTED }; 2],
+    }
+}
+
+fn seated_forward() -> Pose {
+    let seated = seated(0.45);
+    Pose {
+        torso: Torso { pelvis_pitch_deg: 18.0, chest_pitch_deg: 26.0, head_pitch_deg: -32.0, ..Torso::default() },
+        arms: [Arm { out_deg: 14.0, forward_deg: 62.0, elbow_deg: 62.0, twist_deg: -32.0, ..ON_THIGH }; 2],
+        legs: [Leg { out_m: 0.2, toes_out_deg: 16.0, ..PLANTED }; 2],
+        ..seated
+    }
+}
+
+fn legs_crossed() -> Pose {
+    let seated = seated(0.48);
+    Pose {
+        arms: [Arm { twist_deg: -34.0, ..ON_THIGH }, Arm { twist_deg: -26.0, ..ON_THIGH }],
+        legs: [
+            Leg { out_m: 0.06, forward_m: -0.02, toes_out_deg: 6.0, ..PLANTED },
+            Leg { out_m: -0.2, forward_m: 0.1, up_m: 0.24, toes_out_deg: -12.0, knee_out_deg: 6.0, heel_deg: 16.0 },
+        ],
+        ..seated
+    }
+}
+
+fn high_stool() -> Pose {
+    let seated = seated(0.72);
+    Pose {
+        legs: [
+            Leg { out_m: 0.16, forward_m: 0.06, toes_out_deg: 16.0, ..PLANTED },
+            Leg { out_m: 0.12, forward_m: -0.08, up_m: 0.26, toes_out_deg: 12.0, ..PLANTED },
+        ],
+        ..seated
+    }
+}
+
+/// An expression with a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum NamedExpression {
+    /// Relaxed.
+    Neutral,
+    /// Mouth closed.
+    SoftSmile,
+    /// Teeth shown.
+    Smile,
+    /// Mouth open.
+    Laugh,
+    /// Brows down a little, lips together.
+    Serious,
+    /// Lids closed.
+    EyesClosed,
+}
+
+impl NamedExpression {
+    /// All expressions, in list order.
+    pub const ALL: [NamedExpression; 6] = [
+        NamedExpression::Neutral,
+        NamedExpression::SoftSmile,
+        NamedExpression::Smile,
+        NamedExpression::Laugh,
+        NamedExpression::Serious,
+        NamedExpression::EyesClosed,
+    ];
+
+    /// Returns the label in lists.
+    pub fn label(self) -> &'static str {
+        match self {
+            NamedExpression::Neutral => "Neutral",
+            NamedExpression::SoftSmile => "Soft smile",
+            NamedExpression::Smile => "Smile",
+            NamedExpression::Laugh => "Laugh",
+            NamedExpression::Serious => "Serious",
+            NamedExpression::EyesClosed => "Eyes closed",
+        }
+    }
+
+    /// Returns the expression.
+    pub fn expression(self) -> Expression {
+        let neutral = Expression::default();
+        match self {
+            NamedExpression::Neutral => neutral,
+            NamedExpression::SoftSmile => Expression { smile: 0.4, ..neutral },
+            NamedExpression::Smile => Expression { smile: 0.7, teeth: 0.55, ..neutral },
+            NamedExpression::Laugh => Expression { smile: 0.85, teeth: 0.7, mouth_open: 0.3, squint: 0.2, ..neutral },
+            NamedExpression::Serious => Expression { brows_down: 0.35, lips_pressed: 0.25, squint: 0.15, ..neutral },
+            NamedExpression::EyesClosed => Expression { eyes_closed: 1.0, ..neutral },
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! A patch of the posed body: some quads of a group, cut at the edge of a garment.
+
+use super::body_data::BodyData;
+use glam::{Vec2, Vec3};
+use std::collections::HashMap;
+
+/// Quads with their own vertices.
+#[derive(Clone, Debug, Default)]
+pub struct Patch {
+    /// Vertices, metres.
+    pub positions: Vec<Vec3>,
+    /// Corners.
+    pub quads: Vec<[u32; 4]>,
+    /// Texture coordinates of the corners.
+    pub uvs: Vec<[Vec2; 4]>,
+    /// Vertex of the body data for each vertex.
+    sources: Vec<u16>,
+}
+
+impl Patch {
+    /// Returns the wanted quads of a group of the body data.
+    pub fn new(data: &BodyData, group: &str, positions: &[Vec3], wanted: &dyn Fn(&[u16; 4]) -> bool) -> Patch {
+        let mut patch = Patch::default();
+        let Some(group) = data.group(group) else { return patch };
+        let mut vertices: HashMap<u16, u32> = HashMap::new();
+        for (quad, uvs) in group.quads.iter().zip(&group.uvs).filter(|(quad, _)| wanted(quad)) {
+            let corners = quad.map(|v| {
+                *vertices.entry(v).or_insert_with(|| {
+                    patch.positions.push(positions[usize::from(v)]);
+                    patch.sources.push(v);
+                    patch.sources.len() as u32 - 1
+                })
+            });
+            patch.quads.push(corners);
+            patch.uvs.push(uvs.map(|uv| data.uvs[usize::from(uv)]));
+        }
+        patch
+    }
+
+    /// Moves every vertex outside of a field (negative) along an edge to where the field is 0, so that the patch ends
+    /// in a smooth line.
+    pub fn move_border(&mut self, field: &dyn Fn(u16) -> f32) {
+        let fields: Vec<f32> = self.sources.iter().map(|&v| field(v)).collect();
+        // The neighbour that lies farthest inside, for each vertex outside
+        let mut inner: HashMap<u32, u32> = HashMap::new();
+        for quad in &self.quads {
+            for k in 0..4 {
+                for (outside, inside) in [(quad[k], quad[(k + 1) % 4]), (quad[(k + 1) % 4], quad[k])] {
+                    let is_crossed = fields[outside as usize] < 0.0 && fields[inside as usize] >= 0.0;
+                    let farther = |known: &u32| fields[*known as usize] < fields[inside as usize];
+                    if is_crossed && inner.get(&outside).is_none_or(farther) {
+                        inner.insert(outside, inside);
+                    }
+                }
+            }
+        }
+        let old = self.positions.clone();
+        for (outside, inside) in inner {
+            let (o, i) = (outside as usize, inside as usize);
+            let t = fields[o] / (fields[o] - fields[i]);
+            self.positions[o] = old[o].lerp(old[i], t.clamp(0.0, 0.98));
+        }
+        // A quad with one corner inside has one that borders on none: it collapses to the middle of its neighbours.
+        for quad in &self.quads {
+            for k in 0..4 {
+                let corner = quad[k] as usize;
+                let [before, after] = [quad[(k + 3) % 4] as usize, quad[(k + 1) % 4] as usize];
+                let is_alone = fields[corner] < 0.0 && self.positions[corner] == old[corner];
+                if is_alone {
+                    self.positions[corner] = (self.positions[before] + self.positions[after]) / 2.0;
+                }
+            }
+        }
+    }
+
+    /// Moves every vertex along its normal by an offset in metres.
+    pub fn move_outwards(&mut self, offset: &dyn Fn(u16) -> f32) {
+        let mut normals = vec![Vec3::ZERO; self.positions.len()];
+        for quad in &self.quads {
+            let [a, b, c, d] = quad.map(|v| self.positions[v as usize]);
+            for &v in quad {
+                normals[v as usize] += (c - a).cross(d - b);
+            }
+        }
+        for ((position, normal), &source) in self.positions.iter_mut().zip(normals).zip(&self.sources) {
+            *position += normal.normalize_or_zero() * offset(source);
+        }
+    }
+}

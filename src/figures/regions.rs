@@ -1,0 +1,182 @@
+//! Where a vertex of the base mesh lies on the body: which garments cover it.
+
+use super::body_data::{BodyData, BoneWeights};
+use crate::scene::{Bottom, Top};
+use glam::Vec3;
+
+/// The place of a vertex on the body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// On trunk, neck or head; the height is 0 at the hips and 1 at the base of the neck.
+    Trunk {
+        /// Height.
+        height: f32,
+    },
+    /// On an arm: 0 at the shoulder, 1 at the elbow, 2 at the wrist, more on the hand.
+    Arm(f32),
+    /// On a leg: 0 at the hip, 1 at the knee, 2 at the ankle, more on the foot.
+    Leg(f32),
+}
+
+/// Returns the place of every vertex of the base mesh.
+fn places(data: &BodyData) -> Vec<Place> {
+    let bone = |name: &str| data.bone(name).map(|index| &data.bones[index]);
+    let head = |name: &str| bone(name).map_or(Vec3::ZERO, |bone| data.positions[usize::from(bone.head)]);
+    let limbs = ["L", "R"].map(|side| {
+        let joints = |names: [&str; 3]| names.map(|stem| head(&format!("{stem}.{side}")));
+        (joints(["upperarm01", "lowerarm01", "wrist"]), joints(["upperleg01", "lowerleg01", "foot"]))
+    });
+    let (hips, neck) = (head("pelvis.L"), head("neck01"));
+    let span = neck.y - hips.y;
+    let is_of =
+        |bone: u8, stems: &[&str]| stems.iter().any(|stem| data.bones[usize::from(bone)].name.starts_with(stem));
+    let share = |weights: &BoneWeights, stems: &[&str]| -> u32 {
+        weights.iter().filter(|(bone, w)| *w > 0 && is_of(*bone, stems)).map(|(_, w)| u32::from(*w)).sum()
+    };
+    let place = |(position, weights): (&Vec3, &BoneWeights)| {
+        let (arms, legs) = &limbs[usize::from(position.x < 0.0)];
+        if share(weights, &["wrist", "metacarpal", "finger"]) > 127 {
+            Place::Arm(2.0 + along(*position, arms[2], arms[2] + (arms[2] - arms[1]) * 0.5).max(0.02))
+        } else if share(weights, &["upperarm", "lowerarm", "wrist", "metacarpal", "finger"]) > 110 {
+            Place::Arm(along_limb(*position, arms))
+        } else if share(weights, &["foot", "toe"]) > 127 {
+            Place::Leg(2.0 + (0.02_f32).max((legs[2].y - position.y) / 0.1))
+        } else if share(weights, &["upperleg", "lowerleg", "foot", "toe"]) > 127 {
+            Place::Leg(along_limb(*position, legs))
+        } else {
+            Place::Trunk { height: (position.y - hips.y) / span }
+        }
+    };
+    data.positions.iter().zip(&data.weights).map(place).collect()
+}
+
+/// Returns the position along two segments: 0 to 1 on the first, 1 to 2 on the second.
+fn along_limb(p: Vec3, [a, b, c]: &[Vec3; 3]) -> f32 {
+    let first = along(p, *a, *b);
+    if first < 1.0 && (p - *b).dot(*c - *b) <= 0.0 { first } else { 1.0 + along(p, *b, *c).max(0.0) }
+}
+
+fn along(p: Vec3, a: Vec3, b: Vec3) -> f32 {
+    (p - a).dot(b - a) / (b - a).length_squared().max(1e-9)
+}
+
+/// The edges of garments, in the rest pose of the base mesh. A field is positive inside of a garment, about the distance
+/// to its edge in metres.
+#[derive(Clone, Debug)]
+pub struct Edges {
+    places: Vec<Place>,
+    positions: Vec<Vec3>,
+    /// Middle of the neck's base.
+    neck: Vec3,
+    knee_height: f32,
+    hip_height: f32,
+}
+
+impl Edges {
+    /// Returns the edges on a body.
+    pub fn new(data: &BodyData) -> Edges {
+        let head = |name: &str| data.bone(name).map_or(Vec3::ZERO, |b| data.positions[usize::from(data.bones[b].head)]);
+        Edges {
+            places: places(data),
+            positions: data.positions.clone(),
+            neck: head("neck01"),
+            knee_height: head("lowerleg01.L").y,
+            hip_height: head("pelvis.L").y,
+        }
+    }
+
+    /// Returns the place of a vertex on the body.
+    pub fn place(&self, vertex: u16) -> Place {
+        self.places[usize::from(vertex)]
+    }
+
+    /// Returns the field of an upper garment.
+    pub fn top(&self, vertex: u16, top: Top) -> f32 {
+        let sleeve = match top {
+            Top::LongSleeves => 1.93,
+            Top::ShortSleeves => 0.56,
+            Top::Straps => 0.02,
+        };
+        match self.place(vertex) {
+            Place::Arm(at) => (sleeve - at) * 0.27,
+            Place::Leg(_) => self.to_hem(vertex),
+            // Neck and head lie over every garment.
+            Place::Trunk { height } => {
+                self.to_neckline(vertex, top).min((1.04 - height) * 0.5).min(self.to_hem(vertex))
+            }
+        }
+    }
+
+    /// Returns the height over the lower edge of an upper garment.
+    fn to_hem(&self, vertex: u16) -> f32 {
+        self.positions[usize::from(vertex)].y - self.hip_height + 0.05
+    }
+
+    /// Returns the distance from the opening for the neck: a ball round its base, lower in front for straps.
+    fn to_neckline(&self, vertex: u16, top: Top) -> f32 {
+        let (centre, radius) = match top {
+            Top::LongSleeves | Top::ShortSleeves => (Vec3::new(0.0, 0.022, 0.0), 0.082),
+            Top::Straps => (Vec3::new(0.0, 0.0, 0.05), 0.125),
+        };
+        self.positions[usize::from(vertex)].distance(self.neck + centre) - radius
+    }
+
+    /// Returns the field of a lower garment.
+    pub fn bottom(&self, vertex: u16, bottom: Bottom) -> f32 {
+        let end = match bottom {
+            Bottom::Trousers => 1.99,
+            Bottom::Shorts => 0.75,
+            Bottom::Skirt => return self.positions[usize::from(vertex)].y - self.knee_height - 0.03,
+        };
+        match self.place(vertex) {
+            Place::Arm(_) => -0.05,
+            Place::Leg(at) => (end - at) * 0.42,
+            Place::Trunk { height } => (0.16 - height) * 0.5,
+        }
+    }
+
+    /// Returns the field of the skin below a lower garment: a skirt covers thighs, but does not touch them.
+    pub fn below_bottom(&self, vertex: u16, bottom: Bottom) -> f32 {
+        match (bottom, self.place(vertex)) {
+            (Bottom::Skirt, Place::Leg(at)) => (0.55 - at) * 0.42,
+            (Bottom::Skirt, _) => self.bottom(vertex, Bottom::Shorts),
+            _ => self.bottom(vertex, bottom),
+        }
+    }
+
+    /// Returns the field of a shoe.
+    pub fn shoe(&self, vertex: u16) -> f32 {
+        match self.place(vertex) {
+            Place::Leg(at) => (at - 2.0) * 0.1,
+            _ => -0.05,
+        }
+    }
+
+    /// Returns how far a garment stands off from the body, metres.
+    pub fn looseness(&self, vertex: u16, garment: Garment, top: Top) -> f32 {
+        // A collar lies on the neck.
+        let from_neck = (self.to_neckline(vertex, top) / 0.06).clamp(0.0, 1.0);
+        match (garment, self.place(vertex)) {
+            (Garment::Shoe, _) => 0.003,
+            (Garment::Top, Place::Arm(at)) => 0.006 + 0.006 * at.min(1.0),
+            // Over the trousers
+            (Garment::Top, Place::Trunk { height }) => {
+                0.001 + 0.006 * from_neck + 0.012 * (0.6 - height).clamp(0.0, 0.6)
+            }
+            (Garment::Top, Place::Leg(_)) => 0.014,
+            (Garment::Bottom, Place::Leg(at)) => 0.005 + 0.009 * at.clamp(0.0, 2.0),
+            (Garment::Bottom, _) => 0.005,
+        }
+    }
+}
+
+/// A garment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Garment {
+    /// Of the upper body.
+    Top,
+    /// Of the lower body.
+    Bottom,
+    /// Of the feet.
+    Shoe,
+}

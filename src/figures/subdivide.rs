@@ -1,0 +1,216 @@
+//! Catmull-Clark subdivision of quad meshes (Catmull and Clark 1978), with smooth curves along open borders.
+
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+/// A mesh of quads with texture coordinates and a part for each quad.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct QuadMesh {
+    /// Vertices.
+    pub positions: Vec<Vec3>,
+    /// Corners, counter-clockwise from outside.
+    pub quads: Vec<[u32; 4]>,
+    /// Texture coordinates of the corners.
+    pub uvs: Vec<[Vec2; 4]>,
+    /// Part of each quad, an index into the caller's list.
+    pub parts: Vec<u8>,
+}
+
+/// An edge with the quads beside it.
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    ends: [u32; 2],
+    quads: [u32; 2],
+}
+
+/// No quad: the edge is a border.
+const NONE: u32 = u32::MAX;
+
+impl QuadMesh {
+    /// Returns the mesh with every quad split into four, smoothed.
+    pub fn subdivided(&self) -> QuadMesh {
+        let edges = Edges::new(self);
+        let (vertex_count, edge_count) = (self.positions.len() as u32, edges.edges.len() as u32);
+        // New points: of quads, of edges, and of the old vertices
+        let middle = |quad: &[u32; 4]| quad.iter().map(|&v| self.positions[v as usize]).sum::<Vec3>() / 4.0;
+        let quad_points: Vec<Vec3> = self.quads.par_iter().map(middle).collect();
+        let edge_points: Vec<Vec3> = edges.edges.par_iter().map(|edge| self.edge_point(edge, &quad_points)).collect();
+        let mut positions = self.vertex_points(&edges, &quad_points);
+        positions.extend(edge_points);
+        positions.extend(quad_points);
+        // Four quads for each, one at each corner
+        let split = |(index, quad): (usize, &[u32; 4])| {
+            let side = |k: usize| vertex_count + edges.of_quad[index][k];
+            let centre = vertex_count + edge_count + index as u32;
+            std::array::from_fn::<_, 4, _>(|k| [quad[k], side(k), centre, side((k + 3) % 4)])
+        };
+        let quads = self.quads.par_iter().enumerate().flat_map_iter(split).collect();
+        let split_uv = |corners: &[Vec2; 4]| {
+            let corners = *corners;
+            let side = move |k: usize| (corners[k] + corners[(k + 1) % 4]) / 2.0;
+            let centre = corners.into_iter().sum::<Vec2>() / 4.0;
+            std::array::from_fn::<_, 4, _>(|k| [corners[k], side(k), centre, side((k + 3) % 4)])
+        };
+        QuadMesh {
+            positions,
+            quads,
+            uvs: self.uvs.par_iter().flat_map_iter(split_uv).collect(),
+            parts: self.parts.iter().flat_map(|&part| [part; 4]).collect(),
+        }
+    }
+
+    fn edge_point(&self, edge: &Edge, quad_points: &[Vec3]) -> Vec3 {
+        let [a, b] = edge.ends.map(|v| self.positions[v as usize]);
+        match edge.quads {
+            [_, NONE] => (a + b) / 2.0,
+            [left, right] => (a + b + quad_points[left as usize] + quad_points[right as usize]) / 4.0,
+        }
+    }
+
+    /// Returns the smoothed positions of the old vertices.
+    fn vertex_points(&self, edges: &Edges, quad_points: &[Vec3]) -> Vec<Vec3> {
+        let mut rings = vec![Ring::default(); self.positions.len()];
+        for (quad, point) in self.quads.iter().zip(quad_points) {
+            for &vertex in quad {
+                rings[vertex as usize].quads += *point;
+                rings[vertex as usize].quad_count += 1.0;
+            }
+        }
+        for edge in &edges.edges {
+            for [vertex, other] in [edge.ends, [edge.ends[1], edge.ends[0]]] {
+                let other = self.positions[other as usize];
+                let ring = &mut rings[vertex as usize];
+                ring.edges += (self.positions[vertex as usize] + other) / 2.0;
+                ring.edge_count += 1.0;
+                if edge.quads[1] == NONE {
+                    ring.border += other;
+                    ring.border_count += 1.0;
+                }
+            }
+        }
+        self.positions.par_iter().zip(rings).map(|(position, ring)| ring.smoothed(*position)).collect()
+    }
+
+    /// Returns the area-weighted unit normal at each vertex.
+    pub fn normals(&self) -> Vec<Vec3> {
+        let mut normals = vec![Vec3::ZERO; self.positions.len()];
+        for quad in &self.quads {
+            let [a, b, c, d] = quad.map(|v| self.positions[v as usize]);
+            let normal = (c - a).cross(d - b);
+            for &vertex in quad {
+                normals[vertex as usize] += normal;
+            }
+        }
+        normals.into_par_iter().map(|n| n.normalize_or(Vec3::Y)).collect()
+    }
+}
+
+/// What lies round a vertex.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ring {
+    quads: Vec3,
+    quad_count: f32,
+    edges: Vec3,
+    edge_count: f32,
+    border: Vec3,
+    border_count: f32,
+}
+
+impl Ring {
+    fn smoothed(&self, position: Vec3) -> Vec3 {
+        if self.border_count == 2.0 {
+            return (self.border + position * 6.0) / 8.0;
+        }
+        if self.border_count > 0.0 || self.quad_count == 0.0 {
+            return position;
+        }
+        let n = self.edge_count;
+        (self.quads / self.quad_count + self.edges * 2.0 / n + position * (n - 3.0)) / n
+    }
+}
+
+/// The edges of a mesh.
+struct Edges {
+    edges: Vec<Edge>,
+    /// Edges of each quad; edge `k` goes from corner `k` to the next.
+    of_quad: Vec<[u32; 4]>,
+}
+
+impl Edges {
+    fn new(mesh: &QuadMesh) -> Edges {
+        // Sort the quads' sides by their ends: those of one edge become neighbours
+        let sides = |(quad, corners): (usize, &[u32; 4])| {
+            let corners = *corners;
+            (0..4).map(move |k| {
+                let (a, b) = (corners[k], corners[(k + 1) % 4]);
+                (u64::from(a.min(b)) << 32 | u64::from(a.max(b)), (quad * 4 + k) as u32)
+            })
+        };
+        let mut sides: Vec<(u64, u32)> = mesh.quads.par_iter().enumerate().flat_map_iter(sides).collect();
+        sides.par_sort_unstable();
+        let mut edges = Vec::with_capacity(sides.len() / 2 + 1);
+        let mut of_quad = vec![[0; 4]; mesh.quads.len()];
+        for same in sides.chunk_by(|a, b| a.0 == b.0) {
+            // More than two quads at an edge do not occur in these meshes; the rest are borders of their own.
+            for pair in same.chunks(2) {
+                let quad = |side: usize| pair.get(side).map_or(NONE, |(_, corner)| corner / 4);
+                for (_, corner) in pair {
+                    of_quad[*corner as usize / 4][*corner as usize % 4] = edges.len() as u32;
+                }
+                let ends = [(pair[0].0 >> 32) as u32, pair[0].0 as u32];
+                edges.push(Edge { ends, quads: [quad(0), quad(1)] });
+            }
+        }
+        Edges { edges, of_quad }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cube() -> QuadMesh {
+        let corner = |i: usize| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 2.0 - Vec3::ONE;
+        let quads = vec![[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let count = quads.len();
+        QuadMesh {
+            positions: (0..8).map(corner).collect(),
+            quads,
+            uvs: vec![[Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y]; count],
+            parts: vec![0; count],
+        }
+    }
+
+    /// The first step of a cube of edge 2: quad points at 1, edge points at (1 + 1/2)/2 twice, corners at 5/9.
+    #[test]
+    fn a_cube_follows_the_rules_and_tends_to_a_round_closed_body() {
+        let once = cube().subdivided();
+        assert_eq!((once.positions.len(), once.quads.len()), (8 + 12 + 6, 24));
+        assert!(once.positions[7].distance(Vec3::splat(5.0 / 9.0)) < 1e-6, "{}", once.positions[7]);
+        assert!(once.positions[8..20].iter().all(|p| (p.length() - 0.75 * 2_f32.sqrt()).abs() < 1e-6));
+        assert!(once.positions[20..].iter().all(|p| (p.length() - 1.0).abs() < 1e-6));
+        let thrice = once.subdivided().subdivided();
+        let radii: Vec<f32> = thrice.positions.iter().map(|p| p.length()).collect();
+        let (low, high) = radii.iter().fold((9.0_f32, 0.0_f32), |(l, h), r| (l.min(*r), h.max(*r)));
+        assert!(high / low < 1.2, "{low} {high}");
+        assert!(thrice.normals().iter().zip(&thrice.positions).all(|(n, p)| n.dot(p.normalize()) > 0.9));
+        assert!(thrice.uvs.iter().flatten().all(|uv| uv.min_element() >= 0.0 && uv.max_element() <= 1.0));
+    }
+
+    /// An open square keeps its corner region as the cubic B-spline of its border: end points move by the 1-6-1 rule.
+    #[test]
+    fn borders_follow_their_own_curve() {
+        let square = QuadMesh {
+            positions: [[0., 0.], [1., 0.], [2., 0.], [0., 1.], [1., 1.], [2., 1.]]
+                .map(|[x, y]| Vec3::new(x, y, 0.0))
+                .into(),
+            quads: vec![[0, 1, 4, 3], [1, 2, 5, 4]],
+            uvs: vec![[Vec2::ZERO; 4]; 2],
+            parts: vec![0, 1],
+        };
+        let once = square.subdivided();
+        assert_eq!(once.positions[1], Vec3::new(1.0, 0.0, 0.0), "on a straight border a vertex stays");
+        assert_eq!(once.positions[0], Vec3::new(1.0 / 8.0, 1.0 / 8.0, 0.0));
+        assert_eq!(once.parts, [0, 0, 0, 0, 1, 1, 1, 1]);
+    }
+}
