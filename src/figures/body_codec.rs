@@ -250,8 +250,8 @@ impl Decoder {
         let mut weights = vec![[(0, 0); 4]; count];
         for slot in 0..4 {
             let (bones, shares) = (self.column(count)?, self.column(count)?);
-            for (vertex, (bone, share)) in bones.into_iter().zip(shares).enumerate() {
-                weights[vertex][slot] = (bone as u8, share as u8);
+            for (of_vertex, (bone, share)) in weights.iter_mut().zip(bones.into_iter().zip(shares)) {
+                of_vertex[slot] = (bone as u8, share as u8);
             }
         }
         let mut masks = HashMap::new();

@@ -107,22 +107,34 @@ pub fn build(data: &BodyData, figure: &Figure) -> FigureMeshes {
     let eyeballs = body.eyeballs(data, figure);
     let eyes = eyeballs.map(|ball| ball.translation.into());
     let hair_body = HairBody { data, positions: &body.positions, head: body.head(data), eyes };
-    let finish = |mut quads: QuadMesh| {
-        for eyeball in eyeballs {
-            add_eye(&mut quads, eyeball, |part| EYES + part as u8);
-        }
-        to_mesh(&quads)
+    let mut eyes_mesh = QuadMesh::default();
+    for eyeball in eyeballs {
+        add_eye(&mut eyes_mesh, eyeball, |part| EYES + part as u8);
+    }
+    let finish = |mut quads: QuadMesh, mut normals: Vec<Vec3>| {
+        quads.append(&eyes_mesh);
+        normals.extend(eyes_mesh.normals());
+        to_mesh(&quads, &normals)
     };
     let skin = || {
-        let coarse = cage(data, figure, &body).subdivided();
-        let fine = coarse.subdivided();
-        rayon::join(|| finish(coarse), || finish(fine))
+        let mut coarse = cage(data, figure, &body).subdivided();
+        let mut fine = coarse.subdivided();
+        fine.move_to_limit();
+        let normals = fine.normals();
+        // The vertices of the coarse mesh are the first ones of the fine mesh: both lie on the limit surface
+        let shared = coarse.positions.len();
+        coarse.positions.copy_from_slice(&fine.positions[..shared]);
+        let coarse_normals = normals[..shared].to_vec();
+        rayon::join(|| finish(coarse, coarse_normals), || finish(fine, normals))
     };
     let ((mut coarse, mut fine), strands) = rayon::join(skin, || hair::grow(&hair_body, figure));
     coarse.strands = hair::thinned(&strands);
     fine.strands = strands;
     FigureMeshes { fine: Arc::new(fine), coarse: Arc::new(coarse) }
 }
+
+/// The distance of a vertex from the edge of a garment, metres; negative outside.
+type EdgeField<'a> = dyn Fn(u16) -> f32 + 'a;
 
 /// Returns the quads of all parts before subdivision.
 fn cage(data: &BodyData, figure: &Figure, body: &PosedBody) -> QuadMesh {
@@ -155,7 +167,7 @@ fn cage(data: &BodyData, figure: &Figure, body: &PosedBody) -> QuadMesh {
     // Garments
     let skirt = figure.bottom == Bottom::Skirt;
     let legs = if skirt { "helper-skirt" } else { "helper-tights" };
-    let garments: [(Garment, u8, &str, &dyn Fn(u16) -> f32); 3] = [
+    let garments: [(Garment, u8, &str, &EdgeField); 3] = [
         (Garment::Bottom, BOTTOM, legs, &|v| edges.bottom(v, figure.bottom)),
         (Garment::Top, TOP, "helper-tights", &|v| edges.top(v, figure.top)),
         (Garment::Shoe, SHOE, "helper-tights", &|v| edges.shoe(v)),
@@ -182,8 +194,7 @@ fn add_part(mesh: &mut QuadMesh, patch: &Patch, part: &dyn Fn(&[Vec2; 4]) -> u8)
 }
 
 /// Splits quads into triangles, by part, with a vertex for each pair of position and texture coordinates.
-fn to_mesh(quads: &QuadMesh) -> Mesh {
-    let normals = quads.normals();
+fn to_mesh(quads: &QuadMesh, normals: &[Vec3]) -> Mesh {
     let mut mesh = Mesh::default();
     let mut vertices: HashMap<(u32, [u32; 2]), u32> = HashMap::with_capacity(quads.positions.len() * 5 / 4);
     for (part, name) in PARTS.into_iter().enumerate() {

@@ -27,6 +27,15 @@ struct Edge {
 const NONE: u32 = u32::MAX;
 
 impl QuadMesh {
+    /// Appends another mesh.
+    pub fn append(&mut self, other: &QuadMesh) {
+        let first = self.positions.len() as u32;
+        self.positions.extend(&other.positions);
+        self.quads.extend(other.quads.iter().map(|quad| quad.map(|v| v + first)));
+        self.uvs.extend(&other.uvs);
+        self.parts.extend(&other.parts);
+    }
+
     /// Returns the mesh with every quad split into four, smoothed.
     pub fn subdivided(&self) -> QuadMesh {
         let edges = Edges::new(self);
@@ -69,6 +78,12 @@ impl QuadMesh {
 
     /// Returns the smoothed positions of the old vertices.
     fn vertex_points(&self, edges: &Edges, quad_points: &[Vec3]) -> Vec<Vec3> {
+        let rings = self.rings(edges, quad_points);
+        self.positions.par_iter().zip(rings).map(|(position, ring)| ring.smoothed(*position)).collect()
+    }
+
+    /// Returns what lies round each vertex.
+    fn rings(&self, edges: &Edges, quad_points: &[Vec3]) -> Vec<Ring> {
         let mut rings = vec![Ring::default(); self.positions.len()];
         for (quad, point) in self.quads.iter().zip(quad_points) {
             for &vertex in quad {
@@ -88,7 +103,15 @@ impl QuadMesh {
                 }
             }
         }
-        self.positions.par_iter().zip(rings).map(|(position, ring)| ring.smoothed(*position)).collect()
+        rings
+    }
+
+    /// Moves every vertex to where further subdivisions would take it.
+    pub fn move_to_limit(&mut self) {
+        let edges = Edges::new(self);
+        let middle = |quad: &[u32; 4]| quad.iter().map(|&v| self.positions[v as usize]).sum::<Vec3>() / 4.0;
+        let rings = self.rings(&edges, &self.quads.par_iter().map(middle).collect::<Vec<_>>());
+        self.positions = self.positions.par_iter().zip(rings).map(|(position, ring)| ring.limit(*position)).collect();
     }
 
     /// Returns the area-weighted unit normal at each vertex.
@@ -126,6 +149,22 @@ impl Ring {
         }
         let n = self.edge_count;
         (self.quads / self.quad_count + self.edges * 2.0 / n + position * (n - 3.0)) / n
+    }
+
+    /// Returns the position on the limit surface (Halstead, Kass and DeRose 1993), (n^2 v + 4 E + F) / (n (n + 5)) with
+    /// the sums of the n neighbours E along edges and F across quads; on a border that of a cubic B-spline.
+    fn limit(&self, position: Vec3) -> Vec3 {
+        if self.border_count == 2.0 {
+            return (self.border + position * 4.0) / 6.0;
+        }
+        if self.border_count > 0.0 || self.quad_count == 0.0 {
+            return position;
+        }
+        let n = self.edge_count;
+        // E and F from the middles of edges and quads
+        let along = self.edges * 2.0 - position * n;
+        let across = self.quads * 4.0 - position * n - along * 2.0;
+        (position * n * n + along * 4.0 + across) / (n * (n + 5.0))
     }
 }
 
@@ -195,6 +234,16 @@ mod tests {
         assert!(high / low < 1.2, "{low} {high}");
         assert!(thrice.normals().iter().zip(&thrice.positions).all(|(n, p)| n.dot(p.normalize()) > 0.9));
         assert!(thrice.uvs.iter().flatten().all(|uv| uv.min_element() >= 0.0 && uv.max_element() <= 1.0));
+    }
+
+    #[test]
+    fn positions_at_the_limit_are_those_of_many_subdivisions() {
+        let mut limit = cube().subdivided();
+        let many = limit.subdivided().subdivided().subdivided().subdivided().subdivided();
+        limit.move_to_limit();
+        for (limit, many) in limit.positions.iter().zip(&many.positions) {
+            assert!(limit.distance(*many) < 1e-3, "{limit} {many}");
+        }
     }
 
     /// An open square keeps its corner region as the cubic B-spline of its border: end points move by the 1-6-1 rule.

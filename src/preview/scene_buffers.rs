@@ -28,7 +28,7 @@ pub(crate) struct GpuFrame {
     /// Picture pixels per coarse pixel along each axis, in drafts.
     pub coarse_scale: u32,
     pub ray_up: [f32; 3],
-    pub unused_2: f32,
+    pub strand_width: f32,
     pub ambient: [f32; 3],
     pub pixel_angle: f32,
     pub void_radiance: [f32; 3],

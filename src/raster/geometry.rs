@@ -12,7 +12,7 @@ use std::sync::Arc;
 const ROOM_DEPTH_FACTOR: f32 = 1.0 - 1e-4;
 
 /// Number of strands of a mesh that are drawn, as ribbons that are wider for those left out.
-const MAX_RIBBONS: usize = 4000;
+const MAX_RIBBONS: usize = 2000;
 
 /// An instance of a mesh.
 #[derive(Debug)]

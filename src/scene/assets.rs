@@ -12,7 +12,7 @@ pub enum AssetRef<'a> {
     /// A mesh file, by its path.
     Mesh(Cow<'a, str>),
     /// A figure.
-    Figure(Cow<'a, Figure>),
+    Figure(Box<Cow<'a, Figure>>),
     /// A texture, by its file.
     Texture(Cow<'a, TextureRef>),
 }
@@ -20,12 +20,17 @@ pub enum AssetRef<'a> {
 /// An asset reference that owns its path.
 pub type AssetKey = AssetRef<'static>;
 
-impl AssetRef<'_> {
+impl<'a> AssetRef<'a> {
+    /// Returns the reference to a figure.
+    pub fn figure(figure: Cow<'a, Figure>) -> Self {
+        AssetRef::Figure(Box::new(figure))
+    }
+
     /// Returns the same reference with a path of its own.
     pub fn into_owned(self) -> AssetKey {
         match self {
             AssetRef::Mesh(path) => AssetRef::Mesh(Cow::Owned(path.into_owned())),
-            AssetRef::Figure(figure) => AssetRef::Figure(Cow::Owned(figure.into_owned())),
+            AssetRef::Figure(figure) => AssetRef::figure(Cow::Owned(figure.into_owned())),
             AssetRef::Texture(texture) => AssetRef::Texture(Cow::Owned(texture.into_owned())),
         }
     }
@@ -103,7 +108,7 @@ impl Assets {
     pub fn drop_unused_figures(&mut self, scene: &Scene) {
         let is_used = |key: &AssetKey| match key {
             AssetRef::Figure(figure) => {
-                scene.objects.iter().any(|o| matches!(&o.shape, Shape::Figure(used) if **used == **figure))
+                scene.objects.iter().any(|o| matches!(&o.shape, Shape::Figure(used) if **used == ***figure))
             }
             AssetRef::Mesh(_) | AssetRef::Texture(_) => true,
         };
@@ -127,7 +132,7 @@ impl Assets {
 
     /// Returns the meshes of a figure.
     pub fn figure(&self, figure: &Figure) -> Option<FigureMeshes> {
-        match self.get(&AssetRef::Figure(Cow::Borrowed(figure)))? {
+        match self.get(&AssetRef::figure(Cow::Borrowed(figure)))? {
             Asset::Figure(meshes) => Some(meshes),
             Asset::Mesh(_) | Asset::Texture(_) => None,
         }
@@ -235,7 +240,7 @@ mod tests {
         assert!(assets.figure(&figure).is_none());
         let (fine, coarse) = (Arc::new(Mesh::default()), Arc::new(Mesh::default()));
         let meshes = FigureMeshes { fine, coarse };
-        assets.insert(AssetRef::Figure(Cow::Owned(figure)), Asset::Figure(meshes));
+        assets.insert(AssetRef::figure(Cow::Owned(figure)), Asset::Figure(meshes));
         assert!(assets.mesh_of(&Shape::Figure(Box::new(figure))).is_some());
     }
 

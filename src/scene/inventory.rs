@@ -122,7 +122,7 @@ fn object_materials(index: usize, object: &Object) -> impl Iterator<Item = (Mate
 fn shape_asset(shape: &Shape) -> Option<AssetRef<'_>> {
     match shape {
         Shape::MeshFile { path } => Some(AssetRef::Mesh(Cow::Borrowed(path))),
-        Shape::Figure(figure) => Some(AssetRef::Figure(Cow::Borrowed(figure))),
+        Shape::Figure(figure) => Some(AssetRef::figure(Cow::Borrowed(figure))),
         Shape::Plane { .. }
         | Shape::Box { .. }
         | Shape::Sphere { .. }
@@ -168,7 +168,7 @@ mod tests {
             ("room.ceiling.base_color_texture", image("sky.png")),
             ("objects[0] \"Chair\" shape.path", AssetRef::Mesh(Cow::Borrowed("chair.obj"))),
             ("objects[0] \"Chair\" part_materials[0].material.base_color_texture", image("iris.png")),
-            ("objects[1] \"Bust\" shape", AssetRef::Figure(Cow::Owned(figure))),
+            ("objects[1] \"Bust\" shape", AssetRef::figure(Cow::Owned(figure))),
             ("objects[1] \"Bust\" part_materials[0].material.base_color_texture", image("iris.png")),
         ];
         assert_eq!(assets, expected.map(|(place, asset)| (place.to_owned(), asset)));

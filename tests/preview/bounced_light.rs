@@ -1,6 +1,6 @@
 //! The preview's bounced light, and all its light, against the path tracer's, in each shipped studio.
 //!
-//! Compared are blocks of pixels without mirrors and glass, which the preview shows roughly. The error of the bounced
+//! Compared are blocks of pixels without mirrors and glass, which the preview shows roughly, and without hair, see `hair`. The error of the bounced
 //! light is that of the whole picture if its direct light were the tracer's; direct light is compared in `each_light`.
 
 use super::each_light::{is_rasterable, traced_with};
@@ -53,7 +53,7 @@ fn bounced_and_direct_light_of_each_shipped_studio_are_within_a_tenth_of_a_stop(
         let name = preset.file_name.trim_end_matches(".ron");
         let is_rim = name == RIM_STUDIO;
         let long_edge = if is_rim { FINE_LONG_EDGE } else { LONG_EDGE };
-        let blocks = compared_blocks(&mut renderer, &preset.load().unwrap(), long_edge);
+        let blocks = compared_blocks(&mut renderer, &hairless(preset.load().unwrap()), long_edge);
         assert!(blocks.len() > 100, "{name}: {} blocks to compare", blocks.len());
         let [bounced, shown, estimate] = [
             errors(&blocks, |block| block.traced_direct + block.preview - block.direct),
@@ -79,7 +79,7 @@ fn bounced_and_direct_light_of_each_shipped_studio_are_within_a_tenth_of_a_stop(
     assert!(wrong.is_empty(), "too far from the tracer:\n{}", wrong.join("\n"));
 }
 
-fn compared_blocks(renderer: &mut PreviewRenderer, loaded: &catchlight::io::Loaded, long_edge: u32) -> Vec<Block> {
+fn compared_blocks(renderer: &mut PreviewRenderer, loaded: &Loaded, long_edge: u32) -> Vec<Block> {
     let scene = &loaded.scene;
     let (width, height) = scene.camera.picture_size(long_edge);
     let fine = (width * SUPERSAMPLES, height * SUPERSAMPLES);

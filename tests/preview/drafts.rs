@@ -14,18 +14,23 @@ fn differences(a: &image::RgbImage, b: &image::RgbImage) -> (f32, u8) {
 fn a_draft_is_close_to_the_full_picture_and_leaves_no_trace_in_it() {
     let Some(mut renderer) = shared_renderer() else { return };
     for name in ["three_point", "product_still_life", "gel_portrait"] {
-        let loaded = catchlight::io::find_preset(name).unwrap().load().unwrap();
-        let mut input = PreviewInput::camera_view(&loaded.scene, &loaded.assets, (481, 321));
-        let full = renderer.picture(&input).unwrap();
-        input.options.draft = true;
-        let (mean, most) = differences(&renderer.picture(&input).unwrap(), &full);
-        // One pixel in nine or fewer is shaded: fine highlights and shadow edges are lost.
-        assert!(mean < 1.5 && most < 40, "{name}: {mean} codes in the mean, {most} in the 99th percentile");
-        if !renderer.draws_drafts() {
-            assert_eq!((mean, most), (0.0, 0), "a GPU draws no drafts");
+        let with_hair = catchlight::io::find_preset(name).unwrap().load().unwrap();
+        // One pixel in nine or fewer is shaded: fine highlights and shadow edges are lost. Of strands, which are a pixel
+        // wide, a quarter is drawn, four times as wide.
+        for (loaded, mean_limit, most_limit) in [(hairless(with_hair.clone()), 1.5, 40), (with_hair, 5.0, 90)] {
+            let mut input = PreviewInput::camera_view(&loaded.scene, &loaded.assets, (481, 321));
+            let full = renderer.picture(&input).unwrap();
+            input.options.draft = true;
+            let (mean, most) = differences(&renderer.picture(&input).unwrap(), &full);
+            let line = format!("{name}: {mean} codes in the mean, {most} in the 99th percentile");
+            println!("{line}");
+            assert!(mean < mean_limit && most < most_limit, "{line}");
+            if !renderer.draws_drafts() {
+                assert_eq!((mean, most), (0.0, 0), "a GPU draws no drafts");
+            }
+            input.options.draft = false;
+            assert_eq!(renderer.picture(&input).unwrap(), full, "{name}: after a draft");
         }
-        input.options.draft = false;
-        assert_eq!(renderer.picture(&input).unwrap(), full, "{name}: after a draft");
     }
 }
 

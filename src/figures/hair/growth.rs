@@ -10,17 +10,29 @@ use glam::{Quat, Vec3};
 use rayon::prelude::*;
 use std::f32::consts::TAU;
 
+/// Least height of hair over the skin, metres.
+const CLEARANCE_M: f32 = 0.0006;
 /// Number of guides.
 const GUIDES: usize = 420;
 /// Height over the skull at which the comb holds hair no more, metres.
 const HELD_M: f32 = 0.03;
+/// Half the width of the face that hair with a parting leaves free, metres; its upper end, from between the eyes; and
+/// where the temples are.
+const FACE_HALF_WIDTH_M: f32 = 0.064;
+const HAIRLINE_M: f32 = 0.075;
+const FACE_FROM_Z: f32 = -0.045;
+/// Place of a tie, in half axes of the skull, and its height over the skin, metres.
+const TIE: Vec3 = Vec3::new(0.0, 0.15, -1.0);
+const TIE_HEIGHT_M: f32 = 0.018;
+/// Part of a tied strand from which it lies in the tail.
+const TIED_AT: f32 = 0.4;
 /// Segments of a guide.
 const STEPS: usize = 24;
 
 /// Grows the strands of a style.
 pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut Strands) {
     let roots = scatter(body, style.strands, figure.seed, &scalp_density);
-    let obstacles = Obstacles::new(body, &roots);
+    let obstacles = Obstacles::new(body, &roots, matches!(style.comb, Comb::FromParting(_)));
     let down = body.head.inverse().transform_vector3(Vec3::NEG_Y).normalize_or(Vec3::NEG_Y);
     let field = CombField { style, obstacles: &obstacles, down };
     let every = (roots.len() / GUIDES).max(1);
@@ -31,7 +43,7 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
     let guides: Vec<Guide> = roots.par_iter().step_by(every).enumerate().map(guide).collect();
     let strand = |(index, root): (usize, &Root)| {
         let random = Random::new(figure.seed, 100_000 + index as u32);
-        let points = follow(root, &guides, style, random);
+        let points = follow(root, &guides, &field, random);
         points.into_iter().map(|(p, radius_m)| (body.head.transform_point3(p), radius_m)).collect::<Vec<_>>()
     };
     let grown: Vec<Vec<(Vec3, f32)>> = roots.par_iter().enumerate().map(strand).collect();
@@ -57,34 +69,83 @@ struct CombField<'a> {
 impl CombField<'_> {
     /// Grows a guide in equal steps.
     fn grow(&self, root: &Root, mut random: Random) -> Vec<Vec3> {
-        let style = self.style;
         let length = self.length(root) * (1.0 + 0.08 * random.bell());
+        let jitter = Vec3::new(random.bell(), random.bell(), random.bell());
+        if self.style.comb == Comb::ToTie { self.tied(root, length, jitter) } else { self.loose(root, length, jitter) }
+    }
+
+    /// Grows a guide along the head to the tie, and from there as a tail.
+    fn tied(&self, root: &Root, length: f32, jitter: Vec3) -> Vec<Vec3> {
+        let (centre, step) = (self.obstacles.skull_centre(), length / STEPS as f32);
+        let tie = self.obstacles.above_head(centre + self.obstacles.skull_radii() * TIE, TIE_HEIGHT_M);
+        let (start, end) = ((root.position - centre).normalize_or(Vec3::Y), (tie - centre).normalize_or(Vec3::NEG_Z));
+        let turn = Quat::from_rotation_arc(start, end);
+        let to_tie_m = start.angle_between(end) * root.position.distance(centre);
+        let mut direction = (Vec3::NEG_Z + jitter * 0.25).normalize_or(Vec3::NEG_Z);
+        let mut position = tie;
+        let point = |k: usize| {
+            let along_m = k as f32 * step;
+            if along_m < to_tie_m {
+                let t = along_m / to_tie_m;
+                let ray = Quat::IDENTITY.slerp(turn, t) * start;
+                // Hair lies close, and rises to the tie
+                let height =
+                    self.style.volume_m * (t * 8.0).min(1.0) + (TIE_HEIGHT_M - self.style.volume_m) * t * t * t;
+                return self.obstacles.above_head(centre + ray * 0.01, height);
+            }
+            direction = (direction + self.down * self.style.weight).normalize_or(self.down);
+            position = self.obstacles.pushed_out(position + direction * step, 0.0);
+            position
+        };
+        std::iter::once(root.position).chain((1..=STEPS).map(point)).collect()
+    }
+
+    /// Grows a guide that follows comb and gravity.
+    fn loose(&self, root: &Root, length: f32, jitter: Vec3) -> Vec<Vec3> {
+        let style = self.style;
         let step = length / STEPS as f32;
-        let jitter = Vec3::new(random.bell(), random.bell(), random.bell()) * style.frizz;
+        let jitter = jitter * style.frizz;
         let mut direction =
             (root.normal * style.lift + self.comb(root.position, root.normal) * (1.0 - style.lift) + jitter)
                 .normalize();
-        let root_level = self.obstacles.level(root.position).min(1.0);
         let mut position = root.position;
         let mut points = vec![position];
         for k in 0..STEPS {
             let along = k as f32 / STEPS as f32;
             let outwards = (position - self.obstacles.skull_centre()).normalize_or(Vec3::Y);
             // The comb holds what lies on the head; below, hair falls.
-            let held = 1.0 - self.obstacles.height_over_skull(position) / HELD_M;
-            let grip = if style.comb == Comb::ToTie { 0.7 } else { 0.22 } * held.clamp(0.0, 1.0);
-            let pull = self.comb(position, outwards) * grip + self.down * style.weight * (0.25 + along);
+            let held = 1.0 - self.obstacles.height_over_head(position) / HELD_M;
+            let grip = style.grip * held.clamp(0.0, 1.0);
+            let pull = self.comb(position, outwards) * grip
+                + self.down * style.weight * (0.25 + along)
+                + self.gather(position) * style.gather;
             direction = (direction + pull).normalize_or(self.down);
             // Hair lies on the hair below it: the volume builds up over the first centimetres.
             let margin = style.volume_m * (along * length / 0.03).min(1.0);
-            // The head is no ellipsoid: a strand rises from the level of its root to that of the skull.
-            let level = root_level + (1.0 - root_level) * (along * length / 0.06).min(1.0);
-            let next = self.obstacles.pushed_out(position + direction * step, level, margin);
+            let next = self.obstacles.pushed_out(self.beside_face(position + direction * step, root), margin);
             direction = (next - position).normalize_or(direction);
             position += direction * step;
             points.push(position);
         }
         points
+    }
+
+    /// Returns the horizontal pull of falling hair towards the nape: none above the ears, 1 below the jaw.
+    fn gather(&self, p: Vec3) -> Vec3 {
+        let nape = Vec3::new(0.0, p.y, self.obstacles.skull_centre().z);
+        let below = ((0.0 - p.y) / 0.09).clamp(0.0, 1.0);
+        let to_nape = nape - p;
+        to_nape.normalize_or_zero() * below * ((to_nape.length() - 0.05) / 0.05).clamp(0.0, 1.0)
+    }
+
+    /// Returns a point of hair with a parting moved aside from the face, to the side where its root is combed.
+    fn beside_face(&self, p: Vec3, root: &Root) -> Vec3 {
+        let Comb::FromParting(left) = self.style.comb else { return p };
+        let side = if root.position.x >= left { 1.0 } else { -1.0 };
+        // From the hairline to the temples, over the height of a forehead
+        let free = FACE_HALF_WIDTH_M * ((HAIRLINE_M - p.y) / 0.05).clamp(0.0, 1.0);
+        let is_before_face = p.z > FACE_FROM_Z && p.x * side < free;
+        if is_before_face { p.with_x(free * side) } else { p }
     }
 
     /// Returns the length of the hair at a root: between that of the sides and that of the top.
@@ -98,36 +159,34 @@ impl CombField<'_> {
     fn comb(&self, p: Vec3, outwards: Vec3) -> Vec3 {
         let centre = self.obstacles.skull_centre();
         let radii = self.obstacles.skull_radii();
+        let whorl = centre + radii * Vec3::new(-0.15, 0.85, -0.55);
         let wanted = match self.style.comb {
-            Comb::FromWhorl => {
-                let whorl = centre + radii * Vec3::new(-0.15, 0.85, -0.55);
-                (p - whorl).normalize_or(Vec3::NEG_Z) + self.down * 0.35
-            }
+            Comb::FromWhorl => (p - whorl).normalize_or(Vec3::NEG_Z) + self.down * 0.35,
             Comb::FromParting(left) => {
                 let side = if p.x >= left { 1.0 } else { -1.0 };
-                // Locks at the forehead are combed aside and back.
-                let back = if p.z > centre.z { -0.45 } else { -0.1 };
-                Vec3::new(side * 0.5, 0.0, back) + self.down
+                // On top hair is combed aside, at the forehead back as well; at the sides it hangs down.
+                let top = outwards.dot(-self.down).clamp(0.0, 1.0);
+                let front = ((p.z - centre.z) / radii.z).clamp(0.0, 1.0);
+                Vec3::new(side * (0.3 + top), 0.0, -0.1 - 0.7 * front) + self.down * (1.1 - top)
             }
-            Comb::ToTie => {
-                let tie = centre + radii * Vec3::new(0.0, 0.1, -1.12);
-                let to_tie = tie - p;
-                // Behind the tie the tail hangs down.
-                if to_tie.length() < 0.03 || p.z < tie.z + 0.01 {
-                    self.down * 3.0 + Vec3::NEG_Z * 0.25
-                } else {
-                    to_tie.normalize() * 2.0
-                }
+            Comb::Out | Comb::ToTie => {
+                // At the whorl hair parts, or it would stand up as a tuft.
+                let aside = (p - whorl).with_y(0.0).normalize_or(Vec3::NEG_Z);
+                outwards + aside * (0.6 * outwards.dot(-self.down).max(0.0)) + self.down * 0.2
             }
-            Comb::Out => outwards + self.down * 0.2,
         };
-        let tangent = wanted - outwards * wanted.dot(outwards).min(0.0);
-        if self.style.comb == Comb::Out { wanted.normalize_or(outwards) } else { tangent.normalize_or(self.down) }
+        let lift = wanted.dot(outwards);
+        match self.style.comb {
+            Comb::Out | Comb::ToTie => wanted.normalize_or(outwards),
+            Comb::FromWhorl => (wanted - outwards * lift.min(0.0)).normalize_or(self.down),
+            Comb::FromParting(_) => (wanted - outwards * lift).normalize_or(self.down),
+        }
     }
 }
 
 /// Returns the points of a strand that follows the guides near its root, with its radius there.
-fn follow(root: &Root, guides: &[Guide], style: &Style, mut random: Random) -> Vec<(Vec3, f32)> {
+fn follow(root: &Root, guides: &[Guide], field: &CombField, mut random: Random) -> Vec<(Vec3, f32)> {
+    let style = field.style;
     let nearest = |wanted: usize| {
         let mut sorted: Vec<(f32, usize)> =
             guides.iter().enumerate().map(|(i, g)| (g.root.position.distance_squared(root.position), i)).collect();
@@ -153,16 +212,22 @@ fn follow(root: &Root, guides: &[Guide], style: &Style, mut random: Random) -> V
     let offset = root.position - first.root.position;
     // As many segments as length and curls need
     let length = style.length_m[0].max(style.length_m[1]);
-    let segments = (length / 0.025).max(length * style.turns_per_m * 7.0).ceil().clamp(4.0, 32.0) as usize;
+    let curls = length * style.turns_per_m * 7.0;
+    let segments = (length / 0.025).max(curls).ceil().clamp(4.0, 32.0) as usize;
+    // Close to the skin, which is convex, points are denser: a chord would lead through the skin
+    let bunching = if curls > length / 0.025 { 1.0 } else { 1.5 };
     let mut points = Vec::with_capacity(segments + 1);
     for k in 0..=segments {
-        let along = k as f32 / segments as f32;
+        let along = (k as f32 / segments as f32).powf(bunching);
         let at = along * shorter * STEPS as f32;
         let (low, t) = ((at as usize).min(STEPS - 1), at - (at as usize).min(STEPS - 1) as f32);
         // The mean shape of the guides, from this root, drawn towards the first guide
         let shape = |guide: &Guide| guide.points[low].lerp(guide.points[low + 1], t) - guide.root.position;
         let mean = weights.iter().map(|(w, guide)| shape(guide) * *w).sum::<Vec3>() / sum;
-        let gather = style.clumping * along.powf(0.7);
+        let gather = match style.comb {
+            Comb::ToTie => (along / TIED_AT).min(1.0),
+            _ => style.clumping * along.powf(0.7),
+        };
         let mut p = root.position + mean.lerp(shape(first), gather) - offset * gather * 0.8 + spread * along;
         if style.curl_m > 0.0 {
             let tangent = (first.points[low + 1] - first.points[low]).normalize_or(Vec3::NEG_Y);
@@ -170,6 +235,8 @@ fn follow(root: &Root, guides: &[Guide], style: &Style, mut random: Random) -> V
             let turn = Quat::from_axis_angle(tangent, TAU * style.turns_per_m * length + phase + near[0].1 as f32);
             p += turn * tangent.any_orthonormal_vector() * style.curl_m * (along * 4.0).min(1.0);
         }
+        // A guide's shape from another root may lead into the skin
+        let p = if k == 0 { p } else { field.obstacles.above_head(p, CLEARANCE_M) };
         points.push((p, style.radius_m * (1.0 - 0.7 * along * along)));
     }
     points

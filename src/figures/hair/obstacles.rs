@@ -1,6 +1,7 @@
-//! What hair must not enter: skull, neck, shoulders and chest, as ellipsoid and capsules in the head's frame.
+//! What hair must not enter: the head, as a height field, and neck, shoulders and chest, as capsules, in the head's frame.
 
 use super::hair_body::HairBody;
+use super::head_surface::HeadSurface;
 use super::roots::Root;
 use glam::Vec3;
 
@@ -26,12 +27,13 @@ impl Capsule {
 pub struct Obstacles {
     skull_centre: Vec3,
     skull_radii: Vec3,
+    head: HeadSurface,
     body: Vec<Capsule>,
 }
 
 impl Obstacles {
-    /// Returns the obstacles round the roots of a head of hair.
-    pub fn new(body: &HairBody, roots: &[Root]) -> Obstacles {
+    /// Returns the obstacles round the roots of a head of hair, with ears if it lies over them.
+    pub fn new(body: &HairBody, roots: &[Root], over_ears: bool) -> Obstacles {
         let to_head = body.head.inverse();
         let joint = |name: &str| {
             let bone = body.data.bone(name).map(|b| usize::from(body.data.bones[b].head));
@@ -46,13 +48,14 @@ impl Obstacles {
         let chest = joint("spine02");
         let span = left.distance(right);
         let capsule = |a, b, radius| Capsule { ends: [a, b], radius };
-        let body = vec![
+        let body_capsules = vec![
             capsule(joint("head"), neck, 0.19 * span),
             capsule(left, right, 0.16 * span),
             capsule(neck.lerp(left, 0.35), chest.lerp(left, 0.25), 0.27 * span),
             capsule(neck.lerp(right, 0.35), chest.lerp(right, 0.25), 0.27 * span),
         ];
-        Obstacles { skull_centre, skull_radii, body }
+        let head = HeadSurface::new(body, skull_centre, over_ears);
+        Obstacles { skull_centre, skull_radii, head, body: body_capsules }
     }
 
     /// Returns the middle of the skull.
@@ -65,21 +68,18 @@ impl Obstacles {
         self.skull_radii
     }
 
-    /// Returns the height of a point over the skull, metres, about; negative inside.
-    pub fn height_over_skull(&self, p: Vec3) -> f32 {
-        (self.level(p) - 1.0) * self.skull_radii.min_element()
+    /// Returns the height of a point over the skin of the head, metres; negative inside.
+    pub fn height_over_head(&self, p: Vec3) -> f32 {
+        self.head.height(p)
     }
 
-    /// Returns the size of the ellipsoid through a point, as a part of the skull's.
-    pub fn level(&self, p: Vec3) -> f32 {
-        ((p - self.skull_centre) / self.skull_radii).length()
+    /// Returns a point moved to at least this height over the head, metres.
+    pub fn above_head(&self, p: Vec3, height: f32) -> Vec3 {
+        self.head.pushed_out(p, height)
     }
 
-    /// Returns a point moved out of all obstacles, `margin` metres away from the ellipsoid of a level.
-    pub fn pushed_out(&self, p: Vec3, level: f32, margin: f32) -> Vec3 {
-        let radii = self.skull_radii * level + Vec3::splat(margin);
-        let scaled = (p - self.skull_centre) / radii;
-        let outside = if scaled.length() < 1.0 { self.skull_centre + scaled.normalize_or(Vec3::Y) * radii } else { p };
-        self.body.iter().fold(outside, |p, capsule| capsule.pushed_out(p))
+    /// Returns a point moved out of neck and shoulders, and to at least this height over the head, metres.
+    pub fn pushed_out(&self, p: Vec3, height: f32) -> Vec3 {
+        self.body.iter().fold(self.above_head(p, height), |p, capsule| capsule.pushed_out(p))
     }
 }

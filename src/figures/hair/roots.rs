@@ -66,7 +66,7 @@ pub fn scatter(body: &HairBody, count: usize, seed: u32, density: &(dyn Fn(Vec3)
 }
 
 /// Returns the point between the eyeballs of the base mesh.
-fn base_eyes(body: &HairBody) -> Vec3 {
+pub fn base_eyes(body: &HairBody) -> Vec3 {
     let points = ["helper-l-eye", "helper-r-eye"].into_iter().flat_map(|group| body.data.quads(group)).flatten();
     let (low, high) = points
         .map(|&v| body.data.positions[usize::from(v)])

@@ -1,5 +1,6 @@
 //! Hair styles as numbers.
 
+use super::head_surface::is_ear;
 use crate::scene::{Beard, HairStyle};
 use glam::Vec3;
 
@@ -29,8 +30,12 @@ pub struct Style {
     pub comb: Comb,
     /// Part of the normal in the first direction: 0 lies flat, 1 stands up.
     pub lift: f32,
+    /// Pull of the comb on hair that lies on the head.
+    pub grip: f32,
     /// Pull of gravity: 0 none, 1 falls at once.
     pub weight: f32,
+    /// Pull of hair below the ears towards the nape.
+    pub gather: f32,
     /// Distance at which the hair stays from the skull, metres.
     pub volume_m: f32,
     /// Radius of curls, metres.
@@ -49,7 +54,9 @@ const SHORT: Style = Style {
     length_m: [0.05, 0.018],
     comb: Comb::FromWhorl,
     lift: 0.55,
+    grip: 0.22,
     weight: 0.12,
+    gather: 0.0,
     volume_m: 0.004,
     curl_m: 0.0,
     turns_per_m: 0.0,
@@ -82,7 +89,9 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
             length_m: [0.24, 0.15],
             comb: Comb::FromParting(0.025),
             lift: 0.15,
+            grip: 0.5,
             weight: 0.7,
+            gather: 0.12,
             volume_m: 0.008,
             clumping: 0.55,
             frizz: 0.06,
@@ -94,7 +103,9 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
             length_m: [0.44, 0.38],
             comb: Comb::FromParting(0.02),
             lift: 0.12,
+            grip: 0.5,
             weight: 0.7,
+            gather: 0.22,
             volume_m: 0.007,
             curl_m: 0.003,
             turns_per_m: 5.0,
@@ -119,7 +130,9 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
             length_m: [0.13, 0.11],
             comb: Comb::Out,
             lift: 0.7,
+            grip: 0.22,
             weight: 0.3,
+            gather: 0.0,
             volume_m: 0.014,
             curl_m: 0.009,
             turns_per_m: 38.0,
@@ -173,8 +186,7 @@ pub fn scalp_density(place: Vec3) -> f32 {
     let ((a0, h0), (a1, h1)) = (HAIRLINE[upper - 1], HAIRLINE[upper]);
     let line = h0 + (h1 - h0) * ((angle - a0) / (a1 - a0)).clamp(0.0, 1.0);
     // Ears stick out of the scalp.
-    let is_ear = place.x.abs() > 0.075 && place.y < 0.03 && (-0.125..-0.055).contains(&place.z);
-    if is_ear { 0.0 } else { ((place.y - line) / 0.006).clamp(0.0, 1.0) }
+    if is_ear(place) { 0.0 } else { ((place.y - line) / 0.006).clamp(0.0, 1.0) }
 }
 
 /// Returns how much beard grows at a place of the face; see [`scalp_density`].

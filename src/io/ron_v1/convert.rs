@@ -357,7 +357,7 @@ impl From<ShapeV1> for Shape {
     fn from(file: ShapeV1) -> Self {
         match file {
             ShapeV1::MeshFile { path } => Shape::MeshFile { path },
-            ShapeV1::Figure(person) => Shape::Figure(Box::new(person.into())),
+            ShapeV1::Figure(person) => Shape::Figure(Box::new((*person).into())),
             ShapeV1::Mannequin { figure, pose } => Shape::Figure(Box::new(mannequin::person(figure, pose))),
             ShapeV1::Plane { width_m, depth_m } => Shape::Plane { width_m, depth_m },
             ShapeV1::Box { size_m } => Shape::Box { size_m: Vec3::from(size_m) },
@@ -374,7 +374,7 @@ impl From<&Shape> for ShapeV1 {
     fn from(shape: &Shape) -> Self {
         match shape.clone() {
             Shape::MeshFile { path } => ShapeV1::MeshFile { path },
-            Shape::Figure(figure) => ShapeV1::Figure(PersonV1::from(&*figure)),
+            Shape::Figure(figure) => ShapeV1::Figure(Box::new(PersonV1::from(&*figure))),
             Shape::Plane { width_m, depth_m } => ShapeV1::Plane { width_m, depth_m },
             Shape::Box { size_m } => ShapeV1::Box { size_m: size_m.to_array() },
             Shape::Sphere { radius_m } => ShapeV1::Sphere { radius_m },

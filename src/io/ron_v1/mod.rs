@@ -203,7 +203,7 @@ enum ShapeV1 {
     MeshFile {
         path: String,
     },
-    Figure(PersonV1),
+    Figure(Box<PersonV1>),
     /// Read as a figure; written no more.
     Mannequin {
         figure: MannequinV1,

@@ -79,8 +79,11 @@ impl ShadowCasting {
     /// Returns the kind of caster of a shape under a transform.
     pub fn of(shape: &Shape, world_from_object: &Affine3A) -> Self {
         match shape {
-            Shape::Plane { .. } | Shape::Sweep { .. } | Shape::MeshFile { .. } => ShadowCasting::Sheet,
-            Shape::Figure(_) | Shape::Box { .. } | Shape::Sphere { .. } | Shape::Cylinder { .. } => {
+            // The garments of a figure are open.
+            Shape::Plane { .. } | Shape::Sweep { .. } | Shape::MeshFile { .. } | Shape::Figure(_) => {
+                ShadowCasting::Sheet
+            }
+            Shape::Box { .. } | Shape::Sphere { .. } | Shape::Cylinder { .. } => {
                 let mirrored = world_from_object.matrix3.determinant() < 0.0;
                 if mirrored { ShadowCasting::MirroredSolid } else { ShadowCasting::Solid }
             }
@@ -113,11 +116,12 @@ pub(crate) struct StrandItem {
 }
 
 impl StrandItem {
-    /// Returns the instances that cover the area of all where a pixel is `pixel_m` wide, for a transform to the world.
-    pub fn visible(&self, pixel_m: f32, world_from_object: &Affine3A) -> Range<u32> {
+    /// Returns the instances that cover the area of all where a pixel is `pixel_m` wide and each is `factor` times as wide
+    /// as it is, for a transform to the world.
+    pub fn visible(&self, pixel_m: f32, factor: f32, world_from_object: &Affine3A) -> Range<u32> {
         let scale = world_from_object.matrix3.determinant().abs().cbrt();
         let width_px = 2.0 * self.mean_radius_m * scale / pixel_m.max(1e-9);
-        self.first(width_px.clamp(MIN_FRACTION, 1.0))
+        self.first(width_px.clamp(MIN_FRACTION, 1.0 / factor))
     }
 
     /// Returns the instances of a fraction of the strands.
@@ -137,8 +141,9 @@ mod tests {
         let item =
             StrandItem { mesh: MeshKey::Shared(0), instances: 0..5000, mean_radius_m: 4e-5, surface: 0, caster: 0 };
         // A pixel of 0.4 mm is five hairs wide; at twice the scale they are twice as wide.
-        assert_eq!(item.visible(4e-4, &Affine3A::IDENTITY), 0..1000);
-        assert_eq!(item.visible(4e-4, &Affine3A::from_scale(Vec3::splat(2.0))), 0..2000);
-        assert_eq!(item.visible(1e-5, &Affine3A::IDENTITY), 0..5000);
+        assert_eq!(item.visible(4e-4, 1.0, &Affine3A::IDENTITY), 0..1000);
+        assert_eq!(item.visible(4e-4, 1.0, &Affine3A::from_scale(Vec3::splat(2.0))), 0..2000);
+        assert_eq!(item.visible(1e-5, 1.0, &Affine3A::IDENTITY), 0..5000);
+        assert_eq!(item.visible(1e-5, 4.0, &Affine3A::IDENTITY), 0..1250, "four times as wide");
     }
 }

@@ -12,9 +12,8 @@ use bytemuck::{Pod, Zeroable};
 use eframe::wgpu::{self, util::DeviceExt as _};
 use std::ops::Range;
 
-/// Fraction of the strands in shadow maps, where each is wider by the reciprocal; twin of `SHADOW_WIDTH` in
-/// `shadow_strands.wgsl`.
-pub(crate) const SHADOW_FRACTION: f32 = 0.25;
+/// Fraction of the strands in shadow maps, where each is wider; see `SHADOW_WIDTH` in `shadow_strands.wgsl`.
+pub(crate) const SHADOW_FRACTION: f32 = 0.125;
 /// A control point; twin of the vertex input in `strands.wgsl`. The radius of the last point of a strand is negative.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]

@@ -22,6 +22,9 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// With more lights than this, a draft uses its coarsest resolutions.
 const MANY_LIGHTS: usize = 24;
 
+/// Factor on the width of strands in a draft: fewer and wider strands cover as much, in less time.
+const DRAFT_STRAND_WIDTH: f32 = 4.0;
+
 /// The draw calls, lights, shadow views and constants of a frame.
 #[derive(Debug)]
 pub(super) struct FramePlan {
@@ -65,6 +68,7 @@ impl FramePlan {
         constants.mask_scale = mask_scale(size, is_cpu, is_draft, lights.lights.len());
         let is_diffused = diffuses(input) && !is_draft;
         constants.coarse_scale = if is_diffused { 1 } else { coarse_scale(&lights) };
+        constants.strand_width = if is_draft { DRAFT_STRAND_WIDTH } else { 1.0 };
         constants.depth_range_m = depth_range_m(&input.frame, &list.casters);
         FramePlan { list, lights, shadows, tiles, constants, bounced_light, output, is_draft, is_diffused }
     }
@@ -102,6 +106,7 @@ impl FramePlan {
         let mut hasher = DefaultHasher::new();
         bytemuck::bytes_of(&self.constants.clip_from_world).hash(&mut hasher);
         bytemuck::bytes_of(&self.constants.size).hash(&mut hasher);
+        bytemuck::bytes_of(&self.constants.strand_width).hash(&mut hasher);
         bytemuck::cast_slice::<_, u8>(&self.list.draws).hash(&mut hasher);
         for item in &self.list.items {
             (item.mesh, &item.indices, item.surface, item.textures, item.pass as u32).hash(&mut hasher);

@@ -5,7 +5,7 @@ mod frame_plan;
 use super::frame_resources::FrameResources;
 use super::geometry::caches::GeometryCaches;
 use super::geometry::draw_list::Uploads;
-use super::geometry::geometry_pass;
+use super::geometry::geometry_pass::{self, StrandWidths};
 use super::geometry::pipelines::GeometryPipelines;
 use super::gpu::context::GpuContext;
 use super::gpu::device::{LossFlag, guarded};
@@ -248,8 +248,8 @@ impl PreviewRenderer {
         if stale.gbuffer {
             let clear = !self.gpu.is_cpu;
             let pipelines = (&self.geometry, &self.shadows.strands);
-            let pixel_angle = plan.constants.pixel_angle;
-            geometry_pass::draw(&mut encoder, pipelines, resources, &plan.list, &input.frame, (clear, pixel_angle));
+            let widths = StrandWidths { pixel_angle: plan.constants.pixel_angle, factor: plan.constants.strand_width };
+            geometry_pass::draw(&mut encoder, pipelines, resources, &plan.list, &input.frame, (clear, widths));
         }
         // Filter the shadow maps into the shadow masks
         if stale.masks {

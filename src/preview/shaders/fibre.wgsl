@@ -122,8 +122,8 @@ fn fibre_scatter(f: Fibre, direction: vec3f, angle2: f32) -> vec3f {
 
 // Part of the light that strands nearby do not hide, and light that they scatter onwards in all directions, over the
 // squared albedo: fitted to the tracer's pictures of a head of hair.
-const UNHIDDEN: f32 = 0.7;
-const SCATTERED_ONWARDS: f32 = 0.065;
+const UNHIDDEN: f32 = 0.97;
+const SCATTERED_ONWARDS: f32 = 0.075;
 
 // Returns the light from one direction that a strand among others scatters.
 fn hair_scatter(f: Fibre, direction: vec3f, angle2: f32) -> vec3f {

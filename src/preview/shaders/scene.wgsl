@@ -15,7 +15,8 @@ struct Frame {
     // Picture pixels per coarse pixel along each axis, in drafts.
     coarse_scale: u32,
     ray_up: vec3f,
-    unused_2: f32,
+    // Factor on the width of strands, of which fewer are drawn: see `visible` in `draw_item.rs`.
+    strand_width: f32,
     // Ambient irradiance, picture units.
     ambient: vec3f,
     // Half width of a pixel at distance 1 m.

@@ -70,7 +70,13 @@ struct Receiver {
     resolution: f32,
     // Projected fraction of the emitter's width and height in this direction.
     foreshortening: vec2f,
+    // Metres per unit of depth at the receiver; 0 for all but fibres.
+    hair_m: f32,
+    is_parallel: bool,
 }
+
+// Extinction of light among strands of a head of hair, per metre: some 100 strands of 0.15 mm on a square centimetre.
+const HAIR_EXTINCTION: f32 = 700.0;
 
 // Rotates a vector (right, up, forward) of the cube into the frame of one of its faces.
 fn to_face(v: vec3f, by_x: bool, by_y: bool, sign: f32) -> vec3f {
@@ -141,9 +147,10 @@ fn receiver(slot: u32, position: vec3f, geometric_normal: vec3f, dither: f32) ->
     return r;
 }
 
-// Returns the depth gap between the receiver and the surface at a tap (x), and 1 if that surface is a blocker (y): it
-// lies in front of the receiver's plane and inside the cone from the receiver to the emitter's outline. The cone test
-// keeps concave receivers from shadowing themselves. `spread` is the cone's growth in texels per unit of depth.
+// Returns the depth gap between the receiver and the surface at a tap (x), and its opacity if that surface is a blocker
+// (y): it lies in front of the receiver's plane and inside the cone from the receiver to the emitter's outline. The cone
+// test keeps concave receivers from shadowing themselves. What blocks a fibre is mostly hair, of which there is the more
+// the longer the way: 1 / (1 + x + x^2 / 2) is close to exp(-x). `spread` is the cone's growth in texels per unit of depth.
 fn blocker_at(r: Receiver, tap: vec2f, spread: vec2f) -> vec2f {
     let texel = floor(r.at + tap);
     let offset = texel + 0.5 - r.at;
@@ -153,15 +160,20 @@ fn blocker_at(r: Receiver, tap: vec2f, spread: vec2f) -> vec2f {
     let aside = max(abs(offset) - 1.5, vec2f(0.0)) / spread;
     let gap = depth - r.depth;
     let inside = dot(aside, aside) <= gap * gap;
-    return vec2f(max(gap, 0.0), select(0.0, 1.0, before && inside));
+    let thickness = HAIR_EXTINCTION * r.hair_m * max(gap, 0.0) / select(max(depth, 1e-9), 1.0, r.is_parallel);
+    let opacity = 1.0 - 1.0 / (1.0 + thickness * (1.0 + 0.5 * thickness));
+    return vec2f(max(gap, 0.0), select(0.0, select(1.0, opacity, r.hair_m > 0.0), before && inside));
 }
 
 // Returns the visibility through one slot: 1 lit, 0 in full shadow. `turn` rotates the taps, `dither` is uniform in
 // 0..1.
-fn slot_visibility(slot: u32, position: vec3f, geometric_normal: vec3f, turn: vec2f, dither: f32) -> f32 {
-    let r = receiver(slot, position, geometric_normal, dither);
+fn slot_visibility(slot: u32, position: vec3f, geometric_normal: vec3f, is_fibre: bool, turn: vec2f, dither: f32) -> f32 {
+    var r = receiver(slot, position, geometric_normal, dither);
     let parallel = shadows.slots[slot].kind == 2u;
     let near = shadows.slots[slot].near_m;
+    // The gap in metres is near / receiver - near / blocker in perspective, and linear in a parallel view
+    r.is_parallel = parallel;
+    r.hair_m = select(0.0, select(near / r.depth, near, parallel), is_fibre);
     // Skip receivers that face away from the whole emitter, and points outside of the map
     let to_light = shadows.slots[slot].position - position;
     let height = select(dot(geometric_normal, to_light), -dot(geometric_normal, shadows.slots[slot].forward), parallel);
@@ -184,7 +196,7 @@ fn slot_visibility(slot: u32, position: vec3f, geometric_normal: vec3f, turn: ve
         let blocker = blocker_at(r, tap * (part * part) * search, spread);
         let apart = blocker.x + min_gap;
         found += vec2f(blocker.x, 1.0) * (blocker.y / (apart * apart));
-        hits += u32(blocker.y);
+        hits += select(0u, 1u, blocker.y > 0.0);
         tap = GOLDEN_TURN * tap;
     }
     // Estimate the penumbra radius from the mean gap
@@ -194,7 +206,7 @@ fn slot_visibility(slot: u32, position: vec3f, geometric_normal: vec3f, turn: ve
     tap = turn;
     var i = 0u;
     // Skip the filter where the search found no blocker, or only blockers over the whole penumbra
-    let fully_blocked = hits == SEARCH_TAPS && all(radius <= search);
+    let fully_blocked = hits == SEARCH_TAPS && all(radius <= search) && r.hair_m == 0.0;
     let skip_filter = decided || hits == 0u || fully_blocked;
     let taps = select(FILTER_TAPS, DRAFT_FILTER_TAPS, frame.mask_scale > 2u);
     let filter_taps = select(taps, 1u, skip_filter);
@@ -244,7 +256,7 @@ fn visibility(light: u32, position: vec3f, surface_normal: vec3f, plane: vec3f, 
         if SUBDIVIDED {
             weight = select(1.0, slot_weight(slot, position, normal), count > 1u);
         }
-        sum += weight * slot_visibility(slot, position, geometric_normal, turn, dither);
+        sum += weight * slot_visibility(slot, position, geometric_normal, is_fibre, turn, dither);
         total += weight;
         part++;
         continuing {

@@ -6,8 +6,9 @@ struct View {
 
 @group(2) @binding(0) var<uniform> view: View;
 
-// Factor of the width, for a quarter of the strands is drawn; twin of `SHADOW_FRACTION` in `strands.rs`.
-const SHADOW_WIDTH: f32 = 4.0;
+// Factor on the width, for an eighth of the strands is drawn: see `SHADOW_FRACTION` in `strands.rs`. It is more than 8,
+// since a mesh for the live view has strands with less area than those that they stand for.
+const SHADOW_WIDTH: f32 = 12.0;
 
 @vertex
 fn vertex(

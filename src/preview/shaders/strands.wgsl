@@ -1,6 +1,6 @@
 // The geometry pass of strands: a ribbon that faces the camera, an instance a segment.
 
-// Least half width of a ribbon, pixels. `visible` in `strands.rs` drops strands to make up for it.
+// Least half width of a ribbon, pixels. `visible` in `draw_item.rs` drops strands to make up for it.
 const MIN_HALF_WIDTH: f32 = 0.5;
 
 struct VertexOutput {
@@ -36,7 +36,7 @@ fn vertex(
     let across = vec2f(-along.y, along.x) * inverseSqrt(max(dot(along, along), 1e-12));
     let scale = pow(abs(determinant(mat3x3f(draw.world_row_0.xyz, draw.world_row_1.xyz, draw.world_row_2.xyz))), 1.0 / 3.0);
     let radius_px = abs(select(first.w, second.w, at_end)) * scale / (2.0 * frame.pixel_angle * max(clip.w, 1e-4));
-    let side = select(-1.0, 1.0, (corner & 1u) == 1u) * max(radius_px, MIN_HALF_WIDTH);
+    let side = select(-1.0, 1.0, (corner & 1u) == 1u) * max(radius_px * frame.strand_width, MIN_HALF_WIDTH);
     out.clip = clip + vec4f(across * side * (2.0 / frame.size) * clip.w, 0.0, 0.0);
     // Drop the gap between two strands, and segments behind the eye
     if first.w < 0.0 || min(clip_a.w, clip_b.w) < frame.near_m {
