@@ -11,7 +11,7 @@ use crate::scene::{
 use crate::{io, math};
 use glam::{Vec2, Vec3};
 use std::collections::VecDeque;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// sRGB of the background of an object: black and white paper both differ from it.
 pub const BACKGROUND: [u8; 3] = [102; 3];
@@ -23,7 +23,7 @@ const HALF_EXTENT: f32 = 0.2;
 const MARGIN: f32 = 1.04;
 
 /// The subject of a thumbnail.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ThumbnailSubject {
     /// A shipped studio, by its index in the list, as its camera sees it.
     Studio(usize),
@@ -99,7 +99,7 @@ fn serve<K: Send>(inbox: &Inbox<VecDeque<Request<K>>, Vec<(K, ThumbnailImage)>>)
         Err(error) => return inbox.fail_all(&format!("No threads to draw thumbnails with: {error}.")),
     };
     while let Some(Request { key, subject, side }) = inbox.next_step(|pending| pending.take_part(VecDeque::pop_front)) {
-        if let Some(image) = pool.install(|| draw_thumbnail(subject, side)) {
+        if let Some(image) = pool.install(|| known_or_drawn(subject, side)) {
             inbox.publish_with(|pending| {
                 let mut images = pending.unwrap_or_default();
                 images.push((key, image));
@@ -107,6 +107,20 @@ fn serve<K: Send>(inbox: &Inbox<VecDeque<Request<K>>, Vec<(K, ThumbnailImage)>>)
             });
         }
     }
+}
+
+/// Returns a thumbnail that was drawn before, by any window, or draws it: a person takes a second to build. There are as
+/// many as studios and things in the lists.
+fn known_or_drawn(subject: ThumbnailSubject, side: u32) -> Option<ThumbnailImage> {
+    static DRAWN: Mutex<Vec<(ThumbnailSubject, u32, ThumbnailImage)>> = Mutex::new(Vec::new());
+    // A panic with the lock held leaves the list intact: it changes by whole entries.
+    let drawn = || DRAWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((.., image)) = drawn().iter().find(|(known, size, _)| *size == side && *known == subject) {
+        return Some(image.clone());
+    }
+    let image = draw_thumbnail(subject.clone(), side)?;
+    drawn().push((subject, side, image.clone()));
+    Some(image)
 }
 
 /// Draws a thumbnail with a longest side of `side` pixels. None if its studio or mesh cannot be loaded.

@@ -244,7 +244,9 @@ impl<'a> PathTracer<'a> {
                 outside,
             };
             let samples_lights = bsdf.has_non_specular_lobe() && !is_last;
-            let paths = if samples_lights && path.non_specular_depth == 0 { limits.split_factor } else { 1 };
+            // The noise of hair is that of its fibres side by side, which more paths from one of them do not reduce
+            let splits = samples_lights && path.non_specular_depth == 0 && surface.strand.is_none();
+            let paths = if splits { limits.split_factor } else { 1 };
             path.split_factor = paths as f32;
 
             // Gather the photons of caustics

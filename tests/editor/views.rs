@@ -4,6 +4,7 @@ use super::*;
 use catchlight::editor::ViewSide;
 use catchlight::scene::Emitter;
 use glam::Vec3;
+use std::f32::consts::FRAC_1_SQRT_2;
 
 #[test]
 fn from_the_top_a_light_is_dragged_over_the_plan_and_keeps_its_height() {
@@ -126,11 +127,12 @@ fn snapped_moves_are_multiples_of_ten_centimetres_and_rotations_of_fifteen_degre
     let moved = scene(&window).objects[0].transform.position;
     let off_grid = (moved * 10.0 - (moved * 10.0).round()).abs().max_element();
     assert!(moved != figure.transform.position && off_grid < 1e-4, "{moved}");
-    // The outer ring of the turning handles lies 70 points about their middle and turns in the plane of the screen.
+    // The outer ring of the turning handles lies 70 points about their middle and turns in the plane of the screen. On a
+    // diagonal no other ring is met, which the view from above shows as lines.
     press(&mut window, Modifiers::NONE, Key::Num7);
     press(&mut window, Modifiers::NONE, Key::T);
     let middle = shown_at(&window, moved);
-    let ring = handle_along(&mut window, (55..100).map(|r| middle + vec2(r as f32, 0.0)));
+    let ring = handle_along(&mut window, (55..100).map(|r| middle + egui::Vec2::splat(r as f32 * FRAC_1_SQRT_2)));
     drag(&mut window, PointerButton::Primary, ring, ring + vec2(-8.0, 41.0));
     let turned = scene(&window).objects[0].transform.rotation_deg;
     let steps = (turned.y - figure.transform.rotation_deg.y) / 15.0;
@@ -165,7 +167,7 @@ fn a_rotation_is_typed_in_degrees() {
     press(&mut window, Modifiers::NONE, Key::Num7);
     press(&mut window, Modifiers::NONE, Key::T);
     let middle = shown_at(&window, figure.transform.position);
-    let ring = handle_along(&mut window, (55..100).map(|r| middle + vec2(r as f32, 0.0)));
+    let ring = handle_along(&mut window, (55..100).map(|r| middle + egui::Vec2::splat(r as f32 * FRAC_1_SQRT_2)));
     button(&mut window, ring, true);
     move_to(&mut window, ring + vec2(-5.0, 30.0));
     type_number(&mut window, "30");

@@ -3,7 +3,7 @@
 use super::*;
 use catchlight::preview::Channel;
 use catchlight::raytrace::{Method, RenderControl, Settings};
-use catchlight::scene::{Orientation, StrandPoint, tessellate};
+use catchlight::scene::{Mesh, Orientation, StrandPoint, tessellate};
 use std::ops::ControlFlow;
 
 /// Side of a compared block, pixels: hair is noise from pixel to pixel.

@@ -12,11 +12,11 @@ use catchlight::photo::{Picture, exposure};
 use catchlight::preview::{Gpu, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
 use catchlight::raytrace;
 use catchlight::scene::{
-    Aim, Asset, AssetKey, AssetRef, Assets, Camera, CameraFrame, Emitter, FigureMeshes, Light, LightId, Material,
-    MaterialPreset, MaterialTextures, Mesh, Object, ObjectId, Output, Room, Scene, Shape, Strands, Texture, TextureRef,
-    Transform,
+    Aim, Assets, Camera, CameraFrame, Emitter, Light, LightId, Material, MaterialPreset, MaterialTextures, Object,
+    ObjectId, Output, Room, Scene, Shape, Texture, TextureRef, Transform,
 };
 use glam::{Vec2, Vec3};
+use people::hairless;
 use std::f32::consts::PI;
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 
@@ -30,6 +30,8 @@ mod drafts;
 mod each_light;
 mod hair;
 mod lens;
+#[path = "../studio/people.rs"]
+mod people;
 mod picture;
 mod room;
 mod shadow_cache;
@@ -74,21 +76,6 @@ fn shared_renderer() -> Option<MutexGuard<'static, SharedRenderer>> {
         LazyLock::new(|| renderer().map(|(gpu, renderer)| Mutex::new(SharedRenderer { gpu, renderer })));
     // A test that failed while it held the lock leaves a renderer that still works.
     SHARED.as_ref().map(|shared| shared.lock().unwrap_or_else(PoisonError::into_inner))
-}
-
-/// Returns a studio whose people have no hair: strands are compared by tests of their own.
-fn hairless(mut loaded: Loaded) -> Loaded {
-    let without_strands = |mesh: &Mesh| Arc::new(Mesh { strands: Strands::default(), ..mesh.clone() });
-    let keys: Vec<AssetKey> = loaded.assets.iter().map(|(key, _)| key.clone()).collect();
-    for key in keys {
-        if let AssetRef::Figure(figure) = &key
-            && let Some(FigureMeshes { fine, coarse }) = loaded.assets.figure(figure)
-        {
-            let meshes = FigureMeshes { fine: without_strands(&fine), coarse: without_strands(&coarse) };
-            loaded.assets.insert(key, Asset::Figure(meshes));
-        }
-    }
-    loaded
 }
 
 /// A Lambertian surface of 18 % without specular reflection: pixels are illuminance times a known factor.

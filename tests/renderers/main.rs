@@ -15,6 +15,8 @@ mod formulas;
 mod meter;
 mod modifiers;
 mod noise;
+#[path = "../studio/people.rs"]
+mod people;
 mod presets;
 mod raster;
 mod stability;

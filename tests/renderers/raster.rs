@@ -1,5 +1,6 @@
 //! The software rasterizer against the ray tracer's first hits, closed forms and itself.
 
+use crate::people::coarse_and_hairless;
 use crate::studio;
 use catchlight::photo::exposure;
 use catchlight::raster::{self, NO_OBJECT, Shading};
@@ -16,7 +17,7 @@ fn draw(scene: &Scene, size: (u32, u32), shading: Shading) -> raster::Framebuffe
 #[test]
 fn visible_objects_agree_with_primary_rays_in_every_studio() {
     for preset in catchlight::io::presets() {
-        let loaded = preset.load().unwrap();
+        let loaded = coarse_and_hairless(preset.load().unwrap());
         let (width, height) = loaded.scene.camera.picture_size(900);
         let camera = loaded.scene.camera_frame(width as f32 / height as f32);
         let ours = raster::draw(&loaded.scene, &loaded.assets, &camera, (width, height), Shading::Lambert).objects;

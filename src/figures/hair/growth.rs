@@ -184,19 +184,24 @@ impl CombField<'_> {
     }
 }
 
+/// Returns the three guides with the nearest roots: squared distances and indices, the nearest first. With fewer guides
+/// the rest are infinitely far.
+fn nearest_guides(root: &Root, guides: &[Guide]) -> [(f32, usize); 3] {
+    let mut near = [(f32::INFINITY, 0); 3];
+    for (index, guide) in guides.iter().enumerate() {
+        let distance = guide.root.position.distance_squared(root.position);
+        if distance < near[2].0 {
+            near[2] = (distance, index);
+            near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        }
+    }
+    near
+}
+
 /// Returns the points of a strand that follows the guides near its root, with its radius there.
 fn follow(root: &Root, guides: &[Guide], field: &CombField, mut random: Random) -> Vec<(Vec3, f32)> {
     let style = field.style;
-    let nearest = |wanted: usize| {
-        let mut sorted: Vec<(f32, usize)> =
-            guides.iter().enumerate().map(|(i, g)| (g.root.position.distance_squared(root.position), i)).collect();
-        let wanted = wanted.min(sorted.len() - 1);
-        sorted.select_nth_unstable_by(wanted, |a, b| a.0.total_cmp(&b.0));
-        sorted.truncate(wanted + 1);
-        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-        sorted
-    };
-    let near = nearest(2);
+    let near = nearest_guides(root, guides);
     // Guides on the other side of a parting are no neighbours: they go another way.
     let first = &guides[near[0].1];
     let reach = first.points[STEPS / 2] - first.root.position;

@@ -20,7 +20,7 @@ const DARK: f32 = 0.18 / 256.0;
 
 /// The ratio b / a before differences tell it: with it, the estimate is right in the mean of the shipped studios. Walks
 /// under the skin and hair are not stratified and lower it.
-const PRIOR_RATIO: f64 = 2.2;
+const PRIOR_RATIO: f64 = 1.6;
 /// Weight of the prior beside that of a difference.
 const PRIOR_WEIGHT: f64 = 0.06;
 

@@ -39,7 +39,7 @@ parameters! {
         /// Shoulder upwards, degrees.
         shoulder_deg: "Shoulder up", -10.0 to 30.0, 0.0;
         /// Away from the body, degrees.
-        out_deg: "Arm out", -25.0 to 170.0, 14.0;
+        out_deg: "Arm out", -25.0 to 170.0, 10.0;
         /// Forwards, degrees.
         forward_deg: "Arm forward", -50.0 to 175.0, 2.0;
         /// About its own axis, outwards, degrees.
