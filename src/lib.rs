@@ -13,7 +13,7 @@
 //! |---|---|
 //! | `math`, `color` | frames, warps, error bounds; Kelvin, white balance, tone curve, sRGB |
 //! | `scene` | the studio as plain data, its validation, and the class of every change of it |
-//! | `photo` | photometric lights, exposure, meter arithmetic, scales in thirds of a stop, pictures |
+//! | `photo` | photometric lights, exposure, meter arithmetic, portrait patterns, scales in thirds of a stop, pictures |
 //! | `figures` | people by parameters: body, pose, clothes, hair, and their meshes |
 //! | `raytrace` | the ray tracer: BVH, BSDFs, light sampling, path tracer, photon map, film, light meter, live view |
 //! | `raster` | the z-buffer renderer on the CPU |

@@ -1,7 +1,11 @@
-//! `catchlight check SCENE`: reports what is wrong or odd with a studio.
+//! `catchlight check SCENE`: reports what is wrong or odd with a studio, and the light on faces.
 
 use super::failure::Failure;
 use super::{input, terminal};
+use crate::jobs;
+use crate::raytrace::RenderControl;
+use crate::scene::{Assets, Scene};
+use anyhow::Context;
 use std::path::PathBuf;
 
 /// Arguments of `check`.
@@ -11,7 +15,7 @@ pub struct Arguments {
     scene: PathBuf,
 }
 
-/// Prints a summary; fails if the studio cannot be used.
+/// Prints a summary and the patterns on faces; fails if the studio cannot be used.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let loaded = input::load_studio(&arguments.scene)?;
     let scene = &loaded.scene;
@@ -26,5 +30,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         scene.objects.len(),
         scene.lights.len(),
     ));
+    print_patterns(scene, &loaded.assets)
+}
+
+/// Prints the portrait lighting pattern on the face of every person in view.
+fn print_patterns(scene: &Scene, assets: &Assets) -> Result<(), Failure> {
+    let faces = jobs::check_patterns(scene, assets, &jobs::faces_in_view(scene), &RenderControl::new());
+    for face in faces.context("the light on faces")?.unwrap_or_default() {
+        let name = scene.object(face.object).map_or("", |object| object.name.as_str());
+        terminal::result(format_args!("{name}: {}", face.lighting));
+    }
     Ok(())
 }

@@ -47,17 +47,17 @@ pub fn build(figure: &Figure) -> FigureMeshes {
 
 /// Returns the middle of the face in object space, metres: between the eyes and the tip of the nose.
 pub fn face_point(figure: &Figure) -> Vec3 {
-    head(figure).transform_point3(FACE_FROM_EYES * (figure.body.height_m / 1.7))
+    head_frame(figure).transform_point3(FACE_FROM_EYES * (figure.body.height_m / 1.7))
 }
 
 /// Returns the point between the pupils in object space, metres.
 pub fn eye_point(figure: &Figure) -> Vec3 {
-    head(figure).transform_point3(Vec3::Z * EYE_RADIUS_M)
+    head_frame(figure).transform_point3(Vec3::Z * EYE_RADIUS_M)
 }
 
 /// Returns the unit vector in object space in which the face looks.
 pub fn face_direction(figure: &Figure) -> Vec3 {
-    head(figure).transform_vector3(Vec3::Z).normalize_or(Vec3::Z)
+    head_frame(figure).transform_vector3(Vec3::Z).normalize_or(Vec3::Z)
 }
 
 /// Radius of an eyeball, metres.
@@ -65,9 +65,10 @@ const EYE_RADIUS_M: f32 = 0.012;
 /// The middle of the face from the point between the eyeballs' middles, for a height of 1.7 m, metres.
 const FACE_FROM_EYES: Vec3 = Vec3::new(0.0, -0.018, 0.02);
 
-/// Returns object from head of a figure. The last ones are kept: the window asks each frame, and a body takes some
+/// Returns object from head of a figure, without a scale: origin between the eyeballs' middles, +X to the figure's left, +Y
+/// up, +Z the direction of the face. The last ones are kept: the window asks each frame, and a body takes some
 /// milliseconds to pose.
-fn head(figure: &Figure) -> Affine3A {
+pub fn head_frame(figure: &Figure) -> Affine3A {
     static LAST: Mutex<Vec<(Figure, Affine3A)>> = Mutex::new(Vec::new());
     // A panic with the lock held leaves the list intact: it changes by whole entries.
     let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,5 +1,5 @@
 //! Background work for the window and the command line: renders, development of films, the live traced view, bounced
-//! light of the preview, light meter readings, render forecasts and thumbnails.
+//! light of the preview, light meter readings, pattern checks of faces, render forecasts and thumbnails.
 //!
 //! It depends on neither egui nor wgpu. A job of the window is a [`worker`]: a thread with a request slot and a result
 //! slot, each of which holds the latest value only, and a [`Wake`] callback. The command line calls the functions that
@@ -14,6 +14,7 @@ mod live_job;
 mod live_pacing;
 mod meter;
 mod monitor;
+mod portrait;
 mod render;
 mod render_job;
 mod sentence;
@@ -30,6 +31,7 @@ pub use live_job::{LiveJob, LiveRequest};
 pub use live_pacing::{LiveImage, LivePacing};
 pub use meter::{MeterJob, read_meter};
 pub use monitor::{Progress, RenderMonitor};
+pub use portrait::{Face, FaceLighting, KeyPlace, Modelling, PatternJob, check_patterns, faces_in_view};
 pub use render::{RenderInput, RenderStage, Rendered, render, render_all_passes};
 pub use render_job::{RenderJob, RenderOutcome, RenderPhase, RenderRequest};
 pub use sentence::sentence;

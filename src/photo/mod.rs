@@ -1,4 +1,5 @@
-//! Photometry: lights in physical units, exposure, the light meter, and the scales of a camera's dials.
+//! Photometry: lights in physical units, exposure, the light meter, portrait lighting patterns, and the scales of a
+//! camera's dials.
 
 mod aov;
 pub mod beam;
@@ -10,6 +11,7 @@ mod light_color;
 pub mod meter;
 pub mod nd_filter;
 mod picture;
+pub mod portrait_pattern;
 pub mod thirds;
 
 pub use aov::AovPicture;

@@ -69,7 +69,7 @@ pub use film::{Film, Layer, MAX_LIGHT_LAYERS, NonFiniteReport, TILE};
 pub use geometry_cache::GeometryCache;
 pub use intersectors::{IntersectionMethod, Intersector};
 pub use irradiance_probes::{IrradianceProbes, ProbeScene};
-pub use light_meter::{LightMeter, MeterEffort, MeterPoint, MeterResult};
+pub use light_meter::{DirectLight, LightMeter, MeterEffort, MeterPoint, MeterResult, MeteredSource, SurfacePoint};
 pub use live::{AtrousFilter, LiveCamera, LivePicture};
 pub use plan::{RenderPlan, Shortcut};
 pub use prepare::{PrepareError, prepare, prepare_kept};

@@ -112,6 +112,16 @@ impl Strands {
         self.parts.extend(other.parts.iter().map(moved));
     }
 
+    /// Returns the strands of the parts whose names `is_kept` accepts.
+    pub fn with_parts(&self, is_kept: impl Fn(&str) -> bool) -> Strands {
+        let mut kept = Strands::default();
+        for part in self.parts.iter().filter(|part| is_kept(&part.name)) {
+            part.strands.clone().for_each(|strand| kept.push(self.strand(strand as usize).iter().copied()));
+            kept.end_part(&part.name);
+        }
+        kept
+    }
+
     /// Returns the lower and upper corner of the bounding box; none without strands.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         let around = |p: &StrandPoint| (p.position - p.radius_m, p.position + p.radius_m);
@@ -146,6 +156,9 @@ mod tests {
         assert_eq!(parts, [("hair", 0..2), ("brows", 2..3)]);
         assert_eq!(strands.strand(2)[0].position.x, 5.0);
         assert_eq!(strands.segments().collect::<Vec<_>>(), [0, 1, 3, 5, 6, 7]);
+        let brows = strands.with_parts(|name| name == "brows");
+        assert_eq!((brows.len(), brows.strand(0)), (1, strands.strand(2)));
+        assert_eq!((brows.parts()[0].name.as_str(), brows.parts()[0].strands.clone()), ("brows", 0..1));
         assert_eq!(strands.bounds(), Some((Vec3::new(-0.1, -0.1, -0.1), Vec3::new(5.1, 3.1, 0.1))));
     }
 }

@@ -147,7 +147,13 @@ fn wrong_input_exits_with_code_1_a_reason_and_no_file() {
 #[test]
 fn check_accepts_a_valid_studio_and_warns_of_one_without_lights() {
     let folder = tempfile::tempdir().unwrap();
-    assert_eq!(catchlight(folder.path(), &["check", "loop"]).status.code(), Some(0));
+    let good = catchlight(folder.path(), &["check", "loop"]);
+    assert_eq!(good.status.code(), Some(0));
+    let text = stdout(&good);
+    assert!(
+        text.contains("Woman: loop lighting; key \u{201c}Key dish\u{201d} 35\u{b0} to the person's left"),
+        "{text}"
+    );
     let dark = catchlight::io::write_scene(&catchlight::scene::Scene::default());
     std::fs::write(folder.path().join("dark.ron"), dark).unwrap();
     let output = catchlight(folder.path(), &["check", "dark.ron"]);

@@ -27,6 +27,35 @@ fn a_slider_drag_is_one_undo_step_and_the_next_one_another() {
 }
 
 #[test]
+fn a_selected_figure_shows_the_pattern_on_its_face_and_follows_the_key() {
+    let Some(mut window) = preset_window() else { return };
+    let figure = scene(&window).objects[0].clone();
+    click(&mut window, &figure.name);
+    let wait_for = |window: &mut Window, pattern: &str| {
+        let is_shown = |window: &Window| {
+            let lighting = window.state().pattern().lighting(figure.id);
+            lighting.is_some_and(|lighting| lighting.is_ok_and(|lighting| lighting.to_string().contains(pattern)))
+        };
+        let mut frames = 0;
+        while !is_shown(window) {
+            frames += 1;
+            assert!(frames < MOST_FRAMES, "{:?}", window.state().pattern());
+            wait_for_next_frame(window);
+            window.step();
+        }
+        settle(window);
+        assert!(window.query_by_label_contains(pattern).is_some(), "{pattern} is not in the inspector");
+    };
+    wait_for(&mut window, "loop lighting");
+    // Beside the face
+    let mut key = scene(&window).lights[0].clone();
+    key.position = glam::Vec3::new(2.0, 1.55, 0.1);
+    let apply = Command::Apply(Action::SetLight(Box::new(key)));
+    window.state_mut().run(apply, None, &egui::Context::default());
+    wait_for(&mut window, "split lighting");
+}
+
+#[test]
 fn keys_are_letters_while_a_name_is_typed() {
     let Some(mut window) = preset_window() else { return };
     let name = scene(&window).lights[0].name.clone();

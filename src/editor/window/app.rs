@@ -5,6 +5,7 @@ use crate::editor::commands::command::Command;
 use crate::editor::commands::shortcuts::{KEY_BINDINGS, KeyBinding};
 use crate::editor::document::files;
 use crate::editor::document::files::StudioSource;
+use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::panels::menu::MenuState;
@@ -23,7 +24,7 @@ use crate::editor::window::dialogs::FileDialogs;
 use crate::editor::window::recent::RecentFiles;
 use crate::editor::window::rescue;
 use crate::editor::window::session::Session;
-use crate::jobs::{Clock, Estimate, Forecast, ForecastSubject, Forecaster, MeterJob, RenderOutcome};
+use crate::jobs::{Clock, Estimate, Forecast, ForecastSubject, Forecaster, MeterJob, PatternJob, RenderOutcome};
 use crate::raytrace::{GeometryCache, Settings};
 use crate::scene::SceneChange;
 use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, Rangef, Rect, Ui, ViewportCommand};
@@ -180,6 +181,11 @@ impl App {
         &self.background.meter
     }
 
+    /// Returns the pattern check of the selected figure's face.
+    pub fn pattern(&self) -> &PatternJob {
+        &self.background.pattern
+    }
+
     /// Returns the thumbnails.
     pub fn thumbnails(&self) -> &Thumbnails {
         &self.background.thumbnails
@@ -223,6 +229,9 @@ impl App {
         self.update_forecast();
         let document = &self.document;
         self.background.meter.update(document.scene(), document.assets(), document.revision(), &wake(ctx));
+        let figure = if let Some(Item::Object(id)) = self.selection.last() { Some(id) } else { None };
+        let (scene, assets) = (document.scene(), document.assets());
+        self.background.pattern.update(scene, assets, figure, document.revision(), &wake(ctx));
         match self.rendering.failure() {
             Some(message) if !self.window.render_failure_reported => {
                 self.toasts.error(format!("The render failed. {message}"));
@@ -320,7 +329,7 @@ impl App {
                 let (rendering, forecaster) = (&mut self.rendering, &mut self.background.forecaster);
                 render::render_ui(ui, rendering, forecaster, &self.document, self.views.central, out);
             });
-            inspector::inspector_ui(ui, &self.document, &self.selection, out);
+            inspector::inspector_ui(ui, &self.document, &self.selection, &self.background.pattern, out);
         });
         (self.panels.left, self.panels.right) = (left, right);
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| self.central_ui(ui, out)).response.rect

@@ -11,7 +11,7 @@ use crate::editor::ui::side_panel::SidePanel;
 use crate::editor::viewport::viewport_area::Viewport;
 use crate::editor::window::background_tasks::BackgroundTasks;
 use crate::editor::window::frame_log::FrameLog;
-use crate::jobs::{Forecaster, MeterJob};
+use crate::jobs::{Forecaster, MeterJob, PatternJob};
 use std::time::{Duration, Instant};
 
 /// The views in the middle of the window.
@@ -83,6 +83,8 @@ pub struct BackgroundState {
     pub tasks: BackgroundTasks,
     /// The reading of the light meter.
     pub meter: MeterJob,
+    /// The lighting of the selected figure's face.
+    pub pattern: PatternJob,
     /// The estimate of render time and noise.
     pub forecaster: Forecaster,
     /// The pictures of presets and catalog entries.
@@ -95,6 +97,7 @@ impl BackgroundState {
         BackgroundState {
             tasks: BackgroundTasks::default(),
             meter: MeterJob::default(),
+            pattern: PatternJob::default(),
             forecaster,
             thumbnails: Thumbnails::default(),
         }

@@ -36,7 +36,7 @@ pub struct MeterResult {
 /// A light meter in a studio.
 #[derive(Debug)]
 pub struct LightMeter {
-    studio: MeteredStudio,
+    pub(super) studio: MeteredStudio,
     /// Blank readings of all lights that are on, in the scene's order, with the layers of those with any output.
     order: Vec<(LightReading, Option<usize>)>,
     /// A reading without lights, at the camera's settings.

@@ -6,6 +6,7 @@
 //! error; rounds of samples follow until it is small or the ray budget is spent. Direct light passes panes and flat bodies
 //! of glass (`straight_path`). Light by way of mirrors and other glass counts as bounced; photons find it, too.
 
+mod direct;
 mod meter;
 mod photons;
 mod point;
@@ -15,5 +16,7 @@ mod rounds;
 mod sampling;
 mod studio;
 
+pub use direct::{MeteredSource, SurfacePoint};
 pub use meter::{LightMeter, MeterResult};
 pub use point::{MeterEffort, MeterPoint};
+pub use sampling::DirectLight;

@@ -27,6 +27,15 @@ const PHOTONS: u32 = u32::MAX;
 /// Paths between two checks for cancellation.
 const CHECK_EVERY: u32 = 256;
 
+/// Direct illuminance of a receptor by one light: lux, or lux seconds for flash.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DirectLight {
+    /// The illuminance, with shadows.
+    pub arriving: f32,
+    /// The illuminance if nothing lay between the light and the receptor.
+    pub unshadowed: f32,
+}
+
 /// The sampling of a round, for any replicate.
 #[derive(Debug)]
 pub struct RoundSampler<'a> {
@@ -109,29 +118,13 @@ impl RoundSampler<'_> {
                 return;
             }
             let sampler = Sampler::new(replicate.index, 1 + layer as u32, index, self.seed);
-            let illuminance = self.light_sample(caster, light, &sampler);
+            let illuminance = sample_direct(&self.receptor, caster, light, &sampler).arriving;
             let (sum, points) = &mut replicate.direct[layer];
             *points += 1;
             if let Some(illuminance) = replicate.nonfinite.admit(sampler.id(), Vec3::splat(illuminance)) {
                 *sum += f64::from(illuminance.x);
             }
         }
-    }
-
-    /// Illuminance by one sample of a light.
-    fn light_sample(&self, caster: &mut RayCaster<'_>, light: &TracedLight, sampler: &Sampler) -> f32 {
-        let ReceptorFrame { position, origin, facing, receptor, .. } = self.receptor;
-        let set = sampler.set(Dimensions::Camera);
-        let Some(sample) = light.sample(position, sampler::first_pair(&set)) else { return 0.0 };
-        if receptor.response(sample.direction.dot(facing)) <= 0.0 {
-            return 0.0;
-        }
-        // Shadow rays start at the origin and end where the light is
-        let distance = (sample.distance - (origin - position).dot(sample.direction)).max(0.0);
-        let sample = LightSample { distance, ..sample };
-        let Some(connection) = caster.connect(origin, light, &sample, MediumStack::default()) else { return 0.0 };
-        let response = receptor.response(connection.direction.dot(facing));
-        connection.value * response * luminance(connection.transmittance)
     }
 
     /// Traces one path for all lights.
@@ -174,6 +167,31 @@ impl RoundSampler<'_> {
             }
         }
     }
+}
+
+/// Estimates the illuminance of a receptor by one sample of a light.
+pub fn sample_direct(
+    receptor: &ReceptorFrame,
+    caster: &mut RayCaster<'_>,
+    light: &TracedLight,
+    sampler: &Sampler,
+) -> DirectLight {
+    let ReceptorFrame { position, origin, facing, receptor, .. } = *receptor;
+    let set = sampler.set(Dimensions::Camera);
+    let Some(sample) = light.sample(position, sampler::first_pair(&set)) else { return DirectLight::default() };
+    let response = receptor.response(sample.direction.dot(facing));
+    if response <= 0.0 {
+        return DirectLight::default();
+    }
+    let unshadowed = sample.value * response;
+    // Shadow rays start at the origin and end where the light is
+    let distance = (sample.distance - (origin - position).dot(sample.direction)).max(0.0);
+    let sample = LightSample { distance, ..sample };
+    let Some(connection) = caster.connect(origin, light, &sample, MediumStack::default()) else {
+        return DirectLight { arriving: 0.0, unshadowed };
+    };
+    let response = receptor.response(connection.direction.dot(facing));
+    DirectLight { arriving: connection.value * response * luminance(connection.transmittance), unshadowed }
 }
 
 /// Weights the contributions of a path by the receptor's response, and adds the finite ones to the layers' sums.

@@ -20,20 +20,28 @@ use crate::editor::document::item::{Item, name_of_all};
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::ui::widgets::{row, small_button};
+use crate::jobs::PatternJob;
 use crate::scene::Light;
 use eframe::egui::{self, RichText, ScrollArea, TextEdit, Ui};
 
 /// The input of a section of the inspector and its commands.
 struct InspectorContext<'a> {
     document: &'a Document,
+    patterns: &'a PatternJob,
     out: &'a mut Vec<Command>,
 }
 
 /// Draws the inspector of the selection.
-pub fn inspector_ui(ui: &mut Ui, document: &Document, selection: &Selection, out: &mut Vec<Command>) {
+pub fn inspector_ui(
+    ui: &mut Ui,
+    document: &Document,
+    selection: &Selection,
+    patterns: &PatternJob,
+    out: &mut Vec<Command>,
+) {
     ScrollArea::vertical().id_salt("inspector").auto_shrink([false, false]).show(ui, |ui| {
         ui.add_space(4.0);
-        let mut context = InspectorContext { document, out };
+        let mut context = InspectorContext { document, patterns, out };
         if selection.len() > 1 {
             several_ui(ui, &mut context, selection);
         }

@@ -1,6 +1,6 @@
 //! The inspector of a figure, prop or backdrop.
 
-use super::figure::figure_ui;
+use super::figure::{figure_ui, pattern_row};
 use super::material::{material_group, material_rows, preset_name};
 use super::{InspectorContext, text_ui, title};
 use crate::editor::commands::command::Command;
@@ -32,7 +32,10 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Obj
     });
     ui.separator();
     match object.shape {
-        Shape::Figure(_) => figure_ui(ui, &mut object),
+        Shape::Figure(_) => {
+            pattern_row(ui, context.patterns.lighting(id));
+            figure_ui(ui, &mut object);
+        }
         _ => section(ui, "Shape and size", true, |ui| shape_rows(ui, assets, &mut object)),
     }
     section(ui, "Place", true, |ui| {

@@ -1,0 +1,213 @@
+//! The pattern check of a scene's figures.
+
+use super::face_lighting::{FaceLighting, KeyPlace, Modelling};
+use super::face_scan::FaceScan;
+use super::key_light::{find_key, map_face};
+use crate::figures::{eye_point, face_direction};
+use crate::photo::portrait_pattern::find_pattern;
+use crate::raytrace::{LightMeter, PrepareError, RenderControl};
+use crate::scene::{Asset, AssetRef, Assets, Figure, FigureMeshes, Mesh, Object, ObjectId, Scene, Shape};
+use glam::{Affine3A, Vec2, Vec3};
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// Strands of the face. They are left out: a pattern is a matter of the face's form.
+const FACE_HAIR: [&str; 3] = ["beard", "brows", "lashes"];
+/// Part of the direct light on a face that a key light gives at least.
+const KEY_PART: f32 = 0.5;
+
+/// The lighting of the face of a figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Face {
+    /// The figure.
+    pub object: ObjectId,
+    /// Its lighting.
+    pub lighting: FaceLighting,
+}
+
+/// Returns the visible figures whose eyes are in the camera's picture and whose faces are turned to it by less than 90
+/// degrees.
+pub fn faces_in_view(scene: &Scene) -> Vec<ObjectId> {
+    let frame = scene.camera_frame(scene.camera.aspect());
+    let is_in_view = |object: &&Object| {
+        let Shape::Figure(figure) = &object.shape else { return false };
+        let world_from_object = object.transform.world_from_object();
+        let eyes = world_from_object.transform_point3(eye_point(figure));
+        let ahead = world_from_object.transform_vector3(face_direction(figure));
+        let is_in_picture = |p: Vec2| p.cmpge(Vec2::ZERO).all() && p.cmple(Vec2::ONE).all();
+        object.visible && ahead.dot(frame.position() - eyes) > 0.0 && frame.project(eyes).is_some_and(is_in_picture)
+    };
+    scene.objects.iter().filter(is_in_view).map(|object| object.id).collect()
+}
+
+/// Checks the pattern on the faces of some figures. Objects that are no figures are left out. None if cancelled.
+///
+/// # Errors
+/// When the scene cannot be prepared.
+pub fn check_patterns(
+    scene: &Scene,
+    assets: &Assets,
+    figures: &[ObjectId],
+    control: &RenderControl,
+) -> Result<Option<Vec<Face>>, PrepareError> {
+    let named = || scene.objects.iter().enumerate().filter(|(_, object)| figures.contains(&object.id));
+    let Some(first) = named().find_map(|(_, object)| eyes_of(object)) else { return Ok(Some(Vec::new())) };
+    let meter = LightMeter::new(scene, &without_face_hair(scene, assets), first)?;
+    let mut faces = Vec::new();
+    for (index, object) in named() {
+        if control.is_cancelled() {
+            return Ok(None);
+        }
+        let Shape::Figure(figure) = &object.shape else { continue };
+        let lighting = face_lighting(scene, &meter, index as u32, object, figure);
+        faces.push(Face { object: object.id, lighting });
+    }
+    Ok(Some(faces))
+}
+
+/// Returns the point between a figure's eyes, world space.
+fn eyes_of(object: &Object) -> Option<Vec3> {
+    let Shape::Figure(figure) = &object.shape else { return None };
+    Some(object.transform.world_from_object().transform_point3(eye_point(figure)))
+}
+
+/// Returns the assets with figures of fewer triangles, without the hair of their faces.
+fn without_face_hair(scene: &Scene, assets: &Assets) -> Assets {
+    let mut shaved = assets.clone();
+    for object in &scene.objects {
+        let Shape::Figure(figure) = &object.shape else { continue };
+        let Some(meshes) = assets.figure(figure) else { continue };
+        let strands = meshes.coarse.strands.with_parts(|name| !FACE_HAIR.contains(&name));
+        let mesh = Arc::new(Mesh { strands, ..Mesh::clone(&meshes.coarse) });
+        let meshes = FigureMeshes { fine: Arc::clone(&mesh), coarse: mesh };
+        shaved.insert(AssetRef::figure(Cow::Owned((**figure).clone())), Asset::Figure(meshes));
+    }
+    shaved
+}
+
+fn face_lighting(scene: &Scene, meter: &LightMeter, index: u32, object: &Object, figure: &Figure) -> FaceLighting {
+    let Some(scan) = FaceScan::new(meter, index, object, figure) else { return FaceLighting::Covered };
+    let Some(key) = find_key(meter, &scan) else { return FaceLighting::Unlit };
+    if key.part < KEY_PART {
+        return FaceLighting::NoKey;
+    }
+    // Angles in the frame of the head
+    let eyes = Vec3::from(scan.world_from_head.translation);
+    let (camera_left_deg, _) = angles(&scan.world_from_head, scene.camera.position - eyes);
+    let light = meter.sources().nth(key.source).and_then(|source| scene.light(source.light));
+    let direction = meter.direction_to(key.source, eyes).unwrap_or(Vec3::ZERO);
+    let (left_deg, above_deg) = angles(&scan.world_from_head, direction);
+    let found = find_pattern(&map_face(meter, &scan, key.source, above_deg));
+    let name = light.map(|light| light.name.clone()).unwrap_or_default();
+    FaceLighting::Key {
+        found,
+        modelling: found.and_then(|found| Modelling::of(found, camera_left_deg)),
+        key: KeyPlace { name, left_deg, above_deg },
+    }
+}
+
+/// Returns the angles of a direction to the person's left of the face's direction, and above the eyes, degrees.
+fn angles(world_from_head: &Affine3A, direction: Vec3) -> (f32, f32) {
+    let local = world_from_head.inverse().transform_vector3(direction);
+    (local.x.atan2(local.z).to_degrees(), local.y.atan2(local.x.hypot(local.z)).to_degrees())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::{Loaded, find_preset};
+    use crate::photo::portrait_pattern::{FaceSide, FoundPattern, PortraitPattern};
+
+    fn studio(name: &str) -> Loaded {
+        find_preset(name).unwrap().load().unwrap()
+    }
+
+    fn lighting(studio: &Loaded) -> FaceLighting {
+        let figures = faces_in_view(&studio.scene);
+        let faces = check_patterns(&studio.scene, &studio.assets, &figures, &RenderControl::new());
+        faces.unwrap().unwrap().remove(0).lighting
+    }
+
+    fn found(studio: &Loaded) -> Option<(PortraitPattern, Option<FaceSide>)> {
+        let FaceLighting::Key { found, .. } = lighting(studio) else { panic!("{:?}", lighting(studio)) };
+        found.map(|FoundPattern { pattern, lit_side }| (pattern, lit_side))
+    }
+
+    #[test]
+    fn the_shipped_studios_show_the_patterns_of_their_names() {
+        for (name, pattern) in [
+            ("rembrandt", PortraitPattern::Rembrandt),
+            ("butterfly", PortraitPattern::Butterfly),
+            ("clamshell", PortraitPattern::Butterfly),
+            ("loop", PortraitPattern::Loop),
+            ("split", PortraitPattern::Split),
+        ] {
+            assert_eq!(found(&studio(name)).map(|found| found.0), Some(pattern), "{name}");
+        }
+        // Two strips from behind outline the head: half a face is not lit.
+        assert_eq!(found(&studio("rim_low_key")), None);
+        let still_life = studio("product_still_life");
+        assert_eq!(faces_in_view(&still_life.scene), []);
+    }
+
+    /// Moves the key, a small source, to angles from the face of the Rembrandt studio's man.
+    fn key_at(studio: &mut Loaded, left_deg: f32, above_deg: f32) {
+        let eyes = eyes_of(&studio.scene.objects[0]).unwrap();
+        let (sin, cos) = left_deg.to_radians().sin_cos();
+        let (up, level) = above_deg.to_radians().sin_cos();
+        studio.scene.lights[0].position = eyes + Vec3::new(sin * level, up, cos * level) * 1.4;
+        studio.scene.lights[0].aim = crate::scene::Aim::Point(eyes);
+    }
+
+    #[test]
+    fn a_key_that_goes_around_a_face_draws_one_pattern_after_the_other() {
+        // The middles of the textbook's ranges of angles.
+        let mut studio = studio("rembrandt");
+        for (left_deg, above_deg, pattern) in [
+            (0.0, 0.0, PortraitPattern::Flat),
+            (0.0, 40.0, PortraitPattern::Butterfly),
+            (30.0, 35.0, PortraitPattern::Loop),
+            (52.0, 43.0, PortraitPattern::Rembrandt),
+            (90.0, 0.0, PortraitPattern::Split),
+        ] {
+            for sign in [1.0, -1.0] {
+                key_at(&mut studio, sign * left_deg, above_deg);
+                let side = pattern.has_shadow_side().then_some(FaceSide::of(sign));
+                assert_eq!(found(&studio), Some((pattern, side)), "{} degrees", sign * left_deg);
+            }
+        }
+        // From below, a face has no pattern.
+        key_at(&mut studio, 0.0, -45.0);
+        assert_eq!(found(&studio), None);
+    }
+
+    #[test]
+    fn a_face_that_turns_to_the_key_is_lit_short_and_away_from_it_broad() {
+        let mut studio = studio("rembrandt");
+        for (turn_deg, expected) in [(30.0, Modelling::Short), (-25.0, Modelling::Broad)] {
+            studio.scene.objects[0].transform.rotation_deg.y = turn_deg;
+            // The key keeps its angle to the face.
+            key_at(&mut studio, 52.0 + turn_deg, 43.0);
+            let FaceLighting::Key { found, modelling, key } = lighting(&studio) else { panic!() };
+            assert_eq!(found.map(|found| found.pattern), Some(PortraitPattern::Rembrandt));
+            assert_eq!(modelling, Some(expected), "turned by {turn_deg} degrees");
+            assert!((key.left_deg - 52.0).abs() < 3.0 && (key.above_deg - 43.0).abs() < 3.0, "{key}");
+        }
+    }
+
+    #[test]
+    fn faces_without_a_key_say_so() {
+        let mut studio = studio("rembrandt");
+        let light = studio.scene.lights[0].clone();
+        studio.scene.lights.clear();
+        assert_eq!(lighting(&studio), FaceLighting::Unlit);
+        for (id, x) in [-1.0, 0.0, 1.0].into_iter().enumerate() {
+            let position = Vec3::new(x, 1.7, 2.0);
+            let id = crate::scene::LightId(id as u32);
+            studio.scene.lights.push(crate::scene::Light { id, position, name: format!("{x}"), ..light.clone() });
+        }
+        assert_eq!(lighting(&studio), FaceLighting::NoKey);
+        studio.scene.objects[0].transform.rotation_deg.y = 180.0;
+        assert_eq!(faces_in_view(&studio.scene), [], "the face is turned away");
+    }
+}
