@@ -65,8 +65,8 @@ const EYE_RADIUS_M: f32 = 0.012;
 /// The middle of the face from the point between the eyeballs' middles, for a height of 1.7 m, metres.
 const FACE_FROM_EYES: Vec3 = Vec3::new(0.0, -0.018, 0.02);
 
-/// Returns object from head of a figure, without a scale: origin between the eyeballs' middles, +X to the figure's left, +Y
-/// up, +Z the direction of the face. The last ones are kept: the window asks each frame, and a body takes some
+/// Returns object from head of a figure, without a scale: origin between the eyeballs' middles, +X to the figure's left,
+/// +Y up, +Z the direction of the face. The last ones are kept: the window asks each frame, and a body takes some
 /// milliseconds to pose.
 pub fn head_frame(figure: &Figure) -> Affine3A {
     static LAST: Mutex<Vec<(Figure, Affine3A)>> = Mutex::new(Vec::new());

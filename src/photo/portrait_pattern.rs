@@ -1,8 +1,8 @@
 //! Portrait lighting patterns, by the shadows that the key light alone casts on a face.
 //!
 //! The definitions are the usual ones of portrait lighting (Hunter, Biver and Fuqua, *Light: Science and Magic*,
-//! chapter on portraits). Split: one half of the face is dark. Rembrandt: the nose's shadow joins that of the cheek, and
-//! a lit triangle is left on the cheek below the eye. Loop: the nose's shadow lies on the shadow side and is clear of
+//! chapter on portraits). Split: one half of the face is dark. Rembrandt: the nose's shadow joins that of the cheek,
+//! and a lit triangle is left on the cheek below the eye. Loop: the nose's shadow lies on the shadow side and is clear of
 //! the cheek's. Butterfly: the nose's shadow lies straight below the nose. Flat: the nose casts no shadow.
 //!
 //! Lengths on the face are measured in nose lengths: the height of the eyes above the tip of the nose, 30 to 45 mm.
@@ -126,8 +126,8 @@ const SMALLEST_SHADOW: f32 = 0.03;
 /// Largest distance of the middle of a butterfly's shadow from the middle of the face, nose lengths. A key about 10
 /// degrees beside the face's direction makes it, half of the least angle of loop lighting.
 const BUTTERFLY_OFFSET: f32 = 0.06;
-/// Lowest angle of a key above the direction of the face, degrees: the patterns are those of light from the height of the
-/// face or above.
+/// Lowest angle of a key above the direction of the face, degrees: the patterns are those of light from the height of
+/// the face or above.
 const LOWEST_KEY_DEG: f32 = -20.0;
 /// Part of a face that may be dark in flat lighting.
 const FLAT_DARK: f32 = 0.1;

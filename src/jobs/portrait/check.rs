@@ -80,7 +80,7 @@ fn without_face_hair(scene: &Scene, assets: &Assets) -> Assets {
         let strands = meshes.coarse.strands.with_parts(|name| !FACE_HAIR.contains(&name));
         let mesh = Arc::new(Mesh { strands, ..Mesh::clone(&meshes.coarse) });
         let meshes = FigureMeshes { fine: Arc::clone(&mesh), coarse: mesh };
-        shaved.insert(AssetRef::figure(Cow::Owned((**figure).clone())), Asset::Figure(meshes));
+        shaved.insert(AssetRef::figure(Cow::Owned(**figure)), Asset::Figure(meshes));
     }
     shaved
 }

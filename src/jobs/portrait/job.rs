@@ -37,8 +37,8 @@ impl Default for PatternJob {
 }
 
 impl PatternJob {
-    /// Requests a check when the studio or the selected figure has changed, and takes in the newest result. To be called
-    /// once a frame.
+    /// Requests a check when the studio or the selected figure has changed, and takes in the newest result. To be
+    /// called once a frame.
     pub fn update(&mut self, scene: &Scene, assets: &Assets, figure: Option<ObjectId>, revision: u64, wake: &Wake) {
         let is_figure =
             |id: &ObjectId| scene.object(*id).is_some_and(|o| o.visible && matches!(o.shape, Shape::Figure(_)));
