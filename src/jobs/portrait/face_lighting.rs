@@ -28,7 +28,7 @@ pub struct KeyPlace {
 pub enum FaceLighting {
     /// Hair or something else covers the face, or it is hidden.
     Covered,
-    /// No light shines on the face directly.
+    /// Neither lamp nor sun shines on the face directly.
     Unlit,
     /// No light gives half of the direct light.
     NoKey,
@@ -67,7 +67,7 @@ impl fmt::Display for FaceLighting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             FaceLighting::Covered => write!(f, "no pattern: the face is covered"),
-            FaceLighting::Unlit => write!(f, "no pattern: no light shines on the face directly"),
+            FaceLighting::Unlit => write!(f, "no pattern: neither lamp nor sun shines on the face directly"),
             FaceLighting::NoKey => write!(f, "no pattern: no light gives half of the direct light on the face"),
             FaceLighting::Key { found, modelling, key } => {
                 match found {

@@ -20,7 +20,8 @@ pub struct KeyLight {
     pub part: f32,
 }
 
-/// Finds the key light of a face, by luminous exposure; none without direct light.
+/// Finds the key light of a face, by luminous exposure; none without direct light. Surrounds and emissive surfaces do not
+/// count.
 pub fn find_key(meter: &LightMeter, scan: &FaceScan) -> Option<KeyLight> {
     let points: Vec<(usize, &MeterPoint)> = scan.cells.iter().flatten().enumerate().step_by(SPARSE).collect();
     let exposure = |(source, time_s): (usize, f32)| -> f32 {

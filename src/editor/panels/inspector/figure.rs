@@ -6,18 +6,22 @@ use crate::jobs::FaceLighting;
 use crate::scene::{
     Arm, Beard, Body, Bottom, Figure, HairStyle, Leg, Object, Parameter, ParameterSet, SEAT_RANGE_M, Shape, Top,
 };
-use eframe::egui::{Color32, ComboBox, Label, Sense, Slider, Ui, vec2};
+use eframe::egui::{Color32, ComboBox, Label, Sense, Slider, TextStyle, Ui, vec2};
 
-/// Draws the lighting pattern on a figure's face; nothing before the first check has ended.
+/// Draws the lighting pattern on a figure's face. Its height does not depend on the text: what is below stays where it is
+/// in a drag.
 pub(super) fn pattern_row(ui: &mut Ui, lighting: Option<Result<&FaceLighting, &str>>) {
     let text = match lighting {
         Some(Ok(lighting)) => lighting.to_string(),
         Some(Err(message)) => message.to_owned(),
-        None => return,
+        None => "Checking\u{2026}".to_owned(),
     };
     let tip = "The pattern of the key light's shadows on the face. The key is the light that gives the face the most \
                direct light. Broad: the side that is turned to the camera is lit; short: the other one";
-    row(ui, "Light on face", tip, |ui| ui.add(Label::new(text).wrap()));
+    row(ui, "Light on face", tip, |ui| {
+        ui.set_min_height(3.0 * ui.text_style_height(&TextStyle::Body));
+        ui.add(Label::new(text).wrap())
+    });
 }
 
 /// Draws the sections of an object that is a figure.

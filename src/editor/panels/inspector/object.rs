@@ -33,7 +33,9 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Obj
     ui.separator();
     match object.shape {
         Shape::Figure(_) => {
-            pattern_row(ui, context.patterns.lighting(id));
+            if original.visible {
+                pattern_row(ui, context.patterns.lighting(id));
+            }
             figure_ui(ui, &mut object);
         }
         _ => section(ui, "Shape and size", true, |ui| shape_rows(ui, assets, &mut object)),
