@@ -32,27 +32,20 @@ fn a_selected_figure_shows_the_pattern_on_its_face_and_follows_the_key() {
     let figure = scene(&window).objects[0].clone();
     click(&mut window, &figure.name);
     let wait_for = |window: &mut Window, pattern: &str| {
-        let is_shown = |window: &Window| {
-            let lighting = window.state().pattern().lighting(figure.id);
+        wait_until(window, |app| {
+            let lighting = app.pattern().lighting(figure.id);
             lighting.is_some_and(|lighting| lighting.is_ok_and(|lighting| lighting.to_string().contains(pattern)))
-        };
-        let mut frames = 0;
-        while !is_shown(window) {
-            frames += 1;
-            assert!(frames < MOST_FRAMES, "{:?}", window.state().pattern());
-            wait_for_next_frame(window);
-            window.step();
-        }
+        });
         settle(window);
         assert!(window.query_by_label_contains(pattern).is_some(), "{pattern} is not in the inspector");
     };
     wait_for(&mut window, "loop lighting");
-    // Beside the face
+    // Straight before the face, above
     let mut key = scene(&window).lights[0].clone();
-    key.position = glam::Vec3::new(2.0, 1.55, 0.1);
+    key.position = glam::Vec3::new(0.0, 2.25, 1.1);
     let apply = Command::Apply(Action::SetLight(Box::new(key)));
     window.state_mut().run(apply, None, &egui::Context::default());
-    wait_for(&mut window, "split lighting");
+    wait_for(&mut window, "butterfly lighting");
 }
 
 #[test]
