@@ -122,8 +122,8 @@ fn fibre_scatter(f: Fibre, direction: vec3f, angle2: f32) -> vec3f {
 
 // Part of the light that strands nearby do not hide, and light that they scatter onwards in all directions, over the
 // squared albedo: fitted to the tracer's pictures of a head of hair.
-const UNHIDDEN: f32 = 0.97;
-const SCATTERED_ONWARDS: f32 = 0.075;
+const UNHIDDEN: f32 = 0.95;
+const SCATTERED_ONWARDS: f32 = 0.09;
 
 // Returns the light from one direction that a strand among others scatters.
 fn hair_scatter(f: Fibre, direction: vec3f, angle2: f32) -> vec3f {
@@ -131,7 +131,7 @@ fn hair_scatter(f: Fibre, direction: vec3f, angle2: f32) -> vec3f {
 }
 
 // Number of strands that light passes on its way into shadowed hair, for an estimate.
-const STRANDS_IN_SHADOW: f32 = 3.0;
+const STRANDS_IN_SHADOW: f32 = 4.0;
 
 // Returns the visibility of a light, with the light that strands in front let pass and scatter onwards.
 fn scattered_visibility(f: Fibre, visibility: f32) -> vec3f {
