@@ -114,6 +114,18 @@ pub fn display_srgb8(rgb: [f32; 3]) -> [u8; 3] {
     rgb.map(|c| (srgb_encode(tone_curve(c)) * 255.0 + 0.5) as u8)
 }
 
+/// Returns [`display_srgb8`] of a pixel, dithered by less than one code against contour lines in dark backdrops:
+/// interleaved gradient noise (Jimenez 2014, "Next Generation Post Processing in Call of Duty"), as in the live view.
+/// Values that are codes stay as they are.
+pub fn dithered_srgb8(rgb: [f32; 3], [x, y]: [u32; 2]) -> [u8; 3] {
+    let stripes = (0.067_110_56 * x as f32 + 0.005_837_15 * y as f32).fract();
+    let noise = ((52.982_918_9 * stripes).fract() - 0.5) * DITHER_CODES;
+    rgb.map(|c| (srgb_encode(tone_curve(c)) * 255.0 + noise + 0.5) as u8)
+}
+
+/// Width of the dither's distribution, codes. Under 1, so that codes stay as they are.
+const DITHER_CODES: f32 = 0.9;
+
 /// A lookup table of tone curve and sRGB encoding, within one code of 255, for interactive display: it avoids the power
 /// function.
 #[derive(Debug)]

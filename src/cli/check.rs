@@ -33,12 +33,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     print_patterns(scene, &loaded.assets)
 }
 
-/// Prints the portrait lighting pattern on the face of every person in view.
+/// Prints the portrait lighting pattern on the face of every person in view, and the catchlights.
 fn print_patterns(scene: &Scene, assets: &Assets) -> Result<(), Failure> {
     let faces = jobs::check_patterns(scene, assets, &jobs::faces_in_view(scene), &RenderControl::new());
     for face in faces.context("the light on faces")?.unwrap_or_default() {
         let name = scene.object(face.object).map_or("", |object| object.name.as_str());
-        terminal::result(format_args!("{name}: {}", face.lighting));
+        terminal::result(format_args!("{name}: {}; catchlights: {}", face.lighting, face.catchlight_line()));
     }
     Ok(())
 }

@@ -50,11 +50,21 @@ pub struct Bone {
 pub type BoneWeights = [(u8, u8); 4];
 
 impl Mask {
-    /// Returns the strength at texture coordinates, 0 to 1; 0 without a picture.
+    /// Returns the strength at texture coordinates, 0 to 1, interpolated between the middles of pixels; 0 without a
+    /// picture.
     pub fn at(&self, uv: Vec2) -> f32 {
-        let pixel = |x: f32| ((x.clamp(0.0, 1.0) * self.size as f32) as usize).min(self.size.saturating_sub(1));
-        let index = pixel(1.0 - uv.y) * self.size + pixel(uv.x);
-        self.values.get(index).map_or(0.0, |&value| f32::from(value) / 255.0)
+        let last = self.size.saturating_sub(1);
+        let place = |x: f32| {
+            let x = (x.clamp(0.0, 1.0) * self.size as f32 - 0.5).clamp(0.0, last as f32);
+            (x as usize, x.fract())
+        };
+        let ((x, right), (y, down)) = (place(uv.x), place(1.0 - uv.y));
+        let value = |x: usize, y: usize| {
+            let value = self.values.get(y.min(last) * self.size + x.min(last));
+            value.map_or(0.0, |&value| f32::from(value) / 255.0)
+        };
+        let row = |y| value(x, y) * (1.0 - right) + value(x + 1, y) * right;
+        row(y) * (1.0 - down) + row(y + 1) * down
     }
 }
 

@@ -74,7 +74,7 @@ impl PosedBody {
     }
 
     /// Returns world from a ball of radius 1 that looks along +Z, for the left and right eye.
-    fn eyeballs(&self, data: &BodyData, figure: &Figure) -> [Affine3A; 2] {
+    pub fn eyeballs(&self, data: &BodyData, figure: &Figure) -> [Affine3A; 2] {
         let head = data.bone("head").map_or(Affine3A::IDENTITY, |bone| self.transforms[bone]);
         let t = &figure.pose.torso;
         let gaze =
@@ -107,10 +107,7 @@ pub fn build(data: &BodyData, figure: &Figure) -> FigureMeshes {
     let eyeballs = body.eyeballs(data, figure);
     let eyes = eyeballs.map(|ball| ball.translation.into());
     let hair_body = HairBody { data, positions: &body.positions, head: body.head(data), eyes };
-    let mut eyes_mesh = QuadMesh::default();
-    for eyeball in eyeballs {
-        add_eye(&mut eyes_mesh, eyeball, |part| EYES + part as u8);
-    }
+    let eyes_mesh = both_eyes(eyeballs);
     let finish = |mut quads: QuadMesh, mut normals: Vec<Vec3>| {
         quads.append(&eyes_mesh);
         normals.extend(eyes_mesh.normals());
@@ -125,12 +122,43 @@ pub fn build(data: &BodyData, figure: &Figure) -> FigureMeshes {
         let shared = coarse.positions.len();
         coarse.positions.copy_from_slice(&fine.positions[..shared]);
         let coarse_normals = normals[..shared].to_vec();
+        rayon::join(|| split_skin(data, &mut coarse), || split_skin(data, &mut fine));
         rayon::join(|| finish(coarse, coarse_normals), || finish(fine, normals))
     };
     let ((mut coarse, mut fine), strands) = rayon::join(skin, || hair::grow(&hair_body, figure));
     coarse.strands = hair::thinned(&strands);
     fine.strands = strands;
     FigureMeshes { fine: Arc::new(fine), coarse: Arc::new(coarse) }
+}
+
+/// Returns the meshes of a figure from those of one that differs from it in the gaze alone: the same bits as
+/// [`build`] gives, sooner.
+pub fn with_other_gaze(data: &BodyData, built: &FigureMeshes, figure: &Figure) -> FigureMeshes {
+    let eyes = both_eyes(PosedBody::new(data, figure).eyeballs(data, figure));
+    let eyes = to_mesh(&eyes, &eyes.normals());
+    let turned = |mesh: &Mesh| {
+        let mut mesh = mesh.clone();
+        // The vertices of eyes are a block of their own
+        let part = mesh.parts.iter().find(|part| part.name == PARTS[usize::from(EYES)]);
+        let first = part.map_or(0, |part| mesh.triangles[part.triangles.start as usize][0] as usize);
+        let block = first..first + eyes.positions.len();
+        if part.is_some() && block.end <= mesh.positions.len() {
+            mesh.positions[block.clone()].copy_from_slice(&eyes.positions);
+            mesh.normals[block].copy_from_slice(&eyes.normals);
+        }
+        Arc::new(mesh)
+    };
+    let (fine, coarse) = rayon::join(|| turned(&built.fine), || turned(&built.coarse));
+    FigureMeshes { fine, coarse }
+}
+
+/// Returns the quads of a pair of eyes.
+fn both_eyes(eyeballs: [Affine3A; 2]) -> QuadMesh {
+    let mut mesh = QuadMesh::default();
+    for eyeball in eyeballs {
+        add_eye(&mut mesh, eyeball, |part| EYES + part as u8);
+    }
+    mesh
 }
 
 /// The distance of a vertex from the edge of a garment, metres; negative outside.
@@ -154,15 +182,9 @@ fn cage(data: &BodyData, figure: &Figure, body: &PosedBody) -> QuadMesh {
     if figure.extent == Extent::Bust {
         skin.move_border(&level);
     }
-    let regions = REGIONS.map(|(part, mask)| (part, data.masks.get(mask)));
-    let region = |uvs: &[Vec2; 4]| {
-        let middle = uvs.iter().sum::<Vec2>() / 4.0;
-        let is_in = |mask: &Option<&Mask>| mask.is_some_and(|mask| mask.at(middle) > 0.5);
-        regions.iter().find(|(_, mask)| is_in(mask)).map_or(SKIN, |(part, _)| *part)
-    };
-    add_part(&mut mesh, &skin, &region);
+    add_part(&mut mesh, &skin, SKIN);
     for (group, part) in [("helper-upper-teeth", TEETH), ("helper-lower-teeth", TEETH), ("helper-tongue", TONGUE)] {
-        add_part(&mut mesh, &Patch::new(data, group, &body.positions, &is_kept), &|_| part);
+        add_part(&mut mesh, &Patch::new(data, group, &body.positions, &is_kept), part);
     }
     // Garments
     let skirt = figure.bottom == Bottom::Skirt;
@@ -179,18 +201,29 @@ fn cage(data: &BodyData, figure: &Figure, body: &PosedBody) -> QuadMesh {
         let loose =
             |v: u16| if skirt && garment == Garment::Bottom { 0.0 } else { edges.looseness(v, garment, figure.top) };
         patch.move_outwards(&loose);
-        add_part(&mut mesh, &patch, &|_| part);
+        add_part(&mut mesh, &patch, part);
     }
     mesh
 }
 
-/// Appends a patch, whose quads belong to parts by their texture coordinates.
-fn add_part(mesh: &mut QuadMesh, patch: &Patch, part: &dyn Fn(&[Vec2; 4]) -> u8) {
+/// Appends a patch as a part.
+fn add_part(mesh: &mut QuadMesh, patch: &Patch, part: u8) {
     let first = mesh.positions.len() as u32;
     mesh.positions.extend(&patch.positions);
     mesh.quads.extend(patch.quads.iter().map(|quad| quad.map(|v| v + first)));
     mesh.uvs.extend(&patch.uvs);
-    mesh.parts.extend(patch.uvs.iter().map(part));
+    mesh.parts.extend(patch.quads.iter().map(|_| part));
+}
+
+/// Gives the quads of skin in regions of their own to their parts. Done after subdivision, when quads are so small that
+/// their steps are not seen.
+fn split_skin(data: &BodyData, mesh: &mut QuadMesh) {
+    let regions = REGIONS.map(|(part, mask)| (part, data.masks.get(mask)));
+    for (part, uvs) in mesh.parts.iter_mut().zip(&mesh.uvs).filter(|(part, _)| **part == SKIN) {
+        let middle = uvs.iter().sum::<Vec2>() / 4.0;
+        let is_in = |mask: &Option<&Mask>| mask.is_some_and(|mask| mask.at(middle) > 0.5);
+        *part = regions.iter().find(|(_, mask)| is_in(mask)).map_or(SKIN, |(part, _)| *part);
+    }
 }
 
 /// Splits quads into triangles, by part, with a vertex for each pair of position and texture coordinates.

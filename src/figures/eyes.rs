@@ -18,6 +18,34 @@ const CORNEA: f32 = 0.65;
 /// Vertices around.
 const AROUND: usize = 48;
 
+/// The cornea of an eye: a cap of a sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cornea {
+    /// Centre of the sphere.
+    pub centre: Vec3,
+    /// Radius of the sphere.
+    pub radius: f32,
+    /// Unit vector from the centre to the middle of the cap.
+    pub axis: Vec3,
+}
+
+impl Cornea {
+    /// Sine of the angle between the axis and the edge of the cap, where the iris ends.
+    pub const EDGE_SINE: f32 = IRIS / CORNEA;
+
+    /// Returns the cornea of an eye; see [`add_eye`].
+    pub fn new(world_from_eye: Affine3A) -> Cornea {
+        let axis = world_from_eye.transform_vector3(Vec3::Z);
+        let centre = world_from_eye.transform_point3(Vec3::Z * cornea_centre());
+        Cornea { centre, radius: CORNEA * axis.length(), axis: axis.normalize_or(Vec3::Z) }
+    }
+}
+
+/// Returns the distance of the centre of the cornea's sphere in front of the ball's, in radii of the ball.
+fn cornea_centre() -> f32 {
+    (1.0 - IRIS * IRIS).sqrt() - (CORNEA * CORNEA - IRIS * IRIS).sqrt()
+}
+
 /// Parts of an eye, in the order of [`EyePart`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EyePart {
@@ -31,7 +59,6 @@ pub enum EyePart {
 
 /// Appends an eye. `world_from_eye` takes a ball of radius 1 that looks along +Z to its place; `part` numbers the parts.
 pub fn add_eye(mesh: &mut QuadMesh, world_from_eye: Affine3A, part: impl Fn(EyePart) -> u8) {
-    let edge = (1.0 - IRIS * IRIS).sqrt();
     // The white, from the back to the edge of the iris
     let limit = IRIS.asin();
     let white = (0..=20).map(|i| {
@@ -40,7 +67,7 @@ pub fn add_eye(mesh: &mut QuadMesh, world_from_eye: Affine3A, part: impl Fn(EyeP
     });
     add_rings(mesh, world_from_eye, part(EyePart::White), white);
     // The cornea: a steeper sphere through the edge of the iris, which is painted on it, as is the pupil
-    let centre = edge - (CORNEA * CORNEA - IRIS * IRIS).sqrt();
+    let centre = cornea_centre();
     let cap = |from: f32, to: f32, steps: u32| {
         let (from, to) = ((from / CORNEA).asin(), (to / CORNEA).asin());
         (0..=steps).map(move |i| {

@@ -13,6 +13,7 @@ mod body_data;
 mod build;
 mod eyes;
 mod face;
+mod gaze;
 mod hair;
 mod makehuman;
 mod materials;
@@ -29,6 +30,8 @@ mod two_bone_ik;
 
 pub use body_codec::BodyDataError;
 pub use body_data::BodyData;
+pub use eyes::Cornea;
+pub use gaze::{follow_gazes, gaze_falls_short};
 pub use makehuman::read_body;
 pub use materials::{SKIN_TONES, SkinTone, default_parts};
 pub use named_poses::{NamedExpression, NamedPose};
@@ -45,6 +48,12 @@ pub fn build(figure: &Figure) -> FigureMeshes {
     build::build(BodyData::shipped(), figure)
 }
 
+/// Returns the meshes of a figure from those of another one, if the two differ in the gaze alone; see [`build`].
+pub fn build_from(built: &Figure, meshes: &FigureMeshes, figure: &Figure) -> Option<FigureMeshes> {
+    let same = gaze::without_gaze(built) == gaze::without_gaze(figure);
+    same.then(|| build::with_other_gaze(BodyData::shipped(), meshes, figure))
+}
+
 /// Returns the middle of the face in object space, metres: between the eyes and the tip of the nose.
 pub fn face_point(figure: &Figure) -> Vec3 {
     head_frame(figure).transform_point3(FACE_FROM_EYES * (figure.body.height_m / 1.7))
@@ -53,6 +62,12 @@ pub fn face_point(figure: &Figure) -> Vec3 {
 /// Returns the point between the pupils in object space, metres.
 pub fn eye_point(figure: &Figure) -> Vec3 {
     head_frame(figure).transform_point3(Vec3::Z * EYE_RADIUS_M)
+}
+
+/// Returns the corneas of a figure's left and right eye in object space, metres.
+pub fn corneas(figure: &Figure) -> [Cornea; 2] {
+    let data = BodyData::shipped();
+    PosedBody::new(data, figure).eyeballs(data, figure).map(Cornea::new)
 }
 
 /// Returns the unit vector in object space in which the face looks.
@@ -69,6 +84,7 @@ const FACE_FROM_EYES: Vec3 = Vec3::new(0.0, -0.018, 0.02);
 /// +Y up, +Z the direction of the face. The last ones are kept: the window asks each frame, and a body takes some
 /// milliseconds to pose.
 pub fn head_frame(figure: &Figure) -> Affine3A {
+    let figure = &gaze::without_gaze(figure);
     static LAST: Mutex<Vec<(Figure, Affine3A)>> = Mutex::new(Vec::new());
     // A panic with the lock held leaves the list intact: it changes by whole entries.
     let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);

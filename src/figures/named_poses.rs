@@ -306,7 +306,7 @@ impl NamedExpression {
             NamedExpression::SoftSmile => Expression { smile: 0.4, ..neutral },
             NamedExpression::Smile => Expression { smile: 0.7, teeth: 0.55, ..neutral },
             NamedExpression::Laugh => Expression { smile: 0.85, teeth: 0.7, mouth_open: 0.3, squint: 0.2, ..neutral },
-            NamedExpression::Serious => Expression { brows_down: 0.35, lips_pressed: 0.25, squint: 0.15, ..neutral },
+            NamedExpression::Serious => Expression { brows_down: 0.15, lips_pressed: 0.25, eyes_wide: 0.4, ..neutral },
             NamedExpression::EyesClosed => Expression { eyes_closed: 1.0, ..neutral },
         }
     }

@@ -16,7 +16,9 @@ pub(super) fn meshes(figure: &Figure) -> FigureMeshes {
     let cache = || CACHE.lock().unwrap_or_else(PoisonError::into_inner);
     let known = cache().iter().find(|(known, _)| known == figure).map(|(_, meshes)| meshes.clone());
     // Build without the lock, so that several figures are built in parallel.
-    let meshes = known.unwrap_or_else(|| figures::build(figure));
+    let built: Vec<(Figure, FigureMeshes)> = if known.is_none() { cache().clone() } else { Vec::new() };
+    let turned = || built.iter().find_map(|(other, meshes)| figures::build_from(other, meshes, figure));
+    let meshes = known.or_else(turned).unwrap_or_else(|| figures::build(figure));
     let mut cache = cache();
     cache.retain(|(known, _)| known != figure);
     let excess = (cache.len() + 1).saturating_sub(CAPACITY);

@@ -4,6 +4,7 @@ use super::error::{LoadError, Problem, SaveError};
 use super::parse_errors::{explain, explain_name, problem_at, problem_of, shorten};
 use super::unique_names::make_names_unique;
 use super::{assets, atomic, layout, locate, ron_v1};
+use crate::figures;
 use crate::scene::{Assets, Finding, Scene, Severity, placement, validate};
 use std::io::Read;
 use std::path::Path;
@@ -83,6 +84,7 @@ pub fn parse_scene(text: &str) -> Result<(Scene, Vec<Finding>), LoadError> {
     let mut scene = ron_v1::scene_from_v1(file).map_err(|unknown| one(explain_name(text, &unknown)))?;
 
     let mut warnings = make_names_unique(&mut scene);
+    figures::follow_gazes(&mut scene);
     let (errors, odd): (Vec<_>, Vec<_>) = validate(&scene).into_iter().partition(|f| f.severity == Severity::Error);
     if !errors.is_empty() {
         return Err(LoadError::Content(

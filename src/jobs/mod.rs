@@ -31,7 +31,7 @@ pub use live_job::{LiveJob, LiveRequest};
 pub use live_pacing::{LiveImage, LivePacing};
 pub use meter::{MeterJob, read_meter};
 pub use monitor::{Progress, RenderMonitor};
-pub use portrait::{Face, FaceLighting, KeyPlace, Modelling, PatternJob, check_patterns, faces_in_view};
+pub use portrait::{Catchlight, Face, FaceLighting, KeyPlace, Modelling, PatternJob, check_patterns, faces_in_view};
 pub use render::{RenderInput, RenderStage, Rendered, render, render_all_passes};
 pub use render_job::{RenderJob, RenderOutcome, RenderPhase, RenderRequest};
 pub use sentence::sentence;

@@ -89,6 +89,11 @@ impl Assets {
         self.loaded.insert(key, asset);
     }
 
+    /// Takes an asset out.
+    pub fn remove(&mut self, key: &AssetKey) {
+        self.loaded.remove(key);
+    }
+
     /// Adds the mesh of a mesh file.
     pub fn insert_mesh(&mut self, path: impl Into<String>, mesh: Arc<Mesh>) {
         self.insert(AssetRef::Mesh(Cow::Owned(path.into())), Asset::Mesh(mesh));

@@ -36,7 +36,7 @@ pub use change::{LightChange, SceneChange};
 pub use emitter::Emitter;
 pub use fibre::{Fibre, FibreColor};
 pub use figure::{
-    Arm, Beard, Body, Bottom, Expression, Extent, Face, Figure, HairStyle, Leg, Parameter, ParameterSet, Pose,
+    Arm, Beard, Body, Bottom, Expression, Extent, Face, Figure, Gaze, HairStyle, Leg, Parameter, ParameterSet, Pose,
     SEAT_RANGE_M, Top, Torso,
 };
 pub use focused_lens::FocusedLens;

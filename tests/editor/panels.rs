@@ -33,8 +33,8 @@ fn a_selected_figure_shows_the_pattern_on_its_face_and_follows_the_key() {
     click(&mut window, &figure.name);
     let wait_for = |window: &mut Window, pattern: &str| {
         wait_until(window, |app| {
-            let lighting = app.pattern().lighting(figure.id);
-            lighting.is_some_and(|lighting| lighting.is_ok_and(|lighting| lighting.to_string().contains(pattern)))
+            let face = app.pattern().face(figure.id);
+            face.is_some_and(|face| face.is_ok_and(|face| face.lighting.to_string().contains(pattern)))
         });
         settle(window);
         assert!(window.query_by_label_contains(pattern).is_some(), "{pattern} is not in the inspector");

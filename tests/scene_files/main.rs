@@ -68,6 +68,19 @@ fn every_preset_is_stored_as_it_would_be_written() {
 }
 
 #[test]
+fn the_gaze_of_a_figure_names_its_light() {
+    let text = preset_text();
+    assert!(text.contains("gaze: Camera"));
+    let (scene, _) = parse_scene(text).unwrap();
+    let at_light = text.replace("gaze: Camera", &format!("gaze: Light({:?})", scene.lights[0].name));
+    let (followed, _) = parse_scene(&at_light).unwrap();
+    assert_eq!(parse_scene(&write_scene(&followed)).unwrap().0, followed);
+    assert_ne!(followed.objects, scene.objects);
+    let error = parse_scene(&text.replace("gaze: Camera", "gaze: Light(\"Nobody\")")).unwrap_err().to_string();
+    assert!(error.contains("Nobody") && error.contains("line") && error.contains("gaze"), "{error}");
+}
+
+#[test]
 fn every_preset_loads_without_a_warning() {
     for preset in presets() {
         let loaded = preset.load().unwrap_or_else(|e| panic!("{}: {e}", preset.file_name));

@@ -5,7 +5,7 @@ use crate::editor::document::item::Item;
 use crate::editor::document::placement::angles_towards;
 use crate::editor::document::switches;
 use crate::figures;
-use crate::scene::{Aim, BarnDoors, Emitter, Facing, Focus, Light, Object, ObjectId, Scene, Shape};
+use crate::scene::{Aim, BarnDoors, Emitter, Facing, Focus, Gaze, Light, LightId, Object, ObjectId, Scene, Shape};
 use glam::{Quat, Vec3};
 use std::collections::HashMap;
 
@@ -44,6 +44,7 @@ pub fn delete(scene: &mut Scene, items: &[Item]) -> Result<(), ActionError> {
             }
             Item::Light(id) => {
                 scene.light(id).ok_or(ActionError::Gone)?;
+                release_gazes(scene, id);
                 scene.lights.retain(|l| l.id != id);
             }
             Item::Meter => scene.meter = None,
@@ -67,6 +68,17 @@ fn release_aims(scene: &mut Scene, id: ObjectId) {
     }
     if matches!(scene.camera.focus, Focus::OnObject { object, .. } if object == id) {
         scene.camera.focus = Focus::OnAim;
+    }
+}
+
+/// Lets the eyes of figures that follow a light rest where they are.
+fn release_gazes(scene: &mut Scene, id: LightId) {
+    for object in &mut scene.objects {
+        if let Shape::Figure(figure) = &mut object.shape
+            && figure.gaze == Gaze::Light(id)
+        {
+            figure.gaze = Gaze::Pose;
+        }
     }
 }
 

@@ -5,8 +5,12 @@ use crate::editor::document::action_error::ActionError;
 use crate::editor::document::history::{History, MergeKey};
 use crate::editor::document::item::Item;
 use crate::editor::document::revisions::Revisions;
+use crate::figures;
 use crate::io::{self, AssetFiles};
-use crate::scene::{AssetKey, Assets, Finding, Scene, SceneChange, Severity, validate};
+use crate::scene::{
+    Asset, AssetKey, AssetRef, Assets, Finding, ObjectId, Scene, SceneChange, Severity, Shape, validate,
+};
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -23,6 +27,8 @@ pub struct Document {
     imported: BTreeMap<String, PathBuf>,
     /// Assets that could not be loaded; they are not retried until the scene is opened again.
     failed: BTreeSet<AssetKey>,
+    /// Figures that are shown with the meshes of before their last change until their own are built, with their objects.
+    stand_ins: BTreeMap<AssetKey, ObjectId>,
 }
 
 impl Document {
@@ -41,9 +47,16 @@ impl Document {
         &self.scene
     }
 
-    /// Returns the loaded meshes and textures.
+    /// Returns the loaded meshes and textures. A figure that has just changed may have the meshes of before.
     pub fn assets(&self) -> &Assets {
         &self.assets
+    }
+
+    /// Returns the loaded meshes and textures, without those of figures that are not built yet.
+    pub fn finished_assets(&self) -> Assets {
+        let mut assets = self.assets.clone();
+        self.stand_ins.keys().for_each(|key| assets.remove(key));
+        assets
     }
 
     /// Returns the file, if any.
@@ -90,14 +103,18 @@ impl Document {
         let label = action.label(&before);
         let targets = action.targets();
         let merge = press_id.filter(|_| !targets.is_empty()).map(|press_id| MergeKey { press_id, targets });
-        let done = action.apply(&mut self.scene).and_then(|select| match new_error(&before, &self.scene) {
-            Some(error) => Err(ActionError::Invalid(error.message)),
-            None => Ok(select),
+        let done = action.apply(&mut self.scene).and_then(|select| {
+            figures::follow_gazes(&mut self.scene);
+            match new_error(&before, &self.scene) {
+                Some(error) => Err(ActionError::Invalid(error.message)),
+                None => Ok(select),
+            }
         });
         if done.is_err() {
             self.scene = before;
         } else if self.scene != before {
             self.revisions.note(&SceneChange::between(&before, &self.scene));
+            self.keep_meshes(&before);
             self.history.record(before, label, merge);
         }
         done
@@ -124,13 +141,30 @@ impl Document {
         let done = step(&mut self.history, &mut self.scene);
         if done.is_some() {
             self.revisions.note(&SceneChange::between(&before, &self.scene));
+            self.keep_meshes(&before);
         }
         done
     }
 
+    /// Lets changed figures keep the meshes of before until their own are built, so that they do not vanish meanwhile.
+    fn keep_meshes(&mut self, before: &Scene) {
+        for object in &self.scene.objects {
+            let older = before.object(object.id).map(|object| &object.shape);
+            let (Shape::Figure(new), Some(Shape::Figure(old))) = (&object.shape, older) else { continue };
+            let missing = self.assets.figure(new).is_none();
+            if let Some(meshes) = self.assets.figure(old).filter(|_| missing) {
+                let key = AssetRef::figure(Cow::Owned(**new));
+                self.assets.insert(key.clone(), Asset::Figure(meshes));
+                self.stand_ins.insert(key, object.id);
+            }
+        }
+    }
+
     /// Returns the assets that the scene refers to and that are neither loaded nor failed.
     pub fn wanted_assets(&self) -> BTreeSet<AssetKey> {
-        &self.missing_assets() - &self.failed
+        let used = self.scene.assets().map(|(_, key)| key.into_owned());
+        let stand_ins: BTreeSet<AssetKey> = used.filter(|key| self.stand_ins.contains_key(key)).collect();
+        &(&self.missing_assets() | &stand_ins) - &self.failed
     }
 
     fn missing_assets(&self) -> BTreeSet<AssetKey> {
@@ -139,8 +173,20 @@ impl Document {
 
     /// Adds assets that were loaded in the background. Those of `tried` that are still missing have failed.
     pub fn insert_assets(&mut self, loaded: Assets, tried: &BTreeSet<AssetKey>) {
+        for (key, built) in loaded.iter() {
+            // A figure that has changed since it was sent off: what was built is nearer to it than what stands in
+            let owner = self.stand_ins.remove(key).and_then(|owner| self.scene.object(owner));
+            if let Some(Shape::Figure(now)) = owner.map(|object| &object.shape) {
+                let now = AssetRef::figure(Cow::Owned(**now));
+                if self.stand_ins.contains_key(&now) {
+                    self.assets.insert(now, built.clone());
+                }
+            }
+        }
         self.assets.extend(loaded);
         self.assets.drop_unused_figures(&self.scene);
+        let assets = &self.assets;
+        self.stand_ins.retain(|key, _| assets.contains(key));
         self.failed.extend(self.missing_assets().intersection(tried).cloned());
         self.revisions = Revisions::new();
     }
@@ -206,6 +252,8 @@ fn new_error(before: &Scene, after: &Scene) -> Option<Finding> {
 mod tests {
     use super::*;
     use crate::editor::document::catalog;
+    use crate::scene::{Figure, Gaze, Material, Object, Transform};
+    use std::sync::Arc;
 
     fn with_a_light() -> (Document, crate::scene::Light) {
         let mut document = Document::default();
@@ -228,6 +276,92 @@ mod tests {
         assert!(!document.is_dirty());
         document.redo();
         assert_eq!(document.scene().lights[0].position.x, 1.9);
+    }
+
+    fn with_a_person() -> (Document, ObjectId) {
+        let mut document = Document::default();
+        let object = Object {
+            id: ObjectId(0),
+            name: "Person".to_owned(),
+            transform: Transform::default(),
+            shape: Shape::Figure(Box::default()),
+            material: Material::default(),
+            part_materials: Vec::new(),
+            visible: true,
+            locked: false,
+        };
+        document.apply(Action::AddObject(Box::new(object)), None).unwrap();
+        let id = document.scene().objects[0].id;
+        (document, id)
+    }
+
+    fn change_figure(document: &mut Document, id: ObjectId, change: impl FnOnce(&mut Figure)) {
+        let mut object = document.scene().object(id).unwrap().clone();
+        if let Shape::Figure(figure) = &mut object.shape {
+            change(figure);
+        }
+        document.apply(Action::SetObject(Box::new(object)), None).unwrap();
+    }
+
+    fn gaze(document: &Document) -> [f32; 2] {
+        let Shape::Figure(figure) = &document.scene().objects[0].shape else { panic!("a person") };
+        [figure.pose.torso.gaze_yaw_deg, figure.pose.torso.gaze_pitch_deg]
+    }
+
+    #[test]
+    fn eyes_follow_the_camera_until_the_light_that_they_follow_is_deleted() {
+        let (mut document, id) = with_a_person();
+        let mut camera = document.scene().camera.clone();
+        camera.position = glam::Vec3::new(0.6, 1.6, 2.5);
+        document.apply(Action::SetCamera(Box::new(camera.clone())), None).unwrap();
+        assert_eq!(gaze(&document), [0.0; 2]);
+        change_figure(&mut document, id, |figure| figure.gaze = Gaze::Camera);
+        assert!((gaze(&document)[0] - 13.75).abs() < 1.0, "{:?}", gaze(&document));
+        camera.position.x = -0.6;
+        document.apply(Action::SetCamera(Box::new(camera)), None).unwrap();
+        assert!((gaze(&document)[0] + 13.75).abs() < 1.0, "{:?}", gaze(&document));
+        document.undo();
+        assert!(gaze(&document)[0] > 12.0);
+        let light = catalog::light_named("Octa 120").unwrap();
+        document.apply(Action::AddLight(Box::new(light)), None).unwrap();
+        let light = document.scene().lights[0].id;
+        change_figure(&mut document, id, |figure| figure.gaze = Gaze::Light(light));
+        let at_light = gaze(&document);
+        document.apply(Action::Delete(vec![Item::Light(light)]), None).unwrap();
+        let Shape::Figure(figure) = &document.scene().objects[0].shape else { panic!("a person") };
+        assert_eq!((figure.gaze, gaze(&document)), (Gaze::Pose, at_light));
+    }
+
+    #[test]
+    fn a_changed_figure_keeps_its_meshes_until_the_new_ones_are_built() {
+        let (mut document, id) = with_a_person();
+        let first = document.wanted_assets();
+        let load = |document: &Document| {
+            let mut assets = document.finished_assets();
+            assert_eq!(io::load_assets(document.scene(), None, &mut assets), []);
+            assets
+        };
+        let shown = |document: &Document| document.assets().mesh_of(&document.scene().objects[0].shape).unwrap();
+        document.insert_assets(load(&document), &first);
+        assert!(document.wanted_assets().is_empty());
+        let before = shown(&document);
+        for teeth in [0.2, 0.4] {
+            change_figure(&mut document, id, |figure| figure.expression.teeth = teeth);
+            assert!(Arc::ptr_eq(&shown(&document), &before), "the older mesh is shown");
+            assert_eq!(document.wanted_assets().len(), 1, "the new one is wanted");
+            let figure = &document.scene().objects[0].shape;
+            assert!(document.finished_assets().mesh_of(figure).is_none(), "a render does not get the older one");
+        }
+        // What was built for a state that the slider has left is shown until the newest is there
+        let (late, wanted) = (load(&document), document.wanted_assets());
+        change_figure(&mut document, id, |figure| figure.expression.teeth = 0.6);
+        document.insert_assets(late, &wanted);
+        let between = shown(&document);
+        assert!(!Arc::ptr_eq(&between, &before));
+        let wanted = document.wanted_assets();
+        assert_eq!(wanted.len(), 1);
+        document.insert_assets(load(&document), &wanted);
+        assert!(!Arc::ptr_eq(&shown(&document), &between) && document.wanted_assets().is_empty());
     }
 
     #[test]

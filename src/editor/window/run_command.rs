@@ -248,7 +248,7 @@ impl App {
 
     fn render(&mut self, ctx: &Context) {
         let folder = self.document.folder().map(std::path::Path::to_owned);
-        self.rendering.start(self.document.scene(), self.document.assets(), folder, ctx);
+        self.rendering.start(self.document.scene(), &self.document.finished_assets(), folder, ctx);
         self.views.central = CentralView::Picture;
     }
 }

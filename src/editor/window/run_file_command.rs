@@ -284,7 +284,7 @@ impl App {
         if wanted.is_empty() {
             return;
         }
-        let (scene, known) = (self.document.scene().clone(), self.document.assets().clone());
+        let (scene, known) = (self.document.scene().clone(), self.document.finished_assets());
         let folder = self.document.folder().map(Path::to_owned);
         let imported = self.document.imported_files().clone();
         let work = move || {

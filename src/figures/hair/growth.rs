@@ -240,8 +240,8 @@ fn follow(root: &Root, guides: &[Guide], field: &CombField, mut random: Random) 
             let turn = Quat::from_axis_angle(tangent, TAU * style.turns_per_m * length + phase + near[0].1 as f32);
             p += turn * tangent.any_orthonormal_vector() * style.curl_m * (along * 4.0).min(1.0);
         }
-        // A guide's shape from another root may lead into the skin
-        let p = if k == 0 { p } else { field.obstacles.above_head(p, CLEARANCE_M) };
+        // A guide's shape from another root may lead into the skin, or before the face
+        let p = if k == 0 { p } else { field.obstacles.above_head(field.beside_face(p, root), CLEARANCE_M) };
         points.push((p, style.radius_m * (1.0 - 0.7 * along * along)));
     }
     points

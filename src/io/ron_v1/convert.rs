@@ -1,6 +1,7 @@
 //! Converts format 1 to and from the scene. Files refer to objects and lights by name, the scene by id; ids follow the
 //! order of the file.
 
+use super::figure::GazeV1;
 use super::mannequin;
 use super::{
     AimV1, BarnDoorsV1, CameraV1, ColorV1, ConeV1, EmitterV1, FacingV1, FocusV1, GelV1, LightV1, MaterialV1, MeterV1,
@@ -8,7 +9,7 @@ use super::{
     SceneV1, SensorV1, ShapeV1, SoloV1,
 };
 use crate::scene::{
-    Aim, BarnDoors, Camera, ColorSource, Cone, Emitter, Facing, Focus, Gel, Light, LightColor, LightId, Material,
+    Aim, BarnDoors, Camera, ColorSource, Cone, Emitter, Facing, Focus, Gaze, Gel, Light, LightColor, LightId, Material,
     Meter, Modifier, Object, ObjectId, Orientation, Output, Power, Receptor, Role, Room, Scene, Sensor, Shape, Solo,
     Transform,
 };
@@ -69,16 +70,48 @@ impl ObjectIds {
     }
 }
 
+/// Light ids by name, the index in the file. The first of two equal names counts.
+struct LightIds(HashMap<String, LightId>);
+
+impl LightIds {
+    fn of(lights: &[LightV1]) -> Self {
+        let mut ids = HashMap::new();
+        for (index, light) in (0..).zip(lights) {
+            ids.entry(light.name.clone()).or_insert(LightId(index));
+        }
+        LightIds(ids)
+    }
+
+    fn id(&self, name: &str, place: &str) -> Result<LightId, UnknownName> {
+        self.0.get(name).copied().ok_or_else(|| {
+            let mut known: Vec<String> = self.0.keys().cloned().collect();
+            known.sort_unstable();
+            UnknownName { kind: "light", place: place.to_owned(), name: name.to_owned(), known }
+        })
+    }
+
+    fn gaze(&self, gaze: GazeV1, place: &str) -> Result<Gaze, UnknownName> {
+        Ok(match gaze {
+            GazeV1::Camera => Gaze::Camera,
+            GazeV1::Light(name) => Gaze::Light(self.id(&name, place)?),
+        })
+    }
+}
+
 /// Converts a file to a scene. The scene may have equal names and other errors, which `scene::validate` finds.
 pub(in crate::io) fn scene_from_v1(file: SceneV1) -> Result<Scene, UnknownName> {
     let ids = ObjectIds::of(&file.objects);
-    let solo = file.solo.map(|solo| solo_from(solo, &file.lights)).transpose()?;
+    let light_ids = LightIds::of(&file.lights);
+    let solo = file.solo.map(|solo| solo_from(solo, &light_ids)).transpose()?;
     Ok(Scene {
         name: file.name,
         description: file.description,
         camera: camera_from(file.camera, &ids)?,
         room: file.room.map(Room::from),
-        objects: (0..).zip(file.objects).map(|(index, object)| object_from(object, index)).collect(),
+        objects: (0..)
+            .zip(file.objects)
+            .map(|(index, object)| object_from(object, index, &light_ids))
+            .collect::<Result<_, _>>()?,
         lights: (0..)
             .zip(file.lights)
             .map(|(index, light)| light_from(light, index, &ids))
@@ -88,22 +121,10 @@ pub(in crate::io) fn scene_from_v1(file: SceneV1) -> Result<Scene, UnknownName> 
     })
 }
 
-/// Resolves the names of soloed lights to ids. The first of two equal names counts.
-fn solo_from(file: SoloV1, lights: &[LightV1]) -> Result<Solo, UnknownName> {
-    let mut by_name = HashMap::new();
-    for (index, light) in (0..).zip(lights) {
-        by_name.entry(light.name.as_str()).or_insert(LightId(index));
-    }
+/// Resolves the names of soloed lights to ids.
+fn solo_from(file: SoloV1, lights: &LightIds) -> Result<Solo, UnknownName> {
     let ids = |names: Vec<String>, place: &str| {
-        let id = |name: String| match by_name.get(name.as_str()) {
-            Some(&id) => Ok(id),
-            None => {
-                let mut known: Vec<String> = by_name.keys().map(|&name| name.to_owned()).collect();
-                known.sort_unstable();
-                Err(UnknownName { kind: "light", place: place.to_owned(), name, known })
-            }
-        };
-        names.into_iter().map(id).collect::<Result<Vec<_>, _>>()
+        names.iter().map(|name| lights.id(name, place)).collect::<Result<Vec<_>, _>>()
     };
     Ok(Solo { lights: ids(file.lights, "solo.lights")?, restores: ids(file.restores, "solo.restores")? })
 }
@@ -121,7 +142,7 @@ pub(in crate::io) fn v1_from_scene(scene: &Scene) -> SceneV1 {
         description: scene.description.clone(),
         camera: camera_to(scene),
         room: scene.room.as_ref().map(RoomV1::from),
-        objects: scene.objects.iter().map(ObjectV1::from).collect(),
+        objects: scene.objects.iter().map(|object| object_to(scene, object)).collect(),
         lights: scene.lights.iter().map(|light| light_to(scene, light)).collect(),
         meter: scene.meter.map(MeterV1::from),
         solo: scene.solo.as_ref().map(|solo| solo_to(scene, solo)),
@@ -193,8 +214,14 @@ fn aim_to(scene: &Scene, aim: &Aim, position: Vec3) -> AimV1 {
     }
 }
 
-fn object_from(file: ObjectV1, index: u32) -> Object {
+fn object_from(mut file: ObjectV1, index: u32, lights: &LightIds) -> Result<Object, UnknownName> {
     let is_mannequin = matches!(file.shape, ShapeV1::Mannequin { .. });
+    let gaze = match &mut file.shape {
+        ShapeV1::Figure(person) => person.gaze.take(),
+        _ => None,
+    };
+    let place = format!("objects[{index}] {:?} shape.gaze", file.name);
+    let gaze = gaze.map(|gaze| lights.gaze(gaze, &place)).transpose()?;
     let mut object = Object {
         id: ObjectId(index),
         name: file.name,
@@ -209,29 +236,44 @@ fn object_from(file: ObjectV1, index: u32) -> Object {
         visible: file.visible,
         locked: file.locked,
     };
+    if let (Shape::Figure(figure), Some(gaze)) = (&mut object.shape, gaze) {
+        figure.gaze = gaze;
+    }
     if is_mannequin {
         mannequin::complete_parts(&mut object);
     }
-    object
+    Ok(object)
 }
 
-impl From<&Object> for ObjectV1 {
-    fn from(object: &Object) -> Self {
-        let part = |(part, material): &(String, Material)| PartMaterialV1 {
-            part: part.clone(),
-            material: MaterialV1::from(material),
-        };
-        ObjectV1 {
-            name: object.name.clone(),
-            shape: ShapeV1::from(&object.shape),
-            position: object.transform.position.to_array(),
-            rotation_deg: object.transform.rotation_deg.to_array(),
-            scale: object.transform.scale.to_array(),
-            material: MaterialV1::from(&object.material),
-            part_materials: object.part_materials.iter().map(part).collect(),
-            visible: object.visible,
-            locked: object.locked,
-        }
+/// Returns what a figure's eyes follow; none for the angles of its pose, and for a light that is gone.
+fn gaze_to(scene: &Scene, shape: &Shape) -> Option<GazeV1> {
+    let Shape::Figure(figure) = shape else { return None };
+    match figure.gaze {
+        Gaze::Pose => None,
+        Gaze::Camera => Some(GazeV1::Camera),
+        Gaze::Light(light) => scene.light(light).map(|light| GazeV1::Light(light.name.clone())),
+    }
+}
+
+fn object_to(scene: &Scene, object: &Object) -> ObjectV1 {
+    let part = |(part, material): &(String, Material)| PartMaterialV1 {
+        part: part.clone(),
+        material: MaterialV1::from(material),
+    };
+    let mut shape = ShapeV1::from(&object.shape);
+    if let ShapeV1::Figure(person) = &mut shape {
+        person.gaze = gaze_to(scene, &object.shape);
+    }
+    ObjectV1 {
+        name: object.name.clone(),
+        shape,
+        position: object.transform.position.to_array(),
+        rotation_deg: object.transform.rotation_deg.to_array(),
+        scale: object.transform.scale.to_array(),
+        material: MaterialV1::from(&object.material),
+        part_materials: object.part_materials.iter().map(part).collect(),
+        visible: object.visible,
+        locked: object.locked,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::defaults::is_default;
 use crate::scene::{
-    Arm, Beard, Body, Bottom, Expression, Extent, Face, Figure, HairStyle, Leg, ParameterSet, Pose, Top, Torso,
+    Arm, Beard, Body, Bottom, Expression, Extent, Face, Figure, Gaze, HairStyle, Leg, ParameterSet, Pose, Top, Torso,
 };
 use serde::de::{Error as _, MapAccess, Visitor};
 use serde::ser::SerializeStruct;
@@ -22,6 +22,9 @@ pub(super) struct PersonV1 {
     expression: SetV1<Expression>,
     #[serde(default, skip_serializing_if = "is_default")]
     pose: BodyPoseV1,
+    /// What its eyes follow. The conversion of the scene resolves the name of a light.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) gaze: Option<GazeV1>,
     #[serde(default)]
     top: TopV1,
     #[serde(default)]
@@ -34,6 +37,14 @@ pub(super) struct PersonV1 {
     seed: u32,
     #[serde(default, skip_serializing_if = "is_default")]
     extent: ExtentV1,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Gaze")]
+pub(super) enum GazeV1 {
+    Camera,
+    /// The name of a light.
+    Light(String),
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -161,6 +172,7 @@ impl<'de> Deserialize<'de> for Name {
     }
 }
 
+/// Converts what does not depend on the scene: the gaze is left as [`Gaze::Pose`].
 impl From<PersonV1> for Figure {
     fn from(file: PersonV1) -> Self {
         let BodyPoseV1 { seat_m, torso, left_arm, right_arm, left_leg, right_leg } = file.pose;
@@ -169,6 +181,7 @@ impl From<PersonV1> for Figure {
             face: file.face.0,
             expression: file.expression.0,
             pose: Pose { seat_m, torso: torso.0, arms: [left_arm.0, right_arm.0], legs: [left_leg.0, right_leg.0] },
+            gaze: Gaze::Pose,
             top: file.top.into(),
             bottom: file.bottom.into(),
             hair: file.hair.into(),
@@ -179,9 +192,10 @@ impl From<PersonV1> for Figure {
     }
 }
 
+/// Converts what does not depend on the scene: the gaze is left out.
 impl From<&Figure> for PersonV1 {
     fn from(figure: &Figure) -> Self {
-        let Figure { body, face, expression, pose, top, bottom, hair, beard, seed, extent } = *figure;
+        let Figure { body, face, expression, pose, gaze: _, top, bottom, hair, beard, seed, extent } = *figure;
         let Pose { seat_m, torso, arms, legs } = pose;
         let ([left_arm, right_arm], [left_leg, right_leg]) = (arms.map(SetV1), legs.map(SetV1));
         PersonV1 {
@@ -189,6 +203,7 @@ impl From<&Figure> for PersonV1 {
             face: SetV1(face),
             expression: SetV1(expression),
             pose: BodyPoseV1 { seat_m, torso: SetV1(torso), left_arm, right_arm, left_leg, right_leg },
+            gaze: None,
             top: top.into(),
             bottom: bottom.into(),
             hair: hair.into(),

@@ -1,5 +1,6 @@
 //! The pattern check of a scene's figures.
 
+use super::catchlights::{Catchlight, find_catchlights};
 use super::face_lighting::{FaceLighting, KeyPlace, Modelling};
 use super::face_scan::FaceScan;
 use super::key_light::{find_key, map_face};
@@ -16,13 +17,23 @@ const FACE_HAIR: [&str; 3] = ["beard", "brows", "lashes"];
 /// Part of the direct light on a face that a key light gives at least.
 const KEY_PART: f32 = 0.5;
 
-/// The lighting of the face of a figure.
+/// The light on the face and in the eyes of a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Face {
     /// The figure.
     pub object: ObjectId,
     /// Its lighting.
     pub lighting: FaceLighting,
+    /// The lights that are reflected in its eyes.
+    pub catchlights: Vec<Catchlight>,
+}
+
+impl Face {
+    /// Returns where the catchlights are, in words.
+    pub fn catchlight_line(&self) -> String {
+        let places: Vec<String> = self.catchlights.iter().map(Catchlight::to_string).collect();
+        if places.is_empty() { "none".to_owned() } else { places.join(", ") }
+    }
 }
 
 /// Returns the visible figures whose eyes are in the camera's picture and whose faces are turned to it by less than 90
@@ -60,7 +71,8 @@ pub fn check_patterns(
         }
         let Shape::Figure(figure) = &object.shape else { continue };
         let lighting = face_lighting(scene, &meter, index as u32, object, figure);
-        faces.push(Face { object: object.id, lighting });
+        let catchlights = find_catchlights(scene, &meter, object, figure);
+        faces.push(Face { object: object.id, lighting, catchlights });
     }
     Ok(Some(faces))
 }
@@ -148,6 +160,42 @@ mod tests {
         assert_eq!(found(&studio("rim_low_key")), None);
         let still_life = studio("product_still_life");
         assert_eq!(faces_in_view(&still_life.scene), []);
+    }
+
+    fn catchlights(studio: &Loaded) -> Vec<Catchlight> {
+        let figures = faces_in_view(&studio.scene);
+        let faces = check_patterns(&studio.scene, &studio.assets, &figures, &RenderControl::new());
+        faces.unwrap().unwrap().remove(0).catchlights
+    }
+
+    #[test]
+    fn the_catchlights_of_a_clamshell_are_above_and_below_the_pupil() {
+        let found = catchlights(&studio("clamshell"));
+        let heights: Vec<f32> = found.iter().map(|light| light.place.y).collect();
+        assert!(found.len() == 2 && heights[0] > 0.1 && heights[1] < -0.1, "{found:?}");
+    }
+
+    #[test]
+    fn catchlights_are_where_the_key_is() {
+        let mut portrait = studio("clamshell");
+        portrait.scene.lights.truncate(1);
+        let eyes = eyes_of(&portrait.scene.objects[0]).unwrap();
+        let frame = portrait.scene.camera_frame(1.0);
+        for (right, up, half_hours) in [(0.0, 0.5, 0), (-0.4, 0.4, 21), (0.5, 0.0, 6), (0.0, -0.5, 12)] {
+            let beside = frame.world_from_camera.transform_vector3(Vec3::new(right, up, 0.0));
+            portrait.scene.lights[0].position = frame.position().lerp(eyes, 0.2) + beside;
+            portrait.scene.lights[0].aim = crate::scene::Aim::Point(eyes);
+            if let Shape::Figure(figure) = &mut portrait.scene.objects[0].shape {
+                figure.gaze = crate::scene::Gaze::Camera;
+            }
+            crate::figures::follow_gazes(&mut portrait.scene);
+            crate::io::load_assets(&portrait.scene, None, &mut portrait.assets);
+            let found: Vec<Option<u32>> = catchlights(&portrait).iter().map(Catchlight::half_hours).collect();
+            assert_eq!(found, [Some(half_hours)], "{right} {up}");
+        }
+        // From behind the head there are none
+        portrait.scene.lights[0].position = eyes + (eyes - frame.position());
+        assert_eq!(catchlights(&portrait), []);
     }
 
     /// Moves the key, a small source, to angles from the face of the Rembrandt studio's man.

@@ -1,7 +1,6 @@
 //! The pattern check of the selected figure, in the background.
 
-use super::check::check_patterns;
-use super::face_lighting::FaceLighting;
+use super::check::{Face, check_patterns};
 use crate::jobs::threads::{Priority, background_pool};
 use crate::jobs::worker::{Inbox, Interrupt, Wake, Worker, WorkerSettings};
 use crate::scene::{Assets, ObjectId, Scene, Shape};
@@ -13,13 +12,13 @@ struct Request {
     figure: ObjectId,
 }
 
-/// The lighting of the selected figure's face.
+/// The light on the selected figure's face and in its eyes.
 #[derive(Debug)]
 pub struct PatternJob {
-    worker: Worker<Request, (ObjectId, FaceLighting)>,
+    worker: Worker<Request, Face>,
     /// Figure and revision of the document that were requested last.
     requested: Option<(ObjectId, u64)>,
-    latest: Option<Result<(ObjectId, FaceLighting), String>>,
+    latest: Option<Result<Face, String>>,
 }
 
 /// Each check is finished: the line follows the mouse in a drag.
@@ -58,24 +57,24 @@ impl PatternJob {
         }
     }
 
-    /// Returns the latest lighting of a figure's face, or the message of an error; none until the first one is there.
-    pub fn lighting(&self, figure: ObjectId) -> Option<Result<&FaceLighting, &str>> {
+    /// Returns the latest light on a figure's face, or the message of an error; none until the first one is there.
+    pub fn face(&self, figure: ObjectId) -> Option<Result<&Face, &str>> {
         match self.latest.as_ref()? {
-            Ok((object, lighting)) => (*object == figure).then_some(Ok(lighting)),
+            Ok(face) => (face.object == figure).then_some(Ok(face)),
             Err(message) => Some(Err(message)),
         }
     }
 }
 
 /// The body of the thread. One thread of low priority: the live view needs the others.
-fn serve(inbox: &Inbox<Request, (ObjectId, FaceLighting)>) {
+fn serve(inbox: &Inbox<Request, Face>) {
     let pool = match background_pool(1, "pattern") {
         Ok(pool) => pool,
         Err(error) => return inbox.fail_all(&format!("No threads to check the pattern with: {error}.")),
     };
     while let Some((Request { scene, assets, figure }, control)) = inbox.next() {
         match pool.install(|| check_patterns(&scene, &assets, &[figure], &control)) {
-            Ok(faces) => faces.into_iter().flatten().for_each(|face| inbox.publish((face.object, face.lighting))),
+            Ok(faces) => faces.into_iter().flatten().for_each(|face| inbox.publish(face)),
             Err(error) => inbox.fail(error.to_string()),
         }
     }

@@ -6,9 +6,10 @@ use super::receptor::ReceptorFrame;
 use super::sampling::{DirectLight, sample_direct};
 use crate::math::Ray;
 use crate::raytrace::lights::TracedLight;
+use crate::raytrace::medium_stack::MediumStack;
 use crate::raytrace::ray_caster::RayCaster;
-use crate::raytrace::sampler::Sampler;
-use crate::scene::LightId;
+use crate::raytrace::sampler::{self, Dimensions, Sampler};
+use crate::scene::{LightId, Receptor};
 use glam::Vec3;
 
 /// A point on a surface of the studio.
@@ -70,6 +71,25 @@ impl LightMeter {
             sum.unshadowed += direct.unshadowed / samples as f32;
         }
         sum
+    }
+
+    /// Returns unit directions in world space from a point to parts of a light's emitter that shine on the point, out of
+    /// `samples`; none from a surround. `facing` is the normal of the surface that the point is on.
+    pub fn open_directions(&self, source: usize, position: Vec3, facing: Vec3, samples: u32) -> Vec<Vec3> {
+        let scene = &self.studio.scene;
+        let Some(light) = scene.lights.get(source).filter(|light| light.is_sampled()) else { return Vec::new() };
+        let samples = if light.is_delta() { 1 } else { samples.max(1) };
+        let mut caster = RayCaster::new(scene);
+        let point = MeterPoint { position, facing, receptor: Receptor::Flat };
+        let origin = ReceptorFrame::new(&point, scene).origin;
+        let direction = |index| {
+            let set = Sampler::new(0, 1 + source as u32, index, 0).set(Dimensions::Camera);
+            let sample = light.sample(position - scene.origin, sampler::first_pair(&set))?;
+            let is_above = sample.direction.dot(facing) > 0.0;
+            let connection = is_above.then(|| caster.connect(origin, light, &sample, MediumStack::default()))??;
+            (connection.value > 0.0).then_some(sample.direction)
+        };
+        (0..samples).filter_map(direction).collect()
     }
 
     /// Returns the unit direction in world space from a point to the middle of a light's emitter, or to a sun; none for

@@ -1,10 +1,12 @@
 //! Figures: people, by parameters. `figures` makes their meshes.
 
 mod body;
+mod gaze;
 mod parameter;
 mod pose;
 
 pub use body::{Body, Expression, Face};
+pub use gaze::Gaze;
 pub use parameter::{Parameter, ParameterSet};
 pub use pose::{Arm, Leg, Pose, SEAT_RANGE_M, Torso};
 
@@ -88,6 +90,8 @@ pub struct Figure {
     pub expression: Expression,
     /// Pose.
     pub pose: Pose,
+    /// What its eyes follow.
+    pub gaze: Gaze,
     /// Upper garment.
     pub top: Top,
     /// Lower garment.
@@ -105,7 +109,7 @@ pub struct Figure {
 impl Figure {
     /// Returns every value that the mesh depends on, as bits: the key of caches.
     fn key(&self) -> Vec<u32> {
-        let Figure { body, face, expression, pose, top, bottom, hair, beard, seed, extent } = self;
+        let Figure { body, face, expression, pose, gaze, top, bottom, hair, beard, seed, extent } = self;
         let Pose { seat_m, torso, arms, legs } = pose;
         let mut key = vec![
             *top as u32,
@@ -116,6 +120,7 @@ impl Figure {
             *extent as u32,
             seat_m.is_some().into(),
         ];
+        key.extend(gaze.key());
         let mut add = |values: Vec<f32>| key.extend(values.into_iter().map(|v| (v + 0.0).to_bits()));
         add(vec![seat_m.unwrap_or_default()]);
         [body.values(), face.values(), expression.values(), torso.values()].into_iter().for_each(&mut add);

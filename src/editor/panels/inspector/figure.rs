@@ -2,17 +2,18 @@
 
 use crate::editor::ui::widgets::{row, section, swatch};
 use crate::figures::{self, NamedExpression, NamedPose, SKIN_TONES};
-use crate::jobs::FaceLighting;
+use crate::jobs::{Catchlight, Face};
 use crate::scene::{
-    Arm, Beard, Body, Bottom, Figure, HairStyle, Leg, Object, Parameter, ParameterSet, SEAT_RANGE_M, Shape, Top,
+    Arm, Beard, Body, Bottom, Figure, Gaze, HairStyle, Leg, Object, Parameter, ParameterSet, SEAT_RANGE_M, Scene,
+    Shape, Top,
 };
 use eframe::egui::{Color32, ComboBox, Label, Sense, Slider, TextStyle, Ui, vec2};
 
-/// Draws the lighting pattern on a figure's face. Its height does not depend on the text: what is below stays where it is
-/// in a drag.
-pub(super) fn pattern_row(ui: &mut Ui, lighting: Option<Result<&FaceLighting, &str>>) {
-    let text = match lighting {
-        Some(Ok(lighting)) => lighting.to_string(),
+/// Draws the lighting pattern on a figure's face, and its catchlights. The height does not depend on the texts: what is
+/// below stays where it is in a drag.
+pub(super) fn face_rows(ui: &mut Ui, face: Option<Result<&Face, &str>>) {
+    let text = match face {
+        Some(Ok(face)) => face.lighting.to_string(),
         Some(Err(message)) => message.to_owned(),
         None => "Checking\u{2026}".to_owned(),
     };
@@ -22,11 +23,33 @@ pub(super) fn pattern_row(ui: &mut Ui, lighting: Option<Result<&FaceLighting, &s
         ui.set_min_height(3.0 * ui.text_style_height(&TextStyle::Body));
         ui.add(Label::new(text).wrap())
     });
+    let tip = "The lights that are reflected in the eyes, as on a clock that the camera sees. Surrounds and surfaces that \
+               glow do not count";
+    let face = face.and_then(Result::ok);
+    row(ui, "Catchlights", tip, |ui| {
+        ui.set_min_height(2.0 * ui.text_style_height(&TextStyle::Body));
+        draw_iris(ui, face.map_or(&[], |face| &face.catchlights));
+        ui.add(Label::new(face.map(Face::catchlight_line).unwrap_or_default()).wrap())
+    });
+}
+
+/// Draws an iris with the catchlights in their places.
+fn draw_iris(ui: &mut Ui, catchlights: &[Catchlight]) {
+    let size = 2.0 * ui.text_style_height(&TextStyle::Body);
+    let (rect, _) = ui.allocate_exact_size(vec2(size, size), Sense::hover());
+    let (middle, radius) = (rect.center(), size / 2.0);
+    let painter = ui.painter_at(rect);
+    painter.circle_filled(middle, radius, Color32::from_rgb(96, 74, 56));
+    painter.circle_filled(middle, radius * 0.4, Color32::from_rgb(18, 16, 15));
+    for Catchlight { place, .. } in catchlights {
+        painter.circle_filled(middle + vec2(place.x, -place.y) * radius, radius * 0.16, Color32::WHITE);
+    }
 }
 
 /// Draws the sections of an object that is a figure.
-pub(super) fn figure_ui(ui: &mut Ui, object: &mut Object) {
+pub(super) fn figure_ui(ui: &mut Ui, scene: &Scene, object: &mut Object) {
     section(ui, "Person", true, |ui| person_rows(ui, object));
+    let falls_short = figures::gaze_falls_short(scene, object);
     let Shape::Figure(figure) = &mut object.shape else { return };
     section(ui, "Face", false, |ui| set_rows(ui, &mut figure.face));
     section(ui, "Expression", false, |ui| {
@@ -36,7 +59,10 @@ pub(super) fn figure_ui(ui: &mut Ui, object: &mut Object) {
         });
         set_rows(ui, &mut figure.expression);
     });
-    section(ui, "Pose", true, |ui| pose_rows(ui, figure));
+    section(ui, "Pose", true, |ui| {
+        gaze_row(ui, scene, &mut figure.gaze, falls_short);
+        pose_rows(ui, figure);
+    });
     section(ui, "Clothes and hair", false, |ui| clothes_rows(ui, figure));
 }
 
@@ -71,6 +97,19 @@ fn person_rows(ui: &mut Ui, object: &mut Object) {
     });
 }
 
+/// Draws what the eyes follow. `falls_short`: they are turned as far as eyes go, and do not meet it.
+fn gaze_row(ui: &mut Ui, scene: &Scene, gaze: &mut Gaze, falls_short: bool) {
+    let tip = "The eyes keep on it while it moves, the figure moves, or its head turns";
+    row(ui, "Looks at", tip, |ui| {
+        let lights = scene.lights.iter().map(|light| (light.name.as_str(), Gaze::Light(light.id)));
+        let choices = [("Ahead, as posed", Gaze::Pose), ("The camera", Gaze::Camera)].into_iter().chain(lights);
+        picker(ui, "gaze", choices, gaze);
+    });
+    if falls_short {
+        row(ui, "", "", |ui| ui.weak("Eyes do not turn so far: turn the head, too"));
+    }
+}
+
 fn pose_rows(ui: &mut Ui, figure: &mut Figure) {
     row(ui, "Pose", "A starting point for the sliders below", |ui| {
         picker(ui, "pose", NamedPose::ALL.into_iter().map(|p| (p.label(), p.pose())), &mut figure.pose);
@@ -88,7 +127,10 @@ fn pose_rows(ui: &mut Ui, figure: &mut Figure) {
             }
         });
     }
-    section(ui, "Head and body", true, |ui| set_rows(ui, &mut pose.torso));
+    section(ui, "Head and body", true, |ui| {
+        let follows = figure.gaze != Gaze::Pose;
+        rows_of(ui, &mut pose.torso, |parameter| !(follows && parameter.name.starts_with("gaze")));
+    });
     for (name, arm) in ["Left arm", "Right arm"].into_iter().zip(&mut pose.arms) {
         section(ui, name, false, |ui| set_rows::<Arm>(ui, arm));
     }
@@ -127,8 +169,15 @@ fn clothes_rows(ui: &mut Ui, figure: &mut Figure) {
 
 /// Draws a slider for each parameter of a set.
 fn set_rows<S: ParameterSet>(ui: &mut Ui, set: &mut S) {
+    rows_of(ui, set, |_| true);
+}
+
+/// Draws a slider for some parameters of a set.
+fn rows_of<S: ParameterSet>(ui: &mut Ui, set: &mut S, is_shown: impl Fn(&Parameter) -> bool) {
     for (value, parameter) in set.values_mut().into_iter().zip(S::PARAMETERS) {
-        row(ui, parameter.label, "", |ui| slider(ui, value, parameter));
+        if is_shown(parameter) {
+            row(ui, parameter.label, "", |ui| slider(ui, value, parameter));
+        }
     }
 }
 
@@ -146,7 +195,7 @@ fn slider(ui: &mut Ui, value: &mut f32, parameter: &Parameter) {
 }
 
 /// Draws a list of named values. One that is none of them is shown as "Own".
-fn picker<T: PartialEq>(ui: &mut Ui, id: &str, choices: impl Iterator<Item = (&'static str, T)>, value: &mut T) {
+fn picker<'a, T: PartialEq>(ui: &mut Ui, id: &str, choices: impl Iterator<Item = (&'a str, T)>, value: &mut T) {
     let choices: Vec<(&str, T)> = choices.collect();
     let current = choices.iter().find(|(_, choice)| choice == value).map_or("Own", |(name, _)| name);
     ComboBox::from_id_salt(id).selected_text(current).show_ui(ui, |ui| {

@@ -1,6 +1,6 @@
 //! The inspector of a figure, prop or backdrop.
 
-use super::figure::{figure_ui, pattern_row};
+use super::figure::{face_rows, figure_ui};
 use super::material::{material_group, material_rows, preset_name};
 use super::{InspectorContext, text_ui, title};
 use crate::editor::commands::command::Command;
@@ -34,9 +34,9 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Obj
     match object.shape {
         Shape::Figure(_) => {
             if original.visible {
-                pattern_row(ui, context.patterns.lighting(id));
+                face_rows(ui, context.patterns.face(id));
             }
-            figure_ui(ui, &mut object);
+            figure_ui(ui, scene, &mut object);
         }
         _ => section(ui, "Shape and size", true, |ui| shape_rows(ui, assets, &mut object)),
     }
