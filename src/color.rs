@@ -119,7 +119,7 @@ pub fn display_srgb8(rgb: [f32; 3]) -> [u8; 3] {
 /// Values that are codes stay as they are.
 pub fn dithered_srgb8(rgb: [f32; 3], [x, y]: [u32; 2]) -> [u8; 3] {
     let stripes = (0.067_110_56 * x as f32 + 0.005_837_15 * y as f32).fract();
-    let noise = ((52.982_918_9 * stripes).fract() - 0.5) * DITHER_CODES;
+    let noise = ((52.982_92 * stripes).fract() - 0.5) * DITHER_CODES;
     rgb.map(|c| (srgb_encode(tone_curve(c)) * 255.0 + noise + 0.5) as u8)
 }
 

@@ -38,6 +38,8 @@ const EYES_FORWARD: f32 = 0.043;
 pub struct PosedBody {
     /// Vertices of the body data, metres; the figure stands on height 0.
     pub positions: Vec<Vec3>,
+    /// From the skeleton's space to the object's: the figure stands on the floor, with its eyes above the origin.
+    pub shift: Vec3,
     /// World from rest for the bones.
     transforms: Vec<Affine3A>,
     /// Middle of the eyeballs in the rest pose, left and right, and their radius.
@@ -64,7 +66,7 @@ impl PosedBody {
         let to_origin = Affine3A::from_translation(shift);
         positions.iter_mut().for_each(|p| *p += shift);
         transforms.iter_mut().for_each(|t| *t = to_origin * *t);
-        PosedBody { positions, transforms, eyes }
+        PosedBody { positions, shift, transforms, eyes }
     }
 
     /// Returns world from head: origin between the eyes, +Z the direction of the face.

@@ -40,7 +40,8 @@ impl Side {
         }
     }
 
-    fn bone(self, stem: &str) -> String {
+    /// Returns the name of a bone of this side.
+    pub fn bone(self, stem: &str) -> String {
         format!("{stem}.{}", if self == Side::Left { "L" } else { "R" })
     }
 }

@@ -28,6 +28,8 @@ pub enum HandleMode {
     Rotate,
     /// Scale.
     Scale,
+    /// The joints of a figure; other things move.
+    Pose,
 }
 
 /// The renderer of the live view.

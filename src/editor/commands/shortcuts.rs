@@ -38,7 +38,7 @@ const fn ctrl_shift(key: Key) -> KeyboardShortcut {
 }
 
 /// All key bindings, in the order of the list. Of two with the same key, the one with more modifiers comes first.
-pub const KEY_BINDINGS: [KeyBinding; 38] = [
+pub const KEY_BINDINGS: [KeyBinding; 39] = [
     bind(ctrl_shift(Key::S), || Command::SaveAs, "Save the studio to another file"),
     bind(ctrl_shift(Key::Z), || Command::Redo, "Do the last step again"),
     bind(
@@ -67,6 +67,7 @@ pub const KEY_BINDINGS: [KeyBinding; 38] = [
     bind(key(Key::M), || Command::SetHandles(HandleMode::Move), "Handles that move"),
     bind(key(Key::T), || Command::SetHandles(HandleMode::Rotate), "Handles that turn"),
     bind(key(Key::Z), || Command::SetHandles(HandleMode::Scale), "Handles that size"),
+    bind(key(Key::J), || Command::SetHandles(HandleMode::Pose), "Handles that pose a person, at its joints"),
     bind(key(Key::G), || Command::ToggleSnap, "Snap handles to 0.1 m and 15\u{b0} (Ctrl: the other way round)"),
     bind(
         key(Key::P),

@@ -147,10 +147,11 @@ fn view_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
 pub const SNAP_TIP: &str = "Handles go in steps of 0.1 m and 15\u{b0}; with Ctrl the other way round";
 
 /// The kinds of transform handles, with label and tooltip.
-pub const HANDLES: [(HandleMode, &str, &str); 3] = [
+pub const HANDLES: [(HandleMode, &str, &str); 4] = [
     (HandleMode::Move, "Move", "Handles that move the selected thing"),
     (HandleMode::Rotate, "Turn", "Handles that turn the selected thing; a light aimed at a thing swings round it"),
     (HandleMode::Scale, "Size", "Handles that scale the selected thing"),
+    (HandleMode::Pose, "Pose", "Joints of the selected person: drag a hand, a foot, the head"),
 ];
 
 fn render_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {

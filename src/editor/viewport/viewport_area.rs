@@ -20,11 +20,12 @@ use crate::editor::viewport::overlays::markers;
 use crate::editor::viewport::studio_view::StudioView;
 use crate::editor::viewport::tools::click_pick;
 use crate::editor::viewport::tools::handle_pointer::HandlePointer;
+use crate::editor::viewport::tools::joint_handles::JointHandles;
 use crate::editor::viewport::tools::marquee_selection::MarqueeSelection;
 use crate::editor::viewport::tools::place_light_drag::PlaceLightDrag;
 use crate::editor::viewport::tools::transform_handles::{HandleView, TransformHandles};
 use crate::preview::{Overlay, Pick};
-use crate::scene::{Camera, CameraFrame, Scene};
+use crate::scene::{Camera, CameraFrame, Object, Scene, Shape};
 use eframe::egui::{self, Align2, Color32, EventFilter, FontId, Pos2, Rect, Response, RichText, Sense, Ui, vec2};
 use glam::{Vec2, Vec3};
 
@@ -62,6 +63,7 @@ pub struct Viewport {
     /// The traced view.
     pub traced_view: TracedView,
     handles: TransformHandles,
+    joints: JointHandles,
     marquee: Option<MarqueeSelection>,
 }
 
@@ -76,6 +78,7 @@ impl Viewport {
             preview,
             traced_view,
             handles: TransformHandles::default(),
+            joints: JointHandles::default(),
             marquee: None,
         }
     }
@@ -84,18 +87,20 @@ impl Viewport {
     /// drag.
     pub fn is_dragging(&self) -> bool {
         let is_placing = self.place_light.as_ref().is_some_and(PlaceLightDrag::is_dragging);
-        self.handles.is_dragging() || is_placing || self.marquee.is_some()
+        let handles = self.handles.is_dragging() || self.joints.is_dragging();
+        handles || is_placing || self.marquee.is_some()
     }
 
     /// Returns true if the pointer is on a handle.
     pub fn is_over_handle(&self) -> bool {
-        self.handles.wants_pointer()
+        self.handles.wants_pointer() || self.joints.wants_pointer()
     }
 
     /// Cancels a drag of handles, a light feature or a box; the button may still be down.
     pub fn cancel_drag(&mut self) {
         self.marquee = None;
         self.handles.cancel();
+        self.joints.cancel();
         if let Some(place_light) = &mut self.place_light {
             place_light.cancel();
         }
@@ -114,6 +119,7 @@ impl Viewport {
         self.place_light = self.place_light.take().filter(|place_light| Some(place_light.placing().light) == chosen);
         if let Some(place_light) = &mut self.place_light {
             self.handles.reset();
+            self.joints.reset();
             self.marquee = None;
             if !place_light.drag(ui, &response, input.document, &frame, out) {
                 self.place_light = None;
@@ -170,7 +176,7 @@ impl Viewport {
             _ => (self.view, input.selection.centre(scene)),
         };
         let before = view;
-        let kept_aim = steer(ui, response, &mut view, pivot, self.handles.wants_pointer());
+        let kept_aim = steer(ui, response, &mut view, pivot, self.is_over_handle());
         if view == before {
             return;
         }
@@ -199,6 +205,7 @@ impl Viewport {
         let items = items_with_handles(scene, input);
         let Some(position) = ui.input(|i| i.pointer.latest_pos()).filter(|_| !items.is_empty()) else {
             self.handles.reset();
+            self.joints.reset();
             return;
         };
         let on_cross = input.central_view == CentralView::Studio && axis_widget::place(rect).contains(position);
@@ -211,6 +218,12 @@ impl Viewport {
         });
         let keys = if self.handles.is_dragging() { ui.input(|i| i.events.clone()) } else { Vec::new() };
         let view = HandleView { frame, rect };
+        if let Some(figure) = posed_figure(scene, input) {
+            self.handles.reset();
+            out.extend(self.joints.update(figure, view, pointer).map(Command::Apply));
+            return;
+        }
+        self.joints.reset();
         if let Some(action) = self.handles.update(scene, &items, input.handles, view, pointer, &keys) {
             out.push(Command::Apply(action));
         }
@@ -225,7 +238,7 @@ impl Viewport {
         input: ViewportInput<'_>,
         out: &mut Vec<Command>,
     ) {
-        let taken = self.handles.wants_pointer();
+        let taken = self.is_over_handle();
         if let Some(chosen) = MarqueeSelection::drag(&mut self.marquee, ui, response, taken, frame, input.document) {
             let adds = ui.input(|i| i.modifiers.shift || i.modifiers.command);
             if !adds {
@@ -252,7 +265,7 @@ impl Viewport {
     ) {
         let Some(position) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return };
         let (alt, adds) = ui.input(|i| (i.modifiers.alt, i.modifiers.shift || i.modifiers.command));
-        if self.handles.wants_pointer() || alt {
+        if self.is_over_handle() || alt {
             return;
         }
         let item = self.under(ui, response.rect, frame, input.document.scene(), position);
@@ -342,6 +355,7 @@ impl Viewport {
         } else if !items_with_handles(scene, input).is_empty() {
             let pointer = ui.input(|i| i.pointer.latest_pos());
             self.handles.paint(&painter, pointer);
+            self.joints.paint(&painter);
         }
         if let Some(marquee) = &self.marquee {
             marquee.paint(&painter);
@@ -400,6 +414,13 @@ impl Viewport {
             ..Overlay::default()
         }
     }
+}
+
+/// Returns the figure whose joints are handles: the selected one, if it is alone and not locked.
+fn posed_figure<'a>(scene: &'a Scene, input: ViewportInput<'_>) -> Option<&'a Object> {
+    let [Item::Object(id)] = items_with_handles(scene, input)[..] else { return None };
+    let is_posed = |object: &&Object| input.handles == HandleMode::Pose && matches!(object.shape, Shape::Figure(_));
+    scene.object(id).filter(is_posed)
 }
 
 /// Returns the selected items that have handles: those with a position that are not locked, without the camera in its

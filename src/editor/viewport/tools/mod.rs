@@ -1,9 +1,10 @@
-//! Tools of the viewport: selection by click and box, transform handles with typed amounts, placing a light by a
-//! feature.
+//! Tools of the viewport: selection by click and box, transform handles with typed amounts, joints of figures, placing
+//! a light by a feature.
 
 pub mod click_pick;
 pub mod floor_handle;
 pub mod handle_pointer;
+pub mod joint_handles;
 pub mod marquee_selection;
 pub mod place_light;
 pub mod place_light_drag;

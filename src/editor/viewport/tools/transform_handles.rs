@@ -126,7 +126,7 @@ impl TransformHandles {
         pointer: HandlePointer,
     ) -> Option<DragTransform> {
         let mut config = config(handle, frame, rect, pointer.snap, place);
-        let on_floor = handle == HandleMode::Move
+        let on_floor = matches!(handle, HandleMode::Move | HandleMode::Pose)
             && items.iter().any(|item| matches!(item, Item::Object(_)))
             && frame.forward().y.abs() > MIN_PITCH_SIN;
         if on_floor {
@@ -242,7 +242,7 @@ fn target(scene: &Scene, items: &[Item], handle: HandleMode, place: Vec3) -> Tra
 
 fn config(handle: HandleMode, frame: &CameraFrame, rect: Rect, snap: bool, place: Vec3) -> GizmoConfig {
     let modes: EnumSet<GizmoMode> = match handle {
-        HandleMode::Move => GizmoMode::all_translate(),
+        HandleMode::Move | HandleMode::Pose => GizmoMode::all_translate(),
         HandleMode::Rotate => GizmoMode::all_rotate(),
         HandleMode::Scale => GizmoMode::all_scale(),
     };

@@ -159,7 +159,7 @@ pub fn pivot(scene: &Scene, items: &[Item], handle: HandleMode) -> Option<Vec3> 
     let place = item.position(scene)?;
     let light = if let Item::Light(id) = item { scene.light(*id) } else { None };
     match (handle, item) {
-        (HandleMode::Move, _)
+        (HandleMode::Move | HandleMode::Pose, _)
         | (HandleMode::Rotate, Item::Object(_) | Item::Camera)
         | (HandleMode::Scale, Item::Object(_)) => Some(place),
         (HandleMode::Rotate, _) => light.map(|light| match light.aim {
