@@ -51,7 +51,7 @@ pub fn build(figure: &Figure) -> FigureMeshes {
     build::build(BodyData::shipped(), figure)
 }
 
-/// Returns the meshes of a figure from those of another one, if the two differ in the gaze alone; see [`build`].
+/// Returns the meshes of a figure from those of another one, if the two differ in the gaze alone; see [`build()`].
 pub fn build_from(built: &Figure, meshes: &FigureMeshes, figure: &Figure) -> Option<FigureMeshes> {
     let same = gaze::without_gaze(built) == gaze::without_gaze(figure);
     same.then(|| build::with_other_gaze(BodyData::shipped(), meshes, figure))
