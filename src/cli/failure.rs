@@ -1,5 +1,8 @@
 //! Failures of commands, each with its exit code.
 
+use crate::io::SaveError;
+use std::io::ErrorKind;
+
 /// The reason why a command ended without its result.
 #[derive(Debug)]
 pub enum Failure {
@@ -13,6 +16,21 @@ pub enum Failure {
 
 impl<E: Into<anyhow::Error>> From<E> for Failure {
     fn from(error: E) -> Self {
-        Failure::Input(error.into())
+        let error = error.into();
+        if is_of_machine(&error) { Failure::Machine(error) } else { Failure::Input(error) }
     }
+}
+
+/// Returns true if a disk or a folder is the reason: it is full, read-only or not the user's.
+fn is_of_machine(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| {
+        let system = match cause.downcast_ref::<SaveError>() {
+            Some(SaveError::Write { error, .. }) => Some(error),
+            _ => cause.downcast_ref(),
+        };
+        system.is_some_and(|error: &std::io::Error| {
+            use ErrorKind::{FileTooLarge, PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull};
+            matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge | ReadOnlyFilesystem | PermissionDenied)
+        })
+    })
 }

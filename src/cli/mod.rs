@@ -70,9 +70,13 @@ pub fn run(started: Instant) -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version are results; anything else is wrong input. A closed pipe is not an error.
-            let _ = error.print();
-            return ExitCode::from(u8::from(error.use_stderr()));
+            // Help and version are results; anything else is wrong input.
+            let printed = error.print();
+            if error.use_stderr() {
+                return ExitCode::from(1);
+            }
+            terminal::note_written(printed);
+            return exit_code(terminal::finish());
         }
     };
     let result = match arguments.command {
@@ -86,6 +90,11 @@ pub fn run(started: Instant) -> ExitCode {
         Some(Command::Truth(arguments)) => truth::run(&arguments),
         Some(Command::BakeFigures(arguments)) => bake::run(&arguments),
     };
+    exit_code(result.and_then(|()| terminal::finish()))
+}
+
+/// Prints the error of a command, if any, and returns the exit code.
+fn exit_code(result: Result<(), Failure>) -> ExitCode {
     let (error, code) = match result {
         Ok(()) => return ExitCode::SUCCESS,
         Err(Failure::Interrupted) => return ExitCode::from(130),

@@ -58,7 +58,7 @@ impl AssetCopy {
     /// If another file has the name, or if a file can't be read or written.
     pub fn make(&self) -> Result<(), AssetError> {
         let AssetCopy { from, to } = self;
-        let failed = |source| AssetError::Copy { source, path: from.clone() };
+        let failed = |error| AssetError::Copy { error, path: from.clone() };
         if to.exists() {
             let is_same = std::fs::read(from).map_err(failed)? == std::fs::read(to).map_err(failed)?;
             return if is_same { Ok(()) } else { Err(AssetError::NameTaken { path: to.clone() }) };
@@ -78,7 +78,7 @@ fn find_in(path: &str, folder: Option<&Path>) -> Result<PathBuf, AssetError> {
     }
     let folder = folder.ok_or_else(|| AssetError::NoFolder { path: path.to_owned() })?;
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let read_error = |source| AssetError::Read { source, path: folder.join(path) };
+    let read_error = |error| AssetError::Read { error, path: folder.join(path) };
     let root = folder.canonicalize().map_err(read_error)?;
     let file = root.join(path).canonicalize().map_err(read_error)?;
     if file.starts_with(&root) { Ok(file) } else { Err(bad_path("a link leads out of the scene's folder")) }

@@ -17,7 +17,7 @@ pub(super) fn write(path: &Path, content: &[u8]) -> Result<(), SaveError> {
     if !folder.is_dir() {
         return Err(SaveError::NoFolder(folder));
     }
-    replace(&target, &folder, content).map_err(|source| SaveError::Write { source, path: path.to_owned() })
+    replace(&target, &folder, content).map_err(|error| SaveError::Write { error, path: path.to_owned() })
 }
 
 fn folder_of(path: &Path) -> PathBuf {

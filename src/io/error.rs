@@ -2,7 +2,29 @@
 
 use crate::scene::Finding;
 use std::fmt;
+use std::io::ErrorKind;
 use std::path::PathBuf;
+
+/// Returns the reason of a failed file operation in words, without the system's error number and without the names of
+/// temporary files.
+pub fn reason(error: &std::io::Error) -> String {
+    let text = error.to_string();
+    // An error of the system, to which `tempfile` adds the path of its file; others have words of their own.
+    let Some((system, _)) = text.split_once(" (os error") else { return text };
+    let words = match error.kind() {
+        ErrorKind::NotFound => "there is no such file",
+        ErrorKind::PermissionDenied => "no permission",
+        ErrorKind::StorageFull => "the disk is full",
+        ErrorKind::QuotaExceeded => "the disk quota is used up",
+        ErrorKind::ReadOnlyFilesystem => "the disk is read-only",
+        ErrorKind::InvalidFilename => "the name is too long, or not one that the disk allows",
+        ErrorKind::IsADirectory => "it is a folder",
+        ErrorKind::NotADirectory => "a part of its path is a file, not a folder",
+        ErrorKind::BrokenPipe => "the program that reads it has ended",
+        _ => system,
+    };
+    words.to_owned()
+}
 
 /// One mistake in the text of a scene file.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,10 +58,10 @@ impl fmt::Display for Problem {
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// The file could not be read.
-    #[error("can't read the scene: {source}: {}", path.display())]
+    #[error("can't read the scene: {}: {}", reason(error), path.display())]
     Read {
         /// The reason.
-        source: std::io::Error,
+        error: std::io::Error,
         /// The file.
         path: PathBuf,
     },
@@ -120,10 +142,10 @@ pub enum SaveError {
         path: PathBuf,
     },
     /// The file can't be written: a full disk, a read-only folder.
-    #[error("can't write: {source}: {}", path.display())]
+    #[error("can't write: {}: {}", reason(error), path.display())]
     Write {
         /// The reason.
-        source: std::io::Error,
+        error: std::io::Error,
         /// The file.
         path: PathBuf,
     },
@@ -133,10 +155,10 @@ pub enum SaveError {
 #[derive(Debug, thiserror::Error)]
 pub enum AssetError {
     /// The file could not be read.
-    #[error("can't read it: {source}: {}", path.display())]
+    #[error("can't read it: {}: {}", reason(error), path.display())]
     Read {
         /// The reason.
-        source: std::io::Error,
+        error: std::io::Error,
         /// The file.
         path: PathBuf,
     },
@@ -155,10 +177,10 @@ pub enum AssetError {
         path: String,
     },
     /// A file could not be copied beside the scene.
-    #[error("can't copy it beside the studio: {source}: {}", path.display())]
+    #[error("can't copy it beside the studio: {}: {}", reason(error), path.display())]
     Copy {
         /// The reason.
-        source: std::io::Error,
+        error: std::io::Error,
         /// The file.
         path: PathBuf,
     },

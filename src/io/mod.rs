@@ -31,7 +31,7 @@ mod unique_names;
 
 pub use asset_files::{AssetCopy, AssetFiles};
 pub use assets::{load_assets, load_assets_from, missing_assets};
-pub use error::{AssetError, LoadError, Problem, SaveError};
+pub use error::{AssetError, LoadError, Problem, SaveError, reason};
 pub use importers::{
     MODEL_FORMATS, ModelFormat, import_model, model_extension_list, model_extensions, model_format_names,
 };

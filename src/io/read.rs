@@ -9,7 +9,7 @@ use std::path::Path;
 /// # Errors
 /// If the file can't be read, is no regular file, or is larger than the limit.
 pub(super) fn read_limited(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, AssetError> {
-    let read_error = |source| AssetError::Read { source, path: path.to_owned() };
+    let read_error = |error| AssetError::Read { error, path: path.to_owned() };
     // Opening a pipe would block until another program writes to it.
     let metadata = std::fs::metadata(path).map_err(read_error)?;
     if !metadata.is_file() {

@@ -53,7 +53,7 @@ pub(super) fn complete(scene: Scene, mut warnings: Vec<Finding>, folder: Option<
 }
 
 fn read_text(path: &Path) -> Result<String, LoadError> {
-    let read_error = |source| LoadError::Read { source, path: path.to_owned() };
+    let read_error = |error| LoadError::Read { error, path: path.to_owned() };
     let file = std::fs::File::open(path).map_err(read_error)?;
     let bytes = file.metadata().map_err(read_error)?.len();
     if bytes > FILE_LIMIT_BYTES {

@@ -26,7 +26,7 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<Texture, AssetError> {
     let bad = |message: String| AssetError::BadTexture { message, path: path.to_owned() };
     let mut reader = image::ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()
-        .map_err(|source| AssetError::Read { source, path: path.to_owned() })?;
+        .map_err(|error| AssetError::Read { error, path: path.to_owned() })?;
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(SIDE_LIMIT);
     limits.max_image_height = Some(SIDE_LIMIT);

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 mod chart;
+mod output;
 
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
