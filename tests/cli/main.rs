@@ -3,9 +3,9 @@
 
 mod chart;
 mod output;
+mod signals;
 
 use serde_json::Value;
-use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
@@ -179,27 +179,6 @@ fn a_time_limit_ends_a_render_with_a_picture() {
     // Without a limit the picture would have 65 536 samples; half a second is enough for some hundreds.
     assert!((1..16_384).contains(&report["spp"].as_u64().unwrap()), "{report}");
     assert!(folder.path().join("x.png").exists());
-}
-
-#[cfg(unix)]
-#[test]
-fn ctrl_c_exits_with_code_130_and_keeps_the_picture() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut child = Command::new(env!("CARGO_BIN_EXE_catchlight"))
-        .current_dir(folder.path())
-        .env("RUST_LOG", "catchlight=debug")
-        .args(["render", "split", "-o", "x.png", "--size", "64x96", "--spp", "100000", "--json"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // Wait for the first samples; the whole render would take minutes.
-    let mut log = BufReader::new(child.stderr.take().unwrap()).lines();
-    assert!(log.any(|line| line.unwrap().contains("every pixel has a sample")));
-    Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    let status = child.wait().unwrap();
-    assert_eq!(status.code(), Some(130));
-    assert_eq!(image::open(folder.path().join("x.png")).unwrap().to_rgb8().dimensions(), (64, 96));
 }
 
 #[test]

@@ -14,7 +14,7 @@ use crate::io::{self, Loaded, PictureInfo};
 use crate::jobs::{self, RenderInput, RenderMonitor, RenderStage, Rendered};
 use crate::raytrace::{Film, GeometryCache, NonFiniteReport, RenderControl, RenderScene, Settings};
 use anyhow::anyhow;
-use interrupt::cancel_on_ctrl_c;
+use interrupt::cancel_on_signals;
 use progress_bar::ProgressDisplay;
 use rayon::ThreadPool;
 use report::RenderReport;
@@ -24,9 +24,9 @@ use std::time::Instant;
 
 /// Renders, writes the picture and prints the statistics.
 pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
-    arguments.check_output()?;
     let control: Arc<RenderControl> = Arc::default();
-    let interrupted = cancel_on_ctrl_c(&control)?;
+    let interrupted = cancel_on_signals(&control)?;
+    arguments.check_output()?;
     let pool = input::thread_pool(arguments.threads())?;
     // Load the studio.
     let load_started = Instant::now();

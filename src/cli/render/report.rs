@@ -47,7 +47,7 @@ pub struct RenderReport {
     pub noise_stops: Option<f32>,
     /// Non-finite contributions that were shown black.
     pub nonfinite: u64,
-    /// Ended by Ctrl+C.
+    /// Ended by Ctrl+C or another signal.
     pub interrupted: bool,
     /// Name of the written file.
     pub output: String,
