@@ -17,6 +17,7 @@ mod light_crowd;
 mod live_view_times;
 mod meter;
 mod percentile;
+mod picture_output;
 mod presets;
 mod preview;
 mod preview_look;

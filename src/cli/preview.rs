@@ -57,8 +57,8 @@ pub struct Arguments {
 /// Renders and writes, or measures and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(output) = &arguments.output {
-        // Check the file's name before a picture is drawn for it.
-        crate::io::PictureFormat::of(output)?;
+        // Check the file before a picture is drawn for it.
+        crate::io::check_picture_file(output)?;
     }
     let mut loaded = input::load_studio(&arguments.scene)?;
     if arguments.traced {

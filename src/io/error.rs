@@ -120,8 +120,11 @@ pub enum SaveError {
     #[error("there is no such folder: {}", .0.display())]
     NoFolder(PathBuf),
     /// The path names a folder, or nothing.
-    #[error("this is no file name: {}", .0.display())]
+    #[error("this is a folder, or no file name: {}", .0.display())]
     NoFileName(PathBuf),
+    /// The path is that of a device, a socket, or a pipe where no pipe can be used.
+    #[error("this is a device or a pipe, not a file: {}", .0.display())]
+    NotRegular(PathBuf),
     /// The extension of a picture's name belongs to no format that is written.
     #[error("a picture's name ends in .png, .jpg or .exr, not in {ending:?}: {}", path.display())]
     UnknownEnding {

@@ -26,6 +26,7 @@ mod presets;
 mod read;
 mod ron_v1;
 mod scene_file;
+mod state_folder;
 mod texture;
 mod unique_names;
 
@@ -36,7 +37,11 @@ pub use importers::{
     MODEL_FORMATS, ModelFormat, import_model, model_extension_list, model_extensions, model_format_names,
 };
 pub use model::{ImportedModel, ModelLimits};
-pub use picture::{PictureFormat, PictureInfo, export_layers, export_picture, export_shown, read_exr};
+pub use picture::{
+    EncodedPicture, PictureFormat, PictureInfo, check_picture_file, encode_layers, export_layers, export_picture,
+    export_shown, read_exr,
+};
 pub use presets::{Preset, find_preset, presets};
 pub use scene_file::{FILE_LIMIT_BYTES, FORMAT, Loaded, load_scene, parse_scene, save_scene, write_scene};
+pub use state_folder::state_folder;
 pub use texture::TEXTURE_EXTENSIONS;

@@ -3,6 +3,8 @@
 
 mod chart;
 mod output;
+mod picture_files;
+mod running_render;
 mod signals;
 
 use serde_json::Value;

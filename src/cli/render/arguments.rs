@@ -1,7 +1,7 @@
 //! Arguments of `catchlight render`, and the settings that follow from them.
 
 use crate::cli::input;
-use crate::io::PictureFormat;
+use crate::io::{self, PictureFormat};
 use crate::raytrace::{Method, SampleId, Settings, Shortcut};
 use crate::scene::Camera;
 use anyhow::anyhow;
@@ -118,7 +118,7 @@ const DEFAULT_SPP: u32 = 64;
 const MAX_SPP: u32 = 65_536;
 
 impl Arguments {
-    /// Checks the output file's name before a picture is rendered for it.
+    /// Checks that the output file can be written, before a picture is rendered for it.
     pub fn check_output(&self) -> anyhow::Result<()> {
         let Some(output) = &self.output else { return Ok(()) };
         let format = PictureFormat::of(output)?;
@@ -127,11 +127,7 @@ impl Arguments {
                 return Err(anyhow!("{option} needs a picture that ends in .exr, not {}", output.display()));
             }
         }
-        let folder = output.parent().filter(|p| !p.as_os_str().is_empty());
-        if let Some(folder) = folder.filter(|p| !p.is_dir()) {
-            return Err(anyhow!("the folder of the picture does not exist: {}", folder.display()));
-        }
-        Ok(())
+        Ok(io::check_picture_file(output)?)
     }
 
     /// Returns the picture file; empty only with --explain-pixel.

@@ -9,6 +9,7 @@ mod report;
 pub use arguments::Arguments;
 
 use super::failure::Failure;
+use super::picture_output::{self, WrittenPicture};
 use super::{input, terminal, zbuffer};
 use crate::io::{self, Loaded, PictureInfo};
 use crate::jobs::{self, RenderInput, RenderMonitor, RenderStage, Rendered};
@@ -50,7 +51,7 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
     }
     let nonfinite = film.nonfinite();
     warn_of_nonfinite(arguments, &settings, &nonfinite);
-    write(arguments, &loaded, film, &settings)?;
+    let written = write(arguments, &loaded, film, &settings)?;
     // Print the statistics.
     let interrupted = interrupted.load(Ordering::Relaxed);
     let seconds = |then: Option<Instant>| then.map_or(0.0, |then| (then - started).as_secs_f64());
@@ -77,9 +78,10 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
         noise_stops: Some(film.noise_stops()).filter(|n| n.is_finite()),
         nonfinite: nonfinite.count,
         interrupted,
-        output: arguments.output().display().to_string(),
+        output: written.path.display().to_string(),
     };
     report.print(arguments.json)?;
+    written.finish()?;
     if interrupted { Err(Failure::Interrupted) } else { Ok(()) }
 }
 
@@ -139,8 +141,9 @@ fn keep_coarse(
     const EARLY: &str = "interrupted before the first sample of every pixel was done";
     match coarse.filter(|film| film.spp() > 0) {
         Some(film) => {
-            write(arguments, loaded, film, settings)?;
+            let written = write(arguments, loaded, film, settings)?;
             terminal::progress(format_args!("{EARLY}; a coarse picture is kept"));
+            written.finish()?;
         }
         None => terminal::progress(format_args!("{EARLY}; nothing is written")),
     }
@@ -167,7 +170,7 @@ fn draw_zbuffer(
     let trace_s = draw_started.elapsed().as_secs_f64();
     let info = PictureInfo::new(&loaded.scene, "zbuffer", side * side, arguments.seed.into());
     let first_picture_s = started.elapsed().as_secs_f64();
-    io::export_picture(arguments.output(), &picture, &info)?;
+    let written = picture_output::write(&io::encode_layers(arguments.output(), &picture, &[], None, &info)?)?;
     let report = RenderReport {
         width,
         height,
@@ -190,18 +193,19 @@ fn draw_zbuffer(
         noise_stops: None,
         nonfinite: 0,
         interrupted: false,
-        output: arguments.output().display().to_string(),
+        output: written.path.display().to_string(),
     };
-    Ok(report.print(arguments.json)?)
+    report.print(arguments.json)?;
+    written.finish()
 }
 
 /// Writes the picture in the requested size, for a film of any size.
-fn write(arguments: &Arguments, loaded: &Loaded, film: &Film, settings: &Settings) -> anyhow::Result<()> {
+fn write(arguments: &Arguments, loaded: &Loaded, film: &Film, settings: &Settings) -> Result<WrittenPicture, Failure> {
     let info = PictureInfo::new(&loaded.scene, film.method(), film.spp(), arguments.seed.into());
     let (width, height) = (settings.width, settings.height);
     let picture = film.develop(&loaded.scene).resized(width, height);
     let layers = if arguments.layers { film.develop_layers(&loaded.scene) } else { Vec::new() };
     let layers: Vec<_> = layers.into_iter().map(|(name, layer)| (name, layer.resized(width, height))).collect();
     let aovs = film.aovs().map(|aovs| aovs.resized(width, height));
-    Ok(io::export_layers(arguments.output(), &picture, &layers, aovs.as_ref(), &info)?)
+    picture_output::write(&io::encode_layers(arguments.output(), &picture, &layers, aovs.as_ref(), &info)?)
 }

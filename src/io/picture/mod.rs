@@ -1,6 +1,9 @@
 //! Writes pictures: tone-mapped PNG and JPEG, scene-linear EXR.
 
+mod encoded;
 mod exr_file;
+
+pub use encoded::EncodedPicture;
 
 use super::atomic;
 use super::error::SaveError;
@@ -89,6 +92,20 @@ pub fn export_layers(
     aovs: Option<&AovPicture>,
     info: &PictureInfo,
 ) -> Result<(), SaveError> {
+    encode_layers(path, picture, layers, aovs, info)?.write()
+}
+
+/// Encodes a picture as [`export_layers`] does, for a file that is written later.
+///
+/// # Errors
+/// If the extension is unknown or the picture empty, or if layers or AOVs differ in size from the picture.
+pub fn encode_layers(
+    path: &Path,
+    picture: &Picture,
+    layers: &[(String, Picture)],
+    aovs: Option<&AovPicture>,
+    info: &PictureInfo,
+) -> Result<EncodedPicture, SaveError> {
     let format = PictureFormat::of(path)?;
     check_size("the picture", picture)?;
     for (name, layer) in layers {
@@ -105,7 +122,7 @@ pub fn export_layers(
         PictureFormat::Exr => exr_file::encode(picture, layers, aovs, info),
     };
     let content = content.map_err(|message| SaveError::Encode { message, path: path.to_owned() })?;
-    atomic::write(path, &content)
+    Ok(EncodedPicture::new(path, content))
 }
 
 fn check_size(name: &str, picture: &Picture) -> Result<(), SaveError> {
@@ -132,7 +149,16 @@ pub fn export_shown(path: &Path, shown: &image::RgbImage) -> Result<(), SaveErro
         encode_rgb8(shown.width(), shown.height(), shown.as_raw(), format)
     };
     let content = content.map_err(|message| SaveError::Encode { message, path: path.to_owned() })?;
-    atomic::write(path, &content)
+    atomic::send(path, &content)
+}
+
+/// Checks that a picture can be written to a file, before it is rendered: its extension, its folder, permissions.
+///
+/// # Errors
+/// As [`export_picture`], as far as they can be known before.
+pub fn check_picture_file(path: &Path) -> Result<(), SaveError> {
+    PictureFormat::of(path)?;
+    atomic::check(path)
 }
 
 /// Encodes the tone-mapped picture as PNG or JPEG.
