@@ -1,7 +1,7 @@
 //! Input of the subcommands: studios, sizes, points, thread pools.
 
 use super::failure::Failure;
-use super::terminal;
+use super::{terminal, warnings};
 use crate::io::{self, Loaded};
 use anyhow::{Context, anyhow};
 use glam::Vec3;
@@ -10,6 +10,10 @@ use std::path::Path;
 
 /// Largest picture edge, pixels.
 const LARGEST_EDGE: u32 = 16384;
+/// Most threads that share a core.
+const THREADS_PER_CORE: usize = 4;
+/// Threads that a machine of any size may start.
+const MOST_THREADS: usize = 16;
 
 /// Loads a studio: a file, or a shipped one by name. Warnings go to stderr.
 pub fn load_studio(scene: &Path) -> anyhow::Result<Loaded> {
@@ -18,9 +22,7 @@ pub fn load_studio(scene: &Path) -> anyhow::Result<Loaded> {
         Some(preset) => preset.load().with_context(|| format!("the shipped studio {}", preset.file_name))?,
         None => io::load_scene(scene)?,
     };
-    for warning in &loaded.warnings {
-        terminal::warning(format_args!("{}: {}", warning.place, warning.message));
-    }
+    warnings::lines(&loaded.warnings).iter().for_each(terminal::warning);
     Ok(loaded)
 }
 
@@ -61,8 +63,15 @@ pub fn parse_vec3(text: &str) -> Result<Vec3, String> {
     if vector.is_finite() { Ok(vector) } else { Err(wrong()) }
 }
 
-/// Returns a pool of `threads` threads, or of one per core for 0.
+/// Returns a pool of `threads` threads, or of one per core for 0. More threads than the cores can use are left out,
+/// with a warning: they would spend the time on waiting for each other.
 pub fn thread_pool(threads: usize) -> Result<ThreadPool, Failure> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let most = MOST_THREADS.max(THREADS_PER_CORE * cores);
+    if threads > most {
+        terminal::warning(format_args!("{threads} threads are too many for {cores} cores; {most} are used"));
+    }
+    let threads = threads.min(most);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.map_err(|error| Failure::Machine(anyhow!(error).context("can't start the threads")))
 }

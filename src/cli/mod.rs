@@ -24,6 +24,7 @@ mod preview_look;
 mod render;
 mod terminal;
 mod truth;
+mod warnings;
 #[cfg_attr(not(feature = "gui"), path = "no_window.rs")]
 mod window;
 mod zbuffer;

@@ -19,11 +19,15 @@ pub fn load_assets(scene: &Scene, folder: Option<&Path>, assets: &mut Assets) ->
 /// As [`load_assets`], for a scene with imported files that lie elsewhere.
 pub fn load_assets_from(scene: &Scene, files: AssetFiles<'_>, assets: &mut Assets) -> Vec<Finding> {
     let missing = missing_assets(scene, assets);
-    let loaded: Vec<Result<Asset, AssetError>> = missing.par_iter().map(|(_, key)| load(key, files)).collect();
+    let loaded: Vec<Result<LoadedAsset, AssetError>> = missing.par_iter().map(|(_, key)| load(key, files)).collect();
     let mut warnings = Vec::new();
     for ((field, key), result) in missing.into_iter().zip(loaded) {
         match result {
-            Ok(asset) => assets.insert(key, asset),
+            Ok(loaded) => {
+                assets.insert(key, loaded.asset);
+                let place = scene.place_of(field);
+                warnings.extend(loaded.warnings.into_iter().map(|message| Finding::warning(place.clone(), message)));
+            }
             Err(error) => {
                 let message = format!("{}: {error}", consequence(&key));
                 warnings.push(Finding::warning(scene.place_of(field), message));
@@ -41,23 +45,34 @@ pub fn missing_assets(scene: &Scene, assets: &Assets) -> Vec<(AssetField, AssetK
     missing.map(|(field, asset)| (field, asset.into_owned())).collect()
 }
 
+/// An asset and the warnings of its loader.
+struct LoadedAsset {
+    asset: Asset,
+    warnings: Vec<String>,
+}
+
 /// Loads an asset with the loader of its kind.
-fn load(key: &AssetKey, files: AssetFiles<'_>) -> Result<Asset, AssetError> {
+fn load(key: &AssetKey, files: AssetFiles<'_>) -> Result<LoadedAsset, AssetError> {
     match key {
         AssetRef::Mesh(path) => {
             let model = importers::import_model(&files.find(path)?)?;
-            Ok(Asset::Mesh(Arc::new(model.mesh)))
+            let warnings = model.warnings.into_iter().map(|warning| format!("{path}: {warning}")).collect();
+            Ok(LoadedAsset { asset: Asset::Mesh(Arc::new(model.mesh)), warnings })
         }
-        AssetRef::Figure(figure) => Ok(Asset::Figure(figures::meshes(figure))),
+        AssetRef::Figure(figure) => {
+            Ok(LoadedAsset { asset: Asset::Figure(figures::meshes(figure)), warnings: Vec::new() })
+        }
         AssetRef::Texture(reference) => {
             let file = files.find(reference.path())?;
-            let image = match **reference {
+            let decoded = match **reference {
                 TextureRef::File(_) => texture::load(&file)?,
                 TextureRef::Embedded { image, .. } => {
                     texture::decode(&importers::embedded_image(&file, image)?, &file)?
                 }
             };
-            Ok(Asset::Texture(Arc::new(image)))
+            let warnings = decoded.warning.map(|warning| format!("{}: {warning}", reference.path()));
+            let asset = Asset::Texture(Arc::new(decoded.texture));
+            Ok(LoadedAsset { asset, warnings: warnings.into_iter().collect() })
         }
     }
 }
@@ -92,6 +107,35 @@ mod tests {
     }
 
     #[test]
+    fn a_photo_that_is_cut_off_and_the_warnings_of_an_importer_are_warnings_of_the_studio() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut jpeg = Vec::new();
+        let pixels =
+            image::RgbImage::from_fn(64, 64, |x, y| image::Rgb((x * y + 7 * y).to_le_bytes()[..3].try_into().unwrap()));
+        image::codecs::jpeg::JpegEncoder::new(&mut jpeg).encode_image(&pixels).unwrap();
+        std::fs::write(folder.path().join("wall.jpg"), &jpeg[..jpeg.len() * 3 / 4]).unwrap();
+        std::fs::write(folder.path().join("cup.obj"), "mtllib cup.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        let mut scene = room_with(TextureRef::file("wall.jpg"));
+        scene.objects.push(crate::scene::Object {
+            id: crate::scene::ObjectId(0),
+            name: "Cup".to_owned(),
+            transform: crate::scene::Transform::default(),
+            shape: crate::scene::Shape::MeshFile { path: "cup.obj".to_owned() },
+            material: Material::default(),
+            part_materials: Vec::new(),
+            visible: true,
+            locked: false,
+        });
+        let mut assets = Assets::default();
+        let warnings: Vec<String> =
+            load_assets(&scene, Some(folder.path()), &mut assets).iter().map(ToString::to_string).collect();
+        let [wall, cup] = &warnings[..] else { panic!("{warnings:?}") };
+        assert!(wall.starts_with("room.floor.base_color_texture: wall.jpg: the file is cut off"), "{wall}");
+        assert!(cup.starts_with("objects[0] \"Cup\" shape.path: cup.obj: the materials \"cup.mtl\""), "{cup}");
+        assert_eq!(assets.iter().count(), 2, "both are used");
+    }
+
+    #[test]
     fn a_texture_from_bytes_inside_a_model_needs_no_file() {
         let embedded = TextureRef::Embedded { model: "chair.glb".to_owned(), image: 2 };
         let scene = room_with(embedded.clone());
@@ -101,7 +145,7 @@ mod tests {
         let pixels = image::RgbImage::from_pixel(3, 2, image::Rgb([9, 8, 7]));
         pixels.write_to(&mut png, image::ImageFormat::Png).unwrap();
         let image = texture::decode(png.get_ref(), Path::new("chair.glb")).unwrap();
-        assets.insert_texture(embedded.clone(), Arc::new(image));
+        assets.insert_texture(embedded.clone(), Arc::new(image.texture));
         assert!(missing_assets(&scene, &assets).is_empty());
         assert_eq!(load_assets(&scene, None, &mut assets), []);
         assert_eq!(assets.texture(&embedded).unwrap().rgb, [[9, 8, 7]; 6]);

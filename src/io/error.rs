@@ -26,6 +26,18 @@ pub fn reason(error: &std::io::Error) -> String {
     words.to_owned()
 }
 
+/// Cuts the middle out of a message that quotes a text of a file whose length nothing bounds.
+pub(super) fn cut(message: String) -> String {
+    const ENDS: [usize; 2] = [120, 80];
+    let length = message.chars().count();
+    if length <= ENDS[0] + ENDS[1] {
+        return message;
+    }
+    let head: String = message.chars().take(ENDS[0]).collect();
+    let tail: String = message.chars().skip(length - ENDS[1]).collect();
+    format!("{head} ... {tail}")
+}
+
 /// One mistake in the text of a scene file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {

@@ -16,6 +16,7 @@ mod atomic;
 mod error;
 mod figures;
 mod importers;
+mod jpeg_end;
 mod layout;
 mod locate;
 mod model;

@@ -1,6 +1,6 @@
 //! Words the errors of a scene file: field, value, line, and the nearest known word for a misspelt one.
 
-use super::error::Problem;
+use super::error::{Problem, cut};
 use super::locate;
 use super::ron_v1::UnknownName;
 use crate::scene::Finding;
@@ -62,7 +62,7 @@ pub(super) fn explain_name(text: &str, unknown: &UnknownName) -> Problem {
 /// Returns a problem at a range of bytes.
 pub(super) fn problem_at(text: &str, field: String, message: String, range: std::ops::Range<usize>) -> Problem {
     let (line, column) = locate::line_and_column(text, range.start);
-    Problem { field, message, line, column, text: shorten(text.get(range).unwrap_or_default()) }
+    Problem { field: cut(field), message: cut(message), line, column, text: shorten(text.get(range).unwrap_or_default()) }
 }
 
 fn leading_space(text: &str) -> usize {

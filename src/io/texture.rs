@@ -1,6 +1,7 @@
 //! Decodes textures: PNG and JPEG, with limits.
 
 use super::error::AssetError;
+use super::jpeg_end::is_cut_off;
 use super::read::read_limited;
 use crate::scene::Texture;
 use std::io::Cursor;
@@ -16,13 +17,21 @@ const SIDE_LIMIT: u32 = 16_384;
 /// Largest memory of the decoder, bytes.
 const MEMORY_LIMIT_BYTES: u64 = 1 << 30;
 
+/// A texture from an image file.
+#[derive(Debug)]
+pub(super) struct DecodedTexture {
+    pub texture: Texture,
+    /// A sentence, if the file is damaged.
+    pub warning: Option<&'static str>,
+}
+
 /// Loads an image file as 8-bit sRGB.
-pub(super) fn load(path: &Path) -> Result<Texture, AssetError> {
+pub(super) fn load(path: &Path) -> Result<DecodedTexture, AssetError> {
     decode(&read_limited(path, FILE_LIMIT_BYTES)?, path)
 }
 
 /// Decodes the bytes of a PNG or JPEG image to 8-bit sRGB. `path` is the file that the bytes come from, for errors.
-pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<Texture, AssetError> {
+pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<DecodedTexture, AssetError> {
     let bad = |message: String| AssetError::BadTexture { message, path: path.to_owned() };
     let mut reader = image::ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()
@@ -38,7 +47,8 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<Texture, AssetError> {
         return Err(bad("it has no pixels".to_owned()));
     }
     let rgb = picture.pixels().map(|pixel| pixel.0).collect();
-    Ok(Texture { width, height, rgb })
+    let warning = is_cut_off(bytes).then_some("the file is cut off; what is missing of the picture is grey");
+    Ok(DecodedTexture { texture: Texture { width, height, rgb }, warning })
 }
 
 #[cfg(test)]
@@ -56,7 +66,8 @@ mod tests {
         )
         .unwrap();
         pixels.save(&path).unwrap();
-        let texture = load(&path).unwrap();
+        let DecodedTexture { texture, warning } = load(&path).unwrap();
+        assert_eq!(warning, None);
         assert_eq!((texture.width, texture.height), (3, 2));
         assert_eq!(texture.rgb[5], [100, 100, 7]);
     }

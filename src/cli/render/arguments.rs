@@ -7,6 +7,7 @@ use crate::scene::Camera;
 use anyhow::anyhow;
 use clap::ValueEnum;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::time::Duration;
 
 /// Arguments of `render`.
@@ -27,11 +28,11 @@ pub struct Arguments {
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub spp: Option<u32>,
     /// Sample each part of the picture until its noise is below this many stops, such as 0.05.
-    #[arg(long, value_name = "STOPS", value_parser = positive)]
+    #[arg(long, value_name = "STOPS", value_parser = positive::<f32>)]
     noise: Option<f32>,
     /// Stop after this many seconds.
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
-    time: Option<f32>,
+    #[arg(long, value_name = "SECONDS", value_parser = positive::<f64>)]
+    time: Option<f64>,
     /// Maximum number of bounces [default: what the studio's surfaces need].
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1000))]
     max_depth: Option<u32>,
@@ -107,9 +108,14 @@ impl MethodName {
     }
 }
 
-fn positive(text: &str) -> Result<f32, String> {
-    let value: f32 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
-    if value > 0.0 && value.is_finite() { Ok(value) } else { Err(format!("must be more than 0, not {text}")) }
+fn positive<T: FromStr + Into<f64> + Copy>(text: &str) -> Result<T, String> {
+    let value: T = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    let number: f64 = value.into();
+    match number > 0.0 {
+        true if number.is_finite() => Ok(value),
+        true => Err(format!("{text} is too large")),
+        false => Err(format!("must be more than 0, not {text}")),
+    }
 }
 
 /// Samples per pixel where nothing else ends the render.
@@ -164,7 +170,7 @@ impl Arguments {
 
     /// Returns the time limit. A limit beyond what a duration holds is none.
     pub fn time_limit(&self) -> Option<Duration> {
-        self.time.and_then(|seconds| Duration::try_from_secs_f32(seconds).ok())
+        self.time.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
     }
 
     /// Returns the number of threads; 0 for all cores.

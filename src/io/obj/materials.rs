@@ -1,5 +1,6 @@
 //! Materials from the MTL files of an OBJ model.
 
+use crate::io::error::cut;
 use crate::io::read::read_limited;
 use crate::scene::{Material, MaterialTextures, TextureRef, path_complaint};
 use std::collections::{HashMap, HashSet};
@@ -53,7 +54,7 @@ impl MaterialLibrary {
                 self.materials.extend(materials);
                 self.by_name.extend(by_name.into_iter().map(|(name, index)| (name, before + index)));
             }
-            Err(reason) => self.warnings.push(format!("the materials {name:?} are left out: {reason}")),
+            Err(reason) => self.warnings.push(cut(format!("the materials {name:?} are left out: {reason}"))),
         }
         self.loaded.insert(name.to_owned());
     }

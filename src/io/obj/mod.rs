@@ -1,6 +1,7 @@
 //! OBJ models: one mesh with a part for each group, materials from MTL files.
 
 mod chunks;
+mod continued_lines;
 mod groups;
 mod lines;
 mod materials;
@@ -8,7 +9,7 @@ mod mesh_index;
 mod normals;
 mod weld;
 
-use super::error::AssetError;
+use super::error::{AssetError, cut};
 use super::model::{ImportedModel, ModelLimits};
 use super::read::read_limited;
 use crate::scene::Mesh;
@@ -28,9 +29,11 @@ const COORDINATE_LIMIT_M: f32 = 1e6;
 /// If the file can't be read, exceeds the limits, or has a mistake; the message names the line of a malformed one.
 pub(super) fn import(path: &Path, limits: &ModelLimits) -> Result<ImportedModel, AssetError> {
     let bytes = read_limited(path, limits.file_bytes)?;
+    // Some programs begin text files with a byte order mark.
+    let text = continued_lines::joined(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes));
     let bad_model = |message: String| AssetError::BadModel { format: "OBJ", message, path: path.to_owned() };
-    let elements = chunks::parse(&bytes, limits.triangles).map_err(|error| match error {
-        ReadError::BadLine(message) => bad_model(message),
+    let elements = chunks::parse(&text, limits.triangles).map_err(|error| match error {
+        ReadError::BadLine(message) => bad_model(cut(message)),
         ReadError::TooLarge(bytes) => AssetError::TooLarge {
             what: "the file's number of bytes",
             amount: bytes as u64,

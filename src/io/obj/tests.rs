@@ -30,6 +30,21 @@ fn a_quad_becomes_two_triangles_with_normals() {
 }
 
 #[test]
+fn a_byte_order_mark_and_continued_lines_are_read() {
+    // Regression: the first vertex was lost behind the mark, and a polygon on two lines was refused.
+    let imported = import(&format!("\u{feff}{QUAD}f 1 2 \\\n3 4\n")).unwrap();
+    assert_eq!((imported.mesh.positions.len(), imported.mesh.triangles.len()), (4, 2));
+    let error = import(&format!("{QUAD}f 1 2 \\\n3 4\nf 1 2 9\n")).unwrap_err().to_string();
+    assert!(error.contains("line 7: the face names vertex 9"), "{error}");
+}
+
+#[test]
+fn a_word_of_ten_megabytes_makes_a_short_message() {
+    let error = import(&format!("v {} 0 0\n", "x".repeat(10_000_000))).unwrap_err().to_string();
+    assert!(error.len() < 500 && error.contains("is no number"), "{} bytes", error.len());
+}
+
+#[test]
 fn relative_and_forward_indices_are_resolved() {
     assert_eq!(import(&format!("f 1 2 3\n{QUAD}f -4 -3 -2\n")).unwrap().mesh.triangles.len(), 2);
 }
