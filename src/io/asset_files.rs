@@ -1,9 +1,12 @@
 //! Finds the files that a scene refers to, and copies them beside a saved scene.
 
 use super::error::AssetError;
-use crate::scene::{Scene, path_complaint};
-use std::collections::{BTreeMap, BTreeSet};
+use super::{atomic, obj, texture};
+use crate::scene::{AssetRef, Assets, Mesh, Scene, Texture, TextureRef, path_complaint};
+use std::collections::BTreeMap;
+use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The places of a scene's asset files.
 #[derive(Clone, Copy, Debug)]
@@ -14,13 +17,24 @@ pub struct AssetFiles<'a> {
     pub imported: &'a BTreeMap<String, PathBuf>,
 }
 
-/// A copy of a file that a save has to make.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A file that a save has to write beside the scene.
+#[derive(Clone, Debug, PartialEq)]
 pub struct AssetCopy {
-    /// The file.
-    pub from: PathBuf,
+    /// Its content.
+    pub from: AssetSource,
     /// Its place beside the saved scene.
     pub to: PathBuf,
+}
+
+/// The content of an asset's file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AssetSource {
+    /// That of another file.
+    File(PathBuf),
+    /// A mesh whose file no longer exists.
+    Mesh(Arc<Mesh>),
+    /// A texture whose file no longer exists.
+    Texture(Arc<Texture>),
 }
 
 impl<'a> AssetFiles<'a> {
@@ -41,32 +55,70 @@ impl<'a> AssetFiles<'a> {
         find_in(&name, file.parent())
     }
 
-    /// Returns the copies that make every file of the scene lie where a scene file in `folder` looks for it. Files that
-    /// do not exist are left out.
-    pub fn copies_into(&self, folder: &Path, scene: &Scene) -> Vec<AssetCopy> {
-        let paths: BTreeSet<String> = scene.assets().filter_map(|(_, asset)| asset.path().map(str::to_owned)).collect();
-        let source = |path: &str| self.imported.get(path).cloned().or_else(|| Some(self.folder?.join(path)));
-        let copies = paths.iter().filter_map(|path| Some(AssetCopy { from: source(path)?, to: folder.join(path) }));
-        copies.filter(|copy| copy.from != copy.to && copy.from.exists()).collect()
+    /// Returns the copies that make every file of the scene lie where a scene file in `folder` looks for it. A file that
+    /// was deleted after it was loaded is written from `assets`. Files that exist in neither are left out.
+    pub fn copies_into(&self, folder: &Path, scene: &Scene, assets: &Assets) -> Vec<AssetCopy> {
+        let by_path: BTreeMap<String, AssetRef<'_>> =
+            scene.assets().filter_map(|(_, asset)| Some((asset.path()?.to_owned(), asset))).collect();
+        let copy = |(path, asset): (String, AssetRef<'_>)| {
+            let file = self.imported.get(&path).cloned().or_else(|| Some(self.folder?.join(&path)));
+            let to = folder.join(&path);
+            match file.filter(|file| file.exists()) {
+                Some(file) => (file != to).then_some(AssetCopy { from: AssetSource::File(file), to }),
+                None => Some(AssetCopy { from: in_memory(&asset, assets)?, to }),
+            }
+        };
+        by_path.into_iter().filter_map(copy).collect()
     }
 }
 
 impl AssetCopy {
-    /// Copies the file, and makes its folder if need be. A file that is there already is never overwritten.
+    /// Writes the file, and makes its folder if need be. A file that is there already is never overwritten, and one that
+    /// could not be written as a whole is removed.
     ///
     /// # Errors
     /// If another file has the name, or if a file can't be read or written.
     pub fn make(&self) -> Result<(), AssetError> {
         let AssetCopy { from, to } = self;
-        let failed = |error| AssetError::Copy { error, path: from.clone() };
+        let failed = |error| match from {
+            AssetSource::File(file) => AssetError::Copy { error, path: file.clone() },
+            AssetSource::Mesh(_) | AssetSource::Texture(_) => AssetError::Copy { error, path: to.clone() },
+        };
         if to.exists() {
-            let is_same = std::fs::read(from).map_err(failed)? == std::fs::read(to).map_err(failed)?;
+            let is_same = from.content(to).map_err(failed)? == std::fs::read(to).map_err(failed)?;
             return if is_same { Ok(()) } else { Err(AssetError::NameTaken { path: to.clone() }) };
         }
         if let Some(folder) = to.parent() {
             std::fs::create_dir_all(folder).map_err(failed)?;
         }
-        std::fs::copy(from, to).map(|_| ()).map_err(failed)
+        match from {
+            AssetSource::File(file) => File::open(file).and_then(|file| atomic::write_new(to, file)),
+            memory => memory.content(to).and_then(|content| atomic::write_new(to, &content[..])),
+        }
+        .map_err(failed)
+    }
+}
+
+impl AssetSource {
+    /// Returns the bytes of a file at `to`.
+    fn content(&self, to: &Path) -> std::io::Result<Vec<u8>> {
+        match self {
+            AssetSource::File(file) => std::fs::read(file),
+            AssetSource::Mesh(mesh) => Ok(obj::write(mesh).into_bytes()),
+            AssetSource::Texture(image) => texture::encode(image, to).map_err(std::io::Error::other),
+        }
+    }
+}
+
+/// Returns a loaded asset as the content of its file. None for a format that is not written, such as a model with
+/// images in its file.
+fn in_memory(asset: &AssetRef<'_>, assets: &Assets) -> Option<AssetSource> {
+    match asset {
+        AssetRef::Mesh(path) if path.to_lowercase().ends_with(".obj") => assets.mesh(path).map(AssetSource::Mesh),
+        AssetRef::Texture(reference) if matches!(**reference, TextureRef::File(_)) => {
+            assets.texture(reference).map(AssetSource::Texture)
+        }
+        _ => None,
     }
 }
 
@@ -87,7 +139,7 @@ fn find_in(path: &str, folder: Option<&Path>) -> Result<PathBuf, AssetError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Material, MaterialTextures, Room, TextureRef};
+    use crate::scene::{Material, MaterialTextures, Room};
 
     #[test]
     fn paths_stay_in_the_folder() {
@@ -126,13 +178,33 @@ mod tests {
         };
         let room = Room { floor: textured(0), walls: textured(1), ..Room::default() };
         let scene = Scene { room: Some(room), ..Scene::default() };
-        let copies = files.copies_into(home.path(), &scene);
+        let copies = files.copies_into(home.path(), &scene, &Assets::default());
         let to = home.path().join("models/chair.glb");
-        assert_eq!(copies, [AssetCopy { from: file, to: to.clone() }]);
+        assert_eq!(copies, [AssetCopy { from: AssetSource::File(file), to: to.clone() }]);
         copies[0].make().unwrap();
         copies[0].make().unwrap();
         std::fs::write(&to, "another chair").unwrap();
         assert!(matches!(copies[0].make(), Err(AssetError::NameTaken { .. })));
         assert_eq!(std::fs::read_to_string(&to).unwrap(), "another chair");
+    }
+
+    #[test]
+    fn a_texture_whose_file_was_deleted_is_written_from_memory() {
+        let home = tempfile::tempdir().unwrap();
+        let texture = Arc::new(Texture { width: 2, height: 1, rgb: vec![[200, 100, 50], [1, 2, 3]] });
+        let imported = BTreeMap::from([("textures/wood.png".to_owned(), home.path().join("gone.png"))]);
+        let floor = Material {
+            textures: MaterialTextures::with_base_color(TextureRef::file("textures/wood.png")),
+            ..Material::default()
+        };
+        let scene = Scene { room: Some(Room { floor, ..Room::default() }), ..Scene::default() };
+        let mut assets = Assets::default();
+        let files = AssetFiles { folder: None, imported: &imported };
+        assert_eq!(files.copies_into(home.path(), &scene, &assets), [], "it was never loaded");
+        assets.insert_texture(TextureRef::file("textures/wood.png"), texture.clone());
+        let copies = files.copies_into(home.path(), &scene, &assets);
+        copies.iter().for_each(|copy| copy.make().unwrap());
+        let written = texture::load(&home.path().join("textures/wood.png")).unwrap();
+        assert_eq!(written.texture.rgb, texture.rgb);
     }
 }

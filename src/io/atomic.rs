@@ -2,7 +2,7 @@
 
 use super::error::SaveError;
 use std::fs::Metadata;
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 use tempfile::NamedTempFile;
@@ -34,6 +34,25 @@ pub(super) fn send(path: &Path, content: &[u8]) -> Result<(), SaveError> {
     sent.map_err(|error| SaveError::Write { error, path: path.to_owned() })
 }
 
+/// Writes what `content` reads to a new file at `path`, or nothing: on failure there is no file.
+///
+/// # Errors
+/// If `content` can't be read to its end, if the file can't be written, or if there is a file of this name.
+pub(super) fn write_new(path: &Path, mut content: impl Read) -> io::Result<()> {
+    let folder = folder_of(path);
+    let mut file = temporary_file(&folder)?;
+    io::copy(&mut content, file.as_file_mut())?;
+    file.as_file().sync_all()?;
+    // Some file systems of memory cards have no way to rename to a name that must be free.
+    let placed = file.persist_noclobber(path).or_else(|error| match error.error.kind() {
+        ErrorKind::AlreadyExists => Err(error.error),
+        _ => error.file.persist(path).map_err(|error| error.error),
+    });
+    sync_folder(&folder);
+    remove_left_over(&folder);
+    placed.map(drop)
+}
+
 /// Fails if [`send`] to `path` would fail now. Leaves no file.
 pub(super) fn check(path: &Path) -> Result<(), SaveError> {
     let target = Target::of(path)?;
@@ -43,10 +62,10 @@ pub(super) fn check(path: &Path) -> Result<(), SaveError> {
     if target.is_special() {
         return Err(SaveError::NotRegular(path.to_owned()));
     }
-    target.check_older().and_then(|()| temporary_file(&target.folder).map(drop)).map_err(|error| SaveError::Write {
-        error,
-        path: path.to_owned(),
-    })
+    target
+        .check_older()
+        .and_then(|()| temporary_file(&target.folder).map(drop))
+        .map_err(|error| SaveError::Write { error, path: path.to_owned() })
 }
 
 /// The file to write.
@@ -219,6 +238,25 @@ mod tests {
         let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
         names.sort();
         assert_eq!(names, [".catchlight-notes.txt", ".catchlight-running.tmp", "a.ron", "catchlight-mine.tmp"]);
+    }
+
+    #[test]
+    fn a_copy_that_a_full_disk_stops_half_way_leaves_no_file() {
+        struct Failing(u32);
+        impl Read for Failing {
+            fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+                self.0 -= 1;
+                if self.0 == 0 { Err(ErrorKind::StorageFull.into()) } else { Ok(bytes.len()) }
+            }
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("cup.obj");
+        assert_eq!(write_new(&path, Failing(3)).unwrap_err().kind(), ErrorKind::StorageFull);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        write_new(&path, &b"whole"[..]).unwrap();
+        assert_eq!(write_new(&path, &b"another"[..]).unwrap_err().kind(), ErrorKind::AlreadyExists);
+        assert_eq!(std::fs::read(&path).unwrap(), b"whole");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
     #[cfg(unix)]

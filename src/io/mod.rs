@@ -31,7 +31,7 @@ mod state_folder;
 mod texture;
 mod unique_names;
 
-pub use asset_files::{AssetCopy, AssetFiles};
+pub use asset_files::{AssetCopy, AssetFiles, AssetSource};
 pub use assets::{load_assets, load_assets_from, missing_assets};
 pub use error::{AssetError, LoadError, Problem, SaveError, reason};
 pub use importers::{

@@ -62,7 +62,13 @@ pub(super) fn explain_name(text: &str, unknown: &UnknownName) -> Problem {
 /// Returns a problem at a range of bytes.
 pub(super) fn problem_at(text: &str, field: String, message: String, range: std::ops::Range<usize>) -> Problem {
     let (line, column) = locate::line_and_column(text, range.start);
-    Problem { field: cut(field), message: cut(message), line, column, text: shorten(text.get(range).unwrap_or_default()) }
+    Problem {
+        field: cut(field),
+        message: cut(message),
+        line,
+        column,
+        text: shorten(text.get(range).unwrap_or_default()),
+    }
 }
 
 fn leading_space(text: &str) -> usize {

@@ -4,6 +4,9 @@ use super::error::AssetError;
 use super::jpeg_end::is_cut_off;
 use super::read::read_limited;
 use crate::scene::Texture;
+use image::codecs::jpeg::JpegEncoder;
+use image::codecs::png::PngEncoder;
+use image::{ExtendedColorType, ImageEncoder};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -49,6 +52,26 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<DecodedTexture, AssetE
     let rgb = picture.pixels().map(|pixel| pixel.0).collect();
     let warning = is_cut_off(bytes).then_some("the file is cut off; what is missing of the picture is grey");
     Ok(DecodedTexture { texture: Texture { width, height, rgb }, warning })
+}
+
+/// Returns the bytes of an image file with a texture, for one whose file no longer exists: JPEG for a path that ends so,
+/// otherwise PNG.
+pub(super) fn encode(texture: &Texture, path: &Path) -> Result<Vec<u8>, String> {
+    const JPEG_QUALITY: u8 = 98;
+    let mut file = Vec::new();
+    let rgb = texture.rgb.as_flattened();
+    let color = ExtendedColorType::Rgb8;
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let encoded = match ending.as_str() {
+        "jpg" | "jpeg" => JpegEncoder::new_with_quality(&mut file, JPEG_QUALITY).write_image(
+            rgb,
+            texture.width,
+            texture.height,
+            color,
+        ),
+        _ => PngEncoder::new(&mut file).write_image(rgb, texture.width, texture.height, color),
+    };
+    encoded.map(|()| file).map_err(|error| error.to_string())
 }
 
 #[cfg(test)]

@@ -82,6 +82,26 @@ fn files_can_be_dropped_and_models_travel_with_the_studio() {
 }
 
 #[test]
+fn a_model_whose_file_was_deleted_after_the_import_is_saved_with_the_studio() {
+    if !has_adapter() {
+        return;
+    }
+    let (desktop, home) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let model = desktop.path().join("pyramid.obj");
+    std::fs::write(&model, PYRAMID).unwrap();
+    let file = home.path().join("studio.ron");
+    let mut window = window_with_answers([file.clone()]);
+    drop_file(&mut window, &model);
+    std::fs::remove_file(&model).unwrap();
+    press(&mut window, Modifiers::COMMAND, Key::S);
+    assert!(errors(&window).is_empty(), "{:?}", errors(&window));
+    let loaded = catchlight::io::load_scene(&file).unwrap();
+    assert_eq!(loaded.warnings, []);
+    let pyramid = loaded.assets.mesh("models/pyramid.obj").unwrap();
+    assert_eq!((pyramid.triangles.len(), pyramid.parts[0].name.as_str()), (4, "Pyramid"));
+}
+
+#[test]
 fn an_invalid_file_is_reported_and_leaves_the_open_studio_unchanged() {
     if !has_adapter() {
         return;

@@ -104,7 +104,7 @@ pub fn load_assets(
 /// Writes the studio and copies its assets beside it.
 pub fn save(document: &Document, path: &Path) -> Result<(), String> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    for copy in document.asset_files().copies_into(folder, document.scene()) {
+    for copy in document.asset_files().copies_into(folder, document.scene(), document.assets()) {
         copy.make().map_err(|e| sentence(&e))?;
     }
     io::save_scene(document.scene(), path).map_err(|e| sentence(&e))

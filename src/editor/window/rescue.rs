@@ -43,7 +43,7 @@ fn write(document: &Document, path: &Path) -> Result<(), String> {
     if document.folder() != Some(folder) {
         std::fs::create_dir(folder).map_err(|error| format!("{} could not be made: {error}", folder.display()))?;
     }
-    for copy in document.asset_files().copies_into(folder, document.scene()) {
+    for copy in document.asset_files().copies_into(folder, document.scene(), document.assets()) {
         // A missing model can be imported again; the lighting cannot be recovered.
         if let Err(error) = copy.make() {
             log::warn!("{error}");
@@ -120,14 +120,13 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_model_does_not_prevent_the_rescue() {
+    fn a_deleted_model_is_rescued_from_memory() {
         let (home, desktop) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
         let model = desktop.path().join("cup.obj");
         let document = changed_studio(None, &model);
         std::fs::remove_file(&model).unwrap();
         let rescued = rescue(&document, &[home.path().to_owned()]).unwrap().unwrap();
-        let loaded = io::load_scene(&rescued).unwrap();
-        assert_eq!(io::write_scene(&loaded.scene), io::write_scene(document.scene()));
+        assert!(holds(&rescued, &document));
     }
 
     #[test]

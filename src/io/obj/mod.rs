@@ -8,6 +8,9 @@ mod materials;
 mod mesh_index;
 mod normals;
 mod weld;
+mod write;
+
+pub(super) use write::write;
 
 use super::error::{AssetError, cut};
 use super::model::{ImportedModel, ModelLimits};
