@@ -15,6 +15,7 @@ mod assets;
 mod atomic;
 mod error;
 mod figures;
+mod file_stamp;
 mod importers;
 mod jpeg_end;
 mod layout;
@@ -25,6 +26,7 @@ mod parse_errors;
 mod picture;
 mod presets;
 mod read;
+mod recovery;
 mod ron_v1;
 mod scene_file;
 mod state_folder;
@@ -34,6 +36,7 @@ mod unique_names;
 pub use asset_files::{AssetCopy, AssetFiles, AssetSource};
 pub use assets::{load_assets, load_assets_from, missing_assets};
 pub use error::{AssetError, LoadError, Problem, SaveError, reason};
+pub use file_stamp::FileStamp;
 pub use importers::{
     MODEL_FORMATS, ModelFormat, import_model, model_extension_list, model_extensions, model_format_names,
 };
@@ -43,6 +46,7 @@ pub use picture::{
     export_shown, read_exr,
 };
 pub use presets::{Preset, find_preset, presets};
+pub use recovery::{RecoveryFolder, RecoveryInfo};
 pub use scene_file::{FILE_LIMIT_BYTES, FORMAT, Loaded, load_scene, parse_scene, save_scene, write_scene};
 pub use state_folder::state_folder;
 pub use texture::TEXTURE_EXTENSIONS;

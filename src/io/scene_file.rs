@@ -52,7 +52,8 @@ pub(super) fn complete(scene: Scene, mut warnings: Vec<Finding>, folder: Option<
     Loaded { scene, assets, warnings }
 }
 
-fn read_text(path: &Path) -> Result<String, LoadError> {
+/// Returns the text of a scene file of at most [`FILE_LIMIT_BYTES`].
+pub(super) fn read_text(path: &Path) -> Result<String, LoadError> {
     let read_error = |error| LoadError::Read { error, path: path.to_owned() };
     let file = std::fs::File::open(path).map_err(read_error)?;
     let bytes = file.metadata().map_err(read_error)?.len();

@@ -26,6 +26,7 @@ mod device;
 mod files;
 mod panels;
 mod placing;
+mod recovery;
 mod rendering;
 mod selection;
 mod sizes;

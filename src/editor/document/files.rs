@@ -1,7 +1,7 @@
 //! Reads and writes studios, models, assets and pictures, with errors as messages to the user.
 
 use crate::editor::document::studio_document::Document;
-use crate::io::{self, AssetFiles, PictureInfo};
+use crate::io::{self, AssetFiles, FileStamp, PictureInfo, RecoveryFolder, RecoveryInfo};
 use crate::jobs::sentence;
 use crate::photo::Picture;
 use crate::scene::{Assets, Material, Mesh, Scene};
@@ -35,6 +35,8 @@ pub struct OpenedStudio {
     pub warnings: Vec<String>,
     /// File; none for a shipped studio.
     pub path: Option<PathBuf>,
+    /// State of the file when it was read; for a recovered studio, when it was read or written last.
+    pub stamp: Option<FileStamp>,
 }
 
 /// An imported model.
@@ -70,6 +72,11 @@ impl StudioSource {
 
 /// Reads a studio with its assets.
 pub fn open(source: &StudioSource) -> Result<Box<OpenedStudio>, String> {
+    // Taken first: a change while the file is read counts as a change.
+    let stamp = match source {
+        StudioSource::File(path) => FileStamp::of(path).ok(),
+        StudioSource::Preset(_) => None,
+    };
     let (loaded, path) = match source {
         StudioSource::File(path) => (io::load_scene(path).map_err(|e| sentence(&e))?, Some(path.clone())),
         StudioSource::Preset(index) => {
@@ -78,7 +85,15 @@ pub fn open(source: &StudioSource) -> Result<Box<OpenedStudio>, String> {
         }
     };
     let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
-    Ok(Box::new(OpenedStudio { scene: loaded.scene, assets: loaded.assets, warnings, path }))
+    Ok(Box::new(OpenedStudio { scene: loaded.scene, assets: loaded.assets, warnings, path, stamp }))
+}
+
+/// Reads an unsaved studio with its assets.
+pub fn recover(folder: &RecoveryFolder, info: &RecoveryInfo) -> Result<Box<OpenedStudio>, String> {
+    let scene = folder.read().map_err(|e| sentence(&e))?;
+    let RecoveryInfo { path, stamp, imported, .. } = info.clone();
+    let (assets, warnings) = load_assets(&scene, path.as_deref().and_then(Path::parent), &Assets::default(), &imported);
+    Ok(Box::new(OpenedStudio { scene, assets, warnings, path, stamp }))
 }
 
 /// Reads a model.

@@ -6,7 +6,7 @@ use crate::editor::document::history::{History, MergeKey};
 use crate::editor::document::item::Item;
 use crate::editor::document::revisions::Revisions;
 use crate::figures;
-use crate::io::{self, AssetFiles};
+use crate::io::{self, AssetFiles, FileStamp};
 use crate::scene::{
     Asset, AssetKey, AssetRef, Assets, Finding, ObjectId, Scene, SceneChange, Severity, Shape, validate,
 };
@@ -20,7 +20,11 @@ pub struct Document {
     scene: Scene,
     assets: Assets,
     path: Option<PathBuf>,
+    /// State of the file when it was read or written last.
+    stamp: Option<FileStamp>,
     saved: Scene,
+    /// The studio counts as changed even where it equals `saved`.
+    is_unsaved: bool,
     history: History,
     revisions: Revisions,
     /// Imported files by asset path, until a save copies them beside the scene.
@@ -81,7 +85,35 @@ impl Document {
 
     /// Returns true if there are unsaved changes.
     pub fn is_dirty(&self) -> bool {
-        self.scene != self.saved
+        self.is_unsaved || self.scene != self.saved
+    }
+
+    /// Returns the state of the file when it was read or written last.
+    pub fn stamp(&self) -> Option<&FileStamp> {
+        self.stamp.as_ref()
+    }
+
+    /// Sets the state of the file when it was read.
+    pub fn set_stamp(&mut self, stamp: Option<FileStamp>) {
+        self.stamp = stamp;
+    }
+
+    /// Returns true if another program has changed the file since it was read or written.
+    pub fn is_changed_outside(&self) -> bool {
+        let (Some(path), Some(stamp)) = (&self.path, &self.stamp) else { return false };
+        stamp.is_outdated(path)
+    }
+
+    /// Keeps the studio although another program has changed its file: it counts as changed until it is saved.
+    pub fn keep_over_file(&mut self) {
+        self.stamp = self.path.as_deref().and_then(|path| FileStamp::of(path).ok());
+        self.is_unsaved = true;
+    }
+
+    /// Marks the studio as one that was never saved, with files imported before.
+    pub fn mark_recovered(&mut self, imported: BTreeMap<String, PathBuf>) {
+        self.imported = imported;
+        self.is_unsaved = true;
     }
 
     /// Returns the undo and redo lists.
@@ -236,7 +268,8 @@ impl Document {
     /// Marks the current scene as saved to `path`.
     pub fn mark_saved(&mut self, path: PathBuf) {
         self.imported.clear();
-        self.saved = self.scene.clone();
+        (self.saved, self.is_unsaved) = (self.scene.clone(), false);
+        self.stamp = FileStamp::of(&path).ok();
         self.path = Some(path);
     }
 }

@@ -1,6 +1,7 @@
 //! The panels around the viewport. Each `*_ui` function draws from the document and pushes commands.
 
 pub mod add;
+pub mod file_change_prompt;
 pub mod help;
 pub mod inspector;
 pub mod menu;
@@ -9,6 +10,7 @@ pub mod outliner;
 pub mod presets;
 pub mod prompts;
 pub mod quality;
+pub mod recovery_prompt;
 pub mod render;
 pub mod status;
 pub mod thumbnails;

@@ -22,6 +22,7 @@ use crate::editor::viewport::viewport_area::{Viewport, ViewportInput};
 use crate::editor::window::app_state::{BackgroundState, Diagnostics, PanelState, ViewState, WindowState};
 use crate::editor::window::dialogs::FileDialogs;
 use crate::editor::window::recent::RecentFiles;
+use crate::editor::window::recovery::Recovery;
 use crate::editor::window::rescue;
 use crate::editor::window::session::Session;
 use crate::jobs::{Clock, Estimate, Forecast, ForecastSubject, Forecaster, MeterJob, PatternJob, RenderOutcome};
@@ -41,13 +42,21 @@ pub struct EditorOptions {
     pub dialogs: FileDialogs,
     /// Folder of the list of recent studios; none keeps it in memory.
     pub settings_folder: Option<PathBuf>,
+    /// Folder where unsaved studios are kept for the case of a crash; none keeps none.
+    pub recovery_folder: Option<PathBuf>,
     /// Start of the program, for the time to the first frame.
     pub started: Instant,
 }
 
 impl Default for EditorOptions {
     fn default() -> Self {
-        EditorOptions { initial: None, dialogs: FileDialogs::Desktop, settings_folder: None, started: Instant::now() }
+        EditorOptions {
+            initial: None,
+            dialogs: FileDialogs::Desktop,
+            settings_folder: None,
+            recovery_folder: None,
+            started: Instant::now(),
+        }
     }
 }
 
@@ -87,13 +96,18 @@ impl App {
             panels: PanelState::new(files::presets()),
             rendering: Rendering::new(geometry.clone()),
             background: BackgroundState::new(Forecaster::new(geometry, Clock::default())),
-            session: Session::new(options.dialogs, RecentFiles::load(options.settings_folder)),
+            session: Session::new(
+                options.dialogs,
+                RecentFiles::load(options.settings_folder),
+                Recovery::new(options.recovery_folder),
+            ),
             toasts: Toasts::default(),
             window: WindowState::default(),
             diagnostics: Diagnostics::new(options.started),
         };
         let first = options.initial.map_or(StudioSource::Preset(0), StudioSource::named);
         app.load(first, ctx);
+        app.look_for_unsaved(ctx);
         app
     }
 
@@ -134,7 +148,16 @@ impl App {
     pub fn rescue(&self) -> Option<Result<PathBuf, String>> {
         let home = directories::UserDirs::new().map(|dirs| dirs.home_dir().to_owned());
         let elsewhere: Vec<PathBuf> = home.into_iter().chain([std::env::temp_dir()]).collect();
-        rescue::rescue(&self.document, &elsewhere)
+        let rescued = rescue::rescue(&self.document, &elsewhere);
+        if matches!(rescued, Some(Ok(_))) {
+            self.end_recovery();
+        }
+        rescued
+    }
+
+    /// Forgets what is kept for the case of a crash, when the user closes the window.
+    pub fn end_recovery(&self) {
+        self.session.recovery.end();
     }
 
     /// Closes a window whose device is lost. It draws nothing until then: egui's painter panics without a device.
@@ -224,6 +247,8 @@ impl App {
         self.take_dialog_answer(out);
         self.take_drops(ctx, out);
         self.take_close_request(ctx);
+        self.check_file_on_focus(ctx);
+        self.keep_unsaved(ctx);
         self.load_wanted_assets(ctx);
         self.rendering.update(self.document.scene(), ctx);
         self.update_forecast();
@@ -399,6 +424,7 @@ impl eframe::App for App {
         }
         // Nothing is visible: pause the tracer.
         self.views.viewport.traced_view.pause();
+        self.keep_unsaved(ctx);
         if let Some(why) = self.views.viewport.preview.lost_device().map(str::to_owned) {
             self.leave_window(ctx, why);
         } else {

@@ -115,6 +115,8 @@ pub struct WindowState {
     pub device_loss: Option<String>,
     /// Time of the last device loss.
     pub last_loss: Option<Instant>,
+    /// The window has the keyboard.
+    pub has_focus: bool,
     /// True once the failure of the current render job has been reported.
     pub render_failure_reported: bool,
 }

@@ -1,6 +1,8 @@
 //! File operations in the background and their results.
 
 use crate::editor::document::files::{ImportedModel, OpenedStudio, StudioSource};
+use crate::editor::window::recovery::Unsaved;
+use crate::io::FileStamp;
 use crate::scene::{AssetKey, Assets};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -15,6 +17,19 @@ pub enum TaskResult {
     Imported(Result<Box<ImportedModel>, String>),
     /// Assets of the scene: those loaded, those requested, and warnings.
     Assets(Assets, BTreeSet<AssetKey>, Vec<String>),
+    /// The unsaved studios of windows that have ended.
+    Unsaved(Vec<Unsaved>),
+    /// A recovered studio or an error.
+    Recovered(Unsaved, Result<Box<OpenedStudio>, String>),
+    /// The studio's file compared with its stamp.
+    FileChecked {
+        /// The file.
+        path: PathBuf,
+        /// The stamp.
+        stamp: FileStamp,
+        /// Another program has changed the file.
+        is_changed: bool,
+    },
     /// A written picture or an error.
     Exported(PathBuf, Result<(), String>),
 }

@@ -2,6 +2,7 @@
 
 use crate::editor::window::app::{App, EditorOptions};
 use crate::editor::window::{event_guard, recent};
+use crate::io;
 use crate::preview::Gpu;
 use eframe::UserEvent;
 use eframe::egui::{Context, Ui, ViewportBuilder, ViewportInfo, Visuals};
@@ -35,8 +36,13 @@ pub enum EditorError {
 pub fn run(initial: Option<PathBuf>) -> Result<(), EditorError> {
     let started = Instant::now();
     check_display()?;
-    let options =
-        EditorOptions { initial, settings_folder: recent::settings_folder(), started, ..EditorOptions::default() };
+    let options = EditorOptions {
+        initial,
+        settings_folder: recent::settings_folder(),
+        recovery_folder: io::state_folder().map(|folder| folder.join("recovery")),
+        started,
+        ..EditorOptions::default()
+    };
     run_windows(options)
 }
 
@@ -100,6 +106,13 @@ impl AppHost {
         self.app.as_ref()?.try_borrow().ok()?.rescue()
     }
 
+    /// Forgets what is kept for the case of a crash.
+    fn end_recovery(&self) {
+        if let Some(app) = &self.app {
+            app.borrow().end_recovery();
+        }
+    }
+
     /// Returns true if the last window was lost. Drops its device before another window is created: OpenGL cannot
     /// release it while a window draws with OpenGL.
     fn is_lost(&self) -> bool {
@@ -133,7 +146,10 @@ fn run_windows(options: EditorOptions) -> Result<(), EditorError> {
             }
         } else {
             match ended {
-                Ok(Ok(())) => return Ok(()),
+                Ok(Ok(())) => {
+                    host.borrow().end_recovery();
+                    return Ok(());
+                }
                 Ok(Err(panic)) => resume_unwind(panic),
                 Err(error) => return Err(broken(&error.to_string(), host.borrow().rescue())),
             }
@@ -231,7 +247,6 @@ fn with_rescued(why: &str, rescued: Option<Result<PathBuf, String>>) -> String {
 mod tests {
     use super::*;
     use crate::editor::{Action, Command};
-    use crate::io;
     use eframe::egui::Id;
     use std::panic::{AssertUnwindSafe, catch_unwind};
     use std::sync::Arc;

@@ -129,6 +129,9 @@ impl App {
     }
 
     fn save_to(&mut self, path: PathBuf, ctx: &Context) {
+        if self.ask_before_overwriting(&path) {
+            return;
+        }
         if let Err(message) = files::save(&self.document, &path) {
             self.session.after_save = None;
             self.toasts.error(format!("The studio was not saved. {message}"));
@@ -137,6 +140,7 @@ impl App {
         self.session.recent.push(&path);
         self.toasts.info(format!("Saved to {}", path.display()));
         self.document.mark_saved(path);
+        self.session.file_change_put_off = false;
         if let Some(pending) = self.session.after_save.take() {
             self.execute_pending(pending, ctx);
         }
@@ -173,6 +177,15 @@ impl App {
                 self.document.insert_assets(assets, &tried);
                 warnings.into_iter().for_each(|warning| self.toasts.warning(warning));
             }
+            TaskResult::Unsaved(found) => self.session.recovery.offer(found),
+            TaskResult::Recovered(unsaved, result) => self.show_recovered(unsaved, result, ctx),
+            TaskResult::FileChecked { path, stamp, is_changed } => {
+                // The studio may have been saved or replaced since.
+                let is_current = self.document.path() == Some(&*path) && self.document.stamp() == Some(&stamp);
+                if is_changed && is_current {
+                    self.file_is_changed();
+                }
+            }
             TaskResult::Exported(path, Ok(())) => self.toasts.info(format!("Picture written to {}", path.display())),
             TaskResult::Exported(_, Err(message)) => {
                 self.toasts.error(format!("The picture was not written. {message}"))
@@ -180,7 +193,7 @@ impl App {
         }
     }
 
-    fn show_opened(&mut self, opened: OpenedStudio, ctx: &Context) {
+    pub(super) fn show_opened(&mut self, opened: OpenedStudio, ctx: &Context) {
         const SHOWN: usize = 3;
         if let Some(path) = &opened.path {
             self.session.recent.push(path);
@@ -193,6 +206,8 @@ impl App {
         self.rendering.clear();
         self.views.viewport.traced_view.clear();
         self.document = Document::new(opened.scene, opened.assets, opened.path);
+        self.document.set_stamp(opened.stamp);
+        self.session.file_change_put_off = false;
         self.selection = Selection::default();
         self.views.viewport.place_light = None;
         if matches!(self.views.central, CentralView::Picture | CentralView::Light(_)) {
@@ -355,6 +370,8 @@ impl App {
                 UnsavedAnswer::Cancel => {}
             }
         }
+        self.ask_about_file_change(ctx, out);
+        self.ask_to_recover(ctx);
         if let Some(prompt) = &mut self.session.prompt {
             let purpose = prompt.purpose;
             match prompt.ui(ctx) {
@@ -369,7 +386,8 @@ impl App {
     }
 }
 
-fn waker(ctx: &Context) -> impl FnOnce() + Send + 'static {
+/// Returns a callback that repaints the window once.
+pub(super) fn waker(ctx: &Context) -> impl FnOnce() + Send + 'static {
     let ctx = ctx.clone();
     move || ctx.request_repaint()
 }

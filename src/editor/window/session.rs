@@ -6,6 +6,7 @@ use crate::editor::document::item::Item;
 use crate::editor::panels::prompts::PathPrompt;
 use crate::editor::window::dialogs::{DialogAnswer, FileDialogs};
 use crate::editor::window::recent::RecentFiles;
+use crate::editor::window::recovery::Recovery;
 use crate::scene::TextureSlot;
 use std::sync::mpsc::Receiver;
 
@@ -26,6 +27,15 @@ impl PendingOperation {
     }
 }
 
+/// When it was noticed that another program has changed the studio's file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileChange {
+    /// When the window got the keyboard.
+    Noticed,
+    /// Before a save.
+    OnSave,
+}
+
 /// Prompts and dialogs in progress.
 #[derive(Debug)]
 pub struct Session {
@@ -39,11 +49,17 @@ pub struct Session {
     /// The item and part whose material gets the chosen texture.
     pub(super) texture_for: Option<(Item, Option<String>, TextureSlot)>,
     pub(super) may_close: bool,
+    /// The change of the studio's file that the user is asked about.
+    pub(super) file_change: Option<FileChange>,
+    /// The user decides about the noticed change before the next save.
+    pub(super) file_change_put_off: bool,
+    /// Unsaved changes, kept for the case of a crash.
+    pub(super) recovery: Recovery,
 }
 
 impl Session {
-    /// Returns a session with these dialogs and recent studios.
-    pub fn new(dialogs: FileDialogs, recent: RecentFiles) -> Self {
+    /// Returns a session with these dialogs, recent studios and recovery.
+    pub fn new(dialogs: FileDialogs, recent: RecentFiles, recovery: Recovery) -> Self {
         Session {
             dialogs,
             recent,
@@ -53,6 +69,9 @@ impl Session {
             after_save: None,
             texture_for: None,
             may_close: false,
+            file_change: None,
+            file_change_put_off: false,
+            recovery,
         }
     }
 
@@ -61,8 +80,13 @@ impl Session {
         self.dialog.is_some()
     }
 
+    /// Returns true while a prompt about the open studio is open.
+    pub fn has_prompt(&self) -> bool {
+        self.prompt.is_some() || self.unsaved_prompt.is_some() || self.file_change.is_some()
+    }
+
     /// Returns true while a prompt is open in the window.
     pub fn is_asking(&self) -> bool {
-        self.prompt.is_some() || self.unsaved_prompt.is_some()
+        self.has_prompt() || self.recovery.offered().is_some()
     }
 }

@@ -1,0 +1,88 @@
+//! The prompt that offers an unsaved studio after a crash.
+
+use crate::editor::ui::widgets;
+use crate::io::RecoveryInfo;
+use eframe::egui::{self, Button, RichText};
+use std::time::Duration;
+
+/// An unsaved studio on offer.
+#[derive(Clone, Copy, Debug)]
+pub struct UnsavedStudio<'a> {
+    /// The studio.
+    pub info: &'a RecoveryInfo,
+    /// Number of other unsaved studios.
+    pub more: usize,
+}
+
+/// The answer to the offer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RecoveryAnswer {
+    /// Open it.
+    Recover,
+    /// Delete it.
+    Discard,
+    /// Ask at the next start.
+    Later,
+}
+
+/// Draws the offer.
+pub fn recovery_ui(ctx: &egui::Context, unsaved: &UnsavedStudio<'_>) -> Option<RecoveryAnswer> {
+    let UnsavedStudio { info, more } = unsaved;
+    let mut answer = None;
+    let modal = widgets::dialog(ctx, "recovery").show(ctx, |ui| {
+        ui.set_width(460.0);
+        ui.heading("Unsaved studio");
+        let age = info.changed_at.elapsed().unwrap_or_default();
+        ui.label(format!("Catchlight ended before \"{}\" was saved. Its last change was {}.", info.title, ago(age)));
+        if let Some(path) = &info.path {
+            ui.label(RichText::new(format!("The file {} is as it was saved last.", path.display())).weak());
+        }
+        if *more > 0 {
+            ui.label(RichText::new(format!("Unsaved studios that are offered after this one: {more}")).weak());
+        }
+        ui.add_space(8.0);
+        ui.horizontal(|ui| {
+            let choices = [
+                ("Recover", RecoveryAnswer::Recover, "Open it with all changes; nothing is written to its file yet"),
+                ("Discard", RecoveryAnswer::Discard, "Its unsaved changes are lost"),
+                ("Later", RecoveryAnswer::Later, "Ask again at the next start (Esc)"),
+            ];
+            for (text, each, tip) in choices {
+                if ui.add(Button::new(text).min_size(egui::vec2(96.0, 26.0))).on_hover_text(tip).clicked() {
+                    answer = Some(each);
+                }
+            }
+        });
+    });
+    if answer.is_none() && modal.should_close() {
+        answer = Some(RecoveryAnswer::Later);
+    }
+    answer
+}
+
+/// Returns how long ago something was, in words.
+fn ago(age: Duration) -> String {
+    let minutes = age.as_secs() / 60;
+    let (number, unit) = match minutes {
+        0 => return "less than a minute ago".to_owned(),
+        1..60 => (minutes, "minute"),
+        60..1440 => (minutes / 60, "hour"),
+        _ => (minutes / 1440, "day"),
+    };
+    format!("{number} {unit}{} ago", if number == 1 { "" } else { "s" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ages_are_words() {
+        let words = [0, 59, 60, 179, 3600, 7200, 86_400, 200_000].map(|seconds| ago(Duration::from_secs(seconds)));
+        assert_eq!(&words[..2], ["less than a minute ago"; 2]);
+        assert_eq!(
+            &words[2..],
+            ["1 minute ago", "2 minutes ago", "1 hour ago", "2 hours ago", "1 day ago", "2 days ago"]
+        );
+    }
+}

@@ -1,0 +1,88 @@
+//! Keeping, offering and opening unsaved studios.
+
+use crate::editor::document::files::{self, OpenedStudio};
+use crate::editor::panels::recovery_prompt::{RecoveryAnswer, UnsavedStudio, recovery_ui};
+use crate::editor::ui::wake::wake;
+use crate::editor::window::app::App;
+use crate::editor::window::background_tasks::TaskResult;
+use crate::editor::window::recovery::Unsaved;
+use crate::editor::window::run_file_command::waker;
+use crate::io::RecoveryFolder;
+use eframe::egui::Context;
+use std::time::Duration;
+
+impl App {
+    /// Looks for the unsaved studios of windows that have ended, in the background.
+    pub(super) fn look_for_unsaved(&mut self, ctx: &Context) {
+        if let Some(parent) = self.session.recovery.parent().map(ToOwned::to_owned) {
+            self.background.tasks.start(move || TaskResult::Unsaved(RecoveryFolder::abandoned(&parent)), waker(ctx));
+        }
+    }
+
+    /// Keeps unsaved changes on the disk.
+    pub(super) fn keep_unsaved(&mut self, ctx: &Context) {
+        let now = ctx.input(|i| i.time);
+        if let Some(seconds) = self.session.recovery.update(&self.document, now, &wake(ctx)) {
+            ctx.request_repaint_after(Duration::from_secs_f64(seconds));
+        }
+        if let Some(why) = self.session.recovery.failure() {
+            self.toasts.warning(format!("Unsaved changes are not kept for the case of a crash: {why}."));
+        }
+    }
+
+    /// Draws the offer of an unsaved studio and handles its answer.
+    pub(super) fn ask_to_recover(&mut self, ctx: &Context) {
+        // The studio that is being opened would replace the recovered one.
+        if self.background.tasks.is_busy() || self.session.has_prompt() {
+            return;
+        }
+        let Some(info) = self.session.recovery.offered() else { return };
+        let more = self.session.recovery.offered_after();
+        match recovery_ui(ctx, &UnsavedStudio { info, more }) {
+            Some(RecoveryAnswer::Recover) => self.recover(ctx),
+            Some(RecoveryAnswer::Discard) => {
+                if let Some((folder, _)) = self.session.recovery.take_offered() {
+                    folder.remove();
+                }
+            }
+            Some(RecoveryAnswer::Later) => self.session.recovery.put_off(),
+            None => {}
+        }
+    }
+
+    fn recover(&mut self, ctx: &Context) {
+        let Some(unsaved) = self.session.recovery.take_offered() else { return };
+        // One window has one studio: the others are offered at the next start.
+        self.session.recovery.put_off();
+        let work = move || {
+            let result = files::recover(&unsaved.0, &unsaved.1);
+            TaskResult::Recovered(unsaved, result)
+        };
+        self.background.tasks.start(work, waker(ctx));
+    }
+
+    /// Opens a recovered studio, or says why that failed.
+    pub(super) fn show_recovered(
+        &mut self,
+        (folder, info): Unsaved,
+        result: Result<Box<OpenedStudio>, String>,
+        ctx: &Context,
+    ) {
+        match result {
+            Ok(opened) => {
+                self.show_opened(*opened, ctx);
+                self.document.mark_recovered(info.imported);
+                self.session.recovery.adopt(folder, self.document.revision());
+                self.toasts.info("The unsaved studio is open again. Save it to keep it.");
+            }
+            Err(message) => {
+                let file = folder.studio();
+                self.toasts.error(format!(
+                    "{} could not be recovered. {message} It is kept in {}",
+                    info.title,
+                    file.display()
+                ));
+            }
+        }
+    }
+}

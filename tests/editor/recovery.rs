@@ -1,0 +1,190 @@
+//! Recovery of unsaved studios, and files that other programs change.
+
+use super::files::{PYRAMID, drop_file};
+use super::*;
+use catchlight::io::{RecoveryFolder, RecoveryInfo};
+use std::collections::BTreeMap;
+use std::time::SystemTime;
+
+fn options(recovery: &Path, initial: Option<&Path>, answers: &[PathBuf]) -> EditorOptions {
+    EditorOptions {
+        initial: initial.map(Path::to_owned),
+        dialogs: FileDialogs::scripted(answers.to_vec()),
+        recovery_folder: Some(recovery.to_owned()),
+        ..EditorOptions::default()
+    }
+}
+
+/// Returns the unsaved studios that windows keep in a folder.
+fn kept(recovery: &Path) -> Vec<String> {
+    let windows = std::fs::read_dir(recovery).into_iter().flatten();
+    windows.filter_map(|window| std::fs::read_to_string(window.unwrap().path().join("studio.ron")).ok()).collect()
+}
+
+/// Draws frames until the kept studios are as expected.
+fn wait_for_kept(window: &mut Window, recovery: &Path, expected: impl Fn(&[String]) -> bool) {
+    for _ in 0..MOST_FRAMES {
+        if expected(&kept(recovery)) {
+            return;
+        }
+        window.step();
+    }
+    panic!("not kept in {MOST_FRAMES} frames: {:?}", kept(recovery));
+}
+
+fn is_offered(window: &Window) -> bool {
+    window.query_by_label("Recover").is_some()
+}
+
+#[test]
+fn an_unsaved_studio_survives_a_crash_and_is_offered_at_the_next_start() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let recovery = folder.path().join("recovery");
+    let (file, model) = (folder.path().join("portrait.ron"), folder.path().join("import/pyramid.obj"));
+    std::fs::write(&file, catchlight::io::presets()[0].text).unwrap();
+    std::fs::create_dir(model.parent().unwrap()).unwrap();
+    std::fs::write(&model, PYRAMID).unwrap();
+    let mut first = window(options(&recovery, Some(&file), &[]));
+    assert!(!is_offered(&first), "nothing was lost before");
+    drop_file(&mut first, &model);
+    click(&mut first, "Add Octa 120");
+    let changed = catchlight::io::write_scene(scene(&first));
+    wait_for_kept(&mut first, &recovery, |kept| matches!(kept, [kept] if kept.ends_with(&changed)));
+    // The end of the window without its close request is a crash to the next one.
+    drop(first);
+
+    let mut second = window(options(&recovery, None, &[]));
+    assert!(is_offered(&second));
+    assert_eq!(second.get_all_by_label_contains("portrait.ron").count(), 2, "the question names title and file");
+    click(&mut second, "Recover");
+    let document = second.state().document();
+    assert_eq!(catchlight::io::write_scene(document.scene()), changed);
+    assert!(document.is_dirty() && document.path() == Some(&file));
+    assert!(document.assets().mesh("import/pyramid.obj").is_some());
+    assert_eq!(kept(&recovery).len(), 1, "it is kept until it is saved");
+    press(&mut second, Modifiers::COMMAND, Key::S);
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), changed);
+    wait_for_kept(&mut second, &recovery, <[String]>::is_empty);
+}
+
+#[test]
+fn a_running_window_keeps_its_unsaved_studio_to_itself_and_a_closed_one_leaves_none() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut running = window(options(folder.path(), None, &[]));
+    click(&mut running, "Add Octa 120");
+    wait_for_kept(&mut running, folder.path(), |kept| kept.len() == 1);
+    assert!(RecoveryFolder::abandoned(folder.path()).is_empty(), "another window does not offer it");
+    // The user closes the window and does not save.
+    running.state().end_recovery();
+    assert!(kept(folder.path()).is_empty());
+    click(&mut running, "Add Octa 120");
+    running.run_steps(90);
+    assert!(kept(folder.path()).is_empty());
+}
+
+#[test]
+fn an_offered_studio_can_be_put_off_and_discarded() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let info = RecoveryInfo {
+        title: "Crashed".to_owned(),
+        path: None,
+        stamp: None,
+        imported: BTreeMap::new(),
+        changed_at: SystemTime::now(),
+    };
+    let crashed = RecoveryFolder::create(folder.path()).unwrap();
+    crashed.write(&Scene::default(), &info).unwrap();
+    drop(crashed);
+    let mut later = window(options(folder.path(), None, &[]));
+    click(&mut later, "Later");
+    assert!(!is_offered(&later) && kept(folder.path()).len() == 1);
+    drop(later);
+    let mut discarding = window(options(folder.path(), None, &[]));
+    let opened = scene(&discarding).clone();
+    click(&mut discarding, "Discard");
+    assert!(!is_offered(&discarding) && kept(folder.path()).is_empty());
+    assert_eq!(*scene(&discarding), opened);
+}
+
+#[test]
+fn a_file_that_another_program_has_changed_is_not_overwritten_without_a_question() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (file, other) = (folder.path().join("portrait.ron"), folder.path().join("mine.ron"));
+    let presets = catchlight::io::presets();
+    std::fs::write(&file, presets[0].text).unwrap();
+    let mut window = window(EditorOptions {
+        initial: Some(file.clone()),
+        dialogs: FileDialogs::scripted([other.clone()]),
+        ..EditorOptions::default()
+    });
+    let on_disk = || std::fs::read_to_string(&file).unwrap();
+    // Without a change from outside a save asks nothing.
+    click(&mut window, "Add Octa 120");
+    press(&mut window, Modifiers::COMMAND, Key::S);
+    assert_eq!(on_disk(), catchlight::io::write_scene(scene(&window)));
+
+    // Take theirs.
+    click(&mut window, "Add Octa 120");
+    std::fs::write(&file, presets[1].text).unwrap();
+    press(&mut window, Modifiers::COMMAND, Key::S);
+    assert_eq!(on_disk(), presets[1].text);
+    click(&mut window, "Take theirs");
+    assert_eq!(catchlight::io::write_scene(scene(&window)), presets[1].text);
+    assert!(!window.state().document().is_dirty());
+
+    // Keep mine.
+    click(&mut window, "Add Octa 120");
+    std::fs::write(&file, presets[2].text).unwrap();
+    press(&mut window, Modifiers::COMMAND, Key::S);
+    click(&mut window, "Keep mine");
+    assert_eq!(on_disk(), catchlight::io::write_scene(scene(&window)));
+    assert!(!window.state().document().is_dirty());
+
+    // Keep both.
+    click(&mut window, "Add Octa 120");
+    std::fs::write(&file, presets[2].text).unwrap();
+    press(&mut window, Modifiers::COMMAND, Key::S);
+    click(&mut window, "Save as\u{2026}");
+    assert_eq!(on_disk(), presets[2].text);
+    assert_eq!(std::fs::read_to_string(&other).unwrap(), catchlight::io::write_scene(scene(&window)));
+    assert!(errors(&window).is_empty(), "{:?}", errors(&window));
+}
+
+#[test]
+fn a_change_by_another_window_is_noticed_when_this_one_is_used_again() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("portrait.ron");
+    let presets = catchlight::io::presets();
+    std::fs::write(&file, presets[0].text).unwrap();
+    let mut window = window(EditorOptions { initial: Some(file.clone()), ..EditorOptions::default() });
+    let set_focus = |window: &mut Window, focused: bool| {
+        window.input_mut().viewports.get_mut(&ViewportId::ROOT).unwrap().focused = Some(focused);
+        settle(window);
+    };
+    set_focus(&mut window, false);
+    set_focus(&mut window, true);
+    assert!(window.query_by_label("Take theirs").is_none(), "nothing has changed");
+    set_focus(&mut window, false);
+    std::fs::write(&file, presets[1].text).unwrap();
+    set_focus(&mut window, true);
+    assert!(!window.state().document().is_dirty());
+    click(&mut window, "Keep mine");
+    assert!(window.state().document().is_dirty(), "the file is not what the window shows");
+    press(&mut window, Modifiers::COMMAND, Key::S);
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), presets[0].text);
+}
