@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that cannot go on says so by panicking")]
 
 mod dependencies;
+mod readme;
 mod sources;
 
 use sources::{Names, edges, rust_files, sources};
