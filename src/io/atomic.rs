@@ -1,7 +1,7 @@
 //! Atomic file replacement: a reader sees the older file or the whole new one.
 
 use super::error::SaveError;
-use std::fs::Metadata;
+use std::fs::{File, Metadata};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
@@ -16,11 +16,16 @@ const LEFT_OVER_AGE: Duration = Duration::from_secs(3600);
 /// older file at `path` is unchanged. The target of a symbolic link is replaced, the link kept. An older file's
 /// permissions are kept.
 pub(super) fn write(path: &Path, content: &[u8]) -> Result<(), SaveError> {
+    write_with(path, |file| file.write_all(content))
+}
+
+/// As [`write`], with the content that `fill` writes.
+pub(super) fn write_with(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<(), SaveError> {
     let target = Target::of(path)?;
     if target.is_special() {
         return Err(SaveError::NotRegular(path.to_owned()));
     }
-    let written = target.replace(content);
+    let written = target.replace(fill);
     remove_left_over(&target.folder);
     written.map_err(|error| SaveError::Write { error, path: path.to_owned() })
 }
@@ -30,7 +35,7 @@ pub(super) fn send(path: &Path, content: &[u8]) -> Result<(), SaveError> {
     if !Target::of(path)?.takes_a_stream() {
         return write(path, content);
     }
-    let sent = std::fs::File::options().write(true).open(path).and_then(|mut file| file.write_all(content));
+    let sent = File::options().write(true).open(path).and_then(|mut file| file.write_all(content));
     sent.map_err(|error| SaveError::Write { error, path: path.to_owned() })
 }
 
@@ -124,10 +129,10 @@ impl Target {
         }
     }
 
-    fn replace(&self, content: &[u8]) -> io::Result<()> {
+    fn replace(&self, fill: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<()> {
         self.check_older()?;
         let mut file = temporary_file(&self.folder)?;
-        file.write_all(content)?;
+        fill(file.as_file_mut())?;
         if let Some(older) = &self.older {
             file.as_file().set_permissions(older.permissions())?;
         }
@@ -179,7 +184,7 @@ fn remove_left_over(folder: &Path) {
 
 /// Flushes the rename to the disk. Some file systems can't; the file is whole either way, so this is no error.
 fn sync_folder(folder: &Path) {
-    if let Err(error) = std::fs::File::open(folder).and_then(|folder| folder.sync_all()) {
+    if let Err(error) = File::open(folder).and_then(|folder| folder.sync_all()) {
         log::debug!("{} can't be synced: {error}", folder.display());
     }
 }
@@ -231,7 +236,7 @@ mod tests {
             ("catchlight-mine.tmp", old),
             (".catchlight-notes.txt", old),
         ] {
-            std::fs::File::create(folder.path().join(name)).unwrap().set_modified(modified).unwrap();
+            File::create(folder.path().join(name)).unwrap().set_modified(modified).unwrap();
         }
         write(&folder.path().join("a.ron"), b"").unwrap();
         let entries = std::fs::read_dir(folder.path()).unwrap();

@@ -13,6 +13,7 @@
 mod asset_files;
 mod assets;
 mod atomic;
+mod checkpoint;
 mod error;
 mod figures;
 mod file_stamp;
@@ -35,6 +36,7 @@ mod unique_names;
 
 pub use asset_files::{AssetCopy, AssetFiles, AssetSource};
 pub use assets::{load_assets, load_assets_from, missing_assets};
+pub use checkpoint::{RenderId, read_checkpoint, write_checkpoint};
 pub use error::{AssetError, LoadError, Problem, SaveError, reason};
 pub use file_stamp::FileStamp;
 pub use importers::{

@@ -23,6 +23,8 @@ pub struct RenderInput<'a> {
     pub settings: &'a Settings,
     /// Shortcuts of the plan that are not taken.
     pub without: &'a [Shortcut],
+    /// Stored samples of an earlier run to go on from ([`Film::store`]).
+    pub checkpoint: Option<&'a [u8]>,
     /// Time after which the render ends, once every pixel has a sample.
     pub time_limit: Option<Duration>,
 }
@@ -77,7 +79,8 @@ pub fn render(
     // Trace a small version of a large picture, whose first pass takes long.
     let trace_started = Instant::now();
     monitor.start_tracing(trace_started);
-    let coarse = settings.coarse().filter(|_| !control.is_cancelled());
+    let film = first_film(&scene, settings, input.checkpoint);
+    let coarse = settings.coarse().filter(|_| !control.is_cancelled() && film.spp() == 0);
     let coarse = coarse
         .map(|coarse| pool.install(|| raytrace::render(&scene, &coarse, control, &mut |_| ControlFlow::Break(()))));
     if let Some(film) = coarse.as_ref().filter(|film| film.spp() > 0) {
@@ -87,7 +90,7 @@ pub fn render(
     // Trace sample passes until the samples, the noise limit or the time limit are reached.
     let film = pool.install(|| {
         within_time(input.time_limit, trace_started, control, |deadline| {
-            raytrace::render(&scene, settings, control, &mut |film| {
+            raytrace::resume(&scene, settings, film, control, &mut |film| {
                 monitor.finish_pass();
                 observe(RenderStage::Pass(film));
                 deadline.after_pass()
@@ -96,6 +99,20 @@ pub fn render(
     });
     monitor.finish();
     Ok(Rendered { scene, coarse, film, build_s, trace_s: trace_started.elapsed().as_secs_f64() })
+}
+
+/// Returns the film with the samples of an earlier run, or an empty one.
+fn first_film(scene: &RenderScene, settings: &Settings, checkpoint: Option<&[u8]>) -> Film {
+    let empty = raytrace::empty_film(scene, settings);
+    let stored = checkpoint.map(|mut bytes| empty.with_stored(&mut bytes));
+    match stored {
+        Some(Ok(film)) => film,
+        Some(Err(error)) => {
+            log::error!("the checkpoint is not used: {error}");
+            empty
+        }
+        None => empty,
+    }
 }
 
 /// Traces all passes of a prepared scene on the current pool, without an observer.

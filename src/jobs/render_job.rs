@@ -172,7 +172,8 @@ fn run(task: &Task, inbox: &Inbox<Task, Report>) {
     };
     let mut report = Report { phase: RenderPhase::Preparing, film: None, outcome: None };
     let mut last_film: Option<Instant> = None;
-    let input = RenderInput { scene, assets: &assets, cache, settings, without: &[], time_limit: None };
+    let input =
+        RenderInput { scene, assets: &assets, cache, settings, without: &[], checkpoint: None, time_limit: None };
     let rendered = render(&input, &pool, monitor, &mut |stage| {
         match stage {
             RenderStage::Prepared(_) => report.phase = RenderPhase::Tracing,

@@ -74,7 +74,7 @@ pub use live::{AtrousFilter, LiveCamera, LivePicture};
 pub use plan::{RenderPlan, Shortcut};
 pub use prepare::{PrepareError, prepare, prepare_kept};
 pub use primary_objects::primary_objects;
-pub use render::render;
+pub use render::{empty_film, render, resume};
 pub use render_scene::RenderScene;
 pub use replay::{Replay, brightest_sample, replay};
 pub use retrace::is_up_to_date;

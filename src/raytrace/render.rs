@@ -18,6 +18,11 @@ use std::sync::Arc;
 /// Samples per pixel before the noise of a tile is estimated: fewer make the estimate unreliable.
 const MIN_NOISE_SPP: u32 = 8;
 
+/// Returns the film of a render before its first sample.
+pub fn empty_film(scene: &RenderScene, settings: &Settings) -> Film {
+    Film::new(settings, scene.layers.clone(), passes::uses_photons(scene, settings))
+}
+
 /// Renders on rayon's current pool. After each pass `on_pass` receives the film and may end the render; a clone of the
 /// film is a cheap snapshot. With [`Settings::noise_stops`], tiles below that noise take no more samples. A cancelled
 /// render keeps each tile's complete passes; before the first pass is complete, the film has 0 samples.
@@ -27,10 +32,21 @@ pub fn render(
     control: &RenderControl,
     on_pass: &mut dyn FnMut(&Film) -> ControlFlow<()>,
 ) -> Film {
-    let photons = passes::uses_photons(scene, settings);
-    let mut film = Film::new(settings, scene.layers.clone(), photons);
+    resume(scene, settings, empty_film(scene, settings), control, on_pass)
+}
+
+/// Goes on with a film as [`render`] has it after a pass, to the same bits as one render from the beginning.
+pub fn resume(
+    scene: &RenderScene,
+    settings: &Settings,
+    mut film: Film,
+    control: &RenderControl,
+    on_pass: &mut dyn FnMut(&Film) -> ControlFlow<()>,
+) -> Film {
     let camera = scene.lens.film_camera(settings.width, settings.height);
-    for pass in PassSchedule::new(scene, settings).passes() {
+    // Each pass adds samples to the noisiest tile.
+    let taken = film.most_spp();
+    for pass in PassSchedule::new(scene, settings).passes().skip_while(|pass| pass.first_sample < taken) {
         let photon_map = passes::photon_map(scene, settings, pass, control);
         let job = TileJob { scene, photon_map: photon_map.as_ref(), camera: &camera, settings, control, pass };
         let needs_samples = |tile: &&mut Arc<FilmTile>| !is_quiet(tile, settings);

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 mod chart;
+mod checkpoints;
 mod extremes;
 mod output;
 mod picture_files;

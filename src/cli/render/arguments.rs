@@ -40,6 +40,13 @@ pub struct Arguments {
     /// edges by a pixel or two, less the longer it renders; paths blur nothing and are noisy.
     #[arg(long, value_enum, default_value_t = Caustics::Photons)]
     caustics: Caustics,
+    /// Minutes between checkpoints, which are written beside the picture (OUT.checkpoint) after a pass; 0 for none.
+    #[arg(long, value_name = "MINUTES", default_value_t = 5.0, value_parser = not_negative)]
+    checkpoint: f64,
+    /// Go on from the checkpoint of an earlier run that was killed, to the same picture as of one run. The other
+    /// arguments must be the same.
+    #[arg(long, conflicts_with = "explain_pixel")]
+    pub resume: bool,
     /// Number of threads [default: all cores].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -118,6 +125,11 @@ fn positive<T: FromStr + Into<f64> + Copy>(text: &str) -> Result<T, String> {
     }
 }
 
+fn not_negative(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    if value >= 0.0 { Ok(value) } else { Err(format!("must be 0 or more, not {text}")) }
+}
+
 /// Samples per pixel where nothing else ends the render.
 const DEFAULT_SPP: u32 = 64;
 /// Samples per pixel where noise or time end the render.
@@ -171,6 +183,11 @@ impl Arguments {
     /// Returns the time limit. A limit beyond what a duration holds is none.
     pub fn time_limit(&self) -> Option<Duration> {
         self.time.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok())
+    }
+
+    /// Returns the time between checkpoints; none for no checkpoints.
+    pub fn checkpoint_interval(&self) -> Option<Duration> {
+        Duration::try_from_secs_f64(self.checkpoint * 60.0).ok().filter(|interval| !interval.is_zero())
     }
 
     /// Returns the number of threads; 0 for all cores.

@@ -1,6 +1,7 @@
 //! `catchlight render SCENE -o OUT`: renders a picture without a window.
 
 mod arguments;
+mod checkpoints;
 mod explain_pixel;
 mod interrupt;
 mod progress_bar;
@@ -15,6 +16,7 @@ use crate::io::{self, Loaded, PictureInfo};
 use crate::jobs::{self, RenderInput, RenderMonitor, RenderStage, Rendered};
 use crate::raytrace::{Film, GeometryCache, NonFiniteReport, RenderControl, RenderScene, Settings};
 use anyhow::anyhow;
+use checkpoints::Checkpoints;
 use interrupt::cancel_on_signals;
 use progress_bar::ProgressDisplay;
 use rayon::ThreadPool;
@@ -43,7 +45,8 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
     }
     // Render with a progress bar.
     let monitor = Arc::new(RenderMonitor::new(&settings, control));
-    let rendered = render(arguments, &loaded, &settings, &pool, &monitor)?;
+    let mut checkpoints = Checkpoints::new(arguments, &loaded, &settings);
+    let rendered = render(arguments, &loaded, &settings, &pool, &monitor, &mut checkpoints)?;
     // Write the picture.
     let film = &rendered.film;
     if film.spp() == 0 {
@@ -82,6 +85,9 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
     };
     report.print(arguments.json)?;
     written.finish()?;
+    if !interrupted {
+        checkpoints.remove();
+    }
     if interrupted { Err(Failure::Interrupted) } else { Ok(()) }
 }
 
@@ -92,25 +98,31 @@ fn render(
     settings: &Settings,
     pool: &ThreadPool,
     monitor: &Arc<RenderMonitor>,
-) -> anyhow::Result<Rendered> {
+    checkpoints: &mut Checkpoints<'_>,
+) -> Result<Rendered, Failure> {
+    let earlier = checkpoints.resume(arguments)?;
     let input = RenderInput {
         scene: &loaded.scene,
         assets: &loaded.assets,
         cache: &GeometryCache::default(),
         settings,
         without: arguments.without(),
+        checkpoint: earlier.as_deref(),
         time_limit: arguments.time_limit(),
     };
     let mut display = None;
-    let rendered = jobs::render(&input, pool, monitor, &mut |stage| {
-        if let RenderStage::Prepared(scene) = stage {
+    let rendered = jobs::render(&input, pool, monitor, &mut |stage| match stage {
+        RenderStage::Prepared(scene) => {
             if arguments.explain {
                 print_plan(scene, arguments.json);
             }
             display = Some(ProgressDisplay::start(monitor.clone()));
         }
+        RenderStage::Coarse(_) => {}
+        RenderStage::Pass(film) => checkpoints.after_pass(film),
     });
     drop(display);
+    checkpoints.finish_writing();
     Ok(rendered?)
 }
 

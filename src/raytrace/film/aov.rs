@@ -4,6 +4,7 @@
 //! pbrt's `GBufferFilm`. Albedo and normal are means of a pixel's samples, zero where nothing is hit, as denoisers
 //! expect. Depth and object are those of its first sample, as means across an edge belong to neither side.
 
+use super::stored::stored_fields;
 use crate::photo::AovPicture;
 use crate::raytrace::sink::{FirstHit, FirstObject};
 use glam::Vec3;
@@ -44,6 +45,12 @@ impl AovTile {
         }
     }
 
+    /// Returns true if both have the same number of pixels.
+    pub fn has_shape_of(&self, other: &Self) -> bool {
+        let lengths = |tile: &Self| [tile.albedo.len(), tile.normal.len(), tile.depth_m.len(), tile.object_id.len()];
+        lengths(self) == lengths(other)
+    }
+
     /// Writes a pixel to a picture's pixel, with sums scaled by `per_sample`.
     pub fn write(&self, pixel: usize, per_sample: f32, picture: &mut AovPicture, at: usize) {
         picture.albedo[at] = (self.albedo[pixel] * per_sample).to_array();
@@ -52,6 +59,8 @@ impl AovTile {
         picture.object_id[at] = self.object_id[pixel];
     }
 }
+
+stored_fields!(AovTile { albedo, normal, depth_m, object_id });
 
 #[cfg(test)]
 mod tests {

@@ -1,5 +1,6 @@
 //! The gate that keeps non-finite values out of every film and meter (invariant 7).
 
+use super::stored::stored_fields;
 use crate::raytrace::sampler::SampleId;
 use crate::raytrace::sink::{FirstHit, RadianceSink};
 use glam::Vec3;
@@ -70,6 +71,9 @@ impl<S: RadianceSink> RadianceSink for NonFiniteGate<'_, S> {
         });
     }
 }
+
+stored_fields!(SampleId { x, y, index, seed });
+stored_fields!(NonFiniteReport { count, first });
 
 #[cfg(test)]
 mod tests {

@@ -5,6 +5,7 @@ mod aov;
 mod gate;
 mod layer;
 mod noise;
+mod stored;
 mod sums;
 mod tile;
 
@@ -18,6 +19,7 @@ use super::settings::{Method, Settings};
 use crate::photo::{AovPicture, Picture, exposure};
 use crate::scene::Scene;
 use glam::Vec3;
+use std::io::{self, Read, Write};
 use std::sync::Arc;
 
 /// The sums of samples of a picture, layer by layer.
@@ -47,6 +49,31 @@ impl Film {
             }
         }
         Film { width, height, layers, method, photons, tiles }
+    }
+
+    /// Writes the samples of all tiles, with every bit that a render needs to go on from them.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn store(&self, out: &mut dyn Write) -> io::Result<()> {
+        self.tiles.iter().try_for_each(|tile| tile.store(out))
+    }
+
+    /// Returns the film with stored samples in the place of its own.
+    ///
+    /// # Errors
+    /// If `from` holds no film of this size, layers and AOVs.
+    pub fn with_stored(&self, from: &mut dyn Read) -> io::Result<Film> {
+        let tiles = self.tiles.iter().map(|tile| tile.with_stored(from).map(Arc::new)).collect::<io::Result<_>>()?;
+        if from.read(&mut [0])? > 0 {
+            return Err(stored::invalid());
+        }
+        Ok(Film { tiles, layers: self.layers.clone(), ..*self })
+    }
+
+    /// Samples per pixel of the tile that has most.
+    pub(super) fn most_spp(&self) -> u32 {
+        self.tiles.iter().map(|tile| tile.spp()).max().unwrap_or(0)
     }
 
     /// Pixels across.

@@ -1,5 +1,8 @@
 //! Sums of samples of a tile, one for each layer and pixel.
 
+use super::stored::Stored;
+use glam::Vec3;
+use std::io::{self, Read, Write};
 use std::ops::AddAssign;
 
 /// Sums of one tile; layer by layer, pixels in rows. The value is `Vec3` where all pixels have the same number of
@@ -63,6 +66,24 @@ impl<V: Copy + Default + AddAssign> LayerSums<V> {
             None => vec![V::default(); pixels],
         };
         self.sums = from.iter().flat_map(layer).collect();
+    }
+}
+
+impl Stored for LayerSums<Vec3> {
+    fn store(&self, out: &mut dyn Write) -> io::Result<()> {
+        (self.pixels as u64).store(out)?;
+        self.sums.store(out)
+    }
+
+    fn load(from: &mut dyn Read) -> io::Result<Self> {
+        Ok(LayerSums { pixels: u64::load(from)? as usize, sums: Vec::load(from)? })
+    }
+}
+
+impl LayerSums<Vec3> {
+    /// Returns true if both have the same numbers of pixels and layers.
+    pub fn has_shape_of(&self, other: &Self) -> bool {
+        (self.pixels, self.sums.len()) == (other.pixels, other.sums.len())
     }
 }
 

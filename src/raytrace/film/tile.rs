@@ -1,11 +1,13 @@
 //! One tile of a film.
 
 use super::aov::AovTile;
+use super::stored::{Stored, invalid};
 use super::{LayerSums, NonFiniteGate, NonFiniteReport, SampleBlocks};
 use crate::color::luminance;
 use crate::raytrace::sampler::SampleId;
 use crate::raytrace::sink::{FirstHit, RadianceSink};
 use glam::Vec3;
+use std::io::{self, Read, Write};
 
 /// Edge length of a tile, pixels. Each tile is written by one thread, without locks.
 pub const TILE: u32 = 32;
@@ -42,6 +44,35 @@ impl FilmTile {
             aovs: aovs.then(|| Box::new(AovTile::new(pixels))),
             nonfinite: NonFiniteReport::default(),
         }
+    }
+
+    /// Writes the samples.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn store(&self, out: &mut dyn Write) -> io::Result<()> {
+        self.sums.store(out)?;
+        self.blocks.store(out)?;
+        self.nonfinite.store(out)?;
+        self.aovs.as_deref().map_or(Ok(()), |aovs| aovs.store(out))
+    }
+
+    /// Returns the tile with stored samples in the place of its own.
+    ///
+    /// # Errors
+    /// If `from` holds no samples of a tile of this size and layers.
+    pub fn with_stored(&self, from: &mut dyn Read) -> io::Result<Self> {
+        let (sums, blocks) = (LayerSums::load(from)?, SampleBlocks::load(from)?);
+        let nonfinite = NonFiniteReport::load(from)?;
+        let aovs = self.aovs.as_ref().map(|_| AovTile::load(from).map(Box::new)).transpose()?;
+        let has_aovs = match (&self.aovs, &aovs) {
+            (Some(own), Some(stored)) => own.has_shape_of(stored),
+            _ => true,
+        };
+        if !has_aovs || !self.sums.has_shape_of(&sums) || !self.blocks.has_shape_of(&blocks) {
+            return Err(invalid());
+        }
+        Ok(FilmTile { sums, blocks, nonfinite, aovs, ..*self })
     }
 
     /// Number of pixels.
