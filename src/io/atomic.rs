@@ -19,7 +19,7 @@ pub(super) fn write(path: &Path, content: &[u8]) -> Result<(), SaveError> {
     write_with(path, |file| file.write_all(content))
 }
 
-/// As [`write`], with the content that `fill` writes.
+/// As [`write()`], with the content that `fill` writes.
 pub(super) fn write_with(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<(), SaveError> {
     let target = Target::of(path)?;
     if target.is_special() {
@@ -30,7 +30,7 @@ pub(super) fn write_with(path: &Path, fill: impl FnOnce(&mut File) -> io::Result
     written.map_err(|error| SaveError::Write { error, path: path.to_owned() })
 }
 
-/// As [`write`]; a pipe and a device of characters, such as `/dev/stdout`, take the content and are not replaced.
+/// As [`write()`]; a pipe and a device of characters, such as `/dev/stdout`, take the content and are not replaced.
 pub(super) fn send(path: &Path, content: &[u8]) -> Result<(), SaveError> {
     if !Target::of(path)?.takes_a_stream() {
         return write(path, content);
