@@ -66,7 +66,9 @@ impl ProbeScene {
             return Ok(None);
         };
         let origin = layout.low + 0.5 * layout.step_m * (layout.counts.as_vec3() - 1.0);
-        let render_scene = prepare_all(scene, assets, origin, assign_invisible_layers, cache)?;
+        // Probes are decimetres apart: the coarse meshes of figures without their hair serve
+        let coarse = assets.clone().map_figures(|meshes| meshes.coarse_with_strands(|_| false));
+        let render_scene = prepare_all(scene, &coarse, origin, assign_invisible_layers, cache)?;
         let is_inside = (0..layout.len())
             .into_par_iter()
             .map_init(

@@ -65,6 +65,16 @@ pub struct FigureMeshes {
     pub coarse: Arc<Mesh>,
 }
 
+impl FigureMeshes {
+    /// Returns the coarse mesh for renders and the live view alike, with those parts of its strands that pass a test of
+    /// their name.
+    pub fn coarse_with_strands(&self, is_kept: impl Fn(&str) -> bool) -> FigureMeshes {
+        let strands = self.coarse.strands.with_parts(is_kept);
+        let mesh = Arc::new(Mesh { strands, ..Mesh::clone(&self.coarse) });
+        FigureMeshes { fine: mesh.clone(), coarse: mesh }
+    }
+}
+
 impl Asset {
     fn is_same(&self, other: &Asset) -> bool {
         match (self, other) {
@@ -107,6 +117,17 @@ impl Assets {
     /// Adds all assets of another collection.
     pub fn extend(&mut self, other: Assets) {
         self.loaded.extend(other.loaded);
+    }
+
+    /// Replaces the meshes of every figure, such as by fewer triangles.
+    #[must_use]
+    pub fn map_figures(mut self, change: impl Fn(&FigureMeshes) -> FigureMeshes) -> Self {
+        for asset in self.loaded.values_mut() {
+            if let Asset::Figure(meshes) = asset {
+                *meshes = change(meshes);
+            }
+        }
+        self
     }
 
     /// Drops the figures that a scene does not refer to: each change of a parameter makes another.

@@ -6,9 +6,9 @@
 use adapter::headless_gpu;
 use catchlight::editor::{
     Action, App, CentralView, Command, DialogAnswer, EditorOptions, FileDialogs, Item, LiveMode, PictureSize, Quality,
-    ToastKind,
+    StudioSource, ToastKind,
 };
-use catchlight::scene::{Aim, Scene, Shape};
+use catchlight::scene::{Aim, HairStyle, Scene, Shape};
 use eframe::egui::{
     self, Event, Key, Modifiers, PointerButton, Pos2, ViewportCommand, ViewportEvent, ViewportId, vec2,
 };
@@ -109,7 +109,22 @@ fn window(options: EditorOptions) -> Window {
     window_at(FEW_PIXELS, options)
 }
 
+/// Returns the first shipped studio with a bald figure: strands take a third of the time of a window, and tests about
+/// hair have their own.
+fn bald_preset() -> StudioSource {
+    let mut scene = catchlight::io::presets()[0].load().unwrap().scene;
+    for object in &mut scene.objects {
+        if let Shape::Figure(figure) = &mut object.shape {
+            figure.hair = HairStyle::Bald;
+        }
+    }
+    StudioSource::Memory(Box::new(scene))
+}
+
+/// A window on the studio of the options, or else on [`bald_preset`].
 fn window_at(pixels_per_point: f32, options: EditorOptions) -> Window {
+    let initial = options.initial.clone().or_else(|| Some(bald_preset()));
+    let options = EditorOptions { initial, ..options };
     let builder = Harness::builder().with_size(vec2(1440.0, 900.0)).with_step_dt(1.0 / 30.0).with_max_steps(60);
     let builder = builder.with_pixels_per_point(pixels_per_point);
     let mut window = builder.wgpu().build_eframe(move |creation| App::new(creation, options));

@@ -8,7 +8,7 @@ use std::time::SystemTime;
 
 fn options(recovery: &Path, initial: Option<&Path>, answers: &[PathBuf]) -> EditorOptions {
     EditorOptions {
-        initial: initial.map(Path::to_owned),
+        initial: initial.map(|file| StudioSource::File(file.to_owned())),
         dialogs: FileDialogs::scripted(answers.to_vec()),
         recovery_folder: Some(recovery.to_owned()),
         ..EditorOptions::default()
@@ -125,7 +125,7 @@ fn a_file_that_another_program_has_changed_is_not_overwritten_without_a_question
     let presets = catchlight::io::presets();
     std::fs::write(&file, presets[0].text).unwrap();
     let mut window = window(EditorOptions {
-        initial: Some(file.clone()),
+        initial: Some(StudioSource::File(file.clone())),
         dialogs: FileDialogs::scripted([other.clone()]),
         ..EditorOptions::default()
     });
@@ -171,7 +171,8 @@ fn a_change_by_another_window_is_noticed_when_this_one_is_used_again() {
     let file = folder.path().join("portrait.ron");
     let presets = catchlight::io::presets();
     std::fs::write(&file, presets[0].text).unwrap();
-    let mut window = window(EditorOptions { initial: Some(file.clone()), ..EditorOptions::default() });
+    let mut window =
+        window(EditorOptions { initial: Some(StudioSource::File(file.clone())), ..EditorOptions::default() });
     let set_focus = |window: &mut Window, focused: bool| {
         window.input_mut().viewports.get_mut(&ViewportId::ROOT).unwrap().focused = Some(focused);
         settle(window);

@@ -53,12 +53,14 @@ pub struct ImportedModel {
 }
 
 /// The source of a studio.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum StudioSource {
     /// A file.
     File(PathBuf),
     /// A shipped studio, by its index in the list.
     Preset(usize),
+    /// A studio that no file holds.
+    Memory(Box<Scene>),
 }
 
 impl StudioSource {
@@ -75,14 +77,22 @@ pub fn open(source: &StudioSource) -> Result<Box<OpenedStudio>, String> {
     // Taken first: a change while the file is read counts as a change.
     let stamp = match source {
         StudioSource::File(path) => FileStamp::of(path).ok(),
-        StudioSource::Preset(_) => None,
+        StudioSource::Preset(_) | StudioSource::Memory(_) => None,
     };
-    let (loaded, path) = match source {
-        StudioSource::File(path) => (io::load_scene(path).map_err(|e| sentence(&e))?, Some(path.clone())),
+    let loaded = match source {
+        StudioSource::File(path) => io::load_scene(path).map_err(|e| sentence(&e))?,
         StudioSource::Preset(index) => {
             let preset = io::presets().get(*index).ok_or("There is no such studio on the shelf.")?;
-            (preset.load().map_err(|e| sentence(&e))?, None)
+            preset.load().map_err(|e| sentence(&e))?
         }
+        StudioSource::Memory(scene) => {
+            let (assets, warnings) = load_assets(scene, None, &Assets::default(), &BTreeMap::new());
+            return Ok(Box::new(OpenedStudio { scene: Scene::clone(scene), assets, warnings, path: None, stamp }));
+        }
+    };
+    let path = match source {
+        StudioSource::File(path) => Some(path.clone()),
+        StudioSource::Preset(_) | StudioSource::Memory(_) => None,
     };
     let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
     Ok(Box::new(OpenedStudio { scene: loaded.scene, assets: loaded.assets, warnings, path, stamp }))

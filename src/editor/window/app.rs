@@ -37,7 +37,7 @@ use std::time::{Duration, Instant};
 #[derive(Debug)]
 pub struct EditorOptions {
     /// The studio to open; none opens the first shipped one.
-    pub initial: Option<PathBuf>,
+    pub initial: Option<StudioSource>,
     /// The file dialogs.
     pub dialogs: FileDialogs,
     /// Folder of the list of recent studios; none keeps it in memory.
@@ -105,7 +105,7 @@ impl App {
             window: WindowState::default(),
             diagnostics: Diagnostics::new(options.started),
         };
-        let first = options.initial.map_or(StudioSource::Preset(0), StudioSource::named);
+        let first = options.initial.unwrap_or(StudioSource::Preset(0));
         app.load(first, ctx);
         app.look_for_unsaved(ctx);
         app

@@ -1,5 +1,6 @@
 //! The native window. The app outlives it: after a device loss the window is reopened.
 
+use crate::editor::document::files::StudioSource;
 use crate::editor::window::app::{App, EditorOptions};
 use crate::editor::window::{event_guard, recent};
 use crate::io;
@@ -37,7 +38,7 @@ pub fn run(initial: Option<PathBuf>) -> Result<(), EditorError> {
     let started = Instant::now();
     check_display()?;
     let options = EditorOptions {
-        initial,
+        initial: initial.map(StudioSource::named),
         settings_folder: recent::settings_folder(),
         recovery_folder: io::state_folder().map(|folder| folder.join("recovery")),
         started,
@@ -261,7 +262,10 @@ mod tests {
             let _ = wake.send(());
         });
         let creation = eframe::CreationContext::_new_kittest(ctx.clone());
-        let mut app = App::new(&creation, EditorOptions { initial: Some(file.to_owned()), ..EditorOptions::default() });
+        let mut app = App::new(
+            &creation,
+            EditorOptions { initial: Some(StudioSource::File(file.to_owned())), ..EditorOptions::default() },
+        );
         while app.document().path().is_none() {
             woken.recv_timeout(Duration::from_secs(60)).unwrap();
             app.take_in(&ctx, &mut Vec::new());

@@ -11,7 +11,7 @@ use crate::scene::TextureSlot;
 use std::sync::mpsc::Receiver;
 
 /// An operation that waits for the prompt for unsaved changes.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum PendingOperation {
     Load(StudioSource),
     Quit,
@@ -21,7 +21,7 @@ impl PendingOperation {
     pub fn description(&self) -> &'static str {
         match self {
             PendingOperation::Load(StudioSource::File(_)) => "opening another studio",
-            PendingOperation::Load(StudioSource::Preset(_)) => "starting a new studio",
+            PendingOperation::Load(StudioSource::Preset(_) | StudioSource::Memory(_)) => "starting a new studio",
             PendingOperation::Quit => "quitting",
         }
     }

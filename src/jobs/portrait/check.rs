@@ -7,10 +7,8 @@ use super::key_light::{find_key, map_face};
 use crate::figures::{eye_point, face_direction};
 use crate::photo::portrait_pattern::find_pattern;
 use crate::raytrace::{LightMeter, PrepareError, RenderControl};
-use crate::scene::{Asset, AssetRef, Assets, Figure, FigureMeshes, Mesh, Object, ObjectId, Scene, Shape};
+use crate::scene::{Assets, Figure, Object, ObjectId, Scene, Shape};
 use glam::{Affine3A, Vec2, Vec3};
-use std::borrow::Cow;
-use std::sync::Arc;
 
 /// Strands of the face. They are left out: a pattern is a matter of the face's form.
 const FACE_HAIR: [&str; 3] = ["beard", "brows", "lashes"];
@@ -63,7 +61,9 @@ pub fn check_patterns(
 ) -> Result<Option<Vec<Face>>, PrepareError> {
     let named = || scene.objects.iter().enumerate().filter(|(_, object)| figures.contains(&object.id));
     let Some(first) = named().find_map(|(_, object)| eyes_of(object)) else { return Ok(Some(Vec::new())) };
-    let meter = LightMeter::new(scene, &without_face_hair(scene, assets), first)?;
+    // The face is read without its hair, on the coarse mesh
+    let shaved = assets.clone().map_figures(|meshes| meshes.coarse_with_strands(|part| !FACE_HAIR.contains(&part)));
+    let meter = LightMeter::new(scene, &shaved, first)?;
     let mut faces = Vec::new();
     for (index, object) in named() {
         if control.is_cancelled() {
@@ -81,20 +81,6 @@ pub fn check_patterns(
 fn eyes_of(object: &Object) -> Option<Vec3> {
     let Shape::Figure(figure) = &object.shape else { return None };
     Some(object.transform.world_from_object().transform_point3(eye_point(figure)))
-}
-
-/// Returns the assets with figures of fewer triangles, without the hair of their faces.
-fn without_face_hair(scene: &Scene, assets: &Assets) -> Assets {
-    let mut shaved = assets.clone();
-    for object in &scene.objects {
-        let Shape::Figure(figure) = &object.shape else { continue };
-        let Some(meshes) = assets.figure(figure) else { continue };
-        let strands = meshes.coarse.strands.with_parts(|name| !FACE_HAIR.contains(&name));
-        let mesh = Arc::new(Mesh { strands, ..Mesh::clone(&meshes.coarse) });
-        let meshes = FigureMeshes { fine: Arc::clone(&mesh), coarse: mesh };
-        shaved.insert(AssetRef::figure(Cow::Owned(**figure)), Asset::Figure(meshes));
-    }
-    shaved
 }
 
 fn face_lighting(scene: &Scene, meter: &LightMeter, index: u32, object: &Object, figure: &Figure) -> FaceLighting {
