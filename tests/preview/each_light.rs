@@ -64,7 +64,7 @@ fn each_light_alone_equals_the_traced_direct_light() {
     let mut wrong = Vec::new();
     for preset in catchlight::io::presets() {
         let studio = preset.file_name.trim_end_matches(".ron");
-        let mut loaded = hairless(preset.load().unwrap());
+        let mut loaded = coarse_and_hairless(preset.load().unwrap());
         let blases = GeometryCache::default();
         let lights: Vec<(LightId, String)> = loaded.scene.lights.iter().map(|l| (l.id, l.name.clone())).collect();
         for (id, name) in lights {
@@ -91,7 +91,7 @@ fn each_light_alone_equals_the_traced_direct_light() {
 #[test]
 fn lights_in_difficult_positions_equal_the_traced_direct_light() {
     let Some((_gpu, mut renderer)) = renderer() else { return };
-    let mut loaded = hairless(catchlight::io::find_preset("split").unwrap().load().unwrap());
+    let mut loaded = coarse_and_hairless(catchlight::io::find_preset("split").unwrap().load().unwrap());
     loaded.scene.camera.position = Vec3::new(0.3, 1.6, 1.96);
     let (strip, horizontal) =
         (Emitter::RectPanel { width_m: 0.3, height_m: 1.4 }, Emitter::RectPanel { width_m: 1.4, height_m: 0.3 });

@@ -1,5 +1,6 @@
 //! Adaptive sampling by `--noise`: more samples where the noise is, without bias.
 
+use crate::people::coarse_and_hairless;
 use crate::studio::measure::film_with;
 use catchlight::io::{find_preset, presets};
 use catchlight::photo::Picture;
@@ -12,7 +13,7 @@ fn mean(picture: &Picture) -> f64 {
 
 #[test]
 fn tiles_with_little_noise_stop_early_without_bias() {
-    let loaded = find_preset("three_point").unwrap().load().unwrap();
+    let loaded = coarse_and_hairless(find_preset("three_point").unwrap().load().unwrap());
     let size = Settings { width: 128, height: 96, spp: 512, ..Settings::default() };
     let limit = 0.06;
     let film = film_with(&loaded.scene, &loaded.assets, &Settings { noise_stops: Some(limit), ..size.clone() });

@@ -1,5 +1,6 @@
 //! Renders every studio preset: finite, lit, the same bits for any number of threads.
 
+use crate::people::coarse_and_hairless;
 use crate::studio::measure::film_with;
 use catchlight::io;
 use catchlight::raytrace::{self, Film, Method, RenderControl, RenderScene, Settings};
@@ -81,7 +82,7 @@ fn a_cancelled_render_keeps_its_complete_passes() {
 
 #[test]
 fn a_render_ends_at_its_noise_target() {
-    let loaded = io::find_preset("three_point").unwrap().load().unwrap();
+    let loaded = coarse_and_hairless(io::find_preset("three_point").unwrap().load().unwrap());
     let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
     let settings = Settings { width: 64, height: 64, spp: 4096, noise_stops: Some(0.1), ..Settings::default() };
     let film = render(&prepared, &settings, 2);
