@@ -8,6 +8,7 @@ mod output;
 mod picture_files;
 mod running_render;
 mod signals;
+mod window_libraries;
 
 use serde_json::Value;
 use std::path::Path;

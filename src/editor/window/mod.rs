@@ -14,4 +14,5 @@ pub mod rescue;
 pub mod run_command;
 pub mod run_file_command;
 pub mod run_recovery;
+pub mod run_time_libraries;
 pub mod session;

@@ -2,6 +2,7 @@
 
 use crate::editor::document::files::StudioSource;
 use crate::editor::window::app::{App, EditorOptions};
+use crate::editor::window::run_time_libraries::{self, MissingLibraries};
 use crate::editor::window::{event_guard, recent};
 use crate::io;
 use crate::preview::Gpu;
@@ -22,6 +23,9 @@ pub enum EditorError {
     /// There is no display to open a window on.
     #[error("there is no display to open a window on: {0}")]
     NoDisplay(String),
+    /// Libraries of the window system are missing.
+    #[error("the window needs {}; on Debian: apt-get install {}", .0.files.join(", "), .0.packages.join(" "))]
+    MissingLibraries(MissingLibraries),
     /// There is a display, but nothing that can draw on it.
     #[error("no GPU adapter can draw the window (on Debian: apt-get install mesa-vulkan-drivers libvulkan1): {0}")]
     NoGraphics(String),
@@ -47,14 +51,19 @@ pub fn run(initial: Option<PathBuf>) -> Result<(), EditorError> {
     run_windows(options)
 }
 
-/// Checks for a Wayland or X11 display on Linux; the error of winit is less helpful.
+/// Checks on Linux for a Wayland or X11 display and the libraries that its window needs: winit's error is less helpful,
+/// and it panics without some of the libraries.
 fn check_display() -> Result<(), EditorError> {
+    if !cfg!(all(unix, not(target_os = "macos"))) {
+        return Ok(());
+    }
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-    let is_linux = cfg!(all(unix, not(target_os = "macos")));
-    if is_linux && !set("DISPLAY") && !set("WAYLAND_DISPLAY") && !set("WAYLAND_SOCKET") {
+    // As winit does, take Wayland where both are there
+    let on_wayland = set("WAYLAND_DISPLAY") || set("WAYLAND_SOCKET");
+    if !on_wayland && !set("DISPLAY") {
         return Err(EditorError::NoDisplay("neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned()));
     }
-    Ok(())
+    run_time_libraries::missing(on_wayland).map_or(Ok(()), |missing| Err(EditorError::MissingLibraries(missing)))
 }
 
 /// Shortest lifetime after which a lost window is reopened with the same renderer.
