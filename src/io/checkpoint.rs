@@ -4,6 +4,7 @@ use super::atomic;
 use super::error::{SaveError, reason};
 use crate::raytrace::Film;
 use crate::scene::{Asset, Assets, Mesh, Scene};
+use std::fmt;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -14,7 +15,7 @@ const MAGIC: &[u8; 16] = b"Catchlight film1";
 const HEAD: usize = MAGIC.len() + 8;
 const TAIL: usize = 8;
 
-/// The render that a checkpoint belongs to: a hash of the studio, its assets, the settings and the program's version.
+/// The render that a checkpoint or a part belongs to: a hash of the studio, its assets, the settings and the program's version.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderId(u64);
 
@@ -31,6 +32,19 @@ impl RenderId {
         files.sort_unstable();
         files.hash(&mut hasher);
         RenderId(hasher.finish())
+    }
+}
+
+impl RenderId {
+    /// Returns the identity that [`RenderId`] prints as this text.
+    pub(super) fn parse(text: &str) -> Option<Self> {
+        u64::from_str_radix(text, 16).ok().map(RenderId)
+    }
+}
+
+impl fmt::Display for RenderId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:016x}", self.0)
     }
 }
 

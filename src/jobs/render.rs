@@ -69,11 +69,7 @@ pub fn render(
     let control = monitor.control();
     // Build the acceleration structures and the light tables.
     let build_started = Instant::now();
-    let mut scene = pool.install(|| raytrace::prepare_kept(input.scene, input.assets, input.cache))?;
-    if !input.without.is_empty() {
-        let plan = input.without.iter().fold(scene.plan().clone(), |plan, shortcut| plan.without(*shortcut));
-        scene.set_plan(plan);
-    }
+    let scene = prepared(input, pool)?;
     let build_s = build_started.elapsed().as_secs_f64();
     observe(RenderStage::Prepared(&scene));
     // Trace a small version of a large picture, whose first pass takes long.
@@ -99,6 +95,16 @@ pub fn render(
     });
     monitor.finish();
     Ok(Rendered { scene, coarse, film, build_s, trace_s: trace_started.elapsed().as_secs_f64() })
+}
+
+/// Prepares the scene, with the plan that the input asks for.
+pub(super) fn prepared(input: &RenderInput<'_>, pool: &ThreadPool) -> Result<RenderScene, PrepareError> {
+    let mut scene = pool.install(|| raytrace::prepare_kept(input.scene, input.assets, input.cache))?;
+    if !input.without.is_empty() {
+        let plan = input.without.iter().fold(scene.plan().clone(), |plan, shortcut| plan.without(*shortcut));
+        scene.set_plan(plan);
+    }
+    Ok(scene)
 }
 
 /// Returns the film with the samples of an earlier run, or an empty one.

@@ -68,18 +68,18 @@ fn is_quiet(tile: &FilmTile, settings: &Settings) -> bool {
 }
 
 /// A pass of one tile.
-struct TileJob<'a> {
-    scene: &'a RenderScene,
-    photon_map: Option<&'a PhotonMap>,
-    camera: &'a FilmCamera,
-    settings: &'a Settings,
-    control: &'a RenderControl,
-    pass: SamplePass,
+pub(super) struct TileJob<'a> {
+    pub scene: &'a RenderScene,
+    pub photon_map: Option<&'a PhotonMap>,
+    pub camera: &'a FilmCamera,
+    pub settings: &'a Settings,
+    pub control: &'a RenderControl,
+    pub pass: SamplePass,
 }
 
 impl TileJob<'_> {
     /// Adds the pass to the tile. Returns false if the render is cancelled.
-    fn run(&self, tile: &mut FilmTile) -> bool {
+    pub fn run(&self, tile: &mut FilmTile) -> bool {
         if self.control.is_cancelled() {
             return false;
         }

@@ -4,7 +4,9 @@
 mod chart;
 mod checkpoints;
 mod extremes;
+mod farm;
 mod output;
+mod package;
 mod picture_files;
 mod running_render;
 mod signals;

@@ -1,11 +1,13 @@
 //! Arguments of `catchlight render`, and the settings that follow from them.
 
+use super::progress::ProgressStyle;
 use crate::cli::input;
 use crate::io::{self, PictureFormat};
 use crate::raytrace::{Method, SampleId, Settings, Shortcut};
 use crate::scene::Camera;
 use anyhow::anyhow;
 use clap::ValueEnum;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
@@ -47,6 +49,13 @@ pub struct Arguments {
     /// arguments must be the same.
     #[arg(long, conflicts_with = "explain_pixel")]
     pub resume: bool,
+    /// Render only the samples A to B - 1 of the --spp of each pixel, as a part of the picture for `catchlight merge`
+    /// (exr only). Parts may be rendered by different machines.
+    #[arg(long, value_name = "A..B", value_parser = parse_samples, conflicts_with = "explain_pixel")]
+    samples: Option<Range<u32>>,
+    /// How progress is shown on stderr: a bar, a line of JSON for each percent, or lines for Open Job Description.
+    #[arg(long, value_enum, default_value_t = ProgressStyle::Bar)]
+    pub progress: ProgressStyle,
     /// Number of threads [default: all cores].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -125,6 +134,12 @@ fn positive<T: FromStr + Into<f64> + Copy>(text: &str) -> Result<T, String> {
     }
 }
 
+fn parse_samples(text: &str) -> Result<Range<u32>, String> {
+    let ends = text.split_once("..").and_then(|(a, b)| Some((a.trim().parse().ok()?, b.trim().parse().ok()?)));
+    let (start, end) = ends.ok_or_else(|| format!("`{text}` is no range of samples: write A..B, such as 0..16"))?;
+    if start < end { Ok(start..end) } else { Err(format!("the range {text} has no sample")) }
+}
+
 fn not_negative(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
     if value >= 0.0 { Ok(value) } else { Err(format!("must be 0 or more, not {text}")) }
@@ -146,6 +161,25 @@ impl Arguments {
             }
         }
         Ok(io::check_picture_file(output)?)
+    }
+
+    /// Returns the samples of the part that is to be rendered; none for a whole picture.
+    pub fn part(&self) -> anyhow::Result<Option<Range<u32>>> {
+        let Some(samples) = self.samples.clone() else { return Ok(None) };
+        let (of, Range { start, end }) = (self.spp.unwrap_or(DEFAULT_SPP), samples.clone());
+        anyhow::ensure!(end <= of, "the picture has the samples 0..{of} (--spp), so {start}..{end} is no part of it");
+        anyhow::ensure!(
+            self.noise.is_none() && self.time.is_none(),
+            "a part has all samples of its range: --noise and --time end a picture by what all of its samples show, \
+             which a part does not know"
+        );
+        anyhow::ensure!(self.method.traced().is_some(), "--method zbuffer has no samples to divide");
+        anyhow::ensure!(!self.layers, "a part has the layers of all lights; give --layers to merge");
+        anyhow::ensure!(!self.resume, "a part has no checkpoints: render it again, and choose shorter ranges");
+        if PictureFormat::of(self.output())? != PictureFormat::Exr {
+            return Err(anyhow!("a part needs a file that ends in .exr, not {}", self.output().display()));
+        }
+        Ok(Some(samples))
     }
 
     /// Returns the picture file; empty only with --explain-pixel.

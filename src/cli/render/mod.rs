@@ -4,7 +4,10 @@ mod arguments;
 mod checkpoints;
 mod explain_pixel;
 mod interrupt;
+mod part;
+mod progress;
 mod progress_bar;
+mod progress_updates;
 mod report;
 
 pub use arguments::Arguments;
@@ -18,7 +21,7 @@ use crate::raytrace::{Film, GeometryCache, NonFiniteReport, RenderControl, Rende
 use anyhow::anyhow;
 use checkpoints::Checkpoints;
 use interrupt::cancel_on_signals;
-use progress_bar::ProgressDisplay;
+use progress::ProgressDisplay;
 use rayon::ThreadPool;
 use report::RenderReport;
 use std::sync::Arc;
@@ -30,6 +33,7 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
     let control: Arc<RenderControl> = Arc::default();
     let interrupted = cancel_on_signals(&control)?;
     arguments.check_output()?;
+    let samples = arguments.part()?;
     let pool = input::thread_pool(arguments.threads())?;
     // Load the studio.
     let load_started = Instant::now();
@@ -42,6 +46,10 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
     if let Some(pixel) = arguments.explain_pixel {
         let explain = || explain_pixel::run(arguments, &loaded, &settings, pixel);
         return Ok(pool.install(explain)?);
+    }
+    if let Some(samples) = samples {
+        let part = part::PartRender { arguments, loaded: &loaded, settings: &settings, pool: &pool, started, load_s };
+        return part.run(samples, control, &interrupted);
     }
     // Render with a progress bar.
     let monitor = Arc::new(RenderMonitor::new(&settings, control));
@@ -116,7 +124,7 @@ fn render(
             if arguments.explain {
                 print_plan(scene, arguments.json);
             }
-            display = Some(ProgressDisplay::start(monitor.clone()));
+            display = Some(ProgressDisplay::start(monitor.clone(), arguments.progress));
         }
         RenderStage::Coarse(_) => {}
         RenderStage::Pass(film) => checkpoints.after_pass(film),

@@ -26,6 +26,12 @@ impl EncodedPicture {
         &self.path
     }
 
+    /// Returns the bytes of the file.
+    #[cfg(test)]
+    pub fn content(&self) -> &[u8] {
+        &self.content
+    }
+
     /// Writes the picture to its file. An older file is replaced atomically; a pipe or a device takes the bytes.
     ///
     /// # Errors

@@ -35,7 +35,7 @@ const LARGEST_EDGE: usize = 65_536;
 const MOST_PIXELS: usize = 1 << 28;
 
 /// Returns the size of a picture, if it is small enough to be read.
-fn checked_size(size: exr::math::Vec2<usize>) -> Result<(u32, u32), String> {
+pub(super) fn checked_size(size: exr::math::Vec2<usize>) -> Result<(u32, u32), String> {
     let (width, height) = (size.width(), size.height());
     let too_large = || format!("the picture of {width} x {height} pixels is too large");
     if width.max(height) > LARGEST_EDGE || width * height > MOST_PIXELS {
@@ -69,7 +69,7 @@ pub(super) fn decode(content: &[u8]) -> Result<Picture, String> {
     Ok(image.layer_data.channel_data.pixels)
 }
 
-fn part(
+pub(super) fn part(
     name: &str,
     picture: &Picture,
     aovs: Option<&AovPicture>,
@@ -112,7 +112,7 @@ fn channels(names: [&str; 3], pixels: &[[f32; 3]]) -> [AnyChannel<FlatSamples>; 
 }
 
 /// Converts text to EXR's byte strings: at most 200 bytes, not empty, `_` for characters that are not printable ASCII.
-fn text(value: &str) -> Text {
+pub(super) fn text(value: &str) -> Text {
     const LENGTH: usize = 200;
     let fitting =
         |c: char| u8::try_from(c).ok().filter(|byte| byte.is_ascii() && !byte.is_ascii_control()).unwrap_or(b'_');

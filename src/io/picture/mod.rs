@@ -2,8 +2,10 @@
 
 mod encoded;
 mod exr_file;
+mod part_file;
 
 pub use encoded::EncodedPicture;
+pub use part_file::{PicturePart, encode_part, read_part};
 
 use super::atomic;
 use super::error::SaveError;

@@ -136,6 +136,11 @@ impl Film {
         self.tiles.iter().map(|tile| tile.noise_stops()).collect()
     }
 
+    /// The tiles.
+    pub(super) fn tiles(&self) -> &[Arc<FilmTile>] {
+        &self.tiles
+    }
+
     /// The tiles, to add samples to; see [`Arc::make_mut`].
     pub(super) fn tiles_mut(&mut self) -> &mut [Arc<FilmTile>] {
         &mut self.tiles
@@ -176,7 +181,7 @@ impl Film {
     }
 
     /// Factor of each layer from means to picture values.
-    fn weights(&self, scene: &Scene) -> Vec<Vec3> {
+    pub(super) fn weights(&self, scene: &Scene) -> Vec<Vec3> {
         let scale = exposure::pixel_per_cd_s_m2(scene);
         self.layers.iter().map(|layer| layer.weight(scene) * scale).collect()
     }

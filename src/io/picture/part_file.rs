@@ -1,0 +1,288 @@
+//! Files of parts of a picture's samples: EXR in 32 bits.
+//!
+//! The EXR part `picture` has R, G and B of these samples alone, for viewers, and the sums of their squared luminance;
+//! each light has an EXR part with the sums of its samples. A sum is a fixed-point number of 128 bits
+//! ([`ExactSum`]) in four unsigned channels, the lowest 32 bits first: `R.0` to `R.3`. Every pixel has the same number
+//! of samples; the header says which, and of which render.
+
+use super::PictureInfo;
+use super::encoded::EncodedPicture;
+use super::exr_file::{checked_size, part, text};
+use crate::io::checkpoint::RenderId;
+use crate::io::error::{SaveError, reason};
+use crate::raytrace::{ExactSum, FilmPart, NonFiniteReport, PartAovs, PartLayer, PixelSum};
+use exr::meta::MetaData;
+use exr::meta::attribute::AttributeValue;
+use exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer, LayerAttributes,
+    ReadChannels, ReadLayers, WritableImage,
+};
+use glam::Vec3;
+use std::io::Cursor;
+use std::ops::Range;
+use std::path::Path;
+
+/// Some of the samples of a picture, and what they are samples of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PicturePart {
+    /// The render of the whole picture.
+    pub render: RenderId,
+    /// Name of the studio.
+    pub studio: String,
+    /// Indices of the samples.
+    pub samples: Range<u32>,
+    /// Samples of the whole picture.
+    pub of: u32,
+    /// Settings for the merged picture's file.
+    pub info: PictureInfo,
+    /// The sums.
+    pub sums: FilmPart,
+}
+
+const RENDER: &str = "catchlightRender";
+const STUDIO: &str = "studio";
+const FIRST: &str = "samplesFirst";
+const END: &str = "samplesEnd";
+const OF: &str = "samplesOfWhole";
+const LAYER: &str = "layerName";
+const WEIGHT: &str = "weight";
+
+type ExrPart = Layer<AnyChannels<FlatSamples>>;
+
+/// Encodes a part for its file.
+///
+/// # Errors
+/// If the encoder fails.
+pub fn encode_part(path: &Path, value: &PicturePart) -> Result<EncodedPicture, SaveError> {
+    let encode = |message| SaveError::Encode { message, path: path.to_owned() };
+    let whole =
+        |samples: u32| i32::try_from(samples).map(AttributeValue::I32).map_err(|error| encode(error.to_string()));
+    let sums = &value.sums;
+    let mut picture = part("picture", &sums.develop(), None, &value.info);
+    picture.channel_data.list.extend(sum_channels("luminance2", &sums.squares, |square| *square));
+    picture.channel_data.list.extend(sums.aovs.iter().flat_map(aov_channels));
+    picture.channel_data.list.sort_by(|a, b| a.name.cmp(&b.name));
+    picture.attributes.other.extend([
+        (text(RENDER), AttributeValue::Text(text(&value.render.to_string()))),
+        (text(STUDIO), AttributeValue::Text(text(&value.studio))),
+        (text(FIRST), whole(value.samples.start)?),
+        (text(END), whole(value.samples.end)?),
+        (text(OF), whole(value.of)?),
+    ]);
+    let size = (sums.width as usize, sums.height as usize);
+    let layers = sums.layers.iter().enumerate().map(|(index, layer)| layer_part(index, layer, size));
+    let parts: Vec<ExrPart> = std::iter::once(picture).chain(layers).collect();
+    let image = Image::from_layers(ImageAttributes::new(IntegerBounds::from_dimensions(size)), parts);
+    let mut content = Cursor::new(Vec::new());
+    image.write().to_buffered(&mut content).map_err(|error| encode(error.to_string()))?;
+    Ok(EncodedPicture::new(path, content.into_inner()))
+}
+
+fn layer_part(index: usize, layer: &PartLayer, size: (usize, usize)) -> ExrPart {
+    let mut attributes = LayerAttributes::named(text(&format!("sums {index}")));
+    let weight = layer.weight;
+    attributes.other.extend([
+        (text(LAYER), AttributeValue::Text(text(&layer.name))),
+        (text(WEIGHT), AttributeValue::FloatVec3((weight.x, weight.y, weight.z))),
+    ]);
+    let channels = vector_channels(["R", "G", "B"], &layer.sums);
+    Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels.collect()))
+}
+
+fn aov_channels(aovs: &PartAovs) -> Vec<AnyChannel<FlatSamples>> {
+    let mut all: Vec<_> = vector_channels(["albedo.R", "albedo.G", "albedo.B"], &aovs.albedo).collect();
+    all.extend(vector_channels(["normal.X", "normal.Y", "normal.Z"], &aovs.normal));
+    all.push(AnyChannel::new("Z", FlatSamples::F32(aovs.depth_m.clone())));
+    all.push(AnyChannel::new("id", FlatSamples::U32(aovs.object_id.clone())));
+    all
+}
+
+fn vector_channels<'a>(
+    names: [&'a str; 3],
+    sums: &'a [PixelSum],
+) -> impl Iterator<Item = AnyChannel<FlatSamples>> + use<'a> {
+    (0..3).flat_map(move |component| sum_channels(names[component], sums, move |sum| sum[component]))
+}
+
+/// Returns the four words of each sum as channels.
+fn sum_channels<T>(name: &str, sums: &[T], sum: impl Fn(&T) -> ExactSum) -> [AnyChannel<FlatSamples>; 4] {
+    [0, 1, 2, 3].map(|word| {
+        let words = sums.iter().map(|value| sum(value).words()[word]).collect();
+        AnyChannel::new(word_name(name, word).as_str(), FlatSamples::U32(words))
+    })
+}
+
+fn word_name(name: &str, word: usize) -> String {
+    format!("{name}.{word}")
+}
+
+/// Reads a part.
+///
+/// # Errors
+/// If the file can't be read, or is none of a part.
+pub fn read_part(path: &Path) -> Result<PicturePart, String> {
+    let content = std::fs::read(path).map_err(|error| reason(&error))?;
+    decode(&content)
+}
+
+fn decode(content: &[u8]) -> Result<PicturePart, String> {
+    // Check the sizes before memory is allocated for any of them
+    let meta = MetaData::read_from_buffered(Cursor::new(content), false).map_err(|error| error.to_string())?;
+    meta.headers.iter().try_for_each(|header| checked_size(header.layer_size).map(|_| ()))?;
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .all_layers()
+        .all_attributes()
+        .from_buffered(Cursor::new(content))
+        .map_err(|error| error.to_string())?;
+    let (picture, layers) = image.layer_data.split_first().ok_or("it is empty")?;
+    let whole = Header(picture);
+    let render = whole.text(RENDER).ok_or("it is no part of a picture (render --samples writes them)")?;
+    let render = RenderId::parse(&render).ok_or("the render that it is a part of has no number")?;
+    let (width, height) = checked_size(picture.size)?;
+    let samples = whole.samples(FIRST)?..whole.samples(END)?;
+    let of = whole.samples(OF)?;
+    if samples.is_empty() || samples.end > of {
+        return Err(format!("it has the samples {}..{} of {of}", samples.start, samples.end));
+    }
+    let sums = FilmPart {
+        width,
+        height,
+        samples: samples.end - samples.start,
+        layers: layers.iter().map(|layer| Header(layer).layer(picture.size)).collect::<Result<_, _>>()?,
+        squares: whole.sums("luminance2")?,
+        aovs: if whole.channel("Z").is_some() { Some(whole.aovs()?) } else { None },
+        nonfinite: NonFiniteReport::default(),
+    };
+    Ok(PicturePart { render, studio: whole.text(STUDIO).unwrap_or_default(), samples, of, info: whole.info()?, sums })
+}
+
+/// A part of an EXR file as it was read.
+struct Header<'a>(&'a ExrPart);
+
+impl Header<'_> {
+    fn attribute(&self, name: &str) -> Option<&AttributeValue> {
+        self.0.attributes.other.get(&text(name))
+    }
+
+    fn text(&self, name: &str) -> Option<String> {
+        match self.attribute(name)? {
+            AttributeValue::Text(text) => Some(text.to_string()),
+            _ => None,
+        }
+    }
+
+    /// Returns a number of samples.
+    fn samples(&self, name: &str) -> Result<u32, String> {
+        let missing = || format!("{name} is missing");
+        match self.attribute(name) {
+            Some(AttributeValue::I32(samples)) => u32::try_from(*samples).map_err(|_| missing()),
+            _ => Err(missing()),
+        }
+    }
+
+    fn info(&self) -> Result<PictureInfo, String> {
+        let scale = match self.attribute("exposureScale_cd_s_m2_per_unit") {
+            Some(AttributeValue::F32(scale)) => *scale,
+            _ => return Err("the exposure scale is missing".to_owned()),
+        };
+        let seed = self.text("seed").and_then(|seed| seed.parse().ok()).ok_or("the seed is missing")?;
+        let method = self.text("method").ok_or("the method is missing")?;
+        Ok(PictureInfo { cd_s_m2_per_unit: scale, spp: self.samples("spp")?, seed, method })
+    }
+
+    fn layer(&self, size: exr::math::Vec2<usize>) -> Result<PartLayer, String> {
+        if self.0.size != size {
+            return Err("its layers differ in size".to_owned());
+        }
+        let weight = match self.attribute(WEIGHT) {
+            Some(AttributeValue::FloatVec3((x, y, z))) => Vec3::new(*x, *y, *z),
+            _ => return Err("a layer has no weight".to_owned()),
+        };
+        let name = self.text(LAYER).ok_or("a layer has no name")?;
+        Ok(PartLayer { name, weight, sums: self.vector_sums(["R", "G", "B"])? })
+    }
+
+    fn aovs(&self) -> Result<PartAovs, String> {
+        let (depth_m, object_id) = match (self.channel("Z"), self.channel("id")) {
+            (Some(FlatSamples::F32(depth)), Some(FlatSamples::U32(id))) => (depth.clone(), id.clone()),
+            _ => return Err("depth or object is missing".to_owned()),
+        };
+        let albedo = self.vector_sums(["albedo.R", "albedo.G", "albedo.B"])?;
+        let normal = self.vector_sums(["normal.X", "normal.Y", "normal.Z"])?;
+        Ok(PartAovs { albedo, normal, depth_m, object_id })
+    }
+
+    fn vector_sums(&self, names: [&str; 3]) -> Result<Vec<PixelSum>, String> {
+        let [x, y, z] = [self.sums(names[0])?, self.sums(names[1])?, self.sums(names[2])?];
+        Ok(x.into_iter().zip(y).zip(z).map(|((x, y), z)| [x, y, z]).collect())
+    }
+
+    fn sums(&self, name: &str) -> Result<Vec<ExactSum>, String> {
+        let words = |word| match self.channel(&word_name(name, word)) {
+            Some(FlatSamples::U32(words)) => Ok(words.as_slice()),
+            _ => Err(format!("the sums {name} are missing")),
+        };
+        let words = [words(0)?, words(1)?, words(2)?, words(3)?];
+        Ok((0..words[0].len()).map(|pixel| ExactSum::from_words(words.map(|word| word[pixel]))).collect())
+    }
+
+    fn channel(&self, name: &str) -> Option<&FlatSamples> {
+        self.0.channel_data.list.iter().find(|channel| channel.name.eq(name)).map(|channel| &channel.sample_data)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::presets;
+    use crate::raytrace::{RenderControl, Settings, prepare, render_part};
+
+    fn some_part(aovs: bool) -> PicturePart {
+        let loaded = presets()[0].load().unwrap();
+        let prepared = prepare(&loaded.scene, &loaded.assets).unwrap();
+        let settings = Settings { width: 37, height: 21, spp: 9, aovs, ..Settings::default() };
+        let sums = render_part(&prepared, &loaded.scene, &settings, 0..2, &RenderControl::new(), &mut |_| {});
+        PicturePart {
+            render: RenderId::new(&loaded.scene, &loaded.assets, "test"),
+            studio: loaded.scene.name.clone(),
+            samples: 0..2,
+            of: 9,
+            info: PictureInfo::new(&loaded.scene, "path", 2, u64::from(u32::MAX)),
+            sums,
+        }
+    }
+
+    #[test]
+    fn a_part_keeps_every_bit_in_its_file_and_viewers_find_a_picture() {
+        for aovs in [false, true] {
+            let part = some_part(aovs);
+            let encoded = encode_part(Path::new("part.exr"), &part).unwrap();
+            let read = decode(encoded.content()).unwrap();
+            assert!(read == part, "{:?} {:?}", read.info, part.info);
+            let shown = crate::io::picture::exr_file::decode(encoded.content()).unwrap();
+            assert_eq!(shown, part.sums.develop());
+        }
+    }
+
+    #[test]
+    fn files_that_are_no_parts_and_damaged_parts_are_errors() {
+        let part = some_part(true);
+        let encoded = encode_part(Path::new("part.exr"), &part).unwrap();
+        let content = encoded.content();
+        for length in (0..content.len()).step_by(content.len() / 60) {
+            assert!(decode(&content[..length]).is_err(), "{length}");
+        }
+        let picture =
+            crate::io::encode_layers(Path::new("a.exr"), &part.sums.develop(), &[], None, &part.info).unwrap();
+        assert!(decode(picture.content()).unwrap_err().contains("no part of a picture"));
+        // Bytes of the header, one after the other: an error or a part, and no panic
+        for at in 0..1500 {
+            let mut damaged = content.to_vec();
+            damaged[at] ^= 0x41;
+            let _ = decode(&damaged);
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! A part of a picture's samples from scene to sums, for farms.
+
+use super::monitor::RenderMonitor;
+use super::render::{RenderInput, RenderStage, prepared};
+use crate::raytrace::{self, FilmPart, PrepareError, RenderScene};
+use rayon::ThreadPool;
+use std::ops::Range;
+use std::time::Instant;
+
+/// A rendered part.
+#[derive(Debug)]
+pub struct RenderedPart {
+    /// The scene as it was traced.
+    pub scene: RenderScene,
+    /// The sums; of fewer samples if the render was cancelled.
+    pub part: FilmPart,
+    /// Name of the method, for the picture's file.
+    pub method: &'static str,
+    /// Caustics come from photons.
+    pub has_photons: bool,
+    /// Time to build BVHs and tables, seconds.
+    pub build_s: f64,
+    /// Time to trace, seconds.
+    pub trace_s: f64,
+}
+
+/// Renders the samples of `range` on `pool`, keeping `monitor` up to date. Checkpoint and time limit of `input` are
+/// not used.
+///
+/// # Errors
+/// When the scene cannot be prepared.
+pub fn render_part(
+    input: &RenderInput<'_>,
+    range: Range<u32>,
+    pool: &ThreadPool,
+    monitor: &RenderMonitor,
+    observe: &mut (dyn FnMut(RenderStage<'_>) + Send),
+) -> Result<RenderedPart, PrepareError> {
+    let build_started = Instant::now();
+    let scene = prepared(input, pool)?;
+    let build_s = build_started.elapsed().as_secs_f64();
+    observe(RenderStage::Prepared(&scene));
+    let trace_started = Instant::now();
+    monitor.start_tracing(trace_started);
+    let after_sample = &mut |_: &FilmPart| monitor.finish_pass();
+    let part = pool
+        .install(|| raytrace::render_part(&scene, input.scene, input.settings, range, monitor.control(), after_sample));
+    monitor.finish();
+    let film = raytrace::empty_film(&scene, input.settings);
+    let (method, has_photons) = (film.method(), film.has_photons());
+    Ok(RenderedPart { scene, part, method, has_photons, build_s, trace_s: trace_started.elapsed().as_secs_f64() })
+}

@@ -1,0 +1,235 @@
+//! A part of a picture's samples, to be merged with the others: sums without rounding, so that the picture does not
+//! depend on how its samples were divided.
+
+use super::exact_sum::ExactSum;
+use super::film::{Film, Layer, NonFiniteReport, TILE};
+use crate::color::luminance;
+use crate::photo::{AovPicture, Picture};
+use crate::scene::Scene;
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+/// Red, green and blue of a pixel, or the components of a vector.
+pub type PixelSum = [ExactSum; 3];
+
+/// The sums of a light's layer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartLayer {
+    /// The layer's name.
+    pub name: String,
+    /// Factor from means to picture values: the light's power and colour, white balance, exposure.
+    pub weight: Vec3,
+    /// Sums of the samples, rows from the top.
+    pub sums: Vec<PixelSum>,
+}
+
+/// The first surface that each pixel shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartAovs {
+    /// Sums of the samples' albedo.
+    pub albedo: Vec<PixelSum>,
+    /// Sums of the samples' normals.
+    pub normal: Vec<PixelSum>,
+    /// Depth of the picture's first sample, metres; infinite in parts without it.
+    pub depth_m: Vec<f32>,
+    /// Object of the picture's first sample; none in parts without it.
+    pub object_id: Vec<u32>,
+}
+
+/// Sums over some of the samples of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilmPart {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Samples of each pixel.
+    pub samples: u32,
+    /// The layers, one per light.
+    pub layers: Vec<PartLayer>,
+    /// Sums of the squared luminance of the samples as picture values.
+    pub squares: Vec<ExactSum>,
+    /// Albedo, normal, depth and object, if the render has AOVs.
+    pub aovs: Option<PartAovs>,
+    /// Discarded non-finite contributions.
+    pub nonfinite: NonFiniteReport,
+}
+
+impl FilmPart {
+    /// Returns a part without samples, for a film developed as in `scene`.
+    pub fn new(film: &Film, scene: &Scene, aovs: bool) -> Self {
+        let pixels = film.width() as usize * film.height() as usize;
+        let sums = || vec![PixelSum::default(); pixels];
+        let layer = |(layer, weight): (&Layer, Vec3)| PartLayer { name: layer.name.clone(), weight, sums: sums() };
+        let first = AovPicture::new(film.width(), film.height());
+        let (depth_m, object_id) = (first.depth_m, first.object_id);
+        FilmPart {
+            width: film.width(),
+            height: film.height(),
+            samples: 0,
+            layers: film.layers().iter().zip(film.weights(scene)).map(layer).collect(),
+            squares: vec![ExactSum::default(); pixels],
+            aovs: aovs.then(|| PartAovs { albedo: sums(), normal: sums(), depth_m, object_id }),
+            nonfinite: NonFiniteReport::default(),
+        }
+    }
+
+    /// Adds a film of one sample a pixel.
+    pub fn add(&mut self, sample: &Film) {
+        let width = self.width as usize;
+        let tiles_across = width.div_ceil(TILE as usize).max(1);
+        let band = width * TILE as usize;
+        let in_row = |pixel: (u32, u32)| (pixel.1 % TILE) as usize * width + pixel.0 as usize;
+        // Add the layers, in bands as high as a tile
+        let rows = || sample.tiles().par_chunks(tiles_across);
+        for (index, layer) in self.layers.iter_mut().enumerate() {
+            layer.sums.par_chunks_mut(band).zip(rows()).for_each(|(sums, tiles)| {
+                for tile in tiles {
+                    for pixel in 0..tile.pixels() {
+                        add(&mut sums[in_row(tile.position(pixel))], tile.sums.at(index, pixel).to_array());
+                    }
+                }
+            });
+        }
+        // Add the squares
+        let weights: Vec<Vec3> = self.layers.iter().map(|layer| layer.weight).collect();
+        self.squares.par_chunks_mut(band).zip(rows()).for_each(|(squares, tiles)| {
+            for tile in tiles {
+                for pixel in 0..tile.pixels() {
+                    let weighted =
+                        weights.iter().enumerate().map(|(layer, weight)| tile.sums.at(layer, pixel) * *weight);
+                    squares[in_row(tile.position(pixel))].add(luminance(weighted.sum::<Vec3>()).powi(2));
+                }
+            }
+        });
+        if let (Some(aovs), Some(first_hits)) = (&mut self.aovs, sample.aovs()) {
+            aovs.add(&first_hits);
+        }
+        self.nonfinite.merge(&sample.nonfinite());
+        self.samples += 1;
+    }
+
+    /// Adds the samples of another part of the same render. Returns false, and adds nothing, if it has another shape.
+    pub fn merge(&mut self, other: &FilmPart) -> bool {
+        if !self.has_shape_of(other) {
+            return false;
+        }
+        for (own, others) in self.layers.iter_mut().zip(&other.layers) {
+            merge(&mut own.sums, &others.sums);
+        }
+        self.squares.iter_mut().zip(&other.squares).for_each(|(own, other)| own.merge(*other));
+        if let (Some(own), Some(others)) = (&mut self.aovs, &other.aovs) {
+            own.merge(others);
+        }
+        self.nonfinite.merge(&other.nonfinite);
+        self.samples += other.samples;
+        true
+    }
+
+    fn has_shape_of(&self, other: &FilmPart) -> bool {
+        let layers = |part: &FilmPart| -> Vec<_> {
+            part.layers.iter().map(|layer| (layer.name.clone(), layer.weight, layer.sums.len())).collect()
+        };
+        let shape = |part: &FilmPart| (part.width, part.height, part.squares.len(), part.aovs.is_some());
+        shape(self) == shape(other) && layers(self) == layers(other)
+    }
+
+    /// Develops the picture.
+    pub fn develop(&self) -> Picture {
+        self.picture(|pixel| self.layers.iter().map(|layer| self.mean(layer, pixel)).sum())
+    }
+
+    /// Develops each layer by itself.
+    pub fn develop_layers(&self) -> Vec<(String, Picture)> {
+        let one = |layer: &PartLayer| (layer.name.clone(), self.picture(|pixel| self.mean(layer, pixel)));
+        self.layers.iter().map(one).collect()
+    }
+
+    /// Returns the AOVs, if the render has them.
+    pub fn develop_aovs(&self) -> Option<AovPicture> {
+        let aovs = self.aovs.as_ref()?;
+        let mean = |sums: &[PixelSum]| -> Vec<[f32; 3]> {
+            sums.iter().map(|sum| (value(*sum) * self.per_sample()).as_vec3().to_array()).collect()
+        };
+        Some(AovPicture {
+            width: self.width,
+            height: self.height,
+            albedo: mean(&aovs.albedo),
+            normal: mean(&aovs.normal),
+            depth_m: aovs.depth_m.clone(),
+            object_id: aovs.object_id.clone(),
+        })
+    }
+
+    /// Returns the noise in stops that the scatter of the samples explains: the root mean square of the pixels'
+    /// standard errors over the mean luminance. Samples of a pixel are stratified together, so that its error is
+    /// smaller: this is an upper bound. None before there are two samples, and for a black picture.
+    pub fn noise_stops(&self) -> Option<f64> {
+        let samples = f64::from(self.samples);
+        let mean_of = |pixel: usize| -> f64 {
+            let rgb: DVec3 = self.layers.iter().map(|layer| self.mean(layer, pixel)).sum();
+            f64::from(luminance(rgb.as_vec3()))
+        };
+        let (mut mean, mut variance) = (0.0, 0.0);
+        for (pixel, square) in self.squares.iter().enumerate() {
+            let own = mean_of(pixel);
+            mean += own;
+            variance += (square.value() / samples - own * own).max(0.0) / (samples - 1.0);
+        }
+        let pixels = self.squares.len() as f64;
+        let relative = (variance / pixels).sqrt() / (mean / pixels);
+        (self.samples > 1 && relative.is_finite()).then(|| (1.0 + relative).log2())
+    }
+
+    fn per_sample(&self) -> f64 {
+        1.0 / f64::from(self.samples.max(1))
+    }
+
+    fn mean(&self, layer: &PartLayer, pixel: usize) -> DVec3 {
+        value(layer.sums[pixel]) * layer.weight.as_dvec3() * self.per_sample()
+    }
+
+    /// Collects pixel values. As in [`Film::develop`], negative noise is shown black.
+    fn picture(&self, value: impl Fn(usize) -> DVec3) -> Picture {
+        let rgb = (0..self.squares.len()).map(|pixel| value(pixel).as_vec3().max(Vec3::ZERO).to_array());
+        Picture { width: self.width, height: self.height, rgb: rgb.collect() }
+    }
+}
+
+impl PartAovs {
+    fn add(&mut self, sample: &AovPicture) {
+        self.albedo.iter_mut().zip(&sample.albedo).for_each(|(sum, albedo)| add(sum, *albedo));
+        self.normal.iter_mut().zip(&sample.normal).for_each(|(sum, normal)| add(sum, *normal));
+        self.keep_first(&sample.depth_m, &sample.object_id);
+    }
+
+    fn merge(&mut self, other: &PartAovs) {
+        merge(&mut self.albedo, &other.albedo);
+        merge(&mut self.normal, &other.normal);
+        self.keep_first(&other.depth_m, &other.object_id);
+    }
+
+    /// Takes over depth and object where the picture's first sample has hit something.
+    fn keep_first(&mut self, depth_m: &[f32], object_id: &[u32]) {
+        let own = self.depth_m.iter_mut().zip(&mut self.object_id);
+        for ((own_depth, own_id), (depth, id)) in own.zip(depth_m.iter().zip(object_id)) {
+            if depth.is_finite() {
+                (*own_depth, *own_id) = (*depth, *id);
+            }
+        }
+    }
+}
+
+fn add(sum: &mut PixelSum, value: [f32; 3]) {
+    sum.iter_mut().zip(value).for_each(|(sum, value)| sum.add(value));
+}
+
+fn merge(own: &mut [PixelSum], others: &[PixelSum]) {
+    for (own, other) in own.iter_mut().zip(others) {
+        own.iter_mut().zip(other).for_each(|(own, other)| own.merge(*other));
+    }
+}
+
+fn value(sum: PixelSum) -> DVec3 {
+    DVec3::from_array(sum.map(ExactSum::value))
+}
