@@ -6,11 +6,12 @@
 #     farm/slurm.sh studio.ron picture.exr 256 8 --size 1920x1280
 #
 # The folder must be one that all machines share. Parts stay in PICTURE.parts: run again, the script renders only those
-# that are missing. CATCHLIGHT is the program (default: catchlight), SBATCH_OPTIONS goes to sbatch. Without sbatch the
-# parts are rendered one after the other, here.
+# that are missing. CATCHLIGHT is the program (default: catchlight), CATCHLIGHT_SBATCH the command that submits a
+# job, with options (default: sbatch). Without it the parts are rendered one after the other, here.
 set -euo pipefail
 
 catchlight=${CATCHLIGHT:-catchlight}
+read -ra sbatch <<<"${CATCHLIGHT_SBATCH:-sbatch}"
 
 # Renders part number $1, from 1 on.
 render_part() {
@@ -47,13 +48,10 @@ case $step in
     --merge) merge_parts ;;
     submit)
         mkdir -p "$picture.parts"
-        if command -v sbatch >/dev/null; then
+        if command -v "${sbatch[0]}" >/dev/null; then
             # A job that is preempted or whose machine fails is queued again.
-            # shellcheck disable=SC2086
-            array=$(sbatch --parsable --requeue --array="1-$parts" --job-name=catchlight \
-                ${SBATCH_OPTIONS:-} "$0" --part "$@")
-            # shellcheck disable=SC2086
-            sbatch --dependency="afterok:$array" --job-name=catchlight-merge ${SBATCH_OPTIONS:-} "$0" --merge "$@"
+            array=$("${sbatch[@]}" --parsable --requeue --array="1-$parts" --job-name=catchlight "$0" --part "$@")
+            "${sbatch[@]}" --dependency="afterok:$array" --kill-on-invalid-dep=yes --job-name=catchlight-merge "$0" --merge "$@"
         else
             for (( part = 1; part <= parts; part++ )); do render_part "$part"; done
             merge_parts

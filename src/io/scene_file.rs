@@ -85,7 +85,10 @@ pub fn parse_scene(text: &str) -> Result<(Scene, Vec<Finding>), LoadError> {
     let mut scene = ron_v1::scene_from_v1(file).map_err(|unknown| one(explain_name(text, &unknown)))?;
 
     let mut warnings = make_names_unique(&mut scene);
-    figures::follow_gazes(&mut scene);
+    // Only valid figures have eyes to turn.
+    if validate(&scene).iter().all(|finding| finding.severity != Severity::Error) {
+        figures::follow_gazes(&mut scene);
+    }
     let (errors, odd): (Vec<_>, Vec<_>) = validate(&scene).into_iter().partition(|f| f.severity == Severity::Error);
     if !errors.is_empty() {
         return Err(LoadError::Content(

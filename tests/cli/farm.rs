@@ -188,3 +188,79 @@ fn progress_is_printed_in_lines_for_the_program_that_asked() {
     let openjd = progress("openjd");
     assert!(openjd.contains("openjd_progress: 100\nopenjd_status: 24 samples a pixel"), "{openjd}");
 }
+
+/// Returns a program that renders as Catchlight does, but is killed on its way through one part, once.
+#[cfg(unix)]
+fn killed_once(folder: &Path, samples: &str) -> std::path::PathBuf {
+    use std::os::unix::fs::PermissionsExt;
+    let (script, catchlight) = (folder.join("flaky"), env!("CARGO_BIN_EXE_catchlight"));
+    let text = format!(
+        "#!/bin/sh\ncase \"$*\" in *'--samples {samples}'*)\n  if mkdir killed; then\n    '{catchlight}' \"$@\" &\n    \
+         sleep 0.05; kill -KILL $!; wait $!; exit $?\n  fi;;\nesac\nexec '{catchlight}' \"$@\"\n"
+    );
+    std::fs::write(&script, text).unwrap();
+    std::fs::set_permissions(&script, std::fs::Permissions::from_mode(0o755)).unwrap();
+    script
+}
+
+/// Runs a job twice: the first run loses a part, the second completes the picture of a single part.
+#[cfg(unix)]
+fn assert_completes_after_a_loss(folder: &Path, job: &dyn Fn() -> Command) {
+    let output = job().current_dir(folder).output().unwrap();
+    assert!(!output.status.success(), "{}", stdout(&output));
+    assert!(folder.join("killed").exists() && !folder.join("picture.exr").exists());
+    let output = job().current_dir(folder).output().unwrap();
+    assert!(output.status.success(), "{}{}", stdout(&output), stderr(&output));
+    render(folder, "0..24", "one.exr");
+    merge(folder, &["one.exr"], "single.exr");
+    assert_same_picture(folder, "picture.exr", "single.exr");
+}
+
+/// Options that the parts share with [`RENDER`].
+#[cfg(unix)]
+const OPTIONS: [&str; 5] = ["--size", "60x40", "--seed", "7", "--aovs"];
+
+#[cfg(unix)]
+#[test]
+fn the_slurm_script_renders_the_missing_parts_when_it_is_run_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let flaky = killed_once(folder.path(), "8..16");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("farm/slurm.sh");
+    assert_completes_after_a_loss(folder.path(), &|| {
+        // Without sbatch it works on this machine.
+        let mut job = Command::new("bash");
+        job.arg(&script).args(["product_still_life", "picture.exr", "24", "3"]).args(OPTIONS);
+        job.env("CATCHLIGHT", &flaky).env("CATCHLIGHT_SBATCH", "none");
+        job
+    });
+}
+
+/// Needs `openjd` (`pip install openjd-cli`).
+#[cfg(unix)]
+#[test]
+fn the_job_for_open_job_description_completes_the_picture_after_a_killed_part() {
+    if Command::new("openjd").arg("--version").output().is_err() {
+        eprintln!("\n!!! SKIPPED, no openjd\n");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let flaky = killed_once(folder.path(), "8..16");
+    let template = Path::new(env!("CARGO_MANIFEST_DIR")).join("farm/render.openjd.yaml");
+    assert_completes_after_a_loss(folder.path(), &|| {
+        let picture = folder.path().join("picture.exr");
+        let parameters = [
+            "Studio=product_still_life".to_owned(),
+            format!("Picture={}", picture.display()),
+            "Spp=24".to_owned(),
+            "Parts=3".to_owned(),
+            format!("Options={}", OPTIONS.join(" ")),
+            format!("Catchlight={}", flaky.display()),
+        ];
+        let mut job = Command::new("openjd");
+        job.arg("run").arg(&template).args(["--step", "Merge", "--run-dependencies"]);
+        for parameter in &parameters {
+            job.args(["-p", parameter]);
+        }
+        job
+    });
+}

@@ -64,10 +64,10 @@ fn light(random: &mut Random, mut light: Light, parts: &Parts) -> Light {
     match random.below(9) {
         0 => light.position = vector(random, -3.0, 3.0),
         1 => light.power.dial_stops = number(random, -8.0, 8.0),
-        2 => (light.emitter, light.power) = (other.emitter.clone(), other.power.clone()),
-        3 => light.emitter = other.emitter.clone(),
-        4 => light.modifier = other.modifier.clone(),
-        5 => light.color = other.color.clone(),
+        2 => (light.emitter, light.power) = (other.emitter, other.power),
+        3 => light.emitter = other.emitter,
+        4 => light.modifier = other.modifier,
+        5 => light.color = other.color,
         6 => light.roll_deg = number(random, -180.0, 180.0),
         7 => light.role = *random.pick(&Role::ALL),
         _ => light.on = !light.on,
@@ -194,7 +194,6 @@ fn memory() -> u64 {
     now.and_then(|now| now.trim().split(' ').next()?.parse::<u64>().ok()).unwrap_or(0) * 1024
 }
 
-#[expect(clippy::print_stdout, reason = "a long run tells how far it came")]
 #[test]
 fn random_actions_undo_to_the_first_studio_and_every_studio_saves_and_loads_alike() {
     let scenes: Vec<Scene> = presets().iter().map(|preset| preset.load().unwrap().scene).collect();

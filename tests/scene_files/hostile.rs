@@ -80,6 +80,15 @@ fn errors_name_the_field_the_value_and_the_line() {
 }
 
 #[test]
+fn a_figure_out_of_range_that_looks_somewhere_is_refused_and_never_built() {
+    let clamshell = catchlight::io::find_preset("clamshell").unwrap().text;
+    assert!(clamshell.contains("gaze:") && clamshell.contains("smile: 0.4"));
+    for wrong in ["smile: 1e38", "smile: -1e38"] {
+        assert!(refused(&clamshell.replace("smile: 0.4", wrong)).contains("expression"));
+    }
+}
+
+#[test]
 fn empty_and_binary_files_are_refused() {
     for text in ["", " \n", "\u{feff}", "\0\0\0", "()", "[]", "1", "(format: 1)", "\"", "/*", "r#\"", "PK\u{3}\u{4}"] {
         assert!(!refused(text).is_empty());

@@ -135,12 +135,15 @@ impl Document {
         let label = action.label(&before);
         let targets = action.targets();
         let merge = press_id.filter(|_| !targets.is_empty()).map(|press_id| MergeKey { press_id, targets });
+        let checked = |scene: &Scene| match new_error(&before, scene) {
+            Some(error) => Err(ActionError::Invalid(error.message)),
+            None => Ok(()),
+        };
         let done = action.apply(&mut self.scene).and_then(|select| {
+            checked(&self.scene)?;
+            // Only valid figures have eyes to turn.
             figures::follow_gazes(&mut self.scene);
-            match new_error(&before, &self.scene) {
-                Some(error) => Err(ActionError::Invalid(error.message)),
-                None => Ok(select),
-            }
+            checked(&self.scene).map(|()| select)
         });
         if done.is_err() {
             self.scene = before;
