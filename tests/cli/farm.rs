@@ -194,9 +194,11 @@ fn progress_is_printed_in_lines_for_the_program_that_asked() {
 fn killed_once(folder: &Path, samples: &str) -> std::path::PathBuf {
     use std::os::unix::fs::PermissionsExt;
     let (script, catchlight) = (folder.join("flaky"), env!("CARGO_BIN_EXE_catchlight"));
+    let killed = folder.join("killed");
     let text = format!(
-        "#!/bin/sh\ncase \"$*\" in *'--samples {samples}'*)\n  if mkdir killed; then\n    '{catchlight}' \"$@\" &\n    \
-         sleep 0.05; kill -KILL $!; wait $!; exit $?\n  fi;;\nesac\nexec '{catchlight}' \"$@\"\n"
+        "#!/bin/sh\ncase \"$*\" in *'--samples {samples}'*)\n  if mkdir '{}'; then\n    '{catchlight}' \"$@\" &\n    \
+         sleep 0.05; kill -KILL $!; wait $!; exit $?\n  fi;;\nesac\nexec '{catchlight}' \"$@\"\n",
+        killed.display()
     );
     std::fs::write(&script, text).unwrap();
     std::fs::set_permissions(&script, std::fs::Permissions::from_mode(0o755)).unwrap();
