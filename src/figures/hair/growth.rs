@@ -16,22 +16,28 @@ const CLEARANCE_M: f32 = 0.0006;
 const GUIDES: usize = 420;
 /// Height over the skull at which the comb holds hair no more, metres.
 const HELD_M: f32 = 0.03;
-/// Half the width of the face that hair with a parting leaves free, metres; its upper end, from between the eyes; and
-/// where the temples are.
+/// Half the width of the face that hair with a parting leaves free, metres; its upper and lower end, from between the
+/// eyes; and where the temples are.
 const FACE_HALF_WIDTH_M: f32 = 0.064;
 const HAIRLINE_M: f32 = 0.075;
+const BELOW_JAW_M: f32 = -0.19;
 const FACE_FROM_Z: f32 = -0.045;
 /// Place of a tie, in half axes of the skull, and its height over the skin, metres.
 const TIE: Vec3 = Vec3::new(0.0, 0.15, -1.0);
 const TIE_HEIGHT_M: f32 = 0.018;
 /// Part of a tied strand from which it lies in the tail.
 const TIED_AT: f32 = 0.4;
+/// Half the width of the strip along a parting where roots are denser, metres, and how many times.
+const PARTING_M: f32 = 0.008;
+const PARTING_DENSITY: f32 = 5.0;
+/// Scatter of the place from which a strand beside a parting takes its way, metres.
+const CROSSING_M: f32 = 0.006;
 /// Segments of a guide.
 const STEPS: usize = 24;
 
 /// Grows the strands of a style.
 pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut Strands) {
-    let roots = scatter(body, style.strands, figure.seed, &scalp_density);
+    let roots = scatter(body, style.strands, figure.seed, &|place| root_density(style, place));
     let obstacles = Obstacles::new(body, &roots, matches!(style.comb, Comb::FromParting(_)));
     let down = body.head.inverse().transform_vector3(Vec3::NEG_Y).normalize_or(Vec3::NEG_Y);
     let field = CombField { style, obstacles: &obstacles, down };
@@ -50,6 +56,17 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
     for points in grown {
         strands.push(points.into_iter().map(|(position, radius_m)| StrandPoint { position, radius_m }));
     }
+}
+
+/// Returns the density of roots at a place of the base mesh's head, 1 where it is greatest. Hair that is combed aside
+/// covers the skin beside a parting with the few strands that grow between both: more of them grow there, or a finger's
+/// breadth of skin would show.
+fn root_density(style: &Style, place: Vec3) -> f32 {
+    let crowding = match style.comb {
+        Comb::FromParting(left) => (-((place.x - left) / PARTING_M).powi(2)).exp(),
+        _ => return scalp_density(place),
+    };
+    scalp_density(place) * (1.0 + crowding * (PARTING_DENSITY - 1.0)) / PARTING_DENSITY
 }
 
 /// A strand that others follow, in the head's frame.
@@ -142,8 +159,8 @@ impl CombField<'_> {
     fn beside_face(&self, p: Vec3, root: &Root) -> Vec3 {
         let Comb::FromParting(left) = self.style.comb else { return p };
         let side = if root.position.x >= left { 1.0 } else { -1.0 };
-        // From the hairline to the temples, over the height of a forehead
-        let free = FACE_HALF_WIDTH_M * ((HAIRLINE_M - p.y) / 0.05).clamp(0.0, 1.0);
+        // From the hairline to the temples, over the height of a forehead, and as far as the jaw
+        let free = FACE_HALF_WIDTH_M * ((HAIRLINE_M - p.y) / 0.05).min((p.y - BELOW_JAW_M) / 0.08).clamp(0.0, 1.0);
         let is_before_face = p.z > FACE_FROM_Z && p.x * side < free;
         if is_before_face { p.with_x(free * side) } else { p }
     }
@@ -184,12 +201,12 @@ impl CombField<'_> {
     }
 }
 
-/// Returns the three guides with the nearest roots: squared distances and indices, the nearest first. With fewer guides
+/// Returns the three guides whose roots are nearest to a position: squared distances and indices, the nearest first. With fewer guides
 /// the rest are infinitely far.
-fn nearest_guides(root: &Root, guides: &[Guide]) -> [(f32, usize); 3] {
+fn nearest_guides(position: Vec3, guides: &[Guide]) -> [(f32, usize); 3] {
     let mut near = [(f32::INFINITY, 0); 3];
     for (index, guide) in guides.iter().enumerate() {
-        let distance = guide.root.position.distance_squared(root.position);
+        let distance = guide.root.position.distance_squared(position);
         if distance < near[2].0 {
             near[2] = (distance, index);
             near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
@@ -201,7 +218,11 @@ fn nearest_guides(root: &Root, guides: &[Guide]) -> [(f32, usize); 3] {
 /// Returns the points of a strand that follows the guides near its root, with its radius there.
 fn follow(root: &Root, guides: &[Guide], field: &CombField, mut random: Random) -> Vec<(Vec3, f32)> {
     let style = field.style;
-    let near = nearest_guides(root, guides);
+    // Beside a parting some strands cross to the other side, and hide the skin between both
+    let near = match style.comb {
+        Comb::FromParting(_) => nearest_guides(root.position + Vec3::X * (random.bell() * CROSSING_M), guides),
+        _ => nearest_guides(root.position, guides),
+    };
     // Guides on the other side of a parting are no neighbours: they go another way.
     let first = &guides[near[0].1];
     let reach = first.points[STEPS / 2] - first.root.position;
@@ -241,7 +262,7 @@ fn follow(root: &Root, guides: &[Guide], field: &CombField, mut random: Random) 
             p += turn * tangent.any_orthonormal_vector() * style.curl_m * (along * 4.0).min(1.0);
         }
         // A guide's shape from another root may lead into the skin, or before the face
-        let p = if k == 0 { p } else { field.obstacles.above_head(field.beside_face(p, root), CLEARANCE_M) };
+        let p = if k == 0 { p } else { field.obstacles.above_head(field.beside_face(p, &first.root), CLEARANCE_M) };
         points.push((p, style.radius_m * (1.0 - 0.7 * along * along)));
     }
     points
