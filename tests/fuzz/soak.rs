@@ -34,7 +34,7 @@ fn number(random: &mut Random, low: f32, high: f32) -> f32 {
         0 => *random.pick(&[f32::NAN, f32::INFINITY, -f32::INFINITY, 1e30, -1e30, 0.0]),
         1 => low,
         2 => high,
-        _ => low + (high - low) * random.unit(),
+        _ => low + (high - low) * (random.next() >> 40) as f32 / 16_777_216.0,
     }
 }
 
