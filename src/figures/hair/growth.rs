@@ -62,11 +62,18 @@ pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut 
 /// covers the skin beside a parting with the few strands that grow between both: more of them grow there, or a finger's
 /// breadth of skin would show.
 fn root_density(style: &Style, place: Vec3) -> f32 {
-    let crowding = match style.comb {
-        Comb::FromParting(left) => (-((place.x - left) / PARTING_M).powi(2)).exp(),
-        _ => return scalp_density(place),
-    };
-    scalp_density(place) * (1.0 + crowding * (PARTING_DENSITY - 1.0)) / PARTING_DENSITY
+    let crowding = 1.0 + nearness_to_parting(style, place.x) * (PARTING_DENSITY - 1.0);
+    if matches!(style.comb, Comb::FromParting(_)) {
+        scalp_density(place) * crowding / PARTING_DENSITY
+    } else {
+        scalp_density(place)
+    }
+}
+
+/// Returns 1 on the parting of a style, falling to 0 within centimetres at both sides; 0 for a style without one.
+fn nearness_to_parting(style: &Style, x: f32) -> f32 {
+    let Comb::FromParting(left) = style.comb else { return 0.0 };
+    (-((x - left) / PARTING_M).powi(2)).exp()
 }
 
 /// A strand that others follow, in the head's frame.
@@ -219,10 +226,8 @@ fn nearest_guides(position: Vec3, guides: &[Guide]) -> [(f32, usize); 3] {
 fn follow(root: &Root, guides: &[Guide], field: &CombField, mut random: Random) -> Vec<(Vec3, f32)> {
     let style = field.style;
     // Beside a parting some strands cross to the other side, and hide the skin between both
-    let near = match style.comb {
-        Comb::FromParting(_) => nearest_guides(root.position + Vec3::X * (random.bell() * CROSSING_M), guides),
-        _ => nearest_guides(root.position, guides),
-    };
+    let crossing = CROSSING_M * nearness_to_parting(style, root.position.x) * random.bell();
+    let near = nearest_guides(root.position + Vec3::X * crossing, guides);
     // Guides on the other side of a parting are no neighbours: they go another way.
     let first = &guides[near[0].1];
     let reach = first.points[STEPS / 2] - first.root.position;
