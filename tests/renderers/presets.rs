@@ -51,15 +51,15 @@ fn one_thread_and_many_give_the_same_bits() {
 
 #[test]
 fn a_seed_changes_only_the_noise() {
-    let loaded = io::find_preset("three_point").unwrap().load().unwrap();
+    let loaded = coarse_and_hairless(io::find_preset("three_point").unwrap().load().unwrap());
     let picture = |seed| {
-        let settings = Settings { width: 32, height: 32, spp: 16, seed, ..Settings::default() };
+        let settings = Settings { width: 32, height: 32, spp: 64, seed, ..Settings::default() };
         film_with(&loaded.scene, &loaded.assets, &settings).develop(&loaded.scene)
     };
     let (a, b) = (picture(1), picture(2));
     assert_ne!(a, b);
     let mean = |p: &catchlight::photo::Picture| p.rgb.iter().map(|c| c[1]).sum::<f32>() / p.rgb.len() as f32;
-    // With 16384 samples, the standard error of the mean is far below 1 %.
+    // With 65536 samples, and no highlights of single hairs, the standard error of the mean is far below 1 %.
     assert!((mean(&a) / mean(&b) - 1.0).abs() < 0.01);
 }
 
