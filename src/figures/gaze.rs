@@ -65,20 +65,11 @@ pub(super) fn without_gaze(figure: &Figure) -> Figure {
 mod tests {
     use super::*;
     use crate::figures::{build, build_from, corneas, eye_point};
-    use crate::scene::{Emitter, Light, LightId, Material, ObjectId, Output, Transform};
+    use crate::scene::{Emitter, Light, LightId, ObjectId, Output};
 
     /// Returns a person before the camera, and a lamp beside it.
     fn portrait() -> Scene {
-        let object = Object {
-            id: ObjectId(0),
-            name: "Person".to_owned(),
-            transform: Transform::default(),
-            shape: Shape::Figure(Box::default()),
-            material: Material::default(),
-            part_materials: Vec::new(),
-            visible: true,
-            locked: false,
-        };
+        let object = Object::new("Person", Shape::Figure(Box::default()));
         let mut scene = Scene {
             objects: vec![object],
             lights: vec![Light::new(Emitter::Point, Output::Lumens(1000.0))],

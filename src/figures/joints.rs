@@ -156,8 +156,8 @@ impl PosableBody {
     }
 
     /// Returns the pose, with eyes straight ahead, in which a joint is nearest to a point, as seen along the axis across
-    /// two unit vectors in object space. Every parameter stops at its limit; of the poses that bring the joint there, it is one near the
-    /// present one (damped least squares, Wampler 1986).
+    /// two unit vectors in object space. Every parameter stops at its limit; of the poses that bring the joint there, it
+    /// is one near the present one (damped least squares, Wampler 1986).
     pub fn dragged(&self, joint: Joint, to: Vec3, across: [Vec3; 2]) -> Pose {
         let mut pose = self.figure.pose;
         let seen = |pose: &Pose| {

@@ -116,16 +116,9 @@ mod tests {
         std::fs::write(folder.path().join("wall.jpg"), &jpeg[..jpeg.len() * 3 / 4]).unwrap();
         std::fs::write(folder.path().join("cup.obj"), "mtllib cup.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
         let mut scene = room_with(TextureRef::file("wall.jpg"));
-        scene.objects.push(crate::scene::Object {
-            id: crate::scene::ObjectId(0),
-            name: "Cup".to_owned(),
-            transform: crate::scene::Transform::default(),
-            shape: crate::scene::Shape::MeshFile { path: "cup.obj".to_owned() },
-            material: Material::default(),
-            part_materials: Vec::new(),
-            visible: true,
-            locked: false,
-        });
+        scene
+            .objects
+            .push(crate::scene::Object::new("Cup", crate::scene::Shape::MeshFile { path: "cup.obj".to_owned() }));
         let mut assets = Assets::default();
         let warnings: Vec<String> =
             load_assets(&scene, Some(folder.path()), &mut assets).iter().map(ToString::to_string).collect();

@@ -68,10 +68,7 @@ pub fn render(
     let RenderInput { settings, .. } = *input;
     let control = monitor.control();
     // Build the acceleration structures and the light tables.
-    let build_started = Instant::now();
-    let scene = prepared(input, pool)?;
-    let build_s = build_started.elapsed().as_secs_f64();
-    observe(RenderStage::Prepared(&scene));
+    let (scene, build_s) = prepared(input, pool, observe)?;
     // Trace a small version of a large picture, whose first pass takes long.
     let trace_started = Instant::now();
     monitor.start_tracing(trace_started);
@@ -97,14 +94,20 @@ pub fn render(
     Ok(Rendered { scene, coarse, film, build_s, trace_s: trace_started.elapsed().as_secs_f64() })
 }
 
-/// Prepares the scene, with the plan that the input asks for.
-pub(super) fn prepared(input: &RenderInput<'_>, pool: &ThreadPool) -> Result<RenderScene, PrepareError> {
+/// Prepares the scene, with the plan that the input asks for, and returns it with the time that it took, seconds.
+pub(super) fn prepared(
+    input: &RenderInput<'_>,
+    pool: &ThreadPool,
+    observe: &mut (dyn FnMut(RenderStage<'_>) + Send),
+) -> Result<(RenderScene, f64), PrepareError> {
+    let started = Instant::now();
     let mut scene = pool.install(|| raytrace::prepare_kept(input.scene, input.assets, input.cache))?;
     if !input.without.is_empty() {
         let plan = input.without.iter().fold(scene.plan().clone(), |plan, shortcut| plan.without(*shortcut));
         scene.set_plan(plan);
     }
-    Ok(scene)
+    observe(RenderStage::Prepared(&scene));
+    Ok((scene, started.elapsed().as_secs_f64()))
 }
 
 /// Returns the film with the samples of an earlier run, or an empty one.

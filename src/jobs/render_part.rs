@@ -36,10 +36,7 @@ pub fn render_part(
     monitor: &RenderMonitor,
     observe: &mut (dyn FnMut(RenderStage<'_>) + Send),
 ) -> Result<RenderedPart, PrepareError> {
-    let build_started = Instant::now();
-    let scene = prepared(input, pool)?;
-    let build_s = build_started.elapsed().as_secs_f64();
-    observe(RenderStage::Prepared(&scene));
+    let (scene, build_s) = prepared(input, pool, observe)?;
     let trace_started = Instant::now();
     monitor.start_tracing(trace_started);
     let after_sample = &mut |_: &FilmPart| monitor.finish_pass();

@@ -198,13 +198,8 @@ mod tests {
         ];
         let object = |(i, shape): (usize, Shape)| Object {
             id: ObjectId(i as u32),
-            name: format!("Thing {i}"),
-            transform: Transform { position: Vec3::X * i as f32, ..Transform::default() },
-            shape,
-            material: Default::default(),
-            part_materials: Vec::new(),
-            visible: true,
-            locked: false,
+            transform: Transform::at(Vec3::X * i as f32),
+            ..Object::new(format!("Thing {i}"), shape)
         };
         let objects = shapes.into_iter().enumerate().map(object).collect();
         let lights = vec![Light::new(Emitter::Point, Output::Lumens(1000.0))];

@@ -257,13 +257,9 @@ mod tests {
         let room = Room { size_m: Vec3::new(4.0, 3.0, 4.0), floor: paint(0.3), walls: paint(0.6), ceiling: paint(0.7) };
         let block = Object {
             id: ObjectId(1),
-            name: "Box".into(),
-            transform: Transform { position: Vec3::new(0.0, 0.6, 0.0), ..Transform::default() },
-            shape: Shape::Box { size_m: Vec3::new(1.4, 1.2, 1.4) },
+            transform: Transform::at(Vec3::new(0.0, 0.6, 0.0)),
             material: paint(0.5),
-            part_materials: Vec::new(),
-            visible: true,
-            locked: false,
+            ..Object::new("Box", Shape::Box { size_m: Vec3::new(1.4, 1.2, 1.4) })
         };
         let panel = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
         let light = |id, emitter, position| Light {

@@ -228,13 +228,9 @@ mod tests {
     fn studio(emitters: &[Emitter], ball: Material) -> Scene {
         let ball = Object {
             id: ObjectId(1),
-            name: "Ball".into(),
-            transform: Transform { position: Vec3::new(0.0, 1.0, 0.0), ..Transform::default() },
-            shape: Shape::Sphere { radius_m: 0.5 },
+            transform: Transform::at(Vec3::new(0.0, 1.0, 0.0)),
             material: ball,
-            part_materials: Vec::new(),
-            visible: true,
-            locked: false,
+            ..Object::new("Ball", Shape::Sphere { radius_m: 0.5 })
         };
         let step = 3.0 / (emitters.len() - 1) as f32;
         let light = |(i, &emitter)| Light {

@@ -74,13 +74,9 @@ mod tests {
         }
         scene.objects.push(Object {
             id: crate::scene::ObjectId(9),
-            name: "Ball".to_owned(),
-            transform: crate::scene::Transform { position: Vec3::Y * 0.8, ..Default::default() },
-            shape: Shape::Sphere { radius_m: 0.4 },
+            transform: crate::scene::Transform::at(Vec3::Y * 0.8),
             material: Material { metallic: 1.0, roughness: 0.0, ..Material::default() },
-            part_materials: Vec::new(),
-            visible: true,
-            locked: false,
+            ..Object::new("Ball", Shape::Sphere { radius_m: 0.4 })
         });
         scene
     }

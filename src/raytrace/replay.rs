@@ -149,13 +149,9 @@ mod tests {
     fn studio() -> Scene {
         let ball = |id, x, material| Object {
             id: ObjectId(id),
-            name: format!("Ball {id}"),
-            transform: crate::scene::Transform { position: Vec3::new(x, 1.0, 0.0), ..Default::default() },
-            shape: Shape::Sphere { radius_m: 0.4 },
+            transform: crate::scene::Transform::at(Vec3::new(x, 1.0, 0.0)),
             material,
-            part_materials: Vec::new(),
-            visible: true,
-            locked: false,
+            ..Object::new(format!("Ball {id}"), Shape::Sphere { radius_m: 0.4 })
         };
         let light = |id, x, emitter| Light {
             id: LightId(id),

@@ -192,13 +192,8 @@ fn furnace(fibre: Fibre) -> (Scene, Assets) {
     assets.insert_mesh("hair.obj", Arc::new(only_strands(&hair(&ball))));
     let object = Object {
         id: ObjectId(1),
-        name: "Hair".into(),
-        transform: Transform::default(),
-        shape: Shape::MeshFile { path: "hair.obj".into() },
         material: Material { fibre: Some(fibre), ..Material::default() },
-        part_materials: Vec::new(),
-        visible: true,
-        locked: false,
+        ..Object::new("Hair", Shape::MeshFile { path: "hair.obj".into() })
     };
     let surround = Light { visible_to_camera: true, ..Light::new(Emitter::Surround, Output::Lux(1000.0)) };
     let camera = Camera {

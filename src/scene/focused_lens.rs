@@ -140,13 +140,8 @@ mod tests {
     fn focus_on_an_object_is_its_distance_along_the_axis_and_none_behind_the_camera() {
         let ball = Object {
             id: ObjectId(5),
-            name: "Ball".into(),
-            transform: crate::scene::Transform { position: Vec3::new(0.3, 0.0, -2.0), ..Default::default() },
-            shape: Shape::Sphere { radius_m: 0.1 },
-            material: crate::scene::Material::default(),
-            part_materials: Vec::new(),
-            visible: true,
-            locked: false,
+            transform: crate::scene::Transform::at(Vec3::new(0.3, 0.0, -2.0)),
+            ..Object::new("Ball", Shape::Sphere { radius_m: 0.1 })
         };
         let camera = Camera {
             position: Vec3::ZERO,

@@ -134,7 +134,7 @@ fn shape_asset(shape: &Shape) -> Option<AssetRef<'_>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Extent, Figure, MaterialTextures, ObjectId, TextureRef, Transform};
+    use crate::scene::{Extent, Figure, MaterialTextures, TextureRef};
 
     #[test]
     fn materials_and_assets_are_listed_with_the_fields_that_hold_them() {
@@ -144,14 +144,8 @@ mod tests {
         };
         let figure = Figure { extent: Extent::Bust, ..Figure::default() };
         let object = |name: &str, shape| Object {
-            id: ObjectId(0),
-            name: name.to_owned(),
-            transform: Transform::default(),
-            shape,
-            material: Material::default(),
             part_materials: vec![("eyes".to_owned(), textured("iris.png"))],
-            visible: true,
-            locked: false,
+            ..Object::new(name, shape)
         };
         let scene = Scene {
             room: Some(Room { ceiling: textured("sky.png"), ..Room::default() }),

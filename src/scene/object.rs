@@ -84,6 +84,11 @@ impl Default for Transform {
 }
 
 impl Transform {
+    /// Returns the transform that moves the origin to `position`, metres.
+    pub fn at(position: Vec3) -> Self {
+        Transform { position, ..Transform::default() }
+    }
+
     /// Returns the rotation.
     pub fn rotation(&self) -> Quat {
         let [pitch, yaw, roll] = self.rotation_deg.to_array().map(f32::to_radians);
@@ -124,6 +129,20 @@ pub struct Object {
 }
 
 impl Object {
+    /// Returns a visible object at the origin with the default material. A scene gives it its id.
+    pub fn new(name: impl Into<String>, shape: Shape) -> Self {
+        Object {
+            id: ObjectId(0),
+            name: name.into(),
+            transform: Transform::default(),
+            shape,
+            material: Material::default(),
+            part_materials: Vec::new(),
+            visible: true,
+            locked: false,
+        }
+    }
+
     /// Returns the material of a part of the mesh.
     pub fn material_of(&self, part: &str) -> &Material {
         self.part_materials.iter().find(|(name, _)| name == part).map_or(&self.material, |(_, material)| material)

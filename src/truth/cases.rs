@@ -5,8 +5,8 @@ use crate::photo::exposure;
 use crate::photo::meter::Receptor;
 use crate::raytrace::{self, LightMeter, MeterEffort, MeterPoint, RenderControl, Settings};
 use crate::scene::{
-    Aim, Assets, Camera, Emitter, Light, LightId, Material, MaterialPreset, Object, ObjectId, Output, Room, Scene,
-    Sensor, Shape, Transform,
+    Aim, Assets, Camera, Emitter, Light, LightId, Material, MaterialPreset, Object, Output, Room, Scene, Sensor, Shape,
+    Transform,
 };
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
@@ -39,14 +39,9 @@ fn light(emitter: Emitter, output: Output, position: Vec3, target: Vec3) -> Ligh
 
 fn object(shape: Shape, material: Material, position: Vec3, rotation_deg: Vec3) -> Object {
     Object {
-        id: ObjectId(0),
-        name: "Thing".to_owned(),
         transform: Transform { position, rotation_deg, ..Transform::default() },
-        shape,
         material,
-        part_materials: Vec::new(),
-        visible: true,
-        locked: false,
+        ..Object::new("Thing", shape)
     }
 }
 

@@ -41,7 +41,7 @@ fn unsaved_changes_prompt_before_they_are_lost() {
     click(&mut window, "Split");
     click(&mut window, "Open this studio");
     assert_eq!(*scene(&window), changed, "it asks first");
-    click(&mut window, "Save");
+    press(&mut window, Modifiers::NONE, Key::Enter);
     assert!(file.exists());
     assert_ne!(*scene(&window), changed, "and then goes on");
 
@@ -53,17 +53,23 @@ fn unsaved_changes_prompt_before_they_are_lost() {
     assert!(close_requested(&mut window), "told to lose the changes, it closes");
 }
 
+/// Writes a model, drops it onto a window that saves to `file`, and returns the window and the model's path.
+fn window_with_pyramid(folder: &Path, file: &Path) -> (Window, PathBuf) {
+    let model = folder.join("pyramid.obj");
+    std::fs::write(&model, PYRAMID).unwrap();
+    let mut window = window_with_answers([file.to_owned()]);
+    drop_file(&mut window, &model);
+    (window, model)
+}
+
 #[test]
 fn files_can_be_dropped_and_models_travel_with_the_studio() {
     if !has_adapter() {
         return;
     }
     let (desktop, home) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    let model = desktop.path().join("pyramid.obj");
-    std::fs::write(&model, PYRAMID).unwrap();
     let file = home.path().join("studio.ron");
-    let mut window = window_with_answers([file.clone()]);
-    drop_file(&mut window, &model);
+    let (mut window, _) = window_with_pyramid(desktop.path(), &file);
     let object = scene(&window).objects.last().unwrap().clone();
     assert_eq!(object.name, "pyramid");
     assert!(matches!(&object.shape, Shape::MeshFile { path } if path == "models/pyramid.obj"), "{:?}", object.shape);
@@ -87,11 +93,8 @@ fn a_model_whose_file_was_deleted_after_the_import_is_saved_with_the_studio() {
         return;
     }
     let (desktop, home) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    let model = desktop.path().join("pyramid.obj");
-    std::fs::write(&model, PYRAMID).unwrap();
     let file = home.path().join("studio.ron");
-    let mut window = window_with_answers([file.clone()]);
-    drop_file(&mut window, &model);
+    let (mut window, model) = window_with_pyramid(desktop.path(), &file);
     std::fs::remove_file(&model).unwrap();
     press(&mut window, Modifiers::COMMAND, Key::S);
     assert!(errors(&window).is_empty(), "{:?}", errors(&window));

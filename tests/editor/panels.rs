@@ -37,7 +37,9 @@ fn a_selected_figure_shows_the_pattern_on_its_face_and_follows_the_key() {
             face.is_some_and(|face| face.is_ok_and(|face| face.lighting.to_string().contains(pattern)))
         });
         settle(window);
-        assert!(window.query_by_label_contains(pattern).is_some(), "{pattern} is not in the inspector");
+        let (first, rest) = pattern.split_at(1);
+        let text = first.to_uppercase() + rest;
+        assert!(window.query_by_label_contains(&text).is_some(), "{text} is not in the inspector");
     };
     wait_for(&mut window, "loop lighting");
     // Straight before the face, above

@@ -86,13 +86,9 @@ fn grey_card() -> Material {
 fn object(id: u32, shape: Shape, position: Vec3, material: Material) -> Object {
     Object {
         id: ObjectId(id),
-        name: format!("Object {id}"),
-        transform: Transform { position, ..Transform::default() },
-        shape,
+        transform: Transform::at(position),
         material,
-        part_materials: Vec::new(),
-        visible: true,
-        locked: false,
+        ..Object::new(format!("Object {id}"), shape)
     }
 }
 

@@ -32,16 +32,7 @@ pub fn looking_at_card(target: Vec3, normal: Vec3) -> Camera {
 /// Returns an object with a grey matte surface.
 pub fn object(name: &str, shape: Shape, position: Vec3) -> Object {
     let material = Material { base_color: [REFLECTANCE; 3], ior: 1.0, roughness: 1.0, ..Material::default() };
-    Object {
-        id: ObjectId(name.len() as u32),
-        name: name.into(),
-        transform: Transform { position, ..Transform::default() },
-        shape,
-        material,
-        part_materials: Vec::new(),
-        visible: true,
-        locked: false,
-    }
+    Object { id: ObjectId(name.len() as u32), transform: Transform::at(position), material, ..Object::new(name, shape) }
 }
 
 /// Returns a scene with a square card that faces +Z, and a camera that sees nothing else.

@@ -9,8 +9,7 @@ use crate::io;
 use crate::jobs::render_all_passes;
 use crate::raytrace::{self, RenderControl, Settings};
 use crate::scene::{
-    Aim, Assets, Camera, Emitter, Light, LightId, Material, Mesh, Object, ObjectId, Output, Room, Scene, Shape,
-    Transform,
+    Aim, Assets, Camera, Emitter, Light, LightId, Mesh, Object, ObjectId, Output, Room, Scene, Shape, Transform,
 };
 use anyhow::{Context, anyhow};
 use glam::Vec3;
@@ -133,13 +132,8 @@ fn bumpy_ball(triangles: u64) -> (Scene, Assets) {
     assets.insert_mesh(NAME, Arc::new(bumpy_mesh(triangles)));
     let ball = Object {
         id: ObjectId(1),
-        name: "Ball".to_owned(),
-        transform: Transform { position: Vec3::Y, ..Transform::default() },
-        shape: Shape::MeshFile { path: NAME.to_owned() },
-        material: Material::default(),
-        part_materials: Vec::new(),
-        visible: true,
-        locked: false,
+        transform: Transform::at(Vec3::Y),
+        ..Object::new("Ball", Shape::MeshFile { path: NAME.to_owned() })
     };
     let softbox = Light {
         id: LightId(2),

@@ -3,7 +3,7 @@
 use crate::figures::{self, ReadyFigure};
 use crate::scene::{
     Aim, ColorSource, Emitter, Gel, Light, LightColor, Material, MaterialPreset, Modifier, NamedModifier, Object,
-    ObjectId, Output, Power, Shape, Transform,
+    Output, Power, Shape,
 };
 use glam::Vec3;
 
@@ -251,9 +251,8 @@ impl CatalogEntry {
             CatalogKind::Figure(index) => CatalogItem::Object(new_figure(&figures::READY[index])),
             CatalogKind::Prop(shape, material) => CatalogItem::Object(new_prop(self.name, shape, material.material())),
             CatalogKind::Paper { width_m, paper } => CatalogItem::Object(Object {
-                shape: Shape::Sweep { width_m, height_m: 2.75, depth_m: 3.0, radius_m: 0.6 },
                 material: paper.material(),
-                ..blank_object(self.name)
+                ..Object::new(self.name, Shape::Sweep { width_m, height_m: 2.75, depth_m: 3.0, radius_m: 0.6 })
             }),
         }
     }
@@ -277,23 +276,10 @@ pub fn object_named(name: &str) -> Option<Object> {
     })
 }
 
-fn blank_object(name: &str) -> Object {
-    Object {
-        id: ObjectId(0),
-        name: name.to_owned(),
-        transform: Transform::default(),
-        shape: Shape::Sphere { radius_m: 0.1 },
-        material: Material::default(),
-        part_materials: Vec::new(),
-        visible: true,
-        locked: false,
-    }
-}
-
 fn new_figure(ready: &ReadyFigure) -> Object {
     let figure = ready.figure();
     let (material, part_materials) = ready.materials();
-    Object { shape: Shape::Figure(Box::new(figure)), material, part_materials, ..blank_object(ready.name) }
+    Object { material, part_materials, ..Object::new(ready.name, Shape::Figure(Box::new(figure))) }
 }
 
 fn new_prop(name: &str, shape: PropShape, material: Material) -> Object {
@@ -304,7 +290,7 @@ fn new_prop(name: &str, shape: PropShape, material: Material) -> Object {
         PropShape::Plane(width_m, depth_m) => (Shape::Plane { width_m, depth_m }, 0.002, 0.0),
         PropShape::Card(width_m, height_m) => (Shape::Plane { width_m, depth_m: height_m }, 0.5 * height_m, 90.0),
     };
-    let mut object = Object { shape, material, ..blank_object(name) };
+    let mut object = Object { material, ..Object::new(name, shape) };
     object.transform.position.y = height_m;
     object.transform.rotation_deg.x = pitch_deg;
     object

@@ -288,7 +288,7 @@ fn new_error(before: &Scene, after: &Scene) -> Option<Finding> {
 mod tests {
     use super::*;
     use crate::editor::document::catalog;
-    use crate::scene::{Figure, Gaze, Material, Object, Transform};
+    use crate::scene::{Figure, Gaze, Object};
     use std::sync::Arc;
 
     fn with_a_light() -> (Document, crate::scene::Light) {
@@ -316,16 +316,7 @@ mod tests {
 
     fn with_a_person() -> (Document, ObjectId) {
         let mut document = Document::default();
-        let object = Object {
-            id: ObjectId(0),
-            name: "Person".to_owned(),
-            transform: Transform::default(),
-            shape: Shape::Figure(Box::default()),
-            material: Material::default(),
-            part_materials: Vec::new(),
-            visible: true,
-            locked: false,
-        };
+        let object = Object::new("Person", Shape::Figure(Box::default()));
         document.apply(Action::AddObject(Box::new(object)), None).unwrap();
         let id = document.scene().objects[0].id;
         (document, id)

@@ -1,7 +1,7 @@
 //! Modal prompts: unsaved changes, and a path on desktops without file dialogs.
 
 use crate::editor::commands::file_purpose::FilePurpose;
-use crate::editor::ui::widgets;
+use crate::editor::ui::widgets::{self, Question};
 use eframe::egui::{self, Button, Key, RichText, TextEdit};
 use std::path::{Path, PathBuf};
 
@@ -18,29 +18,19 @@ pub enum UnsavedAnswer {
 
 /// Draws the prompt to save before `what`.
 pub fn unsaved_changes_ui(ctx: &egui::Context, title: &str, what: &str) -> Option<UnsavedAnswer> {
-    let mut answer = None;
-    let modal = widgets::dialog(ctx, "unsaved changes").show(ctx, |ui| {
-        ui.set_width(420.0);
-        ui.heading("Unsaved changes");
+    let question = Question {
+        name: "unsaved changes",
+        width: 420.0,
+        heading: "Unsaved changes",
+        answers: &[
+            ("Save", UnsavedAnswer::Save, "Write the studio to its file first (Enter)"),
+            ("Don't save", UnsavedAnswer::Discard, "The changes are lost"),
+            ("Cancel", UnsavedAnswer::Cancel, "Stay here (Esc)"),
+        ],
+    };
+    widgets::question_dialog(ctx, &question, |ui| {
         ui.label(format!("\"{title}\" has changes that are not saved. Save them before {what}?"));
-        ui.add_space(8.0);
-        ui.horizontal(|ui| {
-            let choices = [
-                ("Save", UnsavedAnswer::Save, "Write the studio to its file first"),
-                ("Don't save", UnsavedAnswer::Discard, "The changes are lost"),
-                ("Cancel", UnsavedAnswer::Cancel, "Stay here (Esc)"),
-            ];
-            for (text, each, tip) in choices {
-                if ui.add(Button::new(text).min_size(egui::vec2(96.0, 26.0))).on_hover_text(tip).clicked() {
-                    answer = Some(each);
-                }
-            }
-        });
-    });
-    if answer.is_none() && modal.should_close() {
-        answer = Some(UnsavedAnswer::Cancel);
-    }
-    answer
+    })
 }
 
 /// A prompt for a path.

@@ -1,8 +1,8 @@
 //! The prompt that offers an unsaved studio after a crash.
 
-use crate::editor::ui::widgets;
+use crate::editor::ui::widgets::{self, Question};
 use crate::io::RecoveryInfo;
-use eframe::egui::{self, Button, RichText};
+use eframe::egui::{self, RichText};
 use std::time::Duration;
 
 /// An unsaved studio on offer.
@@ -28,10 +28,21 @@ pub enum RecoveryAnswer {
 /// Draws the offer.
 pub fn recovery_ui(ctx: &egui::Context, unsaved: &UnsavedStudio<'_>) -> Option<RecoveryAnswer> {
     let UnsavedStudio { info, more } = unsaved;
-    let mut answer = None;
-    let modal = widgets::dialog(ctx, "recovery").show(ctx, |ui| {
-        ui.set_width(460.0);
-        ui.heading("Unsaved studio");
+    let question = Question {
+        name: "recovery",
+        width: 460.0,
+        heading: "Unsaved studio",
+        answers: &[
+            (
+                "Recover",
+                RecoveryAnswer::Recover,
+                "Open it with all changes; nothing is written to its file yet (Enter)",
+            ),
+            ("Discard", RecoveryAnswer::Discard, "Its unsaved changes are lost"),
+            ("Later", RecoveryAnswer::Later, "Ask again at the next start (Esc)"),
+        ],
+    };
+    widgets::question_dialog(ctx, &question, |ui| {
         let age = info.changed_at.elapsed().unwrap_or_default();
         ui.label(format!("Catchlight ended before \"{}\" was saved. Its last change was {}.", info.title, ago(age)));
         if let Some(path) = &info.path {
@@ -40,24 +51,7 @@ pub fn recovery_ui(ctx: &egui::Context, unsaved: &UnsavedStudio<'_>) -> Option<R
         if *more > 0 {
             ui.label(RichText::new(format!("Unsaved studios that are offered after this one: {more}")).weak());
         }
-        ui.add_space(8.0);
-        ui.horizontal(|ui| {
-            let choices = [
-                ("Recover", RecoveryAnswer::Recover, "Open it with all changes; nothing is written to its file yet"),
-                ("Discard", RecoveryAnswer::Discard, "Its unsaved changes are lost"),
-                ("Later", RecoveryAnswer::Later, "Ask again at the next start (Esc)"),
-            ];
-            for (text, each, tip) in choices {
-                if ui.add(Button::new(text).min_size(egui::vec2(96.0, 26.0))).on_hover_text(tip).clicked() {
-                    answer = Some(each);
-                }
-            }
-        });
-    });
-    if answer.is_none() && modal.should_close() {
-        answer = Some(RecoveryAnswer::Later);
-    }
-    answer
+    })
 }
 
 /// Returns how long ago something was, in words.

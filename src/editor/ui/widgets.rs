@@ -2,7 +2,7 @@
 
 use crate::editor::ui::theme;
 use crate::photo::thirds::Dial;
-use eframe::egui::{self, Button, Color32, CornerRadius, DragValue, Response, RichText, Sense, Ui, vec2};
+use eframe::egui::{self, Button, Color32, CornerRadius, DragValue, Key, Response, RichText, Sense, Ui, vec2};
 use glam::Vec3;
 
 /// Width of the label column, points.
@@ -295,6 +295,51 @@ pub fn three_digits(value: f32) -> String {
 pub fn dialog(ctx: &egui::Context, name: &str) -> egui::Modal {
     let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16);
     egui::Modal::new(egui::Id::unique(name)).frame(frame).backdrop_color(Color32::from_black_alpha(140))
+}
+
+/// The heading and the answers of a question.
+pub struct Question<'a, T> {
+    /// Name of the dialog, unique in the window.
+    pub name: &'a str,
+    /// Width, points.
+    pub width: f32,
+    /// Heading.
+    pub heading: &'a str,
+    /// Label, answer and tip of each button. Enter gives the first answer, Esc the last one.
+    pub answers: &'a [(&'a str, T, &'a str)],
+}
+
+/// Draws a question in a modal dialog, with its text above the buttons, and returns the answer.
+pub fn question_dialog<T: Copy>(
+    ctx: &egui::Context,
+    question: &Question<'_, T>,
+    add_text: impl FnOnce(&mut Ui),
+) -> Option<T> {
+    let mut answer = None;
+    let modal = dialog(ctx, question.name).show(ctx, |ui| {
+        ui.set_width(question.width);
+        ui.heading(question.heading);
+        add_text(ui);
+        ui.add_space(8.0);
+        ui.horizontal(|ui| {
+            for (i, (text, each, tip)) in question.answers.iter().enumerate() {
+                let button = if i == 0 {
+                    primary_button(ui, text, 96.0)
+                } else {
+                    ui.add(Button::new(*text).min_size(vec2(96.0, 28.0)))
+                };
+                if button.on_hover_text(*tip).clicked() {
+                    answer = Some(*each);
+                }
+            }
+        });
+        // A button with the focus takes Enter itself.
+        if ui.memory(|memory| memory.focused().is_none()) && ui.input(|i| i.key_pressed(Key::Enter)) {
+            answer = answer.or(question.answers.first().map(|(_, answer, _)| *answer));
+        }
+    });
+    let on_escape = question.answers.last().map(|(_, answer, _)| *answer);
+    answer.or(on_escape.filter(|_| modal.should_close()))
 }
 
 /// Draws the primary button of a panel.

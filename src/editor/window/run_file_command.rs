@@ -15,7 +15,7 @@ use crate::editor::window::background_tasks::TaskResult;
 use crate::editor::window::dialogs::DialogAnswer;
 use crate::editor::window::session::PendingOperation;
 use crate::io::{self, ModelFormat, PictureInfo};
-use crate::scene::{Assets, Material, MaterialPreset, Object, ObjectId, Shape, TextureRef, TextureSlot, Transform};
+use crate::scene::{Assets, Material, MaterialPreset, Object, Shape, TextureRef, TextureSlot};
 use eframe::egui::{self, Align2, Color32, Context, Id, LayerId, Order, ViewportCommand};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::TryRecvError;
@@ -229,14 +229,9 @@ impl App {
         let part_materials =
             part_materials.into_iter().map(|(part, m)| (part, self.adopt_textures(m, &folder))).collect();
         let mut object = Object {
-            id: ObjectId(0),
-            name: stem,
-            transform: Transform::default(),
-            shape: Shape::MeshFile { path },
             material: MaterialPreset::MatteFabric.material(),
             part_materials,
-            visible: true,
-            locked: false,
+            ..Object::new(stem, Shape::MeshFile { path })
         };
         placement::place_object(self.document.scene(), self.selection.last(), &mut object);
         self.apply(Action::AddObject(Box::new(object)), None);

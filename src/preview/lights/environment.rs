@@ -174,19 +174,10 @@ fn sphere_directions() -> impl Iterator<Item = Vec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Material, Object, ObjectId, Room, Transform};
+    use crate::scene::{Material, Object, Room, Transform};
 
     fn subject() -> Object {
-        Object {
-            id: ObjectId(0),
-            name: "Ball".to_owned(),
-            transform: Transform { position: Vec3::Y, ..Transform::default() },
-            shape: Shape::Sphere { radius_m: 0.1 },
-            material: Material::default(),
-            part_materials: Vec::new(),
-            visible: true,
-            locked: false,
-        }
+        Object { transform: Transform::at(Vec3::Y), ..Object::new("Ball", Shape::Sphere { radius_m: 0.1 }) }
     }
 
     #[test]

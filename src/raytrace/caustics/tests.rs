@@ -55,17 +55,8 @@ fn the_shading_correction_makes_photons_agree_with_camera_paths() {
 }
 
 fn object(id: u32, shape: Shape, position: Vec3, material: Material) -> Object {
-    let transform = crate::scene::Transform { position, ..Default::default() };
-    Object {
-        id: ObjectId(id),
-        name: format!("Object {id}"),
-        transform,
-        shape,
-        material,
-        part_materials: Vec::new(),
-        visible: true,
-        locked: false,
-    }
+    let transform = crate::scene::Transform::at(position);
+    Object { id: ObjectId(id), transform, material, ..Object::new(format!("Object {id}"), shape) }
 }
 
 /// A glass ball and a chrome ball on a floor, with two delta lights.

@@ -78,13 +78,9 @@ mod tests {
     fn object(id: u32, shape: Shape, position: Vec3, base_color: [f32; 3]) -> Object {
         Object {
             id: ObjectId(id),
-            name: format!("Object {id}"),
-            transform: crate::scene::Transform { position, ..Default::default() },
-            shape,
+            transform: crate::scene::Transform::at(position),
             material: Material { base_color, ..Material::default() },
-            part_materials: Vec::new(),
-            visible: true,
-            locked: false,
+            ..Object::new(format!("Object {id}"), shape)
         }
     }
 

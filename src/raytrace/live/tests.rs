@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 const SIZE: (u32, u32) = (60, 40);
 
 fn object(id: u32, shape: Shape, position: Vec3, material: Material) -> Object {
-    let transform = Transform { position, ..Transform::default() };
+    let transform = Transform::at(position);
     let name = format!("Thing {id}");
     Object { id: ObjectId(id), name, transform, shape, material, part_materials: vec![], visible: true, locked: false }
 }

@@ -12,13 +12,8 @@ const LIGHT: LightId = LightId(3);
 fn scene() -> Scene {
     let object = Object {
         id: ObjectId(1),
-        name: "Vase".to_owned(),
-        transform: Transform::default(),
-        shape: Shape::Sphere { radius_m: 0.2 },
-        material: Material::default(),
         part_materials: vec![("rim".to_owned(), Material::default())],
-        visible: true,
-        locked: false,
+        ..Object::new("Vase", Shape::Sphere { radius_m: 0.2 })
     };
     let panel = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
     let light = |id, on| Light { id, on, ..Light::new(panel, Output::Lumens(1000.0)) };

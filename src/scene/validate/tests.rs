@@ -1,21 +1,12 @@
 use super::*;
 use crate::scene::{
-    Aim, Assets, Camera, ColorSource, Emitter, Focus, Gel, Light, LightId, Material, Object, ObjectId, Output, Room,
-    Sensor, Shape, Solo, TextureRef, Transform,
+    Aim, Assets, Camera, ColorSource, Emitter, Focus, Gel, Light, LightId, Object, ObjectId, Output, Room, Sensor,
+    Shape, Solo, TextureRef,
 };
 use glam::Vec3;
 
 fn object(name: &str) -> Object {
-    Object {
-        id: ObjectId(0),
-        name: name.to_owned(),
-        transform: Transform::default(),
-        shape: Shape::Box { size_m: Vec3::ONE },
-        material: Material::default(),
-        part_materials: Vec::new(),
-        visible: true,
-        locked: false,
-    }
+    Object::new(name, Shape::Box { size_m: Vec3::ONE })
 }
 
 fn light(name: &str) -> Light {

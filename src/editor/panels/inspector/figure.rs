@@ -2,7 +2,7 @@
 
 use crate::editor::ui::widgets::{row, section, swatch};
 use crate::figures::{self, NamedExpression, NamedPose, SKIN_TONES};
-use crate::jobs::{Catchlight, Face};
+use crate::jobs::{Catchlight, Face, sentence};
 use crate::scene::{
     Arm, Beard, Body, Bottom, Figure, Gaze, HairStyle, Leg, Object, Parameter, ParameterSet, SEAT_RANGE_M, Scene,
     Shape, Top,
@@ -13,7 +13,7 @@ use eframe::egui::{Color32, ComboBox, Label, Sense, Slider, TextStyle, Ui, vec2}
 /// below stays where it is in a drag.
 pub(super) fn face_rows(ui: &mut Ui, face: Option<Result<&Face, &str>>) {
     let text = match face {
-        Some(Ok(face)) => face.lighting.to_string(),
+        Some(Ok(face)) => sentence(&face.lighting),
         Some(Err(message)) => message.to_owned(),
         None => "Checking\u{2026}".to_owned(),
     };
