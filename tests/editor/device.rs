@@ -13,6 +13,7 @@ fn renderer() -> (WgpuTestRenderer, wgpu::Device) {
 
 fn window_on(renderer: WgpuTestRenderer, app: impl FnOnce(&eframe::CreationContext<'_>) -> App) -> Window {
     let builder = Harness::builder().with_size(vec2(1440.0, 900.0)).with_step_dt(1.0 / 30.0).with_max_steps(60);
+    let builder = builder.with_pixels_per_point(FEW_PIXELS);
     let mut window = builder.renderer(renderer).build_eframe(|creation| app(creation));
     settle(&mut window);
     window
@@ -41,7 +42,7 @@ fn a_device_loss_keeps_the_studio_and_its_history() {
         return;
     }
     let (first, device) = renderer();
-    let mut window = window_on(first, |creation| App::new(creation, EditorOptions::default()));
+    let mut window = window_on(first, |creation| App::new(creation, bald_options()));
     let begin = scene(&window).clone();
     click(&mut window, "Add Octa 120");
     press(&mut window, Modifiers::COMMAND, Key::D);
@@ -89,7 +90,7 @@ fn a_device_loss_during_a_frame_ends_that_frame() {
         return;
     }
     let (first, device) = renderer();
-    let mut window = window_on(first, |creation| App::new(creation, EditorOptions::default()));
+    let mut window = window_on(first, |creation| App::new(creation, bald_options()));
     let _ = device.poll(wgpu::PollType::wait_indefinitely());
     device.destroy();
     // The loss shows when the preview draws its next picture, in the frame that draws the window.
@@ -110,7 +111,7 @@ fn a_device_loss_of_a_minimised_window_is_detected() {
         return;
     }
     let (first, device) = renderer();
-    let mut window = window_on(first, |creation| App::new(creation, EditorOptions::default()));
+    let mut window = window_on(first, |creation| App::new(creation, bald_options()));
     click(&mut window, "Add Octa 120");
     destroy(&device);
     let commands = sizes::while_minimised(&mut window, Vec::new());
@@ -122,7 +123,7 @@ fn a_device_loss_of_a_minimised_window_is_detected() {
 /// A window whose renderer has no device at all.
 fn window_without_device() -> Window {
     let builder = Harness::builder().with_size(vec2(1200.0, 800.0)).with_max_steps(60);
-    let mut window = builder.build_eframe(|creation| App::new(creation, EditorOptions::default()));
+    let mut window = builder.build_eframe(|creation| App::new(creation, bald_options()));
     settle(&mut window);
     window
 }

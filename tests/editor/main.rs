@@ -103,7 +103,7 @@ fn has_adapter() -> bool {
 }
 
 /// Pixels per point of a window unless a test is about pixels: the GPU is emulated, and its time grows with them.
-const FEW_PIXELS: f32 = 0.5;
+const FEW_PIXELS: f32 = 0.25;
 
 fn window(options: EditorOptions) -> Window {
     window_at(FEW_PIXELS, options)
@@ -121,6 +121,11 @@ fn bald_preset() -> StudioSource {
     StudioSource::Memory(Box::new(scene))
 }
 
+/// Returns options that open [`bald_preset`].
+fn bald_options() -> EditorOptions {
+    EditorOptions { initial: Some(bald_preset()), ..EditorOptions::default() }
+}
+
 /// A window on the studio of the options, or else on [`bald_preset`].
 fn window_at(pixels_per_point: f32, options: EditorOptions) -> Window {
     let initial = options.initial.clone().or_else(|| Some(bald_preset()));
@@ -136,11 +141,11 @@ fn window_with_answers(paths: impl IntoIterator<Item = PathBuf>) -> Window {
     window(EditorOptions { dialogs: FileDialogs::scripted(paths), ..EditorOptions::default() })
 }
 
-/// A window with the first preset at one pixel a point, for drags and clicks that must be exact to a point; none without
-/// an adapter.
-fn sharp_preset_window() -> Option<Window> {
-    has_adapter()
-        .then(|| window_at(1.0, EditorOptions { dialogs: FileDialogs::scripted([]), ..EditorOptions::default() }))
+/// A window with the first preset at some pixels a point, for clicks that must be exact and pictures that are compared;
+/// none without an adapter.
+fn preset_window_at(pixels_per_point: f32) -> Option<Window> {
+    let options = EditorOptions { dialogs: FileDialogs::scripted([]), ..EditorOptions::default() };
+    has_adapter().then(|| window_at(pixels_per_point, options))
 }
 
 /// A window with the first preset; none without an adapter.

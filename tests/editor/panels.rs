@@ -87,7 +87,7 @@ fn a_name_that_is_taken_is_refused_in_plain_words() {
 
 #[test]
 fn a_figure_from_the_list_has_its_mesh_and_becomes_the_target_of_new_lights() {
-    let Some(mut window) = sharp_preset_window() else { return };
+    let Some(mut window) = preset_window_at(1.0) else { return };
     click(&mut window, "Figures");
     click(&mut window, "Add Boy, 10, short hair");
     let Some(Item::Object(id)) = window.state().selection().last() else { panic!("the figure is selected") };
@@ -135,8 +135,10 @@ fn every_preset_opens_and_every_panel_draws() {
         for item in items {
             let select = Command::Select(Some(item));
             window.state_mut().run(select, None, &egui::Context::default());
-            settle(&mut window);
+            // One frame to draw the inspector, one for what it would change.
+            window.run_steps(2);
         }
+        settle(&mut window);
         let changed = window.state().document().history().undo_label().map(str::to_owned);
         assert_eq!(changed, None, "drawing the inspector changes nothing");
         assert!(errors(&window).is_empty(), "{:?}", errors(&window));

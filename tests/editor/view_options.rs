@@ -37,7 +37,7 @@ fn choose(window: &mut Window, button: &str, entries: &[&str]) {
 
 #[test]
 fn every_channel_changes_the_image_and_lit_restores_it() {
-    let Some(mut window) = preset_window() else { return };
+    let Some(mut window) = preset_window_at(0.5) else { return };
     let lit = view(&mut window);
     let mut seen = vec![("Lit", lit.clone())];
     for channel in Channel::ALL.into_iter().filter(|channel| *channel != Channel::Lit) {
@@ -57,7 +57,7 @@ fn every_channel_changes_the_image_and_lit_restores_it() {
 
 #[test]
 fn showing_a_single_light_does_not_change_the_studio() {
-    let Some(mut window) = preset_window() else { return };
+    let Some(mut window) = preset_window_at(0.5) else { return };
     let (before, lit) = (scene(&window).clone(), view(&mut window));
     let light = before.lights[1].clone();
     click(&mut window, "Lit");

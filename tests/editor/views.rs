@@ -53,7 +53,7 @@ fn a_click_selects_from_the_top_as_it_does_from_anywhere() {
 
 #[test]
 fn an_orbit_keeps_the_selection_at_its_screen_position() {
-    let Some(mut window) = preset_window() else { return };
+    let Some(mut window) = preset_window_at(0.5) else { return };
     let light = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(light.id)]);
     let before = shown_at(&window, light.position);
@@ -64,7 +64,7 @@ fn an_orbit_keeps_the_selection_at_its_screen_position() {
 
 #[test]
 fn the_meter_can_be_moved_out_of_the_way_and_folded() {
-    let Some(mut window) = sharp_preset_window() else { return };
+    let Some(mut window) = preset_window_at(1.0) else { return };
     click(&mut window, "Light meter");
     // The bar of the window, at its upper edge.
     let title = |window: &Window| window.get_by_label("Light meter, dome").rect().center_top() + vec2(0.0, 14.0);
