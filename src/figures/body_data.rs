@@ -100,6 +100,15 @@ impl BodyData {
         self.group(group).map_or(&[], |each| &each.quads)
     }
 
+    /// Returns the point between the eyeballs.
+    pub fn eyes_middle(&self) -> Vec3 {
+        let points = ["helper-l-eye", "helper-r-eye"].into_iter().flat_map(|group| self.quads(group)).flatten();
+        let (low, high) = points
+            .map(|&v| self.positions[usize::from(v)])
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        (low + high) / 2.0
+    }
+
     /// Returns the index of a bone.
     pub fn bone(&self, name: &str) -> Option<usize> {
         self.bones.iter().position(|bone| bone.name == name)

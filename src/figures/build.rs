@@ -7,6 +7,7 @@ use super::morph::rest_positions;
 use super::patch::Patch;
 use super::regions::{Edges, Garment};
 use super::skeleton::Skeleton;
+use super::skin_colors::{NO_SKIN, skin_colors};
 use super::skinning::skin;
 use super::subdivide::QuadMesh;
 use crate::scene::{Bottom, Extent, Figure, FigureMeshes, Mesh, MeshPart};
@@ -109,11 +110,13 @@ pub fn build(data: &BodyData, figure: &Figure) -> FigureMeshes {
     let eyeballs = body.eyeballs(data, figure);
     let eyes = eyeballs.map(|ball| ball.translation.into());
     let hair_body = HairBody { data, positions: &body.positions, head: body.head(data), eyes };
-    let eyes_mesh = both_eyes(eyeballs);
+    let (eyes_mesh, eye_colors) = both_eyes(eyeballs);
     let finish = |mut quads: QuadMesh, mut normals: Vec<Vec3>| {
+        let mut colors = skin_colors(&quads.places, figure);
         quads.append(&eyes_mesh);
         normals.extend(eyes_mesh.normals());
-        to_mesh(&quads, &normals)
+        colors.extend(&eye_colors);
+        to_mesh(&quads, &normals, &colors)
     };
     let skin = || {
         let mut coarse = cage(data, figure, &body).subdivided();
@@ -136,8 +139,8 @@ pub fn build(data: &BodyData, figure: &Figure) -> FigureMeshes {
 /// Returns the meshes of a figure from those of one that differs from it in the gaze alone: the same bits as
 /// [`build`] gives, sooner.
 pub fn with_other_gaze(data: &BodyData, built: &FigureMeshes, figure: &Figure) -> FigureMeshes {
-    let eyes = both_eyes(PosedBody::new(data, figure).eyeballs(data, figure));
-    let eyes = to_mesh(&eyes, &eyes.normals());
+    let (eyes, colors) = both_eyes(PosedBody::new(data, figure).eyeballs(data, figure));
+    let eyes = to_mesh(&eyes, &eyes.normals(), &colors);
     let turned = |mesh: &Mesh| {
         let mut mesh = mesh.clone();
         // The vertices of eyes are a block of their own
@@ -154,13 +157,13 @@ pub fn with_other_gaze(data: &BodyData, built: &FigureMeshes, figure: &Figure) -
     FigureMeshes { fine, coarse }
 }
 
-/// Returns the quads of a pair of eyes.
-fn both_eyes(eyeballs: [Affine3A; 2]) -> QuadMesh {
-    let mut mesh = QuadMesh::default();
+/// Returns the quads of a pair of eyes, and the colours of their vertices.
+fn both_eyes(eyeballs: [Affine3A; 2]) -> (QuadMesh, Vec<Vec3>) {
+    let (mut mesh, mut colors) = (QuadMesh::default(), Vec::new());
     for eyeball in eyeballs {
-        add_eye(&mut mesh, eyeball, |part| EYES + part as u8);
+        colors.extend(add_eye(&mut mesh, eyeball, |part| EYES + part as u8));
     }
-    mesh
+    (mesh, colors)
 }
 
 /// The distance of a vertex from the edge of a garment, metres; negative outside.
@@ -184,7 +187,9 @@ fn cage(data: &BodyData, figure: &Figure, body: &PosedBody) -> QuadMesh {
     if figure.extent == Extent::Bust {
         skin.move_border(&level);
     }
+    let eyes = data.eyes_middle();
     add_part(&mut mesh, &skin, SKIN);
+    mesh.places = skin.sources.iter().map(|&v| data.positions[usize::from(v)] - eyes).collect();
     for (group, part) in [("helper-upper-teeth", TEETH), ("helper-lower-teeth", TEETH), ("helper-tongue", TONGUE)] {
         add_part(&mut mesh, &Patch::new(data, group, &body.positions, &is_kept), part);
     }
@@ -215,6 +220,7 @@ fn add_part(mesh: &mut QuadMesh, patch: &Patch, part: u8) {
     mesh.quads.extend(patch.quads.iter().map(|quad| quad.map(|v| v + first)));
     mesh.uvs.extend(&patch.uvs);
     mesh.parts.extend(patch.quads.iter().map(|_| part));
+    mesh.places.resize(mesh.positions.len(), NO_SKIN);
 }
 
 /// Gives the quads of skin in regions of their own to their parts. Done after subdivision, when quads are so small that
@@ -229,7 +235,7 @@ fn split_skin(data: &BodyData, mesh: &mut QuadMesh) {
 }
 
 /// Splits quads into triangles, by part, with a vertex for each pair of position and texture coordinates.
-fn to_mesh(quads: &QuadMesh, normals: &[Vec3]) -> Mesh {
+fn to_mesh(quads: &QuadMesh, normals: &[Vec3], colors: &[Vec3]) -> Mesh {
     let mut mesh = Mesh::default();
     let mut vertices: HashMap<(u32, [u32; 2]), u32> = HashMap::with_capacity(quads.positions.len() * 5 / 4);
     for (part, name) in PARTS.into_iter().enumerate() {
@@ -240,6 +246,7 @@ fn to_mesh(quads: &QuadMesh, normals: &[Vec3]) -> Mesh {
                 *vertices.entry((vertex, uv.to_array().map(f32::to_bits))).or_insert_with(|| {
                     mesh.positions.push(quads.positions[vertex as usize]);
                     mesh.normals.push(normals[vertex as usize]);
+                    mesh.colors.push(colors[vertex as usize]);
                     mesh.uvs.push(uv);
                     mesh.positions.len() as u32 - 1
                 })

@@ -5,6 +5,7 @@
 //! 7.8 mm radius
 //! and an iris of 11.8 mm diameter.
 
+use super::random::Random;
 use super::subdivide::QuadMesh;
 use glam::{Affine3A, Vec2, Vec3};
 use std::f32::consts::TAU;
@@ -16,7 +17,9 @@ const PUPIL: f32 = 0.15;
 /// Radius of the cornea's sphere, in radii of the ball.
 const CORNEA: f32 = 0.65;
 /// Vertices around.
-const AROUND: usize = 48;
+const AROUND: usize = 96;
+/// Rings of the iris.
+const IRIS_RINGS: u32 = 12;
 
 /// The cornea of an eye: a cap of a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,8 +60,10 @@ pub enum EyePart {
     Pupil,
 }
 
-/// Appends an eye. `world_from_eye` takes a ball of radius 1 that looks along +Z to its place; `part` numbers the parts.
-pub fn add_eye(mesh: &mut QuadMesh, world_from_eye: Affine3A, part: impl Fn(EyePart) -> u8) {
+/// Appends an eye, and returns the colours of its vertices, factors of the base colours. `world_from_eye` takes a ball of
+/// radius 1 that looks along +Z to its place; `part` numbers the parts.
+pub fn add_eye(mesh: &mut QuadMesh, world_from_eye: Affine3A, part: impl Fn(EyePart) -> u8) -> Vec<Vec3> {
+    let first = mesh.positions.len();
     // The white, from the back to the edge of the iris
     let limit = IRIS.asin();
     let white = (0..=20).map(|i| {
@@ -75,8 +80,41 @@ pub fn add_eye(mesh: &mut QuadMesh, world_from_eye: Affine3A, part: impl Fn(EyeP
             Vec2::new(CORNEA * angle.sin(), centre + CORNEA * angle.cos())
         })
     };
-    add_rings(mesh, world_from_eye, part(EyePart::Iris), cap(IRIS, PUPIL, 8));
+    let iris = mesh.positions.len();
+    add_rings(mesh, world_from_eye, part(EyePart::Iris), cap(IRIS, PUPIL, IRIS_RINGS));
+    let pupil = mesh.positions.len();
     add_rings(mesh, world_from_eye, part(EyePart::Pupil), cap(PUPIL, 0.0, 4));
+    // Colours by the place on the eye
+    let to_eye = world_from_eye.inverse();
+    let color = |(i, position): (usize, &Vec3)| match first + i {
+        vertex if vertex < iris => white_color(to_eye.transform_point3(*position)),
+        vertex if vertex < pupil => iris_color((vertex - iris) % AROUND, (vertex - iris) / AROUND),
+        _ => Vec3::ONE,
+    };
+    mesh.positions[first..].iter().enumerate().map(color).collect()
+}
+
+/// Returns the colour of the white at a point: pinker towards the corners, where vessels are, and grey at the edge of
+/// the iris, which shows through.
+fn white_color(point: Vec3) -> Vec3 {
+    let aside = ((point.x.abs() - 0.5) / 0.45).clamp(0.0, 1.0);
+    let vessels = Vec3::ONE.lerp(Vec3::new(0.95, 0.78, 0.74), aside);
+    let edge = 1.0 - ((Vec2::new(point.x, point.y).length() - IRIS) / 0.07).clamp(0.0, 1.0);
+    vessels * (1.0 - 0.45 * edge)
+}
+
+/// Returns the colour of a vertex of the iris: dark at its edge (the limbal ring), with fibres from there to the pupil,
+/// of which those near the pupil are lighter.
+fn iris_color(around: usize, ring: usize) -> Vec3 {
+    let outwards = 1.0 - ring as f32 / IRIS_RINGS as f32;
+    let limbus = ((outwards - 0.78) / 0.22).clamp(0.0, 1.0);
+    let mut random = Random::new(around as u32, 7);
+    let [fibre, collarette] = [random.unit(), random.unit()];
+    let inner = 1.0 - ((outwards - 0.1) / (0.2 + 0.15 * collarette)).clamp(0.0, 1.0);
+    let streak = 0.55 + 0.3 * fibre + 0.15 * inner;
+    // The pupil's edge is a thin dark line.
+    let rim = if ring == IRIS_RINGS as usize { 0.4 } else { 1.0 };
+    Vec3::splat(streak * rim * (1.0 - 0.75 * limbus * limbus))
 }
 
 /// Appends a surface of revolution about Z from points (radius, z), outside to the front.

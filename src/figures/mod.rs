@@ -25,6 +25,7 @@ mod random;
 mod ready;
 mod regions;
 mod skeleton;
+mod skin_colors;
 mod skinning;
 mod subdivide;
 mod two_bone_ik;

@@ -14,7 +14,7 @@ pub struct Patch {
     /// Texture coordinates of the corners.
     pub uvs: Vec<[Vec2; 4]>,
     /// Vertex of the body data for each vertex.
-    sources: Vec<u16>,
+    pub sources: Vec<u16>,
 }
 
 impl Patch {

@@ -14,6 +14,8 @@ pub struct QuadMesh {
     pub uvs: Vec<[Vec2; 4]>,
     /// Part of each quad, an index into the caller's list.
     pub parts: Vec<u8>,
+    /// Place of each vertex on the base mesh, which is not smoothed; empty if it is of no interest.
+    pub places: Vec<Vec3>,
 }
 
 /// An edge with the quads beside it.
@@ -34,6 +36,7 @@ impl QuadMesh {
         self.quads.extend(other.quads.iter().map(|quad| quad.map(|v| v + first)));
         self.uvs.extend(&other.uvs);
         self.parts.extend(&other.parts);
+        self.places.extend(&other.places);
     }
 
     /// Returns the mesh with every quad split into four, smoothed.
@@ -47,6 +50,7 @@ impl QuadMesh {
         let mut positions = self.vertex_points(&edges, &quad_points);
         positions.extend(edge_points);
         positions.extend(quad_points);
+        let places = self.split_places(&edges);
         // Four quads for each, one at each corner
         let split = |(index, quad): (usize, &[u32; 4])| {
             let side = |k: usize| vertex_count + edges.of_quad[index][k];
@@ -65,7 +69,19 @@ impl QuadMesh {
             quads,
             uvs: self.uvs.par_iter().flat_map_iter(split_uv).collect(),
             parts: self.parts.iter().flat_map(|&part| [part; 4]).collect(),
+            places,
         }
+    }
+
+    /// Returns the places of the old vertices, and of the middles of edges and quads.
+    fn split_places(&self, edges: &Edges) -> Vec<Vec3> {
+        if self.places.is_empty() {
+            return Vec::new();
+        }
+        let mean =
+            |vertices: &[u32]| vertices.iter().map(|&v| self.places[v as usize]).sum::<Vec3>() / vertices.len() as f32;
+        let of_edges = edges.edges.iter().map(|edge| mean(&edge.ends));
+        self.places.iter().copied().chain(of_edges).chain(self.quads.iter().map(|quad| mean(quad))).collect()
     }
 
     fn edge_point(&self, edge: &Edge, quad_points: &[Vec3]) -> Vec3 {
@@ -217,6 +233,7 @@ mod tests {
             quads,
             uvs: vec![[Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y]; count],
             parts: vec![0; count],
+            ..QuadMesh::default()
         }
     }
 

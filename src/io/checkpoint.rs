@@ -3,7 +3,7 @@
 use super::atomic;
 use super::error::{SaveError, reason};
 use crate::raytrace::Film;
-use crate::scene::{Asset, Assets, Mesh, Scene};
+use crate::scene::{Asset, Assets, Scene};
 use std::fmt;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{self, BufWriter, Write};
@@ -51,21 +51,11 @@ impl fmt::Display for RenderId {
 fn content_hash(asset: &Asset) -> u64 {
     let mut hasher = DefaultHasher::new();
     match asset {
-        Asset::Mesh(mesh) => hash_mesh(mesh, &mut hasher),
+        Asset::Mesh(mesh) => mesh.hash_content(&mut hasher),
         Asset::Texture(image) => (image.width, image.height, &image.rgb).hash(&mut hasher),
         Asset::Figure(_) => {}
     }
     hasher.finish()
-}
-
-fn hash_mesh(mesh: &Mesh, hasher: &mut DefaultHasher) {
-    let vectors = mesh.positions.iter().chain(&mesh.normals).flat_map(|v| v.to_array());
-    let numbers = vectors.chain(mesh.uvs.iter().flat_map(|uv| uv.to_array()));
-    numbers.for_each(|number| hasher.write_u32(number.to_bits()));
-    mesh.triangles.hash(hasher);
-    for part in &mesh.parts {
-        (&part.name, &part.triangles).hash(hasher);
-    }
 }
 
 /// Writes a checkpoint. An older one is replaced atomically.

@@ -76,13 +76,16 @@ pub(super) struct GBufferRow {
     pub uv: [RowScalar; 2],
     /// Normal of the triangle's plane, of any length.
     pub geometric_normal: RowVec3,
+    /// Mean vertex colour of the triangle, where its mesh has colours.
+    pub color: RowVec3,
 }
 
 impl GBufferRow {
     /// A row of pixels that show `background`.
     pub fn new(background: u32) -> Self {
         let (surface, uv) = ([background; PADDED_WIDTH], [[0.0; PADDED_WIDTH]; 2]);
-        GBufferRow { surface, first: RowVec3::ZERO, second: RowVec3::ZERO, uv, geometric_normal: RowVec3::ZERO }
+        let [first, second, geometric_normal, color] = [RowVec3::ZERO; 4];
+        GBufferRow { surface, first, second, uv, geometric_normal, color }
     }
 
     /// Returns the surfaces of the first `width` pixels, each with its range of pixels.

@@ -158,6 +158,9 @@ impl<'a> FragmentShader<'a> {
         let vertices = corners.map(|i| &self.vertices[surface.instance as usize].attributes[i]);
         let normal = geometric_normal(vertices);
         row.geometric_normal.splat(&span.pixels, normal);
+        if !instance.mesh.colors.is_empty() {
+            row.color.splat(&span.pixels, corners.map(|i| instance.mesh.colors[i]).iter().sum::<Vec3>() / 3.0);
+        }
         match self.shading {
             Shading::Gouraud => {
                 row.interpolate(span, corners.map(|i| &self.lit_vertices[surface.instance as usize][i]));
@@ -189,6 +192,7 @@ impl<'a> FragmentShader<'a> {
         for (surface, pixels) in row.surfaces(rgb.len()) {
             if let Some(material) = self.materials.get(surface as usize) {
                 materials.set(&pixels, material);
+                self.apply_colors(row, surface, pixels.clone(), &mut materials.diffuse);
                 self.apply_texture(row, surface, pixels, &mut materials.diffuse);
                 any_surface = true;
             }
@@ -216,6 +220,15 @@ impl<'a> FragmentShader<'a> {
         }
         for (i, rgb) in rgb.iter_mut().enumerate() {
             *rgb = irradiance.at(i).into();
+        }
+    }
+
+    /// Multiplies the diffuse BRDF of pixels by the vertex colours of their mesh.
+    #[inline(always)]
+    fn apply_colors(&self, row: &GBufferRow, surface: u32, pixels: Range<usize>, diffuse: &mut RowVec3) {
+        let instance = self.geometry.surfaces[surface as usize].instance;
+        if !self.geometry.instances[instance as usize].mesh.colors.is_empty() {
+            pixels.for_each(|i| diffuse.set(i, diffuse.at(i) * row.color.at(i)));
         }
     }
 

@@ -181,6 +181,13 @@ impl Instance {
             let uvs = indices.map(|i| mesh.uvs[i]);
             uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2]
         };
+        // Interpolate the colour
+        let color = if mesh.colors.is_empty() {
+            Vec3::ONE
+        } else {
+            let colors = indices.map(|i| mesh.colors[i]);
+            colors[0] * weights[0] + colors[1] * weights[1] + colors[2] * weights[2]
+        };
         let part = self.geometry.part(hit.triangle);
         SurfaceInteraction {
             position: self.world_from_object.transform_point3a(local).into(),
@@ -189,6 +196,7 @@ impl Instance {
             geometric_normal: geometric_normal.into(),
             normal: normal.into(),
             uv,
+            color,
             material: self.materials.get(part).copied().unwrap_or(0),
             is_thin: self.is_thin,
             strand: None,
@@ -238,6 +246,8 @@ pub struct SurfaceInteraction {
     pub normal: Vec3,
     /// Texture coordinates.
     pub uv: Vec2,
+    /// Interpolated vertex colour, a factor of the base colour.
+    pub color: Vec3,
     /// Index into the material table.
     pub material: u32,
     /// True for a clear mesh that encloses no volume: a thin pane. True for strands.

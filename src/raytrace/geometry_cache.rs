@@ -10,7 +10,7 @@ use super::geometry::MeshGeometry;
 use crate::scene::{Material, Mesh};
 use rayon::prelude::*;
 use std::collections::HashMap;
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::hash::{DefaultHasher, Hasher};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Number of triangles and strand segments that are kept although the last scene did not use them: some 300 MB.
@@ -164,21 +164,7 @@ fn primitives(mesh: &Mesh) -> usize {
 
 fn hash(mesh: &Mesh) -> u64 {
     let mut hasher = DefaultHasher::new();
-    let bits = |v: &glam::Vec3| [u64::from(v.x.to_bits()) << 32 | u64::from(v.y.to_bits()), v.z.to_bits().into()];
-    mesh.positions.iter().for_each(|p| bits(p).hash(&mut hasher));
-    mesh.normals.iter().for_each(|n| bits(n).hash(&mut hasher));
-    mesh.uvs.iter().for_each(|uv| [uv.x.to_bits(), uv.y.to_bits()].hash(&mut hasher));
-    mesh.triangles.hash(&mut hasher);
-    for part in &mesh.parts {
-        (&part.name, part.triangles.start, part.triangles.end).hash(&mut hasher);
-    }
-    for point in mesh.strands.points() {
-        (bits(&point.position), point.radius_m.to_bits()).hash(&mut hasher);
-    }
-    mesh.strands.starts().hash(&mut hasher);
-    for part in mesh.strands.parts() {
-        (&part.name, part.strands.start, part.strands.end).hash(&mut hasher);
-    }
+    mesh.hash_content(&mut hasher);
     hasher.finish()
 }
 

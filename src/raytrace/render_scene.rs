@@ -105,10 +105,10 @@ impl RenderScene {
         )
     }
 
-    /// Factor of the base colour from the texture at a surface.
+    /// Factor of the base colour at a surface, from the texture and the vertex colours.
     pub(super) fn texture_value(&self, surface: &SurfaceInteraction) -> Vec3 {
         let texture = self.materials[surface.material as usize].texture(TextureSlot::BaseColor);
-        texture.map_or(Vec3::ONE, |texture| self.textures[texture as usize].at(surface.uv))
+        texture.map_or(surface.color, |texture| self.textures[texture as usize].at(surface.uv) * surface.color)
     }
 
     /// The reflectance at a surface, for the albedo AOV and ambient light.

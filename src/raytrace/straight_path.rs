@@ -122,6 +122,7 @@ mod tests {
             geometric_normal: normal,
             normal,
             uv: glam::Vec2::ZERO,
+            color: Vec3::ONE,
             material,
             strand: None,
             is_thin: false,

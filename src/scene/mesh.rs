@@ -4,9 +4,10 @@ use super::Strands;
 use glam::{Vec2, Vec3};
 use std::cmp::Ordering;
 use std::collections::HashMap;
+use std::hash::{Hash, Hasher};
 
 /// A named range of triangles that can have its own material.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct MeshPart {
     /// `eyes`, `floor`, an OBJ group.
     pub name: String,
@@ -16,7 +17,7 @@ pub struct MeshPart {
 
 /// An indexed triangle mesh in object space, metres. Front faces wind counter-clockwise.
 ///
-/// `normals` and `uvs` are either empty or as long as `positions`. `parts` cover all triangles, in order.
+/// `normals`, `uvs` and `colors` are either empty or as long as `positions`. `parts` cover all triangles, in order.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Mesh {
     /// Vertex positions, metres.
@@ -25,6 +26,8 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates, (0, 0) at the picture's bottom left; empty where the mesh has none.
     pub uvs: Vec<Vec2>,
+    /// Vertex colours, scene-linear, 0 to 1: factors of the base colour. Empty means 1.
+    pub colors: Vec<Vec3>,
     /// Vertex indices, three a triangle.
     pub triangles: Vec<[u32; 3]>,
     /// Named ranges of triangles.
@@ -73,6 +76,11 @@ impl Mesh {
         } else {
             self.uvs.clear();
         }
+        if keep(self.colors.len(), other.colors.len()) {
+            self.colors.extend(&other.colors);
+        } else {
+            self.colors.clear();
+        }
         self.positions.extend(&other.positions);
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| i + base)));
         self.parts.extend(
@@ -81,6 +89,19 @@ impl Mesh {
                 triangles: p.triangles.start + first..p.triangles.end + first,
             }),
         );
+    }
+
+    /// Feeds everything that the mesh consists of into a hasher.
+    pub fn hash_content(&self, hasher: &mut impl Hasher) {
+        let bits = |v: &Vec3| [u64::from(v.x.to_bits()) << 32 | u64::from(v.y.to_bits()), v.z.to_bits().into()];
+        for vectors in [&self.positions, &self.normals, &self.colors] {
+            vectors.len().hash(hasher);
+            vectors.iter().for_each(|v| bits(v).hash(hasher));
+        }
+        self.uvs.iter().for_each(|uv| [uv.x.to_bits(), uv.y.to_bits()].hash(hasher));
+        self.triangles.hash(hasher);
+        self.parts.hash(hasher);
+        self.strands.hash_content(hasher);
     }
 
     /// Returns true if the mesh encloses a volume: every edge has as many triangles in one direction as in the other.

@@ -4,6 +4,7 @@
 //! Renderers interpolate the direction of a strand from segment to segment, so that 8 to 20 segments look smooth.
 
 use glam::Vec3;
+use std::hash::{Hash, Hasher};
 use std::ops::Range;
 
 /// A control point of a strand, in object space.
@@ -17,7 +18,7 @@ pub struct StrandPoint {
 }
 
 /// A named range of strands that can have its own material.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct StrandPart {
     /// `hair`, `brows`, `lashes`, `beard`.
     pub name: String,
@@ -98,6 +99,15 @@ impl Strands {
         if first < self.len() as u32 {
             self.parts.push(StrandPart { name: name.to_owned(), strands: first..self.len() as u32 });
         }
+    }
+
+    /// Feeds everything that the strands consist of into a hasher.
+    pub fn hash_content(&self, hasher: &mut impl Hasher) {
+        for StrandPoint { position, radius_m } in &self.points {
+            [position.x, position.y, position.z, *radius_m].map(f32::to_bits).hash(hasher);
+        }
+        self.starts.hash(hasher);
+        self.parts.hash(hasher);
     }
 
     /// Appends other strands and their parts.

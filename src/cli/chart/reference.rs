@@ -5,7 +5,7 @@ use crate::io::{self, Loaded, PictureInfo};
 use crate::jobs::render_all_passes;
 use crate::photo::Picture;
 use crate::raytrace::{RenderControl, RenderScene, Settings};
-use crate::scene::{Asset, AssetRef, Mesh};
+use crate::scene::{Asset, AssetRef};
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
@@ -43,7 +43,7 @@ fn path(folder: &Path, loaded: &Loaded, settings: &Settings) -> PathBuf {
     (settings.width, settings.height, settings.spp, settings.seed).hash(&mut hasher);
     for object in &loaded.scene.objects {
         if let Some(mesh) = loaded.assets.mesh_of(&object.shape) {
-            hash_mesh(&mesh, &mut hasher);
+            mesh.hash_content(&mut hasher);
         }
     }
     let textures = loaded.assets.iter().filter_map(|(key, asset)| match (key, asset) {
@@ -53,14 +53,6 @@ fn path(folder: &Path, loaded: &Loaded, settings: &Settings) -> PathBuf {
     let by_text: BTreeMap<_, _> = textures.collect();
     by_text.into_iter().for_each(|texture| texture.hash(&mut hasher));
     folder.join(format!("reference-{:016x}.exr", hasher.finish()))
-}
-
-fn hash_mesh(mesh: &Mesh, hasher: &mut DefaultHasher) {
-    for vector in mesh.positions.iter().chain(&mesh.normals) {
-        vector.to_array().map(f32::to_bits).hash(hasher);
-    }
-    mesh.uvs.iter().for_each(|uv| uv.to_array().map(f32::to_bits).hash(hasher));
-    mesh.triangles.hash(hasher);
 }
 
 #[cfg(test)]

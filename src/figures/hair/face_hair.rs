@@ -41,7 +41,7 @@ pub fn grow_brows(body: &HairBody, figure: &Figure, strands: &mut Strands) {
 }
 
 /// Returns how much brow grows at a place of the face, metres from between the eyes.
-fn brow_density(place: Vec3) -> f32 {
+pub fn brow_density(place: Vec3) -> f32 {
     let x = place.x.abs();
     // The arch rises to two thirds of its length and falls to the tail.
     let middle = if x < 0.042 { 0.019 + 0.23 * (x - 0.012) } else { 0.0259 - 0.45 * (x - 0.042) };

@@ -1,7 +1,6 @@
 //! The surface of the head as a height field over directions: what hair lies on.
 
 use super::hair_body::HairBody;
-use super::roots::base_eyes;
 use crate::figures::patch::Patch;
 use crate::figures::subdivide::QuadMesh;
 use glam::{Vec2, Vec3};
@@ -24,7 +23,7 @@ pub struct HeadSurface {
 impl HeadSurface {
     /// Measures the skin of the head. Ears count if hair lies over them.
     pub fn new(body: &HairBody, centre: Vec3, over_ears: bool) -> HeadSurface {
-        let eyes = base_eyes(body);
+        let eyes = body.data.eyes_middle();
         let to_head = body.head.inverse();
         let is_head = |v: u16| {
             let place = body.data.positions[usize::from(v)] - eyes;
@@ -32,7 +31,7 @@ impl HeadSurface {
         };
         let wanted = |quad: &[u16; 4]| quad.iter().all(|&v| is_head(v));
         let patch = Patch::new(body.data, "body", body.positions, &wanted);
-        let skin = QuadMesh { positions: patch.positions, quads: patch.quads, uvs: patch.uvs, parts: Vec::new() };
+        let skin = QuadMesh { positions: patch.positions, quads: patch.quads, uvs: patch.uvs, ..QuadMesh::default() };
         let mut surface = HeadSurface { centre, radii: vec![0.0; ROWS * COLUMNS] };
         for position in skin.subdivided().subdivided().positions {
             let offset = to_head.transform_point3(position) - centre;

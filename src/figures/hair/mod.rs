@@ -15,7 +15,9 @@ mod obstacles;
 mod roots;
 mod style;
 
+pub use face_hair::brow_density;
 pub use hair_body::HairBody;
+pub use style::{beard_density, scalp_density};
 
 use crate::scene::{Figure, StrandPoint, Strands};
 

@@ -20,12 +20,12 @@ pub struct Root {
 /// Places roots at random on the skin, evenly by area where `density` is 1, fewer where it is less.
 pub fn scatter(body: &HairBody, count: usize, seed: u32, density: &(dyn Fn(Vec3) -> f32 + Sync)) -> Vec<Root> {
     // The skin of the region, as smooth as it is rendered
-    let eyes = base_eyes(body);
+    let eyes = body.data.eyes_middle();
     let to_head = body.head.inverse();
     let wanted = |quad: &[u16; 4]| quad.iter().any(|&v| density(body.data.positions[usize::from(v)] - eyes) > 0.0);
     let smooth = |positions: &[Vec3]| {
         let patch = Patch::new(body.data, "body", positions, &wanted);
-        let mesh = QuadMesh { positions: patch.positions, quads: patch.quads, uvs: patch.uvs, parts: Vec::new() };
+        let mesh = QuadMesh { positions: patch.positions, quads: patch.quads, uvs: patch.uvs, ..QuadMesh::default() };
         mesh.subdivided().subdivided()
     };
     let (skin, base) = (smooth(body.positions), smooth(&body.data.positions));
@@ -63,13 +63,4 @@ pub fn scatter(body: &HairBody, count: usize, seed: u32, density: &(dyn Fn(Vec3)
         }
     }
     roots
-}
-
-/// Returns the point between the eyeballs of the base mesh.
-pub fn base_eyes(body: &HairBody) -> Vec3 {
-    let points = ["helper-l-eye", "helper-r-eye"].into_iter().flat_map(|group| body.data.quads(group)).flatten();
-    let (low, high) = points
-        .map(|&v| body.data.positions[usize::from(v)])
-        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-    (low + high) / 2.0
 }

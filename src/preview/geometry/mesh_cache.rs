@@ -20,13 +20,15 @@ struct Vertex {
     /// Zero selects the geometric normal.
     normal: [f32; 3],
     uv: [f32; 2],
+    /// Factor of the base colour, 255 for 1.
+    color: [u8; 4],
 }
 
 /// Layout of the vertex buffer.
 pub(crate) const VERTEX_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: size_of::<Vertex>() as u64,
     step_mode: wgpu::VertexStepMode::Vertex,
-    attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x2],
+    attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x2, 3 => Unorm8x4],
 };
 
 /// The mesh of an emitter that is visible to the camera.
@@ -159,6 +161,7 @@ fn upload(device: &wgpu::Device, mesh: &Mesh, frame: u64) -> Option<GpuMesh> {
             position: mesh.positions[i].into(),
             normal: mesh.normals.get(i).copied().unwrap_or(Vec3::ZERO).into(),
             uv: mesh.uvs.get(i).copied().unwrap_or(Vec2::ZERO).into(),
+            color: mesh.colors.get(i).map_or([255; 4], |color| color.extend(1.0).to_array().map(unorm8)),
         })
         .collect();
     let buffer = |label, contents, usage| {
@@ -179,6 +182,11 @@ fn upload(device: &wgpu::Device, mesh: &Mesh, frame: u64) -> Option<GpuMesh> {
         last_used: frame,
         _source: None,
     })
+}
+
+/// Returns a number from 0 to 1 as a fraction of 255.
+fn unorm8(value: f32) -> u8 {
+    (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
 }
 
 fn emitter_mesh(surface: EmitterSurface) -> Option<Mesh> {

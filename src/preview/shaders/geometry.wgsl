@@ -9,6 +9,7 @@ struct VertexOutput {
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
     @location(2) uv: vec2f,
+    @location(3) color: vec3f,
 }
 
 @vertex
@@ -16,6 +17,7 @@ fn vertex(
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) uv: vec2f,
+    @location(3) color: vec4f,
 ) -> VertexOutput {
     var out: VertexOutput;
     out.world = world_from_object(position);
@@ -24,6 +26,7 @@ fn vertex(
     out.clip.z *= DEPTH_FACTOR;
     // Texture rows are stored from the top
     out.uv = vec2f(uv.x, 1.0 - uv.y);
+    out.color = color.rgb;
     return out;
 }
 
@@ -51,6 +54,9 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> FragmentOut
     if TEXTURED {
         let texel = textureSample(base_color_texture, base_color_sampler, in.uv).rgb;
         color = pack_color(unpack_color(color) * texel, color >> 30u);
+    }
+    if any(in.color < vec3f(0.999)) {
+        color = pack_color(unpack_color(color) * in.color, color >> 30u);
     }
     color = select(color, 2u << 30u, draw.surface.w != 0u && front);
     var out: FragmentOutput;
