@@ -75,9 +75,11 @@ def main():
             font = f", {path.name}" if path.parent.name == "fonts" else ""
             users.setdefault(re.sub(r"\s+", " ", text), (text, []))[1].append(f"{package['name']}{font}")
     own = [(path.read_text().strip(), ["Catchlight"]) for path in sorted(ROOT.glob("LICENSE-*"))]
+    own.append(((ROOT / "assets/denoiser/LICENSE.txt").read_text().strip(), ["weights of the denoiser"]))
     lines = [
         "Catchlight is licensed under MIT or Apache-2.0, as you like; so are its figures, whose body data are made from",
-        "MakeHuman's (CC0). It contains these libraries:",
+        "MakeHuman's (CC0). The weights of its denoiser are those of Intel Open Image Denoise, copyright Intel",
+        "Corporation, under the Apache License, Version 2.0. It contains these libraries:",
         "",
     ]
     lines += [f"{p['name']} {p['version']}: {p['license']} {p['repository'] or ''}".rstrip() for p in packages]

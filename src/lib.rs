@@ -5,7 +5,7 @@
 //! braces do not import each other, except that `cli` opens the window of `editor`:
 //!
 //! ```text
-//! { math, color }  <-  scene  <-  photo  <-  { figures, raytrace, raster, preview }  <-  io
+//! { math, color }  <-  scene  <-  photo  <-  { denoise, figures, raytrace, raster, preview }  <-  io
 //!                                         <-  { jobs, truth }  <-  { editor, cli }  <-  main
 //! ```
 //!
@@ -16,6 +16,7 @@
 //! | `photo` | photometric lights, exposure, meter arithmetic, portrait patterns, scales in thirds of a stop, pictures |
 //! | `figures` | people by parameters: body, pose, clothes, hair, and their meshes |
 //! | `raytrace` | the ray tracer: BVH, BSDFs, light sampling, path tracer, photon map, film, light meter, live view |
+//! | `denoise` | the denoiser: a neural network and its weights |
 //! | `raster` | the z-buffer renderer on the CPU |
 //! | `preview` | the live preview on wgpu |
 //! | `io` | RON studios, models, textures, pictures, shipped studios |
@@ -38,6 +39,7 @@
 
 pub mod cli;
 pub mod color;
+pub mod denoise;
 pub mod figures;
 pub mod io;
 pub mod jobs;

@@ -17,7 +17,7 @@ const LAYERS: [&[&str]; 8] = [
     &["math", "color"],
     &["scene"],
     &["photo"],
-    &["figures", "raytrace", "raster", "preview"],
+    &["denoise", "figures", "raytrace", "raster", "preview"],
     &["io"],
     &["jobs", "truth"],
     &["editor", "cli"],

@@ -1,5 +1,5 @@
-//! The kernels in AVX2 intrinsics. All `unsafe` code of the crate is here and in [`crate::math::simd`], which detects
-//! AVX2.
+//! The kernels in AVX2 intrinsics. All `unsafe` code of the crate is here, in [`crate::math::simd`], which detects AVX2,
+//! and in `denoise/simd.rs`.
 #![expect(unsafe_code, reason = "intrinsics, and calls of functions compiled for AVX2")]
 
 use super::box_packet::{BoxPacket, SLAB_EXIT_SCALE, SlabRay};

@@ -1,0 +1,91 @@
+//! The denoiser: a neural network that estimates a picture without noise from a noisy one and its albedo and normals.
+//!
+//! The network is the U-Net of Intel Open Image Denoise (Áfra, <https://www.openimagedenoise.org>) with its weights, in
+//! our own code. `assets/denoiser/README.md` names version and licence of the weights. It is biased: detail that it takes
+//! for noise is lost, and noise that it takes for detail stays. Meters, references and noise estimates therefore never
+//! read its pixels.
+//!
+//! | file | contents |
+//! |---|---|
+//! | `weight_file` | reader of the weights |
+//! | `transfer` | encoding of radiance for the network |
+//! | `feature_map`, `filter`, `convolution` | features in blocks of 16 channels, packed weights, rows of convolutions |
+//! | `simd` | the inner loop for each instruction set |
+//! | `network` | the layers |
+//! | `tiles` | pictures that are too large for one run |
+//! | `layers` | light layers that sum to the denoised picture |
+
+mod convolution;
+mod feature_map;
+mod filter;
+mod layers;
+mod network;
+mod simd;
+#[cfg(test)]
+mod tests;
+mod tiles;
+mod transfer;
+mod weight_file;
+
+pub use layers::{DenoisedLayers, denoise_layers};
+pub use network::Cancelled;
+
+use crate::photo::{AovPicture, Picture};
+use network::Network;
+use simd::InstructionSet;
+use std::sync::LazyLock;
+use weight_file::{WeightError, WeightFile};
+
+/// The denoiser's network.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quality {
+    /// 0.9 million weights.
+    Best,
+    /// 0.3 million weights: in half the time, less detail.
+    Fast,
+}
+
+static BEST: LazyLock<Result<Network, WeightError>> =
+    LazyLock::new(|| network(include_bytes!("../../assets/denoiser/rt_hdr_alb_nrm.tza")));
+static FAST: LazyLock<Result<Network, WeightError>> =
+    LazyLock::new(|| network(include_bytes!("../../assets/denoiser/rt_hdr_alb_nrm_small.tza")));
+
+fn network(weights: &[u8]) -> Result<Network, WeightError> {
+    Network::new(&WeightFile::parse(weights)?, InstructionSet::best())
+}
+
+impl Quality {
+    /// Returns the name of the network, for the picture's file.
+    pub fn label(self) -> &'static str {
+        match self {
+            Quality::Best => "U-Net of Open Image Denoise, weights rt_hdr_alb_nrm",
+            Quality::Fast => "U-Net of Open Image Denoise, weights rt_hdr_alb_nrm_small",
+        }
+    }
+
+    /// Returns the network; none if the weights in the program are damaged, which a test excludes.
+    fn network(self) -> Option<&'static Network> {
+        let network = match self {
+            Quality::Best => &BEST,
+            Quality::Fast => &FAST,
+        };
+        network.as_ref().inspect_err(|error| log::error!("{error}")).ok()
+    }
+}
+
+/// Returns the picture without noise, on the current thread pool: the same bits for any number of threads.
+///
+/// `aovs` are the albedo and normals of the same pixels. Pixels that are no number or negative count as black. The
+/// picture is returned as it is if the sizes differ.
+///
+/// # Errors
+/// Once `is_cancelled` returns true.
+pub fn denoise(
+    picture: &Picture,
+    aovs: &AovPicture,
+    quality: Quality,
+    is_cancelled: &(dyn Fn() -> bool + Sync),
+) -> Result<Picture, Cancelled> {
+    let Some(network) = quality.network() else { return Ok(picture.clone()) };
+    tiles::denoise(network, picture, aovs, tiles::MAX_PIXELS, is_cancelled)
+}
