@@ -1,7 +1,8 @@
 //! `catchlight merge PART... -o OUT`: makes a picture of the parts that `render --samples` wrote.
 
+use super::denoised_output::{Denoise, Output, Written};
 use super::failure::Failure;
-use super::{picture_output, terminal};
+use super::terminal;
 use crate::io::{self, PictureFormat, PictureInfo, PicturePart};
 use anyhow::{Context, anyhow};
 use serde::Serialize;
@@ -20,6 +21,10 @@ pub struct Arguments {
     /// Write one EXR layer per light beside the whole picture (exr only).
     #[arg(long)]
     layers: bool,
+    /// Remove the noise with a neural network; the parts must be rendered with --denoise or --aovs. An EXR file holds the
+    /// noisy picture, too (noisy.R/G/B).
+    #[arg(long, value_enum, value_name = "HOW", num_args = 0..=1, default_value_t, default_missing_value = "on")]
+    denoise: Denoise,
     /// Make a picture of fewer samples where parts are missing.
     #[arg(long)]
     incomplete: bool,
@@ -39,6 +44,8 @@ struct MergeReport {
     of: u32,
     /// At most so much noise.
     noise_stops: Option<f64>,
+    /// Time to denoise, seconds; null for a picture that is not denoised.
+    denoise_s: Option<f64>,
 }
 
 /// Reads the parts, writes the picture and prints the statistics.
@@ -65,9 +72,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     // Write the picture
     let sums = &merged.whole.sums;
     let info = PictureInfo { spp: sums.samples, ..merged.whole.info.clone() };
-    let layers = if arguments.layers { sums.develop_layers() } else { Vec::new() };
-    let aovs = sums.develop_aovs().filter(|_| is_exr);
-    let written = picture_output::write(&io::encode_layers(output, &sums.develop(), &layers, aovs.as_ref(), &info)?)?;
+    let picture = Output {
+        path: output,
+        size: (sums.width, sums.height),
+        picture: sums.develop(),
+        layers: if arguments.layers { sums.develop_layers() } else { Vec::new() },
+        aovs: sums.develop_aovs(),
+        writes_aovs: is_exr,
+        info,
+    };
+    let Written { picture: written, denoise_s } = picture.write(arguments.denoise)?;
     let report = MergeReport {
         output: written.path.display().to_string(),
         studio: merged.whole.studio.clone(),
@@ -75,6 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         samples: sums.samples,
         of: merged.whole.of,
         noise_stops: sums.noise_stops(),
+        denoise_s,
     };
     report.print(arguments.json)?;
     written.finish()

@@ -9,6 +9,7 @@
 mod bake;
 mod chart;
 mod check;
+mod denoised_output;
 mod failure;
 mod frame_rate_beside_live_view;
 mod frame_times;

@@ -3,6 +3,7 @@
 
 mod chart;
 mod checkpoints;
+mod denoiser;
 mod extremes;
 mod farm;
 mod output;

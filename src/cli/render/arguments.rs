@@ -1,6 +1,7 @@
 //! Arguments of `catchlight render`, and the settings that follow from them.
 
 use super::progress::ProgressStyle;
+use crate::cli::denoised_output::Denoise;
 use crate::cli::input;
 use crate::io::{self, PictureFormat};
 use crate::raytrace::{Method, SampleId, Settings, Shortcut};
@@ -75,6 +76,11 @@ pub struct Arguments {
     /// view axis, infinite where there is nothing), id (0 nothing, 1 the room, then the objects in the file's order).
     #[arg(long)]
     pub aovs: bool,
+    /// Remove the noise with a neural network. Fine detail that looks like noise gets lost: hair, textures, small
+    /// reflections, if the render has few samples. An EXR file holds the noisy picture, too (noisy.R/G/B). With
+    /// --samples, the part only gets the albedo and normals that `merge --denoise` needs.
+    #[arg(long, value_enum, value_name = "HOW", num_args = 0..=1, default_value_t, default_missing_value = "on")]
+    pub denoise: Denoise,
     /// Trace one sample of a pixel again and print every step, instead of a picture.
     #[arg(long, value_name = "X,Y", value_parser = input::parse_pixel)]
     pub explain_pixel: Option<(u32, u32)>,
@@ -211,7 +217,16 @@ impl Arguments {
         let is_open_ended = self.noise.is_some() || self.time.is_some();
         let spp = self.spp.unwrap_or(if is_open_ended { MAX_SPP } else { DEFAULT_SPP });
         let (max_depth, seed, noise_stops) = (self.max_depth, self.seed, self.noise);
-        Settings { width, height, method, spp, max_depth, seed, noise_stops, aovs: self.aovs }
+        Settings {
+            width,
+            height,
+            method,
+            spp,
+            max_depth,
+            seed,
+            noise_stops,
+            aovs: self.aovs || self.denoise != Denoise::Off,
+        }
     }
 
     /// Returns the time limit. A limit beyond what a duration holds is none.

@@ -12,9 +12,9 @@ mod report;
 
 pub use arguments::Arguments;
 
+use super::denoised_output::{Denoise, Output, Written};
 use super::failure::Failure;
-use super::picture_output::{self, WrittenPicture};
-use super::{input, terminal, zbuffer};
+use super::{input, picture_output, terminal, zbuffer};
 use crate::io::{self, Loaded, PictureInfo};
 use crate::jobs::{self, RenderInput, RenderMonitor, RenderStage, Rendered};
 use crate::raytrace::{Film, GeometryCache, NonFiniteReport, RenderControl, RenderScene, Settings};
@@ -58,11 +58,11 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
     // Write the picture.
     let film = &rendered.film;
     if film.spp() == 0 {
-        return keep_coarse(arguments, &loaded, rendered.coarse.as_ref(), &settings);
+        return pool.install(|| keep_coarse(arguments, &loaded, rendered.coarse.as_ref(), &settings));
     }
     let nonfinite = film.nonfinite();
     warn_of_nonfinite(arguments, &settings, &nonfinite);
-    let written = write(arguments, &loaded, film, &settings)?;
+    let Written { picture: written, denoise_s } = pool.install(|| write(arguments, &loaded, film, &settings))?;
     // Print the statistics.
     let interrupted = interrupted.load(Ordering::Relaxed);
     let seconds = |then: Option<Instant>| then.map_or(0.0, |then| (then - started).as_secs_f64());
@@ -80,6 +80,7 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
         load_s,
         build_s: rendered.build_s,
         trace_s: rendered.trace_s,
+        denoise_s,
         wall_s: started.elapsed().as_secs_f64(),
         first_picture_s: seconds(monitor.first_picture()),
         first_wave_s: seconds(monitor.first_pass()),
@@ -161,7 +162,7 @@ fn keep_coarse(
     const EARLY: &str = "interrupted before the first sample of every pixel was done";
     match coarse.filter(|film| film.spp() > 0) {
         Some(film) => {
-            let written = write(arguments, loaded, film, settings)?;
+            let written = write(arguments, loaded, film, settings)?.picture;
             terminal::progress(format_args!("{EARLY}; a coarse picture is kept"));
             written.finish()?;
         }
@@ -178,9 +179,10 @@ fn draw_zbuffer(
     started: Instant,
     load_s: f64,
 ) -> Result<(), Failure> {
-    if arguments.layers || arguments.explain || arguments.aovs || arguments.explain_pixel.is_some() {
+    let denoise = arguments.denoise != Denoise::Off;
+    if arguments.layers || arguments.explain || arguments.aovs || denoise || arguments.explain_pixel.is_some() {
         return Err(Failure::Input(anyhow!(
-            "--layers, --aovs, --explain and --explain-pixel are for methods that trace, not for zbuffer"
+            "--layers, --aovs, --denoise, --explain and --explain-pixel are for methods that trace, not for zbuffer"
         )));
     }
     let (width, height) = arguments.picture_size(&loaded.scene.camera);
@@ -204,6 +206,7 @@ fn draw_zbuffer(
         load_s,
         build_s: 0.0,
         trace_s,
+        denoise_s: None,
         wall_s: started.elapsed().as_secs_f64(),
         first_picture_s,
         first_wave_s: first_picture_s,
@@ -220,12 +223,15 @@ fn draw_zbuffer(
 }
 
 /// Writes the picture in the requested size, for a film of any size.
-fn write(arguments: &Arguments, loaded: &Loaded, film: &Film, settings: &Settings) -> Result<WrittenPicture, Failure> {
-    let info = PictureInfo::new(&loaded.scene, film.method(), film.spp(), arguments.seed.into());
-    let (width, height) = (settings.width, settings.height);
-    let picture = film.develop(&loaded.scene).resized(width, height);
-    let layers = if arguments.layers { film.develop_layers(&loaded.scene) } else { Vec::new() };
-    let layers: Vec<_> = layers.into_iter().map(|(name, layer)| (name, layer.resized(width, height))).collect();
-    let aovs = film.aovs().map(|aovs| aovs.resized(width, height));
-    picture_output::write(&io::encode_layers(arguments.output(), &picture, &layers, aovs.as_ref(), &info)?)
+fn write(arguments: &Arguments, loaded: &Loaded, film: &Film, settings: &Settings) -> Result<Written, Failure> {
+    let output = Output {
+        path: arguments.output(),
+        size: (settings.width, settings.height),
+        picture: film.develop(&loaded.scene),
+        layers: if arguments.layers { film.develop_layers(&loaded.scene) } else { Vec::new() },
+        aovs: film.aovs(),
+        writes_aovs: arguments.aovs,
+        info: PictureInfo::new(&loaded.scene, film.method(), film.spp(), arguments.seed.into()),
+    };
+    output.write(arguments.denoise)
 }

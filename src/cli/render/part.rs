@@ -124,6 +124,7 @@ impl PartRender<'_> {
             load_s: self.load_s,
             build_s: rendered.build_s,
             trace_s: rendered.trace_s,
+            denoise_s: None,
             wall_s: 0.0,
             first_picture_s: first_wave_s,
             first_wave_s,

@@ -31,6 +31,8 @@ pub struct RenderReport {
     pub build_s: f64,
     /// Time to trace.
     pub trace_s: f64,
+    /// Time to denoise; null for a picture that is not denoised.
+    pub denoise_s: Option<f64>,
     /// Time from the start of the process to the written file.
     pub wall_s: f64,
     /// Time from the start of the process to the first picture: of a large one, a coarse version.
@@ -61,8 +63,9 @@ impl RenderReport {
             return Ok(());
         }
         let noise = self.noise_stops.map_or(String::new(), |n| format!(", noise {n:.2} stops"));
+        let denoised = self.denoise_s.map_or(String::new(), |seconds| format!(", denoised in {seconds:.2} s"));
         terminal::progress(format_args!(
-            "{}: {}x{}, {:.0} samples a pixel in {:.2} s, {:.1} Mrays/s{noise}",
+            "{}: {}x{}, {:.0} samples a pixel in {:.2} s, {:.1} Mrays/s{noise}{denoised}",
             self.output, self.width, self.height, self.mean_spp, self.trace_s, self.mrays_s
         ));
         Ok(())

@@ -1,6 +1,6 @@
 //! OpenEXR: 32-bit float, Rec.709 primaries, ZIP, one part for the picture with its AOVs and one per light.
 
-use super::PictureInfo;
+use super::{LayeredPicture, PictureInfo};
 use crate::photo::{AovPicture, Picture};
 use exr::meta::MetaData;
 use exr::meta::attribute::AttributeValue;
@@ -14,14 +14,17 @@ use std::io::Cursor;
 const WHOLE: &str = "picture";
 
 pub(super) fn encode(
-    picture: &Picture,
-    layers: &[(String, Picture)],
+    shown: LayeredPicture<'_>,
+    noisy: Option<LayeredPicture<'_>>,
     aovs: Option<&AovPicture>,
     info: &PictureInfo,
 ) -> Result<Vec<u8>, String> {
-    let whole = part(WHOLE, picture, aovs, info);
-    let parts: Vec<_> =
-        std::iter::once(whole).chain(layers.iter().map(|(name, layer)| part(name, layer, None, info))).collect();
+    let picture = shown.picture;
+    let whole = part(WHOLE, picture, noisy.map(|noisy| noisy.picture), aovs, info);
+    let noisy_layer = |index: usize| noisy?.layers.get(index).map(|(_, layer)| layer);
+    let layers = shown.layers.iter().enumerate();
+    let layers = layers.map(|(index, (name, layer))| part(name, layer, noisy_layer(index), None, info));
+    let parts: Vec<_> = std::iter::once(whole).chain(layers).collect();
     let size = (picture.width as usize, picture.height as usize);
     let image = Image::from_layers(ImageAttributes::new(IntegerBounds::from_dimensions(size)), parts);
     let mut content = Cursor::new(Vec::new());
@@ -72,6 +75,7 @@ pub(super) fn decode(content: &[u8]) -> Result<Picture, String> {
 pub(super) fn part(
     name: &str,
     picture: &Picture,
+    noisy: Option<&Picture>,
     aovs: Option<&AovPicture>,
     info: &PictureInfo,
 ) -> Layer<AnyChannels<FlatSamples>> {
@@ -86,7 +90,10 @@ pub(super) fn part(
         ("catchlightVersion", AttributeValue::Text(text(env!("CARGO_PKG_VERSION")))),
     ];
     attributes.other.extend(others.map(|(name, value)| (text(name), value)));
+    let denoiser = info.denoiser.map(|name| (text("denoiser"), AttributeValue::Text(text(name))));
+    attributes.other.extend(denoiser);
     let mut channels = channels(["R", "G", "B"], &picture.rgb).to_vec();
+    channels.extend(noisy.into_iter().flat_map(|noisy| self::channels(["noisy.R", "noisy.G", "noisy.B"], &noisy.rgb)));
     channels.extend(aovs.into_iter().flat_map(aov_channels));
     let size = (picture.width as usize, picture.height as usize);
     Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels.into()))

@@ -28,13 +28,24 @@ pub struct PictureInfo {
     pub seed: u64,
     /// Rendering method: `path`, `direct`, `zbuffer` ...
     pub method: String,
+    /// The denoiser, if the picture is denoised.
+    pub denoiser: Option<&'static str>,
+}
+
+/// A picture and its light layers.
+#[derive(Clone, Copy, Debug)]
+pub struct LayeredPicture<'a> {
+    /// The whole picture.
+    pub picture: &'a Picture,
+    /// The layers, by name.
+    pub layers: &'a [(String, Picture)],
 }
 
 impl PictureInfo {
     /// Returns the settings of a render; the exposure scale is that of the scene's camera.
     pub fn new(scene: &Scene, method: &str, spp: u32, seed: u64) -> Self {
         let cd_s_m2_per_unit = 1.0 / exposure::pixel_per_cd_s_m2(scene);
-        PictureInfo { cd_s_m2_per_unit, spp, seed, method: method.to_owned() }
+        PictureInfo { cd_s_m2_per_unit, spp, seed, method: method.to_owned(), denoiser: None }
     }
 }
 
@@ -108,9 +119,40 @@ pub fn encode_layers(
     aovs: Option<&AovPicture>,
     info: &PictureInfo,
 ) -> Result<EncodedPicture, SaveError> {
+    encode(path, LayeredPicture { picture, layers }, None, aovs, info)
+}
+
+/// Encodes a denoised picture, for a file that is written later. An EXR file holds the noisy pixels, too: the channels
+/// `noisy.R`, `noisy.G` and `noisy.B` of the picture and of each layer.
+///
+/// # Errors
+/// As [`encode_layers`], and if the noisy picture has another size or other layers.
+pub fn encode_denoised(
+    path: &Path,
+    denoised: LayeredPicture<'_>,
+    noisy: LayeredPicture<'_>,
+    aovs: Option<&AovPicture>,
+    info: &PictureInfo,
+) -> Result<EncodedPicture, SaveError> {
+    encode(path, denoised, Some(noisy), aovs, info)
+}
+
+fn encode(
+    path: &Path,
+    shown: LayeredPicture<'_>,
+    noisy: Option<LayeredPicture<'_>>,
+    aovs: Option<&AovPicture>,
+    info: &PictureInfo,
+) -> Result<EncodedPicture, SaveError> {
     let format = PictureFormat::of(path)?;
+    let picture = shown.picture;
     check_size("the picture", picture)?;
-    for (name, layer) in layers {
+    let own = shown.layers.iter().map(|(name, layer)| (name.as_str(), layer));
+    let noisy_layers = noisy.into_iter().flat_map(|noisy| {
+        let layers = noisy.layers.iter().map(|(name, layer)| (name.as_str(), layer));
+        std::iter::once(("the noisy picture", noisy.picture)).chain(layers)
+    });
+    for (name, layer) in own.chain(noisy_layers) {
         check_size(name, layer)?;
         if (layer.width, layer.height) != (picture.width, picture.height) {
             return Err(SaveError::BadPicture(format!("the layer {name:?} has another size than the picture")));
@@ -119,9 +161,12 @@ pub fn encode_layers(
     if aovs.is_some_and(|aovs| (aovs.width, aovs.height) != (picture.width, picture.height)) {
         return Err(SaveError::BadPicture("the AOVs have another size than the picture".to_owned()));
     }
+    if noisy.is_some_and(|noisy| noisy.layers.len() != shown.layers.len()) {
+        return Err(SaveError::BadPicture("the noisy picture has other layers than the denoised one".to_owned()));
+    }
     let content = match format {
         PictureFormat::Png | PictureFormat::Jpeg => encode_8bit(picture, format),
-        PictureFormat::Exr => exr_file::encode(picture, layers, aovs, info),
+        PictureFormat::Exr => exr_file::encode(shown, noisy, aovs, info),
     };
     let content = content.map_err(|message| SaveError::Encode { message, path: path.to_owned() })?;
     Ok(EncodedPicture::new(path, content))

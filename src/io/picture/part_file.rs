@@ -58,7 +58,7 @@ pub fn encode_part(path: &Path, value: &PicturePart) -> Result<EncodedPicture, S
     let whole =
         |samples: u32| i32::try_from(samples).map(AttributeValue::I32).map_err(|error| encode(error.to_string()));
     let sums = &value.sums;
-    let mut picture = part("picture", &sums.develop(), None, &value.info);
+    let mut picture = part("picture", &sums.develop(), None, None, &value.info);
     picture.channel_data.list.extend(sum_channels("luminance2", &sums.squares, |square| *square));
     picture.channel_data.list.extend(sums.aovs.iter().flat_map(aov_channels));
     picture.channel_data.list.sort_by(|a, b| a.name.cmp(&b.name));
@@ -190,7 +190,7 @@ impl Header<'_> {
         };
         let seed = self.text("seed").and_then(|seed| seed.parse().ok()).ok_or("the seed is missing")?;
         let method = self.text("method").ok_or("the method is missing")?;
-        Ok(PictureInfo { cd_s_m2_per_unit: scale, spp: self.samples("spp")?, seed, method })
+        Ok(PictureInfo { cd_s_m2_per_unit: scale, spp: self.samples("spp")?, seed, method, denoiser: None })
     }
 
     fn layer(&self, size: exr::math::Vec2<usize>) -> Result<PartLayer, String> {

@@ -89,3 +89,37 @@ fn refused_pictures_leave_no_file() {
     assert!(export_layers(&folder.path().join("a.exr"), &picture, &layers, None, &info()).is_err());
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
+
+#[test]
+fn the_exr_of_a_denoised_picture_keeps_the_noisy_pixels_of_picture_and_layers() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.exr");
+    let layers = |gain| [("Key".to_owned(), ramp(7, 5, gain))];
+    let (denoised_layers, noisy_layers) = (layers(1.0), layers(2.0));
+    let denoised = LayeredPicture { picture: &ramp(7, 5, 3.0), layers: &denoised_layers };
+    let noisy = LayeredPicture { picture: &ramp(7, 5, 4.0), layers: &noisy_layers };
+    let info = PictureInfo { denoiser: Some("a network"), ..info() };
+    encode_denoised(&path, denoised, noisy, None, &info).unwrap().write().unwrap();
+    assert_eq!(read_exr(&path).as_ref(), Ok(denoised.picture), "R, G and B are denoised");
+    let image =
+        read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes().from_file(&path);
+    for (part, (clean, noisy)) in image
+        .unwrap()
+        .layer_data
+        .iter()
+        .zip([(denoised.picture, noisy.picture), (&denoised_layers[0].1, &noisy_layers[0].1)])
+    {
+        let red = |name: &str| -> Vec<f32> {
+            let channel = part.channel_data.list.iter().find(|channel| channel.name == *name).unwrap();
+            channel.sample_data.values_as_f32().collect()
+        };
+        let expected = |picture: &Picture| picture.rgb.iter().map(|rgb| rgb[0]).collect::<Vec<_>>();
+        assert_eq!([red("R"), red("noisy.R")], [expected(clean), expected(noisy)]);
+        let denoiser = part.attributes.other.get(&Text::new_or_none("denoiser").unwrap());
+        assert_eq!(denoiser, Some(&AttributeValue::Text(Text::new_or_none("a network").unwrap())));
+    }
+    let fewer = LayeredPicture { layers: &[], ..noisy };
+    assert!(encode_denoised(&path, denoised, fewer, None, &info).is_err());
+    let smaller = LayeredPicture { picture: &ramp(6, 5, 4.0), ..noisy };
+    assert!(encode_denoised(&path, denoised, smaller, None, &info).is_err());
+}
