@@ -1,9 +1,11 @@
-//! Development of films in the background, with the lights as they are now.
+//! Development of films in the background, with the lights as they are now, denoised on request.
 
+use super::denoised_film::DenoisedFilm;
 use super::threads::Priority;
 use super::worker::{Inbox, Interrupt, Wake, Worker, WorkerSettings};
+use crate::denoise::Quality;
 use crate::photo::Picture;
-use crate::raytrace::Film;
+use crate::raytrace::{Film, RenderControl};
 use crate::scene::Scene;
 use std::sync::Arc;
 
@@ -12,6 +14,10 @@ use std::sync::Arc;
 pub struct Developed<I> {
     /// Scene-linear, for export.
     pub picture: Arc<Picture>,
+    /// The picture before the denoiser; none if `picture` is not denoised.
+    pub noisy: Option<Arc<Picture>>,
+    /// Name of the denoiser, for the picture's file.
+    pub denoiser: Option<&'static str>,
     /// For the screen.
     pub image: I,
     /// Samples per pixel.
@@ -20,13 +26,23 @@ pub struct Developed<I> {
     pub method: &'static str,
 }
 
+/// What is made of a film.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Development {
+    /// Longest side of the image for the screen, pixels.
+    pub max_side: usize,
+    /// The picture is denoised.
+    pub denoise: bool,
+    /// The film has all samples. A film that will be replaced soon is denoised by the small network.
+    pub is_final: bool,
+}
+
 /// A film to be developed.
 #[derive(Debug)]
 struct Request {
     film: Arc<Film>,
     scene: Scene,
-    /// Longest side of the image for the screen, pixels.
-    max_side: usize,
+    development: Development,
 }
 
 /// A worker that develops films. Only the newest request counts.
@@ -47,19 +63,28 @@ impl<I: Send + 'static> FilmDeveloper<I> {
     /// Returns a developer. `to_image` makes a picture's image for the screen, with a longest side in pixels.
     pub fn new(to_image: fn(&Picture, usize) -> I) -> Self {
         let work = move |inbox: &Inbox<Request, Developed<I>>| {
-            while let Some((Request { film, scene, max_side }, _)) = inbox.next() {
-                let picture = film.develop(&scene);
-                let image = to_image(&picture, max_side);
-                let (spp, method) = (film.spp(), film.method());
-                inbox.publish(Developed { picture: Arc::new(picture), image, spp, method });
+            let mut denoised = DenoisedFilm::default();
+            while let Some((request, control)) = inbox.next() {
+                let publish = |picture: Picture, noisy: Option<Picture>, quality: Option<Quality>| {
+                    let image = to_image(&picture, request.development.max_side);
+                    inbox.publish(Developed {
+                        picture: Arc::new(picture),
+                        noisy: noisy.map(Arc::new),
+                        denoiser: quality.map(Quality::label),
+                        image,
+                        spp: request.film.spp(),
+                        method: request.film.method(),
+                    });
+                };
+                develop(&request, &control, &mut denoised, &publish);
             }
         };
         FilmDeveloper { worker: Worker::new(WORKER, work) }
     }
 
-    /// Requests a picture with the lights of `scene`, and an image with sides of at most `max_side` pixels.
-    pub fn request(&mut self, film: Arc<Film>, scene: Scene, max_side: usize, wake: &Wake) {
-        self.worker.request(Request { film, scene, max_side }, wake);
+    /// Requests a picture with the lights of `scene`.
+    pub fn request(&mut self, film: Arc<Film>, scene: Scene, development: Development, wake: &Wake) {
+        self.worker.request(Request { film, scene, development }, wake);
     }
 
     /// Takes the newest picture, or the message of an error.
@@ -70,5 +95,36 @@ impl<I: Send + 'static> FilmDeveloper<I> {
     /// Returns true while there is a picture to be developed or to be taken.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy()
+    }
+}
+
+/// Develops a film and publishes its picture.
+///
+/// A final film is denoised by the whole network. When its lights change, the small network gives a first picture; then
+/// all layers are denoised, from which every later change of the lights follows at once.
+fn develop(
+    Request { film, scene, development }: &Request,
+    control: &RenderControl,
+    denoised: &mut DenoisedFilm,
+    publish: &dyn Fn(Picture, Option<Picture>, Option<Quality>),
+) {
+    let noisy = film.develop(scene);
+    if !development.denoise {
+        return publish(noisy, None, None);
+    }
+    if let Some(picture) = denoised.relit(film, scene) {
+        return publish(picture, Some(noisy), Some(Quality::Best));
+    }
+    let is_relit = denoised.holds(film) && development.is_final;
+    let quality = if development.is_final && !is_relit { Quality::Best } else { Quality::Fast };
+    match denoised.whole(film, &noisy, quality, control) {
+        Some(picture) => publish(picture, Some(noisy.clone()), Some(quality)),
+        None => return publish(noisy, None, None),
+    }
+    if is_relit
+        && denoised.denoise_layers(film, scene, Quality::Best, control).is_ok()
+        && let Some(picture) = denoised.relit(film, scene)
+    {
+        publish(picture, Some(noisy), Some(Quality::Best));
     }
 }

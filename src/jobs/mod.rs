@@ -7,6 +7,7 @@
 
 mod bounce;
 mod clock;
+mod denoised_film;
 mod film_developer;
 mod forecast;
 mod forecaster;
@@ -25,7 +26,7 @@ pub mod worker;
 
 pub use bounce::{BounceJob, trace_bounced_light};
 pub use clock::Clock;
-pub use film_developer::{Developed, FilmDeveloper};
+pub use film_developer::{Developed, Development, FilmDeveloper};
 pub use forecast::{Estimate, Forecast};
 pub use forecaster::{ForecastSubject, Forecaster};
 pub use live_job::{LiveJob, LiveRequest};

@@ -36,6 +36,8 @@ fn the_path_tracer_converges_and_the_other_methods_keep_their_bias() {
     };
     // Sixteen times the samples have a sixteenth of the squared error or less; a third allows for the seed.
     assert!(error("path", 16) < error("path", 1) / 3.0);
+    // Few samples are worth more after the denoiser.
+    assert!(error("path + denoiser", 1) < 0.7 * error("path", 1));
     // Samples do not reduce the bias of the other methods.
     for method in ["zbuffer", "whitted", "direct"] {
         assert!(error(method, 16) > 2.0 * error("path", 16), "{method}");

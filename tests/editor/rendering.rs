@@ -111,3 +111,54 @@ fn the_quality_chart_forecasts_time_and_noise_and_uses_measured_renders() {
             && (now.noise_stops / took[0].noise_stops - 1.0).abs() < 1e-3
     );
 }
+
+#[test]
+fn denoise_shows_marks_relights_and_exports_the_picture_without_noise() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("denoised.exr");
+    if !has_adapter() {
+        return;
+    }
+    let mut window = window_with_answers([file.clone()]);
+    render_tiny(&mut window);
+    window.state_mut().run(Command::ShowView(CentralView::Picture), None, &egui::Context::default());
+    settle(&mut window);
+    let picture = |window: &Window| window.state().rendering().developed().unwrap().picture.clone();
+    let is_marked = |window: &Window| {
+        let label = window.query_by_label("Denoised").is_some();
+        assert_eq!(label, window.state().rendering().is_denoised());
+        label
+    };
+    let noisy = picture(&window);
+    assert!(!is_marked(&window));
+    let traced = window.state().rendering().job().unwrap().progress();
+    click(&mut window, "Denoise");
+    assert!(is_marked(&window));
+    let denoised = picture(&window);
+    assert!(denoised != noisy);
+    assert_eq!(window.state().rendering().developed().unwrap().noisy, Some(noisy.clone()));
+    // The file holds what is shown, and what was traced
+    window.state_mut().run(Command::ExportPicture, None, &egui::Context::default());
+    settle(&mut window);
+    assert_eq!(catchlight::io::read_exr(&file).as_ref(), Ok(&*denoised));
+    // Lights change the denoised picture: one stop more doubles it
+    let lights = scene(&window).lights.clone();
+    for mut light in lights {
+        light.power.dial_stops += 1.0;
+        window.state_mut().run(Command::Apply(Action::SetLight(Box::new(light))), None, &egui::Context::default());
+    }
+    settle(&mut window);
+    assert!(is_marked(&window));
+    let sum = |picture: &catchlight::photo::Picture| picture.rgb.iter().flatten().sum::<f32>();
+    let ratio = sum(&picture(&window)) / sum(&denoised);
+    // The brightness of the network's input does not depend on that of the picture, but for rounding.
+    assert!((ratio - 2.0).abs() < 1e-3, "{ratio}");
+    assert_eq!(window.state().rendering().job().unwrap().progress(), traced, "nothing is traced");
+    // Off again: the traced picture
+    (0..scene(&window).lights.len()).for_each(|_| {
+        window.state_mut().run(Command::Undo, None, &egui::Context::default());
+    });
+    click(&mut window, "Denoise");
+    assert!(!is_marked(&window));
+    assert!(picture(&window) == noisy);
+}

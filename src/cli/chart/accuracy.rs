@@ -13,6 +13,7 @@ use super::{drawing, reference};
 use crate::cli::failure::Failure;
 use crate::cli::input::{load_studio, thread_pool};
 use crate::cli::{terminal, zbuffer};
+use crate::denoise::{Quality, denoise};
 use crate::io::Loaded;
 use crate::jobs::render_all_passes;
 use crate::photo::Picture;
@@ -102,6 +103,11 @@ fn measure(input: &AccuracyInput<'_>, folder: &Path, loaded: &Loaded) -> Result<
             spp *= 4;
         }
     }
+    let mut spp = 1;
+    while spp <= input.spp {
+        rows.push(studio.denoised(Settings { spp, aovs: true, ..settings(size, Method::Path) }, cores)?);
+        spp *= 4;
+    }
     let spp = input.spp.min(16);
     for depth in DEPTHS {
         let shallow = Settings { spp, max_depth: Some(depth), ..settings(size, Method::Path) };
@@ -145,6 +151,22 @@ impl StudioStudy<'_> {
         let trace_s = started.elapsed().as_secs_f64();
         let picture = film.develop(&self.loaded.scene);
         Ok(self.compare(study, method, (settings.spp, threads), trace_s, control.rays(), &picture))
+    }
+
+    /// Measures a path-traced picture after the denoiser, whose time counts.
+    fn denoised(&self, settings: Settings, threads: usize) -> Result<AccuracyRow, Failure> {
+        let pool = thread_pool(threads)?;
+        let control = RenderControl::new();
+        let started = Instant::now();
+        let picture = pool.install(|| {
+            let film = render_all_passes(&self.scene, &settings, &control);
+            let noisy = film.develop(&self.loaded.scene);
+            let denoised = film.aovs().map(|aovs| denoise(&noisy, &aovs, Quality::Best, &|| false));
+            denoised.and_then(Result::ok).unwrap_or(noisy)
+        });
+        let trace_s = started.elapsed().as_secs_f64();
+        let label = "path + denoiser".to_owned();
+        Ok(self.compare(Study::Method, label, (settings.spp, threads), trace_s, control.rays(), &picture))
     }
 
     fn compare(

@@ -17,7 +17,7 @@ pub struct AccuracyRow {
     pub spp: u32,
     /// Number of threads.
     pub threads: usize,
-    /// Time to trace, seconds.
+    /// Time to trace, and to denoise, seconds.
     pub trace_s: f64,
     /// Millions of rays per second, all threads.
     pub mrays_s: f64,

@@ -6,8 +6,13 @@ use plotters::prelude::*;
 use std::path::Path;
 
 /// Colours that colour-blind readers can distinguish (Okabe and Ito).
-const COLORS: [RGBColor; 4] =
-    [RGBColor(213, 94, 0), RGBColor(0, 114, 178), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
+const COLORS: [RGBColor; 5] = [
+    RGBColor(213, 94, 0),
+    RGBColor(0, 114, 178),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+];
 
 /// Draws the rows of the methods, without the studies of depth, threads and plan.
 pub fn draw(path: &Path, title: &str, rows: &[AccuracyRow]) -> anyhow::Result<()> {

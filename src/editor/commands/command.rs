@@ -87,6 +87,8 @@ pub enum Command {
     Render,
     /// Cancels the render and keeps its samples.
     CancelRender,
+    /// Shows the rendered picture denoised, or as it was traced.
+    ToggleDenoise,
     /// Shows a view in the middle of the window.
     ShowView(CentralView),
     /// Switches between camera view and studio view.

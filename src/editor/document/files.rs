@@ -1,7 +1,7 @@
 //! Reads and writes studios, models, assets and pictures, with errors as messages to the user.
 
 use crate::editor::document::studio_document::Document;
-use crate::io::{self, AssetFiles, FileStamp, PictureInfo, RecoveryFolder, RecoveryInfo};
+use crate::io::{self, AssetFiles, FileStamp, LayeredPicture, PictureInfo, RecoveryFolder, RecoveryInfo};
 use crate::jobs::sentence;
 use crate::photo::Picture;
 use crate::scene::{Assets, Material, Mesh, Scene};
@@ -136,6 +136,15 @@ pub fn save(document: &Document, path: &Path) -> Result<(), String> {
 }
 
 /// Writes a picture in the format of its extension.
-pub fn export(path: &Path, picture: &Picture, info: &PictureInfo) -> Result<(), String> {
-    io::export_picture(path, picture, info).map_err(|e| sentence(&e))
+///
+/// `noisy` is the picture before the denoiser, which an EXR file holds, too.
+pub fn export(path: &Path, picture: &Picture, noisy: Option<&Picture>, info: &PictureInfo) -> Result<(), String> {
+    let whole = |picture| LayeredPicture { picture, layers: &[] };
+    let written = match noisy {
+        Some(noisy) => {
+            io::encode_denoised(path, whole(picture), whole(noisy), None, info).and_then(|encoded| encoded.write())
+        }
+        None => io::export_picture(path, picture, info),
+    };
+    written.map_err(|e| sentence(&e))
 }

@@ -110,6 +110,7 @@ impl PictureView {
                     *self = PictureView { zoom: Some(1.0), offset: Vec2::ZERO };
                 }
                 ui.label(RichText::new(format!("{:.0} %", zoom * 100.0)).weak());
+                denoise_ui(ui, rendering, out);
                 if rendering.is_out_of_date(scene) && !rendering.is_running() {
                     ui.label(RichText::new("Out of date").color(theme::ACCENT)).on_hover_text(OUT_OF_DATE);
                     if ui.button("Render again").on_hover_text("R").clicked() {
@@ -118,5 +119,21 @@ impl PictureView {
                 }
             });
         });
+    }
+}
+
+/// Draws the switch of the denoiser, and the mark of a denoised picture.
+fn denoise_ui(ui: &mut Ui, rendering: &Rendering, out: &mut Vec<Command>) {
+    let switch = ui.selectable_label(rendering.settings.denoise, "Denoise");
+    let switch = switch.on_hover_text(
+        "Show and export the picture without its noise, as a neural network estimates it. With few samples, fine detail \
+         is lost or guessed: hair, textures, small reflections.",
+    );
+    if switch.clicked() {
+        out.push(Command::ToggleDenoise);
+    }
+    if rendering.is_denoised() {
+        ui.label(RichText::new("Denoised").color(theme::ACCENT))
+            .on_hover_text("These pixels are an estimate, not traced light. Lights can still be changed.");
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::editor::ui::image_texture::ImageTexture;
 use crate::editor::ui::wake::wake;
-use crate::jobs::{Developed, FilmDeveloper, RenderJob, RenderOutcome, RenderPhase, RenderRequest};
+use crate::jobs::{Developed, Development, FilmDeveloper, RenderJob, RenderOutcome, RenderPhase, RenderRequest};
 use crate::photo::Picture;
 use crate::raytrace::{self, Film, GeometryCache, Method, Settings};
 use crate::scene::{Assets, Camera, Scene, SceneChange};
@@ -56,11 +56,19 @@ pub struct RenderSettings {
     pub samples: u32,
     /// Rendering method.
     pub method: Method,
+    /// The picture is shown and exported without its noise.
+    pub denoise: bool,
 }
 
 impl Default for RenderSettings {
     fn default() -> Self {
-        RenderSettings { size: PictureSize::LongEdge(1080), quality: Quality::Draft, samples: 16, method: Method::Path }
+        RenderSettings {
+            size: PictureSize::LongEdge(1080),
+            quality: Quality::Draft,
+            samples: 16,
+            method: Method::Path,
+            denoise: false,
+        }
     }
 }
 
@@ -74,6 +82,14 @@ impl RenderSettings {
     }
 }
 
+/// A requested picture. The pointer to the film is only compared.
+#[derive(Debug)]
+struct Requested {
+    film: *const Film,
+    scene: Scene,
+    development: Development,
+}
+
 /// The state of the rendered picture: settings, job, film and developed image.
 #[derive(Debug)]
 pub struct Rendering {
@@ -84,8 +100,8 @@ pub struct Rendering {
     job: Option<RenderJob>,
     film: Option<Arc<Film>>,
     developer: FilmDeveloper<Arc<ColorImage>>,
-    /// Film and scene of the newest requested picture; the pointer is only compared.
-    requested: Option<(*const Film, Scene)>,
+    /// The newest requested picture.
+    requested: Option<Requested>,
     developed: Option<Developed<Arc<ColorImage>>>,
     develop_failure: Option<String>,
     image_texture: ImageTexture,
@@ -115,6 +131,7 @@ impl Rendering {
             height,
             method: self.settings.method,
             spp: self.settings.samples.max(1),
+            aovs: true,
             ..Settings::default()
         };
         let (scene, assets, cache) = (Arc::new(scene.clone()), assets.clone(), self.trees.clone());
@@ -165,6 +182,11 @@ impl Rendering {
         self.developed.as_ref().filter(|d| (d.picture.width, d.picture.height) == (width, height))
     }
 
+    /// Returns true if the picture on the screen is denoised.
+    pub fn is_denoised(&self) -> bool {
+        self.developed.as_ref().is_some_and(|developed| developed.denoiser.is_some())
+    }
+
     /// Returns width and height of the picture of the job, pixels.
     pub fn size(&self) -> Option<(u32, u32)> {
         self.job.as_ref().map(|job| (job.settings.width, job.settings.height))
@@ -185,13 +207,17 @@ impl Rendering {
             self.film = job.film().cloned().or(self.film.take());
         }
         if let Some(film) = &self.film {
-            let is_requested = self.requested.as_ref().is_some_and(|(requested, developed)| {
-                *requested == Arc::as_ptr(film) && !SceneChange::between(developed, scene).needs_development()
+            let max_side = ctx.input(|i| i.max_texture_side);
+            let is_final = !self.job.as_ref().is_some_and(|job| job.phase().is_running());
+            let denoise = self.settings.denoise;
+            let development = Development { max_side, denoise, is_final: is_final && denoise };
+            let is_requested = self.requested.as_ref().is_some_and(|requested| {
+                (requested.film, requested.development) == (Arc::as_ptr(film), development)
+                    && !SceneChange::between(&requested.scene, scene).needs_development()
             });
             if !is_requested {
-                let most = ctx.input(|i| i.max_texture_side);
-                self.developer.request(film.clone(), scene.clone(), most, &wake(ctx));
-                self.requested = Some((Arc::as_ptr(film), scene.clone()));
+                self.developer.request(film.clone(), scene.clone(), development, &wake(ctx));
+                self.requested = Some(Requested { film: Arc::as_ptr(film), scene: scene.clone(), development });
             }
         }
         match self.developer.take() {

@@ -81,6 +81,7 @@ impl App {
             Command::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
             Command::Render => self.render(ctx),
             Command::CancelRender => self.rendering.cancel(),
+            Command::ToggleDenoise => self.rendering.settings.denoise = !self.rendering.settings.denoise,
             Command::ShowView(centre) => self.views.central = centre,
             Command::ToggleCameraView => {
                 self.views.central =

@@ -148,11 +148,12 @@ impl App {
 
     fn export_to(&mut self, path: PathBuf, ctx: &Context) {
         let (Some(developed), Some(job)) = (self.rendering.developed(), self.rendering.job()) else { return };
-        let picture = developed.picture.clone();
+        let (picture, noisy) = (developed.picture.clone(), developed.noisy.clone());
         let seed = job.settings.seed.into();
         let info = PictureInfo::new(self.document.scene(), developed.method, developed.spp, seed);
+        let info = PictureInfo { denoiser: developed.denoiser, ..info };
         let work = move || {
-            let result = files::export(&path, &picture, &info);
+            let result = files::export(&path, &picture, noisy.as_deref(), &info);
             TaskResult::Exported(path, result)
         };
         self.background.tasks.start(work, waker(ctx));

@@ -166,6 +166,22 @@ impl Film {
         self.layers.iter().enumerate().map(one).collect()
     }
 
+    /// Returns the factor of each layer from a picture with the lights of `from` to one with those of `to`. None if a
+    /// light that is off in `from` is on in `to`.
+    pub fn relight_factors(&self, from: &Scene, to: &Scene) -> Option<Vec<Vec3>> {
+        let factor = |from: f32, to: f32| match (from > 0.0, to > 0.0) {
+            (true, _) => Some(to / from),
+            (false, true) => None,
+            (false, false) => Some(0.0),
+        };
+        let factors = self
+            .weights(from)
+            .into_iter()
+            .zip(self.weights(to))
+            .map(|(from, to)| Some(Vec3::new(factor(from.x, to.x)?, factor(from.y, to.y)?, factor(from.z, to.z)?)));
+        factors.collect()
+    }
+
     /// The AOVs; none unless [`Settings::aovs`] asked for them.
     pub fn aovs(&self) -> Option<AovPicture> {
         let mut picture = AovPicture::new(self.width, self.height);
