@@ -273,6 +273,7 @@ mod tests {
             quads: vec![[0, 1, 4, 3], [1, 2, 5, 4]],
             uvs: vec![[Vec2::ZERO; 4]; 2],
             parts: vec![0, 1],
+            ..QuadMesh::default()
         };
         let once = square.subdivided();
         assert_eq!(once.positions[1], Vec3::new(1.0, 0.0, 0.0), "on a straight border a vertex stays");
