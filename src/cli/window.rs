@@ -39,7 +39,8 @@ pub fn write_preview(loaded: &Loaded, size: (u32, u32), output: &Path, look: &Pr
     if options.channel != Channel::Lit && io::PictureFormat::of(output)? != io::PictureFormat::Exr {
         return Ok(io::export_shown(output, &renderer.picture(&input).map_err(machine)?)?);
     }
-    let picture = renderer.linear_picture(&input).map_err(machine)?;
+    let samples = if options.channel == Channel::Lit { renderer.still_samples() } else { 1 };
+    let picture = renderer.still_picture(&input, samples).map_err(machine)?;
     Ok(io::export_picture(output, &picture, &PictureInfo::new(&loaded.scene, "preview", 1, 0))?)
 }
 

@@ -68,7 +68,7 @@ pub fn default_parts(skin: &Material, figure: &Figure) -> Vec<(String, Material)
     let cloth = |base_color| Material { base_color, ..MaterialPreset::MatteFabric.material() };
     let [r, g, b] = skin.base_color;
     let light = 0.2126 * r + 0.7152 * g + 0.0722 * b;
-    let iris = if light > 0.3 { [0.11, 0.085, 0.05] } else { [0.06, 0.03, 0.015] };
+    let iris = if light > 0.3 { [0.2, 0.15, 0.085] } else { [0.1, 0.05, 0.025] };
     // Eyes of old people are less white.
     let age = ((figure.body.age_years - 40.0) / 50.0).clamp(0.0, 1.0);
     let white = MaterialPreset::Eye.material();

@@ -3,7 +3,7 @@
 use super::channel::{Channel, Gloss};
 use crate::photo::irradiance_grid::IrradianceGrid;
 use crate::scene::{Assets, CameraFrame, LightId, ObjectId, Scene};
-use glam::Vec3;
+use glam::{Affine3A, Vec2, Vec3};
 
 /// Everything that a preview picture depends on.
 #[derive(Clone, Debug)]
@@ -38,6 +38,26 @@ impl<'a> PreviewInput<'a> {
             options: Options::default(),
         }
     }
+}
+
+impl PreviewInput<'_> {
+    /// Returns the camera of the sample: turned by less than half a pixel along each axis.
+    pub(crate) fn sample_frame(&self) -> CameraFrame {
+        if self.options.sample == 0 {
+            return self.frame;
+        }
+        let offset_px = sample_point(self.options.sample) - 0.5;
+        let pixel = 2.0 * self.frame.half_extent / Vec2::new(self.size.0.max(1) as f32, self.size.1.max(1) as f32);
+        let [right, down] = (offset_px * pixel).to_array().map(f32::atan);
+        let turn = Affine3A::from_rotation_y(-right) * Affine3A::from_rotation_x(-down);
+        CameraFrame { world_from_camera: self.frame.world_from_camera * turn, ..self.frame }
+    }
+}
+
+/// Returns point number `index` of the sequence R2 (Roberts 2018), from (0.5, 0.5) on: 0 to 1 along each axis.
+pub(crate) fn sample_point(index: u32) -> Vec2 {
+    const STEP: Vec2 = Vec2::new(0.754_877_7, 0.569_840_3);
+    (Vec2::splat(0.5) + STEP * index as f32).fract()
 }
 
 /// A thing that can be clicked and selected.
@@ -93,6 +113,9 @@ pub struct Options {
     /// under more than two panels or eight lights, one in 25 under more than 24) and upsamples the result. GPUs ignore
     /// it.
     pub draft: bool,
+    /// Number of the sample of a still picture. Samples 0, 1, 2 ... of one view, drawn one after the other, are averaged:
+    /// each is through other points of the pixels and has other strands. Sample 0 is through the pixels' centres.
+    pub sample: u32,
     /// Draws the overlay alone on a transparent picture, premultiplied, to be composited over a picture from elsewhere.
     /// Depth and ids are drawn for occlusion and picking.
     pub overlay_alone: bool,
@@ -114,6 +137,7 @@ impl Default for Options {
             environment_estimate: true,
             light_radius: true,
             draft: false,
+            sample: 0,
             overlay_alone: false,
             channel: Channel::Lit,
             only_light: None,

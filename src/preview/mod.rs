@@ -16,6 +16,7 @@
 //!   resolve pass        drafts: joint bilateral upsampling of the coarse lighting -> picture
 //! glass pass            forward, blended             -> picture, ids, depth
 //! channel pass          instead of lighting, for views of the G-buffer -> picture
+//! still passes          the average of several samples of a still view, each through other points of the pixels
 //! overlay pass          outline, tints, lines; depth from ids -> picture (Rgba8Unorm, or Rgba16Float without overlay)
 //! ```
 //!
@@ -47,6 +48,7 @@ mod renderer;
 mod scene_buffers;
 mod shaders;
 mod shadows;
+mod still_picture;
 mod targets;
 
 pub use channel::{Channel, FALSE_STOPS, Gloss, false_color};

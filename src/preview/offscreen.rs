@@ -46,6 +46,22 @@ impl PreviewRenderer {
         Ok(Picture { width, height, rgb })
     }
 
+    /// Draws and reads back the average of `samples` scene-linear pictures through other points of the pixels: its edges
+    /// are smooth. See [`Options::sample`](super::Options::sample).
+    pub fn still_picture(&mut self, input: &PreviewInput, samples: u32) -> Result<Picture, PreviewError> {
+        let mut input = input.clone();
+        let mut mean = self.linear_picture(&input)?;
+        for sample in 1..samples {
+            input.options.sample = sample;
+            let picture = self.linear_picture(&input)?;
+            let weight = 1.0 / (sample + 1) as f32;
+            for (mean, value) in mean.rgb.iter_mut().flatten().zip(picture.rgb.iter().flatten()) {
+                *mean += (value - *mean) * weight;
+            }
+        }
+        Ok(mean)
+    }
+
     fn read_color(&self, bytes_per_pixel: u32) -> Result<Vec<u8>, PreviewError> {
         let (gpu, size) = (&self.gpu, self.size());
         let color = &self.targets.current.color;

@@ -123,13 +123,13 @@ fn bald_preset() -> StudioSource {
 
 /// Returns options that open [`bald_preset`].
 fn bald_options() -> EditorOptions {
-    EditorOptions { initial: Some(bald_preset()), ..EditorOptions::default() }
+    EditorOptions { initial: Some(bald_preset()), smooth_edges: false, ..EditorOptions::default() }
 }
 
-/// A window on the studio of the options, or else on [`bald_preset`].
+/// A window on the studio of the options, or else on [`bald_preset`], whose live view draws one sample.
 fn window_at(pixels_per_point: f32, options: EditorOptions) -> Window {
     let initial = options.initial.clone().or_else(|| Some(bald_preset()));
-    let options = EditorOptions { initial, ..options };
+    let options = EditorOptions { initial, smooth_edges: false, ..options };
     let builder = Harness::builder().with_size(vec2(1440.0, 900.0)).with_step_dt(1.0 / 30.0).with_max_steps(60);
     let builder = builder.with_pixels_per_point(pixels_per_point);
     let mut window = builder.wgpu().build_eframe(move |creation| App::new(creation, options));

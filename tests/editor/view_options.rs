@@ -96,3 +96,21 @@ fn denoising_of_the_traced_view_is_off_by_default() {
     wait_until(&mut window, |app| app.viewport().traced_view.has_picture());
     assert_eq!(undo_depth(&window), 0, "a look is no change of the studio");
 }
+
+#[test]
+fn edges_become_smooth_while_nothing_moves() {
+    let Some(mut window) = preset_window_at(0.5) else { return };
+    let jagged = view(&mut window);
+    let draws = |window: &Window| window.state().viewport().preview.draws();
+    let before = draws(&window);
+    settle(&mut window);
+    assert_eq!(draws(&window), before, "without it, one sample is all");
+    choose(&mut window, "Lit", &["Smooth edges"]);
+    let smooth = view(&mut window);
+    assert!(draws(&window) >= before + 5, "{} samples", draws(&window) - before);
+    let finished = draws(&window);
+    settle(&mut window);
+    assert_eq!(draws(&window), finished, "a finished view is drawn no more");
+    let difference = apart(&smooth, &jagged);
+    assert!((0.1..1.5).contains(&difference), "the same picture with other edges: {difference} codes");
+}

@@ -305,3 +305,49 @@ fn the_overlay_alone_leaves_out_the_picture_and_keeps_picking() {
     input.options.overlay_alone = false;
     assert_eq!(renderer.picture(&input).unwrap(), whole, "the picture comes back");
 }
+
+/// A white plate that glows, turned by a few degrees, before black.
+fn turned_plate() -> Scene {
+    let glow = Material { base_color: [0.0; 3], ior: 1.0, emission_cd_m2: [100.0; 3], ..Material::default() };
+    let mut plate = object(0, Shape::Box { size_m: Vec3::new(0.3, 0.3, 0.01) }, Vec3::ZERO, glow);
+    plate.transform.rotation_deg.z = 7.0;
+    let camera = Camera { position: Vec3::Z, aim: Aim::Point(Vec3::ZERO), ..Camera::default() };
+    Scene { camera, objects: vec![plate], ..Scene::default() }
+}
+
+#[test]
+fn a_still_picture_has_the_coverage_of_the_pixels_at_an_edge() {
+    let Some(mut renderer) = shared_renderer() else { return };
+    let (scene, size) = (turned_plate(), (48, 48));
+    let still = renderer.still_picture(&direct(&scene, size), 64).unwrap();
+    // The same at 16 times the resolution, averaged
+    let fine = renderer.linear_picture(&direct(&scene, (48 * 16, 48 * 16))).unwrap();
+    let coverage = |x: u32, y: u32| (0..256).map(|k| fine.at(x * 16 + k % 16, y * 16 + k / 16)[1]).sum::<f32>() / 256.0;
+    let white = still.at(24, 24)[1];
+    let (mut edges, mut worst) = (0, 0.0_f32);
+    for (x, y) in (0..48).flat_map(|y| (0..48).map(move |x| (x, y))) {
+        let (shown, expected) = (still.at(x, y)[1] / white, coverage(x, y) / white);
+        edges += u32::from((0.02..0.98).contains(&expected));
+        worst = worst.max((shown - expected).abs());
+    }
+    // 64 points of a sequence of low discrepancy know the area of a half-plane in a pixel to a few hundredths.
+    assert!(edges > 30 && worst < 0.06, "{worst} of white in {edges} pixels");
+}
+
+#[test]
+fn samples_that_are_averaged_on_the_gpu_equal_their_mean() {
+    let Some(mut renderer) = shared_renderer() else { return };
+    let (scene, size) = (turned_plate(), (48, 48));
+    let mut input = direct(&scene, size);
+    let mut shown = None;
+    for sample in 0..4 {
+        input.options.sample = sample;
+        shown = Some(renderer.picture(&input).unwrap());
+    }
+    let (shown, mean) = (shown.unwrap(), renderer.still_picture(&direct(&scene, size), 4).unwrap());
+    for (pixel, linear) in shown.pixels().zip(&mean.rgb) {
+        // The plate is under the shoulder of the tone curve, which the average would not commute with.
+        let expected = color::srgb_encode(linear[1].min(1.0)) * 255.0;
+        assert!((f32::from(pixel.0[1]) - expected).abs() < 2.5, "{} for {expected}", pixel.0[1]);
+    }
+}

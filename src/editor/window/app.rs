@@ -44,6 +44,8 @@ pub struct EditorOptions {
     pub settings_folder: Option<PathBuf>,
     /// Folder where unsaved studios are kept for the case of a crash; none keeps none.
     pub recovery_folder: Option<PathBuf>,
+    /// Averages several samples of the live view while nothing moves; the user can change it.
+    pub smooth_edges: bool,
     /// Start of the program, for the time to the first frame.
     pub started: Instant,
 }
@@ -55,6 +57,7 @@ impl Default for EditorOptions {
             dialogs: FileDialogs::Desktop,
             settings_folder: None,
             recovery_folder: None,
+            smooth_edges: true,
             started: Instant::now(),
         }
     }
@@ -87,7 +90,8 @@ impl App {
     pub fn new(creation: &eframe::CreationContext<'_>, options: EditorOptions) -> Self {
         let ctx = &creation.egui_ctx;
         theme::install(ctx);
-        let preview = PreviewHost::new(creation.wgpu_render_state.as_ref(), ctx);
+        let mut preview = PreviewHost::new(creation.wgpu_render_state.as_ref(), ctx);
+        preview.view_options.smooth_edges = options.smooth_edges;
         let geometry: Arc<GeometryCache> = Arc::default();
         let mut app = App {
             document: Document::default(),

@@ -1,6 +1,7 @@
 //! Draw items: a run of a mesh's triangles with its surface, its pass and its face culling.
 
 use super::mesh_cache::MeshKey;
+use crate::preview::input::sample_point;
 use crate::scene::{Shape, TextureSlot};
 use eframe::wgpu;
 use glam::Affine3A;
@@ -117,11 +118,14 @@ pub(crate) struct StrandItem {
 
 impl StrandItem {
     /// Returns the instances that cover the area of all where a pixel is `pixel_m` wide and each is `factor` times as wide
-    /// as it is, for a transform to the world.
-    pub fn visible(&self, pixel_m: f32, factor: f32, world_from_object: &Affine3A) -> Range<u32> {
+    /// as it is, for a transform to the world. Each sample of a still picture has others.
+    pub fn visible(&self, pixel_m: f32, factor: f32, sample: u32, world_from_object: &Affine3A) -> Range<u32> {
         let scale = world_from_object.matrix3.determinant().abs().cbrt();
         let width_px = 2.0 * self.mean_radius_m * scale / pixel_m.max(1e-9);
-        self.first(width_px.clamp(MIN_FRACTION, 1.0 / factor))
+        let visible = self.first(width_px.clamp(MIN_FRACTION, 1.0 / factor));
+        let hidden = (self.instances.len() - visible.len()) as f32;
+        let skipped = if sample == 0 { 0 } else { (sample_point(sample).x * hidden) as u32 };
+        visible.start + skipped..visible.end + skipped
     }
 
     /// Returns the instances of a fraction of the strands.
@@ -141,9 +145,9 @@ mod tests {
         let item =
             StrandItem { mesh: MeshKey::Shared(0), instances: 0..5000, mean_radius_m: 4e-5, surface: 0, caster: 0 };
         // A pixel of 0.4 mm is five hairs wide; at twice the scale they are twice as wide.
-        assert_eq!(item.visible(4e-4, 1.0, &Affine3A::IDENTITY), 0..1000);
-        assert_eq!(item.visible(4e-4, 1.0, &Affine3A::from_scale(Vec3::splat(2.0))), 0..2000);
-        assert_eq!(item.visible(1e-5, 1.0, &Affine3A::IDENTITY), 0..5000);
-        assert_eq!(item.visible(1e-5, 4.0, &Affine3A::IDENTITY), 0..1250, "four times as wide");
+        assert_eq!(item.visible(4e-4, 1.0, 0, &Affine3A::IDENTITY), 0..1000);
+        assert_eq!(item.visible(4e-4, 1.0, 0, &Affine3A::from_scale(Vec3::splat(2.0))), 0..2000);
+        assert_eq!(item.visible(1e-5, 1.0, 0, &Affine3A::IDENTITY), 0..5000);
+        assert_eq!(item.visible(1e-5, 4.0, 0, &Affine3A::IDENTITY), 0..1250, "four times as wide");
     }
 }

@@ -13,24 +13,26 @@ use crate::scene::{CameraFrame, TextureSlot};
 use eframe::wgpu;
 use glam::Mat4;
 
-/// What the width of strands on the picture depends on.
+/// What decides which strands are drawn, and how wide.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct StrandWidths {
+pub(crate) struct StrandDetail {
     /// Half the width of a pixel at 1 m.
     pub pixel_angle: f32,
     /// Factor on the width.
     pub factor: f32,
+    /// Sample of a still picture.
+    pub sample: u32,
 }
 
 /// Draws the opaque items of a list as `camera` sees them. `clear_gbuffer` clears the G-buffer besides ids and depth;
-/// `widths` are those of strands.
+/// `strands` tells which are drawn.
 pub(crate) fn draw(
     encoder: &mut wgpu::CommandEncoder,
     (pipelines, strand_pipelines): (&GeometryPipelines, &StrandPipelines),
     resources: FrameResources,
     list: &DrawList,
     camera: &CameraFrame,
-    (clear_gbuffer, widths): (bool, StrandWidths),
+    (clear_gbuffer, strands): (bool, StrandDetail),
 ) {
     let FrameResources { scene, targets, caches } = resources;
     let clear = wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT);
@@ -57,8 +59,8 @@ pub(crate) fn draw(
     for item in &list.strands {
         let world_from_object = &list.transforms[item.surface as usize];
         let distance = list.casters.get(item.caster).map_or(1.0, |caster| caster.distance(camera.position()));
-        let pixel_m = 2.0 * widths.pixel_angle * distance.max(NEAR_M);
+        let pixel_m = 2.0 * strands.pixel_angle * distance.max(NEAR_M);
         pass.set_pipeline(&strand_pipelines.geometry);
-        caches.draw_strands(&mut pass, item, item.visible(pixel_m, widths.factor, world_from_object));
+        caches.draw_strands(&mut pass, item, item.visible(pixel_m, strands.factor, strands.sample, world_from_object));
     }
 }

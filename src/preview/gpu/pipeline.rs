@@ -19,14 +19,15 @@ pub(crate) struct BindGroupLayouts {
     pub masks: wgpu::BindGroupLayout,
 }
 
-/// Creates the pipeline of a full-screen pass without depth test; `entry` names the fragment entry point.
+/// Creates the pipeline of a full-screen pass without depth test; `entry` names the fragment entry point, and `target` is
+/// a format, or also how to blend.
 pub(crate) fn fullscreen(
     device: &wgpu::Device,
     (label, entry): (&str, &str),
     source: &str,
     layout: &wgpu::PipelineLayout,
     constants: &[(&str, f64)],
-    format: wgpu::TextureFormat,
+    target: impl Into<wgpu::ColorTargetState>,
 ) -> wgpu::RenderPipeline {
     let module = shaders::module(device, label, source);
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -45,7 +46,7 @@ pub(crate) fn fullscreen(
             module: &module,
             entry_point: Some(entry),
             compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
-            targets: &[Some(format.into())],
+            targets: &[Some(target.into())],
         }),
         multiview_mask: None,
         cache: None,

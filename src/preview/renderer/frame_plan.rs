@@ -150,7 +150,7 @@ fn frame_constants(
     lights: &LightTable,
     environment: Option<&Environment>,
 ) -> GpuFrame {
-    let mut frame = GpuFrame::new(&input.frame, size);
+    let mut frame = GpuFrame::new(&input.sample_frame(), size);
     frame.light_ends = lights.ends;
     frame.set_ambient(&lights.ambient, input.overlay.void_color);
     if let Some(environment) = environment.filter(|_| input.options.environment_estimate) {

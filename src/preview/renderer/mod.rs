@@ -5,7 +5,7 @@ mod frame_plan;
 use super::frame_resources::FrameResources;
 use super::geometry::caches::GeometryCaches;
 use super::geometry::draw_list::Uploads;
-use super::geometry::geometry_pass::{self, StrandWidths};
+use super::geometry::geometry_pass::{self, StrandDetail};
 use super::geometry::pipelines::GeometryPipelines;
 use super::gpu::context::GpuContext;
 use super::gpu::device::{LossFlag, guarded};
@@ -21,6 +21,7 @@ use super::shadows::layers::StaleMap;
 use super::shadows::maps::ShadowMaps;
 use super::shadows::mask::ShadowMasks;
 use super::shadows::shadow_passes::ShadowPasses;
+use super::still_picture::StillPictures;
 use super::targets::{Output, RenderTargets, TargetLayouts};
 use super::{ObjectMask, Pick, PickHit, PreviewError, PreviewInput};
 use eframe::wgpu;
@@ -38,6 +39,7 @@ pub struct PreviewRenderer {
     lighting: LightingPasses,
     overlay: OverlayPass,
     picking: Picking,
+    stills: StillPictures,
     drawn: DrawnFrame,
 }
 
@@ -107,6 +109,7 @@ impl PreviewRenderer {
             overlay: OverlayPass::new(device, &layouts),
             lighting: LightingPasses::new(device, layouts),
             picking: Picking::default(),
+            stills: StillPictures::new(device),
             drawn: DrawnFrame::default(),
             gpu,
         }
@@ -137,6 +140,11 @@ impl PreviewRenderer {
     /// Number of shadow maps that the last picture drew; the others were still valid.
     pub fn redrawn_shadow_maps(&self) -> usize {
         self.drawn.shadow_maps
+    }
+
+    /// Returns the number of samples of a finished still picture; see `Options::sample`.
+    pub fn still_samples(&self) -> u32 {
+        if self.gpu.is_cpu { 6 } else { 16 }
     }
 
     /// Returns true if `Options::draft` has an effect: the adapter is a CPU rasteriser.
@@ -241,6 +249,11 @@ impl PreviewRenderer {
         let resources = FrameResources { scene: self.buffers.bind_group(), targets, caches: &self.caches };
         let mut encoder = device.create_command_encoder(&Default::default());
 
+        // Before the second sample of a still picture, start the average of the first one, which the targets hold
+        let is_sample = options.sample > 0 && plan.output == Output::Display;
+        if is_sample && options.sample == 1 {
+            self.stills.start(device, &mut encoder, targets, self.targets.generation);
+        }
         // Draw the stale shadow maps
         self.shadows.draw_maps(&mut encoder, resources, &plan.list, &stale.shadow_maps);
         // Draw opaque surfaces into the G-buffer. Where the id buffer is 0 the G-buffer is never read, and CPU
@@ -248,8 +261,19 @@ impl PreviewRenderer {
         if stale.gbuffer {
             let clear = !self.gpu.is_cpu;
             let pipelines = (&self.geometry, &self.shadows.strands);
-            let widths = StrandWidths { pixel_angle: plan.constants.pixel_angle, factor: plan.constants.strand_width };
-            geometry_pass::draw(&mut encoder, pipelines, resources, &plan.list, &input.frame, (clear, widths));
+            let strands = StrandDetail {
+                pixel_angle: plan.constants.pixel_angle,
+                factor: plan.constants.strand_width,
+                sample: options.sample,
+            };
+            geometry_pass::draw(
+                &mut encoder,
+                pipelines,
+                resources,
+                &plan.list,
+                &input.sample_frame(),
+                (clear, strands),
+            );
         }
         // Filter the shadow maps into the shadow masks
         if stale.masks {
@@ -280,6 +304,9 @@ impl PreviewRenderer {
                 self.overlay.upload(device, queue, gizmos);
                 self.overlay.draw(&mut encoder, targets, resources.scene, outlined);
             }
+        }
+        if is_sample {
+            self.stills.add_and_show(&mut encoder, targets, options.sample);
         }
         queue.submit([encoder.finish()]);
     }

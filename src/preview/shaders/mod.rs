@@ -50,6 +50,8 @@ pub(crate) const GLASS: &str = concat!(
     include_str!("draw.wgsl"),
     include_str!("glass.wgsl")
 );
+/// The passes of still pictures.
+pub(crate) const STILL: &str = concat!(include_str!("tone.wgsl"), include_str!("still.wgsl"));
 /// The overlay pass: lines and tints.
 pub(crate) const OVERLAY: &str = concat!(include_str!("scene.wgsl"), include_str!("overlay.wgsl"));
 /// The overlay pass: selection outline.
@@ -77,6 +79,7 @@ mod tests {
             ("shadow map", SHADOW_MAP),
             ("shadow mask", SHADOW_MASK),
             ("shadow blur", SHADOW_BLUR),
+            ("still picture", STILL),
             ("lighting", LIGHTING),
             ("resolve", RESOLVE),
             ("diffusion", DIFFUSION),

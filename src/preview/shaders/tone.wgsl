@@ -14,9 +14,14 @@ fn srgb_encode(linear: vec3f) -> vec3f {
     return select(curved, 12.92 * linear, linear <= vec3f(0.0031308));
 }
 
-// Returns the display value of a pixel, dithered by less than one code with interleaved gradient noise (Jimenez 2014)
-// against banding.
-fn encode_display(radiance: vec3f, at: vec2f) -> vec4f {
+// Returns a display value, dithered by less than one code with interleaved gradient noise (Jimenez 2014) against
+// banding.
+fn dithered(display: vec3f, at: vec2f) -> vec4f {
     let noise = fract(52.9829189 * fract(dot(at, vec2f(0.06711056, 0.00583715)))) - 0.5;
-    return vec4f(srgb_encode(tone_curve(radiance)) + noise * (0.9 / 255.0), 1.0);
+    return vec4f(display + noise * (0.9 / 255.0), 1.0);
+}
+
+// Returns the display value of a pixel, dithered.
+fn encode_display(radiance: vec3f, at: vec2f) -> vec4f {
+    return dithered(srgb_encode(tone_curve(radiance)), at);
 }

@@ -47,6 +47,10 @@ pub fn channel_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, view_options: &mu
             if ui.add_enabled(!on_cpu, checkbox).on_hover_text(tip).changed() {
                 view_options.gloss = if blinn_phong { Gloss::BlinnPhong } else { Gloss::Ggx };
             }
+            let tip = "While nothing moves, the live view is drawn several times, each time through other points of its \
+                       pixels, and shows the average";
+            let checkbox = Checkbox::new(&mut view_options.smooth_edges, "Smooth edges");
+            ui.add_enabled(!on_cpu, checkbox).on_hover_text(tip);
             let tip = "The traced view (True) shows smoothed light while it is worked on; settled, it is as traced. \
                        Pictures that are rendered are never smoothed.";
             ui.checkbox(&mut view_options.smooth, "Low-noise preview").on_hover_text(tip);

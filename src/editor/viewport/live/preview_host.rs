@@ -40,7 +40,7 @@ struct PreviewKey {
 }
 
 /// Display options of the live view; not part of the scene, neither saved nor undone.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ViewOptions {
     /// The channel on display.
     pub channel: Channel,
@@ -50,6 +50,14 @@ pub struct ViewOptions {
     pub gloss: Gloss,
     /// True to denoise the traced view until it is finished.
     pub smooth: bool,
+    /// True to average several samples of the live view while nothing moves.
+    pub smooth_edges: bool,
+}
+
+impl Default for ViewOptions {
+    fn default() -> Self {
+        ViewOptions { channel: Channel::Lit, only_light: None, gloss: Gloss::Ggx, smooth: false, smooth_edges: true }
+    }
 }
 
 /// The preview and the texture it draws into.
@@ -66,6 +74,8 @@ pub struct PreviewHost {
     shown: Option<PreviewKey>,
     /// Time at which the current draft was drawn; none for a full image.
     draft_since: Option<Instant>,
+    /// Number of samples in the full image.
+    samples: u32,
     /// Number of images drawn.
     draws: u64,
     last_draw: Duration,
@@ -90,6 +100,7 @@ impl PreviewHost {
             texture: None,
             shown: None,
             draft_since: None,
+            samples: 0,
             draws: 0,
             last_draw: Duration::ZERO,
         };
@@ -193,7 +204,7 @@ impl PreviewHost {
             PreviewStage::Ready(renderer) => renderer.draws_drafts(),
             PreviewStage::Failed(_) => CpuPreview::draws_drafts(size),
         };
-        let ViewOptions { channel, only_light, gloss, smooth: _ } = self.view_options;
+        let ViewOptions { channel, only_light, gloss, smooth: _, smooth_edges } = self.view_options;
         // A deleted light no longer hides the others.
         let only_light = only_light.filter(|id| document.scene().light(*id).is_some());
         let options = Options { channel, only_light, gloss, overlay_alone, ..Options::default() };
@@ -212,8 +223,13 @@ impl PreviewHost {
         if changed || brightened || settled {
             // The first image is drawn in full: nothing is in motion.
             let draft = changed && drafts && self.shown.is_some() && !overlay_alone;
-            self.draw(ctx, document, wanted, draft);
+            self.draw(ctx, document, wanted, draft, 0);
             self.draft_since = draft.then(Instant::now);
+        } else if smooth_edges && self.draft_since.is_none() && self.samples < self.most_samples(options) {
+            self.draw(ctx, document, wanted, false, self.samples);
+        }
+        if smooth_edges && self.draft_since.is_none() && self.samples < self.most_samples(options) {
+            ctx.request_repaint();
         }
         if let Some(since) = self.draft_since {
             ctx.request_repaint_after(SETTLED.saturating_sub(since.elapsed()));
@@ -224,7 +240,17 @@ impl PreviewHost {
         }
     }
 
-    fn draw(&mut self, ctx: &Context, document: &Document, wanted: PreviewKey, draft: bool) {
+    /// Returns the number of samples of a finished image.
+    fn most_samples(&self, options: Options) -> u32 {
+        match &self.stage {
+            PreviewStage::Ready(renderer) if options.channel == Channel::Lit && !options.overlay_alone => {
+                renderer.still_samples()
+            }
+            _ => 1,
+        }
+    }
+
+    fn draw(&mut self, ctx: &Context, document: &Document, wanted: PreviewKey, draft: bool, sample: u32) {
         let began = Instant::now();
         let bounced_light = self.bounced_light.grid();
         let input = PreviewInput {
@@ -234,7 +260,7 @@ impl PreviewHost {
             size: wanted.size,
             bounced_light: bounced_light.as_deref(),
             overlay: wanted.overlay.clone(),
-            options: Options { draft, ..wanted.options },
+            options: Options { draft, sample, ..wanted.options },
         };
         if let PreviewStage::Ready(renderer) = &mut self.stage {
             match renderer.render(&input).map(|_| ()) {
@@ -246,6 +272,7 @@ impl PreviewHost {
             self.cpu_preview.draw(ctx, &input, wanted.revisions.surfaces);
         }
         (self.draws, self.last_draw, self.shown) = (self.draws + 1, began.elapsed(), Some(wanted));
+        self.samples = if draft { 0 } else { sample + 1 };
     }
 
     /// Paints the overlays of the CPU preview in `rect`; those of the GPU preview are part of its image.
