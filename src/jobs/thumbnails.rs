@@ -1,4 +1,4 @@
-//! Thumbnails of shipped studios and of objects, drawn one by one in the background by the CPU z-buffer, so without
+//! Thumbnails of studios and of objects, drawn one by one in the background by the CPU z-buffer, so without
 //! shadows.
 
 use super::threads::{Priority, background_pool};
@@ -11,6 +11,7 @@ use crate::scene::{
 use crate::{io, math};
 use glam::{Vec2, Vec3};
 use std::collections::VecDeque;
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// sRGB of the background of an object: black and white paper both differ from it.
@@ -29,6 +30,8 @@ pub enum ThumbnailSubject {
     Studio(usize),
     /// A figure, prop or backdrop.
     Object(Box<Object>),
+    /// A studio as its camera sees it, with the folder that its assets are relative to.
+    Scene(Box<Scene>, Option<PathBuf>),
 }
 
 /// A drawn thumbnail.
@@ -119,7 +122,9 @@ fn known_or_drawn(subject: ThumbnailSubject, side: u32) -> Option<ThumbnailImage
         return Some(image.clone());
     }
     let image = draw_thumbnail(subject.clone(), side)?;
-    drawn().push((subject, side, image.clone()));
+    if !matches!(subject, ThumbnailSubject::Scene(..)) {
+        drawn().push((subject, side, image.clone()));
+    }
     Some(image)
 }
 
@@ -128,15 +133,23 @@ pub fn draw_thumbnail(subject: ThumbnailSubject, side: u32) -> Option<ThumbnailI
     match subject {
         ThumbnailSubject::Studio(index) => draw_studio(index, side),
         ThumbnailSubject::Object(object) => draw_object(*object, side),
+        ThumbnailSubject::Scene(scene, folder) => {
+            let mut assets = Assets::default();
+            io::load_assets(&scene, folder.as_deref(), &mut assets);
+            Some(draw_scene(&scene, &assets, side))
+        }
     }
 }
 
 fn draw_studio(index: usize, side: u32) -> Option<ThumbnailImage> {
     let loaded = io::presets().get(index)?.load().ok()?;
-    let (scene, size) = (&loaded.scene, loaded.scene.camera.picture_size(side));
+    Some(draw_scene(&loaded.scene, &loaded.assets, side))
+}
+
+fn draw_scene(scene: &Scene, assets: &Assets, side: u32) -> ThumbnailImage {
+    let size = scene.camera.picture_size(side);
     let frame = scene.camera_frame(size.0 as f32 / size.1 as f32);
-    let drawing = raster::draw(scene, &loaded.assets, &frame, size, Shading::default());
-    Some(image(&drawing, |_| false))
+    image(&raster::draw(scene, assets, &frame, size, Shading::default()), |_| false)
 }
 
 fn draw_object(object: Object, side: u32) -> Option<ThumbnailImage> {

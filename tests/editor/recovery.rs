@@ -59,6 +59,9 @@ fn an_unsaved_studio_survives_a_crash_and_is_offered_at_the_next_start() {
     let mut second = window(options(&recovery, None, &[]));
     assert!(is_offered(&second));
     assert_eq!(second.get_all_by_label_contains("portrait.ron").count(), 2, "the question names title and file");
+    wait_until(&mut second, |app| app.thumbnails().drawn() == 1);
+    let picture = second.get_by_label("Picture of the unsaved studio").rect();
+    assert!(picture.width() > 80.0 && picture.height() > 80.0, "{picture}");
     click(&mut second, "Recover");
     let document = second.state().document();
     assert_eq!(catchlight::io::write_scene(document.scene()), changed);

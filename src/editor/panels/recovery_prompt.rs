@@ -1,8 +1,9 @@
 //! The prompt that offers an unsaved studio after a crash.
 
+use crate::editor::panels::thumbnails::Thumbnail;
 use crate::editor::ui::widgets::{self, Question};
 use crate::io::RecoveryInfo;
-use eframe::egui::{self, RichText};
+use eframe::egui::{self, RichText, Sense, Ui};
 use std::time::Duration;
 
 /// An unsaved studio on offer.
@@ -12,6 +13,8 @@ pub struct UnsavedStudio<'a> {
     pub info: &'a RecoveryInfo,
     /// Number of other unsaved studios.
     pub more: usize,
+    /// What its camera sees; none until it is drawn.
+    pub picture: Option<Thumbnail>,
 }
 
 /// The answer to the offer.
@@ -27,10 +30,10 @@ pub enum RecoveryAnswer {
 
 /// Draws the offer.
 pub fn recovery_ui(ctx: &egui::Context, unsaved: &UnsavedStudio<'_>) -> Option<RecoveryAnswer> {
-    let UnsavedStudio { info, more } = unsaved;
+    let UnsavedStudio { info, more, picture } = unsaved;
     let question = Question {
         name: "recovery",
-        width: 460.0,
+        width: 560.0,
         heading: "Unsaved studio",
         answers: &[
             (
@@ -43,15 +46,29 @@ pub fn recovery_ui(ctx: &egui::Context, unsaved: &UnsavedStudio<'_>) -> Option<R
         ],
     };
     widgets::question_dialog(ctx, &question, |ui| {
-        let age = info.changed_at.elapsed().unwrap_or_default();
-        ui.label(format!("Catchlight ended before \"{}\" was saved. Its last change was {}.", info.title, ago(age)));
-        if let Some(path) = &info.path {
-            ui.label(RichText::new(format!("The file {} is as it was saved last.", path.display())).weak());
-        }
-        if *more > 0 {
-            ui.label(RichText::new(format!("Unsaved studios that are offered after this one: {more}")).weak());
-        }
+        ui.horizontal_top(|ui| {
+            // The text stays where it is when the picture arrives.
+            let size = picture.map_or(egui::Vec2::splat(150.0), |picture| picture.size());
+            let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+            widgets::named(ui, &response, "Picture of the unsaved studio");
+            if let Some(picture) = picture {
+                picture.paint(ui, rect);
+            }
+            ui.vertical(|ui| facts(ui, info, *more));
+        });
     })
+}
+
+/// Writes what is known about an unsaved studio.
+fn facts(ui: &mut Ui, info: &RecoveryInfo, more: usize) {
+    let age = info.changed_at.elapsed().unwrap_or_default();
+    ui.label(format!("Catchlight ended before \"{}\" was saved. Its last change was {}.", info.title, ago(age)));
+    if let Some(path) = &info.path {
+        ui.label(RichText::new(format!("The file {} is as it was saved last.", path.display())).weak());
+    }
+    if more > 0 {
+        ui.label(RichText::new(format!("Unsaved studios that are offered after this one: {more}")).weak());
+    }
 }
 
 /// Returns how long ago something was, in words.

@@ -7,9 +7,12 @@ use crate::editor::ui::wake::wake;
 use crate::jobs::{ThumbnailImage, ThumbnailJob, ThumbnailSubject};
 use eframe::egui::{self, Color32, ColorImage, Context, Pos2, Rect, TextureId, pos2};
 use std::collections::HashMap;
+use std::time::SystemTime;
 
 /// Longer side of a studio's thumbnail, points.
 pub const STUDIO_POINTS: f32 = 84.0;
+/// Longer side of an unsaved studio's thumbnail, points.
+const UNSAVED_POINTS: f32 = 150.0;
 /// Side of a thing's thumbnail, points.
 pub const THING_POINTS: f32 = 30.0;
 /// Pixels per point, along each side: the density of a high-resolution display. Others show means of four pixels.
@@ -22,6 +25,8 @@ pub enum ThumbnailKey {
     Studio(usize),
     /// A figure, prop or backdrop, by its name in the catalog.
     Thing(&'static str),
+    /// A studio that was not saved, by the time of its last change.
+    Unsaved(SystemTime),
 }
 
 /// A thumbnail that can be painted.
@@ -36,6 +41,11 @@ impl Thumbnail {
     fn of(image_texture: &ImageTexture) -> Option<Self> {
         let size = image_texture.size()?.map(|pixels| pixels as f32 / PIXELS_PER_POINT);
         Some(Thumbnail { texture: image_texture.id()?, size: size.into() })
+    }
+
+    /// Returns its size, points.
+    pub fn size(&self) -> egui::Vec2 {
+        self.size
     }
 
     /// Paints it in the middle of `rect`.
@@ -67,6 +77,16 @@ impl Thumbnails {
             CatalogItem::Light(_) => None,
         };
         self.thumbnail(ctx, ThumbnailKey::Thing(entry.name), THING_POINTS, subject)
+    }
+
+    /// Returns the thumbnail of a studio that was last changed at some time; none until it is drawn.
+    pub fn unsaved(
+        &mut self,
+        ctx: &Context,
+        changed_at: SystemTime,
+        subject: impl FnOnce() -> Option<ThumbnailSubject>,
+    ) -> Option<Thumbnail> {
+        self.thumbnail(ctx, ThumbnailKey::Unsaved(changed_at), UNSAVED_POINTS, subject)
     }
 
     fn thumbnail(

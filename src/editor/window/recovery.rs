@@ -131,8 +131,8 @@ impl Recovery {
     }
 
     /// Returns the studio on offer.
-    pub fn offered(&self) -> Option<&RecoveryInfo> {
-        self.offered.last().map(|(_, info)| info)
+    pub fn offered(&self) -> Option<&Unsaved> {
+        self.offered.last()
     }
 
     /// Returns the number of studios that are offered after this one.

@@ -8,7 +8,9 @@ use crate::editor::window::background_tasks::TaskResult;
 use crate::editor::window::recovery::Unsaved;
 use crate::editor::window::run_file_command::waker;
 use crate::io::RecoveryFolder;
+use crate::jobs::ThumbnailSubject;
 use eframe::egui::Context;
+use std::path::Path;
 use std::time::Duration;
 
 impl App {
@@ -36,9 +38,12 @@ impl App {
         if self.background.tasks.is_busy() || self.session.has_prompt() {
             return;
         }
-        let Some(info) = self.session.recovery.offered() else { return };
+        let Some((folder, info)) = self.session.recovery.offered() else { return };
         let more = self.session.recovery.offered_after();
-        match recovery_ui(ctx, &UnsavedStudio { info, more }) {
+        let beside = || info.path.as_deref().and_then(Path::parent).map(Path::to_owned);
+        let subject = || Some(ThumbnailSubject::Scene(Box::new(folder.read().ok()?), beside()));
+        let picture = self.background.thumbnails.unsaved(ctx, info.changed_at, subject);
+        match recovery_ui(ctx, &UnsavedStudio { info, more, picture }) {
             Some(RecoveryAnswer::Recover) => self.recover(ctx),
             Some(RecoveryAnswer::Discard) => {
                 if let Some((folder, _)) = self.session.recovery.take_offered() {
