@@ -76,7 +76,7 @@ impl Quality {
 /// Returns the picture without noise, on the current thread pool: the same bits for any number of threads.
 ///
 /// `aovs` are the albedo and normals of the same pixels. Pixels that are no number or negative count as black. The
-/// picture is returned as it is if the sizes differ.
+/// picture is returned as it is if the sizes differ, and if it is black: the network would see light in it.
 ///
 /// # Errors
 /// Once `is_cancelled` returns true.
@@ -86,6 +86,7 @@ pub fn denoise(
     quality: Quality,
     is_cancelled: &(dyn Fn() -> bool + Sync),
 ) -> Result<Picture, Cancelled> {
-    let Some(network) = quality.network() else { return Ok(picture.clone()) };
+    let is_black = picture.rgb.as_flattened().iter().all(|value| value.is_nan() || *value <= 0.0);
+    let Some(network) = quality.network().filter(|_| !is_black) else { return Ok(picture.clone()) };
     tiles::denoise(network, picture, aovs, tiles::MAX_PIXELS, is_cancelled)
 }

@@ -154,6 +154,17 @@ fn empty_pictures_and_pictures_without_aovs_are_left_as_they_are() {
 }
 
 #[test]
+fn black_stays_black_and_a_black_layer_gets_no_light() {
+    // A layer without light had a share of the dark pixels, which did not follow the lights.
+    let (picture, aovs) = disc(61, 45);
+    let black = Picture::new(61, 45);
+    assert_eq!(denoise(&black, &aovs, Quality::Fast, &never).as_ref(), Ok(&black));
+    let layers = [picture.clone(), black.clone()];
+    let denoised = denoise_layers(&picture, &layers, &aovs, Quality::Fast, &never).unwrap();
+    assert_eq!(denoised.layers[1], black);
+}
+
+#[test]
 fn a_cancelled_picture_is_not_returned() {
     let (picture, aovs) = disc(20, 20);
     assert_eq!(denoise(&picture, &aovs, Quality::Fast, &|| true), Err(Cancelled));

@@ -40,7 +40,7 @@ impl DenoisedFilm {
         if !self.holds(film) {
             *self = DenoisedFilm { film: Some(film.clone()), layers: None };
         }
-        denoise(noisy, &film.aovs()?, quality, &|| control.is_cancelled()).ok()
+        denoise(noisy, &film.denoiser_aovs()?, quality, &|| control.is_cancelled()).ok()
     }
 
     /// Denoises the layers of the film, with the lights as in `scene`, and keeps them.
@@ -54,7 +54,7 @@ impl DenoisedFilm {
         quality: Quality,
         control: &RenderControl,
     ) -> Result<(), Cancelled> {
-        let Some(aovs) = film.aovs() else { return Ok(()) };
+        let Some(aovs) = film.denoiser_aovs() else { return Ok(()) };
         let layers: Vec<Picture> = film.develop_layers(scene).into_iter().map(|(_, layer)| layer).collect();
         let denoised =
             denoise_layers(&film.develop(scene), &layers, &aovs, quality, &|| control.is_cancelled())?.layers;
@@ -83,15 +83,18 @@ mod tests {
     use super::*;
     use crate::jobs::render_all_passes;
     use crate::raytrace::{Settings, prepare};
-    use crate::scene::{Assets, Emitter, Light, Output, Room};
+    use crate::scene::{Assets, Emitter, Light, LightId, Output, Room};
 
     /// Returns a room with two lights, and its film.
     fn rendered() -> (Scene, Arc<Film>) {
-        let light =
-            |x: f32| Light { position: Vec3::new(x, 2.0, 0.0), ..Light::new(Emitter::Point, Output::Lumens(1000.0)) };
-        let mut scene =
-            Scene { room: Some(Room::default()), lights: vec![light(-1.0), light(1.0)], ..Scene::default() };
-        scene.lights[1].id.0 = 7;
+        let light = |name: &str, id: u32, x: f32| Light {
+            name: name.to_owned(),
+            id: LightId(id),
+            position: Vec3::new(x, 2.0, 0.0),
+            ..Light::new(Emitter::Point, Output::Lumens(1000.0))
+        };
+        let lights = vec![light("Left", 1, -1.0), light("Right", 2, 1.0)];
+        let scene = Scene { room: Some(Room::default()), lights, ..Scene::default() };
         let prepared = prepare(&scene, &Assets::default()).unwrap();
         let settings = Settings { width: 48, height: 32, spp: 2, aovs: true, ..Settings::default() };
         let film = render_all_passes(&prepared, &settings, &RenderControl::new());

@@ -128,3 +128,56 @@ fn develop(
         publish(picture, Some(noisy), Some(Quality::Best));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::jobs::render_all_passes;
+    use crate::raytrace::{Settings, prepare};
+    use crate::scene::{Assets, Emitter, Light, Output, Room};
+    use std::cell::RefCell;
+
+    #[test]
+    fn films_are_denoised_as_far_as_they_are_rendered_and_relit_from_their_layers() {
+        let mut scene = Scene {
+            room: Some(Room::default()),
+            lights: vec![Light::new(Emitter::Point, Output::Lumens(1000.0))],
+            ..Scene::default()
+        };
+        let prepared = prepare(&scene, &Assets::default()).unwrap();
+        let render = |aovs| {
+            let settings = Settings { width: 32, height: 32, spp: 1, aovs, ..Settings::default() };
+            Arc::new(render_all_passes(&prepared, &settings, &RenderControl::new()))
+        };
+        let (film, without_aovs) = (render(true), render(false));
+        let mut denoised = DenoisedFilm::default();
+        // Returns the networks of the pictures that are published, and the last picture
+        let mut published = |film: &Arc<Film>, scene: &Scene, denoise: bool, is_final: bool| {
+            let development = Development { max_side: 100, denoise, is_final };
+            let request = Request { film: film.clone(), scene: scene.clone(), development };
+            let all = RefCell::new((Vec::new(), Picture::default()));
+            develop(&request, &RenderControl::new(), &mut denoised, &|picture, noisy, quality| {
+                assert_eq!(noisy.is_some(), quality.is_some());
+                assert!(noisy.is_none_or(|noisy| noisy == film.develop(scene)));
+                let mut all = all.borrow_mut();
+                all.0.push(quality);
+                all.1 = picture;
+            });
+            all.into_inner()
+        };
+        assert_eq!(published(&film, &scene, false, true), (vec![None], film.develop(&scene)));
+        assert_eq!(published(&film, &scene, true, false).0, [Some(Quality::Fast)], "while it renders");
+        let other = render(true);
+        let (qualities, whole) = published(&other, &scene, true, true);
+        assert_eq!(qualities, [Some(Quality::Best)], "once it is final");
+        scene.lights[0].power.dial_stops = 1.0;
+        assert_eq!(published(&other, &scene, true, true).0, [Some(Quality::Fast), Some(Quality::Best)], "relit");
+        scene.lights[0].power.dial_stops = 0.0;
+        let (qualities, relit) = published(&other, &scene, true, true);
+        assert_eq!(qualities, [Some(Quality::Best)], "relit from the layers");
+        // The scale of the network's input takes up the stop: rounding alone differs, most in the darkest pixels.
+        let sum = |picture: &Picture| picture.rgb.iter().flatten().sum::<f32>();
+        assert!((sum(&relit) / sum(&whole) - 1.0).abs() < 1e-4, "{} {}", sum(&relit), sum(&whole));
+        assert_eq!(published(&without_aovs, &scene, true, true).0, [None]);
+    }
+}
