@@ -44,10 +44,10 @@ pub struct Output<'a> {
     pub picture: Picture,
     /// The light layers that are written.
     pub layers: Vec<(String, Picture)>,
-    /// Albedo and normals, for the denoiser or to be written.
+    /// Albedo and normals for the denoiser.
+    pub denoiser_aovs: Option<AovPicture>,
+    /// The AOVs that are written.
     pub aovs: Option<AovPicture>,
-    /// AOVs are written.
-    pub writes_aovs: bool,
     /// Settings of the render.
     pub info: PictureInfo,
 }
@@ -64,30 +64,30 @@ pub struct Written {
 impl Output<'_> {
     /// Denoises the picture, if that is requested, and writes it. It runs on the current thread pool.
     pub fn write(self, denoise: Denoise) -> Result<Written, Failure> {
-        let Output { path, size: (width, height), picture, layers, aovs, writes_aovs, info } = self;
+        let Output { path, size: (width, height), picture, layers, denoiser_aovs, aovs, info } = self;
         let resized = |picture: &Picture| picture.resized(width, height);
         let all_resized = |layers: &[(String, Picture)]| -> Vec<(String, Picture)> {
             layers.iter().map(|(name, layer)| (name.clone(), resized(layer))).collect()
         };
         let (noisy, noisy_layers) = (resized(&picture), all_resized(&layers));
         let noisy = LayeredPicture { picture: &noisy, layers: &noisy_layers };
-        let written_aovs = aovs.as_ref().filter(|_| writes_aovs).map(|aovs| aovs.resized(width, height));
+        let aovs = aovs.map(|aovs| aovs.resized(width, height));
         let (encoded, denoise_s) = match denoise.quality() {
-            None => (io::encode_layers(path, noisy.picture, noisy.layers, written_aovs.as_ref(), &info)?, None),
+            None => (io::encode_layers(path, noisy.picture, noisy.layers, aovs.as_ref(), &info)?, None),
             Some(quality) => {
-                let aovs = aovs.ok_or_else(|| {
+                let denoiser_aovs = denoiser_aovs.ok_or_else(|| {
                     Failure::Input(anyhow!("the denoiser needs albedo and normals: render the parts with --denoise"))
                 })?;
                 let started = Instant::now();
                 let names = layers.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
                 let layers: Vec<Picture> = layers.into_iter().map(|(_, layer)| layer).collect();
-                let denoised = denoise::denoise_layers(&picture, &layers, &aovs, quality, &|| false);
+                let denoised = denoise::denoise_layers(&picture, &layers, &denoiser_aovs, quality, &|| false);
                 let denoised = denoised.map_err(|_| Failure::Interrupted)?;
                 let denoise_s = started.elapsed().as_secs_f64();
                 let layers = names.into_iter().zip(denoised.layers.iter().map(resized)).collect::<Vec<_>>();
                 let shown = LayeredPicture { picture: &resized(&denoised.picture), layers: &layers };
                 let info = PictureInfo { denoiser: Some(quality.label()), ..info };
-                (io::encode_denoised(path, shown, noisy, written_aovs.as_ref(), &info)?, Some(denoise_s))
+                (io::encode_denoised(path, shown, noisy, aovs.as_ref(), &info)?, Some(denoise_s))
             }
         };
         Ok(Written { picture: picture_output::write(&encoded)?, denoise_s })

@@ -77,8 +77,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         size: (sums.width, sums.height),
         picture: sums.develop(),
         layers: if arguments.layers { sums.develop_layers() } else { Vec::new() },
-        aovs: sums.develop_aovs(),
-        writes_aovs: is_exr,
+        denoiser_aovs: sums.develop_aovs(),
+        aovs: sums.develop_aovs().filter(|_| is_exr),
         info,
     };
     let Written { picture: written, denoise_s } = picture.write(arguments.denoise)?;

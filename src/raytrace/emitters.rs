@@ -9,7 +9,7 @@ use super::lights::EmitterHit;
 use super::medium_stack::MediumStack;
 use super::ray_caster::{EMITTER_CONTACT, RayCaster, is_before};
 use super::render_scene::RenderScene;
-use super::sink::{FirstHit, FirstObject, RadianceSink};
+use super::sink::{FirstHit, FirstObject, RadianceSink, SeenSurface};
 use super::straight_path::StraightPath;
 use crate::math::Ray;
 use glam::Vec3;
@@ -103,6 +103,7 @@ impl RayCaster<'_> {
             albedo: Vec3::ONE,
             object: FirstObject::Emitter,
         });
+        sink.seen_surface(|| SeenSurface { albedo: Vec3::ONE, normal: Vec3::ZERO });
         // Sun and surround lie behind everything, and may both be visible.
         for (light, index, hit) in visible().filter(|(_, i, _)| distance.is_infinite() || *i == nearest) {
             sink.record(|| PathEvent::VisibleEmitter { light: index, distance: hit.distance });

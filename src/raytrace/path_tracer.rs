@@ -55,6 +55,8 @@ pub struct PathState {
     gather: Option<GatherDensities>,
     /// Number of paths that leave the present vertex.
     pub split_factor: f32,
+    /// The surface that the camera sees, directly or by mirrors and clear glass, has been passed.
+    has_seen: bool,
     /// Vertices so far.
     pub depth: u32,
     /// Non-specular vertices so far.
@@ -155,6 +157,7 @@ impl<'a> PathTracer<'a> {
             mis_vertex,
             gather,
             split_factor: 1.0,
+            has_seen: false,
             depth: 0,
             non_specular_depth: 0,
         };
@@ -224,6 +227,12 @@ impl<'a> PathTracer<'a> {
             if material.is_emissive() {
                 sink.record(|| PathEvent::Emission);
                 sink.add(scene.emission_layer(), path.throughput * material.emission * scene.emission_time_s);
+            }
+
+            // Describe the surface that the camera sees, or sees by mirrors and clear glass
+            if !path.has_seen && !material.is_nearly_specular() {
+                path.has_seen = true;
+                sink.seen_surface(|| scene.seen_surface(&path.ray, path.throughput, &surface));
             }
 
             // End the path at its maximum depth; the last non-specular vertex is followed by specular ones

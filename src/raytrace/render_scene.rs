@@ -9,7 +9,7 @@ use super::lens::Lens;
 use super::lights::{EmitterBvh, LightSampler, TracedLight};
 use super::medium_stack::MediumStack;
 use super::plan::RenderPlan;
-use super::sink::{FirstHit, FirstObject};
+use super::sink::{FirstHit, FirstObject, SeenSurface};
 use super::texture::TextureMap;
 use crate::math::Ray;
 use crate::scene::{LightId, TextureSlot};
@@ -137,6 +137,13 @@ impl RenderScene {
             }
         };
         (Some(instance.object).filter(|object| *object != ROOM), part.unwrap_or(""))
+    }
+
+    /// The film's description of a surface that the camera sees with this throughput.
+    pub(super) fn seen_surface(&self, ray: &Ray, throughput: Vec3, surface: &SurfaceInteraction) -> SeenSurface {
+        let side = if surface.normal.dot(ray.direction) > 0.0 { -1.0 } else { 1.0 };
+        let part = throughput.max_element().clamp(0.0, 1.0);
+        SeenSurface { albedo: self.albedo(surface) * throughput, normal: surface.normal * side * part }
     }
 
     /// The film's description of the first hit of a camera ray.

@@ -13,6 +13,11 @@ pub trait RadianceSink {
     #[inline]
     fn first_hit(&mut self, _hit: impl FnOnce() -> FirstHit) {}
 
+    /// Receives a surface or emitter that the camera sees directly or by mirrors and clear glass. The default ignores it,
+    /// at no cost.
+    #[inline]
+    fn seen_surface(&mut self, _surface: impl FnOnce() -> SeenSurface) {}
+
     /// Receives a step of the computation. The default ignores it, at no cost.
     #[inline]
     fn record(&mut self, _event: impl FnOnce() -> PathEvent) {}
@@ -31,6 +36,15 @@ pub struct FirstHit {
     pub albedo: Vec3,
     /// The object.
     pub object: FirstObject,
+}
+
+/// A surface that the camera sees directly or by mirrors and clear glass. A pane shows two of them, each in part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenSurface {
+    /// Reflectance, times what mirrors and glass leave of it.
+    pub albedo: Vec3,
+    /// Shading normal towards the ray, world space, times the same part.
+    pub normal: Vec3,
 }
 
 /// The object that a camera ray meets first.

@@ -63,6 +63,7 @@ fn trace_ray(
     let surface = scene.aggregate.surface(&hit);
     if depth == 0 {
         sink.first_hit(|| scene.first_hit(&ray, &hit, &surface));
+        sink.seen_surface(|| scene.seen_surface(&ray, throughput, &surface));
     }
 
     // Absorb light along the ray (Beer-Lambert) and add the surface's emission

@@ -161,7 +161,7 @@ impl StudioStudy<'_> {
         let picture = pool.install(|| {
             let film = render_all_passes(&self.scene, &settings, &control);
             let noisy = film.develop(&self.loaded.scene);
-            let denoised = film.aovs().map(|aovs| denoise(&noisy, &aovs, Quality::Best, &|| false));
+            let denoised = film.denoiser_aovs().map(|aovs| denoise(&noisy, &aovs, Quality::Best, &|| false));
             denoised.and_then(Result::ok).unwrap_or(noisy)
         });
         let trace_s = started.elapsed().as_secs_f64();

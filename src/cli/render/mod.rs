@@ -229,8 +229,8 @@ fn write(arguments: &Arguments, loaded: &Loaded, film: &Film, settings: &Setting
         size: (settings.width, settings.height),
         picture: film.develop(&loaded.scene),
         layers: if arguments.layers { film.develop_layers(&loaded.scene) } else { Vec::new() },
-        aovs: film.aovs(),
-        writes_aovs: arguments.aovs,
+        denoiser_aovs: film.denoiser_aovs(),
+        aovs: film.aovs().filter(|_| arguments.aovs),
         info: PictureInfo::new(&loaded.scene, film.method(), film.spp(), arguments.seed.into()),
     };
     output.write(arguments.denoise)

@@ -1,12 +1,13 @@
 //! AOVs: albedo, normal, depth and object of the first hit, for denoisers and compositing.
 //!
 //! The first hit is the first surface or visible emitter on the camera ray; mirrors and glass are not followed, as in
-//! pbrt's `GBufferFilm`. Albedo and normal are means of a pixel's samples, zero where nothing is hit, as denoisers
+//! pbrt's `GBufferFilm`. For the denoiser, albedo and normal of what mirrors and clear glass show are kept, too, as the
+//! documentation of Open Image Denoise recommends: they hold the edges that reflections and refractions have. Albedo and normal are means of a pixel's samples, zero where nothing is hit, as denoisers
 //! expect. Depth and object are those of its first sample, as means across an edge belong to neither side.
 
 use super::stored::stored_fields;
 use crate::photo::AovPicture;
-use crate::raytrace::sink::{FirstHit, FirstObject};
+use crate::raytrace::sink::{FirstHit, FirstObject, SeenSurface};
 use glam::Vec3;
 
 /// The AOVs of a tile's pixels.
@@ -16,6 +17,10 @@ pub struct AovTile {
     albedo: Vec<Vec3>,
     /// Sums over the samples.
     normal: Vec<Vec3>,
+    /// Sums over the samples of what is seen directly or by mirrors and clear glass.
+    seen_albedo: Vec<Vec3>,
+    /// Sums over the samples, as `seen_albedo`.
+    seen_normal: Vec<Vec3>,
     depth_m: Vec<f32>,
     object_id: Vec<u32>,
 }
@@ -26,6 +31,8 @@ impl AovTile {
         AovTile {
             albedo: vec![Vec3::ZERO; pixels],
             normal: vec![Vec3::ZERO; pixels],
+            seen_albedo: vec![Vec3::ZERO; pixels],
+            seen_normal: vec![Vec3::ZERO; pixels],
             depth_m: vec![f32::INFINITY; pixels],
             object_id: vec![AovPicture::NO_OBJECT; pixels],
         }
@@ -45,9 +52,18 @@ impl AovTile {
         }
     }
 
+    /// Adds a surface that a sample sees directly or by mirrors and clear glass.
+    pub fn add_seen(&mut self, pixel: usize, surface: &SeenSurface) {
+        self.seen_albedo[pixel] += surface.albedo;
+        self.seen_normal[pixel] += surface.normal;
+    }
+
     /// Returns true if both have the same number of pixels.
     pub fn has_shape_of(&self, other: &Self) -> bool {
-        let lengths = |tile: &Self| [tile.albedo.len(), tile.normal.len(), tile.depth_m.len(), tile.object_id.len()];
+        let lengths = |tile: &Self| {
+            let vectors = [&tile.albedo, &tile.normal, &tile.seen_albedo, &tile.seen_normal].map(Vec::len);
+            (vectors, tile.depth_m.len(), tile.object_id.len())
+        };
         lengths(self) == lengths(other)
     }
 
@@ -58,9 +74,16 @@ impl AovTile {
         picture.depth_m[at] = self.depth_m[pixel];
         picture.object_id[at] = self.object_id[pixel];
     }
+
+    /// As [`AovTile::write`], but albedo and normal of what is seen by mirrors and clear glass.
+    pub fn write_seen(&self, pixel: usize, per_sample: f32, picture: &mut AovPicture, at: usize) {
+        self.write(pixel, per_sample, picture, at);
+        picture.albedo[at] = (self.seen_albedo[pixel] * per_sample).to_array();
+        picture.normal[at] = (self.seen_normal[pixel] * per_sample).to_array();
+    }
 }
 
-stored_fields!(AovTile { albedo, normal, depth_m, object_id });
+stored_fields!(AovTile { albedo, normal, seen_albedo, seen_normal, depth_m, object_id });
 
 #[cfg(test)]
 mod tests {
@@ -201,5 +224,39 @@ mod tests {
         assert_eq!((aovs.albedo[centre], aovs.normal[centre], aovs.object_id[centre]), ([1.0; 3], [0.0; 3], 0));
         let distance = scene.lights[0].position.distance(scene.camera.position) - 0.3;
         assert!((aovs.depth_m[centre] - distance).abs() < 0.01, "{} for {distance}", aovs.depth_m[centre]);
+    }
+
+    fn denoiser_aovs(scene: &Scene, method: Method) -> (AovPicture, AovPicture) {
+        let settings = Settings { width: WIDTH, height: HEIGHT, method, spp: 4, aovs: true, ..Settings::default() };
+        let prepared = prepare(scene, &Assets::default()).unwrap();
+        let film = render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
+        (film.denoiser_aovs().unwrap(), film.aovs().unwrap())
+    }
+
+    #[test]
+    fn without_mirrors_and_glass_the_denoiser_reads_the_first_hits() {
+        for method in [Method::Path, Method::Direct, Method::Whitted] {
+            let (seen, first) = denoiser_aovs(&still_life(), method);
+            assert_eq!(seen, first, "{method:?}");
+        }
+    }
+
+    #[test]
+    fn the_denoiser_reads_what_a_mirror_shows() {
+        // The floor is a mirror, in which the camera sees a ceiling.
+        let mut scene = still_life();
+        scene.objects.truncate(1);
+        scene.objects[0].material =
+            Material { base_color: [0.5; 3], metallic: 1.0, roughness: 0.0, ..Material::default() };
+        scene.objects.push(object(5, Shape::Plane { width_m: 80.0, depth_m: 80.0 }, Vec3::Y * 5.0, [0.2, 0.4, 0.6]));
+        let (seen, first) = denoiser_aovs(&scene, Method::Path);
+        let centre = (HEIGHT / 2 * WIDTH + WIDTH / 2) as usize;
+        assert!((Vec3::from(first.normal[centre]) - Vec3::Y).length() < 1e-5, "the mirror's own");
+        // Schlick: 0.5 head-on, and 0.5 + 0.5 (1 - cos)^5 under the angle of the camera, here 0.56.
+        let towards = scene.camera.position.normalize();
+        let reflectance = 0.5 + 0.5 * (1.0 - towards.y).powi(5);
+        let (albedo, normal) = (Vec3::from(seen.albedo[centre]), Vec3::from(seen.normal[centre]));
+        assert!((albedo / (reflectance * Vec3::new(0.2, 0.4, 0.6)) - 1.0).abs().max_element() < 0.02, "{albedo}");
+        assert!((normal + reflectance * Vec3::Y).length() < 0.02, "{normal}");
     }
 }

@@ -2,7 +2,7 @@
 
 use super::stored::stored_fields;
 use crate::raytrace::sampler::SampleId;
-use crate::raytrace::sink::{FirstHit, RadianceSink};
+use crate::raytrace::sink::{FirstHit, RadianceSink, SeenSurface};
 use glam::Vec3;
 
 /// The non-finite contributions of a film, a tile or a meter reading.
@@ -68,6 +68,16 @@ impl<S: RadianceSink> RadianceSink for NonFiniteGate<'_, S> {
             let hit = hit();
             let mut admit = |value: Vec3| report.admit(*sample, value).unwrap_or_default();
             FirstHit { normal: admit(hit.normal), albedo: admit(hit.albedo), ..hit }
+        });
+    }
+
+    #[inline]
+    fn seen_surface(&mut self, surface: impl FnOnce() -> SeenSurface) {
+        let NonFiniteGate { sink, sample, report } = self;
+        sink.seen_surface(|| {
+            let SeenSurface { albedo, normal } = surface();
+            let mut admit = |value: Vec3| report.admit(*sample, value).unwrap_or_default();
+            SeenSurface { albedo: admit(albedo), normal: admit(normal) }
         });
     }
 }

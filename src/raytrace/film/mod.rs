@@ -9,6 +9,7 @@ mod stored;
 mod sums;
 mod tile;
 
+use aov::AovTile;
 pub use gate::{NonFiniteGate, NonFiniteReport};
 pub use layer::{Layer, MAX_LIGHT_LAYERS, assign_layers};
 pub use noise::SampleBlocks;
@@ -184,13 +185,23 @@ impl Film {
 
     /// The AOVs; none unless [`Settings::aovs`] asked for them.
     pub fn aovs(&self) -> Option<AovPicture> {
+        self.aovs_by(AovTile::write)
+    }
+
+    /// The AOVs for the denoiser, which have albedo and normal of what mirrors and clear glass show; none unless
+    /// [`Settings::aovs`] asked for them.
+    pub fn denoiser_aovs(&self) -> Option<AovPicture> {
+        self.aovs_by(AovTile::write_seen)
+    }
+
+    fn aovs_by(&self, write: fn(&AovTile, usize, f32, &mut AovPicture, usize)) -> Option<AovPicture> {
         let mut picture = AovPicture::new(self.width, self.height);
         for tile in &self.tiles {
             let aovs = tile.aovs.as_ref()?;
             for pixel in 0..tile.pixels() {
                 let (x, y) = tile.position(pixel);
                 let at = y as usize * self.width as usize + x as usize;
-                aovs.write(pixel, tile.per_sample(), &mut picture, at);
+                write(aovs, pixel, tile.per_sample(), &mut picture, at);
             }
         }
         Some(picture)

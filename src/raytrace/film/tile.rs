@@ -5,7 +5,7 @@ use super::stored::{Stored, invalid};
 use super::{LayerSums, NonFiniteGate, NonFiniteReport, SampleBlocks};
 use crate::color::luminance;
 use crate::raytrace::sampler::SampleId;
-use crate::raytrace::sink::{FirstHit, RadianceSink};
+use crate::raytrace::sink::{FirstHit, RadianceSink, SeenSurface};
 use glam::Vec3;
 use std::io::{self, Read, Write};
 
@@ -146,6 +146,13 @@ impl RadianceSink for PixelSink<'_> {
     fn first_hit(&mut self, hit: impl FnOnce() -> FirstHit) {
         if let Some(PixelAovs { tile, sample_index, view_axis }) = &mut self.aovs {
             tile.add(self.pixel, *sample_index, &hit(), *view_axis);
+        }
+    }
+
+    #[inline]
+    fn seen_surface(&mut self, surface: impl FnOnce() -> SeenSurface) {
+        if let Some(PixelAovs { tile, .. }) = &mut self.aovs {
+            tile.add_seen(self.pixel, &surface());
         }
     }
 }
