@@ -50,7 +50,8 @@ pub fn recovery_ui(ctx: &egui::Context, unsaved: &UnsavedStudio<'_>) -> Option<R
             // The text stays where it is when the picture arrives.
             let size = picture.map_or(egui::Vec2::splat(150.0), |picture| picture.size());
             let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-            widgets::named(ui, &response, "Picture of the unsaved studio");
+            let name = "Picture of the unsaved studio";
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
             if let Some(picture) = picture {
                 picture.paint(ui, rect);
             }

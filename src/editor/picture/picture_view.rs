@@ -94,31 +94,30 @@ impl PictureView {
         let bar =
             Rect::from_min_max(rect.left_top() + vec2(8.0, 8.0), Pos2::new(rect.right() - 8.0, rect.top() + 40.0));
         ui.scope_builder(egui::UiBuilder::new().max_rect(bar), |ui| {
-            ui.horizontal(|ui| {
-                if ui
-                    .selectable_label(self.zoom.is_none(), "Fit")
-                    .on_hover_text("The whole picture (double-click)")
-                    .clicked()
-                {
-                    *self = Self::default();
-                }
-                if ui
-                    .selectable_label(self.zoom == Some(1.0), "100 %")
-                    .on_hover_text("One to one (double-click)")
-                    .clicked()
-                {
-                    *self = PictureView { zoom: Some(1.0), offset: Vec2::ZERO };
-                }
-                ui.label(RichText::new(format!("{:.0} %", zoom * 100.0)).weak());
-                denoise_ui(ui, rendering, out);
-                if rendering.is_out_of_date(scene) && !rendering.is_running() {
-                    ui.label(RichText::new("Out of date").color(theme::ACCENT)).on_hover_text(OUT_OF_DATE);
-                    if ui.button("Render again").on_hover_text("R").clicked() {
-                        out.push(Command::Render);
-                    }
-                }
-            });
+            // A plate, for the bar lies over the picture
+            let plate = egui::Frame::new().fill(Color32::from_black_alpha(170)).inner_margin(4).corner_radius(4);
+            plate.show(ui, |ui| ui.horizontal(|ui| self.entries_ui(ui, rendering, scene, zoom, out)));
         });
+    }
+
+    fn entries_ui(&mut self, ui: &mut Ui, rendering: &Rendering, scene: &Scene, zoom: f32, out: &mut Vec<Command>) {
+        let entry = |ui: &mut Ui, is_chosen: bool, text: &str, tip: &str| {
+            ui.selectable_label(is_chosen, text).on_hover_text(tip).clicked()
+        };
+        if entry(ui, self.zoom.is_none(), "Fit", "The whole picture (double-click)") {
+            *self = Self::default();
+        }
+        if entry(ui, self.zoom == Some(1.0), "100 %", "One to one (double-click)") {
+            *self = PictureView { zoom: Some(1.0), offset: Vec2::ZERO };
+        }
+        ui.label(RichText::new(format!("{:.0} %", zoom * 100.0)).weak());
+        denoise_ui(ui, rendering, out);
+        if rendering.is_out_of_date(scene) && !rendering.is_running() {
+            ui.label(RichText::new("Out of date").color(theme::ACCENT)).on_hover_text(OUT_OF_DATE);
+            if ui.button("Render again").on_hover_text("R").clicked() {
+                out.push(Command::Render);
+            }
+        }
     }
 }
 
