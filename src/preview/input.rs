@@ -86,6 +86,8 @@ pub struct Overlay {
     pub hovered: Option<Pick>,
     /// Scene-linear colour of the background.
     pub void_color: Vec3,
+    /// Shows a studio in which no light is on in an even work light.
+    pub work_light: bool,
 }
 
 impl Overlay {

@@ -53,6 +53,25 @@ fn unsaved_changes_prompt_before_they_are_lost() {
     assert!(close_requested(&mut window), "told to lose the changes, it closes");
 }
 
+#[test]
+fn an_empty_studio_is_shown_in_a_work_light_until_a_light_is_on() {
+    let Some(mut window) = preset_window() else { return };
+    press(&mut window, Modifiers::COMMAND, Key::N);
+    click(&mut window, "Empty studio");
+    let empty = scene(&window);
+    assert!(empty.lights.is_empty() && empty.objects.is_empty() && empty.room.is_some());
+    assert!(!window.state().document().is_dirty() && window.state().document().path().is_none());
+    let brightness = |window: &mut Window| {
+        let (picture, view) = (window.render().unwrap(), window.get_by_label("Viewport").rect());
+        let middle = (view.center() + vec2(0.0, 100.0)) * window.ctx.pixels_per_point();
+        picture.get_pixel(middle.x as u32, middle.y as u32).0[0]
+    };
+    assert!(brightness(&mut window) > 60, "the floor can be seen: {}", brightness(&mut window));
+    // In the picture there is no such light
+    press(&mut window, Modifiers::NONE, Key::Num1);
+    assert!(brightness(&mut window) < 10, "{}", brightness(&mut window));
+}
+
 /// Writes a model, drops it onto a window that saves to `file`, and returns the window and the model's path.
 fn window_with_pyramid(folder: &Path, file: &Path) -> (Window, PathBuf) {
     let model = folder.join("pyramid.obj");

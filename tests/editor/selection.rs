@@ -245,3 +245,37 @@ fn lights_are_mirrored_about_the_face_of_a_figure_that_is_turned_or_hidden() {
     assert_eq!(*scene(&window), before);
     assert_eq!(window.state().toasts().texts(ToastKind::Info).len(), 1);
 }
+
+#[test]
+fn what_is_copied_is_pasted_into_another_studio_in_one_step() {
+    let Some(mut window) = preset_window() else { return };
+    let (figure, light) = (scene(&window).objects[0].clone(), scene(&window).lights[0].clone());
+    select(&mut window, &[Item::Object(figure.id), Item::Light(light.id)]);
+    window.event(Event::Copy);
+    window.step();
+    let copied = |window: &Window| {
+        window.output().platform_output.commands.iter().find_map(|command| match command {
+            egui::OutputCommand::CopyText(text) => Some(text.clone()),
+            _ => None,
+        })
+    };
+    let text = copied(&window).expect("the text of both is on the clipboard");
+    settle(&mut window);
+    press(&mut window, Modifiers::COMMAND, Key::N);
+    click(&mut window, "Empty studio");
+    window.event(Event::Paste(text));
+    settle(&mut window);
+    let pasted = scene(&window);
+    assert_eq!((pasted.objects[0].name.as_str(), pasted.lights[0].name.as_str()), (&*figure.name, &*light.name));
+    assert_eq!(pasted.lights[0].position, light.position);
+    assert!(matches!(pasted.lights[0].aim, Aim::Object { object, .. } if object == pasted.objects[0].id));
+    assert_eq!((window.state().selection().items().len(), undo_depth(&window)), (2, 1));
+    // A cut is one step, too, and a text that is no studio adds nothing.
+    window.event(Event::Cut);
+    settle(&mut window);
+    assert!(scene(&window).objects.is_empty() && undo_depth(&window) == 2);
+    window.event(Event::Paste("a letter".to_owned()));
+    settle(&mut window);
+    assert_eq!(window.state().toasts().texts(ToastKind::Info).len(), 1);
+    assert_eq!(undo_depth(&window), 2);
+}

@@ -28,6 +28,14 @@ pub enum Command {
     BeginRename(Item),
     /// Deletes the selection.
     DeleteSelected,
+    /// Puts the selection on the clipboard.
+    CopySelected,
+    /// Puts the selection on the clipboard and deletes it.
+    CutSelected,
+    /// Requests what is on the clipboard.
+    RequestPaste,
+    /// Adds the lights and things of a text from the clipboard.
+    Paste(String),
     /// Duplicates the selection.
     DuplicateSelected,
     /// Mirrors the selection, or copies of it, about the plane through the subject's face.
@@ -61,6 +69,8 @@ pub enum Command {
     New,
     /// Opens a shipped studio, by its index in the list.
     NewFromPreset(usize),
+    /// Opens a room without lights and figures.
+    NewEmpty,
     /// Opens a studio that a dialog selects.
     Open,
     /// Opens this studio.

@@ -36,6 +36,8 @@ pub enum Action {
     Delete(Vec<Item>),
     /// Adds copies of objects and lights beside the originals.
     Duplicate(Vec<Item>),
+    /// Adds the lights and objects of another scene.
+    Paste(Box<Scene>),
     /// Mirrors items, or copies of them, about a plane.
     Mirror {
         /// The items to mirror.
@@ -77,6 +79,10 @@ impl Action {
             Action::Rename(_, name) => format!("Rename to {name}"),
             Action::Delete(items) => format!("Delete {}", name_of_all(items, scene)),
             Action::Duplicate(items) => format!("Duplicate {}", name_of_all(items, scene)),
+            Action::Paste(from) => match from.objects.len() + from.lights.len() {
+                1 => "Paste".to_owned(),
+                count => format!("Paste {count} things"),
+            },
             Action::Mirror { items, copies: false, .. } => format!("Mirror {}", name_of_all(items, scene)),
             Action::Mirror { items, copies: true, .. } => format!("Mirrored copy of {}", name_of_all(items, scene)),
             Action::Mute(lights, true) => format!("Mute {}", name_of_all(&as_items(lights), scene)),
@@ -122,6 +128,7 @@ impl Action {
             Action::Rename(item, name) => rename(scene, item, &name)?,
             Action::Delete(items) => arrange::delete(scene, &items)?,
             Action::Duplicate(items) => return arrange::duplicate(scene, &items),
+            Action::Paste(from) => return Ok(arrange::paste(scene, &from)),
             Action::Mirror { items, plane, copies } => return arrange::mirror(scene, &items, &plane, copies),
             Action::Mute(lights, mute) => switches::mute(scene, &lights, mute)?,
             Action::Solo(lights) => switches::solo(scene, lights)?,

@@ -133,6 +133,51 @@ fn copy(scene: &mut Scene, items: &[Item]) -> Result<Vec<Item>, ActionError> {
     Ok(copies)
 }
 
+/// Adds the lights and objects of another scene; their aims and gazes stay on each other. They stand where they stand
+/// there, or beside that place if something stands on it already. Returns them.
+pub fn paste(scene: &mut Scene, from: &Scene) -> Vec<Item> {
+    let is_taken = |place: Vec3| {
+        let objects = scene.objects.iter().map(|object| object.transform.position);
+        objects.chain(scene.lights.iter().map(|light| light.position)).any(|taken| taken == place)
+    };
+    let places = from.objects.iter().map(|object| object.transform.position);
+    let is_any_taken = places.chain(from.lights.iter().map(|light| light.position)).any(is_taken);
+    let offset = if is_any_taken { COPY_OFFSET } else { Vec3::ZERO };
+    let mut added = Vec::new();
+    let (mut objects, mut lights) = (HashMap::new(), HashMap::new());
+    for object in &from.objects {
+        let mut copied = object.clone();
+        copied.transform.position += offset;
+        let item = add_object(scene, copied);
+        added.push(item);
+        if let Item::Object(id) = item {
+            objects.insert(object.id, id);
+        }
+    }
+    for light in &from.lights {
+        let mut copied = Light { position: light.position + offset, ..light.clone() };
+        match &mut copied.aim {
+            Aim::Object { object, .. } => *object = objects.get(object).copied().unwrap_or(*object),
+            Aim::Point(point) => *point += offset,
+            Aim::Angles { .. } => {}
+        }
+        let item = add_light(scene, copied);
+        added.push(item);
+        if let Item::Light(id) = item {
+            lights.insert(light.id, id);
+        }
+    }
+    // Eyes follow the lights that came along
+    for object in objects.values() {
+        if let Some(Shape::Figure(figure)) = scene.object_mut(*object).map(|object| &mut object.shape)
+            && let Gaze::Light(light) = &mut figure.gaze
+        {
+            *light = lights.get(light).copied().unwrap_or(*light);
+        }
+    }
+    added
+}
+
 /// A vertical mirror plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MirrorPlane {

@@ -4,7 +4,8 @@ use crate::editor::document::studio_document::Document;
 use crate::io::{self, AssetFiles, FileStamp, LayeredPicture, PictureInfo, RecoveryFolder, RecoveryInfo};
 use crate::jobs::sentence;
 use crate::photo::Picture;
-use crate::scene::{Assets, Material, Mesh, Scene};
+use crate::scene::{Aim, Assets, Camera, Material, Mesh, Room, Scene};
+use glam::Vec3;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -22,6 +23,13 @@ pub struct PresetInfo {
 pub fn presets() -> Vec<PresetInfo> {
     let info = |p: &io::Preset| PresetInfo { name: p.name.to_string(), description: p.description.to_string() };
     io::presets().iter().map(info).collect()
+}
+
+/// Returns a room without lights and figures, with a camera at the height of a face.
+pub fn empty_studio() -> Scene {
+    let camera =
+        Camera { position: Vec3::new(0.0, 1.55, 3.2), aim: Aim::Point(Vec3::new(0.0, 1.5, 0.0)), ..Camera::default() };
+    Scene { name: "New studio".to_owned(), room: Some(Room::default()), camera, ..Scene::default() }
 }
 
 /// A studio loaded from a file or from the shipped ones.

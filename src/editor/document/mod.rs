@@ -5,6 +5,7 @@ pub mod action_error;
 pub mod arrange;
 pub mod bounds;
 pub mod catalog;
+pub mod clipboard;
 pub mod files;
 pub mod history;
 pub mod item;

@@ -6,6 +6,9 @@ use crate::editor::panels::thumbnails::{STUDIO_POINTS, Thumbnail, Thumbnails};
 use crate::editor::ui::widgets;
 use eframe::egui::{self, Atom, Button, Key, Modifiers, RichText, ScrollArea, Ui, vec2};
 
+/// Height of the list, points. It is the same from the first frame on, so that the buttons below it do not move.
+const LIST_POINTS: f32 = 520.0;
+
 /// The marked studio of the list; none while the list is closed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PresetPicker {
@@ -53,7 +56,7 @@ impl PresetPicker {
                     .weak(),
             );
             ui.separator();
-            ScrollArea::vertical().max_height(520.0).show(ui, |ui| {
+            ScrollArea::vertical().max_height(LIST_POINTS).min_scrolled_height(LIST_POINTS).show(ui, |ui| {
                 for (i, preset) in presets.iter().enumerate() {
                     let response = preset_row(ui, preset, thumbnails.studio(ctx, i), i == marked);
                     if response.clicked() {
@@ -72,6 +75,11 @@ impl PresetPicker {
                 let enabled = marked < presets.len();
                 if ui.add_enabled(enabled, Button::new("Open this studio")).clicked() {
                     choice = Some(marked);
+                }
+                let tip = "A room without lights and figures";
+                if ui.button("Empty studio").on_hover_text(tip).clicked() {
+                    out.push(Command::NewEmpty);
+                    ui.close();
                 }
                 if ui.button("Cancel").clicked() {
                     ui.close();

@@ -1,11 +1,9 @@
-//! Messages at the lower edge of the window. Errors and warnings stay until they are dismissed; information expires.
+//! Messages at the lower edge of the window. They expire, errors last, but not while the pointer is on them.
 
 use crate::editor::ui::theme;
 use eframe::egui::{self, Align2, Area, Frame, Id, Label, RichText};
 use std::time::Duration;
 
-/// Display time of information, seconds.
-const INFO_S: f64 = 5.0;
 /// Most messages shown at once; the oldest is removed.
 const SHOWN: usize = 5;
 
@@ -20,11 +18,22 @@ pub enum ToastKind {
     Error,
 }
 
+impl ToastKind {
+    /// Returns the display time, seconds.
+    fn shown_s(self) -> f64 {
+        match self {
+            ToastKind::Info => 5.0,
+            ToastKind::Warning => 15.0,
+            ToastKind::Error => 30.0,
+        }
+    }
+}
+
 #[derive(Clone, Debug)]
 struct Toast {
     kind: ToastKind,
     text: String,
-    /// Expiry time of information, in egui's time; set when it is first shown.
+    /// Expiry time, in egui's time; set when it is first shown.
     gone_at: Option<f64>,
 }
 
@@ -32,6 +41,8 @@ struct Toast {
 #[derive(Clone, Debug, Default)]
 pub struct Toasts {
     toasts: Vec<Toast>,
+    /// The pointer was on them in the last frame.
+    is_pointed_at: bool,
 }
 
 impl Toasts {
@@ -66,21 +77,36 @@ impl Toasts {
         self.toasts.iter().filter(|t| t.kind == kind).map(|t| t.text.as_str()).collect()
     }
 
+    /// Removes all messages: they are about a studio that is no longer open.
+    pub fn clear(&mut self) {
+        self.toasts.clear();
+    }
+
+    /// Removes the messages that have expired at a time, and returns the time at which the next one does, seconds.
+    fn expire(&mut self, now: f64) -> Option<f64> {
+        for toast in &mut self.toasts {
+            let shown_s = toast.kind.shown_s();
+            let gone_at = toast.gone_at.get_or_insert(now + shown_s);
+            if self.is_pointed_at {
+                *gone_at = gone_at.max(now + 0.5 * shown_s);
+            }
+        }
+        self.toasts.retain(|toast| toast.gone_at.is_none_or(|gone_at| now < gone_at));
+        self.toasts.iter().filter_map(|toast| toast.gone_at).min_by(f64::total_cmp)
+    }
+
     /// Draws the messages in the foreground, at the lower edge of `over`.
     pub fn ui(&mut self, ctx: &egui::Context, over: egui::Rect) {
         let now = ctx.time();
-        for toast in self.toasts.iter_mut().filter(|t| t.kind == ToastKind::Info) {
-            let gone_at = *toast.gone_at.get_or_insert(now + INFO_S);
-            ctx.request_repaint_after(Duration::from_secs_f64((gone_at - now).max(0.01)));
-        }
-        self.toasts.retain(|toast| toast.gone_at.is_none_or(|gone_at| now < gone_at));
-        if self.toasts.is_empty() {
+        let Some(next) = self.expire(now) else {
+            self.is_pointed_at = false;
             return;
-        }
+        };
+        ctx.request_repaint_after(Duration::from_secs_f64((next - now).max(0.01)));
         let mut dismissed = None;
         let foot = over.center_bottom() - egui::vec2(0.0, 12.0);
         let width = (over.width() - 140.0).clamp(160.0, 560.0);
-        Area::new(Id::unique("toasts"))
+        let area = Area::new(Id::unique("toasts"))
             .fixed_pos(foot)
             .pivot(Align2::CENTER_BOTTOM)
             .order(egui::Order::Foreground)
@@ -91,6 +117,7 @@ impl Toasts {
                     }
                 }
             });
+        self.is_pointed_at = area.response.contains_pointer();
         if let Some(i) = dismissed {
             self.toasts.remove(i);
         }
@@ -119,4 +146,26 @@ fn toast_ui(ui: &mut egui::Ui, toast: &Toast, width: f32) -> bool {
             .inner
         })
         .inner
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_expire_errors_last_and_not_under_the_pointer() {
+        let mut toasts = Toasts::default();
+        toasts.info("saved");
+        toasts.warning("odd");
+        toasts.error("lost");
+        assert_eq!(toasts.expire(100.0), Some(105.0));
+        assert_eq!(toasts.expire(106.0), Some(115.0));
+        assert!(toasts.texts(ToastKind::Info).is_empty() && toasts.texts(ToastKind::Warning) == ["odd"]);
+        toasts.is_pointed_at = true;
+        assert_eq!(toasts.expire(114.0), Some(121.5), "half of its time from when it was pointed at");
+        toasts.is_pointed_at = false;
+        toasts.expire(122.0);
+        assert_eq!(toasts.texts(ToastKind::Error), ["lost"]);
+        assert_eq!(toasts.expire(131.0), None);
+    }
 }

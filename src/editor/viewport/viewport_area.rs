@@ -303,6 +303,7 @@ impl Viewport {
         let pixels = rect.size() * ui.pixels_per_point();
         let size = ((pixels.x.round() as u32).max(1), (pixels.y.round() as u32).max(1));
         let overlay = self.overlay_of(input);
+        let has_work_light = overlay.work_light;
         let through_camera = input.central_view == CentralView::Camera;
         let traced =
             self.traced_view.show(ui.ctx(), input.document, frame, size, through_camera, self.preview.view_options);
@@ -315,6 +316,12 @@ impl Viewport {
             painter.image(texture, rect, uv, Color32::WHITE);
         }
         self.preview.paint_over(&painter, rect);
+        let is_dark = !input.document.scene().lights.iter().any(|light| light.on);
+        if is_dark && has_work_light && traced.is_none() && self.preview.failure().is_none() {
+            let at = rect.center_bottom() - vec2(0.0, 14.0);
+            let text = "No light is on. This is a work light, which pictures do not have.";
+            painter.text(at, Align2::CENTER_BOTTOM, text, FontId::proportional(13.0), theme::ACCENT);
+        }
         if traced.or(preview).is_none() {
             let text = "Preparing the live view\u{2026}";
             painter.text(
@@ -411,6 +418,7 @@ impl Viewport {
             camera_gizmo: studio.then_some(input.picture_aspect),
             selection: input.selection.items().iter().filter_map(pick).collect(),
             void_color: Vec3::splat(0.012),
+            work_light: studio,
             ..Overlay::default()
         }
     }

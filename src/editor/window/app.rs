@@ -313,6 +313,8 @@ impl App {
         // Only undo and redo repeat with a held key.
         let repeats =
             ctx.input(|i| i.events.iter().any(|e| matches!(e, egui::Event::Key { pressed: true, repeat: true, .. })));
+        // The system's keys for the clipboard arrive as events.
+        out.extend(ctx.input(|i| i.events.iter().filter_map(clipboard_command).collect::<Vec<_>>()));
         for KeyBinding { shortcut, command, .. } in &KEY_BINDINGS {
             if ctx.input_mut(|i| i.consume_shortcut(shortcut)) {
                 let command = command();
@@ -482,5 +484,15 @@ impl eframe::App for App {
             // The loss occurred in this frame: discard it.
             ctx.request_discard("the GPU device was lost");
         }
+    }
+}
+
+/// Returns the command of a clipboard event.
+fn clipboard_command(event: &egui::Event) -> Option<Command> {
+    match event {
+        egui::Event::Copy => Some(Command::CopySelected),
+        egui::Event::Cut => Some(Command::CutSelected),
+        egui::Event::Paste(text) => Some(Command::Paste(text.clone())),
+        _ => None,
     }
 }

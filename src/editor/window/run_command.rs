@@ -7,7 +7,8 @@ use crate::editor::document::action::Action;
 use crate::editor::document::action_error::ActionError;
 use crate::editor::document::arrange::MirrorPlane;
 use crate::editor::document::catalog::CatalogItem;
-use crate::editor::document::files::StudioSource;
+use crate::editor::document::clipboard;
+use crate::editor::document::files::{self, StudioSource};
 use crate::editor::document::item::Item;
 use crate::editor::document::placement;
 use crate::editor::document::selection::Selection;
@@ -38,6 +39,17 @@ impl App {
                 let can_go = |item: &Item| item.can_be_copied() || *item == Item::Meter;
                 self.with_selected(can_go, "Select a light or a thing to delete.", |_, items| Action::Delete(items));
             }
+            Command::CopySelected => drop(self.copy_selected(ctx)),
+            Command::CutSelected => {
+                if let Some(items) = self.copy_selected(ctx) {
+                    self.apply(Action::Delete(items), None);
+                }
+            }
+            Command::RequestPaste => ctx.send_viewport_cmd(ViewportCommand::RequestPaste),
+            Command::Paste(text) => match clipboard::pasted(&text) {
+                Some(from) => self.apply(Action::Paste(Box::new(from)), None),
+                None => self.toasts.info("There are no lights or things on the clipboard."),
+            },
             Command::DuplicateSelected => {
                 let otherwise = "Select a light or a thing to duplicate.";
                 self.with_selected(|item| item.can_be_copied(), otherwise, |_, items| Action::Duplicate(items));
@@ -76,6 +88,7 @@ impl App {
             Command::Redo => self.step(Document::redo),
             Command::New => self.panels.preset_picker.open(),
             Command::NewFromPreset(index) => self.replace_with(StudioSource::Preset(index), ctx),
+            Command::NewEmpty => self.replace_with(StudioSource::Memory(Box::new(files::empty_studio())), ctx),
             Command::OpenPath(path) => self.replace_with(StudioSource::File(path), ctx),
             Command::ClearRecent => self.session.recent.clear(),
             Command::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
@@ -142,6 +155,17 @@ impl App {
         } else {
             self.apply(action(self.document.scene(), items), None);
         }
+    }
+
+    /// Puts the selected lights and things on the clipboard, and returns them; none without any.
+    fn copy_selected(&mut self, ctx: &Context) -> Option<Vec<Item>> {
+        let items: Vec<Item> = self.selection.items().iter().copied().filter(|item| item.can_be_copied()).collect();
+        let Some(text) = clipboard::copied_text(self.document.scene(), &items) else {
+            self.toasts.info("Select a light or a thing to copy.");
+            return None;
+        };
+        ctx.copy_text(text);
+        Some(items)
     }
 
     fn mirror_selected(&mut self, copies: bool) {

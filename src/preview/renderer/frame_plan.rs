@@ -17,6 +17,7 @@ use crate::preview::shadows::plan::ShadowPlan;
 use crate::preview::targets::Output;
 use crate::scene::{CameraFrame, Object};
 use glam::Vec3;
+use std::f32::consts::PI;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// With more lights than this, a draft uses its coarsest resolutions.
@@ -159,11 +160,17 @@ fn frame_constants(
     frame
 }
 
-/// Returns the traced bounced light, or its estimate: in a room the same on all surfaces, without one that of the
+/// Irradiance of the work light over pi, on surfaces that face +X, -X, +Y, -Y, +Z and -Z: from above and in front, so
+/// that the sides of things differ.
+const WORK_LIGHT: [f32; 6] = [0.42, 0.34, 0.62, 0.14, 0.5, 0.24];
+
+/// Returns the work light of a dark studio, or the traced bounced light, or its estimate: in a room the same on all surfaces, without one that of the
 /// backdrops on a subject.
 fn bounced_light(input: &PreviewInput, lights: &LightTable, environment: Option<&Environment>) -> IrradianceGrid {
     let environment = environment.filter(|_| input.scene.room.is_none());
+    let is_dark = lights.lights.is_empty() && lights.ambient.irradiance == Vec3::ZERO;
     match input.bounced_light.filter(|grid| !grid.layout.is_empty()) {
+        _ if is_dark && input.overlay.work_light => IrradianceGrid::uniform(WORK_LIGHT.map(|e| Vec3::splat(e * PI))),
         _ if !input.options.bounce_estimate => IrradianceGrid::uniform([Vec3::ZERO; 6]),
         Some(grid) => grid.clone(),
         None => {

@@ -1,0 +1,81 @@
+//! Lights and things on the system's clipboard, as the text of a studio that has nothing else.
+
+use crate::editor::document::arrange;
+use crate::editor::document::item::Item;
+use crate::io;
+use crate::scene::Scene;
+
+/// Returns the text of a studio with these lights and objects alone; none without any. What they aim at or look at
+/// and is not among them becomes a point of the room.
+pub fn copied_text(scene: &Scene, items: &[Item]) -> Option<String> {
+    let is_copied = |item: Item| items.contains(&item);
+    let mut part = Scene { meter: None, solo: None, ..scene.clone() };
+    part.objects.iter_mut().for_each(|object| object.locked = false);
+    part.lights.iter_mut().for_each(|light| light.locked = false);
+    let objects = part.objects.iter().map(|object| Item::Object(object.id));
+    let lights = part.lights.iter().map(|light| Item::Light(light.id));
+    let others: Vec<Item> = objects.chain(lights).filter(|item| !is_copied(*item)).collect();
+    arrange::delete(&mut part, &others).ok()?;
+    let has_any = !(part.objects.is_empty() && part.lights.is_empty());
+    has_any.then(|| io::write_scene(&part))
+}
+
+/// Returns the lights and objects of a text; none if it is no studio, or one without any.
+pub fn pasted(text: &str) -> Option<Scene> {
+    let (scene, _) = io::parse_scene(text).ok()?;
+    (!(scene.objects.is_empty() && scene.lights.is_empty())).then_some(scene)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Aim, Gaze, Shape};
+
+    #[test]
+    fn a_copied_light_keeps_its_aim_as_a_point_and_with_its_subject_as_an_object() {
+        let scene = io::presets()[0].load().unwrap().scene;
+        let (light, object) = (&scene.lights[0], &scene.objects[0]);
+        assert!(matches!(light.aim, Aim::Object { object: at, .. } if at == object.id));
+        let alone = pasted(&copied_text(&scene, &[Item::Light(light.id)]).unwrap()).unwrap();
+        assert_eq!((alone.lights.len(), alone.objects.len()), (1, 0));
+        let Aim::Point(point) = alone.lights[0].aim else { panic!("{:?}", alone.lights[0].aim) };
+        assert!(point.distance(scene.aim_point(&light.aim, light.position)) < 1e-3);
+        let both = [Item::Light(light.id), Item::Object(object.id)];
+        let both = pasted(&copied_text(&scene, &both).unwrap()).unwrap();
+        assert!(matches!(both.lights[0].aim, Aim::Object { object: at, .. } if at == both.objects[0].id));
+    }
+
+    #[test]
+    fn pasted_items_have_new_names_and_keep_what_they_aim_and_look_at() {
+        let mut scene = io::presets()[0].load().unwrap().scene;
+        let (light, object) = (scene.lights[0].id, scene.objects[0].id);
+        if let Shape::Figure(figure) = &mut scene.objects[0].shape {
+            figure.gaze = Gaze::Light(light);
+        }
+        let text = copied_text(&scene, &[Item::Light(light), Item::Object(object)]).unwrap();
+        let before = scene.clone();
+        let pasted = arrange::paste(&mut scene, &pasted(&text).unwrap());
+        let [Item::Object(new_object), Item::Light(new_light)] = pasted[..] else { panic!("{pasted:?}") };
+        assert!(new_object != object && new_light != light);
+        let (new, old) = (scene.object(new_object).unwrap(), before.object(object).unwrap());
+        assert!(new.name != old.name && new.transform.position != old.transform.position, "beside the first one");
+        assert!(matches!(&new.shape, Shape::Figure(figure) if figure.gaze == Gaze::Light(new_light)));
+        let new = scene.light(new_light).unwrap();
+        assert!(matches!(new.aim, Aim::Object { object: at, .. } if at == new_object));
+        // In another studio they stand where they stood.
+        let mut empty = Scene::default();
+        arrange::paste(&mut empty, &super::pasted(&text).unwrap());
+        assert_eq!(empty.objects[0].transform, old.transform);
+        assert_eq!(empty.objects[0].name, old.name);
+    }
+
+    #[test]
+    fn texts_that_are_no_studio_are_not_pasted() {
+        let camera_alone = io::write_scene(&Scene::default());
+        for text in ["", "hello", "(format: 1)", &camera_alone] {
+            assert_eq!(pasted(text), None, "{text}");
+        }
+        let scene = io::presets()[0].load().unwrap().scene;
+        assert_eq!(copied_text(&scene, &[Item::Camera, Item::Room]), None);
+    }
+}
