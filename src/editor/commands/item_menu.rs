@@ -36,6 +36,7 @@ pub fn item_menu_ui(ui: &mut Ui, scene: &Scene, item: Item, selection: &Selectio
 pub fn empty_selection_menu_ui(ui: &mut Ui, out: &mut Vec<Command>) {
     ui.set_min_width(230.0);
     entry(ui, true, "Select all", "All lights and things that are not locked", Command::SelectAll, out);
+    entry(ui, true, "Paste", "The lights and things on the clipboard", Command::RequestPaste, out);
     entry(ui, true, "Bring everything into view", "Figures, things and lights", Command::FrameSelection, out);
     entry(ui, true, "Show and unmute all", "Nothing is hidden or muted any more", Command::ShowAll, out);
 }
@@ -44,6 +45,8 @@ pub fn empty_selection_menu_ui(ui: &mut Ui, out: &mut Vec<Command>) {
 pub fn selection_entries(ui: &mut Ui, scene: &Scene, selection: &Selection, out: &mut Vec<Command>) {
     let copyable = selection.items().iter().any(|item| item.can_be_copied());
     let lights = !selection.lights().is_empty();
+    entry(ui, copyable, "Cut", "Moves them to the clipboard", Command::CutSelected, out);
+    entry(ui, copyable, "Copy", "To the clipboard, for this studio or another", Command::CopySelected, out);
     entry(ui, copyable, "Duplicate", "Put a copy beside it", Command::DuplicateSelected, out);
     let tip = "To the other side of the subject's face: place, aim, turn and flaps";
     entry(ui, copyable, "Mirror", tip, Command::MirrorSelected { copies: false }, out);

@@ -37,8 +37,9 @@ const fn ctrl_shift(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
 }
 
-/// All key bindings, in the order of the list. Of two with the same key, the one with more modifiers comes first.
-pub const KEY_BINDINGS: [KeyBinding; 39] = [
+/// All key bindings, in the order of the list. Those of the clipboard arrive as events of the system instead of keys; see
+/// `clipboard_command` in `window/app.rs`. Of two with the same key, the one with more modifiers comes first.
+pub const KEY_BINDINGS: [KeyBinding; 42] = [
     bind(ctrl_shift(Key::S), || Command::SaveAs, "Save the studio to another file"),
     bind(ctrl_shift(Key::Z), || Command::Redo, "Do the last step again"),
     bind(
@@ -62,6 +63,9 @@ pub const KEY_BINDINGS: [KeyBinding; 39] = [
     bind(ctrl(Key::Y), || Command::Redo, "Do the last step again"),
     bind(ctrl(Key::A), || Command::SelectAll, "Select all that is not locked"),
     bind(key(Key::Escape), || Command::Escape, "Give up a drag, leave a mode, deselect"),
+    bind(ctrl(Key::X), || Command::CutSelected, "Cut lights and things"),
+    bind(ctrl(Key::C), || Command::CopySelected, "Copy lights and things, for this studio or another"),
+    bind(ctrl(Key::V), || Command::RequestPaste, "Paste lights and things"),
     bind(ctrl(Key::D), || Command::DuplicateSelected, "Duplicate"),
     bind(key(Key::Delete), || Command::DeleteSelected, "Delete"),
     bind(key(Key::M), || Command::SetHandles(HandleMode::Move), "Handles that move"),

@@ -3,8 +3,8 @@
 use crate::editor::commands::shortcuts::{KEY_BINDINGS, KeyBinding};
 use eframe::egui::{self, Grid, RichText, ScrollArea, Ui, vec2};
 
-/// Mouse actions, held keys and those of the system.
-const MOUSE: [(&str, &str); 19] = [
+/// Mouse actions and held keys.
+const MOUSE: [(&str, &str); 18] = [
     ("Left click", "Select what is under the pointer"),
     ("Shift or Ctrl + click", "Take it in or out; in the list Shift takes all from the last to here"),
     ("Left drag", "Select what lies in a box; with Shift or Ctrl: too"),
@@ -19,7 +19,6 @@ const MOUSE: [(&str, &str); 19] = [
     ("W A S D, arrows", "Fly ahead, left, back, right (Shift: faster)"),
     ("Q E", "Fly down and up"),
     ("Click an end of the axes", "Look from there, without perspective"),
-    ("Ctrl+C, X, V", "Copy, cut, paste lights and things, also between studios"),
     ("Drag a number", "Change it; Shift: finely"),
     ("Click a number", "Type it, with any unit: 150 cm, 1.5 m, 5 ft"),
     ("Drop a file", "A studio (.ron) opens, a model (.obj) comes in"),

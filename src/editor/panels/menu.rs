@@ -99,10 +99,7 @@ fn edit_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     {
         entry(ui, true, "Rename", "Give the selected thing another name", Command::BeginRename(*item), out);
     }
-    let copyable = state.selection.items().iter().any(|item| item.can_be_copied());
-    entry(ui, copyable, "Cut", "To the clipboard (Ctrl+X)", Command::CutSelected, out);
-    entry(ui, copyable, "Copy", "To the clipboard, for this studio or another (Ctrl+C)", Command::CopySelected, out);
-    entry(ui, true, "Paste", "The lights and things on the clipboard (Ctrl+V)", Command::RequestPaste, out);
+    entry(ui, true, "Paste", "The lights and things on the clipboard", Command::RequestPaste, out);
     selection_entries(ui, state.document.scene(), state.selection, out);
     entry(ui, true, "Show and unmute all", "Nothing is hidden or muted any more", Command::ShowAll, out);
 }

@@ -388,7 +388,9 @@ impl Viewport {
 
     /// Frames the selection, or everything, in the studio view.
     pub fn frame_selection(&mut self, document: &Document, selection: &Selection) {
-        let (low, high) = bounds(document, selection).unwrap_or((Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 2.0, 1.0)));
+        // In an empty studio, the floor and the camera of a new one
+        let new_studio = (Vec3::new(-2.0, 0.0, -2.0), Vec3::new(2.0, 2.2, 3.5));
+        let (low, high) = bounds(document, selection).unwrap_or(new_studio);
         self.view.frame_box(low, high);
     }
 
