@@ -76,7 +76,7 @@ impl Output<'_> {
             None => (io::encode_layers(path, noisy.picture, noisy.layers, aovs.as_ref(), &info)?, None),
             Some(quality) => {
                 let denoiser_aovs = denoiser_aovs.ok_or_else(|| {
-                    Failure::Input(anyhow!("the denoiser needs albedo and normals: render the parts with --denoise"))
+                    Failure::Input(anyhow!("the denoiser needs albedo and normals: render the parts with --denoise on"))
                 })?;
                 let started = Instant::now();
                 let names = layers.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();

@@ -21,9 +21,9 @@ pub struct Arguments {
     /// Write one EXR layer per light beside the whole picture (exr only).
     #[arg(long)]
     layers: bool,
-    /// Remove the noise with a neural network; the parts must be rendered with --denoise or --aovs. An EXR file holds the
-    /// noisy picture, too (noisy.R/G/B).
-    #[arg(long, value_enum, value_name = "HOW", num_args = 0..=1, default_value_t, default_missing_value = "on")]
+    /// Remove the noise with a neural network; the parts must be rendered with --denoise on or --aovs. An EXR file holds
+    /// the noisy picture, too (noisy.R/G/B).
+    #[arg(long, value_enum, value_name = "HOW", default_value_t)]
     denoise: Denoise,
     /// Make a picture of fewer samples where parts are missing.
     #[arg(long)]

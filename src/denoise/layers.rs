@@ -36,29 +36,32 @@ pub fn denoise_layers(
 }
 
 /// Scales the layers of each pixel so that they sum to the picture. Where all of them are black, they take the
-/// proportions of the noisy layers; where those are black, too, the first takes the whole.
+/// proportions of the noisy layers; where those are black, too, the brightest layer of the picture takes the whole, which
+/// is a light that is on.
 fn share_difference(picture: &Picture, noisy: &[Picture], layers: &mut [Picture]) {
-    let factors = |values: &[Picture]| -> Vec<[f32; 3]> {
-        let factor = |pixel: usize| -> [f32; 3] {
+    let factors = |values: &[Picture]| -> Vec<[Option<f32>; 3]> {
+        let factor = |pixel: usize| -> [Option<f32>; 3] {
             std::array::from_fn(|channel| {
                 let sum: f32 = values.iter().filter_map(|layer| layer.rgb.get(pixel)).map(|rgb| rgb[channel]).sum();
                 let whole = picture.rgb[pixel][channel];
-                if sum > f32::MIN_POSITIVE { whole / sum } else { f32::INFINITY }
+                (sum > f32::MIN_POSITIVE).then(|| whole / sum).filter(|factor| factor.is_finite())
             })
         };
         (0..picture.rgb.len()).into_par_iter().map(factor).collect()
     };
     let (denoised_factors, noisy_factors) = (factors(layers), factors(noisy));
+    let light = |layer: &Picture| layer.rgb.as_flattened().iter().map(|value| f64::from(*value)).sum::<f64>();
+    let brightest = (0..noisy.len()).max_by(|a, b| light(&noisy[*a]).total_cmp(&light(&noisy[*b])));
     for (index, (layer, noisy)) in layers.iter_mut().zip(noisy).enumerate() {
         let pixels =
             layer.rgb.iter_mut().zip(&noisy.rgb).zip(&picture.rgb).zip(denoised_factors.iter().zip(&noisy_factors));
         for (((pixel, noisy), whole), (denoised_factor, noisy_factor)) in pixels {
             for channel in 0..3 {
                 pixel[channel] = match (denoised_factor[channel], noisy_factor[channel]) {
-                    (factor, _) if factor.is_finite() => pixel[channel] * factor,
-                    (_, factor) if factor.is_finite() => noisy[channel] * factor,
-                    _ if index == 0 => whole[channel],
-                    _ => 0.0,
+                    (Some(factor), _) => pixel[channel] * factor,
+                    (None, Some(factor)) => noisy[channel] * factor,
+                    (None, None) if Some(index) == brightest => whole[channel],
+                    (None, None) => 0.0,
                 };
             }
         }
@@ -76,11 +79,21 @@ mod tests {
     #[test]
     fn the_difference_to_the_picture_is_shared_in_proportion() {
         let picture = row(&[6.0, 6.0, 6.0, 0.0]);
-        let noisy = [row(&[9.0, 1.0, 0.0, 0.0]), row(&[9.0, 5.0, 0.0, 0.0])];
+        let noisy = [row(&[19.0, 1.0, 0.0, 0.0]), row(&[9.0, 5.0, 0.0, 0.0])];
         let mut layers = [row(&[1.0, 0.0, 0.0, 2.0]), row(&[2.0, 0.0, 0.0, 2.0])];
         share_difference(&picture, &noisy, &mut layers);
         let values = |layer: &Picture| layer.rgb.iter().map(|rgb| rgb[0]).collect::<Vec<_>>();
+        // The brightest layer, the first one, takes what has no proportions.
         assert_eq!(values(&layers[0]), [2.0, 1.0, 6.0, 0.0]);
         assert_eq!(values(&layers[1]), [4.0, 5.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_light_that_is_off_gets_no_light_wherever_its_layer_stands() {
+        let picture = row(&[4.0, 6.0]);
+        let noisy = [row(&[0.0, 0.0]), row(&[4.0, 0.0])];
+        let mut layers = [row(&[0.0, 0.0]), row(&[3.0, 0.0])];
+        share_difference(&picture, &noisy, &mut layers);
+        assert_eq!(layers, [row(&[0.0, 0.0]), row(&[4.0, 6.0])]);
     }
 }

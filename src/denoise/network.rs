@@ -95,29 +95,30 @@ impl Network {
         input: &FeatureMap,
         is_cancelled: &(dyn Fn() -> bool + Sync),
     ) -> Result<Vec<[f32; 3]>, Cancelled> {
-        let go_on = || if is_cancelled() { Err(Cancelled) } else { Ok(()) };
+        let check = || if is_cancelled() { Err(Cancelled) } else { Ok(()) };
         // Encode
         let mut pools = vec![self.first_stage(input)];
         for encoder in &self.encoders {
-            go_on()?;
+            check()?;
             let pooled = self.pooled(encoder, &pools[pools.len() - 1]);
             pools.push(pooled);
         }
         // Convolve at a sixteenth of the size
-        go_on()?;
+        check()?;
         let Some(deepest) = pools.pop() else { return Err(Cancelled) };
         let mut features = self.plain(&self.bottom[1], &self.plain(&self.bottom[0], &deepest));
         drop(deepest);
         // Decode, each time with the features of the same size
         for (first, second) in &self.decoders {
-            go_on()?;
+            check()?;
             let Some(same_size) = pools.pop() else { return Err(Cancelled) };
             let upsampled = self.upsampled(first, &features, &same_size);
-            go_on()?;
+            check()?;
             features = self.plain(second, &upsampled);
         }
-        go_on()?;
-        Ok(self.last_stage(&features, input, is_cancelled))
+        check()?;
+        let output = self.last_stage(&features, input, is_cancelled);
+        check().map(|()| output)
     }
 
     /// Convolves a map.

@@ -149,7 +149,8 @@ pub fn with_other_gaze(data: &BodyData, built: &FigureMeshes, figure: &Figure) -
         let block = first..first + eyes.positions.len();
         if part.is_some() && block.end <= mesh.positions.len() {
             mesh.positions[block.clone()].copy_from_slice(&eyes.positions);
-            mesh.normals[block].copy_from_slice(&eyes.normals);
+            mesh.normals[block.clone()].copy_from_slice(&eyes.normals);
+            mesh.colors[block].copy_from_slice(&eyes.colors);
         }
         Arc::new(mesh)
     };

@@ -21,7 +21,7 @@ const VEINS: Vec3 = Vec3::new(0.87, 0.82, 0.85);
 const ROOTS: Vec3 = Vec3::new(0.36, 0.33, 0.31);
 /// Factor between the roots of white hair, which pass more light.
 const WHITE_ROOTS: Vec3 = Vec3::new(0.72, 0.7, 0.68);
-/// Factor where hair has been shaved or is a few days old.
+/// Factor between the roots of beard and brows.
 const STUBBLE: Vec3 = Vec3::new(0.62, 0.62, 0.63);
 
 /// A region on both sides of the base mesh.
@@ -80,7 +80,7 @@ pub fn skin_colors(places: &[Vec3], figure: &Figure) -> Vec<Vec3> {
 }
 
 fn color_at(place: Vec3, regions: &[Region], figure: &Figure) -> Vec3 {
-    if place.x > 10.0 {
+    if place == NO_SKIN {
         return Vec3::ONE;
     }
     let on_left = place.with_x(place.x.abs());

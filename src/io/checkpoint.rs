@@ -10,12 +10,13 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 /// First bytes of a checkpoint.
-const MAGIC: &[u8; 16] = b"Catchlight film1";
+const MAGIC: &[u8; 16] = b"Catchlight film2";
 /// Bytes before the film: magic and render. Bytes after it: the hash of all before.
 const HEAD: usize = MAGIC.len() + 8;
 const TAIL: usize = 8;
 
-/// The render that a checkpoint or a part belongs to: a hash of the studio, its assets, the settings and the program's version.
+/// The render that a checkpoint or a part belongs to: a hash of the studio, its assets, the settings and the program's
+/// version.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderId(u64);
 

@@ -41,6 +41,11 @@ impl<'a> PreviewInput<'a> {
 }
 
 impl PreviewInput<'_> {
+    /// Returns true if the picture has the work light.
+    pub(crate) fn has_work_light(&self) -> bool {
+        self.overlay.work_light && self.options.channel == Channel::Lit && is_dark(self.scene)
+    }
+
     /// Returns the camera of the sample: turned by less than half a pixel along each axis.
     pub(crate) fn sample_frame(&self) -> CameraFrame {
         if self.options.sample == 0 {
@@ -52,6 +57,11 @@ impl PreviewInput<'_> {
         let turn = Affine3A::from_rotation_y(-right) * Affine3A::from_rotation_x(-down);
         CameraFrame { world_from_camera: self.frame.world_from_camera * turn, ..self.frame }
     }
+}
+
+/// Returns true if no light of the scene is on.
+pub fn is_dark(scene: &Scene) -> bool {
+    scene.lights.iter().all(|light| !light.on)
 }
 
 /// Returns point number `index` of the sequence R2 (Roberts 2018), from (0.5, 0.5) on: 0 to 1 along each axis.

@@ -55,7 +55,7 @@ pub use channel::{Channel, FALSE_STOPS, Gloss, false_color};
 pub use error::PreviewError;
 pub use frame_times::FrameTimes;
 pub use gpu::device::{Gpu, LossFlag};
-pub use input::{Options, Overlay, Pick, PreviewInput};
+pub use input::{Options, Overlay, Pick, PreviewInput, is_dark};
 pub use overlay::gizmo::{Gizmos, GpuLine, GpuTint};
 pub use overlay::pick::{ObjectMask, PickHit, REACH_PX};
 pub use renderer::PreviewRenderer;

@@ -6,7 +6,7 @@
 use super::gpu::bindings::{color_attachment, texture_group, texture_layout};
 use super::gpu::pipeline::{fullscreen, pipeline_layout};
 use super::shaders;
-use super::targets::{Output, Targets};
+use super::targets::{Output, RenderTargets, Targets};
 use eframe::wgpu;
 
 /// Format of the average.
@@ -60,25 +60,23 @@ impl StillPictures {
         }
     }
 
-    /// Starts the average of a picture that has just been drawn.
-    pub fn start(
-        &mut self,
-        device: &wgpu::Device,
-        encoder: &mut wgpu::CommandEncoder,
-        targets: &Targets,
-        generation: u64,
-    ) {
-        if self.average.as_ref().is_none_or(|average| average.generation != generation) {
-            self.average = Some(Average::new(device, &self.layout, targets, generation));
+    /// Starts the average with the picture that the targets hold: sample 0, before sample 1 is drawn over it.
+    pub fn start(&mut self, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder, targets: &RenderTargets) {
+        if self.average.as_ref().is_none_or(|average| average.generation != targets.generation) {
+            self.average = Some(Average::new(device, &self.layout, &targets.current, targets.generation));
         }
         self.add(encoder, 1.0);
     }
 
     /// Adds the picture that has just been drawn as sample number `sample`, from 1 on, and replaces it by the average.
-    pub fn add_and_show(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets, sample: u32) {
+    /// Does nothing if the average is of targets that were replaced since.
+    pub fn add_and_show(&self, encoder: &mut wgpu::CommandEncoder, targets: &RenderTargets, sample: u32) {
+        if self.average.as_ref().is_none_or(|average| average.generation != targets.generation) {
+            return;
+        }
         self.add(encoder, 1.0 / f64::from(sample + 1));
         if let Some(average) = &self.average {
-            draw(encoder, &self.show, &average.group, &targets.color_view, 1.0);
+            draw(encoder, &self.show, &average.group, &targets.current.color_view, 1.0);
         }
     }
 

@@ -76,10 +76,10 @@ impl Mesh {
         } else {
             self.uvs.clear();
         }
-        if keep(self.colors.len(), other.colors.len()) {
+        if !(self.colors.is_empty() && other.colors.is_empty()) {
+            self.colors.resize(self.positions.len(), Vec3::ONE);
             self.colors.extend(&other.colors);
-        } else {
-            self.colors.clear();
+            self.colors.resize(self.positions.len() + other.positions.len(), Vec3::ONE);
         }
         self.positions.extend(&other.positions);
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| i + base)));

@@ -28,7 +28,7 @@ fn a_denoised_render_is_smooth_and_keeps_the_noisy_picture() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let plain = render(folder, &["-o", "plain.exr"]);
-    let denoised = render(folder, &["-o", "denoised.exr", "--denoise"]);
+    let denoised = render(folder, &["-o", "denoised.exr", "--denoise", "on"]);
     assert!(plain["denoise_s"].is_null() && denoised["denoise_s"].as_f64().is_some_and(|seconds| seconds > 0.0));
     let values = |file: &str, channel: &str| exr_channel(&folder.join(file), channel);
     for (channel, noisy) in [("R", "noisy.R"), ("G", "noisy.G"), ("B", "noisy.B")] {
@@ -51,10 +51,10 @@ fn merged_parts_are_denoised_and_parts_are_not() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     for (samples, part) in [("0..2", "a.exr"), ("2..4", "b.exr")] {
-        render(folder, &["-o", part, "--samples", samples, "--denoise"]);
+        render(folder, &["-o", part, "--samples", samples, "--denoise", "on"]);
     }
     report(folder, &["merge", "a.exr", "b.exr", "-o", "noisy.exr", "--json"]);
-    let merged = report(folder, &["merge", "a.exr", "b.exr", "-o", "denoised.exr", "--denoise", "--json"]);
+    let merged = report(folder, &["merge", "a.exr", "b.exr", "-o", "denoised.exr", "--denoise", "on", "--json"]);
     assert!(merged["denoise_s"].as_f64().is_some());
     let values = |file: &str, channel: &str| exr_channel(&folder.join(file), channel).unwrap();
     assert!(values("denoised.exr", "noisy.G") == values("noisy.exr", "G"), "parts hold noisy pixels");
@@ -66,10 +66,10 @@ fn pictures_without_albedo_and_normals_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     render(folder, &["-o", "a.exr", "--samples", "0..4"]);
-    let output = catchlight(folder, &["merge", "a.exr", "-o", "b.exr", "--denoise"]);
+    let output = catchlight(folder, &["merge", "a.exr", "-o", "b.exr", "--denoise", "on"]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(stderr(&output).contains("render the parts with --denoise"), "{}", stderr(&output));
-    let output = catchlight(folder, &["render", "split", "-o", "b.png", "--method", "zbuffer", "--denoise"]);
+    assert!(stderr(&output).contains("render the parts with --denoise on"), "{}", stderr(&output));
+    let output = catchlight(folder, &["render", "split", "-o", "b.png", "--method", "zbuffer", "--denoise", "on"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(stderr(&output).contains("--denoise"), "{}", stderr(&output));
     assert!(!folder.join("b.exr").exists() && !folder.join("b.png").exists());

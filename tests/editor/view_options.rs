@@ -113,4 +113,6 @@ fn edges_become_smooth_while_nothing_moves() {
     assert_eq!(draws(&window), finished, "a finished view is drawn no more");
     let difference = apart(&smooth, &jagged);
     assert!((0.1..1.5).contains(&difference), "the same picture with other edges: {difference} codes");
+    choose(&mut window, "Lit", &["Smooth edges"]);
+    assert!(apart(&view(&mut window), &jagged) < 0.01, "without it the edges are as before");
 }

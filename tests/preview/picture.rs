@@ -330,7 +330,7 @@ fn a_still_picture_has_the_coverage_of_the_pixels_at_an_edge() {
         edges += u32::from((0.02..0.98).contains(&expected));
         worst = worst.max((shown - expected).abs());
     }
-    // 64 points of a sequence of low discrepancy know the area of a half-plane in a pixel to a few hundredths.
+    // 64 points of a sequence of low discrepancy estimate the area of a half-plane in a pixel to a few hundredths.
     assert!(edges > 30 && worst < 0.06, "{worst} of white in {edges} pixels");
 }
 

@@ -160,10 +160,11 @@ impl StudioStudy<'_> {
         let started = Instant::now();
         let picture = pool.install(|| {
             let film = render_all_passes(&self.scene, &settings, &control);
-            let noisy = film.develop(&self.loaded.scene);
-            let denoised = film.denoiser_aovs().map(|aovs| denoise(&noisy, &aovs, Quality::Best, &|| false));
-            denoised.and_then(Result::ok).unwrap_or(noisy)
+            let aovs = film.denoiser_aovs()?;
+            denoise(&film.develop(&self.loaded.scene), &aovs, Quality::Best, &|| false).ok()
         });
+        let picture =
+            picture.ok_or_else(|| Failure::Machine(anyhow::anyhow!("the picture has no albedo and normals")))?;
         let trace_s = started.elapsed().as_secs_f64();
         let label = "path + denoiser".to_owned();
         Ok(self.compare(Study::Method, label, (settings.spp, threads), trace_s, control.rays(), &picture))

@@ -79,7 +79,7 @@ pub struct Arguments {
     /// Remove the noise with a neural network. Fine detail that looks like noise gets lost: hair, textures, small
     /// reflections, if the render has few samples. An EXR file holds the noisy picture, too (noisy.R/G/B). With
     /// --samples, the part only gets the albedo and normals that `merge --denoise` needs.
-    #[arg(long, value_enum, value_name = "HOW", num_args = 0..=1, default_value_t, default_missing_value = "on")]
+    #[arg(long, value_enum, value_name = "HOW", default_value_t)]
     pub denoise: Denoise,
     /// Trace one sample of a pixel again and print every step, instead of a picture.
     #[arg(long, value_name = "X,Y", value_parser = input::parse_pixel)]

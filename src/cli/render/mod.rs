@@ -62,9 +62,9 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
     }
     let nonfinite = film.nonfinite();
     warn_of_nonfinite(arguments, &settings, &nonfinite);
+    let interrupted = interrupted.load(Ordering::Relaxed);
     let Written { picture: written, denoise_s } = pool.install(|| write(arguments, &loaded, film, &settings))?;
     // Print the statistics.
-    let interrupted = interrupted.load(Ordering::Relaxed);
     let seconds = |then: Option<Instant>| then.map_or(0.0, |then| (then - started).as_secs_f64());
     let rays = monitor.control().rays();
     let report = RenderReport {

@@ -133,20 +133,22 @@ fn copy(scene: &mut Scene, items: &[Item]) -> Result<Vec<Item>, ActionError> {
     Ok(copies)
 }
 
-/// Adds the lights and objects of another scene; their aims and gazes stay on each other. They stand where they stand
-/// there, or beside that place if something stands on it already. Returns them.
+/// Adds the lights and objects of another scene, unlocked, and returns them. Aims and gazes among them are kept. They
+/// keep their positions, or move aside until none is at a position that is taken.
 pub fn paste(scene: &mut Scene, from: &Scene) -> Vec<Item> {
-    let is_taken = |place: Vec3| {
+    fn positions(scene: &Scene) -> impl Iterator<Item = Vec3> {
         let objects = scene.objects.iter().map(|object| object.transform.position);
-        objects.chain(scene.lights.iter().map(|light| light.position)).any(|taken| taken == place)
-    };
-    let places = from.objects.iter().map(|object| object.transform.position);
-    let is_any_taken = places.chain(from.lights.iter().map(|light| light.position)).any(is_taken);
-    let offset = if is_any_taken { COPY_OFFSET } else { Vec3::ZERO };
+        objects.chain(scene.lights.iter().map(|light| light.position))
+    }
+    let taken: Vec<Vec3> = positions(scene).collect();
+    let mut offset = Vec3::ZERO;
+    while positions(from).any(|position| taken.iter().any(|taken| taken.distance(position + offset) < 1e-3)) {
+        offset += COPY_OFFSET;
+    }
     let mut added = Vec::new();
     let (mut objects, mut lights) = (HashMap::new(), HashMap::new());
     for object in &from.objects {
-        let mut copied = object.clone();
+        let mut copied = Object { locked: false, ..object.clone() };
         copied.transform.position += offset;
         let item = add_object(scene, copied);
         added.push(item);
@@ -155,11 +157,9 @@ pub fn paste(scene: &mut Scene, from: &Scene) -> Vec<Item> {
         }
     }
     for light in &from.lights {
-        let mut copied = Light { position: light.position + offset, ..light.clone() };
-        match &mut copied.aim {
-            Aim::Object { object, .. } => *object = objects.get(object).copied().unwrap_or(*object),
-            Aim::Point(point) => *point += offset,
-            Aim::Angles { .. } => {}
+        let mut copied = Light { position: light.position + offset, locked: false, ..light.clone() };
+        if let Aim::Object { object, .. } = &mut copied.aim {
+            *object = objects.get(object).copied().unwrap_or(*object);
         }
         let item = add_light(scene, copied);
         added.push(item);

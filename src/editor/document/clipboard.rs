@@ -1,21 +1,22 @@
-//! Lights and things on the system's clipboard, as the text of a studio that has nothing else.
+//! Lights and objects on the system's clipboard, as the text of a studio.
 
-use crate::editor::document::arrange;
 use crate::editor::document::item::Item;
+use crate::editor::document::{arrange, switches};
 use crate::io;
 use crate::scene::Scene;
 
-/// Returns the text of a studio with these lights and objects alone; none without any. What they aim at or look at
-/// and is not among them becomes a point of the room.
+/// Returns the text of a studio with these lights and objects alone; none without any. Aims at other objects become
+/// points of the room; eyes that follow another light keep their pose. A solo ends, so that every light has its switch.
 pub fn copied_text(scene: &Scene, items: &[Item]) -> Option<String> {
-    let is_copied = |item: Item| items.contains(&item);
-    let mut part = Scene { meter: None, solo: None, ..scene.clone() };
+    let mut part = scene.clone();
+    switches::solo(&mut part, Vec::new()).ok()?;
     part.objects.iter_mut().for_each(|object| object.locked = false);
     part.lights.iter_mut().for_each(|light| light.locked = false);
     let objects = part.objects.iter().map(|object| Item::Object(object.id));
     let lights = part.lights.iter().map(|light| Item::Light(light.id));
-    let others: Vec<Item> = objects.chain(lights).filter(|item| !is_copied(*item)).collect();
+    let others: Vec<Item> = objects.chain(lights).filter(|item| !items.contains(item)).collect();
     arrange::delete(&mut part, &others).ok()?;
+    let part = Scene { objects: part.objects, lights: part.lights, ..Scene::default() };
     let has_any = !(part.objects.is_empty() && part.lights.is_empty());
     has_any.then(|| io::write_scene(&part))
 }
@@ -62,11 +63,25 @@ mod tests {
         assert!(matches!(&new.shape, Shape::Figure(figure) if figure.gaze == Gaze::Light(new_light)));
         let new = scene.light(new_light).unwrap();
         assert!(matches!(new.aim, Aim::Object { object: at, .. } if at == new_object));
-        // In another studio they stand where they stood.
+        // A second copy is beside the first one, not in it.
+        let again = arrange::paste(&mut scene, &super::pasted(&text).unwrap());
+        let position = |item: Item| item.position(&scene).unwrap();
+        assert!(position(again[0]).distance(position(Item::Object(new_object))) > 0.3);
+        // In another studio they keep their positions.
         let mut empty = Scene::default();
         arrange::paste(&mut empty, &super::pasted(&text).unwrap());
         assert_eq!(empty.objects[0].transform, old.transform);
         assert_eq!(empty.objects[0].name, old.name);
+    }
+
+    #[test]
+    fn a_light_that_a_solo_switched_off_is_copied_with_its_switch() {
+        let mut scene = io::presets()[0].load().unwrap().scene;
+        let [first, second] = [scene.lights[0].id, scene.lights[1].id];
+        switches::solo(&mut scene, vec![first]).unwrap();
+        assert!(!scene.light(second).unwrap().on);
+        let copied = pasted(&copied_text(&scene, &[Item::Light(second)]).unwrap()).unwrap();
+        assert!(copied.lights[0].on);
     }
 
     #[test]

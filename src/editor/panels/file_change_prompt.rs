@@ -25,15 +25,12 @@ pub fn file_change_ui(ctx: &egui::Context, title: &str, has_changes: bool) -> Op
         width: 520.0,
         heading: "The file has changed",
         answers: &[
-            (
-                "Keep mine",
-                FileChangeAnswer::KeepMine,
-                "Go on with this studio; saving overwrites the other change (Enter)",
-            ),
+            ("Keep mine", FileChangeAnswer::KeepMine, "Go on with this studio; saving overwrites the other change"),
             ("Take theirs", FileChangeAnswer::TakeTheirs, lost),
             ("Save as\u{2026}", FileChangeAnswer::SaveAs, "Save this studio to another file and keep both"),
             ("Cancel", FileChangeAnswer::Cancel, "Decide before the next save (Esc)"),
         ],
+        on_enter: None,
     };
     widgets::question_dialog(ctx, &question, |ui| {
         ui.label(format!("Another program or window has written \"{title}\" since you opened or saved it here."));

@@ -27,6 +27,7 @@ pub fn unsaved_changes_ui(ctx: &egui::Context, title: &str, what: &str) -> Optio
             ("Don't save", UnsavedAnswer::Discard, "The changes are lost"),
             ("Cancel", UnsavedAnswer::Cancel, "Stay here (Esc)"),
         ],
+        on_enter: Some(UnsavedAnswer::Save),
     };
     widgets::question_dialog(ctx, &question, |ui| {
         ui.label(format!("\"{title}\" has changes that are not saved. Save them before {what}?"));

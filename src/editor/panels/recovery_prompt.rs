@@ -44,6 +44,7 @@ pub fn recovery_ui(ctx: &egui::Context, unsaved: &UnsavedStudio<'_>) -> Option<R
             ("Discard", RecoveryAnswer::Discard, "Its unsaved changes are lost"),
             ("Later", RecoveryAnswer::Later, "Ask again at the next start (Esc)"),
         ],
+        on_enter: Some(RecoveryAnswer::Recover),
     };
     widgets::question_dialog(ctx, &question, |ui| {
         ui.horizontal_top(|ui| {

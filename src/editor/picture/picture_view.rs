@@ -94,9 +94,9 @@ impl PictureView {
         let bar =
             Rect::from_min_max(rect.left_top() + vec2(8.0, 8.0), Pos2::new(rect.right() - 8.0, rect.top() + 40.0));
         ui.scope_builder(egui::UiBuilder::new().max_rect(bar), |ui| {
-            // A plate, for the bar lies over the picture
-            let plate = egui::Frame::new().fill(Color32::from_black_alpha(170)).inner_margin(4).corner_radius(4);
-            plate.show(ui, |ui| ui.horizontal(|ui| self.entries_ui(ui, rendering, scene, zoom, out)));
+            // The bar lies over the picture
+            let dark = egui::Frame::new().fill(Color32::from_black_alpha(170)).inner_margin(4).corner_radius(4);
+            dark.show(ui, |ui| ui.horizontal(|ui| self.entries_ui(ui, rendering, scene, zoom, out)));
         });
     }
 

@@ -1,4 +1,5 @@
-//! Messages at the lower edge of the window. They expire, errors last, but not while the pointer is on them.
+//! Messages at the lower edge of the window. They expire, errors last, but not while the pointer is on them, and not
+//! before somebody is at the window.
 
 use crate::editor::ui::theme;
 use eframe::egui::{self, Align2, Area, Frame, Id, Label, RichText};
@@ -33,7 +34,7 @@ impl ToastKind {
 struct Toast {
     kind: ToastKind,
     text: String,
-    /// Expiry time, in egui's time; set when it is first shown.
+    /// Expiry time, in egui's time; set at the first input after it is shown.
     gone_at: Option<f64>,
 }
 
@@ -77,18 +78,21 @@ impl Toasts {
         self.toasts.iter().filter(|t| t.kind == kind).map(|t| t.text.as_str()).collect()
     }
 
-    /// Removes all messages: they are about a studio that is no longer open.
-    pub fn clear(&mut self) {
-        self.toasts.clear();
+    /// Removes the messages that somebody had time to see.
+    pub fn clear_seen(&mut self) {
+        self.toasts.retain(|toast| toast.gone_at.is_none());
     }
 
-    /// Removes the messages that have expired at a time, and returns the time at which the next one does, seconds.
-    fn expire(&mut self, now: f64) -> Option<f64> {
+    /// Removes the messages that have expired at a time, and returns the time at which the next one does, seconds; none
+    /// if none will. `has_input` is true if somebody is at the window.
+    fn expire(&mut self, now: f64, has_input: bool) -> Option<f64> {
         for toast in &mut self.toasts {
             let shown_s = toast.kind.shown_s();
-            let gone_at = toast.gone_at.get_or_insert(now + shown_s);
+            if has_input {
+                toast.gone_at.get_or_insert(now + shown_s);
+            }
             if self.is_pointed_at {
-                *gone_at = gone_at.max(now + 0.5 * shown_s);
+                toast.gone_at = toast.gone_at.map(|gone_at| gone_at.max(now + 0.5 * shown_s));
             }
         }
         self.toasts.retain(|toast| toast.gone_at.is_none_or(|gone_at| now < gone_at));
@@ -98,11 +102,14 @@ impl Toasts {
     /// Draws the messages in the foreground, at the lower edge of `over`.
     pub fn ui(&mut self, ctx: &egui::Context, over: egui::Rect) {
         let now = ctx.time();
-        let Some(next) = self.expire(now) else {
+        let has_input = ctx.input(|i| !i.events.is_empty());
+        if let Some(next) = self.expire(now, has_input) {
+            ctx.request_repaint_after(Duration::from_secs_f64((next - now).max(0.01)));
+        }
+        if self.toasts.is_empty() {
             self.is_pointed_at = false;
             return;
-        };
-        ctx.request_repaint_after(Duration::from_secs_f64((next - now).max(0.01)));
+        }
         let mut dismissed = None;
         let foot = over.center_bottom() - egui::vec2(0.0, 12.0);
         let width = (over.width() - 140.0).clamp(160.0, 560.0);
@@ -158,14 +165,22 @@ mod tests {
         toasts.info("saved");
         toasts.warning("odd");
         toasts.error("lost");
-        assert_eq!(toasts.expire(100.0), Some(105.0));
-        assert_eq!(toasts.expire(106.0), Some(115.0));
+        assert_eq!(toasts.expire(50.0, false), None, "nobody is there to read them");
+        assert_eq!(toasts.expire(100.0, true), Some(105.0));
+        assert_eq!(toasts.expire(106.0, false), Some(115.0));
         assert!(toasts.texts(ToastKind::Info).is_empty() && toasts.texts(ToastKind::Warning) == ["odd"]);
         toasts.is_pointed_at = true;
-        assert_eq!(toasts.expire(114.0), Some(121.5), "half of its time from when it was pointed at");
+        assert_eq!(toasts.expire(114.0, true), Some(121.5), "half of its time from when it was pointed at");
         toasts.is_pointed_at = false;
-        toasts.expire(122.0);
+        toasts.expire(122.0, true);
         assert_eq!(toasts.texts(ToastKind::Error), ["lost"]);
-        assert_eq!(toasts.expire(131.0), None);
+        assert_eq!(toasts.expire(131.0, true), None);
+        assert!(toasts.toasts.is_empty());
+        // What nobody has seen is not cleared.
+        toasts.error("seen");
+        toasts.expire(140.0, true);
+        toasts.error("new");
+        toasts.clear_seen();
+        assert_eq!(toasts.texts(ToastKind::Error), ["new"]);
     }
 }

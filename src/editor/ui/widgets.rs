@@ -2,7 +2,7 @@
 
 use crate::editor::ui::theme;
 use crate::photo::thirds::Dial;
-use eframe::egui::{self, Button, Color32, CornerRadius, DragValue, Key, Response, RichText, Sense, Ui, vec2};
+use eframe::egui::{self, Button, Color32, CornerRadius, DragValue, Event, Key, Response, RichText, Sense, Ui, vec2};
 use glam::Vec3;
 
 /// Width of the label column, points.
@@ -305,8 +305,10 @@ pub struct Question<'a, T> {
     pub width: f32,
     /// Heading.
     pub heading: &'a str,
-    /// Label, answer and tip of each button. Enter gives the first answer, Esc the last one.
+    /// Label, answer and tip of each button. The last one is the answer of Esc.
     pub answers: &'a [(&'a str, T, &'a str)],
+    /// Answer of Enter; none for a question that comes up unasked.
+    pub on_enter: Option<T>,
 }
 
 /// Draws a question in a modal dialog, with its text above the buttons, and returns the answer.
@@ -333,9 +335,11 @@ pub fn question_dialog<T: Copy>(
                 }
             }
         });
-        // A button with the focus takes Enter itself.
-        if ui.memory(|memory| memory.focused().is_none()) && ui.input(|i| i.key_pressed(Key::Enter)) {
-            answer = answer.or(question.answers.first().map(|(_, answer, _)| *answer));
+        // A button with the focus takes Enter itself; a key that is held answers no question that it did not see.
+        let is_enter =
+            |event: &Event| matches!(event, Event::Key { key: Key::Enter, pressed: true, repeat: false, .. });
+        if ui.memory(|memory| memory.focused().is_none()) && ui.input(|i| i.events.iter().any(is_enter)) {
+            answer = answer.or(question.on_enter);
         }
     });
     let on_escape = question.answers.last().map(|(_, answer, _)| *answer);

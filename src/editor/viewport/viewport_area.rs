@@ -24,7 +24,7 @@ use crate::editor::viewport::tools::joint_handles::JointHandles;
 use crate::editor::viewport::tools::marquee_selection::MarqueeSelection;
 use crate::editor::viewport::tools::place_light_drag::PlaceLightDrag;
 use crate::editor::viewport::tools::transform_handles::{HandleView, TransformHandles};
-use crate::preview::{Overlay, Pick};
+use crate::preview::{Channel, Overlay, Pick, is_dark};
 use crate::scene::{Camera, CameraFrame, Object, Scene, Shape};
 use eframe::egui::{self, Align2, Color32, EventFilter, FontId, Pos2, Rect, Response, RichText, Sense, Ui, vec2};
 use glam::{Vec2, Vec3};
@@ -316,8 +316,9 @@ impl Viewport {
             painter.image(texture, rect, uv, Color32::WHITE);
         }
         self.preview.paint_over(&painter, rect);
-        let is_dark = !input.document.scene().lights.iter().any(|light| light.on);
-        if is_dark && has_work_light && traced.is_none() && self.preview.failure().is_none() {
+        let is_lit_view = self.preview.view_options.channel == Channel::Lit;
+        let shows_work_light = has_work_light && is_lit_view && is_dark(input.document.scene());
+        if shows_work_light && traced.is_none() && self.preview.failure().is_none() {
             let at = rect.center_bottom() - vec2(0.0, 14.0);
             let text = "No light is on. This is a work light, which pictures do not have.";
             painter.text(at, Align2::CENTER_BOTTOM, text, FontId::proportional(13.0), theme::ACCENT);

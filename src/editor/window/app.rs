@@ -28,6 +28,7 @@ use crate::editor::window::session::Session;
 use crate::jobs::{Clock, Estimate, Forecast, ForecastSubject, Forecaster, MeterJob, PatternJob, RenderOutcome};
 use crate::raytrace::{GeometryCache, Settings};
 use crate::scene::SceneChange;
+use eframe::egui::text_selection::LabelSelectionState;
 use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, Rangef, Rect, Ui, ViewportCommand};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -313,8 +314,11 @@ impl App {
         // Only undo and redo repeat with a held key.
         let repeats =
             ctx.input(|i| i.events.iter().any(|e| matches!(e, egui::Event::Key { pressed: true, repeat: true, .. })));
-        // The system's keys for the clipboard arrive as events.
-        out.extend(ctx.input(|i| i.events.iter().filter_map(clipboard_command).collect::<Vec<_>>()));
+        // The system's keys for the clipboard arrive as events. Selected text of a message is copied by egui.
+        let has_text = ctx.with_plugin(|labels: &mut LabelSelectionState| labels.has_selection()).unwrap_or(false);
+        if !has_text {
+            out.extend(ctx.input(|i| i.events.iter().filter_map(clipboard_command).collect::<Vec<_>>()));
+        }
         for KeyBinding { shortcut, command, .. } in &KEY_BINDINGS {
             if ctx.input_mut(|i| i.consume_shortcut(shortcut)) {
                 let command = command();

@@ -199,7 +199,7 @@ impl App {
         if let Some(path) = &opened.path {
             self.session.recent.push(path);
         }
-        self.toasts.clear();
+        self.toasts.clear_seen();
         let more = opened.warnings.len().saturating_sub(SHOWN);
         opened.warnings.iter().take(SHOWN).for_each(|warning| self.toasts.warning(warning.clone()));
         if more > 0 {

@@ -25,7 +25,7 @@ pub(crate) struct StrandDetail {
 }
 
 /// Draws the opaque items of a list as `camera` sees them. `clear_gbuffer` clears the G-buffer besides ids and depth;
-/// `strands` tells which are drawn.
+/// `strands` selects the strands.
 pub(crate) fn draw(
     encoder: &mut wgpu::CommandEncoder,
     (pipelines, strand_pipelines): (&GeometryPipelines, &StrandPipelines),

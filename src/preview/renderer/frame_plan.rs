@@ -164,13 +164,14 @@ fn frame_constants(
 /// that the sides of things differ.
 const WORK_LIGHT: [f32; 6] = [0.42, 0.34, 0.62, 0.14, 0.5, 0.24];
 
-/// Returns the work light of a dark studio, or the traced bounced light, or its estimate: in a room the same on all surfaces, without one that of the
-/// backdrops on a subject.
+/// Returns the bounced light: the traced one, or its estimate, which in a room is the same on all surfaces and without
+/// one that of the backdrops on a subject; or the work light of a dark studio.
 fn bounced_light(input: &PreviewInput, lights: &LightTable, environment: Option<&Environment>) -> IrradianceGrid {
     let environment = environment.filter(|_| input.scene.room.is_none());
-    let is_dark = lights.lights.is_empty() && lights.ambient.irradiance == Vec3::ZERO;
+    if input.has_work_light() {
+        return IrradianceGrid::uniform(WORK_LIGHT.map(|e| Vec3::splat(e * PI)));
+    }
     match input.bounced_light.filter(|grid| !grid.layout.is_empty()) {
-        _ if is_dark && input.overlay.work_light => IrradianceGrid::uniform(WORK_LIGHT.map(|e| Vec3::splat(e * PI))),
         _ if !input.options.bounce_estimate => IrradianceGrid::uniform([Vec3::ZERO; 6]),
         Some(grid) => grid.clone(),
         None => {

@@ -252,7 +252,7 @@ impl PreviewRenderer {
         // Before the second sample of a still picture, start the average of the first one, which the targets hold
         let is_sample = options.sample > 0 && plan.output == Output::Display;
         if is_sample && options.sample == 1 {
-            self.stills.start(device, &mut encoder, targets, self.targets.generation);
+            self.stills.start(device, &mut encoder, &self.targets);
         }
         // Draw the stale shadow maps
         self.shadows.draw_maps(&mut encoder, resources, &plan.list, &stale.shadow_maps);
@@ -306,7 +306,7 @@ impl PreviewRenderer {
             }
         }
         if is_sample {
-            self.stills.add_and_show(&mut encoder, targets, options.sample);
+            self.stills.add_and_show(&mut encoder, &self.targets, options.sample);
         }
         queue.submit([encoder.finish()]);
     }

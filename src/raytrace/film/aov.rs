@@ -1,9 +1,11 @@
 //! AOVs: albedo, normal, depth and object of the first hit, for denoisers and compositing.
 //!
 //! The first hit is the first surface or visible emitter on the camera ray; mirrors and glass are not followed, as in
-//! pbrt's `GBufferFilm`. For the denoiser, albedo and normal of what mirrors and clear glass show are kept, too, as the
-//! documentation of Open Image Denoise recommends: they hold the edges that reflections and refractions have. Albedo and normal are means of a pixel's samples, zero where nothing is hit, as denoisers
+//! pbrt's `GBufferFilm`. Albedo and normal are means of a pixel's samples, zero where nothing is hit, as denoisers
 //! expect. Depth and object are those of its first sample, as means across an edge belong to neither side.
+//!
+//! For the denoiser, albedo and normal of what mirrors and clear glass show are kept, too, as the documentation of Open
+//! Image Denoise recommends: they hold the edges that reflections and refractions have.
 
 use super::stored::stored_fields;
 use crate::photo::AovPicture;

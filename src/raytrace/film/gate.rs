@@ -73,11 +73,11 @@ impl<S: RadianceSink> RadianceSink for NonFiniteGate<'_, S> {
 
     #[inline]
     fn seen_surface(&mut self, surface: impl FnOnce() -> SeenSurface) {
-        let NonFiniteGate { sink, sample, report } = self;
-        sink.seen_surface(|| {
+        // Not reported: `first_hit` and `add` report the same surface
+        let finite = |value: Vec3| if value.is_finite() { value } else { Vec3::ZERO };
+        self.sink.seen_surface(|| {
             let SeenSurface { albedo, normal } = surface();
-            let mut admit = |value: Vec3| report.admit(*sample, value).unwrap_or_default();
-            SeenSurface { albedo: admit(albedo), normal: admit(normal) }
+            SeenSurface { albedo: finite(albedo), normal: finite(normal) }
         });
     }
 }

@@ -219,16 +219,18 @@ impl PreviewHost {
         let changed = self.shown.as_ref().is_none_or(|shown| PreviewKey { bounced_light, ..shown.clone() } != wanted);
         // New bounced light alone is no motion: it waits for the full image after a draft.
         let brightened = self.draft_since.is_none() && self.shown.as_ref() != Some(&wanted);
+        let most_samples = if smooth_edges { self.most_samples(options) } else { 1 };
+        let is_oversampled = self.samples > most_samples;
         let settled = self.draft_since.is_some_and(|since| since.elapsed() >= SETTLED);
-        if changed || brightened || settled {
+        if changed || brightened || settled || is_oversampled {
             // The first image is drawn in full: nothing is in motion.
             let draft = changed && drafts && self.shown.is_some() && !overlay_alone;
             self.draw(ctx, document, wanted, draft, 0);
             self.draft_since = draft.then(Instant::now);
-        } else if smooth_edges && self.draft_since.is_none() && self.samples < self.most_samples(options) {
+        } else if self.draft_since.is_none() && self.samples < most_samples {
             self.draw(ctx, document, wanted, false, self.samples);
         }
-        if smooth_edges && self.draft_since.is_none() && self.samples < self.most_samples(options) {
+        if self.draft_since.is_none() && self.samples < most_samples {
             ctx.request_repaint();
         }
         if let Some(since) = self.draft_since {
