@@ -292,7 +292,7 @@ impl Builder {
     fn clear(&mut self) -> Material {
         let ior = if self.chance(0.5) { self.choose(&[1.333, 1.52]) } else { self.rng.range(1.1, 2.0) };
         let absorption_per_m = if self.chance(0.5) { self.color(0.0, 4.0) } else { [0.0; 3] };
-        let base_color = [0.99; 3];
+        let base_color = if self.chance(0.5) { self.color(0.2, 1.0) } else { [0.99; 3] };
         Material { base_color, roughness: 0.0, transmission: 1.0, ior, absorption_per_m, ..Material::default() }
     }
 
