@@ -2,9 +2,9 @@
 
 use super::failure::Failure;
 use super::picture_output::{self, WrittenPicture};
-use crate::denoise::{self, Quality};
+use crate::denoise::{self, DenoisedLayers, Quality};
 use crate::io::{self, LayeredPicture, PictureInfo};
-use crate::photo::{AovPicture, Picture};
+use crate::photo::{AovPicture, LazyPicture, Picture};
 use anyhow::anyhow;
 use clap::ValueEnum;
 use std::path::Path;
@@ -43,7 +43,7 @@ pub struct Output<'a> {
     /// The whole picture.
     pub picture: Picture,
     /// The light layers that are written.
-    pub layers: Vec<(String, Picture)>,
+    pub layers: Vec<(String, LazyPicture<'a>)>,
     /// Albedo and normals for the denoiser.
     pub denoiser_aovs: Option<AovPicture>,
     /// The AOVs that are written.
@@ -65,31 +65,45 @@ impl Output<'_> {
     /// Denoises the picture, if that is requested, and writes it. It runs on the current thread pool.
     pub fn write(self, denoise: Denoise) -> Result<Written, Failure> {
         let Output { path, size: (width, height), picture, layers, denoiser_aovs, aovs, info } = self;
-        let resized = |picture: &Picture| picture.resized(width, height);
-        let all_resized = |layers: &[(String, Picture)]| -> Vec<(String, Picture)> {
-            layers.iter().map(|(name, layer)| (name.clone(), resized(layer))).collect()
-        };
-        let (noisy, noisy_layers) = (resized(&picture), all_resized(&layers));
-        let noisy = LayeredPicture { picture: &noisy, layers: &noisy_layers };
         let aovs = aovs.map(|aovs| aovs.resized(width, height));
-        let (encoded, denoise_s) = match denoise.quality() {
-            None => (io::encode_layers(path, noisy.picture, noisy.layers, aovs.as_ref(), &info)?, None),
-            Some(quality) => {
-                let denoiser_aovs = denoiser_aovs.ok_or_else(|| {
-                    Failure::Input(anyhow!("the denoiser needs albedo and normals: render the parts with --denoise on"))
-                })?;
-                let started = Instant::now();
-                let names = layers.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
-                let layers: Vec<Picture> = layers.into_iter().map(|(_, layer)| layer).collect();
-                let denoised = denoise::denoise_layers(&picture, &layers, &denoiser_aovs, quality, &|| false);
-                let denoised = denoised.map_err(|_| Failure::Interrupted)?;
-                let denoise_s = started.elapsed().as_secs_f64();
-                let layers = names.into_iter().zip(denoised.layers.iter().map(resized)).collect::<Vec<_>>();
-                let shown = LayeredPicture { picture: &resized(&denoised.picture), layers: &layers };
-                let info = PictureInfo { denoiser: Some(quality.label()), ..info };
-                (io::encode_denoised(path, shown, noisy, aovs.as_ref(), &info)?, Some(denoise_s))
+        // Denoise in the size of the render
+        let started = Instant::now();
+        let denoised = match denoise.quality() {
+            Some(quality) => Some((denoised(&picture, &layers, denoiser_aovs, quality)?, quality.label())),
+            None => None,
+        };
+        let denoise_s = denoised.as_ref().map(|_| started.elapsed().as_secs_f64());
+        // Write in the requested size
+        let names: Vec<String> = layers.iter().map(|(name, _)| name.clone()).collect();
+        let picture = picture.into_resized(width, height);
+        let layers: Vec<_> = layers.into_iter().map(|(name, layer)| (name, layer.resized(width, height))).collect();
+        let noisy = LayeredPicture { picture: &picture, layers: &layers };
+        let file = |shown, noisy, info| -> Result<WrittenPicture, Failure> {
+            picture_output::write(&io::picture_file(path, shown, noisy, aovs.as_ref(), info)?)
+        };
+        let picture = match denoised {
+            None => file(noisy, None, &info)?,
+            Some((denoised, denoiser)) => {
+                let picture = denoised.picture.into_resized(width, height);
+                let layers = denoised.layers.into_iter().map(|layer| LazyPicture::from(layer).resized(width, height));
+                let layers: Vec<_> = names.into_iter().zip(layers).collect();
+                let shown = LayeredPicture { picture: &picture, layers: &layers };
+                file(shown, Some(noisy), &PictureInfo { denoiser: Some(denoiser), ..info })?
             }
         };
-        Ok(Written { picture: picture_output::write(&encoded)?, denoise_s })
+        Ok(Written { picture, denoise_s })
     }
+}
+
+fn denoised(
+    picture: &Picture,
+    layers: &[(String, LazyPicture<'_>)],
+    aovs: Option<AovPicture>,
+    quality: Quality,
+) -> Result<DenoisedLayers, Failure> {
+    let aovs = aovs.ok_or_else(|| {
+        Failure::Input(anyhow!("the denoiser needs albedo and normals: render the parts with --denoise on"))
+    })?;
+    let layers: Vec<Picture> = layers.iter().map(|(_, layer)| layer.collect()).collect();
+    denoise::denoise_layers(picture, &layers, &aovs, quality, &|| false).map_err(|_| Failure::Interrupted)
 }

@@ -1,6 +1,7 @@
 //! Failures of commands, each with its exit code.
 
 use crate::io::SaveError;
+use crate::jobs::RenderError;
 use std::io::ErrorKind;
 
 /// The reason why a command ended without its result.
@@ -21,8 +22,11 @@ impl<E: Into<anyhow::Error>> From<E> for Failure {
     }
 }
 
-/// Returns true if a disk or a folder is the reason: it is full, read-only or not the user's.
+/// Returns true if the memory is the reason, or a disk or a folder: it is full, read-only or not the user's.
 fn is_of_machine(error: &anyhow::Error) -> bool {
+    if matches!(error.downcast_ref(), Some(RenderError::Memory { .. })) {
+        return true;
+    }
     error.chain().any(|cause| {
         let system = match cause.downcast_ref::<SaveError>() {
             Some(SaveError::Write { error, .. }) => Some(error),

@@ -76,7 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         path: output,
         size: (sums.width, sums.height),
         picture: sums.develop(),
-        layers: if arguments.layers { sums.develop_layers() } else { Vec::new() },
+        layers: if arguments.layers { sums.lazy_layers() } else { Vec::new() },
         denoiser_aovs: sums.develop_aovs(),
         aovs: sums.develop_aovs().filter(|_| is_exr),
         info,

@@ -1,7 +1,7 @@
 //! The picture that a command writes: kept elsewhere if its file can't be written after the work.
 
 use super::failure::Failure;
-use crate::io::{self, EncodedPicture};
+use crate::io::{self, PictureFile};
 use anyhow::anyhow;
 use std::path::{Path, PathBuf};
 
@@ -23,7 +23,7 @@ impl WrittenPicture {
 
 /// Writes a picture. If its file can't be written, the picture is kept under a new name beside it, else in the state
 /// folder, else in the folder of temporary files.
-pub fn write(picture: &EncodedPicture) -> Result<WrittenPicture, Failure> {
+pub fn write(picture: &PictureFile<'_>) -> Result<WrittenPicture, Failure> {
     let error = match picture.write() {
         Ok(()) => return Ok(WrittenPicture { path: picture.path().to_owned(), elsewhere: None }),
         Err(error) => error,

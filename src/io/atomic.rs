@@ -2,7 +2,7 @@
 
 use super::error::SaveError;
 use std::fs::{File, Metadata};
-use std::io::{self, ErrorKind, Read, Write};
+use std::io::{self, Cursor, ErrorKind, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 use tempfile::NamedTempFile;
@@ -30,12 +30,20 @@ pub(super) fn write_with(path: &Path, fill: impl FnOnce(&mut File) -> io::Result
     written.map_err(|error| SaveError::Write { error, path: path.to_owned() })
 }
 
-/// As [`write()`]; a pipe and a device of characters, such as `/dev/stdout`, take the content and are not replaced.
-pub(super) fn send(path: &Path, content: &[u8]) -> Result<(), SaveError> {
+/// A destination of content that is not written from beginning to end.
+pub(super) trait WriteSeek: Write + Seek {}
+impl<T: Write + Seek> WriteSeek for T {}
+
+/// As [`write_with`]; a pipe and a device of characters, such as `/dev/stdout`, take the content and are not replaced.
+pub(super) fn send(path: &Path, fill: impl Fn(&mut dyn WriteSeek) -> io::Result<()>) -> Result<(), SaveError> {
     if !Target::of(path)?.takes_a_stream() {
-        return write(path, content);
+        return write_with(path, |file| fill(file));
     }
-    let sent = File::options().write(true).open(path).and_then(|mut file| file.write_all(content));
+    let mut content = Cursor::new(Vec::new());
+    let sent = fill(&mut content).and_then(|()| {
+        let mut stream = File::options().write(true).open(path)?;
+        stream.write_all(content.get_ref())
+    });
     sent.map_err(|error| SaveError::Write { error, path: path.to_owned() })
 }
 
@@ -272,7 +280,7 @@ mod tests {
         std::os::unix::fs::symlink("/dev/null", &link).unwrap();
         assert!(matches!(write(&link, b"").unwrap_err(), SaveError::NotRegular(_)));
         // A picture may go there.
-        send(&link, b"a picture").unwrap();
+        send(&link, |out| out.write_all(b"a picture")).unwrap();
         assert!(link.is_symlink() && !std::fs::metadata("/dev/null").unwrap().is_file());
     }
 

@@ -44,8 +44,8 @@ pub use importers::{
 };
 pub use model::{ImportedModel, ModelLimits};
 pub use picture::{
-    EncodedPicture, LayeredPicture, PictureFormat, PictureInfo, PicturePart, check_picture_file, encode_denoised,
-    encode_layers, encode_part, export_layers, export_picture, export_shown, read_exr, read_part,
+    LayeredPicture, PictureFile, PictureFormat, PictureInfo, PicturePart, check_picture_file, encode_part,
+    export_picture, export_shown, picture_file, read_exr, read_part,
 };
 pub use presets::{Preset, find_preset, presets};
 pub use recovery::{RecoveryFolder, RecoveryInfo};

@@ -1,10 +1,12 @@
 //! A render from scene to film: prepare, coarse first picture, sample passes, timings. Command line, window and the
 //! pilot renders of forecasts all use it, each with its own observer.
 
+use super::memory::{self, Bytes, RenderError};
 use super::monitor::RenderMonitor;
-use crate::raytrace::{self, Film, GeometryCache, PrepareError, RenderControl, RenderScene, Settings, Shortcut};
+use crate::raytrace::{self, Film, GeometryCache, RenderControl, RenderScene, Settings, Shortcut};
 use crate::scene::{Assets, Scene};
 use rayon::ThreadPool;
+use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError};
@@ -27,13 +29,35 @@ pub struct RenderInput<'a> {
     pub checkpoint: Option<&'a [u8]>,
     /// Time after which the render ends, once every pixel has a sample.
     pub time_limit: Option<Duration>,
+    /// Memory that it may take beside the prepared scene; none takes what is free.
+    pub memory: Option<Bytes>,
+}
+
+/// Lights that share layers because the memory does not suffice for one each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SharedLayers {
+    /// Memory with a layer for each light.
+    pub need: Bytes,
+    /// Memory that is free.
+    pub free: Bytes,
+}
+
+impl fmt::Display for SharedLayers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let SharedLayers { need, free } = self;
+        write!(
+            f,
+            "a layer for each light takes {need} of memory and {free} are free: the lights of a role share one, and \
+             can be changed after the render only by rendering again"
+        )
+    }
 }
 
 /// A stage that a render has reached, for its observer.
 #[derive(Clone, Copy, Debug)]
 pub enum RenderStage<'a> {
-    /// BVHs and tables are built.
-    Prepared(&'a RenderScene),
+    /// BVHs and tables are built. Lights may have to share layers.
+    Prepared(&'a RenderScene, Option<SharedLayers>),
     /// One sample a pixel of a small version of a large picture.
     Coarse(&'a Film),
     /// A sample pass is complete.
@@ -58,17 +82,18 @@ pub struct Rendered {
 /// Renders on `pool`, keeping `monitor` up to date and calling `observe` at each stage.
 ///
 /// # Errors
-/// When the scene cannot be prepared.
+/// When the scene cannot be prepared, or the memory does not suffice for the picture, even with a layer for each role of
+/// lights.
 pub fn render(
     input: &RenderInput<'_>,
     pool: &ThreadPool,
     monitor: &RenderMonitor,
     observe: &mut (dyn FnMut(RenderStage<'_>) + Send),
-) -> Result<Rendered, PrepareError> {
+) -> Result<Rendered, RenderError> {
     let RenderInput { settings, .. } = *input;
     let control = monitor.control();
     // Build the acceleration structures and the light tables.
-    let (scene, build_s) = prepared(input, pool, observe)?;
+    let (scene, build_s) = prepared(input, Layers::OneEach, pool, observe)?;
     // Trace a small version of a large picture, whose first pass takes long.
     let trace_started = Instant::now();
     monitor.start_tracing(trace_started);
@@ -94,20 +119,43 @@ pub fn render(
     Ok(Rendered { scene, coarse, film, build_s, trace_s: trace_started.elapsed().as_secs_f64() })
 }
 
+/// The layers that a film may have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Layers {
+    /// One for each light, or for each role of lights where the memory suffices for no more.
+    OneEach,
+    /// Those of any other machine.
+    Fixed,
+}
+
 /// Prepares the scene, with the plan that the input asks for, and returns it with the time that it took, seconds.
 pub(super) fn prepared(
     input: &RenderInput<'_>,
+    layers: Layers,
     pool: &ThreadPool,
     observe: &mut (dyn FnMut(RenderStage<'_>) + Send),
-) -> Result<(RenderScene, f64), PrepareError> {
+) -> Result<(RenderScene, f64), RenderError> {
+    let RenderInput { scene, assets, cache, settings, .. } = *input;
     let started = Instant::now();
-    let mut scene = pool.install(|| raytrace::prepare_kept(input.scene, input.assets, input.cache))?;
-    if !input.without.is_empty() {
-        let plan = input.without.iter().fold(scene.plan().clone(), |plan, shortcut| plan.without(*shortcut));
-        scene.set_plan(plan);
+    let mut prepared = pool.install(|| raytrace::prepare_kept(scene, assets, cache))?;
+    // Share layers, or refuse, if the memory does not suffice
+    let mut shared = None;
+    if let Some(free) = input.memory.or_else(memory::free) {
+        let need = |scene: &RenderScene| memory::needed(settings, scene.layers().len());
+        if need(&prepared) > free && layers == Layers::OneEach {
+            shared = Some(SharedLayers { need: need(&prepared), free });
+            prepared = pool.install(|| raytrace::prepare_shared(scene, assets, cache))?;
+        }
+        if need(&prepared) > free {
+            return Err(RenderError::Memory { need: need(&prepared), free });
+        }
     }
-    observe(RenderStage::Prepared(&scene));
-    Ok((scene, started.elapsed().as_secs_f64()))
+    if !input.without.is_empty() {
+        let plan = input.without.iter().fold(prepared.plan().clone(), |plan, shortcut| plan.without(*shortcut));
+        prepared.set_plan(plan);
+    }
+    observe(RenderStage::Prepared(&prepared, shared));
+    Ok((prepared, started.elapsed().as_secs_f64()))
 }
 
 /// Returns the film with the samples of an earlier run, or an empty one.

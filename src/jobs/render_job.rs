@@ -1,7 +1,7 @@
 //! A render in the background, on an immutable copy of the studio.
 
 use super::monitor::{Progress, RenderMonitor};
-use super::render::{RenderInput, RenderStage, Rendered, render};
+use super::render::{RenderInput, RenderStage, Rendered, SharedLayers, render};
 use super::sentence::sentence;
 use super::threads::{Priority, background_pool};
 use super::worker::{Inbox, Interrupt, Wake, Worker, WorkerSettings};
@@ -75,6 +75,7 @@ struct Report {
     phase: RenderPhase,
     film: Option<Arc<Film>>,
     outcome: Option<RenderOutcome>,
+    shared_layers: Option<SharedLayers>,
 }
 
 /// One render. Dropping it cancels it.
@@ -83,6 +84,7 @@ pub struct RenderJob {
     worker: Worker<Task, Report>,
     monitor: Arc<RenderMonitor>,
     latest: Report,
+    has_told_shared_layers: bool,
     /// The studio as it is being rendered.
     pub scene: Arc<Scene>,
     /// Size, method and number of samples.
@@ -112,8 +114,8 @@ impl RenderJob {
         });
         let task = Task { request, monitor: monitor.clone() };
         worker.request_with(control, wake, |_| task);
-        let latest = Report { phase: RenderPhase::Preparing, film: None, outcome: None };
-        RenderJob { worker, monitor, latest, scene, settings }
+        let latest = Report { phase: RenderPhase::Preparing, film: None, outcome: None, shared_layers: None };
+        RenderJob { worker, monitor, latest, has_told_shared_layers: false, scene, settings }
     }
 
     /// Cancels the render. Complete samples are kept.
@@ -150,6 +152,13 @@ impl RenderJob {
         self.latest.outcome.take()
     }
 
+    /// Returns the reason why lights share layers, if they do; once.
+    pub fn take_shared_layers(&mut self) -> Option<SharedLayers> {
+        let shared = self.latest.shared_layers.filter(|_| !self.has_told_shared_layers);
+        self.has_told_shared_layers |= shared.is_some();
+        shared
+    }
+
     /// Returns the current progress.
     pub fn progress(&self) -> Progress {
         self.monitor.progress()
@@ -170,13 +179,21 @@ fn run(task: &Task, inbox: &Inbox<Task, Report>) {
         Ok(pool) => pool,
         Err(error) => return inbox.fail(format!("No threads to render with: {error}.")),
     };
-    let mut report = Report { phase: RenderPhase::Preparing, film: None, outcome: None };
+    let mut report = Report { phase: RenderPhase::Preparing, film: None, outcome: None, shared_layers: None };
     let mut last_film: Option<Instant> = None;
-    let input =
-        RenderInput { scene, assets: &assets, cache, settings, without: &[], checkpoint: None, time_limit: None };
+    let input = RenderInput {
+        scene,
+        assets: &assets,
+        cache,
+        settings,
+        without: &[],
+        checkpoint: None,
+        time_limit: None,
+        memory: None,
+    };
     let rendered = render(&input, &pool, monitor, &mut |stage| {
         match stage {
-            RenderStage::Prepared(_) => report.phase = RenderPhase::Tracing,
+            RenderStage::Prepared(_, shared) => (report.phase, report.shared_layers) = (RenderPhase::Tracing, shared),
             RenderStage::Coarse(film) => report.film = Some(Arc::new(film.clone())),
             RenderStage::Pass(film) => {
                 if last_film.is_some_and(|last| last.elapsed() < FILM_INTERVAL) {

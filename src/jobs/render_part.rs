@@ -1,8 +1,9 @@
 //! A part of a picture's samples from scene to sums, for farms.
 
+use super::memory::RenderError;
 use super::monitor::RenderMonitor;
-use super::render::{RenderInput, RenderStage, prepared};
-use crate::raytrace::{self, FilmPart, PrepareError, RenderScene};
+use super::render::{Layers, RenderInput, RenderStage, prepared};
+use crate::raytrace::{self, FilmPart, RenderScene};
 use rayon::ThreadPool;
 use std::ops::Range;
 use std::time::Instant;
@@ -28,15 +29,15 @@ pub struct RenderedPart {
 /// not used.
 ///
 /// # Errors
-/// When the scene cannot be prepared.
+/// When the scene cannot be prepared, or the memory does not suffice.
 pub fn render_part(
     input: &RenderInput<'_>,
     range: Range<u32>,
     pool: &ThreadPool,
     monitor: &RenderMonitor,
     observe: &mut (dyn FnMut(RenderStage<'_>) + Send),
-) -> Result<RenderedPart, PrepareError> {
-    let (scene, build_s) = prepared(input, pool, observe)?;
+) -> Result<RenderedPart, RenderError> {
+    let (scene, build_s) = prepared(input, Layers::Fixed, pool, observe)?;
     let trace_started = Instant::now();
     monitor.start_tracing(trace_started);
     let after_sample = &mut |_: &FilmPart| monitor.finish_pass();

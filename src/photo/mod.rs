@@ -6,6 +6,7 @@ pub mod beam;
 pub mod emitter;
 pub mod exposure;
 pub mod irradiance_grid;
+mod lazy_picture;
 pub mod light;
 mod light_color;
 pub mod meter;
@@ -15,6 +16,7 @@ pub mod portrait_pattern;
 pub mod thirds;
 
 pub use aov::AovPicture;
+pub use lazy_picture::LazyPicture;
 pub use light::{PhotometricLight, Strength};
 pub use light_color::light_rgb;
 pub use picture::Picture;

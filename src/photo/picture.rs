@@ -28,6 +28,11 @@ impl Picture {
         Picture { width, height, rgb: resized(&self.rgb, (self.width, self.height), (width, height)) }
     }
 
+    /// As [`Picture::resized`], without a copy of a picture that has the size.
+    pub fn into_resized(self, width: u32, height: u32) -> Picture {
+        if (self.width, self.height) == (width, height) { self } else { self.resized(width, height) }
+    }
+
     /// Converts to display values: tone curve and sRGB encoding, 8 bits per channel, dithered.
     pub fn to_srgb8(&self) -> Vec<[u8; 3]> {
         let places = (0..self.height).flat_map(|y| (0..self.width).map(move |x| [x, y]));
@@ -41,11 +46,14 @@ pub(super) fn resized<T: Copy>(
     (width, height): (u32, u32),
     (new_width, new_height): (u32, u32),
 ) -> Vec<T> {
-    let nearest = |i: u32, from: u32, to: u32| {
-        (u64::from(2 * i + 1) * u64::from(from) / u64::from(2 * to.max(1))).min(u64::from(from.max(1) - 1)) as usize
-    };
-    let rows = (0..new_height).map(|y| nearest(y, height, new_height) * width as usize);
-    rows.flat_map(|row| (0..new_width).map(move |x| pixels[row + nearest(x, width, new_width)])).collect()
+    let rows = (0..new_height).map(|y| nearest(y, height, new_height) as usize * width as usize);
+    rows.flat_map(|row| (0..new_width).map(move |x| pixels[row + nearest(x, width, new_width) as usize])).collect()
+}
+
+/// Returns the index, among `from` pixels, of the one nearest to pixel `i` of `to`.
+pub(super) fn nearest(i: u32, from: u32, to: u32) -> u32 {
+    let index = u64::from(2 * i + 1) * u64::from(from) / u64::from(2 * to.max(1));
+    index.min(u64::from(from.max(1) - 1)) as u32
 }
 
 #[cfg(test)]

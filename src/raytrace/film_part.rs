@@ -4,7 +4,7 @@
 use super::exact_sum::ExactSum;
 use super::film::{Film, Layer, NonFiniteReport, TILE};
 use crate::color::luminance;
-use crate::photo::{AovPicture, Picture};
+use crate::photo::{AovPicture, LazyPicture, Picture};
 use crate::scene::Scene;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -136,12 +136,22 @@ impl FilmPart {
 
     /// Develops the picture.
     pub fn develop(&self) -> Picture {
-        self.picture(|pixel| self.layers.iter().map(|layer| self.mean(layer, pixel)).sum())
+        let rgb = (0..self.squares.len()).map(|pixel| self.develop_pixel(pixel));
+        Picture { width: self.width, height: self.height, rgb: rgb.collect() }
     }
 
-    /// Develops each layer by itself.
-    pub fn develop_layers(&self) -> Vec<(String, Picture)> {
-        let one = |layer: &PartLayer| (layer.name.clone(), self.picture(|pixel| self.mean(layer, pixel)));
+    /// Develops one pixel of the picture, by its index in rows from the top.
+    pub fn develop_pixel(&self, pixel: usize) -> [f32; 3] {
+        shown(self.layers.iter().map(|layer| self.mean(layer, pixel)).sum())
+    }
+
+    /// Develops each layer by itself, pixel by pixel as it is read.
+    pub fn lazy_layers(&self) -> Vec<(String, LazyPicture<'_>)> {
+        let one = |layer| {
+            let pixel = move |x, y| y as usize * self.width as usize + x as usize;
+            let picture = LazyPicture::new((self.width, self.height), move |x, y| shown(self.mean(layer, pixel(x, y))));
+            (layer.name.clone(), picture)
+        };
         self.layers.iter().map(one).collect()
     }
 
@@ -188,12 +198,11 @@ impl FilmPart {
     fn mean(&self, layer: &PartLayer, pixel: usize) -> DVec3 {
         value(layer.sums[pixel]) * layer.weight.as_dvec3() * self.per_sample()
     }
+}
 
-    /// Collects pixel values. As in [`Film::develop`], negative noise is shown black.
-    fn picture(&self, value: impl Fn(usize) -> DVec3) -> Picture {
-        let rgb = (0..self.squares.len()).map(|pixel| value(pixel).as_vec3().max(Vec3::ZERO).to_array());
-        Picture { width: self.width, height: self.height, rgb: rgb.collect() }
-    }
+/// Returns a pixel as it is shown: as in [`Film::develop`], negative noise is black.
+fn shown(rgb: DVec3) -> [f32; 3] {
+    rgb.as_vec3().max(Vec3::ZERO).to_array()
 }
 
 impl PartAovs {

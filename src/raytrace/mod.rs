@@ -77,7 +77,7 @@ pub use irradiance_probes::{IrradianceProbes, ProbeScene};
 pub use light_meter::{DirectLight, LightMeter, MeterEffort, MeterPoint, MeterResult, MeteredSource, SurfacePoint};
 pub use live::{AtrousFilter, LiveCamera, LivePicture};
 pub use plan::{RenderPlan, Shortcut};
-pub use prepare::{PrepareError, prepare, prepare_kept};
+pub use prepare::{PrepareError, prepare, prepare_kept, prepare_shared};
 pub use primary_objects::primary_objects;
 pub use render::{empty_film, render, resume};
 pub use render_part::render_part;

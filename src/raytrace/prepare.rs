@@ -38,6 +38,11 @@ pub fn prepare_kept(scene: &Scene, assets: &Assets, cache: &GeometryCache) -> Re
     prepare_all(scene, assets, scene.camera.position, film::assign_layers, cache)
 }
 
+/// As [`prepare_kept`], with a film layer for each role of lights, which takes less memory than one for each light.
+pub fn prepare_shared(scene: &Scene, assets: &Assets, cache: &GeometryCache) -> Result<RenderScene, PrepareError> {
+    prepare_all(scene, assets, scene.camera.position, film::share_layers, cache)
+}
+
 /// Assigns each light its film layer.
 pub(super) type AssignLayers = fn(&Scene, &mut [(TracedLight, &Light)]) -> Vec<Layer>;
 

@@ -116,9 +116,9 @@ mod tests {
         assert_eq!((own.depth_m, own.object_id), (films.depth_m, films.object_id));
         let aov = |rgb| Picture { width: 70, height: 40, rgb };
         assert!(relative_difference(&aov(own.albedo), &aov(films.albedo)) < 13.0 * f32::EPSILON);
-        for ((name, layer), (film_name, film_layer)) in whole.develop_layers().iter().zip(film.develop_layers(&scene)) {
+        for ((name, layer), (film_name, film_layer)) in whole.lazy_layers().iter().zip(film.develop_layers(&scene)) {
             assert_eq!(*name, film_name);
-            assert!(relative_difference(layer, &film_layer) < 1e-4, "{name}");
+            assert!(relative_difference(&layer.collect(), &film_layer) < 1e-4, "{name}");
         }
     }
 

@@ -15,7 +15,7 @@ pub use arguments::Arguments;
 use super::denoised_output::{Denoise, Output, Written};
 use super::failure::Failure;
 use super::{input, picture_output, terminal, zbuffer};
-use crate::io::{self, Loaded, PictureInfo};
+use crate::io::{self, LayeredPicture, Loaded, PictureInfo};
 use crate::jobs::{self, RenderInput, RenderMonitor, RenderStage, Rendered};
 use crate::raytrace::{Film, GeometryCache, NonFiniteReport, RenderControl, RenderScene, Settings};
 use anyhow::anyhow;
@@ -118,10 +118,12 @@ fn render(
         without: arguments.without(),
         checkpoint: earlier.as_deref(),
         time_limit: arguments.time_limit(),
+        memory: None,
     };
     let mut display = None;
     let rendered = jobs::render(&input, pool, monitor, &mut |stage| match stage {
-        RenderStage::Prepared(scene) => {
+        RenderStage::Prepared(scene, shared) => {
+            shared.iter().for_each(terminal::warning);
             if arguments.explain {
                 print_plan(scene, arguments.json);
             }
@@ -192,7 +194,13 @@ fn draw_zbuffer(
     let trace_s = draw_started.elapsed().as_secs_f64();
     let info = PictureInfo::new(&loaded.scene, "zbuffer", side * side, arguments.seed.into());
     let first_picture_s = started.elapsed().as_secs_f64();
-    let written = picture_output::write(&io::encode_layers(arguments.output(), &picture, &[], None, &info)?)?;
+    let written = picture_output::write(&io::picture_file(
+        arguments.output(),
+        LayeredPicture::alone(&picture),
+        None,
+        None,
+        &info,
+    )?)?;
     let report = RenderReport {
         width,
         height,
@@ -228,7 +236,7 @@ fn write(arguments: &Arguments, loaded: &Loaded, film: &Film, settings: &Setting
         path: arguments.output(),
         size: (settings.width, settings.height),
         picture: film.develop(&loaded.scene),
-        layers: if arguments.layers { film.develop_layers(&loaded.scene) } else { Vec::new() },
+        layers: if arguments.layers { film.lazy_layers(&loaded.scene) } else { Vec::new() },
         denoiser_aovs: film.denoiser_aovs(),
         aovs: film.aovs().filter(|_| arguments.aovs),
         info: PictureInfo::new(&loaded.scene, film.method(), film.spp(), arguments.seed.into()),

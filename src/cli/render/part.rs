@@ -78,10 +78,11 @@ impl PartRender<'_> {
             without: self.arguments.without(),
             checkpoint: None,
             time_limit: None,
+            memory: None,
         };
         let mut display = None;
         let rendered = jobs::render_part(&input, samples, self.pool, monitor, &mut |stage| {
-            if let RenderStage::Prepared(scene) = stage {
+            if let RenderStage::Prepared(scene, _) = stage {
                 if self.arguments.explain {
                     print_plan(scene, self.arguments.json);
                 }

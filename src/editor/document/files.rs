@@ -147,12 +147,6 @@ pub fn save(document: &Document, path: &Path) -> Result<(), String> {
 ///
 /// `noisy` is the picture before the denoiser, which an EXR file holds, too.
 pub fn export(path: &Path, picture: &Picture, noisy: Option<&Picture>, info: &PictureInfo) -> Result<(), String> {
-    let whole = |picture| LayeredPicture { picture, layers: &[] };
-    let written = match noisy {
-        Some(noisy) => {
-            io::encode_denoised(path, whole(picture), whole(noisy), None, info).and_then(|encoded| encoded.write())
-        }
-        None => io::export_picture(path, picture, info),
-    };
-    written.map_err(|e| sentence(&e))
+    let file = io::picture_file(path, LayeredPicture::alone(picture), noisy.map(LayeredPicture::alone), None, info);
+    file.and_then(|file| file.write()).map_err(|e| sentence(&e))
 }

@@ -2,7 +2,9 @@
 
 use crate::editor::ui::image_texture::ImageTexture;
 use crate::editor::ui::wake::wake;
-use crate::jobs::{Developed, Development, FilmDeveloper, RenderJob, RenderOutcome, RenderPhase, RenderRequest};
+use crate::jobs::{
+    Developed, Development, FilmDeveloper, RenderJob, RenderOutcome, RenderPhase, RenderRequest, SharedLayers,
+};
 use crate::photo::Picture;
 use crate::raytrace::{self, Film, GeometryCache, Method, Settings};
 use crate::scene::{Assets, Camera, Scene, SceneChange};
@@ -239,6 +241,11 @@ impl Rendering {
         let job = self.job.as_mut()?;
         let outcome = job.take_outcome()?;
         Some((job, outcome))
+    }
+
+    /// Takes the reason why the lights of the render share layers, if they do.
+    pub fn take_shared_layers(&mut self) -> Option<SharedLayers> {
+        self.job.as_mut()?.take_shared_layers()
     }
 
     /// Returns the message of a render or a development that failed.

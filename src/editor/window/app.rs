@@ -25,7 +25,9 @@ use crate::editor::window::recent::RecentFiles;
 use crate::editor::window::recovery::Recovery;
 use crate::editor::window::rescue;
 use crate::editor::window::session::Session;
-use crate::jobs::{Clock, Estimate, Forecast, ForecastSubject, Forecaster, MeterJob, PatternJob, RenderOutcome};
+use crate::jobs::{
+    Clock, Estimate, Forecast, ForecastSubject, Forecaster, MeterJob, PatternJob, RenderOutcome, sentence,
+};
 use crate::raytrace::{GeometryCache, Settings};
 use crate::scene::SceneChange;
 use eframe::egui::text_selection::LabelSelectionState;
@@ -262,6 +264,9 @@ impl App {
         let figure = if let Some(Item::Object(id)) = self.selection.last() { Some(id) } else { None };
         let (scene, assets) = (document.scene(), document.assets());
         self.background.pattern.update(scene, assets, figure, document.revision(), &wake(ctx));
+        if let Some(shared) = self.rendering.take_shared_layers() {
+            self.toasts.warning(sentence(&shared));
+        }
         match self.rendering.failure() {
             Some(message) if !self.window.render_failure_reported => {
                 self.toasts.error(format!("The render failed. {message}"));

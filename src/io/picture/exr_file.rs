@@ -1,35 +1,48 @@
 //! OpenEXR: 32-bit float, Rec.709 primaries, ZIP, one part for the picture with its AOVs and one per light.
 
+use super::channel_samples::ChannelSamples;
 use super::{LayeredPicture, PictureInfo};
-use crate::photo::{AovPicture, Picture};
+use crate::photo::{AovPicture, LazyPicture, Picture};
 use exr::meta::MetaData;
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer, LayerAttributes,
-    ReadChannels, ReadLayers, Text, WritableImage,
+    AnyChannel, AnyChannels, Encoding, Image, ImageAttributes, IntegerBounds, Layer, LayerAttributes, Layers,
+    ReadChannels, ReadLayers, Text,
 };
 use std::io::Cursor;
 
 /// Name of the part with all lights, before the parts of single lights.
-const WHOLE: &str = "picture";
+pub(super) const WHOLE: &str = "picture";
+/// Channels of the pixels that are shown, and of those before the denoiser.
+pub(super) const SHOWN_CHANNELS: [&str; 3] = ["R", "G", "B"];
+const NOISY_CHANNELS: [&str; 3] = ["noisy.R", "noisy.G", "noisy.B"];
 
-pub(super) fn encode(
-    shown: LayeredPicture<'_>,
-    noisy: Option<LayeredPicture<'_>>,
-    aovs: Option<&AovPicture>,
+/// A picture and its layers as EXR parts.
+pub(super) type ExrImage<'a> = Image<Layers<AnyChannels<ChannelSamples<'a>>>>;
+/// A part of an EXR file.
+pub(super) type ExrPart<'a> = Layer<AnyChannels<ChannelSamples<'a>>>;
+pub(super) type ExrChannel<'a> = AnyChannel<ChannelSamples<'a>>;
+
+pub(super) fn image<'a>(
+    shown: LayeredPicture<'a>,
+    noisy: Option<LayeredPicture<'a>>,
+    aovs: Option<&'a AovPicture>,
     info: &PictureInfo,
-) -> Result<Vec<u8>, String> {
-    let picture = shown.picture;
-    let whole = part(WHOLE, picture, noisy.map(|noisy| noisy.picture), aovs, info);
-    let noisy_layer = |index: usize| noisy?.layers.get(index).map(|(_, layer)| layer);
-    let layers = shown.layers.iter().enumerate();
-    let layers = layers.map(|(index, (name, layer))| part(name, layer, noisy_layer(index), None, info));
-    let parts: Vec<_> = std::iter::once(whole).chain(layers).collect();
+) -> ExrImage<'a> {
+    let LayeredPicture { picture, layers } = shown;
+    let mut channels = Vec::from(picture_channels(SHOWN_CHANNELS, picture));
+    channels.extend(noisy.into_iter().flat_map(|noisy| picture_channels(NOISY_CHANNELS, noisy.picture)));
+    channels.extend(aovs.into_iter().flat_map(aov_channels));
     let size = (picture.width as usize, picture.height as usize);
-    let image = Image::from_layers(ImageAttributes::new(IntegerBounds::from_dimensions(size)), parts);
-    let mut content = Cursor::new(Vec::new());
-    image.write().to_buffered(&mut content).map_err(|error| error.to_string())?;
-    Ok(content.into_inner())
+    let whole = part(WHOLE, size, channels, info);
+    let layer = |(index, (name, layer)): (usize, &'a (String, LazyPicture<'a>))| {
+        let mut channels = Vec::from(layer_channels(SHOWN_CHANNELS, layer));
+        let noisy = noisy.and_then(|noisy| noisy.layers.get(index));
+        channels.extend(noisy.into_iter().flat_map(|(_, noisy)| layer_channels(NOISY_CHANNELS, noisy)));
+        part(name, size, channels, info)
+    };
+    let parts = std::iter::once(whole).chain(layers.iter().enumerate().map(layer));
+    Image::from_layers(ImageAttributes::new(IntegerBounds::from_dimensions(size)), parts.collect::<Layers<_>>())
 }
 
 /// Longest edge of a picture that is read, pixels.
@@ -72,13 +85,13 @@ pub(super) fn decode(content: &[u8]) -> Result<Picture, String> {
     Ok(image.layer_data.channel_data.pixels)
 }
 
-pub(super) fn part(
+/// Returns a part of an image of a width and height, with the settings of the render in its header.
+pub(super) fn part<'a>(
     name: &str,
-    picture: &Picture,
-    noisy: Option<&Picture>,
-    aovs: Option<&AovPicture>,
+    size: (usize, usize),
+    channels: Vec<ExrChannel<'a>>,
     info: &PictureInfo,
-) -> Layer<AnyChannels<FlatSamples>> {
+) -> ExrPart<'a> {
     let mut attributes = LayerAttributes::named(text(name));
     attributes.software_name = Some(text(concat!("Catchlight ", env!("CARGO_PKG_VERSION"))));
     let others = [
@@ -92,29 +105,35 @@ pub(super) fn part(
     attributes.other.extend(others.map(|(name, value)| (text(name), value)));
     let denoiser = info.denoiser.map(|name| (text("denoiser"), AttributeValue::Text(text(name))));
     attributes.other.extend(denoiser);
-    let mut channels = channels(["R", "G", "B"], &picture.rgb).to_vec();
-    channels.extend(noisy.into_iter().flat_map(|noisy| self::channels(["noisy.R", "noisy.G", "noisy.B"], &noisy.rgb)));
-    channels.extend(aovs.into_iter().flat_map(aov_channels));
-    let size = (picture.width as usize, picture.height as usize);
     Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels.into()))
 }
 
 /// Returns the channels of the AOVs, with the names of the OpenEXR conventions: normals in world space, `Z` in metres
 /// along the view axis, `id` as unsigned integers.
-fn aov_channels(aovs: &AovPicture) -> Vec<AnyChannel<FlatSamples>> {
-    let mut all = channels(["albedo.R", "albedo.G", "albedo.B"], &aovs.albedo).to_vec();
-    all.extend(channels(["normal.X", "normal.Y", "normal.Z"], &aovs.normal));
-    all.push(AnyChannel::new("Z", FlatSamples::F32(aovs.depth_m.clone())));
-    all.push(AnyChannel::new("id", FlatSamples::U32(aovs.object_id.clone())));
+fn aov_channels(aovs: &AovPicture) -> Vec<ExrChannel<'_>> {
+    let width = aovs.width as usize;
+    let albedo = vector_channels(["albedo.R", "albedo.G", "albedo.B"], move |x, y| aovs.albedo[y * width + x]);
+    let mut all = Vec::from(albedo);
+    all.extend(vector_channels(["normal.X", "normal.Y", "normal.Z"], move |x, y| aovs.normal[y * width + x]));
+    all.push(AnyChannel::new("Z", ChannelSamples::f32(move |x, y| aovs.depth_m[y * width + x])));
+    all.push(AnyChannel::new("id", ChannelSamples::u32(move |x, y| aovs.object_id[y * width + x])));
     all
 }
 
-/// Splits pixels into three named channels.
-fn channels(names: [&str; 3], pixels: &[[f32; 3]]) -> [AnyChannel<FlatSamples>; 3] {
-    let channel = |index: usize| {
-        let values = pixels.iter().map(|pixel| pixel[index]).collect();
-        AnyChannel::new(names[index], FlatSamples::F32(values))
-    };
+fn picture_channels<'a>(names: [&str; 3], picture: &'a Picture) -> [ExrChannel<'a>; 3] {
+    vector_channels(names, |x, y| picture.at(x as u32, y as u32))
+}
+
+fn layer_channels<'a>(names: [&str; 3], layer: &'a LazyPicture<'a>) -> [ExrChannel<'a>; 3] {
+    vector_channels(names, |x, y| layer.at(x as u32, y as u32))
+}
+
+/// Returns the three channels of pixels at (x, y).
+pub(super) fn vector_channels<'a>(
+    names: [&str; 3],
+    pixel: impl Fn(usize, usize) -> [f32; 3] + Copy + Sync + 'a,
+) -> [ExrChannel<'a>; 3] {
+    let channel = |index: usize| AnyChannel::new(names[index], ChannelSamples::f32(move |x, y| pixel(x, y)[index]));
     [0, 1, 2].map(channel)
 }
 

@@ -1,16 +1,18 @@
 //! Writes pictures: tone-mapped PNG and JPEG, scene-linear EXR.
 
-mod encoded;
+mod channel_samples;
 mod exr_file;
 mod part_file;
+mod picture_file;
 
-pub use encoded::EncodedPicture;
 pub use part_file::{PicturePart, encode_part, read_part};
+pub use picture_file::PictureFile;
 
 use super::atomic;
 use super::error::SaveError;
-use crate::photo::{AovPicture, Picture, exposure};
+use crate::photo::{AovPicture, LazyPicture, Picture, exposure};
 use crate::scene::Scene;
+use picture_file::Content;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -37,8 +39,15 @@ pub struct PictureInfo {
 pub struct LayeredPicture<'a> {
     /// The whole picture.
     pub picture: &'a Picture,
-    /// The layers, by name.
-    pub layers: &'a [(String, Picture)],
+    /// The layers, by name; their pixels are computed while the file is written.
+    pub layers: &'a [(String, LazyPicture<'a>)],
+}
+
+impl<'a> LayeredPicture<'a> {
+    /// Returns a picture without layers.
+    pub fn alone(picture: &'a Picture) -> Self {
+        LayeredPicture { picture, layers: &[] }
+    }
 }
 
 impl PictureInfo {
@@ -90,96 +99,53 @@ pub fn read_exr(path: &Path) -> Result<Picture, String> {
 /// # Errors
 /// If the extension is unknown, the folder missing or the picture empty, or if the file can't be written.
 pub fn export_picture(path: &Path, picture: &Picture, info: &PictureInfo) -> Result<(), SaveError> {
-    export_layers(path, picture, &[], None, info)
+    picture_file(path, LayeredPicture::alone(picture), None, None, info)?.write()
 }
 
-/// As [`export_picture`]; an EXR file also gets the light layers, each as a part under its light's name, and the AOVs
-/// as channels beside the picture's. PNG and JPEG hold the picture alone.
+/// Prepares the file of a picture, to be written later. An EXR file also gets the light layers, each as a part under
+/// its light's name, and the AOVs as channels beside the picture's; with the picture before the denoiser, it gets the
+/// channels `noisy.R`, `noisy.G` and `noisy.B` of the picture and of each layer. PNG and JPEG hold the picture alone.
 ///
 /// # Errors
-/// As [`export_picture`], and if layers or AOVs differ in size from the picture.
-pub fn export_layers(
+/// If the extension is unknown or the picture empty, or if layers, AOVs or the noisy picture differ in size or number.
+pub fn picture_file<'a>(
     path: &Path,
-    picture: &Picture,
-    layers: &[(String, Picture)],
-    aovs: Option<&AovPicture>,
+    shown: LayeredPicture<'a>,
+    noisy: Option<LayeredPicture<'a>>,
+    aovs: Option<&'a AovPicture>,
     info: &PictureInfo,
-) -> Result<(), SaveError> {
-    encode_layers(path, picture, layers, aovs, info)?.write()
-}
-
-/// Encodes a picture as [`export_layers`] does, for a file that is written later.
-///
-/// # Errors
-/// If the extension is unknown or the picture empty, or if layers or AOVs differ in size from the picture.
-pub fn encode_layers(
-    path: &Path,
-    picture: &Picture,
-    layers: &[(String, Picture)],
-    aovs: Option<&AovPicture>,
-    info: &PictureInfo,
-) -> Result<EncodedPicture, SaveError> {
-    encode(path, LayeredPicture { picture, layers }, None, aovs, info)
-}
-
-/// Encodes a denoised picture, for a file that is written later. An EXR file holds the noisy pixels, too: the channels
-/// `noisy.R`, `noisy.G` and `noisy.B` of the picture and of each layer.
-///
-/// # Errors
-/// As [`encode_layers`], and if the noisy picture has another size or other layers.
-pub fn encode_denoised(
-    path: &Path,
-    denoised: LayeredPicture<'_>,
-    noisy: LayeredPicture<'_>,
-    aovs: Option<&AovPicture>,
-    info: &PictureInfo,
-) -> Result<EncodedPicture, SaveError> {
-    encode(path, denoised, Some(noisy), aovs, info)
-}
-
-fn encode(
-    path: &Path,
-    shown: LayeredPicture<'_>,
-    noisy: Option<LayeredPicture<'_>>,
-    aovs: Option<&AovPicture>,
-    info: &PictureInfo,
-) -> Result<EncodedPicture, SaveError> {
+) -> Result<PictureFile<'a>, SaveError> {
     let format = PictureFormat::of(path)?;
     let picture = shown.picture;
-    check_size("the picture", picture)?;
-    let own = shown.layers.iter().map(|(name, layer)| (name.as_str(), layer));
-    let noisy_layers = noisy.into_iter().flat_map(|noisy| {
-        let layers = noisy.layers.iter().map(|(name, layer)| (name.as_str(), layer));
-        std::iter::once(("the noisy picture", noisy.picture)).chain(layers)
-    });
-    for (name, layer) in own.chain(noisy_layers) {
-        check_size(name, layer)?;
-        if (layer.width, layer.height) != (picture.width, picture.height) {
-            return Err(SaveError::BadPicture(format!("the layer {name:?} has another size than the picture")));
+    check_size(picture)?;
+    let size = (picture.width, picture.height);
+    let bad = |message: String| Err(SaveError::BadPicture(message));
+    let layers = shown.layers.iter().chain(noisy.into_iter().flat_map(|noisy| noisy.layers));
+    if let Some((name, _)) = { layers }.find(|(_, layer)| layer.size() != size) {
+        return bad(format!("the layer {name:?} has another size than the picture"));
+    }
+    if aovs.is_some_and(|aovs| (aovs.width, aovs.height) != size) {
+        return bad("the AOVs have another size than the picture".to_owned());
+    }
+    if let Some(noisy) = noisy {
+        check_size(noisy.picture)?;
+        if (noisy.picture.width, noisy.picture.height) != size || noisy.layers.len() != shown.layers.len() {
+            return bad("the noisy picture has another size or other layers than the denoised one".to_owned());
         }
     }
-    if aovs.is_some_and(|aovs| (aovs.width, aovs.height) != (picture.width, picture.height)) {
-        return Err(SaveError::BadPicture("the AOVs have another size than the picture".to_owned()));
-    }
-    if noisy.is_some_and(|noisy| noisy.layers.len() != shown.layers.len()) {
-        return Err(SaveError::BadPicture("the noisy picture has other layers than the denoised one".to_owned()));
-    }
     let content = match format {
-        PictureFormat::Png | PictureFormat::Jpeg => encode_8bit(picture, format),
-        PictureFormat::Exr => exr_file::encode(shown, noisy, aovs, info),
+        PictureFormat::Png | PictureFormat::Jpeg => Content::Bytes(
+            encode_8bit(picture, format).map_err(|message| SaveError::Encode { message, path: path.to_owned() })?,
+        ),
+        PictureFormat::Exr => Content::Exr(Box::new(exr_file::image(shown, noisy, aovs, info))),
     };
-    let content = content.map_err(|message| SaveError::Encode { message, path: path.to_owned() })?;
-    Ok(EncodedPicture::new(path, content))
+    Ok(PictureFile::new(path, content))
 }
 
-fn check_size(name: &str, picture: &Picture) -> Result<(), SaveError> {
-    let pixels = picture.width as usize * picture.height as usize;
-    if pixels == 0 || pixels != picture.rgb.len() {
-        let Picture { width, height, rgb } = picture;
-        return Err(SaveError::BadPicture(format!(
-            "{name}: {} pixels are no picture of {width} x {height}",
-            rgb.len()
-        )));
+fn check_size(Picture { width, height, rgb }: &Picture) -> Result<(), SaveError> {
+    let pixels = *width as usize * *height as usize;
+    if pixels == 0 || pixels != rgb.len() {
+        return Err(SaveError::BadPicture(format!("{} pixels are no picture of {width} x {height}", rgb.len())));
     }
     Ok(())
 }
@@ -196,7 +162,7 @@ pub fn export_shown(path: &Path, shown: &image::RgbImage) -> Result<(), SaveErro
         encode_rgb8(shown.width(), shown.height(), shown.as_raw(), format)
     };
     let content = content.map_err(|message| SaveError::Encode { message, path: path.to_owned() })?;
-    atomic::send(path, &content)
+    atomic::send(path, |out| out.write_all(&content))
 }
 
 /// Checks that a picture can be written to a file, before it is rendered: its extension, its folder, permissions.

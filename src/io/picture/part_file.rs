@@ -6,8 +6,9 @@
 //! of samples; the header says which, and of which render.
 
 use super::PictureInfo;
-use super::encoded::EncodedPicture;
-use super::exr_file::{checked_size, part, text};
+use super::channel_samples::ChannelSamples;
+use super::exr_file::{ExrChannel, ExrPart, SHOWN_CHANNELS, WHOLE, checked_size, part, text, vector_channels};
+use super::picture_file::{Content, PictureFile};
 use crate::io::checkpoint::RenderId;
 use crate::io::error::{SaveError, reason};
 use crate::raytrace::{ExactSum, FilmPart, NonFiniteReport, PartAovs, PartLayer, PixelSum};
@@ -15,7 +16,7 @@ use exr::meta::MetaData;
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer, LayerAttributes,
-    ReadChannels, ReadLayers, WritableImage,
+    Layers, ReadChannels, ReadLayers,
 };
 use glam::Vec3;
 use std::io::Cursor;
@@ -47,21 +48,22 @@ const OF: &str = "samplesOfWhole";
 const LAYER: &str = "layerName";
 const WEIGHT: &str = "weight";
 
-type ExrPart = Layer<AnyChannels<FlatSamples>>;
+type ReadExrPart = Layer<AnyChannels<FlatSamples>>;
 
 /// Encodes a part for its file.
 ///
 /// # Errors
 /// If the encoder fails.
-pub fn encode_part(path: &Path, value: &PicturePart) -> Result<EncodedPicture, SaveError> {
+pub fn encode_part<'a>(path: &Path, value: &'a PicturePart) -> Result<PictureFile<'a>, SaveError> {
     let encode = |message| SaveError::Encode { message, path: path.to_owned() };
     let whole =
         |samples: u32| i32::try_from(samples).map(AttributeValue::I32).map_err(|error| encode(error.to_string()));
     let sums = &value.sums;
-    let mut picture = part("picture", &sums.develop(), None, None, &value.info);
-    picture.channel_data.list.extend(sum_channels("luminance2", &sums.squares, |square| *square));
-    picture.channel_data.list.extend(sums.aovs.iter().flat_map(aov_channels));
-    picture.channel_data.list.sort_by(|a, b| a.name.cmp(&b.name));
+    let (width, size) = (sums.width as usize, (sums.width as usize, sums.height as usize));
+    let mut channels = Vec::from(vector_channels(SHOWN_CHANNELS, move |x, y| sums.develop_pixel(y * width + x)));
+    channels.extend(sum_channels("luminance2", width, &sums.squares, |square| *square));
+    channels.extend(sums.aovs.iter().flat_map(|aovs| aov_channels(aovs, width)));
+    let mut picture = part(WHOLE, size, channels, &value.info);
     picture.attributes.other.extend([
         (text(RENDER), AttributeValue::Text(text(&value.render.to_string()))),
         (text(STUDIO), AttributeValue::Text(text(&value.studio))),
@@ -69,46 +71,49 @@ pub fn encode_part(path: &Path, value: &PicturePart) -> Result<EncodedPicture, S
         (text(END), whole(value.samples.end)?),
         (text(OF), whole(value.of)?),
     ]);
-    let size = (sums.width as usize, sums.height as usize);
     let layers = sums.layers.iter().enumerate().map(|(index, layer)| layer_part(index, layer, size));
-    let parts: Vec<ExrPart> = std::iter::once(picture).chain(layers).collect();
+    let parts = std::iter::once(picture).chain(layers).collect::<Layers<_>>();
     let image = Image::from_layers(ImageAttributes::new(IntegerBounds::from_dimensions(size)), parts);
-    let mut content = Cursor::new(Vec::new());
-    image.write().to_buffered(&mut content).map_err(|error| encode(error.to_string()))?;
-    Ok(EncodedPicture::new(path, content.into_inner()))
+    Ok(PictureFile::new(path, Content::Exr(Box::new(image))))
 }
 
-fn layer_part(index: usize, layer: &PartLayer, size: (usize, usize)) -> ExrPart {
+fn layer_part(index: usize, layer: &PartLayer, size: (usize, usize)) -> ExrPart<'_> {
     let mut attributes = LayerAttributes::named(text(&format!("sums {index}")));
     let weight = layer.weight;
     attributes.other.extend([
         (text(LAYER), AttributeValue::Text(text(&layer.name))),
         (text(WEIGHT), AttributeValue::FloatVec3((weight.x, weight.y, weight.z))),
     ]);
-    let channels = vector_channels(["R", "G", "B"], &layer.sums);
+    let channels = pixel_sum_channels(SHOWN_CHANNELS, size.0, &layer.sums);
     Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels.collect()))
 }
 
-fn aov_channels(aovs: &PartAovs) -> Vec<AnyChannel<FlatSamples>> {
-    let mut all: Vec<_> = vector_channels(["albedo.R", "albedo.G", "albedo.B"], &aovs.albedo).collect();
-    all.extend(vector_channels(["normal.X", "normal.Y", "normal.Z"], &aovs.normal));
-    all.push(AnyChannel::new("Z", FlatSamples::F32(aovs.depth_m.clone())));
-    all.push(AnyChannel::new("id", FlatSamples::U32(aovs.object_id.clone())));
+fn aov_channels(aovs: &PartAovs, width: usize) -> Vec<ExrChannel<'_>> {
+    let mut all: Vec<_> = pixel_sum_channels(["albedo.R", "albedo.G", "albedo.B"], width, &aovs.albedo).collect();
+    all.extend(pixel_sum_channels(["normal.X", "normal.Y", "normal.Z"], width, &aovs.normal));
+    all.push(AnyChannel::new("Z", ChannelSamples::f32(move |x, y| aovs.depth_m[y * width + x])));
+    all.push(AnyChannel::new("id", ChannelSamples::u32(move |x, y| aovs.object_id[y * width + x])));
     all
 }
 
-fn vector_channels<'a>(
+fn pixel_sum_channels<'a>(
     names: [&'a str; 3],
+    width: usize,
     sums: &'a [PixelSum],
-) -> impl Iterator<Item = AnyChannel<FlatSamples>> + use<'a> {
-    (0..3).flat_map(move |component| sum_channels(names[component], sums, move |sum| sum[component]))
+) -> impl Iterator<Item = ExrChannel<'a>> {
+    (0..3).flat_map(move |component| sum_channels(names[component], width, sums, move |sum| sum[component]))
 }
 
 /// Returns the four words of each sum as channels.
-fn sum_channels<T>(name: &str, sums: &[T], sum: impl Fn(&T) -> ExactSum) -> [AnyChannel<FlatSamples>; 4] {
+fn sum_channels<'a, T: Sync>(
+    name: &str,
+    width: usize,
+    sums: &'a [T],
+    sum: impl Fn(&T) -> ExactSum + Copy + Sync + 'a,
+) -> [ExrChannel<'a>; 4] {
     [0, 1, 2, 3].map(|word| {
-        let words = sums.iter().map(|value| sum(value).words()[word]).collect();
-        AnyChannel::new(word_name(name, word).as_str(), FlatSamples::U32(words))
+        let samples = ChannelSamples::u32(move |x, y| sum(&sums[y * width + x]).words()[word]);
+        AnyChannel::new(word_name(name, word).as_str(), samples)
     })
 }
 
@@ -160,7 +165,7 @@ fn decode(content: &[u8]) -> Result<PicturePart, String> {
 }
 
 /// A part of an EXR file as it was read.
-struct Header<'a>(&'a ExrPart);
+struct Header<'a>(&'a ReadExrPart);
 
 impl Header<'_> {
     fn attribute(&self, name: &str) -> Option<&AttributeValue> {
@@ -237,7 +242,7 @@ impl Header<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::presets;
+    use crate::io::{LayeredPicture, presets};
     use crate::raytrace::{RenderControl, Settings, prepare, render_part};
 
     fn some_part(aovs: bool) -> PicturePart {
@@ -260,9 +265,9 @@ mod tests {
         for aovs in [false, true] {
             let part = some_part(aovs);
             let encoded = encode_part(Path::new("part.exr"), &part).unwrap();
-            let read = decode(encoded.content()).unwrap();
+            let read = decode(&encoded.bytes()).unwrap();
             assert!(read == part, "{:?} {:?}", read.info, part.info);
-            let shown = crate::io::picture::exr_file::decode(encoded.content()).unwrap();
+            let shown = crate::io::picture::exr_file::decode(&encoded.bytes()).unwrap();
             assert_eq!(shown, part.sums.develop());
         }
     }
@@ -271,16 +276,17 @@ mod tests {
     fn files_that_are_no_parts_and_damaged_parts_are_errors() {
         let part = some_part(true);
         let encoded = encode_part(Path::new("part.exr"), &part).unwrap();
-        let content = encoded.content();
+        let content = encoded.bytes();
         for length in (0..content.len()).step_by(content.len() / 60) {
             assert!(decode(&content[..length]).is_err(), "{length}");
         }
-        let picture =
-            crate::io::encode_layers(Path::new("a.exr"), &part.sums.develop(), &[], None, &part.info).unwrap();
-        assert!(decode(picture.content()).unwrap_err().contains("no part of a picture"));
+        let picture = part.sums.develop();
+        let alone = LayeredPicture::alone(&picture);
+        let picture = crate::io::picture_file(Path::new("a.exr"), alone, None, None, &part.info).unwrap();
+        assert!(decode(&picture.bytes()).unwrap_err().contains("no part of a picture"));
         // Bytes of the header, one after the other: an error or a part, and no panic
         for at in 0..1500 {
-            let mut damaged = content.to_vec();
+            let mut damaged = content.clone();
             damaged[at] ^= 0x41;
             let _ = decode(&damaged);
         }

@@ -41,7 +41,9 @@ fn exr_keeps_every_bit_the_layers_and_the_attributes() {
     let path = folder.path().join("a.exr");
     let layers = [("Key".to_owned(), ramp(19, 33, 0.25)), ("Füll 灯".to_owned(), ramp(19, 33, 0.75))];
     let whole = ramp(19, 33, 1.0);
-    export_layers(&path, &whole, &layers, None, &info()).unwrap();
+    let lazy = layers.each_ref().map(|(name, layer)| (name.clone(), LazyPicture::from(layer)));
+    let picture = LayeredPicture { picture: &whole, layers: &lazy };
+    picture_file(&path, picture, None, None, &info()).unwrap().write().unwrap();
     let image =
         read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes().from_file(&path);
     let image = image.unwrap();
@@ -85,8 +87,9 @@ fn refused_pictures_leave_no_file() {
     assert!(refused("a", &picture).contains(".png, .jpg or .exr"));
     assert!(refused("none/a.png", &picture).starts_with("there is no such folder"));
     assert!(refused("a.png", &Picture::default()).contains("no picture of 0 x 0"));
-    let layers = [("Key".to_owned(), ramp(3, 2, 1.0))];
-    assert!(export_layers(&folder.path().join("a.exr"), &picture, &layers, None, &info()).is_err());
+    let layers = [("Key".to_owned(), LazyPicture::from(ramp(3, 2, 1.0)))];
+    let layered = LayeredPicture { picture: &picture, layers: &layers };
+    assert!(picture_file(&folder.path().join("a.exr"), layered, None, None, &info()).is_err());
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }
 
@@ -94,32 +97,29 @@ fn refused_pictures_leave_no_file() {
 fn the_exr_of_a_denoised_picture_keeps_the_noisy_pixels_of_picture_and_layers() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.exr");
-    let layers = |gain| [("Key".to_owned(), ramp(7, 5, gain))];
+    let layers = |gain| [("Key".to_owned(), LazyPicture::from(ramp(7, 5, gain)))];
     let (denoised_layers, noisy_layers) = (layers(1.0), layers(2.0));
     let denoised = LayeredPicture { picture: &ramp(7, 5, 3.0), layers: &denoised_layers };
     let noisy = LayeredPicture { picture: &ramp(7, 5, 4.0), layers: &noisy_layers };
     let info = PictureInfo { denoiser: Some("a network"), ..info() };
-    encode_denoised(&path, denoised, noisy, None, &info).unwrap().write().unwrap();
+    picture_file(&path, denoised, Some(noisy), None, &info).unwrap().write().unwrap();
     assert_eq!(read_exr(&path).as_ref(), Ok(denoised.picture), "R, G and B are denoised");
     let image =
         read().no_deep_data().largest_resolution_level().all_channels().all_layers().all_attributes().from_file(&path);
-    for (part, (clean, noisy)) in image
-        .unwrap()
-        .layer_data
-        .iter()
-        .zip([(denoised.picture, noisy.picture), (&denoised_layers[0].1, &noisy_layers[0].1)])
+    for (part, (clean, noisy)) in
+        image.unwrap().layer_data.iter().zip([(ramp(7, 5, 3.0), ramp(7, 5, 4.0)), (ramp(7, 5, 1.0), ramp(7, 5, 2.0))])
     {
         let red = |name: &str| -> Vec<f32> {
             let channel = part.channel_data.list.iter().find(|channel| channel.name == *name).unwrap();
             channel.sample_data.values_as_f32().collect()
         };
         let expected = |picture: &Picture| picture.rgb.iter().map(|rgb| rgb[0]).collect::<Vec<_>>();
-        assert_eq!([red("R"), red("noisy.R")], [expected(clean), expected(noisy)]);
+        assert_eq!([red("R"), red("noisy.R")], [expected(&clean), expected(&noisy)]);
         let denoiser = part.attributes.other.get(&Text::new_or_none("denoiser").unwrap());
         assert_eq!(denoiser, Some(&AttributeValue::Text(Text::new_or_none("a network").unwrap())));
     }
     let fewer = LayeredPicture { layers: &[], ..noisy };
-    assert!(encode_denoised(&path, denoised, fewer, None, &info).is_err());
+    assert!(picture_file(&path, denoised, Some(fewer), None, &info).is_err());
     let smaller = LayeredPicture { picture: &ramp(6, 5, 4.0), ..noisy };
-    assert!(encode_denoised(&path, denoised, smaller, None, &info).is_err());
+    assert!(picture_file(&path, denoised, Some(smaller), None, &info).is_err());
 }

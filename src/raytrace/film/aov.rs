@@ -28,6 +28,9 @@ pub struct AovTile {
 }
 
 impl AovTile {
+    /// Memory of a pixel, bytes.
+    pub const BYTES_PER_PIXEL: usize = 4 * size_of::<Vec3>() + size_of::<f32>() + size_of::<u32>();
+
     /// Empty pixels.
     pub fn new(pixels: usize) -> Self {
         AovTile {

@@ -54,20 +54,28 @@ fn shared_layer_tint(light: &Light, scene: &Scene) -> Vec3 {
 /// Assigns each light its layer: one per light, or one per role above [`MAX_LIGHT_LAYERS`]. The last layer holds
 /// emissive surfaces.
 pub fn assign_layers(scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<Layer> {
+    if lights.len() > MAX_LIGHT_LAYERS {
+        return share_layers(scene, lights);
+    }
+    let one = |(index, (traced, light)): (usize, &mut (TracedLight, &Light))| {
+        traced.layer = index;
+        Layer::of_light(light)
+    };
+    let layers = lights.iter_mut().enumerate().map(one);
+    layers.chain([Layer::shared("Glow")]).collect()
+}
+
+/// Assigns the lights of each role a layer, for many lights and for little memory. The last layer holds emissive
+/// surfaces.
+pub fn share_layers(scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<Layer> {
     let mut layers: Vec<Layer> = Vec::new();
-    let grouped = lights.len() > MAX_LIGHT_LAYERS;
     for (traced, light) in lights {
-        if grouped {
-            let name = format!("{} lights", light.role.label());
-            let known = layers.iter().position(|layer| layer.name == name);
-            traced.layer = known.unwrap_or(layers.len());
-            traced.tint = shared_layer_tint(light, scene);
-            if known.is_none() {
-                layers.push(Layer::shared(&name));
-            }
-        } else {
-            traced.layer = layers.len();
-            layers.push(Layer::of_light(light));
+        let name = format!("{} lights", light.role.label());
+        let known = layers.iter().position(|layer| layer.name == name);
+        traced.layer = known.unwrap_or(layers.len());
+        traced.tint = shared_layer_tint(light, scene);
+        if known.is_none() {
+            layers.push(Layer::shared(&name));
         }
     }
     layers.push(Layer::shared("Glow"));

@@ -11,13 +11,13 @@ mod tile;
 
 use aov::AovTile;
 pub use gate::{NonFiniteGate, NonFiniteReport};
-pub use layer::{Layer, MAX_LIGHT_LAYERS, assign_layers};
+pub use layer::{Layer, MAX_LIGHT_LAYERS, assign_layers, share_layers};
 pub use noise::SampleBlocks;
 pub use sums::LayerSums;
 pub use tile::{FilmTile, TILE};
 
 use super::settings::{Method, Settings};
-use crate::photo::{AovPicture, Picture, exposure};
+use crate::photo::{AovPicture, LazyPicture, Picture, exposure};
 use crate::scene::Scene;
 use glam::Vec3;
 use std::io::{self, Read, Write};
@@ -50,6 +50,12 @@ impl Film {
             }
         }
         Film { width, height, layers, method, photons, tiles }
+    }
+
+    /// Returns the memory of a film with so many layers, bytes.
+    pub fn bytes(settings: &Settings, layers: usize) -> u64 {
+        let aovs = if settings.aovs { AovTile::BYTES_PER_PIXEL } else { 0 };
+        settings.pixels() * (layers * size_of::<Vec3>() + SampleBlocks::BYTES_PER_PIXEL + aovs) as u64
     }
 
     /// Writes the samples of all tiles, with every bit that a render needs to go on from them.
@@ -159,12 +165,21 @@ impl Film {
 
     /// Develops each layer by itself; their sum is [`Film::develop`], but for pixels of few samples that are negative.
     pub fn develop_layers(&self, scene: &Scene) -> Vec<(String, Picture)> {
-        let weights = self.weights(scene);
-        let one = |(layer, info): (usize, &Layer)| {
-            let picture = self.picture(|tile, pixel| tile.sums.at(layer, pixel) * weights[layer] * tile.per_sample());
+        self.lazy_layers(scene).into_iter().map(|(name, layer)| (name, layer.collect())).collect()
+    }
+
+    /// As [`Film::develop_layers`], pixel by pixel as it is read.
+    pub fn lazy_layers(&self, scene: &Scene) -> Vec<(String, LazyPicture<'_>)> {
+        let layers = self.layers.iter().zip(self.weights(scene)).enumerate();
+        let one = |(layer, (info, weight)): (usize, (&Layer, Vec3))| {
+            let picture = LazyPicture::new((self.width, self.height), move |x, y| {
+                let tile = &self.tiles[((y / TILE) * self.width.div_ceil(TILE) + x / TILE) as usize];
+                let pixel = ((y % TILE) * tile.width + x % TILE) as usize;
+                (tile.sums.at(layer, pixel) * weight * tile.per_sample()).max(Vec3::ZERO).to_array()
+            });
             (info.name.clone(), picture)
         };
-        self.layers.iter().enumerate().map(one).collect()
+        layers.map(one).collect()
     }
 
     /// Returns the factor of each layer from a picture with the lights of `from` to one with those of `to`. None if a

@@ -56,6 +56,9 @@ struct VarianceFit {
 }
 
 impl SampleBlocks {
+    /// Memory of a pixel, bytes.
+    pub const BYTES_PER_PIXEL: usize = 2 * size_of::<f32>();
+
     /// Empty blocks for so many pixels.
     pub fn new(pixels: usize) -> Self {
         SampleBlocks { sums: [vec![0.0; pixels], vec![0.0; pixels]], samples: [0; 2], fit: VarianceFit::default() }

@@ -1,7 +1,10 @@
-//! A picture encoded for its file: written there, or kept elsewhere if that fails.
+//! A picture for its file: written there, or kept elsewhere if that fails.
 
-use crate::io::atomic;
+use super::exr_file::ExrImage;
+use crate::io::atomic::{self, WriteSeek};
 use crate::io::error::SaveError;
+use exr::prelude::WritableImage;
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 /// Most names tried in a folder.
@@ -11,14 +14,34 @@ const STEM_LENGTH: usize = 100;
 
 /// A picture in the format of its file.
 #[derive(Debug)]
-pub struct EncodedPicture {
+pub struct PictureFile<'a> {
     path: PathBuf,
-    content: Vec<u8>,
+    content: Content<'a>,
 }
 
-impl EncodedPicture {
-    pub(super) fn new(path: &Path, content: Vec<u8>) -> Self {
-        EncodedPicture { path: path.to_owned(), content }
+/// The content of a picture's file.
+#[derive(Debug)]
+pub(super) enum Content<'a> {
+    Bytes(Vec<u8>),
+    /// Encoded block by block as it is written.
+    Exr(Box<ExrImage<'a>>),
+}
+
+impl Content<'_> {
+    fn write_to(&self, out: &mut dyn WriteSeek) -> io::Result<()> {
+        match self {
+            Content::Bytes(bytes) => out.write_all(bytes),
+            Content::Exr(image) => image.write().to_buffered(BufWriter::new(out)).map_err(|error| match error {
+                exr::error::Error::Io(error) => error,
+                error => io::Error::other(error.to_string()),
+            }),
+        }
+    }
+}
+
+impl<'a> PictureFile<'a> {
+    pub(super) fn new(path: &Path, content: Content<'a>) -> Self {
+        PictureFile { path: path.to_owned(), content }
     }
 
     /// Returns the file that the picture is for.
@@ -28,8 +51,10 @@ impl EncodedPicture {
 
     /// Returns the bytes of the file.
     #[cfg(test)]
-    pub fn content(&self) -> &[u8] {
-        &self.content
+    pub fn bytes(&self) -> Vec<u8> {
+        let mut bytes = io::Cursor::new(Vec::new());
+        self.content.write_to(&mut bytes).unwrap();
+        bytes.into_inner()
     }
 
     /// Writes the picture to its file. An older file is replaced atomically; a pipe or a device takes the bytes.
@@ -37,7 +62,7 @@ impl EncodedPicture {
     /// # Errors
     /// If the folder is missing or the file can't be written.
     pub fn write(&self) -> Result<(), SaveError> {
-        atomic::send(&self.path, &self.content)
+        atomic::send(&self.path, |out| self.content.write_to(out))
     }
 
     /// Writes the picture under a new name to the first of `folders` that takes it, for a picture whose file can't be
@@ -46,7 +71,7 @@ impl EncodedPicture {
         folders.iter().find_map(|folder| {
             std::fs::create_dir_all(folder).ok()?;
             let path = self.new_name_in(folder)?;
-            atomic::write(&path, &self.content).ok().map(|()| path)
+            atomic::send(&path, |out| self.content.write_to(out)).ok().map(|()| path)
         })
     }
 
@@ -68,7 +93,7 @@ mod tests {
         let file = folder.path().join("a file");
         std::fs::write(&file, "").unwrap();
         let kept_in = folder.path().join("state/catchlight");
-        let picture = EncodedPicture::new(Path::new("portrait.png"), b"pixels".to_vec());
+        let picture = PictureFile::new(Path::new("portrait.png"), Content::Bytes(b"pixels".to_vec()));
         for n in 1..=2 {
             let kept = picture.keep(&[file.clone(), kept_in.clone()]).unwrap();
             assert_eq!(kept, kept_in.join(format!("portrait (kept {n}).png")));

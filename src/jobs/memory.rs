@@ -1,0 +1,161 @@
+//! The memory that a render needs, and what is free for it.
+
+use crate::raytrace::{Film, PrepareError, Settings};
+use std::fmt;
+use sysinfo::{MemoryRefreshKind, Process, ProcessRefreshKind, ProcessesToUpdate, System};
+use thiserror::Error;
+
+/// The reason why a render does not begin.
+#[derive(Debug, Error)]
+pub enum RenderError {
+    /// The scene cannot be prepared.
+    #[error(transparent)]
+    Prepare(#[from] PrepareError),
+    /// The machine has too little memory.
+    #[error("the picture needs {need} of memory and {free} are free: choose a smaller size, or close other programs")]
+    Memory {
+        /// Memory of the render from here on.
+        need: Bytes,
+        /// Memory that the process may still take.
+        free: Bytes,
+    },
+}
+
+/// An amount of memory, shown in MB or GB.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Bytes(pub u64);
+
+impl fmt::Display for Bytes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mb = self.0 as f64 / 1e6;
+        if mb < 1e3 { write!(f, "{mb:.0} MB") } else { write!(f, "{:.1} GB", mb / 1e3) }
+    }
+}
+
+/// The memory of a picture beside its film, bytes per pixel: what is written or shown, in floats and in 8 bits.
+const PICTURE_BYTES: u64 = 12 + 3;
+/// The memory of developed AOVs, bytes per pixel: those of the file and those of the denoiser.
+const AOV_BYTES: u64 = 2 * 32;
+
+/// Returns the memory that a render of a prepared scene takes at most: the film, its snapshot for a checkpoint or for
+/// the window, and the developed picture.
+pub(super) fn needed(settings: &Settings, layers: usize) -> Bytes {
+    let aovs = if settings.aovs { AOV_BYTES } else { 0 };
+    Bytes(2 * Film::bytes(settings, layers) + settings.pixels() * (PICTURE_BYTES + aovs))
+}
+
+/// Returns the memory that this process may still take, within the machine and within its control group. None where the
+/// system does not tell.
+pub(super) fn free() -> Option<Bytes> {
+    let own = sysinfo::get_current_pid().ok()?;
+    let mut system = System::new().ok()?;
+    system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
+    system.refresh_processes_specifics(ProcessesToUpdate::Some(&[own]), false, ProcessRefreshKind::nothing());
+    let machine = Some(system.available_memory()).filter(|bytes| *bytes > 0);
+    // The pages of files in a group's memory are given back when it is needed.
+    let group = system.process(own).and_then(Process::cgroup_limits);
+    let group = group.map(|limits| limits.total_memory.saturating_sub(limits.rss));
+    machine.into_iter().chain(group).min().map(Bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::jobs::{RenderInput, RenderMonitor, RenderStage, Rendered, SharedLayers, render, render_part};
+    use crate::raytrace::{GeometryCache, RenderControl};
+    use crate::scene::{Assets, Emitter, Light, LightId, Output, Room, Scene};
+    use glam::Vec3;
+    use std::sync::Arc;
+
+    /// Returns a room with three lights of one role.
+    fn three_lights() -> Scene {
+        let light = |id: u8| Light {
+            id: LightId(id.into()),
+            name: format!("Light {id}"),
+            position: Vec3::new(f32::from(id) - 1.0, 2.0, 0.0),
+            ..Light::new(Emitter::Point, Output::Lumens(1000.0))
+        };
+        Scene { room: Some(Room::default()), lights: (0..3).map(light).collect(), ..Scene::default() }
+    }
+
+    /// Calls a function with the input of a render of [`three_lights`] within some memory.
+    fn with_memory<T>(memory: Bytes, run: impl FnOnce(&RenderInput<'_>) -> T) -> T {
+        let settings = Settings { width: 40, height: 30, spp: 2, ..Settings::default() };
+        let input = RenderInput {
+            scene: &three_lights(),
+            assets: &Assets::default(),
+            cache: &GeometryCache::default(),
+            settings: &settings,
+            without: &[],
+            checkpoint: None,
+            time_limit: None,
+            memory: Some(memory),
+        };
+        run(&input)
+    }
+
+    fn rendered(memory: Bytes) -> Result<(Rendered, Option<SharedLayers>), RenderError> {
+        with_memory(memory, |input| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+            let monitor = RenderMonitor::new(input.settings, Arc::new(RenderControl::new()));
+            let mut told = None;
+            let rendered = render(input, &pool, &monitor, &mut |stage| {
+                if let RenderStage::Prepared(_, shared) = stage {
+                    told = shared;
+                }
+            })?;
+            Ok((rendered, told))
+        })
+    }
+
+    #[test]
+    fn lights_of_a_role_share_a_layer_where_the_memory_does_not_suffice_for_one_each() {
+        let four_layers = with_memory(Bytes(0), |input| needed(input.settings, 4));
+        let (whole, told) = rendered(four_layers).unwrap();
+        assert_eq!((whole.film.layers().len(), told), (4, None));
+        let little = Bytes(four_layers.0 - 1);
+        let (shared, told) = rendered(little).unwrap();
+        assert_eq!((shared.film.layers().len(), told), (2, Some(SharedLayers { need: four_layers, free: little })));
+        let scene = three_lights();
+        for (one, other) in whole.film.develop(&scene).rgb.iter().zip(&shared.film.develop(&scene).rgb) {
+            let (one, other) = (Vec3::from(*one), Vec3::from(*other));
+            assert!((one - other).length() <= 1e-5 * one.length(), "{one} {other}: the same light, added otherwise");
+        }
+    }
+
+    #[test]
+    fn a_picture_that_does_not_fit_into_the_memory_is_refused_before_its_first_ray() {
+        let two_layers = with_memory(Bytes(0), |input| needed(input.settings, 2));
+        let error = rendered(Bytes(two_layers.0 - 1)).unwrap_err().to_string();
+        assert!(
+            error.starts_with("the picture needs 0 MB of memory and 0 MB are free: choose a smaller size"),
+            "{error}"
+        );
+        // Parts of a picture have the layers of all machines.
+        let refused = with_memory(two_layers, |input| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+            let monitor = RenderMonitor::new(input.settings, Arc::new(RenderControl::new()));
+            render_part(input, 0..1, &pool, &monitor, &mut |_| {}).unwrap_err()
+        });
+        assert!(matches!(refused, RenderError::Memory { .. }), "{refused}");
+    }
+
+    #[test]
+    fn the_free_memory_is_some_and_less_than_that_of_any_machine() {
+        let free = free().unwrap();
+        assert!(free > Bytes(1 << 20) && free < Bytes(1 << 50), "{free:?}");
+    }
+
+    #[test]
+    fn the_need_grows_with_pixels_layers_and_aovs() {
+        let settings = Settings { width: 6000, height: 4000, ..Settings::default() };
+        let five = needed(&settings, 5);
+        // Five layers of three floats, two blocks of luminance; twice; and the picture.
+        assert_eq!(five, Bytes(24_000_000 * (2 * (5 * 12 + 8) + 15)));
+        assert_eq!(five.to_string(), "3.6 GB");
+        assert!(needed(&settings, 6) > five && needed(&Settings { aovs: true, ..settings.clone() }, 5) > five);
+        let quarter = Settings { width: 3000, height: 2000, ..settings };
+        assert_eq!(needed(&quarter, 5).0 * 4, five.0);
+        assert_eq!(needed(&quarter, 5).to_string(), "906 MB");
+    }
+}
