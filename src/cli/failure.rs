@@ -24,7 +24,7 @@ impl<E: Into<anyhow::Error>> From<E> for Failure {
 
 /// Returns true if the memory is the reason, or a disk or a folder: it is full, read-only or not the user's.
 fn is_of_machine(error: &anyhow::Error) -> bool {
-    if matches!(error.downcast_ref(), Some(RenderError::Memory { .. })) {
+    if matches!(error.downcast_ref(), Some(RenderError::Memory(_))) {
         return true;
     }
     error.chain().any(|cause| {

@@ -2,6 +2,7 @@
 
 use super::asset_files::AssetFiles;
 use super::error::AssetError;
+use super::texture_memory::TextureMemory;
 use super::{figures, importers, texture};
 use crate::scene::{Asset, AssetField, AssetKey, AssetRef, Assets, Finding, Scene, TextureRef};
 use rayon::prelude::*;
@@ -19,7 +20,14 @@ pub fn load_assets(scene: &Scene, folder: Option<&Path>, assets: &mut Assets) ->
 /// As [`load_assets`], for a scene with imported files that lie elsewhere.
 pub fn load_assets_from(scene: &Scene, files: AssetFiles<'_>, assets: &mut Assets) -> Vec<Finding> {
     let missing = missing_assets(scene, assets);
-    let loaded: Vec<Result<LoadedAsset, AssetError>> = missing.par_iter().map(|(_, key)| load(key, files)).collect();
+    let memory = TextureMemory::new(assets);
+    let load = |(_, key): &(AssetField, AssetKey)| load(key, files, &memory);
+    let loaded: Vec<Result<LoadedAsset, AssetError>> = if memory.may_overflow(&missing, files) {
+        // One after the other, so that the same textures are left out each time.
+        missing.iter().map(load).collect()
+    } else {
+        missing.par_iter().map(load).collect()
+    };
     let mut warnings = Vec::new();
     for ((field, key), result) in missing.into_iter().zip(loaded) {
         match result {
@@ -52,7 +60,7 @@ struct LoadedAsset {
 }
 
 /// Loads an asset with the loader of its kind.
-fn load(key: &AssetKey, files: AssetFiles<'_>) -> Result<LoadedAsset, AssetError> {
+fn load(key: &AssetKey, files: AssetFiles<'_>, memory: &TextureMemory) -> Result<LoadedAsset, AssetError> {
     match key {
         AssetRef::Mesh(path) => {
             let model = importers::import_model(&files.find(path)?)?;
@@ -71,7 +79,7 @@ fn load(key: &AssetKey, files: AssetFiles<'_>) -> Result<LoadedAsset, AssetError
                 }
             };
             let warnings = decoded.warning.map(|warning| format!("{}: {warning}", reference.path()));
-            let asset = Asset::Texture(Arc::new(decoded.texture));
+            let asset = Asset::Texture(memory.share(decoded.texture, &file)?);
             Ok(LoadedAsset { asset, warnings: warnings.into_iter().collect() })
         }
     }

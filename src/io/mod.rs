@@ -19,6 +19,7 @@ mod figures;
 mod file_stamp;
 mod importers;
 mod jpeg_end;
+mod kept_picture;
 mod layout;
 mod locate;
 mod model;
@@ -32,6 +33,7 @@ mod ron_v1;
 mod scene_file;
 mod state_folder;
 mod texture;
+mod texture_memory;
 mod unique_names;
 
 pub use asset_files::{AssetCopy, AssetFiles, AssetSource};
@@ -42,6 +44,7 @@ pub use file_stamp::FileStamp;
 pub use importers::{
     MODEL_FORMATS, ModelFormat, import_model, model_extension_list, model_extensions, model_format_names,
 };
+pub use kept_picture::KeptPicture;
 pub use model::{ImportedModel, ModelLimits};
 pub use picture::{
     LayeredPicture, PictureFile, PictureFormat, PictureInfo, PicturePart, check_picture_file, encode_part,

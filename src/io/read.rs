@@ -15,13 +15,30 @@ pub(super) fn read_limited(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, Ass
     if !metadata.is_file() {
         return Err(read_error(std::io::Error::new(ErrorKind::InvalidInput, "it is no regular file")));
     }
-    let file = std::fs::File::open(path).map_err(read_error)?;
-    let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(limit_bytes)).unwrap_or_default());
-    file.take(limit_bytes + 1).read_to_end(&mut bytes).map_err(read_error)?;
-    if bytes.len() as u64 > limit_bytes {
-        let amount = metadata.len().max(bytes.len() as u64);
+    let too_large = |amount| {
         let (what, path) = ("the file's number of bytes", path.to_owned());
-        return Err(AssetError::TooLarge { what, amount, limit: limit_bytes, path });
+        AssetError::TooLarge { what, amount, limit: limit_bytes, path }
+    };
+    if metadata.len() > limit_bytes {
+        return Err(too_large(metadata.len()));
     }
-    Ok(bytes)
+    let file = std::fs::File::open(path).map_err(read_error)?;
+    let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or_default());
+    // It may grow, and some files of the system tell no length.
+    file.take(limit_bytes + 1).read_to_end(&mut bytes).map_err(read_error)?;
+    if bytes.len() as u64 > limit_bytes { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_of_a_terabyte_is_refused_without_being_read() {
+        // A sparse file; reading it would take the memory.
+        let file = tempfile::NamedTempFile::new().unwrap();
+        file.as_file().set_len(1 << 40).unwrap();
+        let error = read_limited(file.path(), 1 << 30).unwrap_err().to_string();
+        assert!(error.starts_with("the file's number of bytes is too large: 1099511627776, at most"), "{error}");
+    }
 }

@@ -1,5 +1,5 @@
-//! Unsaved studios. Each window keeps its own in a folder of its own, from which the next start recovers it after a
-//! crash, a kill or a power failure.
+//! Unsaved studios and pictures. Each window keeps its own in a folder of its own, from which the next start recovers
+//! them after a crash, a kill or a power failure.
 //!
 //! A folder is locked while its window runs, so that no other window takes it. The system releases the lock of a
 //! program that has ended, however it ended.
@@ -7,8 +7,9 @@
 use super::atomic;
 use super::error::{LoadError, SaveError};
 use super::file_stamp::FileStamp;
+use super::kept_picture::{self, KeptPicture};
 use super::scene_file::{parse_scene, read_text, write_scene};
-use crate::scene::Scene;
+use crate::scene::{Assets, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -37,6 +38,12 @@ pub struct RecoveryInfo {
     pub imported: BTreeMap<String, PathBuf>,
     /// Time of the last change that is kept.
     pub changed_at: SystemTime,
+    /// The studio has no unsaved changes, and is kept for its picture.
+    #[serde(default)]
+    pub is_saved: bool,
+    /// A rendered picture is kept beside the studio.
+    #[serde(skip)]
+    pub has_picture: bool,
 }
 
 /// The folder in which a window keeps its unsaved studio. Dropping it releases the folder and keeps its files.
@@ -94,10 +101,32 @@ impl RecoveryFolder {
         self.path.join(STUDIO)
     }
 
-    /// Removes the studio.
+    /// Writes a rendered picture in place of the last one.
+    ///
+    /// # Errors
+    /// If a file can't be written; the last picture is kept.
+    pub fn write_picture(&self, picture: &KeptPicture) -> Result<(), SaveError> {
+        kept_picture::write(&self.path, picture)
+    }
+
+    /// Reads the rendered picture. None if there is none.
+    ///
+    /// # Errors
+    /// If the picture is damaged or of another version of the program, or if its studio can't be prepared.
+    pub fn read_picture(&self, assets: &Assets) -> Result<Option<KeptPicture>, String> {
+        kept_picture::read(&self.path, assets)
+    }
+
+    /// Removes the rendered picture, if there is one.
+    pub fn remove_picture(&self) {
+        kept_picture::remove(&self.path);
+    }
+
+    /// Removes studio and picture.
     pub fn clear(&self) {
         // Without it there is nothing to remove.
         let _ = std::fs::remove_file(self.studio());
+        self.remove_picture();
     }
 
     /// Removes the folder.
@@ -118,7 +147,10 @@ fn abandoned(path: PathBuf) -> Option<(RecoveryFolder, RecoveryInfo)> {
     lock.try_lock().ok()?;
     let folder = RecoveryFolder { path, _lock: lock };
     match read_info(&folder.studio()) {
-        Some(info) => Some((folder, info)),
+        Some(info) => {
+            let has_picture = kept_picture::file_in(&folder.path).exists();
+            Some((folder, RecoveryInfo { has_picture, ..info }))
+        }
         // A file that can't be understood stays for the user to look at.
         None if folder.studio().exists() => None,
         None => {
@@ -155,6 +187,8 @@ mod tests {
             stamp: None,
             imported: BTreeMap::from([("models/cup.obj".to_owned(), "/desktop/cup.obj".into())]),
             changed_at: SystemTime::UNIX_EPOCH + Duration::from_secs(seconds),
+            is_saved: false,
+            has_picture: false,
         }
     }
 

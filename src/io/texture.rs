@@ -33,6 +33,13 @@ pub(super) fn load(path: &Path) -> Result<DecodedTexture, AssetError> {
     decode(&read_limited(path, FILE_LIMIT_BYTES)?, path)
 }
 
+/// Returns width and height of an image file, in pixels, from its first bytes; none for a damaged one.
+pub(super) fn size(path: &Path) -> Option<(u32, u32)> {
+    // Opening a pipe would block.
+    let file = path.is_file().then(|| image::ImageReader::open(path).ok())??;
+    file.with_guessed_format().ok()?.into_dimensions().ok()
+}
+
 /// Decodes the bytes of a PNG or JPEG image to 8-bit sRGB. `path` is the file that the bytes come from, for errors.
 pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<DecodedTexture, AssetError> {
     let bad = |message: String| AssetError::BadTexture { message, path: path.to_owned() };

@@ -12,13 +12,42 @@ pub enum RenderError {
     #[error(transparent)]
     Prepare(#[from] PrepareError),
     /// The machine has too little memory.
-    #[error("the picture needs {need} of memory and {free} are free: choose a smaller size, or close other programs")]
-    Memory {
-        /// Memory of the render from here on.
-        need: Bytes,
-        /// Memory that the process may still take.
-        free: Bytes,
-    },
+    #[error("{0}: choose a smaller size, or close other programs")]
+    Memory(RenderMemory),
+}
+
+/// The memory of a render from the first ray on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RenderMemory {
+    /// What it takes at most.
+    pub need: Bytes,
+    /// What the process may still take; none where the system does not tell.
+    pub free: Option<Bytes>,
+    /// What it would take with a layer for each light, if the lights of a role share one for want of memory.
+    pub unshared: Option<Bytes>,
+}
+
+impl RenderMemory {
+    /// Returns true if the need is more than what is free.
+    pub fn is_too_little(&self) -> bool {
+        self.free.is_some_and(|free| self.need > free)
+    }
+
+    /// Returns why lights share layers, and what follows from it; none if they do not.
+    pub fn sharing(&self) -> Option<String> {
+        let unshared = RenderMemory { need: self.unshared?, ..*self };
+        Some(format!(
+            "with a layer for each light {unshared}: the lights of a role share one, and cannot be changed one by one \
+             after the render"
+        ))
+    }
+}
+
+impl fmt::Display for RenderMemory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the picture takes up to {} of memory", self.need)?;
+        self.free.map_or(Ok(()), |free| write!(f, ", and {free} are free"))
+    }
 }
 
 /// An amount of memory, shown in MB or GB.
@@ -61,7 +90,7 @@ pub(super) fn free() -> Option<Bytes> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::jobs::{RenderInput, RenderMonitor, RenderStage, Rendered, SharedLayers, render, render_part};
+    use crate::jobs::{RenderInput, RenderMonitor, RenderStage, Rendered, render, render_part};
     use crate::raytrace::{GeometryCache, RenderControl};
     use crate::scene::{Assets, Emitter, Light, LightId, Output, Room, Scene};
     use glam::Vec3;
@@ -94,14 +123,14 @@ mod tests {
         run(&input)
     }
 
-    fn rendered(memory: Bytes) -> Result<(Rendered, Option<SharedLayers>), RenderError> {
+    fn rendered(memory: Bytes) -> Result<(Rendered, Option<RenderMemory>), RenderError> {
         with_memory(memory, |input| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
             let monitor = RenderMonitor::new(input.settings, Arc::new(RenderControl::new()));
             let mut told = None;
             let rendered = render(input, &pool, &monitor, &mut |stage| {
-                if let RenderStage::Prepared(_, shared) = stage {
-                    told = shared;
+                if let RenderStage::Prepared(_, memory) = stage {
+                    told = Some(memory);
                 }
             })?;
             Ok((rendered, told))
@@ -112,10 +141,16 @@ mod tests {
     fn lights_of_a_role_share_a_layer_where_the_memory_does_not_suffice_for_one_each() {
         let four_layers = with_memory(Bytes(0), |input| needed(input.settings, 4));
         let (whole, told) = rendered(four_layers).unwrap();
-        assert_eq!((whole.film.layers().len(), told), (4, None));
+        let memory = RenderMemory { need: four_layers, free: Some(four_layers), unshared: None };
+        assert_eq!((whole.film.layers().len(), told), (4, Some(memory)));
+        assert_eq!(memory.sharing(), None);
         let little = Bytes(four_layers.0 - 1);
         let (shared, told) = rendered(little).unwrap();
-        assert_eq!((shared.film.layers().len(), told), (2, Some(SharedLayers { need: four_layers, free: little })));
+        let told = told.unwrap();
+        assert_eq!((shared.film.layers().len(), told.unshared, told.free), (2, Some(four_layers), Some(little)));
+        assert!(
+            told.need < little && told.sharing().unwrap().starts_with("with a layer for each light the picture takes")
+        );
         let scene = three_lights();
         for (one, other) in whole.film.develop(&scene).rgb.iter().zip(&shared.film.develop(&scene).rgb) {
             let (one, other) = (Vec3::from(*one), Vec3::from(*other));
@@ -128,7 +163,7 @@ mod tests {
         let two_layers = with_memory(Bytes(0), |input| needed(input.settings, 2));
         let error = rendered(Bytes(two_layers.0 - 1)).unwrap_err().to_string();
         assert!(
-            error.starts_with("the picture needs 0 MB of memory and 0 MB are free: choose a smaller size"),
+            error.starts_with("the picture takes up to 0 MB of memory, and 0 MB are free: choose a smaller size"),
             "{error}"
         );
         // Parts of a picture have the layers of all machines.
@@ -137,7 +172,7 @@ mod tests {
             let monitor = RenderMonitor::new(input.settings, Arc::new(RenderControl::new()));
             render_part(input, 0..1, &pool, &monitor, &mut |_| {}).unwrap_err()
         });
-        assert!(matches!(refused, RenderError::Memory { .. }), "{refused}");
+        assert!(matches!(refused, RenderError::Memory(_)), "{refused}");
     }
 
     #[test]

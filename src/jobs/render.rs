@@ -1,12 +1,11 @@
 //! A render from scene to film: prepare, coarse first picture, sample passes, timings. Command line, window and the
 //! pilot renders of forecasts all use it, each with its own observer.
 
-use super::memory::{self, Bytes, RenderError};
+use super::memory::{self, Bytes, RenderError, RenderMemory};
 use super::monitor::RenderMonitor;
 use crate::raytrace::{self, Film, GeometryCache, RenderControl, RenderScene, Settings, Shortcut};
 use crate::scene::{Assets, Scene};
 use rayon::ThreadPool;
-use std::fmt;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError};
@@ -33,31 +32,11 @@ pub struct RenderInput<'a> {
     pub memory: Option<Bytes>,
 }
 
-/// Lights that share layers because the memory does not suffice for one each.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SharedLayers {
-    /// Memory with a layer for each light.
-    pub need: Bytes,
-    /// Memory that is free.
-    pub free: Bytes,
-}
-
-impl fmt::Display for SharedLayers {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let SharedLayers { need, free } = self;
-        write!(
-            f,
-            "a layer for each light takes {need} of memory and {free} are free: the lights of a role share one, and \
-             can be changed after the render only by rendering again"
-        )
-    }
-}
-
 /// A stage that a render has reached, for its observer.
 #[derive(Clone, Copy, Debug)]
 pub enum RenderStage<'a> {
-    /// BVHs and tables are built. Lights may have to share layers.
-    Prepared(&'a RenderScene, Option<SharedLayers>),
+    /// BVHs and tables are built.
+    Prepared(&'a RenderScene, RenderMemory),
     /// One sample a pixel of a small version of a large picture.
     Coarse(&'a Film),
     /// A sample pass is complete.
@@ -139,22 +118,20 @@ pub(super) fn prepared(
     let started = Instant::now();
     let mut prepared = pool.install(|| raytrace::prepare_kept(scene, assets, cache))?;
     // Share layers, or refuse, if the memory does not suffice
-    let mut shared = None;
-    if let Some(free) = input.memory.or_else(memory::free) {
-        let need = |scene: &RenderScene| memory::needed(settings, scene.layers().len());
-        if need(&prepared) > free && layers == Layers::OneEach {
-            shared = Some(SharedLayers { need: need(&prepared), free });
-            prepared = pool.install(|| raytrace::prepare_shared(scene, assets, cache))?;
-        }
-        if need(&prepared) > free {
-            return Err(RenderError::Memory { need: need(&prepared), free });
-        }
+    let need = |scene: &RenderScene| memory::needed(settings, scene.layers().len());
+    let mut memory = RenderMemory { need: need(&prepared), free: input.memory.or_else(memory::free), unshared: None };
+    if memory.is_too_little() && layers == Layers::OneEach {
+        prepared = pool.install(|| raytrace::prepare_shared(scene, assets, cache))?;
+        memory = RenderMemory { need: need(&prepared), unshared: Some(memory.need), ..memory };
+    }
+    if memory.is_too_little() {
+        return Err(RenderError::Memory(memory));
     }
     if !input.without.is_empty() {
         let plan = input.without.iter().fold(prepared.plan().clone(), |plan, shortcut| plan.without(*shortcut));
         prepared.set_plan(plan);
     }
-    observe(RenderStage::Prepared(&prepared, shared));
+    observe(RenderStage::Prepared(&prepared, memory));
     Ok((prepared, started.elapsed().as_secs_f64()))
 }
 

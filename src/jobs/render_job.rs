@@ -1,7 +1,8 @@
 //! A render in the background, on an immutable copy of the studio.
 
+use super::memory::RenderMemory;
 use super::monitor::{Progress, RenderMonitor};
-use super::render::{RenderInput, RenderStage, Rendered, SharedLayers, render};
+use super::render::{RenderInput, RenderStage, Rendered, render};
 use super::sentence::sentence;
 use super::threads::{Priority, background_pool};
 use super::worker::{Inbox, Interrupt, Wake, Worker, WorkerSettings};
@@ -75,7 +76,7 @@ struct Report {
     phase: RenderPhase,
     film: Option<Arc<Film>>,
     outcome: Option<RenderOutcome>,
-    shared_layers: Option<SharedLayers>,
+    memory: Option<RenderMemory>,
 }
 
 /// One render. Dropping it cancels it.
@@ -84,7 +85,7 @@ pub struct RenderJob {
     worker: Worker<Task, Report>,
     monitor: Arc<RenderMonitor>,
     latest: Report,
-    has_told_shared_layers: bool,
+    has_told_sharing: bool,
     /// The studio as it is being rendered.
     pub scene: Arc<Scene>,
     /// Size, method and number of samples.
@@ -114,8 +115,18 @@ impl RenderJob {
         });
         let task = Task { request, monitor: monitor.clone() };
         worker.request_with(control, wake, |_| task);
-        let latest = Report { phase: RenderPhase::Preparing, film: None, outcome: None, shared_layers: None };
-        RenderJob { worker, monitor, latest, has_told_shared_layers: false, scene, settings }
+        let latest = Report { phase: RenderPhase::Preparing, film: None, outcome: None, memory: None };
+        RenderJob { worker, monitor, latest, has_told_sharing: false, scene, settings }
+    }
+
+    /// Returns a job that has ended with a film, complete or not.
+    pub fn ended(scene: Arc<Scene>, settings: Settings, film: Arc<Film>, is_complete: bool) -> Self {
+        let monitor = Arc::new(RenderMonitor::new(&settings, Arc::default()));
+        monitor.finish();
+        let phase = if is_complete { RenderPhase::Done } else { RenderPhase::Cancelled };
+        let latest = Report { phase, film: Some(film), outcome: None, memory: None };
+        let worker = Worker::new(WORKER, |_: &Inbox<Task, Report>| {});
+        RenderJob { worker, monitor, latest, has_told_sharing: true, scene, settings }
     }
 
     /// Cancels the render. Complete samples are kept.
@@ -152,11 +163,11 @@ impl RenderJob {
         self.latest.outcome.take()
     }
 
-    /// Returns the reason why lights share layers, if they do; once.
-    pub fn take_shared_layers(&mut self) -> Option<SharedLayers> {
-        let shared = self.latest.shared_layers.filter(|_| !self.has_told_shared_layers);
-        self.has_told_shared_layers |= shared.is_some();
-        shared
+    /// Returns why lights share layers, if they do; once.
+    pub fn take_sharing(&mut self) -> Option<String> {
+        let sharing = self.latest.memory.filter(|_| !self.has_told_sharing)?.sharing();
+        self.has_told_sharing = true;
+        sharing
     }
 
     /// Returns the current progress.
@@ -179,7 +190,7 @@ fn run(task: &Task, inbox: &Inbox<Task, Report>) {
         Ok(pool) => pool,
         Err(error) => return inbox.fail(format!("No threads to render with: {error}.")),
     };
-    let mut report = Report { phase: RenderPhase::Preparing, film: None, outcome: None, shared_layers: None };
+    let mut report = Report { phase: RenderPhase::Preparing, film: None, outcome: None, memory: None };
     let mut last_film: Option<Instant> = None;
     let input = RenderInput {
         scene,
@@ -193,7 +204,7 @@ fn run(task: &Task, inbox: &Inbox<Task, Report>) {
     };
     let rendered = render(&input, &pool, monitor, &mut |stage| {
         match stage {
-            RenderStage::Prepared(_, shared) => (report.phase, report.shared_layers) = (RenderPhase::Tracing, shared),
+            RenderStage::Prepared(_, memory) => (report.phase, report.memory) = (RenderPhase::Tracing, Some(memory)),
             RenderStage::Coarse(film) => report.film = Some(Arc::new(film.clone())),
             RenderStage::Pass(film) => {
                 if last_film.is_some_and(|last| last.elapsed() < FILM_INTERVAL) {

@@ -18,12 +18,17 @@ pub struct Framebuffer {
 }
 
 impl Framebuffer {
-    /// Sets the size; the content is undefined until it is drawn.
-    pub(super) fn resize(&mut self, Viewport { width, height }: Viewport) {
+    /// Sets the size, and clears every pixel.
+    pub(super) fn clear(&mut self, Viewport { width, height }: Viewport) {
         let pixels = width as usize * height as usize;
         (self.picture.width, self.picture.height) = (width, height);
-        self.picture.rgb.resize(pixels, [0.0; 3]);
-        self.objects.resize(pixels, NO_OBJECT);
-        self.inverse_depths.resize(pixels, 0.0);
+        clear(&mut self.picture.rgb, pixels, [0.0; 3]);
+        clear(&mut self.objects, pixels, NO_OBJECT);
+        clear(&mut self.inverse_depths, pixels, 0.0);
     }
+}
+
+fn clear<T: Copy>(values: &mut Vec<T>, length: usize, value: T) {
+    values.clear();
+    values.resize(length, value);
 }

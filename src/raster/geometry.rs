@@ -24,6 +24,15 @@ pub(super) struct MeshInstance {
     /// The surface of its first part.
     pub first_surface: u32,
     pub state: PrimitiveState,
+    /// Its batches.
+    batches: Range<usize>,
+}
+
+/// Consecutive instances that are drawn together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Chunk {
+    pub instances: Range<usize>,
+    pub batches: Range<usize>,
 }
 
 /// A part of an instance with its material and texture.
@@ -88,6 +97,7 @@ impl SceneGeometry {
         material: impl Fn(&str) -> Material,
     ) {
         let first_surface = self.surfaces.len() as u32;
+        let first_batch = self.batches.len();
         for part in &mesh.parts {
             let material = material(&part.name);
             let textures = material.textures.look_up(|texture| assets.texture(texture));
@@ -100,7 +110,26 @@ impl SceneGeometry {
             }));
             self.surfaces.push(Surface { instance: self.instances.len() as u32, material, textures });
         }
-        self.instances.push(MeshInstance { mesh, world_from_object, object, first_surface, state });
+        let batches = first_batch..self.batches.len();
+        self.instances.push(MeshInstance { mesh, world_from_object, object, first_surface, state, batches });
+    }
+
+    /// Returns the chunks in which the instances are drawn, in scene order. A chunk of several instances has at most
+    /// `most_vertices`.
+    pub fn chunks(&self, most_vertices: usize) -> Vec<Chunk> {
+        let mut chunks: Vec<Chunk> = Vec::new();
+        let mut vertices = 0;
+        for (index, instance) in self.instances.iter().enumerate() {
+            vertices += instance.mesh.positions.len();
+            match chunks.last_mut().filter(|_| vertices <= most_vertices) {
+                Some(chunk) => (chunk.instances.end, chunk.batches.end) = (index + 1, instance.batches.end),
+                None => {
+                    vertices = instance.mesh.positions.len();
+                    chunks.push(Chunk { instances: index..index + 1, batches: instance.batches.clone() });
+                }
+            }
+        }
+        chunks
     }
 
     /// Returns the number of triangles, each instance counted.

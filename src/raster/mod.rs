@@ -36,10 +36,13 @@ use binning::TriangleBatch;
 pub use framebuffer::{Framebuffer, NO_OBJECT};
 use geometry::SceneGeometry;
 use lights::RasterLights;
-use shade::FragmentShader;
 pub use shade::Shading;
-use vertex_stage::VertexBuffer;
+use shade::{FragmentShader, FrameShading};
+use vertex_stage::ChunkVertices;
 use viewport::Viewport;
+
+/// Most vertices of the instances that are drawn together, if they are more than one: what bounds the memory of a frame.
+const CHUNK_VERTICES: usize = 1 << 20;
 
 /// Draws a scene from a camera. A size of 0 counts as 1.
 pub fn draw(scene: &Scene, assets: &Assets, camera: &CameraFrame, size: (u32, u32), shading: Shading) -> Framebuffer {
@@ -52,14 +55,18 @@ pub fn draw(scene: &Scene, assets: &Assets, camera: &CameraFrame, size: (u32, u3
 #[derive(Debug)]
 pub struct Rasterizer {
     geometry: SceneGeometry,
-    vertices: Vec<VertexBuffer>,
+    vertices: ChunkVertices,
     batches: Vec<TriangleBatch>,
 }
 
 impl Rasterizer {
     /// Collects the geometry of a scene.
     pub fn new(scene: &Scene, assets: &Assets) -> Self {
-        Rasterizer { geometry: SceneGeometry::new(scene, assets), vertices: Vec::new(), batches: Vec::new() }
+        Rasterizer {
+            geometry: SceneGeometry::new(scene, assets),
+            vertices: ChunkVertices::default(),
+            batches: Vec::new(),
+        }
     }
 
     /// Returns the number of triangles, each instance counted.
@@ -77,13 +84,57 @@ impl Rasterizer {
         shading: Shading,
         framebuffer: &mut Framebuffer,
     ) {
+        self.draw_chunks(CHUNK_VERTICES, (scene, camera), size, shading, framebuffer);
+    }
+
+    fn draw_chunks(
+        &mut self,
+        most_vertices: usize,
+        (scene, camera): (&Scene, &CameraFrame),
+        size: (u32, u32),
+        shading: Shading,
+        framebuffer: &mut Framebuffer,
+    ) {
         let Rasterizer { geometry, vertices, batches } = self;
         let viewport = Viewport::new(size);
-        framebuffer.resize(viewport);
-        vertex_stage::transform(geometry, camera, viewport, vertices);
-        primitive_stage::set_up(geometry, vertices, viewport, batches);
-        let lights = RasterLights::new(scene, camera.position());
-        let shader = FragmentShader::new(geometry, vertices, &lights, shading);
-        tile::draw(viewport, batches, &shader, framebuffer);
+        framebuffer.clear(viewport);
+        let frame = FrameShading::new(geometry, RasterLights::new(scene, camera.position()), shading);
+        // A chunk after the other, over what is nearer of those before
+        for chunk in &geometry.chunks(most_vertices) {
+            vertex_stage::transform(geometry, chunk, camera, viewport, vertices);
+            primitive_stage::set_up(geometry, chunk, vertices, viewport, batches);
+            let shader = FragmentShader::new(&frame, geometry, chunk, vertices);
+            tile::draw(viewport, batches, &shader, framebuffer);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::presets;
+
+    #[test]
+    fn a_large_scene_that_is_drawn_in_chunks_looks_as_in_one_piece() {
+        let loaded =
+            presets().iter().find(|preset| preset.file_name.starts_with("three_point")).unwrap().load().unwrap();
+        let camera = loaded.scene.camera_frame(1.5);
+        for shading in [Shading::BlinnPhong, Shading::Gouraud, Shading::Flat] {
+            let frame = |most_vertices| {
+                let mut framebuffer = Framebuffer::default();
+                let mut rasterizer = Rasterizer::new(&loaded.scene, &loaded.assets);
+                let seen = (&loaded.scene, &camera);
+                rasterizer.draw_chunks(most_vertices, seen, (150, 100), shading, &mut framebuffer);
+                (framebuffer, rasterizer.geometry.chunks(most_vertices).len())
+            };
+            let ((whole, one), (chunked, several)) = (frame(usize::MAX), frame(1000));
+            assert_eq!(one, 1);
+            assert!(several >= 3, "{several}");
+            assert_eq!(chunked.objects, whole.objects);
+            assert_eq!(chunked.inverse_depths, whole.inverse_depths);
+            for (a, b) in chunked.picture.rgb.as_flattened().iter().zip(whole.picture.rgb.as_flattened()) {
+                assert!((a - b).abs() <= 1e-3 * b.abs() + 1e-6, "{shading:?}: {a} {b}");
+            }
+        }
     }
 }

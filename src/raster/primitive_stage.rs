@@ -2,29 +2,32 @@
 
 use super::binning::TriangleBatch;
 use super::clip::{self, ClipTest};
-use super::geometry::{MeshInstance, SceneGeometry};
+use super::geometry::{Chunk, MeshInstance, SceneGeometry};
 use super::triangle::{ScreenTriangle, TriangleId};
-use super::vertex_stage::VertexBuffer;
+use super::vertex_stage::{ChunkVertices, VertexBuffer};
 use super::viewport::Viewport;
 use rayon::prelude::*;
 
-/// Sets up and bins the triangles of all batches, in parallel.
+/// Sets up and bins the triangles of a chunk's batches, in parallel.
 pub(super) fn set_up(
     geometry: &SceneGeometry,
-    vertices: &[VertexBuffer],
+    chunk: &Chunk,
+    vertices: &ChunkVertices,
     viewport: Viewport,
     batches: &mut Vec<TriangleBatch>,
 ) {
-    batches.resize_with(geometry.batches.len(), TriangleBatch::default);
-    batches.par_iter_mut().zip(&geometry.batches).enumerate().for_each(|(index, (batch, range))| {
-        let instance = geometry.surfaces[range.surface as usize].instance as usize;
-        batch.fill(index, viewport, |out| {
-            for triangle in range.triangles.clone() {
-                let id = TriangleId { surface: range.surface, triangle: triangle as u32 };
-                set_up_triangle(&vertices[instance], &geometry.instances[instance], id, viewport, out);
-            }
-        });
-    });
+    batches.resize_with(chunk.batches.len(), TriangleBatch::default);
+    batches.par_iter_mut().zip(&geometry.batches[chunk.batches.clone()]).enumerate().for_each(
+        |(index, (batch, range))| {
+            let instance = geometry.surfaces[range.surface as usize].instance as usize;
+            batch.fill(index, viewport, |out| {
+                for triangle in range.triangles.clone() {
+                    let id = TriangleId { surface: range.surface, triangle: triangle as u32 };
+                    set_up_triangle(vertices.of(instance), &geometry.instances[instance], id, viewport, out);
+                }
+            });
+        },
+    );
 }
 
 /// Appends the visible part of a triangle: the triangle itself, or a fan of clipped pieces.

@@ -3,13 +3,12 @@
 #![expect(clippy::needless_range_loop, reason = "a pixel's index is the same in a dozen arrays")]
 
 use super::approx::max;
-use super::framebuffer::NO_OBJECT;
 use super::gbuffer_row::{GBufferRow, PADDED_WIDTH, RowScalar, RowVec3, Span, VertexAttributes, WIDTH, splat};
-use super::geometry::SceneGeometry;
+use super::geometry::{Chunk, SceneGeometry};
 use super::lights::{IncidentLight, RasterLights};
 use super::material::{RowMaterials, ShadingMaterial, SpecularGeometry};
 use super::triangle::TriangleId;
-use super::vertex_stage::VertexBuffer;
+use super::vertex_stage::ChunkVertices;
 use crate::color::srgb_decode;
 use crate::math::simd::{self, Avx2, SimdTask};
 use crate::scene::{Texture, TextureSlot};
@@ -79,44 +78,57 @@ impl ShadingScratch {
     }
 }
 
-/// The fragment shader of a frame.
+/// The light and the surfaces of a frame.
 #[derive(Debug)]
-pub(super) struct FragmentShader<'a> {
-    geometry: &'a SceneGeometry,
-    vertices: &'a [VertexBuffer],
-    lights: &'a RasterLights,
+pub(super) struct FrameShading {
+    lights: RasterLights,
     shading: Shading,
     /// Materials by surface.
     materials: Vec<ShadingMaterial>,
-    /// For Gouraud shading, irradiance, specular radiance and texture coordinates of the vertices of each instance.
-    lit_vertices: Vec<Vec<VertexAttributes>>,
     /// Linear value of each sRGB byte.
     linear_from_srgb: [f32; 256],
 }
 
-impl<'a> FragmentShader<'a> {
-    pub fn new(
-        geometry: &'a SceneGeometry,
-        vertices: &'a [VertexBuffer],
-        lights: &'a RasterLights,
-        shading: Shading,
-    ) -> Self {
+impl FrameShading {
+    pub fn new(geometry: &SceneGeometry, lights: RasterLights, shading: Shading) -> Self {
         let material =
             |surface: &super::geometry::Surface| ShadingMaterial::new(&surface.material, lights.emission_scale);
         let materials = geometry.surfaces.iter().map(material).collect();
         let linear_from_srgb = std::array::from_fn(|i| srgb_decode(i as f32 / 255.0));
-        let lit_vertices = Vec::new();
-        let mut shader =
-            FragmentShader { geometry, vertices, lights, shading, materials, lit_vertices, linear_from_srgb };
-        if shading == Shading::Gouraud {
-            shader.lit_vertices = (0..geometry.instances.len()).map(|i| shader.light_vertices(i)).collect();
+        FrameShading { lights, shading, materials, linear_from_srgb }
+    }
+}
+
+/// The fragment shader of a chunk of a frame.
+#[derive(Debug)]
+pub(super) struct FragmentShader<'a> {
+    frame: &'a FrameShading,
+    geometry: &'a SceneGeometry,
+    vertices: &'a ChunkVertices,
+    /// For Gouraud shading, irradiance, specular radiance and texture coordinates of the vertices of each of the chunk's
+    /// instances.
+    lit_vertices: Vec<Vec<VertexAttributes>>,
+    first_instance: usize,
+}
+
+impl<'a> FragmentShader<'a> {
+    pub fn new(
+        frame: &'a FrameShading,
+        geometry: &'a SceneGeometry,
+        chunk: &Chunk,
+        vertices: &'a ChunkVertices,
+    ) -> Self {
+        let first_instance = chunk.instances.start;
+        let mut shader = FragmentShader { frame, geometry, vertices, lit_vertices: Vec::new(), first_instance };
+        if frame.shading == Shading::Gouraud {
+            shader.lit_vertices = chunk.instances.clone().map(|i| shader.light_vertices(i)).collect();
         }
         shader
     }
 
     /// Computes the light at each vertex of an instance, with the material of the last triangle that uses it.
     fn light_vertices(&self, instance: usize) -> Vec<VertexAttributes> {
-        let vertices = &self.vertices[instance].attributes;
+        let vertices = &self.vertices.of(instance).attributes;
         let instance = &self.geometry.instances[instance];
         let mesh = &instance.mesh;
         // Find a surface and a plane for each vertex
@@ -142,11 +154,10 @@ impl<'a> FragmentShader<'a> {
         self.geometry.surfaces.len() as u32
     }
 
-    /// Writes pixels that show nothing, and returns their object index.
+    /// Writes pixels that show nothing.
     #[inline(always)]
-    pub fn write_background(&self, row: &mut GBufferRow, pixels: Range<usize>) -> u32 {
+    pub fn write_background(&self, row: &mut GBufferRow, pixels: Range<usize>) {
         splat(&mut row.surface, &pixels, self.background());
-        NO_OBJECT
     }
 
     /// Writes the attributes of a triangle's span, and returns its object index.
@@ -155,15 +166,16 @@ impl<'a> FragmentShader<'a> {
         let surface = &self.geometry.surfaces[id.surface as usize];
         let instance = &self.geometry.instances[surface.instance as usize];
         let corners = instance.mesh.triangles[id.triangle as usize].map(|i| i as usize);
-        let vertices = corners.map(|i| &self.vertices[surface.instance as usize].attributes[i]);
+        let vertices = corners.map(|i| &self.vertices.of(surface.instance as usize).attributes[i]);
         let normal = geometric_normal(vertices);
         row.geometric_normal.splat(&span.pixels, normal);
         if !instance.mesh.colors.is_empty() {
             row.color.splat(&span.pixels, corners.map(|i| instance.mesh.colors[i]).iter().sum::<Vec3>() / 3.0);
         }
-        match self.shading {
+        match self.frame.shading {
             Shading::Gouraud => {
-                row.interpolate(span, corners.map(|i| &self.lit_vertices[surface.instance as usize][i]));
+                let lit = &self.lit_vertices[surface.instance as usize - self.first_instance];
+                row.interpolate(span, corners.map(|i| &lit[i]));
             }
             Shading::Lambert | Shading::BlinnPhong if !instance.mesh.normals.is_empty() => {
                 row.interpolate(span, vertices);
@@ -190,7 +202,7 @@ impl<'a> FragmentShader<'a> {
         let materials = &mut scratch.materials;
         let mut any_surface = false;
         for (surface, pixels) in row.surfaces(rgb.len()) {
-            if let Some(material) = self.materials.get(surface as usize) {
+            if let Some(material) = self.frame.materials.get(surface as usize) {
                 materials.set(&pixels, material);
                 self.apply_colors(row, surface, pixels.clone(), &mut materials.diffuse);
                 self.apply_texture(row, surface, pixels, &mut materials.diffuse);
@@ -202,13 +214,13 @@ impl<'a> FragmentShader<'a> {
         }
         // Show the surround where there is no surface
         for (_, pixels) in row.surfaces(rgb.len()).filter(|(surface, _)| *surface == self.background()) {
-            rgb[pixels].fill(self.lights.background_radiance.into());
+            rgb[pixels].fill(self.frame.lights.background_radiance.into());
         }
     }
 
     #[inline(always)]
     fn shade_surfaces(&self, row: &GBufferRow, scratch: &mut ShadingScratch, rgb: &mut [[f32; 3]]) {
-        if self.shading == Shading::Gouraud {
+        if self.frame.shading == Shading::Gouraud {
             (scratch.reflected.irradiance, scratch.reflected.specular) = (row.first, row.second);
         } else {
             self.light(row, scratch);
@@ -239,7 +251,7 @@ impl<'a> FragmentShader<'a> {
         let Some(texture) = &textures[TextureSlot::BaseColor as usize] else { return };
         for i in pixels {
             if let Some(rgb) = nearest_texel(texture, Vec2::new(row.uv[0][i], row.uv[1][i])) {
-                let linear = Vec3::from(rgb.map(|c| self.linear_from_srgb[usize::from(c)]));
+                let linear = Vec3::from(rgb.map(|c| self.frame.linear_from_srgb[usize::from(c)]));
                 diffuse.set(i, diffuse.at(i) * linear);
             }
         }
@@ -251,12 +263,12 @@ impl<'a> FragmentShader<'a> {
         let ShadingScratch { materials, points, incident, n_dot_l, received, reflected } = scratch;
         points.orient(row);
         // Add the surround, whose mirror image has the same luminance everywhere
-        reflected.irradiance.splat(&(0..WIDTH), self.lights.ambient_irradiance);
-        let surround = self.lights.ambient_irradiance / PI;
+        reflected.irradiance.splat(&(0..WIDTH), self.frame.lights.ambient_irradiance);
+        let surround = self.frame.lights.ambient_irradiance / PI;
         for i in 0..WIDTH {
             reflected.specular.set(i, materials.f0.at(i) * surround);
         }
-        for light in &self.lights.lights {
+        for light in &self.frame.lights.lights {
             // Compute the received part of the light's strength
             light.illuminate(&row.first, incident);
             let mut any = false;
@@ -275,7 +287,7 @@ impl<'a> FragmentShader<'a> {
             for i in 0..WIDTH {
                 reflected.irradiance.set(i, reflected.irradiance.at(i) + light.strength * received[i]);
             }
-            if self.shading != Shading::Lambert {
+            if self.frame.shading != Shading::Lambert {
                 let (light_dir, view_dir) = (&incident.direction, &points.view_dir);
                 let geometry = SpecularGeometry { view_dir, light_dir, n_dot_v: &points.n_dot_v, n_dot_l };
                 materials.add_specular(light.strength, received, geometry, &mut reflected.specular);
@@ -335,7 +347,7 @@ impl SimdTask for VertexRowTask<'_> {
             row.second.set(i, if self.has_normals { Vec3::new(x, y, z) } else { *geometric_normal });
             row.geometric_normal.set(i, *geometric_normal);
             // A vertex of no triangle has no material.
-            let material = self.shader.materials.get(*surface as usize).copied().unwrap_or_default();
+            let material = self.shader.frame.materials.get(*surface as usize).copied().unwrap_or_default();
             scratch.materials.set(&(i..i + 1), &material);
         }
         self.shader.light(&row, &mut scratch);

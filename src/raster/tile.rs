@@ -1,6 +1,7 @@
 //! The raster and fragment stages of a tile: coverage by edge functions, the depth test, the G-buffer and shading.
 //!
 //! Tiles are drawn in parallel. A tile first finds the visible triangle of each pixel, and then shades each pixel once.
+//! Where the framebuffer holds an earlier chunk, pixels of the tile that nothing nearer covers stay as they are.
 
 use super::approx::max;
 use super::binning::{NO_TRIANGLE, TriangleBatch, triangle_of_key};
@@ -47,23 +48,28 @@ impl SimdTask for TileRowTask<'_> {
         let TileRowTask { viewport, row, batches, shader, .. } = self;
         let mut gbuffer = GBufferRow::new(shader.background());
         let mut scratch = ShadingScratch::new();
+        let mut shaded = [[0.0; 3]; WIDTH];
         let (columns, _) = viewport.tile_counts();
         for column in 0..columns {
             // Rasterize the binned triangles with a depth test
             let mut tile = Tile::new(viewport, column, row);
+            tile.load_depths(viewport, self.inverse_depths);
             for batch in batches {
                 for (key, triangle) in batch.triangles_in_tile(row * columns + column) {
                     tile.rasterize(triangle, key);
                 }
             }
-            for y in 0..tile.height {
-                let first = y * viewport.width as usize + tile.x;
-                let pixels = first..first + tile.width;
+            for y in (0..tile.height).filter(|y| tile.is_covered(*y)) {
+                let pixels = tile.pixels(viewport, y);
                 self.inverse_depths[pixels.clone()].copy_from_slice(&tile.inverse_w[y][..tile.width]);
                 // Fill the G-buffer row from the visible triangles
                 tile.write_gbuffer(y, batches, shader, &mut gbuffer, &mut self.objects[pixels.clone()]);
                 // Shade the row
-                shader.shade(&gbuffer, &mut scratch, &mut self.rgb[pixels]);
+                let shaded = &mut shaded[..tile.width];
+                shader.shade(&gbuffer, &mut scratch, shaded);
+                for ((rgb, shaded), key) in self.rgb[pixels].iter_mut().zip(shaded).zip(&tile.visible[y]) {
+                    *rgb = if *key == NO_TRIANGLE { *rgb } else { *shaded };
+                }
             }
         }
     }
@@ -93,6 +99,28 @@ impl Tile {
             inverse_w: [[0.0; PADDED_WIDTH]; TILE_HEIGHT],
             visible: [[NO_TRIANGLE; PADDED_WIDTH]; TILE_HEIGHT],
         }
+    }
+
+    /// Returns the place of a row of the tile in a row of tiles of the framebuffer.
+    #[inline(always)]
+    fn pixels(&self, viewport: Viewport, y: usize) -> Range<usize> {
+        let first = y * viewport.width as usize + self.x;
+        first..first + self.width
+    }
+
+    /// Takes the depths of what is drawn already, in a row of tiles of the framebuffer.
+    #[inline(always)]
+    fn load_depths(&mut self, viewport: Viewport, inverse_depths: &[f32]) {
+        for y in 0..self.height {
+            let drawn = &inverse_depths[self.pixels(viewport, y)];
+            self.inverse_w[y][..self.width].copy_from_slice(drawn);
+        }
+    }
+
+    /// Returns true if a triangle is visible in a row.
+    #[inline(always)]
+    fn is_covered(&self, y: usize) -> bool {
+        self.visible[y][..self.width].iter().any(|key| *key != NO_TRIANGLE)
     }
 
     /// Returns the columns and rows of the tile that a triangle's bounding box overlaps; none where it does not.
@@ -185,10 +213,13 @@ impl Tile {
         for same in self.visible[y][..self.width].chunk_by(|a, b| a == b) {
             let pixels = first..first + same.len();
             first = pixels.end;
-            objects[pixels.clone()].fill(match triangle_of_key(batches, same[0]) {
-                Some(triangle) => shader.write_span(row, &triangle.span(self.x, self.y + y, pixels), triangle.id),
+            match triangle_of_key(batches, same[0]) {
+                Some(triangle) => {
+                    let span = triangle.span(self.x, self.y + y, pixels.clone());
+                    objects[pixels].fill(shader.write_span(row, &span, triangle.id));
+                }
                 None => shader.write_background(row, pixels),
-            });
+            }
         }
     }
 }

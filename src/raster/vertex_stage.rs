@@ -2,7 +2,7 @@
 
 use super::clip::{self, Outcode};
 use super::gbuffer_row::VertexAttributes;
-use super::geometry::{MeshInstance, SceneGeometry};
+use super::geometry::{Chunk, MeshInstance, SceneGeometry};
 use super::viewport::{ScreenVertex, Viewport};
 use crate::scene::CameraFrame;
 use glam::{Affine3A, Mat3, Mat4, Vec3, Vec3A, Vec4};
@@ -22,6 +22,21 @@ pub(super) struct VertexBuffer {
     pub attributes: Vec<VertexAttributes>,
 }
 
+/// The transformed vertices of a chunk. Their memory is reused from chunk to chunk and from frame to frame.
+#[derive(Debug, Default)]
+pub(super) struct ChunkVertices {
+    first_instance: usize,
+    buffers: Vec<VertexBuffer>,
+}
+
+impl ChunkVertices {
+    /// Returns the vertices of an instance of the chunk, by its index in the scene's geometry.
+    #[inline(always)]
+    pub fn of(&self, instance: usize) -> &VertexBuffer {
+        &self.buffers[instance - self.first_instance]
+    }
+}
+
 /// The position of a vertex after the vertex stage.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct VertexPosition {
@@ -31,17 +46,20 @@ pub(super) struct VertexPosition {
     pub outcode: Outcode,
 }
 
-/// Transforms the vertices of all instances, for a camera.
+/// Transforms the vertices of a chunk's instances, for a camera.
 pub(super) fn transform(
     geometry: &SceneGeometry,
+    chunk: &Chunk,
     camera: &CameraFrame,
     viewport: Viewport,
-    buffers: &mut Vec<VertexBuffer>,
+    vertices: &mut ChunkVertices,
 ) {
     let eye = Vec3A::from(camera.position());
     let clip_from_relative = camera.clip_from_world(NEAR_M) * Mat4::from_translation(eye.into());
-    buffers.resize_with(geometry.instances.len(), VertexBuffer::default);
-    for (instance, buffer) in geometry.instances.iter().zip(buffers) {
+    let instances = &geometry.instances[chunk.instances.clone()];
+    vertices.first_instance = chunk.instances.start;
+    vertices.buffers.resize_with(instances.len(), VertexBuffer::default);
+    for (instance, buffer) in instances.iter().zip(&mut vertices.buffers) {
         transform_instance(instance, eye, clip_from_relative, viewport, buffer);
     }
 }

@@ -1,7 +1,9 @@
 //! The settings of a render.
 
+use serde::{Deserialize, Serialize};
+
 /// The rendering method.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Method {
     /// Whitted's recursion, for comparison: Phong lobes, hard shadows, mirrors and glass.
     Whitted,
@@ -14,7 +16,7 @@ pub enum Method {
 }
 
 /// The parameters of a render.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Pixels across.
     pub width: u32,

@@ -74,6 +74,51 @@ fn an_unsaved_studio_survives_a_crash_and_is_offered_at_the_next_start() {
 }
 
 #[test]
+fn a_rendered_picture_survives_a_crash_with_its_lights_until_it_is_exported() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (recovery, file, exported) =
+        (folder.path().join("recovery"), folder.path().join("portrait.ron"), folder.path().join("portrait.png"));
+    std::fs::write(&file, catchlight::io::presets()[0].text).unwrap();
+    let mut first = window(options(&recovery, Some(&file), &[]));
+    render_tiny(&mut first);
+    let picture = |window: &Window| window.state().rendering().developed().unwrap().picture.clone();
+    let rendered = picture(&first);
+    assert!(!first.state().document().is_dirty());
+    wait_for_kept(&mut first, &recovery, |kept| kept.len() == 1);
+    drop(first);
+
+    let mut second = window(options(&recovery, None, std::slice::from_ref(&exported)));
+    assert!(is_offered(&second));
+    assert!(second.query_by_label_contains("before the picture of \"portrait.ron\" was exported").is_some());
+    click(&mut second, "Recover");
+    assert!(
+        second.state().rendering().job().is_some(),
+        "{:?}",
+        second.state().toasts().texts(ToastKind::Warning)
+    );
+    wait_until(&mut second, |app| app.rendering().developed().is_some());
+    assert_eq!(picture(&second), rendered);
+    let document = second.state().document();
+    assert!(!document.is_dirty() && document.path() == Some(&file), "the studio was saved");
+    assert!(!second.state().rendering().is_out_of_date(document.scene()));
+    // The lights can still be changed.
+    let name = format!("{} on", scene(&second).lights[0].name);
+    click(&mut second, &name);
+    let sum = |picture: &catchlight::photo::Picture| picture.rgb.iter().flatten().sum::<f32>();
+    assert!(sum(&picture(&second)) < 0.98 * sum(&rendered));
+    press(&mut second, Modifiers::COMMAND, Key::Z);
+    assert_eq!(picture(&second), rendered);
+    // Once it is on the disk it need not be kept.
+    assert_eq!(kept(&recovery).len(), 1);
+    second.state_mut().run(Command::ExportPicture, None, &egui::Context::default());
+    wait_for_kept(&mut second, &recovery, <[String]>::is_empty);
+    assert!(exported.exists(), "{:?}", errors(&second));
+}
+
+#[test]
 fn a_running_window_keeps_its_unsaved_studio_to_itself_and_a_closed_one_leaves_none() {
     if !has_adapter() {
         return;
@@ -103,6 +148,8 @@ fn an_offered_studio_can_be_put_off_and_discarded() {
         stamp: None,
         imported: BTreeMap::new(),
         changed_at: SystemTime::now(),
+        is_saved: false,
+        has_picture: false,
     };
     let crashed = RecoveryFolder::create(folder.path()).unwrap();
     crashed.write(&Scene::default(), &info).unwrap();

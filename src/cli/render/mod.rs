@@ -16,7 +16,7 @@ use super::denoised_output::{Denoise, Output, Written};
 use super::failure::Failure;
 use super::{input, picture_output, terminal, zbuffer};
 use crate::io::{self, LayeredPicture, Loaded, PictureInfo};
-use crate::jobs::{self, RenderInput, RenderMonitor, RenderStage, Rendered};
+use crate::jobs::{self, Bytes, RenderInput, RenderMemory, RenderMonitor, RenderStage, Rendered};
 use crate::raytrace::{Film, GeometryCache, NonFiniteReport, RenderControl, RenderScene, Settings};
 use anyhow::anyhow;
 use checkpoints::Checkpoints;
@@ -122,8 +122,8 @@ fn render(
     };
     let mut display = None;
     let rendered = jobs::render(&input, pool, monitor, &mut |stage| match stage {
-        RenderStage::Prepared(scene, shared) => {
-            shared.iter().for_each(terminal::warning);
+        RenderStage::Prepared(scene, memory) => {
+            tell_memory(memory, arguments.explain);
             if arguments.explain {
                 print_plan(scene, arguments.json);
             }
@@ -141,6 +141,15 @@ fn render(
 fn print_plan(scene: &RenderScene, json: bool) {
     let text = scene.plan().to_string();
     if json { terminal::progress(text.trim_end()) } else { terminal::result(text.trim_end()) }
+}
+
+/// Tells the memory of a large picture, or of any that is explained, and warns if lights share layers for want of it.
+fn tell_memory(memory: RenderMemory, explain: bool) {
+    const LARGE: Bytes = Bytes(1 << 30);
+    if explain || memory.need >= LARGE {
+        terminal::progress(memory);
+    }
+    memory.sharing().iter().for_each(terminal::warning);
 }
 
 /// Warns of non-finite contributions, with the command that replays the first.

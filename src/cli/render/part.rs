@@ -3,7 +3,7 @@
 use super::arguments::Arguments;
 use super::progress::ProgressDisplay;
 use super::report::RenderReport;
-use super::{print_plan, warn_of_nonfinite};
+use super::{print_plan, tell_memory, warn_of_nonfinite};
 use crate::cli::failure::Failure;
 use crate::cli::{picture_output, terminal};
 use crate::io::{self, Loaded, PictureInfo, PicturePart, RenderId};
@@ -82,7 +82,8 @@ impl PartRender<'_> {
         };
         let mut display = None;
         let rendered = jobs::render_part(&input, samples, self.pool, monitor, &mut |stage| {
-            if let RenderStage::Prepared(scene, _) = stage {
+            if let RenderStage::Prepared(scene, memory) = stage {
+                tell_memory(memory, self.arguments.explain);
                 if self.arguments.explain {
                     print_plan(scene, self.arguments.json);
                 }

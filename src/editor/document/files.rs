@@ -1,7 +1,7 @@
 //! Reads and writes studios, models, assets and pictures, with errors as messages to the user.
 
 use crate::editor::document::studio_document::Document;
-use crate::io::{self, AssetFiles, FileStamp, LayeredPicture, PictureInfo, RecoveryFolder, RecoveryInfo};
+use crate::io::{self, AssetFiles, FileStamp, KeptPicture, LayeredPicture, PictureInfo, RecoveryFolder, RecoveryInfo};
 use crate::jobs::sentence;
 use crate::photo::Picture;
 use crate::scene::{Aim, Assets, Camera, Material, Mesh, Room, Scene};
@@ -45,6 +45,15 @@ pub struct OpenedStudio {
     pub path: Option<PathBuf>,
     /// State of the file when it was read; for a recovered studio, when it was read or written last.
     pub stamp: Option<FileStamp>,
+}
+
+/// A studio that was kept when its window ended.
+#[derive(Debug)]
+pub struct RecoveredStudio {
+    /// The studio.
+    pub opened: OpenedStudio,
+    /// Its rendered picture.
+    pub picture: Option<KeptPicture>,
 }
 
 /// An imported model.
@@ -106,12 +115,17 @@ pub fn open(source: &StudioSource) -> Result<Box<OpenedStudio>, String> {
     Ok(Box::new(OpenedStudio { scene: loaded.scene, assets: loaded.assets, warnings, path, stamp }))
 }
 
-/// Reads an unsaved studio with its assets.
-pub fn recover(folder: &RecoveryFolder, info: &RecoveryInfo) -> Result<Box<OpenedStudio>, String> {
+/// Reads an unsaved studio with its assets and its rendered picture. A picture that can't be read is a warning.
+pub fn recover(folder: &RecoveryFolder, info: &RecoveryInfo) -> Result<Box<RecoveredStudio>, String> {
     let scene = folder.read().map_err(|e| sentence(&e))?;
     let RecoveryInfo { path, stamp, imported, .. } = info.clone();
-    let (assets, warnings) = load_assets(&scene, path.as_deref().and_then(Path::parent), &Assets::default(), &imported);
-    Ok(Box::new(OpenedStudio { scene, assets, warnings, path, stamp }))
+    let (assets, mut warnings) =
+        load_assets(&scene, path.as_deref().and_then(Path::parent), &Assets::default(), &imported);
+    let picture = folder.read_picture(&assets).unwrap_or_else(|why| {
+        warnings.push(format!("Its picture could not be recovered: {why}."));
+        None
+    });
+    Ok(Box::new(RecoveredStudio { opened: OpenedStudio { scene, assets, warnings, path, stamp }, picture }))
 }
 
 /// Reads a model.

@@ -111,9 +111,9 @@ impl Document {
     }
 
     /// Marks the studio as one that was never saved, with files imported before.
-    pub fn mark_recovered(&mut self, imported: BTreeMap<String, PathBuf>) {
+    pub fn mark_recovered(&mut self, imported: BTreeMap<String, PathBuf>, is_unsaved: bool) {
         self.imported = imported;
-        self.is_unsaved = true;
+        self.is_unsaved = is_unsaved;
     }
 
     /// Returns the undo and redo lists.

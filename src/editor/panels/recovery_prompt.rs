@@ -34,14 +34,14 @@ pub fn recovery_ui(ctx: &egui::Context, unsaved: &UnsavedStudio<'_>) -> Option<R
     let question = Question {
         name: "recovery",
         width: 560.0,
-        heading: "Unsaved studio",
+        heading: if info.is_saved { "Picture that was not exported" } else { "Unsaved studio" },
         answers: &[
             (
                 "Recover",
                 RecoveryAnswer::Recover,
-                "Open it with all changes; nothing is written to its file yet (Enter)",
+                "Open it with all changes and its picture; nothing is written to its file yet (Enter)",
             ),
-            ("Discard", RecoveryAnswer::Discard, "Its unsaved changes are lost"),
+            ("Discard", RecoveryAnswer::Discard, "What is kept of it is lost"),
             ("Later", RecoveryAnswer::Later, "Ask again at the next start (Esc)"),
         ],
         on_enter: Some(RecoveryAnswer::Recover),
@@ -64,8 +64,14 @@ pub fn recovery_ui(ctx: &egui::Context, unsaved: &UnsavedStudio<'_>) -> Option<R
 /// Writes what is known about an unsaved studio.
 fn facts(ui: &mut Ui, info: &RecoveryInfo, more: usize) {
     let age = info.changed_at.elapsed().unwrap_or_default();
-    ui.label(format!("Catchlight ended before \"{}\" was saved. Its last change was {}.", info.title, ago(age)));
-    if let Some(path) = &info.path {
+    let (title, ago) = (&info.title, ago(age));
+    ui.label(if info.is_saved {
+        format!("Catchlight ended before the picture of \"{title}\" was exported. It was kept {ago}.")
+    } else {
+        let picture = if info.has_picture { " Its picture is kept, too." } else { "" };
+        format!("Catchlight ended before \"{title}\" was saved. Its last change was {ago}.{picture}")
+    });
+    if let Some(path) = info.path.as_ref().filter(|_| !info.is_saved) {
         ui.label(RichText::new(format!("The file {} is as it was saved last.", path.display())).weak());
     }
     if more > 0 {

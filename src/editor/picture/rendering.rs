@@ -2,15 +2,14 @@
 
 use crate::editor::ui::image_texture::ImageTexture;
 use crate::editor::ui::wake::wake;
-use crate::jobs::{
-    Developed, Development, FilmDeveloper, RenderJob, RenderOutcome, RenderPhase, RenderRequest, SharedLayers,
-};
+use crate::io::KeptPicture;
+use crate::jobs::{Developed, Development, FilmDeveloper, RenderJob, RenderOutcome, RenderPhase, RenderRequest};
 use crate::photo::Picture;
 use crate::raytrace::{self, Film, GeometryCache, Method, Settings};
 use crate::scene::{Assets, Camera, Scene, SceneChange};
 use eframe::egui::{Color32, ColorImage, Context, TextureId};
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 use std::time::Duration;
 
 /// The quality of a render.
@@ -101,6 +100,10 @@ pub struct Rendering {
     trees: Arc<GeometryCache>,
     job: Option<RenderJob>,
     film: Option<Arc<Film>>,
+    /// The film that was exported last.
+    exported: Option<Weak<Film>>,
+    /// The picture before the running render, until that has one.
+    former: Option<KeptPicture>,
     developer: FilmDeveloper<Arc<ColorImage>>,
     /// The newest requested picture.
     requested: Option<Requested>,
@@ -117,6 +120,8 @@ impl Rendering {
             trees,
             job: None,
             film: None,
+            exported: None,
+            former: None,
             developer: FilmDeveloper::new(|picture, most| Arc::new(shown_within(picture, most))),
             requested: None,
             developed: None,
@@ -136,9 +141,34 @@ impl Rendering {
             aovs: true,
             ..Settings::default()
         };
+        self.former = self.to_keep();
         let (scene, assets, cache) = (Arc::new(scene.clone()), assets.clone(), self.trees.clone());
         let request = RenderRequest { scene, assets, folder, cache, settings };
         (self.job, self.develop_failure) = (Some(RenderJob::start(request, &wake(ctx))), None);
+    }
+
+    /// Shows a picture that was rendered before.
+    pub fn restore(&mut self, picture: KeptPicture) {
+        let KeptPicture { film, scene, settings, is_complete } = picture;
+        self.clear();
+        self.job = Some(RenderJob::ended(scene, settings, film, is_complete));
+    }
+
+    /// Returns the picture as far as it is rendered, if it is not exported.
+    pub fn to_keep(&self) -> Option<KeptPicture> {
+        let of_job = self.job.as_ref().and_then(|job| {
+            let film = job.film().filter(|film| film.spp() > 0 && is_of(film, &job.settings))?.clone();
+            let (scene, settings) = (job.scene.clone(), job.settings.clone());
+            Some(KeptPicture { film, scene, settings, is_complete: *job.phase() == RenderPhase::Done })
+        });
+        let picture = of_job.or_else(|| self.former.clone())?;
+        let is_exported = self.exported.as_ref().is_some_and(|film| film.ptr_eq(&Arc::downgrade(&picture.film)));
+        (!is_exported).then_some(picture)
+    }
+
+    /// Notes the film whose picture was exported: it need not be kept for the case of a crash.
+    pub fn mark_exported(&mut self, film: Option<Weak<Film>>) {
+        self.exported = film;
     }
 
     /// Cancels the job and keeps its samples.
@@ -207,10 +237,14 @@ impl Rendering {
         if let Some(job) = &mut self.job {
             job.update();
             self.film = job.film().cloned().or(self.film.take());
+            if job.film().is_some_and(|film| is_of(film, &job.settings)) || !job.phase().is_running() {
+                self.former = None;
+            }
         }
         if let Some(film) = &self.film {
             let max_side = ctx.input(|i| i.max_texture_side);
-            let is_final = !self.job.as_ref().is_some_and(|job| job.phase().is_running());
+            // The picture before a running render is final, too.
+            let is_final = !self.job.as_ref().is_some_and(|job| job.phase().is_running() && job.film().is_some());
             let denoise = self.settings.denoise;
             let development = Development { max_side, denoise, is_final: is_final && denoise };
             let is_requested = self.requested.as_ref().is_some_and(|requested| {
@@ -243,9 +277,9 @@ impl Rendering {
         Some((job, outcome))
     }
 
-    /// Takes the reason why the lights of the render share layers, if they do.
-    pub fn take_shared_layers(&mut self) -> Option<SharedLayers> {
-        self.job.as_mut()?.take_shared_layers()
+    /// Returns why the lights of the render share layers, if they do; once.
+    pub fn take_sharing(&mut self) -> Option<String> {
+        self.job.as_mut()?.take_sharing()
     }
 
     /// Returns the message of a render or a development that failed.
@@ -255,6 +289,11 @@ impl Rendering {
             _ => self.develop_failure.as_deref(),
         }
     }
+}
+
+/// Returns true if a film is of the size of a render, not its coarse version.
+fn is_of(film: &Film, settings: &Settings) -> bool {
+    (film.width(), film.height()) == (settings.width, settings.height)
 }
 
 /// Returns the image of a picture; larger ones than a texture are reduced by means of 2x2, 3x3 ... pixels.

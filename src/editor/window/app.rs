@@ -264,8 +264,8 @@ impl App {
         let figure = if let Some(Item::Object(id)) = self.selection.last() { Some(id) } else { None };
         let (scene, assets) = (document.scene(), document.assets());
         self.background.pattern.update(scene, assets, figure, document.revision(), &wake(ctx));
-        if let Some(shared) = self.rendering.take_shared_layers() {
-            self.toasts.warning(sentence(&shared));
+        if let Some(sharing) = self.rendering.take_sharing() {
+            self.toasts.warning(sentence(&sharing));
         }
         match self.rendering.failure() {
             Some(message) if !self.window.render_failure_reported => {

@@ -1,11 +1,13 @@
 //! File operations in the background and their results.
 
-use crate::editor::document::files::{ImportedModel, OpenedStudio, StudioSource};
+use crate::editor::document::files::{ImportedModel, OpenedStudio, RecoveredStudio, StudioSource};
 use crate::editor::window::recovery::Unsaved;
 use crate::io::FileStamp;
+use crate::raytrace::Film;
 use crate::scene::{AssetKey, Assets};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
+use std::sync::Weak;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 /// The result of a background task.
@@ -20,7 +22,7 @@ pub enum TaskResult {
     /// The unsaved studios of windows that have ended.
     Unsaved(Vec<Unsaved>),
     /// A recovered studio or an error.
-    Recovered(Unsaved, Result<Box<OpenedStudio>, String>),
+    Recovered(Unsaved, Result<Box<RecoveredStudio>, String>),
     /// The studio's file compared with its stamp.
     FileChecked {
         /// The file.
@@ -30,8 +32,8 @@ pub enum TaskResult {
         /// Another program has changed the file.
         is_changed: bool,
     },
-    /// A written picture or an error.
-    Exported(PathBuf, Result<(), String>),
+    /// A written picture or an error, with the film that it was developed from.
+    Exported(PathBuf, Option<Weak<Film>>, Result<(), String>),
 }
 
 /// The background tasks and the channel of their results.

@@ -1,17 +1,23 @@
-//! Keeps unsaved changes in a folder of the window's own while it runs, and holds those of ended windows to be offered.
+//! Keeps unsaved changes and the rendered picture in a folder of the window's own while it runs, and holds those of
+//! ended windows to be offered.
 
 use crate::editor::document::studio_document::Document;
-use crate::io::{RecoveryFolder, RecoveryInfo};
+use crate::io::{KeptPicture, RecoveryFolder, RecoveryInfo};
 use crate::jobs::Priority;
 use crate::jobs::Wake;
 use crate::jobs::worker::{Inbox, Interrupt, Worker, WorkerSettings};
+use crate::raytrace::Film;
 use crate::scene::Scene;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::SystemTime;
 
 /// Time from a change until it is written, seconds: the changes of a drag are written together.
 const DELAY_S: f64 = 2.0;
+/// Time from a new film of a running render until it is written, seconds: it is large.
+const RUNNING_DELAY_S: f64 = 60.0;
+/// Time until the next try while the worker writes, seconds.
+const RETRY_S: f64 = 0.5;
 
 const WORKER: WorkerSettings = WorkerSettings {
     name: "recovery",
@@ -24,9 +30,26 @@ const WORKER: WorkerSettings = WorkerSettings {
 #[derive(Debug)]
 enum Request {
     /// It holds this studio.
-    Keep(Box<(Scene, RecoveryInfo)>),
+    Keep(Box<(Scene, RecoveryInfo)>, PictureChange),
     /// It holds no studio: everything is saved.
     Clear,
+}
+
+/// What becomes of the picture on the disk.
+#[derive(Debug)]
+enum PictureChange {
+    Stays,
+    Goes,
+    Is(KeptPicture),
+}
+
+/// The content of the window's folder.
+#[derive(Debug, Default)]
+struct Kept {
+    /// Revision of the document, whether it has unsaved changes, and its file.
+    studio: (u64, bool, Option<PathBuf>),
+    /// The film of the picture.
+    film: Option<Weak<Film>>,
 }
 
 /// The window's folder.
@@ -50,10 +73,11 @@ pub struct Recovery {
     parent: Option<PathBuf>,
     slot: Arc<Mutex<Slot>>,
     worker: Worker<Request, ()>,
-    /// Revision of the document that the folder holds; none while it holds nothing.
-    kept: Option<u64>,
-    /// Time at which the current changes are written, in egui's time.
-    due: Option<f64>,
+    /// What the folder holds; none while it holds nothing.
+    kept: Option<Kept>,
+    /// Times at which the current changes and the current picture are written, in egui's time.
+    studio_due: Option<f64>,
+    picture_due: Option<f64>,
     /// The last write failed, which was reported.
     has_failed: bool,
     offered: Vec<Unsaved>,
@@ -72,7 +96,8 @@ impl Recovery {
                 }
             }
         });
-        Recovery { parent, slot, worker, kept: None, due: None, has_failed: false, offered: Vec::new() }
+        let (kept, studio_due, picture_due) = (None, None, None);
+        Recovery { parent, slot, worker, kept, studio_due, picture_due, has_failed: false, offered: Vec::new() }
     }
 
     /// Returns the folder of all windows' folders.
@@ -80,34 +105,74 @@ impl Recovery {
         self.parent.as_deref()
     }
 
-    /// Requests that unsaved changes be written, [`DELAY_S`] after the first of them, and removed when they are saved.
-    /// Returns the seconds until the next write. To be called once a frame.
-    pub fn update(&mut self, document: &Document, now: f64, wake: &Wake) -> Option<f64> {
+    /// Requests that unsaved changes and a picture that is not exported be written, [`DELAY_S`] after the first of them,
+    /// and removed when they are saved. The picture of a running render is written every [`RUNNING_DELAY_S`]. Returns the
+    /// seconds until the next write. To be called once a frame.
+    pub fn update(
+        &mut self,
+        document: &Document,
+        picture: Option<&KeptPicture>,
+        is_rendering: bool,
+        now: f64,
+        wake: &Wake,
+    ) -> Option<f64> {
         self.parent.as_ref()?;
-        if !document.is_dirty() {
-            self.due = None;
+        // One write after the other: the worker holds a single request
+        if self.worker.is_busy() {
+            return Some(RETRY_S);
+        }
+        if !document.is_dirty() && picture.is_none() {
+            (self.studio_due, self.picture_due) = (None, None);
             if self.kept.take().is_some() {
                 self.worker.request(Request::Clear, wake);
             }
             return None;
         }
-        if self.kept == Some(document.revision()) {
-            return None;
+        // Find what has changed, and when it is written
+        let studio = (document.revision(), document.is_dirty(), document.path().map(Path::to_owned));
+        let film = picture.map(|picture| Arc::downgrade(&picture.film));
+        let kept_film = self.kept.as_ref().and_then(|kept| kept.film.as_ref());
+        let same_film = match (&film, kept_film) {
+            (Some(film), Some(kept)) => Weak::ptr_eq(film, kept),
+            (None, None) => true,
+            _ => false,
+        };
+        let same_studio = self.kept.as_ref().is_some_and(|kept| kept.studio == studio);
+        // A saved studio is kept with its picture only
+        if !same_studio && (document.is_dirty() || kept_film.is_some()) {
+            self.studio_due.get_or_insert(now + DELAY_S);
         }
-        let due = *self.due.get_or_insert(now + DELAY_S);
+        if !same_film {
+            let due = now + if is_rendering { RUNNING_DELAY_S } else { DELAY_S };
+            self.picture_due = Some(self.picture_due.map_or(due, |earlier| earlier.min(due)));
+        }
+        let due = self.studio_due.into_iter().chain(self.picture_due).reduce(f64::min)?;
         if now < due {
             return Some(due - now);
         }
+        // Write the studio, and the picture if it is due
+        let is_picture_due = self.picture_due.is_some_and(|due| due <= now);
+        let (change, film) = match picture {
+            Some(picture) if is_picture_due => (PictureChange::Is(picture.clone()), film),
+            None => (PictureChange::Goes, None),
+            Some(_) => (PictureChange::Stays, kept_film.cloned()),
+        };
         let info = RecoveryInfo {
             title: document.title(),
             path: document.path().map(absolute),
             stamp: document.stamp().cloned(),
             imported: document.imported_files().iter().map(|(name, file)| (name.clone(), absolute(file))).collect(),
             changed_at: SystemTime::now(),
+            is_saved: !document.is_dirty(),
+            has_picture: false,
         };
-        self.worker.request(Request::Keep(Box::new((document.scene().clone(), info))), wake);
-        (self.kept, self.due) = (Some(document.revision()), None);
-        None
+        self.worker.request(Request::Keep(Box::new((document.scene().clone(), info)), change), wake);
+        self.studio_due = None;
+        if is_picture_due || picture.is_none() {
+            self.picture_due = None;
+        }
+        self.kept = Some(Kept { studio, film });
+        self.picture_due.map(|due| (due - now).max(RETRY_S))
     }
 
     /// Returns the message of the first of several failed writes.
@@ -150,12 +215,13 @@ impl Recovery {
         self.offered.clear();
     }
 
-    /// Makes a recovered studio's folder the window's own; it holds the document at this revision.
-    pub fn adopt(&mut self, folder: RecoveryFolder, revision: u64) {
+    /// Makes a recovered studio's folder the window's own; it holds the document as it is, and this picture.
+    pub fn adopt(&mut self, folder: RecoveryFolder, document: &Document, picture: Option<&KeptPicture>) {
         if let Slot::Open(own) = std::mem::replace(&mut *locked(&self.slot), Slot::Open(folder)) {
             own.remove();
         }
-        self.kept = Some(revision);
+        let studio = (document.revision(), document.is_dirty(), document.path().map(Path::to_owned));
+        self.kept = Some(Kept { studio, film: picture.map(|picture| Arc::downgrade(&picture.film)) });
     }
 }
 
@@ -179,11 +245,16 @@ fn locked(slot: &Mutex<Slot>) -> MutexGuard<'_, Slot> {
 
 /// Brings the window's folder into the requested state.
 fn execute(request: &Request, slot: &mut Slot, parent: Option<&Path>) -> Result<(), String> {
-    if let (Request::Keep(_), Slot::Unmade, Some(parent)) = (request, &*slot, parent) {
+    if let (Request::Keep(..), Slot::Unmade, Some(parent)) = (request, &*slot, parent) {
         *slot = Slot::Open(RecoveryFolder::create(parent).map_err(|error| crate::io::reason(&error))?);
     }
     match (request, slot) {
-        (Request::Keep(studio), Slot::Open(folder)) => {
+        (Request::Keep(studio, picture), Slot::Open(folder)) => {
+            match picture {
+                PictureChange::Is(picture) => folder.write_picture(picture).map_err(|error| error.to_string())?,
+                PictureChange::Goes => folder.remove_picture(),
+                PictureChange::Stays => {}
+            }
             folder.write(&studio.0, &studio.1).map_err(|error| error.to_string())?;
         }
         (Request::Clear, Slot::Open(folder)) => folder.clear(),
@@ -210,8 +281,8 @@ mod tests {
         let wake: Wake = Arc::new(move || {
             let _ = sender.send(());
         });
-        assert_eq!(recovery.update(&document, 10.0, &wake), Some(DELAY_S));
-        assert_eq!(recovery.update(&document, 10.0 + DELAY_S, &wake), None);
+        assert_eq!(recovery.update(&document, None, false, 10.0, &wake), Some(DELAY_S));
+        assert_eq!(recovery.update(&document, None, false, 10.0 + DELAY_S, &wake), None);
         written.recv().unwrap();
         assert_eq!(recovery.failure(), None);
         drop(recovery);

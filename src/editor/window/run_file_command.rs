@@ -152,9 +152,10 @@ impl App {
         let seed = job.settings.seed.into();
         let info = PictureInfo::new(self.document.scene(), developed.method, developed.spp, seed);
         let info = PictureInfo { denoiser: developed.denoiser, ..info };
+        let film = job.film().map(std::sync::Arc::downgrade);
         let work = move || {
             let result = files::export(&path, &picture, noisy.as_deref(), &info);
-            TaskResult::Exported(path, result)
+            TaskResult::Exported(path, film, result)
         };
         self.background.tasks.start(work, waker(ctx));
     }
@@ -187,8 +188,11 @@ impl App {
                     self.file_is_changed();
                 }
             }
-            TaskResult::Exported(path, Ok(())) => self.toasts.info(format!("Picture written to {}", path.display())),
-            TaskResult::Exported(_, Err(message)) => {
+            TaskResult::Exported(path, film, Ok(())) => {
+                self.rendering.mark_exported(film);
+                self.toasts.info(format!("Picture written to {}", path.display()));
+            }
+            TaskResult::Exported(_, _, Err(message)) => {
                 self.toasts.error(format!("The picture was not written. {message}"))
             }
         }

@@ -1,6 +1,7 @@
 //! Keeping, offering and opening unsaved studios.
 
-use crate::editor::document::files::{self, OpenedStudio};
+use crate::editor::CentralView;
+use crate::editor::document::files::{self, RecoveredStudio};
 use crate::editor::panels::recovery_prompt::{RecoveryAnswer, UnsavedStudio, recovery_ui};
 use crate::editor::ui::wake::wake;
 use crate::editor::window::app::App;
@@ -23,8 +24,9 @@ impl App {
 
     /// Keeps unsaved changes on the disk.
     pub(super) fn keep_unsaved(&mut self, ctx: &Context) {
-        let now = ctx.input(|i| i.time);
-        if let Some(seconds) = self.session.recovery.update(&self.document, now, &wake(ctx)) {
+        let (now, picture) = (ctx.input(|i| i.time), self.rendering.to_keep());
+        let (recovery, is_rendering) = (&mut self.session.recovery, self.rendering.is_running());
+        if let Some(seconds) = recovery.update(&self.document, picture.as_ref(), is_rendering, now, &wake(ctx)) {
             ctx.request_repaint_after(Duration::from_secs_f64(seconds));
         }
         if let Some(why) = self.session.recovery.failure() {
@@ -70,15 +72,24 @@ impl App {
     pub(super) fn show_recovered(
         &mut self,
         (folder, info): Unsaved,
-        result: Result<Box<OpenedStudio>, String>,
+        result: Result<Box<RecoveredStudio>, String>,
         ctx: &Context,
     ) {
         match result {
-            Ok(opened) => {
-                self.show_opened(*opened, ctx);
-                self.document.mark_recovered(info.imported);
-                self.session.recovery.adopt(folder, self.document.revision());
-                self.toasts.info("The unsaved studio is open again. Save it to keep it.");
+            Ok(recovered) => {
+                let RecoveredStudio { opened, picture } = *recovered;
+                self.show_opened(opened, ctx);
+                self.document.mark_recovered(info.imported, !info.is_saved);
+                self.session.recovery.adopt(folder, &self.document, picture.as_ref());
+                self.toasts.info(match (info.is_saved, &picture) {
+                    (false, None) => "The unsaved studio is open again. Save it to keep it.",
+                    (false, Some(_)) => "The unsaved studio is open again, with its picture. Save it to keep it.",
+                    (true, _) => "The studio and its picture are open again. Export the picture to keep it.",
+                });
+                if let Some(picture) = picture {
+                    self.rendering.restore(picture);
+                    self.views.central = CentralView::Picture;
+                }
             }
             Err(message) => {
                 let file = folder.studio();
