@@ -5,6 +5,7 @@ use super::framebuffer::NO_OBJECT;
 use super::triangle::PrimitiveState;
 use crate::scene::{Assets, Material, Mesh, Scene, Texture, TextureSlot, room_mesh, strand_ribbons};
 use glam::Affine3A;
+use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -69,6 +70,8 @@ impl SceneGeometry {
             let material = |part: &str| room.material_of(part).clone();
             geometry.add(Arc::new(room_mesh(room)), Affine3A::IDENTITY, NO_OBJECT, state, assets, material);
         }
+        // Objects share the ribbons of a mesh as they share the mesh
+        let mut known_ribbons: HashMap<*const Mesh, Arc<Mesh>> = HashMap::new();
         for (index, object) in (0..).zip(&scene.objects) {
             let world_from_object = object.transform.world_from_object();
             let Some(mesh) =
@@ -79,8 +82,9 @@ impl SceneGeometry {
             let state = PrimitiveState { cull_back_faces: false, depth_factor: 1.0 };
             let material = |part: &str| object.material_of(part).clone();
             if !mesh.strands.is_empty() {
-                let ribbons = Arc::new(strand_ribbons(&mesh.strands, MAX_RIBBONS));
-                geometry.add(ribbons, world_from_object, index, state, assets, material);
+                let ribbons = known_ribbons.entry(Arc::as_ptr(&mesh));
+                let ribbons = ribbons.or_insert_with(|| Arc::new(strand_ribbons(&mesh.strands, MAX_RIBBONS)));
+                geometry.add(ribbons.clone(), world_from_object, index, state, assets, material);
             }
             geometry.add(mesh, world_from_object, index, state, assets, material);
         }

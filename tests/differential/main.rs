@@ -2,7 +2,8 @@
 //! brute-force tracer that shares neither code nor techniques with it (`brute_force.rs`).
 //!
 //! Blocks of the pictures are compared by t-tests (`comparison.rs`). All tests of a run share the false-alarm rate
-//! [`FALSE_ALARM`] (Sidak's correction): 1 in 1000 that a run rejects correct code. A failure prints the seed, writes
+//! [`FALSE_ALARM`] (Sidak's correction): 1 in 1000 that a run rejects correct code. A scene that differs is compared again,
+//! with more samples, before it counts as a failure. A failure prints the seed, writes
 //! the scene to `target/tmp/differential/SEED.ron` and prints the command that replays a sample of the worst pixel.
 //!
 //! The gate runs [`GATE_SCENES`] scenes, in less than a minute on two cores. Environment variables run more:
@@ -32,6 +33,11 @@ use studio::statistics::{critical_z, sidak_level};
 
 /// Scenes that the gate compares.
 const GATE_SCENES: u64 = 18;
+
+/// The samples of a scene that differs are so many times as many in a second, independent comparison, which decides. Light
+/// that one in thousands of brute-force paths finds, and none of the first ones has found, is missing in their standard
+/// error too; an error of the tracer stays.
+const CONFIRMATION: u32 = 8;
 
 /// Returns the value of an environment variable.
 fn variable(name: &str, default: u64) -> u64 {
@@ -65,12 +71,13 @@ impl Compared {
 }
 
 /// Renders the scene of a seed by all techniques; the tracer renders it with a change of its materials. The scene goes
-/// through its file, so that the file shows the same.
-fn compare(seed: u64, folder: &Path, effort: Effort, change: Change) -> Compared {
+/// through its file, so that the file shows the same. Brute force has other random numbers in each round.
+fn compare(seed: u64, folder: &Path, effort: Effort, change: Change, round: u64) -> Compared {
     let file = folder.join(format!("{seed}.ron"));
     fs::write(&file, write_scene(&scenes::scene(seed))).unwrap();
     let Loaded { mut scene, assets, .. } = load_scene(&file).unwrap();
-    let expected = comparison::brute_force(&BruteForce::new(&scene, &assets), effort.brute_force_spp, seed);
+    let expected =
+        comparison::brute_force(&BruteForce::new(&scene, &assets), effort.brute_force_spp, seed + (round << 40));
     scene.objects.iter_mut().for_each(|object| change(&mut object.material));
     let scene = &scene;
     let mut prepared = raytrace::prepare(scene, &assets).unwrap();
@@ -95,7 +102,14 @@ fn random_scenes_agree_with_brute_force() {
     let mut failures = Vec::new();
     let (mut resolutions, mut tested) = (Vec::new(), 0);
     for seed in first..first + count {
-        let compared = compare(seed, &folder, effort, |_| ());
+        let mut compared = compare(seed, &folder, effort, |_| (), 0);
+        if compared.smallest_p() < level {
+            println!(
+                "seed {seed}: p {:.1e}; compared again with {CONFIRMATION} times the samples",
+                compared.smallest_p()
+            );
+            compared = compare(seed, &folder, effort.times(CONFIRMATION), |_| (), 1);
+        }
         let smallest = compared.smallest_p();
         let Compared { file, mut differences } = compared;
         tested += differences.len();
@@ -137,7 +151,8 @@ fn surfaces_that_are_three_percent_too_dark_are_found() {
     let level = sidak_level(GATE_SCENES as usize * 2 * TESTS);
     let darker = |material: &mut Material| material.base_color = material.base_color.map(|channel| 0.97 * channel);
     const CASES: u64 = 6;
-    let smallest: Vec<f64> = (0..CASES).map(|seed| compare(seed, &folder, Effort::GATE, darker).smallest_p()).collect();
+    let smallest: Vec<f64> =
+        (0..CASES).map(|seed| compare(seed, &folder, Effort::GATE, darker, 0).smallest_p()).collect();
     println!("smallest p of scenes with dark surfaces: {smallest:?}");
     let found = smallest.iter().filter(|p| **p < level).count();
     assert!(2 * found >= CASES as usize, "found in {found} of {CASES} scenes: {smallest:?}");

@@ -94,11 +94,7 @@ fn a_rendered_picture_survives_a_crash_with_its_lights_until_it_is_exported() {
     assert!(is_offered(&second));
     assert!(second.query_by_label_contains("before the picture of \"portrait.ron\" was exported").is_some());
     click(&mut second, "Recover");
-    assert!(
-        second.state().rendering().job().is_some(),
-        "{:?}",
-        second.state().toasts().texts(ToastKind::Warning)
-    );
+    assert!(second.state().rendering().job().is_some(), "{:?}", second.state().toasts().texts(ToastKind::Warning));
     wait_until(&mut second, |app| app.rendering().developed().is_some());
     assert_eq!(picture(&second), rendered);
     let document = second.state().document();
