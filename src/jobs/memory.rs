@@ -66,11 +66,12 @@ const PICTURE_BYTES: u64 = 12 + 3;
 /// The memory of developed AOVs, bytes per pixel: those of the file and those of the denoiser.
 const AOV_BYTES: u64 = 2 * 32;
 
-/// Returns the memory that a render of a prepared scene takes at most: the film, its snapshot for a checkpoint or for
-/// the window, and the developed picture.
-pub(super) fn needed(settings: &Settings, layers: usize) -> Bytes {
+/// Returns the memory that a render of a prepared scene takes at most: the film, its snapshot if there is one for a
+/// checkpoint or for the window, and the developed picture.
+pub(super) fn needed(settings: &Settings, layers: usize, snapshot: bool) -> Bytes {
     let aovs = if settings.aovs { AOV_BYTES } else { 0 };
-    Bytes(2 * Film::bytes(settings, layers) + settings.pixels() * (PICTURE_BYTES + aovs))
+    let films = if snapshot { 2 } else { 1 };
+    Bytes(films * Film::bytes(settings, layers) + settings.pixels() * (PICTURE_BYTES + aovs))
 }
 
 /// Returns the memory that this process may still take, within the machine and within its control group. None where the
@@ -119,6 +120,7 @@ mod tests {
             checkpoint: None,
             time_limit: None,
             memory: Some(memory),
+            snapshots: true,
         };
         run(&input)
     }
@@ -139,7 +141,7 @@ mod tests {
 
     #[test]
     fn lights_of_a_role_share_a_layer_where_the_memory_does_not_suffice_for_one_each() {
-        let four_layers = with_memory(Bytes(0), |input| needed(input.settings, 4));
+        let four_layers = with_memory(Bytes(0), |input| needed(input.settings, 4, true));
         let (whole, told) = rendered(four_layers).unwrap();
         let memory = RenderMemory { need: four_layers, free: Some(four_layers), unshared: None };
         assert_eq!((whole.film.layers().len(), told), (4, Some(memory)));
@@ -160,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_picture_that_does_not_fit_into_the_memory_is_refused_before_its_first_ray() {
-        let two_layers = with_memory(Bytes(0), |input| needed(input.settings, 2));
+        let two_layers = with_memory(Bytes(0), |input| needed(input.settings, 2, true));
         let error = rendered(Bytes(two_layers.0 - 1)).unwrap_err().to_string();
         assert!(
             error.starts_with("the picture takes up to 0 MB of memory, and 0 MB are free: choose a smaller size"),
@@ -184,13 +186,16 @@ mod tests {
     #[test]
     fn the_need_grows_with_pixels_layers_and_aovs() {
         let settings = Settings { width: 6000, height: 4000, ..Settings::default() };
-        let five = needed(&settings, 5);
+        let five = needed(&settings, 5, true);
         // Five layers of three floats, two blocks of luminance; twice; and the picture.
         assert_eq!(five, Bytes(24_000_000 * (2 * (5 * 12 + 8) + 15)));
         assert_eq!(five.to_string(), "3.6 GB");
-        assert!(needed(&settings, 6) > five && needed(&Settings { aovs: true, ..settings.clone() }, 5) > five);
+        assert!(
+            needed(&settings, 6, true) > five && needed(&Settings { aovs: true, ..settings.clone() }, 5, true) > five
+        );
+        assert_eq!(needed(&settings, 5, false), Bytes(24_000_000 * (5 * 12 + 8 + 15)));
         let quarter = Settings { width: 3000, height: 2000, ..settings };
-        assert_eq!(needed(&quarter, 5).0 * 4, five.0);
-        assert_eq!(needed(&quarter, 5).to_string(), "906 MB");
+        assert_eq!(needed(&quarter, 5, true).0 * 4, five.0);
+        assert_eq!(needed(&quarter, 5, true).to_string(), "906 MB");
     }
 }

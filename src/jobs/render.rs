@@ -30,6 +30,8 @@ pub struct RenderInput<'a> {
     pub time_limit: Option<Duration>,
     /// Memory that it may take beside the prepared scene; none takes what is free.
     pub memory: Option<Bytes>,
+    /// Films are cloned while the render goes on.
+    pub snapshots: bool,
 }
 
 /// A stage that a render has reached, for its observer.
@@ -118,7 +120,7 @@ pub(super) fn prepared(
     let started = Instant::now();
     let mut prepared = pool.install(|| raytrace::prepare_kept(scene, assets, cache))?;
     // Share layers, or refuse, if the memory does not suffice
-    let need = |scene: &RenderScene| memory::needed(settings, scene.layers().len());
+    let need = |scene: &RenderScene| memory::needed(settings, scene.layers().len(), input.snapshots);
     let mut memory = RenderMemory { need: need(&prepared), free: input.memory.or_else(memory::free), unshared: None };
     if memory.is_too_little() && layers == Layers::OneEach {
         prepared = pool.install(|| raytrace::prepare_shared(scene, assets, cache))?;

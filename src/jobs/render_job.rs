@@ -201,6 +201,7 @@ fn run(task: &Task, inbox: &Inbox<Task, Report>) {
         checkpoint: None,
         time_limit: None,
         memory: None,
+        snapshots: true,
     };
     let rendered = render(&input, &pool, monitor, &mut |stage| {
         match stage {

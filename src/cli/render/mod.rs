@@ -119,6 +119,7 @@ fn render(
         checkpoint: earlier.as_deref(),
         time_limit: arguments.time_limit(),
         memory: None,
+        snapshots: arguments.checkpoint_interval().is_some(),
     };
     let mut display = None;
     let rendered = jobs::render(&input, pool, monitor, &mut |stage| match stage {

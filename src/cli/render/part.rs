@@ -79,6 +79,7 @@ impl PartRender<'_> {
             checkpoint: None,
             time_limit: None,
             memory: None,
+            snapshots: false,
         };
         let mut display = None;
         let rendered = jobs::render_part(&input, samples, self.pool, monitor, &mut |stage| {

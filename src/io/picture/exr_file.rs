@@ -121,11 +121,13 @@ fn aov_channels(aovs: &AovPicture) -> Vec<ExrChannel<'_>> {
 }
 
 fn picture_channels<'a>(names: [&str; 3], picture: &'a Picture) -> [ExrChannel<'a>; 3] {
-    vector_channels(names, |x, y| picture.at(x as u32, y as u32))
+    vector_channels(names, |x, y| picture.rgb[y * picture.width as usize + x])
 }
 
 fn layer_channels<'a>(names: [&str; 3], layer: &'a LazyPicture<'a>) -> [ExrChannel<'a>; 3] {
-    vector_channels(names, |x, y| layer.at(x as u32, y as u32))
+    // A picture's edge is a number of 32 bits.
+    let edge = |pixel: usize| u32::try_from(pixel).unwrap_or(u32::MAX);
+    vector_channels(names, move |x, y| layer.at(edge(x), edge(y)))
 }
 
 /// Returns the three channels of pixels at (x, y).
