@@ -6,7 +6,15 @@ use exr::image::write::samples::{SamplesWriter, WritableSamples};
 use exr::math::RoundingMode;
 use exr::meta::attribute::{LevelMode, SampleType};
 use exr::meta::header::Header;
+use exr::prelude::{AnyChannel, AnyChannels, Image, Layer, Layers};
 use std::fmt;
+
+/// An EXR image of several parts.
+pub(super) type ExrImage<'a> = Image<Layers<AnyChannels<ChannelSamples<'a>>>>;
+/// A part of an EXR image.
+pub(super) type ExrPart<'a> = Layer<AnyChannels<ChannelSamples<'a>>>;
+/// A channel of a part.
+pub(super) type ExrChannel<'a> = AnyChannel<ChannelSamples<'a>>;
 
 /// Returns the sample at (x, y), y down.
 type Sampler<'a, T> = Box<dyn Fn(usize, usize) -> T + Sync + 'a>;

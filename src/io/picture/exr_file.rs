@@ -1,6 +1,6 @@
 //! OpenEXR: 32-bit float, Rec.709 primaries, ZIP, one part for the picture with its AOVs and one per light.
 
-use super::channel_samples::ChannelSamples;
+use super::channel_samples::{ChannelSamples, ExrChannel, ExrImage, ExrPart};
 use super::{LayeredPicture, PictureInfo};
 use crate::photo::{AovPicture, LazyPicture, Picture};
 use exr::meta::MetaData;
@@ -16,12 +16,6 @@ pub(super) const WHOLE: &str = "picture";
 /// Channels of the pixels that are shown, and of those before the denoiser.
 pub(super) const SHOWN_CHANNELS: [&str; 3] = ["R", "G", "B"];
 const NOISY_CHANNELS: [&str; 3] = ["noisy.R", "noisy.G", "noisy.B"];
-
-/// A picture and its layers as EXR parts.
-pub(super) type ExrImage<'a> = Image<Layers<AnyChannels<ChannelSamples<'a>>>>;
-/// A part of an EXR file.
-pub(super) type ExrPart<'a> = Layer<AnyChannels<ChannelSamples<'a>>>;
-pub(super) type ExrChannel<'a> = AnyChannel<ChannelSamples<'a>>;
 
 pub(super) fn image<'a>(
     shown: LayeredPicture<'a>,

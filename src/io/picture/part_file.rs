@@ -6,8 +6,8 @@
 //! of samples; the header says which, and of which render.
 
 use super::PictureInfo;
-use super::channel_samples::ChannelSamples;
-use super::exr_file::{ExrChannel, ExrPart, SHOWN_CHANNELS, WHOLE, checked_size, part, text, vector_channels};
+use super::channel_samples::{ChannelSamples, ExrChannel, ExrPart};
+use super::exr_file::{SHOWN_CHANNELS, WHOLE, checked_size, part, text, vector_channels};
 use super::picture_file::{Content, PictureFile};
 use crate::io::checkpoint::RenderId;
 use crate::io::error::{SaveError, reason};

@@ -1,6 +1,6 @@
 //! A picture for its file: written there, or kept elsewhere if that fails.
 
-use super::exr_file::ExrImage;
+use super::channel_samples::ExrImage;
 use crate::io::atomic::{self, WriteSeek};
 use crate::io::error::SaveError;
 use exr::prelude::WritableImage;
