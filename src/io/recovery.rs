@@ -124,9 +124,9 @@ impl RecoveryFolder {
 
     /// Removes studio and picture.
     pub fn clear(&self) {
+        self.remove_picture();
         // Without it there is nothing to remove.
         let _ = std::fs::remove_file(self.studio());
-        self.remove_picture();
     }
 
     /// Removes the folder.
@@ -149,6 +149,10 @@ fn abandoned(path: PathBuf) -> Option<(RecoveryFolder, RecoveryInfo)> {
     match read_info(&folder.studio()) {
         Some(info) => {
             let has_picture = kept_picture::file_in(&folder.path).exists();
+            if info.is_saved && !has_picture {
+                folder.remove();
+                return None;
+            }
             Some((folder, RecoveryInfo { has_picture, ..info }))
         }
         // A file that can't be understood stays for the user to look at.

@@ -43,7 +43,8 @@ impl TextureMemory {
             _ => None,
         };
         let held: u64 = self.lock().iter().map(|texture| bytes(texture.width, texture.height)).sum();
-        held + missing.iter().filter_map(|(_, key)| size(key)).sum::<u64>() > self.limit_bytes
+        let sizes = missing.iter().filter_map(|(_, key)| size(key));
+        sizes.fold(held, u64::saturating_add) > self.limit_bytes
     }
 
     /// Returns the texture that is held already and has the same pixels, or takes this one. `path` is its file, for
@@ -75,7 +76,7 @@ impl TextureMemory {
 
 /// Returns the memory of a texture of a width and height.
 fn bytes(width: u32, height: u32) -> u64 {
-    3 * u64::from(width) * u64::from(height)
+    (u64::from(width) * u64::from(height)).saturating_mul(3)
 }
 
 #[cfg(test)]

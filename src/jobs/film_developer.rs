@@ -7,11 +7,13 @@ use crate::denoise::Quality;
 use crate::photo::Picture;
 use crate::raytrace::{Film, RenderControl};
 use crate::scene::Scene;
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 /// A developed film.
 #[derive(Debug)]
 pub struct Developed<I> {
+    /// The film that it was developed from.
+    pub film: Weak<Film>,
     /// Scene-linear, for export.
     pub picture: Arc<Picture>,
     /// The picture before the denoiser; none if `picture` is not denoised.
@@ -68,6 +70,7 @@ impl<I: Send + 'static> FilmDeveloper<I> {
                 let publish = |picture: Picture, noisy: Option<Picture>, quality: Option<Quality>| {
                     let image = to_image(&picture, request.development.max_side);
                     inbox.publish(Developed {
+                        film: Arc::downgrade(&request.film),
                         picture: Arc::new(picture),
                         noisy: noisy.map(Arc::new),
                         denoiser: quality.map(Quality::label),

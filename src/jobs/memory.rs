@@ -1,6 +1,6 @@
 //! The memory that a render needs, and what is free for it.
 
-use crate::raytrace::{Film, PrepareError, Settings};
+use crate::raytrace::{Film, FilmPart, PrepareError, Settings};
 use std::fmt;
 use sysinfo::{MemoryRefreshKind, Process, ProcessRefreshKind, ProcessesToUpdate, System};
 use thiserror::Error;
@@ -14,12 +14,15 @@ pub enum RenderError {
     /// The machine has too little memory.
     #[error("{0}: choose a smaller size, or close other programs")]
     Memory(RenderMemory),
+    /// The checkpoint belongs to another render.
+    #[error("can't go on from the checkpoint: {0}")]
+    Checkpoint(String),
 }
 
 /// The memory of a render from the first ray on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderMemory {
-    /// What it takes at most.
+    /// What it takes, about: film, snapshot, picture. Denoised light layers come on top.
     pub need: Bytes,
     /// What the process may still take; none where the system does not tell.
     pub free: Option<Bytes>,
@@ -45,7 +48,7 @@ impl RenderMemory {
 
 impl fmt::Display for RenderMemory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the picture takes up to {} of memory", self.need)?;
+        write!(f, "the picture takes about {} of memory", self.need)?;
         self.free.map_or(Ok(()), |free| write!(f, ", and {free} are free"))
     }
 }
@@ -66,12 +69,17 @@ const PICTURE_BYTES: u64 = 12 + 3;
 /// The memory of developed AOVs, bytes per pixel: those of the file and those of the denoiser.
 const AOV_BYTES: u64 = 2 * 32;
 
-/// Returns the memory that a render of a prepared scene takes at most: the film, its snapshot if there is one for a
-/// checkpoint or for the window, and the developed picture.
+/// Returns the memory that a render of a prepared scene takes: the film, its snapshot if there is one for a checkpoint or
+/// for the window, and the developed picture.
 pub(super) fn needed(settings: &Settings, layers: usize, snapshot: bool) -> Bytes {
     let aovs = if settings.aovs { AOV_BYTES } else { 0 };
     let films = if snapshot { 2 } else { 1 };
     Bytes(films * Film::bytes(settings, layers) + settings.pixels() * (PICTURE_BYTES + aovs))
+}
+
+/// Returns the memory that a part of a picture's samples takes: its sums, and the film of one sample.
+pub(super) fn needed_by_part(settings: &Settings, layers: usize) -> Bytes {
+    Bytes(FilmPart::bytes(settings, layers) + Film::bytes(settings, layers))
 }
 
 /// Returns the memory that this process may still take, within the machine and within its control group. None where the
@@ -161,15 +169,41 @@ mod tests {
     }
 
     #[test]
+    fn a_checkpoint_is_gone_on_from_with_its_layers_whatever_the_memory_is_now() {
+        let plenty = Bytes(1 << 40);
+        let little = with_memory(Bytes(0), |input| Bytes(needed(input.settings, 4, true).0 - 1));
+        let resumed = |bytes: &[u8], memory| {
+            with_memory(memory, |input| {
+                let input = RenderInput { checkpoint: Some(bytes), ..*input };
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+                let monitor = RenderMonitor::new(input.settings, Arc::new(RenderControl::new()));
+                render(&input, &pool, &monitor, &mut |_| {})
+            })
+        };
+        for (first, then, layers) in [(little, plenty, 2), (plenty, little, 4)] {
+            let (whole, _) = rendered(first).unwrap();
+            let mut bytes = Vec::new();
+            whole.film.store(&mut bytes).unwrap();
+            let resumed = resumed(&bytes, then).unwrap();
+            assert_eq!(resumed.film.layers().len(), layers);
+            assert_eq!(resumed.film.develop(&three_lights()), whole.film.develop(&three_lights()));
+        }
+        let error = resumed(b"of another render", plenty).unwrap_err();
+        assert!(matches!(error, RenderError::Checkpoint(_)), "{error}");
+    }
+
+    #[test]
     fn a_picture_that_does_not_fit_into_the_memory_is_refused_before_its_first_ray() {
         let two_layers = with_memory(Bytes(0), |input| needed(input.settings, 2, true));
         let error = rendered(Bytes(two_layers.0 - 1)).unwrap_err().to_string();
         assert!(
-            error.starts_with("the picture takes up to 0 MB of memory, and 0 MB are free: choose a smaller size"),
+            error.starts_with("the picture takes about 0 MB of memory, and 0 MB are free: choose a smaller size"),
             "{error}"
         );
-        // Parts of a picture have the layers of all machines.
-        let refused = with_memory(two_layers, |input| {
+        // Parts of a picture have the layers of all machines, and sums without rounding.
+        let four_layers = needed_by_part(&Settings { width: 40, height: 30, ..Settings::default() }, 4);
+        assert_eq!(four_layers, Bytes(40 * 30 * (4 * 48 + 16 + 4 * 12 + 8)));
+        let refused = with_memory(Bytes(four_layers.0 - 1), |input| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
             let monitor = RenderMonitor::new(input.settings, Arc::new(RenderControl::new()));
             render_part(input, 0..1, &pool, &monitor, &mut |_| {}).unwrap_err()

@@ -3,7 +3,8 @@
 
 use super::memory::{self, Bytes, RenderError, RenderMemory};
 use super::monitor::RenderMonitor;
-use crate::raytrace::{self, Film, GeometryCache, RenderControl, RenderScene, Settings, Shortcut};
+use crate::io;
+use crate::raytrace::{self, Film, GeometryCache, PrepareError, RenderControl, RenderScene, Settings, Shortcut};
 use crate::scene::{Assets, Scene};
 use rayon::ThreadPool;
 use std::ops::ControlFlow;
@@ -63,8 +64,8 @@ pub struct Rendered {
 /// Renders on `pool`, keeping `monitor` up to date and calling `observe` at each stage.
 ///
 /// # Errors
-/// When the scene cannot be prepared, or the memory does not suffice for the picture, even with a layer for each role of
-/// lights.
+/// When the scene cannot be prepared, when the memory does not suffice for the picture, even with a layer for each role of
+/// lights, or when the checkpoint is none of this render.
 pub fn render(
     input: &RenderInput<'_>,
     pool: &ThreadPool,
@@ -74,11 +75,15 @@ pub fn render(
     let RenderInput { settings, .. } = *input;
     let control = monitor.control();
     // Build the acceleration structures and the light tables.
-    let (scene, build_s) = prepared(input, Layers::OneEach, pool, observe)?;
+    let layers = if input.checkpoint.is_some() { Layers::Stored } else { Layers::OneEach };
+    let (mut scene, build_s) = prepared(input, layers, pool, observe)?;
     // Trace a small version of a large picture, whose first pass takes long.
     let trace_started = Instant::now();
     monitor.start_tracing(trace_started);
-    let film = first_film(&scene, settings, input.checkpoint);
+    let film = match input.checkpoint {
+        None => raytrace::empty_film(&scene, settings),
+        Some(bytes) => stored_film(input, bytes, &mut scene, pool)?,
+    };
     let coarse = settings.coarse().filter(|_| !control.is_cancelled() && film.spp() == 0);
     let coarse = coarse
         .map(|coarse| pool.install(|| raytrace::render(&scene, &coarse, control, &mut |_| ControlFlow::Break(()))));
@@ -105,8 +110,24 @@ pub fn render(
 pub(super) enum Layers {
     /// One for each light, or for each role of lights where the memory suffices for no more.
     OneEach,
-    /// Those of any other machine.
-    Fixed,
+    /// Those of a stored film, whatever the memory.
+    Stored,
+    /// One for each light whatever the memory, because parts of all machines are merged.
+    OfPart,
+}
+
+/// Prepares the scene by a function, with the plan that the input asks for.
+fn prepared_with(
+    input: &RenderInput<'_>,
+    prepare: fn(&Scene, &Assets, &GeometryCache) -> Result<RenderScene, PrepareError>,
+    pool: &ThreadPool,
+) -> Result<RenderScene, PrepareError> {
+    let mut prepared = pool.install(|| prepare(input.scene, input.assets, input.cache))?;
+    if !input.without.is_empty() {
+        let plan = input.without.iter().fold(prepared.plan().clone(), |plan, shortcut| plan.without(*shortcut));
+        prepared.set_plan(plan);
+    }
+    Ok(prepared)
 }
 
 /// Prepares the scene, with the plan that the input asks for, and returns it with the time that it took, seconds.
@@ -116,39 +137,39 @@ pub(super) fn prepared(
     pool: &ThreadPool,
     observe: &mut (dyn FnMut(RenderStage<'_>) + Send),
 ) -> Result<(RenderScene, f64), RenderError> {
-    let RenderInput { scene, assets, cache, settings, .. } = *input;
     let started = Instant::now();
-    let mut prepared = pool.install(|| raytrace::prepare_kept(scene, assets, cache))?;
+    let mut prepared = prepared_with(input, raytrace::prepare_kept, pool)?;
     // Share layers, or refuse, if the memory does not suffice
-    let need = |scene: &RenderScene| memory::needed(settings, scene.layers().len(), input.snapshots);
+    let need = |scene: &RenderScene| match layers {
+        Layers::OfPart => memory::needed_by_part(input.settings, scene.layers().len()),
+        Layers::OneEach | Layers::Stored => memory::needed(input.settings, scene.layers().len(), input.snapshots),
+    };
     let mut memory = RenderMemory { need: need(&prepared), free: input.memory.or_else(memory::free), unshared: None };
     if memory.is_too_little() && layers == Layers::OneEach {
-        prepared = pool.install(|| raytrace::prepare_shared(scene, assets, cache))?;
+        prepared = prepared_with(input, raytrace::prepare_shared, pool)?;
         memory = RenderMemory { need: need(&prepared), unshared: Some(memory.need), ..memory };
     }
-    if memory.is_too_little() {
+    if memory.is_too_little() && layers != Layers::Stored {
         return Err(RenderError::Memory(memory));
-    }
-    if !input.without.is_empty() {
-        let plan = input.without.iter().fold(prepared.plan().clone(), |plan, shortcut| plan.without(*shortcut));
-        prepared.set_plan(plan);
     }
     observe(RenderStage::Prepared(&prepared, memory));
     Ok((prepared, started.elapsed().as_secs_f64()))
 }
 
-/// Returns the film with the samples of an earlier run, or an empty one.
-fn first_film(scene: &RenderScene, settings: &Settings, checkpoint: Option<&[u8]>) -> Film {
-    let empty = raytrace::empty_film(scene, settings);
-    let stored = checkpoint.map(|mut bytes| empty.with_stored(&mut bytes));
-    match stored {
-        Some(Ok(film)) => film,
-        Some(Err(error)) => {
-            log::error!("the checkpoint is not used: {error}");
-            empty
-        }
-        None => empty,
+/// Returns the film with the samples of an earlier run. If lights shared layers in that run, they do so in `scene` from now
+/// on.
+fn stored_film(
+    input: &RenderInput<'_>,
+    bytes: &[u8],
+    scene: &mut RenderScene,
+    pool: &ThreadPool,
+) -> Result<Film, RenderError> {
+    let film = |scene: &RenderScene| raytrace::empty_film(scene, input.settings).with_stored(&mut &bytes[..]);
+    if let Ok(film) = film(scene) {
+        return Ok(film);
     }
+    *scene = prepared_with(input, raytrace::prepare_shared, pool)?;
+    film(scene).map_err(|error| RenderError::Checkpoint(io::reason(&error)))
 }
 
 /// Traces all passes of a prepared scene on the current pool, without an observer.

@@ -37,7 +37,7 @@ pub fn render_part(
     monitor: &RenderMonitor,
     observe: &mut (dyn FnMut(RenderStage<'_>) + Send),
 ) -> Result<RenderedPart, RenderError> {
-    let (scene, build_s) = prepared(input, Layers::Fixed, pool, observe)?;
+    let (scene, build_s) = prepared(input, Layers::OfPart, pool, observe)?;
     let trace_started = Instant::now();
     monitor.start_tracing(trace_started);
     let after_sample = &mut |_: &FilmPart| monitor.finish_pass();

@@ -18,11 +18,11 @@ pub struct Framebuffer {
 }
 
 impl Framebuffer {
-    /// Sets the size, and clears every pixel.
-    pub(super) fn clear(&mut self, Viewport { width, height }: Viewport) {
+    /// Sets the size, and clears every pixel to a background of this radiance.
+    pub(super) fn clear(&mut self, Viewport { width, height }: Viewport, background: [f32; 3]) {
         let pixels = width as usize * height as usize;
         (self.picture.width, self.picture.height) = (width, height);
-        clear(&mut self.picture.rgb, pixels, [0.0; 3]);
+        clear(&mut self.picture.rgb, pixels, background);
         clear(&mut self.objects, pixels, NO_OBJECT);
         clear(&mut self.inverse_depths, pixels, 0.0);
     }

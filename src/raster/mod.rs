@@ -97,8 +97,8 @@ impl Rasterizer {
     ) {
         let Rasterizer { geometry, vertices, batches } = self;
         let viewport = Viewport::new(size);
-        framebuffer.clear(viewport);
         let frame = FrameShading::new(geometry, RasterLights::new(scene, camera.position()), shading);
+        framebuffer.clear(viewport, frame.background_radiance());
         // A chunk after the other, over what is nearer of those before
         for chunk in &geometry.chunks(most_vertices) {
             vertex_stage::transform(geometry, chunk, camera, viewport, vertices);
@@ -113,6 +113,25 @@ impl Rasterizer {
 mod tests {
     use super::*;
     use crate::io::presets;
+    use crate::scene::{Aim, Camera, Emitter, Light, Object, Output, Shape};
+    use glam::Vec3;
+
+    #[test]
+    fn a_visible_surround_is_seen_where_there_is_no_surface() {
+        let surround = Light { visible_to_camera: true, ..Light::new(Emitter::Surround, Output::Lux(1000.0)) };
+        let ball = Object::new("Ball", Shape::Sphere { radius_m: 0.2 });
+        let camera = Camera { position: Vec3::Z * 2.0, aim: Aim::Point(Vec3::ZERO), ..Camera::default() };
+        let scene = Scene { objects: vec![ball], lights: vec![surround], camera, ..Scene::default() };
+        let drawn = draw(&scene, &Assets::default(), &scene.camera_frame(1.5), (60, 40), Shading::default());
+        assert_ne!(drawn.objects[20 * 60 + 30], NO_OBJECT, "the ball");
+        // Once per row that the ball crosses, and in a row that it does not.
+        for corner in [0, 20 * 60] {
+            assert_eq!(drawn.objects[corner], NO_OBJECT);
+            let expected = RasterLights::new(&scene, Vec3::Z * 2.0).background_radiance;
+            assert!(expected.min_element() > 0.0);
+            assert_eq!(drawn.picture.rgb[corner], expected.to_array());
+        }
+    }
 
     #[test]
     fn a_large_scene_that_is_drawn_in_chunks_looks_as_in_one_piece() {

@@ -97,6 +97,11 @@ impl FrameShading {
         let linear_from_srgb = std::array::from_fn(|i| srgb_decode(i as f32 / 255.0));
         FrameShading { lights, shading, materials, linear_from_srgb }
     }
+
+    /// Returns the radiance of pixels that show no surface: that of a visible surround.
+    pub fn background_radiance(&self) -> [f32; 3] {
+        self.lights.background_radiance.into()
+    }
 }
 
 /// The fragment shader of a chunk of a frame.
@@ -211,10 +216,6 @@ impl<'a> FragmentShader<'a> {
         }
         if any_surface {
             self.shade_surfaces(row, scratch, rgb);
-        }
-        // Show the surround where there is no surface
-        for (_, pixels) in row.surfaces(rgb.len()).filter(|(surface, _)| *surface == self.background()) {
-            rgb[pixels].fill(self.frame.lights.background_radiance.into());
         }
     }
 

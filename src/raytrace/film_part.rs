@@ -5,6 +5,7 @@ use super::exact_sum::ExactSum;
 use super::film::{Film, Layer, NonFiniteReport, TILE};
 use crate::color::luminance;
 use crate::photo::{AovPicture, LazyPicture, Picture};
+use crate::raytrace::settings::Settings;
 use crate::scene::Scene;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -56,6 +57,13 @@ pub struct FilmPart {
 }
 
 impl FilmPart {
+    /// Returns the memory of a part with so many layers, bytes.
+    pub fn bytes(settings: &Settings, layers: usize) -> u64 {
+        let (sum, square) = (size_of::<PixelSum>(), size_of::<ExactSum>());
+        let aovs = if settings.aovs { 2 * sum + size_of::<f32>() + size_of::<u32>() } else { 0 };
+        settings.pixels() * (layers * sum + square + aovs) as u64
+    }
+
     /// Returns a part without samples, for a film developed as in `scene`.
     pub fn new(film: &Film, scene: &Scene, aovs: bool) -> Self {
         let pixels = film.width() as usize * film.height() as usize;

@@ -34,7 +34,7 @@ use studio::statistics::{critical_z, sidak_level};
 /// Scenes that the gate compares.
 const GATE_SCENES: u64 = 18;
 
-/// The samples of a scene that differs are so many times as many in a second, independent comparison, which decides. Light
+/// The samples of a scene that differs are so many times as many in a second comparison by other brute-force paths, which decides. Light
 /// that one in thousands of brute-force paths finds, and none of the first ones has found, is missing in their standard
 /// error too; an error of the tracer stays.
 const CONFIRMATION: u32 = 8;

@@ -112,6 +112,9 @@ fn a_rendered_picture_survives_a_crash_with_its_lights_until_it_is_exported() {
     second.state_mut().run(Command::ExportPicture, None, &egui::Context::default());
     wait_for_kept(&mut second, &recovery, <[String]>::is_empty);
     assert!(exported.exists(), "{:?}", errors(&second));
+    let window = std::fs::read_dir(&recovery).unwrap().next().unwrap().unwrap();
+    let left: Vec<_> = std::fs::read_dir(window.path()).unwrap().map(|file| file.unwrap().file_name()).collect();
+    assert_eq!(left, ["lock"], "nothing of the picture is left");
 }
 
 #[test]

@@ -54,6 +54,8 @@ pub struct RecoveredStudio {
     pub opened: OpenedStudio,
     /// Its rendered picture.
     pub picture: Option<KeptPicture>,
+    /// Everything that was kept could be read.
+    pub is_whole: bool,
 }
 
 /// An imported model.
@@ -121,11 +123,13 @@ pub fn recover(folder: &RecoveryFolder, info: &RecoveryInfo) -> Result<Box<Recov
     let RecoveryInfo { path, stamp, imported, .. } = info.clone();
     let (assets, mut warnings) =
         load_assets(&scene, path.as_deref().and_then(Path::parent), &Assets::default(), &imported);
-    let picture = folder.read_picture(&assets).unwrap_or_else(|why| {
-        warnings.push(format!("Its picture could not be recovered: {why}."));
-        None
-    });
-    Ok(Box::new(RecoveredStudio { opened: OpenedStudio { scene, assets, warnings, path, stamp }, picture }))
+    let picture = folder.read_picture(&assets);
+    if let Err(why) = &picture {
+        let kept = folder.studio().parent().map(|folder| folder.display().to_string()).unwrap_or_default();
+        warnings.push(format!("Its picture could not be recovered: {why}. It is kept in {kept}"));
+    }
+    let (is_whole, picture) = (picture.is_ok(), picture.ok().flatten());
+    Ok(Box::new(RecoveredStudio { opened: OpenedStudio { scene, assets, warnings, path, stamp }, picture, is_whole }))
 }
 
 /// Reads a model.

@@ -110,7 +110,7 @@ impl Document {
         self.is_unsaved = true;
     }
 
-    /// Marks the studio as one that was never saved, with files imported before.
+    /// Takes over what is known of a recovered studio: files that were imported before, and whether it is unsaved.
     pub fn mark_recovered(&mut self, imported: BTreeMap<String, PathBuf>, is_unsaved: bool) {
         self.imported = imported;
         self.is_unsaved = is_unsaved;

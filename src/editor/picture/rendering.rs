@@ -167,8 +167,8 @@ impl Rendering {
     }
 
     /// Notes the film whose picture was exported: it need not be kept for the case of a crash.
-    pub fn mark_exported(&mut self, film: Option<Weak<Film>>) {
-        self.exported = film;
+    pub fn mark_exported(&mut self, film: Weak<Film>) {
+        self.exported = Some(film);
     }
 
     /// Cancels the job and keeps its samples.
@@ -237,7 +237,7 @@ impl Rendering {
         if let Some(job) = &mut self.job {
             job.update();
             self.film = job.film().cloned().or(self.film.take());
-            if job.film().is_some_and(|film| is_of(film, &job.settings)) || !job.phase().is_running() {
+            if job.film().is_some_and(|film| is_of(film, &job.settings) || !job.phase().is_running()) {
                 self.former = None;
             }
         }

@@ -156,7 +156,8 @@ impl App {
         let home = directories::UserDirs::new().map(|dirs| dirs.home_dir().to_owned());
         let elsewhere: Vec<PathBuf> = home.into_iter().chain([std::env::temp_dir()]).collect();
         let rescued = rescue::rescue(&self.document, &elsewhere);
-        if matches!(rescued, Some(Ok(_))) {
+        // A picture has no other place.
+        if matches!(rescued, Some(Ok(_))) && self.rendering.to_keep().is_none() {
             self.end_recovery();
         }
         rescued

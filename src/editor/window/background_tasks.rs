@@ -33,7 +33,7 @@ pub enum TaskResult {
         is_changed: bool,
     },
     /// A written picture or an error, with the film that it was developed from.
-    Exported(PathBuf, Option<Weak<Film>>, Result<(), String>),
+    Exported(PathBuf, Weak<Film>, Result<(), String>),
 }
 
 /// The background tasks and the channel of their results.

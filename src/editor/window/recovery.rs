@@ -55,7 +55,7 @@ struct Kept {
 /// The window's folder.
 #[derive(Debug, Default)]
 enum Slot {
-    /// Made with the first unsaved change.
+    /// Made with the first unsaved change or picture.
     #[default]
     Unmade,
     Open(RecoveryFolder),
@@ -117,16 +117,21 @@ impl Recovery {
         wake: &Wake,
     ) -> Option<f64> {
         self.parent.as_ref()?;
-        // One write after the other: the worker holds a single request
-        if self.worker.is_busy() {
-            return Some(RETRY_S);
-        }
-        if !document.is_dirty() && picture.is_none() {
-            (self.studio_due, self.picture_due) = (None, None);
+        // A saved studio is kept with its picture only
+        let has_film = self.kept.as_ref().is_some_and(|kept| kept.film.is_some());
+        if !document.is_dirty() && (picture.is_none() || !has_film) {
+            self.studio_due = None;
             if self.kept.take().is_some() {
                 self.worker.request(Request::Clear, wake);
             }
+        }
+        if !document.is_dirty() && picture.is_none() {
+            self.picture_due = None;
             return None;
+        }
+        // One write after the other: the worker holds a single request
+        if self.worker.is_busy() {
+            return Some(RETRY_S);
         }
         // Find what has changed, and when it is written
         let studio = (document.revision(), document.is_dirty(), document.path().map(Path::to_owned));
@@ -138,8 +143,7 @@ impl Recovery {
             _ => false,
         };
         let same_studio = self.kept.as_ref().is_some_and(|kept| kept.studio == studio);
-        // A saved studio is kept with its picture only
-        if !same_studio && (document.is_dirty() || kept_film.is_some()) {
+        if !same_studio && (document.is_dirty() || has_film) {
             self.studio_due.get_or_insert(now + DELAY_S);
         }
         if !same_film {
@@ -250,12 +254,17 @@ fn execute(request: &Request, slot: &mut Slot, parent: Option<&Path>) -> Result<
     }
     match (request, slot) {
         (Request::Keep(studio, picture), Slot::Open(folder)) => {
+            let write = || folder.write(&studio.0, &studio.1).map_err(|error| error.to_string());
+            // A disk that is too full for the picture may take the studio; a saved one is kept for its picture alone
+            if !studio.1.is_saved {
+                write()?;
+            }
             match picture {
                 PictureChange::Is(picture) => folder.write_picture(picture).map_err(|error| error.to_string())?,
                 PictureChange::Goes => folder.remove_picture(),
                 PictureChange::Stays => {}
             }
-            folder.write(&studio.0, &studio.1).map_err(|error| error.to_string())?;
+            write()?;
         }
         (Request::Clear, Slot::Open(folder)) => folder.clear(),
         _ => {}

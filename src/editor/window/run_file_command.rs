@@ -152,7 +152,7 @@ impl App {
         let seed = job.settings.seed.into();
         let info = PictureInfo::new(self.document.scene(), developed.method, developed.spp, seed);
         let info = PictureInfo { denoiser: developed.denoiser, ..info };
-        let film = job.film().map(std::sync::Arc::downgrade);
+        let film = developed.film.clone();
         let work = move || {
             let result = files::export(&path, &picture, noisy.as_deref(), &info);
             TaskResult::Exported(path, film, result)

@@ -77,14 +77,18 @@ impl App {
     ) {
         match result {
             Ok(recovered) => {
-                let RecoveredStudio { opened, picture } = *recovered;
+                let RecoveredStudio { opened, picture, is_whole } = *recovered;
                 self.show_opened(opened, ctx);
                 self.document.mark_recovered(info.imported, !info.is_saved);
-                self.session.recovery.adopt(folder, &self.document, picture.as_ref());
+                // The folder of a picture that can't be read stays for the user, and is offered again.
+                if is_whole {
+                    self.session.recovery.adopt(folder, &self.document, picture.as_ref());
+                }
                 self.toasts.info(match (info.is_saved, &picture) {
                     (false, None) => "The unsaved studio is open again. Save it to keep it.",
                     (false, Some(_)) => "The unsaved studio is open again, with its picture. Save it to keep it.",
-                    (true, _) => "The studio and its picture are open again. Export the picture to keep it.",
+                    (true, Some(_)) => "The studio and its picture are open again. Export the picture to keep it.",
+                    (true, None) => "The studio is open again, without its picture.",
                 });
                 if let Some(picture) = picture {
                     self.rendering.restore(picture);
