@@ -122,6 +122,7 @@ impl RenderJob {
     /// Returns a job that has ended with a film, complete or not.
     pub fn ended(scene: Arc<Scene>, settings: Settings, film: Arc<Film>, is_complete: bool) -> Self {
         let monitor = Arc::new(RenderMonitor::new(&settings, Arc::default()));
+        monitor.control().count(0, (film.mean_spp() * settings.pixels() as f64).round() as u64);
         monitor.finish();
         let phase = if is_complete { RenderPhase::Done } else { RenderPhase::Cancelled };
         let latest = Report { phase, film: Some(film), outcome: None, memory: None };

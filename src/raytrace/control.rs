@@ -37,7 +37,7 @@ impl RenderControl {
     }
 
     /// Adds finished work to the counters.
-    pub(super) fn count(&self, rays: u64, samples: u64) {
+    pub fn count(&self, rays: u64, samples: u64) {
         self.rays.fetch_add(rays, Ordering::Relaxed);
         self.samples.fetch_add(samples, Ordering::Relaxed);
     }

@@ -97,6 +97,7 @@ fn a_rendered_picture_survives_a_crash_with_its_lights_until_it_is_exported() {
     assert!(second.state().rendering().job().is_some(), "{:?}", second.state().toasts().texts(ToastKind::Warning));
     wait_until(&mut second, |app| app.rendering().developed().is_some());
     assert_eq!(picture(&second), rendered);
+    assert!(second.query_by_label("2 of 2 samples").is_some(), "the bar is full");
     let document = second.state().document();
     assert!(!document.is_dirty() && document.path() == Some(&file), "the studio was saved");
     assert!(!second.state().rendering().is_out_of_date(document.scene()));

@@ -148,8 +148,13 @@ fn progress_ui(ui: &mut Ui, rendering: &Rendering) {
     widgets::named(ui, &bar, "Progress");
     if *phase != RenderPhase::Preparing {
         let samples = format!("{:.0} of {} samples", progress.samples.floor(), job.settings.spp);
-        let speed = format!("{:.1} Mrays/s", progress.mrays_s);
-        ui.label(RichText::new(format!("{samples}    {speed}    {}", duration_text(progress.elapsed))).weak().small());
+        // A picture of an earlier run has its samples alone.
+        let text = if progress.mrays_s > 0.0 {
+            format!("{samples}    {:.1} Mrays/s    {}", progress.mrays_s, duration_text(progress.elapsed))
+        } else {
+            samples
+        };
+        ui.label(RichText::new(text).weak().small());
     }
 }
 
