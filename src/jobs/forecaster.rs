@@ -145,17 +145,7 @@ fn run(pilot: &Pilot, cache: &GeometryCache, control: &Arc<RenderControl>) -> Op
     let Pilot { scene, assets, method } = pilot;
     let settings = &pilot_settings(&scene.camera, *method);
     let pool = background_pool(0, "pilot").ok()?;
-    let input = RenderInput {
-        scene,
-        assets,
-        cache,
-        settings,
-        without: &[],
-        checkpoint: None,
-        time_limit: None,
-        memory: None,
-        snapshots: false,
-    };
+    let input = RenderInput::new(scene, assets, cache, settings);
     let monitor = RenderMonitor::new(settings, control.clone());
     let mut first_noise = None;
     let rendered = render(&input, &pool, &monitor, &mut |stage| match stage {

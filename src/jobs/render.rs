@@ -35,6 +35,23 @@ pub struct RenderInput<'a> {
     pub snapshots: bool,
 }
 
+impl<'a> RenderInput<'a> {
+    /// Returns the input of a render from the first sample to the last, without snapshots.
+    pub fn new(scene: &'a Scene, assets: &'a Assets, cache: &'a GeometryCache, settings: &'a Settings) -> Self {
+        RenderInput {
+            scene,
+            assets,
+            cache,
+            settings,
+            without: &[],
+            checkpoint: None,
+            time_limit: None,
+            memory: None,
+            snapshots: false,
+        }
+    }
+}
+
 /// A stage that a render has reached, for its observer.
 #[derive(Clone, Copy, Debug)]
 pub enum RenderStage<'a> {

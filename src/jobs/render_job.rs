@@ -193,17 +193,7 @@ fn run(task: &Task, inbox: &Inbox<Task, Report>) {
     };
     let mut report = Report { phase: RenderPhase::Preparing, film: None, outcome: None, memory: None };
     let mut last_film: Option<Instant> = None;
-    let input = RenderInput {
-        scene,
-        assets: &assets,
-        cache,
-        settings,
-        without: &[],
-        checkpoint: None,
-        time_limit: None,
-        memory: None,
-        snapshots: true,
-    };
+    let input = RenderInput { snapshots: true, ..RenderInput::new(scene, &assets, cache, settings) };
     let rendered = render(&input, &pool, monitor, &mut |stage| {
         match stage {
             RenderStage::Prepared(_, memory) => (report.phase, report.memory) = (RenderPhase::Tracing, Some(memory)),

@@ -70,17 +70,9 @@ impl PartRender<'_> {
     }
 
     fn render(&self, samples: Range<u32>, monitor: &Arc<RenderMonitor>) -> Result<RenderedPart, Failure> {
-        let input = RenderInput {
-            scene: &self.loaded.scene,
-            assets: &self.loaded.assets,
-            cache: &GeometryCache::default(),
-            settings: self.settings,
-            without: self.arguments.without(),
-            checkpoint: None,
-            time_limit: None,
-            memory: None,
-            snapshots: false,
-        };
+        let (scene, assets, cache) = (&self.loaded.scene, &self.loaded.assets, GeometryCache::default());
+        let input =
+            RenderInput { without: self.arguments.without(), ..RenderInput::new(scene, assets, &cache, self.settings) };
         let mut display = None;
         let rendered = jobs::render_part(&input, samples, self.pool, monitor, &mut |stage| {
             if let RenderStage::Prepared(scene, memory) = stage {
