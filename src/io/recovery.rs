@@ -41,9 +41,6 @@ pub struct RecoveryInfo {
     /// The studio has no unsaved changes, and is kept for its picture.
     #[serde(default)]
     pub is_saved: bool,
-    /// A rendered picture is kept beside the studio.
-    #[serde(skip)]
-    pub has_picture: bool,
 }
 
 /// The folder in which a window keeps its unsaved studio. Dropping it releases the folder and keeps its files.
@@ -101,6 +98,16 @@ impl RecoveryFolder {
         self.path.join(STUDIO)
     }
 
+    /// Returns the path.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Returns true if it holds a rendered picture.
+    pub fn has_picture(&self) -> bool {
+        kept_picture::file_in(&self.path).exists()
+    }
+
     /// Writes a rendered picture in place of the last one.
     ///
     /// # Errors
@@ -147,14 +154,11 @@ fn abandoned(path: PathBuf) -> Option<(RecoveryFolder, RecoveryInfo)> {
     lock.try_lock().ok()?;
     let folder = RecoveryFolder { path, _lock: lock };
     match read_info(&folder.studio()) {
-        Some(info) => {
-            let has_picture = kept_picture::file_in(&folder.path).exists();
-            if info.is_saved && !has_picture {
-                folder.remove();
-                return None;
-            }
-            Some((folder, RecoveryInfo { has_picture, ..info }))
+        Some(info) if info.is_saved && !folder.has_picture() => {
+            folder.remove();
+            None
         }
+        Some(info) => Some((folder, info)),
         // A file that can't be understood stays for the user to look at.
         None if folder.studio().exists() => None,
         None => {
@@ -192,7 +196,6 @@ mod tests {
             imported: BTreeMap::from([("models/cup.obj".to_owned(), "/desktop/cup.obj".into())]),
             changed_at: SystemTime::UNIX_EPOCH + Duration::from_secs(seconds),
             is_saved: false,
-            has_picture: false,
         }
     }
 

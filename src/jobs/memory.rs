@@ -1,23 +1,8 @@
 //! The memory that a render needs, and what is free for it.
 
-use crate::raytrace::{Film, FilmPart, PrepareError, Settings};
+use crate::raytrace::{Film, FilmPart, Settings};
 use std::fmt;
 use sysinfo::{MemoryRefreshKind, Process, ProcessRefreshKind, ProcessesToUpdate, System};
-use thiserror::Error;
-
-/// The reason why a render does not begin.
-#[derive(Debug, Error)]
-pub enum RenderError {
-    /// The scene cannot be prepared.
-    #[error(transparent)]
-    Prepare(#[from] PrepareError),
-    /// The machine has too little memory.
-    #[error("{0}: choose a smaller size, or close other programs")]
-    Memory(RenderMemory),
-    /// The checkpoint belongs to another render.
-    #[error("can't go on from the checkpoint: {0}")]
-    Checkpoint(String),
-}
 
 /// The memory of a render from the first ray on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,7 +84,7 @@ pub(super) fn free() -> Option<Bytes> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::jobs::{RenderInput, RenderMonitor, RenderStage, Rendered, render, render_part};
+    use crate::jobs::{RenderError, RenderInput, RenderMonitor, RenderStage, Rendered, render, render_part};
     use crate::raytrace::{GeometryCache, RenderControl};
     use crate::scene::{Assets, Emitter, Light, LightId, Output, Room, Scene};
     use glam::Vec3;
@@ -169,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn a_checkpoint_is_gone_on_from_with_its_layers_whatever_the_memory_is_now() {
+    fn a_resumed_render_keeps_the_layers_of_its_checkpoint_whatever_the_memory() {
         let plenty = Bytes(1 << 40);
         let little = with_memory(Bytes(0), |input| Bytes(needed(input.settings, 4, true).0 - 1));
         let resumed = |bytes: &[u8], memory| {

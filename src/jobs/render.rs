@@ -1,7 +1,7 @@
 //! A render from scene to film: prepare, coarse first picture, sample passes, timings. Command line, window and the
 //! pilot renders of forecasts all use it, each with its own observer.
 
-use super::memory::{self, Bytes, RenderError, RenderMemory};
+use super::memory::{self, Bytes, RenderMemory};
 use super::monitor::RenderMonitor;
 use crate::io;
 use crate::raytrace::{self, Film, GeometryCache, PrepareError, RenderControl, RenderScene, Settings, Shortcut};
@@ -11,6 +11,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
+use thiserror::Error;
 
 /// A render to be made.
 #[derive(Clone, Copy, Debug)]
@@ -50,6 +51,20 @@ impl<'a> RenderInput<'a> {
             snapshots: false,
         }
     }
+}
+
+/// The reason why a render does not begin.
+#[derive(Debug, Error)]
+pub enum RenderError {
+    /// The scene cannot be prepared.
+    #[error(transparent)]
+    Prepare(#[from] PrepareError),
+    /// The machine has too little memory.
+    #[error("{0}: choose a smaller size, or close other programs")]
+    Memory(RenderMemory),
+    /// The checkpoint belongs to another render.
+    #[error("can't go on from the checkpoint: {0}")]
+    Checkpoint(String),
 }
 
 /// A stage that a render has reached, for its observer.

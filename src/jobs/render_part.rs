@@ -1,8 +1,7 @@
 //! A part of a picture's samples from scene to sums, for farms.
 
-use super::memory::RenderError;
 use super::monitor::RenderMonitor;
-use super::render::{Layers, RenderInput, RenderStage, prepared};
+use super::render::{Layers, RenderError, RenderInput, RenderStage, prepared};
 use crate::raytrace::{self, FilmPart, RenderScene};
 use rayon::ThreadPool;
 use std::ops::Range;

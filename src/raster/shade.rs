@@ -113,7 +113,6 @@ pub(super) struct FragmentShader<'a> {
     /// For Gouraud shading, irradiance, specular radiance and texture coordinates of the vertices of each of the chunk's
     /// instances.
     lit_vertices: Vec<Vec<VertexAttributes>>,
-    first_instance: usize,
 }
 
 impl<'a> FragmentShader<'a> {
@@ -123,8 +122,7 @@ impl<'a> FragmentShader<'a> {
         chunk: &Chunk,
         vertices: &'a ChunkVertices,
     ) -> Self {
-        let first_instance = chunk.instances.start;
-        let mut shader = FragmentShader { frame, geometry, vertices, lit_vertices: Vec::new(), first_instance };
+        let mut shader = FragmentShader { frame, geometry, vertices, lit_vertices: Vec::new() };
         if frame.shading == Shading::Gouraud {
             shader.lit_vertices = chunk.instances.clone().map(|i| shader.light_vertices(i)).collect();
         }
@@ -179,7 +177,7 @@ impl<'a> FragmentShader<'a> {
         }
         match self.frame.shading {
             Shading::Gouraud => {
-                let lit = &self.lit_vertices[surface.instance as usize - self.first_instance];
+                let lit = &self.lit_vertices[self.vertices.index_of(surface.instance as usize)];
                 row.interpolate(span, corners.map(|i| &lit[i]));
             }
             Shading::Lambert | Shading::BlinnPhong if !instance.mesh.normals.is_empty() => {

@@ -30,10 +30,16 @@ pub(super) struct ChunkVertices {
 }
 
 impl ChunkVertices {
-    /// Returns the vertices of an instance of the chunk, by its index in the scene's geometry.
+    /// Returns the index in the chunk of an instance, by its index in the scene's geometry.
+    #[inline(always)]
+    pub fn index_of(&self, instance: usize) -> usize {
+        instance - self.first_instance
+    }
+
+    /// Returns the vertices of an instance, by its index in the scene's geometry.
     #[inline(always)]
     pub fn of(&self, instance: usize) -> &VertexBuffer {
-        &self.buffers[instance - self.first_instance]
+        &self.buffers[self.index_of(instance)]
     }
 }
 

@@ -149,7 +149,6 @@ fn an_offered_studio_can_be_put_off_and_discarded() {
         imported: BTreeMap::new(),
         changed_at: SystemTime::now(),
         is_saved: false,
-        has_picture: false,
     };
     let crashed = RecoveryFolder::create(folder.path()).unwrap();
     crashed.write(&Scene::default(), &info).unwrap();

@@ -4,7 +4,7 @@ use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::commands::choices::ViewSide;
 use crate::editor::commands::choices::{CentralView, HandleMode};
 use crate::editor::commands::command::Command;
-use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use eframe::egui::{Event, Key, KeyboardShortcut, Modifiers};
 
 /// A key, its command, and a description.
 #[derive(Clone, Copy, Debug)]
@@ -37,8 +37,18 @@ const fn ctrl_shift(key: Key) -> KeyboardShortcut {
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
 }
 
+/// Returns the command of an event of the system's clipboard.
+pub fn clipboard_command(event: &Event) -> Option<Command> {
+    match event {
+        Event::Copy => Some(Command::CopySelected),
+        Event::Cut => Some(Command::CutSelected),
+        Event::Paste(text) => Some(Command::Paste(text.clone())),
+        _ => None,
+    }
+}
+
 /// All key bindings, in the order of the list. Those of the clipboard arrive as events of the system instead of keys; see
-/// `clipboard_command` in `window/app.rs`. Of two with the same key, the one with more modifiers comes first.
+/// [`clipboard_command`]. Of two with the same key, the one with more modifiers comes first.
 pub const KEY_BINDINGS: [KeyBinding; 42] = [
     bind(ctrl_shift(Key::S), || Command::SaveAs, "Save the studio to another file"),
     bind(ctrl_shift(Key::Z), || Command::Redo, "Do the last step again"),

@@ -99,38 +99,24 @@ pub fn duplicate(scene: &mut Scene, items: &[Item]) -> Result<Vec<Item>, ActionE
 
 /// Adds unlocked copies at the same positions; returns them in the order of the originals.
 fn copy(scene: &mut Scene, items: &[Item]) -> Result<Vec<Item>, ActionError> {
-    let mut copy_of: HashMap<ObjectId, ObjectId> = HashMap::new();
-    let mut copies = vec![Item::Room; items.len()];
-    for (&item, place) in items.iter().zip(&mut copies) {
+    let (mut objects, mut lights) = (Vec::new(), Vec::new());
+    for item in items {
         match item {
-            Item::Object(id) => {
-                let copied = Object { locked: false, ..scene.object(id).ok_or(ActionError::Gone)?.clone() };
-                *place = add_object(scene, copied);
-                if let Item::Object(new) = *place {
-                    copy_of.insert(id, new);
-                }
-            }
-            Item::Light(_) => {}
+            Item::Object(id) => objects.push(scene.object(*id).ok_or(ActionError::Gone)?.clone()),
+            Item::Light(id) => lights.push(scene.light(*id).ok_or(ActionError::Gone)?.clone()),
             Item::Camera => return Err(ActionError::Fixed("camera")),
             Item::Room => return Err(ActionError::Fixed("room")),
             Item::Meter => return Err(ActionError::Single),
         }
     }
-    for (&item, place) in items.iter().zip(&mut copies) {
-        let Item::Light(id) = item else { continue };
-        let mut copied = Light { locked: false, ..scene.light(id).ok_or(ActionError::Gone)?.clone() };
-        if let Aim::Object { object, .. } = &mut copied.aim {
-            *object = copy_of.get(object).copied().unwrap_or(*object);
-        }
-        *place = add_light(scene, copied);
-        if let (Some(solo), Item::Light(new)) = (&mut scene.solo, *place) {
-            let shines_alone = solo.lights.contains(&id);
-            solo.lights.extend(shines_alone.then_some(new));
-            let restored = solo.restores.contains(&id);
-            solo.restores.extend(restored.then_some(new));
+    let copies = add_copies(scene, &objects, &lights);
+    if let Some(solo) = &mut scene.solo {
+        for list in [&mut solo.lights, &mut solo.restores] {
+            let new: Vec<LightId> = list.iter().filter_map(|light| copies.lights.get(light).copied()).collect();
+            list.extend(new);
         }
     }
-    Ok(copies)
+    Ok(items.iter().filter_map(|item| copies.of(*item)).collect())
 }
 
 /// Adds the lights and objects of another scene, unlocked, and returns them. Aims and gazes among them are kept. They
@@ -145,37 +131,57 @@ pub fn paste(scene: &mut Scene, from: &Scene) -> Vec<Item> {
     while positions(from).any(|position| taken.iter().any(|taken| taken.distance(position + offset) < 1e-3)) {
         offset += COPY_OFFSET;
     }
-    let mut added = Vec::new();
-    let (mut objects, mut lights) = (HashMap::new(), HashMap::new());
-    for object in &from.objects {
-        let mut copied = Object { locked: false, ..object.clone() };
-        copied.transform.position += offset;
-        let item = add_object(scene, copied);
-        added.push(item);
-        if let Item::Object(id) = item {
-            objects.insert(object.id, id);
+    let (mut objects, mut lights) = (from.objects.clone(), from.lights.clone());
+    objects.iter_mut().for_each(|object| object.transform.position += offset);
+    lights.iter_mut().for_each(|light| light.position += offset);
+    let copies = add_copies(scene, &objects, &lights);
+    let objects = from.objects.iter().map(|object| Item::Object(object.id));
+    let lights = from.lights.iter().map(|light| Item::Light(light.id));
+    objects.chain(lights).filter_map(|item| copies.of(item)).collect()
+}
+
+/// Copies by the ids of their originals.
+struct Copies {
+    objects: HashMap<ObjectId, ObjectId>,
+    lights: HashMap<LightId, LightId>,
+}
+
+impl Copies {
+    /// Returns the copy of an object or a light.
+    fn of(&self, original: Item) -> Option<Item> {
+        match original {
+            Item::Object(id) => self.objects.get(&id).copied().map(Item::Object),
+            Item::Light(id) => self.lights.get(&id).copied().map(Item::Light),
+            Item::Camera | Item::Room | Item::Meter => None,
         }
     }
-    for light in &from.lights {
-        let mut copied = Light { position: light.position + offset, locked: false, ..light.clone() };
+}
+
+/// Adds unlocked copies of objects and lights. Copies aim and look at the copies of what the originals do.
+fn add_copies(scene: &mut Scene, objects: &[Object], lights: &[Light]) -> Copies {
+    let mut copies = Copies { objects: HashMap::new(), lights: HashMap::new() };
+    for object in objects {
+        if let Item::Object(new) = add_object(scene, Object { locked: false, ..object.clone() }) {
+            copies.objects.insert(object.id, new);
+        }
+    }
+    for light in lights {
+        let mut copied = Light { locked: false, ..light.clone() };
         if let Aim::Object { object, .. } = &mut copied.aim {
-            *object = objects.get(object).copied().unwrap_or(*object);
+            *object = copies.objects.get(object).copied().unwrap_or(*object);
         }
-        let item = add_light(scene, copied);
-        added.push(item);
-        if let Item::Light(id) = item {
-            lights.insert(light.id, id);
+        if let Item::Light(new) = add_light(scene, copied) {
+            copies.lights.insert(light.id, new);
         }
     }
-    // Eyes follow the lights that came along
-    for object in objects.values() {
+    for object in copies.objects.values() {
         if let Some(Shape::Figure(figure)) = scene.object_mut(*object).map(|object| &mut object.shape)
             && let Gaze::Light(light) = &mut figure.gaze
         {
-            *light = lights.get(light).copied().unwrap_or(*light);
+            *light = copies.lights.get(light).copied().unwrap_or(*light);
         }
     }
-    added
+    copies
 }
 
 /// A vertical mirror plane.

@@ -52,10 +52,8 @@ pub struct OpenedStudio {
 pub struct RecoveredStudio {
     /// The studio.
     pub opened: OpenedStudio,
-    /// Its rendered picture.
-    pub picture: Option<KeptPicture>,
-    /// Everything that was kept could be read.
-    pub is_whole: bool,
+    /// Its rendered picture if it has one, or the reason why that could not be read.
+    pub picture: Result<Option<KeptPicture>, String>,
 }
 
 /// An imported model.
@@ -117,19 +115,13 @@ pub fn open(source: &StudioSource) -> Result<Box<OpenedStudio>, String> {
     Ok(Box::new(OpenedStudio { scene: loaded.scene, assets: loaded.assets, warnings, path, stamp }))
 }
 
-/// Reads an unsaved studio with its assets and its rendered picture. A picture that can't be read is a warning.
+/// Reads an unsaved studio with its assets and its rendered picture.
 pub fn recover(folder: &RecoveryFolder, info: &RecoveryInfo) -> Result<Box<RecoveredStudio>, String> {
     let scene = folder.read().map_err(|e| sentence(&e))?;
     let RecoveryInfo { path, stamp, imported, .. } = info.clone();
-    let (assets, mut warnings) =
-        load_assets(&scene, path.as_deref().and_then(Path::parent), &Assets::default(), &imported);
+    let (assets, warnings) = load_assets(&scene, path.as_deref().and_then(Path::parent), &Assets::default(), &imported);
     let picture = folder.read_picture(&assets);
-    if let Err(why) = &picture {
-        let kept = folder.studio().parent().map(|folder| folder.display().to_string()).unwrap_or_default();
-        warnings.push(format!("Its picture could not be recovered: {why}. It is kept in {kept}"));
-    }
-    let (is_whole, picture) = (picture.is_ok(), picture.ok().flatten());
-    Ok(Box::new(RecoveredStudio { opened: OpenedStudio { scene, assets, warnings, path, stamp }, picture, is_whole }))
+    Ok(Box::new(RecoveredStudio { opened: OpenedStudio { scene, assets, warnings, path, stamp }, picture }))
 }
 
 /// Reads a model.

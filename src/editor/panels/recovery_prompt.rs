@@ -11,6 +11,8 @@ use std::time::Duration;
 pub struct UnsavedStudio<'a> {
     /// The studio.
     pub info: &'a RecoveryInfo,
+    /// Its rendered picture is kept, too.
+    pub has_picture: bool,
     /// Number of other unsaved studios.
     pub more: usize,
     /// What its camera sees; none until it is drawn.
@@ -30,7 +32,7 @@ pub enum RecoveryAnswer {
 
 /// Draws the offer.
 pub fn recovery_ui(ctx: &egui::Context, unsaved: &UnsavedStudio<'_>) -> Option<RecoveryAnswer> {
-    let UnsavedStudio { info, more, picture } = unsaved;
+    let UnsavedStudio { info, picture, .. } = *unsaved;
     let question = Question {
         name: "recovery",
         width: 560.0,
@@ -56,25 +58,25 @@ pub fn recovery_ui(ctx: &egui::Context, unsaved: &UnsavedStudio<'_>) -> Option<R
             if let Some(picture) = picture {
                 picture.paint(ui, rect);
             }
-            ui.vertical(|ui| facts(ui, info, *more));
+            ui.vertical(|ui| facts(ui, unsaved));
         });
     })
 }
 
 /// Writes what is known about an unsaved studio.
-fn facts(ui: &mut Ui, info: &RecoveryInfo, more: usize) {
+fn facts(ui: &mut Ui, UnsavedStudio { info, has_picture, more, .. }: &UnsavedStudio<'_>) {
     let age = info.changed_at.elapsed().unwrap_or_default();
     let (title, ago) = (&info.title, ago(age));
     ui.label(if info.is_saved {
         format!("Catchlight ended before the picture of \"{title}\" was exported. It was kept {ago}.")
     } else {
-        let picture = if info.has_picture { " Its picture is kept, too." } else { "" };
+        let picture = if *has_picture { " Its picture is kept, too." } else { "" };
         format!("Catchlight ended before \"{title}\" was saved. Its last change was {ago}.{picture}")
     });
     if let Some(path) = info.path.as_ref().filter(|_| !info.is_saved) {
         ui.label(RichText::new(format!("The file {} is as it was saved last.", path.display())).weak());
     }
-    if more > 0 {
+    if *more > 0 {
         ui.label(RichText::new(format!("Unsaved studios that are offered after this one: {more}")).weak());
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::editor::commands::choices::CentralView;
 use crate::editor::commands::command::Command;
-use crate::editor::commands::shortcuts::{KEY_BINDINGS, KeyBinding};
+use crate::editor::commands::shortcuts::{KEY_BINDINGS, KeyBinding, clipboard_command};
 use crate::editor::document::files;
 use crate::editor::document::files::StudioSource;
 use crate::editor::document::item::Item;
@@ -494,15 +494,5 @@ impl eframe::App for App {
             // The loss occurred in this frame: discard it.
             ctx.request_discard("the GPU device was lost");
         }
-    }
-}
-
-/// Returns the command of a clipboard event.
-fn clipboard_command(event: &egui::Event) -> Option<Command> {
-    match event {
-        egui::Event::Copy => Some(Command::CopySelected),
-        egui::Event::Cut => Some(Command::CutSelected),
-        egui::Event::Paste(text) => Some(Command::Paste(text.clone())),
-        _ => None,
     }
 }

@@ -35,21 +35,46 @@ enum Request {
     Clear,
 }
 
-/// What becomes of the picture on the disk.
+/// The change of the picture on the disk.
 #[derive(Debug)]
 enum PictureChange {
-    Stays,
-    Goes,
-    Is(KeptPicture),
+    Unchanged,
+    Removed,
+    Replaced(KeptPicture),
+}
+
+/// The studio and the picture of a window.
+#[derive(Clone, Copy, Debug)]
+pub struct WindowContent<'a> {
+    /// The studio.
+    pub document: &'a Document,
+    /// The rendered picture, if it is not exported.
+    pub picture: Option<&'a KeptPicture>,
+    /// The picture is being rendered.
+    pub is_rendering: bool,
 }
 
 /// The content of the window's folder.
-#[derive(Debug, Default)]
-struct Kept {
-    /// Revision of the document, whether it has unsaved changes, and its file.
-    studio: (u64, bool, Option<PathBuf>),
+#[derive(Debug)]
+struct FolderContent {
+    studio: StudioState,
     /// The film of the picture.
     film: Option<Weak<Film>>,
+}
+
+/// The state of a document, to find its changes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct StudioState {
+    revision: u64,
+    is_dirty: bool,
+    path: Option<PathBuf>,
+}
+
+impl StudioState {
+    fn of(document: &Document) -> Self {
+        let path = document.path().map(Path::to_owned);
+        StudioState { revision: document.revision(), is_dirty: document.is_dirty(), path }
+    }
 }
 
 /// The window's folder.
@@ -74,7 +99,7 @@ pub struct Recovery {
     slot: Arc<Mutex<Slot>>,
     worker: Worker<Request, ()>,
     /// What the folder holds; none while it holds nothing.
-    kept: Option<Kept>,
+    kept: Option<FolderContent>,
     /// Times at which the current changes and the current picture are written, in egui's time.
     studio_due: Option<f64>,
     picture_due: Option<f64>,
@@ -108,18 +133,11 @@ impl Recovery {
     /// Requests that unsaved changes and a picture that is not exported be written, [`DELAY_S`] after the first of them,
     /// and removed when they are saved. The picture of a running render is written every [`RUNNING_DELAY_S`]. Returns the
     /// seconds until the next write. To be called once a frame.
-    pub fn update(
-        &mut self,
-        document: &Document,
-        picture: Option<&KeptPicture>,
-        is_rendering: bool,
-        now: f64,
-        wake: &Wake,
-    ) -> Option<f64> {
+    pub fn update(&mut self, content: WindowContent<'_>, now: f64, wake: &Wake) -> Option<f64> {
         self.parent.as_ref()?;
+        let WindowContent { document, picture, .. } = content;
         // A saved studio is kept with its picture only
-        let has_film = self.kept.as_ref().is_some_and(|kept| kept.film.is_some());
-        if !document.is_dirty() && (picture.is_none() || !has_film) {
+        if !document.is_dirty() && (picture.is_none() || self.kept_film().is_none()) {
             self.studio_due = None;
             if self.kept.take().is_some() {
                 self.worker.request(Request::Clear, wake);
@@ -133,33 +151,42 @@ impl Recovery {
         if self.worker.is_busy() {
             return Some(RETRY_S);
         }
-        // Find what has changed, and when it is written
-        let studio = (document.revision(), document.is_dirty(), document.path().map(Path::to_owned));
-        let film = picture.map(|picture| Arc::downgrade(&picture.film));
-        let kept_film = self.kept.as_ref().and_then(|kept| kept.film.as_ref());
-        let same_film = match (&film, kept_film) {
-            (Some(film), Some(kept)) => Weak::ptr_eq(film, kept),
-            (None, None) => true,
-            _ => false,
-        };
-        let same_studio = self.kept.as_ref().is_some_and(|kept| kept.studio == studio);
-        if !same_studio && (document.is_dirty() || has_film) {
-            self.studio_due.get_or_insert(now + DELAY_S);
-        }
-        if !same_film {
-            let due = now + if is_rendering { RUNNING_DELAY_S } else { DELAY_S };
-            self.picture_due = Some(self.picture_due.map_or(due, |earlier| earlier.min(due)));
-        }
-        let due = self.studio_due.into_iter().chain(self.picture_due).reduce(f64::min)?;
+        self.note_changes(content, now);
+        let due = self.next_due()?;
         if now < due {
             return Some(due - now);
         }
-        // Write the studio, and the picture if it is due
+        self.write(content, now, wake);
+        self.next_due().map(|due| (due - now).max(RETRY_S))
+    }
+
+    /// Sets the times at which what has changed since the last write is written.
+    fn note_changes(&mut self, WindowContent { document, picture, is_rendering }: WindowContent<'_>, now: f64) {
+        let is_same_studio = self.kept.as_ref().is_some_and(|kept| kept.studio == StudioState::of(document));
+        if !is_same_studio && (document.is_dirty() || self.kept_film().is_some()) {
+            self.studio_due.get_or_insert(now + DELAY_S);
+        }
+        let film = picture.map(|picture| Arc::downgrade(&picture.film));
+        let is_same_film = match (&film, self.kept_film()) {
+            (Some(film), Some(kept)) => film.ptr_eq(kept),
+            (None, None) => true,
+            _ => false,
+        };
+        if !is_same_film {
+            let due = now + if is_rendering { RUNNING_DELAY_S } else { DELAY_S };
+            self.picture_due = Some(self.picture_due.map_or(due, |earlier| earlier.min(due)));
+        }
+    }
+
+    /// Requests that the studio be written, and the picture if it is due.
+    fn write(&mut self, WindowContent { document, picture, .. }: WindowContent<'_>, now: f64, wake: &Wake) {
         let is_picture_due = self.picture_due.is_some_and(|due| due <= now);
         let (change, film) = match picture {
-            Some(picture) if is_picture_due => (PictureChange::Is(picture.clone()), film),
-            None => (PictureChange::Goes, None),
-            Some(_) => (PictureChange::Stays, kept_film.cloned()),
+            Some(picture) if is_picture_due => {
+                (PictureChange::Replaced(picture.clone()), Some(Arc::downgrade(&picture.film)))
+            }
+            Some(_) => (PictureChange::Unchanged, self.kept_film().cloned()),
+            None => (PictureChange::Removed, None),
         };
         let info = RecoveryInfo {
             title: document.title(),
@@ -168,15 +195,23 @@ impl Recovery {
             imported: document.imported_files().iter().map(|(name, file)| (name.clone(), absolute(file))).collect(),
             changed_at: SystemTime::now(),
             is_saved: !document.is_dirty(),
-            has_picture: false,
         };
         self.worker.request(Request::Keep(Box::new((document.scene().clone(), info)), change), wake);
+        self.kept = Some(FolderContent { studio: StudioState::of(document), film });
         self.studio_due = None;
         if is_picture_due || picture.is_none() {
             self.picture_due = None;
         }
-        self.kept = Some(Kept { studio, film });
-        self.picture_due.map(|due| (due - now).max(RETRY_S))
+    }
+
+    /// Returns the film of the picture that the folder holds.
+    fn kept_film(&self) -> Option<&Weak<Film>> {
+        self.kept.as_ref()?.film.as_ref()
+    }
+
+    /// Returns the time of the next write.
+    fn next_due(&self) -> Option<f64> {
+        self.studio_due.into_iter().chain(self.picture_due).reduce(f64::min)
     }
 
     /// Returns the message of the first of several failed writes.
@@ -224,8 +259,8 @@ impl Recovery {
         if let Slot::Open(own) = std::mem::replace(&mut *locked(&self.slot), Slot::Open(folder)) {
             own.remove();
         }
-        let studio = (document.revision(), document.is_dirty(), document.path().map(Path::to_owned));
-        self.kept = Some(Kept { studio, film: picture.map(|picture| Arc::downgrade(&picture.film)) });
+        let film = picture.map(|picture| Arc::downgrade(&picture.film));
+        self.kept = Some(FolderContent { studio: StudioState::of(document), film });
     }
 }
 
@@ -260,9 +295,9 @@ fn execute(request: &Request, slot: &mut Slot, parent: Option<&Path>) -> Result<
                 write()?;
             }
             match picture {
-                PictureChange::Is(picture) => folder.write_picture(picture).map_err(|error| error.to_string())?,
-                PictureChange::Goes => folder.remove_picture(),
-                PictureChange::Stays => {}
+                PictureChange::Replaced(picture) => folder.write_picture(picture).map_err(|error| error.to_string())?,
+                PictureChange::Removed => folder.remove_picture(),
+                PictureChange::Unchanged => {}
             }
             write()?;
         }
@@ -276,6 +311,7 @@ fn execute(request: &Request, slot: &mut Slot, parent: Option<&Path>) -> Result<
 mod tests {
     use super::*;
     use crate::editor::document::action::Action;
+    use crate::raytrace::{Layer, Settings};
     use crate::scene::Assets;
 
     #[test]
@@ -290,8 +326,9 @@ mod tests {
         let wake: Wake = Arc::new(move || {
             let _ = sender.send(());
         });
-        assert_eq!(recovery.update(&document, None, false, 10.0, &wake), Some(DELAY_S));
-        assert_eq!(recovery.update(&document, None, false, 10.0 + DELAY_S, &wake), None);
+        let content = WindowContent { document: &document, picture: None, is_rendering: false };
+        assert_eq!(recovery.update(content, 10.0, &wake), Some(DELAY_S));
+        assert_eq!(recovery.update(content, 10.0 + DELAY_S, &wake), None);
         written.recv().unwrap();
         assert_eq!(recovery.failure(), None);
         drop(recovery);
@@ -299,5 +336,43 @@ mod tests {
         let here = std::env::current_dir().unwrap();
         assert_eq!((&info.path, &info.imported["models/cup.obj"]), (&Some(here.join("a.ron")), &here.join("cup.obj")));
         assert_eq!(window.read().unwrap().name, "Changed");
+    }
+
+    #[test]
+    fn a_running_picture_is_kept_every_minute_and_a_finished_one_at_once_until_it_is_exported() {
+        let folder = tempfile::tempdir().unwrap();
+        let document = Document::new(Scene::default(), Assets::default(), None);
+        let picture = || {
+            let settings = Settings { width: 8, height: 8, ..Settings::default() };
+            let film = Arc::new(Film::new(&settings, vec![Layer::shared("Glow")], false));
+            KeptPicture { film, scene: Arc::default(), settings, is_complete: false }
+        };
+        let mut recovery = Recovery::new(Some(folder.path().to_owned()));
+        let (sender, done) = std::sync::mpsc::channel();
+        let wake: Wake = Arc::new(move || {
+            let _ = sender.send(());
+        });
+        let mut update = |picture: Option<&KeptPicture>, is_rendering, now| {
+            recovery.failure();
+            recovery.update(WindowContent { document: &document, picture, is_rendering }, now, &wake)
+        };
+        let has_picture = || {
+            let window = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap();
+            window.path().join("picture.ron").exists()
+        };
+        let films = [picture(), picture(), picture()];
+        assert_eq!(update(Some(&films[0]), true, 0.0), Some(RUNNING_DELAY_S));
+        assert_eq!(update(Some(&films[1]), true, 59.0), Some(1.0), "a newer film puts nothing off");
+        assert_eq!(update(Some(&films[1]), true, 60.0), None);
+        done.recv().unwrap();
+        assert!(has_picture());
+        assert_eq!(update(Some(&films[1]), true, 61.0), None, "it is kept");
+        assert_eq!(update(Some(&films[2]), true, 61.0), Some(RUNNING_DELAY_S));
+        assert_eq!(update(Some(&films[2]), false, 62.0), Some(DELAY_S), "the render has ended");
+        assert_eq!(update(Some(&films[2]), false, 64.0), None);
+        done.recv().unwrap();
+        assert_eq!(update(None, false, 65.0), None);
+        done.recv().unwrap();
+        assert!(!has_picture(), "it is exported");
     }
 }

@@ -6,7 +6,7 @@ use crate::editor::panels::recovery_prompt::{RecoveryAnswer, UnsavedStudio, reco
 use crate::editor::ui::wake::wake;
 use crate::editor::window::app::App;
 use crate::editor::window::background_tasks::TaskResult;
-use crate::editor::window::recovery::Unsaved;
+use crate::editor::window::recovery::{Unsaved, WindowContent};
 use crate::editor::window::run_file_command::waker;
 use crate::io::RecoveryFolder;
 use crate::jobs::ThumbnailSubject;
@@ -25,8 +25,9 @@ impl App {
     /// Keeps unsaved changes on the disk.
     pub(super) fn keep_unsaved(&mut self, ctx: &Context) {
         let (now, picture) = (ctx.input(|i| i.time), self.rendering.to_keep());
-        let (recovery, is_rendering) = (&mut self.session.recovery, self.rendering.is_running());
-        if let Some(seconds) = recovery.update(&self.document, picture.as_ref(), is_rendering, now, &wake(ctx)) {
+        let (document, is_rendering) = (&self.document, self.rendering.is_running());
+        let content = WindowContent { document, picture: picture.as_ref(), is_rendering };
+        if let Some(seconds) = self.session.recovery.update(content, now, &wake(ctx)) {
             ctx.request_repaint_after(Duration::from_secs_f64(seconds));
         }
         if let Some(why) = self.session.recovery.failure() {
@@ -45,7 +46,7 @@ impl App {
         let beside = || info.path.as_deref().and_then(Path::parent).map(Path::to_owned);
         let subject = || Some(ThumbnailSubject::Scene(Box::new(folder.read().ok()?), beside()));
         let picture = self.background.thumbnails.unsaved(ctx, info.changed_at, subject);
-        match recovery_ui(ctx, &UnsavedStudio { info, more, picture }) {
+        match recovery_ui(ctx, &UnsavedStudio { info, has_picture: folder.has_picture(), more, picture }) {
             Some(RecoveryAnswer::Recover) => self.recover(ctx),
             Some(RecoveryAnswer::Discard) => {
                 if let Some((folder, _)) = self.session.recovery.take_offered() {
@@ -77,13 +78,22 @@ impl App {
     ) {
         match result {
             Ok(recovered) => {
-                let RecoveredStudio { opened, picture, is_whole } = *recovered;
+                let RecoveredStudio { opened, picture } = *recovered;
                 self.show_opened(opened, ctx);
                 self.document.mark_recovered(info.imported, !info.is_saved);
-                // The folder of a picture that can't be read stays for the user, and is offered again.
-                if is_whole {
-                    self.session.recovery.adopt(folder, &self.document, picture.as_ref());
-                }
+                let picture = match picture {
+                    Ok(picture) => {
+                        self.session.recovery.adopt(folder, &self.document, picture.as_ref());
+                        picture
+                    }
+                    // Its folder stays for the user, and is offered again.
+                    Err(why) => {
+                        let folder = folder.path().display();
+                        self.toasts
+                            .warning(format!("The picture could not be recovered: {why}. It is kept in {folder}"));
+                        None
+                    }
+                };
                 self.toasts.info(match (info.is_saved, &picture) {
                     (false, None) => "The unsaved studio is open again. Save it to keep it.",
                     (false, Some(_)) => "The unsaved studio is open again, with its picture. Save it to keep it.",
