@@ -53,6 +53,7 @@ pub use document::studio_document::Document;
 pub use panels::thumbnails::{Thumbnail, Thumbnails};
 pub use picture::rendering::{PictureSize, Quality, RenderSettings, Rendering};
 pub use ui::toasts::{ToastKind, Toasts};
+pub use viewport::live::preview_host::ViewOptions;
 pub use viewport::live::traced_view::TracedView;
 pub use viewport::studio_view::StudioView;
 pub use viewport::viewport_area::Viewport;

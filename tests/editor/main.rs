@@ -6,7 +6,7 @@
 use adapter::headless_gpu;
 use catchlight::editor::{
     Action, App, CentralView, Command, DialogAnswer, EditorOptions, FileDialogs, Item, LiveMode, PictureSize, Quality,
-    StudioSource, ToastKind,
+    StudioSource, ToastKind, ViewOptions,
 };
 use catchlight::scene::{Aim, HairStyle, Scene, Shape};
 use eframe::egui::{
@@ -16,7 +16,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Condvar, Mutex};
+use std::sync::{Arc, Condvar, LazyLock, Mutex};
 use std::time::Duration;
 
 #[path = "../studio/adapter.rs"]
@@ -112,24 +112,32 @@ fn window(options: EditorOptions) -> Window {
 /// Returns the first shipped studio with a bald figure: strands take a third of the time of a window, and tests about
 /// hair have their own.
 fn bald_preset() -> StudioSource {
-    let mut scene = catchlight::io::presets()[0].load().unwrap().scene;
-    for object in &mut scene.objects {
-        if let Shape::Figure(figure) = &mut object.shape {
-            figure.hair = HairStyle::Bald;
+    static SCENE: LazyLock<Scene> = LazyLock::new(|| {
+        let mut scene = catchlight::io::presets()[0].load().unwrap().scene;
+        for object in &mut scene.objects {
+            if let Shape::Figure(figure) = &mut object.shape {
+                figure.hair = HairStyle::Bald;
+            }
         }
-    }
-    StudioSource::Memory(Box::new(scene))
+        scene
+    });
+    StudioSource::Memory(Box::new(SCENE.clone()))
+}
+
+/// What the live view shows in a window unless a test is about it: one sample a pixel, direct light.
+fn plain_view() -> ViewOptions {
+    ViewOptions { smooth_edges: false, bounced_light: false, ..ViewOptions::default() }
 }
 
 /// Returns options that open [`bald_preset`].
 fn bald_options() -> EditorOptions {
-    EditorOptions { initial: Some(bald_preset()), smooth_edges: false, ..EditorOptions::default() }
+    EditorOptions { initial: Some(bald_preset()), view_options: plain_view(), ..EditorOptions::default() }
 }
 
-/// A window on the studio of the options, or else on [`bald_preset`], whose live view draws one sample.
+/// A window on the studio of the options, or else on [`bald_preset`], with a [`plain_view`].
 fn window_at(pixels_per_point: f32, options: EditorOptions) -> Window {
     let initial = options.initial.clone().or_else(|| Some(bald_preset()));
-    let options = EditorOptions { initial, smooth_edges: false, ..options };
+    let options = EditorOptions { initial, view_options: plain_view(), ..options };
     let builder = Harness::builder().with_size(vec2(1440.0, 900.0)).with_step_dt(1.0 / 30.0).with_max_steps(60);
     let builder = builder.with_pixels_per_point(pixels_per_point);
     let mut window = builder.wgpu().build_eframe(move |creation| App::new(creation, options));

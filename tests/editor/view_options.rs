@@ -116,3 +116,17 @@ fn edges_become_smooth_while_nothing_moves() {
     choose(&mut window, "Lit", &["Smooth edges"]);
     assert!(apart(&view(&mut window), &jagged) < 0.01, "without it the edges are as before");
 }
+
+#[test]
+fn bounced_light_is_shown_or_left_out() {
+    let Some(mut window) = preset_window_at(0.5) else { return };
+    let direct = view(&mut window);
+    assert!(!window.state().viewport().preview.has_bounced_light(), "nothing is traced that is not shown");
+    choose(&mut window, "Lit", &["Bounced light"]);
+    let with_bounces = view(&mut window);
+    assert!(window.state().viewport().preview.has_bounced_light());
+    let sum = |picture: &RgbaImage| picture.pixels().map(|p| u64::from(p.0[1])).sum::<u64>();
+    assert!(sum(&with_bounces) > sum(&direct) && apart(&with_bounces, &direct) > 1.0);
+    choose(&mut window, "Lit", &["Bounced light"]);
+    assert!(apart(&view(&mut window), &direct) < 0.01);
+}

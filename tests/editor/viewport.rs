@@ -113,6 +113,9 @@ fn navigation_does_not_change_the_scene() {
 fn nothing_is_drawn_while_nothing_changes() {
     let Some(mut window) = preset_window() else { return };
     // The last change of the picture is its bounced light, which is traced in the background.
+    click(&mut window, "Lit");
+    click(&mut window, "Bounced light");
+    press(&mut window, Modifiers::NONE, Key::Escape);
     wait_until(&mut window, |app| !app.viewport().preview.is_tracing_bounced_light());
     settle(&mut window);
     assert!(window.state().viewport().preview.has_bounced_light());

@@ -16,7 +16,7 @@ use crate::editor::ui::side_panel::PanelWidths;
 use crate::editor::ui::theme;
 use crate::editor::ui::toasts::Toasts;
 use crate::editor::ui::wake::wake;
-use crate::editor::viewport::live::preview_host::PreviewHost;
+use crate::editor::viewport::live::preview_host::{PreviewHost, ViewOptions};
 use crate::editor::viewport::live::traced_view::TracedView;
 use crate::editor::viewport::viewport_area::{Viewport, ViewportInput};
 use crate::editor::window::app_state::{BackgroundState, Diagnostics, PanelState, ViewState, WindowState};
@@ -47,8 +47,8 @@ pub struct EditorOptions {
     pub settings_folder: Option<PathBuf>,
     /// Folder where unsaved studios are kept for the case of a crash; none keeps none.
     pub recovery_folder: Option<PathBuf>,
-    /// Averages several samples of the live view while nothing moves; the user can change it.
-    pub smooth_edges: bool,
+    /// What the live view shows at first.
+    pub view_options: ViewOptions,
     /// Start of the program, for the time to the first frame.
     pub started: Instant,
 }
@@ -60,7 +60,7 @@ impl Default for EditorOptions {
             dialogs: FileDialogs::Desktop,
             settings_folder: None,
             recovery_folder: None,
-            smooth_edges: true,
+            view_options: ViewOptions::default(),
             started: Instant::now(),
         }
     }
@@ -94,7 +94,7 @@ impl App {
         let ctx = &creation.egui_ctx;
         theme::install(ctx);
         let mut preview = PreviewHost::new(creation.wgpu_render_state.as_ref(), ctx);
-        preview.view_options.smooth_edges = options.smooth_edges;
+        preview.view_options = options.view_options;
         let geometry: Arc<GeometryCache> = Arc::default();
         let mut app = App {
             document: Document::default(),

@@ -51,6 +51,9 @@ pub fn channel_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, view_options: &mu
                        pixels, and shows the average";
             let checkbox = Checkbox::new(&mut view_options.smooth_edges, "Smooth edges");
             ui.add_enabled(!on_cpu, checkbox).on_hover_text(tip);
+            let tip = "What walls, floor and backdrops throw back. Off, Quick shows the direct light of the lights alone";
+            let checkbox = Checkbox::new(&mut view_options.bounced_light, "Bounced light");
+            ui.add_enabled(!on_cpu, checkbox).on_hover_text(tip);
             let tip = "The traced view (True) shows smoothed light while it is worked on; settled, it is as traced. \
                        Pictures that are rendered are never smoothed.";
             ui.checkbox(&mut view_options.smooth, "Low-noise preview").on_hover_text(tip);

@@ -52,11 +52,20 @@ pub struct ViewOptions {
     pub smooth: bool,
     /// True to average several samples of the live view while nothing moves.
     pub smooth_edges: bool,
+    /// True to add the light that surfaces throw on each other.
+    pub bounced_light: bool,
 }
 
 impl Default for ViewOptions {
     fn default() -> Self {
-        ViewOptions { channel: Channel::Lit, only_light: None, gloss: Gloss::Ggx, smooth: false, smooth_edges: true }
+        ViewOptions {
+            channel: Channel::Lit,
+            only_light: None,
+            gloss: Gloss::Ggx,
+            smooth: false,
+            smooth_edges: true,
+            bounced_light: true,
+        }
     }
 }
 
@@ -204,19 +213,22 @@ impl PreviewHost {
             PreviewStage::Ready(renderer) => renderer.draws_drafts(),
             PreviewStage::Failed(_) => CpuPreview::draws_drafts(size),
         };
-        let ViewOptions { channel, only_light, gloss, smooth: _, smooth_edges } = self.view_options;
+        let ViewOptions { channel, only_light, gloss, smooth: _, smooth_edges, bounced_light } = self.view_options;
         // A deleted light no longer hides the others.
         let only_light = only_light.filter(|id| document.scene().light(*id).is_some());
-        let options = Options { channel, only_light, gloss, overlay_alone, ..Options::default() };
+        let options =
+            Options { channel, only_light, gloss, overlay_alone, bounce_estimate: bounced_light, ..Options::default() };
         // Names and locks do not affect the image.
         let revisions = Revisions { document: 0, ..document.revisions() };
-        if matches!(self.stage, PreviewStage::Ready(_)) && channel == Channel::Lit && !overlay_alone {
+        let is_lit = channel == Channel::Lit && !overlay_alone;
+        if matches!(self.stage, PreviewStage::Ready(_)) && is_lit && bounced_light {
             let numbers = (revisions.image, revisions.surfaces);
             self.bounced_light.update(document.scene(), document.assets(), only_light, numbers, &wake(ctx));
         }
-        let bounced_light = self.bounced_light.generation();
-        let wanted = PreviewKey { revisions, frame, size, overlay, options, bounced_light };
-        let changed = self.shown.as_ref().is_none_or(|shown| PreviewKey { bounced_light, ..shown.clone() } != wanted);
+        let generation = self.bounced_light.generation();
+        let wanted = PreviewKey { revisions, frame, size, overlay, options, bounced_light: generation };
+        let changed =
+            self.shown.as_ref().is_none_or(|shown| PreviewKey { bounced_light: generation, ..shown.clone() } != wanted);
         // New bounced light alone is no motion: it waits for the full image after a draft.
         let brightened = self.draft_since.is_none() && self.shown.as_ref() != Some(&wanted);
         let most_samples = if smooth_edges { self.most_samples(options) } else { 1 };
@@ -254,7 +266,7 @@ impl PreviewHost {
 
     fn draw(&mut self, ctx: &Context, document: &Document, wanted: PreviewKey, draft: bool, sample: u32) {
         let began = Instant::now();
-        let bounced_light = self.bounced_light.grid();
+        let bounced_light = self.bounced_light.grid().filter(|_| wanted.options.bounce_estimate);
         let input = PreviewInput {
             scene: document.scene(),
             assets: document.assets(),
