@@ -1,5 +1,6 @@
 //! Camera rays: of a pinhole, or of a thin lens with depth of field.
 
+use super::sampler::{self, Dimensions, SampleId, Sampler};
 use crate::math::warp;
 use crate::photo::exposure;
 use crate::scene::{Camera, CameraFrame, FocusedLens, Scene};
@@ -115,6 +116,13 @@ impl Lens {
         let size = Vec2::new(width as f32, height as f32);
         FilmCamera { aperture: self.aperture, frame: self.frame(size.x / size.y), size }
     }
+}
+
+/// Origin and unit direction of the camera ray of a sample.
+pub fn camera_ray(camera: &impl PixelCamera, sampler: &Sampler) -> (Vec3, Vec3) {
+    let SampleId { x, y, .. } = sampler.id();
+    let set = sampler.set(Dimensions::Camera);
+    camera.ray(Vec2::new(x as f32, y as f32) + sampler::first_pair(&set), sampler::last_pair(&set).into())
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! Sample passes: progressive rendering in passes of 1, 1, 2, 4 ... samples per pixel, each with its own photons.
 
-use super::caustics::{MIN_PHOTONS, PhotonMap, PhotonPass};
+use super::caustics::{CausticView, MIN_PHOTONS, PhotonMap, PhotonPass, PixelRaster};
 use super::control::RenderControl;
 use super::render_scene::RenderScene;
 use super::settings::{Method, Settings};
-use glam::Vec3;
+use std::sync::Arc;
 
 /// Maximum samples per pixel of a pass.
 const MAX_PASS: u32 = 16;
@@ -57,18 +57,35 @@ pub fn uses_photons(scene: &RenderScene, settings: &Settings) -> bool {
     scene.plan().photons && settings.method != Method::Whitted
 }
 
-/// Traces the photons of a pass, if the render has any. Incomplete if `control` is cancelled.
-pub fn photon_map(
-    scene: &RenderScene,
-    settings: &Settings,
-    pass: SamplePass,
-    control: &RenderControl,
-) -> Option<PhotonMap> {
-    let SamplePass { first_sample, samples } = pass;
-    let photons = MIN_PHOTONS.max(settings.pixels() * u64::from(samples));
-    let pixel_m = scene.lens.film_camera(settings.width, settings.height).pixel_m();
-    let pass = PhotonPass { first_sample, samples, photons, pixel_m, eye: Vec3::ZERO, seed: settings.seed };
-    uses_photons(scene, settings).then(|| PhotonMap::trace(scene, &pass, control))
+/// The photons of a render; a function of scene and settings.
+#[derive(Debug)]
+pub struct RenderPhotons<'a> {
+    scene: &'a RenderScene,
+    settings: &'a Settings,
+    /// What the camera sees of caustics. None for a render without photons.
+    view: Option<Arc<CausticView>>,
+}
+
+impl<'a> RenderPhotons<'a> {
+    /// Learns where photons start, if the render has any. Of no use if `control` is cancelled.
+    pub fn new(scene: &'a RenderScene, settings: &'a Settings, control: &RenderControl) -> Self {
+        let view = uses_photons(scene, settings).then(|| {
+            let camera = scene.lens.film_camera(settings.width, settings.height);
+            let size = (settings.width, settings.height);
+            let raster = PixelRaster { camera: &camera, size, pixel_m: camera.pixel_m() };
+            let photons = settings.pixels() * u64::from(settings.spp);
+            Arc::new(CausticView::learn(scene, &raster, photons, settings.seed, control))
+        });
+        RenderPhotons { scene, settings, view }
+    }
+
+    /// Traces the photons of a pass, if the render has any. Incomplete if `control` is cancelled.
+    pub fn trace(&self, pass: SamplePass, control: &RenderControl) -> Option<PhotonMap> {
+        let SamplePass { first_sample, samples } = pass;
+        let photons = MIN_PHOTONS.max(self.settings.pixels() * u64::from(samples));
+        let pass = PhotonPass { first_sample, samples, photons, seed: self.settings.seed };
+        self.view.as_ref().map(|view| PhotonMap::trace(self.scene, &pass, view, control))
+    }
 }
 
 #[cfg(test)]

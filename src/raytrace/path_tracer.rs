@@ -6,6 +6,7 @@
 //!
 //! Which technique finds the light behind panes, bodies of glass and mirrors: `straight_path`.
 
+use super::aggregate::Hit;
 use super::bsdf::{Bsdf, Polarisation, SurfaceBsdf};
 use super::caustics::{CausticMis, GatherDensities, PhotonMap};
 use super::emitters::MisVertex;
@@ -57,6 +58,8 @@ pub struct PathState {
     pub split_factor: f32,
     /// The surface that the camera sees, directly or by mirrors and clear glass, has been passed.
     has_seen: bool,
+    /// Length of the way from the camera to the first non-specular vertex, metres.
+    camera_distance: f32,
     /// Vertices so far.
     pub depth: u32,
     /// Non-specular vertices so far.
@@ -66,8 +69,8 @@ pub struct PathState {
 /// A path vertex at which light scatters.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadingPoint<'a> {
-    /// Index of the instance.
-    pub instance: u32,
+    /// The intersection with the surface at which the path arrived.
+    pub hit: &'a Hit,
     /// The surface.
     pub surface: &'a SurfaceInteraction,
     /// The BSDF towards the last vertex.
@@ -158,6 +161,7 @@ impl<'a> PathTracer<'a> {
             gather,
             split_factor: 1.0,
             has_seen: false,
+            camera_distance: 0.0,
             depth: 0,
             non_specular_depth: 0,
         };
@@ -197,6 +201,10 @@ impl<'a> PathTracer<'a> {
             let outside = wo.dot(surface.geometric_normal) >= 0.0;
             if path.depth == 0 {
                 sink.first_hit(|| scene.first_hit(&path.ray, &hit, &surface));
+            }
+
+            if path.non_specular_depth == 0 {
+                path.camera_distance += distance;
             }
 
             // Absorb light along the ray (Beer-Lambert)
@@ -243,7 +251,7 @@ impl<'a> PathTracer<'a> {
             }
             let bsdf = scene.bsdf(&surface, wo, &path.media, path.polarisation);
             let point = ShadingPoint {
-                instance: hit.instance,
+                hit: &hit,
                 surface: &surface,
                 bsdf: &bsdf,
                 importances: None,
@@ -304,10 +312,18 @@ impl<'a> PathTracer<'a> {
         let (Some(map), None) = (self.photon_map, surface.strand) else { return };
         let max_specular_depth = limits.max_depth - 1 - path.depth;
         let photons = map.for_depth(path.non_specular_depth);
-        sink.record(|| PathEvent::PhotonGather { radius: photons.radius() });
-        photons.gather(surface, bsdf, path.split_factor, max_specular_depth, |layer, value| {
+        sink.record(|| PathEvent::PhotonGather { radius: photons.radius(path.camera_distance) });
+        let gatherer = (path.split_factor, path.camera_distance);
+        photons.gather(surface, bsdf, gatherer, max_specular_depth, |layer, value| {
             sink.add(layer, path.throughput * value);
         });
+    }
+
+    /// Density with which photons start at a hit of a caster, relative to a uniform one: those that the path's last
+    /// non-specular vertex gathers.
+    fn start_density(&self, path: &PathState, hit: &Hit) -> f32 {
+        let map = self.photon_map.filter(|_| path.non_specular_depth > 0);
+        map.map_or(1.0, |map| map.for_depth(path.non_specular_depth - 1).start_density(self.caster.scene, hit))
     }
 
     /// Continues with several paths from a vertex. Where all lights are sampled, one light sample serves all paths.
@@ -444,7 +460,10 @@ impl<'a> PathTracer<'a> {
         } else if sample.specular {
             let is_caster = self.caster.scene.materials[surface.material as usize].is_caustic_caster();
             path.gather = path.gather.filter(|_| is_caster);
-            let photons = path.gather.map(|gather| CausticMis::new(gather, surface, sample.direction));
+            let photons = path.gather.map(|gather| {
+                let start_density = self.start_density(path, point.hit);
+                CausticMis::new(gather, surface, sample.direction, start_density)
+            });
             path.mis_vertex.scatter_specular(surface, outside, sample.is_transmission, photons);
         } else {
             path.mis_vertex = MisVertex {
@@ -457,7 +476,8 @@ impl<'a> PathTracer<'a> {
             path.gather = self.photon_map.filter(|_| surface.strand.is_none()).map(|map| {
                 let cos = sample.direction.dot(surface.geometric_normal).abs();
                 let photons = map.for_depth(path.non_specular_depth);
-                GatherDensities { path_pdf: sample.pdf * path.split_factor, photon_area: photons.area() * cos }
+                let photon_area = photons.area(path.camera_distance) * cos;
+                GatherDensities { path_pdf: sample.pdf * path.split_factor, photon_area }
             });
             path.non_specular_depth += 1;
             let is_last = path.non_specular_depth >= limits.max_non_specular_depth || depth + 1 >= limits.max_depth;

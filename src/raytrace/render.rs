@@ -5,7 +5,7 @@ use super::control::RenderControl;
 use super::film::{Film, FilmTile};
 use super::lens::FilmCamera;
 use super::limits::PathLimits;
-use super::passes::{self, PassSchedule, SamplePass};
+use super::passes::{self, PassSchedule, RenderPhotons, SamplePass};
 use super::path_tracer::PathTracer;
 use super::pixel_sampler::PixelSampler;
 use super::render_scene::RenderScene;
@@ -44,10 +44,11 @@ pub fn resume(
     on_pass: &mut dyn FnMut(&Film) -> ControlFlow<()>,
 ) -> Film {
     let camera = scene.lens.film_camera(settings.width, settings.height);
+    let photons = RenderPhotons::new(scene, settings, control);
     // Each pass adds samples to the noisiest tile.
     let taken = film.most_spp();
     for pass in PassSchedule::new(scene, settings).passes().skip_while(|pass| pass.first_sample < taken) {
-        let photon_map = passes::photon_map(scene, settings, pass, control);
+        let photon_map = photons.trace(pass, control);
         let job = TileJob { scene, photon_map: photon_map.as_ref(), camera: &camera, settings, control, pass };
         let needs_samples = |tile: &&mut Arc<FilmTile>| !is_quiet(tile, settings);
         let mut noisy: Vec<&mut Arc<FilmTile>> = film.tiles_mut().iter_mut().filter(needs_samples).collect();

@@ -5,7 +5,7 @@
 
 use super::control::RenderControl;
 use super::film_part::FilmPart;
-use super::passes::{self, PassSchedule, SamplePass};
+use super::passes::{PassSchedule, RenderPhotons, SamplePass};
 use super::render::{TileJob, empty_film};
 use super::render_scene::RenderScene;
 use super::settings::Settings;
@@ -27,13 +27,14 @@ pub fn render_part(
 ) -> FilmPart {
     let camera = scene.lens.film_camera(settings.width, settings.height);
     let mut part = FilmPart::new(&empty_film(scene, settings), studio, settings.aovs);
+    let photons = RenderPhotons::new(scene, settings, control);
     for pass in PassSchedule::new(scene, settings).passes() {
         let (first, end) = (pass.first_sample.max(range.start), (pass.first_sample + pass.samples).min(range.end));
         if first >= end {
             continue;
         }
         // Trace the photons of the whole pass: they are the same in every part that has samples of it
-        let photon_map = passes::photon_map(scene, settings, pass, control);
+        let photon_map = photons.trace(pass, control);
         for index in first..end {
             let pass = SamplePass { first_sample: index, samples: 1 };
             let job = TileJob { scene, photon_map: photon_map.as_ref(), camera: &camera, settings, control, pass };

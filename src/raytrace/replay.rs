@@ -6,7 +6,7 @@ use super::events::PathEvent;
 use super::film::{Layer, NonFiniteGate, NonFiniteReport};
 use super::lens::FilmCamera;
 use super::limits::PathLimits;
-use super::passes::{self, PassSchedule, SamplePass};
+use super::passes::{PassSchedule, RenderPhotons, SamplePass};
 use super::path_tracer::PathTracer;
 use super::pixel_sampler::PixelSampler;
 use super::render_scene::RenderScene;
@@ -47,7 +47,8 @@ pub fn replay(scene: &RenderScene, settings: &Settings, (x, y): (u32, u32), inde
     let mut nonfinite = NonFiniteReport::default();
     let gate = NonFiniteGate { sink: SampleSums::new(scene), sample, report: &mut nonfinite };
     let mut recorder = Recorder { gate, origin: scene.origin, events: Vec::new() };
-    PassReplay::new(scene, settings, pass).trace(sample, &mut recorder);
+    let photons = RenderPhotons::new(scene, settings, &RenderControl::new());
+    PassReplay::new(scene, settings, &photons, pass).trace(sample, &mut recorder);
     let Recorder { gate, events, .. } = recorder;
     let sums = gate.sink.sums;
     Some(Replay { sample, events, sums, nonfinite })
@@ -56,8 +57,9 @@ pub fn replay(scene: &RenderScene, settings: &Settings, (x, y): (u32, u32), inde
 /// Index of the brightest sample of a pixel; of the first with a non-finite contribution, if there is one.
 pub fn brightest_sample(scene: &RenderScene, settings: &Settings, (x, y): (u32, u32)) -> u32 {
     let mut brightest = (0, f32::NEG_INFINITY);
+    let photons = RenderPhotons::new(scene, settings, &RenderControl::new());
     for pass in PassSchedule::new(scene, settings).passes() {
-        let replay = PassReplay::new(scene, settings, pass);
+        let replay = PassReplay::new(scene, settings, &photons, pass);
         for index in pass.first_sample..pass.first_sample + pass.samples {
             let sample = SampleId { x, y, index, seed: settings.seed };
             let mut report = NonFiniteReport::default();
@@ -84,9 +86,9 @@ struct PassReplay<'a> {
 }
 
 impl<'a> PassReplay<'a> {
-    fn new(scene: &'a RenderScene, settings: &'a Settings, pass: SamplePass) -> Self {
+    fn new(scene: &'a RenderScene, settings: &'a Settings, photons: &RenderPhotons<'_>, pass: SamplePass) -> Self {
         let camera = scene.lens.film_camera(settings.width, settings.height);
-        let photon_map = passes::photon_map(scene, settings, pass, &RenderControl::new());
+        let photon_map = photons.trace(pass, &RenderControl::new());
         PassReplay { scene, settings, camera, photon_map }
     }
 

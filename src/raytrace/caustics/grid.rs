@@ -9,13 +9,11 @@ pub struct PhotonGrid {
     photons: Vec<Photon>,
     /// First photon of each hash; one more at the end.
     starts: Vec<u32>,
-    /// Gather radius, metres.
-    radius: f32,
     cells_per_m: f32,
 }
 
 impl PhotonGrid {
-    /// Sorts photons for queries within `radius` (metres), by counting.
+    /// Sorts photons for queries within at most `radius` (metres), by counting.
     pub fn new(unsorted: Vec<Photon>, radius: f32) -> Self {
         let size = unsorted.len().max(1).next_power_of_two();
         let cells_per_m = 0.5 / radius;
@@ -33,21 +31,15 @@ impl PhotonGrid {
             next[hash as usize] += 1;
         }
         let photons = order.iter().map(|&index| unsorted[index as usize]).collect();
-        PhotonGrid { photons, starts, radius, cells_per_m }
+        PhotonGrid { photons, starts, cells_per_m }
     }
 
-    /// Gather radius, metres.
-    pub fn radius(&self) -> f32 {
-        self.radius
-    }
-
-    /// Calls `found` for every photon within the radius, with its squared distance.
-    pub fn for_each_near(&self, position: Vec3, mut found: impl FnMut(&Photon, f32)) {
+    /// Calls `found` for every photon within `radius`, at most that of the grid, with its squared distance.
+    pub fn for_each_near(&self, position: Vec3, radius: f32, mut found: impl FnMut(&Photon, f32)) {
         if self.photons.is_empty() {
             return;
         }
-        let radius = self.radius;
-        // The query's diameter is one cell: it overlaps at most two cells along each axis.
+        // The query's diameter is one cell at most: it overlaps at most two cells along each axis.
         let low = cell((position - Vec3::splat(radius)) * self.cells_per_m);
         let mut hashes = [usize::MAX; 8];
         for corner in 0..8 {

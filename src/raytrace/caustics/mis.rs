@@ -33,23 +33,25 @@ pub struct CausticMis {
     pub ray_origin: Vec3,
     /// Geometric normal of the last caster, on the side where the path leaves.
     pub normal: Vec3,
-    /// Probability with which a photon starts on that side.
-    side_probability: f32,
+    /// Probability with which a photon starts on that side, times the density of starts relative to a uniform one.
+    start_density: f32,
 }
 
 impl CausticMis {
-    /// The photons for a path that leaves a caster in this direction.
-    pub fn new(gather: GatherDensities, surface: &SurfaceInteraction, direction: Vec3) -> Self {
+    /// The photons for a path that leaves a caster in this direction, where they start with a density relative to a
+    /// uniform one.
+    pub fn new(gather: GatherDensities, surface: &SurfaceInteraction, direction: Vec3, relative_density: f32) -> Self {
         let outside = direction.dot(surface.geometric_normal) > 0.0;
         let normal = if outside { surface.geometric_normal } else { -surface.geometric_normal };
         let inner = inner_side_probability(surface);
         let side_probability = if outside { 1.0 - inner } else { inner };
         let ray_origin = surface.spawn_origin(direction);
-        CausticMis { gather, position: surface.position, ray_origin, normal, side_probability }
+        let start_density = side_probability * relative_density;
+        CausticMis { gather, position: surface.position, ray_origin, normal, start_density }
     }
 
     /// MIS weight of a path that hits an emitter in a direction which photons sample with density `pdf`, 1/sr.
     pub fn path_weight(&self, casters: &CausticCasters, direction: Vec3, pdf: f32) -> f32 {
-        self.gather.path_weight(casters.density(self.side_probability * pdf, direction.dot(self.normal)))
+        self.gather.path_weight(casters.density(self.start_density * pdf, direction.dot(self.normal)))
     }
 }

@@ -1,6 +1,7 @@
 //! The photon tracer: light that mirrors and clear glass throw on non-specular surfaces.
 
 use super::photon::{Photon, inner_side_probability};
+use super::start_density::StartDensity;
 use crate::math::Ray;
 use crate::raytrace::bsdf::Polarisation;
 use crate::raytrace::geometry::SurfaceInteraction;
@@ -20,6 +21,8 @@ const MIN_COSINE: f32 = 0.01;
 pub struct PhotonTracer<'a> {
     /// Casts the rays.
     pub caster: RayCaster<'a>,
+    /// Where photons start.
+    starts: &'a StartDensity,
 }
 
 /// Receives the photons that a tracer follows.
@@ -27,8 +30,8 @@ pub trait PhotonReceiver {
     /// Receives a photon that arrives at a non-specular surface by a caustic path.
     fn arrive(&mut self, photon: Photon);
 
-    /// Receives a photon that arrives at its first caster. The default ignores it.
-    fn start(&mut self, _photon: &Photon) {}
+    /// Receives a photon that arrives at its first caster, with the position along their curve. The default ignores it.
+    fn start(&mut self, _photon: &Photon, _curve_position: f64) {}
 
     /// Receives a photon on a caustic path on its way to the next surface. The default ignores it.
     fn travel(&mut self, _segment: &PhotonSegment<'_>) {}
@@ -60,31 +63,33 @@ struct FirstCaster {
     media: MediumStack,
     /// The photon as it arrives.
     photon: Photon,
+    /// Position along the curve of the casters.
+    curve_position: f64,
 }
 
 impl<'a> PhotonTracer<'a> {
     /// A tracer for a scene.
-    pub fn new(scene: &'a RenderScene) -> Self {
-        PhotonTracer { caster: RayCaster::new(scene) }
+    pub fn new(scene: &'a RenderScene, starts: &'a StartDensity) -> Self {
+        PhotonTracer { caster: RayCaster::new(scene), starts }
     }
 
     /// Traces one of `emitted` photons, which share all light on casters.
     pub fn trace(&mut self, sampler: &Sampler, emitted: u32, receiver: &mut impl PhotonReceiver) {
         if let Some(first) = self.sample_first_caster(sampler, emitted) {
-            receiver.start(&first.photon);
+            receiver.start(&first.photon, first.curve_position);
             self.follow(first, sampler, receiver);
         }
     }
 
-    /// Samples a point on the casters, uniform in area, and a light by its importance there.
+    /// Samples a point on the casters, and a light by its importance there.
     fn sample_first_caster(&mut self, sampler: &Sampler, emitted: u32) -> Option<FirstCaster> {
         let scene = self.caster.scene;
 
         // Sample the point and the side of the surface
         let [point_set, light_set] = sampler.pair(Dimensions::Camera, Dimensions::Light { slot: 0, depth: 0 });
-        let [triangle_choice, side_choice] = sampler::last_pair(&point_set);
-        let hit = scene.casters.sample(triangle_choice, sampler::first_pair(&point_set))?;
-        let surface = scene.aggregate.surface(&hit);
+        let [patch_choice, side_choice] = sampler::last_pair(&point_set);
+        let start = scene.casters.sample(self.starts, patch_choice, sampler::first_pair(&point_set))?;
+        let surface = scene.aggregate.surface(&start.hit);
         let inner = inner_side_probability(&surface);
         let is_inner = side_choice < inner;
         let (normal, side_probability) =
@@ -114,8 +119,9 @@ impl<'a> PhotonTracer<'a> {
             media.cross(surface.material, true);
             transmittance *= media.transmittance(&scene.materials, sample.distance);
         }
-        let area = scene.casters.area() / (emitted as f32 * side_probability * pmf);
-        let density = |pdf: f32| scene.casters.density(side_probability * pmf * pdf, cos);
+        let probability = start.relative_density * side_probability * pmf;
+        let area = scene.casters.area() / (emitted as f32 * probability);
+        let density = |pdf: f32| scene.casters.density(probability * pdf, cos);
         let photon = Photon {
             position: surface.position,
             direction: to_light,
@@ -125,13 +131,14 @@ impl<'a> PhotonTracer<'a> {
             density: sample.pdf.map_or(f32::INFINITY, density),
             specular_depth: 0,
         };
-        (photon.flux != Vec3::ZERO).then_some(FirstCaster { surface, to_light, media, photon })
+        let curve_position = start.curve_position;
+        (photon.flux != Vec3::ZERO).then_some(FirstCaster { surface, to_light, media, photon, curve_position })
     }
 
     /// Follows a photon through casters until it is absorbed.
     fn follow(&mut self, first: FirstCaster, sampler: &Sampler, receiver: &mut impl PhotonReceiver) {
         let scene = self.caster.scene;
-        let FirstCaster { mut surface, to_light, mut media, photon } = first;
+        let FirstCaster { mut surface, to_light, mut media, photon, .. } = first;
         let mut wo = to_light;
         let (mut specular_depth, mut path) = (0, StraightPath::default());
         let (mut polarisation, mut throughput) = (Polarisation::NONE, Vec3::ONE);

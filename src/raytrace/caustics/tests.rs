@@ -1,3 +1,4 @@
+use super::casters::CasterPoint;
 use super::grid::PhotonGrid;
 use super::photon::Photon;
 use super::photon_tracer::shading_correction;
@@ -9,6 +10,7 @@ use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 use std::f32::consts::PI;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 fn photon(position: Vec3) -> Photon {
     Photon { position, direction: Vec3::Y, normal: Vec3::Y, flux: Vec3::ONE, layer: 0, density: 1.0, specular_depth: 1 }
@@ -20,12 +22,15 @@ fn grid_queries_match_brute_force() {
     // Around the origin, where cell coordinates change sign, and enough for hash collisions.
     let photons: Vec<Photon> = (0..3000).map(|_| photon(rng.direction() * rng.range(0.0, 2.0))).collect();
     for radius in [0.01, 0.2, 5.0] {
-        let grid = PhotonGrid::new(photons.clone(), radius);
+        // Queries may be smaller than the cells
+        let grid = PhotonGrid::new(photons.clone(), 1.5 * radius);
         let mut most = 0;
         for _ in 0..300 {
             let position = rng.direction() * rng.range(0.0, 2.1);
             let mut found = Vec::new();
-            grid.for_each_near(position, |photon, distance2| found.push((photon.position.to_array(), distance2)));
+            grid.for_each_near(position, radius, |photon, distance2| {
+                found.push((photon.position.to_array(), distance2))
+            });
             let near = |p: &&Photon| p.position.distance_squared(position) < radius * radius;
             let mut all: Vec<_> = photons
                 .iter()
@@ -40,7 +45,7 @@ fn grid_queries_match_brute_force() {
         }
         assert!(most > 0, "nothing to find within {radius}");
     }
-    PhotonGrid::new(Vec::new(), 0.1).for_each_near(Vec3::ZERO, |_, _| panic!("found in nothing"));
+    PhotonGrid::new(Vec::new(), 0.1).for_each_near(Vec3::ZERO, 0.1, |_, _| panic!("found in nothing"));
 }
 
 #[test]
@@ -93,7 +98,10 @@ fn casters_are_sampled_by_area() {
     let mut counts: HashMap<u32, u32> = HashMap::new();
     let mut above = 0;
     for _ in 0..20_000 {
-        let hit = scene.casters.sample(rng.uniform(), rng.unit_square()).unwrap();
+        let starts = StartDensity::default();
+        let CasterPoint { hit, relative_density, .. } =
+            scene.casters.sample(&starts, rng.uniform(), rng.unit_square()).unwrap();
+        assert_eq!(relative_density, 1.0);
         let [b, c] = hit.triangle().barycentric;
         assert!(b >= 0.0 && c >= 0.0 && b + c <= 1.0);
         *counts.entry(scene.aggregate.instances()[hit.instance as usize].object).or_default() += 1;
@@ -102,7 +110,7 @@ fn casters_are_sampled_by_area() {
     // Two balls of one size; the upper halves of both. Six standard errors of 71.
     assert_eq!(counts.len(), 2, "{counts:?}");
     assert!(counts.values().chain([&above]).all(|count| count.abs_diff(10_000) < 430), "{counts:?}, {above} above");
-    assert!(CausticCasters::default().sample(0.5, Vec2::splat(0.5)).is_none());
+    assert!(CausticCasters::default().sample(&StartDensity::default(), 0.5, Vec2::splat(0.5)).is_none());
 }
 
 #[test]
@@ -146,8 +154,101 @@ fn a_cancelled_photon_pass_traces_nothing() {
     let scene = prepare(&still_life(), &Assets::default()).unwrap();
     let control = RenderControl::new();
     control.cancel();
-    let pass = PhotonPass { first_sample: 0, samples: 16, photons: 1 << 20, pixel_m: 1e-3, eye: Vec3::ZERO, seed: 0 };
-    let map = PhotonMap::trace(&scene, &pass, &control);
+    let settings = Settings { width: 40, height: 30, ..Settings::default() };
+    let camera = scene.lens.film_camera(40, 30);
+    let raster = PixelRaster { camera: &camera, size: (40, 30), pixel_m: camera.pixel_m() };
+    let view = Arc::new(CausticView::learn(&scene, &raster, 1 << 20, settings.seed, &control));
+    let pass = PhotonPass { first_sample: 0, samples: 16, photons: 1 << 20, seed: settings.seed };
+    let map = PhotonMap::trace(&scene, &pass, &view, &control);
     assert_eq!(control.rays(), 0);
-    map.full.grid.for_each_near(Vec3::ZERO, |_, _| panic!("a photon of a cancelled pass"));
+    map.full.grid.for_each_near(Vec3::ZERO, map.full.radius(1.0), |_, _| panic!("a photon of a cancelled pass"));
+}
+
+#[test]
+fn guided_points_have_the_density_that_their_hits_have() {
+    let scene = prepare(&still_life(), &Assets::default()).unwrap();
+    // The first half of the curve matters more, and some of the rest
+    let importances: Vec<f64> =
+        (0..8192).map(|section| f64::from(u8::from(section < 4096 || section % 7 == 0))).collect();
+    let starts = StartDensity::new(&importances);
+    let mut rng = TestRng::new(12);
+    let mut areas = 0.0;
+    const POINTS: u32 = 20_000;
+    for _ in 0..POINTS {
+        let point = scene.casters.sample(&starts, rng.uniform(), rng.unit_square()).unwrap();
+        let density = scene.casters.relative_density(&starts, &point.hit);
+        assert!((density / point.relative_density - 1.0).abs() < 1e-4, "{point:?}: {density}");
+        // The mean of 1 / density is the share of the area that is sampled: all of it
+        areas += 1.0 / f64::from(density);
+    }
+    assert!((areas / f64::from(POINTS) - 1.0).abs() < 0.02, "{}", areas / f64::from(POINTS));
+}
+
+/// The still life, seen from near the chrome ball's caustic.
+fn close_up() -> Scene {
+    let mut scene = still_life();
+    scene.camera.aim = Aim::Point(Vec3::new(0.75, 0.0, 0.1));
+    scene.camera.position = Vec3::new(0.75, 0.6, 0.4);
+    scene.camera.focal_length_mm = 200.0;
+    scene
+}
+
+#[test]
+fn photons_start_where_they_reach_the_picture() {
+    let scene = prepare(&close_up(), &Assets::default()).unwrap();
+    let camera = scene.lens.film_camera(60, 40);
+    let control = RenderControl::new();
+    let raster = PixelRaster { camera: &camera, size: (60, 40), pixel_m: camera.pixel_m() };
+    let learned = CausticView::learn(&scene, &raster, 1 << 20, 0, &control);
+    let uniform = CausticView::unguided(&scene, &raster);
+    let visible = |view: CausticView| {
+        let pass = PhotonPass { first_sample: 0, samples: 1, photons: 1 << 15, seed: 7 };
+        let view = Arc::new(view);
+        let map = PhotonMap::trace(&scene, &pass, &view, &control);
+        let mut seen = 0;
+        for point in view.visible.points() {
+            map.full.grid.for_each_near(point.position, map.full.radius(point.distance), |_, _| seen += 1);
+        }
+        let area: f32 = map.full.area(view.visible.points()[0].distance);
+        f64::from(seen) / f64::from(area)
+    };
+    let gain = visible(learned) / visible(uniform);
+    assert!(gain > 10.0, "{gain:.1} times the photons in the picture");
+}
+
+#[test]
+fn a_guided_close_up_has_the_light_of_paths_from_every_start() {
+    // The same picture by photons that start uniformly: guiding changes the noise alone
+    let studio = close_up();
+    let scene = prepare(&studio, &Assets::default()).unwrap();
+    let camera = scene.lens.film_camera(24, 16);
+    let control = RenderControl::new();
+    let raster = PixelRaster { camera: &camera, size: (24, 16), pixel_m: camera.pixel_m() };
+    let flux = |view: CausticView| {
+        let view = Arc::new(view);
+        let (mut sum, mut squares) = (0.0, 0.0);
+        const PASSES: u32 = 16;
+        for seed in 0..PASSES {
+            let mut stored = Vec::new();
+            let mut tracer = PhotonTracer::new(&scene, &view.starts);
+            const PHOTONS: u32 = 1 << 15;
+            for index in 0..PHOTONS {
+                tracer.trace(&crate::raytrace::sampler::Sampler::new(seed, 0, index, 3), PHOTONS, &mut stored);
+            }
+            let visible = stored.iter().filter(|photon| view.visible.is_near(photon.position));
+            let flux: f64 = visible.map(|photon| f64::from(photon.flux.y * photon.direction.dot(photon.normal))).sum();
+            sum += flux;
+            squares += flux * flux;
+        }
+        let mean = sum / f64::from(PASSES);
+        (mean, (squares / f64::from(PASSES) - mean * mean).sqrt() / f64::from(PASSES).sqrt())
+    };
+    let ((guided, guided_error), (uniform, error)) =
+        (flux(CausticView::learn(&scene, &raster, 1 << 20, 0, &control)), flux(CausticView::unguided(&scene, &raster)));
+    assert!(uniform > 0.0 && error / uniform < 0.1, "{uniform} +- {error}");
+    assert!(
+        (guided - uniform).abs() < 5.0 * error.hypot(guided_error),
+        "{guided} +- {guided_error}, {uniform} +- {error}"
+    );
+    assert!(guided_error < 0.6 * error, "{guided_error}, {error} unguided");
 }

@@ -108,7 +108,7 @@ pub struct ReceptorPhotons<'a> {
 }
 
 impl PhotonReceiver for ReceptorPhotons<'_> {
-    fn start(&mut self, photon: &Photon) {
+    fn start(&mut self, photon: &Photon, _curve_position: f64) {
         let sum = &mut self.sums[usize::from(photon.layer)];
         sum.flux += (photon.flux * self.round.photons as f32).as_dvec3();
         sum.started += 1;

@@ -6,7 +6,7 @@ use super::replicate::Replicate;
 use super::rounds::SamplingRound;
 use super::studio::MeteredStudio;
 use crate::color::luminance;
-use crate::raytrace::caustics::{PhotonMap, PhotonTracer, filled_radius};
+use crate::raytrace::caustics::{PhotonMap, PhotonTracer, StartDensity};
 use crate::raytrace::control::RenderControl;
 use crate::raytrace::film::{NonFiniteGate, NonFiniteReport};
 use crate::raytrace::lights::{LightSample, TracedLight};
@@ -83,7 +83,8 @@ impl RoundSampler<'_> {
     fn trace_photons(&self, replicate: &mut Replicate) -> Option<PhotonMap> {
         let scene = &self.studio.scene;
         let round = self.densities()?;
-        let mut tracer = PhotonTracer::new(scene);
+        let starts = StartDensity::default();
+        let mut tracer = PhotonTracer::new(scene, &starts);
         let first = self.round.paths.start.saturating_mul(PHOTONS_PER_PATH);
         let sampler = |index: u32| Sampler::new(replicate.index, PHOTONS, first + index, self.seed);
         let mut receiver = ReceptorPhotons {
@@ -106,8 +107,7 @@ impl RoundSampler<'_> {
         let stored = receiver.stored;
         replicate.photons += round.photons;
         replicate.rays += tracer.caster.rays;
-        let radius = filled_radius(&stored, 1);
-        Some(PhotonMap::new(stored, round.photons, radius))
+        Some(PhotonMap::uniform(stored, round.photons))
     }
 
     /// Samples points of a light and adds their direct illuminance.

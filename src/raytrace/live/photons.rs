@@ -2,11 +2,14 @@
 
 use super::camera::LiveCamera;
 use crate::raytrace::RenderControl;
-use crate::raytrace::caustics::{MIN_PHOTONS, PhotonMap, PhotonPass};
+use crate::raytrace::caustics::{CausticView, MIN_PHOTONS, PhotonMap, PhotonPass, PixelRaster};
 use crate::raytrace::render_scene::RenderScene;
+use std::sync::Arc;
 
 /// Pixels per photon of a pass.
 const PIXELS_PER_PHOTON: u64 = 4;
+/// Samples whose photons the effort to guide them is made for.
+const LEARNING_SAMPLES: u64 = 1;
 /// Photons that cost as much as one path.
 const PHOTONS_PER_PATH: u64 = 4;
 
@@ -16,6 +19,8 @@ pub struct LivePhotons {
     /// Index of the sample that the map is for.
     sample: u32,
     map: Option<PhotonMap>,
+    /// What this camera sees of caustics.
+    view: Option<(LiveCamera, Arc<CausticView>)>,
 }
 
 impl LivePhotons {
@@ -27,13 +32,37 @@ impl LivePhotons {
         let pixels = u64::from(camera.size.0) * u64::from(camera.size.1);
         // The first picture has about 20 ms for them, on one thread.
         let photons = if sample == 0 { MIN_PHOTONS } else { pixels / PIXELS_PER_PHOTON };
-        let pixel_m = 2.0 * camera.frame.half_extent.x / camera.size.0 as f32;
-        let pass = PhotonPass { first_sample: sample, samples: 1, photons, pixel_m, eye: camera.eye(), seed: 0 };
-        let map = PhotonMap::trace(scene, &pass, control);
+        let pass = PhotonPass { first_sample: sample, samples: 1, photons, seed: 0 };
+        let (view, learned) = self.view(scene, camera, sample, control);
+        let map = PhotonMap::trace(scene, &pass, &view, control);
         // A cancelled map is incomplete.
         self.map = (!control.is_cancelled()).then_some(map);
+        self.view = (!control.is_cancelled() && sample > 0).then_some((*camera, view));
         self.sample = sample;
-        photons / PHOTONS_PER_PATH
+        (photons + learned) / PHOTONS_PER_PATH
+    }
+
+    /// Returns what the camera sees of caustics, and the number of photons that were traced for it: none for the first
+    /// picture, which has no time for them.
+    fn view(
+        &self,
+        scene: &RenderScene,
+        camera: &LiveCamera,
+        sample: u32,
+        control: &RenderControl,
+    ) -> (Arc<CausticView>, u64) {
+        let pixel_m = 2.0 * camera.frame.half_extent.x / camera.size.0 as f32;
+        let raster = PixelRaster { camera, size: camera.size, pixel_m };
+        let pixels = u64::from(camera.size.0) * u64::from(camera.size.1);
+        match &self.view {
+            Some((seen_by, view)) if seen_by == camera => (view.clone(), 0),
+            _ if sample == 0 => (Arc::new(CausticView::unguided(scene, &raster)), 0),
+            _ => {
+                let view = CausticView::learn(scene, &raster, pixels * LEARNING_SAMPLES, 0, control);
+                let photons = view.learning_photons;
+                (Arc::new(view), photons)
+            }
+        }
     }
 
     /// The map that was traced last.

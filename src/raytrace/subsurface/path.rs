@@ -96,7 +96,7 @@ impl PathTracer<'_> {
         }
         let (set, numbers) = sampler.set_and_stream(Dimensions::Subsurface { depth });
         let pair = simd::dispatch(Walk {
-            instance: &scene.aggregate.instances()[soft.point.instance as usize],
+            instance: &scene.aggregate.instances()[soft.point.hit.instance as usize],
             materials: &scene.materials,
             medium,
             entry: soft.point.surface,

@@ -1,0 +1,170 @@
+//! What the camera sees of caustics, and where photons start for it.
+//!
+//! A close-up shows a small part of the studio, where few photons arrive that start everywhere. So photons start mostly
+//! on those parts of the casters from which photons reached visible surfaces before (Peter and Pietrek 1998, "Importance
+//! Driven Construction of Photon Maps"; Hachisuka and Jensen 2011, "Robust Adaptive Photon Tracing Using Photon Path
+//! Visibility"). Their flux is divided by the density of their starts: the expected light is the same.
+
+use super::photon::Photon;
+use super::photon_spacing::PhotonSpacing;
+use super::photon_tracer::{PhotonReceiver, PhotonTracer};
+use super::start_density::{SECTIONS, StartDensity};
+use super::start_learner::StartLearner;
+use super::visible_points::{PixelRaster, VisiblePoints};
+use crate::raytrace::control::RenderControl;
+use crate::raytrace::lens::PixelCamera;
+use crate::raytrace::render_scene::RenderScene;
+use crate::raytrace::sampler::Sampler;
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// Rounds in which the density of starts is learned, each with the density that the last one has found.
+const ROUNDS: u32 = 8;
+/// Photons of a round that suffice to learn from.
+const ENOUGH: usize = 64;
+/// A round learns from photons near the visible points: within their radii if enough arrive there, or else within radii
+/// that are wider by these factors.
+const WIDENINGS: [f32; 7] = [1.0, 4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0];
+/// Rounds that learn from photons within the points' own radii; no more are needed.
+const EXACT_ROUNDS: u32 = 3;
+/// Photons of a picture for which one is traced at most to learn from.
+const PHOTONS_PER_LEARNING_PHOTON: u64 = 4;
+/// Photons of all rounds, at most.
+const MAX_PHOTONS: u64 = 1 << 18;
+/// The same for a picture with few photons.
+const MIN_PHOTONS: u64 = 1 << 16;
+/// Photons of a task.
+const TASK: u32 = 1 << 10;
+/// Added to the seed, so that these photons and those of the picture have different random numbers.
+const SEED: u32 = 0x76_69_65_77;
+
+/// The visible surfaces of a picture, and the density of starts by which photons reach them.
+#[derive(Debug)]
+pub struct CausticView {
+    /// Points on the visible surfaces.
+    pub visible: VisiblePoints,
+    /// Density of the photons' starts.
+    pub starts: StartDensity,
+    /// Spacing of the photons that arrive near the points; none if it is not known.
+    pub spacing: Option<PhotonSpacing>,
+    /// Width of a pixel at 1 m, metres.
+    pub pixel_m: f32,
+    /// Number of photons by which the density was learned.
+    pub learning_photons: u64,
+}
+
+impl CausticView {
+    /// The view of a picture. Photons start uniformly.
+    pub fn unguided(scene: &RenderScene, raster: &PixelRaster<'_, impl PixelCamera>) -> Self {
+        let visible = VisiblePoints::trace(scene, raster);
+        let starts = StartDensity::default();
+        CausticView { visible, starts, spacing: None, pixel_m: raster.pixel_m, learning_photons: 0 }
+    }
+
+    /// Learns where photons start for a picture for which so many `photons` are traced, by a part of their number, on
+    /// rayon's current pool. Of no use if `control` is cancelled.
+    pub fn learn(
+        scene: &RenderScene,
+        raster: &PixelRaster<'_, impl PixelCamera>,
+        photons: u64,
+        seed: u32,
+        control: &RenderControl,
+    ) -> Self {
+        let mut view = Self::unguided(scene, raster);
+        let all = (photons / PHOTONS_PER_LEARNING_PHOTON).clamp(MIN_PHOTONS, MAX_PHOTONS);
+        let photons = (all as u32 / ROUNDS).next_multiple_of(TASK);
+        let mut learner = StartLearner::new(scene);
+        let mut wider = Vec::new();
+        let (mut last_widening, mut exact_rounds) = (usize::MAX, 0);
+        for round in 0..ROUNDS {
+            if control.is_cancelled() || exact_rounds == EXACT_ROUNDS {
+                break;
+            }
+            let arrived = view.trace_round(scene, round, photons, seed, control);
+            view.learning_photons += u64::from(photons);
+
+            // Find the least radii within which enough photons arrive
+            let (widening, near) = view.nearest(&arrived, &mut wider);
+            if near.is_empty() {
+                break;
+            }
+            // Counts for other radii say nothing about these
+            if widening != last_widening {
+                learner.clear();
+            }
+            let sections: Vec<u16> = near.iter().map(|photon| photon.section).collect();
+            let positions: Vec<Vec3> = near.iter().map(|photon| photon.position).collect();
+            learner.add(&view.starts, photons, &sections);
+            view.starts = learner.density();
+            view.spacing = Some(PhotonSpacing::new(&positions, photons));
+            last_widening = widening;
+            exact_rounds += u32::from(widening == 0);
+        }
+        view
+    }
+
+    /// Selects those photons that arrive near visible points: within the least radii that hold enough of them. Returns
+    /// the index of the widening, too. `wider` keeps the widened points from round to round.
+    fn nearest(&self, arrived: &[ArrivedPhoton], wider: &mut Vec<VisiblePoints>) -> (usize, Vec<ArrivedPhoton>) {
+        for (index, factor) in WIDENINGS.into_iter().enumerate() {
+            if wider.len() == index {
+                wider.push(self.visible.widened(factor));
+            }
+            let near = arrived.par_iter().filter(|photon| wider[index].is_near(photon.position));
+            let near: Vec<ArrivedPhoton> = near.copied().collect();
+            if near.len() >= ENOUGH {
+                return (index, near);
+            }
+        }
+        (WIDENINGS.len(), arrived.to_vec())
+    }
+
+    /// Traces a round of photons.
+    fn trace_round(
+        &self,
+        scene: &RenderScene,
+        round: u32,
+        photons: u32,
+        seed: u32,
+        control: &RenderControl,
+    ) -> Vec<ArrivedPhoton> {
+        let trace_task = |task: u32| {
+            let mut receiver = ArrivalRecorder::default();
+            let mut tracer = PhotonTracer::new(scene, &self.starts);
+            for index in 0..TASK {
+                let sampler = Sampler::new(task, round, index, seed ^ SEED);
+                tracer.trace(&sampler, photons, &mut receiver);
+            }
+            control.count(tracer.caster.rays, 0);
+            receiver.arrived
+        };
+        let arrived: Vec<Vec<ArrivedPhoton>> = (0..photons / TASK).into_par_iter().map(trace_task).collect();
+        arrived.concat()
+    }
+}
+
+/// Where a photon started and arrived.
+#[derive(Clone, Copy, Debug)]
+struct ArrivedPhoton {
+    position: Vec3,
+    /// Section of the casters' curve in which it started.
+    section: u16,
+}
+
+/// Records where photons start and arrive.
+#[derive(Debug, Default)]
+struct ArrivalRecorder {
+    /// Section of the present photon.
+    section: u16,
+    arrived: Vec<ArrivedPhoton>,
+}
+
+impl PhotonReceiver for ArrivalRecorder {
+    fn start(&mut self, _photon: &Photon, curve_position: f64) {
+        self.section = ((curve_position * SECTIONS as f64) as usize).min(SECTIONS - 1) as u16;
+    }
+
+    fn arrive(&mut self, photon: Photon) {
+        self.arrived.push(ArrivedPhoton { position: photon.position, section: self.section });
+    }
+}
