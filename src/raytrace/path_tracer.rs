@@ -8,7 +8,7 @@
 
 use super::aggregate::Hit;
 use super::bsdf::{Bsdf, Polarisation, SurfaceBsdf};
-use super::caustics::{CausticMis, GatherDensities, PhotonMap};
+use super::caustics::{CausticMis, GatherDensities, PhotonMap, StartDensity};
 use super::emitters::MisVertex;
 use super::events::{Lobe, PathEnd, PathEvent, PathVertex};
 use super::geometry::SurfaceInteraction;
@@ -319,11 +319,15 @@ impl<'a> PathTracer<'a> {
         });
     }
 
-    /// Density with which photons start at a hit of a caster, relative to a uniform one: those that the path's last
-    /// non-specular vertex gathers.
-    fn start_density(&self, path: &PathState, hit: &Hit) -> f32 {
-        let map = self.photon_map.filter(|_| path.non_specular_depth > 0);
-        map.map_or(1.0, |map| map.for_depth(path.non_specular_depth - 1).start_density(self.caster.scene, hit))
+    /// Density with which photons start at a hit, relative to a uniform one: those that the path's last non-specular
+    /// vertex gathers. None where no photons start.
+    fn start_density(&self, path: &PathState, hit: &Hit) -> Option<f32> {
+        let scene = self.caster.scene;
+        match self.photon_map.filter(|_| path.non_specular_depth > 0) {
+            Some(map) => map.for_depth(path.non_specular_depth - 1).start_density(scene, hit),
+            // A meter's paths start at the receptor, which receives photons that start uniformly
+            None => scene.casters.relative_density(&StartDensity::default(), hit),
+        }
     }
 
     /// Continues with several paths from a vertex. Where all lights are sampled, one light sample serves all paths.
@@ -460,9 +464,9 @@ impl<'a> PathTracer<'a> {
         } else if sample.specular {
             let is_caster = self.caster.scene.materials[surface.material as usize].is_caustic_caster();
             path.gather = path.gather.filter(|_| is_caster);
-            let photons = path.gather.map(|gather| {
-                let start_density = self.start_density(path, point.hit);
-                CausticMis::new(gather, surface, sample.direction, start_density)
+            let photons = path.gather.and_then(|gather| {
+                let start_density = self.start_density(path, point.hit)?;
+                Some(CausticMis::new(gather, surface, sample.direction, start_density))
             });
             path.mis_vertex.scatter_specular(surface, outside, sample.is_transmission, photons);
         } else {

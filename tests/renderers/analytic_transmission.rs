@@ -192,7 +192,8 @@ fn check(story: &str, light: &Light, panes: &[Pane], factor: f64, readings: &[Re
         // The meter's photons may miss what two bodies reflect between them.
         let bias = if reading == Reading::Meter && panes.len() > 1 { 7e-3_f64.max(bias) } else { bias };
         let error = 100.0 * (through.mean / truth - 1.0);
-        if !through.agrees_with(truth, bias, 60) || through.standard_error > 0.01 * open.mean {
+        // The card is seen at 0.1 mm a pixel, where the blur of photons is small and their noise large
+        if !through.agrees_with(truth, bias, 60) || through.standard_error > 0.02 * open.mean {
             failures.push(format!("{reading:?}: {through:?} for {truth} lx, {error:+.2} %"));
         }
     }

@@ -39,7 +39,7 @@ struct CausticRow {
     pixel_mm: f32,
     /// Samples per pixel.
     spp: u32,
-    /// Time of the render, seconds.
+    /// Time of the render and of the measurements so far, seconds.
     seconds: f64,
     /// Distance over which the far edge rises from 20 to 80 % of the strip's light, pixels. The picture's own pixels
     /// are 0.6 of it. None if it is wider than what is measured.

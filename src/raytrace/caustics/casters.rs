@@ -34,7 +34,7 @@ pub struct CausticCasters {
 pub struct CasterPoint {
     /// The point.
     pub hit: Hit,
-    /// Position of its patch along the curve, 0 to 1.
+    /// Position of the middle of its patch along the curve, 0 to 1.
     pub curve_position: f64,
     /// Density of sampled points there, relative to points that are uniform in area.
     pub relative_density: f32,
@@ -103,7 +103,7 @@ impl CausticCasters {
             Primitive::Triangle(TriangleHit { t: 0.0, triangle: patch.triangle, barycentric: patch.barycentric(u) });
         Some(CasterPoint {
             hit: Hit { instance: patch.instance, t: 0.0, primitive },
-            curve_position: span.start,
+            curve_position: 0.5 * (span.start + span.end),
             relative_density: starts.relative_density(span),
         })
     }
@@ -120,17 +120,17 @@ impl CausticCasters {
         (0..sections).map(centre).collect()
     }
 
-    /// Density of points sampled by `starts`, relative to points that are uniform in area, at a hit of a caster.
-    pub fn relative_density(&self, starts: &StartDensity, hit: &Hit) -> f32 {
-        let Primitive::Triangle(hit_triangle) = hit.primitive else { return 1.0 };
-        let Some(firsts) = &self.first_patches[hit.instance as usize] else { return 1.0 };
-        let triangle = hit_triangle.triangle as usize;
-        let (first, end) = (firsts[triangle], firsts[triangle + 1]);
+    /// Density of points sampled by `starts` at a hit, relative to points that are uniform in area. None where there is no
+    /// caster: strands are none.
+    pub fn relative_density(&self, starts: &StartDensity, hit: &Hit) -> Option<f32> {
+        let Primitive::Triangle(TriangleHit { triangle, barycentric, .. }) = hit.primitive else { return None };
+        let firsts = self.first_patches.get(hit.instance as usize)?.as_ref()?;
+        let (first, end) = (firsts[triangle as usize], firsts[triangle as usize + 1]);
         if first == end {
-            return 1.0;
+            return None;
         }
-        let patch = Patch::index_at(end - first, hit_triangle.barycentric);
-        starts.relative_density(self.span(self.places[(first + patch) as usize] as usize))
+        let patch = first + Patch::index_at(end - first, barycentric);
+        Some(starts.relative_density(self.span(self.places[patch as usize] as usize)))
     }
 
     /// Positions of a patch along the curve.

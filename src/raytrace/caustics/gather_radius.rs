@@ -2,13 +2,15 @@
 
 use super::photon::Photon;
 use super::photon_pass::PhotonPass;
-use super::photon_spacing::filled_radius;
+use super::photon_spacing::{MAX_FILLED_RADIUS_M, filled_radius};
 use super::view::CausticView;
 
 /// Gather radius of the first pass, in pixels: little enough blur for the eye to miss.
 const FIRST_RADIUS_PX: f32 = 2.0;
 /// Photons for indirect light are one of 16: the radius around them holds a quarter as many.
 const INDIRECT_SCALE: f32 = 0.5;
+/// Maximum gather radius for indirect light, metres.
+const MAX_INDIRECT_RADIUS_M: f32 = 2.0 * MAX_FILLED_RADIUS_M;
 /// Greatest ratio of the radii of a map: a query visits all photons within the widest one.
 const MAX_RATIO: f32 = 8.0;
 /// Share of the visible surfaces that are nearer than the one whose radius is the widest.
@@ -33,13 +35,13 @@ impl GatherRadius {
 
     /// The radii for surfaces that the camera sees, by the `photons` of a pass, of which so many were emitted.
     pub fn of_view(photons: &[Photon], emitted: u32, view: &CausticView, pass: &PhotonPass) -> Self {
-        let points = view.visible.points();
-        let far_m = quantile(points.iter().map(|point| point.distance).collect(), FAR_SHARE);
+        let far_m = view.visible.distance_quantile(FAR_SHARE);
         // A radius that followed the same photons would be smaller where there are more of them by chance
         let filled = match view.spacing {
             Some(spacing) => spacing.filled_radius(emitted, pass.samples),
             None => filled_radius(photons, pass.samples),
         };
+        let filled = filled.min(MAX_FILLED_RADIUS_M);
         let shrink = pass.shrink();
         let per_m = FIRST_RADIUS_PX * view.pixel_m * shrink;
         let most = (per_m * far_m).max(filled * shrink).max(f32::MIN_POSITIVE);
@@ -48,7 +50,8 @@ impl GatherRadius {
 
     /// The radius for surfaces that indirect light sees, by the photons of a pass.
     pub fn of_indirect_light(photons: &[Photon], pass: &PhotonPass) -> Self {
-        Self::constant(INDIRECT_SCALE * filled_radius(photons, pass.samples) * pass.shrink())
+        let filled = INDIRECT_SCALE * filled_radius(photons, pass.samples);
+        Self::constant(filled.min(MAX_INDIRECT_RADIUS_M) * pass.shrink())
     }
 
     /// The radius on a surface at so many metres from the camera, metres.
@@ -60,10 +63,4 @@ impl GatherRadius {
     pub fn greatest(&self) -> f32 {
         self.most
     }
-}
-
-/// The value below which there is this share of the values; 0 where there is none.
-fn quantile(mut values: Vec<f32>, share: f32) -> f32 {
-    let n = ((values.len() as f32 * share) as usize).min(values.len().saturating_sub(1));
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(n, f32::total_cmp).1 }
 }

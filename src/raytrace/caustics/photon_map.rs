@@ -5,7 +5,7 @@ use super::grid::PhotonGrid;
 use super::mis::GatherDensities;
 use super::photon::Photon;
 use super::photon_pass::{MAX_PHOTONS, PhotonPass};
-use super::photon_spacing::filled_radius;
+use super::photon_spacing::{MAX_FILLED_RADIUS_M, filled_radius};
 use super::photon_tracer::PhotonTracer;
 use super::start_density::StartDensity;
 use super::view::CausticView;
@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// For one photon of so many, another one is traced for vertices that are seen by indirect light alone.
+/// One more photon is traced for so many, for vertices that are seen by indirect light alone.
 const SPARSE_STRIDE: u32 = 16;
 /// Ratio of the gather radii for indirect light and for what the camera sees, where the photons for one are among those
 /// for the other.
@@ -80,7 +80,7 @@ impl PhotonMap {
 
     /// The map of photons that started uniformly, of which so many were emitted for one sample.
     pub fn uniform(photons: Vec<Photon>, emitted: u32) -> Self {
-        let radius = filled_radius(&photons, 1);
+        let radius = filled_radius(&photons, 1).min(MAX_FILLED_RADIUS_M);
         let brighter = |photon: &Photon| Photon { flux: photon.flux * SPARSE_STRIDE as f32, ..*photon };
         let sparse = photons.iter().step_by(SPARSE_STRIDE as usize).map(brighter).collect();
         let lookup =
@@ -145,9 +145,10 @@ impl PhotonLookup {
         PI * radius * radius * self.emitted
     }
 
-    /// Density with which photons start at a hit of a caster, relative to a uniform one.
-    pub fn start_density(&self, scene: &RenderScene, hit: &Hit) -> f32 {
-        self.view.as_ref().map_or(1.0, |view| scene.casters.relative_density(&view.starts, hit))
+    /// Density with which photons start at a hit, relative to a uniform one. None where no photons start.
+    pub fn start_density(&self, scene: &RenderScene, hit: &Hit) -> Option<f32> {
+        let uniform = StartDensity::default();
+        scene.casters.relative_density(self.view.as_ref().map_or(&uniform, |view| &view.starts), hit)
     }
 
     /// Estimates the radiance that leaves a surface, so many metres from the camera, due to photons of at most

@@ -6,7 +6,8 @@ use glam::Vec3;
 /// Photons per sample of a pixel that the gather radius holds at least, on average, up to a maximum radius.
 const MIN_NEIGHBOURS: usize = 10;
 /// Maximum gather radius due to [`MIN_NEIGHBOURS`], metres.
-const MAX_FILLED_RADIUS_M: f32 = 0.05;
+pub const MAX_FILLED_RADIUS_M: f32 = 0.05;
+
 /// How far photons are apart that arrive where the camera sees them.
 #[derive(Clone, Copy, Debug)]
 pub struct PhotonSpacing {
@@ -25,14 +26,14 @@ impl PhotonSpacing {
     /// Radius that holds enough of another number of photons; see [`filled_radius`].
     pub fn filled_radius(&self, emitted: u32, samples: u32) -> f32 {
         let fewer = self.emitted as f32 / emitted as f32;
-        (self.radius * (fewer * samples as f32).sqrt()).min(MAX_FILLED_RADIUS_M)
+        self.radius * (fewer * samples as f32).sqrt()
     }
 }
 
-/// Radius that holds enough photons of a pass with so many samples per pixel, up to [`MAX_FILLED_RADIUS_M`], metres.
+/// Radius that holds enough photons of a pass with so many samples per pixel, metres.
 pub fn filled_radius(photons: &[Photon], samples: u32) -> f32 {
     let positions: Vec<Vec3> = photons.iter().map(|photon| photon.position).collect();
-    (neighbour_radius(&positions) * (samples as f32).sqrt()).min(MAX_FILLED_RADIUS_M)
+    neighbour_radius(&positions) * (samples as f32).sqrt()
 }
 
 /// Radius around a typical position that holds [`MIN_NEIGHBOURS`] others, metres. Estimated from a subset: on surfaces, it

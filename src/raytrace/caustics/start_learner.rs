@@ -8,6 +8,8 @@ use std::collections::HashMap;
 
 /// Weight of the mean importance of its neighbours in that of a section: more sections may matter than were found.
 const NEIGHBOUR_WEIGHT: f64 = 0.3;
+/// Neighbours of a section at most: on folded surfaces there would be thousands.
+const MAX_NEIGHBOURS: usize = 64;
 /// Radius of the neighbourhood of a section, in widths of a section.
 const NEIGHBOUR_WIDTHS: f32 = 3.0;
 
@@ -67,7 +69,8 @@ fn neighbours(points: &[Vec3], radius: f32) -> Vec<Vec<u16>> {
         let middle = cell(*point);
         let around = (0..27).map(|i| middle.wrapping_add(IVec3::new(i % 3, i / 3 % 3, i / 9) - 1));
         let candidates = around.filter_map(|cell| cells.get(&cell)).flatten().copied();
-        candidates.filter(|index| points[usize::from(*index)].distance(*point) < radius).collect()
+        let near = candidates.filter(|index| points[usize::from(*index)].distance(*point) < radius);
+        near.take(MAX_NEIGHBOURS).collect()
     };
     points.par_iter().map(near).collect()
 }

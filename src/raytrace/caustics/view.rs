@@ -10,7 +10,7 @@ use super::photon_spacing::PhotonSpacing;
 use super::photon_tracer::{PhotonReceiver, PhotonTracer};
 use super::start_density::{SECTIONS, StartDensity};
 use super::start_learner::StartLearner;
-use super::visible_points::{PixelRaster, VisiblePoints};
+use super::visible_points::{PixelRaster, Surroundings, VisiblePoints};
 use crate::raytrace::control::RenderControl;
 use crate::raytrace::lens::PixelCamera;
 use crate::raytrace::render_scene::RenderScene;
@@ -27,11 +27,15 @@ const ENOUGH: usize = 64;
 const WIDENINGS: [f32; 7] = [1.0, 4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0];
 /// Rounds that learn from photons within the points' own radii; no more are needed.
 const EXACT_ROUNDS: u32 = 3;
-/// Photons of a picture for which one is traced at most to learn from.
+/// Camera paths that find what is visible: to learn from,
+const PATHS: u32 = 4096;
+/// and for its distance alone.
+const FEW_PATHS: u32 = 256;
+/// Photons of a picture for each one to learn from.
 const PHOTONS_PER_LEARNING_PHOTON: u64 = 4;
 /// Photons of all rounds, at most.
 const MAX_PHOTONS: u64 = 1 << 18;
-/// The same for a picture with few photons.
+/// The same for a picture with few photons of its own.
 const MIN_PHOTONS: u64 = 1 << 16;
 /// Photons of a task.
 const TASK: u32 = 1 << 10;
@@ -56,7 +60,7 @@ pub struct CausticView {
 impl CausticView {
     /// The view of a picture. Photons start uniformly.
     pub fn unguided(scene: &RenderScene, raster: &PixelRaster<'_, impl PixelCamera>) -> Self {
-        let visible = VisiblePoints::trace(scene, raster);
+        let visible = VisiblePoints::trace(scene, raster, FEW_PATHS);
         let starts = StartDensity::default();
         CausticView { visible, starts, spacing: None, pixel_m: raster.pixel_m, learning_photons: 0 }
     }
@@ -70,12 +74,13 @@ impl CausticView {
         seed: u32,
         control: &RenderControl,
     ) -> Self {
-        let mut view = Self::unguided(scene, raster);
+        let mut view =
+            CausticView { visible: VisiblePoints::trace(scene, raster, PATHS), ..Self::unguided(scene, raster) };
         let all = (photons / PHOTONS_PER_LEARNING_PHOTON).clamp(MIN_PHOTONS, MAX_PHOTONS);
         let photons = (all as u32 / ROUNDS).next_multiple_of(TASK);
         let mut learner = StartLearner::new(scene);
         let mut wider = Vec::new();
-        let (mut last_widening, mut exact_rounds) = (usize::MAX, 0);
+        let (mut widest, mut exact_rounds) = (WIDENINGS.len(), 0);
         for round in 0..ROUNDS {
             if control.is_cancelled() || exact_rounds == EXACT_ROUNDS {
                 break;
@@ -83,40 +88,49 @@ impl CausticView {
             let arrived = view.trace_round(scene, round, photons, seed, control);
             view.learning_photons += u64::from(photons);
 
-            // Find the least radii within which enough photons arrive
-            let (widening, near) = view.nearest(&arrived, &mut wider);
+            // Find the least radii within which enough photons arrive, at most those of the last round
+            let (widening, near) = view.nearest(&arrived, widest, &mut wider);
             if near.is_empty() {
                 break;
             }
             // Counts for other radii say nothing about these
-            if widening != last_widening {
+            if widening < widest {
                 learner.clear();
             }
             let sections: Vec<u16> = near.iter().map(|photon| photon.section).collect();
             let positions: Vec<Vec3> = near.iter().map(|photon| photon.position).collect();
             learner.add(&view.starts, photons, &sections);
             view.starts = learner.density();
-            view.spacing = Some(PhotonSpacing::new(&positions, photons));
-            last_widening = widening;
+            if widening < widest || near.len() >= ENOUGH {
+                view.spacing = Some(PhotonSpacing::new(&positions, photons));
+            }
+            widest = widening;
             exact_rounds += u32::from(widening == 0);
         }
         view
     }
 
-    /// Selects those photons that arrive near visible points: within the least radii that hold enough of them. Returns
-    /// the index of the widening, too. `wider` keeps the widened points from round to round.
-    fn nearest(&self, arrived: &[ArrivedPhoton], wider: &mut Vec<VisiblePoints>) -> (usize, Vec<ArrivedPhoton>) {
-        for (index, factor) in WIDENINGS.into_iter().enumerate() {
+    /// Selects those photons that arrive near visible points: within the least radii that hold enough of them, up to the
+    /// `widest`. Returns the index of the widening, too. `wider` keeps the widened points from round to round.
+    fn nearest(
+        &self,
+        arrived: &[ArrivedPhoton],
+        widest: usize,
+        wider: &mut Vec<Surroundings>,
+    ) -> (usize, Vec<ArrivedPhoton>) {
+        let widest = widest.min(WIDENINGS.len() - 1);
+        let mut near = Vec::new();
+        for (index, factor) in WIDENINGS.into_iter().enumerate().take(widest + 1) {
             if wider.len() == index {
-                wider.push(self.visible.widened(factor));
+                wider.push(self.visible.surroundings(factor));
             }
-            let near = arrived.par_iter().filter(|photon| wider[index].is_near(photon.position));
-            let near: Vec<ArrivedPhoton> = near.copied().collect();
+            let within = arrived.par_iter().filter(|photon| wider[index].contains(photon.position));
+            near = within.copied().collect();
             if near.len() >= ENOUGH {
                 return (index, near);
             }
         }
-        (WIDENINGS.len(), arrived.to_vec())
+        (widest, near)
     }
 
     /// Traces a round of photons.
@@ -129,6 +143,9 @@ impl CausticView {
         control: &RenderControl,
     ) -> Vec<ArrivedPhoton> {
         let trace_task = |task: u32| {
+            if control.is_cancelled() {
+                return Vec::new();
+            }
             let mut receiver = ArrivalRecorder::default();
             let mut tracer = PhotonTracer::new(scene, &self.starts);
             for index in 0..TASK {

@@ -11,8 +11,6 @@ use crate::raytrace::sampler::{self, Dimensions, Sampler};
 use glam::{IVec3, Vec3};
 use std::collections::HashMap;
 
-/// Number of camera paths.
-const PATHS: u32 = 4096;
 /// Radius around a point that counts as visible, in distances between neighbouring camera rays.
 const RADIUS_SPACINGS: f32 = 0.75;
 /// Least cosine to the surface by which this radius is divided.
@@ -31,7 +29,11 @@ pub struct PixelRaster<'a, C> {
 
 /// Points on non-specular surfaces that the camera sees directly or through specular surfaces.
 #[derive(Debug, Default)]
-pub struct VisiblePoints {
+pub struct VisiblePoints(Vec<VisiblePoint>);
+
+/// The surroundings of visible points.
+#[derive(Debug, Default)]
+pub struct Surroundings {
     points: Vec<VisiblePoint>,
     /// Points by the cells that their surroundings overlap. A cell is at least twice as wide as the radius of its points:
     /// there is a grid for each power of two.
@@ -52,15 +54,15 @@ pub struct VisiblePoint {
 }
 
 impl VisiblePoints {
-    /// Traces camera paths of a picture.
-    pub fn trace(scene: &RenderScene, raster: &PixelRaster<'_, impl PixelCamera>) -> Self {
+    /// Traces about so many camera paths of a picture.
+    pub fn trace(scene: &RenderScene, raster: &PixelRaster<'_, impl PixelCamera>, paths: u32) -> Self {
         let PixelRaster { camera, size: (width, height), pixel_m } = *raster;
         // One pixel of so many across and down
-        let stride = (f64::from(width) * f64::from(height) / f64::from(PATHS)).sqrt().max(1.0);
+        let stride = (f64::from(width) * f64::from(height) / f64::from(paths)).sqrt().max(1.0);
         let across = (f64::from(width) / stride) as u32;
         let down = (f64::from(height) / stride) as u32;
         let spacing = stride as f32 * pixel_m;
-        let mut visible = VisiblePoints::default();
+        let mut points = Vec::new();
         let mut caster = RayCaster::new(scene);
         for cell in 0..across * down {
             let at = |index: u32| ((f64::from(index) + 0.5) * stride) as u32;
@@ -68,26 +70,36 @@ impl VisiblePoints {
             let (origin, direction) = camera_ray(camera, &sampler);
             trace_path(&mut caster, origin, direction, &sampler, |position, distance, cos| {
                 let radius = RADIUS_SPACINGS * spacing * distance / cos.max(MIN_COSINE);
-                visible.add(VisiblePoint { position, distance, radius });
+                points.push(VisiblePoint { position, distance, radius });
             });
         }
-        visible
+        VisiblePoints(points)
+    }
+
+    /// The distance below which there is this share of the points, metres; 0 without points.
+    pub fn distance_quantile(&self, share: f32) -> f32 {
+        let mut distances: Vec<f32> = self.0.iter().map(|point| point.distance).collect();
+        let n = ((distances.len() as f32 * share) as usize).min(distances.len().saturating_sub(1));
+        if distances.is_empty() { 0.0 } else { *distances.select_nth_unstable_by(n, f32::total_cmp).1 }
     }
 
     /// The points.
+    #[cfg(test)]
     pub fn points(&self) -> &[VisiblePoint] {
-        &self.points
+        &self.0
     }
 
-    /// The same points, with radii that are wider by a factor.
-    pub fn widened(&self, factor: f32) -> Self {
-        let mut wider = VisiblePoints::default();
-        self.points.iter().for_each(|point| wider.add(VisiblePoint { radius: factor * point.radius, ..*point }));
-        wider
+    /// What is within the radii of the points, times a factor.
+    pub fn surroundings(&self, factor: f32) -> Surroundings {
+        let mut surroundings = Surroundings::default();
+        self.0.iter().for_each(|point| surroundings.add(VisiblePoint { radius: factor * point.radius, ..*point }));
+        surroundings
     }
+}
 
+impl Surroundings {
     /// Returns true if a position is near a visible point.
-    pub fn is_near(&self, position: Vec3) -> bool {
+    pub fn contains(&self, position: Vec3) -> bool {
         let near = |index: &u32| {
             let point = self.points[*index as usize];
             point.position.distance_squared(position) <= point.radius * point.radius

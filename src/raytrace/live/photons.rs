@@ -13,14 +13,14 @@ const LEARNING_SAMPLES: u64 = 1;
 /// Photons that cost as much as one path.
 const PHOTONS_PER_PATH: u64 = 4;
 
-/// The photon map of one scene and sample.
+/// The photon map of one scene, camera and sample.
 #[derive(Debug, Default)]
 pub struct LivePhotons {
     /// Index of the sample that the map is for.
     sample: u32,
     map: Option<PhotonMap>,
-    /// What this camera sees of caustics.
-    view: Option<(LiveCamera, Arc<CausticView>)>,
+    /// What the camera sees of caustics; none until it is learned.
+    view: Option<Arc<CausticView>>,
 }
 
 impl LivePhotons {
@@ -34,10 +34,12 @@ impl LivePhotons {
         let photons = if sample == 0 { MIN_PHOTONS } else { pixels / PIXELS_PER_PHOTON };
         let pass = PhotonPass { first_sample: sample, samples: 1, photons, seed: 0 };
         let (view, learned) = self.view(scene, camera, sample, control);
+        if sample > 0 && !control.is_cancelled() {
+            self.view = Some(view.clone());
+        }
         let map = PhotonMap::trace(scene, &pass, &view, control);
         // A cancelled map is incomplete.
         self.map = (!control.is_cancelled()).then_some(map);
-        self.view = (!control.is_cancelled() && sample > 0).then_some((*camera, view));
         self.sample = sample;
         (photons + learned) / PHOTONS_PER_PATH
     }
@@ -55,9 +57,9 @@ impl LivePhotons {
         let raster = PixelRaster { camera, size: camera.size, pixel_m };
         let pixels = u64::from(camera.size.0) * u64::from(camera.size.1);
         match &self.view {
-            Some((seen_by, view)) if seen_by == camera => (view.clone(), 0),
-            _ if sample == 0 => (Arc::new(CausticView::unguided(scene, &raster)), 0),
-            _ => {
+            Some(view) => (view.clone(), 0),
+            None if sample == 0 => (Arc::new(CausticView::unguided(scene, &raster)), 0),
+            None => {
                 let view = CausticView::learn(scene, &raster, pixels * LEARNING_SAMPLES, 0, control);
                 let photons = view.learning_photons;
                 (Arc::new(view), photons)
