@@ -11,8 +11,8 @@ use std::path::Path;
 
 /// First bytes of a checkpoint.
 const MAGIC: &[u8; 16] = b"Catchlight film2";
-/// Number of the way in which samples are taken: a version of the program that gives other samples has another one.
-const SAMPLES: u32 = 2;
+/// Version of the sampling, incremented when the same seed gives other samples.
+const SAMPLING_VERSION: u32 = 3;
 /// Bytes before the film: magic and render. Bytes after it: the hash of all before.
 const HEAD: usize = MAGIC.len() + 8;
 const TAIL: usize = 8;
@@ -26,7 +26,7 @@ impl RenderId {
     /// Returns the identity of a render. `settings` is any text that differs between different renders of a studio.
     pub fn new(scene: &Scene, assets: &Assets, settings: &str) -> Self {
         let mut hasher = DefaultHasher::new();
-        (env!("CARGO_PKG_VERSION"), SAMPLES).hash(&mut hasher);
+        (env!("CARGO_PKG_VERSION"), SAMPLING_VERSION).hash(&mut hasher);
         settings.hash(&mut hasher);
         super::write_scene(scene).hash(&mut hasher);
         // The scene names figures by their parameters, and files by their paths alone.

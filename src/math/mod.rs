@@ -1,9 +1,10 @@
-//! Mathematics beyond glam: safe square roots and angles, frames, quadrature, sampling warps with their densities, rays with error
-//! bounds, SIMD dispatch.
+//! Mathematics beyond glam: safe square roots and angles, frames, quadrature, quantiles, sampling warps with their
+//! densities, rays with error bounds, SIMD dispatch.
 
 mod angle;
 mod frame;
 mod quadrature;
+mod quantile;
 mod ray;
 mod safe;
 pub mod simd;
@@ -12,5 +13,6 @@ pub mod warp;
 pub use angle::{sin_cos_eighth, sin_cos_turn};
 pub use frame::{look_along, look_at, orthonormal_basis};
 pub use quadrature::gauss_legendre;
+pub use quantile::quantile;
 pub use ray::{Ray, gamma, offset_origin};
 pub use safe::{angle_between, safe_acos, safe_sqrt};

@@ -4,7 +4,7 @@ use super::sampler::{self, Dimensions, SampleId, Sampler};
 use crate::math::warp;
 use crate::photo::exposure;
 use crate::scene::{Camera, CameraFrame, FocusedLens, Scene};
-use glam::{Vec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 
 /// The aperture of a thin lens and its plane of focus.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +37,12 @@ pub trait PixelCamera {
     /// Origin and unit direction of the ray through a point of the picture, in pixels from the top left; `u` samples
     /// the lens.
     fn ray(&self, point_px: Vec2, u: Vec2) -> (Vec3, Vec3);
+
+    /// Returns the number of pixels across and down.
+    fn size(&self) -> (u32, u32);
+
+    /// Returns the width of a pixel at 1 m, metres.
+    fn pixel_m(&self) -> f32;
 }
 
 /// The scene's camera at a picture size. The lens centre is the origin of the tracer's space.
@@ -44,7 +50,7 @@ pub trait PixelCamera {
 pub struct FilmCamera {
     aperture: Aperture,
     frame: CameraFrame,
-    size: Vec2,
+    size: (u32, u32),
 }
 
 impl FilmCamera {
@@ -52,16 +58,19 @@ impl FilmCamera {
     pub fn forward(&self) -> Vec3 {
         self.frame.forward()
     }
-
-    /// Width of a pixel at 1 m, metres.
-    pub fn pixel_m(&self) -> f32 {
-        2.0 * self.frame.half_extent.x / self.size.x
-    }
 }
 
 impl PixelCamera for FilmCamera {
     fn ray(&self, point_px: Vec2, u: Vec2) -> (Vec3, Vec3) {
-        self.aperture.ray(&self.frame, point_px / self.size, u)
+        self.aperture.ray(&self.frame, point_px / UVec2::from(self.size).as_vec2(), u)
+    }
+
+    fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    fn pixel_m(&self) -> f32 {
+        2.0 * self.frame.half_extent.x / self.size.0 as f32
     }
 }
 
@@ -113,8 +122,7 @@ impl Lens {
 
     /// The camera for a picture of so many pixels.
     pub fn film_camera(&self, width: u32, height: u32) -> FilmCamera {
-        let size = Vec2::new(width as f32, height as f32);
-        FilmCamera { aperture: self.aperture, frame: self.frame(size.x / size.y), size }
+        FilmCamera { aperture: self.aperture, frame: self.frame(width as f32 / height as f32), size: (width, height) }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Sample passes: progressive rendering in passes of 1, 1, 2, 4 ... samples per pixel, each with its own photons.
 
-use super::caustics::{CausticView, MIN_PHOTONS, PhotonMap, PhotonPass, PixelRaster};
+use super::caustics::{CausticView, MIN_PHOTONS, PhotonMap, PhotonPass};
 use super::control::RenderControl;
 use super::render_scene::RenderScene;
 use super::settings::{Method, Settings};
@@ -62,19 +62,17 @@ pub fn uses_photons(scene: &RenderScene, settings: &Settings) -> bool {
 pub struct RenderPhotons<'a> {
     scene: &'a RenderScene,
     settings: &'a Settings,
-    /// What the camera sees of caustics. None for a render without photons.
+    /// Visible surfaces and density of starts. None for a render without photons.
     view: Option<Arc<CausticView>>,
 }
 
 impl<'a> RenderPhotons<'a> {
-    /// Learns where photons start, if the render has any. Of no use if `control` is cancelled.
+    /// Learns the density of the photons' starts, if the render has any. Of no use if `control` is cancelled.
     pub fn new(scene: &'a RenderScene, settings: &'a Settings, control: &RenderControl) -> Self {
         let view = uses_photons(scene, settings).then(|| {
             let camera = scene.lens.film_camera(settings.width, settings.height);
-            let size = (settings.width, settings.height);
-            let raster = PixelRaster { camera: &camera, size, pixel_m: camera.pixel_m() };
             let photons = settings.pixels() * u64::from(settings.spp);
-            Arc::new(CausticView::learn(scene, &raster, photons, settings.seed, control))
+            Arc::new(CausticView::learn(scene, &camera, photons, settings.seed, control))
         });
         RenderPhotons { scene, settings, view }
     }

@@ -8,7 +8,7 @@
 
 use super::aggregate::Hit;
 use super::bsdf::{Bsdf, Polarisation, SurfaceBsdf};
-use super::caustics::{CausticMis, GatherDensities, PhotonMap, StartDensity};
+use super::caustics::{CausticMis, GatherDensities, GatherPoint, PhotonMap};
 use super::emitters::MisVertex;
 use super::events::{Lobe, PathEnd, PathEvent, PathVertex};
 use super::geometry::SurfaceInteraction;
@@ -313,21 +313,10 @@ impl<'a> PathTracer<'a> {
         let max_specular_depth = limits.max_depth - 1 - path.depth;
         let photons = map.for_depth(path.non_specular_depth);
         sink.record(|| PathEvent::PhotonGather { radius: photons.radius(path.camera_distance) });
-        let gatherer = (path.split_factor, path.camera_distance);
-        photons.gather(surface, bsdf, gatherer, max_specular_depth, |layer, value| {
+        let point = GatherPoint { surface, bsdf, paths: path.split_factor, camera_distance: path.camera_distance };
+        photons.gather(&point, max_specular_depth, |layer, value| {
             sink.add(layer, path.throughput * value);
         });
-    }
-
-    /// Density with which photons start at a hit, relative to a uniform one: those that the path's last non-specular
-    /// vertex gathers. None where no photons start.
-    fn start_density(&self, path: &PathState, hit: &Hit) -> Option<f32> {
-        let scene = self.caster.scene;
-        match self.photon_map.filter(|_| path.non_specular_depth > 0) {
-            Some(map) => map.for_depth(path.non_specular_depth - 1).start_density(scene, hit),
-            // A meter's paths start at the receptor, which receives photons that start uniformly
-            None => scene.casters.relative_density(&StartDensity::default(), hit),
-        }
     }
 
     /// Continues with several paths from a vertex. Where all lights are sampled, one light sample serves all paths.
@@ -465,7 +454,9 @@ impl<'a> PathTracer<'a> {
             let is_caster = self.caster.scene.materials[surface.material as usize].is_caustic_caster();
             path.gather = path.gather.filter(|_| is_caster);
             let photons = path.gather.and_then(|gather| {
-                let start_density = self.start_density(path, point.hit)?;
+                let scene = self.caster.scene;
+                let depth = path.non_specular_depth;
+                let start_density = PhotonMap::start_density(self.photon_map, scene, depth, point.hit)?;
                 Some(CausticMis::new(gather, surface, sample.direction, start_density))
             });
             path.mis_vertex.scatter_specular(surface, outside, sample.is_transmission, photons);

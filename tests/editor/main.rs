@@ -124,7 +124,7 @@ fn bald_preset() -> StudioSource {
     StudioSource::Memory(Box::new(SCENE.clone()))
 }
 
-/// What the live view shows in a window unless a test is about it: one sample a pixel, direct light.
+/// Returns the view options of a window in tests that are not about them: one sample a pixel, direct light.
 fn plain_view() -> ViewOptions {
     ViewOptions { smooth_edges: false, bounced_light: false, ..ViewOptions::default() }
 }

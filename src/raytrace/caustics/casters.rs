@@ -23,9 +23,9 @@ pub struct CausticCasters {
     patches: Vec<Patch>,
     /// Cumulative areas, square metres.
     areas: Vec<f64>,
-    /// Index into `patches` of the patches in the order of the meshes.
-    places: Vec<u32>,
-    /// For each instance that has casters, the first patch of each triangle and the end, as indices into `places`.
+    /// Index along the curve of each patch in the order of the meshes.
+    curve_indices: Vec<u32>,
+    /// For each instance that has casters, the first patch of each triangle and the end, as indices into `curve_indices`.
     first_patches: Vec<Option<Vec<u32>>>,
 }
 
@@ -68,24 +68,25 @@ impl CausticCasters {
         let code = curve(unsorted.iter().map(|(_, centre, _)| *centre));
         let mut order: Vec<(u64, u32)> = (0..).zip(&unsorted).map(|(i, (_, centre, _))| (code(*centre), i)).collect();
         order.par_sort_unstable();
-        let mut casters = CausticCasters { places: vec![0; order.len()], first_patches, ..CausticCasters::default() };
+        let mut casters =
+            CausticCasters { curve_indices: vec![0; order.len()], first_patches, ..CausticCasters::default() };
         let mut total = 0.0;
-        for (place, (_, index)) in (0..).zip(order) {
+        for (curve_index, (_, index)) in (0..).zip(order) {
             let (patch, _, area) = unsorted[index as usize];
             total += area;
             casters.patches.push(patch);
             casters.areas.push(total);
-            casters.places[index as usize] = place;
+            casters.curve_indices[index as usize] = curve_index;
         }
         casters
     }
 
-    /// Total area, square metres.
+    /// Returns the total area, square metres.
     pub fn area(&self) -> f32 {
         self.areas.last().copied().unwrap_or(0.0) as f32
     }
 
-    /// Density of photons that start uniformly on the casters with directions of density `pdf`, at `cos` to the
+    /// Returns the density of photons that start uniformly on the casters with directions of density `pdf`, at `cos` to the
     /// surface: in perpendicular area and solid angle, 1/(m2 sr).
     pub fn density(&self, pdf: f32, cos: f32) -> f32 {
         pdf / (self.area() * cos)
@@ -108,7 +109,7 @@ impl CausticCasters {
         })
     }
 
-    /// The centres of so many equal sections of the curve: each is in the patch in the middle of its section.
+    /// Returns the centres of so many equal sections of the curve: each is in the patch in the middle of its section.
     pub fn section_centres(&self, aggregate: &Aggregate, sections: usize) -> Vec<Vec3> {
         let Some(total) = self.areas.last() else { return Vec::new() };
         let centre = |section: usize| {
@@ -120,7 +121,7 @@ impl CausticCasters {
         (0..sections).map(centre).collect()
     }
 
-    /// Density of points sampled by `starts` at a hit, relative to points that are uniform in area. None where there is no
+    /// Returns the density of points sampled by `starts` at a hit, relative to points that are uniform in area. None where there is no
     /// caster: strands are none.
     pub fn relative_density(&self, starts: &StartDensity, hit: &Hit) -> Option<f32> {
         let Primitive::Triangle(TriangleHit { triangle, barycentric, .. }) = hit.primitive else { return None };
@@ -130,10 +131,10 @@ impl CausticCasters {
             return None;
         }
         let patch = first + Patch::index_at(end - first, barycentric);
-        Some(starts.relative_density(self.span(self.places[patch as usize] as usize)))
+        Some(starts.relative_density(self.span(self.curve_indices[patch as usize] as usize)))
     }
 
-    /// Positions of a patch along the curve.
+    /// Returns the positions of a patch along the curve.
     fn span(&self, index: usize) -> Range<f64> {
         let total = self.areas.last().copied().unwrap_or(1.0);
         let before = index.checked_sub(1).map_or(0.0, |before| self.areas[before]);
@@ -141,7 +142,7 @@ impl CausticCasters {
     }
 }
 
-/// Areas of the triangles of an instance in square metres, 0 for those that cast no caustics. None without casters.
+/// Returns the areas of the triangles of an instance in square metres, 0 for those that cast no caustics. None without casters.
 fn triangle_areas(instance: &Instance, materials: &[TracedMaterial]) -> Option<Vec<f64>> {
     let casts: Vec<bool> = instance.materials.iter().map(|&m| materials[m as usize].is_caustic_caster()).collect();
     let area = |triangle: u32| {

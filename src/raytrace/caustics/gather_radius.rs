@@ -2,7 +2,7 @@
 
 use super::photon::Photon;
 use super::photon_pass::PhotonPass;
-use super::photon_spacing::{MAX_FILLED_RADIUS_M, filled_radius};
+use super::photon_spacing::{MAX_FILLED_RADIUS_M, PhotonSpacing};
 use super::view::CausticView;
 
 /// Gather radius of the first pass, in pixels: little enough blur for the eye to miss.
@@ -37,29 +37,26 @@ impl GatherRadius {
     pub fn of_view(photons: &[Photon], emitted: u32, view: &CausticView, pass: &PhotonPass) -> Self {
         let far_m = view.visible.distance_quantile(FAR_SHARE);
         // A radius that followed the same photons would be smaller where there are more of them by chance
-        let filled = match view.spacing {
-            Some(spacing) => spacing.filled_radius(emitted, pass.samples),
-            None => filled_radius(photons, pass.samples),
-        };
-        let filled = filled.min(MAX_FILLED_RADIUS_M);
+        let spacing = view.spacing.unwrap_or_else(|| PhotonSpacing::new(photons, emitted));
+        let filled = spacing.filled_radius(emitted, pass.samples).min(MAX_FILLED_RADIUS_M);
         let shrink = pass.shrink();
         let per_m = FIRST_RADIUS_PX * view.pixel_m * shrink;
         let most = (per_m * far_m).max(filled * shrink).max(f32::MIN_POSITIVE);
         GatherRadius { per_m, least: (filled * shrink).max(most / MAX_RATIO), most }
     }
 
-    /// The radius for surfaces that indirect light sees, by the photons of a pass.
-    pub fn of_indirect_light(photons: &[Photon], pass: &PhotonPass) -> Self {
-        let filled = INDIRECT_SCALE * filled_radius(photons, pass.samples);
+    /// The radius for surfaces that indirect light sees, by the photons of a pass, of which so many were emitted.
+    pub fn of_indirect_light(photons: &[Photon], emitted: u32, pass: &PhotonPass) -> Self {
+        let filled = INDIRECT_SCALE * PhotonSpacing::new(photons, emitted).filled_radius(emitted, pass.samples);
         Self::constant(filled.min(MAX_INDIRECT_RADIUS_M) * pass.shrink())
     }
 
-    /// The radius on a surface at so many metres from the camera, metres.
+    /// Returns the radius on a surface at so many metres from the camera, metres.
     pub fn at(&self, distance: f32) -> f32 {
         (self.per_m * distance).clamp(self.least, self.most)
     }
 
-    /// The greatest radius, metres.
+    /// Returns the greatest radius, metres.
     pub fn greatest(&self) -> f32 {
         self.most
     }

@@ -1,5 +1,6 @@
 //! The photon: light that arrives at a surface.
 
+use super::grid::Positioned;
 use crate::raytrace::geometry::SurfaceInteraction;
 use glam::Vec3;
 
@@ -21,6 +22,12 @@ pub struct Photon {
     pub density: f32,
     /// Number of reflections and refractions so far.
     pub specular_depth: u16,
+}
+
+impl Positioned for Photon {
+    fn position(&self) -> Vec3 {
+        self.position
+    }
 }
 
 /// Probability with which photons start on the inner side of a closed body, which only a light inside of it reaches.

@@ -36,7 +36,7 @@ impl StartDensity {
         StartDensity { cumulative: Some(cumulative) }
     }
 
-    /// The position along the curve below which the probability is `u`, in [0, 1).
+    /// Returns the position along the curve below which the probability is `u`, in [0, 1).
     pub fn position(&self, u: f64) -> f64 {
         let Some(cumulative) = &self.cumulative else { return u };
         let sections = cumulative.len() - 1;
@@ -46,7 +46,7 @@ impl StartDensity {
         (section as f64 + within) / sections as f64
     }
 
-    /// Mean density between two positions, relative to a uniform one.
+    /// Returns the mean density between two positions, relative to a uniform one.
     pub fn relative_density(&self, span: Range<f64>) -> f32 {
         let length = span.end - span.start;
         if self.cumulative.is_none() || length <= 0.0 {
@@ -55,12 +55,12 @@ impl StartDensity {
         ((self.probability_before(span.end) - self.probability_before(span.start)) / length) as f32
     }
 
-    /// Probability of a section.
+    /// Returns the probability of a section.
     pub fn section_probability(&self, section: usize) -> f64 {
         self.cumulative.as_ref().map_or(1.0 / SECTIONS as f64, |sums| sums[section + 1] - sums[section])
     }
 
-    /// Probability of positions up to this one.
+    /// Returns the probability of positions up to this one.
     fn probability_before(&self, position: f64) -> f64 {
         let Some(cumulative) = &self.cumulative else { return position };
         let sections = cumulative.len() - 1;

@@ -1,10 +1,10 @@
 //! Learning of the density of starts from the photons that arrive on visible surfaces.
 
+use super::grid::{HashGrid, Positioned};
 use super::start_density::{SECTIONS, StartDensity};
 use crate::raytrace::render_scene::RenderScene;
-use glam::{IVec3, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
-use std::collections::HashMap;
 
 /// Weight of the mean importance of its neighbours in that of a section: more sections may matter than were found.
 const NEIGHBOUR_WEIGHT: f64 = 0.3;
@@ -60,17 +60,26 @@ impl StartLearner {
     }
 }
 
-/// Returns the indices of the points within a radius of each.
-fn neighbours(points: &[Vec3], radius: f32) -> Vec<Vec<u16>> {
-    let cell = |position: Vec3| (position / radius).floor().as_ivec3();
-    let mut cells: HashMap<IVec3, Vec<u16>> = HashMap::new();
-    (0..).zip(points).for_each(|(index, point)| cells.entry(cell(*point)).or_default().push(index));
-    let near = |point: &Vec3| {
-        let middle = cell(*point);
-        let around = (0..27).map(|i| middle.wrapping_add(IVec3::new(i % 3, i / 3 % 3, i / 9) - 1));
-        let candidates = around.filter_map(|cell| cells.get(&cell)).flatten().copied();
-        let near = candidates.filter(|index| points[usize::from(*index)].distance(*point) < radius);
-        near.take(MAX_NEIGHBOURS).collect()
+/// The centre of a section.
+#[derive(Clone, Copy, Debug)]
+struct SectionCentre {
+    position: Vec3,
+    section: u16,
+}
+
+impl Positioned for SectionCentre {
+    fn position(&self) -> Vec3 {
+        self.position
+    }
+}
+
+/// Returns the sections within a radius of the centre of each, itself among them.
+fn neighbours(centres: &[Vec3], radius: f32) -> Vec<Vec<u16>> {
+    let centres: Vec<SectionCentre> =
+        (0..).zip(centres).map(|(section, &position)| SectionCentre { position, section }).collect();
+    let grid = HashGrid::new(&centres, radius);
+    let near = |centre: &SectionCentre| {
+        grid.near(centre.position, radius).map(|(near, _)| near.section).take(MAX_NEIGHBOURS).collect()
     };
-    points.par_iter().map(near).collect()
+    centres.par_iter().map(near).collect()
 }

@@ -1,5 +1,5 @@
 use super::casters::CasterPoint;
-use super::grid::PhotonGrid;
+use super::grid::HashGrid;
 use super::photon::Photon;
 use super::photon_tracer::shading_correction;
 use super::*;
@@ -23,14 +23,14 @@ fn grid_queries_match_brute_force() {
     let photons: Vec<Photon> = (0..3000).map(|_| photon(rng.direction() * rng.range(0.0, 2.0))).collect();
     for radius in [0.01, 0.2, 5.0] {
         // Queries may be smaller than the cells
-        let grid = PhotonGrid::new(photons.clone(), 1.5 * radius);
+        let grid = HashGrid::new(&photons, 1.5 * radius);
         let mut most = 0;
         for _ in 0..300 {
             let position = rng.direction() * rng.range(0.0, 2.1);
-            let mut found = Vec::new();
-            grid.for_each_near(position, radius, |photon, distance2| {
-                found.push((photon.position.to_array(), distance2))
-            });
+            let mut found: Vec<_> = grid
+                .near(position, radius)
+                .map(|(photon, distance2)| (photon.position.to_array(), distance2))
+                .collect();
             let near = |p: &&Photon| p.position.distance_squared(position) < radius * radius;
             let mut all: Vec<_> = photons
                 .iter()
@@ -45,7 +45,7 @@ fn grid_queries_match_brute_force() {
         }
         assert!(most > 0, "nothing to find within {radius}");
     }
-    PhotonGrid::new(Vec::new(), 0.1).for_each_near(Vec3::ZERO, 0.1, |_, _| panic!("found in nothing"));
+    assert_eq!(HashGrid::<Photon>::new(&[], 0.1).near(Vec3::ZERO, 0.1).count(), 0);
 }
 
 #[test]
@@ -156,12 +156,11 @@ fn a_cancelled_photon_pass_traces_nothing() {
     control.cancel();
     let settings = Settings { width: 40, height: 30, ..Settings::default() };
     let camera = scene.lens.film_camera(40, 30);
-    let raster = PixelRaster { camera: &camera, size: (40, 30), pixel_m: camera.pixel_m() };
-    let view = Arc::new(CausticView::learn(&scene, &raster, 1 << 20, settings.seed, &control));
+    let view = Arc::new(CausticView::learn(&scene, &camera, 1 << 20, settings.seed, &control));
     let pass = PhotonPass { first_sample: 0, samples: 16, photons: 1 << 20, seed: settings.seed };
     let map = PhotonMap::trace(&scene, &pass, &view, &control);
     assert_eq!(control.rays(), 0);
-    map.full.grid.for_each_near(Vec3::ZERO, map.full.radius(1.0), |_, _| panic!("a photon of a cancelled pass"));
+    assert_eq!(map.full.grid.near(Vec3::ZERO, map.full.radius(1.0)).count(), 0);
 }
 
 #[test]
@@ -199,19 +198,18 @@ fn photons_start_where_they_reach_the_picture() {
     let scene = prepare(&close_up(), &Assets::default()).unwrap();
     let camera = scene.lens.film_camera(60, 40);
     let control = RenderControl::new();
-    let raster = PixelRaster { camera: &camera, size: (60, 40), pixel_m: camera.pixel_m() };
-    let learned = CausticView::learn(&scene, &raster, 1 << 20, 0, &control);
-    let uniform = CausticView::unguided(&scene, &raster);
+    let learned = CausticView::learn(&scene, &camera, 1 << 20, 0, &control);
+    let uniform = CausticView::unguided(&scene, &camera);
     let visible = |view: CausticView| {
         let pass = PhotonPass { first_sample: 0, samples: 1, photons: 1 << 15, seed: 7 };
         let view = Arc::new(view);
         let map = PhotonMap::trace(&scene, &pass, &view, &control);
         let mut seen = 0;
         for point in view.visible.points() {
-            map.full.grid.for_each_near(point.position, map.full.radius(point.distance), |_, _| seen += 1);
+            seen += map.full.grid.near(point.position, map.full.radius(point.distance)).count();
         }
         let area: f32 = map.full.area(view.visible.points()[0].distance);
-        f64::from(seen) / f64::from(area)
+        seen as f64 / f64::from(area)
     };
     let gain = visible(learned) / visible(uniform);
     assert!(gain > 10.0, "{gain:.1} times the photons in the picture");
@@ -224,7 +222,6 @@ fn a_guided_close_up_has_the_light_of_paths_from_every_start() {
     let scene = prepare(&studio, &Assets::default()).unwrap();
     let camera = scene.lens.film_camera(24, 16);
     let control = RenderControl::new();
-    let raster = PixelRaster { camera: &camera, size: (24, 16), pixel_m: camera.pixel_m() };
     let flux = |view: CausticView| {
         let surroundings = view.visible.surroundings(1.0);
         let (mut sum, mut squares) = (0.0, 0.0);
@@ -245,10 +242,10 @@ fn a_guided_close_up_has_the_light_of_paths_from_every_start() {
         (mean, (squares / f64::from(PASSES) - mean * mean).sqrt() / f64::from(PASSES).sqrt())
     };
     let ((guided, guided_error), (uniform, error)) = (
-        flux(CausticView::learn(&scene, &raster, 1 << 20, 0, &control)),
+        flux(CausticView::learn(&scene, &camera, 1 << 20, 0, &control)),
         flux(CausticView {
             starts: StartDensity::default(),
-            ..CausticView::learn(&scene, &raster, 1 << 20, 0, &control)
+            ..CausticView::learn(&scene, &camera, 1 << 20, 0, &control)
         }),
     );
     assert!(uniform > 0.0 && error / uniform < 0.1, "{uniform} +- {error}");

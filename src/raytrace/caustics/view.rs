@@ -1,20 +1,21 @@
-//! What the camera sees of caustics, and where photons start for it.
+//! The caustic view of a picture: the visible surfaces, and the density of photon starts that serves them.
 //!
 //! A close-up shows a small part of the studio, where few photons arrive that start everywhere. So photons start mostly
 //! on those parts of the casters from which photons reached visible surfaces before (Peter and Pietrek 1998, "Importance
 //! Driven Construction of Photon Maps"; Hachisuka and Jensen 2011, "Robust Adaptive Photon Tracing Using Photon Path
 //! Visibility"). Their flux is divided by the density of their starts: the expected light is the same.
 
+use super::grid::Positioned;
 use super::photon::Photon;
 use super::photon_spacing::PhotonSpacing;
-use super::photon_tracer::{PhotonReceiver, PhotonTracer};
+use super::photon_tasks::PhotonTasks;
+use super::photon_tracer::PhotonReceiver;
 use super::start_density::{SECTIONS, StartDensity};
 use super::start_learner::StartLearner;
-use super::visible_points::{PixelRaster, Surroundings, VisiblePoints};
+use super::visible_points::{Surroundings, VisiblePoints};
 use crate::raytrace::control::RenderControl;
 use crate::raytrace::lens::PixelCamera;
 use crate::raytrace::render_scene::RenderScene;
-use crate::raytrace::sampler::Sampler;
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -58,26 +59,26 @@ pub struct CausticView {
 }
 
 impl CausticView {
-    /// The view of a picture. Photons start uniformly.
-    pub fn unguided(scene: &RenderScene, raster: &PixelRaster<'_, impl PixelCamera>) -> Self {
-        let visible = VisiblePoints::trace(scene, raster, FEW_PATHS);
+    /// The view of a camera. Photons start uniformly.
+    pub fn unguided(scene: &RenderScene, camera: &impl PixelCamera) -> Self {
+        let visible = VisiblePoints::trace(scene, camera, FEW_PATHS);
         let starts = StartDensity::default();
-        CausticView { visible, starts, spacing: None, pixel_m: raster.pixel_m, learning_photons: 0 }
+        CausticView { visible, starts, spacing: None, pixel_m: camera.pixel_m(), learning_photons: 0 }
     }
 
     /// Learns where photons start for a picture for which so many `photons` are traced, by a part of their number, on
     /// rayon's current pool. Of no use if `control` is cancelled.
     pub fn learn(
         scene: &RenderScene,
-        raster: &PixelRaster<'_, impl PixelCamera>,
+        camera: &impl PixelCamera,
         photons: u64,
         seed: u32,
         control: &RenderControl,
     ) -> Self {
         let mut view =
-            CausticView { visible: VisiblePoints::trace(scene, raster, PATHS), ..Self::unguided(scene, raster) };
+            CausticView { visible: VisiblePoints::trace(scene, camera, PATHS), ..Self::unguided(scene, camera) };
         let all = (photons / PHOTONS_PER_LEARNING_PHOTON).clamp(MIN_PHOTONS, MAX_PHOTONS);
-        let photons = (all as u32 / ROUNDS).next_multiple_of(TASK);
+        let tasks = (all as u32 / ROUNDS).div_ceil(TASK);
         let mut learner = StartLearner::new(scene);
         let mut wider = Vec::new();
         let (mut widest, mut exact_rounds) = (WIDENINGS.len(), 0);
@@ -85,8 +86,10 @@ impl CausticView {
             if control.is_cancelled() || exact_rounds == EXACT_ROUNDS {
                 break;
             }
-            let arrived = view.trace_round(scene, round, photons, seed, control);
-            view.learning_photons += u64::from(photons);
+            let photons = PhotonTasks { tasks, photons: TASK, set: round, seed: seed ^ SEED };
+            let recorders = photons.trace::<ArrivalRecorder>(scene, &view.starts, control);
+            let arrived = recorders.into_iter().flat_map(|recorder| recorder.arrived).collect::<Vec<_>>();
+            view.learning_photons += u64::from(photons.emitted());
 
             // Find the least radii within which enough photons arrive, at most those of the last round
             let (widening, near) = view.nearest(&arrived, widest, &mut wider);
@@ -98,11 +101,10 @@ impl CausticView {
                 learner.clear();
             }
             let sections: Vec<u16> = near.iter().map(|photon| photon.section).collect();
-            let positions: Vec<Vec3> = near.iter().map(|photon| photon.position).collect();
-            learner.add(&view.starts, photons, &sections);
+            learner.add(&view.starts, photons.emitted(), &sections);
             view.starts = learner.density();
             if widening < widest || near.len() >= ENOUGH {
-                view.spacing = Some(PhotonSpacing::new(&positions, photons));
+                view.spacing = Some(PhotonSpacing::new(&near, photons.emitted()));
             }
             widest = widening;
             exact_rounds += u32::from(widening == 0);
@@ -132,40 +134,20 @@ impl CausticView {
         }
         (widest, near)
     }
-
-    /// Traces a round of photons.
-    fn trace_round(
-        &self,
-        scene: &RenderScene,
-        round: u32,
-        photons: u32,
-        seed: u32,
-        control: &RenderControl,
-    ) -> Vec<ArrivedPhoton> {
-        let trace_task = |task: u32| {
-            if control.is_cancelled() {
-                return Vec::new();
-            }
-            let mut receiver = ArrivalRecorder::default();
-            let mut tracer = PhotonTracer::new(scene, &self.starts);
-            for index in 0..TASK {
-                let sampler = Sampler::new(task, round, index, seed ^ SEED);
-                tracer.trace(&sampler, photons, &mut receiver);
-            }
-            control.count(tracer.caster.rays, 0);
-            receiver.arrived
-        };
-        let arrived: Vec<Vec<ArrivedPhoton>> = (0..photons / TASK).into_par_iter().map(trace_task).collect();
-        arrived.concat()
-    }
 }
 
-/// Where a photon started and arrived.
+/// Start and end of a photon's path.
 #[derive(Clone, Copy, Debug)]
 struct ArrivedPhoton {
     position: Vec3,
     /// Section of the casters' curve in which it started.
     section: u16,
+}
+
+impl Positioned for ArrivedPhoton {
+    fn position(&self) -> Vec3 {
+        self.position
+    }
 }
 
 /// Records where photons start and arrive.

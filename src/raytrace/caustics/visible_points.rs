@@ -1,45 +1,38 @@
-//! The surfaces on which the camera sees caustics: a coarse grid of camera paths to their first non-specular vertices.
+//! The surfaces on which the camera sees caustics: a coarse raster of camera paths to their non-specular vertices.
 
-use crate::math::Ray;
+use super::grid::{HashGrid, Positioned};
+use crate::math::{Ray, quantile};
 use crate::raytrace::bsdf::Polarisation;
-use crate::raytrace::lens::PixelCamera;
-use crate::raytrace::lens::camera_ray;
+use crate::raytrace::lens::{PixelCamera, camera_ray};
 use crate::raytrace::medium_stack::MediumStack;
 use crate::raytrace::ray_caster::RayCaster;
 use crate::raytrace::render_scene::RenderScene;
 use crate::raytrace::sampler::{self, Dimensions, Sampler};
-use glam::{IVec3, Vec3};
-use std::collections::HashMap;
+use glam::Vec3;
+use std::collections::BTreeMap;
 
 /// Radius around a point that counts as visible, in distances between neighbouring camera rays.
 const RADIUS_SPACINGS: f32 = 0.75;
 /// Least cosine to the surface by which this radius is divided.
 const MIN_COSINE: f32 = 0.2;
 
-/// The pixels of a picture.
-#[derive(Debug)]
-pub struct PixelRaster<'a, C> {
-    /// Makes the camera rays.
-    pub camera: &'a C,
-    /// Pixels across and down.
-    pub size: (u32, u32),
-    /// Width of a pixel at 1 m, metres.
-    pub pixel_m: f32,
-}
-
 /// Points on non-specular surfaces that the camera sees directly or through specular surfaces.
 #[derive(Debug, Default)]
 pub struct VisiblePoints(Vec<VisiblePoint>);
 
 /// The surroundings of visible points.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Surroundings {
-    points: Vec<VisiblePoint>,
-    /// Points by the cells that their surroundings overlap. A cell is at least twice as wide as the radius of its points:
-    /// there is a grid for each power of two.
-    cells: HashMap<(i32, IVec3), Vec<u32>>,
-    /// The powers of two that occur: widths of the cells, metres.
-    widths: Vec<i32>,
+    /// A grid for each power of two of the points' radii.
+    grids: Vec<PointGrid>,
+}
+
+/// Points of about the same radius.
+#[derive(Debug)]
+struct PointGrid {
+    points: HashGrid<VisiblePoint>,
+    /// Their greatest radius, metres.
+    radius: f32,
 }
 
 /// A visible point.
@@ -53,15 +46,21 @@ pub struct VisiblePoint {
     radius: f32,
 }
 
+impl Positioned for VisiblePoint {
+    fn position(&self) -> Vec3 {
+        self.position
+    }
+}
+
 impl VisiblePoints {
     /// Traces about so many camera paths of a picture.
-    pub fn trace(scene: &RenderScene, raster: &PixelRaster<'_, impl PixelCamera>, paths: u32) -> Self {
-        let PixelRaster { camera, size: (width, height), pixel_m } = *raster;
+    pub fn trace(scene: &RenderScene, camera: &impl PixelCamera, paths: u32) -> Self {
+        let (width, height) = camera.size();
         // One pixel of so many across and down
         let stride = (f64::from(width) * f64::from(height) / f64::from(paths)).sqrt().max(1.0);
         let across = (f64::from(width) / stride) as u32;
         let down = (f64::from(height) / stride) as u32;
-        let spacing = stride as f32 * pixel_m;
+        let spacing = stride as f32 * camera.pixel_m();
         let mut points = Vec::new();
         let mut caster = RayCaster::new(scene);
         for cell in 0..across * down {
@@ -76,56 +75,45 @@ impl VisiblePoints {
         VisiblePoints(points)
     }
 
-    /// The distance below which there is this share of the points, metres; 0 without points.
+    /// Returns the distance below which there is this share of the points, metres; 0 without points.
     pub fn distance_quantile(&self, share: f32) -> f32 {
         let mut distances: Vec<f32> = self.0.iter().map(|point| point.distance).collect();
-        let n = ((distances.len() as f32 * share) as usize).min(distances.len().saturating_sub(1));
-        if distances.is_empty() { 0.0 } else { *distances.select_nth_unstable_by(n, f32::total_cmp).1 }
+        quantile(&mut distances, share)
     }
 
-    /// The points.
+    /// Returns the points.
     #[cfg(test)]
     pub fn points(&self) -> &[VisiblePoint] {
         &self.0
     }
 
-    /// What is within the radii of the points, times a factor.
+    /// Returns the surroundings of the points: all within their radii, times a factor.
     pub fn surroundings(&self, factor: f32) -> Surroundings {
-        let mut surroundings = Surroundings::default();
-        self.0.iter().for_each(|point| surroundings.add(VisiblePoint { radius: factor * point.radius, ..*point }));
-        surroundings
+        Surroundings::new(self.0.iter().map(|point| VisiblePoint { radius: factor * point.radius, ..*point }))
     }
 }
 
 impl Surroundings {
-    /// Returns true if a position is near a visible point.
-    pub fn contains(&self, position: Vec3) -> bool {
-        let near = |index: &u32| {
-            let point = self.points[*index as usize];
-            point.position.distance_squared(position) <= point.radius * point.radius
+    /// The surroundings of points.
+    fn new(points: impl Iterator<Item = VisiblePoint>) -> Self {
+        let mut by_power: BTreeMap<i32, Vec<VisiblePoint>> = BTreeMap::new();
+        for point in points {
+            let power = point.radius.max(f32::MIN_POSITIVE).log2().ceil() as i32;
+            by_power.entry(power).or_default().push(point);
+        }
+        let grid = |(power, points): (i32, Vec<VisiblePoint>)| {
+            let radius = (power as f32).exp2();
+            PointGrid { points: HashGrid::new(&points, radius), radius }
         };
-        self.widths.iter().any(|&width| {
-            let cell = (position / (width as f32).exp2()).floor().as_ivec3();
-            self.cells.get(&(width, cell)).is_some_and(|points| points.iter().any(near))
-        })
+        Surroundings { grids: by_power.into_iter().map(grid).collect() }
     }
 
-    fn add(&mut self, point: VisiblePoint) {
-        let width = (2.0 * point.radius).max(f32::MIN_POSITIVE).log2().ceil() as i32;
-        if !self.widths.contains(&width) {
-            self.widths.push(width);
-        }
-        let cell = |offset: f32| ((point.position + offset) / (width as f32).exp2()).floor().as_ivec3();
-        let (low, high) = (cell(-point.radius), cell(point.radius));
-        let index = self.points.len() as u32;
-        for x in low.x..=high.x {
-            for y in low.y..=high.y {
-                for z in low.z..=high.z {
-                    self.cells.entry((width, IVec3::new(x, y, z))).or_default().push(index);
-                }
-            }
-        }
-        self.points.push(point);
+    /// Returns true if a position is near a visible point.
+    pub fn contains(&self, position: Vec3) -> bool {
+        let near = |grid: &PointGrid| {
+            grid.points.near(position, grid.radius).any(|(point, distance2)| distance2 < point.radius * point.radius)
+        };
+        self.grids.iter().any(near)
     }
 }
 

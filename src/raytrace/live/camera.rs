@@ -82,6 +82,14 @@ impl PixelCamera for LiveCamera {
         let from = from + self.eye();
         (from + direction * self.room.map_or(0.0, |room| entry(from, direction, room)), direction)
     }
+
+    fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    fn pixel_m(&self) -> f32 {
+        2.0 * self.frame.half_extent.x / self.size.0 as f32
+    }
 }
 
 /// Returns the lower and upper corner of a room in world space.

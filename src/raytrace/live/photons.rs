@@ -2,7 +2,7 @@
 
 use super::camera::LiveCamera;
 use crate::raytrace::RenderControl;
-use crate::raytrace::caustics::{CausticView, MIN_PHOTONS, PhotonMap, PhotonPass, PixelRaster};
+use crate::raytrace::caustics::{CausticView, MIN_PHOTONS, PhotonMap, PhotonPass};
 use crate::raytrace::render_scene::RenderScene;
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ pub struct LivePhotons {
     /// Index of the sample that the map is for.
     sample: u32,
     map: Option<PhotonMap>,
-    /// What the camera sees of caustics; none until it is learned.
+    /// Visible surfaces and density of starts; none until they are learned.
     view: Option<Arc<CausticView>>,
 }
 
@@ -44,8 +44,8 @@ impl LivePhotons {
         (photons + learned) / PHOTONS_PER_PATH
     }
 
-    /// Returns what the camera sees of caustics, and the number of photons that were traced for it: none for the first
-    /// picture, which has no time for them.
+    /// Returns the caustic view and the number of photons that were traced for it: none for the first picture, which
+    /// has no time for them.
     fn view(
         &self,
         scene: &RenderScene,
@@ -53,14 +53,12 @@ impl LivePhotons {
         sample: u32,
         control: &RenderControl,
     ) -> (Arc<CausticView>, u64) {
-        let pixel_m = 2.0 * camera.frame.half_extent.x / camera.size.0 as f32;
-        let raster = PixelRaster { camera, size: camera.size, pixel_m };
         let pixels = u64::from(camera.size.0) * u64::from(camera.size.1);
         match &self.view {
             Some(view) => (view.clone(), 0),
-            None if sample == 0 => (Arc::new(CausticView::unguided(scene, &raster)), 0),
+            None if sample == 0 => (Arc::new(CausticView::unguided(scene, camera)), 0),
             None => {
-                let view = CausticView::learn(scene, &raster, pixels * LEARNING_SAMPLES, 0, control);
+                let view = CausticView::learn(scene, camera, pixels * LEARNING_SAMPLES, 0, control);
                 let photons = view.learning_photons;
                 (Arc::new(view), photons)
             }

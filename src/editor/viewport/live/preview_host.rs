@@ -266,7 +266,7 @@ impl PreviewHost {
 
     fn draw(&mut self, ctx: &Context, document: &Document, wanted: PreviewKey, draft: bool, sample: u32) {
         let began = Instant::now();
-        let bounced_light = self.bounced_light.grid().filter(|_| wanted.options.bounce_estimate);
+        let bounced_light = self.bounced_light.grid();
         let input = PreviewInput {
             scene: document.scene(),
             assets: document.assets(),
