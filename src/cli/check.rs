@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::{input, terminal};
 use crate::jobs;
-use crate::raytrace::RenderControl;
+use crate::raytrace::{GeometryCache, RenderControl};
 use crate::scene::{Assets, Scene};
 use anyhow::Context;
 use std::path::PathBuf;
@@ -35,7 +35,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Prints the portrait lighting pattern on the face of every person in view, and the catchlights.
 fn print_patterns(scene: &Scene, assets: &Assets) -> Result<(), Failure> {
-    let faces = jobs::check_patterns(scene, assets, &jobs::faces_in_view(scene), &RenderControl::new());
+    let faces = jobs::check_patterns(
+        scene,
+        assets,
+        &jobs::faces_in_view(scene),
+        &GeometryCache::default(),
+        &RenderControl::new(),
+    );
     for face in faces.context("the light on faces")?.unwrap_or_default() {
         let name = scene.object(face.object).map_or("", |object| object.name.as_str());
         terminal::result(format_args!("{name}: {}; catchlights: {}", face.lighting, face.catchlight_line()));

@@ -6,7 +6,7 @@ use crate::io::Loaded;
 use crate::jobs::read_meter;
 use crate::photo::meter::{LUX_PER_FOOT_CANDLE, LightReading, Reading, Receptor, nearest_third};
 use crate::photo::thirds::Dial;
-use crate::raytrace::{MeterEffort, MeterPoint, MeterResult, RenderControl};
+use crate::raytrace::{GeometryCache, MeterEffort, MeterPoint, MeterResult, RenderControl};
 use crate::scene::Scene;
 use anyhow::{Context, anyhow};
 use glam::Vec3;
@@ -144,8 +144,9 @@ fn meter_point(arguments: &Arguments, scene: &Scene) -> anyhow::Result<MeterPoin
 
 fn read(arguments: &Arguments, loaded: &Loaded, point: &MeterPoint) -> anyhow::Result<MeterResult> {
     let effort = MeterEffort { paths: arguments.spp, seed: arguments.seed, ..MeterEffort::default() };
-    let (control, mut result) = (RenderControl::new(), None);
-    read_meter(&loaded.scene, &loaded.assets, point, &[effort], &control, &mut |reading| result = Some(reading))?;
+    let (cache, control, mut result) = (GeometryCache::default(), RenderControl::new(), None);
+    let mut observe = |reading| result = Some(reading);
+    read_meter(&loaded.scene, &loaded.assets, point, &[effort], &cache, &control, &mut observe)?;
     result.ok_or_else(|| anyhow!("the reading was cancelled"))
 }
 

@@ -3,8 +3,9 @@
 use super::threads::{Priority, background_pool};
 use super::worker::{Inbox, Interrupt, Wake, Worker, WorkerSettings};
 use crate::photo::meter::Reading;
-use crate::raytrace::{LightMeter, MeterEffort, MeterPoint, MeterResult, PrepareError, RenderControl};
+use crate::raytrace::{GeometryCache, LightMeter, MeterEffort, MeterPoint, MeterResult, PrepareError, RenderControl};
 use crate::scene::{Assets, Meter, Scene};
+use std::sync::Arc;
 
 /// Reads the meter at `point` once for each effort, and calls `observe` with each result until `control` is cancelled.
 ///
@@ -15,10 +16,11 @@ pub fn read_meter(
     assets: &Assets,
     point: &MeterPoint,
     efforts: &[MeterEffort],
+    cache: &GeometryCache,
     control: &RenderControl,
     observe: &mut dyn FnMut(MeterResult),
 ) -> Result<(), PrepareError> {
-    let meter = LightMeter::new(scene, assets, point.position)?;
+    let meter = LightMeter::kept(scene, assets, point.position, cache)?;
     efforts.iter().map_while(|effort| meter.read(point, effort, control)).for_each(observe);
     Ok(())
 }
@@ -47,13 +49,13 @@ const WORKER: WorkerSettings = WorkerSettings {
     panic_message: "The meter failed. This is an error in Catchlight.",
 };
 
-impl Default for MeterJob {
-    fn default() -> Self {
-        MeterJob { worker: Worker::new(WORKER, serve), requested: None, latest: None }
-    }
-}
-
 impl MeterJob {
+    /// Returns a job that shares BVHs of meshes with renders and live view.
+    pub fn new(cache: Arc<GeometryCache>) -> Self {
+        let work = move |inbox: &Inbox<Request, Reading>| serve(inbox, &cache);
+        MeterJob { worker: Worker::new(WORKER, work), requested: None, latest: None }
+    }
+
     /// Requests a reading when the studio has changed, and takes in the newest result. To be called once a frame.
     pub fn update(&mut self, scene: &Scene, assets: &Assets, revision: u64, wake: &Wake) {
         let Some(meter) = scene.meter else {
@@ -82,7 +84,7 @@ impl MeterJob {
 }
 
 /// The body of the meter thread.
-fn serve(inbox: &Inbox<Request, Reading>) {
+fn serve(inbox: &Inbox<Request, Reading>, cache: &GeometryCache) {
     let pool = match background_pool(0, "meter") {
         Ok(pool) => pool,
         Err(error) => return inbox.fail_all(&format!("No threads to read the meter with: {error}.")),
@@ -92,7 +94,7 @@ fn serve(inbox: &Inbox<Request, Reading>) {
         let efforts = [MeterEffort::quick(), MeterEffort::default()];
         let read = || {
             let mut publish = |result: MeterResult| inbox.publish(result.reading);
-            read_meter(&scene, &assets, &point, &efforts, &control, &mut publish)
+            read_meter(&scene, &assets, &point, &efforts, cache, &control, &mut publish)
         };
         if let Err(error) = pool.install(read) {
             inbox.fail(error.to_string());

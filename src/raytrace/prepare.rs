@@ -29,7 +29,7 @@ pub enum PrepareError {
 /// Prepares a scene: acceleration structures, tables and the plan. Fails only for scenes with errors in
 /// [`scene::validate`]; after success nothing in the tracer can fail.
 pub fn prepare(scene: &Scene, assets: &Assets) -> Result<RenderScene, PrepareError> {
-    prepare_around(scene, assets, scene.camera.position, film::assign_layers)
+    prepare_kept(scene, assets, &GeometryCache::default())
 }
 
 /// Prepares a scene with the acceleration structures that an earlier call left in `cache`: unchanged meshes cost
@@ -46,17 +46,8 @@ pub fn prepare_shared(scene: &Scene, assets: &Assets, cache: &GeometryCache) -> 
 /// Assigns each light its film layer.
 pub(super) type AssignLayers = fn(&Scene, &mut [(TracedLight, &Light)]) -> Vec<Layer>;
 
-/// Prepares a scene with the tracer's origin at a world position, near which coordinates are most precise.
-pub(super) fn prepare_around(
-    scene: &Scene,
-    assets: &Assets,
-    origin: Vec3,
-    assign_layers: AssignLayers,
-) -> Result<RenderScene, PrepareError> {
-    prepare_all(scene, assets, origin, assign_layers, &GeometryCache::default())
-}
-
-/// Prepares a scene with the tracer's origin at a world position and a cache of acceleration structures.
+/// Prepares a scene with the tracer's origin at a world position, near which coordinates are most precise, and with a
+/// cache of acceleration structures.
 pub(super) fn prepare_all(
     scene: &Scene,
     assets: &Assets,

@@ -66,12 +66,15 @@ fn each_light_alone_equals_the_traced_direct_light() {
         let studio = preset.file_name.trim_end_matches(".ron");
         let mut loaded = coarse_and_hairless(preset.load().unwrap());
         let blases = GeometryCache::default();
-        let lights: Vec<(LightId, String)> = loaded.scene.lights.iter().map(|l| (l.id, l.name.clone())).collect();
-        for (id, name) in lights {
+        loaded.scene.lights.iter_mut().for_each(|light| light.on = true);
+        for (id, name, layer) in traced_lights(&loaded, &blases) {
             loaded.scene.lights.iter_mut().for_each(|light| light.on = light.id == id);
             let is_rim = RIM_LIGHTS.contains(&(studio, name.as_str()));
-            let (long_edge, spp) = if is_rim { (FINE_LONG_EDGE, FINE_SPP) } else { (LONG_EDGE, SPP) };
-            let c = compare(&draw(&mut renderer, &loaded, &blases, long_edge, spp));
+            let c = if is_rim {
+                compare(&draw(&mut renderer, &loaded, &blases, FINE_LONG_EDGE, FINE_SPP))
+            } else {
+                compare(&draw_beside(layer, &mut renderer, &loaded, LONG_EDGE))
+            };
             wrong.extend(c.report(studio, &name));
             if is_rim && c.blocks == 0 {
                 let beside = from_beside(&loaded.scene, id);
@@ -155,7 +158,25 @@ fn from_beside(scene: &Scene, id: LightId) -> Camera {
     Camera { position: target + away, aim: Aim::Point(target), ..camera.clone() }
 }
 
+/// Returns the lights of a studio, each with the luminances of its layer.
+fn traced_lights(loaded: &Loaded, blases: &GeometryCache) -> Vec<(LightId, String, Vec<f32>)> {
+    let size = loaded.scene.camera.picture_size(LONG_EDGE);
+    let layers = film_with(loaded, blases, size, SPP, raytrace::Method::Direct).develop_layers(&loaded.scene);
+    let of_light = |light: &Light| {
+        let (name, layer) = layers.iter().find(|(name, _)| *name == light.name).unwrap();
+        (light.id, name.clone(), luminances(layer))
+    };
+    loaded.scene.lights.iter().map(of_light).collect()
+}
+
 fn draw(renderer: &mut PreviewRenderer, loaded: &Loaded, blases: &GeometryCache, long_edge: u32, spp: u32) -> Pictures {
+    let size = loaded.scene.camera.picture_size(long_edge);
+    let traced = traced_with(loaded, blases, size, spp, raytrace::Method::Direct);
+    draw_beside(traced, renderer, loaded, long_edge)
+}
+
+/// Draws a studio for the comparison with the luminances of a traced picture.
+fn draw_beside(traced: Vec<f32>, renderer: &mut PreviewRenderer, loaded: &Loaded, long_edge: u32) -> Pictures {
     let scene = &loaded.scene;
     let (width, height) = scene.camera.picture_size(long_edge);
     let fine = (width * SUPERSAMPLES, height * SUPERSAMPLES);
@@ -170,13 +191,7 @@ fn draw(renderer: &mut PreviewRenderer, loaded: &Loaded, blases: &GeometryCache,
         let of_pixel = |k: u32| ((y + k / SUPERSAMPLES) * fine.0 + x + k % SUPERSAMPLES) as usize;
         (0..SUPERSAMPLES * SUPERSAMPLES).all(|k| objects[of_pixel(k)].is_none_or(|id| is_rasterable(scene, id)))
     });
-    Pictures {
-        columns: width as usize,
-        traced: traced_with(loaded, blases, (width, height), spp, raytrace::Method::Direct),
-        preview,
-        unshadowed,
-        rasterable: rasterable.collect(),
-    }
+    Pictures { columns: width as usize, traced, preview, unshadowed, rasterable: rasterable.collect() }
 }
 
 pub fn is_rasterable(scene: &Scene, id: ObjectId) -> bool {
@@ -190,15 +205,27 @@ pub fn is_rasterable(scene: &Scene, id: ObjectId) -> bool {
 pub fn traced_with(
     loaded: &Loaded,
     blases: &GeometryCache,
-    (width, height): (u32, u32),
+    size: (u32, u32),
     spp: u32,
     method: raytrace::Method,
 ) -> Vec<f32> {
+    luminances(&film_with(loaded, blases, size, spp, method).develop(&loaded.scene))
+}
+
+fn film_with(
+    loaded: &Loaded,
+    blases: &GeometryCache,
+    (width, height): (u32, u32),
+    spp: u32,
+    method: raytrace::Method,
+) -> raytrace::Film {
     let prepared = raytrace::prepare_kept(&loaded.scene, &loaded.assets, blases).unwrap();
     let settings = raytrace::Settings { width, height, spp, method, ..raytrace::Settings::default() };
-    let film =
-        raytrace::render(&prepared, &settings, &raytrace::RenderControl::new(), &mut |_| ControlFlow::Continue(()));
-    film.develop(&loaded.scene).rgb.iter().map(|rgb| color::luminance((*rgb).into())).collect()
+    raytrace::render(&prepared, &settings, &raytrace::RenderControl::new(), &mut |_| ControlFlow::Continue(()))
+}
+
+fn luminances(picture: &Picture) -> Vec<f32> {
+    picture.rgb.iter().map(|rgb| color::luminance((*rgb).into())).collect()
 }
 
 /// Returns the mean luminance of each compared pixel.

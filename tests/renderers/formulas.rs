@@ -320,7 +320,7 @@ fn photons_focus_a_point_light_through_a_glass_ball() {
     let pane = studio::closed_forms::pane(0.0, 1.5);
     assert!((ours - pane).abs() < 0.01, "{ours} of the direct light for {pane}");
     scene.objects[0].shape = Shape::Plane { width_m: 0.3, depth_m: 0.3 };
-    let SampleMean { mean, standard_error: error } = illuminance_over(24, &scene, &square(Method::Path, 4, 64));
+    let SampleMean { mean, standard_error: error } = illuminance_over(20, &scene, &square(Method::Path, 4, 64));
     let lens = (3.0 / 2.6 / 1.513_f64).powi(2) * 0.96_f64.powi(2);
     let ours = mean / open;
     assert!((ours / lens - 1.0).abs() < 0.04 && error / mean < 0.01, "{ours} of the direct light for {lens}, {error}");

@@ -89,11 +89,11 @@ pub fn meter_card(position: Vec3, normal: Vec3) -> Scene {
     Scene { objects: vec![card], camera, ..Scene::default() }
 }
 
-/// Returns a larger [`meter_card`], of which the camera sees 4 mm: an area that many photons reach.
+/// Returns a larger [`meter_card`], of which the camera sees 8 mm: an area that many photons reach.
 pub fn wide_meter_card(position: Vec3, normal: Vec3) -> Scene {
     let mut scene = meter_card(position, normal);
     scene.objects[0].shape = Shape::Plane { width_m: 0.02, depth_m: 0.02 };
-    scene.camera.focal_length_mm = 500.0;
+    scene.camera.focal_length_mm = 250.0;
     scene
 }
 

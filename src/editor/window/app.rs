@@ -102,7 +102,10 @@ impl App {
             views: ViewState::new(Viewport::new(preview, TracedView::new(geometry.clone()))),
             panels: PanelState::new(files::presets()),
             rendering: Rendering::new(geometry.clone()),
-            background: BackgroundState::new(Forecaster::new(geometry, Clock::default())),
+            background: BackgroundState::new(
+                Forecaster::new(geometry.clone(), Clock::default()),
+                MeterJob::new(geometry),
+            ),
             session: Session::new(
                 options.dialogs,
                 RecentFiles::load(options.settings_folder),

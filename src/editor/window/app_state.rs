@@ -93,10 +93,10 @@ pub struct BackgroundState {
 
 impl BackgroundState {
     /// Starts idle.
-    pub fn new(forecaster: Forecaster) -> Self {
+    pub fn new(forecaster: Forecaster, meter: MeterJob) -> Self {
         BackgroundState {
             tasks: BackgroundTasks::default(),
-            meter: MeterJob::default(),
+            meter,
             pattern: PatternJob::default(),
             forecaster,
             thumbnails: Thumbnails::default(),

@@ -6,7 +6,7 @@ use super::face_scan::FaceScan;
 use super::key_light::{find_key, map_face};
 use crate::figures::{eye_point, face_direction};
 use crate::photo::portrait_pattern::find_pattern;
-use crate::raytrace::{LightMeter, PrepareError, RenderControl};
+use crate::raytrace::{GeometryCache, LightMeter, PrepareError, RenderControl};
 use crate::scene::{Assets, Figure, Object, ObjectId, Scene, Shape};
 use glam::{Affine3A, Vec2, Vec3};
 
@@ -57,13 +57,14 @@ pub fn check_patterns(
     scene: &Scene,
     assets: &Assets,
     figures: &[ObjectId],
+    cache: &GeometryCache,
     control: &RenderControl,
 ) -> Result<Option<Vec<Face>>, PrepareError> {
     let named = || scene.objects.iter().enumerate().filter(|(_, object)| figures.contains(&object.id));
     let Some(first) = named().find_map(|(_, object)| eyes_of(object)) else { return Ok(Some(Vec::new())) };
     // The face is read without its hair, on the coarse mesh
     let shaved = assets.clone().map_figures(|meshes| meshes.coarse_with_strands(|part| !FACE_HAIR.contains(&part)));
-    let meter = LightMeter::new(scene, &shaved, first)?;
+    let meter = LightMeter::kept(scene, &shaved, first, cache)?;
     let mut faces = Vec::new();
     for (index, object) in named() {
         if control.is_cancelled() {
@@ -114,7 +115,11 @@ fn angles(world_from_head: &Affine3A, direction: Vec3) -> (f32, f32) {
 mod tests {
     use super::*;
     use crate::io::{Loaded, find_preset};
+    use crate::jobs::read_meter;
+    use crate::photo::meter::Receptor;
     use crate::photo::portrait_pattern::{FaceSide, FoundPattern, PortraitPattern};
+
+    use crate::raytrace::{MeterEffort, MeterPoint, MeterResult};
 
     fn studio(name: &str) -> Loaded {
         find_preset(name).unwrap().load().unwrap()
@@ -122,13 +127,35 @@ mod tests {
 
     fn lighting(studio: &Loaded) -> FaceLighting {
         let figures = faces_in_view(&studio.scene);
-        let faces = check_patterns(&studio.scene, &studio.assets, &figures, &RenderControl::new());
+        let faces =
+            check_patterns(&studio.scene, &studio.assets, &figures, &GeometryCache::default(), &RenderControl::new());
         faces.unwrap().unwrap().remove(0).lighting
     }
 
     fn found(studio: &Loaded) -> Option<(PortraitPattern, Option<FaceSide>)> {
         let FaceLighting::Key { found, .. } = lighting(studio) else { panic!("{:?}", lighting(studio)) };
         found.map(|FoundPattern { pattern, lit_side }| (pattern, lit_side))
+    }
+
+    #[test]
+    fn a_light_that_moves_is_checked_and_metered_without_a_new_tree() {
+        let mut studio = studio("split");
+        let figures = faces_in_view(&studio.scene);
+        let cache = GeometryCache::default();
+        let point = MeterPoint { position: Vec3::new(0.0, 1.6, 0.4), facing: Vec3::Z, receptor: Receptor::Flat };
+        let mut read = |x: f32| {
+            studio.scene.lights[0].position.x = x;
+            let (scene, assets, control) = (&studio.scene, &studio.assets, RenderControl::new());
+            let mut key_lux = 0.0;
+            let mut observe = |result: MeterResult| key_lux = result.reading.lights[0].direct;
+            read_meter(scene, assets, &point, &[MeterEffort::quick()], &cache, &control, &mut observe).unwrap();
+            let faces = check_patterns(scene, assets, &figures, &cache, &control).unwrap().unwrap();
+            let FaceLighting::Key { key, .. } = &faces[0].lighting else { panic!("{:?}", faces[0].lighting) };
+            (key_lux, key.left_deg, cache.builds())
+        };
+        let (near, far) = (read(1.5), read(2.5));
+        assert!(near.2 > 0 && near.2 == far.2, "{near:?}, {far:?}");
+        assert!(near.0 > far.0 && near.1 != far.1, "{near:?}, {far:?}");
     }
 
     #[test]
@@ -150,7 +177,8 @@ mod tests {
 
     fn catchlights(studio: &Loaded) -> Vec<Catchlight> {
         let figures = faces_in_view(&studio.scene);
-        let faces = check_patterns(&studio.scene, &studio.assets, &figures, &RenderControl::new());
+        let faces =
+            check_patterns(&studio.scene, &studio.assets, &figures, &GeometryCache::default(), &RenderControl::new());
         faces.unwrap().unwrap().remove(0).catchlights
     }
 

@@ -3,6 +3,7 @@
 use super::check::{Face, check_patterns};
 use crate::jobs::threads::{Priority, background_pool};
 use crate::jobs::worker::{Inbox, Interrupt, Wake, Worker, WorkerSettings};
+use crate::raytrace::GeometryCache;
 use crate::scene::{Assets, ObjectId, Scene, Shape};
 
 #[derive(Debug)]
@@ -72,8 +73,10 @@ fn serve(inbox: &Inbox<Request, Face>) {
         Ok(pool) => pool,
         Err(error) => return inbox.fail_all(&format!("No threads to check the pattern with: {error}.")),
     };
+    // Its meshes are no others': without the hair on the face
+    let cache = GeometryCache::default();
     while let Some((Request { scene, assets, figure }, control)) = inbox.next() {
-        match pool.install(|| check_patterns(&scene, &assets, &[figure], &control)) {
+        match pool.install(|| check_patterns(&scene, &assets, &[figure], &cache, &control)) {
             Ok(faces) => faces.into_iter().flatten().for_each(|face| inbox.publish(face)),
             Err(error) => inbox.fail(error.to_string()),
         }

@@ -10,6 +10,7 @@ use crate::math::{Ray, warp};
 use crate::photo::meter::{LightReading, Reading};
 use crate::raytrace::control::RenderControl;
 use crate::raytrace::film::NonFiniteReport;
+use crate::raytrace::geometry_cache::GeometryCache;
 use crate::raytrace::prepare::PrepareError;
 use crate::raytrace::ray_caster::RayCaster;
 use crate::raytrace::render_scene::ROOM;
@@ -45,8 +46,19 @@ pub struct LightMeter {
 
 impl LightMeter {
     /// Prepares a scene; points near `around` (world space) are read most precisely.
+    ///
+    /// # Errors
+    /// When the scene has errors.
     pub fn new(scene: &Scene, assets: &Assets, around: Vec3) -> Result<Self, PrepareError> {
-        let studio = MeteredStudio::new(scene, assets, around)?;
+        Self::kept(scene, assets, around, &GeometryCache::default())
+    }
+
+    /// As [`LightMeter::new`], with the acceleration structures that an earlier call left in `cache`.
+    ///
+    /// # Errors
+    /// When the scene has errors.
+    pub fn kept(scene: &Scene, assets: &Assets, around: Vec3, cache: &GeometryCache) -> Result<Self, PrepareError> {
+        let studio = MeteredStudio::new(scene, assets, around, cache)?;
         let layer_of = |light: &Light| studio.lights.iter().position(|metered| metered.id == light.id);
         let on = scene.lights.iter().filter(|light| light.on);
         let order = on.map(|light| (blank_reading(scene, light), layer_of(light))).collect();
