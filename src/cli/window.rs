@@ -7,10 +7,8 @@ use super::terminal;
 use crate::editor;
 use crate::io::{self, Loaded, PictureInfo};
 use crate::jobs;
-use crate::photo::exposure;
-use crate::preview::{
-    Channel, FALSE_STOPS, Gloss, Gpu, Options, PreviewError, PreviewInput, PreviewRenderer, false_color,
-};
+use crate::photo::{FALSE_STOPS, exposure, false_color};
+use crate::preview::{Channel, Gloss, Gpu, Options, PreviewError, PreviewInput, PreviewRenderer};
 use crate::scene::Scene;
 use anyhow::anyhow;
 use std::f32::consts::PI;

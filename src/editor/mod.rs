@@ -51,7 +51,7 @@ pub use document::item::Item;
 pub use document::selection::Selection;
 pub use document::studio_document::Document;
 pub use panels::thumbnails::{Thumbnail, Thumbnails};
-pub use picture::rendering::{PictureSize, Quality, RenderSettings, Rendering};
+pub use picture::rendering::{PictureSize, Quality, RenderSettings, Rendering, SpotReading};
 pub use ui::toasts::{ToastKind, Toasts};
 pub use viewport::live::preview_host::ViewOptions;
 pub use viewport::live::traced_view::TracedView;

@@ -4,9 +4,10 @@ use super::denoised_film::DenoisedFilm;
 use super::threads::Priority;
 use super::worker::{Inbox, Interrupt, Wake, Worker, WorkerSettings};
 use crate::denoise::Quality;
-use crate::photo::Picture;
+use crate::photo::{Picture, PictureDisplay};
 use crate::raytrace::{Film, RenderControl};
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneChange};
+use std::cell::RefCell;
 use std::sync::{Arc, Weak};
 
 /// A developed film.
@@ -37,6 +38,8 @@ pub struct Development {
     pub denoise: bool,
     /// The film has all samples. A film that will be replaced soon is denoised by the small network.
     pub is_final: bool,
+    /// How the image for the screen displays the picture.
+    pub display: PictureDisplay,
 }
 
 /// A film to be developed.
@@ -45,6 +48,39 @@ struct Request {
     film: Arc<Film>,
     scene: Scene,
     development: Development,
+}
+
+/// A picture of a film.
+#[derive(Debug)]
+struct DevelopedPicture {
+    picture: Arc<Picture>,
+    /// The picture before the denoiser, and its network.
+    noisy: Option<Arc<Picture>>,
+    quality: Option<Quality>,
+}
+
+/// The picture that was developed last. To display it otherwise, it need not be developed again.
+#[derive(Debug)]
+struct LastPicture {
+    film: Weak<Film>,
+    scene: Scene,
+    development: Development,
+    picture: DevelopedPicture,
+}
+
+impl LastPicture {
+    fn new(Request { film, scene, development }: &Request, picture: DevelopedPicture) -> Self {
+        let (film, scene, development) = (Arc::downgrade(film), scene.clone(), *development);
+        LastPicture { film, scene, development, picture }
+    }
+
+    /// Returns true if a request is for the same picture.
+    fn is_of(&self, request: &Request) -> bool {
+        let development = Development { display: request.development.display, ..self.development };
+        self.film.as_ptr() == Arc::as_ptr(&request.film)
+            && development == request.development
+            && !SceneChange::between(&self.scene, &request.scene).needs_development()
+    }
 }
 
 /// A worker that develops films. Only the newest request counts.
@@ -62,24 +98,35 @@ const WORKER: WorkerSettings = WorkerSettings {
 };
 
 impl<I: Send + 'static> FilmDeveloper<I> {
-    /// Returns a developer. `to_image` makes a picture's image for the screen, with a longest side in pixels.
-    pub fn new(to_image: fn(&Picture, usize) -> I) -> Self {
+    /// Returns a developer. `to_image` makes a picture's image for the screen.
+    pub fn new(to_image: fn(&Picture, &Development) -> I) -> Self {
         let work = move |inbox: &Inbox<Request, Developed<I>>| {
             let mut denoised = DenoisedFilm::default();
+            let mut last: Option<LastPicture> = None;
             while let Some((request, control)) = inbox.next() {
-                let publish = |picture: Picture, noisy: Option<Picture>, quality: Option<Quality>| {
-                    let image = to_image(&picture, request.development.max_side);
+                let show = |picture: &DevelopedPicture| {
                     inbox.publish(Developed {
                         film: Arc::downgrade(&request.film),
-                        picture: Arc::new(picture),
-                        noisy: noisy.map(Arc::new),
-                        denoiser: quality.map(Quality::label),
-                        image,
+                        picture: picture.picture.clone(),
+                        noisy: picture.noisy.clone(),
+                        denoiser: picture.quality.map(Quality::label),
+                        image: to_image(&picture.picture, &request.development),
                         spp: request.film.spp(),
                         method: request.film.method(),
                     });
                 };
-                develop(&request, &control, &mut denoised, &publish);
+                if let Some(last) = last.as_ref().filter(|last| last.is_of(&request)) {
+                    show(&last.picture);
+                    continue;
+                }
+                let newest = RefCell::new(None);
+                develop(&request, &control, &mut denoised, &|picture, noisy, quality| {
+                    let picture = DevelopedPicture { picture: Arc::new(picture), noisy: noisy.map(Arc::new), quality };
+                    show(&picture);
+                    newest.replace(Some(picture));
+                });
+                let newest = newest.into_inner().filter(|_| !control.is_cancelled());
+                last = newest.map(|picture| LastPicture::new(&request, picture));
             }
         };
         FilmDeveloper { worker: Worker::new(WORKER, work) }
@@ -138,7 +185,6 @@ mod tests {
     use crate::jobs::render_all_passes;
     use crate::raytrace::{Settings, prepare};
     use crate::scene::{Assets, Emitter, Light, Output, Room};
-    use std::cell::RefCell;
 
     #[test]
     fn films_are_denoised_as_far_as_they_are_rendered_and_relit_from_their_layers() {
@@ -156,7 +202,7 @@ mod tests {
         let mut denoised = DenoisedFilm::default();
         // Returns the networks of the pictures that are published, and the last picture
         let mut published = |film: &Arc<Film>, scene: &Scene, denoise: bool, is_final: bool| {
-            let development = Development { max_side: 100, denoise, is_final };
+            let development = Development { max_side: 100, denoise, is_final, display: PictureDisplay::Plain };
             let request = Request { film: film.clone(), scene: scene.clone(), development };
             let all = RefCell::new((Vec::new(), Picture::default()));
             develop(&request, &RenderControl::new(), &mut denoised, &|picture, noisy, quality| {
@@ -182,5 +228,31 @@ mod tests {
         let sum = |picture: &Picture| picture.rgb.iter().flatten().sum::<f32>();
         assert!((sum(&relit) / sum(&whole) - 1.0).abs() < 1e-4, "{} {}", sum(&relit), sum(&whole));
         assert_eq!(published(&without_aovs, &scene, true, true).0, [None]);
+    }
+
+    #[test]
+    fn another_display_of_a_picture_shows_the_same_pixels_without_developing_them_again() {
+        let scene = Scene { lights: vec![Light::new(Emitter::Point, Output::Lumens(1000.0))], ..Scene::default() };
+        let prepared = prepare(&scene, &Assets::default()).unwrap();
+        let settings = Settings { width: 16, height: 16, spp: 1, ..Settings::default() };
+        let film = Arc::new(render_all_passes(&prepared, &settings, &RenderControl::new()));
+        let mut developer = FilmDeveloper::new(|_, development| development.display);
+        let mut developed = |scene: &Scene, display: PictureDisplay| {
+            let development = Development { max_side: 100, denoise: false, is_final: true, display };
+            developer.request(film.clone(), scene.clone(), development, &(Arc::new(|| ()) as Wake));
+            loop {
+                if let Some(developed) = developer.take() {
+                    return developed.unwrap();
+                }
+                std::thread::yield_now();
+            }
+        };
+        let (plain, colored) =
+            (developed(&scene, PictureDisplay::Plain), developed(&scene, PictureDisplay::FalseColor));
+        assert_eq!((plain.image, colored.image), (PictureDisplay::Plain, PictureDisplay::FalseColor));
+        assert!(Arc::ptr_eq(&plain.picture, &colored.picture));
+        let mut dimmed = scene.clone();
+        dimmed.lights[0].power.dial_stops = -1.0;
+        assert!(!Arc::ptr_eq(&developed(&dimmed, PictureDisplay::FalseColor).picture, &plain.picture));
     }
 }

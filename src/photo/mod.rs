@@ -1,10 +1,11 @@
-//! Photometry: lights in physical units, exposure, the light meter, portrait lighting patterns, and the scales of a
-//! camera's dials.
+//! Photometry: lights in physical units, exposure, the light meter, portrait lighting patterns, scopes for
+//! pictures, and the scales of a camera's dials.
 
 mod aov;
 pub mod beam;
 pub mod emitter;
 pub mod exposure;
+mod false_color;
 pub mod irradiance_grid;
 mod lazy_picture;
 pub mod light;
@@ -13,10 +14,13 @@ pub mod meter;
 pub mod nd_filter;
 mod picture;
 pub mod portrait_pattern;
+mod scopes;
 pub mod thirds;
 
 pub use aov::AovPicture;
+pub use false_color::{FALSE_STOPS, false_color};
 pub use lazy_picture::LazyPicture;
 pub use light::{PhotometricLight, Strength};
 pub use light_color::light_rgb;
 pub use picture::Picture;
+pub use scopes::{Histogram, MIDDLE_GREY, PictureDisplay, Spot, clipping_stops, false_band_color};

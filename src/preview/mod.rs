@@ -51,7 +51,7 @@ mod shadows;
 mod still_picture;
 mod targets;
 
-pub use channel::{Channel, FALSE_STOPS, Gloss, false_color};
+pub use channel::{Channel, Gloss};
 pub use error::PreviewError;
 pub use frame_times::FrameTimes;
 pub use gpu::device::{Gpu, LossFlag};

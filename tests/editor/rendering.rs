@@ -1,6 +1,8 @@
 //! Renders from the window.
 
 use super::*;
+use catchlight::editor::SpotReading;
+use catchlight::photo::{Histogram, PictureDisplay};
 
 #[test]
 fn light_changes_redevelop_the_picture_without_tracing() {
@@ -161,4 +163,44 @@ fn denoise_shows_marks_relights_and_exports_the_picture_without_noise() {
     click(&mut window, "Denoise");
     assert!(!is_marked(&window));
     assert!(picture(&window) == noisy);
+}
+
+#[test]
+fn scopes_show_clipping_false_colour_zebra_and_the_light_under_the_pointer() {
+    let Some(mut window) = preset_window() else { return };
+    render_tiny(&mut window);
+    window.state_mut().run(Command::ShowView(CentralView::Picture), None, &egui::Context::default());
+    settle(&mut window);
+    // The histogram knows what the picture clips
+    let picture = window.state().rendering().developed().unwrap().picture.clone();
+    let histogram = Histogram::of(&picture);
+    assert_eq!(window.state().rendering().developed().unwrap().image.histogram, histogram);
+    assert!(window.query_all_by_label_contains("Histogram: ").next().is_some());
+    click(&mut window, "Exposure");
+    click(&mut window, "Histogram");
+    assert!(window.query_all_by_label_contains("Histogram: ").next().is_none());
+    // The displays follow the menu; the pixels for the file stay
+    click(&mut window, "False colour");
+    settle(&mut window);
+    assert_eq!(window.state().rendering().display, PictureDisplay::FalseColor);
+    for display in [PictureDisplay::Zebra { thirds_under: 2 }, PictureDisplay::SkinZebra, PictureDisplay::Plain] {
+        window.state_mut().run(Command::DisplayPicture(display), None, &egui::Context::default());
+        settle(&mut window);
+        assert!(Arc::ptr_eq(&window.state().rendering().developed().unwrap().picture, &picture));
+    }
+    // Under the pointer: the lights' shares are those of the layers
+    let place = window.get_by_label("Picture view").rect();
+    window.hover_at(place.center());
+    settle(&mut window);
+    assert!(window.query_all_by_label_contains("stops from middle grey").next().is_some());
+    let size = window.state().rendering().size().unwrap();
+    let reading = window.state().rendering().read_spot((size.0 / 2, size.1 / 2), scene(&window)).unwrap();
+    assert!((reading.lights.iter().map(|(_, share)| share).sum::<f32>() - 1.0).abs() < 1e-4, "{reading:?}");
+    let key = reading.lights[0].0.clone();
+    click(&mut window, &format!("{key} on"));
+    settle(&mut window);
+    let without = window.state().rendering().read_spot((size.0 / 2, size.1 / 2), scene(&window)).unwrap();
+    let share = |reading: &SpotReading| reading.lights.iter().find(|(name, _)| *name == key).unwrap().1;
+    assert!(share(&reading) > 0.2 && share(&without) == 0.0, "{reading:?} and {without:?}");
+    assert!(without.spot.stops() < reading.spot.stops());
 }

@@ -1,7 +1,8 @@
 //! Channels of the G-buffer, illuminance in false colour, and Blinn-Phong highlights.
 
 use super::*;
-use catchlight::preview::{Channel, Gloss, false_color};
+use catchlight::photo::false_color;
+use catchlight::preview::{Channel, Gloss};
 
 const SIZE: (u32, u32) = (61, 41);
 

@@ -4,6 +4,7 @@ use crate::editor::commands::choices::{CentralView, HandleMode, LiveMode, PlaceL
 use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
+use crate::photo::PictureDisplay;
 use crate::scene::TextureSlot;
 use std::path::PathBuf;
 
@@ -99,6 +100,8 @@ pub enum Command {
     CancelRender,
     /// Shows the rendered picture denoised, or as it was traced.
     ToggleDenoise,
+    /// Shows the rendered picture as a photo, in false colour or with a zebra.
+    DisplayPicture(PictureDisplay),
     /// Shows a view in the middle of the window.
     ShowView(CentralView),
     /// Switches between camera view and studio view.

@@ -1,4 +1,5 @@
-//! The rendered picture: the state of a render and the view that shows it.
+//! The rendered picture: the state of a render, the view that shows it, and the scopes over it.
 
 pub mod picture_view;
 pub mod rendering;
+mod scopes;

@@ -2,6 +2,7 @@
 
 use crate::editor::commands::command::Command;
 use crate::editor::picture::rendering::{OUT_OF_DATE, Rendering};
+use crate::editor::picture::scopes;
 use crate::editor::ui::theme;
 use crate::scene::Scene;
 use eframe::egui::{self, Color32, Pos2, Rect, RichText, Sense, Ui, Vec2, vec2};
@@ -13,11 +14,13 @@ pub struct PictureView {
     zoom: Option<f32>,
     /// Offset of the picture's middle from the view's middle, points.
     offset: Vec2,
+    /// The histogram lies over the picture.
+    shows_histogram: bool,
 }
 
 impl Default for PictureView {
     fn default() -> Self {
-        PictureView { zoom: None, offset: Vec2::ZERO }
+        PictureView { zoom: None, offset: Vec2::ZERO, shows_histogram: true }
     }
 }
 
@@ -41,6 +44,18 @@ impl PictureView {
         let place = Rect::from_center_size(rect.center() + self.offset, pixels * zoom);
         let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
         painter.image(texture, place, uv, Color32::WHITE);
+        scopes::legend_ui(ui, rect, rendering.display);
+        if let Some(developed) = rendering.developed().filter(|_| self.shows_histogram) {
+            scopes::histogram_ui(ui, rect, &developed.image.histogram);
+        }
+        let pixel = |pointer: Pos2| {
+            let at = (pointer - place.min) / place.size() * vec2(size.0 as f32, size.1 as f32);
+            (at.min_elem() >= 0.0).then_some((at.x as u32, at.y as u32))
+        };
+        let reading = response.hover_pos().and_then(pixel).and_then(|pixel| rendering.read_spot(pixel, scene));
+        if let Some(reading) = reading {
+            scopes::spot_ui(ui, rect, &reading);
+        }
         self.bar_ui(ui, rect, rendering, scene, zoom, out);
     }
 
@@ -68,8 +83,8 @@ impl PictureView {
             self.offset += response.drag_delta();
         }
         if response.double_clicked() {
-            *self =
-                if self.zoom.is_some() { Self::default() } else { PictureView { zoom: Some(1.0), offset: Vec2::ZERO } };
+            let zoom = if self.zoom.is_some() { None } else { Some(1.0) };
+            (self.zoom, self.offset) = (zoom, Vec2::ZERO);
         }
         let scroll = ui.input(|i| i.smooth_scroll_delta().y);
         if let Some(pointer) = response.hover_pos().filter(|_| scroll != 0.0) {
@@ -105,13 +120,14 @@ impl PictureView {
             ui.selectable_label(is_chosen, text).on_hover_text(tip).clicked()
         };
         if entry(ui, self.zoom.is_none(), "Fit", "The whole picture (double-click)") {
-            *self = Self::default();
+            (self.zoom, self.offset) = (None, Vec2::ZERO);
         }
         if entry(ui, self.zoom == Some(1.0), "100 %", "One to one (double-click)") {
-            *self = PictureView { zoom: Some(1.0), offset: Vec2::ZERO };
+            (self.zoom, self.offset) = (Some(1.0), Vec2::ZERO);
         }
         ui.label(RichText::new(format!("{:.0} %", zoom * 100.0)).weak());
         denoise_ui(ui, rendering, out);
+        scopes::menu_ui(ui, rendering, &mut self.shows_histogram, out);
         if rendering.is_out_of_date(scene) && !rendering.is_running() {
             ui.label(RichText::new("Out of date").color(theme::ACCENT)).on_hover_text(OUT_OF_DATE);
             if ui.button("Render again").on_hover_text("R").clicked() {

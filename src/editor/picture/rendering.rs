@@ -4,7 +4,7 @@ use crate::editor::ui::image_texture::ImageTexture;
 use crate::editor::ui::wake::wake;
 use crate::io::KeptPicture;
 use crate::jobs::{Developed, Development, FilmDeveloper, RenderJob, RenderOutcome, RenderPhase, RenderRequest};
-use crate::photo::Picture;
+use crate::photo::{Histogram, Picture, PictureDisplay, Spot};
 use crate::raytrace::{self, Film, GeometryCache, Method, Settings};
 use crate::scene::{Assets, Camera, Scene, SceneChange};
 use eframe::egui::{Color32, ColorImage, Context, TextureId};
@@ -91,11 +91,37 @@ struct Requested {
     development: Development,
 }
 
+/// The picture as the window shows it.
+#[derive(Debug)]
+pub struct ShownPicture {
+    image: Arc<ColorImage>,
+    /// The histogram of the whole picture.
+    pub histogram: Histogram,
+}
+
+impl ShownPicture {
+    fn new(picture: &Picture, development: &Development) -> Self {
+        let image = shown_within(picture, development.display, development.max_side);
+        ShownPicture { image: Arc::new(image), histogram: Histogram::of(picture) }
+    }
+}
+
+/// The light at a spot of the picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpotReading {
+    /// The spot.
+    pub spot: Spot,
+    /// Names of the lights with their share of the light, the largest first.
+    pub lights: Vec<(String, f32)>,
+}
+
 /// The state of the rendered picture: settings, job, film and developed image.
 #[derive(Debug)]
 pub struct Rendering {
     /// The settings of the render panel.
     pub settings: RenderSettings,
+    /// How the picture is displayed.
+    pub display: PictureDisplay,
     /// The BLAS cache, shared with the live view.
     trees: Arc<GeometryCache>,
     job: Option<RenderJob>,
@@ -104,10 +130,10 @@ pub struct Rendering {
     exported: Option<Weak<Film>>,
     /// The picture before the running render, until that has one.
     former: Option<KeptPicture>,
-    developer: FilmDeveloper<Arc<ColorImage>>,
+    developer: FilmDeveloper<ShownPicture>,
     /// The newest requested picture.
     requested: Option<Requested>,
-    developed: Option<Developed<Arc<ColorImage>>>,
+    developed: Option<Developed<ShownPicture>>,
     develop_failure: Option<String>,
     image_texture: ImageTexture,
 }
@@ -117,12 +143,13 @@ impl Rendering {
     pub fn new(trees: Arc<GeometryCache>) -> Self {
         Rendering {
             settings: RenderSettings::default(),
+            display: PictureDisplay::default(),
             trees,
             job: None,
             film: None,
             exported: None,
             former: None,
-            developer: FilmDeveloper::new(|picture, most| Arc::new(shown_within(picture, most))),
+            developer: FilmDeveloper::new(ShownPicture::new),
             requested: None,
             developed: None,
             develop_failure: None,
@@ -180,7 +207,7 @@ impl Rendering {
 
     /// Clears job and picture, because another studio was opened.
     pub fn clear(&mut self) {
-        *self = Rendering { settings: self.settings, ..Rendering::new(self.trees.clone()) };
+        *self = Rendering { settings: self.settings, display: self.display, ..Rendering::new(self.trees.clone()) };
     }
 
     /// Returns the job, running or ended.
@@ -209,9 +236,25 @@ impl Rendering {
     }
 
     /// Returns the picture for export; none while only a reduced one is available.
-    pub fn developed(&self) -> Option<&Developed<Arc<ColorImage>>> {
+    pub fn developed(&self) -> Option<&Developed<ShownPicture>> {
         let (width, height) = self.size()?;
         self.developed.as_ref().filter(|d| (d.picture.width, d.picture.height) == (width, height))
+    }
+
+    /// Reads the light around a pixel of the picture, with the lights as in `scene`. None outside of it, and while there
+    /// is no whole picture.
+    pub fn read_spot(&self, pixel: (u32, u32), scene: &Scene) -> Option<SpotReading> {
+        let developed = self.developed()?;
+        let size = self.size().filter(|size| pixel.0 < size.0 && pixel.1 < size.1)?;
+        let spot = Spot::around(pixel, size, |x, y| developed.picture.at(x, y));
+        let film = self.film.as_ref().filter(|film| (film.width(), film.height()) == size)?;
+        let layers = film.lazy_layers(scene).into_iter();
+        let lights = layers.map(|(name, layer)| (name, Spot::around(pixel, size, |x, y| layer.at(x, y)).luminance()));
+        let mut lights: Vec<(String, f32)> = lights.collect();
+        let sum: f32 = lights.iter().map(|(_, light)| light).sum();
+        lights.iter_mut().for_each(|(_, light)| *light /= sum.max(f32::MIN_POSITIVE));
+        lights.sort_by(|a, b| b.1.total_cmp(&a.1));
+        Some(SpotReading { spot, lights })
     }
 
     /// Returns true if the picture on the screen is denoised.
@@ -246,7 +289,8 @@ impl Rendering {
             // The picture before a running render is final, too.
             let is_final = !self.job.as_ref().is_some_and(|job| job.phase().is_running() && job.film().is_some());
             let denoise = self.settings.denoise;
-            let development = Development { max_side, denoise, is_final: is_final && denoise };
+            let display = self.display;
+            let development = Development { max_side, denoise, is_final: is_final && denoise, display };
             let is_requested = self.requested.as_ref().is_some_and(|requested| {
                 (requested.film, requested.development) == (Arc::as_ptr(film), development)
                     && !SceneChange::between(&requested.scene, scene).needs_development()
@@ -258,7 +302,7 @@ impl Rendering {
         }
         match self.developer.take() {
             Some(Ok(developed)) => {
-                self.image_texture.set(ctx, developed.image.clone());
+                self.image_texture.set(ctx, developed.image.image.clone());
                 self.developed = Some(developed);
             }
             Some(Err(message)) => self.develop_failure = Some(message),
@@ -297,8 +341,8 @@ fn is_of(film: &Film, settings: &Settings) -> bool {
 }
 
 /// Returns the image of a picture; larger ones than a texture are reduced by means of 2x2, 3x3 ... pixels.
-fn shown_within(picture: &Picture, most: usize) -> ColorImage {
-    let (size, codes) = ([picture.width as usize, picture.height as usize], picture.to_srgb8());
+fn shown_within(picture: &Picture, display: PictureDisplay, most: usize) -> ColorImage {
+    let (size, codes) = ([picture.width as usize, picture.height as usize], display.to_srgb8(picture));
     let times = size[0].max(size[1]).div_ceil(most.max(1)).max(1);
     if times == 1 {
         return ColorImage::from_rgb(size, codes.as_flattened());
@@ -341,14 +385,14 @@ mod tests {
     fn a_picture_larger_than_a_texture_is_reduced_by_pixel_means() {
         let rgb = (0..7 * 3).map(|i| if i % 7 < 4 { [0.0; 3] } else { [1e3; 3] }).collect();
         let picture = Picture { width: 7, height: 3, rgb };
-        let whole = shown_within(&picture, 7);
+        let whole = shown_within(&picture, PictureDisplay::Plain, 7);
         assert_eq!((whole.size, whole.pixels[3], whole.pixels[6]), ([7, 3], Color32::BLACK, Color32::WHITE));
-        let shown = shown_within(&picture, 3);
+        let shown = shown_within(&picture, PictureDisplay::Plain, 3);
         // Means of 3x3 blocks: all black, one of three columns black, and the rest at the edge.
         assert_eq!(
             (shown.size, &shown.pixels[..]),
             ([3, 1], &[Color32::BLACK, Color32::from_gray(170), Color32::WHITE][..])
         );
-        assert_eq!(shown_within(&picture, 1).size, [1, 1]);
+        assert_eq!(shown_within(&picture, PictureDisplay::Plain, 1).size, [1, 1]);
     }
 }

@@ -1,6 +1,7 @@
-//! UI elements without knowledge of studios: theme, widgets, units, messages, image textures.
+//! UI elements without knowledge of studios: theme, widgets, units, messages, image textures, legends.
 
 pub mod image_texture;
+pub mod legend;
 pub mod side_panel;
 pub mod theme;
 pub mod toasts;

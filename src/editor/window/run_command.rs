@@ -95,6 +95,7 @@ impl App {
             Command::Render => self.render(ctx),
             Command::CancelRender => self.rendering.cancel(),
             Command::ToggleDenoise => self.rendering.settings.denoise = !self.rendering.settings.denoise,
+            Command::DisplayPicture(display) => self.rendering.display = display,
             Command::ShowView(centre) => self.views.central = centre,
             Command::ToggleCameraView => {
                 self.views.central =

@@ -142,7 +142,7 @@ mod tests {
         let mut studio = studio("split");
         let figures = faces_in_view(&studio.scene);
         let cache = GeometryCache::default();
-        let point = MeterPoint { position: Vec3::new(0.0, 1.6, 0.4), facing: Vec3::Z, receptor: Receptor::Flat };
+        let point = MeterPoint { position: Vec3::new(0.0, 1.6, 0.4), facing: Vec3::X, receptor: Receptor::Flat };
         let mut read = |x: f32| {
             studio.scene.lights[0].position.x = x;
             let (scene, assets, control) = (&studio.scene, &studio.assets, RenderControl::new());

@@ -1,4 +1,4 @@
-// False colour of illuminance in thirds of a stop; twin of `channel::false_color`.
+// False colour of illuminance in thirds of a stop; twin of `photo::false_color`.
 
 const FALSE_LOW: f32 = -6.0;
 const FALSE_COLORS: array<vec3f, 10> = array<vec3f, 10>(

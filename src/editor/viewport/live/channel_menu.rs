@@ -1,15 +1,13 @@
 //! The menu of the live view's options (channel, single light, highlights) and the legend of the false-colour
 //! illuminance.
 
+use crate::editor::ui::legend;
 use crate::editor::viewport::live::preview_host::ViewOptions;
-use crate::photo::exposure;
-use crate::preview::{Channel, FALSE_STOPS, Gloss, false_color};
+use crate::photo::{FALSE_STOPS, exposure, false_color};
+use crate::preview::{Channel, Gloss};
 use crate::scene::Scene;
-use eframe::egui::{Align2, Checkbox, Color32, FontId, Painter, Pos2, RadioButton, Rect, Ui, UiBuilder, vec2};
+use eframe::egui::{Checkbox, Painter, RadioButton, Rect, Ui, UiBuilder, vec2};
 use std::f32::consts::PI;
-
-/// Size of a colour swatch in the legend, points.
-const SWATCH: (f32, f32) = (22.0, 18.0);
 
 /// Draws the menu in the upper left corner of the view and changes `view_options`. The CPU preview (`on_cpu`) has
 /// neither channels nor a choice of highlights.
@@ -114,19 +112,7 @@ fn rounded(value: f32) -> String {
 }
 
 fn paint_legend(painter: &Painter, view: Rect, scene: &Scene) {
-    let lines = legend_lines(scene);
-    let size = vec2(SWATCH.0 + 168.0, SWATCH.1 * lines.len() as f32 + 30.0);
-    let place = Rect::from_min_size(view.left_bottom() + vec2(8.0, -size.y - 8.0), size);
-    painter.rect_filled(place, 4.0, Color32::from_black_alpha(190));
-    let font = FontId::proportional(12.0);
-    let text =
-        |at: Pos2, text: &str| painter.text(at, Align2::LEFT_CENTER, text, font.clone(), Color32::from_gray(230));
-    text(place.min + vec2(8.0, 12.0), "Stops against the exposure set");
-    for (row, ([r, g, b], line)) in lines.iter().enumerate() {
-        let corner = place.min + vec2(8.0, 24.0 + SWATCH.1 * row as f32);
-        painter.rect_filled(Rect::from_min_size(corner, SWATCH.into()), 0.0, Color32::from_rgb(*r, *g, *b));
-        text(corner + vec2(SWATCH.0 + 8.0, 0.5 * SWATCH.1), line);
-    }
+    legend::paint(painter, view, "Stops against the exposure set", &legend_lines(scene));
 }
 
 #[cfg(test)]
