@@ -176,7 +176,16 @@ fn scopes_show_clipping_false_colour_zebra_and_the_light_under_the_pointer() {
     let histogram = Histogram::of(&picture);
     assert_eq!(window.state().rendering().developed().unwrap().image.histogram, histogram);
     assert!(window.query_all_by_label_contains("Histogram: ").next().is_some());
-    click(&mut window, "Exposure");
+    // The pointer comes over the picture, and its read-out goes as it reaches the menu
+    let place = window.get_by_label("Picture view").rect();
+    window.hover_at(place.center());
+    settle(&mut window);
+    assert!(window.query_all_by_label_contains("stops from middle grey").next().is_some());
+    let button = window.get_by_label("Exposure").rect().center();
+    window.hover_at(button);
+    settle(&mut window);
+    click_at(&mut window, button, Modifiers::NONE);
+    assert!(window.query_by_label("False colour").is_some(), "the menu is open");
     click(&mut window, "Histogram");
     assert!(window.query_all_by_label_contains("Histogram: ").next().is_none());
     // The displays follow the menu; the pixels for the file stay
@@ -189,10 +198,6 @@ fn scopes_show_clipping_false_colour_zebra_and_the_light_under_the_pointer() {
         assert!(Arc::ptr_eq(&window.state().rendering().developed().unwrap().picture, &picture));
     }
     // Under the pointer: the lights' shares are those of the layers
-    let place = window.get_by_label("Picture view").rect();
-    window.hover_at(place.center());
-    settle(&mut window);
-    assert!(window.query_all_by_label_contains("stops from middle grey").next().is_some());
     let size = window.state().rendering().size().unwrap();
     let reading = window.state().rendering().read_spot((size.0 / 2, size.1 / 2), scene(&window)).unwrap();
     assert!((reading.lights.iter().map(|(_, share)| share).sum::<f32>() - 1.0).abs() < 1e-4, "{reading:?}");

@@ -52,11 +52,13 @@ impl PictureView {
             let at = (pointer - place.min) / place.size() * vec2(size.0 as f32, size.1 as f32);
             (at.min_elem() >= 0.0).then_some((at.x as u32, at.y as u32))
         };
-        let reading = response.hover_pos().and_then(pixel).and_then(|pixel| rendering.read_spot(pixel, scene));
+        let bar = self.bar_ui(ui, rect, rendering, scene, zoom, out);
+        // After the bar, whose widgets would change their identities, and close their menus, with each read-out
+        let pointer = response.hover_pos().filter(|pointer| !bar.contains(*pointer));
+        let reading = pointer.and_then(pixel).and_then(|pixel| rendering.read_spot(pixel, scene));
         if let Some(reading) = reading {
             scopes::spot_ui(ui, rect, &reading);
         }
-        self.bar_ui(ui, rect, rendering, scene, zoom, out);
     }
 
     fn empty_ui(&self, ui: &mut Ui, rect: Rect, rendering: &Rendering, out: &mut Vec<Command>) {
@@ -97,6 +99,7 @@ impl PictureView {
         }
     }
 
+    /// Draws the bar and returns where it is.
     fn bar_ui(
         &mut self,
         ui: &mut Ui,
@@ -105,14 +108,15 @@ impl PictureView {
         scene: &Scene,
         zoom: f32,
         out: &mut Vec<Command>,
-    ) {
+    ) -> Rect {
         let bar =
             Rect::from_min_max(rect.left_top() + vec2(8.0, 8.0), Pos2::new(rect.right() - 8.0, rect.top() + 40.0));
         ui.scope_builder(egui::UiBuilder::new().max_rect(bar), |ui| {
             // The bar lies over the picture
             let dark = egui::Frame::new().fill(Color32::from_black_alpha(170)).inner_margin(4).corner_radius(4);
-            dark.show(ui, |ui| ui.horizontal(|ui| self.entries_ui(ui, rendering, scene, zoom, out)));
-        });
+            dark.show(ui, |ui| ui.horizontal(|ui| self.entries_ui(ui, rendering, scene, zoom, out))).response.rect
+        })
+        .inner
     }
 
     fn entries_ui(&mut self, ui: &mut Ui, rendering: &Rendering, scene: &Scene, zoom: f32, out: &mut Vec<Command>) {

@@ -137,8 +137,12 @@ fn spot_text(SpotReading { spot, lights }: &SpotReading) -> String {
 }
 
 fn percent(share: f32) -> String {
-    let digits = if share > 0.0 && share < 0.1 { 1 } else { 0 };
-    format!("{:.digits$} %", share * 100.0)
+    match share * 100.0 {
+        0.0 => "0 %".to_owned(),
+        percent if percent < 0.1 => "< 0.1 %".to_owned(),
+        percent if percent < 10.0 => format!("{percent:.1} %"),
+        percent => format!("{percent:.0} %"),
+    }
 }
 
 #[cfg(test)]
@@ -157,6 +161,6 @@ mod tests {
 
     #[test]
     fn small_shares_are_not_rounded_to_nothing() {
-        assert_eq!([0.0, 0.004, 0.25].map(percent), ["0 %", "0.4 %", "25 %"]);
+        assert_eq!([0.0, 2e-4, 0.004, 0.25].map(percent), ["0 %", "< 0.1 %", "0.4 %", "25 %"]);
     }
 }
