@@ -48,13 +48,10 @@ pub fn menu_ui(ui: &mut Ui, rendering: &Rendering, shows_histogram: &mut bool, o
             if ui.radio(shown == display, name).on_hover_text(tip).clicked() {
                 out.push(Command::DisplayPicture(display));
             }
-        }
-        if let PictureDisplay::Zebra { thirds_under } = shown {
-            let mut thirds = thirds_under;
-            let slider = Slider::new(&mut thirds, 0..=MOST_THIRDS).text("stops under white");
-            let slider = slider.custom_formatter(|thirds, _| format!("{:.1}", thirds / 3.0));
-            if ui.add(slider).changed() {
-                out.push(Command::DisplayPicture(PictureDisplay::Zebra { thirds_under: thirds }));
+            if let PictureDisplay::Zebra { thirds_under } = display
+                && display == shown
+            {
+                threshold_ui(ui, thirds_under, out);
             }
         }
         ui.separator();
@@ -62,6 +59,14 @@ pub fn menu_ui(ui: &mut Ui, rendering: &Rendering, shows_histogram: &mut bool, o
             .on_hover_text("How many pixels are how bright, from black to white, with the clipped shares");
     });
     button.on_hover_text("Judge the exposure: false colour, zebra, histogram");
+}
+
+/// Draws the slider of the zebra's threshold.
+fn threshold_ui(ui: &mut Ui, mut thirds_under: u8, out: &mut Vec<Command>) {
+    let slider = Slider::new(&mut thirds_under, 0..=MOST_THIRDS).text("stops under white");
+    if ui.add(slider.custom_formatter(|thirds, _| format!("{:.1}", thirds / 3.0))).changed() {
+        out.push(Command::DisplayPicture(PictureDisplay::Zebra { thirds_under }));
+    }
 }
 
 /// Paints the histogram into the lower right corner of the view.
@@ -107,7 +112,11 @@ pub fn legend_ui(ui: &Ui, view: Rect, display: PictureDisplay) {
         return;
     }
     let band = |stops: i32| {
-        let text = if stops == 0 { "middle grey, 18 %".to_owned() } else { format!("{stops:+} stops") };
+        let text = match stops {
+            0 => "middle grey, 18 %".to_owned(),
+            -1 | 1 => format!("{stops:+} stop"),
+            _ => format!("{stops:+} stops"),
+        };
         (false_color(stops as f32), text)
     };
     let white = ([255; 3], format!("clipped, from {:+.1} stops", clipping_stops()));
