@@ -9,8 +9,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// First bytes of a checkpoint.
-const MAGIC: &[u8; 16] = b"Catchlight film2";
+/// First bytes of a checkpoint, with the version of the film's fields.
+const MAGIC: &[u8; 16] = b"Catchlight film3";
 /// Version of the sampling, incremented when the same seed gives other samples.
 const SAMPLING_VERSION: u32 = 3;
 /// Bytes before the film: magic and render. Bytes after it: the hash of all before.

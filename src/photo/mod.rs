@@ -23,4 +23,4 @@ pub use lazy_picture::LazyPicture;
 pub use light::{PhotometricLight, Strength};
 pub use light_color::light_rgb;
 pub use picture::Picture;
-pub use scopes::{Histogram, MIDDLE_GREY, PictureDisplay, Spot, clipping_stops, false_band_color};
+pub use scopes::{Histogram, MIDDLE_GREY, PictureDisplay, Spot, clipping_stops};

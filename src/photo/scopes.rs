@@ -2,15 +2,15 @@
 
 use super::false_color::{FALSE_STOPS, false_color};
 use super::picture::Picture;
-use crate::color::{display_srgb8, luminance, srgb_encode, tone_curve};
+use crate::color::{display_srgb8, luminance};
 
 /// Value of a correctly metered grey card.
 pub const MIDDLE_GREY: f32 = 0.18;
-/// Stops above middle grey between which light skin usually lies: a face that is lit as the meter says is about one stop
-/// above a grey card. Darker skin lies lower.
+/// Stops above middle grey between which light skin usually lies: a face that is lit as the meter says is about one
+/// stop above a grey card. Darker skin lies lower.
 const SKIN_STOPS: std::ops::RangeInclusive<f32> = 0.5..=1.5;
-/// Stripes of the zebra across the longer side of a picture.
-const STRIPES: usize = 120;
+/// Pairs of a black and a white stripe of the zebra along the longer side of a picture.
+const STRIPE_PAIRS: usize = 120;
 
 /// How the values of a picture are displayed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,36 +32,37 @@ pub enum PictureDisplay {
 impl PictureDisplay {
     /// Converts a picture to display values, 8 bits per channel.
     pub fn to_srgb8(self, picture: &Picture) -> Vec<[u8; 3]> {
-        let mut codes = match self {
-            PictureDisplay::FalseColor => return picture.rgb.iter().map(|rgb| false_band_color(*rgb)).collect(),
-            _ => picture.to_srgb8(),
-        };
-        let (width, period) = (picture.width.max(1) as usize, stripe_period(picture));
-        for (index, (code, rgb)) in codes.iter_mut().zip(&picture.rgb).enumerate() {
-            let along = index % width + index / width;
-            if self.marks(*rgb) {
-                *code = if along / period % 2 == 0 { [0; 3] } else { [255; 3] };
-            }
-        }
-        codes
-    }
-
-    /// Returns true if the zebra covers a pixel.
-    fn marks(self, rgb: [f32; 3]) -> bool {
         match self {
+            PictureDisplay::Plain => picture.to_srgb8(),
+            PictureDisplay::FalseColor => picture.rgb.iter().map(|rgb| false_band_color(*rgb)).collect(),
             PictureDisplay::Zebra { thirds_under } => {
-                let limit = clipping_stops() - f32::from(thirds_under) / 3.0;
-                rgb.into_iter().any(|value| (value / MIDDLE_GREY).log2() >= limit)
+                let limit = value_at(clipping_stops() - f32::from(thirds_under) / 3.0);
+                striped(picture, |rgb| rgb.into_iter().any(|value| value >= limit))
             }
-            PictureDisplay::SkinZebra => SKIN_STOPS.contains(&stops_from_grey(rgb)),
-            PictureDisplay::Plain | PictureDisplay::FalseColor => false,
+            PictureDisplay::SkinZebra => {
+                let skin = value_at(*SKIN_STOPS.start())..=value_at(*SKIN_STOPS.end());
+                striped(picture, |rgb| skin.contains(&luminance(rgb.into())))
+            }
         }
     }
 }
 
-/// Returns the width of a stripe of the zebra, in pixels.
-fn stripe_period(picture: &Picture) -> usize {
-    (picture.width.max(picture.height) as usize / (2 * STRIPES)).max(2)
+/// Converts a picture to display values, with stripes on some of its pixels.
+fn striped(picture: &Picture, is_striped: impl Fn([f32; 3]) -> bool) -> Vec<[u8; 3]> {
+    let stripe = (picture.width.max(picture.height) as usize / (2 * STRIPE_PAIRS)).max(2);
+    let (mut codes, width) = (picture.to_srgb8(), picture.width.max(1) as usize);
+    for (index, (code, rgb)) in codes.iter_mut().zip(&picture.rgb).enumerate() {
+        let along = index % width + index / width;
+        if is_striped(*rgb) {
+            *code = if (along / stripe).is_multiple_of(2) { [0; 3] } else { [255; 3] };
+        }
+    }
+    codes
+}
+
+/// Returns the value that is so many stops above middle grey.
+fn value_at(stops: f32) -> f32 {
+    MIDDLE_GREY * stops.exp2()
 }
 
 /// Returns how many stops the luminance of a pixel is above middle grey; minus infinity for black.
@@ -76,7 +77,7 @@ pub fn clipping_stops() -> f32 {
     let (mut low, mut high) = (0.0_f32, 8.0_f32);
     for _ in 0..24 {
         let middle = 0.5 * (low + high);
-        if is_white(MIDDLE_GREY * middle.exp2()) { high = middle } else { low = middle }
+        if is_white(value_at(middle)) { high = middle } else { low = middle }
     }
     high
 }
@@ -86,7 +87,7 @@ fn is_white(value: f32) -> bool {
 }
 
 /// Returns the false colour of a pixel: that of its luminance in whole stops from middle grey.
-pub fn false_band_color(rgb: [f32; 3]) -> [u8; 3] {
+fn false_band_color(rgb: [f32; 3]) -> [u8; 3] {
     let codes = display_srgb8(rgb);
     match codes {
         [0, 0, 0] => codes,
@@ -104,7 +105,7 @@ pub struct Histogram {
     pub rgb: [[u32; 256]; 3],
     /// Number of pixels.
     pixels: u32,
-    /// Pixels with a clipped channel: black, and white.
+    /// Pixels that are black in all channels, and pixels that are white in a channel.
     clipped: [u32; 2],
 }
 
@@ -115,7 +116,7 @@ impl Histogram {
         let mut histogram = Histogram { luminance: [0; 256], rgb: [[0; 256]; 3], pixels, clipped: [0; 2] };
         for rgb in &picture.rgb {
             let codes = display_srgb8(*rgb);
-            let grey = (srgb_encode(tone_curve(luminance((*rgb).into()))) * 255.0 + 0.5) as u8;
+            let grey = display_srgb8([luminance((*rgb).into()); 3])[0];
             histogram.luminance[usize::from(grey)] += 1;
             for (counts, code) in histogram.rgb.iter_mut().zip(codes) {
                 counts[usize::from(code)] += 1;

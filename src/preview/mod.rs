@@ -22,7 +22,8 @@
 //!
 //! Light reaches the shaders in picture units (exposure, shutter and white balance folded in), so that a shader's sum
 //! is the scene-linear pixel. Unlike the path tracer, the preview filters soft shadows, has no true reflection and
-//! refraction, and interpolates bounced light on a grid ([`PreviewInput::bounced_light`]); without a grid it estimates it.
+//! refraction, and interpolates bounced light on a grid ([`PreviewInput::bounced_light`]); without a grid it estimates
+//! it.
 //!
 //! Where to extend it:
 //! - A pass: a pipeline constructor in the `pipelines.rs` of its room, a WGSL file joined in `shaders/mod.rs`, a `draw`

@@ -113,11 +113,12 @@ impl Aggregate {
     /// Builds the acceleration structures. Instances without triangles are never hit.
     #[cfg(test)]
     pub fn new(instances: Vec<Instance>) -> Self {
-        Self::with_merged(instances, None)
+        Self::with_merged(instances, &[])
     }
 
-    /// Builds the acceleration structures. Reuses the `cached` merged BLAS if it is over the same instances.
-    pub fn with_merged(instances: Vec<Instance>, cached: Option<Arc<MergedBlas>>) -> Self {
+    /// Builds the acceleration structures. Reuses the one of the `cached` merged BLASes that is over the same
+    /// instances.
+    pub fn with_merged(instances: Vec<Instance>, cached: &[Arc<MergedBlas>]) -> Self {
         // Divide the instances into small ones, which are merged, and large ones
         let (mut sources, mut tlas_entries, mut boxes, mut merged_total) = (Vec::new(), Vec::new(), Vec::new(), 0);
         for (index, instance) in instances.iter().enumerate() {
@@ -134,8 +135,8 @@ impl Aggregate {
                 boxes.push(instance.world_bounds(bounds));
             }
         }
-        // Build the merged BLAS, unless the cached one is still valid
-        let cached = cached.filter(|merged| merged.is_over(&sources));
+        // Build the merged BLAS, unless a cached one is still valid
+        let cached = cached.iter().find(|merged| merged.is_over(&sources)).cloned();
         let merged = cached.unwrap_or_else(|| Arc::new(MergedBlas::new(&instances, sources)));
         // Build the TLAS over the large instances and the strands
         let tlas = bvh::build(&boxes, 1);

@@ -1,4 +1,4 @@
-//! A cache of BLASes, material tables and the merged BLAS between calls of `prepare`: moving a light or an object
+//! A cache of BLASes, material tables and merged BLASes between calls of `prepare`: moving a light or an object
 //! builds no BLAS of a mesh again.
 //!
 //! A mesh is found by its address, or else by its content: shapes such as boxes are tessellated anew each time. Meshes
@@ -16,7 +16,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// Number of triangles and strand segments that are kept although the last scene did not use them: some 300 MB.
 const MAX_UNUSED_TRIANGLES: usize = 2_000_000;
 
-/// The BLASes, materials and merged BLAS of the last prepared scenes.
+/// Number of merged BLASes that are kept.
+const MAX_MERGED: usize = 3;
+
+/// The BLASes, materials and merged BLASes of the last prepared scenes.
 #[derive(Debug, Default)]
 pub struct GeometryCache(Mutex<CacheState>);
 
@@ -26,7 +29,8 @@ struct CacheState {
     /// Content hashes of the meshes in `by_content`, by address. An address is valid as long as the entry holds the
     /// mesh.
     by_address: HashMap<usize, u64>,
-    merged: Option<Arc<MergedBlas>>,
+    /// Merged BLASes, the last used one at the end: live view, renders and meter have theirs about different origins.
+    merged: Vec<Arc<MergedBlas>>,
     /// Materials of the last scene.
     materials: Vec<(Material, TracedMaterial)>,
     /// Number of calls of [`GeometryCache::geometries`]: the time of the LRU order.
@@ -115,14 +119,18 @@ impl GeometryCache {
         self.lock().materials = materials.collect();
     }
 
-    /// Returns the stored merged BLAS.
-    pub(super) fn merged(&self) -> Option<Arc<MergedBlas>> {
+    /// Returns the merged BLASes of the last scenes.
+    pub(super) fn merged(&self) -> Vec<Arc<MergedBlas>> {
         self.lock().merged.clone()
     }
 
-    /// Stores the merged BLAS for the next `prepare`.
+    /// Stores a merged BLAS for the next calls of `prepare`.
     pub(super) fn store_merged(&self, merged: Arc<MergedBlas>) {
-        self.lock().merged = Some(merged);
+        let mut state = self.lock();
+        state.merged.retain(|known| !Arc::ptr_eq(known, &merged));
+        state.merged.push(merged);
+        let surplus = state.merged.len().saturating_sub(MAX_MERGED);
+        state.merged.drain(..surplus);
     }
 }
 
@@ -171,7 +179,7 @@ fn hash(mesh: &Mesh) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::raytrace::{prepare, prepare_kept};
+    use crate::raytrace::{LightMeter, prepare, prepare_kept};
     use crate::scene::{Assets, Emitter, Light, Object, ObjectId, Output, Room, Scene, Shape, Transform};
     use glam::Vec3;
 
@@ -216,7 +224,8 @@ mod tests {
             let before = cache.builds();
             let merged = cache.merged();
             prepare_kept(scene, assets, &cache).unwrap();
-            let same_merged = merged.zip(cache.merged()).is_some_and(|(a, b)| Arc::ptr_eq(&a, &b));
+            let after = cache.merged();
+            let same_merged = merged.last().zip(after.last()).is_some_and(|(a, b)| Arc::ptr_eq(a, b));
             (cache.builds() - before, same_merged)
         };
         assert_eq!(builds(&scene, &assets), (4, false), "room, sphere, box, hill");
@@ -274,5 +283,28 @@ mod tests {
         assert_eq!(cache.builds(), 8, "the most recently used are cached");
         cache.geometries(&hills[..1]);
         assert_eq!(cache.builds(), 9, "the least recently used are evicted");
+    }
+
+    #[test]
+    fn a_meter_in_another_place_leaves_the_merged_blas_of_the_camera() {
+        let (mut scene, assets) = studio();
+        let cache = GeometryCache::default();
+        let merged = || cache.merged().last().unwrap().clone();
+        prepare_kept(&scene, &assets, &cache).unwrap();
+        let of_camera = merged();
+        LightMeter::kept(&scene, &assets, Vec3::new(0.3, 1.6, 0.2), &cache).unwrap();
+        let of_meter = merged();
+        assert!(!Arc::ptr_eq(&of_camera, &of_meter));
+        // A light moves: both are found again
+        scene.lights[0].position.x += 1.0;
+        prepare_kept(&scene, &assets, &cache).unwrap();
+        assert!(Arc::ptr_eq(&merged(), &of_camera));
+        LightMeter::kept(&scene, &assets, Vec3::new(0.3, 1.6, 0.2), &cache).unwrap();
+        assert!(Arc::ptr_eq(&merged(), &of_meter));
+        // Those of former places go
+        for x in 1..10 {
+            LightMeter::kept(&scene, &assets, Vec3::X * x as f32, &cache).unwrap();
+        }
+        assert_eq!(cache.merged().len(), MAX_MERGED);
     }
 }

@@ -74,7 +74,7 @@ pub(super) fn prepare_all(
             Some(placed)
         })
         .collect();
-    let aggregate = Aggregate::with_merged(instances, cache.merged());
+    let aggregate = Aggregate::with_merged(instances, &cache.merged());
     cache.store_merged(aggregate.merged().clone());
 
     // Convert the lights and derive the plan

@@ -1,7 +1,8 @@
 //! The preview's bounced light, and all its light, against the path tracer's, in each shipped studio.
 //!
-//! Compared are blocks of pixels without mirrors and glass, which the preview shows roughly, and without hair, see `hair`. The error of the bounced
-//! light is that of the whole picture if its direct light were the tracer's; direct light is compared in `each_light`.
+//! Compared are blocks of pixels without mirrors and glass, which the preview shows roughly, and without hair, see
+//! `hair`. The error of the bounced light is that of the whole picture if its direct light were the tracer's; direct
+//! light is compared in `each_light`.
 
 use super::each_light::{is_rasterable, traced_with};
 use super::*;

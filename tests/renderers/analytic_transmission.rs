@@ -302,9 +302,9 @@ fn a_sharp_sun_lights_what_lies_under_water_and_glass() {
 
 #[test]
 fn a_lamp_inside_of_coloured_glass_is_absorbed_by_the_glass() {
-    // A bulb in the middle of a block of 10 cm that absorbs four fifths on the way to a face, 20 cm before the card. Its
-    // image is nearer by refraction, and its light spreads into a solid angle n2 times as large; the reflection in the
-    // back face brings another 0.2 %.
+    // A bulb in the middle of a block of 10 cm that absorbs four fifths on the way to a face, 20 cm before the card.
+    // Its image is nearer by refraction, and its light spreads into a solid angle n2 times as large; the reflection in
+    // the back face brings another 0.2 %.
     let half = 0.05_f64;
     let per_m = 5.0_f64.ln() / half;
     let block = Material { absorption_per_m: [per_m as f32; 3], ..clear(GLASS) };
@@ -329,7 +329,8 @@ fn a_lamp_inside_of_coloured_glass_is_absorbed_by_the_glass() {
     }
 }
 
-/// A wedge with a flat top at `top` and a lower face that falls towards +Y by an angle, from `top - 0.02` at the middle.
+/// A wedge with a flat top at `top` and a lower face that falls towards +Y by an angle, from `top - 0.02` at the
+/// middle.
 fn wedge(top: f32, tilt_deg: f32) -> Mesh {
     let half = 0.1;
     let fall = half * tilt_deg.to_radians().tan();
@@ -349,8 +350,8 @@ fn wedge(top: f32, tilt_deg: f32) -> Mesh {
 #[test]
 fn a_wedge_bends_the_sun_and_compresses_its_light() {
     // Snell's law at the tilted lower face: the light turns by d = asin(n sin a) - a towards the thick side. A row of
-    // rays is displaced by z tan d, where the face lies at z: the nearer the face, the less, so that the light is denser
-    // by 1 / (1 - tan a tan d).
+    // rays is displaced by z tan d, where the face lies at z: the nearer the face, the less, so that the light is
+    // denser by 1 / (1 - tan a tan d).
     let tilt = 10.0_f64.to_radians();
     let turn = (GLASS * tilt.sin()).asin() - tilt;
     let (rs, rp) = fresnel(tilt, 1.0 / GLASS);

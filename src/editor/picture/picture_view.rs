@@ -44,9 +44,11 @@ impl PictureView {
         let place = Rect::from_center_size(rect.center() + self.offset, pixels * zoom);
         let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
         painter.image(texture, place, uv, Color32::WHITE);
-        scopes::legend_ui(ui, rect, rendering.display);
-        if let Some(developed) = rendering.developed().filter(|_| self.shows_histogram) {
-            scopes::histogram_ui(ui, rect, &developed.image.histogram);
+        if let Some(developed) = rendering.developed() {
+            scopes::legend_ui(ui, rect, developed.image.display);
+            if self.shows_histogram {
+                scopes::histogram_ui(ui, rect, &developed.image.histogram);
+            }
         }
         let pixel = |pointer: Pos2| {
             let at = (pointer - place.min) / place.size() * vec2(size.0 as f32, size.1 as f32);

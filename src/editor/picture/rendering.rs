@@ -95,6 +95,8 @@ struct Requested {
 #[derive(Debug)]
 pub struct ShownPicture {
     image: Arc<ColorImage>,
+    /// How it is displayed.
+    pub display: PictureDisplay,
     /// The histogram of the whole picture.
     pub histogram: Histogram,
 }
@@ -102,7 +104,7 @@ pub struct ShownPicture {
 impl ShownPicture {
     fn new(picture: &Picture, development: &Development) -> Self {
         let image = shown_within(picture, development.display, development.max_side);
-        ShownPicture { image: Arc::new(image), histogram: Histogram::of(picture) }
+        ShownPicture { image: Arc::new(image), display: development.display, histogram: Histogram::of(picture) }
     }
 }
 
@@ -111,7 +113,7 @@ impl ShownPicture {
 pub struct SpotReading {
     /// The spot.
     pub spot: Spot,
-    /// Names of the lights with their share of the light, the largest first.
+    /// Names of the lights with their share of the light before the denoiser, the largest first.
     pub lights: Vec<(String, f32)>,
 }
 
@@ -241,13 +243,13 @@ impl Rendering {
         self.developed.as_ref().filter(|d| (d.picture.width, d.picture.height) == (width, height))
     }
 
-    /// Reads the light around a pixel of the picture, with the lights as in `scene`. None outside of it, and while there
-    /// is no whole picture.
+    /// Reads the light around a pixel of the picture, with the lights as in `scene`. None outside of it, and while
+    /// there is no whole picture.
     pub fn read_spot(&self, pixel: (u32, u32), scene: &Scene) -> Option<SpotReading> {
         let developed = self.developed()?;
         let size = self.size().filter(|size| pixel.0 < size.0 && pixel.1 < size.1)?;
         let spot = Spot::around(pixel, size, |x, y| developed.picture.at(x, y));
-        let film = self.film.as_ref().filter(|film| (film.width(), film.height()) == size)?;
+        let film = developed.film.upgrade()?;
         let layers = film.lazy_layers(scene).into_iter();
         let lights = layers.map(|(name, layer)| (name, Spot::around(pixel, size, |x, y| layer.at(x, y)).luminance()));
         let mut lights: Vec<(String, f32)> = lights.collect();

@@ -76,8 +76,10 @@ pub fn histogram_ui(ui: &Ui, view: Rect, histogram: &Histogram) {
     let response = ui.interact(place, ui.scope_id().with("histogram"), Sense::hover());
     let (black, white) = (percent(histogram.black_share()), percent(histogram.white_share()));
     widgets::named(ui, &response, &format!("Histogram: {black} black, {white} white"));
-    response
-        .on_hover_text("Pixels by display value: grey luminance, red, green and blue. The marks are clipped pixels.");
+    response.on_hover_text(
+        "Pixels by display value: luminance in grey, and red, green and blue. Black pixels are black in all channels, \
+         white ones are clipped in one at least.",
+    );
 
     let painter = ui.painter_at(view);
     painter.rect_filled(place, 4.0, Color32::from_black_alpha(190));
@@ -106,7 +108,7 @@ pub fn histogram_ui(ui: &Ui, view: Rect, histogram: &Histogram) {
     mark(right, Align2::RIGHT_CENTER, format!("{white} white"), histogram.white_share());
 }
 
-/// Paints the legend of the false colours, if they are shown.
+/// Paints the legend of the false colours, if the picture shows them.
 pub fn legend_ui(ui: &Ui, view: Rect, display: PictureDisplay) {
     if display != PictureDisplay::FalseColor {
         return;

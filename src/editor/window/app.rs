@@ -25,9 +25,7 @@ use crate::editor::window::recent::RecentFiles;
 use crate::editor::window::recovery::Recovery;
 use crate::editor::window::rescue;
 use crate::editor::window::session::Session;
-use crate::jobs::{
-    Clock, Estimate, Forecast, ForecastSubject, Forecaster, MeterJob, PatternJob, RenderOutcome, sentence,
-};
+use crate::jobs::{Estimate, Forecast, ForecastSubject, Forecaster, MeterJob, PatternJob, RenderOutcome, sentence};
 use crate::raytrace::{GeometryCache, Settings};
 use crate::scene::SceneChange;
 use eframe::egui::text_selection::LabelSelectionState;
@@ -102,10 +100,7 @@ impl App {
             views: ViewState::new(Viewport::new(preview, TracedView::new(geometry.clone()))),
             panels: PanelState::new(files::presets()),
             rendering: Rendering::new(geometry.clone()),
-            background: BackgroundState::new(
-                Forecaster::new(geometry.clone(), Clock::default()),
-                MeterJob::new(geometry),
-            ),
+            background: BackgroundState::new(geometry),
             session: Session::new(
                 options.dialogs,
                 RecentFiles::load(options.settings_folder),

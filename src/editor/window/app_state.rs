@@ -11,7 +11,9 @@ use crate::editor::ui::side_panel::SidePanel;
 use crate::editor::viewport::viewport_area::Viewport;
 use crate::editor::window::background_tasks::BackgroundTasks;
 use crate::editor::window::frame_log::FrameLog;
-use crate::jobs::{Forecaster, MeterJob, PatternJob};
+use crate::jobs::{Clock, Forecaster, MeterJob, PatternJob};
+use crate::raytrace::GeometryCache;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// The views in the middle of the window.
@@ -92,13 +94,13 @@ pub struct BackgroundState {
 }
 
 impl BackgroundState {
-    /// Starts idle.
-    pub fn new(forecaster: Forecaster, meter: MeterJob) -> Self {
+    /// Returns idle work that shares BVHs of meshes with renders and live view.
+    pub fn new(geometry: Arc<GeometryCache>) -> Self {
         BackgroundState {
             tasks: BackgroundTasks::default(),
-            meter,
+            meter: MeterJob::new(geometry.clone()),
             pattern: PatternJob::default(),
-            forecaster,
+            forecaster: Forecaster::new(geometry, Clock::default()),
             thumbnails: Thumbnails::default(),
         }
     }

@@ -118,7 +118,6 @@ mod tests {
     use crate::jobs::read_meter;
     use crate::photo::meter::Receptor;
     use crate::photo::portrait_pattern::{FaceSide, FoundPattern, PortraitPattern};
-
     use crate::raytrace::{MeterEffort, MeterPoint, MeterResult};
 
     fn studio(name: &str) -> Loaded {

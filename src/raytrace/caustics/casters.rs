@@ -25,7 +25,8 @@ pub struct CausticCasters {
     areas: Vec<f64>,
     /// Index along the curve of each patch in the order of the meshes.
     curve_indices: Vec<u32>,
-    /// For each instance that has casters, the first patch of each triangle and the end, as indices into `curve_indices`.
+    /// For each instance that has casters, the first patch of each triangle and the end, as indices into
+    /// `curve_indices`.
     first_patches: Vec<Option<Vec<u32>>>,
 }
 
@@ -86,14 +87,14 @@ impl CausticCasters {
         self.areas.last().copied().unwrap_or(0.0) as f32
     }
 
-    /// Returns the density of photons that start uniformly on the casters with directions of density `pdf`, at `cos` to the
-    /// surface: in perpendicular area and solid angle, 1/(m2 sr).
+    /// Returns the density of photons that start uniformly on the casters with directions of density `pdf`, at `cos` to
+    /// the surface: in perpendicular area and solid angle, 1/(m2 sr).
     pub fn density(&self, pdf: f32, cos: f32) -> f32 {
         pdf / (self.area() * cos)
     }
 
-    /// Samples a point by numbers in [0, 1): a patch by its area and by `starts`, and in it uniformly. None where there is
-    /// no caster.
+    /// Samples a point by numbers in [0, 1): a patch by its area and by `starts`, and in it uniformly. None where there
+    /// is no caster.
     pub fn sample(&self, starts: &StartDensity, choice: f32, u: Vec2) -> Option<CasterPoint> {
         let total = self.areas.last()?;
         let area = starts.position(f64::from(choice)) * total;
@@ -121,8 +122,8 @@ impl CausticCasters {
         (0..sections).map(centre).collect()
     }
 
-    /// Returns the density of points sampled by `starts` at a hit, relative to points that are uniform in area. None where there is no
-    /// caster: strands are none.
+    /// Returns the density of points sampled by `starts` at a hit, relative to points that are uniform in area. None
+    /// where there is no caster: strands are none.
     pub fn relative_density(&self, starts: &StartDensity, hit: &Hit) -> Option<f32> {
         let Primitive::Triangle(TriangleHit { triangle, barycentric, .. }) = hit.primitive else { return None };
         let firsts = self.first_patches.get(hit.instance as usize)?.as_ref()?;
@@ -142,7 +143,8 @@ impl CausticCasters {
     }
 }
 
-/// Returns the areas of the triangles of an instance in square metres, 0 for those that cast no caustics. None without casters.
+/// Returns the areas of the triangles of an instance in square metres, 0 for those that cast no caustics. None without
+/// casters.
 fn triangle_areas(instance: &Instance, materials: &[TracedMaterial]) -> Option<Vec<f64>> {
     let casts: Vec<bool> = instance.materials.iter().map(|&m| materials[m as usize].is_caustic_caster()).collect();
     let area = |triangle: u32| {

@@ -4,8 +4,8 @@
 //! thousands, and a delta light is never hit. Photons start where light meets caustic casters and are stored on
 //! non-specular surfaces (Jensen 1996), where every path gathers those within a small radius.
 //!
-//! Photons start mostly where they reach what the camera sees. The gather radius follows the width of a pixel there, and
-//! is wider where there are few photons. Each sample pass has its own photons and a smaller radius, proportional to
+//! Photons start mostly where they reach what the camera sees. The gather radius follows the width of a pixel there,
+//! and is wider where there are few photons. Each sample pass has its own photons and a smaller radius, proportional to
 //! (samples so far)^(-1/6): the blur vanishes, slower than the noise (Knaus and Zwicker 2011, "Progressive Photon
 //! Mapping: A Probabilistic Approach").
 //!

@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-/// One of n x n congruent parts of a triangle. They lie in n rows of 2n - 1, 2n - 3 ... 1 parts, of which every other one
-/// is upside down.
+/// One of n x n congruent parts of a triangle. They lie in n rows of 2n - 1, 2n - 3 ... 1 parts, of which every other
+/// one is upside down.
 #[derive(Clone, Copy, Debug)]
 pub struct Patch {
     /// Index of the instance.
@@ -19,7 +19,7 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// Divides a triangle into `count` patches at least, at most some thousand.
+    /// Divides a triangle into `count` patches at least; `count` is at most 10^8.
     pub fn divide(instance: u32, triangle: u32, count: f64) -> impl Iterator<Item = Patch> {
         let divisions = count.sqrt().ceil().max(1.0) as u16;
         let row = move |row: u16| {
@@ -34,8 +34,8 @@ impl Patch {
         1.0 / (f64::from(self.divisions) * f64::from(self.divisions))
     }
 
-    /// Returns the barycentric coordinates, of the second and the third corner, of a point that is uniform in the patch for a uniform
-    /// `u`.
+    /// Returns the barycentric coordinates, of the second and the third corner, of a point that is uniform in the patch
+    /// for a uniform `u`.
     pub fn barycentric(&self, u: Vec2) -> [f32; 2] {
         // The square folded onto the triangle along its diagonal
         let folded = if u.x + u.y < 1.0 { u } else { Vec2::ONE - u };

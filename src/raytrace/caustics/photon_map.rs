@@ -122,8 +122,8 @@ impl PhotonLookup {
         self.radius.at(distance)
     }
 
-    /// Returns the gather area times the number of emitted photons, square metres: the expected number of gathered photons where
-    /// the density of each is 1/m2.
+    /// Returns the gather area times the number of emitted photons, square metres: the expected number of gathered
+    /// photons where the density of each is 1/m2.
     pub fn area(&self, distance: f32) -> f32 {
         let radius = self.radius.at(distance);
         PI * radius * radius * self.emitted

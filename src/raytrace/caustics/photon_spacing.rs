@@ -24,7 +24,8 @@ impl PhotonSpacing {
         PhotonSpacing { radius: neighbour_radius(photons), emitted }
     }
 
-    /// Returns the radius that holds enough photons of a pass with so many emitted photons and samples per pixel, metres.
+    /// Returns the radius that holds enough photons of a pass with so many emitted photons and samples per pixel,
+    /// metres.
     pub fn filled_radius(&self, emitted: u32, samples: u32) -> f32 {
         let fewer = self.emitted as f32 / emitted as f32;
         self.radius * (fewer * samples as f32).sqrt()

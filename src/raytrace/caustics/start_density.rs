@@ -6,8 +6,9 @@ use std::ops::Range;
 pub const SECTIONS: usize = 8192;
 /// Least share of the photons that start uniformly.
 const UNIFORM_SHARE: f64 = 0.25;
-/// Greatest density relative to a uniform one, the least being [`UNIFORM_SHARE`] or more. Light from sections that were not
-/// known to matter comes in photons with more flux, by this ratio: more are spots in the picture, less blur close-ups.
+/// Greatest density relative to a uniform one, the least being [`UNIFORM_SHARE`] or more. Light from sections that were
+/// not known to matter comes in photons with more flux, by this ratio: more are spots in the picture, less blur
+/// close-ups.
 const MAX_DENSITY: f64 = 128.0;
 
 /// A piecewise constant density along the curve of the casters, 0 to 1.

@@ -73,7 +73,7 @@ impl Positioned for SectionCentre {
     }
 }
 
-/// Returns the sections within a radius of the centre of each, itself among them.
+/// Returns sections within a radius of the centre of each, [`MAX_NEIGHBOURS`] at most.
 fn neighbours(centres: &[Vec3], radius: f32) -> Vec<Vec<u16>> {
     let centres: Vec<SectionCentre> =
         (0..).zip(centres).map(|(section, &position)| SectionCentre { position, section }).collect();

@@ -1,9 +1,9 @@
 //! The caustic view of a picture: the visible surfaces, and the density of photon starts that serves them.
 //!
 //! A close-up shows a small part of the studio, where few photons arrive that start everywhere. So photons start mostly
-//! on those parts of the casters from which photons reached visible surfaces before (Peter and Pietrek 1998, "Importance
-//! Driven Construction of Photon Maps"; Hachisuka and Jensen 2011, "Robust Adaptive Photon Tracing Using Photon Path
-//! Visibility"). Their flux is divided by the density of their starts: the expected light is the same.
+//! on those parts of the casters from which photons reached visible surfaces before (Peter and Pietrek 1998,
+//! "Importance Driven Construction of Photon Maps"; Hachisuka and Jensen 2011, "Robust Adaptive Photon Tracing Using
+//! Photon Path Visibility"). Their flux is divided by the density of their starts: the expected light is the same.
 
 use super::grid::Positioned;
 use super::photon::Photon;
@@ -112,8 +112,8 @@ impl CausticView {
         view
     }
 
-    /// Selects those photons that arrive near visible points: within the least radii that hold enough of them, up to the
-    /// `widest`. Returns the index of the widening, too. `wider` keeps the widened points from round to round.
+    /// Selects those photons that arrive near visible points: within the least radii that hold enough of them, up to
+    /// the `widest`. Returns the index of the widening, too. `wider` keeps the widened points from round to round.
     fn nearest(
         &self,
         arrived: &[ArrivedPhoton],
