@@ -106,13 +106,12 @@ impl Forecaster {
     }
 
     /// Takes over the measurement of a real render, which replaces the pilot's.
-    pub fn learn(&mut self, subject: ForecastSubject, forecast: Option<Forecast>, measured: Estimate) {
+    pub fn learn(&mut self, subject: ForecastSubject, forecast: Forecast, measured: Estimate) {
         if self.subject != Some(subject) {
             self.measured.clear();
             self.subject = Some(subject);
         }
-        let known = self.forecast.as_ref();
-        self.forecast = forecast.map(|forecast| forecast.with_convergence_of(known)).or(self.forecast);
+        self.forecast = Some(forecast.with_convergence_of(self.forecast.as_ref()));
         self.changed = None;
         self.worker.reset();
         self.measured.push(measured);

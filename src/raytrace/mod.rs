@@ -69,7 +69,7 @@ mod whitted;
 pub use control::RenderControl;
 pub use events::{Lobe, PathEnd, PathEvent, PathVertex};
 pub use exact_sum::ExactSum;
-pub use film::{Film, Layer, MAX_LIGHT_LAYERS, NonFiniteReport, TILE};
+pub use film::{Film, Layer, MAX_LIGHT_LAYERS, MIN_ESTIMATE_SPP, NonFiniteReport, TILE};
 pub use film_part::{FilmPart, PartAovs, PartLayer, PixelSum};
 pub use geometry_cache::GeometryCache;
 pub use intersectors::{IntersectionMethod, Intersector};

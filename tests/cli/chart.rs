@@ -122,8 +122,8 @@ fn scaling_reports_one_row_per_number_of_triangles_lights_and_pixels() {
 #[test]
 fn the_noise_study_compares_stated_noise_with_its_scatter() {
     let folder = tempfile::tempdir().unwrap();
-    let rows = json(&chart(folder.path(), &["--noise", "rembrandt", "--size", "32x24", "--spp", "4", "--json"]));
-    assert_eq!(rows.iter().map(|row| row["spp"].as_u64().unwrap()).collect::<Vec<_>>(), [2, 4]);
+    let rows = json(&chart(folder.path(), &["--noise", "rembrandt", "--size", "32x24", "--spp", "8", "--json"]));
+    assert_eq!(rows.iter().map(|row| row["spp"].as_u64().unwrap()).collect::<Vec<_>>(), [4, 8]);
     for row in &rows {
         let [scatter, ratio] = ["scatter", "ratio"].map(|key| row[key].as_f64().unwrap());
         // A fifth of a stop or less, stated about right: 768 pixels, some of which hold most of the scatter.

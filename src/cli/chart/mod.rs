@@ -51,7 +51,7 @@ pub struct Arguments {
     #[arg(long, conflicts_with_all = ["traversal", "scenes"])]
     scaling: bool,
     /// Compare the noise that renders state with their scatter over 16 seeds, on the studios [default: all shipped
-    /// ones], for 2, 4, 8 ... samples up to --spp.
+    /// ones], for 4, 8, 16 ... samples up to --spp.
     #[arg(long, conflicts_with_all = ["traversal", "scaling", "reference_spp"])]
     noise: bool,
     /// Compare the caustic of a mirror's edge in close-ups with its closed form, for 1, 4, 16 ... samples up to --spp.

@@ -5,7 +5,7 @@ use crate::cli::input::load_studio;
 use crate::cli::terminal;
 use crate::color::luminance;
 use crate::io;
-use crate::raytrace::{self, Film, RenderControl, Settings, TILE};
+use crate::raytrace::{self, Film, MIN_ESTIMATE_SPP, RenderControl, Settings, TILE};
 use crate::scene::Scene;
 use anyhow::Context;
 use serde::Serialize;
@@ -37,7 +37,7 @@ struct Renders {
     stated: Vec<f64>,
 }
 
-/// Measures and prints, for 2, 4, 8 ... samples up to `spp`. Without scenes, all shipped studios are measured.
+/// Measures and prints, for 4, 8, 16 ... samples up to `spp`. Without scenes, all shipped studios are measured.
 pub fn run(scenes: &[PathBuf], size: (u32, u32), spp: u32, json: bool) -> Result<(), Failure> {
     let shipped: Vec<PathBuf> = io::presets().iter().map(|preset| preset.file_name.into()).collect();
     let mut rows = Vec::new();
@@ -65,7 +65,7 @@ pub fn run(scenes: &[PathBuf], size: (u32, u32), spp: u32, json: bool) -> Result
 
 fn add_render(all: &mut Vec<Renders>, film: &Film, scene: &Scene) {
     let spp = film.spp();
-    if spp < 2 || !spp.is_power_of_two() {
+    if spp < MIN_ESTIMATE_SPP || !spp.is_power_of_two() {
         return;
     }
     let picture = film.develop(scene);

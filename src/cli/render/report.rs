@@ -45,7 +45,7 @@ pub struct RenderReport {
     pub mrays_s: f64,
     /// Caustics come from photons.
     pub photons: bool,
-    /// Estimated noise; null before there are two samples.
+    /// Estimated noise; null before there are four samples.
     pub noise_stops: Option<f32>,
     /// Non-finite contributions that were shown black.
     pub nonfinite: u64,

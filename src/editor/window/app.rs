@@ -287,7 +287,8 @@ impl App {
             let Settings { width, height, method, .. } = job.settings;
             let RenderOutcome { build_s, trace_s, spp, noise_stops } = outcome;
             let pixels = u64::from(width) * u64::from(height);
-            let forecast = Forecast::from_render(build_s, trace_s, pixels, spp, noise_stops);
+            // A render of few samples tells no noise
+            let Some(forecast) = Forecast::from_render(build_s, trace_s, pixels, spp, noise_stops) else { return };
             let measured = Estimate { seconds: build_s + trace_s, noise_stops: noise_stops.into() };
             let subject = ForecastSubject { revision: self.document.revisions().image, method };
             self.background.forecaster.learn(subject, forecast, measured);

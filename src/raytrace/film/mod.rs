@@ -12,7 +12,7 @@ mod tile;
 use aov::AovTile;
 pub use gate::{NonFiniteGate, NonFiniteReport};
 pub use layer::{Layer, MAX_LIGHT_LAYERS, assign_layers, share_layers};
-pub use noise::SampleBlocks;
+pub use noise::{MIN_ESTIMATE_SPP, SampleBlocks};
 pub use sums::LayerSums;
 pub use tile::{FilmTile, TILE};
 
@@ -130,15 +130,16 @@ impl Film {
         self.tiles.iter().map(|tile| &tile.nonfinite).collect()
     }
 
-    /// Estimated noise: the median of the tiles' noise, in stops. Infinite before there are two samples.
+    /// Estimated noise: the median of the tiles' noise, in stops. Infinite before there are
+    /// [`MIN_ESTIMATE_SPP`] samples.
     pub fn noise_stops(&self) -> f32 {
         let mut noise: Vec<f32> = self.tiles.iter().filter_map(|tile| tile.noise_stops()).collect();
         noise.sort_by(f32::total_cmp);
         noise.get(noise.len() / 2).copied().unwrap_or(0.0)
     }
 
-    /// Estimated noise of each tile of [`TILE`] pixels, stops, in rows from the top. Infinite before there are two
-    /// samples; none for tiles that are too dark.
+    /// Estimated noise of each tile of [`TILE`] pixels, stops, in rows from the top. Infinite before there are
+    /// [`MIN_ESTIMATE_SPP`] samples; none for tiles that are too dark.
     pub fn tile_noise_stops(&self) -> Vec<Option<f32>> {
         self.tiles.iter().map(|tile| tile.noise_stops()).collect()
     }

@@ -21,6 +21,8 @@ use crate::photo::MIDDLE_GREY;
 /// Mean picture value (8 stops below middle grey) under which a tile is too dark for a noise estimate.
 const DARK: f32 = MIDDLE_GREY / 256.0;
 
+/// Samples per pixel from which the noise is estimated: fewer have no two differences.
+pub const MIN_ESTIMATE_SPP: u32 = 4;
 /// Logarithm of n V(n) over the difference, before a second difference tells how they fall: the mean of the shipped
 /// studios.
 const FIRST_LOG_RATIO: f64 = -0.46;
@@ -121,9 +123,9 @@ impl SampleBlocks {
     }
 
     /// Estimates the noise: root mean square error of the pixels over the tile's mean exposed luminance, in stops.
-    /// Infinite before there are two samples; none for tiles darker than eight stops below middle grey.
+    /// Infinite before there are [`MIN_ESTIMATE_SPP`] samples; none for tiles darker than eight stops below middle grey.
     pub fn noise_stops(&self, mean: f32) -> Option<f32> {
-        if self.samples() < 2 {
+        if self.samples() < MIN_ESTIMATE_SPP {
             return Some(f32::INFINITY);
         }
         let rms = self.variance().sqrt() as f32;
@@ -237,19 +239,25 @@ mod tests {
     }
 
     #[test]
-    fn the_estimate_is_infinite_before_two_samples_and_none_in_the_dark() {
+    fn the_estimate_is_infinite_before_four_samples_and_none_in_the_dark() {
         let mut blocks = SampleBlocks::new(2);
-        assert_eq!(blocks.noise_stops(1.0), Some(f32::INFINITY));
-        for means in [[1.5, 0.5], [1.1, 0.9]] {
+        let add = |blocks: &mut SampleBlocks, means: [f32; 2]| {
+            assert_eq!(blocks.noise_stops(1.0), Some(f32::INFINITY));
             blocks.begin_pass();
             means.into_iter().enumerate().for_each(|(pixel, mean)| blocks.add(pixel, mean));
             blocks.finish_pass(1);
-        }
+        };
+        [[1.5, 0.5], [1.1, 0.9]].into_iter().for_each(|means| add(&mut blocks, means));
         assert!((blocks.mean() - 1.0).abs() < 1e-6 && blocks.samples() == 2);
-        // Differences of 0.4: an error of 0.2 of the mean of independent samples, reduced by the first ratio.
-        let expected = (1.0 + 0.2 * (0.5 * FIRST_LOG_RATIO).exp()).log2();
-        let noise = blocks.noise_stops(1.0).unwrap();
-        assert!((f64::from(noise) - expected).abs() < 1e-3, "{noise} for {expected}");
+        // Differences of 0.4: an error of 0.2 of the mean of independent samples, reduced by the first ratio
+        let expected = 0.2 * (0.5 * FIRST_LOG_RATIO).exp();
+        assert!(
+            (blocks.variance().sqrt() / expected - 1.0).abs() < 1e-3,
+            "{} for {expected}",
+            blocks.variance().sqrt()
+        );
+        [[1.3, 0.7], [1.3, 0.7]].into_iter().for_each(|means| add(&mut blocks, means));
+        assert!(blocks.noise_stops(1.0).is_some_and(|noise| (0.0..1.0).contains(&noise)));
         assert_eq!(blocks.noise_stops(1e-4), None, "too dark");
         blocks.clear();
         assert_eq!(blocks.samples(), 0);
