@@ -6,7 +6,7 @@ use crate::color::{display_srgb8, luminance};
 
 /// Value of a correctly metered grey card.
 pub const MIDDLE_GREY: f32 = 0.18;
-/// Stops above middle grey between which light skin usually lies: a face that is lit as the meter says is about one
+/// Stops above middle grey between which light skin typically lies: a face that is lit as the meter says is about one
 /// stop above a grey card. Darker skin lies lower.
 const SKIN_STOPS: std::ops::RangeInclusive<f32> = 0.5..=1.5;
 /// Pairs of a black and a white stripe of the zebra along the longer side of a picture.
@@ -103,8 +103,6 @@ pub struct Histogram {
     pub luminance: [u32; 256],
     /// By the display values of red, green and blue.
     pub rgb: [[u32; 256]; 3],
-    /// Number of pixels.
-    pixels: u32,
     /// Pixels that are black in all channels, and pixels that are white in a channel.
     clipped: [u32; 2],
 }
@@ -112,8 +110,7 @@ pub struct Histogram {
 impl Histogram {
     /// Counts the pixels of a picture.
     pub fn of(picture: &Picture) -> Self {
-        let pixels = picture.rgb.len() as u32;
-        let mut histogram = Histogram { luminance: [0; 256], rgb: [[0; 256]; 3], pixels, clipped: [0; 2] };
+        let mut histogram = Histogram { luminance: [0; 256], rgb: [[0; 256]; 3], clipped: [0; 2] };
         for rgb in &picture.rgb {
             let codes = display_srgb8(*rgb);
             let grey = display_srgb8([luminance((*rgb).into()); 3])[0];
@@ -129,12 +126,17 @@ impl Histogram {
 
     /// Returns the share of pixels that are black in all channels.
     pub fn black_share(&self) -> f32 {
-        self.clipped[0] as f32 / self.pixels.max(1) as f32
+        self.share(self.clipped[0])
     }
 
     /// Returns the share of pixels that are white in a channel.
     pub fn white_share(&self) -> f32 {
-        self.clipped[1] as f32 / self.pixels.max(1) as f32
+        self.share(self.clipped[1])
+    }
+
+    /// Returns so many pixels as a share of all.
+    fn share(&self, pixels: u32) -> f32 {
+        pixels as f32 / self.luminance.iter().sum::<u32>().max(1) as f32
     }
 }
 

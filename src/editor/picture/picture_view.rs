@@ -55,7 +55,7 @@ impl PictureView {
             (at.min_elem() >= 0.0).then_some((at.x as u32, at.y as u32))
         };
         let bar = self.bar_ui(ui, rect, rendering, scene, zoom, out);
-        // After the bar, whose widgets would change their identities, and close their menus, with each read-out
+        // Drawn after the bar: a widget before it would change the ids of the bar's widgets, which closes their menus
         let pointer = response.hover_pos().filter(|pointer| !bar.contains(*pointer));
         let reading = pointer.and_then(pixel).and_then(|pixel| rendering.read_spot(pixel, scene));
         if let Some(reading) = reading {

@@ -287,7 +287,7 @@ impl App {
             let Settings { width, height, method, .. } = job.settings;
             let RenderOutcome { build_s, trace_s, spp, noise_stops } = outcome;
             let pixels = u64::from(width) * u64::from(height);
-            // A render of few samples tells no noise
+            // Renders of few samples have no noise estimate
             let Some(forecast) = Forecast::from_render(build_s, trace_s, pixels, spp, noise_stops) else { return };
             let measured = Estimate { seconds: build_s + trace_s, noise_stops: noise_stops.into() };
             let subject = ForecastSubject { revision: self.document.revisions().image, method };

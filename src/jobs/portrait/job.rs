@@ -73,7 +73,7 @@ fn serve(inbox: &Inbox<Request, Face>) {
         Ok(pool) => pool,
         Err(error) => return inbox.fail_all(&format!("No threads to check the pattern with: {error}.")),
     };
-    // Its meshes are no others': without the hair on the face
+    // Not shared with renders: figures are checked without the hair on the face
     let cache = GeometryCache::default();
     while let Some((Request { scene, assets, figure }, control)) = inbox.next() {
         match pool.install(|| check_patterns(&scene, &assets, &[figure], &cache, &control)) {

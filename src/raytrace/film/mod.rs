@@ -130,7 +130,7 @@ impl Film {
         self.tiles.iter().map(|tile| &tile.nonfinite).collect()
     }
 
-    /// Estimated noise: the median of the tiles' noise, in stops. Infinite before there are
+    /// Returns the estimated noise: the median of the tiles' noise, in stops. Infinite before there are
     /// [`MIN_ESTIMATE_SPP`] samples.
     pub fn noise_stops(&self) -> f32 {
         let mut noise: Vec<f32> = self.tiles.iter().filter_map(|tile| tile.noise_stops()).collect();
@@ -138,8 +138,8 @@ impl Film {
         noise.get(noise.len() / 2).copied().unwrap_or(0.0)
     }
 
-    /// Estimated noise of each tile of [`TILE`] pixels, stops, in rows from the top. Infinite before there are
-    /// [`MIN_ESTIMATE_SPP`] samples; none for tiles that are too dark.
+    /// Returns the estimated noise of each tile of [`TILE`] pixels, stops, in rows from the top. Infinite before there
+    /// are [`MIN_ESTIMATE_SPP`] samples; none for tiles that are too dark.
     pub fn tile_noise_stops(&self) -> Vec<Option<f32>> {
         self.tiles.iter().map(|tile| tile.noise_stops()).collect()
     }
