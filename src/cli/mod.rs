@@ -25,6 +25,7 @@ mod presets;
 mod preview;
 mod preview_look;
 mod render;
+mod sheet;
 mod terminal;
 mod truth;
 mod warnings;
@@ -58,6 +59,8 @@ enum Command {
     Preview(preview::Arguments),
     /// Read an incident light meter at a point of a studio: every light, direct and bounced.
     Meter(meter::Arguments),
+    /// Write the set-up sheet of a studio: picture, plan and list of lights on one page.
+    Sheet(sheet::Arguments),
     /// Report what is wrong or odd with a studio file.
     Check(check::Arguments),
     /// Chart speed against accuracy.
@@ -94,6 +97,7 @@ pub fn run(started: Instant) -> ExitCode {
         Some(Command::Render(arguments)) => render::run(&arguments, started),
         Some(Command::Merge(arguments)) => merge::run(&arguments),
         Some(Command::Preview(arguments)) => preview::run(&arguments),
+        Some(Command::Sheet(arguments)) => sheet::run(&arguments),
         Some(Command::Meter(arguments)) => meter::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::Chart(arguments)) => chart::run(&arguments),

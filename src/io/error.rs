@@ -137,9 +137,11 @@ pub enum SaveError {
     /// The path is that of a device, a socket, or a pipe where no pipe can be used.
     #[error("this is a device or a pipe, not a file: {}", .0.display())]
     NotRegular(PathBuf),
-    /// The extension of a picture's name belongs to no format that is written.
-    #[error("a picture's name ends in .png, .jpg or .exr, not in {ending:?}: {}", path.display())]
+    /// The extension of a file's name belongs to no format that is written.
+    #[error("{known}, not in {ending:?}: {}", path.display())]
     UnknownEnding {
+        /// The extensions that are known: `a picture's name ends in .png`.
+        known: &'static str,
         /// The extension, in lower case.
         ending: String,
         /// The file.

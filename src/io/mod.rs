@@ -26,6 +26,7 @@ mod model;
 mod obj;
 mod parse_errors;
 mod picture;
+mod plain_file;
 mod presets;
 mod read;
 mod recovery;
@@ -47,9 +48,10 @@ pub use importers::{
 pub use kept_picture::KeptPicture;
 pub use model::{ImportedModel, ModelLimits};
 pub use picture::{
-    LayeredPicture, PictureFile, PictureFormat, PictureInfo, PicturePart, check_picture_file, encode_part,
+    LayeredPicture, PictureFile, PictureFormat, PictureInfo, PicturePart, check_picture_file, encode_jpeg, encode_part,
     export_picture, export_shown, picture_file, read_exr, read_part,
 };
+pub use plain_file::{check_file, write_file};
 pub use presets::{Preset, find_preset, presets};
 pub use recovery::{RecoveryFolder, RecoveryInfo};
 pub use scene_file::{FILE_LIMIT_BYTES, FORMAT, Loaded, load_scene, parse_scene, save_scene, write_scene};

@@ -1,5 +1,5 @@
 //! Photometry: lights in physical units, exposure, the light meter, portrait lighting patterns, scopes for
-//! pictures, and the scales of a camera's dials.
+//! pictures, the scales of a camera's dials, and numbers as text.
 
 mod aov;
 pub mod beam;
@@ -10,11 +10,13 @@ pub mod irradiance_grid;
 mod lazy_picture;
 pub mod light;
 mod light_color;
+mod light_placement;
 pub mod meter;
 pub mod nd_filter;
 mod picture;
 pub mod portrait_pattern;
 mod scopes;
+pub mod text;
 pub mod thirds;
 
 pub use aov::AovPicture;
@@ -22,5 +24,6 @@ pub use false_color::{FALSE_STOPS, false_color};
 pub use lazy_picture::LazyPicture;
 pub use light::{PhotometricLight, Strength};
 pub use light_color::light_rgb;
+pub use light_placement::LightPlacement;
 pub use picture::Picture;
 pub use scopes::{Histogram, MIDDLE_GREY, PictureDisplay, Spot, clipping_stops};

@@ -37,6 +37,19 @@ impl Role {
             Role::Accent => "Accent",
         }
     }
+
+    /// Returns the colour that stands for the role in views, lists and plans, sRGB: key amber, fill blue, rim pink, hair
+    /// violet, background green, accent grey.
+    pub fn srgb8(self) -> [u8; 3] {
+        match self {
+            Role::Key => [240, 176, 64],
+            Role::Fill => [92, 156, 236],
+            Role::Rim => [236, 112, 168],
+            Role::Hair => [164, 124, 236],
+            Role::Background => [104, 184, 116],
+            Role::Accent => [176; 3],
+        }
+    }
 }
 
 /// The output of a light at full power, without the loss of its [`Modifier`].

@@ -5,6 +5,7 @@ use crate::editor::document::item::Item;
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets;
 use crate::photo::meter::{LUX_PER_FOOT_CANDLE, LightReading, Reading, nearest_third};
+use crate::photo::text::{signed_stops, three_digits};
 use crate::photo::thirds::Dial;
 use crate::scene::{Meter, Receptor};
 use eframe::egui::{self, Context, Frame, Grid, Id, Label, Rect, RichText, Ui, vec2};
@@ -69,7 +70,7 @@ fn reading_ui(ui: &mut Ui, reading: &Reading) {
     });
     ui.add_space(4.0);
     for ratio in reading.ratios().into_iter().flatten() {
-        let text = format!("{}  {}:1  ({:.1} stops)", ratio.name, widgets::three_digits(ratio.value), ratio.stops());
+        let text = format!("{}  {}:1  ({:.1} stops)", ratio.name, three_digits(ratio.value), ratio.stops());
         ui.label(text).on_hover_text("By the roles of the lights");
     }
     if let Some(share) = reading.flash_fraction() {
@@ -78,8 +79,8 @@ fn reading_ui(ui: &mut Ui, reading: &Reading) {
     }
     let (direct, bounced) = reading.total_lux();
     let lux = direct + bounced;
-    let [lux_s, foot_candles] = [reading.total_lux_s(), lux / LUX_PER_FOOT_CANDLE].map(widgets::three_digits);
-    let amounts = format!("{lux_s} lx s = {} lx = {foot_candles} fc", widgets::three_digits(lux));
+    let [lux_s, foot_candles] = [reading.total_lux_s(), lux / LUX_PER_FOOT_CANDLE].map(three_digits);
+    let amounts = format!("{lux_s} lx s = {} lx = {foot_candles} fc", three_digits(lux));
     let tip = "In one exposure; in lux and foot-candles as steady light at this shutter would give it";
     ui.label(RichText::new(amounts).weak()).on_hover_text(tip);
     let error = reading.relative_error().unwrap_or(0.0);
@@ -98,10 +99,10 @@ fn light_row(ui: &mut Ui, reading: &Reading, light: &LightReading) {
     });
     let stops = match reading.stops_over_key(light) {
         _ if key => "key".to_owned(),
-        Some(stops) => format!("{} stops", widgets::signed_stops(stops)),
+        Some(stops) => format!("{} stops", signed_stops(stops)),
         None => "dark".to_owned(),
     };
-    let [direct, bounced] = [light.direct, light.bounced].map(widgets::three_digits);
+    let [direct, bounced] = [light.direct, light.bounced].map(three_digits);
     let unit = if light.flash { "lx s" } else { "lx" };
     let tip = format!("Against the key. Direct {direct} {unit}, bounced {bounced} {unit}");
     ui.label(stops).on_hover_text(tip);

@@ -14,16 +14,10 @@ pub const BAD: Color32 = Color32::from_rgb(224, 96, 84);
 /// Around the picture and behind it.
 pub const SURROUND: Color32 = Color32::from_gray(22);
 
-/// Returns the colour of a role: key amber, fill blue, rim pink, hair violet, background green.
+/// Returns the colour of a role.
 pub fn role_color(role: Role) -> Color32 {
-    match role {
-        Role::Key => Color32::from_rgb(240, 176, 64),
-        Role::Fill => Color32::from_rgb(92, 156, 236),
-        Role::Rim => Color32::from_rgb(236, 112, 168),
-        Role::Hair => Color32::from_rgb(164, 124, 236),
-        Role::Background => Color32::from_rgb(104, 184, 116),
-        Role::Accent => Color32::from_gray(176),
-    }
+    let [r, g, b] = role.srgb8();
+    Color32::from_rgb(r, g, b)
 }
 
 /// Sets the style of the whole window.

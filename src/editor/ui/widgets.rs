@@ -275,22 +275,6 @@ fn icon_toggle(
     response
 }
 
-/// Formats stops with their sign: `+0.3`, `-2.0`, `0.0`.
-pub fn signed_stops(stops: f32) -> String {
-    let rounded = (stops * 10.0).round() / 10.0;
-    if rounded == 0.0 { "0.0".to_owned() } else { format!("{rounded:+.1}").replace('-', "\u{2212}") }
-}
-
-/// Formats a quantity with three significant digits.
-pub fn three_digits(value: f32) -> String {
-    match value.abs() {
-        v if !v.is_finite() => "\u{2013}".to_owned(),
-        v if v >= 100.0 => format!("{value:.0}"),
-        v if v >= 10.0 => format!("{value:.1}"),
-        _ => format!("{value:.2}"),
-    }
-}
-
 /// Returns a modal dialog in the middle of the window.
 pub fn dialog(ctx: &egui::Context, name: &str) -> egui::Modal {
     let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16);
@@ -355,14 +339,6 @@ pub fn primary_button(ui: &mut Ui, text: &str, width: f32) -> Response {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn stops_and_numbers_read_well() {
-        assert_eq!(signed_stops(-2.04), "\u{2212}2.0");
-        assert_eq!(signed_stops(0.31), "+0.3");
-        assert_eq!(signed_stops(-0.01), "0.0");
-        assert_eq!([1234.4, 45.678, 1.234].map(three_digits), ["1234", "45.7", "1.23"]);
-    }
 
     #[test]
     fn warm_light_has_a_warm_swatch() {

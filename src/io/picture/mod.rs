@@ -80,7 +80,10 @@ impl PictureFormat {
             "png" => Ok(PictureFormat::Png),
             "jpg" | "jpeg" => Ok(PictureFormat::Jpeg),
             "exr" => Ok(PictureFormat::Exr),
-            _ => Err(SaveError::UnknownEnding { ending, path: path.to_owned() }),
+            _ => {
+                let known = "a picture's name ends in .png, .jpg or .exr";
+                Err(SaveError::UnknownEnding { known, ending, path: path.to_owned() })
+            }
         }
     }
 }
@@ -177,6 +180,14 @@ pub fn check_picture_file(path: &Path) -> Result<(), SaveError> {
 /// Encodes the tone-mapped picture as PNG or JPEG.
 fn encode_8bit(picture: &Picture, format: PictureFormat) -> Result<Vec<u8>, String> {
     encode_rgb8(picture.width, picture.height, picture.to_srgb8().as_flattened(), format)
+}
+
+/// Encodes the tone-mapped picture as JPEG.
+///
+/// # Errors
+/// If the encoder fails, as for a picture without pixels.
+pub fn encode_jpeg(picture: &Picture) -> Result<Vec<u8>, String> {
+    encode_8bit(picture, PictureFormat::Jpeg)
 }
 
 fn encode_rgb8(width: u32, height: u32, rgb: &[u8], format: PictureFormat) -> Result<Vec<u8>, String> {

@@ -60,14 +60,7 @@ const GRID_HALF_SIZE: i32 = 12;
 
 /// Returns the sRGB colour of a light's role.
 fn role_color(role: Role) -> Vec3 {
-    match role {
-        Role::Key => Vec3::new(1.0, 0.72, 0.24),
-        Role::Fill => Vec3::new(0.36, 0.63, 1.0),
-        Role::Rim => Vec3::new(1.0, 0.47, 0.68),
-        Role::Hair => Vec3::new(0.71, 0.53, 1.0),
-        Role::Background => Vec3::new(0.43, 0.80, 0.47),
-        Role::Accent => Vec3::new(0.74, 0.74, 0.74),
-    }
+    Vec3::from(role.srgb8().map(f32::from)) / 255.0
 }
 
 /// The line style of a gizmo.

@@ -6,6 +6,7 @@ use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::placement::aim_offset;
 use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, NumberField, dial_ui, fact, row, section};
+use crate::photo::text::three_digits;
 use crate::photo::thirds::Dial;
 use crate::photo::{exposure, nd_filter};
 use crate::scene::{Assets, Camera, Focus, FocusedLens, Orientation, Scene, Sensor};
@@ -52,8 +53,8 @@ fn exposure_rows(ui: &mut Ui, scene: &Scene, camera: &mut Camera) {
     let lux_s = c * camera.f_number * camera.f_number / (camera.iso * transmission);
     let ev = exposure::ev100(lux_s / camera.shutter_s, c);
     let tip = "What a grey card needs at these settings: exposure value at ISO 100, lux of continuous light, lux seconds of flash";
-    let lux = widgets::three_digits(lux_s / camera.shutter_s);
-    fact(ui, "Needs", tip, format!("EV {ev:.1}  ({lux} lx, or {} lx s)", widgets::three_digits(lux_s)));
+    let lux = three_digits(lux_s / camera.shutter_s);
+    fact(ui, "Needs", tip, format!("EV {ev:.1}  ({lux} lx, or {} lx s)", three_digits(lux_s)));
 }
 
 /// Strongest filter of the field, stops.

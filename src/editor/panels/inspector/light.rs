@@ -11,8 +11,9 @@ use crate::editor::document::readout;
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, NumberField, fact, row, section};
 use crate::photo::light::axial_intensity;
-use crate::photo::light_rgb;
+use crate::photo::text::{power_fraction, signed_stops, three_digits};
 use crate::photo::thirds::Dial;
+use crate::photo::{LightPlacement, light_rgb};
 use crate::scene::{ColorSource, Emitter, Light, LightId, Output, Role, Scene};
 use eframe::egui::{ComboBox, Label, RichText, Slider, SliderClamping, Ui, vec2};
 use glam::Vec3;
@@ -130,7 +131,7 @@ fn dial_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
             .step_by(0.1)
             .clamping(SliderClamping::Never)
             .update_while_editing(false)
-            .custom_formatter(|v, _| widgets::signed_stops(v as f32))
+            .custom_formatter(|v, _| signed_stops(v as f32))
             .custom_parser(|text| text.replace('\u{2212}', "-").trim().parse().ok());
         let response = ui.name_inputs("Dial", |ui| ui.add(slider));
         let response = response.on_hover_text("Drag, or click the number and type it");
@@ -159,15 +160,6 @@ fn dial_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
             light.power.dial_stops = readout::dial_for(scene, light, 0.0);
         }
     });
-}
-
-/// Formats the fraction of full power: `1/4` for whole stops, else a percentage.
-fn power_fraction(stops: f32) -> String {
-    let whole = stops.round();
-    match stops {
-        s if (s - whole).abs() < 0.02 && whole <= 0.0 && whole > -16.0 => format!("1/{}", (-whole).exp2()),
-        s => format!("{} %", widgets::three_digits(s.exp2() * 100.0)),
-    }
 }
 
 fn color_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
@@ -239,19 +231,14 @@ fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
          bellows factor"
     );
     fact(ui, "Meter reads", &tip, RichText::new(format!("f/{n:.1}")).strong());
-    let reads = if over.is_finite() { format!("{} stops", widgets::signed_stops(over)) } else { "no light".to_owned() };
+    let reads = if over.is_finite() { format!("{} stops", signed_stops(over)) } else { "no light".to_owned() };
     let tip = format!("Against the camera's {}: positive is brighter", Dial::FNumber.label(camera.f_number));
     fact(ui, "To the camera", &tip, reads);
     let (unit, what) = if flash { ("lx s", "Exposure") } else { ("lx", "Illuminance") };
-    fact(
-        ui,
-        what,
-        "On a surface at the aim that faces the light",
-        format!("{} {unit}", widgets::three_digits(at.illuminance)),
-    );
+    fact(ui, what, "On a surface at the aim that faces the light", format!("{} {unit}", three_digits(at.illuminance)));
     if !light.emitter.is_infinite() {
         let unit = if flash { "cd s" } else { "cd" };
-        let intensity = widgets::three_digits(axial_intensity(light));
+        let intensity = three_digits(axial_intensity(light));
         fact(ui, "Intensity", "On the light's axis, dial included", format!("{intensity} {unit}"));
     }
     if let Some(distance) = at.distance_m {
@@ -309,42 +296,12 @@ fn place_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     if distance != before && before > 1e-3 {
         light.position = target + away * (distance / before);
     }
-    let facts = format!("{:.0}\u{b0} round, {:.0}\u{b0} up", azimuth_deg(scene, target, away), elevation_deg(away));
+    let LightPlacement { azimuth_deg, elevation_deg, .. } = LightPlacement::new(scene, light.position, target);
+    let facts = format!("{azimuth_deg:.0}\u{b0} round, {elevation_deg:.0}\u{b0} up");
     fact(
         ui,
         "From camera",
         "Its direction from the subject: round from the camera (positive to the camera's right), and up",
         facts,
     );
-}
-
-fn elevation_deg(away: Vec3) -> f32 {
-    away.y.atan2(away.x.hypot(away.z)).to_degrees()
-}
-
-/// Returns the azimuth from the camera's direction, degrees, positive to the camera's right.
-fn azimuth_deg(scene: &Scene, target: Vec3, away: Vec3) -> f32 {
-    let front = scene.camera.position - target;
-    let angle = away.x.atan2(away.z) - front.x.atan2(front.z);
-    let (sin, cos) = angle.sin_cos();
-    sin.atan2(cos).to_degrees()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn power_fractions_are_formatted_as_on_a_flash_head() {
-        assert_eq!([0.0, -1.0, -4.0].map(power_fraction), ["1/1", "1/2", "1/16"]);
-        assert_eq!(power_fraction(-0.5), "70.7 %");
-    }
-
-    #[test]
-    fn azimuths_are_relative_to_the_camera() {
-        let scene = Scene::default();
-        let right = Vec3::new(1.0, 0.0, 1.0);
-        assert!((azimuth_deg(&scene, Vec3::new(0.0, 1.5, 0.0), right) - 45.0).abs() < 1e-3);
-        assert!((elevation_deg(Vec3::new(0.0, 1.0, 1.0)) - 45.0).abs() < 1e-3);
-    }
 }

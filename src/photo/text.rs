@@ -1,0 +1,45 @@
+//! Numbers as text: stops, quantities, fractions of full power.
+
+/// Formats stops with their sign: `+0.3`, `-2.0`, `0.0`.
+pub fn signed_stops(stops: f32) -> String {
+    let rounded = (stops * 10.0).round() / 10.0;
+    if rounded == 0.0 { "0.0".to_owned() } else { format!("{rounded:+.1}").replace('-', "\u{2212}") }
+}
+
+/// Formats a quantity with three significant digits.
+pub fn three_digits(value: f32) -> String {
+    match value.abs() {
+        v if !v.is_finite() => "\u{2013}".to_owned(),
+        v if v >= 100.0 => format!("{value:.0}"),
+        v if v >= 10.0 => format!("{value:.1}"),
+        _ => format!("{value:.2}"),
+    }
+}
+
+/// Formats the fraction of full power: `1/4` for whole stops, else a percentage.
+pub fn power_fraction(stops: f32) -> String {
+    let whole = stops.round();
+    match stops {
+        s if (s - whole).abs() < 0.02 && whole <= 0.0 && whole > -16.0 => format!("1/{}", (-whole).exp2()),
+        s => format!("{} %", three_digits(s.exp2() * 100.0)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn power_fractions_are_formatted_as_on_a_flash_head() {
+        assert_eq!([0.0, -1.0, -4.0].map(power_fraction), ["1/1", "1/2", "1/16"]);
+        assert_eq!(power_fraction(-0.5), "70.7 %");
+    }
+
+    #[test]
+    fn stops_and_numbers_read_well() {
+        assert_eq!(signed_stops(-2.04), "\u{2212}2.0");
+        assert_eq!(signed_stops(0.31), "+0.3");
+        assert_eq!(signed_stops(-0.01), "0.0");
+        assert_eq!([1234.4, 45.678, 1.234].map(three_digits), ["1234", "45.7", "1.23"]);
+    }
+}

@@ -1,0 +1,141 @@
+//! What has to be checked on the set, because a plan can't know it or because it will not work as planned.
+
+use super::lengths::Units;
+use super::light_shape::LightShape;
+use super::metering::MeteredSetup;
+use crate::math::angle_between;
+use crate::photo::thirds::Dial;
+use crate::scene::{Assets, Emitter, Light, Room, placement, validate};
+use glam::Vec3;
+
+/// Shutter from which a flash needs high-speed sync, seconds: typical of focal-plane shutters.
+const SYNC_S: f32 = 1.0 / 250.0;
+/// Room that a head needs over its front, metres.
+const HEADROOM_M: f32 = 0.15;
+/// Steps in which a stand is looked at, metres.
+const STEP_M: f32 = 0.04;
+/// Angle from the optical axis in which a light that shines at the camera flares, degrees.
+const FLARE_DEG: f32 = 60.0;
+/// Angle from the axis of a panel in which it lights the lens, degrees.
+const PANEL_BEAM_DEG: f32 = 75.0;
+/// Length of cable that a head has with it, metres: typical.
+const CABLE_M: f32 = 4.0;
+
+/// The lights of a studio that are somewhere in the room, with their places in the list.
+type Placed<'a> = Vec<(usize, &'a Light, LightShape)>;
+
+/// What has to be checked.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Checks {
+    /// A sentence each.
+    pub texts: Vec<String>,
+    /// The lights, by their place in the list, whose stand would be in the picture: they need a boom.
+    pub stands_seen: Vec<usize>,
+}
+
+impl Checks {
+    /// Returns the checks of a studio.
+    pub fn new(setup: &MeteredSetup<'_>, assets: &Assets, units: Units) -> Self {
+        let scene = setup.scene;
+        let all = scene.lights.iter().enumerate();
+        let lights = all.filter_map(|(index, light)| Some((index, light, LightShape::new(scene, light)?)));
+        let lights: Placed<'_> = lights.collect();
+        let mut checks = Checks::default();
+        checks.exposure(setup);
+        checks.seen(setup, &lights);
+        checks.flare(setup, &lights);
+        if let Some(room) = &scene.room {
+            checks.room(room, &lights, units);
+        }
+        let off: Vec<&str> = scene.lights.iter().filter(|light| !light.on).map(|light| light.name.as_str()).collect();
+        if !off.is_empty() {
+            checks.add(format!("Switched off in the plan: {}.", off.join(", ")));
+        }
+        for finding in validate(scene).into_iter().chain(placement(scene, assets)) {
+            checks.add(format!("{}: {}.", finding.place, finding.message));
+        }
+        checks
+    }
+
+    fn add(&mut self, text: String) {
+        self.texts.push(text);
+    }
+
+    fn exposure(&mut self, setup: &MeteredSetup<'_>) {
+        let camera = &setup.scene.camera;
+        let has_flash = setup.scene.lights.iter().any(|light| light.on && light.power.output.is_flash());
+        if has_flash && camera.shutter_s < 0.99 * SYNC_S {
+            self.add(format!(
+                "{} is faster than the usual flash sync (1/200 to 1/250, typical): high-speed sync, or a longer time.",
+                Dial::Shutter.label(camera.shutter_s)
+            ));
+        }
+        let flash = setup.reading.flash_fraction().unwrap_or(0.0);
+        if (0.02..0.98).contains(&flash) {
+            let steady = 100.0 * (1.0 - flash);
+            self.add(format!(
+                "{steady:.0} % of the light is continuous: it changes with the shutter, the flash does not."
+            ));
+        }
+    }
+
+    /// Adds the stands and fronts that the camera sees. A light stands on the floor under its head.
+    fn seen(&mut self, setup: &MeteredSetup<'_>, lights: &Placed<'_>) {
+        for (index, light, shape) in lights {
+            let foot = Vec3::new(shape.head.x, 0.0, shape.head.z);
+            let steps = (shape.head.y / STEP_M).ceil().clamp(1.0, 1000.0);
+            let stand = (0..steps as u32).map(|step| foot.lerp(shape.head, step as f32 / steps));
+            if { stand }.any(|point| setup.is_seen(point)) {
+                self.stands_seen.push(*index);
+                self.add(format!("The stand of {:?} would be in the picture: a boom, or move it.", light.name));
+            }
+            if shape.points().any(|point| setup.is_seen(point)) {
+                let hidden = if light.visible_to_camera { "" } else { " (the plan hides it)" };
+                self.add(format!("{:?} itself is in the picture{hidden}: move it out, or retouch.", light.name));
+            }
+        }
+    }
+
+    fn flare(&mut self, setup: &MeteredSetup<'_>, lights: &Placed<'_>) {
+        let camera = setup.scene.camera.position;
+        let forward = setup.scene.camera_frame(1.0).forward();
+        for (_, light, shape) in lights.iter().filter(|(_, light, _)| light.on) {
+            let to_camera = camera - light.position;
+            let beam_deg = match light.emitter {
+                Emitter::Spot { outer_deg, .. } => 0.5 * outer_deg,
+                Emitter::Point | Emitter::Sphere { .. } => 180.0,
+                _ => PANEL_BEAM_DEG,
+            };
+            let beam_deg = light.modifier.grid_deg.map_or(beam_deg, |grid_deg| beam_deg.min(grid_deg));
+            let lights_lens = angle_between(shape.axis, to_camera.normalize_or_zero()).to_degrees() < beam_deg;
+            let in_view = angle_between(forward, -to_camera.normalize_or_zero()).to_degrees() < FLARE_DEG;
+            if lights_lens && in_view {
+                self.add(format!("{:?} shines at the lens: shade it with a flag, or use a lens hood.", light.name));
+            }
+        }
+    }
+
+    fn room(&mut self, room: &Room, lights: &Placed<'_>, units: Units) {
+        let ceiling_m = room.size_m.y;
+        for (_, light, shape) in lights {
+            let over_m = ceiling_m - shape.top_m();
+            if over_m < 0.0 {
+                let [top, height] = [shape.top_m(), ceiling_m].map(|metres| units.distance(metres));
+                self.add(format!("{:?} does not fit: its top is at {top}, the ceiling at {height}.", light.name));
+            } else if over_m < HEADROOM_M {
+                let over = units.distance(over_m);
+                self.add(format!(
+                    "Only {over} between {:?} and the ceiling: little room for its head or boom.",
+                    light.name
+                ));
+            }
+        }
+        let half = 0.5 * room.size_m;
+        let to_wall = |light: &Light| (half - light.position.abs()).x.min((half - light.position.abs()).z);
+        let farthest = lights.iter().max_by(|a, b| to_wall(a.1).total_cmp(&to_wall(b.1)));
+        if let Some((_, light, _)) = farthest.filter(|(_, light, _)| to_wall(light) + light.position.y > CABLE_M) {
+            let length = units.distance(to_wall(light) + light.position.y);
+            self.add(format!("Cable: {:?} needs at least {length} to the nearest wall, or a battery.", light.name));
+        }
+    }
+}

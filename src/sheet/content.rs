@@ -1,0 +1,84 @@
+//! What stands on a sheet, before it is laid out.
+
+use super::camera_facts::{Fact, camera_facts, subject_facts};
+use super::checks::Checks;
+use super::drawing::Rgb;
+use super::gear::gear;
+use super::lengths::Units;
+use super::light_facts::LightFacts;
+use super::metering::MeteredSetup;
+use super::view::{StudioView, ViewFrom, print_color};
+use crate::photo::Picture;
+use crate::raytrace::{GeometryCache, PrepareError, RenderControl};
+use crate::scene::{Assets, Scene};
+
+/// A light of a sheet.
+#[derive(Clone, Debug)]
+pub struct SheetLight {
+    /// What is said of it.
+    pub facts: LightFacts,
+    /// Its colour in plan and table.
+    pub color: Rgb,
+}
+
+/// What stands on a sheet.
+#[derive(Clone, Debug)]
+pub struct SheetContent {
+    /// Title.
+    pub title: String,
+    /// One line on the purpose of the set-up.
+    pub description: String,
+    /// Units of lengths.
+    pub units: Units,
+    /// The picture that the plan is for.
+    pub picture: Picture,
+    /// Camera and exposure.
+    pub camera: Vec<Fact>,
+    /// Meter and background.
+    pub subject: Vec<Fact>,
+    /// The lights, in the studio's order.
+    pub lights: Vec<SheetLight>,
+    /// Plan and elevation.
+    pub views: [StudioView; 2],
+    /// What to bring, with its number of pieces.
+    pub gear: Vec<(usize, String)>,
+    /// What has to be checked on the set.
+    pub checks: Vec<String>,
+}
+
+impl SheetContent {
+    /// Collects what stands on the sheet of a studio: reads the meter and looks for stands in the picture. None once
+    /// `control` is cancelled.
+    ///
+    /// # Errors
+    /// If the scene has errors.
+    pub fn new(
+        scene: &Scene,
+        assets: &Assets,
+        picture: Picture,
+        units: Units,
+        cache: &GeometryCache,
+        control: &RenderControl,
+    ) -> Result<Option<Self>, PrepareError> {
+        let Some(setup) = MeteredSetup::new(scene, assets, cache, control)? else { return Ok(None) };
+        let checks = Checks::new(&setup, assets, units);
+        let lights = scene.lights.iter().enumerate().map(|(index, light)| SheetLight {
+            facts: LightFacts::new(&setup, index + 1, light, units, control),
+            color: print_color(light),
+        });
+        let subject = setup.subject.position;
+        let content = SheetContent {
+            title: if scene.name.is_empty() { "Untitled studio".to_owned() } else { scene.name.clone() },
+            description: scene.description.clone(),
+            units,
+            picture,
+            camera: camera_facts(&setup, units),
+            subject: subject_facts(&setup, setup.background().as_ref(), units),
+            lights: lights.collect(),
+            views: [ViewFrom::Above, ViewFrom::Side].map(|from| StudioView::new(scene, assets, subject, from)),
+            gear: gear(scene, &checks.stands_seen, units),
+            checks: checks.texts,
+        };
+        Ok((!control.is_cancelled()).then_some(content))
+    }
+}

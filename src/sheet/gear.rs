@@ -1,0 +1,52 @@
+//! The list of what to bring.
+
+use super::lengths::Units;
+use super::light_facts::{gel_text, head_kind, modifier_text};
+use crate::scene::{Emitter, Light, Scene, Shape};
+
+/// Height of a head from which an ordinary stand is too low, metres: typical of stands that fold to a metre.
+const LOW_STAND_M: f32 = 2.4;
+
+/// Returns the gear of a studio with its number of pieces: heads, modifiers, gels, stands, backdrops, props. `on_booms`
+/// are the lights, by their place in the list, whose stand must not be under them.
+pub fn gear(scene: &Scene, on_booms: &[usize], units: Units) -> Vec<(usize, String)> {
+    let mut list = Vec::new();
+    let lights = || scene.lights.iter().enumerate().filter(|(_, light)| !light.emitter.is_infinite());
+    lights().for_each(|(_, light)| add(&mut list, format!("{} head", head_kind(&light.power.output, units))));
+    lights().filter_map(|(_, light)| modifier(light, units)).for_each(|name| add(&mut list, name));
+    lights().filter_map(|(_, light)| gel_text(&light.color.gel)).for_each(|gel| add(&mut list, format!("Gel: {gel}")));
+    for (index, light) in lights() {
+        let stand = match (on_booms.contains(&index), light.position.y > LOW_STAND_M) {
+            (true, _) => "Boom with counterweight",
+            (false, true) => "High stand",
+            (false, false) => "Light stand",
+        };
+        add(&mut list, stand.to_owned());
+    }
+    for object in scene.objects.iter().filter(|object| object.visible) {
+        match object.shape {
+            Shape::Figure(_) => {}
+            Shape::Sweep { width_m, .. } => {
+                let width = units.distance(width_m * object.transform.scale.x);
+                add(&mut list, format!("{}, {width} wide, on a crossbar", object.name));
+            }
+            _ => add(&mut list, object.name.clone()),
+        }
+    }
+    add(&mut list, format!("Camera, {:.0} mm lens", scene.camera.focal_length_mm));
+    add(&mut list, "Light meter".to_owned());
+    list
+}
+
+/// Returns the modifier of a head; none for a bare one.
+fn modifier(light: &Light, units: Units) -> Option<String> {
+    let is_bare = matches!(light.emitter, Emitter::Sphere { .. } | Emitter::Point);
+    (!is_bare).then(|| modifier_text(light, units))
+}
+
+fn add(list: &mut Vec<(usize, String)>, name: String) {
+    match list.iter_mut().find(|(_, listed)| *listed == name) {
+        Some((count, _)) => *count += 1,
+        None => list.push((1, name)),
+    }
+}

@@ -1,0 +1,220 @@
+//! What a sheet says of a light.
+
+use super::lengths::Units;
+use super::metering::{LightExposure, MeteredSetup};
+use crate::photo::LightPlacement;
+use crate::photo::meter::nearest_third;
+use crate::photo::text::{power_fraction, signed_stops, three_digits};
+use crate::raytrace::RenderControl;
+use crate::scene::{ColorSource, Emitter, Gel, Light, Modifier, NamedModifier, Output, Role};
+
+/// Headings of [`LightFacts::cells`].
+pub const COLUMNS: [&str; 7] = ["Light", "Modifier and head", "Dial", "Distance", "Height", "Direction", "Meter"];
+
+/// A cell of the table of lights: a line, and a smaller one under it.
+pub type Cell = [String; 2];
+
+/// What a sheet says of a light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightFacts {
+    /// Its number in the plan, from 1.
+    pub number: usize,
+    /// Its name.
+    pub name: String,
+    /// Its role.
+    pub role: Role,
+    /// Switched on.
+    pub is_on: bool,
+    /// What is on the head: `Softbox 60 x 90, 40° grid`.
+    pub modifier: String,
+    /// The head and its colour: `Flash 400 Ws, 5500 K, 1/2 CTO`.
+    pub head: String,
+    /// Dial, stops from full power.
+    pub dial_stops: f32,
+    /// Output at this dial: `100 Ws`.
+    pub dialled: String,
+    /// Its place about the subject; none for a surround. The distance of a sun means nothing.
+    pub placement: Option<LightPlacement>,
+    /// Distance to what it aims at, metres, if that is not the subject.
+    pub aim_m: Option<f32>,
+    /// Height of the middle of its front, metres; none for sun and surround.
+    pub height_m: Option<f32>,
+    /// What it gives at the subject, or where it aims if that is not the subject.
+    pub exposure: Option<LightExposure>,
+}
+
+impl LightFacts {
+    /// Returns the facts of a light.
+    pub fn new(setup: &MeteredSetup<'_>, number: usize, light: &Light, units: Units, control: &RenderControl) -> Self {
+        let scene = setup.scene;
+        let elsewhere = setup.aims_elsewhere(light);
+        let exposure = match elsewhere && light.on {
+            true => setup.exposure_at_aim(light, control),
+            false => setup.exposure(light.id),
+        };
+        let has_direction = light.emitter != Emitter::Surround;
+        LightFacts {
+            number,
+            name: light.name.clone(),
+            role: light.role,
+            is_on: light.on,
+            modifier: modifier_text(light, units),
+            head: head_text(light, units),
+            dial_stops: light.power.dial_stops,
+            dialled: output_text(&light.power.output, light.power.dial_stops, units),
+            placement: has_direction.then(|| LightPlacement::new(scene, light.position, setup.subject.position)),
+            aim_m: elsewhere.then(|| scene.aim_vector(&light.aim, light.position).length()),
+            height_m: (!light.emitter.is_infinite()).then_some(light.position.y),
+            exposure,
+        }
+    }
+
+    /// Returns a cell for each of [`COLUMNS`].
+    pub fn cells(&self, units: Units) -> [Cell; 7] {
+        let cell = |line: String, small: &str| [line, small.to_owned()];
+        let none = || cell("\u{2013}".to_owned(), "");
+        let off = if self.is_on { "" } else { ", off" };
+        let distance = match (self.height_m, &self.placement, self.aim_m) {
+            (Some(_), _, Some(aim_m)) => cell(units.distance(aim_m), "to its aim"),
+            (Some(_), Some(place), None) => cell(units.distance(place.distance_m), "to the subject"),
+            _ => none(),
+        };
+        let direction = |place: &LightPlacement| {
+            let up = format!(
+                "{:.0}\u{b0} {}",
+                place.elevation_deg.abs(),
+                if place.elevation_deg < 0.0 { "down" } else { "up" }
+            );
+            [round_text(place.azimuth_deg), up]
+        };
+        let meter = match (&self.exposure, self.is_on) {
+            (_, false) => cell("off".to_owned(), ""),
+            (None, true) => {
+                cell("no light".to_owned(), if self.aim_m.is_some() { "at its aim" } else { "at the subject" })
+            }
+            (Some(exposure), true) => {
+                let at = if self.aim_m.is_some() { " at its aim" } else { "" };
+                let against = match exposure.stops_over_key {
+                    Some(stops) if stops == 0.0 => "the key".to_owned(),
+                    Some(stops) => format!("{} to key{at}", signed_stops(stops)),
+                    None => at.trim_start().to_owned(),
+                };
+                [nearest_third(exposure.f_number), against]
+            }
+        };
+        [
+            [self.name.clone(), format!("{}{off}", self.role.label())],
+            [self.modifier.clone(), self.head.clone()],
+            [power_fraction(self.dial_stops), format!("{} stops, {}", signed_stops(self.dial_stops), self.dialled)],
+            distance,
+            self.height_m.map_or_else(none, |height_m| cell(units.distance(height_m), "middle of front")),
+            self.placement.as_ref().map_or_else(none, direction),
+            meter,
+        ]
+    }
+}
+
+/// Formats an angle round from the camera: `45° right`.
+fn round_text(azimuth_deg: f32) -> String {
+    match azimuth_deg.round() {
+        angle if angle == 0.0 => "at camera".to_owned(),
+        angle if angle.abs() == 180.0 => "behind".to_owned(),
+        angle => format!("{:.0}\u{b0} {}", angle.abs(), if angle > 0.0 { "right" } else { "left" }),
+    }
+}
+
+/// Returns the modifier's name if it is one that is sold, else its front and what is before it.
+pub fn modifier_text(light: &Light, units: Units) -> String {
+    match NamedModifier::of(&light.emitter, &light.modifier) {
+        Some(named) => named.name.to_owned(),
+        None => front_text(&light.emitter, units) + &accessories(&light.modifier).concat(),
+    }
+}
+
+fn front_text(emitter: &Emitter, units: Units) -> String {
+    match *emitter {
+        Emitter::RectPanel { width_m, height_m } => format!("Softbox or panel {}", units.size(&[width_m, height_m])),
+        Emitter::RoundPanel { diameter_m } => format!("Round front {}", units.size(&[diameter_m])),
+        Emitter::Spot { inner_deg, outer_deg } => {
+            format!("Reflector, beam {inner_deg:.0}\u{b0} to {outer_deg:.0}\u{b0}")
+        }
+        Emitter::Sphere { .. } => "Bare bulb".to_owned(),
+        Emitter::Point => "Point of light".to_owned(),
+        Emitter::Sun { .. } => "Sun".to_owned(),
+        Emitter::Surround => "Surround".to_owned(),
+    }
+}
+
+/// Returns what is before a front, each with a comma before it.
+fn accessories(modifier: &Modifier) -> Vec<String> {
+    let Modifier { loss_stops: _, scrim_stops, beam, grid_deg, doors } = modifier;
+    let texts = [
+        beam.map(|beam| format!(", beam {:.0}\u{b0} to {:.0}\u{b0}", beam.inner_deg, beam.outer_deg)),
+        grid_deg.map(|angle| format!(", {angle:.0}\u{b0} grid")),
+        doors.map(|_| ", barn doors".to_owned()),
+        (*scrim_stops > 0.0).then(|| format!(", scrim {scrim_stops:.1} stops")),
+    ];
+    texts.into_iter().flatten().collect()
+}
+
+/// Returns the kind of head with its full power, its colour and its gel.
+fn head_text(light: &Light, units: Units) -> String {
+    let color = match light.color.source {
+        ColorSource::Kelvin(kelvin) => format!("{kelvin:.0} K"),
+        ColorSource::Rgb(_) => "coloured".to_owned(),
+    };
+    let gel = gel_text(&light.color.gel).map(|gel| format!(", {gel}")).unwrap_or_default();
+    format!("{}, {color}{gel}", head_kind(&light.power.output, units))
+}
+
+/// Returns a head with its full power: `Flash 400 Ws`.
+pub fn head_kind(output: &Output, units: Units) -> String {
+    let kind = if output.is_flash() { "Flash" } else { "Continuous" };
+    format!("{kind} {}", output_text(output, 0.0, units))
+}
+
+/// Returns the name of a gel, or its strength; none for no gel.
+pub fn gel_text(gel: &Gel) -> Option<String> {
+    match (gel.name(), gel) {
+        (Some(name), _) => Some(name.to_owned()),
+        (None, Gel::None) => None,
+        (None, Gel::Mired(shift)) => Some(format!("gel {shift:+.0} mired").replace('-', "\u{2212}")),
+        (None, Gel::Tint(_)) => Some("colour gel".to_owned()),
+    }
+}
+
+fn output_text(output: &Output, dial_stops: f32, units: Units) -> String {
+    let dialled = dial_stops.exp2();
+    match *output {
+        Output::FlashWs { energy_ws, .. } => format!("{} Ws", three_digits(energy_ws * dialled)),
+        // The guide number is that of a distance: it falls with the root of the energy.
+        Output::FlashGuideNumber(number) => format!("GN {}", three_digits(number * dialled.sqrt())),
+        Output::Lumens(flux) => format!("{} lm", three_digits(flux * dialled)),
+        Output::Candela(intensity) => format!("{} cd", three_digits(intensity * dialled)),
+        Output::LuxAt { lux, distance_m } => {
+            format!("{} lx at {}", three_digits(lux * dialled), units.distance(distance_m))
+        }
+        Output::Lux(lux) => format!("{} lx", three_digits(lux * dialled)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::BarnDoors;
+
+    #[test]
+    fn modifiers_heads_and_dials_read_as_a_photographer_says_them() {
+        let named = NamedModifier::named("Softbox 60 x 90, 40\u{b0} grid").unwrap();
+        let mut light = Light::new(named.emitter, Output::FlashWs { energy_ws: 400.0, efficacy_lm_s_per_ws: 40.0 });
+        light.modifier = named.modifier;
+        assert_eq!(modifier_text(&light, Units::Metres), named.name);
+        light.modifier = Modifier::default().grid(30.0).doors(BarnDoors::HALF_OPEN);
+        assert_eq!(modifier_text(&light, Units::Feet), "Softbox or panel 24 x 35\", 30\u{b0} grid, barn doors");
+        light.color.gel = Gel::Mired(109.0);
+        assert_eq!(head_text(&light, Units::Metres), "Flash 400 Ws, 5500 K, 1/2 CTO");
+        assert_eq!(output_text(&light.power.output, -2.0, Units::Metres), "100 Ws");
+        assert_eq!(output_text(&Output::FlashGuideNumber(40.0), -2.0, Units::Metres), "GN 20.0");
+        assert_eq!([0.2, -45.0, 180.0].map(round_text), ["at camera", "45\u{b0} left", "behind"]);
+    }
+}

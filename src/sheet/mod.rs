@@ -1,0 +1,32 @@
+//! The set-up sheet: a studio on one page, to be built again on the set.
+//!
+//! [`SheetContent`] collects facts from the scene and from the light meter; `page` lays them out as a [`Drawing`] in
+//! millimetres; `svg` and `pdf` write drawings, `html` writes a page that reads well on a phone.
+//!
+//! Data flow: `metering` -> `camera_facts`, `light_facts`, `checks` -> `gear`; `silhouette` -> `view`; all of them ->
+//! `content` -> `page` -> `svg`, `pdf`.
+
+mod camera_facts;
+mod checks;
+mod content;
+mod drawing;
+mod file;
+mod font;
+mod gear;
+mod html;
+mod lengths;
+mod light_facts;
+mod light_shape;
+mod metering;
+mod page;
+mod pdf;
+mod silhouette;
+mod svg;
+mod view;
+
+pub use content::{SheetContent, SheetLight};
+pub use drawing::Drawing;
+pub use file::{SHEET_EXTENSIONS, SheetFormat, draft_picture, sheet_file, write_sheet};
+pub use lengths::Units;
+pub use light_facts::{COLUMNS, LightFacts};
+pub use metering::LightExposure;

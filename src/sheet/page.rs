@@ -1,0 +1,279 @@
+//! The sheet on a page of A4: picture, facts, plan, elevation, lights, gear and checks.
+
+use super::content::SheetContent;
+use super::drawing::{Align, Drawing, Element, Stroke};
+use super::font::Font;
+use super::light_facts::COLUMNS;
+use super::view::badge;
+use glam::{Vec2, vec2};
+
+/// A4, upright, millimetres.
+const PAGE_MM: Vec2 = Vec2::new(210.0, 297.0);
+const MARGIN_MM: f32 = 12.0;
+const WIDTH_MM: f32 = PAGE_MM.x - 2.0 * MARGIN_MM;
+/// Most of the picture's width and height.
+const PICTURE_MM: Vec2 = Vec2::new(88.0, 74.0);
+/// Widths of the columns of the table of lights.
+const COLUMNS_MM: [f32; 7] = [34.0, 53.0, 31.0, 20.0, 20.0, 14.0, 14.0];
+/// Width of the column of names of facts.
+const NAMES_MM: f32 = 24.0;
+const TITLE_MM: f32 = 6.2;
+const HEADING_MM: f32 = 3.6;
+const BODY_MM: f32 = 2.9;
+const SMALL_MM: f32 = 2.2;
+const LINE_MM: f32 = 4.1;
+/// Height of a row of the table with its smaller line, and without it.
+const ROW_MM: [f32; 2] = [8.0, 4.2];
+/// Height of the views, at least and at most.
+const VIEWS_MM: [f32; 2] = [62.0, 112.0];
+/// Gap between parts of the page.
+const GAP_MM: f32 = 4.0;
+/// Denominators of the scale.
+const SCALES: [f32; 22] = [
+    2.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 50.0, 60.0, 75.0, 100.0, 125.0, 150.0, 200.0, 250.0, 300.0, 400.0,
+    500.0, 1000.0, 2000.0, 5000.0,
+];
+
+const GREY: [u8; 3] = [110; 3];
+const RULE: [u8; 3] = [200; 3];
+
+/// Returns the denominator of the largest usual scale in which sizes in metres, beside each other, fit a width and height
+/// in millimetres.
+fn scale_of(sizes_m: &[Vec2], room_mm: Vec2) -> f32 {
+    let width_m: f32 = sizes_m.iter().map(|size| size.x).sum();
+    let height_m = sizes_m.iter().map(|size| size.y).fold(0.0, f32::max);
+    let gaps_mm = GAP_MM * (sizes_m.len() as f32 - 1.0);
+    let least = (1000.0 * width_m / (room_mm.x - gaps_mm)).max(1000.0 * height_m / room_mm.y);
+    SCALES.into_iter().find(|scale| *scale >= least).unwrap_or(least)
+}
+
+/// A page that is filled from the top.
+struct Page<'a> {
+    content: &'a SheetContent,
+    font: &'a Font,
+    elements: Vec<Element>,
+}
+
+/// Lays a sheet out on a page.
+pub fn page(content: &SheetContent, font: &Font) -> Drawing {
+    let mut page = Page { content, font, elements: Vec::new() };
+    let top = page.head();
+    let top = page.picture_and_facts(top);
+    let gear = page.gear_lines(0.5 * WIDTH_MM - GAP_MM);
+    let checks = page.check_lines(0.5 * WIDTH_MM - GAP_MM);
+    let bottom = PAGE_MM.y - MARGIN_MM - SMALL_MM;
+    let lists = HEADING_MM + 3.0 + LINE_MM * gear.len().max(checks.len()) as f32;
+    let lights = content.lights.len() as f32;
+    // What is left for the views decides whether the rows have their smaller line
+    let left = |row: f32| bottom - top - lists - (LINE_MM + 3.0 + row * lights) - 3.0 * GAP_MM - 6.0;
+    let row = ROW_MM.into_iter().find(|row| left(*row) >= VIEWS_MM[0]).unwrap_or(ROW_MM[1]);
+    let height = left(row).clamp(VIEWS_MM[0], VIEWS_MM[1]);
+    let top = page.views(top, height);
+    // Long lists are cut at the end of the page
+    let rows = ((bottom - top - LINE_MM - 3.0 - GAP_MM - 3.0 * LINE_MM) / row).max(1.0) as usize;
+    let top = page.lights(top, row, rows);
+    let lines = ((bottom - top - HEADING_MM - 3.0) / LINE_MM).max(0.0) as usize;
+    page.list(vec2(MARGIN_MM, top), "Bring", &gear, lines);
+    page.list(vec2(MARGIN_MM + 0.5 * WIDTH_MM, top), "Check on the set", &checks, lines);
+    page.foot();
+    Drawing { size_mm: PAGE_MM, elements: page.elements }
+}
+
+impl Page<'_> {
+    fn text(&mut self, at: Vec2, text: &str, size: f32) {
+        self.elements.push(Element::text(at, text, size).into());
+    }
+
+    fn grey(&mut self, at: Vec2, text: &str, size: f32) {
+        self.elements.push(Element::text(at, text, size).colored(GREY).into());
+    }
+
+    fn rule(&mut self, y: f32) {
+        let line = [vec2(MARGIN_MM, y), vec2(MARGIN_MM + WIDTH_MM, y)];
+        self.elements.push(Element::line(line, Stroke::new(RULE, 0.25)));
+    }
+
+    /// Draws title and description; returns the y below.
+    fn head(&mut self) -> f32 {
+        let mut y = MARGIN_MM + TITLE_MM;
+        let title = self.font.fitted(&self.content.title, TITLE_MM, WIDTH_MM);
+        self.elements.push(Element::text(vec2(MARGIN_MM, y), title, TITLE_MM).strong().into());
+        for line in self.font.lines(&self.content.description, BODY_MM, WIDTH_MM).into_iter().take(2) {
+            y += LINE_MM + 0.6;
+            self.grey(vec2(MARGIN_MM, y), &line, BODY_MM);
+        }
+        self.rule(y + 2.4);
+        y + 2.4 + GAP_MM
+    }
+
+    /// Draws the picture with the facts beside it; returns the y below.
+    fn picture_and_facts(&mut self, top: f32) -> f32 {
+        let pixels = vec2(self.content.picture.width as f32, self.content.picture.height as f32).max(Vec2::ONE);
+        let size = pixels * (PICTURE_MM / pixels).min_element();
+        self.elements.push(Element::Picture { at: vec2(MARGIN_MM, top), size });
+        let left = MARGIN_MM + size.x + 7.0;
+        let width = PAGE_MM.x - MARGIN_MM - left - NAMES_MM;
+        let mut y = top + 0.8 * BODY_MM;
+        let content = self.content;
+        for (heading, facts) in [("Camera", &content.camera), ("Subject", &content.subject)] {
+            self.elements.push(Element::text(vec2(left, y), heading, HEADING_MM).strong().into());
+            y += LINE_MM + 1.0;
+            for (name, value) in facts {
+                self.grey(vec2(left, y), name, BODY_MM);
+                for line in self.font.lines(value, BODY_MM, width) {
+                    self.text(vec2(left + NAMES_MM, y), &line, BODY_MM);
+                    y += LINE_MM;
+                }
+            }
+            y += 2.6;
+        }
+        (top + size.y).max(y - LINE_MM) + GAP_MM
+    }
+
+    /// Draws plan and elevation to one scale, with a ruler; returns the y below.
+    fn views(&mut self, top: f32, height: f32) -> f32 {
+        let views = &self.content.views;
+        let sizes = [views[0].size_m(), views[1].size_m()];
+        let scale = scale_of(&sizes, vec2(WIDTH_MM, height));
+        let mm_per_m = 1000.0 / scale;
+        let shown = sizes.map(|size| size * mm_per_m);
+        let tall = shown[0].y.max(shown[1].y);
+        let right = MARGIN_MM + WIDTH_MM - shown[1].x;
+        // Floors of elevations and the camera's end of plans are down
+        let places = [vec2(MARGIN_MM, top), vec2(right, top + tall - shown[1].y)];
+        for (view, at) in views.iter().zip(places) {
+            self.elements.extend(view.elements(at, mm_per_m, self.font, self.content.units));
+        }
+        let y = top + tall + 1.6;
+        let y = self.ruler(vec2(MARGIN_MM, y), mm_per_m, scale);
+        let caption = "From the camera's right, same scale";
+        let align = Element::text(vec2(MARGIN_MM + WIDTH_MM, y), caption, SMALL_MM).colored(GREY).aligned(Align::Right);
+        self.elements.push(align.into());
+        y + GAP_MM
+    }
+
+    /// Draws a ruler and the scale; returns the baseline of its text.
+    fn ruler(&mut self, at: Vec2, mm_per_m: f32, scale: f32) -> f32 {
+        let (unit_m, unit) = self.content.units.ruler();
+        let step = mm_per_m * unit_m;
+        // A ruler of 20 to 60 mm, of whole units where one is not too long
+        let (count, part) =
+            if step > 60.0 { (1, 0.1 * (600.0 / step).floor().max(1.0)) } else { ((60.0 / step) as u32, 1.0) };
+        let each = ((count as f32 / 6.0).ceil()).max(1.0);
+        let parts = if part < 1.0 { 1 } else { (count as f32 / each) as u32 };
+        for index in 0..parts {
+            let fill = if index % 2 == 0 { [40; 3] } else { [255; 3] };
+            let from = at + Vec2::X * step * each * part * index as f32;
+            let stroke = Some(Stroke::new([40; 3], 0.15));
+            self.elements.push(Element::rect(from, vec2(step * each * part, 1.2), Some(fill), stroke));
+        }
+        let length = step * each * part * parts as f32;
+        let end = each * part * parts as f32;
+        let text = format!(
+            "{} {unit}    Plan, scale 1:{scale:.0} on A4",
+            if end.fract() == 0.0 { format!("{end:.0}") } else { format!("{end:.1}") }
+        );
+        self.grey(at + vec2(length + 1.5, 1.6), &text, SMALL_MM);
+        at.y + 1.6
+    }
+
+    /// Draws the table of lights, of at most so many rows; returns the y below.
+    fn lights(&mut self, top: f32, row: f32, rows: usize) -> f32 {
+        let content = self.content;
+        let has_small = row == ROW_MM[0];
+        let mut y = top + LINE_MM;
+        let lefts = COLUMNS_MM.iter().scan(MARGIN_MM, |x, width| Some(std::mem::replace(x, *x + width)));
+        let lefts: Vec<f32> = lefts.collect();
+        for (left, heading) in lefts.iter().zip(COLUMNS) {
+            self.grey(vec2(*left, y), heading, SMALL_MM + 0.2);
+        }
+        self.rule(y + 1.2);
+        y += 1.2;
+        let fits = if content.lights.len() > rows { rows.saturating_sub(1) } else { rows };
+        for light in content.lights.iter().take(fits) {
+            let base = y + if has_small { 3.9 } else { 3.1 };
+            let middle = vec2(MARGIN_MM + 2.2, base - 0.36 * BODY_MM);
+            if has_small {
+                self.elements.extend(badge(middle, light.facts.number, light.color));
+            } else {
+                self.grey(vec2(MARGIN_MM, base), &light.facts.number.to_string(), SMALL_MM);
+            }
+            for ((cell, left), width) in light.facts.cells(content.units).iter().zip(&lefts).zip(COLUMNS_MM) {
+                let indent = if *left == MARGIN_MM { 6.0 } else { 0.0 };
+                let [line, small] = [(&cell[0], BODY_MM), (&cell[1], SMALL_MM)]
+                    .map(|(text, size)| self.font.fitted(text, size, width - indent - 1.2));
+                self.text(vec2(left + indent, base), &line, BODY_MM);
+                if has_small {
+                    self.grey(vec2(left + indent, base + 3.0), &small, SMALL_MM);
+                }
+            }
+            y += row;
+            self.elements
+                .push(Element::line([vec2(MARGIN_MM, y), vec2(MARGIN_MM + WIDTH_MM, y)], Stroke::new([232; 3], 0.15)));
+        }
+        if content.lights.len() > fits {
+            let more = format!("and {} more lights: the HTML sheet lists all", content.lights.len() - fits);
+            self.grey(vec2(MARGIN_MM, y + 3.1), &more, SMALL_MM);
+            y += row;
+        }
+        y + GAP_MM
+    }
+
+    fn gear_lines(&self, width: f32) -> Vec<String> {
+        let pieces = self.content.gear.iter().map(|(count, name)| format!("{count} x {name}"));
+        pieces.map(|piece| self.font.fitted(&piece, BODY_MM, width)).collect()
+    }
+
+    fn check_lines(&self, width: f32) -> Vec<String> {
+        let checks = self.content.checks.iter();
+        let lines = checks.flat_map(|check| {
+            let lines = self.font.lines(check, BODY_MM, width - 3.0).into_iter().enumerate();
+            lines.map(|(index, line)| if index == 0 { format!("\u{2013} {line}") } else { format!("   {line}") })
+        });
+        lines.collect()
+    }
+
+    /// Draws a list of at most so many lines.
+    fn list(&mut self, at: Vec2, heading: &str, list: &[String], most: usize) {
+        let mut at = at + Vec2::Y * HEADING_MM;
+        self.elements.push(Element::text(at, heading, HEADING_MM).strong().into());
+        at.y += 1.0;
+        let fits = if list.len() > most { most.saturating_sub(1) } else { list.len() };
+        for line in list.iter().take(fits) {
+            at.y += LINE_MM;
+            self.text(at, line, BODY_MM);
+        }
+        if list.len() > fits {
+            at.y += LINE_MM;
+            self.grey(at, "\u{2026} more in the HTML sheet", BODY_MM);
+        }
+    }
+
+    fn foot(&mut self) {
+        let at = vec2(MARGIN_MM + WIDTH_MM, PAGE_MM.y - 7.0);
+        let text = concat!("Catchlight ", env!("CARGO_PKG_VERSION"));
+        self.elements.push(Element::text(at, text, SMALL_MM).colored([160; 3]).aligned(Align::Right).into());
+    }
+}
+
+/// Returns a view by itself, as wide as `width_mm`.
+pub fn view_drawing(content: &SheetContent, index: usize, width_mm: f32, font: &Font) -> Drawing {
+    let view = &content.views[index];
+    let mm_per_m = width_mm / view.size_m().x.max(1e-3);
+    let size_mm = view.size_m() * mm_per_m;
+    Drawing { size_mm, elements: view.elements(Vec2::ZERO, mm_per_m, font, content.units) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scale_is_the_largest_usual_one_that_fits() {
+        let room = vec2(186.0, 100.0);
+        assert_eq!(scale_of(&[vec2(3.0, 3.9), vec2(4.0, 3.0)], room), 40.0);
+        assert_eq!(scale_of(&[vec2(3.0, 4.1), vec2(4.0, 3.0)], room), 50.0);
+        assert_eq!(scale_of(&[vec2(0.1, 0.1), vec2(0.1, 0.1)], room), 2.0);
+        assert!(scale_of(&[vec2(1e5, 1.0), vec2(1.0, 1.0)], room) > 5e5);
+    }
+}
