@@ -35,7 +35,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t)]
     units: UnitsArgument,
     /// Samples per pixel of the picture on the sheet, which is denoised.
-    #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=65_536))]
     spp: u32,
     /// Number of threads [default: all cores]. The sheet is the same for any number.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]

@@ -82,6 +82,8 @@ impl Dial {
         let nominal = ((thirds - nearest).abs() < 0.15).then(|| self.nominal_label(nearest as i32)).flatten();
         match (self, nominal) {
             (Dial::FNumber, Some(text)) => format!("f/{text}"),
+            // Nominal values of files, such as 11 and 22, lie between the exact ones
+            (Dial::FNumber, None) if value >= 10.0 && (value - value.round()).abs() < 0.05 => format!("f/{value:.0}"),
             (Dial::FNumber, None) => format!("f/{value:.1}"),
             (Dial::Iso, Some(text)) => text.to_owned(),
             (Dial::Iso, None) => format!("{value:.0}"),
@@ -134,6 +136,7 @@ mod tests {
         assert_eq!(Dial::Shutter.label(2.0), "2 s");
         assert_eq!(Dial::Iso.label(100.0), "100");
         assert_eq!(Dial::FNumber.label(6.0), "f/6.0");
+        assert_eq!([11.0, 11.4, 22.0].map(|n| Dial::FNumber.label(n)), ["f/11", "f/11", "f/22"]);
     }
 
     #[test]

@@ -30,7 +30,7 @@ pub fn camera_facts(setup: &MeteredSetup<'_>, units: Units) -> Vec<Fact> {
     );
     let tilt_deg = scene.camera_frame(1.0).forward().y.clamp(-1.0, 1.0).asin().to_degrees();
     let tilt = match tilt_deg.round() {
-        level if level == 0.0 => "level".to_owned(),
+        0.0 => "level".to_owned(),
         angle => format!("tilted {:.0}\u{b0} {}", angle.abs(), if angle < 0.0 { "down" } else { "up" }),
     };
     let mut facts = vec![

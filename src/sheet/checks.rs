@@ -15,9 +15,9 @@ const HEADROOM_M: f32 = 0.15;
 /// Steps in which a stand is looked at, metres.
 const STEP_M: f32 = 0.04;
 /// Angle from the optical axis in which a light that shines at the camera flares, degrees.
-const FLARE_DEG: f32 = 60.0;
+const FLARE_DEG: f32 = 45.0;
 /// Angle from the axis of a panel in which it lights the lens, degrees.
-const PANEL_BEAM_DEG: f32 = 75.0;
+const PANEL_BEAM_DEG: f32 = 60.0;
 /// Length of cable that a head has with it, metres: typical.
 const CABLE_M: f32 = 4.0;
 

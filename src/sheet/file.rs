@@ -17,7 +17,7 @@ use base64::engine::general_purpose::STANDARD;
 use std::path::Path;
 
 /// Longer side of the picture on a sheet, pixels: 250 dpi on the page.
-const PICTURE_PIXELS: u32 = 860;
+const PICTURE_PIXELS: u32 = 660;
 
 /// The extensions of sheets, the default one first.
 pub const SHEET_EXTENSIONS: &[&str] = &["pdf", "svg", "html"];

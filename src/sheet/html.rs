@@ -7,6 +7,9 @@ use super::page::view_drawing;
 use super::svg::{FONTS, color, escaped, svg};
 use std::fmt::Write;
 
+/// Width of a view, millimetres: its text is as large as the text around it on a phone.
+const VIEW_MM: f32 = 75.0;
+
 const STYLE: &str = "
 body { margin: 0 auto; padding: 16px; max-width: 980px; color: #181818; background: #fff; line-height: 1.45 }
 h1 { font-size: 1.7em; margin: 0 } h2 { font-size: 1.1em; margin: 1.4em 0 .4em }
@@ -33,11 +36,11 @@ ul { margin: 0; padding-left: 1.2em }
 pub fn html(content: &SheetContent, picture: &str, font: &Font) -> String {
     let title = escaped(&content.title);
     let mut out = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta name=\"generator\" content=\"Catchlight {}\">\n<title>{title}</title>\n\
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
+         <meta name=\"generator\" content=\"Catchlight {}\"/>\n<title>{title}</title>\n\
          <style>body {{ font-family: {FONTS} }}{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n\
-         <p class=\"about\">{}</p>\n<div class=\"top\">\n<img src=\"{picture}\" alt=\"The planned picture\">\n<div>\n",
+         <p class=\"about\">{}</p>\n<div class=\"top\">\n<img src=\"{picture}\" alt=\"The planned picture\"/>\n<div>\n",
         env!("CARGO_PKG_VERSION"),
         escaped(&content.description)
     );
@@ -50,7 +53,7 @@ pub fn html(content: &SheetContent, picture: &str, font: &Font) -> String {
     }
     out += "</div>\n</div>\n<div class=\"top\">\n";
     for (index, heading) in ["Plan", "From the camera's right"].into_iter().enumerate() {
-        let drawing = svg(&view_drawing(content, index, 120.0, font), picture, &format!("view{index}-"));
+        let drawing = svg(&view_drawing(content, index, VIEW_MM, font), picture, &format!("view{index}-"));
         let _ = writeln!(out, "<div><h2>{}</h2>\n{drawing}</div>", escaped(heading));
     }
     out += "</div>\n<h2>Lights</h2>\n<table>\n<thead><tr>";

@@ -1,7 +1,7 @@
 //! What a sheet says of a light.
 
 use super::lengths::Units;
-use super::metering::{LightExposure, MeteredSetup};
+use super::metering::{LightExposure, MeteredAt, MeteredSetup};
 use crate::photo::LightPlacement;
 use crate::photo::meter::nearest_third;
 use crate::photo::text::{power_fraction, signed_stops, three_digits};
@@ -39,7 +39,9 @@ pub struct LightFacts {
     pub aim_m: Option<f32>,
     /// Height of the middle of its front, metres; none for sun and surround.
     pub height_m: Option<f32>,
-    /// What it gives at the subject, or where it aims if that is not the subject.
+    /// Where it is metered.
+    pub metered_at: MeteredAt,
+    /// What it gives there; none if no light of it arrives.
     pub exposure: Option<LightExposure>,
 }
 
@@ -47,11 +49,8 @@ impl LightFacts {
     /// Returns the facts of a light.
     pub fn new(setup: &MeteredSetup<'_>, number: usize, light: &Light, units: Units, control: &RenderControl) -> Self {
         let scene = setup.scene;
-        let elsewhere = setup.aims_elsewhere(light);
-        let exposure = match elsewhere && light.on {
-            true => setup.exposure_at_aim(light, control),
-            false => setup.exposure(light.id),
-        };
+        let metered_at = setup.metered_at(light);
+        let elsewhere = metered_at == MeteredAt::Aim;
         let has_direction = light.emitter != Emitter::Surround;
         LightFacts {
             number,
@@ -65,7 +64,8 @@ impl LightFacts {
             placement: has_direction.then(|| LightPlacement::new(scene, light.position, setup.subject.position)),
             aim_m: elsewhere.then(|| scene.aim_vector(&light.aim, light.position).length()),
             height_m: (!light.emitter.is_infinite()).then_some(light.position.y),
-            exposure,
+            metered_at,
+            exposure: setup.exposure(light, control),
         }
     }
 
@@ -87,17 +87,20 @@ impl LightFacts {
             );
             [round_text(place.azimuth_deg), up]
         };
+        let at = match self.metered_at {
+            MeteredAt::Subject => "at subject",
+            MeteredAt::Rim => "turned to it",
+            MeteredAt::Aim => "at its aim",
+        };
         let meter = match (&self.exposure, self.is_on) {
             (_, false) => cell("off".to_owned(), ""),
-            (None, true) => {
-                cell("no light".to_owned(), if self.aim_m.is_some() { "at its aim" } else { "at the subject" })
-            }
+            (None, true) => cell("no light".to_owned(), at),
             (Some(exposure), true) => {
-                let at = if self.aim_m.is_some() { " at its aim" } else { "" };
-                let against = match exposure.stops_over_key {
-                    Some(stops) if stops == 0.0 => "the key".to_owned(),
-                    Some(stops) => format!("{} to key{at}", signed_stops(stops)),
-                    None => at.trim_start().to_owned(),
+                let against = match (exposure.stops_over_key, self.metered_at) {
+                    (Some(0.0), MeteredAt::Subject) => "the key".to_owned(),
+                    (Some(stops), MeteredAt::Subject) => format!("{} to key", signed_stops(stops)),
+                    (Some(stops), _) => format!("{}, {at}", signed_stops(stops)),
+                    (None, _) => at.to_owned(),
                 };
                 [nearest_third(exposure.f_number), against]
             }
@@ -117,7 +120,7 @@ impl LightFacts {
 /// Formats an angle round from the camera: `45° right`.
 fn round_text(azimuth_deg: f32) -> String {
     match azimuth_deg.round() {
-        angle if angle == 0.0 => "at camera".to_owned(),
+        0.0 => "at camera".to_owned(),
         angle if angle.abs() == 180.0 => "behind".to_owned(),
         angle => format!("{:.0}\u{b0} {}", angle.abs(), if angle > 0.0 { "right" } else { "left" }),
     }
@@ -209,7 +212,7 @@ mod tests {
         let mut light = Light::new(named.emitter, Output::FlashWs { energy_ws: 400.0, efficacy_lm_s_per_ws: 40.0 });
         light.modifier = named.modifier;
         assert_eq!(modifier_text(&light, Units::Metres), named.name);
-        light.modifier = Modifier::default().grid(30.0).doors(BarnDoors::HALF_OPEN);
+        light.modifier = Modifier { grid_deg: Some(30.0), doors: Some(BarnDoors::HALF_OPEN), ..Modifier::default() };
         assert_eq!(modifier_text(&light, Units::Feet), "Softbox or panel 24 x 35\", 30\u{b0} grid, barn doors");
         light.color.gel = Gel::Mired(109.0);
         assert_eq!(head_text(&light, Units::Metres), "Flash 400 Ws, 5500 K, 1/2 CTO");

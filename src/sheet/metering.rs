@@ -8,12 +8,25 @@ use glam::Vec3;
 
 /// Distance from the subject from which a light aims at something else, metres.
 const APART_M: f32 = 0.75;
+/// Distance behind the camera's aim in which a surface is the subject, metres.
+const NEAR_M: f32 = 0.15;
 /// Longest way along which a background is looked for, metres.
 const FARTHEST_M: f32 = 100.0;
 /// Most surfaces that are looked through on the way to a background.
 const MOST_SURFACES: u32 = 64;
 /// Step behind a surface, metres.
 const STEP_M: f32 = 1e-3;
+
+/// Where a light is metered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeteredAt {
+    /// At the subject.
+    Subject,
+    /// Where it falls on the subject from behind, with the meter turned to it: hair and rim lights.
+    Rim,
+    /// On what it aims at, which is not the subject: background lights.
+    Aim,
+}
 
 /// The exposure of a light by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,16 +90,26 @@ impl<'a> MeteredSetup<'a> {
         !light.emitter.is_infinite() && (away - aim.normalize_or_zero() * along).length() > APART_M
     }
 
-    /// Returns what a light gives at the subject; none if it is off or no light of it arrives.
-    pub fn exposure(&self, light: LightId) -> Option<LightExposure> {
-        exposure_in(&self.reading, &self.reading, self.scene, light)
+    /// Returns where a light is metered.
+    pub fn metered_at(&self, light: &Light) -> MeteredAt {
+        let from_behind = (light.position - self.subject.position).dot(self.subject.facing) < 0.0;
+        match (self.aims_elsewhere(light), from_behind && !light.emitter.is_infinite()) {
+            (true, _) => MeteredAt::Aim,
+            (false, true) => MeteredAt::Rim,
+            (false, false) => MeteredAt::Subject,
+        }
     }
 
-    /// Returns what a light gives where it aims, on the surface there. None if there is no surface, or no light.
-    pub fn exposure_at_aim(&self, light: &Light, control: &RenderControl) -> Option<LightExposure> {
+    /// Returns what a light gives where it is metered; none if it is off, or if no light of it arrives.
+    pub fn exposure(&self, light: &Light, control: &RenderControl) -> Option<LightExposure> {
+        let at = self.metered_at(light);
+        if at == MeteredAt::Subject || !light.on {
+            return exposure_in(&self.reading, &self.reading, self.scene, light.id);
+        }
         let axis = self.scene.aim_vector(&light.aim, light.position).try_normalize()?;
         let surface = self.meter.first_surface(light.position, axis, FARTHEST_M)?;
-        let point = MeterPoint { position: surface.position, facing: surface.normal, receptor: Receptor::Flat };
+        let facing = if at == MeteredAt::Rim { -axis } else { surface.normal };
+        let point = MeterPoint { position: surface.position + facing * STEP_M, facing, receptor: Receptor::Flat };
         let reading = self.meter.read(&point, &MeterEffort::quick(), control)?.reading;
         exposure_in(&reading, &self.reading, self.scene, light.id)
     }
@@ -126,7 +149,7 @@ impl<'a> MeteredSetup<'a> {
 fn subject_of_camera(scene: &Scene, meter: &LightMeter, aim: Vec3) -> MeterPoint {
     let way = aim - scene.camera.position;
     let direction = way.normalize_or(Vec3::NEG_Z);
-    let surface = meter.first_surface(scene.camera.position, direction, way.length() + APART_M);
+    let surface = meter.first_surface(scene.camera.position, direction, way.length() + NEAR_M);
     let position = surface.map_or(aim, |surface| surface.position);
     MeterPoint { position, facing: -direction, receptor: Receptor::Flat }
 }

@@ -29,4 +29,7 @@ pub use drawing::Drawing;
 pub use file::{SHEET_EXTENSIONS, SheetFormat, draft_picture, sheet_file, write_sheet};
 pub use lengths::Units;
 pub use light_facts::{COLUMNS, LightFacts};
-pub use metering::LightExposure;
+pub use metering::{LightExposure, MeteredAt};
+
+#[cfg(test)]
+mod tests;

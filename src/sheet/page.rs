@@ -12,9 +12,9 @@ const PAGE_MM: Vec2 = Vec2::new(210.0, 297.0);
 const MARGIN_MM: f32 = 12.0;
 const WIDTH_MM: f32 = PAGE_MM.x - 2.0 * MARGIN_MM;
 /// Most of the picture's width and height.
-const PICTURE_MM: Vec2 = Vec2::new(88.0, 74.0);
+const PICTURE_MM: Vec2 = Vec2::new(88.0, 66.0);
 /// Widths of the columns of the table of lights.
-const COLUMNS_MM: [f32; 7] = [34.0, 53.0, 31.0, 20.0, 20.0, 14.0, 14.0];
+const COLUMNS_MM: [f32; 7] = [34.0, 49.0, 30.0, 20.0, 20.0, 15.0, 18.0];
 /// Width of the column of names of facts.
 const NAMES_MM: f32 = 24.0;
 const TITLE_MM: f32 = 6.2;
@@ -22,10 +22,15 @@ const HEADING_MM: f32 = 3.6;
 const BODY_MM: f32 = 2.9;
 const SMALL_MM: f32 = 2.2;
 const LINE_MM: f32 = 4.1;
+/// Text and lines of the lists.
+const LIST_MM: f32 = 2.6;
+const LIST_LINE_MM: f32 = 3.7;
+/// Width of each of the two columns of gear; the checks have the rest.
+const GEAR_MM: f32 = 54.0;
 /// Height of a row of the table with its smaller line, and without it.
 const ROW_MM: [f32; 2] = [8.0, 4.2];
 /// Height of the views, at least and at most.
-const VIEWS_MM: [f32; 2] = [62.0, 112.0];
+const VIEWS_MM: [f32; 2] = [62.0, 130.0];
 /// Gap between parts of the page.
 const GAP_MM: f32 = 4.0;
 /// Denominators of the scale.
@@ -59,10 +64,11 @@ pub fn page(content: &SheetContent, font: &Font) -> Drawing {
     let mut page = Page { content, font, elements: Vec::new() };
     let top = page.head();
     let top = page.picture_and_facts(top);
-    let gear = page.gear_lines(0.5 * WIDTH_MM - GAP_MM);
-    let checks = page.check_lines(0.5 * WIDTH_MM - GAP_MM);
+    let gear = page.gear_lines(GEAR_MM - 2.0);
+    let checks = page.check_lines(WIDTH_MM - 2.0 * GEAR_MM);
+    let gear_rows = gear.len().div_ceil(2);
     let bottom = PAGE_MM.y - MARGIN_MM - SMALL_MM;
-    let lists = HEADING_MM + 3.0 + LINE_MM * gear.len().max(checks.len()) as f32;
+    let lists = HEADING_MM + 1.5 + LIST_LINE_MM * gear_rows.max(checks.len()) as f32;
     let lights = content.lights.len() as f32;
     // What is left for the views decides whether the rows have their smaller line
     let left = |row: f32| bottom - top - lists - (LINE_MM + 3.0 + row * lights) - 3.0 * GAP_MM - 6.0;
@@ -70,11 +76,13 @@ pub fn page(content: &SheetContent, font: &Font) -> Drawing {
     let height = left(row).clamp(VIEWS_MM[0], VIEWS_MM[1]);
     let top = page.views(top, height);
     // Long lists are cut at the end of the page
-    let rows = ((bottom - top - LINE_MM - 3.0 - GAP_MM - 3.0 * LINE_MM) / row).max(1.0) as usize;
+    let rows = ((bottom - top - LINE_MM - 3.0 - GAP_MM - 4.0 * LIST_LINE_MM) / row).max(1.0) as usize;
     let top = page.lights(top, row, rows);
-    let lines = ((bottom - top - HEADING_MM - 3.0) / LINE_MM).max(0.0) as usize;
-    page.list(vec2(MARGIN_MM, top), "Bring", &gear, lines);
-    page.list(vec2(MARGIN_MM + 0.5 * WIDTH_MM, top), "Check on the set", &checks, lines);
+    let lines = ((bottom - top - HEADING_MM - 1.5) / LIST_LINE_MM).max(0.0) as usize;
+    let (first, second) = gear.split_at(gear_rows.min(lines.max(1)).min(gear.len()));
+    page.list(vec2(MARGIN_MM, top), "Bring", first, lines);
+    page.list(vec2(MARGIN_MM + GEAR_MM, top), "", second, lines);
+    page.list(vec2(MARGIN_MM + 2.0 * GEAR_MM, top), "Check on the set", &checks, lines);
     page.foot();
     Drawing { size_mm: PAGE_MM, elements: page.elements }
 }
@@ -221,13 +229,13 @@ impl Page<'_> {
 
     fn gear_lines(&self, width: f32) -> Vec<String> {
         let pieces = self.content.gear.iter().map(|(count, name)| format!("{count} x {name}"));
-        pieces.map(|piece| self.font.fitted(&piece, BODY_MM, width)).collect()
+        pieces.map(|piece| self.font.fitted(&piece, LIST_MM, width)).collect()
     }
 
     fn check_lines(&self, width: f32) -> Vec<String> {
         let checks = self.content.checks.iter();
         let lines = checks.flat_map(|check| {
-            let lines = self.font.lines(check, BODY_MM, width - 3.0).into_iter().enumerate();
+            let lines = self.font.lines(check, LIST_MM, width - 3.0).into_iter().enumerate();
             lines.map(|(index, line)| if index == 0 { format!("\u{2013} {line}") } else { format!("   {line}") })
         });
         lines.collect()
@@ -240,12 +248,12 @@ impl Page<'_> {
         at.y += 1.0;
         let fits = if list.len() > most { most.saturating_sub(1) } else { list.len() };
         for line in list.iter().take(fits) {
-            at.y += LINE_MM;
-            self.text(at, line, BODY_MM);
+            at.y += LIST_LINE_MM;
+            self.text(at, line, LIST_MM);
         }
         if list.len() > fits {
-            at.y += LINE_MM;
-            self.grey(at, "\u{2026} more in the HTML sheet", BODY_MM);
+            at.y += LIST_LINE_MM;
+            self.grey(at, "\u{2026} more in the HTML sheet", LIST_MM);
         }
     }
 

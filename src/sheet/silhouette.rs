@@ -174,7 +174,7 @@ mod tests {
         let fan: Vec<[Vec2; 3]> = (0..64).map(|i| [Vec2::ZERO, rim(i), rim(i + 1)]).collect();
         let found = outlines(&fan, &[], 0.01);
         assert_eq!(found.len(), 1);
-        assert!(found[0].len() < 80, "{}", found[0].len());
+        assert!(found[0].len() < 200, "{}", found[0].len());
         assert!(found[0].iter().all(|point| (point.length() - 1.0).abs() < 0.03));
         assert!((area(&found[0]).abs() / std::f32::consts::PI - 1.0).abs() < 0.03);
     }
@@ -189,7 +189,8 @@ mod tests {
         let frame: Vec<[Vec2; 3]> = sides.collect();
         let areas: Vec<f32> = outlines(&frame, &[], 0.02).iter().map(|line| area(line)).collect();
         assert!(areas.len() == 2 && areas[0] * areas[1] < 0.0, "{areas:?}");
-        assert_eq!(outlines(&frame, &[Vec2::new(3.0, 0.0)], 0.02).len(), 3);
+        let lock = [0.0, 0.04, 0.08].map(|x| Vec2::new(3.0 + x, x));
+        assert_eq!(outlines(&frame, &lock, 0.02).len(), 3);
         assert!(outlines(&[], &[], 0.02).is_empty());
         assert!(outlines(&[[Vec2::NAN; 3]], &[], 0.02).is_empty());
     }

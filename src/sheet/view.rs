@@ -12,12 +12,14 @@ use std::f32::consts::FRAC_PI_2;
 /// Details of outlines, metres.
 const DETAIL_M: f32 = 0.012;
 /// Space around the things of a view, metres.
-const AROUND_M: f32 = 0.25;
+const AROUND_M: f32 = 0.35;
 /// How far a backdrop may widen a view beyond lights, camera and people, metres.
 const BACKDROP_M: f32 = 1.5;
 /// Sizes of text, millimetres.
 const LABEL_MM: f32 = 2.2;
 const NUMBER_MM: f32 = 2.6;
+/// Width that the name of a small thing may have, millimetres.
+const NAME_MM: f32 = 18.0;
 const BADGE_MM: f32 = 2.1;
 
 const GREY: Rgb = [120; 3];
@@ -193,8 +195,8 @@ impl StudioView {
         inside.push(Element::circle(place(self.subject), 0.7, Some([255; 3]), Some(Stroke::new([200, 30, 30], 0.4))));
         let mut labels = Vec::new();
         if self.from == ViewFrom::Above {
-            self.draw_names(&mut labels, &place, font);
             self.lights.iter().for_each(|light| light.draw_distance(&mut labels, &place, font, units));
+            self.draw_names(&mut labels, &place, font);
         }
         self.lights.iter().for_each(|light| light.draw_number(&mut labels, &place));
         inside.extend(labels);
@@ -228,12 +230,18 @@ impl StudioView {
         }
     }
 
-    /// Draws the names of what is large enough for them.
+    /// Draws the names of what is large enough for them, unless they would lie over other names: people's first, then
+    /// those of the largest things.
     fn draw_names(&self, out: &mut Vec<Element>, place: &dyn Fn(Vec2) -> Vec2, font: &Font) {
-        for thing in &self.things {
+        let mut things: Vec<&Outlined> = self.things.iter().collect();
+        let area = |thing: &Outlined| (thing.high - thing.low).element_product();
+        things.sort_by(|a, b| b.is_person.cmp(&a.is_person).then(area(b).total_cmp(&area(a))));
+        let mut taken: Vec<[Vec2; 2]> = Vec::new();
+        for thing in things {
             let (low, high) = (place(thing.low.max(self.low)), place(thing.high.min(self.high)));
-            let text = font.fitted(&thing.name, LABEL_MM, high.x - low.x - 2.0);
-            if text.is_empty() || high.y - low.y < LABEL_MM {
+            let width = if thing.is_backdrop { high.x - low.x - 2.0 } else { (high.x - low.x).max(NAME_MM) };
+            let text = font.fitted(&thing.name, LABEL_MM, width);
+            if text.is_empty() || (high - low).max_element() < LABEL_MM {
                 continue;
             }
             let at = match thing.is_backdrop {
@@ -241,6 +249,13 @@ impl StudioView {
                 false => Vec2::new(0.5 * (low.x + high.x), high.y + LABEL_MM),
             };
             let align = if thing.is_backdrop { Align::Left } else { Align::Center };
+            let width = font.width(&text, LABEL_MM);
+            let left = if thing.is_backdrop { at.x } else { at.x - 0.5 * width };
+            let area = [Vec2::new(left, at.y - LABEL_MM), Vec2::new(left + width, at.y + 0.3 * LABEL_MM)];
+            if taken.iter().any(|other| area[0].cmplt(other[1]).all() && other[0].cmplt(area[1]).all()) {
+                continue;
+            }
+            taken.push(area);
             out.push(Element::text(at, text, LABEL_MM).colored([90; 3]).aligned(align).into());
         }
     }

@@ -10,6 +10,7 @@ mod output;
 mod package;
 mod picture_files;
 mod running_render;
+mod sheet;
 mod signals;
 mod window_libraries;
 

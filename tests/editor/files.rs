@@ -167,3 +167,30 @@ fn without_desktop_dialogs_a_prompt_takes_the_path() {
     click(&mut window, "Save here");
     assert!(file.exists(), "{:?}", errors(&window));
 }
+
+#[test]
+fn a_set_up_sheet_is_exported_from_the_menu_with_the_rendered_picture() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let [metres, feet, wrong] = ["plan.html", "plan", "plan.txt"].map(|name| folder.path().join(name));
+    let mut window = window_with_answers([metres.clone(), feet.clone(), wrong.clone()]);
+    render_tiny(&mut window);
+    let size = window.state().rendering().size().unwrap();
+    let mut export = |entry: &str, kind: ToastKind| {
+        click(&mut window, "File");
+        window.get_by_label_contains(entry).click();
+        settle(&mut window);
+        window.state().toasts().texts(kind).last().map_or_else(String::new, |text| (*text).to_owned())
+    };
+    assert!(export("set-up sheet\u{2026}", ToastKind::Info).starts_with("Set-up sheet written to"));
+    let html = std::fs::read_to_string(metres).unwrap();
+    assert!(html.contains("Three-point portrait") && html.contains("1.42 m"), "{}", html.len());
+    let picture = html.split("base64,").nth(1).and_then(|rest| rest.split('"').next()).unwrap();
+    assert!(picture.len() < 20_000, "the picture of {size:?} pixels, not a larger one");
+    export("sheet in feet\u{2026}", ToastKind::Info);
+    assert!(std::fs::read(feet.with_extension("pdf")).unwrap().starts_with(b"%PDF"), "without extension it is a PDF");
+    assert!(export("set-up sheet\u{2026}", ToastKind::Error).contains(".pdf, .svg or .html"));
+    assert!(!wrong.exists());
+}

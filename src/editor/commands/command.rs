@@ -6,6 +6,7 @@ use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
 use crate::photo::PictureDisplay;
 use crate::scene::TextureSlot;
+use crate::sheet::Units;
 use std::path::PathBuf;
 
 /// A command of the user.
@@ -88,6 +89,8 @@ pub enum Command {
     ChooseTexture(Item, Option<String>, TextureSlot),
     /// Writes the rendered picture to a file that a dialog selects.
     ExportPicture,
+    /// Writes the set-up sheet, with lengths in these units, to a file that a dialog selects.
+    ExportSheet(Units),
     /// Uses a path that was chosen or typed for a purpose.
     UseFile(FilePurpose, PathBuf),
     /// Clears the list of recent studios.

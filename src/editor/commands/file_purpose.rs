@@ -1,6 +1,7 @@
 //! The purposes of file dialogs: titles, filters and extensions.
 
 use crate::io;
+use crate::sheet::{SHEET_EXTENSIONS, Units};
 use std::path::PathBuf;
 
 /// The purpose of a file dialog.
@@ -16,6 +17,8 @@ pub enum FilePurpose {
     OpenTexture,
     /// The file to write the rendered picture to.
     ExportPicture,
+    /// The file to write the set-up sheet to, with lengths in these units.
+    ExportSheet(Units),
 }
 
 impl FilePurpose {
@@ -27,12 +30,13 @@ impl FilePurpose {
             FilePurpose::ImportModel => format!("Import {} model", io::model_format_names()),
             FilePurpose::OpenTexture => "Choose texture".to_owned(),
             FilePurpose::ExportPicture => "Export picture".to_owned(),
+            FilePurpose::ExportSheet(_) => "Export set-up sheet".to_owned(),
         }
     }
 
     /// Returns true if the file is written rather than read.
     pub fn is_save(self) -> bool {
-        matches!(self, FilePurpose::SaveScene | FilePurpose::ExportPicture)
+        matches!(self, FilePurpose::SaveScene | FilePurpose::ExportPicture | FilePurpose::ExportSheet(_))
     }
 
     /// Returns name and extensions of the file type.
@@ -42,6 +46,7 @@ impl FilePurpose {
             FilePurpose::ImportModel => (format!("{} model", io::model_format_names()), io::model_extensions()),
             FilePurpose::OpenTexture => ("Picture".to_owned(), io::TEXTURE_EXTENSIONS),
             FilePurpose::ExportPicture => ("Picture".to_owned(), &["png", "jpg", "exr"]),
+            FilePurpose::ExportSheet(_) => ("Set-up sheet".to_owned(), SHEET_EXTENSIONS),
         }
     }
 

@@ -9,6 +9,7 @@ use crate::editor::commands::menu_entry::entry;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::io;
+use crate::sheet::Units;
 use eframe::egui::{MenuBar, Ui};
 use std::path::PathBuf;
 
@@ -65,9 +66,16 @@ fn file_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
         Command::ExportPicture,
         out,
     );
+    for (units, text) in
+        [(Units::Metres, "Export set-up sheet\u{2026}"), (Units::Feet, "Export set-up sheet in feet\u{2026}")]
+    {
+        entry(ui, true, text, SHEET_TIP, Command::ExportSheet(units), out);
+    }
     ui.separator();
     entry(ui, true, "Quit", "Close the window", Command::Quit, out);
 }
+
+const SHEET_TIP: &str = "One page to build the studio again from: picture, plan, list of lights; PDF, SVG or HTML";
 
 fn recent_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     let paths = state.recent;

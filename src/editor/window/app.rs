@@ -232,9 +232,8 @@ impl App {
 
     /// Returns true during background work: files, a render, the start of the preview or its full image, a file dialog.
     pub fn is_busy(&self) -> bool {
-        self.background.tasks.is_busy()
+        self.background.is_busy()
             || self.rendering.is_busy()
-            || self.background.meter.is_busy()
             || self.session.is_waiting()
             || self.views.viewport.preview.is_starting()
             || (self.views.viewport.preview.is_draft() && self.views.central != CentralView::Picture)
@@ -247,7 +246,7 @@ impl App {
 
     /// Takes all results and requests that arrived since the last frame.
     pub(super) fn take_in(&mut self, ctx: &Context, out: &mut Vec<Command>) {
-        for done in self.background.tasks.finished() {
+        for done in self.background.finished() {
             self.take_done(done, ctx);
         }
         self.take_dialog_answer(out);
@@ -353,8 +352,8 @@ impl App {
         let side = Frame::new().inner_margin(Margin::symmetric(10, 4));
         Panel::top("menu").frame(bar).show(ui, |ui| menu::menu_ui(ui, self.menu_state(), out));
         Panel::bottom("status").frame(bar).exact_size(26.0).show(ui, |ui| {
-            let busy = self.background.tasks.is_busy().then_some("Loading\u{2026}");
-            status::status_ui(ui, &self.document, &self.selection, self.views.central, busy);
+            let activity = self.background.activity();
+            status::status_ui(ui, &self.document, &self.selection, self.views.central, activity);
         });
         let (mut left, mut right) = (self.panels.left, self.panels.right);
         left.show(ui, "things", Panel::left("things").frame(side), LEFT, |ui| {

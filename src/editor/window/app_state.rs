@@ -9,7 +9,7 @@ use crate::editor::panels::thumbnails::Thumbnails;
 use crate::editor::picture::picture_view::PictureView;
 use crate::editor::ui::side_panel::SidePanel;
 use crate::editor::viewport::viewport_area::Viewport;
-use crate::editor::window::background_tasks::BackgroundTasks;
+use crate::editor::window::background_tasks::{BackgroundTasks, TaskResult};
 use crate::editor::window::frame_log::FrameLog;
 use crate::jobs::{Clock, Forecaster, MeterJob, PatternJob};
 use crate::raytrace::GeometryCache;
@@ -81,8 +81,10 @@ impl PanelState {
 /// Background work other than renders and the live view.
 #[derive(Debug)]
 pub struct BackgroundState {
-    /// File operations.
+    /// File operations that the studio waits for.
     pub tasks: BackgroundTasks,
+    /// Pictures and sheets that are made and written.
+    pub exports: BackgroundTasks,
     /// The reading of the light meter.
     pub meter: MeterJob,
     /// The lighting of the selected figure's face.
@@ -98,11 +100,30 @@ impl BackgroundState {
     pub fn new(geometry: Arc<GeometryCache>) -> Self {
         BackgroundState {
             tasks: BackgroundTasks::default(),
+            exports: BackgroundTasks::default(),
             meter: MeterJob::new(geometry.clone()),
             pattern: PatternJob::default(),
             forecaster: Forecaster::new(geometry, Clock::default()),
             thumbnails: Thumbnails::default(),
         }
+    }
+
+    /// Returns the results of tasks since the last call.
+    pub fn finished(&mut self) -> Vec<TaskResult> {
+        let mut finished = self.tasks.finished();
+        finished.append(&mut self.exports.finished());
+        finished
+    }
+
+    /// Returns true while a task or the meter is running.
+    pub fn is_busy(&self) -> bool {
+        self.tasks.is_busy() || self.exports.is_busy() || self.meter.is_busy()
+    }
+
+    /// Returns what the tasks are doing, for the status line.
+    pub fn activity(&self) -> Option<&'static str> {
+        let loading = self.tasks.is_busy().then_some("Loading\u{2026}");
+        loading.or(self.exports.is_busy().then_some("Exporting\u{2026}"))
     }
 }
 

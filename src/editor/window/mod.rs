@@ -12,6 +12,7 @@ pub mod recent;
 pub mod recovery;
 pub mod rescue;
 pub mod run_command;
+pub mod run_export;
 pub mod run_file_command;
 pub mod run_recovery;
 pub mod run_time_libraries;

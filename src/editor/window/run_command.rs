@@ -120,6 +120,7 @@ impl App {
             | Command::ImportPath(_)
             | Command::ChooseTexture(..)
             | Command::ExportPicture
+            | Command::ExportSheet(_)
             | Command::UseFile(..) => self.run_file_command(command, ctx),
         }
     }

@@ -41,6 +41,7 @@ impl App {
                 self.toasts.info("There is no picture to export yet: press Render (R) first.");
             }
             Command::ExportPicture => self.ask_for_path(FilePurpose::ExportPicture, ctx),
+            Command::ExportSheet(units) => self.ask_for_path(FilePurpose::ExportSheet(units), ctx),
             Command::UseFile(purpose, path) => self.path_chosen(purpose, purpose.with_extension_added(path), ctx),
             _ => {}
         }
@@ -125,6 +126,7 @@ impl App {
             FilePurpose::ImportModel => self.run_file_command(Command::ImportPath(path), ctx),
             FilePurpose::OpenTexture => self.use_texture(&path),
             FilePurpose::ExportPicture => self.export_to(path, ctx),
+            FilePurpose::ExportSheet(units) => self.export_sheet_to(path, units, ctx),
         }
     }
 
@@ -157,7 +159,7 @@ impl App {
             let result = files::export(&path, &picture, noisy.as_deref(), &info);
             TaskResult::Exported(path, film, result)
         };
-        self.background.tasks.start(work, waker(ctx));
+        self.background.exports.start(work, waker(ctx));
     }
 
     pub(super) fn take_done(&mut self, done: TaskResult, ctx: &Context) {
@@ -194,6 +196,12 @@ impl App {
             }
             TaskResult::Exported(_, _, Err(message)) => {
                 self.toasts.error(format!("The picture was not written. {message}"))
+            }
+            TaskResult::SheetExported(path, Ok(())) => {
+                self.toasts.info(format!("Set-up sheet written to {}", path.display()));
+            }
+            TaskResult::SheetExported(_, Err(message)) => {
+                self.toasts.error(format!("The set-up sheet was not written. {message}"))
             }
         }
     }

@@ -16,7 +16,6 @@ use crate::photo::thirds::Dial;
 use crate::photo::{LightPlacement, light_rgb};
 use crate::scene::{ColorSource, Emitter, Light, LightId, Output, Role, Scene};
 use eframe::egui::{ComboBox, Label, RichText, Slider, SliderClamping, Ui, vec2};
-use glam::Vec3;
 
 /// Draws the inspector of a light.
 pub(super) fn light_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: LightId) {

@@ -1,0 +1,57 @@
+//! Execution of the export of set-up sheets.
+
+use crate::editor::window::app::App;
+use crate::editor::window::background_tasks::TaskResult;
+use crate::editor::window::run_file_command::waker;
+use crate::jobs::{background_pool, sentence};
+use crate::photo::Picture;
+use crate::raytrace::{GeometryCache, RenderControl};
+use crate::scene::{Assets, Scene};
+use crate::sheet::{SheetContent, SheetFormat, Units, draft_picture, write_sheet};
+use eframe::egui::Context;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Samples per pixel of a picture that is rendered for the sheet, and denoised.
+const SAMPLES: u32 = 8;
+
+impl App {
+    /// Writes the set-up sheet in the background, with the rendered picture if it is up to date, else with a small one
+    /// that is rendered for it.
+    pub(super) fn export_sheet_to(&mut self, path: PathBuf, units: Units, ctx: &Context) {
+        let scene = self.document.scene().clone();
+        let is_current = !self.rendering.is_running() && !self.rendering.is_out_of_date(&scene);
+        let developed = self.rendering.developed().filter(|_| is_current);
+        let (picture, assets) = (developed.map(|developed| developed.picture.clone()), self.document.assets().clone());
+        if picture.is_none() {
+            self.toasts.info("A small picture is rendered for the sheet; go on meanwhile.");
+        }
+        let work = move || {
+            let result = export(&path, &scene, &assets, picture, units);
+            TaskResult::SheetExported(path, result)
+        };
+        self.background.exports.start(work, waker(ctx));
+    }
+}
+
+fn export(
+    path: &Path,
+    scene: &Scene,
+    assets: &Assets,
+    picture: Option<Arc<Picture>>,
+    units: Units,
+) -> Result<(), String> {
+    SheetFormat::of(path).map_err(|error| sentence(&error))?;
+    let pool = background_pool(0, "sheet").map_err(|error| sentence(&error))?;
+    let (cache, control) = (GeometryCache::default(), RenderControl::new());
+    let content = pool.install(|| {
+        let picture = match picture {
+            Some(picture) => Some(Picture::clone(&picture)),
+            None => draft_picture(scene, assets, SAMPLES, &cache, &control)?,
+        };
+        let picture = picture.unwrap_or_default();
+        SheetContent::new(scene, assets, picture, units, &cache, &control)
+    });
+    let content = content.map_err(|error| sentence(&error))?.ok_or("It was cancelled.")?;
+    write_sheet(path, &content).map_err(|error| sentence(&error))
+}
