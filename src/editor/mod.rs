@@ -11,12 +11,13 @@
 //! document ── commands ──┬── viewport ──┬── panels ── window
 //!                  ui ───┴── picture ───┘
 //! ```
-//! - `document`: the open studio, its history and selection, the actions, the catalog, placement of new items.
+//! - `document`: the open studio, its history and selection, the actions, the catalog, placement of new items, changes of
+//!   lights that are tried over the picture.
 //! - `ui`: theme, widgets, units, messages; nothing about studios.
 //! - `commands`: the commands, their keys, and the menu entries of an item.
 //! - `viewport`: navigation and the live view; `live` makes the images, `overlays` paints over them, `tools` holds the
 //!   transform handles, the selection by click or box, and the placing of lights.
-//! - `picture`: render settings, the finished picture and its view.
+//! - `picture`: render settings, the finished picture and its view, with scopes and mixer.
 //! - `panels`: menu bar, catalog, item list, inspector, render panel, light meter, prompts.
 //! - `window`: [`App`], execution of commands, files, dialogs, recovery, the native window.
 //!
@@ -48,6 +49,7 @@ pub use document::action_error::ActionError;
 pub use document::arrange::MirrorPlane;
 pub use document::files::StudioSource;
 pub use document::item::Item;
+pub use document::light_mix::Fader;
 pub use document::selection::Selection;
 pub use document::studio_document::Document;
 pub use panels::thumbnails::{Thumbnail, Thumbnails};

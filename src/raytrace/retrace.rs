@@ -43,6 +43,10 @@ impl Retrace {
         let mut lights = Vec::new();
         for light in &change.lights {
             let has_layer = layers.iter().any(|layer| layer.light == Some(light.id));
+            let group = layers.iter().find(|layer| layer.light.is_none() && layer.lights().any(|id| id == light.id));
+            if group.is_some_and(|group| is_dimmed_with(light, group, now)) {
+                continue;
+            }
             match light_retrace(light, has_layer, regroups) {
                 LightRetrace::Nothing => {}
                 LightRetrace::Light => lights.push(light.id),
@@ -57,6 +61,12 @@ impl Retrace {
 /// Returns true if lights share layers. The last layer is that of emissive surfaces.
 fn is_grouped(layers: &[Layer]) -> bool {
     layers.iter().filter(|layer| layer.light.is_none()).count() > 1
+}
+
+/// Returns true if a light of a shared layer has changed as all others of the layer have, so that the layer is scaled.
+fn is_dimmed_with(light: &LightChange, group: &Layer, now: &Scene) -> bool {
+    let hides = light.visible && light.was_on != light.is_on;
+    !light.transport && !hides && group.shared_factor(now).is_some()
 }
 
 enum LightRetrace {

@@ -2,7 +2,7 @@
 
 use super::lengths::Units;
 use super::metering::{LightExposure, MeteredAt, MeteredSetup};
-use crate::photo::LightPlacement;
+use crate::photo::LightBearing;
 use crate::photo::meter::nearest_third;
 use crate::photo::text::{power_fraction, signed_stops, three_digits};
 use crate::raytrace::RenderControl;
@@ -34,7 +34,7 @@ pub struct LightFacts {
     /// Output at this dial: `100 Ws`.
     pub dialled: String,
     /// Its place about the subject; none for a surround. The distance of a sun means nothing.
-    pub placement: Option<LightPlacement>,
+    pub bearing: Option<LightBearing>,
     /// Distance to what it aims at, metres, if that is not the subject.
     pub aim_m: Option<f32>,
     /// Height of the middle of its front, metres; none for sun and surround.
@@ -61,7 +61,7 @@ impl LightFacts {
             head: head_text(light, units),
             dial_stops: light.power.dial_stops,
             dialled: output_text(&light.power.output, light.power.dial_stops, units),
-            placement: has_direction.then(|| LightPlacement::new(scene, light.position, setup.subject.position)),
+            bearing: has_direction.then(|| LightBearing::new(scene, light.position, setup.subject.position)),
             aim_m: elsewhere.then(|| scene.aim_vector(&light.aim, light.position).length()),
             height_m: (!light.emitter.is_infinite()).then_some(light.position.y),
             metered_at,
@@ -74,12 +74,12 @@ impl LightFacts {
         let cell = |line: String, small: &str| [line, small.to_owned()];
         let none = || cell("\u{2013}".to_owned(), "");
         let off = if self.is_on { "" } else { ", off" };
-        let distance = match (self.height_m, &self.placement, self.aim_m) {
+        let distance = match (self.height_m, &self.bearing, self.aim_m) {
             (Some(_), _, Some(aim_m)) => cell(units.distance(aim_m), "to its aim"),
             (Some(_), Some(place), None) => cell(units.distance(place.distance_m), "to the subject"),
             _ => none(),
         };
-        let direction = |place: &LightPlacement| {
+        let direction = |place: &LightBearing| {
             let up = format!(
                 "{:.0}\u{b0} {}",
                 place.elevation_deg.abs(),
@@ -111,7 +111,7 @@ impl LightFacts {
             [power_fraction(self.dial_stops), format!("{} stops, {}", signed_stops(self.dial_stops), self.dialled)],
             distance,
             self.height_m.map_or_else(none, |height_m| cell(units.distance(height_m), "middle of front")),
-            self.placement.as_ref().map_or_else(none, direction),
+            self.bearing.as_ref().map_or_else(none, direction),
             meter,
         ]
     }

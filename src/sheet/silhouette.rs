@@ -189,8 +189,8 @@ mod tests {
         let frame: Vec<[Vec2; 3]> = sides.collect();
         let areas: Vec<f32> = outlines(&frame, &[], 0.02).iter().map(|line| area(line)).collect();
         assert!(areas.len() == 2 && areas[0] * areas[1] < 0.0, "{areas:?}");
-        let lock = [0.0, 0.04, 0.08].map(|x| Vec2::new(3.0 + x, x));
-        assert_eq!(outlines(&frame, &lock, 0.02).len(), 3);
+        let beside = [(3.0, 0.0), (3.2, 0.0), (3.0, 0.2)].map(|(x, y)| Vec2::new(x, y));
+        assert_eq!(outlines(&[frame.as_slice(), &[beside]].concat(), &[], 0.02).len(), 3);
         assert!(outlines(&[], &[], 0.02).is_empty());
         assert!(outlines(&[[Vec2::NAN; 3]], &[], 0.02).is_empty());
     }

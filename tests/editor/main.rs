@@ -5,8 +5,8 @@
 
 use adapter::headless_gpu;
 use catchlight::editor::{
-    Action, App, CentralView, Command, DialogAnswer, EditorOptions, FileDialogs, Item, LiveMode, PictureSize, Quality,
-    StudioSource, ToastKind, ViewOptions,
+    Action, App, CentralView, Command, DialogAnswer, EditorOptions, Fader, FileDialogs, Item, LiveMode, PictureSize,
+    Quality, StudioSource, ToastKind, ViewOptions,
 };
 use catchlight::scene::{Aim, HairStyle, Scene, Shape};
 use eframe::egui::{

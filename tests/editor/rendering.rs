@@ -209,3 +209,52 @@ fn scopes_show_clipping_false_colour_zebra_and_the_light_under_the_pointer() {
     assert!(share(&reading) > 0.2 && share(&without) == 0.0, "{reading:?} and {without:?}");
     assert!(without.spot.stops() < reading.spot.stops());
 }
+
+#[test]
+fn the_mixer_dims_the_picture_without_tracing_and_applies_to_the_studio_as_one_step() {
+    let Some(mut window) = preset_window() else { return };
+    render_tiny(&mut window);
+    window.state_mut().run(Command::ShowView(CentralView::Picture), None, &egui::Context::default());
+    settle(&mut window);
+    let before = scene(&window).clone();
+    let sum =
+        |window: &Window| window.state().rendering().developed().unwrap().picture.rgb.iter().flatten().sum::<f32>();
+    let traced = (sum(&window), window.state().rendering().job().unwrap().progress());
+    click(&mut window, "Mixer");
+    assert!(window.query_by_label("Fader of Key softbox").is_some() && window.query_by_label("Mixed").is_none());
+    // All lights a stop up: twice the light
+    for light in &before.lights {
+        let fader = Fader { thirds: 3, ..Fader::default() };
+        window.state_mut().run(Command::MixLights(vec![light.id], fader), None, &egui::Context::default());
+    }
+    settle(&mut window);
+    assert!((sum(&window) / traced.0 - 2.0).abs() < 1e-3, "{}", sum(&window) / traced.0);
+    assert_eq!(*scene(&window), before, "the studio is as it was");
+    assert!(window.query_by_label("Mixed").is_some() && window.query_by_label("Out of date").is_none());
+    // Mute and solo by their buttons
+    click(&mut window, "Mute Key softbox in the mix");
+    let muted = sum(&window);
+    assert!(muted < 1.5 * traced.0);
+    click(&mut window, "Solo Hair strip in the mix");
+    let alone = sum(&window);
+    assert!(alone < muted);
+    click(&mut window, "Solo Hair strip in the mix");
+    assert_eq!(sum(&window), muted);
+    click(&mut window, "Apply to studio");
+    let lights = scene(&window).lights.clone();
+    assert!((lights[0].power.dial_stops - before.lights[0].power.dial_stops - 1.0).abs() < 1e-6);
+    assert_eq!((lights[0].on, lights[0].muted, lights[1].on), (false, true, true));
+    assert!((sum(&window) / muted - 1.0).abs() < 1e-5, "the picture stays");
+    assert!(window.query_by_label("Mixed").is_none() && window.query_by_label("Out of date").is_none());
+    window.state_mut().run(Command::Undo, None, &egui::Context::default());
+    settle(&mut window);
+    assert_eq!(*scene(&window), before, "one step");
+    assert_eq!(sum(&window), traced.0);
+    // Reset forgets
+    let fader = Fader { kelvin: Some(3000.0), ..Fader::default() };
+    window.state_mut().run(Command::MixLights(vec![before.lights[0].id], fader), None, &egui::Context::default());
+    settle(&mut window);
+    assert_ne!(sum(&window), traced.0);
+    click(&mut window, "Reset");
+    assert_eq!((sum(&window), window.state().rendering().job().unwrap().progress()), traced, "nothing was traced");
+}

@@ -4,8 +4,9 @@ use crate::editor::commands::choices::{CentralView, HandleMode, LiveMode, PlaceL
 use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
+use crate::editor::document::light_mix::Fader;
 use crate::photo::PictureDisplay;
-use crate::scene::TextureSlot;
+use crate::scene::{LightId, TextureSlot};
 use crate::sheet::Units;
 use std::path::PathBuf;
 
@@ -105,6 +106,12 @@ pub enum Command {
     ToggleDenoise,
     /// Shows the rendered picture as a photo, in false colour or with a zebra.
     DisplayPicture(PictureDisplay),
+    /// Sets the faders of lights over the rendered picture.
+    MixLights(Vec<LightId>, Fader),
+    /// Makes the changes of the mixer in the studio.
+    ApplyMix,
+    /// Forgets the changes of the mixer.
+    ResetMix,
     /// Shows a view in the middle of the window.
     ShowView(CentralView),
     /// Switches between camera view and studio view.

@@ -9,6 +9,7 @@ pub mod clipboard;
 pub mod files;
 pub mod history;
 pub mod item;
+pub mod light_mix;
 pub mod placement;
 pub mod readout;
 pub mod revisions;

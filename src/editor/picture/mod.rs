@@ -1,5 +1,6 @@
 //! The rendered picture: the state of a render, the view that shows it, and the scopes over it.
 
+pub mod mixer;
 pub mod picture_view;
 pub mod rendering;
 mod scopes;

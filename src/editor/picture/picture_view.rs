@@ -2,7 +2,7 @@
 
 use crate::editor::commands::command::Command;
 use crate::editor::picture::rendering::{OUT_OF_DATE, Rendering};
-use crate::editor::picture::scopes;
+use crate::editor::picture::{mixer, scopes};
 use crate::editor::ui::theme;
 use crate::scene::Scene;
 use eframe::egui::{self, Color32, Pos2, Rect, RichText, Sense, Ui, Vec2, vec2};
@@ -16,11 +16,13 @@ pub struct PictureView {
     offset: Vec2,
     /// The histogram lies over the picture.
     shows_histogram: bool,
+    /// The mixer lies over the picture.
+    shows_mixer: bool,
 }
 
 impl Default for PictureView {
     fn default() -> Self {
-        PictureView { zoom: None, offset: Vec2::ZERO, shows_histogram: true }
+        PictureView { zoom: None, offset: Vec2::ZERO, shows_histogram: true, shows_mixer: false }
     }
 }
 
@@ -55,6 +57,9 @@ impl PictureView {
             (at.min_elem() >= 0.0).then_some((at.x as u32, at.y as u32))
         };
         let bar = self.bar_ui(ui, rect, rendering, scene, zoom, out);
+        if self.shows_mixer {
+            mixer::mixer_ui(ui, rect, rendering, scene, out);
+        }
         // Drawn after the bar: a widget before it would change the ids of the bar's widgets, which closes their menus
         let pointer = response.hover_pos().filter(|pointer| !bar.contains(*pointer));
         let reading = pointer.and_then(pixel).and_then(|pixel| rendering.read_spot(pixel, scene));
@@ -134,6 +139,12 @@ impl PictureView {
         ui.label(RichText::new(format!("{:.0} %", zoom * 100.0)).weak());
         denoise_ui(ui, rendering, out);
         scopes::menu_ui(ui, rendering, &mut self.shows_histogram, out);
+        ui.toggle_value(&mut self.shows_mixer, "Mixer")
+            .on_hover_text("A fader for each light over the picture, without rendering again");
+        if !rendering.mix.is_neutral() {
+            ui.label(RichText::new("Mixed").color(theme::ACCENT))
+                .on_hover_text("The lights are as in the mixer, not as in the studio: apply or reset them there.");
+        }
         if rendering.is_out_of_date(scene) && !rendering.is_running() {
             ui.label(RichText::new("Out of date").color(theme::ACCENT)).on_hover_text(OUT_OF_DATE);
             if ui.button("Render again").on_hover_text("R").clicked() {

@@ -1,12 +1,13 @@
 //! The render settings, the render job, and its picture.
 
+use crate::editor::document::light_mix::{Mix, MixerRow};
 use crate::editor::ui::image_texture::ImageTexture;
 use crate::editor::ui::wake::wake;
 use crate::io::KeptPicture;
 use crate::jobs::{Developed, Development, FilmDeveloper, RenderJob, RenderOutcome, RenderPhase, RenderRequest};
 use crate::photo::{Histogram, Picture, PictureDisplay, Spot};
-use crate::raytrace::{self, Film, GeometryCache, Method, Settings};
-use crate::scene::{Assets, Camera, Scene, SceneChange};
+use crate::raytrace::{self, Film, GeometryCache, Layer, Method, Settings};
+use crate::scene::{Assets, Camera, LightId, Scene, SceneChange};
 use eframe::egui::{Color32, ColorImage, Context, TextureId};
 use std::path::PathBuf;
 use std::sync::{Arc, Weak};
@@ -124,6 +125,8 @@ pub struct Rendering {
     pub settings: RenderSettings,
     /// How the picture is displayed.
     pub display: PictureDisplay,
+    /// The faders over the picture.
+    pub mix: Mix,
     /// The BLAS cache, shared with the live view.
     trees: Arc<GeometryCache>,
     job: Option<RenderJob>,
@@ -146,6 +149,7 @@ impl Rendering {
         Rendering {
             settings: RenderSettings::default(),
             display: PictureDisplay::default(),
+            mix: Mix::default(),
             trees,
             job: None,
             film: None,
@@ -243,14 +247,33 @@ impl Rendering {
         self.developed.as_ref().filter(|d| (d.picture.width, d.picture.height) == (width, height))
     }
 
-    /// Reads the light around a pixel of the picture, with the lights as in `scene`. None outside of it, and while
+    /// Returns the rows of the mixer: the layers of the film, then the lights of `scene` that have none.
+    pub fn mixer_rows(&self, scene: &Scene) -> Vec<MixerRow> {
+        let layers = self.film.as_deref().map(Film::layers).unwrap_or_default();
+        let in_studio = |id: &LightId| scene.light(*id).is_some();
+        let of_layer = |layer: &Layer| MixerRow {
+            name: layer.light.and_then(|id| scene.light(id)).map_or(&layer.name, |light| &light.name).clone(),
+            lights: layer.lights().filter(in_studio).collect(),
+            has_layer: true,
+        };
+        let mut rows: Vec<MixerRow> = layers.iter().map(of_layer).filter(|row| !row.lights.is_empty()).collect();
+        for light in &scene.lights {
+            if !rows.iter().any(|row| row.lights.contains(&light.id)) {
+                rows.push(MixerRow { name: light.name.clone(), lights: vec![light.id], has_layer: false });
+            }
+        }
+        rows
+    }
+
+    /// Reads the light around a pixel of the picture, with the lights as in `scene` and the mix. None outside of it, and while
     /// there is no whole picture.
     pub fn read_spot(&self, pixel: (u32, u32), scene: &Scene) -> Option<SpotReading> {
         let developed = self.developed()?;
         let size = self.size().filter(|size| pixel.0 < size.0 && pixel.1 < size.1)?;
         let spot = Spot::around(pixel, size, |x, y| developed.picture.at(x, y));
         let film = developed.film.upgrade()?;
-        let layers = film.lazy_layers(scene).into_iter();
+        let mixed = self.mix.mixed(scene);
+        let layers = film.lazy_layers(&mixed).into_iter();
         let lights = layers.map(|(name, layer)| (name, Spot::around(pixel, size, |x, y| layer.at(x, y)).luminance()));
         let mut lights: Vec<(String, f32)> = lights.collect();
         let sum: f32 = lights.iter().map(|(_, light)| light).sum();
@@ -279,6 +302,8 @@ impl Rendering {
 
     /// Takes the results of the jobs and requests the development that the scene needs. Called once per frame.
     pub fn update(&mut self, scene: &Scene, ctx: &Context) {
+        let mixed = self.mix.mixed(scene);
+        let scene = &*mixed;
         if let Some(job) = &mut self.job {
             job.update();
             self.film = job.film().cloned().or(self.film.take());

@@ -10,6 +10,7 @@ use crate::editor::document::catalog::CatalogItem;
 use crate::editor::document::clipboard;
 use crate::editor::document::files::{self, StudioSource};
 use crate::editor::document::item::Item;
+use crate::editor::document::light_mix::Mix;
 use crate::editor::document::placement;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
@@ -96,6 +97,14 @@ impl App {
             Command::CancelRender => self.rendering.cancel(),
             Command::ToggleDenoise => self.rendering.settings.denoise = !self.rendering.settings.denoise,
             Command::DisplayPicture(display) => self.rendering.display = display,
+            Command::MixLights(lights, fader) => self.rendering.mix.set(&lights, fader),
+            Command::ApplyMix => {
+                if let Some(action) = self.rendering.mix.action(self.document.scene()) {
+                    self.apply(action, None);
+                }
+                self.rendering.mix = Mix::default();
+            }
+            Command::ResetMix => self.rendering.mix = Mix::default(),
             Command::ShowView(centre) => self.views.central = centre,
             Command::ToggleCameraView => {
                 self.views.central =

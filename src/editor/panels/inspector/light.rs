@@ -13,7 +13,7 @@ use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, NumberField, f
 use crate::photo::light::axial_intensity;
 use crate::photo::text::{power_fraction, signed_stops, three_digits};
 use crate::photo::thirds::Dial;
-use crate::photo::{LightPlacement, light_rgb};
+use crate::photo::{LightBearing, light_rgb};
 use crate::scene::{ColorSource, Emitter, Light, LightId, Output, Role, Scene};
 use eframe::egui::{ComboBox, Label, RichText, Slider, SliderClamping, Ui, vec2};
 
@@ -295,7 +295,7 @@ fn place_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     if distance != before && before > 1e-3 {
         light.position = target + away * (distance / before);
     }
-    let LightPlacement { azimuth_deg, elevation_deg, .. } = LightPlacement::new(scene, light.position, target);
+    let LightBearing { azimuth_deg, elevation_deg, .. } = LightBearing::new(scene, light.position, target);
     let facts = format!("{azimuth_deg:.0}\u{b0} round, {elevation_deg:.0}\u{b0} up");
     fact(
         ui,

@@ -5,7 +5,7 @@ use glam::Vec3;
 
 /// The place of a light about a subject.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LightPlacement {
+pub struct LightBearing {
     /// Distance, metres.
     pub distance_m: f32,
     /// Angle round from the camera's direction, degrees, positive to the camera's right.
@@ -14,13 +14,13 @@ pub struct LightPlacement {
     pub elevation_deg: f32,
 }
 
-impl LightPlacement {
+impl LightBearing {
     /// Returns the place of a light at `position` about a subject, both in world space, metres.
     pub fn new(scene: &Scene, position: Vec3, subject: Vec3) -> Self {
         let (away, front) = (position - subject, scene.camera.position - subject);
         let angle = away.x.atan2(away.z) - front.x.atan2(front.z);
         let (sin, cos) = angle.sin_cos();
-        LightPlacement {
+        LightBearing {
             distance_m: away.length(),
             azimuth_deg: sin.atan2(cos).to_degrees(),
             elevation_deg: away.y.atan2(away.x.hypot(away.z)).to_degrees(),
@@ -35,9 +35,9 @@ mod tests {
     #[test]
     fn azimuths_are_relative_to_the_camera() {
         let (scene, subject) = (Scene::default(), Vec3::new(0.0, 1.5, 0.0));
-        let place = LightPlacement::new(&scene, subject + Vec3::new(1.0, 0.0, 1.0), subject);
+        let place = LightBearing::new(&scene, subject + Vec3::new(1.0, 0.0, 1.0), subject);
         assert!((place.azimuth_deg - 45.0).abs() < 1e-3 && place.elevation_deg.abs() < 1e-3, "{place:?}");
-        let place = LightPlacement::new(&scene, subject + Vec3::new(0.0, 1.0, 1.0), subject);
+        let place = LightBearing::new(&scene, subject + Vec3::new(0.0, 1.0, 1.0), subject);
         assert!((place.elevation_deg - 45.0).abs() < 1e-3 && place.azimuth_deg.abs() < 1e-3, "{place:?}");
         assert!((place.distance_m - 2.0_f32.sqrt()).abs() < 1e-6);
     }
