@@ -12,6 +12,9 @@ use crate::photo::Picture;
 use crate::raytrace::{GeometryCache, PrepareError, RenderControl};
 use crate::scene::{Assets, Scene};
 
+/// The check of a set-up that has none.
+const NOTHING: &str = "Nothing that a plan can see.";
+
 /// A light of a sheet.
 #[derive(Clone, Debug)]
 pub struct SheetLight {
@@ -77,7 +80,7 @@ impl SheetContent {
             lights: lights.collect(),
             views: [ViewFrom::Above, ViewFrom::Side].map(|from| StudioView::new(scene, assets, subject, from)),
             gear: gear(scene, &checks.stands_seen, units),
-            checks: checks.texts,
+            checks: if checks.texts.is_empty() { vec![NOTHING.to_owned()] } else { checks.texts },
         };
         Ok((!control.is_cancelled()).then_some(content))
     }

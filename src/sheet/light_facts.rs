@@ -8,6 +8,9 @@ use crate::photo::text::{power_fraction, signed_stops, three_digits};
 use crate::raytrace::RenderControl;
 use crate::scene::{ColorSource, Emitter, Gel, Light, Modifier, NamedModifier, Output, Role};
 
+/// Angle up from which a light is overhead, degrees.
+const STEEP_DEG: f32 = 80.0;
+
 /// Headings of [`LightFacts::cells`].
 pub const COLUMNS: [&str; 7] = ["Light", "Modifier and head", "Dial", "Distance", "Height", "Direction", "Meter"];
 
@@ -85,7 +88,7 @@ impl LightFacts {
                 place.elevation_deg.abs(),
                 if place.elevation_deg < 0.0 { "down" } else { "up" }
             );
-            [round_text(place.azimuth_deg), up]
+            [round_text(place), up]
         };
         let at = match self.metered_at {
             MeteredAt::Subject => "at subject",
@@ -117,9 +120,11 @@ impl LightFacts {
     }
 }
 
-/// Formats an angle round from the camera: `45° right`.
-fn round_text(azimuth_deg: f32) -> String {
-    match azimuth_deg.round() {
+/// Formats an angle round from the camera: `45° right`. It means nothing straight above or below the subject.
+fn round_text(place: &LightBearing) -> String {
+    match place.azimuth_deg.round() {
+        _ if place.elevation_deg > STEEP_DEG => "overhead".to_owned(),
+        _ if place.elevation_deg < -STEEP_DEG => "from below".to_owned(),
         0.0 => "at camera".to_owned(),
         angle if angle.abs() == 180.0 => "behind".to_owned(),
         angle => format!("{:.0}\u{b0} {}", angle.abs(), if angle > 0.0 { "right" } else { "left" }),
@@ -218,6 +223,9 @@ mod tests {
         assert_eq!(head_text(&light, Units::Metres), "Flash 400 Ws, 5500 K, 1/2 CTO");
         assert_eq!(output_text(&light.power.output, -2.0, Units::Metres), "100 Ws");
         assert_eq!(output_text(&Output::FlashGuideNumber(40.0), -2.0, Units::Metres), "GN 20.0");
-        assert_eq!([0.2, -45.0, 180.0].map(round_text), ["at camera", "45\u{b0} left", "behind"]);
+        let round =
+            |azimuth_deg, elevation_deg| round_text(&LightBearing { distance_m: 1.0, azimuth_deg, elevation_deg });
+        assert_eq!([0.2, -45.0, 180.0].map(|angle| round(angle, 30.0)), ["at camera", "45\u{b0} left", "behind"]);
+        assert_eq!([88.0, -88.0].map(|up| round(161.0, up)), ["overhead", "from below"]);
     }
 }

@@ -137,8 +137,7 @@ fn a_set_up_that_works_has_nothing_to_check_and_faults_are_named() {
     // Out of the camera's view, and nothing flares
     scene.lights.truncate(2);
     scene.room.as_mut().unwrap().size_m.x = 5.0;
-    let none: Vec<String> = Vec::new();
-    assert_eq!(content(&scene, Units::Metres).checks, none);
+    assert_eq!(content(&scene, Units::Metres).checks, ["Nothing that a plan can see."]);
     let named = |change: &dyn Fn(&mut Scene), wanted: &str| {
         let mut scene = scene.clone();
         change(&mut scene);

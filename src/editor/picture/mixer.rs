@@ -7,7 +7,8 @@ use crate::editor::ui::{theme, widgets};
 use crate::photo::text::signed_stops;
 use crate::scene::{ColorSource, Scene};
 use eframe::egui::{
-    Button, Color32, DragValue, Frame, Grid, Pos2, Rect, RichText, ScrollArea, Slider, Ui, UiBuilder, vec2,
+    Align, Button, Color32, DragValue, Frame, Grid, Label, Layout, Pos2, Rect, RichText, ScrollArea, Slider, Ui,
+    UiBuilder, vec2,
 };
 
 /// Travel of a fader to both sides, thirds of a stop.
@@ -15,7 +16,7 @@ const TRAVEL: i32 = 9;
 const WIDTH: f32 = 440.0;
 const ROW_HEIGHT: f32 = 28.0;
 /// Height of heading and buttons.
-const FRAME_HEIGHT: f32 = 78.0;
+const FRAME_HEIGHT: f32 = 72.0;
 
 /// Draws the mixer into the lower left corner of the view.
 pub fn mixer_ui(ui: &mut Ui, view: Rect, rendering: &Rendering, scene: &Scene, out: &mut Vec<Command>) {
@@ -70,11 +71,14 @@ fn row_ui(ui: &mut Ui, row: &MixerRow, rendering: &Rendering, scene: &Scene, out
     let mut fader = before;
     ui.horizontal(|ui| {
         widgets::swatch(ui, theme::role_color(first.role), vec2(8.0, 14.0));
-        ui.add_sized(vec2(104.0, 18.0), eframe::egui::Label::new(name.as_str()).truncate());
+        ui.allocate_ui_with_layout(vec2(112.0, 18.0), Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_width(112.0);
+            ui.add(Label::new(name.as_str()).truncate());
+        });
     });
     let slider = ui.add_enabled_ui(row.has_layer, |ui| {
         ui.spacing_mut().slider_width = 104.0;
-        let slider = Slider::new(&mut fader.thirds, -TRAVEL..=TRAVEL).show_value(false);
+        let slider = Slider::new(&mut fader.thirds, -TRAVEL..=TRAVEL).show_value(false).trailing_fill(false);
         let slider = ui.add(slider);
         widgets::named(ui, &slider, &format!("Fader of {name}"));
         slider
@@ -84,7 +88,8 @@ fn row_ui(ui: &mut Ui, row: &MixerRow, rendering: &Rendering, scene: &Scene, out
     if slider.inner.double_clicked() {
         fader.thirds = 0;
     }
-    ui.label(RichText::new(format!("{} stops", signed_stops(fader.thirds as f32 / 3.0))).monospace().small());
+    let stops = RichText::new(format!("{} stops", signed_stops(fader.thirds as f32 / 3.0))).small();
+    ui.add_sized(vec2(62.0, 18.0), Label::new(stops));
     kelvin_ui(ui, row, first.color.source, &mut fader);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
