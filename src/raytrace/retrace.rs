@@ -5,6 +5,7 @@
 
 use super::film::{Layer, MAX_LIGHT_LAYERS};
 use crate::scene::{LightChange, LightId, Scene, SceneChange};
+use std::collections::HashMap;
 
 /// The part of a film that must be traced again, primary rays aside.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,11 +41,17 @@ impl Retrace {
             return Retrace::Everything;
         }
         let regroups = is_grouped || now.lights.iter().filter(|light| light.on).count() > MAX_LIGHT_LAYERS;
+        // The lights of shared layers, with whether all of their layer have changed alike
+        let mut dimmed_alike = HashMap::new();
+        for layer in layers.iter().filter(|layer| layer.light.is_none() && !change.lights.is_empty()) {
+            let is_alike = layer.shared_factor(now).is_some();
+            dimmed_alike.extend(layer.lights().map(|light| (light, is_alike)));
+        }
         let mut lights = Vec::new();
         for light in &change.lights {
             let has_layer = layers.iter().any(|layer| layer.light == Some(light.id));
-            let group = layers.iter().find(|layer| layer.light.is_none() && layer.lights().any(|id| id == light.id));
-            if group.is_some_and(|group| is_dimmed_with(light, group, now)) {
+            let hides = light.visible && light.was_on != light.is_on;
+            if dimmed_alike.get(&light.id) == Some(&true) && !light.transport && !hides {
                 continue;
             }
             match light_retrace(light, has_layer, regroups) {
@@ -61,12 +68,6 @@ impl Retrace {
 /// Returns true if lights share layers. The last layer is that of emissive surfaces.
 fn is_grouped(layers: &[Layer]) -> bool {
     layers.iter().filter(|layer| layer.light.is_none()).count() > 1
-}
-
-/// Returns true if a light of a shared layer has changed as all others of the layer have, so that the layer is scaled.
-fn is_dimmed_with(light: &LightChange, group: &Layer, now: &Scene) -> bool {
-    let hides = light.visible && light.was_on != light.is_on;
-    !light.transport && !hides && group.shared_factor(now).is_some()
 }
 
 enum LightRetrace {

@@ -49,6 +49,14 @@ impl Sensor {
     }
 }
 
+impl Sensor {
+    /// Returns the diameter of the largest circle of blur that counts as sharp in tables of depth of field, metres: 1/1500
+    /// of the diagonal.
+    pub fn sharp_circle_m(self) -> f32 {
+        self.size_mm().length() / 1500.0 * 1e-3
+    }
+}
+
 /// The orientation of the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Orientation {

@@ -1,4 +1,4 @@
-//! What a sheet says of the camera, the exposure and the background.
+//! Facts of camera, exposure and background on a sheet.
 
 use super::lengths::Units;
 use super::metering::{Background, MeteredSetup};
@@ -10,11 +10,6 @@ use crate::scene::{Camera, Orientation, Scene, Sensor};
 
 /// A name and its value.
 pub type Fact = (&'static str, String);
-
-/// The circle of confusion is the sensor's diagonal over this, as in tables of depth of field.
-const SHARP: f32 = 1500.0;
-/// Diagonal of full frame, millimetres.
-const FULL_FRAME_MM: f32 = 43.27;
 
 /// Returns the facts of the camera: format, lens, exposure, place, focus.
 pub fn camera_facts(setup: &MeteredSetup<'_>, units: Units) -> Vec<Fact> {
@@ -45,15 +40,15 @@ pub fn camera_facts(setup: &MeteredSetup<'_>, units: Units) -> Vec<Fact> {
     facts
 }
 
-/// Returns what the meter reads at the subject, and what is behind it.
+/// Returns the meter's reading at the subject, the background and the room.
 pub fn subject_facts(setup: &MeteredSetup<'_>, background: Option<&Background>, units: Units) -> Vec<Fact> {
     let (reading, camera) = (&setup.reading, &setup.scene.camera);
     let f_number = reading.f_number();
     let over = 2.0 * (f_number / camera.f_number).log2();
     let mut facts = vec![match over.is_finite() {
         true => {
-            let text =
-                format!("{} at the subject, {} stops to the camera", nearest_third(f_number), signed_stops(over));
+            let (shown, receptor) = (nearest_third(f_number), setup.subject.receptor.label());
+            let text = format!("{shown} at the subject ({receptor}), {} stops to the camera", signed_stops(over));
             ("Meter", text)
         }
         false => ("Meter", "no light at the subject".to_owned()),
@@ -82,8 +77,9 @@ fn sensor_text(camera: &Camera) -> String {
 }
 
 fn lens_text(camera: &Camera) -> String {
-    let equivalent = camera.focal_length_mm * FULL_FRAME_MM / camera.sensor.size_mm().length();
-    match (equivalent / camera.focal_length_mm - 1.0).abs() < 0.02 {
+    let crop = Sensor::FullFrame.size_mm().length() / camera.sensor.size_mm().length();
+    let equivalent = camera.focal_length_mm * crop;
+    match (crop - 1.0).abs() < 0.02 {
         true => format!("{:.0} mm", camera.focal_length_mm),
         false => format!("{:.0} mm ({equivalent:.0} mm on full frame)", camera.focal_length_mm),
     }
@@ -92,8 +88,8 @@ fn lens_text(camera: &Camera) -> String {
 /// Returns the range that is sharp in a print; none where the focus is behind the camera.
 fn sharp_text(scene: &Scene, units: Units) -> Option<String> {
     let camera = &scene.camera;
-    let circle_m = camera.sensor.size_mm().length() / SHARP * 1e-3;
-    let (near_m, far_m) = scene.focused_lens().depth_of_field_m(camera.f_number, circle_m)?;
+    let lens = scene.focused_lens();
+    let (near_m, far_m) = lens.depth_of_field_m(camera.f_number, camera.sensor.sharp_circle_m())?;
     let far = if far_m.is_finite() { units.distance(far_m) } else { "infinity".to_owned() };
     Some(format!("{} to {far} from the camera", units.distance(near_m)))
 }

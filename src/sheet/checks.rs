@@ -1,11 +1,12 @@
-//! What has to be checked on the set, because a plan can't know it or because it will not work as planned.
+//! Checks for the set: faults of the plan, and what a plan can't know.
 
+use super::font::Font;
 use super::lengths::Units;
 use super::light_shape::LightShape;
 use super::metering::MeteredSetup;
 use crate::math::angle_between;
 use crate::photo::thirds::Dial;
-use crate::scene::{Assets, Emitter, Light, Room, placement, validate};
+use crate::scene::{Assets, Emitter, Finding, Gel, Light, Room, placement, validate};
 use glam::Vec3;
 
 /// Shutter from which a flash needs high-speed sync, seconds: typical of focal-plane shutters.
@@ -24,7 +25,7 @@ const CABLE_M: f32 = 4.0;
 /// The lights of a studio that are somewhere in the room, with their places in the list.
 type Placed<'a> = Vec<(usize, &'a Light, LightShape)>;
 
-/// What has to be checked.
+/// The checks of a studio.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Checks {
     /// A sentence each.
@@ -51,8 +52,18 @@ impl Checks {
         if !off.is_empty() {
             checks.add(format!("Switched off in the plan: {}.", off.join(", ")));
         }
-        for finding in validate(scene).into_iter().chain(placement(scene, assets)) {
-            checks.add(format!("{}: {}.", finding.place, finding.message));
+        for light in scene.lights.iter().filter(|light| light.color.gel != Gel::None) {
+            let (name, loss) = (&light.name, light.color.gel.loss_stops());
+            checks
+                .add(format!("The gel of {name:?} takes {loss:.1} stops that the dial leaves out: turn the head up."));
+        }
+        for Finding { place, message, .. } in validate(scene).into_iter().chain(placement(scene, assets)) {
+            checks.add(format!("{}: {message}.", thing_of(&place)));
+        }
+        let names = scene.lights.iter().map(|light| &light.name).chain(scene.objects.iter().map(|object| &object.name));
+        let mut shown = names.chain([&scene.name, &scene.description]);
+        if Font::new().is_some_and(|font| shown.any(|text| !font.has_all(text))) {
+            checks.add("Some names have characters that the font of the PDF lacks: SVG and HTML show them.".to_owned());
         }
         checks
     }
@@ -89,7 +100,7 @@ impl Checks {
                 self.stands_seen.push(*index);
                 self.add(format!("The stand of {:?} would be in the picture: a boom, or move it.", light.name));
             }
-            if shape.points().any(|point| setup.is_seen(point)) {
+            if shape.surface_points().any(|point| setup.is_seen(point)) {
                 let hidden = if light.visible_to_camera { "" } else { " (the plan hides it)" };
                 self.add(format!("{:?} itself is in the picture{hidden}: move it out, or retouch.", light.name));
             }
@@ -106,10 +117,12 @@ impl Checks {
                 Emitter::Point | Emitter::Sphere { .. } => 180.0,
                 _ => PANEL_BEAM_DEG,
             };
-            let beam_deg = light.modifier.grid_deg.map_or(beam_deg, |grid_deg| beam_deg.min(grid_deg));
+            // Angles of grids and dishes go from edge to edge
+            let cuts = [light.modifier.grid_deg, light.modifier.beam.map(|beam| beam.outer_deg)];
+            let beam_deg = cuts.into_iter().flatten().fold(beam_deg, |beam_deg, cut| beam_deg.min(0.5 * cut));
             let lights_lens = angle_between(shape.axis, to_camera.normalize_or_zero()).to_degrees() < beam_deg;
             let in_view = angle_between(forward, -to_camera.normalize_or_zero()).to_degrees() < FLARE_DEG;
-            if lights_lens && in_view {
+            if lights_lens && in_view && setup.is_clear(light.position, camera) {
                 self.add(format!("{:?} shines at the lens: shade it with a flag, or use a lens hood.", light.name));
             }
         }
@@ -131,11 +144,25 @@ impl Checks {
             }
         }
         let half = 0.5 * room.size_m;
-        let to_wall = |light: &Light| (half - light.position.abs()).x.min((half - light.position.abs()).z);
-        let farthest = lights.iter().max_by(|a, b| to_wall(a.1).total_cmp(&to_wall(b.1)));
-        if let Some((_, light, _)) = farthest.filter(|(_, light, _)| to_wall(light) + light.position.y > CABLE_M) {
-            let length = units.distance(to_wall(light) + light.position.y);
+        // Down the stand and along the floor
+        let cable_m = |light: &Light| {
+            let to_wall = half - light.position.abs();
+            to_wall.x.min(to_wall.z) + light.position.y
+        };
+        let lengths = lights.iter().map(|(_, light, _)| (light, cable_m(light)));
+        let longest = lengths.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, length_m)| *length_m > CABLE_M);
+        if let Some((light, length_m)) = longest {
+            let length = units.distance(length_m);
             self.add(format!("Cable: {:?} needs at least {length} to the nearest wall, or a battery.", light.name));
         }
+    }
+}
+
+/// Returns the thing that the place of a finding is about: `"Key"` for `lights[0] "Key" position`, else `camera` for
+/// `camera.aim`.
+fn thing_of(place: &str) -> &str {
+    match (place.find('"'), place.rfind('"')) {
+        (Some(first), Some(last)) if first < last => &place[first..=last],
+        _ => place.split(['.', '[']).next().filter(|thing| !thing.is_empty()).unwrap_or("studio"),
     }
 }

@@ -1,4 +1,4 @@
-//! What stands on a sheet, before it is laid out.
+//! The content of a sheet, before it is laid out.
 
 use super::camera_facts::{Fact, camera_facts, subject_facts};
 use super::checks::Checks;
@@ -18,13 +18,13 @@ const NOTHING: &str = "Nothing that a plan can see.";
 /// A light of a sheet.
 #[derive(Clone, Debug)]
 pub struct SheetLight {
-    /// What is said of it.
+    /// Its facts.
     pub facts: LightFacts,
     /// Its colour in plan and table.
     pub color: Rgb,
 }
 
-/// What stands on a sheet.
+/// The content of a sheet.
 #[derive(Clone, Debug)]
 pub struct SheetContent {
     /// Title.
@@ -43,14 +43,14 @@ pub struct SheetContent {
     pub lights: Vec<SheetLight>,
     /// Plan and elevation.
     pub views: [StudioView; 2],
-    /// What to bring, with its number of pieces.
+    /// The gear to bring, with its number of pieces.
     pub gear: Vec<(usize, String)>,
-    /// What has to be checked on the set.
+    /// The checks for the set.
     pub checks: Vec<String>,
 }
 
 impl SheetContent {
-    /// Collects what stands on the sheet of a studio: reads the meter and looks for stands in the picture. None once
+    /// Collects the content of a studio's sheet: reads the meter and looks for stands in the picture. None once
     /// `control` is cancelled.
     ///
     /// # Errors
@@ -70,6 +70,7 @@ impl SheetContent {
             color: print_color(light),
         });
         let subject = setup.subject.position;
+        let aims: Vec<_> = scene.lights.iter().map(|light| setup.aim_of(light)).collect();
         let content = SheetContent {
             title: if scene.name.is_empty() { "Untitled studio".to_owned() } else { scene.name.clone() },
             description: scene.description.clone(),
@@ -78,7 +79,7 @@ impl SheetContent {
             camera: camera_facts(&setup, units),
             subject: subject_facts(&setup, setup.background().as_ref(), units),
             lights: lights.collect(),
-            views: [ViewFrom::Above, ViewFrom::Side].map(|from| StudioView::new(scene, assets, subject, from)),
+            views: [ViewFrom::Above, ViewFrom::Side].map(|from| StudioView::new(scene, assets, subject, &aims, from)),
             gear: gear(scene, &checks.stands_seen, units),
             checks: if checks.texts.is_empty() { vec![NOTHING.to_owned()] } else { checks.texts },
         };

@@ -69,11 +69,11 @@ pub fn draft_picture(
     let prepared = prepare_kept(scene, assets, cache)?;
     let film = render_all_passes(&prepared, &settings, control);
     let picture = film.develop(scene);
-    let denoised = film.denoiser_aovs().map(|aovs| {
-        let is_cancelled = || control.is_cancelled();
-        denoise::denoise(&picture, &aovs, Quality::Best, &is_cancelled).ok()
-    });
-    Ok(denoised.flatten().filter(|_| !control.is_cancelled()))
+    let denoised = match film.denoiser_aovs() {
+        Some(aovs) => denoise::denoise(&picture, &aovs, Quality::Best, &|| control.is_cancelled()).ok(),
+        None => Some(picture),
+    };
+    Ok(denoised.filter(|_| !control.is_cancelled()))
 }
 
 /// Returns the bytes of a sheet's file.

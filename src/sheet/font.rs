@@ -27,6 +27,11 @@ impl Font {
         self.face.glyph_index(character).map_or(0, |glyph| glyph.0)
     }
 
+    /// Returns true if the font has all characters of a text.
+    pub fn has_all(&self, text: &str) -> bool {
+        text.chars().all(|character| character.is_control() || self.glyph(character) != 0)
+    }
+
     /// Returns the width of a glyph in parts of the font's height.
     pub fn advance(&self, glyph: u16) -> f32 {
         let units = self.face.glyph_hor_advance(ttf_parser::GlyphId(glyph)).unwrap_or(0);

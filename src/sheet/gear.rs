@@ -1,4 +1,4 @@
-//! The list of what to bring.
+//! The list of gear to bring.
 
 use super::lengths::Units;
 use super::light_facts::{gel_text, head_kind, modifier_text};

@@ -5,6 +5,9 @@ const INCH_M: f32 = 0.0254;
 /// Metres in a foot.
 const FOOT_M: f32 = 0.3048;
 
+/// Distance under which centimetres and inches have a decimal, metres: close-ups.
+const NEAR_M: f32 = 0.5;
+
 /// The units of lengths on a sheet.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Units {
@@ -19,7 +22,9 @@ impl Units {
     /// Formats a distance or a height: `1.40 m`, `4' 7"`.
     pub fn distance(self, metres: f32) -> String {
         match self {
+            Units::Metres if metres.abs() < NEAR_M => format!("{:.1} cm", metres * 100.0).replace('-', "\u{2212}"),
             Units::Metres => format!("{metres:.2} m").replace('-', "\u{2212}"),
+            Units::Feet if metres.abs() < NEAR_M => format!("{:.1}\"", metres / INCH_M).replace('-', "\u{2212}"),
             Units::Feet => {
                 let inches = (metres / INCH_M).round();
                 let (feet, rest) = ((inches.abs() / 12.0).floor(), inches.abs() % 12.0);
@@ -54,8 +59,11 @@ mod tests {
 
     #[test]
     fn lengths_read_as_on_a_tape_measure() {
-        assert_eq!([1.4, 0.057, -0.2].map(|m| Units::Metres.distance(m)), ["1.40 m", "0.06 m", "\u{2212}0.20 m"]);
-        assert_eq!([1.4, 1.8288, 0.3].map(|m| Units::Feet.distance(m)), ["4' 7\"", "6' 0\"", "1' 0\""]);
+        assert_eq!([1.4, 0.057, -0.2].map(|m| Units::Metres.distance(m)), ["1.40 m", "5.7 cm", "\u{2212}20.0 cm"]);
+        assert_eq!(
+            [1.4, 1.8288, 0.508, 0.3].map(|m| Units::Feet.distance(m)),
+            ["4' 7\"", "6' 0\"", "1' 8\"", "11.8\""]
+        );
         assert_eq!(Units::Metres.size(&[0.6, 0.9]), "60 x 90 cm");
         assert_eq!(Units::Feet.size(&[0.6, 0.9]), "24 x 35\"");
     }

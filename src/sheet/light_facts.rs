@@ -1,4 +1,4 @@
-//! What a sheet says of a light.
+//! Facts of a light on a sheet, and its row in the table of lights.
 
 use super::lengths::Units;
 use super::metering::{LightExposure, MeteredAt, MeteredSetup};
@@ -7,6 +7,7 @@ use crate::photo::meter::nearest_third;
 use crate::photo::text::{power_fraction, signed_stops, three_digits};
 use crate::raytrace::RenderControl;
 use crate::scene::{ColorSource, Emitter, Gel, Light, Modifier, NamedModifier, Output, Role};
+use glam::Vec3;
 
 /// Angle up from which a light is overhead, degrees.
 const STEEP_DEG: f32 = 80.0;
@@ -14,10 +15,13 @@ const STEEP_DEG: f32 = 80.0;
 /// Headings of [`LightFacts::cells`].
 pub const COLUMNS: [&str; 7] = ["Light", "Modifier and head", "Dial", "Distance", "Height", "Direction", "Meter"];
 
+/// Most lights that are metered where they hit or aim, rather than at the subject.
+const MOST_METERED: usize = 64;
+
 /// A cell of the table of lights: a line, and a smaller one under it.
 pub type Cell = [String; 2];
 
-/// What a sheet says of a light.
+/// The facts of a light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightFacts {
     /// Its number in the plan, from 1.
@@ -28,7 +32,7 @@ pub struct LightFacts {
     pub role: Role,
     /// Switched on.
     pub is_on: bool,
-    /// What is on the head: `Softbox 60 x 90, 40° grid`.
+    /// Modifier with all that is on it: `Softbox 60 x 90, 40° grid`.
     pub modifier: String,
     /// The head and its colour: `Flash 400 Ws, 5500 K, 1/2 CTO`.
     pub head: String,
@@ -36,7 +40,7 @@ pub struct LightFacts {
     pub dial_stops: f32,
     /// Output at this dial: `100 Ws`.
     pub dialled: String,
-    /// Its place about the subject; none for a surround. The distance of a sun means nothing.
+    /// Its bearing from the subject; none for a surround. The distance of a sun means nothing.
     pub bearing: Option<LightBearing>,
     /// Distance to what it aims at, metres, if that is not the subject.
     pub aim_m: Option<f32>,
@@ -52,9 +56,19 @@ impl LightFacts {
     /// Returns the facts of a light.
     pub fn new(setup: &MeteredSetup<'_>, number: usize, light: &Light, units: Units, control: &RenderControl) -> Self {
         let scene = setup.scene;
-        let metered_at = setup.metered_at(light);
+        // Each of the others takes a reading of its own
+        let metered_at = if number <= MOST_METERED { setup.metered_at(light) } else { MeteredAt::Subject };
         let elsewhere = metered_at == MeteredAt::Aim;
-        let has_direction = light.emitter != Emitter::Surround;
+        let subject = setup.subject.position;
+        let bearing = match light.emitter {
+            Emitter::Surround => None,
+            // A sun shines along its aim, at any distance
+            Emitter::Sun { .. } => {
+                let aim = scene.aim_vector(&light.aim, light.position).normalize_or(Vec3::NEG_Y);
+                Some(LightBearing::new(scene, subject - aim, subject))
+            }
+            _ => Some(LightBearing::new(scene, light.position, subject)),
+        };
         LightFacts {
             number,
             name: light.name.clone(),
@@ -64,11 +78,11 @@ impl LightFacts {
             head: head_text(light, units),
             dial_stops: light.power.dial_stops,
             dialled: output_text(&light.power.output, light.power.dial_stops, units),
-            bearing: has_direction.then(|| LightBearing::new(scene, light.position, setup.subject.position)),
-            aim_m: elsewhere.then(|| scene.aim_vector(&light.aim, light.position).length()),
+            bearing,
+            aim_m: setup.aim_of(light).filter(|_| elsewhere).map(|aim| (aim - light.position).length()),
             height_m: (!light.emitter.is_infinite()).then_some(light.position.y),
             metered_at,
-            exposure: setup.exposure(light, control),
+            exposure: setup.exposure(light, metered_at, control),
         }
     }
 
@@ -79,7 +93,9 @@ impl LightFacts {
         let off = if self.is_on { "" } else { ", off" };
         let distance = match (self.height_m, &self.bearing, self.aim_m) {
             (Some(_), _, Some(aim_m)) => cell(units.distance(aim_m), "to its aim"),
-            (Some(_), Some(place), None) => cell(units.distance(place.distance_m), "to the subject"),
+            (Some(_), Some(place), None) if self.metered_at != MeteredAt::Aim => {
+                cell(units.distance(place.distance_m), "to the subject")
+            }
             _ => none(),
         };
         let direction = |place: &LightBearing| {
@@ -124,7 +140,7 @@ impl LightFacts {
 fn round_text(place: &LightBearing) -> String {
     match place.azimuth_deg.round() {
         _ if place.elevation_deg > STEEP_DEG => "overhead".to_owned(),
-        _ if place.elevation_deg < -STEEP_DEG => "from below".to_owned(),
+        _ if place.elevation_deg < -STEEP_DEG => "below".to_owned(),
         0.0 => "at camera".to_owned(),
         angle if angle.abs() == 180.0 => "behind".to_owned(),
         angle => format!("{:.0}\u{b0} {}", angle.abs(), if angle > 0.0 { "right" } else { "left" }),
@@ -196,7 +212,10 @@ fn output_text(output: &Output, dial_stops: f32, units: Units) -> String {
     match *output {
         Output::FlashWs { energy_ws, .. } => format!("{} Ws", three_digits(energy_ws * dialled)),
         // The guide number is that of a distance: it falls with the root of the energy.
-        Output::FlashGuideNumber(number) => format!("GN {}", three_digits(number * dialled.sqrt())),
+        Output::FlashGuideNumber(number) => {
+            let (unit_m, unit) = units.ruler();
+            format!("GN {} {unit}", three_digits(number * dialled.sqrt() / unit_m))
+        }
         Output::Lumens(flux) => format!("{} lm", three_digits(flux * dialled)),
         Output::Candela(intensity) => format!("{} cd", three_digits(intensity * dialled)),
         Output::LuxAt { lux, distance_m } => {
@@ -222,10 +241,11 @@ mod tests {
         light.color.gel = Gel::Mired(109.0);
         assert_eq!(head_text(&light, Units::Metres), "Flash 400 Ws, 5500 K, 1/2 CTO");
         assert_eq!(output_text(&light.power.output, -2.0, Units::Metres), "100 Ws");
-        assert_eq!(output_text(&Output::FlashGuideNumber(40.0), -2.0, Units::Metres), "GN 20.0");
+        let guide = |units| output_text(&Output::FlashGuideNumber(40.0), -2.0, units);
+        assert_eq!([Units::Metres, Units::Feet].map(guide), ["GN 20.0 m", "GN 65.6 ft"]);
         let round =
             |azimuth_deg, elevation_deg| round_text(&LightBearing { distance_m: 1.0, azimuth_deg, elevation_deg });
         assert_eq!([0.2, -45.0, 180.0].map(|angle| round(angle, 30.0)), ["at camera", "45\u{b0} left", "behind"]);
-        assert_eq!([88.0, -88.0].map(|up| round(161.0, up)), ["overhead", "from below"]);
+        assert_eq!([88.0, -88.0].map(|up| round(161.0, up)), ["overhead", "below"]);
     }
 }

@@ -59,6 +59,15 @@ impl LightShape {
         self.front.iter().chain(&self.back).copied()
     }
 
+    /// Returns points all over its front, and those of its back.
+    pub fn surface_points(&self) -> impl Iterator<Item = Vec3> {
+        let middle = self.front.iter().sum::<Vec3>() / self.front.len().max(1) as f32;
+        let next = self.front.iter().cycle().skip(1);
+        let edges = self.front.iter().zip(next).flat_map(|(a, b)| [*a, a.lerp(*b, 0.5)]);
+        let rings = edges.flat_map(move |point| [1.0, 0.7, 0.4, 0.0].map(|out| middle.lerp(point, out)));
+        rings.chain(self.back.iter().copied())
+    }
+
     /// Returns the height of its highest point, metres.
     pub fn top_m(&self) -> f32 {
         self.points().map(|point| point.y).fold(f32::NEG_INFINITY, f32::max)

@@ -2,8 +2,8 @@
 
 use crate::photo::exposure;
 use crate::photo::meter::{Reading, Receptor};
-use crate::raytrace::{GeometryCache, LightMeter, MeterEffort, MeterPoint, PrepareError, RenderControl};
-use crate::scene::{Assets, Light, LightId, Scene, Shape};
+use crate::raytrace::{GeometryCache, LightMeter, MeterEffort, MeterPoint, PrepareError, RenderControl, SurfacePoint};
+use crate::scene::{Aim, Assets, CameraFrame, Emitter, Light, LightId, Object, Scene, Shape};
 use glam::Vec3;
 
 /// Distance from the subject from which a light aims at something else, metres.
@@ -14,6 +14,10 @@ const NEAR_M: f32 = 0.15;
 const FARTHEST_M: f32 = 100.0;
 /// Most surfaces that are looked through on the way to a background.
 const MOST_SURFACES: u32 = 64;
+/// Sine of the angle behind the meter's plane from which a light is a rim light: 15 degrees.
+const BEHIND: f32 = 0.26;
+/// Edge from which a thing can be a background, metres.
+const LARGE_M: f32 = 1.0;
 /// Step behind a surface, metres.
 const STEP_M: f32 = 1e-3;
 
@@ -37,7 +41,7 @@ pub struct LightExposure {
     pub stops_over_key: Option<f32>,
 }
 
-/// What is behind the subject, as seen by the camera.
+/// The background behind the subject, as seen by the camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Background {
     /// Its name.
@@ -51,10 +55,11 @@ pub struct Background {
 pub struct MeteredSetup<'a> {
     /// The studio.
     pub scene: &'a Scene,
-    /// Where the meter is held: the studio's own meter, or what the camera aims at.
+    /// The meter's place: that of the studio's own meter, or a dome before the camera's aim.
     pub subject: MeterPoint,
     /// The reading there.
     pub reading: Reading,
+    frame: CameraFrame,
     meter: LightMeter,
 }
 
@@ -77,55 +82,94 @@ impl<'a> MeteredSetup<'a> {
             Some(own) => MeterPoint { position: own.position, facing: own.direction(scene), receptor: own.receptor },
             None => subject_of_camera(scene, &meter, aim),
         };
+        let frame = scene.camera_frame(camera.aspect());
         let read = meter.read(&subject, &MeterEffort::default(), control);
-        Ok(read.map(|result| MeteredSetup { scene, subject, reading: result.reading, meter }))
+        Ok(read.map(|result| MeteredSetup { scene, subject, reading: result.reading, frame, meter }))
     }
 
-    /// Returns true if a light aims at something else than the subject.
-    pub fn aims_elsewhere(&self, light: &Light) -> bool {
-        let away = self.subject.position - light.position;
-        // The subject's distance from the light's axis, or from its aim if that is nearer to the light
-        let aim = self.scene.aim_vector(&light.aim, light.position);
-        let along = away.dot(aim.normalize_or_zero()).max(0.0);
-        !light.emitter.is_infinite() && (away - aim.normalize_or_zero() * along).length() > APART_M
+    /// Returns the point that a light aims at: the first surface there for a light that is aimed by angles. None if there
+    /// is none, and for lights that shine in all directions or from afar.
+    pub fn aim_of(&self, light: &Light) -> Option<Vec3> {
+        match light.emitter {
+            Emitter::Point | Emitter::Sphere { .. } | Emitter::Sun { .. } | Emitter::Surround => None,
+            Emitter::Spot { .. } | Emitter::RectPanel { .. } | Emitter::RoundPanel { .. } => match light.aim {
+                Aim::Angles { .. } => self.first_on_axis(light).map(|surface| surface.position),
+                Aim::Point(_) | Aim::Object { .. } => Some(self.scene.aim_point(&light.aim, light.position)),
+            },
+        }
     }
 
-    /// Returns where a light is metered.
+    fn axis(&self, light: &Light) -> Option<Vec3> {
+        self.scene.aim_vector(&light.aim, light.position).try_normalize()
+    }
+
+    fn first_on_axis(&self, light: &Light) -> Option<SurfacePoint<'_>> {
+        self.meter.first_surface(light.position, self.axis(light)?, FARTHEST_M)
+    }
+
+    /// Returns true if a light aims at something else than the subject: its way to its aim does not come near.
+    fn aims_elsewhere(&self, light: &Light) -> bool {
+        let Some(aim) = self.aim_of(light) else { return false };
+        let (way, away) = (aim - light.position, self.subject.position - light.position);
+        let along = away.dot(way) / way.length_squared().max(f32::MIN_POSITIVE);
+        along <= 0.0 || (away - way * along.min(1.0)).length() > APART_M
+    }
+
+    /// Returns where a light is metered. The key is never a rim light: it is what the others are compared with.
     pub fn metered_at(&self, light: &Light) -> MeteredAt {
-        let from_behind = (light.position - self.subject.position).dot(self.subject.facing) < 0.0;
-        match (self.aims_elsewhere(light), from_behind && !light.emitter.is_infinite()) {
+        let to_light = (light.position - self.subject.position).normalize_or_zero();
+        let from_behind = to_light.dot(self.subject.facing) < -BEHIND && !light.emitter.is_infinite();
+        let is_key = self.reading.key().is_some_and(|key| key.light == Some(light.id));
+        match (self.aims_elsewhere(light), from_behind && !is_key) {
             (true, _) => MeteredAt::Aim,
             (false, true) => MeteredAt::Rim,
             (false, false) => MeteredAt::Subject,
         }
     }
 
-    /// Returns what a light gives where it is metered; none if it is off, or if no light of it arrives.
-    pub fn exposure(&self, light: &Light, control: &RenderControl) -> Option<LightExposure> {
-        let at = self.metered_at(light);
+    /// Returns the exposure that a light gives at a place; none if it is off, or if no light of it arrives.
+    pub fn exposure(&self, light: &Light, at: MeteredAt, control: &RenderControl) -> Option<LightExposure> {
         if at == MeteredAt::Subject || !light.on {
             return exposure_in(&self.reading, &self.reading, self.scene, light.id);
         }
-        let axis = self.scene.aim_vector(&light.aim, light.position).try_normalize()?;
-        let surface = self.meter.first_surface(light.position, axis, FARTHEST_M)?;
-        let facing = if at == MeteredAt::Rim { -axis } else { surface.normal };
-        let point = MeterPoint { position: surface.position + facing * STEP_M, facing, receptor: Receptor::Flat };
+        let (position, facing) = match at {
+            MeteredAt::Aim => self.first_on_axis(light).map(|surface| (surface.position, surface.normal))?,
+            MeteredAt::Subject | MeteredAt::Rim => self.rim_of(light),
+        };
+        let point = MeterPoint { position: position + facing * STEP_M, facing, receptor: Receptor::Flat };
         let reading = self.meter.read(&point, &MeterEffort::quick(), control)?.reading;
         exposure_in(&reading, &self.reading, self.scene, light.id)
     }
 
-    /// Returns the first thing behind the subject that is no person, at the height of the subject.
+    /// Returns where a light from behind first hits the subject, and the direction towards it: along its axis, else on the
+    /// way to the meter.
+    fn rim_of(&self, light: &Light) -> (Vec3, Vec3) {
+        let way = self.subject.position - light.position;
+        let straight = way.normalize_or(Vec3::NEG_Y);
+        let hit = |direction: Vec3| {
+            let surface = self.meter.first_surface(light.position, direction, way.length() + APART_M)?;
+            let is_near = (surface.position - self.subject.position).length() < APART_M;
+            is_near.then_some((surface.position, -direction))
+        };
+        let on_axis = self.aim_of(light).and_then(|_| self.axis(light)).and_then(hit);
+        on_axis.or_else(|| hit(straight)).unwrap_or((self.subject.position, -straight))
+    }
+
+    /// Returns the first backdrop, wall or large thing behind the subject, at the height of the subject.
     pub fn background(&self) -> Option<Background> {
         let away = self.subject.position - self.scene.camera.position;
         let direction = Vec3::new(away.x, 0.0, away.z).try_normalize()?;
+        let reach_m = away.length() + NEAR_M;
+        let own = self.meter.first_surface(self.scene.camera.position, away.normalize_or_zero(), reach_m);
+        let own = own.and_then(|surface| surface.object);
         let mut origin = self.subject.position;
         for _ in 0..MOST_SURFACES {
             let surface = self.meter.first_surface(origin, direction, FARTHEST_M)?;
             let object = surface.object.and_then(|index| self.scene.objects.get(index as usize));
-            let is_person = object.is_some_and(|object| matches!(object.shape, Shape::Figure(_)));
-            let distance_m = (surface.position - self.subject.position).dot(direction);
-            if !is_person && distance_m > 0.3 {
+            let is_own = surface.object.is_some() && surface.object == own;
+            if !is_own && object.is_none_or(is_large) {
                 let name = object.map_or_else(|| "Wall".to_owned(), |object| object.name.clone());
+                let distance_m = (surface.position - self.subject.position).dot(direction);
                 return Some(Background { name, distance_m });
             }
             origin = surface.position + direction * STEP_M;
@@ -135,23 +179,42 @@ impl<'a> MeteredSetup<'a> {
 
     /// Returns true if the camera sees a point: it is in the picture, and nothing is before it.
     pub fn is_seen(&self, point: Vec3) -> bool {
-        let frame = self.scene.camera_frame(self.scene.camera.aspect());
-        let in_picture = frame.project(point).is_some_and(|p| p.min_element() >= 0.0 && p.max_element() <= 1.0);
-        let way = point - frame.position();
-        in_picture
-            && way.try_normalize().is_some_and(|direction| {
-                self.meter.first_surface(frame.position(), direction, way.length() - STEP_M).is_none()
-            })
+        let in_picture = self.frame.project(point).is_some_and(|p| p.min_element() >= 0.0 && p.max_element() <= 1.0);
+        in_picture && self.is_clear(self.frame.position(), point)
     }
+
+    /// Returns true if nothing lies between two points.
+    pub fn is_clear(&self, from: Vec3, to: Vec3) -> bool {
+        let way = to - from;
+        way.try_normalize()
+            .is_none_or(|direction| self.meter.first_surface(from, direction, way.length() - STEP_M).is_none())
+    }
+}
+
+/// Returns true for an object that can be a background: a backdrop, a model, or a thing of a metre or more.
+fn is_large(object: &Object) -> bool {
+    let scale = object.transform.scale.abs();
+    let edge_m = match object.shape {
+        Shape::Figure(_) => 0.0,
+        Shape::Plane { .. } | Shape::Sweep { .. } | Shape::MeshFile { .. } => f32::INFINITY,
+        Shape::Box { size_m } => (size_m * scale).max_element(),
+        Shape::Sphere { radius_m } => 2.0 * radius_m * scale.max_element(),
+        Shape::Cylinder { radius_m, height_m } => {
+            (Vec3::new(2.0 * radius_m, height_m, 2.0 * radius_m) * scale).max_element()
+        }
+    };
+    edge_m >= LARGE_M
 }
 
 /// Returns the first surface before the camera's aim, facing the camera; the aim itself if there is none near it.
 fn subject_of_camera(scene: &Scene, meter: &LightMeter, aim: Vec3) -> MeterPoint {
     let way = aim - scene.camera.position;
     let direction = way.normalize_or(Vec3::NEG_Z);
-    let surface = meter.first_surface(scene.camera.position, direction, way.length() + NEAR_M);
+    // Angles say nothing of a distance
+    let reach_m = if matches!(scene.camera.aim, Aim::Angles { .. }) { FARTHEST_M } else { way.length() + NEAR_M };
+    let surface = meter.first_surface(scene.camera.position, direction, reach_m);
     let position = surface.map_or(aim, |surface| surface.position);
-    MeterPoint { position, facing: -direction, receptor: Receptor::Flat }
+    MeterPoint { position, facing: -direction, receptor: Receptor::Dome }
 }
 
 /// Returns the exposure of a light in a reading, against the key of another one.

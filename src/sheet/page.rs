@@ -4,7 +4,7 @@ use super::content::SheetContent;
 use super::drawing::{Align, Drawing, Element, Stroke};
 use super::font::Font;
 use super::light_facts::COLUMNS;
-use super::view::badge;
+use super::view::{badge, ruler};
 use glam::{Vec2, vec2};
 
 /// A4, upright, millimetres.
@@ -106,9 +106,11 @@ impl Page<'_> {
         let mut y = MARGIN_MM + TITLE_MM;
         let title = self.font.fitted(&self.content.title, TITLE_MM, WIDTH_MM);
         self.elements.push(Element::text(vec2(MARGIN_MM, y), title, TITLE_MM).strong().into());
-        for line in self.font.lines(&self.content.description, BODY_MM, WIDTH_MM).into_iter().take(2) {
+        let lines = self.font.lines(&self.content.description, BODY_MM, WIDTH_MM);
+        for (index, line) in lines.iter().take(2).enumerate() {
+            let rest = if index == 1 && lines.len() > 2 { " \u{2026}" } else { "" };
             y += LINE_MM + 0.6;
-            self.grey(vec2(MARGIN_MM, y), &line, BODY_MM);
+            self.grey(vec2(MARGIN_MM, y), &format!("{line}{rest}"), BODY_MM);
         }
         self.rule(y + 2.4);
         y + 2.4 + GAP_MM
@@ -153,36 +155,13 @@ impl Page<'_> {
             self.elements.extend(view.elements(at, mm_per_m, self.font, self.content.units));
         }
         let y = top + tall + 1.6;
-        let y = self.ruler(vec2(MARGIN_MM, y), mm_per_m, scale);
+        let note = format!("    Plan, scale 1:{scale:.0} on A4");
+        self.elements.extend(ruler(vec2(MARGIN_MM, y), mm_per_m, self.content.units, &note));
+        let y = y + 1.6;
         let caption = "From the camera's right, same scale";
         let align = Element::text(vec2(MARGIN_MM + WIDTH_MM, y), caption, SMALL_MM).colored(GREY).aligned(Align::Right);
         self.elements.push(align.into());
         y + GAP_MM
-    }
-
-    /// Draws a ruler and the scale; returns the baseline of its text.
-    fn ruler(&mut self, at: Vec2, mm_per_m: f32, scale: f32) -> f32 {
-        let (unit_m, unit) = self.content.units.ruler();
-        let step = mm_per_m * unit_m;
-        // A ruler of 20 to 60 mm, of whole units where one is not too long
-        let (count, part) =
-            if step > 60.0 { (1, 0.1 * (600.0 / step).floor().max(1.0)) } else { ((60.0 / step) as u32, 1.0) };
-        let each = ((count as f32 / 6.0).ceil()).max(1.0);
-        let parts = if part < 1.0 { 1 } else { (count as f32 / each) as u32 };
-        for index in 0..parts {
-            let fill = if index % 2 == 0 { [40; 3] } else { [255; 3] };
-            let from = at + Vec2::X * step * each * part * index as f32;
-            let stroke = Some(Stroke::new([40; 3], 0.15));
-            self.elements.push(Element::rect(from, vec2(step * each * part, 1.2), Some(fill), stroke));
-        }
-        let length = step * each * part * parts as f32;
-        let end = each * part * parts as f32;
-        let text = format!(
-            "{} {unit}    Plan, scale 1:{scale:.0} on A4",
-            if end.fract() == 0.0 { format!("{end:.0}") } else { format!("{end:.1}") }
-        );
-        self.grey(at + vec2(length + 1.5, 1.6), &text, SMALL_MM);
-        at.y + 1.6
     }
 
     /// Draws the table of lights, of at most so many rows; returns the y below.
@@ -264,12 +243,17 @@ impl Page<'_> {
     }
 }
 
-/// Returns a view by itself, as wide as `width_mm`.
+/// Height of a ruler under a view, millimetres.
+const RULER_MM: f32 = 4.0;
+
+/// Returns a view by itself, as wide as `width_mm`, with a ruler under it.
 pub fn view_drawing(content: &SheetContent, index: usize, width_mm: f32, font: &Font) -> Drawing {
     let view = &content.views[index];
     let mm_per_m = width_mm / view.size_m().x.max(1e-3);
     let size_mm = view.size_m() * mm_per_m;
-    Drawing { size_mm, elements: view.elements(Vec2::ZERO, mm_per_m, font, content.units) }
+    let mut elements = view.elements(Vec2::ZERO, mm_per_m, font, content.units);
+    elements.extend(ruler(vec2(0.3, size_mm.y + 1.5), mm_per_m, content.units, ""));
+    Drawing { size_mm: size_mm + Vec2::Y * RULER_MM, elements }
 }
 
 #[cfg(test)]

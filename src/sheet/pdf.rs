@@ -114,7 +114,8 @@ fn write_font(pdf: &mut Pdf, font: &Font, used: &BTreeMap<u16, char>) {
     stream.finish();
 
     let mut characters = UnicodeCmap::new(Name(b"Characters"), NUMBERING);
-    used.iter().for_each(|(glyph, character)| characters.pair(*glyph, *character));
+    // Glyph 0 stands for all characters that the font lacks
+    used.iter().filter(|(glyph, _)| **glyph > 0).for_each(|(glyph, character)| characters.pair(*glyph, *character));
     let characters = characters.finish();
     pdf.cmap(CHARACTERS, &compressed(&characters)).filter(Filter::FlateDecode);
 }

@@ -35,22 +35,32 @@ impl Grid {
         Grid { low, cell, size, filled: vec![false; (size.x * size.y) as usize] }
     }
 
-    /// Fills the cells whose middles lie in a triangle or within half a cell of its edges.
+    /// Fills the cells of each row of cells that a triangle crosses, from its left to its right within the row.
     fn fill(&mut self, triangle: &[Vec2; 3]) {
         let corners = triangle.map(|corner| (corner - self.low) / self.cell);
         if !corners.iter().all(|corner| corner.is_finite()) {
             return;
         }
-        let [low, high] =
-            [corners.into_iter().fold(corners[0], Vec2::min), corners.into_iter().fold(corners[0], Vec2::max)];
-        let (first, last) = ((low - 0.5).floor().as_ivec2().max(IVec2::ZERO), (high + 0.5).floor().as_ivec2());
-        let last = last.min(self.size - 1);
-        for y in first.y..=last.y {
-            for x in first.x..=last.x {
-                let middle = Vec2::new(x as f32, y as f32) + 0.5;
-                if distance_outside(&corners, middle) <= 0.5 {
-                    self.filled[(y * self.size.x + x) as usize] = true;
+        let edges = [(corners[0], corners[1]), (corners[1], corners[2]), (corners[2], corners[0])];
+        let heights = corners.map(|corner| corner.y);
+        let [top, bottom] = [f32::min, f32::max].map(|choose| heights.into_iter().fold(heights[0], choose));
+        let last = (bottom.floor() as i32).min(self.size.y - 1);
+        for y in (top.floor() as i32).max(0)..=last {
+            // The part of each edge within the row
+            let [above, below] = [y as f32, (y + 1) as f32];
+            let (mut left, mut right) = (f32::INFINITY, f32::NEG_INFINITY);
+            for (a, b) in edges.map(|(a, b)| if a.y <= b.y { (a, b) } else { (b, a) }) {
+                if b.y < above || a.y > below {
+                    continue;
                 }
+                let height = b.y - a.y;
+                let at = |row: f32| a.lerp(b, ((row - a.y) / height).clamp(0.0, 1.0)).x;
+                let ends = if height > 0.0 { [at(above), at(below)] } else { [a.x, b.x] };
+                (left, right) = (left.min(ends[0]).min(ends[1]), right.max(ends[0]).max(ends[1]));
+            }
+            let [first, last] = [left.floor() as i32, right.floor() as i32];
+            for x in first.max(0)..=last.min(self.size.x - 1) {
+                self.filled[(y * self.size.x + x) as usize] = true;
             }
         }
     }
@@ -97,16 +107,6 @@ impl Grid {
         }
         borders
     }
-}
-
-/// Returns the distance of a point from a triangle; 0 inside.
-fn distance_outside(corners: &[Vec2; 3], point: Vec2) -> f32 {
-    let edges = [(corners[0], corners[1]), (corners[1], corners[2]), (corners[2], corners[0])];
-    let sides = edges.map(|(a, b)| (b - a).perp_dot(point - a));
-    if sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0) {
-        return 0.0;
-    }
-    edges.into_iter().map(|(a, b)| distance_to_segment(a, b, point)).fold(f32::INFINITY, f32::min)
 }
 
 fn distance_to_segment(a: Vec2, b: Vec2, point: Vec2) -> f32 {

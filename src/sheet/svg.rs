@@ -92,10 +92,11 @@ impl Writer<'_> {
     }
 }
 
-/// Returns text with the characters of markup replaced, for SVG and HTML. Control characters, which XML forbids, are
-/// left out.
+/// Returns text with the characters of markup replaced, for SVG and HTML. Characters that XML forbids are left out, and
+/// breaks of lines are spaces.
 pub fn escaped(text: &str) -> String {
-    let visible = text.chars().filter(|character| !character.is_control());
+    let spaced = text.chars().map(|character| if character.is_whitespace() { ' ' } else { character });
+    let visible = spaced.filter(|character| !character.is_control() && !matches!(character, '\u{fffe}' | '\u{ffff}'));
     visible.fold(String::new(), |mut out, character| {
         match character {
             '&' => out.push_str("&amp;"),

@@ -12,8 +12,8 @@ use crate::photo::Picture;
 use crate::photo::meter::{Receptor, nearest_third};
 use crate::raytrace::{GeometryCache, LightMeter, MeterEffort, MeterPoint, RenderControl};
 use crate::scene::{
-    Aim, Assets, Camera, Emitter, Facing, Light, LightId, Meter, Modifier, Object, ObjectId, Output, Role, Room, Scene,
-    Shape, Transform,
+    Aim, Assets, Camera, Emitter, Facing, Gel, Light, LightId, Meter, Modifier, Object, ObjectId, Output, Role, Room,
+    Scene, Shape, Transform,
 };
 use glam::{Vec2, Vec3};
 
@@ -160,7 +160,78 @@ fn a_set_up_that_works_has_nothing_to_check_and_faults_are_named() {
     };
     named(&at_the_camera, "\"Fill\" shines at the lens");
     named(&|scene| scene.room.as_mut().unwrap().size_m.x = 12.0, "Cable: ");
-    named(&|scene| scene.camera.position.z = 9.0, "outside the room");
+    named(&|scene| scene.camera.position.z = 9.0, "camera: ");
+    named(&|scene| scene.lights[1].color.gel = Gel::Mired(159.0), "The gel of \"Fill\" takes 0.9 stops");
+    named(&|scene| scene.name = "\u{65e5}".to_owned(), "characters that the font of the PDF lacks");
+    let has_flare = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = scene.clone();
+        at_the_camera(&mut scene);
+        change(&mut scene);
+        content(&scene, Units::Metres).checks.iter().any(|check| check.contains("shines at the lens"))
+    };
+    assert!(has_flare(&|_| ()));
+    // 20 degrees off its axis
+    let turned = |scene: &mut Scene| scene.lights[1].aim = Aim::Point(scene.camera.position + Vec3::X * 1.3);
+    assert!(has_flare(&turned));
+    assert!(!has_flare(&|scene| {
+        turned(scene);
+        scene.lights[1].modifier.grid_deg = Some(30.0);
+    }));
+    assert!(!has_flare(&|scene| {
+        let mut flag = Object::new("Flag", Shape::Box { size_m: Vec3::splat(0.3) });
+        (flag.id, flag.transform.position) = (ObjectId(9), Vec3::new(-0.5, 1.65, -0.4));
+        scene.objects.push(flag);
+    }));
+}
+
+#[test]
+fn bulbs_suns_and_lights_aimed_by_angles_have_the_numbers_of_their_light() {
+    let mut scene = studio();
+    // A bulb shines everywhere, whatever its aim
+    scene.lights[1].emitter = Emitter::Sphere { radius_m: 0.04 };
+    scene.lights[1].aim = Aim::Angles { yaw_deg: 90.0, pitch_deg: 0.0 };
+    // From behind, 1.1 m from the backdrop, by angles
+    scene.lights[3].aim = Aim::Angles { yaw_deg: 0.0, pitch_deg: 0.0 };
+    let mut sun = Light::new(Emitter::Sun { angular_diameter_deg: 0.5 }, Output::Lux(1e4));
+    (sun.id, sun.name) = (LightId(9), "Sun".to_owned());
+    sun.aim = Aim::Angles { yaw_deg: 180.0, pitch_deg: -30.0 };
+    scene.lights.push(sun);
+    let sheet = content(&scene, Units::Metres);
+    let facts = |index: usize| &sheet.lights[index].facts;
+    assert_eq!((facts(1).metered_at, facts(1).aim_m), (MeteredAt::Subject, None));
+    assert!(facts(1).exposure.is_some());
+    assert_eq!(facts(3).metered_at, MeteredAt::Aim);
+    assert!((facts(3).aim_m.unwrap() - 1.2).abs() < 0.01, "{:?}", facts(3).aim_m);
+    // It shines along +Z and down: from behind
+    let bearing = facts(4).bearing.unwrap();
+    assert!((bearing.elevation_deg - 30.0).abs() < 0.01 && bearing.azimuth_deg.abs() > 179.0, "{bearing:?}");
+    // A camera that is aimed by angles meters what it sees
+    scene.meter = None;
+    scene.camera.aim = Aim::Angles { yaw_deg: 0.0, pitch_deg: 0.0 };
+    let distance = text_of(&content(&scene, Units::Metres).camera, "Distance");
+    assert_eq!(distance, "2.50 m to the subject");
+}
+
+#[test]
+fn the_key_of_shipped_studios_is_metered_at_the_subject_and_all_lights_have_a_reading() {
+    // From the side, from behind alone, aimed past the subject, with gels, through a window
+    let chosen = ["split", "rim_low_key", "interview", "gel_portrait", "window_light"];
+    for preset in
+        crate::io::presets().iter().filter(|preset| chosen.iter().any(|name| preset.file_name.starts_with(name)))
+    {
+        let loaded = preset.load().unwrap();
+        let (cache, control) = (GeometryCache::default(), RenderControl::new());
+        let picture = Picture::new(4, 4);
+        let sheet = SheetContent::new(&loaded.scene, &loaded.assets, picture, Units::Metres, &cache, &control);
+        let sheet = sheet.unwrap().unwrap();
+        let key = sheet.lights.iter().map(|light| &light.facts).find(|facts| {
+            facts.metered_at == MeteredAt::Subject && facts.exposure.and_then(|e| e.stops_over_key) == Some(0.0)
+        });
+        assert!(key.is_some(), "{}", preset.file_name);
+        assert!(sheet.subject.iter().any(|(name, _)| *name == "Background"), "{}", preset.file_name);
+        let unlit: Vec<_> = sheet.lights.iter().filter(|l| l.facts.is_on && l.facts.exposure.is_none()).collect();
+        assert!(unlit.is_empty(), "{}: {unlit:?}", preset.file_name);
+    }
 }
 
 #[test]
@@ -244,7 +315,7 @@ fn plans_are_to_scale_with_the_camera_at_the_bottom() {
         let away = scene.camera.position - SUBJECT;
         scene.camera.position = SUBJECT + around * away;
         scene.room = None;
-        let view = StudioView::new(&scene, &Assets::default(), SUBJECT, ViewFrom::Above);
+        let view = StudioView::new(&scene, &Assets::default(), SUBJECT, &[], ViewFrom::Above);
         let elements = view.elements(Vec2::ZERO, 25.0, &font, Units::Metres);
         let Element::Clipped { elements, .. } = &elements[0] else { panic!("a view is clipped") };
         // The field's lines begin at the camera

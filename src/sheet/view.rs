@@ -13,7 +13,7 @@ use std::f32::consts::FRAC_PI_2;
 const DETAIL_M: f32 = 0.012;
 /// Space around the things of a view, metres.
 const AROUND_M: f32 = 0.35;
-/// How far a backdrop may widen a view beyond lights, camera and people, metres.
+/// Most of a backdrop that widens a view beyond lights, camera and people, metres.
 const BACKDROP_M: f32 = 1.5;
 /// Sizes of text, millimetres.
 const LABEL_MM: f32 = 2.2;
@@ -56,9 +56,11 @@ struct PlacedLight {
     is_on: bool,
     front: Vec<Vec2>,
     body: Vec<Vec2>,
-    /// From the front to what it aims at.
-    beam: [Vec2; 2],
-    beam_m: f32,
+    position: Vec2,
+    /// What it aims at, if it aims at anything, and its distance, metres.
+    aim: Option<(Vec2, f32)>,
+    /// The direction from its front to its back.
+    backwards: Vec2,
     head: Vec2,
     /// The foot of its stand.
     foot: Vec2,
@@ -104,8 +106,9 @@ fn turn_to_camera(frame: &CameraFrame) -> Mat3 {
 }
 
 impl StudioView {
-    /// Returns the view of a studio with the subject at a point, metres.
-    pub fn new(scene: &Scene, assets: &Assets, subject: Vec3, from: ViewFrom) -> Self {
+    /// Returns the view of a studio with the subject at a point, metres. `aims` are the points that the lights aim at, where
+    /// they aim at any.
+    pub fn new(scene: &Scene, assets: &Assets, subject: Vec3, aims: &[Option<Vec3>], from: ViewFrom) -> Self {
         let frame = scene.camera_frame(scene.camera.aspect());
         let turn = turn_to_camera(&frame);
         let project = |point: Vec3| from.project(turn * point);
@@ -114,8 +117,12 @@ impl StudioView {
             outlined.filter_map(|object| Outlined::new(object, assets, from, turn)).collect();
         things.sort_by(|a, b| a.nearness.total_cmp(&b.nearness));
         let lights = scene.lights.iter().enumerate();
-        let lights: Vec<PlacedLight> =
-            lights.filter_map(|(index, light)| PlacedLight::new(scene, index + 1, light, &project)).collect();
+        let lights: Vec<PlacedLight> = lights
+            .filter_map(|(index, light)| {
+                let aim = aims.get(index).copied().flatten();
+                PlacedLight::new(scene, index + 1, light, aim, &project)
+            })
+            .collect();
         let camera = camera_outline(&frame).map(|points| convex_hull(points.into_iter().map(project).collect()));
         let reach_m = 1.15 * (subject - frame.position()).length();
         let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(x, y)| Vec2::new(x, y));
@@ -143,14 +150,17 @@ impl StudioView {
         view
     }
 
-    /// Chooses what the view shows: lights, camera, people and props, as much of backdrops as is near them, no more than
-    /// the room and a little around it.
+    /// Sets the area of the view: lights, camera and subject; of people, props, aims and the backdrops near them as much as
+    /// is in the room and a little around it.
     fn frame(&mut self) {
-        let of_lights = self.lights.iter().flat_map(|light| light.body.iter().chain([&light.foot, &light.beam[1]]));
+        let of_lights = self.lights.iter().flat_map(|light| light.body.iter().chain([&light.foot]));
         let points = of_lights.chain(self.camera.iter().flatten()).chain([&self.subject]).copied();
         let (mut low, mut high) = (self.subject, self.subject);
         let mut take = |point: Vec2| (low, high) = (low.min(point), high.max(point));
         points.filter(|point| point.is_finite()).for_each(&mut take);
+        let needed = [low - AROUND_M, high + AROUND_M];
+        let mut take = |point: Vec2| (low, high) = (low.min(point), high.max(point));
+        self.lights.iter().filter_map(|light| light.aim).for_each(|(aim, _)| take(aim));
         for thing in self.things.iter().filter(|thing| !thing.is_backdrop) {
             [thing.low, thing.high].into_iter().for_each(&mut take);
         }
@@ -163,12 +173,11 @@ impl StudioView {
         }
         (self.low, self.high) = (low - AROUND_M, high + AROUND_M);
         if let Some([room_low, room_high]) = self.room {
-            // Lights outside of the room are shown, too
-            let (low, high) = (room_low - AROUND_M, room_high + AROUND_M);
-            (self.low, self.high) = (self.low.max(low.min(self.subject)), self.high.min(high.max(self.subject)));
+            self.low = self.low.max(room_low - AROUND_M).min(needed[0]);
+            self.high = self.high.min(room_high + AROUND_M).max(needed[1]);
             if self.from == ViewFrom::Side {
                 // The ceiling limits lights and booms
-                self.low.y = low.y;
+                self.low.y = self.low.y.min(room_low.y - AROUND_M);
             }
         }
     }
@@ -273,7 +282,11 @@ impl Outlined {
         let triangles = (0..mesh.triangles.len()).map(|index| mesh.corners(index).map(|corner| project(&corner)));
         let triangles: Vec<[Vec2; 3]> = triangles.collect();
         let strands: Vec<Vec2> = mesh.strands.points().iter().map(|point| project(&point.position)).collect();
-        let outlines = outlines(&triangles, &strands, DETAIL_M);
+        let mut outlines = outlines(&triangles, &strands, DETAIL_M);
+        if outlines.is_empty() {
+            // A small thing
+            outlines.push(convex_hull(triangles.into_iter().flatten().collect()));
+        }
         let (low, high) = outlines.iter().flatten().fold(None, |bounds: Option<(Vec2, Vec2)>, point| {
             Some(bounds.map_or((*point, *point), |(low, high)| (low.min(*point), high.max(*point))))
         })?;
@@ -287,17 +300,24 @@ impl Outlined {
 }
 
 impl PlacedLight {
-    fn new(scene: &Scene, number: usize, light: &Light, project: &dyn Fn(Vec3) -> Vec2) -> Option<Self> {
+    fn new(
+        scene: &Scene,
+        number: usize,
+        light: &Light,
+        aim: Option<Vec3>,
+        project: &dyn Fn(Vec3) -> Vec2,
+    ) -> Option<Self> {
         let shape = LightShape::new(scene, light)?;
-        let aim = scene.aim_vector(&light.aim, light.position);
+        let position = project(light.position);
         Some(PlacedLight {
             number,
             color: print_color(light),
             is_on: light.on,
             front: convex_hull(shape.front.iter().map(|point| project(*point)).collect()),
             body: convex_hull(shape.points().map(project).collect()),
-            beam: [project(light.position), project(light.position + aim)],
-            beam_m: aim.length(),
+            position,
+            aim: aim.map(|aim| (project(aim), (aim - light.position).length())),
+            backwards: project(light.position - shape.axis) - position,
             head: project(shape.head),
             foot: project(Vec3::new(shape.head.x, 0.0, shape.head.z)),
         })
@@ -308,15 +328,18 @@ impl PlacedLight {
         if from == ViewFrom::Side {
             out.push(Element::line(path(&[self.foot, self.head]), Stroke::new([150; 3], 0.3)));
         }
-        out.push(Element::line(path(&self.beam), Stroke::dashed(color, 0.25)));
+        if let Some((aim, _)) = self.aim {
+            out.push(Element::line(path(&[self.position, aim]), Stroke::dashed(color, 0.25)));
+        }
         let pale = color.map(|channel| 255 - (255 - channel) / 3);
         out.push(Element::polygon(path(&self.body), Some(pale), Some(Stroke::new(color, 0.25))));
         out.push(Element::polygon(path(&self.front), Some([255; 3]), Some(Stroke::new(color, 0.6))));
     }
 
     fn draw_distance(&self, out: &mut Vec<Element>, place: &dyn Fn(Vec2) -> Vec2, font: &Font, units: Units) {
-        let [from, to] = self.beam.map(place);
-        let text = units.distance(self.beam_m);
+        let Some((aim, distance_m)) = self.aim else { return };
+        let (from, to) = (place(self.position), place(aim));
+        let text = units.distance(distance_m);
         let width = font.width(&text, LABEL_MM);
         if (to - from).length() < width + 4.0 {
             return;
@@ -329,11 +352,38 @@ impl PlacedLight {
     }
 
     fn draw_number(&self, out: &mut Vec<Element>, place: &dyn Fn(Vec2) -> Vec2) {
-        let [from, to] = self.beam.map(place);
-        let behind = (from - to).normalize_or(Vec2::NEG_Y);
+        let behind = self.backwards.normalize_or(Vec2::NEG_Y);
         let middle = place(self.head) + behind * (BADGE_MM + 0.6);
         out.extend(badge(middle, self.number, if self.is_on { self.color } else { GREY }));
     }
+}
+
+/// Draws a ruler of whole units, of 20 to 60 mm where one is not too long, with its length and a note at its end.
+pub fn ruler(at: Vec2, mm_per_m: f32, units: Units, note: &str) -> Vec<Element> {
+    let (unit_m, unit) = units.ruler();
+    let step = mm_per_m * unit_m;
+    let (parts, each) = match step > 60.0 {
+        // A part of a unit
+        true => (1, 0.1 * (600.0 / step).floor().max(1.0)),
+        false => {
+            let count = (60.0 / step.max(1e-3)).floor();
+            let each = (count / 6.0).ceil();
+            ((count / each) as u32, each)
+        }
+    };
+    let (part_mm, total) = (step * each, each * parts as f32);
+    let mut elements = Vec::new();
+    for index in 0..parts {
+        let fill = if index % 2 == 0 { [40; 3] } else { [255; 3] };
+        let from = at + Vec2::X * part_mm * index as f32;
+        let stroke = Some(Stroke::new([40; 3], 0.15));
+        elements.push(Element::rect(from, Vec2::new(part_mm, 1.2), Some(fill), stroke));
+    }
+    let decimals = usize::from(total.fract() != 0.0);
+    let text = format!("{total:.decimals$} {unit}{note}");
+    let end = at + Vec2::new(part_mm * parts as f32 + 1.5, 1.6);
+    elements.push(Element::text(end, text, LABEL_MM).colored(GREY).into());
+    elements
 }
 
 /// Draws the number of a light.

@@ -8,7 +8,7 @@ use catchlight::editor::{
     Action, App, CentralView, Command, DialogAnswer, EditorOptions, Fader, FileDialogs, Item, LiveMode, PictureSize,
     Quality, StudioSource, ToastKind, ViewOptions,
 };
-use catchlight::scene::{Aim, HairStyle, Scene, Shape};
+use catchlight::scene::{Aim, ColorSource, HairStyle, Scene, Shape};
 use eframe::egui::{
     self, Event, Key, Modifiers, PointerButton, Pos2, ViewportCommand, ViewportEvent, ViewportId, vec2,
 };

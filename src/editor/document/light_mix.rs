@@ -1,9 +1,10 @@
 //! Changes of lights over the finished picture, to be tried before they are made in the studio.
 
 use crate::editor::document::action::Action;
+use crate::raytrace::Layer;
 use crate::scene::{ColorSource, Light, LightId, Scene};
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Range of a head's dial, stops from full power: a head gives no more than that, and few go below 1/512.
 const DIAL_STOPS: std::ops::RangeInclusive<f32> = -9.0..=0.0;
@@ -78,12 +79,28 @@ impl Mix {
         self.faders.is_empty()
     }
 
+    /// Drops the faders of lights that are off or not in the studio any more, and of lights that share a layer and are
+    /// not moved together.
+    pub fn fit(&mut self, scene: &Scene, layers: &[Layer]) {
+        if self.is_neutral() {
+            return;
+        }
+        let lit: HashSet<LightId> = scene.lights.iter().filter(|light| light.on).map(|light| light.id).collect();
+        self.faders.retain(|light, _| lit.contains(light));
+        for layer in layers {
+            let lights: Vec<LightId> = layer.lights().filter(|light| lit.contains(light)).collect();
+            if lights.windows(2).any(|pair| self.fader(pair[0]) != self.fader(pair[1])) {
+                self.set(&lights, Fader::default());
+            }
+        }
+    }
+
     /// Returns the studio with the lights as they are mixed.
     pub fn mixed<'a>(&self, scene: &'a Scene) -> Cow<'a, Scene> {
         if self.is_neutral() {
             return Cow::Borrowed(scene);
         }
-        let has_solo = self.faders.values().any(|fader| fader.soloed);
+        let has_solo = scene.lights.iter().any(|light| self.fader(light.id).soloed);
         let mut mixed = scene.clone();
         for light in &mut mixed.lights {
             let fader = self.fader(light.id);
@@ -109,8 +126,11 @@ impl Mix {
 
     /// Returns why the head of a light can't be set as the fader is, if it can't.
     pub fn out_of_range(&self, light: &Light) -> Option<String> {
-        let dial = self.fader(light.id).changed(light).power.dial_stops;
-        if dial > DIAL_STOPS.end() + ROUNDING {
+        let fader = self.fader(light.id);
+        let dial = fader.changed(light).power.dial_stops;
+        if fader.thirds == 0 {
+            None
+        } else if dial > DIAL_STOPS.end() + ROUNDING {
             Some(format!("{dial:.1} stops over the head's full power"))
         } else if dial < DIAL_STOPS.start() - ROUNDING {
             Some("Under 1/512 of full power, less than heads can be set to".to_owned())
@@ -153,6 +173,25 @@ mod tests {
     }
 
     #[test]
+    fn a_solo_ends_with_its_light_and_lights_that_share_a_layer_move_together() {
+        let mut scene = studio();
+        let mut mix = Mix::default();
+        mix.set(&[LightId(2)], Fader { soloed: true, ..Fader::default() });
+        let gone = scene.lights.pop();
+        assert!(mix.mixed(&scene).lights.iter().all(|light| light.on), "no light is on alone any more");
+        mix.fit(&scene, &[]);
+        scene.lights.extend(gone);
+        assert!(mix.is_neutral(), "a new light of its id is not soloed");
+        mix.set(&[LightId(0)], Fader { thirds: 1, ..Fader::default() });
+        let layers: Vec<Layer> = scene.lights.iter().map(Layer::of_light).collect();
+        mix.fit(&scene, &layers);
+        assert_eq!(mix.fader(LightId(0)).thirds, 1);
+        scene.lights[0].on = false;
+        mix.fit(&scene, &layers);
+        assert!(mix.is_neutral());
+    }
+
+    #[test]
     fn applying_is_one_action_without_the_solo() {
         let mut scene = studio();
         let mut mix = Mix::default();
@@ -166,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn faders_beyond_the_dial_of_a_head_are_told() {
+    fn faders_beyond_the_dial_of_a_head_are_marked() {
         let mut scene = studio();
         let mut mix = Mix::default();
         let mut told = |thirds, dial_stops| {

@@ -3,12 +3,12 @@
 use crate::editor::commands::command::Command;
 use crate::editor::document::light_mix::{Fader, MixerRow};
 use crate::editor::picture::rendering::Rendering;
-use crate::editor::ui::{theme, widgets};
+use crate::editor::ui::theme;
+use crate::editor::ui::widgets::{self, NumberField};
 use crate::photo::text::signed_stops;
 use crate::scene::{ColorSource, Scene};
 use eframe::egui::{
-    Align, Button, Color32, DragValue, Frame, Grid, Label, Layout, Pos2, Rect, RichText, ScrollArea, Slider, Ui,
-    UiBuilder, vec2,
+    Align, Button, Color32, Frame, Grid, Label, Layout, Pos2, Rect, RichText, ScrollArea, Slider, Ui, UiBuilder, vec2,
 };
 
 /// Travel of a fader to both sides, thirds of a stop.
@@ -117,7 +117,8 @@ fn row_ui(ui: &mut Ui, row: &MixerRow, rendering: &Rendering, scene: &Scene, out
     }
 }
 
-const NO_LAYER: &str = "This light was off when the picture was rendered: render again to mix it.";
+const NO_LAYER: &str = "The picture has no light of it: render again to mix it.";
+const KELVIN: NumberField = NumberField::new(20.0, 1000.0, 25_000.0, 0, " K");
 
 /// Draws the colour temperature of a light; nothing for groups and coloured lights.
 fn kelvin_ui(ui: &mut Ui, row: &MixerRow, source: ColorSource, fader: &mut Fader) {
@@ -126,10 +127,10 @@ fn kelvin_ui(ui: &mut Ui, row: &MixerRow, source: ColorSource, fader: &mut Fader
         return;
     };
     let mut kelvin = fader.kelvin.unwrap_or(of_studio);
-    let field = DragValue::new(&mut kelvin).range(1800.0..=15_000.0).speed(20.0).max_decimals(0).suffix(" K");
-    let field = ui.add_enabled(row.has_layer, field);
+    let field = ui.add_enabled_ui(row.has_layer, |ui| KELVIN.ui(ui, &mut kelvin)).inner;
     widgets::named(ui, &field, &format!("Kelvin of {}", row.name));
-    if field.on_hover_text("Colour temperature of the source: drag or type").changed() {
+    field.on_hover_text("Colour temperature of the source: drag or type");
+    if kelvin != fader.kelvin.unwrap_or(of_studio) {
         fader.kelvin = (kelvin != of_studio).then_some(kelvin);
     }
 }

@@ -6,9 +6,10 @@ use crate::editor::ui::wake::wake;
 use crate::io::KeptPicture;
 use crate::jobs::{Developed, Development, FilmDeveloper, RenderJob, RenderOutcome, RenderPhase, RenderRequest};
 use crate::photo::{Histogram, Picture, PictureDisplay, Spot};
-use crate::raytrace::{self, Film, GeometryCache, Layer, Method, Settings};
-use crate::scene::{Assets, Camera, LightId, Scene, SceneChange};
+use crate::raytrace::{self, Film, GeometryCache, Method, Settings};
+use crate::scene::{Assets, Camera, Light, LightId, Scene, SceneChange};
 use eframe::egui::{Color32, ColorImage, Context, TextureId};
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Weak};
 use std::time::Duration;
@@ -247,21 +248,22 @@ impl Rendering {
         self.developed.as_ref().filter(|d| (d.picture.width, d.picture.height) == (width, height))
     }
 
-    /// Returns the rows of the mixer: the layers of the film, then the lights of `scene` that have none.
+    /// Returns the rows of the mixer: the layers of the film, then the lights of `scene` that are on and have none.
     pub fn mixer_rows(&self, scene: &Scene) -> Vec<MixerRow> {
         let layers = self.film.as_deref().map(Film::layers).unwrap_or_default();
-        let in_studio = |id: &LightId| scene.light(*id).is_some();
-        let of_layer = |layer: &Layer| MixerRow {
-            name: layer.light.and_then(|id| scene.light(id)).map_or(&layer.name, |light| &light.name).clone(),
-            lights: layer.lights().filter(in_studio).collect(),
-            has_layer: true,
-        };
-        let mut rows: Vec<MixerRow> = layers.iter().map(of_layer).filter(|row| !row.lights.is_empty()).collect();
-        for light in &scene.lights {
-            if !rows.iter().any(|row| row.lights.contains(&light.id)) {
-                rows.push(MixerRow { name: light.name.clone(), lights: vec![light.id], has_layer: false });
-            }
+        let mut without: HashMap<LightId, &Light> = scene.lights.iter().map(|light| (light.id, light)).collect();
+        let mut rows = Vec::new();
+        for layer in layers {
+            let name = layer.light.and_then(|id| without.get(&id)).map_or(&layer.name, |light| &light.name).clone();
+            let lights: Vec<LightId> = layer.lights().filter(|id| without.remove(id).is_some()).collect();
+            rows.extend((!lights.is_empty()).then_some(MixerRow { name, lights, has_layer: true }));
         }
+        let without = scene.lights.iter().filter(|light| light.on && without.contains_key(&light.id));
+        rows.extend(without.map(|light| MixerRow {
+            name: light.name.clone(),
+            lights: vec![light.id],
+            has_layer: false,
+        }));
         rows
     }
 
@@ -295,13 +297,14 @@ impl Rendering {
     /// Returns true if a new render would differ from the picture.
     pub fn is_out_of_date(&self, now: &Scene) -> bool {
         match (&self.film, &self.job) {
-            (Some(film), Some(job)) => !raytrace::is_up_to_date(film.layers(), &job.scene, now),
+            (Some(film), Some(job)) => !raytrace::is_up_to_date(film.layers(), &job.scene, &self.mix.mixed(now)),
             _ => false,
         }
     }
 
     /// Takes the results of the jobs and requests the development that the scene needs. Called once per frame.
     pub fn update(&mut self, scene: &Scene, ctx: &Context) {
+        self.mix.fit(scene, self.film.as_deref().map(Film::layers).unwrap_or_default());
         let mixed = self.mix.mixed(scene);
         let scene = &*mixed;
         if let Some(job) = &mut self.job {

@@ -99,10 +99,11 @@ impl App {
             Command::DisplayPicture(display) => self.rendering.display = display,
             Command::MixLights(lights, fader) => self.rendering.mix.set(&lights, fader),
             Command::ApplyMix => {
-                if let Some(action) = self.rendering.mix.action(self.document.scene()) {
-                    self.apply(action, None);
+                let action = self.rendering.mix.action(self.document.scene());
+                match action.map_or(Ok(Vec::new()), |action| self.document.apply(action, None)) {
+                    Ok(_) => self.rendering.mix = Mix::default(),
+                    Err(error) => self.toasts.error(error.to_string()),
                 }
-                self.rendering.mix = Mix::default();
             }
             Command::ResetMix => self.rendering.mix = Mix::default(),
             Command::ShowView(centre) => self.views.central = centre,

@@ -21,7 +21,7 @@ impl App {
     pub(super) fn export_sheet_to(&mut self, path: PathBuf, units: Units, ctx: &Context) {
         let scene = self.document.scene().clone();
         let rendering = &self.rendering;
-        let is_current = !rendering.is_running() && !rendering.is_out_of_date(&scene) && rendering.mix.is_neutral();
+        let is_current = !rendering.is_busy() && !rendering.is_out_of_date(&scene) && rendering.mix.is_neutral();
         let developed = self.rendering.developed().filter(|_| is_current);
         let (picture, assets) = (developed.map(|developed| developed.picture.clone()), self.document.assets().clone());
         if picture.is_none() {

@@ -4,6 +4,7 @@ use crate::photo::{PhotometricLight, Strength};
 use crate::raytrace::lights::TracedLight;
 use crate::scene::{Light, LightId, Scene};
 use glam::Vec3;
+use std::collections::HashMap;
 
 /// The largest number of lights with a layer each; above it, lights of one role share a layer.
 pub const MAX_LIGHT_LAYERS: usize = 16;
@@ -38,8 +39,8 @@ impl Member {
 
     /// Returns the factor of the light from what was traced to what it is in `scene`, by channel; none where it had and
     /// has no light of the channel.
-    fn factor(&self, scene: &Scene) -> [Option<f32>; 3] {
-        let light = scene.light(self.light).filter(|light| light.on);
+    fn factor(&self, scene: &Scene, lights: &HashMap<LightId, &Light>) -> [Option<f32>; 3] {
+        let light = lights.get(&self.light).filter(|light| light.on);
         let now = light.map_or(Vec3::ZERO, |light| {
             shared_layer_tint(light, scene) * PhotometricLight::new(scene, light).output_ratio(self.strength)
         });
@@ -73,7 +74,8 @@ impl Layer {
         if self.members.is_empty() {
             return Some(Vec3::ONE);
         }
-        let factors: Vec<[Option<f32>; 3]> = self.members.iter().map(|member| member.factor(scene)).collect();
+        let lights: HashMap<LightId, &Light> = scene.lights.iter().map(|light| (light.id, light)).collect();
+        let factors: Vec<[Option<f32>; 3]> = self.members.iter().map(|member| member.factor(scene, &lights)).collect();
         let mut common = [0.0; 3];
         for (channel, common) in common.iter_mut().enumerate() {
             let mut known = factors.iter().filter_map(|factor| factor[channel]);

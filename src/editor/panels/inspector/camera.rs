@@ -205,8 +205,8 @@ fn lens_facts(ui: &mut Ui, camera: &Camera, lens: &FocusedLens) {
             fact(ui, "From the sensor", "What the distance scale of a lens shows", from_sensor);
         }
     }
-    let circle_m = camera.sensor.size_mm().length() / 1500.0 * 1e-3;
-    let sharp = lens.depth_of_field_m(camera.f_number, circle_m).filter(|_| camera.depth_of_field);
+    let sharp =
+        lens.depth_of_field_m(camera.f_number, camera.sensor.sharp_circle_m()).filter(|_| camera.depth_of_field);
     if let Some((near, far)) = sharp {
         let far_text = if far.is_finite() { format!("{} m", metres(far)) } else { "infinity".to_owned() };
         let deep = far - near;
