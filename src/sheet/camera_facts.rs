@@ -8,6 +8,9 @@ use crate::photo::text::signed_stops;
 use crate::photo::thirds::Dial;
 use crate::scene::{Camera, Orientation, Scene, Sensor};
 
+/// Stops under the camera's exposure from which a reading counts as no light.
+const DARK_STOPS: f32 = -8.0;
+
 /// A name and its value.
 pub type Fact = (&'static str, String);
 
@@ -45,13 +48,13 @@ pub fn subject_facts(setup: &MeteredSetup<'_>, background: Option<&Background>, 
     let (reading, camera) = (&setup.reading, &setup.scene.camera);
     let f_number = reading.f_number();
     let over = 2.0 * (f_number / camera.f_number).log2();
-    let mut facts = vec![match over.is_finite() {
+    let mut facts = vec![match over > DARK_STOPS {
         true => {
             let (shown, receptor) = (nearest_third(f_number), setup.subject.receptor.label());
             let text = format!("{shown} at the subject ({receptor}), {} stops to the camera", signed_stops(over));
             ("Meter", text)
         }
-        false => ("Meter", "no light at the subject".to_owned()),
+        false => ("Meter", format!("no light from the front ({})", setup.subject.receptor.label())),
     }];
     let ratios = reading.ratios().into_iter().flatten().take(1);
     facts.extend(ratios.map(|r| ("Key to fill", format!("{:.1}:1, {} stops", r.value, signed_stops(r.stops())))));

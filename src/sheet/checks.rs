@@ -15,8 +15,8 @@ const SYNC_S: f32 = 1.0 / 250.0;
 const HEADROOM_M: f32 = 0.15;
 /// Steps in which a stand is looked at, metres.
 const STEP_M: f32 = 0.04;
-/// Angle from the optical axis in which a light that shines at the camera flares, degrees.
-const FLARE_DEG: f32 = 45.0;
+/// Angle outside of the picture's corners in which a light that shines at the camera flares, degrees.
+const FLARE_DEG: f32 = 20.0;
 /// Angle from the axis of a panel in which it lights the lens, degrees.
 const PANEL_BEAM_DEG: f32 = 60.0;
 /// Length of cable that a head has with it, metres: typical.
@@ -109,7 +109,8 @@ impl Checks {
 
     fn flare(&mut self, setup: &MeteredSetup<'_>, lights: &Placed<'_>) {
         let camera = setup.scene.camera.position;
-        let forward = setup.scene.camera_frame(1.0).forward();
+        let frame = setup.scene.camera_frame(setup.scene.camera.aspect());
+        let (forward, corner_deg) = (frame.forward(), frame.half_extent.length().atan().to_degrees());
         for (_, light, shape) in lights.iter().filter(|(_, light, _)| light.on) {
             let to_camera = camera - light.position;
             let beam_deg = match light.emitter {
@@ -121,7 +122,7 @@ impl Checks {
             let cuts = [light.modifier.grid_deg, light.modifier.beam.map(|beam| beam.outer_deg)];
             let beam_deg = cuts.into_iter().flatten().fold(beam_deg, |beam_deg, cut| beam_deg.min(0.5 * cut));
             let lights_lens = angle_between(shape.axis, to_camera.normalize_or_zero()).to_degrees() < beam_deg;
-            let in_view = angle_between(forward, -to_camera.normalize_or_zero()).to_degrees() < FLARE_DEG;
+            let in_view = angle_between(forward, -to_camera.normalize_or_zero()).to_degrees() < corner_deg + FLARE_DEG;
             if lights_lens && in_view && setup.is_clear(light.position, camera) {
                 self.add(format!("{:?} shines at the lens: shade it with a flag, or use a lens hood.", light.name));
             }

@@ -65,10 +65,12 @@ impl SheetContent {
     ) -> Result<Option<Self>, PrepareError> {
         let Some(setup) = MeteredSetup::new(scene, assets, cache, control)? else { return Ok(None) };
         let checks = Checks::new(&setup, assets, units);
-        let lights = scene.lights.iter().enumerate().map(|(index, light)| SheetLight {
-            facts: LightFacts::new(&setup, index + 1, light, units, control),
-            color: print_color(light),
-        });
+        let facts = scene.lights.iter().enumerate();
+        let mut facts: Vec<LightFacts> =
+            facts.map(|(index, light)| LightFacts::new(&setup, index + 1, light, units, control)).collect();
+        LightFacts::compare_with_key(&mut facts);
+        let lights = facts.into_iter().zip(&scene.lights);
+        let lights = lights.map(|(facts, light)| SheetLight { facts, color: print_color(light) });
         let subject = setup.subject.position;
         let aims: Vec<_> = scene.lights.iter().map(|light| setup.aim_of(light)).collect();
         let content = SheetContent {

@@ -50,6 +50,8 @@ pub struct LightFacts {
     pub metered_at: MeteredAt,
     /// What it gives there; none if no light of it arrives.
     pub exposure: Option<LightExposure>,
+    /// Its exposure over that of the key, stops.
+    pub stops_over_key: Option<f32>,
 }
 
 impl LightFacts {
@@ -83,6 +85,22 @@ impl LightFacts {
             height_m: (!light.emitter.is_infinite()).then_some(light.position.y),
             metered_at,
             exposure: setup.exposure(light, metered_at, control),
+            stops_over_key: None,
+        }
+    }
+
+    /// Compares the lights with the key: the strongest key light, else the strongest of those metered at the subject, else
+    /// of all.
+    pub fn compare_with_key(lights: &mut [LightFacts]) {
+        let strongest = |is_candidate: &dyn Fn(&LightFacts) -> bool| {
+            let exposures = lights.iter().filter(|facts| is_candidate(facts)).filter_map(|facts| facts.exposure);
+            exposures.max_by(|a, b| a.lux_s.total_cmp(&b.lux_s))
+        };
+        let key = strongest(&|facts| facts.role == Role::Key && facts.metered_at == MeteredAt::Subject)
+            .or_else(|| strongest(&|facts| facts.metered_at == MeteredAt::Subject))
+            .or_else(|| strongest(&|_| true));
+        for facts in lights {
+            facts.stops_over_key = facts.exposure.zip(key).map(|(exposure, key)| exposure.stops_over(&key));
         }
     }
 
@@ -115,7 +133,7 @@ impl LightFacts {
             (_, false) => cell("off".to_owned(), ""),
             (None, true) => cell("no light".to_owned(), at),
             (Some(exposure), true) => {
-                let against = match (exposure.stops_over_key, self.metered_at) {
+                let against = match (self.stops_over_key, self.metered_at) {
                     (Some(0.0), MeteredAt::Subject) => "the key".to_owned(),
                     (Some(stops), MeteredAt::Subject) => format!("{} to key", signed_stops(stops)),
                     (Some(stops), _) => format!("{}, {at}", signed_stops(stops)),

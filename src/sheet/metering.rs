@@ -3,7 +3,7 @@
 use crate::photo::exposure;
 use crate::photo::meter::{Reading, Receptor};
 use crate::raytrace::{GeometryCache, LightMeter, MeterEffort, MeterPoint, PrepareError, RenderControl, SurfacePoint};
-use crate::scene::{Aim, Assets, CameraFrame, Emitter, Light, LightId, Object, Scene, Shape};
+use crate::scene::{Aim, Assets, CameraFrame, Emitter, Light, LightId, Object, Role, Scene, Shape};
 use glam::Vec3;
 
 /// Distance from the subject from which a light aims at something else, metres.
@@ -35,10 +35,17 @@ pub enum MeteredAt {
 /// The exposure of a light by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightExposure {
+    /// Luminous exposure, lux seconds.
+    pub lux_s: f32,
     /// The f-number to set for it, at the camera's ISO and shutter.
     pub f_number: f32,
-    /// Its exposure over the key's at the subject, stops.
-    pub stops_over_key: Option<f32>,
+}
+
+impl LightExposure {
+    /// Returns the exposure over another one, stops.
+    pub fn stops_over(&self, other: &LightExposure) -> f32 {
+        (self.lux_s / other.lux_s).log2()
+    }
 }
 
 /// The background behind the subject, as seen by the camera.
@@ -115,12 +122,11 @@ impl<'a> MeteredSetup<'a> {
         along <= 0.0 || (away - way * along.min(1.0)).length() > APART_M
     }
 
-    /// Returns where a light is metered. The key is never a rim light: it is what the others are compared with.
+    /// Returns where a light is metered. A key light is never a rim light: the others are compared with it.
     pub fn metered_at(&self, light: &Light) -> MeteredAt {
         let to_light = (light.position - self.subject.position).normalize_or_zero();
         let from_behind = to_light.dot(self.subject.facing) < -BEHIND && !light.emitter.is_infinite();
-        let is_key = self.reading.key().is_some_and(|key| key.light == Some(light.id));
-        match (self.aims_elsewhere(light), from_behind && !is_key) {
+        match (self.aims_elsewhere(light), from_behind && light.role != Role::Key) {
             (true, _) => MeteredAt::Aim,
             (false, true) => MeteredAt::Rim,
             (false, false) => MeteredAt::Subject,
@@ -130,7 +136,7 @@ impl<'a> MeteredSetup<'a> {
     /// Returns the exposure that a light gives at a place; none if it is off, or if no light of it arrives.
     pub fn exposure(&self, light: &Light, at: MeteredAt, control: &RenderControl) -> Option<LightExposure> {
         if at == MeteredAt::Subject || !light.on {
-            return exposure_in(&self.reading, &self.reading, self.scene, light.id);
+            return exposure_in(&self.reading, self.scene, light.id);
         }
         let (position, facing) = match at {
             MeteredAt::Aim => self.first_on_axis(light).map(|surface| (surface.position, surface.normal))?,
@@ -138,7 +144,7 @@ impl<'a> MeteredSetup<'a> {
         };
         let point = MeterPoint { position: position + facing * STEP_M, facing, receptor: Receptor::Flat };
         let reading = self.meter.read(&point, &MeterEffort::quick(), control)?.reading;
-        exposure_in(&reading, &self.reading, self.scene, light.id)
+        exposure_in(&reading, self.scene, light.id)
     }
 
     /// Returns where a light from behind first hits the subject, and the direction towards it: along its axis, else on the
@@ -217,14 +223,12 @@ fn subject_of_camera(scene: &Scene, meter: &LightMeter, aim: Vec3) -> MeterPoint
     MeterPoint { position, facing: -direction, receptor: Receptor::Dome }
 }
 
-/// Returns the exposure of a light in a reading, against the key of another one.
-fn exposure_in(reading: &Reading, at_subject: &Reading, scene: &Scene, light: LightId) -> Option<LightExposure> {
+/// Returns the exposure of a light in a reading.
+fn exposure_in(reading: &Reading, scene: &Scene, light: LightId) -> Option<LightExposure> {
     let read = reading.lights.iter().find(|read| read.light == Some(light))?;
     let lux_s = reading.lux_s(read);
     let camera = &scene.camera;
     let on_sensor = lux_s * exposure::lens_transmission(camera, &scene.focused_lens());
     let f_number = exposure::f_number(on_sensor, camera.iso, camera.meter_constant);
-    let key = at_subject.key().map(|key| at_subject.lux_s(key));
-    let stops_over_key = key.map(|key| (lux_s / key).log2()).filter(|stops| stops.is_finite());
-    (lux_s > 0.0).then_some(LightExposure { f_number, stops_over_key })
+    (lux_s > 0.0).then_some(LightExposure { lux_s, f_number })
 }

@@ -14,7 +14,9 @@ const DETAIL_M: f32 = 0.012;
 /// Space around the things of a view, metres.
 const AROUND_M: f32 = 0.35;
 /// Most of a backdrop that widens a view beyond lights, camera and people, metres.
-const BACKDROP_M: f32 = 1.5;
+const BACKDROP_M: f32 = 2.5;
+/// Edge from which a plane is a backdrop, not a card, metres.
+const LARGE_PLANE_M: f32 = 1.5;
 /// Sizes of text, millimetres.
 const LABEL_MM: f32 = 2.2;
 const NUMBER_MM: f32 = 2.6;
@@ -292,9 +294,14 @@ impl Outlined {
         })?;
         let nearness = mesh.positions.iter().map(|point| from.nearness(turned(*point))).fold(f32::MIN, f32::max);
         let is_person = matches!(object.shape, Shape::Figure(_));
-        let is_backdrop = matches!(object.shape, Shape::Sweep { .. } | Shape::Plane { .. });
-        // A backdrop lies behind all else, although its wall is high
-        let nearness = if is_backdrop { nearness - 1e3 } else { nearness };
+        let scale = object.transform.scale.abs().max_element();
+        let is_backdrop = match object.shape {
+            Shape::Sweep { .. } => true,
+            Shape::Plane { width_m, depth_m } => width_m.max(depth_m) * scale > LARGE_PLANE_M,
+            _ => false,
+        };
+        // A sweep lies behind all else, although its wall is high
+        let nearness = if matches!(object.shape, Shape::Sweep { .. }) { f32::MIN } else { nearness };
         Some(Outlined { name: object.name.clone(), outlines, low, high, nearness, is_person, is_backdrop })
     }
 }

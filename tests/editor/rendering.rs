@@ -216,6 +216,11 @@ fn the_mixer_dims_the_picture_without_tracing_and_applies_to_the_studio_as_one_s
     render_tiny(&mut window);
     window.state_mut().run(Command::ShowView(CentralView::Picture), None, &egui::Context::default());
     settle(&mut window);
+    // A colour temperature that few lamps have: the mixer shows it and leaves it
+    let mut cold = scene(&window).lights[1].clone();
+    cold.color.source = ColorSource::Kelvin(20_000.0);
+    window.state_mut().run(Command::Apply(Action::SetLight(Box::new(cold))), None, &egui::Context::default());
+    settle(&mut window);
     let before = scene(&window).clone();
     let sum =
         |window: &Window| window.state().rendering().developed().unwrap().picture.rgb.iter().flatten().sum::<f32>();
