@@ -114,6 +114,11 @@ pub fn display_srgb8(rgb: [f32; 3]) -> [u8; 3] {
     rgb.map(|c| (srgb_encode(tone_curve(c)) * 255.0 + 0.5) as u8)
 }
 
+/// As [`display_srgb8`], with 16 bits a channel.
+pub fn display_srgb16(rgb: [f32; 3]) -> [u16; 3] {
+    rgb.map(|c| (srgb_encode(tone_curve(c)) * 65_535.0 + 0.5) as u16)
+}
+
 /// Returns [`display_srgb8`] of a pixel, dithered by less than one code against contour lines in dark backdrops:
 /// interleaved gradient noise (Jimenez 2014, "Next Generation Post Processing in Call of Duty"), as in the live view.
 /// Values that are codes stay as they are.

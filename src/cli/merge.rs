@@ -15,7 +15,7 @@ pub struct Arguments {
     /// Parts of one picture, in any order.
     #[arg(required = true)]
     parts: Vec<PathBuf>,
-    /// Picture file, whose extension names its format: png, jpg (as shown), exr (scene-linear).
+    /// Picture file, whose extension names its format: png, jpg, tif of 16 bits (as shown), exr (scene-linear).
     #[arg(short, long)]
     output: PathBuf,
     /// Write one EXR layer per light beside the whole picture (exr only).

@@ -19,7 +19,7 @@ const FRAMES: u32 = 30;
 pub struct Arguments {
     /// Studio: a .ron file, or the name of a shipped one.
     scene: PathBuf,
-    /// Picture file, whose extension names its format: png, jpg, exr.
+    /// Picture file, whose extension names its format: png, jpg, tif, exr.
     #[arg(short, long, required_unless_present_any = ["frames", "lights", "traced"])]
     output: Option<PathBuf>,
     /// Picture size in pixels, WIDTHxHEIGHT [default: 960 on the long edge, in the sensor's shape; 1280x720 for times].

@@ -23,7 +23,7 @@ pub fn open(scene: Option<PathBuf>) -> Result<(), Failure> {
     })
 }
 
-/// Draws the preview offscreen and writes it. Channels are written to PNG and JPEG as colours, to EXR as values.
+/// Draws the preview offscreen and writes it. Channels are written to EXR as values, else as colours.
 pub fn write_preview(loaded: &Loaded, size: (u32, u32), output: &Path, look: &PreviewLook) -> Result<(), Failure> {
     let options = options(loaded, look)?;
     let (_, mut renderer) = start()?;

@@ -48,8 +48,8 @@ pub use importers::{
 pub use kept_picture::KeptPicture;
 pub use model::{ImportedModel, ModelLimits};
 pub use picture::{
-    LayeredPicture, PictureFile, PictureFormat, PictureInfo, PicturePart, check_picture_file, encode_jpeg, encode_part,
-    export_picture, export_shown, picture_file, read_exr, read_part,
+    CaptureInfo, LayeredPicture, PictureFile, PictureFormat, PictureInfo, PicturePart, check_picture_file, encode_jpeg,
+    encode_part, export_picture, export_shown, picture_file, read_exr, read_part,
 };
 pub use plain_file::{check_file, write_file};
 pub use presets::{Preset, find_preset, presets};

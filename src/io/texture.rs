@@ -6,7 +6,7 @@ use super::read::read_limited;
 use crate::scene::Texture;
 use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder};
+use image::{ExtendedColorType, ImageEncoder, ImageFormat};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -46,6 +46,9 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<DecodedTexture, AssetE
     let mut reader = image::ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()
         .map_err(|error| AssetError::Read { error, path: path.to_owned() })?;
+    if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::Jpeg) | None) {
+        return Err(bad("it is neither PNG nor JPEG".to_owned()));
+    }
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(SIDE_LIMIT);
     limits.max_image_height = Some(SIDE_LIMIT);
@@ -106,6 +109,9 @@ mod tests {
     fn malformed_images_are_errors_that_name_the_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
+        // A format that the program writes and that is no format of textures
+        image::RgbImage::new(2, 2).save_with_format(&path, ImageFormat::Tiff).unwrap();
+        assert!(load(&path).unwrap_err().to_string().contains("neither PNG nor JPEG"));
         std::fs::write(&path, b"not a picture").unwrap();
         assert!(load(&path).unwrap_err().to_string().ends_with("a.png"));
         // A PNG header that promises more pixels than are allowed.

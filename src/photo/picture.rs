@@ -33,6 +33,11 @@ impl Picture {
         if (self.width, self.height) == (width, height) { self } else { self.resized(width, height) }
     }
 
+    /// Converts to display values: tone curve and sRGB encoding, 16 bits per channel.
+    pub fn to_srgb16(&self) -> Vec<[u16; 3]> {
+        self.rgb.iter().map(|&rgb| crate::color::display_srgb16(rgb)).collect()
+    }
+
     /// Converts to display values: tone curve and sRGB encoding, 8 bits per channel, dithered.
     pub fn to_srgb8(&self) -> Vec<[u8; 3]> {
         let places = (0..self.height).flat_map(|y| (0..self.width).map(move |x| [x, y]));

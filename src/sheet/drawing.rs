@@ -1,4 +1,4 @@
-//! A vector drawing in millimetres: what SVG and PDF have in common.
+//! A vector drawing in millimetres, to be written as SVG or PDF.
 
 use glam::Vec2;
 
@@ -28,7 +28,7 @@ impl Stroke {
     }
 }
 
-/// Where the given point lies in a line of text.
+/// The place of the given point in a line of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
     /// At its beginning.
@@ -50,7 +50,7 @@ pub struct Text {
     pub size_mm: f32,
     /// Colour.
     pub color: Rgb,
-    /// Where `at` lies.
+    /// The place of `at` in the text.
     pub align: Align,
     /// Drawn with heavier lines.
     pub strong: bool,

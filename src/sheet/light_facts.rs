@@ -46,9 +46,9 @@ pub struct LightFacts {
     pub aim_m: Option<f32>,
     /// Height of the middle of its front, metres; none for sun and surround.
     pub height_m: Option<f32>,
-    /// Where it is metered.
+    /// The place at which it is metered.
     pub metered_at: MeteredAt,
-    /// What it gives there; none if no light of it arrives.
+    /// Its exposure there; none if no light of it arrives.
     pub exposure: Option<LightExposure>,
     /// Its exposure over that of the key, stops.
     pub stops_over_key: Option<f32>,
@@ -89,8 +89,8 @@ impl LightFacts {
         }
     }
 
-    /// Compares the lights with the key: the strongest key light, else the strongest of those metered at the subject, else
-    /// of all.
+    /// Compares the lights with the key: the strongest key light, else the strongest of those metered at the subject,
+    /// else of all.
     pub fn compare_with_key(lights: &mut [LightFacts]) {
         let strongest = |is_candidate: &dyn Fn(&LightFacts) -> bool| {
             let exposures = lights.iter().filter(|facts| is_candidate(facts)).filter_map(|facts| facts.exposure);

@@ -18,7 +18,7 @@ pub struct LightShape {
     pub front: Vec<Vec3>,
     /// Points of head and modifier behind the front.
     pub back: Vec<Vec3>,
-    /// Where the stand holds the head.
+    /// The point at which the stand holds the head.
     pub head: Vec3,
     /// Unit direction in which it shines.
     pub axis: Vec3,

@@ -21,12 +21,12 @@ const LARGE_M: f32 = 1.0;
 /// Step behind a surface, metres.
 const STEP_M: f32 = 1e-3;
 
-/// Where a light is metered.
+/// The place at which a light is metered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeteredAt {
     /// At the subject.
     Subject,
-    /// Where it falls on the subject from behind, with the meter turned to it: hair and rim lights.
+    /// On the subject's back, with the meter turned to the light: hair and rim lights.
     Rim,
     /// On what it aims at, which is not the subject: background lights.
     Aim,
@@ -94,8 +94,8 @@ impl<'a> MeteredSetup<'a> {
         Ok(read.map(|result| MeteredSetup { scene, subject, reading: result.reading, frame, meter }))
     }
 
-    /// Returns the point that a light aims at: the first surface there for a light that is aimed by angles. None if there
-    /// is none, and for lights that shine in all directions or from afar.
+    /// Returns the point that a light aims at: the first surface there for a light that is aimed by angles. None if
+    /// there is none, and for lights that shine in all directions or from afar.
     pub fn aim_of(&self, light: &Light) -> Option<Vec3> {
         match light.emitter {
             Emitter::Point | Emitter::Sphere { .. } | Emitter::Sun { .. } | Emitter::Surround => None,
@@ -122,7 +122,8 @@ impl<'a> MeteredSetup<'a> {
         along <= 0.0 || (away - way * along.min(1.0)).length() > APART_M
     }
 
-    /// Returns where a light is metered. A key light is never a rim light: the others are compared with it.
+    /// Returns the place at which a light is metered. A key light is never a rim light: the others are compared with
+    /// it.
     pub fn metered_at(&self, light: &Light) -> MeteredAt {
         let to_light = (light.position - self.subject.position).normalize_or_zero();
         let from_behind = to_light.dot(self.subject.facing) < -BEHIND && !light.emitter.is_infinite();
@@ -147,8 +148,8 @@ impl<'a> MeteredSetup<'a> {
         exposure_in(&reading, self.scene, light.id)
     }
 
-    /// Returns where a light from behind first hits the subject, and the direction towards it: along its axis, else on the
-    /// way to the meter.
+    /// Returns where a light from behind first hits the subject, and the direction towards it: along its axis, else on
+    /// the way to the meter.
     fn rim_of(&self, light: &Light) -> (Vec3, Vec3) {
         let way = self.subject.position - light.position;
         let straight = way.normalize_or(Vec3::NEG_Y);

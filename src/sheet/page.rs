@@ -42,8 +42,8 @@ const SCALES: [f32; 22] = [
 const GREY: [u8; 3] = [110; 3];
 const RULE: [u8; 3] = [200; 3];
 
-/// Returns the denominator of the largest usual scale in which sizes in metres, beside each other, fit a width and height
-/// in millimetres.
+/// Returns the denominator of the largest usual scale in which sizes in metres, beside each other, fit a width and
+/// height in millimetres.
 fn scale_of(sizes_m: &[Vec2], room_mm: Vec2) -> f32 {
     let width_m: f32 = sizes_m.iter().map(|size| size.x).sum();
     let height_m = sizes_m.iter().map(|size| size.y).fold(0.0, f32::max);

@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 
 /// Most cells along an edge of the grid: larger things have larger cells.
 const MOST_CELLS: f32 = 1500.0;
-/// Cells by which a simplified outline may differ from the border of the cells: more than the steps of a slanted border.
+/// Cells by which a simplified outline may differ from the border of the cells: more than the steps of a slanted
+/// border.
 const TOLERANCE: f32 = 0.8;
 
 /// Cells that are filled or not.

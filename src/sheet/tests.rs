@@ -122,8 +122,8 @@ fn rim_lights_are_metered_turned_to_them_and_background_lights_on_the_background
     let sheet = content(&scene, Units::Metres);
     let [rim, back] = [&sheet.lights[2].facts, &sheet.lights[3].facts];
     assert_eq!((rim.metered_at, back.metered_at), (MeteredAt::Rim, MeteredAt::Aim));
-    // At half of the key's energy and the same distance: a stop less, but for the key's angle of incidence, whose cosine
-    // is 2/3
+    // At half of the key's energy and the same distance: a stop less, but for the key's angle of incidence, whose
+    // cosine is 2/3
     let over_key = rim.stops_over_key.unwrap();
     assert!((-0.6..0.0).contains(&over_key), "{over_key}");
     assert!(back.exposure.unwrap().f_number > 1.0);

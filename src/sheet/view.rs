@@ -59,7 +59,7 @@ struct PlacedLight {
     front: Vec<Vec2>,
     body: Vec<Vec2>,
     position: Vec2,
-    /// What it aims at, if it aims at anything, and its distance, metres.
+    /// The point that it aims at, if there is one, and its distance, metres.
     aim: Option<(Vec2, f32)>,
     /// The direction from its front to its back.
     backwards: Vec2,
@@ -108,8 +108,8 @@ fn turn_to_camera(frame: &CameraFrame) -> Mat3 {
 }
 
 impl StudioView {
-    /// Returns the view of a studio with the subject at a point, metres. `aims` are the points that the lights aim at, where
-    /// they aim at any.
+    /// Returns the view of a studio with the subject at a point, metres. `aims` are the points that the lights aim at,
+    /// where they aim at any.
     pub fn new(scene: &Scene, assets: &Assets, subject: Vec3, aims: &[Option<Vec3>], from: ViewFrom) -> Self {
         let frame = scene.camera_frame(scene.camera.aspect());
         let turn = turn_to_camera(&frame);
@@ -152,8 +152,8 @@ impl StudioView {
         view
     }
 
-    /// Sets the area of the view: lights, camera and subject; of people, props, aims and the backdrops near them as much as
-    /// is in the room and a little around it.
+    /// Sets the area of the view: lights, camera and subject; of people, props, aims and the backdrops near them as
+    /// much as is in the room and a little around it.
     fn frame(&mut self) {
         let of_lights = self.lights.iter().flat_map(|light| light.body.iter().chain([&light.foot]));
         let points = of_lights.chain(self.camera.iter().flatten()).chain([&self.subject]).copied();

@@ -81,6 +81,7 @@ fn encoded(folder: &Path, format: PictureFormat) -> Vec<u8> {
     let name = match format {
         PictureFormat::Png => "a.png",
         PictureFormat::Jpeg => "a.jpg",
+        PictureFormat::Tiff => "a.tif",
         PictureFormat::Exr => "a.exr",
     };
     let path = folder.join(name);

@@ -18,7 +18,7 @@ use std::time::Duration;
 pub struct Arguments {
     /// Studio: a .ron file, or the name of a shipped one.
     pub scene: PathBuf,
-    /// Picture file, whose extension names its format: png, jpg (as shown), exr (scene-linear).
+    /// Picture file, whose extension names its format: png, jpg, tif of 16 bits (as shown), exr (scene-linear).
     #[arg(short, long, required_unless_present = "explain_pixel")]
     output: Option<PathBuf>,
     /// Rendering method.

@@ -45,7 +45,7 @@ impl FilePurpose {
             FilePurpose::OpenScene | FilePurpose::SaveScene => ("Catchlight studio".to_owned(), &["ron"]),
             FilePurpose::ImportModel => (format!("{} model", io::model_format_names()), io::model_extensions()),
             FilePurpose::OpenTexture => ("Picture".to_owned(), io::TEXTURE_EXTENSIONS),
-            FilePurpose::ExportPicture => ("Picture".to_owned(), &["png", "jpg", "exr"]),
+            FilePurpose::ExportPicture => ("Picture".to_owned(), &["png", "jpg", "tif", "exr"]),
             FilePurpose::ExportSheet(_) => ("Set-up sheet".to_owned(), SHEET_EXTENSIONS),
         }
     }

@@ -62,7 +62,7 @@ fn file_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
         ui,
         state.has_picture,
         "Export picture\u{2026}",
-        "Write the rendered picture as PNG, JPEG or EXR",
+        "Write the rendered picture as PNG, JPEG, 16-bit TIFF or EXR",
         Command::ExportPicture,
         out,
     );

@@ -134,7 +134,7 @@ fn button_row(ui: &mut Ui, rendering: &Rendering, out: &mut Vec<Command>) {
         let export = Button::new("Export\u{2026}").min_size(vec2(ui.available_width(), 28.0));
         let export = ui.add_enabled(rendering.developed().is_some(), export);
         let export = export.on_disabled_hover_text("Render first");
-        if export.on_hover_text("Write the picture as PNG, JPEG or EXR (Ctrl+E)").clicked() {
+        if export.on_hover_text("Write the picture as PNG, JPEG, 16-bit TIFF or EXR (Ctrl+E)").clicked() {
             out.push(Command::ExportPicture);
         }
     });

@@ -313,6 +313,7 @@ mod tests {
     use crate::editor::document::action::Action;
     use crate::raytrace::{Layer, Settings};
     use crate::scene::Assets;
+    use std::time::Duration;
 
     #[test]
     fn a_studio_that_was_opened_by_a_relative_path_is_recovered_from_any_folder() {
@@ -356,23 +357,25 @@ mod tests {
             recovery.failure();
             recovery.update(WindowContent { document: &document, picture, is_rendering }, now, &wake)
         };
-        let has_picture = || {
-            let window = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap();
-            window.path().join("picture.ron").exists()
+        // A request wakes the window when it is done and when there is no other one: two wakes, or one
+        let wait_for = |wanted: bool| loop {
+            done.recv_timeout(Duration::from_secs(60)).unwrap();
+            let window = std::fs::read_dir(folder.path()).unwrap().next();
+            if window.is_some_and(|window| window.unwrap().path().join("picture.ron").exists() == wanted) {
+                break;
+            }
         };
         let films = [picture(), picture(), picture()];
         assert_eq!(update(Some(&films[0]), true, 0.0), Some(RUNNING_DELAY_S));
         assert_eq!(update(Some(&films[1]), true, 59.0), Some(1.0), "a newer film puts nothing off");
         assert_eq!(update(Some(&films[1]), true, 60.0), None);
-        done.recv().unwrap();
-        assert!(has_picture());
+        wait_for(true);
         assert_eq!(update(Some(&films[1]), true, 61.0), None, "it is kept");
         assert_eq!(update(Some(&films[2]), true, 61.0), Some(RUNNING_DELAY_S));
         assert_eq!(update(Some(&films[2]), false, 62.0), Some(DELAY_S), "the render has ended");
         assert_eq!(update(Some(&films[2]), false, 64.0), None);
-        done.recv().unwrap();
-        assert_eq!(update(None, false, 65.0), None);
-        done.recv().unwrap();
-        assert!(!has_picture(), "it is exported");
+        wait_for(true);
+        assert_eq!(update(None, false, 65.0), None, "it is exported");
+        wait_for(false);
     }
 }

@@ -87,6 +87,7 @@ pub(super) fn part<'a>(
     info: &PictureInfo,
 ) -> ExrPart<'a> {
     let mut attributes = LayerAttributes::named(text(name));
+    info.capture.write_attributes(&mut attributes, text);
     attributes.software_name = Some(text(concat!("Catchlight ", env!("CARGO_PKG_VERSION"))));
     let others = [
         ("exposureScale_cd_s_m2_per_unit", AttributeValue::F32(info.cd_s_m2_per_unit)),

@@ -1,10 +1,12 @@
-//! Writes pictures: tone-mapped PNG and JPEG, scene-linear EXR.
+//! Writes pictures: tone-mapped PNG, JPEG and TIFF, scene-linear EXR.
 
 mod channel_samples;
 mod exr_file;
+mod metadata;
 mod part_file;
 mod picture_file;
 
+pub use metadata::CaptureInfo;
 pub use part_file::{PicturePart, encode_part, read_part};
 pub use picture_file::PictureFile;
 
@@ -12,6 +14,10 @@ use super::atomic;
 use super::error::SaveError;
 use crate::photo::{AovPicture, LazyPicture, Picture, exposure};
 use crate::scene::Scene;
+use image::codecs::jpeg::JpegEncoder;
+use image::codecs::png::PngEncoder;
+use image::codecs::tiff::TiffEncoder;
+use image::{ExtendedColorType, ImageEncoder};
 use picture_file::Content;
 use std::io::Cursor;
 use std::path::Path;
@@ -32,6 +38,8 @@ pub struct PictureInfo {
     pub method: String,
     /// The denoiser, if the picture is denoised.
     pub denoiser: Option<&'static str>,
+    /// The camera's settings.
+    pub capture: CaptureInfo,
 }
 
 /// A picture and its light layers.
@@ -54,7 +62,14 @@ impl PictureInfo {
     /// Returns the settings of a render; the exposure scale is that of the scene's camera.
     pub fn new(scene: &Scene, method: &str, spp: u32, seed: u64) -> Self {
         let cd_s_m2_per_unit = 1.0 / exposure::pixel_per_cd_s_m2(scene);
-        PictureInfo { cd_s_m2_per_unit, spp, seed, method: method.to_owned(), denoiser: None }
+        PictureInfo {
+            cd_s_m2_per_unit,
+            spp,
+            seed,
+            method: method.to_owned(),
+            denoiser: None,
+            capture: CaptureInfo::new(scene),
+        }
     }
 }
 
@@ -65,6 +80,8 @@ pub enum PictureFormat {
     Png,
     /// Tone-mapped 8-bit sRGB, lossy.
     Jpeg,
+    /// Tone-mapped 16-bit sRGB, for retouching.
+    Tiff,
     /// Scene-linear 32-bit float, after exposure and before the tone curve.
     Exr,
 }
@@ -73,15 +90,16 @@ impl PictureFormat {
     /// Returns the format of a file name.
     ///
     /// # Errors
-    /// If the extension is none of `png`, `jpg`, `jpeg` and `exr`, in upper or lower case.
+    /// If the extension is none of `png`, `jpg`, `jpeg`, `tif`, `tiff` and `exr`, in upper or lower case.
     pub fn of(path: &Path) -> Result<Self, SaveError> {
         let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         match ending.as_str() {
             "png" => Ok(PictureFormat::Png),
             "jpg" | "jpeg" => Ok(PictureFormat::Jpeg),
+            "tif" | "tiff" => Ok(PictureFormat::Tiff),
             "exr" => Ok(PictureFormat::Exr),
             _ => {
-                let known = "a picture's name ends in .png, .jpg or .exr";
+                let known = "a picture's name ends in .png, .jpg, .tif or .exr";
                 Err(SaveError::UnknownEnding { known, ending, path: path.to_owned() })
             }
         }
@@ -107,7 +125,7 @@ pub fn export_picture(path: &Path, picture: &Picture, info: &PictureInfo) -> Res
 
 /// Prepares the file of a picture, to be written later. An EXR file also gets the light layers, each as a part under
 /// its light's name, and the AOVs as channels beside the picture's; with the picture before the denoiser, it gets the
-/// channels `noisy.R`, `noisy.G` and `noisy.B` of the picture and of each layer. PNG and JPEG hold the picture alone.
+/// channels `noisy.R`, `noisy.G` and `noisy.B` of the picture and of each layer. PNG, JPEG and TIFF hold the picture alone.
 ///
 /// # Errors
 /// If the extension is unknown or the picture empty, or if layers, AOVs or the noisy picture differ in size or number.
@@ -137,8 +155,9 @@ pub fn picture_file<'a>(
         }
     }
     let content = match format {
-        PictureFormat::Png | PictureFormat::Jpeg => Content::Bytes(
-            encode_8bit(picture, format).map_err(|message| SaveError::Encode { message, path: path.to_owned() })?,
+        PictureFormat::Png | PictureFormat::Jpeg | PictureFormat::Tiff => Content::Bytes(
+            encode_display(picture, format, Some(&info.capture))
+                .map_err(|message| SaveError::Encode { message, path: path.to_owned() })?,
         ),
         PictureFormat::Exr => Content::Exr(Box::new(exr_file::image(shown, noisy, aovs, info))),
     };
@@ -153,16 +172,16 @@ fn check_size(Picture { width, height, rgb }: &Picture) -> Result<(), SaveError>
     Ok(())
 }
 
-/// Writes an sRGB image as PNG or JPEG, without tone mapping. An older file is replaced atomically.
+/// Writes an sRGB image of 8 bits as PNG, JPEG or TIFF, without tone mapping. An older file is replaced atomically.
 ///
 /// # Errors
 /// As [`export_picture`], and if the extension is `exr`.
 pub fn export_shown(path: &Path, shown: &image::RgbImage) -> Result<(), SaveError> {
     let format = PictureFormat::of(path)?;
     let content = if format == PictureFormat::Exr || shown.is_empty() {
-        Err("bytes as they are shown go to PNG and JPEG".to_owned())
+        Err("bytes as they are shown go to PNG, JPEG and TIFF".to_owned())
     } else {
-        encode_rgb8(shown.width(), shown.height(), shown.as_raw(), format)
+        encode(shown.width(), shown.height(), shown.as_raw(), ExtendedColorType::Rgb8, format, None)
     };
     let content = content.map_err(|message| SaveError::Encode { message, path: path.to_owned() })?;
     atomic::send(path, |out| out.write_all(&content))
@@ -177,9 +196,14 @@ pub fn check_picture_file(path: &Path) -> Result<(), SaveError> {
     atomic::check(path)
 }
 
-/// Encodes the tone-mapped picture as PNG or JPEG.
-fn encode_8bit(picture: &Picture, format: PictureFormat) -> Result<Vec<u8>, String> {
-    encode_rgb8(picture.width, picture.height, picture.to_srgb8().as_flattened(), format)
+/// Encodes the tone-mapped picture as PNG, JPEG or TIFF.
+fn encode_display(picture: &Picture, format: PictureFormat, capture: Option<&CaptureInfo>) -> Result<Vec<u8>, String> {
+    let Picture { width, height, .. } = *picture;
+    if format == PictureFormat::Tiff {
+        let codes: Vec<u8> = picture.to_srgb16().iter().flatten().flat_map(|code| code.to_ne_bytes()).collect();
+        return encode(width, height, &codes, ExtendedColorType::Rgb16, format, capture);
+    }
+    encode(width, height, picture.to_srgb8().as_flattened(), ExtendedColorType::Rgb8, format, capture)
 }
 
 /// Encodes the tone-mapped picture as JPEG.
@@ -187,17 +211,36 @@ fn encode_8bit(picture: &Picture, format: PictureFormat) -> Result<Vec<u8>, Stri
 /// # Errors
 /// If the encoder fails, as for a picture without pixels.
 pub fn encode_jpeg(picture: &Picture) -> Result<Vec<u8>, String> {
-    encode_8bit(picture, PictureFormat::Jpeg)
+    encode_display(picture, PictureFormat::Jpeg, None)
 }
 
-fn encode_rgb8(width: u32, height: u32, rgb: &[u8], format: PictureFormat) -> Result<Vec<u8>, String> {
-    use image::ImageEncoder;
+/// Encodes rows of pixels, in native byte order.
+fn encode(
+    width: u32,
+    height: u32,
+    pixels: &[u8],
+    color: ExtendedColorType,
+    format: PictureFormat,
+    capture: Option<&CaptureInfo>,
+) -> Result<Vec<u8>, String> {
     let mut content = Cursor::new(Vec::new());
-    let color = image::ExtendedColorType::Rgb8;
     match format {
-        PictureFormat::Jpeg => image::codecs::jpeg::JpegEncoder::new_with_quality(&mut content, JPEG_QUALITY)
-            .write_image(rgb, width, height, color),
-        _ => image::codecs::png::PngEncoder::new(&mut content).write_image(rgb, width, height, color),
+        PictureFormat::Jpeg => {
+            let mut encoder = JpegEncoder::new_with_quality(&mut content, JPEG_QUALITY);
+            metadata::describe(&mut encoder, capture)?;
+            encoder.write_image(pixels, width, height, color)
+        }
+        // The encoder has no EXIF
+        PictureFormat::Tiff => {
+            let mut encoder = TiffEncoder::new(&mut content);
+            metadata::describe(&mut encoder, None)?;
+            encoder.write_image(pixels, width, height, color)
+        }
+        PictureFormat::Png | PictureFormat::Exr => {
+            let mut encoder = PngEncoder::new(&mut content);
+            metadata::describe(&mut encoder, capture)?;
+            encoder.write_image(pixels, width, height, color)
+        }
     }
     .map_err(|error| error.to_string())?;
     Ok(content.into_inner())

@@ -5,10 +5,10 @@
 //! ([`ExactSum`]) in four unsigned channels, the lowest 32 bits first: `R.0` to `R.3`. Every pixel has the same number
 //! of samples; the header says which, and of which render.
 
-use super::PictureInfo;
 use super::channel_samples::{ChannelSamples, ExrChannel, ExrPart};
 use super::exr_file::{SHOWN_CHANNELS, WHOLE, checked_size, part, text, vector_channels};
 use super::picture_file::{Content, PictureFile};
+use super::{CaptureInfo, PictureInfo};
 use crate::io::checkpoint::RenderId;
 use crate::io::error::{SaveError, reason};
 use crate::raytrace::{ExactSum, FilmPart, NonFiniteReport, PartAovs, PartLayer, PixelSum};
@@ -195,7 +195,8 @@ impl Header<'_> {
         };
         let seed = self.text("seed").and_then(|seed| seed.parse().ok()).ok_or("the seed is missing")?;
         let method = self.text("method").ok_or("the method is missing")?;
-        Ok(PictureInfo { cd_s_m2_per_unit: scale, spp: self.samples("spp")?, seed, method, denoiser: None })
+        let (spp, capture) = (self.samples("spp")?, CaptureInfo::read_attributes(&self.0.attributes, text));
+        Ok(PictureInfo { cd_s_m2_per_unit: scale, spp, seed, method, denoiser: None, capture })
     }
 
     fn layer(&self, size: exr::math::Vec2<usize>) -> Result<PartLayer, String> {

@@ -24,6 +24,49 @@ fn png_holds_the_tone_mapped_picture() {
 }
 
 #[test]
+fn tiff_holds_the_tone_mapped_picture_in_16_bits_with_the_profile() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.tif");
+    let picture = ramp(7, 5, 1.0);
+    export_picture(&path, &picture, &info()).unwrap();
+    let bytes = std::fs::read(&path).unwrap();
+    let read = image::load_from_memory(&bytes).unwrap();
+    assert_eq!(read.color(), image::ColorType::Rgb16);
+    assert_eq!(read.into_rgb16().pixels().map(|p| p.0).collect::<Vec<_>>(), picture.to_srgb16());
+    for (fine, coarse) in picture.to_srgb16().iter().flatten().zip(picture.to_srgb8().iter().flatten()) {
+        assert!((f32::from(*fine) / 257.0 - f32::from(*coarse)).abs() < 1.0);
+    }
+    assert!(bytes.windows(4).any(|bytes| bytes == b"acsp"), "the signature of a profile");
+}
+
+#[test]
+fn png_and_jpeg_hold_the_exposure_the_studio_and_the_srgb_profile() {
+    use exif::{In, Tag};
+    use image::ImageDecoder;
+    let folder = tempfile::tempdir().unwrap();
+    let mut info = info();
+    info.capture.studio = "Two lights".to_owned();
+    for name in ["a.png", "a.jpg"] {
+        let path = folder.path().join(name);
+        export_picture(&path, &ramp(7, 5, 1.0), &info).unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        let read = exif::Reader::new().read_from_container(&mut Cursor::new(&bytes)).unwrap();
+        let text = |tag| read.get_field(tag, In::PRIMARY).unwrap().display_value().with_unit(&read).to_string();
+        assert_eq!(
+            [Tag::FNumber, Tag::ExposureTime, Tag::FocalLength].map(text),
+            ["f/5.6", "1/125 s", "85 mm"],
+            "{name}"
+        );
+        assert_eq!(text(Tag::ImageDescription), "\"Two lights\"");
+        let reader = image::ImageReader::new(Cursor::new(&bytes)).with_guessed_format().unwrap();
+        let profile = reader.into_decoder().unwrap().icc_profile().unwrap().unwrap();
+        let profile = moxcms::ColorProfile::new_from_slice(&profile).unwrap();
+        assert_eq!(profile.rendering_intent, moxcms::ColorProfile::new_srgb().rendering_intent);
+        assert!((profile.red_colorant.x - moxcms::ColorProfile::new_srgb().red_colorant.x).abs() < 1e-3);
+    }
+}
+
+#[test]
 fn jpeg_is_close_to_the_tone_mapped_picture() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.jpeg");
@@ -57,6 +100,9 @@ fn exr_keeps_every_bit_the_layers_and_the_attributes() {
             assert_eq!(values, picture.rgb.iter().map(|c| c[component]).collect::<Vec<_>>(), "{name} {}", channel.name);
         }
         let other = |name| layer.attributes.other.get(&Text::new_or_none(name).unwrap()).cloned();
+        let attributes = &layer.attributes;
+        assert_eq!((attributes.aperture, attributes.iso_speed), (Some(5.6), Some(100.0)));
+        assert_eq!((attributes.exposure, other("nominalFocalLength")), (Some(0.008), Some(AttributeValue::F32(85.0))));
         assert_eq!(other("spp"), Some(AttributeValue::I32(64)));
         assert_eq!(other("seed"), Some(AttributeValue::Text(Text::new_or_none(u64::MAX.to_string()).unwrap())));
         assert_eq!(other("method"), Some(AttributeValue::Text(Text::new_or_none("path").unwrap())));
@@ -83,8 +129,10 @@ fn refused_pictures_leave_no_file() {
     let refused = |name: &str, picture: &Picture| {
         export_picture(&folder.path().join(name), picture, &info()).unwrap_err().to_string()
     };
-    assert!(refused("a.tiff", &picture).starts_with("a picture's name ends in .png, .jpg or .exr, not in \"tiff\""));
-    assert!(refused("a", &picture).contains(".png, .jpg or .exr"));
+    assert!(
+        refused("a.webp", &picture).starts_with("a picture's name ends in .png, .jpg, .tif or .exr, not in \"webp\"")
+    );
+    assert!(refused("a", &picture).contains(".png, .jpg, .tif or .exr"));
     assert!(refused("none/a.png", &picture).starts_with("there is no such folder"));
     assert!(refused("a.png", &Picture::default()).contains("no picture of 0 x 0"));
     let layers = [("Key".to_owned(), LazyPicture::from(ramp(3, 2, 1.0)))];
