@@ -353,29 +353,32 @@ mod tests {
         let wake: Wake = Arc::new(move || {
             let _ = sender.send(());
         });
-        let mut update = |picture: Option<&KeptPicture>, is_rendering, now| {
-            recovery.failure();
+        let update = |recovery: &mut Recovery, picture: Option<&KeptPicture>, is_rendering, now| {
             recovery.update(WindowContent { document: &document, picture, is_rendering }, now, &wake)
         };
-        // A request wakes the window when it is done and when there is no other one: two wakes, or one
-        let wait_for = |wanted: bool| loop {
-            done.recv_timeout(Duration::from_secs(60)).unwrap();
-            let window = std::fs::read_dir(folder.path()).unwrap().next();
-            if window.is_some_and(|window| window.unwrap().path().join("picture.ron").exists() == wanted) {
-                break;
+        // Waits for the end of a write, which wakes the window after its result
+        let has_picture_after_write = |recovery: &mut Recovery| {
+            loop {
+                done.recv_timeout(Duration::from_secs(60)).unwrap();
+                assert_eq!(recovery.failure(), None);
+                if !recovery.worker.is_busy() {
+                    break;
+                }
             }
+            let window = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap();
+            window.path().join("picture.ron").exists()
         };
         let films = [picture(), picture(), picture()];
-        assert_eq!(update(Some(&films[0]), true, 0.0), Some(RUNNING_DELAY_S));
-        assert_eq!(update(Some(&films[1]), true, 59.0), Some(1.0), "a newer film puts nothing off");
-        assert_eq!(update(Some(&films[1]), true, 60.0), None);
-        wait_for(true);
-        assert_eq!(update(Some(&films[1]), true, 61.0), None, "it is kept");
-        assert_eq!(update(Some(&films[2]), true, 61.0), Some(RUNNING_DELAY_S));
-        assert_eq!(update(Some(&films[2]), false, 62.0), Some(DELAY_S), "the render has ended");
-        assert_eq!(update(Some(&films[2]), false, 64.0), None);
-        wait_for(true);
-        assert_eq!(update(None, false, 65.0), None, "it is exported");
-        wait_for(false);
+        assert_eq!(update(&mut recovery, Some(&films[0]), true, 0.0), Some(RUNNING_DELAY_S));
+        assert_eq!(update(&mut recovery, Some(&films[1]), true, 59.0), Some(1.0), "a newer film puts nothing off");
+        assert_eq!(update(&mut recovery, Some(&films[1]), true, 60.0), None);
+        assert!(has_picture_after_write(&mut recovery));
+        assert_eq!(update(&mut recovery, Some(&films[1]), true, 61.0), None, "it is kept");
+        assert_eq!(update(&mut recovery, Some(&films[2]), true, 61.0), Some(RUNNING_DELAY_S));
+        assert_eq!(update(&mut recovery, Some(&films[2]), false, 62.0), Some(DELAY_S), "the render has ended");
+        assert_eq!(update(&mut recovery, Some(&films[2]), false, 64.0), None);
+        assert!(has_picture_after_write(&mut recovery));
+        assert_eq!(update(&mut recovery, None, false, 65.0), None, "it is exported");
+        assert!(!has_picture_after_write(&mut recovery));
     }
 }
