@@ -27,6 +27,14 @@ pub fn ev100(illuminance_lux: f32, meter_constant: f32) -> f32 {
     (100.0 * illuminance_lux / meter_constant).log2()
 }
 
+/// Returns the f-number to set for a luminous exposure at the camera's ISO and shutter, behind its ND filter and at its
+/// focus.
+pub fn f_number_to_set(scene: &Scene, lux_s: f32) -> f32 {
+    let camera = &scene.camera;
+    let on_sensor = lux_s * lens_transmission(camera, &scene.focused_lens());
+    f_number(on_sensor, camera.iso, camera.meter_constant)
+}
+
 /// Returns the f-number for a luminous exposure of continuous light (E t) plus flash (H), lux s: N^2 = (E t + H) S / C.
 pub fn f_number(lux_s: f32, iso: f32, meter_constant: f32) -> f32 {
     (lux_s * iso / meter_constant).max(0.0).sqrt()

@@ -93,6 +93,17 @@ impl Dial {
         }
     }
 
+    /// Returns a value as it is printed on a dial: 5.6 for 5.657; the value itself between the marks.
+    pub fn printed(self, value: f32) -> f32 {
+        let label = self.label(value);
+        let number = label.trim_start_matches("f/").trim_end_matches(" s");
+        let parsed = match number.strip_prefix("1/") {
+            Some(denominator) => denominator.parse().map(|denominator: f32| 1.0 / denominator),
+            None => number.parse(),
+        };
+        parsed.unwrap_or(value)
+    }
+
     /// Returns the next whole third from `value` in a direction (+1 or -1), clamped to the scale.
     pub fn step(self, value: f32, direction: i32) -> f32 {
         let thirds = self.thirds(value);
@@ -137,6 +148,12 @@ mod tests {
         assert_eq!(Dial::Iso.label(100.0), "100");
         assert_eq!(Dial::FNumber.label(6.0), "f/6.0");
         assert_eq!([11.0, 11.4, 22.0].map(|n| Dial::FNumber.label(n)), ["f/11", "f/11", "f/22"]);
+    }
+
+    #[test]
+    fn printed_values_are_those_of_the_labels() {
+        let printed = [(Dial::FNumber, 5.657), (Dial::Shutter, 1.0 / 128.0), (Dial::Iso, 400.0), (Dial::Shutter, 2.0)];
+        assert_eq!(printed.map(|(dial, value)| dial.printed(value)), [5.6, 1.0 / 125.0, 400.0, 2.0]);
     }
 
     #[test]

@@ -50,6 +50,11 @@ impl Sensor {
 }
 
 impl Sensor {
+    /// Returns the crop factor: the diagonal of full frame over that of the sensor.
+    pub fn crop_factor(self) -> f32 {
+        Sensor::FullFrame.size_mm().length() / self.size_mm().length()
+    }
+
     /// Returns the diameter of the largest circle of blur that counts as sharp in tables of depth of field, metres: 1/1500
     /// of the diagonal.
     pub fn sharp_circle_m(self) -> f32 {

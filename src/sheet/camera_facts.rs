@@ -80,7 +80,7 @@ fn sensor_text(camera: &Camera) -> String {
 }
 
 fn lens_text(camera: &Camera) -> String {
-    let crop = Sensor::FullFrame.size_mm().length() / camera.sensor.size_mm().length();
+    let crop = camera.sensor.crop_factor();
     let equivalent = camera.focal_length_mm * crop;
     match (crop - 1.0).abs() < 0.02 {
         true => format!("{:.0} mm", camera.focal_length_mm),

@@ -63,7 +63,7 @@ pub fn html(content: &SheetContent, picture: &str, font: &Font) -> String {
     out += "</tr></thead>\n<tbody>\n";
     for light in &content.lights {
         out += "<tr>";
-        for (index, (name, [line, small])) in COLUMNS.iter().zip(light.facts.cells(content.units)).enumerate() {
+        for (index, (name, [line, small])) in COLUMNS.iter().zip(light.facts.cells()).enumerate() {
             let attribute = if index > 1 { format!(" data-name=\"{name}\"") } else { String::new() };
             let number = match index {
                 0 => format!(

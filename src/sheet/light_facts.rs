@@ -24,6 +24,8 @@ pub type Cell = [String; 2];
 /// The facts of a light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LightFacts {
+    /// Units of lengths.
+    units: Units,
     /// Its number in the plan, from 1.
     pub number: usize,
     /// Its name.
@@ -32,7 +34,7 @@ pub struct LightFacts {
     pub role: Role,
     /// Switched on.
     pub is_on: bool,
-    /// Modifier with all that is on it: `Softbox 60 x 90, 40° grid`.
+    /// Modifier with its accessories: `Softbox 60 x 90, 40° grid`.
     pub modifier: String,
     /// The head and its colour: `Flash 400 Ws, 5500 K, 1/2 CTO`.
     pub head: String,
@@ -72,6 +74,7 @@ impl LightFacts {
             _ => Some(LightBearing::new(scene, light.position, subject)),
         };
         LightFacts {
+            units,
             number,
             name: light.name.clone(),
             role: light.role,
@@ -105,7 +108,8 @@ impl LightFacts {
     }
 
     /// Returns a cell for each of [`COLUMNS`].
-    pub fn cells(&self, units: Units) -> [Cell; 7] {
+    pub fn cells(&self) -> [Cell; 7] {
+        let units = self.units;
         let cell = |line: String, small: &str| [line, small.to_owned()];
         let none = || cell("\u{2013}".to_owned(), "");
         let off = if self.is_on { "" } else { ", off" };
@@ -165,7 +169,7 @@ fn round_text(place: &LightBearing) -> String {
     }
 }
 
-/// Returns the modifier's name if it is one that is sold, else its front and what is before it.
+/// Returns the modifier's name if it is one that is sold, else its front with its accessories.
 pub fn modifier_text(light: &Light, units: Units) -> String {
     match NamedModifier::of(&light.emitter, &light.modifier) {
         Some(named) => named.name.to_owned(),
@@ -187,7 +191,7 @@ fn front_text(emitter: &Emitter, units: Units) -> String {
     }
 }
 
-/// Returns what is before a front, each with a comma before it.
+/// Returns the accessories before a front, each with a comma before it.
 fn accessories(modifier: &Modifier) -> Vec<String> {
     let Modifier { loss_stops: _, scrim_stops, beam, grid_deg, doors } = modifier;
     let texts = [

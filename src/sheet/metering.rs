@@ -10,9 +10,9 @@ use glam::Vec3;
 const APART_M: f32 = 0.75;
 /// Distance behind the camera's aim in which a surface is the subject, metres.
 const NEAR_M: f32 = 0.15;
-/// Longest way along which a background is looked for, metres.
+/// Longest distance at which a background is searched for, metres.
 const FARTHEST_M: f32 = 100.0;
-/// Most surfaces that are looked through on the way to a background.
+/// Most surfaces that are skipped before a background.
 const MOST_SURFACES: u32 = 64;
 /// Sine of the angle behind the meter's plane from which a light is a rim light: 15 degrees.
 const BEHIND: f32 = 0.26;
@@ -148,8 +148,8 @@ impl<'a> MeteredSetup<'a> {
         exposure_in(&reading, self.scene, light.id)
     }
 
-    /// Returns where a light from behind first hits the subject, and the direction towards it: along its axis, else on
-    /// the way to the meter.
+    /// Returns the first point of the subject that a light from behind hits, along its axis or else on the way to the
+    /// meter, and the direction from there to the light.
     fn rim_of(&self, light: &Light) -> (Vec3, Vec3) {
         let way = self.subject.position - light.position;
         let straight = way.normalize_or(Vec3::NEG_Y);
@@ -217,7 +217,7 @@ fn is_large(object: &Object) -> bool {
 fn subject_of_camera(scene: &Scene, meter: &LightMeter, aim: Vec3) -> MeterPoint {
     let way = aim - scene.camera.position;
     let direction = way.normalize_or(Vec3::NEG_Z);
-    // Angles say nothing of a distance
+    // An aim by angles has no distance
     let reach_m = if matches!(scene.camera.aim, Aim::Angles { .. }) { FARTHEST_M } else { way.length() + NEAR_M };
     let surface = meter.first_surface(scene.camera.position, direction, reach_m);
     let position = surface.map_or(aim, |surface| surface.position);
@@ -228,8 +228,5 @@ fn subject_of_camera(scene: &Scene, meter: &LightMeter, aim: Vec3) -> MeterPoint
 fn exposure_in(reading: &Reading, scene: &Scene, light: LightId) -> Option<LightExposure> {
     let read = reading.lights.iter().find(|read| read.light == Some(light))?;
     let lux_s = reading.lux_s(read);
-    let camera = &scene.camera;
-    let on_sensor = lux_s * exposure::lens_transmission(camera, &scene.focused_lens());
-    let f_number = exposure::f_number(on_sensor, camera.iso, camera.meter_constant);
-    (lux_s > 0.0).then_some(LightExposure { lux_s, f_number })
+    (lux_s > 0.0).then(|| LightExposure { lux_s, f_number: exposure::f_number_to_set(scene, lux_s) })
 }

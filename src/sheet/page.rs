@@ -185,7 +185,7 @@ impl Page<'_> {
             } else {
                 self.grey(vec2(MARGIN_MM, base), &light.facts.number.to_string(), SMALL_MM);
             }
-            for ((cell, left), width) in light.facts.cells(content.units).iter().zip(&lefts).zip(COLUMNS_MM) {
+            for ((cell, left), width) in light.facts.cells().iter().zip(&lefts).zip(COLUMNS_MM) {
                 let indent = if *left == MARGIN_MM { 6.0 } else { 0.0 };
                 let [line, small] = [(&cell[0], BODY_MM), (&cell[1], SMALL_MM)]
                     .map(|(text, size)| self.font.fitted(text, size, width - indent - 1.2));

@@ -4,7 +4,7 @@ use super::drawing::{Align, Drawing, Element, Rgb, Stroke, Text};
 use glam::Vec2;
 use std::fmt::Write;
 
-/// Fonts of SVG and HTML, the sheet's own first: text is as wide or narrower in none of them by more than a tenth.
+/// Fonts of SVG and HTML, the PDF's own first.
 pub const FONTS: &str = "Ubuntu, 'Open Sans', Roboto, 'Helvetica Neue', Arial, sans-serif";
 
 /// Returns a drawing as an SVG element. The picture is a `data:` address; `prefix` makes the ids of several drawings in

@@ -106,12 +106,12 @@ fn the_numbers_of_a_sheet_are_those_of_the_scene_and_of_the_meter() {
         assert_eq!(facts.metered_at, MeteredAt::Subject);
     }
     assert_eq!(text_of(&sheet.subject, "Meter").split(' ').next(), Some(nearest_third(reading.f_number()).as_str()));
-    let cells = sheet.lights[0].facts.cells(Units::Metres);
+    let cells = sheet.lights[0].facts.cells();
     assert_eq!(cells[0], ["Key", "Key"]);
     assert_eq!(cells[2], ["1/4", "\u{2212}2.0 stops, 100 Ws"]);
     // The meter is 1 cm before the subject
     assert_eq!([&cells[3][0], &cells[4][0], &cells[5][0]], ["1.49 m", "2.00 m", "45\u{b0} right"]);
-    assert_eq!(sheet.lights[1].facts.cells(Units::Feet)[4][0], "4' 11\"");
+    assert_eq!(content(&scene, Units::Feet).lights[1].facts.cells()[4][0], "4' 11\"");
     assert_eq!(text_of(&sheet.camera, "Distance"), "2.49 m to the subject");
     assert_eq!(text_of(&sheet.subject, "Background"), "Grey paper, 2.13 m behind the subject");
 }

@@ -148,13 +148,13 @@ impl StudioView {
             subject: project(subject),
             room,
         };
-        view.frame();
+        view.fit_area();
         view
     }
 
     /// Sets the area of the view: lights, camera and subject; of people, props, aims and the backdrops near them as
     /// much as is in the room and a little around it.
-    fn frame(&mut self) {
+    fn fit_area(&mut self) {
         let of_lights = self.lights.iter().flat_map(|light| light.body.iter().chain([&light.foot]));
         let points = of_lights.chain(self.camera.iter().flatten()).chain([&self.subject]).copied();
         let (mut low, mut high) = (self.subject, self.subject);

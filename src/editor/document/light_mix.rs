@@ -124,7 +124,7 @@ impl Mix {
         (!actions.is_empty()).then(|| Action::Together { label: "Apply light mix".to_owned(), actions })
     }
 
-    /// Returns why the head of a light can't be set as the fader is, if it can't.
+    /// Returns the reason why the head of a light can't be set as the fader is; none if it can.
     pub fn out_of_range(&self, light: &Light) -> Option<String> {
         let fader = self.fader(light.id);
         let dial = fader.changed(light).power.dial_stops;

@@ -80,17 +80,9 @@ fn beamed_panel(beam: &Beam, half_size_m: Vec2, is_disc: bool, h: f32) -> f32 {
     sum / cells.max(1) as f32
 }
 
-/// Returns the f-number to set for a luminous exposure, at the camera's ISO and shutter, behind its ND filter and at its
-/// focus.
-pub fn f_number(scene: &Scene, lux_s: f32) -> f32 {
-    let camera = &scene.camera;
-    let on_sensor = lux_s * exposure::lens_transmission(camera, &scene.focused_lens());
-    exposure::f_number(on_sensor, camera.iso, camera.meter_constant)
-}
-
 /// Returns the exposure over the camera's setting, stops: positive is brighter than a correctly metered grey card.
 pub fn stops_over_camera(scene: &Scene, lux_s: f32) -> f32 {
-    2.0 * (f_number(scene, lux_s) / scene.camera.f_number).log2()
+    2.0 * (exposure::f_number_to_set(scene, lux_s) / scene.camera.f_number).log2()
 }
 
 /// Returns the power dial, in whole thirds of a stop, that puts this light `stops` over the camera's setting at its

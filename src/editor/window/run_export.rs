@@ -1,8 +1,10 @@
-//! Execution of the export of set-up sheets.
+//! Execution of exports: pictures and set-up sheets.
 
+use crate::editor::document::files;
 use crate::editor::window::app::App;
 use crate::editor::window::background_tasks::TaskResult;
 use crate::editor::window::run_file_command::waker;
+use crate::io::PictureInfo;
 use crate::jobs::{background_pool, sentence};
 use crate::photo::Picture;
 use crate::raytrace::{GeometryCache, RenderControl};
@@ -16,6 +18,21 @@ use std::sync::Arc;
 const SAMPLES: u32 = 8;
 
 impl App {
+    /// Writes the rendered picture in the background.
+    pub(super) fn export_picture_to(&mut self, path: PathBuf, ctx: &Context) {
+        let (Some(developed), Some(job)) = (self.rendering.developed(), self.rendering.job()) else { return };
+        let (picture, noisy) = (developed.picture.clone(), developed.noisy.clone());
+        let seed = job.settings.seed.into();
+        let info = PictureInfo::new(self.document.scene(), developed.method, developed.spp, seed);
+        let info = PictureInfo { denoiser: developed.denoiser, ..info };
+        let film = developed.film.clone();
+        let work = move || {
+            let result = files::export(&path, &picture, noisy.as_deref(), &info);
+            TaskResult::Exported(path, film, result)
+        };
+        self.background.exports.start(work, waker(ctx));
+    }
+
     /// Writes the set-up sheet in the background, with the rendered picture if it is up to date, else with a small one
     /// that is rendered for it.
     pub(super) fn export_sheet_to(&mut self, path: PathBuf, units: Units, ctx: &Context) {
@@ -28,14 +45,14 @@ impl App {
             self.toasts.info("A small picture is rendered for the sheet; go on meanwhile.");
         }
         let work = move || {
-            let result = export(&path, &scene, &assets, picture, units);
+            let result = export_sheet(&path, &scene, &assets, picture, units);
             TaskResult::SheetExported(path, result)
         };
         self.background.exports.start(work, waker(ctx));
     }
 }
 
-fn export(
+fn export_sheet(
     path: &Path,
     scene: &Scene,
     assets: &Assets,

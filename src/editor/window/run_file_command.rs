@@ -14,7 +14,7 @@ use crate::editor::window::app::App;
 use crate::editor::window::background_tasks::TaskResult;
 use crate::editor::window::dialogs::DialogAnswer;
 use crate::editor::window::session::PendingOperation;
-use crate::io::{self, ModelFormat, PictureInfo};
+use crate::io::{self, ModelFormat};
 use crate::scene::{Assets, Material, MaterialPreset, Object, Shape, TextureRef, TextureSlot};
 use eframe::egui::{self, Align2, Color32, Context, Id, LayerId, Order, ViewportCommand};
 use std::path::{Path, PathBuf};
@@ -125,7 +125,7 @@ impl App {
             FilePurpose::SaveScene => self.save_to(path, ctx),
             FilePurpose::ImportModel => self.run_file_command(Command::ImportPath(path), ctx),
             FilePurpose::OpenTexture => self.use_texture(&path),
-            FilePurpose::ExportPicture => self.export_to(path, ctx),
+            FilePurpose::ExportPicture => self.export_picture_to(path, ctx),
             FilePurpose::ExportSheet(units) => self.export_sheet_to(path, units, ctx),
         }
     }
@@ -146,20 +146,6 @@ impl App {
         if let Some(pending) = self.session.after_save.take() {
             self.execute_pending(pending, ctx);
         }
-    }
-
-    fn export_to(&mut self, path: PathBuf, ctx: &Context) {
-        let (Some(developed), Some(job)) = (self.rendering.developed(), self.rendering.job()) else { return };
-        let (picture, noisy) = (developed.picture.clone(), developed.noisy.clone());
-        let seed = job.settings.seed.into();
-        let info = PictureInfo::new(self.document.scene(), developed.method, developed.spp, seed);
-        let info = PictureInfo { denoiser: developed.denoiser, ..info };
-        let film = developed.film.clone();
-        let work = move || {
-            let result = files::export(&path, &picture, noisy.as_deref(), &info);
-            TaskResult::Exported(path, film, result)
-        };
-        self.background.exports.start(work, waker(ctx));
     }
 
     pub(super) fn take_done(&mut self, done: TaskResult, ctx: &Context) {

@@ -2,7 +2,7 @@
 //! JPEG, the profile in TIFF, the standard attributes of OpenEXR in EXR.
 
 use crate::photo::thirds::Dial;
-use crate::scene::{Camera, Scene, Sensor};
+use crate::scene::{Camera, Scene};
 use exif::experimental::Writer;
 use exif::{Field, In, Rational, Tag, Value};
 use exr::meta::attribute::{AttributeValue, Text};
@@ -13,6 +13,8 @@ use std::io::Cursor;
 
 /// OpenEXR's name of the focal length.
 const FOCAL_LENGTH: &str = "nominalFocalLength";
+/// Our name of the focal length of the same field on full frame.
+const FULL_FRAME: &str = "focalLengthOnFullFrame";
 
 /// The settings of the camera that took a picture, with the values that are printed on its dials.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -35,14 +37,13 @@ impl CaptureInfo {
     /// Returns the settings of a scene's camera.
     pub fn new(scene: &Scene) -> Self {
         let Camera { f_number, shutter_s, iso, focal_length_mm, sensor, .. } = scene.camera;
-        let crop = Sensor::FullFrame.size_mm().length() / sensor.size_mm().length();
         CaptureInfo {
             studio: scene.name.clone(),
-            f_number: printed(Dial::FNumber, f_number),
-            shutter_s: printed(Dial::Shutter, shutter_s),
-            iso: printed(Dial::Iso, iso),
+            f_number: Dial::FNumber.printed(f_number),
+            shutter_s: Dial::Shutter.printed(shutter_s),
+            iso: Dial::Iso.printed(iso),
             focal_length_mm,
-            full_frame_mm: focal_length_mm * crop,
+            full_frame_mm: focal_length_mm * sensor.crop_factor(),
         }
     }
 
@@ -56,7 +57,7 @@ impl CaptureInfo {
         attributes.other.extend(lengths.map(|(name, length)| (text(name), AttributeValue::F32(length))));
     }
 
-    /// Reads the settings from the attributes of a part of an EXR file. What is missing is 0.
+    /// Reads the settings from the attributes of a part of an EXR file. Missing settings are 0.
     pub(super) fn read_attributes(attributes: &LayerAttributes, text: fn(&str) -> Text) -> Self {
         let length = |name| match attributes.other.get(&text(name)) {
             Some(AttributeValue::F32(length)) => *length,
@@ -101,7 +102,8 @@ impl CaptureInfo {
             (Tag::FocalLengthIn35mmFilm, short(self.full_frame_mm)),
             (Tag::ColorSpace, Value::Short(vec![SRGB])),
         ];
-        let fields = fields.map(|(tag, value)| Field { tag, ifd_num: In::PRIMARY, value });
+        let known = fields.into_iter().filter(|(_, value)| !is_missing(value));
+        let fields: Vec<Field> = known.map(|(tag, value)| Field { tag, ifd_num: In::PRIMARY, value }).collect();
         let mut writer = Writer::new();
         fields.iter().for_each(|field| writer.push_field(field));
         let mut bytes = Cursor::new(Vec::new());
@@ -110,17 +112,14 @@ impl CaptureInfo {
     }
 }
 
-const FULL_FRAME: &str = "focalLengthOnFullFrame";
-
-/// Returns the value of a dial as it is printed: 5.6 for 5.657.
-fn printed(dial: Dial, value: f32) -> f32 {
-    let label = dial.label(value);
-    let number = label.trim_start_matches("f/").trim_end_matches(" s");
-    let parsed = match number.strip_prefix("1/") {
-        Some(denominator) => denominator.parse().map(|denominator: f32| 1.0 / denominator),
-        None => number.parse(),
-    };
-    parsed.unwrap_or(value)
+/// Returns true for an empty text and for the number 0: settings that are not known.
+fn is_missing(value: &Value) -> bool {
+    match value {
+        Value::Ascii(lines) => lines.iter().all(Vec::is_empty),
+        Value::Rational(numbers) => numbers.iter().all(|number| number.num == 0),
+        Value::Short(numbers) => numbers.iter().all(|number| *number == 0),
+        _ => false,
+    }
 }
 
 /// Rounds to a whole number that EXIF can hold.
@@ -148,6 +147,7 @@ pub(super) fn describe(encoder: &mut impl ImageEncoder, capture: Option<&Capture
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Sensor;
 
     #[test]
     fn settings_are_those_on_the_dials_of_a_camera() {
@@ -164,5 +164,9 @@ mod tests {
         scene.camera.shutter_s = 2.0;
         let read = exif::Reader::new().read_raw(CaptureInfo::new(&scene).exif().unwrap()).unwrap();
         assert_eq!(read.get_field(Tag::ExposureTime, In::PRIMARY).unwrap().display_value().to_string(), "2");
+        let read = exif::Reader::new().read_raw(CaptureInfo::default().exif().unwrap()).unwrap();
+        assert!(
+            read.get_field(Tag::FNumber, In::PRIMARY).is_none() && read.get_field(Tag::Software, In::PRIMARY).is_some()
+        );
     }
 }

@@ -13,7 +13,7 @@ use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, NumberField, f
 use crate::photo::light::axial_intensity;
 use crate::photo::text::{power_fraction, signed_stops, three_digits};
 use crate::photo::thirds::Dial;
-use crate::photo::{LightBearing, light_rgb};
+use crate::photo::{LightBearing, exposure, light_rgb};
 use crate::scene::{ColorSource, Emitter, Light, LightId, Output, Role, Scene};
 use eframe::egui::{ComboBox, Label, RichText, Slider, SliderClamping, Ui, vec2};
 
@@ -222,7 +222,7 @@ fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
     let at = readout::at_aim(scene, light);
     let camera = &scene.camera;
     let flash = light.power.output.is_flash();
-    let n = readout::f_number(scene, at.lux_s);
+    let n = exposure::f_number_to_set(scene, at.lux_s);
     let over = readout::stops_over_camera(scene, at.lux_s);
     let settings = format!("at ISO {} and {}", Dial::Iso.label(camera.iso), Dial::Shutter.label(camera.shutter_s));
     let tip = format!(
