@@ -249,6 +249,7 @@ fn the_mixer_dims_the_picture_without_tracing_and_applies_to_the_studio_as_one_s
     let lights = scene(&window).lights.clone();
     assert!((lights[0].power.dial_stops - before.lights[0].power.dial_stops - 1.0).abs() < 1e-6);
     assert_eq!((lights[0].on, lights[0].muted, lights[1].on), (false, true, true));
+    assert!(window.query_by_label("Fader of Key softbox").is_none(), "a light that is off has no fader");
     assert!((sum(&window) / muted - 1.0).abs() < 1e-5, "the picture stays");
     assert!(window.query_by_label("Mixed").is_none() && window.query_by_label("Out of date").is_none());
     window.state_mut().run(Command::Undo, None, &egui::Context::default());

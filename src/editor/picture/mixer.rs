@@ -117,6 +117,7 @@ fn row_ui(ui: &mut Ui, row: &MixerRow, rendering: &Rendering, scene: &Scene, out
     }
 }
 
+/// Tooltip of a light whose light is not in the film.
 const NO_LAYER: &str = "The picture has no light of it: render again to mix it.";
 const KELVIN: NumberField = NumberField::new(20.0, 1000.0, 25_000.0, 0, " K");
 

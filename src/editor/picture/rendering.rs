@@ -248,17 +248,19 @@ impl Rendering {
         self.developed.as_ref().filter(|d| (d.picture.width, d.picture.height) == (width, height))
     }
 
-    /// Returns the rows of the mixer: the layers of the film, then the lights of `scene` that are on and have none.
+    /// Returns the rows of the mixer: the layers of the film, then the lights that have none. Lights that are off in
+    /// `scene` have no row.
     pub fn mixer_rows(&self, scene: &Scene) -> Vec<MixerRow> {
         let layers = self.film.as_deref().map(Film::layers).unwrap_or_default();
-        let mut without: HashMap<LightId, &Light> = scene.lights.iter().map(|light| (light.id, light)).collect();
+        let lit = || scene.lights.iter().filter(|light| light.on);
+        let mut without: HashMap<LightId, &Light> = lit().map(|light| (light.id, light)).collect();
         let mut rows = Vec::new();
         for layer in layers {
             let name = layer.light.and_then(|id| without.get(&id)).map_or(&layer.name, |light| &light.name).clone();
             let lights: Vec<LightId> = layer.lights().filter(|id| without.remove(id).is_some()).collect();
             rows.extend((!lights.is_empty()).then_some(MixerRow { name, lights, has_layer: true }));
         }
-        let without = scene.lights.iter().filter(|light| light.on && without.contains_key(&light.id));
+        let without = lit().filter(|light| without.contains_key(&light.id));
         rows.extend(without.map(|light| MixerRow {
             name: light.name.clone(),
             lights: vec![light.id],
@@ -267,8 +269,8 @@ impl Rendering {
         rows
     }
 
-    /// Reads the light around a pixel of the picture, with the lights as in `scene` and the mix. None outside of it, and while
-    /// there is no whole picture.
+    /// Reads the light around a pixel of the picture, with the lights as in `scene` and the mix. None outside of it, and
+    /// while there is no whole picture.
     pub fn read_spot(&self, pixel: (u32, u32), scene: &Scene) -> Option<SpotReading> {
         let developed = self.developed()?;
         let size = self.size().filter(|size| pixel.0 < size.0 && pixel.1 < size.1)?;
