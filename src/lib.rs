@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! { math, color }  <-  scene  <-  photo  <-  { denoise, figures, raytrace, raster, preview }  <-  io
-//!                                         <-  { jobs, truth }  <-  sheet  <-  { editor, cli }  <-  main
+//!                                         <-  { jobs, truth }  <-  setup  <-  sheet  <-  { editor, cli }  <-  main
 //! ```
 //!
 //! | room | contents |
@@ -22,6 +22,7 @@
 //! | `io` | RON studios, models, textures, pictures, shipped studios |
 //! | `jobs` | background work: renders, live view, meter, forecasts, thumbnails; shared by window and command line |
 //! | `truth` | closed forms beside what meter and renders give for them |
+//! | `setup` | the light meter's view of a set-up: each light where it acts, dials for wanted exposures |
 //! | `sheet` | the set-up sheet: a studio on one page, as PDF, SVG or HTML |
 //! | `editor`, `cli` | the window; the command line |
 //!
@@ -49,6 +50,7 @@ pub mod photo;
 pub mod raster;
 pub mod raytrace;
 pub mod scene;
+pub mod setup;
 pub mod sheet;
 pub mod truth;
 

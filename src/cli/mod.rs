@@ -26,6 +26,7 @@ mod preview;
 mod preview_look;
 mod render;
 mod sheet;
+mod solve;
 mod terminal;
 mod truth;
 mod warnings;
@@ -61,6 +62,8 @@ enum Command {
     Meter(meter::Arguments),
     /// Write the set-up sheet of a studio: picture, plan and list of lights on one page.
     Sheet(sheet::Arguments),
+    /// Find the dial settings of the lights for wanted exposures.
+    Solve(solve::Arguments),
     /// Report what is wrong or odd with a studio file.
     Check(check::Arguments),
     /// Chart speed against accuracy.
@@ -98,6 +101,7 @@ pub fn run(started: Instant) -> ExitCode {
         Some(Command::Merge(arguments)) => merge::run(&arguments),
         Some(Command::Preview(arguments)) => preview::run(&arguments),
         Some(Command::Sheet(arguments)) => sheet::run(&arguments),
+        Some(Command::Solve(arguments)) => solve::run(&arguments),
         Some(Command::Meter(arguments)) => meter::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::Chart(arguments)) => chart::run(&arguments),

@@ -1,7 +1,8 @@
-//! Mathematics beyond glam: safe square roots and angles, frames, quadrature, quantiles, sampling warps with their
-//! densities, rays with error bounds, SIMD dispatch.
+//! Mathematics beyond glam: safe square roots and angles, frames, quadrature, quantiles, bounded least squares, sampling
+//! warps with their densities, rays with error bounds, SIMD dispatch.
 
 mod angle;
+mod bounded_least_squares;
 mod frame;
 mod quadrature;
 mod quantile;
@@ -11,6 +12,7 @@ pub mod simd;
 pub mod warp;
 
 pub use angle::{sin_cos_eighth, sin_cos_turn};
+pub use bounded_least_squares::{BoundedUnknown, LinearEquation, bounded_least_squares};
 pub use frame::{look_along, look_at, orthonormal_basis};
 pub use quadrature::gauss_legendre;
 pub use quantile::quantile;

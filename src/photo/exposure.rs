@@ -35,6 +35,12 @@ pub fn f_number_to_set(scene: &Scene, lux_s: f32) -> f32 {
     f_number(on_sensor, camera.iso, camera.meter_constant)
 }
 
+/// Returns the luminous exposure for which [`f_number_to_set`] is an f-number, lux s.
+pub fn lux_s_to_set(scene: &Scene, f_number: f32) -> f32 {
+    let camera = &scene.camera;
+    f_number * f_number * camera.meter_constant / (camera.iso * lens_transmission(camera, &scene.focused_lens()))
+}
+
 /// Returns the f-number for a luminous exposure of continuous light (E t) plus flash (H), lux s: N^2 = (E t + H) S / C.
 pub fn f_number(lux_s: f32, iso: f32, meter_constant: f32) -> f32 {
     (lux_s * iso / meter_constant).max(0.0).sqrt()
@@ -52,6 +58,16 @@ mod tests {
         assert!((camera.f_number - 10.0).abs() < 1e-6);
         let pixel = pixel_per_cd_s_m2(&Scene { camera, ..Scene::default() }) * 0.18 * 250.0 / PI;
         assert!((pixel - 0.18).abs() < 1e-7);
+    }
+
+    #[test]
+    fn the_exposure_for_an_f_number_is_the_inverse_of_the_f_number_to_set() {
+        let camera = Camera { iso: 200.0, nd_stops: 3.0, focus: Focus::Distance(0.4), ..Camera::default() };
+        let scene = Scene { camera, ..Scene::default() };
+        let lux_s = lux_s_to_set(&scene, 5.6);
+        assert!((f_number_to_set(&scene, lux_s) / 5.6 - 1.0).abs() < 1e-6);
+        // light_and_camera.md: f/8 at ISO 100 is 160 lux s.
+        assert!((lux_s_to_set(&Scene::default(), 8.0) - 160.0).abs() < 1e-3);
     }
 
     #[test]

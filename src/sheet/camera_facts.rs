@@ -1,12 +1,12 @@
 //! Facts of camera, exposure and background on a sheet.
 
 use super::lengths::Units;
-use super::metering::{Background, MeteredSetup};
 use crate::photo::meter::nearest_third;
 use crate::photo::nd_filter;
 use crate::photo::text::signed_stops;
 use crate::photo::thirds::Dial;
 use crate::scene::{Camera, Orientation, Scene, Sensor};
+use crate::setup::{Background, MeteredSetup};
 
 /// Stops under the camera's exposure from which a reading counts as no light.
 const DARK_STOPS: f32 = -8.0;

@@ -3,10 +3,10 @@
 use super::font::Font;
 use super::lengths::Units;
 use super::light_shape::LightShape;
-use super::metering::MeteredSetup;
 use crate::math::angle_between;
 use crate::photo::thirds::Dial;
 use crate::scene::{Assets, Emitter, Finding, Gel, Light, Room, placement, validate};
+use crate::setup::MeteredSetup;
 use glam::Vec3;
 
 /// Shutter from which a flash needs high-speed sync, seconds: typical of focal-plane shutters.

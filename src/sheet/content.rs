@@ -6,11 +6,11 @@ use super::drawing::Rgb;
 use super::gear::gear;
 use super::lengths::Units;
 use super::light_facts::LightFacts;
-use super::metering::MeteredSetup;
 use super::view::{StudioView, ViewFrom, print_color};
 use crate::photo::Picture;
 use crate::raytrace::{GeometryCache, PrepareError, RenderControl};
 use crate::scene::{Assets, Scene};
+use crate::setup::MeteredSetup;
 
 /// The check of a set-up that has none.
 const NOTHING: &str = "Nothing that a plan can see.";

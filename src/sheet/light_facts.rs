@@ -1,12 +1,12 @@
 //! Facts of a light on a sheet, and its row in the table of lights.
 
 use super::lengths::Units;
-use super::metering::{LightExposure, MeteredAt, MeteredSetup};
 use crate::photo::LightBearing;
 use crate::photo::meter::nearest_third;
 use crate::photo::text::{power_fraction, signed_stops, three_digits};
 use crate::raytrace::RenderControl;
 use crate::scene::{ColorSource, Emitter, Gel, Light, Modifier, NamedModifier, Output, Role};
+use crate::setup::{LightExposure, MeteredAt, MeteredSetup};
 use glam::Vec3;
 
 /// Angle up from which a light is overhead, degrees.

@@ -3,7 +3,7 @@
 //! [`SheetContent`] collects facts from the scene and from the light meter; `page` lays them out as a [`Drawing`] in
 //! millimetres; `svg` and `pdf` write drawings, `html` writes a page that reads well on a phone.
 //!
-//! Data flow: `metering` -> `camera_facts`, `light_facts`, `checks` -> `gear`; `silhouette` -> `view`; all of them ->
+//! Data flow: [`MeteredSetup`](crate::setup::MeteredSetup) -> `camera_facts`, `light_facts`, `checks` -> `gear`; `silhouette` -> `view`; all of them ->
 //! `content` -> `page` -> `svg`, `pdf`.
 
 mod camera_facts;
@@ -17,7 +17,6 @@ mod html;
 mod lengths;
 mod light_facts;
 mod light_shape;
-mod metering;
 mod page;
 mod pdf;
 mod silhouette;
@@ -29,7 +28,6 @@ pub use drawing::Drawing;
 pub use file::{SHEET_EXTENSIONS, SheetFormat, draft_picture, sheet_file, write_sheet};
 pub use lengths::Units;
 pub use light_facts::{COLUMNS, LightFacts};
-pub use metering::{LightExposure, MeteredAt};
 
 #[cfg(test)]
 mod tests;

@@ -5,7 +5,6 @@ use super::drawing::Element;
 use super::file::{SheetFormat, sheet_file};
 use super::font::Font;
 use super::lengths::Units;
-use super::metering::MeteredAt;
 use super::page::page;
 use super::view::{StudioView, ViewFrom};
 use crate::photo::Picture;
@@ -15,6 +14,7 @@ use crate::scene::{
     Aim, Assets, Camera, Emitter, Facing, Gel, Light, LightId, Meter, Modifier, Object, ObjectId, Output, Role, Room,
     Scene, Shape, Transform,
 };
+use crate::setup::MeteredAt;
 use glam::{Vec2, Vec3};
 
 const SUBJECT: Vec3 = Vec3::new(0.0, 1.5, 0.12);

@@ -13,13 +13,14 @@ use std::fs;
 use std::path::Path;
 
 /// Rooms from the lowest layer to the highest. A room imports from lower layers only, and not from its own.
-const LAYERS: [&[&str]; 9] = [
+const LAYERS: [&[&str]; 10] = [
     &["math", "color"],
     &["scene"],
     &["photo"],
     &["denoise", "figures", "raytrace", "raster", "preview"],
     &["io"],
     &["jobs", "truth"],
+    &["setup"],
     &["sheet"],
     &["editor", "cli"],
     &["main"],

@@ -3,11 +3,10 @@
 use crate::editor::document::action::Action;
 use crate::raytrace::Layer;
 use crate::scene::{ColorSource, Light, LightId, Scene};
+use crate::setup::DIAL_STOPS;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
-/// Range of a head's dial, stops from full power: a head gives no more than that, and few go below 1/512.
-const DIAL_STOPS: std::ops::RangeInclusive<f32> = -9.0..=0.0;
 /// Rounding of a dial in thirds, stops.
 const ROUNDING: f32 = 1e-3;
 

@@ -1,10 +1,10 @@
-//! Readings for a sheet: at the subject, and where lights aim at something else.
+//! Readings of a set-up: at the subject, where lights aim at something else, and on the background.
 
 use crate::photo::exposure;
 use crate::photo::meter::{Reading, Receptor};
 use crate::raytrace::{GeometryCache, LightMeter, MeterEffort, MeterPoint, PrepareError, RenderControl, SurfacePoint};
 use crate::scene::{Aim, Assets, CameraFrame, Emitter, Light, LightId, Object, Role, Scene, Shape};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// Distance from the subject from which a light aims at something else, metres.
 const APART_M: f32 = 0.75;
@@ -18,6 +18,10 @@ const MOST_SURFACES: u32 = 64;
 const BEHIND: f32 = 0.26;
 /// Edge from which a thing can be a background, metres.
 const LARGE_M: f32 = 1.0;
+/// Columns and rows of points of the picture at which the background is looked for, and the cosine to straight up from
+/// which a surface is a floor.
+const BACKGROUND_GRID: [u32; 2] = [5, 3];
+const FLOOR: f32 = 0.7;
 /// Step behind a surface, metres.
 const STEP_M: f32 = 1e-3;
 
@@ -143,9 +147,7 @@ impl<'a> MeteredSetup<'a> {
             MeteredAt::Aim => self.first_on_axis(light).map(|surface| (surface.position, surface.normal))?,
             MeteredAt::Subject | MeteredAt::Rim => self.rim_of(light),
         };
-        let point = MeterPoint { position: position + facing * STEP_M, facing, receptor: Receptor::Flat };
-        let reading = self.meter.read(&point, &MeterEffort::quick(), control)?.reading;
-        exposure_in(&reading, self.scene, light.id)
+        exposure_in(&self.read_flat(position, facing, control)?, self.scene, light.id)
     }
 
     /// Returns the first point of the subject that a light from behind hits, along its axis or else on the way to the
@@ -164,6 +166,54 @@ impl<'a> MeteredSetup<'a> {
 
     /// Returns the first backdrop, wall or large thing behind the subject, at the height of the subject.
     pub fn background(&self) -> Option<Background> {
+        let surface = self.background_surface()?;
+        let name = self.object_of(&surface).map_or_else(|| "Wall".to_owned(), |object| object.name.clone());
+        let away = (self.subject.position - self.scene.camera.position).with_y(0.0).normalize_or_zero();
+        Some(Background { name, distance_m: (surface.position - self.subject.position).dot(away) })
+    }
+
+    /// Returns points of the background that the picture shows, spread over it; the point behind the subject if it shows
+    /// none. Empty without a background.
+    pub fn background_points(&self) -> Vec<SurfacePoint<'_>> {
+        let Some(behind) = self.background_surface() else { return Vec::new() };
+        let (camera, forward) = (self.frame.position(), self.frame.forward());
+        let subject_m = (self.subject.position - camera).dot(forward);
+        let [columns, rows] = BACKGROUND_GRID;
+        let seen = (0..columns * rows).filter_map(|cell| {
+            let (column, row) = (cell % columns, cell / columns);
+            let point = (Vec2::new(column as f32, row as f32) + 0.5) / Vec2::new(columns as f32, rows as f32);
+            self.meter.first_surface(camera, self.frame.direction(point).normalize(), FARTHEST_M)
+        });
+        let is_background = |surface: &SurfacePoint<'_>| {
+            surface.object == behind.object
+                && surface.part == behind.part
+                && surface.normal.y < FLOOR
+                && (surface.position - camera).dot(forward) > subject_m
+        };
+        let points: Vec<_> = seen.filter(is_background).collect();
+        if points.is_empty() { vec![behind] } else { points }
+    }
+
+    /// Reads a flat receptor on a surface. None once cancelled.
+    pub fn read_flat(&self, position: Vec3, normal: Vec3, control: &RenderControl) -> Option<Reading> {
+        let position = position + normal * STEP_M;
+        let point = MeterPoint { position, facing: normal, receptor: Receptor::Flat };
+        Some(self.meter.read(&point, &MeterEffort::quick(), control)?.reading)
+    }
+
+    /// Returns the base colour of a surface, linear; that of the material alone where it has a texture.
+    pub fn base_color(&self, surface: &SurfacePoint<'_>) -> [f32; 3] {
+        let room = || self.scene.room.as_ref().map(|room| room.material_of(surface.part));
+        let material = self.object_of(surface).map(|object| &object.material).or_else(room);
+        material.map_or([0.0; 3], |material| material.base_color)
+    }
+
+    fn object_of(&self, surface: &SurfacePoint<'_>) -> Option<&Object> {
+        surface.object.and_then(|index| self.scene.objects.get(index as usize))
+    }
+
+    /// Returns the point of the background behind the subject.
+    fn background_surface(&self) -> Option<SurfacePoint<'_>> {
         let away = self.subject.position - self.scene.camera.position;
         let direction = Vec3::new(away.x, 0.0, away.z).try_normalize()?;
         let reach_m = away.length() + NEAR_M;
@@ -172,12 +222,9 @@ impl<'a> MeteredSetup<'a> {
         let mut origin = self.subject.position;
         for _ in 0..MOST_SURFACES {
             let surface = self.meter.first_surface(origin, direction, FARTHEST_M)?;
-            let object = surface.object.and_then(|index| self.scene.objects.get(index as usize));
             let is_own = surface.object.is_some() && surface.object == own;
-            if !is_own && object.is_none_or(is_large) {
-                let name = object.map_or_else(|| "Wall".to_owned(), |object| object.name.clone());
-                let distance_m = (surface.position - self.subject.position).dot(direction);
-                return Some(Background { name, distance_m });
+            if !is_own && self.object_of(&surface).is_none_or(is_large) {
+                return Some(surface);
             }
             origin = surface.position + direction * STEP_M;
         }

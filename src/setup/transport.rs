@@ -1,0 +1,188 @@
+//! The exposures that the lights of a studio give at the places of a meter, light by light.
+
+use super::metering::{MeteredAt, MeteredSetup};
+use crate::color::luminance;
+use crate::photo::exposure;
+use crate::photo::meter::Reading;
+use crate::photo::{MIDDLE_GREY, PhotometricLight, clipping_stops};
+use crate::raytrace::{GeometryCache, PrepareError, RenderControl};
+#[cfg(test)]
+use crate::scene::Camera;
+use crate::scene::{Assets, Light, LightId, Modifier, Role, Scene};
+use std::collections::HashSet;
+use std::f32::consts::PI;
+
+/// The exposures that a light gives, at its present dial, lux s.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightTransport {
+    /// The light.
+    pub light: LightId,
+    /// Its name.
+    pub name: String,
+    /// Its role.
+    pub role: Role,
+    /// It is on in the studio. Lights that are off are measured as if they were on.
+    pub is_on: bool,
+    /// Its output can be set: neither sun nor surround.
+    pub has_dial: bool,
+    /// Its dial, stops from full power.
+    pub dial_stops: f32,
+    /// Luminous energy that it gives in one exposure at full power, lm s.
+    pub energy_lm_s: f32,
+    /// The place at which it is metered by itself.
+    pub at: MeteredAt,
+    /// Its exposure there.
+    pub own_lux_s: f32,
+    /// Its exposure at the subject.
+    pub subject_lux_s: f32,
+    /// Its exposure at each point of the background.
+    pub background_lux_s: Vec<f32>,
+}
+
+/// The exposures of all lights at all places.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetupTransport {
+    lights: Vec<LightTransport>,
+    /// Exposure by glowing surfaces at the subject, lux s.
+    pub(super) glow_subject_lux_s: f32,
+    /// Exposure by glowing surfaces at the points of the background, lux s.
+    pub(super) glow_background_lux_s: Vec<f32>,
+    /// Diffuse reflectances at the points of the background.
+    background_albedos: Vec<f32>,
+    /// Luminous exposure for f/1 at the camera's settings, lux s.
+    f1_lux_s: f32,
+    /// Picture value of 1 lux s on a surface of reflectance 1.
+    value_per_lux_s: f32,
+}
+
+impl SetupTransport {
+    /// Meters a studio. None once `control` is cancelled.
+    ///
+    /// # Errors
+    /// If the scene has errors.
+    pub fn measure(
+        scene: &Scene,
+        assets: &Assets,
+        cache: &GeometryCache,
+        control: &RenderControl,
+    ) -> Result<Option<Self>, PrepareError> {
+        let mut lit = scene.clone();
+        lit.lights.iter_mut().for_each(|light| light.on = true);
+        let Some(setup) = MeteredSetup::new(&lit, assets, cache, control)? else { return Ok(None) };
+        let mut background = Vec::new();
+        for point in setup.background_points() {
+            let Some(reading) = setup.read_flat(point.position, point.normal, control) else { return Ok(None) };
+            let albedo = luminance(setup.base_color(&point).into());
+            background.push((reading, albedo));
+        }
+        let measured = |light: &Light| {
+            let at = setup.metered_at(light);
+            let own_lux_s = setup.exposure(light, at, control).map_or(0.0, |exposure| exposure.lux_s);
+            LightTransport {
+                light: light.id,
+                name: light.name.clone(),
+                role: light.role,
+                is_on: scene.light(light.id).is_some_and(|light| light.on),
+                has_dial: !light.emitter.is_infinite(),
+                dial_stops: light.power.dial_stops,
+                energy_lm_s: full_energy_lm_s(scene, light),
+                at,
+                own_lux_s,
+                subject_lux_s: lux_s_of(&setup.reading, Some(light.id)),
+                background_lux_s: background.iter().map(|(reading, _)| lux_s_of(reading, Some(light.id))).collect(),
+            }
+        };
+        let transport = SetupTransport {
+            lights: lit.lights.iter().map(measured).collect(),
+            glow_subject_lux_s: lux_s_of(&setup.reading, None),
+            glow_background_lux_s: background.iter().map(|(reading, _)| lux_s_of(reading, None)).collect(),
+            background_albedos: background.iter().map(|(_, albedo)| *albedo).collect(),
+            f1_lux_s: exposure::lux_s_to_set(scene, 1.0),
+            value_per_lux_s: exposure::pixel_per_cd_s_m2(scene) / PI,
+        };
+        Ok((!control.is_cancelled()).then_some(transport))
+    }
+
+    /// Returns the exposures of a studio at ISO 100 and f/8 whose lights give these.
+    #[cfg(test)]
+    pub(super) fn of_lights(lights: Vec<LightTransport>, background_albedos: &[f32]) -> Self {
+        let scene = Scene { camera: Camera { f_number: 8.0, ..Camera::default() }, ..Scene::default() };
+        SetupTransport {
+            lights,
+            glow_subject_lux_s: 0.0,
+            glow_background_lux_s: vec![0.0; background_albedos.len()],
+            background_albedos: background_albedos.to_vec(),
+            f1_lux_s: exposure::lux_s_to_set(&scene, 1.0),
+            value_per_lux_s: exposure::pixel_per_cd_s_m2(&scene) / PI,
+        }
+    }
+
+    /// Returns the lights, in the scene's order.
+    pub fn lights(&self) -> &[LightTransport] {
+        &self.lights
+    }
+
+    /// Returns the light of an id.
+    pub fn light(&self, id: LightId) -> Option<&LightTransport> {
+        self.lights.iter().find(|light| light.light == id)
+    }
+
+    /// Returns the lights to which others are relative: the key lights at the subject that are on or `named`, else the
+    /// strongest light there. Empty if none of them lights the subject.
+    pub fn key_lights(&self, named: &HashSet<LightId>) -> Vec<LightId> {
+        let is_used = |light: &&LightTransport| {
+            (light.is_on || named.contains(&light.light)) && light.at == MeteredAt::Subject && light.subject_lux_s > 0.0
+        };
+        let used = || self.lights.iter().filter(is_used);
+        let keys: Vec<LightId> = used().filter(|light| light.role == Role::Key).map(|light| light.light).collect();
+        if keys.is_empty() {
+            let strongest = used().max_by(|a, b| a.subject_lux_s.total_cmp(&b.subject_lux_s));
+            strongest.map(|light| light.light).into_iter().collect()
+        } else {
+            keys
+        }
+    }
+
+    /// Returns true if the picture shows something behind the subject.
+    pub fn has_background(&self) -> bool {
+        !self.background_albedos.is_empty()
+    }
+
+    /// Returns the f-number that a meter shows for an exposure.
+    pub fn f_number(&self, lux_s: f32) -> f32 {
+        (lux_s / self.f1_lux_s).max(0.0).sqrt()
+    }
+
+    /// Returns the exposure at which a meter shows an f-number, lux s.
+    pub fn lux_s(&self, f_number: f32) -> f32 {
+        f_number * f_number * self.f1_lux_s
+    }
+
+    /// Returns the exposures that make each point of the background middle grey in the picture, lux s; infinite for
+    /// black surfaces.
+    pub fn grey_lux_s(&self) -> impl Iterator<Item = f32> + '_ {
+        self.background_albedos.iter().map(|albedo| MIDDLE_GREY / (albedo * self.value_per_lux_s))
+    }
+
+    /// Returns the exposures that make each point of the background white in the picture, lux s; infinite for black
+    /// surfaces.
+    pub fn white_lux_s(&self) -> impl Iterator<Item = f32> + '_ {
+        let over_grey = clipping_stops().exp2();
+        self.grey_lux_s().map(move |grey| grey * over_grey)
+    }
+}
+
+/// Returns the exposure of a light in a reading, lux s; that of glowing surfaces for none.
+fn lux_s_of(reading: &Reading, light: Option<LightId>) -> f32 {
+    reading.lights.iter().find(|read| read.light == light).map_or(0.0, |read| reading.lux_s(read))
+}
+
+/// Returns the luminous energy of a light in one exposure at full power, before its modifier, lm s; 0 for sun and
+/// surround.
+fn full_energy_lm_s(scene: &Scene, light: &Light) -> f32 {
+    let mut bare = light.clone();
+    bare.power.dial_stops = 0.0;
+    bare.modifier = Modifier::default();
+    let photometric = PhotometricLight::new(scene, &bare);
+    photometric.flux() * photometric.exposure_time_s
+}
