@@ -6,6 +6,7 @@
 // A number of a file or an argument that does not fit is an error and never wraps.
 #![deny(clippy::cast_possible_truncation, clippy::cast_possible_wrap, clippy::cast_sign_loss)]
 
+mod audit;
 mod bake;
 mod chart;
 mod check;
@@ -64,6 +65,8 @@ enum Command {
     Sheet(sheet::Arguments),
     /// Find the dial settings of the lights for wanted exposures.
     Solve(solve::Arguments),
+    /// Measure what walls, ceiling, floor and backdrops do to the light on the subject.
+    Audit(audit::Arguments),
     /// Report what is wrong or odd with a studio file.
     Check(check::Arguments),
     /// Chart speed against accuracy.
@@ -101,6 +104,7 @@ pub fn run(started: Instant) -> ExitCode {
         Some(Command::Merge(arguments)) => merge::run(&arguments),
         Some(Command::Preview(arguments)) => preview::run(&arguments),
         Some(Command::Sheet(arguments)) => sheet::run(&arguments),
+        Some(Command::Audit(arguments)) => audit::run(&arguments),
         Some(Command::Solve(arguments)) => solve::run(&arguments),
         Some(Command::Meter(arguments)) => meter::run(&arguments),
         Some(Command::Check(arguments)) => check::run(&arguments),

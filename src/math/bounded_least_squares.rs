@@ -4,8 +4,8 @@
 /// open, the last one leaves the residuals as they would be without costs.
 const COST_WEIGHTS: [f64; 5] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5];
 /// Most sweeps over the unknowns in a pass, and the change of an unknown at which a pass ends.
-const MOST_SWEEPS: u32 = 20_000;
-const SMALLEST_CHANGE: f64 = 1e-10;
+const MOST_SWEEPS: u32 = 2000;
+const SMALLEST_CHANGE: f64 = 1e-9;
 
 /// An equation: the sum of `coefficients` times the unknowns should be `value`.
 #[derive(Clone, Debug, PartialEq)]

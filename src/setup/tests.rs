@@ -3,12 +3,13 @@
 use super::dial_solver::{DialPlan, solve_dials};
 use super::dial_system::DIAL_STOPS;
 use super::metering::MeteredAt;
+use super::room_audit::{RoomAudit, RoomSurface};
 use super::transport::{LightTransport, SetupTransport};
 use super::wish::{WishError, WishTarget, wishes};
-use crate::raytrace::{GeometryCache, RenderControl};
+use crate::raytrace::{GeometryCache, LightMeter, MeterEffort, MeterPoint, RenderControl};
 use crate::scene::{
-    Aim, Assets, Camera, Emitter, Facing, Light, LightId, Meter, Modifier, Object, Output, Receptor, Role, Scene,
-    Shape, Transform,
+    Aim, Assets, Camera, Emitter, Facing, Light, LightId, Material, Meter, Modifier, Object, Output, Receptor, Role,
+    Room, Scene, Shape, Transform,
 };
 use glam::Vec3;
 
@@ -282,4 +283,65 @@ fn a_studio_with_the_planned_dials_has_the_wanted_readings() {
         let missed = (metered.before_lux_s / metered.wanted_lux_s).log2().abs();
         assert!(missed < 0.1, "{metered:?}");
     }
+}
+
+/// A meter in the middle of a room, lit by a bulb on the left as key and one on the right as fill.
+fn room(albedos: [f32; 3]) -> Scene {
+    let matte = |albedo: f32| Material { base_color: [albedo; 3], ior: 1.0, ..Material::default() };
+    let [floor, walls, ceiling] = albedos.map(matte);
+    let bulb = |id, name: &str, role, x: f32| {
+        let light = Light::new(Emitter::Sphere { radius_m: 0.05 }, Output::Lumens(4000.0));
+        Light { id: LightId(id), name: name.to_owned(), role, position: Vec3::new(x, 1.5, 0.5), ..light }
+    };
+    Scene {
+        room: Some(Room { size_m: Vec3::new(4.0, 3.0, 4.0), floor, walls, ceiling }),
+        lights: vec![bulb(1, "Key", Role::Key, -1.0), bulb(2, "Fill", Role::Fill, 1.6)],
+        meter: Some(Meter { position: Vec3::Y * 1.5, facing: Facing::Camera, receptor: Receptor::Dome }),
+        ..Scene::default()
+    }
+}
+
+fn audit(scene: &Scene) -> RoomAudit {
+    let (cache, control) = (GeometryCache::default(), RenderControl::new());
+    RoomAudit::measure(scene, &Assets::default(), &cache, &control).unwrap().unwrap()
+}
+
+#[test]
+fn surfaces_add_what_the_meter_loses_without_them() {
+    let scene = room([0.2, 0.8, 0.8]);
+    let audit = audit(&scene);
+    let meter = |scene: &Scene| {
+        let around = scene.meter.unwrap();
+        let meter = LightMeter::new(scene, &Assets::default(), around.position).unwrap();
+        let facing = around.direction(scene);
+        let point = MeterPoint { position: around.position, facing, receptor: around.receptor };
+        // Another seed: not the same samples
+        let effort = MeterEffort { seed: 7, ..MeterEffort::default() };
+        meter.read(&point, &effort, &RenderControl::new()).unwrap().reading.total_lux_s()
+    };
+    let (all, dark_walls) = (meter(&scene), meter(&room([0.2, 0.0, 0.8])));
+    assert!((audit.total.lux_s / all - 1.0).abs() < 0.01);
+    let walls = audit.total.added_stops(RoomSurface::Walls).unwrap();
+    assert!((walls - (all / dark_walls).log2()).abs() < 0.02 && walls > 0.3, "{walls}");
+    let of = |surface| audit.total.added_stops(surface).unwrap();
+    assert!(of(RoomSurface::Floor) < of(RoomSurface::Ceiling) && of(RoomSurface::Ceiling) < walls);
+    assert_eq!(audit.total.added_stops(RoomSurface::Backdrops), None, "there is none");
+    // The fill is near a wall
+    let [key, fill] = audit.lights.as_slice() else { panic!("two lights") };
+    assert!(fill.added_stops(RoomSurface::Walls) > key.added_stops(RoomSurface::Walls));
+    let [black, white] = audit.ceilings.as_slice() else { panic!("two ceilings") };
+    assert!((black.stops + of(RoomSurface::Ceiling)).abs() < 1e-4 && (0.0..0.1).contains(&white.stops));
+    assert!(black.key_to_fill > audit.key_to_fill, "less light from everywhere is more contrast");
+}
+
+#[test]
+fn black_rooms_and_studios_without_a_room_add_nothing() {
+    let black = audit(&room([0.0; 3]));
+    assert_eq!(black.total.added_stops(RoomSurface::Walls), Some(0.0));
+    assert!(black.ceilings[0].stops.abs() < 1e-6 && black.ceilings[1].stops > 0.1);
+    let open = audit(&Scene { room: None, ..room([0.0; 3]) });
+    assert!(open.ceilings.is_empty() && open.total.without_lux_s.is_empty() && open.total.background_lux_s.is_none());
+    let mut dark = room([0.5; 3]);
+    dark.lights.clear();
+    assert_eq!(audit(&dark).total.added_stops(RoomSurface::Floor), None);
 }

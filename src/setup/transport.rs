@@ -143,6 +143,32 @@ impl SetupTransport {
         }
     }
 
+    /// Returns the exposure of the key lights at the subject, lux s; 0 without any.
+    pub fn key_lux_s(&self) -> f32 {
+        let keys = self.key_lights(&HashSet::new());
+        self.lights.iter().filter(|light| keys.contains(&light.light)).map(|light| light.subject_lux_s).sum()
+    }
+
+    fn lit(&self) -> impl Iterator<Item = &LightTransport> {
+        self.lights.iter().filter(|light| light.is_on)
+    }
+
+    /// Returns the exposure of the subject by all that is on, lux s.
+    pub fn subject_lux_s(&self) -> f32 {
+        self.glow_subject_lux_s + self.lit().map(|light| light.subject_lux_s).sum::<f32>()
+    }
+
+    /// Returns the exposure of the subject by the lights that are on and aim at something else, lux s.
+    pub fn spill_lux_s(&self) -> f32 {
+        self.lit().filter(|light| light.at == MeteredAt::Aim).map(|light| light.subject_lux_s).sum()
+    }
+
+    /// Returns the exposure of the background by all that is on, lux s: the mean of its points. 0 without a background.
+    pub fn background_lux_s(&self) -> f32 {
+        let mean = |values: &[f32]| values.iter().sum::<f32>() / values.len().max(1) as f32;
+        mean(&self.glow_background_lux_s) + self.lit().map(|light| mean(&light.background_lux_s)).sum::<f32>()
+    }
+
     /// Returns true if the picture shows something behind the subject.
     pub fn has_background(&self) -> bool {
         !self.background_albedos.is_empty()

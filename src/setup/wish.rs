@@ -51,6 +51,27 @@ impl fmt::Display for WishLevel {
     }
 }
 
+impl WishLevel {
+    /// Reads `f/8`, `+0.5`, `-1.5`, `0`, `white` or `grey`. None for anything else, and for levels that no studio has.
+    pub fn parse(text: &str) -> Option<WishLevel> {
+        let lower = text.trim().to_lowercase().replace('\u{2212}', "-");
+        let number = |text: &str, range: std::ops::RangeInclusive<f32>| {
+            text.trim().parse().ok().filter(|number| range.contains(number))
+        };
+        match lower.as_str() {
+            "white" => Some(WishLevel::White),
+            "grey" | "gray" => Some(WishLevel::MiddleGrey),
+            _ if lower.starts_with('f') => {
+                let text = lower.trim_start_matches('f').trim_start_matches('/');
+                number(text, F_NUMBERS).map(WishLevel::FNumber)
+            }
+            // A bare number may be meant as either
+            _ if lower.starts_with(['+', '-']) || lower == "0" => number(&lower, STOPS).map(WishLevel::StopsOverKey),
+            _ => None,
+        }
+    }
+}
+
 /// A wish.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wish {
@@ -128,25 +149,35 @@ pub enum WishError {
 /// letters. Lights of a role that are metered each by themselves (rim lights) have a wish each.
 ///
 /// # Errors
-/// When a name or level cannot be understood, or two wishes name the same thing.
+/// When a name or level cannot be understood, or the wishes contradict each other.
 pub fn wishes(text: &str, setup: &SetupTransport) -> Result<Vec<Wish>, WishError> {
     let mut wishes: Vec<Wish> = Vec::new();
     for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {
-        let (name, level) = item.rsplit_once('=').ok_or_else(|| WishError::NoLevel(item.to_owned()))?;
-        let (name, level) = (name.trim(), parse_level(name.trim(), level.trim())?);
-        for (name, target) in targets(name, setup)? {
-            let is_tone = matches!(level, WishLevel::White | WishLevel::MiddleGrey);
-            if is_tone && target != WishTarget::Background {
-                return Err(WishError::ToneOfLight { name, level });
-            }
-            if wishes.iter().any(|wish| overlap(&wish.target, &target)) {
-                return Err(WishError::Twice(name));
-            }
-            wishes.push(Wish { name, target, level });
+        let (name, text) = item.rsplit_once('=').ok_or_else(|| WishError::NoLevel(item.to_owned()))?;
+        let unknown = || WishError::UnknownLevel { name: name.trim().to_owned(), level: text.trim().to_owned() };
+        let level = WishLevel::parse(text).ok_or_else(unknown)?;
+        wishes.extend(targets(name.trim(), setup)?.into_iter().map(|(name, target)| Wish { name, target, level }));
+    }
+    check_wishes(&wishes, setup)?;
+    Ok(wishes)
+}
+
+/// Fails for wishes that contradict each other or have no meaning in a studio.
+///
+/// # Errors
+/// For two wishes for one thing, a tone of something else than the background, and levels relative to a key that there
+/// is not, or that is meant itself.
+pub fn check_wishes(wishes: &[Wish], setup: &SetupTransport) -> Result<(), WishError> {
+    for (index, wish) in wishes.iter().enumerate() {
+        let is_tone = matches!(wish.level, WishLevel::White | WishLevel::MiddleGrey);
+        if is_tone && wish.target != WishTarget::Background {
+            return Err(WishError::ToneOfLight { name: wish.name.clone(), level: wish.level });
+        }
+        if wishes[..index].iter().any(|earlier| overlap(&earlier.target, &wish.target)) {
+            return Err(WishError::Twice(wish.name.clone()));
         }
     }
-    check_key(&wishes, setup)?;
-    Ok(wishes)
+    check_key(wishes, setup)
 }
 
 /// Returns the lights that wishes name.
@@ -179,24 +210,6 @@ fn overlap(a: &WishTarget, b: &WishTarget) -> bool {
     match (a, b) {
         (WishTarget::Lights(a), WishTarget::Lights(b)) => a.iter().any(|light| b.contains(light)),
         _ => a == b,
-    }
-}
-
-fn parse_level(name: &str, text: &str) -> Result<WishLevel, WishError> {
-    let unknown = || WishError::UnknownLevel { name: name.to_owned(), level: text.to_owned() };
-    let lower = text.to_lowercase().replace('\u{2212}', "-");
-    let number = |text: &str, range: std::ops::RangeInclusive<f32>| {
-        text.trim().parse().ok().filter(|number| range.contains(number)).ok_or_else(unknown)
-    };
-    match lower.as_str() {
-        "white" => Ok(WishLevel::White),
-        "grey" | "gray" => Ok(WishLevel::MiddleGrey),
-        _ if lower.starts_with('f') => {
-            number(lower.trim_start_matches("f/").trim_start_matches('f'), F_NUMBERS).map(WishLevel::FNumber)
-        }
-        // A bare number may be meant as either
-        _ if lower.starts_with(['+', '-']) || lower == "0" => number(&lower, STOPS).map(WishLevel::StopsOverKey),
-        _ => Err(unknown()),
     }
 }
 

@@ -2,11 +2,9 @@
 
 use super::font::Font;
 use super::lengths::Units;
-use super::light_shape::LightShape;
-use crate::math::angle_between;
 use crate::photo::thirds::Dial;
-use crate::scene::{Assets, Emitter, Finding, Gel, Light, Room, placement, validate};
-use crate::setup::MeteredSetup;
+use crate::scene::{Assets, Finding, Gel, Light, Room, placement, validate};
+use crate::setup::{LightShape, MeteredSetup};
 use glam::Vec3;
 
 /// Shutter from which a flash needs high-speed sync, seconds: typical of focal-plane shutters.
@@ -15,10 +13,6 @@ const SYNC_S: f32 = 1.0 / 250.0;
 const HEADROOM_M: f32 = 0.15;
 /// Steps in which a stand is looked at, metres.
 const STEP_M: f32 = 0.04;
-/// Angle outside of the picture's corners in which a light that shines at the camera flares, degrees.
-const FLARE_DEG: f32 = 20.0;
-/// Angle from the axis of a panel in which it lights the lens, degrees.
-const PANEL_BEAM_DEG: f32 = 60.0;
 /// Length of cable that a head has with it, metres: typical.
 const CABLE_M: f32 = 4.0;
 
@@ -44,7 +38,9 @@ impl Checks {
         let mut checks = Checks::default();
         checks.exposure(setup);
         checks.seen(setup, &lights);
-        checks.flare(setup, &lights);
+        for light in setup.flaring_lights() {
+            checks.add(format!("{:?} shines at the lens: shade it with a flag, or use a lens hood.", light.name));
+        }
         if let Some(room) = &scene.room {
             checks.room(room, &lights, units);
         }
@@ -103,28 +99,6 @@ impl Checks {
             if shape.surface_points().any(|point| setup.is_seen(point)) {
                 let hidden = if light.visible_to_camera { "" } else { " (the plan hides it)" };
                 self.add(format!("{:?} itself is in the picture{hidden}: move it out, or retouch.", light.name));
-            }
-        }
-    }
-
-    fn flare(&mut self, setup: &MeteredSetup<'_>, lights: &Placed<'_>) {
-        let camera = setup.scene.camera.position;
-        let frame = setup.scene.camera_frame(setup.scene.camera.aspect());
-        let (forward, corner_deg) = (frame.forward(), frame.half_extent.length().atan().to_degrees());
-        for (_, light, shape) in lights.iter().filter(|(_, light, _)| light.on) {
-            let to_camera = camera - light.position;
-            let beam_deg = match light.emitter {
-                Emitter::Spot { outer_deg, .. } => 0.5 * outer_deg,
-                Emitter::Point | Emitter::Sphere { .. } => 180.0,
-                _ => PANEL_BEAM_DEG,
-            };
-            // Angles of grids and dishes go from edge to edge
-            let cuts = [light.modifier.grid_deg, light.modifier.beam.map(|beam| beam.outer_deg)];
-            let beam_deg = cuts.into_iter().flatten().fold(beam_deg, |beam_deg, cut| beam_deg.min(0.5 * cut));
-            let lights_lens = angle_between(shape.axis, to_camera.normalize_or_zero()).to_degrees() < beam_deg;
-            let in_view = angle_between(forward, -to_camera.normalize_or_zero()).to_degrees() < corner_deg + FLARE_DEG;
-            if lights_lens && in_view && setup.is_clear(light.position, camera) {
-                self.add(format!("{:?} shines at the lens: shade it with a flag, or use a lens hood.", light.name));
             }
         }
     }

@@ -16,7 +16,6 @@ mod gear;
 mod html;
 mod lengths;
 mod light_facts;
-mod light_shape;
 mod page;
 mod pdf;
 mod silhouette;

@@ -3,9 +3,9 @@
 use super::drawing::{Align, Element, Rgb, Stroke};
 use super::font::Font;
 use super::lengths::Units;
-use super::light_shape::LightShape;
 use super::silhouette::{convex_hull, outlines};
 use crate::scene::{Assets, CameraFrame, Light, Object, Scene, Shape, tessellate};
+use crate::setup::LightShape;
 use glam::{Mat3, Quat, Vec2, Vec3};
 use std::f32::consts::FRAC_PI_2;
 

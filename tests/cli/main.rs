@@ -1,6 +1,7 @@
 //! The program as a process: arguments, files, exit codes, output to stdout and stderr.
 #![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
+mod audit;
 mod chart;
 mod checkpoints;
 mod denoiser;
@@ -12,6 +13,7 @@ mod picture_files;
 mod running_render;
 mod sheet;
 mod signals;
+mod solve;
 mod window_libraries;
 
 use serde_json::Value;

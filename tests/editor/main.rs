@@ -23,6 +23,7 @@ use std::time::Duration;
 mod adapter;
 mod camera;
 mod device;
+mod dials;
 mod files;
 mod panels;
 mod placing;

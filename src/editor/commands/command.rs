@@ -7,6 +7,7 @@ use crate::editor::document::item::Item;
 use crate::editor::document::light_mix::Fader;
 use crate::photo::PictureDisplay;
 use crate::scene::{LightId, TextureSlot};
+use crate::setup::DialPlan;
 use crate::sheet::Units;
 use std::path::PathBuf;
 
@@ -126,6 +127,12 @@ pub enum Command {
     ToggleLiveMode,
     /// Selects the kind of transform handles.
     SetHandles(HandleMode),
+    /// Shows or hides the window of wanted exposures.
+    ToggleDials,
+    /// Shows or hides the window of the room's part in the light.
+    ToggleRoomAudit,
+    /// Sets the dials of lights.
+    SetDials(Box<DialPlan>),
     /// Shows or hides the list of keys.
     ToggleHelp,
 }

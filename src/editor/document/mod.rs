@@ -6,6 +6,7 @@ pub mod arrange;
 pub mod bounds;
 pub mod catalog;
 pub mod clipboard;
+pub mod dial_wishes;
 pub mod files;
 pub mod history;
 pub mod item;

@@ -42,6 +42,7 @@ pub fn menu_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
         ui.menu_button("File", |ui| file_menu(ui, state, out));
         ui.menu_button("Edit", |ui| edit_menu(ui, state, out));
         ui.menu_button("View", |ui| view_menu(ui, state, out));
+        ui.menu_button("Light", |ui| light_menu(ui, out));
         ui.menu_button("Render", |ui| render_menu(ui, state, out));
         ui.menu_button("Help", |ui| entry(ui, true, "Keys and mouse", "How to move around", Command::ToggleHelp, out));
     });
@@ -75,6 +76,14 @@ fn file_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     entry(ui, true, "Quit", "Close the window", Command::Quit, out);
 }
 
+fn light_menu(ui: &mut Ui, out: &mut Vec<Command>) {
+    ui.set_min_width(200.0);
+    entry(ui, true, "Set dials by wish\u{2026}", DIALS_TIP, Command::ToggleDials, out);
+    entry(ui, true, "What the room adds\u{2026}", AUDIT_TIP, Command::ToggleRoomAudit, out);
+}
+
+const DIALS_TIP: &str = "Name the f-number of the key and stops of the others; the dials follow from the meter";
+const AUDIT_TIP: &str = "How much of the light comes by walls, ceiling, floor and backdrops; spill and flare";
 const SHEET_TIP: &str = "One page to build the studio again from: picture, plan, list of lights; PDF, SVG or HTML";
 
 fn recent_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {

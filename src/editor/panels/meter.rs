@@ -36,10 +36,16 @@ pub fn meter_ui(
             Some(Err(message)) => drop(ui.label(message)),
             None => drop(ui.label(RichText::new("Reading\u{2026}").weak())),
         }
-        let button = ui.small_button("Select the meter");
-        if button.on_hover_text("Move it with its handles, set it up in the inspector").clicked() {
-            out.push(Command::Select(Some(Item::Meter)));
-        }
+        ui.horizontal(|ui| {
+            let button = ui.small_button("Select the meter");
+            if button.on_hover_text("Move it with its handles, set it up in the inspector").clicked() {
+                out.push(Command::Select(Some(Item::Meter)));
+            }
+            let button = ui.small_button("Set dials by wish\u{2026}");
+            if button.on_hover_text("Name the f-number of the key and stops of the others").clicked() {
+                out.push(Command::ToggleDials);
+            }
+        });
     });
 }
 

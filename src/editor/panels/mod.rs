@@ -1,6 +1,7 @@
 //! The panels around the viewport. Each `*_ui` function draws from the document and pushes commands.
 
 pub mod add;
+pub mod dials;
 pub mod file_change_prompt;
 pub mod help;
 pub mod inspector;
@@ -12,6 +13,7 @@ pub mod prompts;
 pub mod quality;
 pub mod recovery_prompt;
 pub mod render;
+pub mod room_audit;
 pub mod status;
 pub mod thumbnails;
 pub mod view_bar;

@@ -163,6 +163,12 @@ pub fn small_button(ui: &mut Ui, sign: &str, name: &str) -> Response {
     response
 }
 
+/// Returns a movable window with a tool, initially in the upper left corner of a view.
+pub fn tool_window(title: &str, view: egui::Rect) -> egui::Window<'_> {
+    let corner = view.min + vec2(20.0, 90.0);
+    egui::Window::new(title).resizable(false).collapsible(false).default_pos(corner).constrain_to(view)
+}
+
 /// Sets the accessible name of a widget.
 pub fn named(ui: &Ui, response: &Response, name: &str) {
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name));

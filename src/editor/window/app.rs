@@ -464,6 +464,7 @@ impl eframe::App for App {
         let middle = self.panels_ui(ui, &mut out);
         self.panels.preset_picker.ui(&ctx, &self.panels.presets, &mut self.background.thumbnails, &mut out);
         help::help_ui(&ctx, &mut self.panels.show_help);
+        self.setup_windows_ui(&ctx, middle, &mut out);
         self.ask(&ctx, &mut out);
         self.drop_hint(&ctx);
         self.toasts.ui(&ctx, middle);

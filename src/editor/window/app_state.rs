@@ -2,6 +2,7 @@
 
 use crate::editor::commands::choices::{CentralView, HandleMode};
 use crate::editor::document::catalog::CatalogTab;
+use crate::editor::document::dial_wishes::DialWishes;
 use crate::editor::document::files::PresetInfo;
 use crate::editor::panels::outliner::OutlinerState;
 use crate::editor::panels::presets::PresetPicker;
@@ -13,6 +14,7 @@ use crate::editor::window::background_tasks::{BackgroundTasks, TaskResult};
 use crate::editor::window::frame_log::FrameLog;
 use crate::jobs::{Clock, Forecaster, MeterJob, PatternJob};
 use crate::raytrace::GeometryCache;
+use crate::setup::{MeasurementJob, RoomAudit, SetupTransport};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -57,6 +59,12 @@ pub struct PanelState {
     pub catalog_tab: CatalogTab,
     /// True while the list of keys is open.
     pub show_help: bool,
+    /// True while the window of wanted exposures is open.
+    pub show_dials: bool,
+    /// True while the window of the room's part in the light is open.
+    pub show_room_audit: bool,
+    /// The wanted exposures.
+    pub dial_wishes: DialWishes,
     /// The panel of catalog and item list.
     pub left: SidePanel,
     /// The panel of inspector and render settings.
@@ -72,6 +80,9 @@ impl PanelState {
             presets,
             catalog_tab: CatalogTab::Lights,
             show_help: false,
+            show_dials: false,
+            show_room_audit: false,
+            dial_wishes: DialWishes::default(),
             left: SidePanel::default(),
             right: SidePanel::default(),
         }
@@ -87,6 +98,10 @@ pub struct BackgroundState {
     pub exports: BackgroundTasks,
     /// The reading of the light meter.
     pub meter: MeterJob,
+    /// The exposures of all lights, for wanted ones.
+    pub transport: MeasurementJob<SetupTransport>,
+    /// What the room does to the light.
+    pub room_audit: MeasurementJob<RoomAudit>,
     /// The lighting of the selected figure's face.
     pub pattern: PatternJob,
     /// The estimate of render time and noise.
@@ -102,6 +117,8 @@ impl BackgroundState {
             tasks: BackgroundTasks::default(),
             exports: BackgroundTasks::default(),
             meter: MeterJob::new(geometry.clone()),
+            transport: MeasurementJob::new(SetupTransport::measure, geometry.clone()),
+            room_audit: MeasurementJob::new(RoomAudit::measure, geometry.clone()),
             pattern: PatternJob::default(),
             forecaster: Forecaster::new(geometry, Clock::default()),
             thumbnails: Thumbnails::default(),
@@ -117,7 +134,11 @@ impl BackgroundState {
 
     /// Returns true while a task or the meter is running.
     pub fn is_busy(&self) -> bool {
-        self.tasks.is_busy() || self.exports.is_busy() || self.meter.is_busy()
+        self.tasks.is_busy()
+            || self.exports.is_busy()
+            || self.meter.is_busy()
+            || self.transport.is_busy()
+            || self.room_audit.is_busy()
     }
 
     /// Returns what the tasks are doing, for the status line.

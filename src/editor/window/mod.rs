@@ -15,5 +15,6 @@ pub mod run_command;
 pub mod run_export;
 pub mod run_file_command;
 pub mod run_recovery;
+pub mod run_setup;
 pub mod run_time_libraries;
 pub mod session;

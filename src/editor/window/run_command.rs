@@ -122,6 +122,9 @@ impl App {
             Command::SetLiveMode(mode) => self.views.viewport.traced_view.mode = mode,
             Command::ToggleLiveMode => self.views.viewport.traced_view.toggle(),
             Command::SetHandles(handle) => self.views.handles = handle,
+            Command::ToggleDials => self.panels.show_dials = !self.panels.show_dials,
+            Command::ToggleRoomAudit => self.panels.show_room_audit = !self.panels.show_room_audit,
+            Command::SetDials(plan) => self.set_dials(&plan),
             Command::ToggleHelp => self.panels.show_help = !self.panels.show_help,
             Command::Open
             | Command::Save
@@ -259,6 +262,10 @@ impl App {
             self.views.viewport.cancel_drag();
         } else if self.panels.show_help {
             self.panels.show_help = false;
+        } else if self.panels.show_dials {
+            self.panels.show_dials = false;
+        } else if self.panels.show_room_audit {
+            self.panels.show_room_audit = false;
         } else if self.views.viewport.place_light.is_some() {
             self.views.viewport.place_light = None;
         } else if matches!(self.views.central, CentralView::Light(_)) {

@@ -1,11 +1,13 @@
-//! The measurement of a set-up in the background.
+//! Measurements of a set-up in the background.
 
-use super::transport::SetupTransport;
 use crate::jobs::worker::{Inbox, Interrupt, Worker, WorkerSettings};
 use crate::jobs::{Priority, Wake, background_pool};
-use crate::raytrace::GeometryCache;
+use crate::raytrace::{GeometryCache, PrepareError, RenderControl};
 use crate::scene::{Assets, Scene};
 use std::sync::Arc;
+
+/// A measurement of a studio. None once it is cancelled.
+pub type Measure<R> = fn(&Scene, &Assets, &GeometryCache, &RenderControl) -> Result<Option<R>, PrepareError>;
 
 #[derive(Debug)]
 struct Request {
@@ -13,27 +15,27 @@ struct Request {
     assets: Assets,
 }
 
-/// The exposures of all lights of the studio, measured while somebody wants them.
+/// The latest measurement of the studio, made while somebody wants it.
 #[derive(Debug)]
-pub struct TransportJob {
-    worker: Worker<Request, SetupTransport>,
+pub struct MeasurementJob<R> {
+    worker: Worker<Request, R>,
     /// Revision of the document that was requested last.
     requested: Option<u64>,
-    latest: Option<Result<SetupTransport, String>>,
+    latest: Option<Result<R, String>>,
 }
 
 const WORKER: WorkerSettings = WorkerSettings {
-    name: "dials",
+    name: "measure",
     priority: Priority::Background,
     interrupt: Interrupt::Always,
     panic_message: "The lights can't be metered. This is an error in Catchlight.",
 };
 
-impl TransportJob {
+impl<R: Send + 'static> MeasurementJob<R> {
     /// Returns a job that shares BVHs of meshes with renders and live view.
-    pub fn new(cache: Arc<GeometryCache>) -> Self {
-        let work = move |inbox: &Inbox<Request, SetupTransport>| serve(inbox, &cache);
-        TransportJob { worker: Worker::new(WORKER, work), requested: None, latest: None }
+    pub fn new(measure: Measure<R>, cache: Arc<GeometryCache>) -> Self {
+        let work = move |inbox: &Inbox<Request, R>| serve(inbox, measure, &cache);
+        MeasurementJob { worker: Worker::new(WORKER, work), requested: None, latest: None }
     }
 
     /// Measures the studio anew when it has changed, and takes in the newest result. To be called once a frame.
@@ -55,26 +57,26 @@ impl TransportJob {
         }
     }
 
-    /// Returns the latest exposures, or the message of an error; none until the first ones are there.
-    pub fn latest(&self) -> Option<Result<&SetupTransport, &str>> {
+    /// Returns the latest result, or the message of an error; none until the first one is there.
+    pub fn latest(&self) -> Option<Result<&R, &str>> {
         Some(self.latest.as_ref()?.as_ref().map_err(String::as_str))
     }
 
-    /// Returns true while the latest exposures are not those of the studio.
+    /// Returns true while the latest result is not that of the studio.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy()
     }
 }
 
 /// The body of the thread.
-fn serve(inbox: &Inbox<Request, SetupTransport>, cache: &GeometryCache) {
-    let pool = match background_pool(0, "dials") {
+fn serve<R: Send + 'static>(inbox: &Inbox<Request, R>, measure: Measure<R>, cache: &GeometryCache) {
+    let pool = match background_pool(0, "measure") {
         Ok(pool) => pool,
         Err(error) => return inbox.fail_all(&format!("No threads to meter the lights with: {error}.")),
     };
     while let Some((Request { scene, assets }, control)) = inbox.next() {
-        match pool.install(|| SetupTransport::measure(&scene, &assets, cache, &control)) {
-            Ok(Some(transport)) => inbox.publish(transport),
+        match pool.install(|| measure(&scene, &assets, cache, &control)) {
+            Ok(Some(result)) => inbox.publish(result),
             Ok(None) => {}
             Err(error) => inbox.fail(error.to_string()),
         }
