@@ -52,7 +52,8 @@ struct LightReport {
 #[derive(Debug, Serialize)]
 struct CeilingReport {
     color: &'static str,
-    stops: f32,
+    /// Null if no light is left.
+    stops: Option<f32>,
     key_to_fill: Option<f32>,
 }
 
@@ -78,7 +79,7 @@ fn report(audit: &RoomAudit) -> AuditReport {
         added_stops: (RoomSurface::ALL.into_iter())
             .filter_map(|surface| Some((surface.label(), Some(light.added_stops(surface)?).filter(|s| s.is_finite()))))
             .collect(),
-        background_stops: background_stops(audit, light).filter(|stops| stops.is_finite()),
+        background_stops: audit.background_stops(light),
     };
     let ceilings = audit.ceilings.iter();
     AuditReport {
@@ -89,10 +90,6 @@ fn report(audit: &RoomAudit) -> AuditReport {
             .collect(),
         flaring: audit.flaring.clone(),
     }
-}
-
-fn background_stops(audit: &RoomAudit, light: &AuditedLight) -> Option<f32> {
-    light.background_lux_s.map(|lux_s| (lux_s / audit.key_lux_s).log2())
 }
 
 /// Returns the audit as text: a line per light, then ceilings and flare.
@@ -114,12 +111,14 @@ fn table(audit: &RoomAudit) -> String {
             let stops = light.added_stops(*surface).map_or_else(|| "dark".to_owned(), stops_text);
             let _ = write!(text, "  {stops:>w$}", w = surface.label().len().max(10));
         }
-        let background = background_stops(audit, light).map_or_else(|| "none".to_owned(), stops_text);
+        let background = audit.background_stops(light).map_or_else(|| "none".to_owned(), signed_hundredths);
         let _ = writeln!(text, "  {background:>10}");
     }
     text.push('\n');
     for trial in &audit.ceilings {
-        let _ = write!(text, "a {} ceiling: {} stops at the subject", trial.color, stops_text(trial.stops));
+        let stops =
+            trial.stops.map_or_else(|| "no light".to_owned(), |stops| format!("{} stops", signed_hundredths(stops)));
+        let _ = write!(text, "a {} ceiling: {stops} at the subject", trial.color);
         if let (Some(now), Some(then)) = (audit.key_to_fill, trial.key_to_fill) {
             let _ = write!(text, ", key:fill {then:.1}:1 instead of {now:.1}:1");
         }
@@ -132,9 +131,5 @@ fn table(audit: &RoomAudit) -> String {
 }
 
 fn stops_text(stops: f32) -> String {
-    match stops {
-        s if s == f32::INFINITY => "all".to_owned(),
-        s if s.is_finite() => signed_hundredths(s),
-        _ => "dark".to_owned(),
-    }
+    if stops.is_finite() { signed_hundredths(stops) } else { "all".to_owned() }
 }

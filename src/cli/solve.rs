@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 /// shutter (f/8), stops over the key (+0.5, -1.5), or white or grey for the background. A light is metered by itself:
 /// at the subject, or where it aims, or, for a rim light, turned to it.
 ///
-/// Dials stay between full power and 1/512, in tenths of a stop. Lights that no wish concerns keep theirs. Wishes that
+/// Dials that change are set to tenths of a stop between full power and 1/512. Lights that no wish concerns keep theirs. Wishes that
 /// cannot be met are met as nearly as possible, with a warning.
 #[derive(Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
@@ -64,7 +64,8 @@ struct WishReport {
     wanted_f_number: Option<f32>,
     before_f_number: f32,
     after_f_number: f32,
-    /// Stops over the wanted exposure; null if the wish is met.
+    is_met: bool,
+    /// Stops over the wanted exposure; null if the wish is met, or if no light can meet it.
     missed_stops: Option<f32>,
     /// Half of the range over the background, stops.
     evenness_stops: Option<f32>,
@@ -127,6 +128,7 @@ fn report(scene: &Scene, setup: &SetupTransport, plan: &DialPlan) -> SolveReport
         wanted_f_number: Some(setup.f_number(outcome.wanted_lux_s)).filter(|number| number.is_finite()),
         before_f_number: setup.f_number(outcome.before_lux_s),
         after_f_number: setup.f_number(outcome.after_lux_s),
+        is_met: outcome.missed_stops.is_none(),
         missed_stops: outcome.missed_stops.filter(|stops| stops.is_finite()),
         evenness_stops: outcome.evenness_stops.filter(|stops| stops.is_finite()),
         note: outcome.note(),

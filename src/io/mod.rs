@@ -49,7 +49,7 @@ pub use kept_picture::KeptPicture;
 pub use model::{ImportedModel, ModelLimits};
 pub use picture::{
     CaptureInfo, LayeredPicture, PictureFile, PictureFormat, PictureInfo, PicturePart, check_picture_file, encode_jpeg,
-    encode_part, export_picture, export_shown, picture_file, read_exr, read_part,
+    encode_part, encode_png, export_picture, export_shown, picture_file, read_exr, read_part,
 };
 pub use plain_file::{check_file, write_file};
 pub use presets::{Preset, find_preset, presets};

@@ -23,12 +23,14 @@ pub struct BoundedUnknown {
     pub least: f64,
     /// Greatest value.
     pub most: f64,
+    /// Value that it keeps if no equation has it.
+    pub initial: f64,
     /// Cost of a unit, from 0 to 1. Of solutions that are equally good the cheapest is taken.
     pub cost: f64,
 }
 
 /// Returns the unknowns that minimise the sum of the squared residuals of the equations; of several solutions the one of
-/// least cost. Unknowns without a coefficient are at their least value. Coordinate descent: each unknown in turn is set to
+/// least cost. Unknowns without a coefficient keep their initial values. Coordinate descent: each unknown in turn is set to
 /// its best value within its bounds (Bertsekas, Nonlinear Programming, section 3.7).
 ///
 /// Equations should be scaled to right-hand sides of about 1, which the weights of the costs suppose.
@@ -38,7 +40,7 @@ pub fn bounded_least_squares(unknowns: &[BoundedUnknown], equations: &[LinearEqu
         (0..unknowns.len()).map(|i| (0..unknowns.len()).map(|j| product(i, j)).collect()).collect();
     let right: Vec<f64> =
         (0..unknowns.len()).map(|i| equations.iter().map(|e| e.coefficients[i] * e.value).sum()).collect();
-    let mut x: Vec<f64> = unknowns.iter().map(|unknown| unknown.least).collect();
+    let mut x: Vec<f64> = unknowns.iter().map(|unknown| unknown.initial.clamp(unknown.least, unknown.most)).collect();
     for weight in COST_WEIGHTS {
         for _ in 0..MOST_SWEEPS {
             let mut change = 0.0_f64;
@@ -62,7 +64,7 @@ mod tests {
     use super::*;
 
     fn unknown(least: f64, most: f64, cost: f64) -> BoundedUnknown {
-        BoundedUnknown { least, most, cost }
+        BoundedUnknown { least, most, initial: 0.7, cost }
     }
 
     fn equation(coefficients: &[f64], value: f64) -> LinearEquation {
@@ -100,6 +102,6 @@ mod tests {
         let limited = cheapest(0.2);
         assert!((limited[1] - 0.2).abs() < 1e-9 && (limited[0] - 0.6).abs() < 1e-4, "{limited:?}");
         // An unknown that no equation has.
-        assert_eq!(bounded_least_squares(&[unknown(0.1, 1.0, 0.5)], &[equation(&[0.0], 1.0)]), [0.1]);
+        assert_eq!(bounded_least_squares(&[unknown(0.1, 1.0, 0.5)], &[equation(&[0.0], 1.0)]), [0.7]);
     }
 }

@@ -20,11 +20,7 @@ pub struct LightBearing {
 impl LightBearing {
     /// Returns the place of a light at `position` about a subject, both in world space, metres.
     pub fn new(scene: &Scene, position: Vec3, subject: Vec3) -> Self {
-        let (away, mut front) = (position - subject, scene.camera.position - subject);
-        if front.x.hypot(front.z) < STRAIGHT * front.length() {
-            // Straight above or below the subject: the bottom of the picture is in front
-            front = -Vec3::from(scene.camera_frame(1.0).world_from_camera.matrix3.y_axis);
-        }
+        let (away, front) = (position - subject, front(scene, subject));
         let angle = away.x.atan2(away.z) - front.x.atan2(front.z);
         let (sin, cos) = angle.sin_cos();
         LightBearing {
@@ -32,6 +28,25 @@ impl LightBearing {
             azimuth_deg: sin.atan2(cos).to_degrees(),
             elevation_deg: away.y.atan2(away.x.hypot(away.z)).to_degrees(),
         }
+    }
+
+    /// Returns the unit direction from a subject to a light at such angles, degrees.
+    pub fn direction(scene: &Scene, subject: Vec3, azimuth_deg: f32, elevation_deg: f32) -> Vec3 {
+        let front = front(scene, subject);
+        let azimuth = front.x.atan2(front.z) + azimuth_deg.to_radians();
+        let (sin_up, cos_up) = elevation_deg.to_radians().sin_cos();
+        Vec3::new(azimuth.sin() * cos_up, sin_up, azimuth.cos() * cos_up)
+    }
+}
+
+/// Returns the direction from a subject that counts as azimuth 0: to the camera.
+fn front(scene: &Scene, subject: Vec3) -> Vec3 {
+    let front = scene.camera.position - subject;
+    if front.x.hypot(front.z) < STRAIGHT * front.length() {
+        // Straight above or below the subject: the bottom of the picture is in front
+        -Vec3::from(scene.camera_frame(1.0).world_from_camera.matrix3.y_axis)
+    } else {
+        front
     }
 }
 
@@ -47,6 +62,11 @@ mod tests {
         let place = LightBearing::new(&scene, subject + Vec3::new(0.0, 1.0, 1.0), subject);
         assert!((place.elevation_deg - 45.0).abs() < 1e-3 && place.azimuth_deg.abs() < 1e-3, "{place:?}");
         assert!((place.distance_m - 2.0_f32.sqrt()).abs() < 1e-6);
+        let away = LightBearing::direction(&scene, subject, -100.0, 20.0);
+        let place = LightBearing::new(&scene, subject + away * 3.0, subject);
+        let expected = LightBearing { distance_m: 3.0, azimuth_deg: -100.0, elevation_deg: 20.0 };
+        assert!((place.azimuth_deg - expected.azimuth_deg).abs() < 1e-3, "{place:?}");
+        assert!((place.elevation_deg - expected.elevation_deg).abs() < 1e-3, "{place:?}");
         let mut above = scene.clone();
         (above.camera.position, above.camera.aim) = (subject + Vec3::Y * 2.0, crate::scene::Aim::Point(subject));
         let top = -Vec3::from(above.camera_frame(1.0).world_from_camera.matrix3.y_axis);

@@ -119,6 +119,11 @@ impl Reading {
         light.sum() * self.time_s(light)
     }
 
+    /// Returns the standard error of the luminous exposure of a light, lux s.
+    pub fn error_lux_s(&self, light: &LightReading) -> f32 {
+        light.standard_error * self.time_s(light)
+    }
+
     /// Converts a quantity of a light (lux, or lux s for flash) to continuous light at the camera's shutter, lux.
     pub fn as_lux(&self, light: &LightReading, quantity: f32) -> f32 {
         if light.flash { quantity / self.shutter_s } else { quantity }

@@ -6,9 +6,9 @@
 use super::dial_system::{DIAL_STOPS, Group, Relation, System};
 use super::metering::MeteredAt;
 use super::transport::{LightTransport, SetupTransport};
-use super::wish::{Wish, WishLevel, WishTarget, named_lights};
+use super::wish::{Wish, WishLevel, WishTarget, key_of, named_lights};
 use crate::photo::text::signed_stops;
-use crate::scene::{LightId, Scene};
+use crate::scene::{LightId, Role, Scene};
 use std::collections::HashSet;
 
 /// Steps of a dial, stops: tenths, as most studio heads have.
@@ -18,8 +18,11 @@ const TOLERANCE_STOPS: f32 = 0.06;
 /// Most rounds in which wishes relative to the key follow it, and the change at which they end, stops.
 const MOST_ROUNDS: u32 = 40;
 const SETTLED_STOPS: f32 = 1e-4;
+/// Part of the exposure of a background from which a light that aims at something else is set for it.
+const BACKGROUND_PART: f32 = 0.05;
 /// Weight of the exposure of each point of a background; that of its mean is 1.
 const EVENNESS_WEIGHT: f32 = 0.1;
+
 /// The dial of a light in a plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedDial {
@@ -56,7 +59,7 @@ pub struct WishOutcome {
     /// Exposure over the wanted one with the planned dials, stops; none if the wish is met. Of a background that is to be
     /// white, at its darkest point.
     pub missed_stops: Option<f32>,
-    /// Half of the range over the points of a background with the planned dials, stops.
+    /// Half of the range over the points of a background with the planned dials, stops; none with a dark point.
     pub evenness_stops: Option<f32>,
     /// Lights of a missed wish that are at an end of their dials.
     pub limits: Vec<String>,
@@ -69,8 +72,10 @@ impl WishOutcome {
         let side = if missed < 0.0 { "under" } else { "over" };
         let amount = if missed.is_finite() {
             format!("{} stops {side}", signed_stops(missed.abs()).trim_start_matches('+'))
-        } else {
+        } else if self.wanted_lux_s.is_finite() {
             "no light of it arrives".to_owned()
+        } else {
+            "its surface is black".to_owned()
         };
         Some(if self.limits.is_empty() { amount } else { format!("{amount}: {}", self.limits.join(", ")) })
     }
@@ -164,7 +169,7 @@ struct Solver<'a> {
     named: HashSet<LightId>,
     /// Lights whose dials may be set.
     groups: Vec<Group>,
-    /// Lights whose sum other wishes are relative to.
+    /// The light that other wishes are relative to.
     is_key: Vec<bool>,
 }
 
@@ -190,7 +195,12 @@ impl<'a> Solver<'a> {
         }
         if has(&WishTarget::Background) {
             // Each by itself, for an even background
-            members.extend(unnamed(MeteredAt::Aim).into_iter().map(|index| vec![index]));
+            let lights_it = |index: &usize| {
+                let light = &lights[*index];
+                light.role == Role::Background
+                    || light.mean_background_lux_s() > BACKGROUND_PART * setup.background_lux_s()
+            };
+            members.extend(unnamed(MeteredAt::Aim).into_iter().filter(lights_it).map(|index| vec![index]));
         } else if has(&WishTarget::Spill) {
             members.push(unnamed(MeteredAt::Aim));
         }
@@ -201,10 +211,10 @@ impl<'a> Solver<'a> {
                 && members.iter().all(|index| !named.contains(&lights[*index].light))
                 && members.iter().all(|index| lights[*index].at == MeteredAt::Aim)
         };
-        let keys = setup.key_lights(&named);
+        let key = key_of(wishes, setup);
         Solver {
             groups: members.into_iter().map(|members| Group::new(lights, is_bounded(&members), members)).collect(),
-            is_key: lights.iter().map(|light| keys.contains(&light.light)).collect(),
+            is_key: lights.iter().map(|light| Some(light.light) == key).collect(),
             setup,
             wishes,
             named,
@@ -349,7 +359,7 @@ impl<'a> Solver<'a> {
             name: light.name.clone(),
             from_stops: light.dial_stops,
             was_on: light.is_on,
-            to_stops: nearest_step(light.dial_stops, powers[index].log2()),
+            to_stops: step_of(light.dial_stops, powers[index]),
         };
         let on_now = |light: &LightTransport| if light.is_on { light.dial_stops.exp2() } else { 0.0 };
         let before: Vec<f32> = self.setup.lights().iter().map(on_now).collect();
@@ -400,9 +410,19 @@ impl<'a> Solver<'a> {
             before_lux_s: mean(&was),
             after_lux_s: mean(&reached),
             missed_stops,
-            evenness_stops: (reached.len() > 1).then(|| 0.5 * (high / low).log2()),
+            evenness_stops: (reached.len() > 1 && low > 0.0).then(|| 0.5 * (high / low).log2()),
             limits: limits.unwrap_or_default(),
         }
+    }
+}
+
+/// Returns the setting of a dial that has been rounded to a power, stops; the present one to the last digit.
+fn step_of(present_stops: f32, power: f32) -> f32 {
+    let stops = power.log2();
+    if (stops - present_stops).abs() < 1e-4 {
+        present_stops
+    } else {
+        (stops / DIAL_STEP_STOPS).round() * DIAL_STEP_STOPS
     }
 }
 

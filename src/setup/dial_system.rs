@@ -47,7 +47,8 @@ impl Group {
     fn bounds(&self) -> (f32, f32) {
         let (low, high) = (DIAL_STOPS.start().exp2(), DIAL_STOPS.end().exp2());
         let weakest = self.ratios.iter().copied().fold(1.0, f32::min);
-        ((low / weakest).min(high), high)
+        let least = low / weakest;
+        if least < high { (least, high) } else { (low, high) }
     }
 }
 
@@ -71,7 +72,8 @@ impl<'a> System<'a> {
         let unknown = |group: &&Group| {
             let (least, most) = group.bounds();
             let cost = if group.is_kept { 0.0 } else { energy(group) / most_energy };
-            BoundedUnknown { least: least.into(), most: most.into(), cost: cost.into() }
+            let initial = f64::from(group.present);
+            BoundedUnknown { least: least.into(), most: most.into(), initial, cost: cost.into() }
         };
         let unknowns: Vec<BoundedUnknown> = groups.iter().map(unknown).collect();
         let mut equations = Vec::new();
@@ -94,7 +96,7 @@ impl<'a> System<'a> {
         let mut coefficients: Vec<f64> = self.groups.iter().map(of_group).collect();
         coefficients.resize(self.unknowns.len(), 0.0);
         if relation != Relation::Equal {
-            self.unknowns.push(BoundedUnknown { least: 0.0, most: MOST_EXCESS, cost: 0.0 });
+            self.unknowns.push(BoundedUnknown { least: 0.0, most: MOST_EXCESS, initial: 0.0, cost: 0.0 });
             coefficients.push(if relation == Relation::AtLeast { -1.0 } else { 1.0 });
         }
         let value = f64::from(weight) * f64::from(1.0 - constant_lux_s / wanted_lux_s);

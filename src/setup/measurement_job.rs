@@ -13,15 +13,17 @@ pub type Measure<R> = fn(&Scene, &Assets, &GeometryCache, &RenderControl) -> Res
 struct Request {
     scene: Scene,
     assets: Assets,
+    revision: u64,
 }
 
-/// The latest measurement of the studio, made while somebody wants it.
+/// The latest measurement of the studio.
 #[derive(Debug)]
 pub struct MeasurementJob<R> {
-    worker: Worker<Request, R>,
+    worker: Worker<Request, (u64, R)>,
     /// Revision of the document that was requested last.
     requested: Option<u64>,
-    latest: Option<Result<R, String>>,
+    /// The latest result, with the revision that it is of.
+    latest: Option<Result<(u64, R), String>>,
 }
 
 const WORKER: WorkerSettings = WorkerSettings {
@@ -34,7 +36,7 @@ const WORKER: WorkerSettings = WorkerSettings {
 impl<R: Send + 'static> MeasurementJob<R> {
     /// Returns a job that shares BVHs of meshes with renders and live view.
     pub fn new(measure: Measure<R>, cache: Arc<GeometryCache>) -> Self {
-        let work = move |inbox: &Inbox<Request, R>| serve(inbox, measure, &cache);
+        let work = move |inbox: &Inbox<Request, (u64, R)>| serve(inbox, measure, &cache);
         MeasurementJob { worker: Worker::new(WORKER, work), requested: None, latest: None }
     }
 
@@ -45,7 +47,7 @@ impl<R: Send + 'static> MeasurementJob<R> {
         }
         if self.requested != Some(revision) {
             self.requested = Some(revision);
-            self.worker.request(Request { scene: scene.clone(), assets: assets.clone() }, wake);
+            self.worker.request(Request { scene: scene.clone(), assets: assets.clone(), revision }, wake);
         }
     }
 
@@ -59,24 +61,29 @@ impl<R: Send + 'static> MeasurementJob<R> {
 
     /// Returns the latest result, or the message of an error; none until the first one is there.
     pub fn latest(&self) -> Option<Result<&R, &str>> {
-        Some(self.latest.as_ref()?.as_ref().map_err(String::as_str))
+        Some(self.latest.as_ref()?.as_ref().map(|(_, result)| result).map_err(String::as_str))
     }
 
-    /// Returns true while the latest result is not that of the studio.
+    /// Returns true if the latest result is that of the studio as it was last seen.
+    pub fn is_current(&self) -> bool {
+        self.latest.as_ref().is_some_and(|latest| latest.as_ref().is_ok_and(|(of, _)| Some(*of) == self.requested))
+    }
+
+    /// Returns true while a measurement is running.
     pub fn is_busy(&self) -> bool {
         self.worker.is_busy()
     }
 }
 
 /// The body of the thread.
-fn serve<R: Send + 'static>(inbox: &Inbox<Request, R>, measure: Measure<R>, cache: &GeometryCache) {
+fn serve<R: Send + 'static>(inbox: &Inbox<Request, (u64, R)>, measure: Measure<R>, cache: &GeometryCache) {
     let pool = match background_pool(0, "measure") {
         Ok(pool) => pool,
         Err(error) => return inbox.fail_all(&format!("No threads to meter the lights with: {error}.")),
     };
-    while let Some((Request { scene, assets }, control)) = inbox.next() {
+    while let Some((Request { scene, assets, revision }, control)) = inbox.next() {
         match pool.install(|| measure(&scene, &assets, cache, &control)) {
-            Ok(Some(result)) => inbox.publish(result),
+            Ok(Some(result)) => inbox.publish_unless_cancelled(&control, (revision, result)),
             Ok(None) => {}
             Err(error) => inbox.fail(error.to_string()),
         }

@@ -10,6 +10,8 @@ use glam::{Vec2, Vec3};
 const APART_M: f32 = 0.75;
 /// Distance behind the camera's aim in which a surface is the subject, metres.
 const NEAR_M: f32 = 0.15;
+/// Distance from a surface at which a photographer holds a dome: out of the shadow of a nose, metres.
+const HELD_M: f32 = 0.03;
 /// Longest distance at which a background is searched for, metres.
 const FARTHEST_M: f32 = 100.0;
 /// Most surfaces that are skipped before a background.
@@ -22,7 +24,7 @@ const LARGE_M: f32 = 1.0;
 /// which a surface is a floor.
 const BACKGROUND_GRID: [u32; 2] = [5, 3];
 const FLOOR: f32 = 0.7;
-/// Step behind a surface, metres.
+/// Step from a surface to either side, metres.
 const STEP_M: f32 = 1e-3;
 
 /// The place at which a light is metered.
@@ -66,8 +68,10 @@ pub struct Background {
 pub struct MeteredSetup<'a> {
     /// The studio.
     pub scene: &'a Scene,
-    /// The meter's place: that of the studio's own meter, or a dome before the camera's aim.
+    /// The subject: the place of the studio's own meter, or what is before the camera's aim.
     pub subject: MeterPoint,
+    /// The meter as it is held: at the studio's own place, or a dome just before the subject.
+    pub held: MeterPoint,
     /// The reading there.
     pub reading: Reading,
     frame: CameraFrame,
@@ -94,8 +98,10 @@ impl<'a> MeteredSetup<'a> {
             None => subject_of_camera(scene, &meter, aim),
         };
         let frame = scene.camera_frame(camera.aspect());
-        let read = meter.read(&subject, &MeterEffort::default(), control);
-        Ok(read.map(|result| MeteredSetup { scene, subject, reading: result.reading, frame, meter }))
+        let out_m = if scene.meter.is_some() { 0.0 } else { HELD_M };
+        let held = MeterPoint { position: subject.position + subject.facing * out_m, ..subject };
+        let read = meter.read(&held, &MeterEffort::default(), control);
+        Ok(read.map(|result| MeteredSetup { scene, subject, held, reading: result.reading, frame, meter }))
     }
 
     /// Returns the point that a light aims at: the first surface there for a light that is aimed by angles. None if
@@ -131,7 +137,9 @@ impl<'a> MeteredSetup<'a> {
     pub fn metered_at(&self, light: &Light) -> MeteredAt {
         let to_light = (light.position - self.subject.position).normalize_or_zero();
         let from_behind = to_light.dot(self.subject.facing) < -BEHIND && !light.emitter.is_infinite();
-        match (self.aims_elsewhere(light), from_behind && light.role != Role::Key) {
+        // A feathered key or a bounced fill is still for the subject
+        let elsewhere = self.aims_elsewhere(light) && !matches!(light.role, Role::Key | Role::Fill);
+        match (elsewhere, from_behind && light.role != Role::Key) {
             (true, _) => MeteredAt::Aim,
             (false, true) => MeteredAt::Rim,
             (false, false) => MeteredAt::Subject,
@@ -204,7 +212,7 @@ impl<'a> MeteredSetup<'a> {
     /// Returns the base colour of a surface, linear; that of the material alone where it has a texture.
     pub fn base_color(&self, surface: &SurfacePoint<'_>) -> [f32; 3] {
         let room = || self.scene.room.as_ref().map(|room| room.material_of(surface.part));
-        let material = self.object_of(surface).map(|object| &object.material).or_else(room);
+        let material = self.object_of(surface).map(|object| object.material_of(surface.part)).or_else(room);
         material.map_or([0.0; 3], |material| material.base_color)
     }
 

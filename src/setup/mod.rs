@@ -1,5 +1,6 @@
 //! A set-up as the light meter sees it: the exposure that each light gives where it acts, the dials for wanted exposures,
-//! and the part that the room has in the light.
+//! and the
+//! part that the room has in the light.
 //!
 //! Data flow: `metering` -> `transport`; `wish`, `transport`, `dial_system` -> `dial_solver`; `metering`, `flare` -> `room_audit`; `measurement_job`
 //! measures in the background.

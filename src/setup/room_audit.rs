@@ -1,12 +1,12 @@
 //! The part of the light on the subject that comes by the surfaces of the room, and what another ceiling would change.
 //!
-//! Each surface is metered away: the studio is read with it and with that surface black. The difference is the light of all
-//! paths that touch it.
+//! The studio is metered as it is, and with each surface black. The difference is the light of all paths that touch that
+//! surface.
 
 use super::metering::MeteredSetup;
 use crate::photo::meter::Reading;
 use crate::raytrace::{GeometryCache, LightMeter, MeterEffort, MeterPoint, PrepareError, RenderControl};
-use crate::scene::{Assets, LightId, Material, Role, Room, Scene, Shape};
+use crate::scene::{Assets, Material, Role, Room, Scene, Shape};
 use std::collections::BTreeMap;
 
 /// Albedo of white emulsion paint, typical.
@@ -79,11 +79,9 @@ fn matte(albedo: f32) -> Material {
     Material { base_color: [albedo; 3], ior: 1.0, ..Material::default() }
 }
 
-/// The light of a lamp, or of all, on the subject.
+/// The exposure that one light, or all of them, gives the subject.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AuditedLight {
-    /// The light; none for the sum of all.
-    pub light: Option<LightId>,
     /// Its name.
     pub name: String,
     /// Its role.
@@ -103,6 +101,12 @@ impl AuditedLight {
         let without = *self.without_lux_s.get(&surface)?;
         (self.lux_s > 0.0).then(|| (self.lux_s / without.max(0.0)).log2().max(0.0))
     }
+
+    /// Returns the part of its light on the subject that comes by a surface, 0 to 1; 0 without light or surface.
+    pub fn part(&self, surface: RoomSurface) -> f32 {
+        let without = self.without_lux_s.get(&surface).copied().unwrap_or(self.lux_s);
+        if self.lux_s > 0.0 { (1.0 - without / self.lux_s).clamp(0.0, 1.0) } else { 0.0 }
+    }
 }
 
 /// A ceiling of another colour.
@@ -110,8 +114,8 @@ impl AuditedLight {
 pub struct CeilingTrial {
     /// `black` or `white`.
     pub color: &'static str,
-    /// Change of the exposure of the subject, stops.
-    pub stops: f32,
+    /// Change of the exposure of the subject, stops; none if no light is left.
+    pub stops: Option<f32>,
     /// The key:fill ratio with it, to 1; none without key or fill.
     pub key_to_fill: Option<f32>,
 }
@@ -134,6 +138,12 @@ pub struct RoomAudit {
 }
 
 impl RoomAudit {
+    /// Returns the exposure of the background by a light over that of the key at the subject, stops; none without a
+    /// background or without light.
+    pub fn background_stops(&self, light: &AuditedLight) -> Option<f32> {
+        light.background_lux_s.map(|lux_s| (lux_s / self.key_lux_s).log2()).filter(|stops| stops.is_finite())
+    }
+
     /// Meters a studio with each of its surfaces and without. None once `control` is cancelled.
     ///
     /// # Errors
@@ -149,7 +159,7 @@ impl RoomAudit {
         for point in setup.background_points() {
             background.extend(setup.read_flat(point.position, point.normal, control));
         }
-        let read = |scene: &Scene| read_at(scene, assets, &setup.subject, cache, control);
+        let read = |scene: &Scene| read_at(scene, assets, &setup.held, cache, control);
         let mut without = BTreeMap::new();
         for surface in RoomSurface::ALL.into_iter().filter(|surface| surface.is_in(scene)) {
             let Some(reading) = read(&surface.painted(scene, &matte(0.0)))? else { return Ok(None) };
@@ -160,6 +170,7 @@ impl RoomAudit {
             let Some(white) = read(&RoomSurface::Ceiling.painted(scene, &matte(WHITE)))? else { return Ok(None) };
             for (color, reading) in [("black", black), ("white", &white)] {
                 let stops = (reading.total_lux_s() / setup.reading.total_lux_s()).log2();
+                let stops = Some(stops).filter(|stops| stops.is_finite());
                 ceilings.push(CeilingTrial { color, stops, key_to_fill: key_to_fill(reading) });
             }
         }
@@ -170,12 +181,21 @@ impl RoomAudit {
             };
             let light = index.and_then(|index| setup.reading.lights.get(index));
             let mean = background.iter().map(lux_s).sum::<f32>() / background.len().max(1) as f32;
+            let error = |reading: &Reading| match index {
+                Some(index) => reading.lights.get(index).map_or(0.0, |light| reading.error_lux_s(light)),
+                None => reading.relative_error().unwrap_or(0.0) * reading.total_lux_s(),
+            };
+            // A difference that may be noise counts as none
+            let without_lux_s = |reading: &Reading| {
+                let (all, without) = (lux_s(&setup.reading), lux_s(reading));
+                let noise = 2.0 * error(&setup.reading).hypot(error(reading));
+                if (all - without).abs() < noise { all } else { without }
+            };
             AuditedLight {
-                light: light.and_then(|light| light.light),
                 name: light.map_or("All light", |light| &light.name).to_owned(),
                 role: light.and_then(|light| light.role),
                 lux_s: lux_s(&setup.reading),
-                without_lux_s: without.iter().map(|(surface, reading)| (*surface, lux_s(reading))).collect(),
+                without_lux_s: without.iter().map(|(surface, reading)| (*surface, without_lux_s(reading))).collect(),
                 background_lux_s: (!background.is_empty()).then_some(mean),
             }
         };

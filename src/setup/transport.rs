@@ -39,6 +39,17 @@ pub struct LightTransport {
     pub background_lux_s: Vec<f32>,
 }
 
+impl LightTransport {
+    /// Returns its mean exposure over the points of the background, lux s; 0 without one.
+    pub fn mean_background_lux_s(&self) -> f32 {
+        mean(&self.background_lux_s)
+    }
+}
+
+fn mean(values: &[f32]) -> f32 {
+    values.iter().sum::<f32>() / values.len().max(1) as f32
+}
+
 /// The exposures of all lights at all places.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetupTransport {
@@ -67,7 +78,10 @@ impl SetupTransport {
         control: &RenderControl,
     ) -> Result<Option<Self>, PrepareError> {
         let mut lit = scene.clone();
-        lit.lights.iter_mut().for_each(|light| light.on = true);
+        for light in &mut lit.lights {
+            // At full power: the error of a reading is relative to the light of all
+            (light.on, light.power.dial_stops) = (true, 0.0);
+        }
         let Some(setup) = MeteredSetup::new(&lit, assets, cache, control)? else { return Ok(None) };
         let mut background = Vec::new();
         for point in setup.background_points() {
@@ -75,25 +89,26 @@ impl SetupTransport {
             let albedo = luminance(setup.base_color(&point).into());
             background.push((reading, albedo));
         }
-        let measured = |light: &Light| {
+        let measured = |(light, present): (&Light, &Light)| {
             let at = setup.metered_at(light);
             let own_lux_s = setup.exposure(light, at, control).map_or(0.0, |exposure| exposure.lux_s);
+            let (light_id, power) = (Some(light.id), present.power.dial_stops.exp2());
             LightTransport {
                 light: light.id,
                 name: light.name.clone(),
                 role: light.role,
-                is_on: scene.light(light.id).is_some_and(|light| light.on),
+                is_on: present.on,
                 has_dial: !light.emitter.is_infinite(),
-                dial_stops: light.power.dial_stops,
+                dial_stops: present.power.dial_stops,
                 energy_lm_s: full_energy_lm_s(scene, light),
                 at,
-                own_lux_s,
-                subject_lux_s: lux_s_of(&setup.reading, Some(light.id)),
-                background_lux_s: background.iter().map(|(reading, _)| lux_s_of(reading, Some(light.id))).collect(),
+                own_lux_s: own_lux_s * power,
+                subject_lux_s: lux_s_of(&setup.reading, light_id) * power,
+                background_lux_s: background.iter().map(|(read, _)| lux_s_of(read, light_id) * power).collect(),
             }
         };
         let transport = SetupTransport {
-            lights: lit.lights.iter().map(measured).collect(),
+            lights: lit.lights.iter().zip(&scene.lights).map(measured).collect(),
             glow_subject_lux_s: lux_s_of(&setup.reading, None),
             glow_background_lux_s: background.iter().map(|(reading, _)| lux_s_of(reading, None)).collect(),
             background_albedos: background.iter().map(|(_, albedo)| *albedo).collect(),
@@ -127,26 +142,24 @@ impl SetupTransport {
         self.lights.iter().find(|light| light.light == id)
     }
 
-    /// Returns the lights to which others are relative: the key lights at the subject that are on or `named`, else the
-    /// strongest light there. Empty if none of them lights the subject.
-    pub fn key_lights(&self, named: &HashSet<LightId>) -> Vec<LightId> {
+    /// Returns the light to which others are relative: the strongest key light at the subject that is on or `named`, else the
+    /// strongest other light there that is not itself `relative` to it. None if none of them lights the subject.
+    pub fn key_light(&self, named: &HashSet<LightId>, relative: &HashSet<LightId>) -> Option<LightId> {
         let is_used = |light: &&LightTransport| {
             (light.is_on || named.contains(&light.light)) && light.at == MeteredAt::Subject && light.subject_lux_s > 0.0
         };
         let used = || self.lights.iter().filter(is_used);
-        let keys: Vec<LightId> = used().filter(|light| light.role == Role::Key).map(|light| light.light).collect();
-        if keys.is_empty() {
-            let strongest = used().max_by(|a, b| a.subject_lux_s.total_cmp(&b.subject_lux_s));
-            strongest.map(|light| light.light).into_iter().collect()
-        } else {
-            keys
-        }
+        let strongest = |lights: &mut dyn Iterator<Item = &LightTransport>| {
+            lights.max_by(|a, b| a.subject_lux_s.total_cmp(&b.subject_lux_s)).map(|light| light.light)
+        };
+        let of_role = strongest(&mut used().filter(|light| light.role == Role::Key));
+        of_role.or_else(|| strongest(&mut used().filter(|light| !relative.contains(&light.light))))
     }
 
-    /// Returns the exposure of the key lights at the subject, lux s; 0 without any.
+    /// Returns the exposure of the key light at the subject, lux s; 0 without one.
     pub fn key_lux_s(&self) -> f32 {
-        let keys = self.key_lights(&HashSet::new());
-        self.lights.iter().filter(|light| keys.contains(&light.light)).map(|light| light.subject_lux_s).sum()
+        let key = self.key_light(&HashSet::new(), &HashSet::new());
+        key.and_then(|key| self.light(key)).map_or(0.0, |light| light.subject_lux_s)
     }
 
     fn lit(&self) -> impl Iterator<Item = &LightTransport> {
@@ -165,8 +178,7 @@ impl SetupTransport {
 
     /// Returns the exposure of the background by all that is on, lux s: the mean of its points. 0 without a background.
     pub fn background_lux_s(&self) -> f32 {
-        let mean = |values: &[f32]| values.iter().sum::<f32>() / values.len().max(1) as f32;
-        mean(&self.glow_background_lux_s) + self.lit().map(|light| mean(&light.background_lux_s)).sum::<f32>()
+        mean(&self.glow_background_lux_s) + self.lit().map(LightTransport::mean_background_lux_s).sum::<f32>()
     }
 
     /// Returns true if the picture shows something behind the subject.

@@ -6,7 +6,7 @@ use crate::scene::{LightId, Role};
 use std::collections::HashSet;
 use std::fmt;
 
-/// Names of places; a light of such a name is named by its role.
+/// Names of places, which come before lights of such a name.
 const SUBJECT: [&str; 2] = ["subject", "face"];
 const BACKGROUND: &str = "background";
 const SPILL: &str = "spill";
@@ -114,7 +114,7 @@ pub enum WishError {
         level: String,
     },
     /// White or grey of something else than the background.
-    #[error("only the background can be {level}: write {name}=f/8 or {name}=+0.5")]
+    #[error("only a background can be {level}: {name:?} takes an f-number or stops over the key")]
     ToneOfLight {
         /// The name of its target.
         name: String,
@@ -125,7 +125,7 @@ pub enum WishError {
     #[error("there are two wishes for {0:?}")]
     Twice(String),
     /// A wish relative to a key that there is not.
-    #[error("{name}={level} is relative to the key, and no light that is on lights the subject: write {name}=f/8")]
+    #[error("{level} for {name:?} is relative to the key, and no light is one: give it an f-number, such as f/8")]
     NoKey {
         /// The name of its target.
         name: String,
@@ -133,10 +133,16 @@ pub enum WishError {
         level: WishLevel,
     },
     /// A wish for the key relative to the key.
-    #[error("{name:?} is the key, which others are relative to: write {name}=f/8")]
+    #[error("{name:?} is the key, which others are relative to: give it an f-number, such as f/8")]
     RelativeKey {
         /// The name of the key.
         name: String,
+    },
+    /// A wish for all light at the subject relative to a key without a wish.
+    #[error("{level} for the subject is relative to the key: give the key an f-number, too, or the subject one")]
+    RelativeSubject {
+        /// The level.
+        level: WishLevel,
     },
     /// A light whose output has no dial.
     #[error("{0:?} has no dial: suns and surrounds stay as they are")]
@@ -153,7 +159,8 @@ pub enum WishError {
 pub fn wishes(text: &str, setup: &SetupTransport) -> Result<Vec<Wish>, WishError> {
     let mut wishes: Vec<Wish> = Vec::new();
     for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {
-        let (name, text) = item.rsplit_once('=').ok_or_else(|| WishError::NoLevel(item.to_owned()))?;
+        let named = item.rsplit_once('=').filter(|(name, _)| !name.trim().is_empty());
+        let (name, text) = named.ok_or_else(|| WishError::NoLevel(item.to_owned()))?;
         let unknown = || WishError::UnknownLevel { name: name.trim().to_owned(), level: text.trim().to_owned() };
         let level = WishLevel::parse(text).ok_or_else(unknown)?;
         wishes.extend(targets(name.trim(), setup)?.into_iter().map(|(name, target)| Wish { name, target, level }));
@@ -191,19 +198,30 @@ pub fn named_lights(wishes: &[Wish]) -> HashSet<LightId> {
 
 /// Fails for wishes relative to a key that is not there, or that is meant itself.
 fn check_key(wishes: &[Wish], setup: &SetupTransport) -> Result<(), WishError> {
-    let keys = setup.key_lights(&named_lights(wishes));
-    for wish in wishes.iter().filter(|wish| matches!(wish.level, WishLevel::StopsOverKey(_))) {
+    let key = key_of(wishes, setup);
+    for wish in wishes.iter().filter(|wish| is_relative(wish)) {
         let (name, level) = (wish.name.clone(), wish.level);
-        if keys.is_empty() {
-            return Err(WishError::NoKey { name, level });
-        }
-        if let WishTarget::Lights(lights) = &wish.target
-            && lights.iter().any(|light| keys.contains(light))
-        {
-            return Err(WishError::RelativeKey { name });
+        let Some(key) = key else { return Err(WishError::NoKey { name, level }) };
+        match &wish.target {
+            WishTarget::Lights(lights) if lights.contains(&key) => return Err(WishError::RelativeKey { name }),
+            // The key is a part of the subject's light: without a wish of its own it would follow itself
+            WishTarget::Subject if !named_lights(wishes).contains(&key) => {
+                return Err(WishError::RelativeSubject { level });
+            }
+            _ => {}
         }
     }
     Ok(())
+}
+
+fn is_relative(wish: &Wish) -> bool {
+    matches!(wish.level, WishLevel::StopsOverKey(_))
+}
+
+/// Returns the light that wishes for stops are relative to.
+pub fn key_of(wishes: &[Wish], setup: &SetupTransport) -> Option<LightId> {
+    let relative: Vec<Wish> = wishes.iter().filter(|wish| is_relative(wish)).cloned().collect();
+    setup.key_light(&named_lights(wishes), &named_lights(&relative))
 }
 
 fn overlap(a: &WishTarget, b: &WishTarget) -> bool {
@@ -245,7 +263,8 @@ fn targets(name: &str, setup: &SetupTransport) -> Result<Vec<(String, WishTarget
         if lights.iter().any(|light| light.is_on) {
             lights.retain(|light| light.is_on);
         }
-    } else if lights.is_empty() {
+    }
+    if lights.is_empty() {
         lights = named(&|light| light.contains(&lower));
         if lights.len() > 1 {
             let candidates = lights.iter().map(|light| format!("{:?}", light.name)).collect::<Vec<_>>().join(" or ");

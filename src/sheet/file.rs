@@ -64,7 +64,22 @@ pub fn draft_picture(
     cache: &GeometryCache,
     control: &RenderControl,
 ) -> Result<Option<Picture>, PrepareError> {
-    let (width, height) = scene.camera.picture_size(PICTURE_PIXELS);
+    small_picture(scene, assets, PICTURE_PIXELS, samples, cache, control)
+}
+
+/// Renders a picture of so many pixels on its longer side and denoises it. None once `control` is cancelled.
+///
+/// # Errors
+/// If the scene has errors.
+pub fn small_picture(
+    scene: &Scene,
+    assets: &Assets,
+    longer_side: u32,
+    samples: u32,
+    cache: &GeometryCache,
+    control: &RenderControl,
+) -> Result<Option<Picture>, PrepareError> {
+    let (width, height) = scene.camera.picture_size(longer_side);
     let settings = Settings { width, height, spp: samples, aovs: true, ..Settings::default() };
     let prepared = prepare_kept(scene, assets, cache)?;
     let film = render_all_passes(&prepared, &settings, control);

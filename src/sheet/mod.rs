@@ -4,9 +4,10 @@
 //! millimetres; `svg` and `pdf` write drawings, `html` writes a page that reads well on a phone.
 //!
 //! Data flow: [`MeteredSetup`](crate::setup::MeteredSetup) -> `camera_facts`, `light_facts`, `checks` -> `gear`; `silhouette` -> `view`; all of them ->
-//! `content` -> `page` -> `svg`, `pdf`.
+//! `content` -> `page` -> `svg`, `pdf`. `lesson` makes sheets of pictures in which one thing changes.
 
 mod camera_facts;
+mod canvas;
 mod checks;
 mod content;
 mod drawing;
@@ -15,6 +16,7 @@ mod font;
 mod gear;
 mod html;
 mod lengths;
+mod lesson;
 mod light_facts;
 mod page;
 mod pdf;
@@ -26,6 +28,9 @@ pub use content::{SheetContent, SheetLight};
 pub use drawing::Drawing;
 pub use file::{SHEET_EXTENSIONS, SheetFormat, draft_picture, sheet_file, write_sheet};
 pub use lengths::Units;
+pub use lesson::{
+    LESSON_EXTENSIONS, Lesson, LessonCell, LessonError, LessonFormat, LessonSeries, LessonSheet, write_lesson,
+};
 pub use light_facts::{COLUMNS, LightFacts};
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ fn the_audit_lists_lights_surfaces_and_ceilings() {
     assert!(total["Walls"].as_f64().unwrap() < 0.2, "a dark room: {report}");
     // The background light reaches the subject by way of the paper
     let background = &report["lights"][3]["added_stops"]["Backdrops, panels"];
+    assert!(report["lights"][3]["added_stops"].get("Backdrops, panels").is_some());
     assert!(background.is_null() || background.as_f64().unwrap() > 3.0, "{report}");
     assert_eq!(report["flaring"][0], "Hair strip");
     let output = catchlight(folder.path(), &["audit", "no such studio"]);

@@ -8,7 +8,7 @@ use crate::editor::document::light_mix::Fader;
 use crate::photo::PictureDisplay;
 use crate::scene::{LightId, TextureSlot};
 use crate::setup::DialPlan;
-use crate::sheet::Units;
+use crate::sheet::{LessonSeries, Units};
 use std::path::PathBuf;
 
 /// A command of the user.
@@ -93,6 +93,8 @@ pub enum Command {
     ExportPicture,
     /// Writes the set-up sheet, with lengths in these units, to a file that a dialog selects.
     ExportSheet(Units),
+    /// Writes a lesson sheet of a series, in which this light changes (none: the key), to a file that a dialog selects.
+    ExportLesson(LessonSeries, Option<LightId>),
     /// Uses a path that was chosen or typed for a purpose.
     UseFile(FilePurpose, PathBuf),
     /// Clears the list of recent studios.

@@ -1,7 +1,8 @@
 //! The purposes of file dialogs: titles, filters and extensions.
 
 use crate::io;
-use crate::sheet::{SHEET_EXTENSIONS, Units};
+use crate::scene::LightId;
+use crate::sheet::{LESSON_EXTENSIONS, LessonSeries, SHEET_EXTENSIONS, Units};
 use std::path::PathBuf;
 
 /// The purpose of a file dialog.
@@ -19,6 +20,8 @@ pub enum FilePurpose {
     ExportPicture,
     /// The file to write the set-up sheet to, with lengths in these units.
     ExportSheet(Units),
+    /// The file to write a lesson sheet to; the light that changes, none for the key.
+    ExportLesson(LessonSeries, Option<LightId>),
 }
 
 impl FilePurpose {
@@ -31,12 +34,19 @@ impl FilePurpose {
             FilePurpose::OpenTexture => "Choose texture".to_owned(),
             FilePurpose::ExportPicture => "Export picture".to_owned(),
             FilePurpose::ExportSheet(_) => "Export set-up sheet".to_owned(),
+            FilePurpose::ExportLesson(..) => "Export lesson sheet".to_owned(),
         }
     }
 
     /// Returns true if the file is written rather than read.
     pub fn is_save(self) -> bool {
-        matches!(self, FilePurpose::SaveScene | FilePurpose::ExportPicture | FilePurpose::ExportSheet(_))
+        match self {
+            FilePurpose::SaveScene
+            | FilePurpose::ExportPicture
+            | FilePurpose::ExportSheet(_)
+            | FilePurpose::ExportLesson(..) => true,
+            FilePurpose::OpenScene | FilePurpose::ImportModel | FilePurpose::OpenTexture => false,
+        }
     }
 
     /// Returns name and extensions of the file type.
@@ -47,6 +57,7 @@ impl FilePurpose {
             FilePurpose::OpenTexture => ("Picture".to_owned(), io::TEXTURE_EXTENSIONS),
             FilePurpose::ExportPicture => ("Picture".to_owned(), &["png", "jpg", "tif", "exr"]),
             FilePurpose::ExportSheet(_) => ("Set-up sheet".to_owned(), SHEET_EXTENSIONS),
+            FilePurpose::ExportLesson(..) => ("Lesson sheet".to_owned(), LESSON_EXTENSIONS),
         }
     }
 

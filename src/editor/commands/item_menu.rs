@@ -5,7 +5,8 @@ use crate::editor::commands::command::Command;
 use crate::editor::commands::menu_entry::entry;
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
-use crate::scene::Scene;
+use crate::scene::{LightId, Scene};
+use crate::sheet::LessonSeries;
 use eframe::egui::Ui;
 
 /// Draws the context menu of an item. It applies to the whole selection if the item is part of it, else to the item
@@ -41,6 +42,15 @@ pub fn empty_selection_menu_ui(ui: &mut Ui, out: &mut Vec<Command>) {
     entry(ui, true, "Show and unmute all", "Nothing is hidden or muted any more", Command::ShowAll, out);
 }
 
+/// Draws the entries that write lesson sheets about a light, the key for none.
+pub fn lesson_entries(ui: &mut Ui, light: Option<LightId>, out: &mut Vec<Command>) {
+    ui.set_min_width(200.0);
+    for series in LessonSeries::ALL {
+        let text = format!("{}\u{2026}", series.label());
+        entry(ui, true, &text, series.tip(), Command::ExportLesson(series, light), out);
+    }
+}
+
 /// Draws the entries that apply to a selection.
 pub fn selection_entries(ui: &mut Ui, scene: &Scene, selection: &Selection, out: &mut Vec<Command>) {
     let copyable = selection.items().iter().any(|item| item.can_be_copied());
@@ -66,6 +76,9 @@ pub fn selection_entries(ui: &mut Ui, scene: &Scene, selection: &Selection, out:
         Command::ToggleLightView,
         out,
     );
+    if let [Item::Light(light)] = selection.items() {
+        ui.menu_button("Lesson sheet", |ui| lesson_entries(ui, Some(*light), out));
+    }
     ui.separator();
     let solo = if scene.solo.is_some() { "Solo, or end solo" } else { "Solo" };
     let tip = "Only these lights; once more brings back what was on before";

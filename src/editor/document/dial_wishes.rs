@@ -89,15 +89,9 @@ impl DialWishes {
         self.texts.get(&row).is_some_and(|text| WishLevel::parse(text).is_none())
     }
 
-    /// Returns the dials for the wishes, or the reason why there are none. Wishes for lights that are not in the studio
-    /// any more are dropped.
+    /// Returns the dials for the wishes, or the reason why there are none. Wishes for lights and
+    /// places that are not there are left out.
     pub fn plan(&mut self, setup: &SetupTransport) -> &Result<DialPlan, String> {
-        let is_there = |row: &WishRow| match row {
-            WishRow::Light(light) => setup.light(*light).is_some_and(|light| light.has_dial),
-            WishRow::Background => setup.has_background(),
-            WishRow::Subject | WishRow::Spill => true,
-        };
-        self.texts.retain(|row, _| is_there(row));
         let is_current = |planned: &Planned| planned.texts == self.texts && planned.setup == *setup;
         let planned = match self.planned.take().filter(is_current) {
             Some(planned) => planned,
@@ -114,7 +108,13 @@ impl DialWishes {
                 None => Err(format!("{text:?} for {name} is no level: write f/8, +0.5 or -1.5.")),
             }
         };
-        let wishes: Vec<Wish> = self.texts.iter().map(wish).collect::<Result<_, _>>()?;
+        let is_there = |row: &WishRow| match row {
+            WishRow::Light(light) => setup.light(*light).is_some_and(|light| light.has_dial),
+            WishRow::Background => setup.has_background(),
+            WishRow::Subject | WishRow::Spill => true,
+        };
+        let wishes: Vec<Wish> =
+            self.texts.iter().filter(|(row, _)| is_there(row)).map(wish).collect::<Result<_, _>>()?;
         check_wishes(&wishes, setup).map_err(|error| sentence(&error))?;
         Ok(solve_dials(setup, &wishes))
     }

@@ -7,7 +7,7 @@ use crate::editor::ui::widgets;
 use crate::photo::meter::nearest_third;
 use crate::photo::text::signed_stops;
 use crate::scene::{Light, Scene};
-use crate::setup::{DialPlan, LightTransport, MeteredAt, SetupTransport, WishOutcome};
+use crate::setup::{DialPlan, LightTransport, MeasurementJob, MeteredAt, SetupTransport, WishOutcome};
 use eframe::egui::{self, Button, Color32, Grid, Label, Rect, Response, RichText, ScrollArea, TextEdit, Ui, vec2};
 use std::collections::HashSet;
 
@@ -29,19 +29,26 @@ pub fn dials_ui(
     view: Rect,
     open: &mut bool,
     wishes: &mut DialWishes,
-    setup: Option<Result<&SetupTransport, &str>>,
+    job: &MeasurementJob<SetupTransport>,
     scene: &Scene,
     out: &mut Vec<Command>,
 ) {
-    widgets::tool_window("Set dials by wish", view).open(open).show(ctx, |ui| match setup {
+    widgets::tool_window("Set dials by wish", view, vec2(20.0, 90.0)).open(open).show(ctx, |ui| match job.latest() {
         Some(Ok(setup)) if setup.lights().is_empty() => drop(ui.label("There are no lights in the studio.")),
-        Some(Ok(setup)) => table_ui(ui, wishes, setup, scene, out),
+        Some(Ok(setup)) => table_ui(ui, wishes, (setup, job.is_current()), scene, out),
         Some(Err(message)) => drop(ui.label(message)),
         None => drop(ui.label(RichText::new("Metering the lights\u{2026}").weak())),
     });
 }
 
-fn table_ui(ui: &mut Ui, wishes: &mut DialWishes, setup: &SetupTransport, scene: &Scene, out: &mut Vec<Command>) {
+/// Draws wishes and plan. `is_current` says that the exposures are those of `scene`.
+fn table_ui(
+    ui: &mut Ui,
+    wishes: &mut DialWishes,
+    (setup, is_current): (&SetupTransport, bool),
+    scene: &Scene,
+    out: &mut Vec<Command>,
+) {
     let plan = wishes.plan(setup).clone();
     ScrollArea::vertical().max_height(TABLE_HEIGHT).show(ui, |ui| {
         Grid::new("wishes").num_columns(5).spacing([12.0, 4.0]).show(ui, |ui| {
@@ -70,7 +77,7 @@ fn table_ui(ui: &mut Ui, wishes: &mut DialWishes, setup: &SetupTransport, scene:
         Ok(plan) => plan_ui(ui, plan),
     }
     ui.horizontal(|ui| {
-        let can_apply = plan.as_ref().is_ok_and(|plan| plan.changes().next().is_some());
+        let can_apply = is_current && plan.as_ref().is_ok_and(|plan| plan.changes().next().is_some());
         let apply = ui.add_enabled(can_apply, Button::new("Set the dials"));
         let tip = "Write the dials to the lights, as one step that can be undone";
         if apply.on_hover_text(tip).clicked()
@@ -80,6 +87,9 @@ fn table_ui(ui: &mut Ui, wishes: &mut DialWishes, setup: &SetupTransport, scene:
         }
         if ui.add_enabled(!wishes.is_empty(), Button::new("Clear wishes")).clicked() {
             wishes.clear();
+        }
+        if !is_current {
+            ui.label(RichText::new("Metering\u{2026}").weak());
         }
     });
 }
@@ -121,8 +131,7 @@ fn light_row(
     };
     name_ui(ui, theme::role_color(light.role), &light.name).on_hover_text(at);
     if metered.is_on {
-        let is_key = setup.key_lights(&HashSet::new()) == [light.id];
-        if is_key {
+        if setup.key_light(&HashSet::new(), &HashSet::new()) == Some(light.id) {
             ui.label(format!("{}  key", nearest_third(setup.f_number(metered.own_lux_s))));
         } else {
             exposure_ui(ui, setup, metered.own_lux_s, setup.key_lux_s());
@@ -192,15 +201,13 @@ fn name_ui(ui: &mut Ui, color: Color32, name: &str) -> Response {
     .inner
 }
 
-/// Returns the exposure of the key lights at the subject with the dials of a plan, lux s.
+/// Returns the exposure of the key at the subject with the dials of a plan, lux s.
 fn key_then_lux_s(setup: &SetupTransport, plan: Option<&DialPlan>) -> f32 {
     let dials = plan.map_or(&[][..], |plan| &plan.dials);
-    let keys = setup.key_lights(&dials.iter().map(|dial| dial.light).collect());
-    let then = |light: &LightTransport| {
-        let dial = dials.iter().find(|dial| dial.light == light.light);
-        light.subject_lux_s * dial.map_or(0.0, |dial| dial.to_stops - dial.from_stops).exp2()
-    };
-    setup.lights().iter().filter(|light| keys.contains(&light.light)).map(then).sum()
+    let key = setup.key_light(&dials.iter().map(|dial| dial.light).collect(), &HashSet::new());
+    let dial = dials.iter().find(|dial| Some(dial.light) == key);
+    let change = dial.map_or(0.0, |dial| dial.to_stops - dial.from_stops).exp2();
+    key.and_then(|key| setup.light(key)).map_or(0.0, |light| light.subject_lux_s * change)
 }
 
 /// Draws an exposure as f-number and in stops over the key.

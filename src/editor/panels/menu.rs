@@ -4,7 +4,7 @@ use crate::editor::commands::choices::LiveMode;
 use crate::editor::commands::choices::ViewSide;
 use crate::editor::commands::choices::{CentralView, HandleMode};
 use crate::editor::commands::command::Command;
-use crate::editor::commands::item_menu::selection_entries;
+use crate::editor::commands::item_menu::{lesson_entries, selection_entries};
 use crate::editor::commands::menu_entry::entry;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
@@ -42,7 +42,7 @@ pub fn menu_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
         ui.menu_button("File", |ui| file_menu(ui, state, out));
         ui.menu_button("Edit", |ui| edit_menu(ui, state, out));
         ui.menu_button("View", |ui| view_menu(ui, state, out));
-        ui.menu_button("Light", |ui| light_menu(ui, out));
+        ui.menu_button("Light", |ui| light_menu(ui, state, out));
         ui.menu_button("Render", |ui| render_menu(ui, state, out));
         ui.menu_button("Help", |ui| entry(ui, true, "Keys and mouse", "How to move around", Command::ToggleHelp, out));
     });
@@ -76,10 +76,12 @@ fn file_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     entry(ui, true, "Quit", "Close the window", Command::Quit, out);
 }
 
-fn light_menu(ui: &mut Ui, out: &mut Vec<Command>) {
+fn light_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     ui.set_min_width(200.0);
     entry(ui, true, "Set dials by wish\u{2026}", DIALS_TIP, Command::ToggleDials, out);
     entry(ui, true, "What the room adds\u{2026}", AUDIT_TIP, Command::ToggleRoomAudit, out);
+    ui.separator();
+    ui.menu_button("Lesson sheet", |ui| lesson_entries(ui, state.selection.lights().last().copied(), out));
 }
 
 const DIALS_TIP: &str = "Name the f-number of the key and stops of the others; the dials follow from the meter";

@@ -11,9 +11,20 @@ const NAME_WIDTH: f32 = 128.0;
 const TABLE_HEIGHT: f32 = 360.0;
 
 /// Draws the window; `open` becomes false when it is closed.
-pub fn room_audit_ui(ctx: &egui::Context, view: Rect, open: &mut bool, audit: Option<Result<&RoomAudit, &str>>) {
-    widgets::tool_window("What the room adds", view).open(open).show(ctx, |ui| match audit {
-        Some(Ok(audit)) => audit_ui(ui, audit),
+pub fn room_audit_ui(
+    ctx: &egui::Context,
+    view: Rect,
+    open: &mut bool,
+    audit: Option<Result<&RoomAudit, &str>>,
+    is_current: bool,
+) {
+    widgets::tool_window("What the room adds", view, vec2(60.0, 140.0)).open(open).show(ctx, |ui| match audit {
+        Some(Ok(audit)) => {
+            audit_ui(ui, audit);
+            if !is_current {
+                ui.label(RichText::new("Metering the changed studio\u{2026}").weak());
+            }
+        }
         Some(Err(message)) => drop(ui.label(message)),
         None => {
             ui.label(RichText::new("Metering with and without walls, ceiling, floor and backdrops\u{2026}").weak());
@@ -52,7 +63,9 @@ fn audit_ui(ui: &mut Ui, audit: &RoomAudit) {
             (Some(now), Some(then)) => format!(", key to fill {then:.1}:1 instead of {now:.1}:1"),
             _ => String::new(),
         };
-        ui.label(format!("A {} ceiling: {} stops at the subject{ratio}.", trial.color, signed_hundredths(trial.stops)));
+        let stops =
+            trial.stops.map_or_else(|| "no light".to_owned(), |stops| format!("{} stops", signed_hundredths(stops)));
+        ui.label(format!("A {} ceiling: {stops} at the subject{ratio}.", trial.color));
     }
     for name in &audit.flaring {
         let text = format!("{name} shines at the lens: shade it with a flag, or use a lens hood.");
@@ -70,7 +83,7 @@ fn row_ui(ui: &mut Ui, audit: &RoomAudit, light: &AuditedLight, surfaces: &[Room
         });
     });
     for surface in surfaces {
-        let percent = light.without_lux_s.get(surface).map_or(0.0, |without| 100.0 * (1.0 - without / light.lux_s));
+        let percent = 100.0 * light.part(*surface);
         match light.added_stops(*surface) {
             Some(stops) if stops.is_finite() => {
                 ui.label(signed_hundredths(stops)).on_hover_text(format!("{percent:.0} % of its light on the subject"));
@@ -79,9 +92,8 @@ fn row_ui(ui: &mut Ui, audit: &RoomAudit, light: &AuditedLight, surfaces: &[Room
             None => drop(ui.label(RichText::new("dark").weak())),
         }
     }
-    match light.background_lux_s.map(|lux_s| (lux_s / audit.key_lux_s).log2()) {
-        Some(stops) if stops.is_finite() => drop(ui.label(signed_hundredths(stops))),
-        Some(_) => drop(ui.label(RichText::new("dark").weak())),
+    match audit.background_stops(light) {
+        Some(stops) => drop(ui.label(signed_hundredths(stops))),
         None => drop(ui.label(RichText::new("none").weak())),
     }
 }

@@ -163,9 +163,9 @@ pub fn small_button(ui: &mut Ui, sign: &str, name: &str) -> Response {
     response
 }
 
-/// Returns a movable window with a tool, initially in the upper left corner of a view.
-pub fn tool_window(title: &str, view: egui::Rect) -> egui::Window<'_> {
-    let corner = view.min + vec2(20.0, 90.0);
+/// Returns a movable window with a tool, initially at a distance from the upper left corner of a view.
+pub fn tool_window(title: &str, view: egui::Rect, from_corner: egui::Vec2) -> egui::Window<'_> {
+    let corner = view.min + from_corner;
     egui::Window::new(title).resizable(false).collapsible(false).default_pos(corner).constrain_to(view)
 }
 

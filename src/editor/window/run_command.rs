@@ -134,6 +134,7 @@ impl App {
             | Command::ChooseTexture(..)
             | Command::ExportPicture
             | Command::ExportSheet(_)
+            | Command::ExportLesson(..)
             | Command::UseFile(..) => self.run_file_command(command, ctx),
         }
     }
@@ -262,14 +263,14 @@ impl App {
             self.views.viewport.cancel_drag();
         } else if self.panels.show_help {
             self.panels.show_help = false;
-        } else if self.panels.show_dials {
-            self.panels.show_dials = false;
-        } else if self.panels.show_room_audit {
-            self.panels.show_room_audit = false;
         } else if self.views.viewport.place_light.is_some() {
             self.views.viewport.place_light = None;
         } else if matches!(self.views.central, CentralView::Light(_)) {
             self.leave_light();
+        } else if self.panels.show_dials {
+            self.panels.show_dials = false;
+        } else if self.panels.show_room_audit {
+            self.panels.show_room_audit = false;
         } else {
             self.selection = Selection::default();
         }

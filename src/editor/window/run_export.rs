@@ -1,4 +1,4 @@
-//! Execution of exports: pictures and set-up sheets.
+//! Execution of exports: pictures, set-up sheets and lesson sheets.
 
 use crate::editor::document::files;
 use crate::editor::window::app::App;
@@ -8,8 +8,11 @@ use crate::io::PictureInfo;
 use crate::jobs::{background_pool, sentence};
 use crate::photo::Picture;
 use crate::raytrace::{GeometryCache, RenderControl};
-use crate::scene::{Assets, Scene};
-use crate::sheet::{SheetContent, SheetFormat, Units, draft_picture, write_sheet};
+use crate::scene::{Assets, LightId, Scene};
+use crate::sheet::{
+    Lesson, LessonFormat, LessonSeries, LessonSheet, SheetContent, SheetFormat, Units, draft_picture, write_lesson,
+    write_sheet,
+};
 use eframe::egui::Context;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -50,6 +53,41 @@ impl App {
         };
         self.background.exports.start(work, waker(ctx));
     }
+
+    /// Renders and writes a lesson sheet in the background.
+    pub(super) fn export_lesson_to(
+        &mut self,
+        path: PathBuf,
+        series: LessonSeries,
+        light: Option<LightId>,
+        ctx: &Context,
+    ) {
+        let (scene, assets) = (self.document.scene().clone(), self.document.assets().clone());
+        self.toasts.info("Small pictures are rendered for the sheet; go on meanwhile.");
+        let work = move || {
+            let result = export_lesson(&path, series, &scene, &assets, light);
+            TaskResult::SheetExported(path, result)
+        };
+        self.background.exports.start(work, waker(ctx));
+    }
+}
+
+fn export_lesson(
+    path: &Path,
+    series: LessonSeries,
+    scene: &Scene,
+    assets: &Assets,
+    light: Option<LightId>,
+) -> Result<(), String> {
+    LessonFormat::of(path).map_err(|error| sentence(&error))?;
+    let pool = background_pool(0, "lesson").map_err(|error| sentence(&error))?;
+    let (cache, control) = (GeometryCache::default(), RenderControl::new());
+    let sheet = pool.install(|| {
+        let lesson = Lesson::new(series, scene, assets, light, &cache, &control)?;
+        LessonSheet::render(lesson, assets, SAMPLES, &cache, &control, &mut |_, _| ())
+    });
+    let sheet = sheet.map_err(|error| sentence(&error))?;
+    write_lesson(path, &sheet).map_err(|error| sentence(&error))
 }
 
 fn export_sheet(

@@ -41,6 +41,7 @@ impl App {
                 self.toasts.info("There is no picture to export yet: press Render (R) first.");
             }
             Command::ExportPicture => self.ask_for_path(FilePurpose::ExportPicture, ctx),
+            Command::ExportLesson(series, light) => self.ask_for_path(FilePurpose::ExportLesson(series, light), ctx),
             Command::ExportSheet(units) => self.ask_for_path(FilePurpose::ExportSheet(units), ctx),
             Command::UseFile(purpose, path) => self.path_chosen(purpose, purpose.with_extension_added(path), ctx),
             _ => {}
@@ -127,6 +128,7 @@ impl App {
             FilePurpose::OpenTexture => self.use_texture(&path),
             FilePurpose::ExportPicture => self.export_picture_to(path, ctx),
             FilePurpose::ExportSheet(units) => self.export_sheet_to(path, units, ctx),
+            FilePurpose::ExportLesson(series, light) => self.export_lesson_to(path, series, light, ctx),
         }
     }
 
@@ -209,6 +211,9 @@ impl App {
         self.document.set_stamp(opened.stamp);
         self.session.file_change_put_off = false;
         self.selection = Selection::default();
+        self.panels.dial_wishes.clear();
+        self.background.transport.reset();
+        self.background.room_audit.reset();
         self.views.viewport.place_light = None;
         if matches!(self.views.central, CentralView::Picture | CentralView::Light(_)) {
             self.views.central = CentralView::Studio;

@@ -16,14 +16,14 @@ impl App {
         let (panels, transport) = (&mut self.panels, &mut self.background.transport);
         if panels.show_dials {
             transport.update(scene, assets, revision, &wake(ctx));
-            dials_ui(ctx, view, &mut panels.show_dials, &mut panels.dial_wishes, transport.latest(), scene, out);
+            dials_ui(ctx, view, &mut panels.show_dials, &mut panels.dial_wishes, transport, scene, out);
         } else {
             transport.reset();
         }
         let audit = &mut self.background.room_audit;
         if panels.show_room_audit {
             audit.update(scene, assets, revision, &wake(ctx));
-            room_audit_ui(ctx, view, &mut panels.show_room_audit, audit.latest());
+            room_audit_ui(ctx, view, &mut panels.show_room_audit, audit.latest(), audit.is_current());
         } else {
             audit.reset();
         }

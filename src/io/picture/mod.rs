@@ -214,6 +214,14 @@ pub fn encode_jpeg(picture: &Picture) -> Result<Vec<u8>, String> {
     encode_display(picture, PictureFormat::Jpeg, None)
 }
 
+/// Encodes sRGB pixels, row by row, as PNG.
+///
+/// # Errors
+/// If the encoder fails, as for a picture without pixels.
+pub fn encode_png(width: u32, height: u32, pixels: &[[u8; 3]]) -> Result<Vec<u8>, String> {
+    encode(width, height, pixels.as_flattened(), ExtendedColorType::Rgb8, PictureFormat::Png, None)
+}
+
 /// Encodes rows of pixels, in native byte order.
 fn encode(
     width: u32,
