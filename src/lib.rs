@@ -23,7 +23,7 @@
 //! | `jobs` | background work: renders, live view, meter, forecasts, thumbnails; shared by window and command line |
 //! | `truth` | closed forms beside what meter and renders give for them |
 //! | `setup` | the light meter's view of a set-up: each light where it acts, dials for wanted exposures |
-//! | `sheet` | the set-up sheet: a studio on one page, as PDF, SVG or HTML |
+//! | `sheet` | the set-up sheet: a studio on one page, as PDF, SVG or HTML; lesson sheets of pictures side by side |
 //! | `editor`, `cli` | the window; the command line |
 //!
 //! `ARCHITECTURE.md` draws the data flow and names the files to touch for an extension. `tests/structure/` holds the

@@ -111,7 +111,8 @@ fn write_series(arguments: &Arguments, series: SeriesArgument) -> Result<(), Fai
         let lesson = Lesson::new(series, &loaded.scene, &loaded.assets, light, &cache, &control)?;
         let count = lesson.cells.len();
         let mut observe = |index: usize, cell: &LessonCell| {
-            terminal::progress(format_args!("{} of {count}: {}, {}", index + 1, cell.caption, cell.note));
+            let note = if cell.note.is_empty() { String::new() } else { format!(", {}", cell.note) };
+            terminal::progress(format_args!("{} of {count}: {}{note}", index + 1, cell.caption));
         };
         LessonSheet::render(lesson, &loaded.assets, arguments.spp, &cache, &control, &mut observe)
     })?;

@@ -38,3 +38,35 @@ fn a_sheet_of_another_format_or_into_no_folder_is_refused_before_the_picture_is_
         assert!(stderr(&output).contains(message), "{}", stderr(&output));
     }
 }
+
+#[test]
+fn a_lesson_sheet_is_written_and_its_faults_are_named_before_it_is_rendered() {
+    let folder = tempfile::tempdir().unwrap();
+    let flash = Output::FlashWs { energy_ws: 400.0, efficacy_lm_s_per_ws: 20.0 };
+    let light = Light { position: Vec3::new(1.0, 2.0, 1.5), ..Light::new(Emitter::Point, flash) };
+    let scene = Scene {
+        room: Some(Room::default()),
+        objects: vec![Object::new("Ball", Shape::Sphere { radius_m: 0.2 })],
+        lights: vec![light],
+        meter: Some(Meter { position: Vec3::Y * 1.4, facing: Facing::Camera, receptor: Receptor::Dome }),
+        ..Scene::default()
+    };
+    catchlight::io::save_scene(&scene, &folder.path().join("studio.ron")).unwrap();
+    let run = |rest: &[&str]| catchlight(folder.path(), &[&["sheet", "studio.ron", "--spp", "1"], rest].concat());
+    let output = run(&["-o", "rooms.png", "--series", "room"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("3 of 3: White, +"), "{}", stderr(&output));
+    let picture = image::open(folder.path().join("rooms.png")).unwrap();
+    assert!(picture.width() > 900 && picture.height() > 200);
+    for (rest, message) in [
+        (&["-o", "x.pdf", "--series", "distance"][..], ".png or .html"),
+        (&["-o", "x.png", "--series", "azimuth", "--light", "Nobody"], "is not one light"),
+        (&["-o", "x.png", "--light", "Light"], "--series"),
+        (&["-o", "x.png"], ".pdf, .svg or .html"),
+    ] {
+        let output = run(rest);
+        assert_ne!(output.status.code(), Some(0));
+        assert!(stderr(&output).contains(message), "{}", stderr(&output));
+    }
+    assert!(!folder.path().join("x.png").exists());
+}

@@ -194,3 +194,24 @@ fn a_set_up_sheet_is_exported_from_the_menu_with_the_rendered_picture() {
     assert!(export("set-up sheet\u{2026}", ToastKind::Error).contains(".pdf, .svg or .html"));
     assert!(!wrong.exists());
 }
+
+#[test]
+fn a_lesson_sheet_is_exported_for_the_selected_light() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let [lesson, wrong] = ["lesson.html", "lesson.pdf"].map(|name| folder.path().join(name));
+    let mut window = window_with_answers([lesson.clone(), wrong.clone()]);
+    let fill = scene(&window).lights[1].id;
+    let mut export = |kind: ToastKind| {
+        let command = Command::ExportLesson(LessonSeries::Room, Some(fill));
+        window.state_mut().run(command, None, &egui::Context::default());
+        settle(&mut window);
+        window.state().toasts().texts(kind).last().map_or_else(String::new, |text| (*text).to_owned())
+    };
+    assert!(export(ToastKind::Info).starts_with("Lesson sheet written to"));
+    let html = std::fs::read_to_string(lesson).unwrap();
+    assert!(html.contains("Colour of the room") && html.matches("<figure>").count() == 3, "{}", html.len());
+    assert!(export(ToastKind::Error).contains(".png or .html") && !wrong.exists());
+}

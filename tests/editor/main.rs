@@ -9,6 +9,7 @@ use catchlight::editor::{
     Quality, StudioSource, ToastKind, ViewOptions,
 };
 use catchlight::scene::{Aim, ColorSource, HairStyle, Scene, Shape};
+use catchlight::sheet::LessonSeries;
 use eframe::egui::{
     self, Event, Key, Modifiers, PointerButton, Pos2, ViewportCommand, ViewportEvent, ViewportId, vec2,
 };

@@ -34,8 +34,8 @@ pub enum TaskResult {
     },
     /// A written picture or an error, with the film that it was developed from.
     Exported(PathBuf, Weak<Film>, Result<(), String>),
-    /// A written set-up sheet or an error.
-    SheetExported(PathBuf, Result<(), String>),
+    /// A written sheet or an error, with the name of its kind.
+    SheetExported(&'static str, PathBuf, Result<(), String>),
 }
 
 /// The background tasks and the channel of their results.

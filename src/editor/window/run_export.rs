@@ -49,7 +49,7 @@ impl App {
         }
         let work = move || {
             let result = export_sheet(&path, &scene, &assets, picture, units);
-            TaskResult::SheetExported(path, result)
+            TaskResult::SheetExported("Set-up", path, result)
         };
         self.background.exports.start(work, waker(ctx));
     }
@@ -66,7 +66,7 @@ impl App {
         self.toasts.info("Small pictures are rendered for the sheet; go on meanwhile.");
         let work = move || {
             let result = export_lesson(&path, series, &scene, &assets, light);
-            TaskResult::SheetExported(path, result)
+            TaskResult::SheetExported("Lesson", path, result)
         };
         self.background.exports.start(work, waker(ctx));
     }

@@ -185,11 +185,11 @@ impl App {
             TaskResult::Exported(_, _, Err(message)) => {
                 self.toasts.error(format!("The picture was not written. {message}"))
             }
-            TaskResult::SheetExported(path, Ok(())) => {
-                self.toasts.info(format!("Set-up sheet written to {}", path.display()));
+            TaskResult::SheetExported(kind, path, Ok(())) => {
+                self.toasts.info(format!("{kind} sheet written to {}", path.display()));
             }
-            TaskResult::SheetExported(_, Err(message)) => {
-                self.toasts.error(format!("The set-up sheet was not written. {message}"))
+            TaskResult::SheetExported(kind, _, Err(message)) => {
+                self.toasts.error(format!("{kind} sheet not written. {message}"));
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Metadata of pictures: the exposure as a camera writes it, and the colour space. EXIF and an sRGB profile in PNG and
 //! JPEG, the profile in TIFF, the standard attributes of OpenEXR in EXR.
 
+use super::icc::srgb_profile;
 use crate::photo::thirds::Dial;
 use crate::scene::{Camera, Scene};
 use exif::experimental::Writer;
@@ -8,7 +9,6 @@ use exif::{Field, In, Rational, Tag, Value};
 use exr::meta::attribute::{AttributeValue, Text};
 use exr::prelude::LayerAttributes;
 use image::ImageEncoder;
-use moxcms::ColorProfile;
 use std::io::Cursor;
 
 /// OpenEXR's name of the focal length.
@@ -136,8 +136,7 @@ fn whole(value: f32) -> u32 {
 /// # Errors
 /// If the metadata can't be encoded.
 pub(super) fn describe(encoder: &mut impl ImageEncoder, capture: Option<&CaptureInfo>) -> Result<(), String> {
-    let profile = ColorProfile::new_srgb().encode().map_err(|error| error.to_string())?;
-    encoder.set_icc_profile(profile).map_err(|error| error.to_string())?;
+    encoder.set_icc_profile(srgb_profile()).map_err(|error| error.to_string())?;
     match capture {
         Some(capture) => encoder.set_exif_metadata(capture.exif()?).map_err(|error| error.to_string()),
         None => Ok(()),

@@ -2,6 +2,7 @@
 
 mod channel_samples;
 mod exr_file;
+mod icc;
 mod metadata;
 mod part_file;
 mod picture_file;
