@@ -39,3 +39,23 @@ fn the_inspector_shows_magnification_and_bellows_factor_of_a_macro_lens() {
     press(&mut window, Modifiers::COMMAND, Key::Z);
     assert!(!scene(&window).camera.focus_breathing);
 }
+
+#[test]
+fn a_person_is_framed_and_metered_by_buttons_and_undone() {
+    let Some(mut window) = preset_window() else { return };
+    let before = scene(&window).clone();
+    let person = before.objects.iter().find(|object| matches!(object.shape, Shape::Figure(_))).unwrap().id;
+    window.state_mut().run(Command::Select(Some(Item::Object(person))), None, &egui::Context::default());
+    settle(&mut window);
+    click(&mut window, "Full length");
+    let full = scene(&window).camera.clone();
+    assert!(full.position.distance(before.camera.position) > 0.5, "{:?}", full.position);
+    click(&mut window, "Head and shoulders");
+    assert!(scene(&window).camera.position.z < full.position.z);
+    click(&mut window, "Aim, focus and meter");
+    assert!(scene(&window).meter.is_some() && matches!(scene(&window).camera.aim, Aim::Object { .. }));
+    for _ in 0..3 {
+        window.state_mut().run(Command::Undo, None, &egui::Context::default());
+    }
+    assert_eq!(scene(&window), &before);
+}

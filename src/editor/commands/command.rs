@@ -3,10 +3,11 @@
 use crate::editor::commands::choices::{CentralView, HandleMode, LiveMode, PlaceLightBy, ViewSide};
 use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::document::action::Action;
+use crate::editor::document::framing::Framing;
 use crate::editor::document::item::Item;
 use crate::editor::document::light_mix::Fader;
 use crate::photo::PictureDisplay;
-use crate::scene::{LightId, TextureSlot};
+use crate::scene::{LightId, ObjectId, TextureSlot};
 use crate::setup::DialPlan;
 use crate::sheet::{LessonSeries, Units};
 use std::path::PathBuf;
@@ -121,6 +122,10 @@ pub enum Command {
     ToggleCameraView,
     /// Frames the selection, or everything, in the studio view.
     FrameSelection,
+    /// Moves the camera before a person.
+    FrameFigure(ObjectId, Framing),
+    /// Aims and focuses the camera at a person's face, and holds the meter before it.
+    SetUpAtFace(ObjectId),
     /// Moves the camera to the studio view's viewpoint.
     CameraFromView,
     /// Selects the renderer of the live view.

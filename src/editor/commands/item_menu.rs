@@ -3,9 +3,10 @@
 use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::commands::command::Command;
 use crate::editor::commands::menu_entry::entry;
+use crate::editor::document::framing::Framing;
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
-use crate::scene::{LightId, Scene};
+use crate::scene::{LightId, ObjectId, Scene, Shape};
 use crate::sheet::LessonSeries;
 use eframe::egui::Ui;
 
@@ -42,6 +43,18 @@ pub fn empty_selection_menu_ui(ui: &mut Ui, out: &mut Vec<Command>) {
     entry(ui, true, "Show and unmute all", "Nothing is hidden or muted any more", Command::ShowAll, out);
 }
 
+pub const FACE_TIP: &str = "The camera aims and focuses at the face; the meter is held before it";
+
+/// Draws the entries that move the camera before a person.
+fn framing_entries(ui: &mut Ui, id: ObjectId, out: &mut Vec<Command>) {
+    for framing in Framing::ALL {
+        entry(ui, true, framing.label(), FRAMING_TIP, Command::FrameFigure(id, framing), out);
+    }
+}
+
+pub const FRAMING_TIP: &str =
+    "Moves the camera, from the side on which it is, so far away that this part fills the picture";
+
 /// Draws the entries that write lesson sheets about a light, the key for none.
 pub fn lesson_entries(ui: &mut Ui, light: Option<LightId>, out: &mut Vec<Command>) {
     ui.set_min_width(200.0);
@@ -76,6 +89,12 @@ pub fn selection_entries(ui: &mut Ui, scene: &Scene, selection: &Selection, out:
         Command::ToggleLightView,
         out,
     );
+    if let [Item::Object(id)] = selection.items()
+        && scene.object(*id).is_some_and(|object| matches!(object.shape, Shape::Figure(_)))
+    {
+        ui.menu_button("Frame in the picture", |ui| framing_entries(ui, *id, out));
+        entry(ui, true, "Aim, focus and meter at the face", FACE_TIP, Command::SetUpAtFace(*id), out);
+    }
     if let [Item::Light(light)] = selection.items() {
         ui.menu_button("Lesson sheet", |ui| lesson_entries(ui, Some(*light), out));
     }

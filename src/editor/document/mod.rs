@@ -8,6 +8,7 @@ pub mod catalog;
 pub mod clipboard;
 pub mod dial_wishes;
 pub mod files;
+pub mod framing;
 pub mod history;
 pub mod item;
 pub mod light_mix;

@@ -9,6 +9,7 @@ use crate::editor::document::arrange::MirrorPlane;
 use crate::editor::document::catalog::CatalogItem;
 use crate::editor::document::clipboard;
 use crate::editor::document::files::{self, StudioSource};
+use crate::editor::document::framing::{face_action, frame_figure};
 use crate::editor::document::item::Item;
 use crate::editor::document::light_mix::Mix;
 use crate::editor::document::placement;
@@ -122,6 +123,17 @@ impl App {
             Command::SetLiveMode(mode) => self.views.viewport.traced_view.mode = mode,
             Command::ToggleLiveMode => self.views.viewport.traced_view.toggle(),
             Command::SetHandles(handle) => self.views.handles = handle,
+            Command::FrameFigure(id, framing) => {
+                let (scene, assets) = (self.document.scene(), self.document.assets());
+                if let Some(action) = frame_figure(scene, assets, id, framing) {
+                    self.apply(action, None);
+                }
+            }
+            Command::SetUpAtFace(id) => {
+                if let Some(action) = face_action(self.document.scene(), id) {
+                    self.apply(action, None);
+                }
+            }
             Command::ToggleDials => self.panels.show_dials = !self.panels.show_dials,
             Command::ToggleRoomAudit => self.panels.show_room_audit = !self.panels.show_room_audit,
             Command::SetDials(plan) => self.set_dials(&plan),

@@ -1,11 +1,14 @@
 //! The sections of a figure: body, face, expression, pose, clothes and hair.
 
+use crate::editor::commands::command::Command;
+use crate::editor::commands::item_menu::{FACE_TIP, FRAMING_TIP};
+use crate::editor::document::framing::Framing;
 use crate::editor::ui::widgets::{row, section, swatch};
 use crate::figures::{self, NamedExpression, NamedPose, SKIN_TONES};
 use crate::jobs::{Catchlight, Face, sentence};
 use crate::scene::{
-    Arm, Beard, Body, Bottom, Figure, Gaze, HairStyle, Leg, Object, Parameter, ParameterSet, SEAT_RANGE_M, Scene,
-    Shape, Top,
+    Arm, Beard, Body, Bottom, Figure, Gaze, HairStyle, Leg, Object, ObjectId, Parameter, ParameterSet, SEAT_RANGE_M,
+    Scene, Shape, Top,
 };
 use eframe::egui::{Color32, ComboBox, Label, Sense, Slider, TextStyle, Ui, vec2};
 
@@ -44,6 +47,24 @@ fn draw_iris(ui: &mut Ui, catchlights: &[Catchlight]) {
     for Catchlight { place, .. } in catchlights {
         painter.circle_filled(middle + vec2(place.x, -place.y) * radius, radius * 0.16, Color32::WHITE);
     }
+}
+
+/// Draws the buttons that set the camera up before a person.
+pub(super) fn framing_rows(ui: &mut Ui, id: ObjectId, out: &mut Vec<Command>) {
+    row(ui, "Frame", FRAMING_TIP, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            for framing in Framing::ALL {
+                if ui.small_button(framing.label()).clicked() {
+                    out.push(Command::FrameFigure(id, framing));
+                }
+            }
+        });
+    });
+    row(ui, "At the face", FACE_TIP, |ui| {
+        if ui.small_button("Aim, focus and meter").clicked() {
+            out.push(Command::SetUpAtFace(id));
+        }
+    });
 }
 
 /// Draws the sections of an object that is a figure.

@@ -1,6 +1,6 @@
 //! The inspector of a figure, prop or backdrop.
 
-use super::figure::{face_rows, figure_ui};
+use super::figure::{face_rows, figure_ui, framing_rows};
 use super::material::{material_group, material_rows, preset_name};
 use super::{InspectorContext, text_ui, title};
 use crate::editor::commands::command::Command;
@@ -36,6 +36,7 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Obj
             if original.visible {
                 face_rows(ui, context.patterns.face(id));
             }
+            framing_rows(ui, id, context.out);
             figure_ui(ui, scene, &mut object);
         }
         _ => section(ui, "Shape and size", true, |ui| shape_rows(ui, assets, &mut object)),
