@@ -7,8 +7,8 @@ use glam::Vec3;
 
 /// Stature for which the lengths of [`Framing::below_eyes_m`] are stated, metres.
 const STATURE_M: f32 = 1.7;
-/// Least width of a frame for that stature: shoulders, metres.
-const SHOULDERS_M: f32 = 0.5;
+/// Least width of a frame for that stature: head and most of the shoulders, metres.
+const SHOULDERS_M: f32 = 0.4;
 /// Space over the head, and under the feet of a full figure, as parts of the frame's height.
 const OVER_HEAD: f32 = 0.1;
 const UNDER_FEET: f32 = 0.05;
