@@ -4,6 +4,7 @@
 mod angle;
 mod bounded_least_squares;
 mod frame;
+mod mean;
 mod quadrature;
 mod quantile;
 mod ray;
@@ -14,6 +15,7 @@ pub mod warp;
 pub use angle::{sin_cos_eighth, sin_cos_turn};
 pub use bounded_least_squares::{BoundedUnknown, LinearEquation, bounded_least_squares};
 pub use frame::{look_along, look_at, orthonormal_basis};
+pub use mean::mean;
 pub use quadrature::gauss_legendre;
 pub use quantile::quantile;
 pub use ray::{Ray, gamma, offset_origin};

@@ -7,7 +7,7 @@ use super::dial_system::{DIAL_STOPS, Group, Relation, System};
 use super::metering::MeteredAt;
 use super::transport::{LightTransport, SetupTransport};
 use super::wish::{Wish, WishLevel, WishTarget, key_of, named_lights};
-use crate::photo::text::signed_stops;
+use crate::math::mean;
 use crate::scene::{LightId, Role, Scene};
 use std::collections::HashSet;
 
@@ -71,7 +71,7 @@ impl WishOutcome {
         let missed = self.missed_stops?;
         let side = if missed < 0.0 { "under" } else { "over" };
         let amount = if missed.is_finite() {
-            format!("{} stops {side}", signed_stops(missed.abs()).trim_start_matches('+'))
+            format!("{:.1} stops {side}", missed.abs())
         } else if self.wanted_lux_s.is_finite() {
             "no light of it arrives".to_owned()
         } else {
@@ -88,6 +88,8 @@ pub struct DialPlan {
     pub dials: Vec<PlannedDial>,
     /// What each wish gets.
     pub outcomes: Vec<WishOutcome>,
+    /// Exposure of the key at the subject with the planned dials, lux s; 0 without a key.
+    pub key_lux_s: f32,
     /// Luminous energy of the lights that are on in one exposure, lm s: with the studio's dials and with the planned ones.
     pub energy_lm_s: [f32; 2],
 }
@@ -151,9 +153,8 @@ struct Place {
 impl Place {
     /// Returns the mean of places.
     fn mean(places: &[Place]) -> Place {
-        let count = places.len() as f32;
         let lights = places.first().map_or(0, |place| place.lux_s.len());
-        let mean = |value: &dyn Fn(&Place) -> f32| places.iter().map(value).sum::<f32>() / count;
+        let mean = |value: &dyn Fn(&Place) -> f32| mean(&places.iter().map(value).collect::<Vec<_>>());
         Place {
             lux_s: (0..lights).map(|light| mean(&|place| place.lux_s[light])).collect(),
             glow_lux_s: mean(&|place| place.glow_lux_s),
@@ -162,15 +163,16 @@ impl Place {
     }
 }
 
+/// A studio with wishes for it.
 struct Solver<'a> {
     setup: &'a SetupTransport,
     wishes: &'a [Wish],
     /// Lights that a wish about lights names.
     named: HashSet<LightId>,
-    /// Lights whose dials may be set.
+    /// The lights whose dials may be set, in groups that keep their ratios.
     groups: Vec<Group>,
     /// The light that other wishes are relative to.
-    is_key: Vec<bool>,
+    key: Option<LightId>,
 }
 
 impl<'a> Solver<'a> {
@@ -211,10 +213,9 @@ impl<'a> Solver<'a> {
                 && members.iter().all(|index| !named.contains(&lights[*index].light))
                 && members.iter().all(|index| lights[*index].at == MeteredAt::Aim)
         };
-        let key = key_of(wishes, setup);
         Solver {
             groups: members.into_iter().map(|members| Group::new(lights, is_bounded(&members), members)).collect(),
-            is_key: lights.iter().map(|light| Some(light.light) == key).collect(),
+            key: key_of(wishes, setup),
             setup,
             wishes,
             named,
@@ -226,13 +227,11 @@ impl<'a> Solver<'a> {
     }
 
     fn has_key(&self, group: &Group) -> bool {
-        group.members.iter().any(|index| self.is_key[*index])
+        group.members.iter().any(|index| Some(self.setup.lights()[*index].light) == self.key)
     }
 
     fn is_about_key(&self, wish: &Wish) -> bool {
-        let WishTarget::Lights(lights) = &wish.target else { return false };
-        let keys = self.setup.lights().iter().zip(&self.is_key).filter(|(_, is_key)| **is_key);
-        keys.map(|(light, _)| light.light).eq(lights.iter().copied())
+        matches!((&wish.target, self.key), (WishTarget::Lights(lights), Some(key)) if *lights == [key])
     }
 
     /// Returns the powers of the lights, 1 for full power: those of the studio, with lights that a wish names on.
@@ -250,9 +249,10 @@ impl<'a> Solver<'a> {
         glow_lux_s + lights.map(|((light, lux_s), power)| lux_s * power / light.dial_stops.exp2()).sum::<f32>()
     }
 
+    /// Returns the exposure of the key at the subject with these powers, lux s; 0 without a key.
     fn key_lux_s(&self, powers: &[f32]) -> f32 {
-        let lights = self.setup.lights().iter().zip(&self.is_key);
-        let lux_s: Vec<f32> = lights.map(|(light, is_key)| if *is_key { light.subject_lux_s } else { 0.0 }).collect();
+        let of_key = |light: &LightTransport| if Some(light.light) == self.key { light.subject_lux_s } else { 0.0 };
+        let lux_s: Vec<f32> = self.setup.lights().iter().map(of_key).collect();
         self.exposure(&lux_s, 0.0, powers)
     }
 
@@ -307,7 +307,7 @@ impl<'a> Solver<'a> {
     }
 
     /// Returns the powers that come nearest to the wishes, with wishes relative to a given exposure of the key. `keys`
-    /// holds the powers of the key lights if they are settled.
+    /// holds the powers of all lights if those of the key and its group are settled.
     fn solve(&self, key_lux_s: f32, keys: Option<&[f32]>) -> Vec<f32> {
         let free: Vec<&Group> = self.groups.iter().filter(|group| keys.is_none() || !self.has_key(group)).collect();
         let mut fixed = keys.map_or_else(|| self.present(), <[f32]>::to_vec);
@@ -351,7 +351,7 @@ impl<'a> Solver<'a> {
         rounded
     }
 
-    /// Meters what the wishes get by powers that the dials have.
+    /// Returns the plan with powers that the dials can be set to.
     fn plan(&self, powers: &[f32]) -> DialPlan {
         let free = self.setup.lights().iter().enumerate().filter(|(index, _)| self.is_free(*index));
         let dial = |(index, light): (usize, &LightTransport)| PlannedDial {
@@ -369,17 +369,18 @@ impl<'a> Solver<'a> {
         DialPlan {
             dials: free.map(dial).collect(),
             outcomes: self.wishes.iter().map(|wish| self.outcome(wish, key_lux_s, &before, powers)).collect(),
+            key_lux_s,
             energy_lm_s: [energy(&before), energy(powers)],
         }
     }
 
+    /// Compares the exposures before and after with that of a wish.
     fn outcome(&self, wish: &Wish, key_lux_s: f32, before: &[f32], after: &[f32]) -> WishOutcome {
         let places = self.places(wish, key_lux_s);
         let metered = |powers: &[f32]| -> Vec<f32> {
             places.iter().map(|place| self.exposure(&place.lux_s, place.glow_lux_s, powers)).collect()
         };
         let (was, reached) = (metered(before), metered(after));
-        let mean = |values: &[f32]| values.iter().sum::<f32>() / values.len().max(1) as f32;
         let wanted: Vec<f32> = places.iter().map(|place| place.wanted_lux_s).collect();
         let over = || reached.iter().zip(&wanted).map(|(reached, wanted)| (reached / wanted).log2());
         let missed = match Self::relation(wish) {

@@ -182,7 +182,7 @@ impl<'a> MeteredSetup<'a> {
 
     /// Returns points of the background that the picture shows, spread over it; the point behind the subject if it shows
     /// none. Empty without a background.
-    pub fn background_points(&self) -> Vec<SurfacePoint<'_>> {
+    fn background_points(&self) -> Vec<SurfacePoint<'_>> {
         let Some(behind) = self.background_surface() else { return Vec::new() };
         let (camera, forward) = (self.frame.position(), self.frame.forward());
         let subject_m = (self.subject.position - camera).dot(forward);
@@ -202,8 +202,14 @@ impl<'a> MeteredSetup<'a> {
         if points.is_empty() { vec![behind] } else { points }
     }
 
+    /// Reads a flat receptor at each of the points of the background. None once cancelled.
+    pub fn read_background(&self, control: &RenderControl) -> Option<Vec<(SurfacePoint<'_>, Reading)>> {
+        let points = self.background_points().into_iter();
+        points.map(|point| Some((point, self.read_flat(point.position, point.normal, control)?))).collect()
+    }
+
     /// Reads a flat receptor on a surface. None once cancelled.
-    pub fn read_flat(&self, position: Vec3, normal: Vec3, control: &RenderControl) -> Option<Reading> {
+    fn read_flat(&self, position: Vec3, normal: Vec3, control: &RenderControl) -> Option<Reading> {
         let position = position + normal * STEP_M;
         let point = MeterPoint { position, facing: normal, receptor: Receptor::Flat };
         Some(self.meter.read(&point, &MeterEffort::quick(), control)?.reading)

@@ -4,6 +4,7 @@
 //! surface.
 
 use super::metering::MeteredSetup;
+use crate::math::mean;
 use crate::photo::meter::Reading;
 use crate::raytrace::{GeometryCache, LightMeter, MeterEffort, MeterPoint, PrepareError, RenderControl};
 use crate::scene::{Assets, Material, Role, Room, Scene, Shape};
@@ -155,10 +156,7 @@ impl RoomAudit {
         control: &RenderControl,
     ) -> Result<Option<Self>, PrepareError> {
         let Some(setup) = MeteredSetup::new(scene, assets, cache, control)? else { return Ok(None) };
-        let mut background = Vec::new();
-        for point in setup.background_points() {
-            background.extend(setup.read_flat(point.position, point.normal, control));
-        }
+        let Some(background) = setup.read_background(control) else { return Ok(None) };
         let read = |scene: &Scene| read_at(scene, assets, &setup.held, cache, control);
         let mut without = BTreeMap::new();
         for surface in RoomSurface::ALL.into_iter().filter(|surface| surface.is_in(scene)) {
@@ -180,7 +178,7 @@ impl RoomAudit {
                 None => reading.total_lux_s(),
             };
             let light = index.and_then(|index| setup.reading.lights.get(index));
-            let mean = background.iter().map(lux_s).sum::<f32>() / background.len().max(1) as f32;
+            let behind: Vec<f32> = background.iter().map(|(_, reading)| lux_s(reading)).collect();
             let error = |reading: &Reading| match index {
                 Some(index) => reading.lights.get(index).map_or(0.0, |light| reading.error_lux_s(light)),
                 None => reading.relative_error().unwrap_or(0.0) * reading.total_lux_s(),
@@ -196,7 +194,7 @@ impl RoomAudit {
                 role: light.and_then(|light| light.role),
                 lux_s: lux_s(&setup.reading),
                 without_lux_s: without.iter().map(|(surface, reading)| (*surface, without_lux_s(reading))).collect(),
-                background_lux_s: (!background.is_empty()).then_some(mean),
+                background_lux_s: (!behind.is_empty()).then(|| mean(&behind)),
             }
         };
         let audit = RoomAudit {

@@ -2,6 +2,7 @@
 
 use super::metering::{MeteredAt, MeteredSetup};
 use crate::color::luminance;
+use crate::math::mean;
 use crate::photo::exposure;
 use crate::photo::meter::Reading;
 use crate::photo::{MIDDLE_GREY, PhotometricLight, clipping_stops};
@@ -46,10 +47,6 @@ impl LightTransport {
     }
 }
 
-fn mean(values: &[f32]) -> f32 {
-    values.iter().sum::<f32>() / values.len().max(1) as f32
-}
-
 /// The exposures of all lights at all places.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetupTransport {
@@ -84,10 +81,9 @@ impl SetupTransport {
         }
         let Some(setup) = MeteredSetup::new(&lit, assets, cache, control)? else { return Ok(None) };
         let mut background = Vec::new();
-        for point in setup.background_points() {
-            let Some(reading) = setup.read_flat(point.position, point.normal, control) else { return Ok(None) };
-            let albedo = luminance(setup.base_color(&point).into());
-            background.push((reading, albedo));
+        let Some(read) = setup.read_background(control) else { return Ok(None) };
+        for (point, reading) in read {
+            background.push((reading, luminance(setup.base_color(&point).into())));
         }
         let measured = |(light, present): (&Light, &Light)| {
             let at = setup.metered_at(light);
@@ -142,9 +138,14 @@ impl SetupTransport {
         self.lights.iter().find(|light| light.light == id)
     }
 
+    /// Returns the key light of the studio as it is.
+    pub fn present_key(&self) -> Option<LightId> {
+        self.key_light(&HashSet::new(), &HashSet::new())
+    }
+
     /// Returns the light to which others are relative: the strongest key light at the subject that is on or `named`, else the
     /// strongest other light there that is not itself `relative` to it. None if none of them lights the subject.
-    pub fn key_light(&self, named: &HashSet<LightId>, relative: &HashSet<LightId>) -> Option<LightId> {
+    pub(super) fn key_light(&self, named: &HashSet<LightId>, relative: &HashSet<LightId>) -> Option<LightId> {
         let is_used = |light: &&LightTransport| {
             (light.is_on || named.contains(&light.light)) && light.at == MeteredAt::Subject && light.subject_lux_s > 0.0
         };
@@ -158,8 +159,7 @@ impl SetupTransport {
 
     /// Returns the exposure of the key light at the subject, lux s; 0 without one.
     pub fn key_lux_s(&self) -> f32 {
-        let key = self.key_light(&HashSet::new(), &HashSet::new());
-        key.and_then(|key| self.light(key)).map_or(0.0, |light| light.subject_lux_s)
+        self.present_key().and_then(|key| self.light(key)).map_or(0.0, |light| light.subject_lux_s)
     }
 
     fn lit(&self) -> impl Iterator<Item = &LightTransport> {

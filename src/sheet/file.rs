@@ -22,6 +22,11 @@ const PICTURE_PIXELS: u32 = 660;
 /// The extensions of sheets, the default one first.
 pub const SHEET_EXTENSIONS: &[&str] = &["pdf", "svg", "html"];
 
+/// Returns the extension of a file name in lower case; empty without one.
+pub fn ending(path: &Path) -> String {
+    path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
+}
+
 /// The format of a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SheetFormat {
@@ -39,7 +44,7 @@ impl SheetFormat {
     /// # Errors
     /// If the extension is none of `pdf`, `svg`, `html` and `htm`, in upper or lower case.
     pub fn of(path: &Path) -> Result<Self, SaveError> {
-        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let ending = ending(path);
         match ending.as_str() {
             "pdf" => Ok(SheetFormat::Pdf),
             "svg" => Ok(SheetFormat::Svg),

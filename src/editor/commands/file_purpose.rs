@@ -49,6 +49,14 @@ impl FilePurpose {
         }
     }
 
+    /// Returns what follows the studio's name in a suggested file name: a lesson sheet is not to replace the picture.
+    pub fn name_suffix(self) -> String {
+        match self {
+            FilePurpose::ExportLesson(series, _) => format!(", {}", series.label().to_lowercase()),
+            _ => String::new(),
+        }
+    }
+
     /// Returns name and extensions of the file type.
     pub fn filter(self) -> (String, &'static [&'static str]) {
         match self {

@@ -7,9 +7,8 @@ use crate::editor::ui::widgets;
 use crate::photo::meter::nearest_third;
 use crate::photo::text::signed_stops;
 use crate::scene::{Light, Scene};
-use crate::setup::{DialPlan, LightTransport, MeasurementJob, MeteredAt, SetupTransport, WishOutcome};
-use eframe::egui::{self, Button, Color32, Grid, Label, Rect, Response, RichText, ScrollArea, TextEdit, Ui, vec2};
-use std::collections::HashSet;
+use crate::setup::{DialPlan, LightTransport, MeasurementJob, MeteredAt, SetupTransport};
+use eframe::egui::{self, Button, Grid, Label, Rect, RichText, ScrollArea, TextEdit, Ui, vec2};
 
 const NAME_WIDTH: f32 = 128.0;
 const WISH_WIDTH: f32 = 84.0;
@@ -116,6 +115,7 @@ fn plan_ui(ui: &mut Ui, plan: &DialPlan) {
     }
 }
 
+/// Draws the row of a light: reading, wish, then reading and dial of the plan.
 fn light_row(
     ui: &mut Ui,
     wishes: &mut DialWishes,
@@ -129,9 +129,9 @@ fn light_row(
         MeteredAt::Rim => "Metered on the subject's back, turned to the light",
         MeteredAt::Aim => "Metered where it aims",
     };
-    name_ui(ui, theme::role_color(light.role), &light.name).on_hover_text(at);
+    widgets::role_name(ui, Some(theme::role_color(light.role)), &light.name, NAME_WIDTH).on_hover_text(at);
     if metered.is_on {
-        if setup.key_light(&HashSet::new(), &HashSet::new()) == Some(light.id) {
+        if setup.present_key() == Some(light.id) {
             ui.label(format!("{}  key", nearest_third(setup.f_number(metered.own_lux_s))));
         } else {
             exposure_ui(ui, setup, metered.own_lux_s, setup.key_lux_s());
@@ -146,12 +146,12 @@ fn light_row(
     let row = WishRow::Light(light.id);
     wish_ui(ui, wishes, row, &light.name, "f/8, -1.5");
     let dial = plan.and_then(|plan| plan.dials.iter().find(|dial| dial.light == light.id));
-    match dial {
-        Some(dial) => {
+    match plan.zip(dial) {
+        Some((plan, dial)) => {
             let now = if metered.is_on { metered.own_lux_s } else { 0.0 };
             let then = metered.own_lux_s * (dial.to_stops - dial.from_stops).exp2();
             let then = if dial.is_change() { then } else { now };
-            exposure_ui(ui, setup, then, key_then_lux_s(setup, plan));
+            exposure_ui(ui, setup, then, plan.key_lux_s);
             let from = if dial.was_on { signed_stops(dial.from_stops) } else { "off".to_owned() };
             let text = format!("{from} to {}", signed_stops(dial.to_stops));
             let text = if dial.is_change() { text } else { signed_stops(dial.to_stops) };
@@ -164,6 +164,7 @@ fn light_row(
     }
 }
 
+/// Draws the row of a place: reading, wish, then the reading of the plan.
 fn place_row(ui: &mut Ui, wishes: &mut DialWishes, setup: &SetupTransport, row: WishRow, plan: Option<&DialPlan>) {
     let name = row.name(setup);
     let (tip, hint, now_lux_s) = match row {
@@ -177,37 +178,18 @@ fn place_row(ui: &mut Ui, wishes: &mut DialWishes, setup: &SetupTransport, row: 
             ("All light at the subject; the lights keep their ratios", "f/8", setup.subject_lux_s())
         }
     };
-    name_ui(ui, Color32::TRANSPARENT, &name).on_hover_text(tip);
-    let outcome: Option<&WishOutcome> =
-        plan.and_then(|plan| plan.outcomes.iter().find(|outcome| outcome.wish.target == row.target()));
+    widgets::role_name(ui, None, &name, NAME_WIDTH).on_hover_text(tip);
+    let of_row = |plan: &DialPlan| {
+        let outcome = plan.outcomes.iter().find(|outcome| outcome.wish.target == row.target())?;
+        Some((outcome.after_lux_s, plan.key_lux_s))
+    };
     exposure_ui(ui, setup, now_lux_s, setup.key_lux_s());
     wish_ui(ui, wishes, row, &name, hint);
-    match outcome {
-        Some(outcome) => exposure_ui(ui, setup, outcome.after_lux_s, key_then_lux_s(setup, plan)),
+    match plan.and_then(of_row) {
+        Some((then_lux_s, key_lux_s)) => exposure_ui(ui, setup, then_lux_s, key_lux_s),
         None => drop(ui.label("")),
     }
     ui.label("");
-}
-
-fn name_ui(ui: &mut Ui, color: Color32, name: &str) -> Response {
-    ui.horizontal(|ui| {
-        widgets::swatch(ui, color, vec2(6.0, 14.0));
-        ui.allocate_ui_with_layout(vec2(NAME_WIDTH, 18.0), egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            ui.set_min_width(NAME_WIDTH);
-            ui.add(Label::new(name).truncate())
-        })
-        .inner
-    })
-    .inner
-}
-
-/// Returns the exposure of the key at the subject with the dials of a plan, lux s.
-fn key_then_lux_s(setup: &SetupTransport, plan: Option<&DialPlan>) -> f32 {
-    let dials = plan.map_or(&[][..], |plan| &plan.dials);
-    let key = setup.key_light(&dials.iter().map(|dial| dial.light).collect(), &HashSet::new());
-    let dial = dials.iter().find(|dial| Some(dial.light) == key);
-    let change = dial.map_or(0.0, |dial| dial.to_stops - dial.from_stops).exp2();
-    key.and_then(|key| setup.light(key)).map_or(0.0, |light| light.subject_lux_s * change)
 }
 
 /// Draws an exposure as f-number and in stops over the key.
@@ -224,6 +206,7 @@ fn exposure_ui(ui: &mut Ui, setup: &SetupTransport, lux_s: f32, key_lux_s: f32) 
     ui.label(text).on_hover_text(tip);
 }
 
+/// Draws the field of a wish.
 fn wish_ui(ui: &mut Ui, wishes: &mut DialWishes, row: WishRow, name: &str, hint: &str) {
     let mut text = wishes.text(row).to_owned();
     let mut field = TextEdit::singleline(&mut text).hint_text(hint);

@@ -4,7 +4,7 @@ use crate::editor::ui::theme;
 use crate::editor::ui::widgets;
 use crate::photo::text::signed_hundredths;
 use crate::setup::{AuditedLight, RoomAudit, RoomSurface};
-use eframe::egui::{self, Color32, Grid, Label, Rect, RichText, ScrollArea, Ui, vec2};
+use eframe::egui::{self, Grid, Label, Rect, RichText, ScrollArea, Ui, vec2};
 
 const NAME_WIDTH: f32 = 128.0;
 /// Height of the table that does not fit the window: it scrolls.
@@ -32,6 +32,7 @@ pub fn room_audit_ui(
     });
 }
 
+/// Draws table, ceilings and flare.
 fn audit_ui(ui: &mut Ui, audit: &RoomAudit) {
     if audit.total.lux_s <= 0.0 {
         ui.label("No light reaches the subject.");
@@ -73,15 +74,9 @@ fn audit_ui(ui: &mut Ui, audit: &RoomAudit) {
     }
 }
 
+/// Draws the row of a light, or of all of them.
 fn row_ui(ui: &mut Ui, audit: &RoomAudit, light: &AuditedLight, surfaces: &[RoomSurface]) {
-    ui.horizontal(|ui| {
-        widgets::swatch(ui, light.role.map_or(Color32::TRANSPARENT, theme::role_color), vec2(6.0, 14.0));
-        ui.allocate_ui_with_layout(vec2(NAME_WIDTH, 18.0), egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            ui.set_min_width(NAME_WIDTH);
-            let name = RichText::new(&light.name);
-            ui.add(Label::new(if light.role.is_none() { name.strong() } else { name }).truncate());
-        });
-    });
+    widgets::role_name(ui, light.role.map(theme::role_color), &light.name, NAME_WIDTH);
     for surface in surfaces {
         let percent = 100.0 * light.part(*surface);
         match light.added_stops(*surface) {

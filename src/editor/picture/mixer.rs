@@ -8,7 +8,7 @@ use crate::editor::ui::widgets::{self, NumberField};
 use crate::photo::text::signed_stops;
 use crate::scene::{ColorSource, Scene};
 use eframe::egui::{
-    Align, Button, Color32, Frame, Grid, Label, Layout, Pos2, Rect, RichText, ScrollArea, Slider, Ui, UiBuilder, vec2,
+    Button, Color32, Frame, Grid, Label, Pos2, Rect, RichText, ScrollArea, Slider, Ui, UiBuilder, vec2,
 };
 
 /// Travel of a fader to both sides, thirds of a stop.
@@ -69,13 +69,7 @@ fn row_ui(ui: &mut Ui, row: &MixerRow, rendering: &Rendering, scene: &Scene, out
     let (mix, name) = (&rendering.mix, &row.name);
     let before = mix.fader(first.id);
     let mut fader = before;
-    ui.horizontal(|ui| {
-        widgets::swatch(ui, theme::role_color(first.role), vec2(8.0, 14.0));
-        ui.allocate_ui_with_layout(vec2(112.0, 18.0), Layout::left_to_right(Align::Center), |ui| {
-            ui.set_min_width(112.0);
-            ui.add(Label::new(name.as_str()).truncate());
-        });
-    });
+    widgets::role_name(ui, Some(theme::role_color(first.role)), name, 112.0);
     let slider = ui.add_enabled_ui(row.has_layer, |ui| {
         ui.spacing_mut().slider_width = 104.0;
         let slider = Slider::new(&mut fader.thirds, -TRAVEL..=TRAVEL).show_value(false).trailing_fill(false);

@@ -163,6 +163,20 @@ pub fn small_button(ui: &mut Ui, sign: &str, name: &str) -> Response {
     response
 }
 
+/// Draws the name of a light after a patch of its role's colour, none for what is no light; shortened to a width.
+pub fn role_name(ui: &mut Ui, color: Option<Color32>, name: &str, width: f32) -> Response {
+    let row = |ui: &mut Ui| {
+        swatch(ui, color.unwrap_or(Color32::TRANSPARENT), vec2(6.0, 14.0));
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        let name = |ui: &mut Ui| {
+            ui.set_min_width(width);
+            ui.add(egui::Label::new(name).truncate())
+        };
+        ui.allocate_ui_with_layout(vec2(width, 18.0), layout, name).inner
+    };
+    ui.horizontal(row).inner
+}
+
 /// Returns a movable window with a tool, initially at a distance from the upper left corner of a view.
 pub fn tool_window(title: &str, view: egui::Rect, from_corner: egui::Vec2) -> egui::Window<'_> {
     let corner = view.min + from_corner;

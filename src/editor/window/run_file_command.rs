@@ -98,7 +98,7 @@ impl App {
         let stem = title.strip_suffix(".ron").unwrap_or(&title);
         let stem: String =
             stem.chars().map(|c| if c.is_alphanumeric() || "-_ .".contains(c) { c } else { '-' }).collect();
-        (folder, format!("{}.{}", stem.trim(), purpose.filter().1[0]))
+        (folder, format!("{}{}.{}", stem.trim(), purpose.name_suffix(), purpose.filter().1[0]))
     }
 
     pub(super) fn take_dialog_answer(&mut self, out: &mut Vec<Command>) {

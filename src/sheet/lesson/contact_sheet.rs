@@ -6,7 +6,7 @@ use crate::photo::Picture;
 use crate::raytrace::{GeometryCache, RenderControl};
 use crate::scene::Assets;
 use crate::sheet::canvas::Canvas;
-use crate::sheet::file::small_picture;
+use crate::sheet::file::{ending, small_picture};
 use crate::sheet::font::Font;
 use crate::sheet::svg::{FONTS, escaped};
 use base64::Engine;
@@ -52,7 +52,7 @@ impl LessonFormat {
     /// # Errors
     /// If the extension is none of `png`, `html` and `htm`, in upper or lower case.
     pub fn of(path: &Path) -> Result<Self, SaveError> {
-        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let ending = ending(path);
         match ending.as_str() {
             "png" => Ok(LessonFormat::Png),
             "html" | "htm" => Ok(LessonFormat::Html),
