@@ -1,7 +1,8 @@
 //! `catchlight audit SCENE`: what the room does to the light on the subject.
 
 use super::failure::Failure;
-use super::{input, terminal};
+use super::input::{self, StudioArguments};
+use super::terminal;
 use crate::photo::text::signed_hundredths;
 use crate::raytrace::{GeometryCache, RenderControl};
 use crate::setup::{AuditedLight, RoomAudit, RoomSurface};
@@ -9,7 +10,6 @@ use anyhow::Context;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::PathBuf;
 
 /// Arguments of `audit`.
 ///
@@ -19,8 +19,8 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
-    /// Studio: a .ron file, or the name of a shipped one.
-    scene: PathBuf,
+    #[command(flatten)]
+    studio: StudioArguments,
     /// Number of threads [default: all cores]. The audit is the same for any number.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -60,7 +60,7 @@ struct CeilingReport {
 /// Meters the studio and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let pool = input::thread_pool(arguments.threads.unwrap_or(0).into())?;
-    let loaded = pool.install(|| input::load_studio(&arguments.scene))?;
+    let loaded = pool.install(|| arguments.studio.load())?;
     let (cache, control) = (GeometryCache::default(), RenderControl::new());
     let audit = pool.install(|| RoomAudit::measure(&loaded.scene, &loaded.assets, &cache, &control));
     let audit = audit.context("can't meter the studio")?.ok_or(Failure::Interrupted)?;

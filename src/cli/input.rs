@@ -2,11 +2,12 @@
 
 use super::failure::Failure;
 use super::{terminal, warnings};
+use crate::figures;
 use crate::io::{self, Loaded};
 use anyhow::{Context, anyhow};
 use glam::Vec3;
 use rayon::ThreadPool;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Largest picture edge, pixels.
 const LARGEST_EDGE: u32 = 16384;
@@ -14,6 +15,32 @@ const LARGEST_EDGE: u32 = 16384;
 const THREADS_PER_CORE: usize = 4;
 /// Threads that a machine of any size may start.
 const MOST_THREADS: usize = 16;
+
+/// The studio of a subcommand.
+#[derive(Debug, clap::Args)]
+pub struct StudioArguments {
+    /// Studio: a .ron file, or the name of a shipped one.
+    pub scene: PathBuf,
+    /// Variant of the studio, by its name [default: the studio itself].
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+}
+
+impl StudioArguments {
+    /// Loads the studio and shows the variant. Warnings go to stderr.
+    pub fn load(&self) -> anyhow::Result<Loaded> {
+        let mut loaded = load_studio(&self.scene)?;
+        let Some(name) = &self.variant else { return Ok(loaded) };
+        let variants = &loaded.scene.variants;
+        let names = || variants.list().map(|(_, name)| name).collect::<Vec<_>>().join(", ");
+        let id = variants.named(name).ok_or_else(|| anyhow!("there is no variant {name:?}; there are: {}", names()))?;
+        figures::show_variant(&mut loaded.scene, id);
+        // Eyes that follow another camera belong to other figures
+        let folder = self.scene.parent().filter(|_| self.scene.exists());
+        io::load_assets(&loaded.scene, folder, &mut loaded.assets);
+        Ok(loaded)
+    }
+}
 
 /// Loads a studio: a file, or a shipped one by name. Warnings go to stderr.
 pub fn load_studio(scene: &Path) -> anyhow::Result<Loaded> {

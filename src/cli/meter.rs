@@ -1,7 +1,8 @@
 //! `catchlight meter SCENE --at X,Y,Z`: reads an incident light meter at a point of the studio.
 
 use super::failure::Failure;
-use super::{input, terminal};
+use super::input::{self, StudioArguments};
+use super::terminal;
 use crate::io::Loaded;
 use crate::jobs::read_meter;
 use crate::photo::meter::{LUX_PER_FOOT_CANDLE, LightReading, Reading, Receptor, nearest_third};
@@ -12,7 +13,6 @@ use anyhow::{Context, anyhow};
 use glam::Vec3;
 use serde::Serialize;
 use std::fmt::Write;
-use std::path::PathBuf;
 
 /// Arguments of `meter`.
 ///
@@ -22,8 +22,8 @@ use std::path::PathBuf;
 #[derive(Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
-    /// Studio: a .ron file, or the name of a shipped one.
-    scene: PathBuf,
+    #[command(flatten)]
+    studio: StudioArguments,
     /// Position of the receptor: X,Y,Z in metres [default: position, direction and receptor of the studio's own meter].
     #[arg(long, value_name = "X,Y,Z", value_parser = input::parse_vec3, allow_hyphen_values = true)]
     at: Option<Vec3>,
@@ -109,7 +109,7 @@ struct RatioReport {
 /// Reads the meter and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let pool = input::thread_pool(arguments.threads.unwrap_or(0).into())?;
-    let loaded = pool.install(|| input::load_studio(&arguments.scene))?;
+    let loaded = pool.install(|| arguments.studio.load())?;
     let point = meter_point(arguments, &loaded.scene)?;
     let result = pool.install(|| read(arguments, &loaded, &point))?;
     warn(&loaded.scene, &point, &result);

@@ -1,8 +1,9 @@
 //! `catchlight preview SCENE`: draws the live preview without a window, or measures its frame times.
 
 use super::failure::Failure;
+use super::input::{self, StudioArguments};
 use super::preview_look::PreviewLook;
-use super::{input, light_crowd, live_view_times, terminal, window, zbuffer};
+use super::{light_crowd, live_view_times, terminal, window, zbuffer};
 use crate::io::Loaded;
 use anyhow::anyhow;
 use std::path::{Path, PathBuf};
@@ -17,8 +18,8 @@ const FRAMES: u32 = 30;
 /// Arguments of `preview`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Studio: a .ron file, or the name of a shipped one.
-    scene: PathBuf,
+    #[command(flatten)]
+    studio: StudioArguments,
     /// Picture file, whose extension names its format: png, jpg, tif, exr.
     #[arg(short, long, required_unless_present_any = ["frames", "lights", "traced"])]
     output: Option<PathBuf>,
@@ -60,7 +61,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         // Check the file before a picture is drawn for it.
         crate::io::check_picture_file(output)?;
     }
-    let mut loaded = input::load_studio(&arguments.scene)?;
+    let mut loaded = arguments.studio.load()?;
     if arguments.traced {
         let size = arguments.size.unwrap_or(TIMED_SIZE);
         let frames = arguments.frames.unwrap_or(FRAMES);

@@ -1,7 +1,8 @@
 //! `catchlight sheet SCENE`: writes the set-up sheet of a studio, or a lesson sheet.
 
 use super::failure::Failure;
-use super::{input, terminal};
+use super::input::{self, StudioArguments};
+use super::terminal;
 use crate::io::{self, Loaded};
 use crate::raytrace::{GeometryCache, RenderControl};
 use crate::scene::LightId;
@@ -47,8 +48,8 @@ enum SeriesArgument {
 #[derive(Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
-    /// Studio: a .ron file, or the name of a shipped one.
-    scene: PathBuf,
+    #[command(flatten)]
+    studio: StudioArguments,
     /// File of the sheet, whose extension names its format: pdf, svg, html; png or html with --series.
     #[arg(short, long)]
     output: PathBuf,
@@ -81,7 +82,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         UnitsArgument::Ft => Units::Feet,
     };
     let pool = input::thread_pool(arguments.threads.unwrap_or(0).into())?;
-    let loaded = pool.install(|| input::load_studio(&arguments.scene))?;
+    let loaded = pool.install(|| arguments.studio.load())?;
     let (scene, assets) = (&loaded.scene, &loaded.assets);
     let (cache, control) = (GeometryCache::default(), RenderControl::new());
     let content = pool.install(|| -> Result<Option<SheetContent>, Failure> {
@@ -104,7 +105,7 @@ fn write_series(arguments: &Arguments, series: SeriesArgument) -> Result<(), Fai
         SeriesArgument::Room => LessonSeries::Room,
     };
     let pool = input::thread_pool(arguments.threads.unwrap_or(0).into())?;
-    let loaded = pool.install(|| input::load_studio(&arguments.scene))?;
+    let loaded = pool.install(|| arguments.studio.load())?;
     let light = arguments.light.as_deref().map(|name| light_named(&loaded, name)).transpose()?;
     let sheet = pool.install(|| -> Result<LessonSheet, LessonError> {
         let (cache, control) = (GeometryCache::default(), RenderControl::new());

@@ -1,7 +1,8 @@
 //! `catchlight solve SCENE --want "Key=f/8,Fill=-1.5"`: finds dial settings for wanted exposures.
 
 use super::failure::Failure;
-use super::{input, terminal};
+use super::input::{self, StudioArguments};
+use super::terminal;
 use crate::io::{self, AssetFiles, Loaded};
 use crate::photo::meter::nearest_third;
 use crate::photo::text::{power_fraction, signed_stops};
@@ -27,8 +28,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
-    /// Studio: a .ron file, or the name of a shipped one.
-    scene: PathBuf,
+    #[command(flatten)]
+    studio: StudioArguments,
     /// Wishes, separated by commas: "Key=f/8,Fill=-1.5,Background=white".
     #[arg(long, value_name = "WISHES", required = true)]
     want: Vec<String>,
@@ -86,7 +87,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         io::check_file(path)?;
     }
     let pool = input::thread_pool(arguments.threads.unwrap_or(0).into())?;
-    let loaded = pool.install(|| input::load_studio(&arguments.scene))?;
+    let loaded = pool.install(|| arguments.studio.load())?;
     let (cache, control) = (GeometryCache::default(), RenderControl::new());
     let setup = pool.install(|| SetupTransport::measure(&loaded.scene, &loaded.assets, &cache, &control));
     let setup = setup.context("can't meter the studio")?.ok_or(Failure::Interrupted)?;
@@ -97,7 +98,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     if let Some(path) = &arguments.write {
-        write_studio(&loaded, &arguments.scene, &plan, path)?;
+        write_studio(&loaded, &arguments.studio.scene, &plan, path)?;
         terminal::progress(format_args!("the studio is written to {}", path.display()));
     }
     if arguments.json {

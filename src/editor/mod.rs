@@ -40,7 +40,7 @@ mod ui;
 mod viewport;
 mod window;
 
-pub use commands::choices::{CentralView, HandleMode, LiveMode, PlaceLightBy, ViewSide};
+pub use commands::choices::{CentralView, CompareMode, Comparison, HandleMode, LiveMode, PlaceLightBy, ViewSide};
 pub use commands::command::Command;
 pub use commands::file_purpose::FilePurpose;
 pub use commands::shortcuts::{KEY_BINDINGS, KeyBinding};
@@ -54,6 +54,7 @@ pub use document::selection::Selection;
 pub use document::studio_document::Document;
 pub use panels::thumbnails::{Thumbnail, Thumbnails};
 pub use picture::rendering::{PictureSize, Quality, RenderSettings, Rendering, SpotReading};
+pub use picture::variant_pictures::VariantPictures;
 pub use ui::toasts::{ToastKind, Toasts};
 pub use viewport::live::preview_host::ViewOptions;
 pub use viewport::live::traced_view::TracedView;

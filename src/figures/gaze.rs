@@ -1,7 +1,7 @@
 //! Turns the eyes of figures to what they follow.
 
 use super::head_frame;
-use crate::scene::{Figure, Gaze, Object, ParameterSet, Scene, Shape, Torso};
+use crate::scene::{Figure, Gaze, Object, ParameterSet, Scene, Shape, Torso, VariantId};
 use glam::Vec3;
 
 /// Angles are rounded to this, degrees: a smaller turn is not seen, and each other angle is another mesh.
@@ -19,6 +19,20 @@ pub fn follow_gazes(scene: &mut Scene) {
         let turned = Torso { gaze_yaw_deg: yaw_deg, gaze_pitch_deg: pitch_deg, ..Torso::default() }.clamped();
         (torso.gaze_yaw_deg, torso.gaze_pitch_deg) = (turned.gaze_yaw_deg, turned.gaze_pitch_deg);
     }
+}
+
+/// Shows a variant of a studio, and turns the eyes that follow its camera or its lights. Returns false if there is no such
+/// variant.
+pub fn show_variant(scene: &mut Scene, id: VariantId) -> bool {
+    let is_there = scene.show_variant(id);
+    follow_gazes(scene);
+    is_there
+}
+
+/// Returns the scene with a variant shown. None if there is no such variant.
+pub fn as_variant(scene: &Scene, id: VariantId) -> Option<Scene> {
+    let mut scene = scene.clone();
+    show_variant(&mut scene, id).then_some(scene)
 }
 
 /// Returns true if a figure's eyes are turned as far as they go and still do not meet what they follow.

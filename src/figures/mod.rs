@@ -33,7 +33,7 @@ mod two_bone_ik;
 pub use body_codec::BodyDataError;
 pub use body_data::BodyData;
 pub use eyes::Cornea;
-pub use gaze::{follow_gazes, gaze_falls_short};
+pub use gaze::{as_variant, follow_gazes, gaze_falls_short, show_variant};
 pub use joints::{Joint, PosableBody};
 pub use makehuman::read_body;
 pub use materials::{SKIN_TONES, SkinTone, default_parts};

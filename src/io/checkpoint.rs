@@ -28,7 +28,7 @@ impl RenderId {
         let mut hasher = DefaultHasher::new();
         (env!("CARGO_PKG_VERSION"), SAMPLING_VERSION).hash(&mut hasher);
         settings.hash(&mut hasher);
-        super::write_scene(scene).hash(&mut hasher);
+        super::write_scene(&scene.without_variants()).hash(&mut hasher);
         // The scene names figures by their parameters, and files by their paths alone.
         let mut files: Vec<(&str, u64)> =
             assets.iter().filter_map(|(key, asset)| Some((key.path()?, content_hash(asset)))).collect();

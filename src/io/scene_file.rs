@@ -5,7 +5,7 @@ use super::parse_errors::{explain, explain_name, problem_at, problem_of, shorten
 use super::unique_names::make_names_unique;
 use super::{assets, atomic, layout, locate, ron_v1};
 use crate::figures;
-use crate::scene::{Assets, Finding, Scene, Severity, placement, validate};
+use crate::scene::{Assets, Finding, Scene, Severity, VARIANT_LIMIT, placement, validate};
 use std::io::Read;
 use std::path::Path;
 
@@ -82,11 +82,15 @@ pub fn parse_scene(text: &str) -> Result<(Scene, Vec<Finding>), LoadError> {
     check_format(text).map_err(one)?;
     let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
     let file = options.from_str::<ron_v1::SceneV1>(text).map_err(|error| one(explain(text, &error)))?;
-    let mut scene = ron_v1::scene_from_v1(file).map_err(|unknown| one(explain_name(text, &unknown)))?;
+    let (mut scene, shown) = ron_v1::scene_from_v1(file).map_err(|unknown| one(explain_name(text, &unknown)))?;
 
     let mut warnings = make_names_unique(&mut scene);
+    if scene.variants.others.len() <= VARIANT_LIMIT {
+        scene.drop_equal_parts_of_variants();
+    }
     // Only valid figures have eyes to turn.
     if validate(&scene).iter().all(|finding| finding.severity != Severity::Error) {
+        scene.show_variant(shown.unwrap_or_default());
         figures::follow_gazes(&mut scene);
     }
     let (errors, odd): (Vec<_>, Vec<_>) = validate(&scene).into_iter().partition(|f| f.severity == Severity::Error);
@@ -102,17 +106,20 @@ pub fn parse_scene(text: &str) -> Result<(Scene, Vec<Finding>), LoadError> {
     Ok((scene, warnings))
 }
 
-/// Returns the text of a scene file. Parsing it gives the same scene, with ids in list order.
+/// Returns the text of a scene file. Parsing it gives the same scene, with ids in list order and, if a variant is shown,
+/// without a solo.
 pub fn write_scene(scene: &Scene) -> String {
-    let mut unique = scene.clone();
+    let shown = scene.variants.shown();
+    let mut unique = scene.as_variant(scene.variants.studio_id).unwrap_or_else(|| scene.clone());
     make_names_unique(&mut unique);
     let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
     // Serializing plain structs, strings and numbers to a string can't fail.
-    let compact = options.to_string(&ron_v1::v1_from_scene(&unique)).unwrap_or_default();
+    let compact = options.to_string(&ron_v1::v1_from_scene(&unique, shown)).unwrap_or_default();
     layout::lay_out(&compact)
 }
 
-/// Saves a scene: writes a file beside the older one, flushes it to the disk, then renames it over the older one.
+/// Saves a scene: writes a file beside the older one, flushes it to the disk, then renames it over the older one. The
+/// file opens with the studio itself, whatever variant is shown.
 ///
 /// # Errors
 /// If the scene has errors and so would not load again, or if it can't be written. The older file is then unchanged.
@@ -120,7 +127,8 @@ pub fn save_scene(scene: &Scene, path: &Path) -> Result<(), SaveError> {
     if let Some(error) = validate(scene).into_iter().find(|f| f.severity == Severity::Error && !f.is_name_clash()) {
         return Err(SaveError::Invalid(error));
     }
-    atomic::write(path, write_scene(scene).as_bytes())
+    let of_studio = figures::as_variant(scene, scene.variants.studio_id);
+    atomic::write(path, write_scene(of_studio.as_ref().unwrap_or(scene)).as_bytes())
 }
 
 /// Checks the format number before the rest of the text is parsed.

@@ -13,7 +13,8 @@ use super::{
 pub struct SceneChange {
     /// Names and the description: nothing to redraw.
     pub labels: bool,
-    /// Locks, mute marks and the solo list: nothing to redraw. The switches that they move are in `lights`.
+    /// Locks, mute marks, the solo list and the variants that are not shown: nothing to redraw. The switches that they
+    /// move are in `lights`.
     pub editing: bool,
     /// Roles of lights: the colours of their gizmos, and which lights share a film layer when there are many.
     pub roles: bool,
@@ -62,7 +63,7 @@ impl SceneChange {
     /// Compares two scenes. Lights are matched by id, objects by their place in the list.
     pub fn between(old: &Scene, new: &Scene) -> Self {
         let mut change = SceneChange::default();
-        let Scene { name, description, camera, room, objects, lights, meter, solo } = old;
+        let Scene { name, description, camera, room, objects, lights, meter, solo, variants } = old;
         change.labels |= *name != new.name || *description != new.description;
         change.compare_cameras(camera, &new.camera);
         change.compare_magnifications(old, new);
@@ -84,6 +85,7 @@ impl SceneChange {
             (None, None) => {}
             (Some(_), None) | (None, Some(_)) => change.editing = true,
         }
+        change.editing |= *variants != new.variants;
         change
     }
 

@@ -28,6 +28,7 @@ mod strands;
 mod tessellate;
 mod texture;
 mod validate;
+mod variants;
 
 pub use aim::Aim;
 pub use assets::{Asset, AssetKey, AssetRef, Assets, FigureMeshes, path_complaint};
@@ -56,6 +57,7 @@ pub use strands::{StrandPart, StrandPoint, Strands};
 pub use tessellate::{ROOM_STANDS_BACK_M, room_mesh, tessellate};
 pub use texture::{MaterialTextures, Texture, TextureRef, TextureSlot};
 pub use validate::{Finding, LIST_LIMIT, Severity, placement, validate};
+pub use variants::{CameraDifference, LightDifference, SetupDifference, VARIANT_LIMIT, Variant, VariantId, Variants};
 
 use aim::direction_of_angles;
 use glam::Vec3;
@@ -79,12 +81,43 @@ pub struct Scene {
     pub meter: Option<Meter>,
     /// The solo, if some lights are on alone.
     pub solo: Option<Solo>,
+    /// The variants, of which the fields above are the shown one.
+    pub variants: Variants,
+}
+
+/// The object or light that has a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NameOwner {
+    /// An object.
+    Object(ObjectId),
+    /// A light.
+    Light(LightId),
 }
 
 impl Scene {
+    /// Returns the name, with that of the variant if there are several.
+    pub fn title(&self) -> String {
+        match self.variants.name(self.variants.shown()).filter(|_| !self.variants.is_empty()) {
+            Some(variant) => format!("{} ({variant})", self.name).trim_start().to_owned(),
+            None => self.name.clone(),
+        }
+    }
+
     /// Returns true if a light is off only because others are soloed.
     pub fn is_silenced(&self, light: &Light) -> bool {
         !light.on && self.solo.as_ref().is_some_and(|solo| solo.restores.contains(&light.id))
+    }
+
+    /// Ends the solo and restores the switches. Lights added during the solo keep theirs.
+    pub fn end_solo(&mut self) {
+        let Some(solo) = self.solo.take() else { return };
+        for light in &mut self.lights {
+            if solo.restores.contains(&light.id) {
+                light.on = true;
+            } else if solo.lights.contains(&light.id) {
+                light.on = false;
+            }
+        }
     }
 
     /// Returns the object with this id.
@@ -112,21 +145,28 @@ impl Scene {
         ObjectId(self.objects.iter().map(|o| o.id.0 + 1).max().unwrap_or(0))
     }
 
-    /// Returns an id that no light has.
+    /// Returns an id that no light of any variant has.
     pub fn fresh_light_id(&self) -> LightId {
-        LightId(self.lights.iter().map(|l| l.id.0 + 1).max().unwrap_or(0))
+        LightId(self.lights.iter().chain(self.variants.stored_lights()).map(|l| l.id.0 + 1).max().unwrap_or(0))
     }
 
-    /// Returns the first of `wanted`, `wanted 2`, `wanted 3` ... that is not the name of an object or light.
+    /// Returns the first of `wanted`, `wanted 2`, `wanted 3` ... that is not the name of an object or of a light of any
+    /// variant.
     pub fn unique_name(&self, wanted: &str) -> String {
-        let taken =
-            |name: &str| self.objects.iter().any(|o| o.name == name) || self.lights.iter().any(|l| l.name == name);
+        let taken = |name: &str| self.name_owner(name).is_some();
         if !taken(wanted) {
             return wanted.to_owned();
         }
         let stem = wanted.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
         let stem = if stem.is_empty() { wanted } else { stem };
         (2..).map(|n| format!("{stem} {n}")).find(|name| !taken(name)).unwrap_or_default()
+    }
+
+    /// Returns the object or light, of any variant, that has this name.
+    pub fn name_owner(&self, name: &str) -> Option<NameOwner> {
+        let object = self.objects.iter().find(|object| object.name == name).map(|object| NameOwner::Object(object.id));
+        let mut lights = self.lights.iter().chain(self.variants.stored_lights());
+        object.or_else(|| lights.find(|light| light.name == name).map(|light| NameOwner::Light(light.id)))
     }
 
     /// Returns the world-space point of an aim from `position`; 1 m ahead for angles. For an object that does not

@@ -53,7 +53,9 @@ impl Checks {
             checks
                 .add(format!("The gel of {name:?} takes {loss:.1} stops that the dial leaves out: turn the head up."));
         }
-        for Finding { place, message, .. } in validate(scene).into_iter().chain(placement(scene, assets)) {
+        for Finding { place, message, .. } in
+            validate(&scene.without_variants()).into_iter().chain(placement(scene, assets))
+        {
             checks.add(format!("{}: {message}.", thing_of(&place)));
         }
         let names = scene.lights.iter().map(|light| &light.name).chain(scene.objects.iter().map(|object| &object.name));

@@ -74,7 +74,9 @@ impl SheetContent {
         let subject = setup.subject.position;
         let aims: Vec<_> = scene.lights.iter().map(|light| setup.aim_of(light)).collect();
         let content = SheetContent {
-            title: if scene.name.is_empty() { "Untitled studio".to_owned() } else { scene.name.clone() },
+            title: Some(scene.title())
+                .filter(|title| !title.is_empty())
+                .unwrap_or_else(|| "Untitled studio".to_owned()),
             description: scene.description.clone(),
             units,
             picture,

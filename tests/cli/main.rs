@@ -14,6 +14,7 @@ mod running_render;
 mod sheet;
 mod signals;
 mod solve;
+mod variants;
 mod window_libraries;
 
 use serde_json::Value;

@@ -5,8 +5,8 @@
 
 use adapter::headless_gpu;
 use catchlight::editor::{
-    Action, App, CentralView, Command, DialogAnswer, EditorOptions, Fader, FileDialogs, Item, LiveMode, PictureSize,
-    Quality, StudioSource, ToastKind, ViewOptions,
+    Action, App, CentralView, Command, CompareMode, Comparison, DialogAnswer, EditorOptions, Fader, FileDialogs, Item,
+    LiveMode, PictureSize, Quality, StudioSource, ToastKind, ViewOptions,
 };
 use catchlight::scene::{Aim, ColorSource, HairStyle, Scene, Shape};
 use catchlight::sheet::LessonSeries;
@@ -33,6 +33,7 @@ mod rendering;
 mod selection;
 mod sizes;
 mod switches;
+mod variants;
 mod view_options;
 mod viewport;
 mod views;

@@ -29,6 +29,8 @@ fn changed_studios_are_errors_or_studios_that_save_and_load_alike() {
         "r#\"",
         "'",
         "solo: (lights: [\"Key\"]),",
+        "variants: (others: [(name: \"B\", camera: (iso: 200), lights: [(light: \"Key\", on: false)])]),",
+        "variants: (shown: \"B\", others: [(name: \"B\", removed_lights: [\"Key\"])]),",
         "true",
         "Sphere(radius_m: 1)",
         "Figure((body: (height_m: 9)))",

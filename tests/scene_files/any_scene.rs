@@ -265,6 +265,36 @@ fn room() -> impl Strategy<Value = Room> {
     })
 }
 
+/// Name, camera and lights of a variant.
+type VariantParts = (String, Camera, Vec<Light>);
+
+fn variant(objects: usize) -> impl Strategy<Value = VariantParts> {
+    (name(), camera(objects), proptest::collection::vec(light(objects), 0..4))
+}
+
+/// Adds a variant with another camera, other or fewer lights, one more, and another visibility. The studio is shown.
+fn with_variant(mut scene: Scene, (name, camera, lights): VariantParts) -> Scene {
+    let (count, solo) = (scene.lights.len(), scene.solo.take());
+    let studio = scene.variants.shown();
+    assert!(scene.add_variant(format!("{name} v")).is_some());
+    scene.camera = camera;
+    scene.lights.truncate(lights.len());
+    for (index, light) in lights.into_iter().enumerate() {
+        match scene.lights.get_mut(index) {
+            Some(old) => *old = Light { id: old.id, name: old.name.clone(), locked: old.locked, ..light },
+            None => {
+                let id = LightId((count + scene.lights.len() - index) as u32);
+                scene.lights.push(Light { id, name: format!("{} v{index}", light.name), ..light });
+                break;
+            }
+        }
+    }
+    scene.objects.iter_mut().for_each(|object| object.visible = !object.visible);
+    scene.show_variant(studio);
+    scene.solo = solo;
+    scene
+}
+
 fn scene() -> impl Strategy<Value = Scene> {
     (0..4_usize).prop_flat_map(|objects| {
         (
@@ -275,9 +305,19 @@ fn scene() -> impl Strategy<Value = Scene> {
             proptest::collection::vec(object(), objects),
             proptest::collection::vec(light(objects), 0..4),
             any::<(bool, bool, bool)>(),
+            proptest::option::of(variant(objects)),
         )
             .prop_map(
-                |(name, description, camera, room, mut objects, mut lights, (has_meter, on_camera, has_solo))| {
+                |(
+                    name,
+                    description,
+                    camera,
+                    room,
+                    mut objects,
+                    mut lights,
+                    (has_meter, on_camera, has_solo),
+                    variant,
+                )| {
                     // As after loading: ids in list order, names unique.
                     for (i, object) in objects.iter_mut().enumerate() {
                         object.id = ObjectId(i as u32);
@@ -295,7 +335,9 @@ fn scene() -> impl Strategy<Value = Scene> {
                         has_meter.then_some(Meter { position: camera.position, facing, receptor: Receptor::Dome });
                     let ids = |on| lights.iter().filter(|l| l.on == on).map(|l| l.id).collect();
                     let solo = has_solo.then(|| Solo { lights: ids(true), restores: ids(false) });
-                    Scene { name, description, camera, room, objects, lights, meter, solo }
+                    let variants = Variants::default();
+                    let scene = Scene { name, description, camera, room, objects, lights, meter, solo, variants };
+                    variant.into_iter().fold(scene, with_variant)
                 },
             )
     })

@@ -3,6 +3,7 @@
 mod any_scene;
 mod hostile;
 mod saving;
+mod variants;
 
 use catchlight::io::{parse_scene, presets, save_scene, write_scene};
 use catchlight::scene::*;

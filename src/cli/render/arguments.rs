@@ -2,7 +2,7 @@
 
 use super::progress::ProgressStyle;
 use crate::cli::denoised_output::Denoise;
-use crate::cli::input;
+use crate::cli::input::{self, StudioArguments};
 use crate::io::{self, PictureFormat};
 use crate::raytrace::{Method, SampleId, Settings, Shortcut};
 use crate::scene::Camera;
@@ -16,8 +16,8 @@ use std::time::Duration;
 /// Arguments of `render`.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// Studio: a .ron file, or the name of a shipped one.
-    pub scene: PathBuf,
+    #[command(flatten)]
+    pub studio: StudioArguments,
     /// Picture file, whose extension names its format: png, jpg, tif of 16 bits (as shown), exr (scene-linear).
     #[arg(short, long, required_unless_present = "explain_pixel")]
     output: Option<PathBuf>,
@@ -197,11 +197,12 @@ impl Arguments {
     pub fn replay_command(&self, settings: &Settings, sample: SampleId) -> String {
         let Settings { width, height, spp, .. } = settings;
         let SampleId { x, y, index, seed } = sample;
-        let (scene, method) = (self.scene.display(), self.method.label());
+        let (scene, method) = (self.studio.scene.display(), self.method.label());
+        let variant = self.studio.variant.as_ref().map_or(String::new(), |name| format!(" --variant '{name}'"));
         let depth = self.max_depth.map_or(String::new(), |depth| format!(" --max-depth {depth}"));
         let caustics = if self.caustics == Caustics::Paths { " --caustics paths" } else { "" };
         format!(
-            "catchlight render '{scene}' --method {method} --size {width}x{height} --spp {spp}{depth}{caustics} \
+            "catchlight render '{scene}'{variant} --method {method} --size {width}x{height} --spp {spp}{depth}{caustics} \
              --seed {seed} --explain-pixel {x},{y} --sample {index}"
         )
     }

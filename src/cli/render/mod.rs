@@ -37,7 +37,7 @@ pub fn run(arguments: &Arguments, started: Instant) -> Result<(), Failure> {
     let pool = input::thread_pool(arguments.threads())?;
     // Load the studio.
     let load_started = Instant::now();
-    let loaded = pool.install(|| input::load_studio(&arguments.scene))?;
+    let loaded = pool.install(|| arguments.studio.load())?;
     let load_s = load_started.elapsed().as_secs_f64();
     let Some(method) = arguments.method.traced() else {
         return draw_zbuffer(arguments, &loaded, &pool, started, load_s);

@@ -93,7 +93,7 @@ impl PartRender<'_> {
         let settings = format!("part {:?} {:?}", self.settings, self.arguments.without());
         PicturePart {
             render: RenderId::new(scene, assets, &settings),
-            studio: scene.name.clone(),
+            studio: scene.title(),
             samples: first..first + sums.samples,
             of: self.settings.spp,
             info: PictureInfo::new(scene, rendered.method, sums.samples, self.arguments.seed.into()),

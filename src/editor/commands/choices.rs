@@ -1,6 +1,6 @@
 //! Choices that commands carry: the central view, the handles, the live view and the way to place a light.
 
-use crate::scene::LightId;
+use crate::scene::{LightId, VariantId};
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -40,6 +40,29 @@ pub enum LiveMode {
     Quick,
     /// The path tracer: as the picture will be; the noise clears within moments.
     True,
+}
+
+/// How the shown picture is compared with that of another variant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CompareMode {
+    /// Not at all.
+    #[default]
+    Off,
+    /// The other picture on the left of a line that can be dragged.
+    Wipe,
+    /// Both pictures, the other one on the left.
+    SideBySide,
+    /// The difference in stops.
+    Difference,
+}
+
+/// A comparison with the picture of a variant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Comparison {
+    /// How.
+    pub mode: CompareMode,
+    /// The other variant; none for the first that has a picture.
+    pub with: Option<VariantId>,
 }
 
 /// A side of the room from which the studio is viewed.

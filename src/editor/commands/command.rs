@@ -1,13 +1,13 @@
 //! The commands of menus, shortcuts, panels and viewport. A change of the scene is an [`Action`] inside a command.
 
-use crate::editor::commands::choices::{CentralView, HandleMode, LiveMode, PlaceLightBy, ViewSide};
+use crate::editor::commands::choices::{CentralView, Comparison, HandleMode, LiveMode, PlaceLightBy, ViewSide};
 use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::document::action::Action;
 use crate::editor::document::framing::Framing;
 use crate::editor::document::item::Item;
 use crate::editor::document::light_mix::Fader;
 use crate::photo::PictureDisplay;
-use crate::scene::{LightId, ObjectId, TextureSlot};
+use crate::scene::{LightId, ObjectId, TextureSlot, VariantId};
 use crate::setup::DialPlan;
 use crate::sheet::{LessonSeries, Units};
 use std::path::PathBuf;
@@ -116,6 +116,16 @@ pub enum Command {
     ApplyMix,
     /// Forgets the changes of the mixer.
     ResetMix,
+    /// Shows a variant of the studio.
+    ShowVariant(VariantId),
+    /// Shows a variant of the studio by its place in the list; the studio itself is 0.
+    ShowVariantAt(usize),
+    /// Adds a variant, equal to the shown one.
+    AddVariant,
+    /// Opens the name field of a variant.
+    BeginRenameVariant(VariantId),
+    /// Compares the picture with that of another variant.
+    Compare(Comparison),
     /// Shows a view in the middle of the window.
     ShowView(CentralView),
     /// Switches between camera view and studio view.

@@ -13,7 +13,7 @@ pub struct KeyBinding {
     pub shortcut: KeyboardShortcut,
     /// Returns the command.
     pub command: fn() -> Command,
-    /// Description in the list of keys.
+    /// Description in the list of keys; empty for one that the description of the key before covers.
     pub meaning: &'static str,
 }
 
@@ -49,7 +49,7 @@ pub fn clipboard_command(event: &Event) -> Option<Command> {
 
 /// All key bindings, in the order of the list. Those of the clipboard arrive as events of the system instead of keys; see
 /// [`clipboard_command`]. Of two with the same key, the one with more modifiers comes first.
-pub const KEY_BINDINGS: [KeyBinding; 42] = [
+pub const KEY_BINDINGS: [KeyBinding; 51] = [
     bind(ctrl_shift(Key::S), || Command::SaveAs, "Save the studio to another file"),
     bind(ctrl_shift(Key::Z), || Command::Redo, "Do the last step again"),
     bind(
@@ -99,6 +99,15 @@ pub const KEY_BINDINGS: [KeyBinding; 42] = [
     bind(key(Key::H), || Command::HideSelected, "Hide things, mute lights; again: bring them back"),
     bind(key(Key::K), || Command::LockSelected, "Lock in place; again: unlock"),
     bind(key(Key::F), || Command::FrameSelection, "Bring the selection, or everything, into view"),
+    bind(ctrl(Key::Num1), || Command::ShowVariantAt(0), "The studio itself; with 2 to 9 its other variants"),
+    bind(ctrl(Key::Num2), || Command::ShowVariantAt(1), ""),
+    bind(ctrl(Key::Num3), || Command::ShowVariantAt(2), ""),
+    bind(ctrl(Key::Num4), || Command::ShowVariantAt(3), ""),
+    bind(ctrl(Key::Num5), || Command::ShowVariantAt(4), ""),
+    bind(ctrl(Key::Num6), || Command::ShowVariantAt(5), ""),
+    bind(ctrl(Key::Num7), || Command::ShowVariantAt(6), ""),
+    bind(ctrl(Key::Num8), || Command::ShowVariantAt(7), ""),
+    bind(ctrl(Key::Num9), || Command::ShowVariantAt(8), ""),
     bind(key(Key::Num1), || Command::ToggleCameraView, "Camera view, and back"),
     bind(key(Key::Num2), || Command::ToggleLiveMode, "Live view: Quick, drawn at once, or True, traced"),
     bind(key(Key::Num3), || Command::ShowView(CentralView::Picture), "The rendered picture"),

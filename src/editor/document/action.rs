@@ -4,7 +4,7 @@ use crate::editor::document::action_error::ActionError;
 use crate::editor::document::arrange::{self, MirrorPlane, add_light, add_object};
 use crate::editor::document::item::{Item, name_of_all};
 use crate::editor::document::switches;
-use crate::scene::{Camera, Light, LightId, Meter, Object, Room, Scene};
+use crate::scene::{Camera, Light, LightId, Meter, NameOwner, Object, Room, Scene, VARIANT_LIMIT, VariantId};
 
 /// A change of the scene. New objects and lights get their id and a unique name when the action is applied.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +53,14 @@ pub enum Action {
     Solo(Vec<LightId>),
     /// Locks items against moves, or unlocks them.
     Lock(Vec<Item>, bool),
+    /// Adds a variant, equal to the shown one, and shows it.
+    AddVariant(String),
+    /// Renames a variant.
+    RenameVariant(VariantId, String),
+    /// Deletes a variant.
+    DeleteVariant(VariantId),
+    /// Makes a variant the studio itself; what was the studio takes its place.
+    MakeStudio(VariantId),
     /// Several changes as one undo step, all or none.
     Together {
         /// Label in the undo menu.
@@ -91,6 +99,10 @@ impl Action {
             Action::Solo(lights) => format!("Solo {}", name_of_all(&as_items(lights), scene)),
             Action::Lock(items, true) => format!("Lock {}", name_of_all(items, scene)),
             Action::Lock(items, false) => format!("Unlock {}", name_of_all(items, scene)),
+            Action::AddVariant(name) => format!("Add variant {name}"),
+            Action::RenameVariant(_, name) => format!("Rename variant to {name}"),
+            Action::DeleteVariant(id) => format!("Delete variant {}", scene.variants.name(*id).unwrap_or_default()),
+            Action::MakeStudio(id) => format!("Make {} the studio", scene.variants.name(*id).unwrap_or_default()),
             Action::Together { label, .. } => label.clone(),
         }
     }
@@ -133,6 +145,19 @@ impl Action {
             Action::Mute(lights, mute) => switches::mute(scene, &lights, mute)?,
             Action::Solo(lights) => switches::solo(scene, lights)?,
             Action::Lock(items, locked) => switches::lock(scene, &items, locked)?,
+            Action::AddVariant(name) => {
+                check_variant_name(scene, None, &name)?;
+                scene.add_variant(name.trim().to_owned()).ok_or(ActionError::TooManyVariants(VARIANT_LIMIT + 1))?;
+            }
+            Action::RenameVariant(id, name) => {
+                check_variant_name(scene, Some(id), &name)?;
+                scene.rename_variant(id, name.trim()).then_some(()).ok_or(ActionError::Gone)?;
+            }
+            Action::DeleteVariant(id) if id == scene.variants.studio_id => {
+                return Err(ActionError::Fixed("studio itself"));
+            }
+            Action::DeleteVariant(id) => scene.remove_variant(id).then_some(()).ok_or(ActionError::Gone)?,
+            Action::MakeStudio(id) => scene.make_studio(id).then_some(()).ok_or(ActionError::Gone)?,
             Action::Together { actions, .. } => {
                 let mut selected = Vec::new();
                 for action in actions {
@@ -142,6 +167,17 @@ impl Action {
             }
         }
         Ok(Vec::new())
+    }
+}
+
+fn check_variant_name(scene: &Scene, id: Option<VariantId>, name: &str) -> Result<(), ActionError> {
+    let name = name.trim();
+    if name.is_empty() {
+        return Err(ActionError::EmptyName);
+    }
+    match scene.variants.named(name) {
+        Some(other) if Some(other) != id => Err(ActionError::VariantNameTaken(name.to_owned())),
+        _ => Ok(()),
     }
 }
 
@@ -185,9 +221,11 @@ fn check_name(scene: &Scene, item: Item, name: &str) -> Result<(), ActionError> 
     if name.trim().is_empty() {
         return Err(ActionError::EmptyName);
     }
-    let object_has_it = scene.objects.iter().any(|o| o.name == name && item != Item::Object(o.id));
-    let light_has_it = scene.lights.iter().any(|l| l.name == name && item != Item::Light(l.id));
-    if object_has_it || light_has_it { Err(ActionError::NameTaken(name.to_owned())) } else { Ok(()) }
+    let owner = scene.name_owner(name).map(|owner| match owner {
+        NameOwner::Object(id) => Item::Object(id),
+        NameOwner::Light(id) => Item::Light(id),
+    });
+    if owner.is_some_and(|owner| owner != item) { Err(ActionError::NameTaken(name.to_owned())) } else { Ok(()) }
 }
 
 fn rename(scene: &mut Scene, item: Item, name: &str) -> Result<(), ActionError> {

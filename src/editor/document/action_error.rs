@@ -21,6 +21,12 @@ pub enum ActionError {
     /// The item no longer exists.
     #[error("That is no longer in the studio.")]
     Gone,
+    /// Another variant has the name.
+    #[error("Another variant is called \"{0}\".")]
+    VariantNameTaken(String),
+    /// There are as many variants as there may be.
+    #[error("A studio has at most {0} variants.")]
+    TooManyVariants(usize),
     /// The resulting scene would be invalid.
     #[error("{0}")]
     Invalid(String),

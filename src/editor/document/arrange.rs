@@ -40,12 +40,15 @@ pub fn delete(scene: &mut Scene, items: &[Item]) -> Result<(), ActionError> {
             Item::Object(id) => {
                 scene.object(id).ok_or(ActionError::Gone)?;
                 release_aims(scene, id);
+                scene.forget_in_variants(id);
                 scene.objects.retain(|o| o.id != id);
             }
             Item::Light(id) => {
                 scene.light(id).ok_or(ActionError::Gone)?;
-                release_gazes(scene, id);
                 scene.lights.retain(|l| l.id != id);
+                if scene.light_of_any_variant(id).is_none() {
+                    release_gazes(scene, id);
+                }
             }
             Item::Meter => scene.meter = None,
             Item::Camera => return Err(ActionError::Fixed("camera")),
@@ -56,7 +59,7 @@ pub fn delete(scene: &mut Scene, items: &[Item]) -> Result<(), ActionError> {
     Ok(())
 }
 
-/// Replaces every aim and focus on an object by one at the same point of the room.
+/// Replaces every aim and focus on an object, in all variants, by one at the same point of the room.
 fn release_aims(scene: &mut Scene, id: ObjectId) {
     let fixed = |scene: &Scene, aim: Aim| match aim {
         Aim::Object { object, .. } if object == id => Aim::Point(scene.aim_point(&aim, Vec3::ZERO)),
@@ -66,9 +69,14 @@ fn release_aims(scene: &mut Scene, id: ObjectId) {
     for i in 0..scene.lights.len() {
         scene.lights[i].aim = fixed(scene, scene.lights[i].aim);
     }
-    if matches!(scene.camera.focus, Focus::OnObject { object, .. } if object == id) {
-        scene.camera.focus = Focus::OnAim;
+    let mut variants = std::mem::take(&mut scene.variants);
+    variants.stored_aims_mut().for_each(|aim| *aim = fixed(scene, *aim));
+    for focus in variants.stored_focuses_mut().chain([&mut scene.camera.focus]) {
+        if matches!(*focus, Focus::OnObject { object, .. } if object == id) {
+            *focus = Focus::OnAim;
+        }
     }
+    scene.variants = variants;
 }
 
 /// Lets the eyes of figures that follow a light rest where they are.

@@ -1,7 +1,8 @@
 //! Undo and redo lists of scene snapshots. A scene is small plain data; meshes and textures are shared assets.
 
 use crate::editor::document::item::Item;
-use crate::scene::Scene;
+use crate::figures;
+use crate::scene::{Scene, VariantId};
 
 /// Most steps kept; the oldest are dropped.
 const CAPACITY: usize = 300;
@@ -21,6 +22,8 @@ struct HistoryStep {
     /// The scene before the step in the undo list, after it in the redo list.
     scene: Scene,
     merge: Option<MergeKey>,
+    /// The variant that was shown after the step.
+    shown: VariantId,
 }
 
 /// The undo and redo lists.
@@ -31,9 +34,9 @@ pub struct History {
 }
 
 impl History {
-    /// Records a step from the scene `before`. A step with the merge key of the last one is merged with it. Clears the
+    /// Records a step from the scene `before`, after which variant `shown` is shown. A step with the merge key of the last one is merged with it. Clears the
     /// redo list.
-    pub fn record(&mut self, before: Scene, label: String, merge: Option<MergeKey>) {
+    pub fn record(&mut self, before: Scene, label: String, merge: Option<MergeKey>, shown: VariantId) {
         self.redo.clear();
         let joins = merge.is_some() && self.undo.last().is_some_and(|last| last.merge == merge);
         if joins {
@@ -42,14 +45,15 @@ impl History {
         if self.undo.len() == CAPACITY {
             self.undo.remove(0);
         }
-        self.undo.push(HistoryStep { label, scene: before, merge });
+        self.undo.push(HistoryStep { label, scene: before, merge, shown });
     }
 
-    /// Undoes the last step; returns its label.
+    /// Undoes the last step, in the variant that it changed; returns its label.
     pub fn undo(&mut self, scene: &mut Scene) -> Option<String> {
         let step = self.undo.pop()?;
+        figures::show_variant(scene, step.shown);
         let after = std::mem::replace(scene, step.scene);
-        self.redo.push(HistoryStep { label: step.label.clone(), scene: after, merge: None });
+        self.redo.push(HistoryStep { label: step.label.clone(), scene: after, merge: None, shown: step.shown });
         Some(step.label)
     }
 
@@ -57,7 +61,7 @@ impl History {
     pub fn redo(&mut self, scene: &mut Scene) -> Option<String> {
         let step = self.redo.pop()?;
         let before = std::mem::replace(scene, step.scene);
-        self.undo.push(HistoryStep { label: step.label.clone(), scene: before, merge: None });
+        self.undo.push(HistoryStep { label: step.label.clone(), scene: before, merge: None, shown: step.shown });
         Some(step.label)
     }
 
@@ -98,8 +102,8 @@ mod tests {
     #[test]
     fn undo_and_redo_are_inverse() {
         let (mut history, mut scene) = (History::default(), named("c"));
-        history.record(named("a"), "first".into(), None);
-        history.record(named("b"), "second".into(), None);
+        history.record(named("a"), "first".into(), None, VariantId::default());
+        history.record(named("b"), "second".into(), None, VariantId::default());
         assert_eq!(history.undo(&mut scene).as_deref(), Some("second"));
         assert_eq!(scene.name, "b");
         history.undo(&mut scene);
@@ -114,11 +118,11 @@ mod tests {
         let mut history = History::default();
         let key = |press_id, target| Some(MergeKey { press_id, targets: vec![target] });
         for name in ["a", "b", "c"] {
-            history.record(named(name), "drag".into(), key(1, Item::Camera));
+            history.record(named(name), "drag".into(), key(1, Item::Camera), VariantId::default());
         }
         assert_eq!(history.depth(), 1);
-        history.record(named("d"), "drag".into(), key(2, Item::Camera));
-        history.record(named("e"), "drag".into(), key(2, Item::Room));
+        history.record(named("d"), "drag".into(), key(2, Item::Camera), VariantId::default());
+        history.record(named("e"), "drag".into(), key(2, Item::Room), VariantId::default());
         assert_eq!(history.depth(), 3);
         let mut scene = named("f");
         (0..3).for_each(|_| drop(history.undo(&mut scene)));
@@ -129,12 +133,12 @@ mod tests {
     fn a_new_step_clears_redo_and_the_list_has_a_capacity() {
         let (mut history, mut scene) = (History::default(), Scene::default());
         for _ in 0..CAPACITY + 10 {
-            history.record(Scene::default(), "step".into(), None);
+            history.record(Scene::default(), "step".into(), None, VariantId::default());
         }
         assert_eq!(history.depth(), CAPACITY);
         history.undo(&mut scene);
         assert!(history.redo_label().is_some());
-        history.record(Scene::default(), "other".into(), None);
+        history.record(Scene::default(), "other".into(), None, VariantId::default());
         assert!(history.redo_label().is_none());
     }
 }

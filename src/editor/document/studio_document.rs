@@ -8,7 +8,7 @@ use crate::editor::document::revisions::Revisions;
 use crate::figures;
 use crate::io::{self, AssetFiles, FileStamp};
 use crate::scene::{
-    Asset, AssetKey, AssetRef, Assets, Finding, ObjectId, Scene, SceneChange, Severity, Shape, validate,
+    Asset, AssetKey, AssetRef, Assets, Finding, ObjectId, Scene, SceneChange, Severity, Shape, VariantId, validate,
 };
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -85,7 +85,13 @@ impl Document {
 
     /// Returns true if there are unsaved changes.
     pub fn is_dirty(&self) -> bool {
-        self.is_unsaved || self.scene != self.saved
+        // Which variant is shown is no change
+        let shown = self.saved.variants.shown();
+        let is_same = match figures::as_variant(&self.scene, shown).filter(|_| self.scene.variants.shown() != shown) {
+            Some(scene) => scene == self.saved,
+            None => self.scene == self.saved,
+        };
+        self.is_unsaved || !is_same
     }
 
     /// Returns the state of the file when it was read or written last.
@@ -148,11 +154,26 @@ impl Document {
         if done.is_err() {
             self.scene = before;
         } else if self.scene != before {
-            self.revisions.note(&SceneChange::between(&before, &self.scene));
-            self.keep_meshes(&before);
-            self.history.record(before, label, merge);
+            self.note_change(&before);
+            self.history.record(before, label, merge, self.scene.variants.shown());
         }
         done
+    }
+
+    /// Shows a variant, which is no undo step. Returns false if there is no such variant.
+    pub fn show_variant(&mut self, id: VariantId) -> bool {
+        let before = self.scene.clone();
+        let is_there = figures::show_variant(&mut self.scene, id);
+        self.note_change(&before);
+        is_there
+    }
+
+    /// Updates what depends on the scene after a change.
+    fn note_change(&mut self, before: &Scene) {
+        if self.scene != *before {
+            self.revisions.note(&SceneChange::between(before, &self.scene));
+            self.keep_meshes(before);
+        }
     }
 
     /// Discards the changes of a press.
@@ -174,10 +195,7 @@ impl Document {
     fn step_history<T>(&mut self, step: impl FnOnce(&mut History, &mut Scene) -> Option<T>) -> Option<T> {
         let before = self.scene.clone();
         let done = step(&mut self.history, &mut self.scene);
-        if done.is_some() {
-            self.revisions.note(&SceneChange::between(&before, &self.scene));
-            self.keep_meshes(&before);
-        }
+        self.note_change(&before);
         done
     }
 

@@ -38,7 +38,7 @@ pub fn mute(scene: &mut Scene, lights: &[LightId], mute: bool) -> Result<(), Act
 
 /// Solos these lights; an empty list ends the solo and restores the switches.
 pub fn solo(scene: &mut Scene, lights: Vec<LightId>) -> Result<(), ActionError> {
-    end_solo(scene);
+    scene.end_solo();
     if lights.is_empty() {
         return Ok(());
     }
@@ -53,18 +53,6 @@ pub fn solo(scene: &mut Scene, lights: Vec<LightId>) -> Result<(), ActionError> 
     Ok(())
 }
 
-/// Ends the solo. Lights added during the solo keep their switch.
-fn end_solo(scene: &mut Scene) {
-    let Some(solo) = scene.solo.take() else { return };
-    for light in &mut scene.lights {
-        if solo.restores.contains(&light.id) {
-            light.on = true;
-        } else if solo.lights.contains(&light.id) {
-            light.on = false;
-        }
-    }
-}
-
 /// Removes deleted lights from the solo and ends it with its last light.
 pub fn remove_deleted_lights(scene: &mut Scene) {
     let known: Vec<LightId> = scene.lights.iter().map(|light| light.id).collect();
@@ -72,7 +60,7 @@ pub fn remove_deleted_lights(scene: &mut Scene) {
     solo.lights.retain(|id| known.contains(id));
     solo.restores.retain(|id| known.contains(id));
     if solo.lights.is_empty() {
-        end_solo(scene);
+        scene.end_solo();
     }
 }
 

@@ -40,7 +40,8 @@ pub fn help_ui(ctx: &egui::Context, open: &mut bool) {
                 ui.horizontal_top(|ui| {
                     let mouse = MOUSE.map(|(keys, meaning)| (keys.to_owned(), meaning));
                     let format = |binding: &KeyBinding| (ui.ctx().format_shortcut(&binding.shortcut), binding.meaning);
-                    let keys: Vec<_> = KEY_BINDINGS.iter().map(format).collect();
+                    let listed = KEY_BINDINGS.iter().filter(|binding| !binding.meaning.is_empty());
+                    let keys: Vec<_> = listed.map(format).collect();
                     // Two columns of about the same length.
                     let (left, right) = keys.split_at((keys.len().saturating_sub(mouse.len())).div_ceil(2));
                     list(ui, "left", mouse.iter().chain(left));

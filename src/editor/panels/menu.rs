@@ -8,7 +8,9 @@ use crate::editor::commands::item_menu::{lesson_entries, selection_entries};
 use crate::editor::commands::menu_entry::entry;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
+use crate::editor::panels::variants;
 use crate::io;
+use crate::scene::Scene;
 use crate::sheet::Units;
 use eframe::egui::{MenuBar, Ui};
 use std::path::PathBuf;
@@ -43,6 +45,7 @@ pub fn menu_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
         ui.menu_button("Edit", |ui| edit_menu(ui, state, out));
         ui.menu_button("View", |ui| view_menu(ui, state, out));
         ui.menu_button("Light", |ui| light_menu(ui, state, out));
+        ui.menu_button("Variants", |ui| variants_menu(ui, state.document.scene(), out));
         ui.menu_button("Render", |ui| render_menu(ui, state, out));
         ui.menu_button("Help", |ui| entry(ui, true, "Keys and mouse", "How to move around", Command::ToggleHelp, out));
     });
@@ -82,6 +85,23 @@ fn light_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     entry(ui, true, "What the room adds\u{2026}", AUDIT_TIP, Command::ToggleRoomAudit, out);
     ui.separator();
     ui.menu_button("Lesson sheet", |ui| lesson_entries(ui, state.selection.lights().last().copied(), out));
+}
+
+fn variants_menu(ui: &mut Ui, scene: &Scene, out: &mut Vec<Command>) {
+    ui.set_min_width(220.0);
+    let add = "Another light, camera or visibility beside what is shown, in the same file";
+    entry(ui, true, "Add variant", add, Command::AddVariant, out);
+    if scene.variants.is_empty() {
+        return;
+    }
+    ui.separator();
+    for (index, (id, name)) in scene.variants.list().enumerate() {
+        let text = if id == scene.variants.shown() { format!("{name} (shown)") } else { name.to_owned() };
+        let show = if index < 9 { Command::ShowVariantAt(index) } else { Command::ShowVariant(id) };
+        entry(ui, true, &text, &variants::difference_text(scene, id), show, out);
+    }
+    ui.separator();
+    variants::entries(ui, scene, scene.variants.shown(), out);
 }
 
 const DIALS_TIP: &str = "Name the f-number of the key and stops of the others; the dials follow from the meter";

@@ -16,4 +16,5 @@ pub mod render;
 pub mod room_audit;
 pub mod status;
 pub mod thumbnails;
+pub mod variants;
 pub mod view_bar;

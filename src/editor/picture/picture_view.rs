@@ -1,11 +1,14 @@
 //! The view of the rendered picture: fitted or 1:1, with zoom and pan.
 
+use crate::editor::commands::choices::{CompareMode, Comparison};
 use crate::editor::commands::command::Command;
+use crate::editor::picture::compare::{self, PicturePane};
 use crate::editor::picture::rendering::{OUT_OF_DATE, Rendering};
 use crate::editor::picture::{mixer, scopes};
 use crate::editor::ui::theme;
-use crate::scene::Scene;
 use eframe::egui::{self, Color32, Pos2, Rect, RichText, Sense, Ui, Vec2, vec2};
+
+pub use crate::editor::picture::compare::PictureInput;
 
 /// Zoom and offset of the picture in the view.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,11 +21,22 @@ pub struct PictureView {
     shows_histogram: bool,
     /// The mixer lies over the picture.
     shows_mixer: bool,
+    /// The comparison with the picture of another variant.
+    pub comparison: Comparison,
+    /// Place of the wipe's line, as a share of the picture's width.
+    wipe: f32,
 }
 
 impl Default for PictureView {
     fn default() -> Self {
-        PictureView { zoom: None, offset: Vec2::ZERO, shows_histogram: true, shows_mixer: false }
+        PictureView {
+            zoom: None,
+            offset: Vec2::ZERO,
+            shows_histogram: true,
+            shows_mixer: false,
+            comparison: Comparison::default(),
+            wipe: 0.5,
+        }
     }
 }
 
@@ -30,7 +44,8 @@ const ZOOM_RANGE: std::ops::RangeInclusive<f32> = 0.05..=16.0;
 
 impl PictureView {
     /// Draws picture and buttons.
-    pub fn ui(&mut self, ui: &mut Ui, rendering: &Rendering, scene: &Scene, out: &mut Vec<Command>) {
+    pub fn ui(&mut self, ui: &mut Ui, input: PictureInput<'_>, out: &mut Vec<Command>) {
+        let PictureInput { rendering, scene, .. } = input;
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         crate::editor::ui::widgets::named(ui, &response, "Picture view");
         let painter = ui.painter_at(rect);
@@ -40,12 +55,15 @@ impl PictureView {
             return;
         };
         let pixels = vec2(size.0 as f32, size.1 as f32) / ui.pixels_per_point();
-        let fit = (rect.width() / pixels.x).min(rect.height() / pixels.y) * 0.97;
+        let is_halved =
+            self.comparison.mode == CompareMode::SideBySide && input.pictures.other(self.comparison).is_some();
+        let width = if is_halved { 0.5 * rect.width() } else { rect.width() };
+        let fit = (width / pixels.x).min(rect.height() / pixels.y) * 0.97;
         self.interact(ui, rect, &response, fit);
         let zoom = self.zoom.unwrap_or(fit);
         let place = Rect::from_center_size(rect.center() + self.offset, pixels * zoom);
-        let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-        painter.image(texture, place, uv, Color32::WHITE);
+        let pane = PicturePane { input, texture, place, comparison: self.comparison };
+        let (place, visible) = pane.ui(ui, rect, &mut self.wipe);
         if let Some(developed) = rendering.developed() {
             scopes::legend_ui(ui, rect, developed.image.display);
             if self.shows_histogram {
@@ -56,15 +74,15 @@ impl PictureView {
             let at = (pointer - place.min) / place.size() * vec2(size.0 as f32, size.1 as f32);
             (at.min_elem() >= 0.0).then_some((at.x as u32, at.y as u32))
         };
-        let bar = self.bar_ui(ui, rect, rendering, scene, zoom, out);
+        let bar = self.bar_ui(ui, rect, input, zoom, out);
         if self.shows_mixer {
             mixer::mixer_ui(ui, rect, rendering, scene, out);
         }
         // Drawn after the bar: a widget before it would change the ids of the bar's widgets, which closes their menus
-        let pointer = response.hover_pos().filter(|pointer| !bar.contains(*pointer));
-        let reading = pointer.and_then(pixel).and_then(|pixel| rendering.read_spot(pixel, scene));
-        if let Some(reading) = reading {
-            scopes::spot_ui(ui, rect, &reading);
+        let pointer = response.hover_pos().filter(|pointer| !bar.contains(*pointer) && visible.contains(*pointer));
+        let pixel = pointer.and_then(pixel);
+        if let Some((pixel, reading)) = pixel.and_then(|pixel| Some((pixel, rendering.read_spot(pixel, scene)?))) {
+            scopes::spot_ui(ui, rect, &reading, compare::spot_text(pixel, input, self.comparison));
         }
     }
 
@@ -107,26 +125,19 @@ impl PictureView {
     }
 
     /// Draws the bar and returns where it is.
-    fn bar_ui(
-        &mut self,
-        ui: &mut Ui,
-        rect: Rect,
-        rendering: &Rendering,
-        scene: &Scene,
-        zoom: f32,
-        out: &mut Vec<Command>,
-    ) -> Rect {
+    fn bar_ui(&mut self, ui: &mut Ui, rect: Rect, input: PictureInput<'_>, zoom: f32, out: &mut Vec<Command>) -> Rect {
         let bar =
             Rect::from_min_max(rect.left_top() + vec2(8.0, 8.0), Pos2::new(rect.right() - 8.0, rect.top() + 40.0));
         ui.scope_builder(egui::UiBuilder::new().max_rect(bar), |ui| {
             // The bar lies over the picture
             let dark = egui::Frame::new().fill(Color32::from_black_alpha(170)).inner_margin(4).corner_radius(4);
-            dark.show(ui, |ui| ui.horizontal(|ui| self.entries_ui(ui, rendering, scene, zoom, out))).response.rect
+            dark.show(ui, |ui| ui.horizontal(|ui| self.entries_ui(ui, input, zoom, out))).response.rect
         })
         .inner
     }
 
-    fn entries_ui(&mut self, ui: &mut Ui, rendering: &Rendering, scene: &Scene, zoom: f32, out: &mut Vec<Command>) {
+    fn entries_ui(&mut self, ui: &mut Ui, input: PictureInput<'_>, zoom: f32, out: &mut Vec<Command>) {
+        let PictureInput { rendering, scene, .. } = input;
         let entry = |ui: &mut Ui, is_chosen: bool, text: &str, tip: &str| {
             ui.selectable_label(is_chosen, text).on_hover_text(tip).clicked()
         };
@@ -139,6 +150,7 @@ impl PictureView {
         ui.label(RichText::new(format!("{:.0} %", zoom * 100.0)).weak());
         denoise_ui(ui, rendering, out);
         scopes::menu_ui(ui, rendering, &mut self.shows_histogram, out);
+        compare::menu_ui(ui, input, self.comparison, out);
         ui.toggle_value(&mut self.shows_mixer, "Mixer")
             .on_hover_text("A fader for each light over the picture, without rendering again");
         if !rendering.mix.is_neutral() {

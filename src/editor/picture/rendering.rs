@@ -190,14 +190,17 @@ impl Rendering {
 
     /// Returns the picture as far as it is rendered, if it is not exported.
     pub fn to_keep(&self) -> Option<KeptPicture> {
-        let of_job = self.job.as_ref().and_then(|job| {
-            let film = job.film().filter(|film| film.spp() > 0 && is_of(film, &job.settings))?.clone();
-            let (scene, settings) = (job.scene.clone(), job.settings.clone());
-            Some(KeptPicture { film, scene, settings, is_complete: *job.phase() == RenderPhase::Done })
-        });
-        let picture = of_job.or_else(|| self.former.clone())?;
+        let picture = self.kept_picture().or_else(|| self.former.clone())?;
         let is_exported = self.exported.as_ref().is_some_and(|film| film.ptr_eq(&Arc::downgrade(&picture.film)));
         (!is_exported).then_some(picture)
+    }
+
+    /// Returns the picture of the job as far as it is rendered.
+    fn kept_picture(&self) -> Option<KeptPicture> {
+        let job = self.job.as_ref()?;
+        let film = job.film().filter(|film| film.spp() > 0 && is_of(film, &job.settings))?.clone();
+        let (scene, settings) = (job.scene.clone(), job.settings.clone());
+        Some(KeptPicture { film, scene, settings, is_complete: *job.phase() == RenderPhase::Done })
     }
 
     /// Notes the film whose picture was exported: it need not be kept for the case of a crash.
@@ -214,7 +217,24 @@ impl Rendering {
 
     /// Clears job and picture, because another studio was opened.
     pub fn clear(&mut self) {
-        *self = Rendering { settings: self.settings, display: self.display, ..Rendering::new(self.trees.clone()) };
+        *self = self.without_picture();
+    }
+
+    /// Returns a state with the same film if a picture of `scene` can be developed from it, else without a picture.
+    pub fn for_other_lights(&self, scene: &Scene) -> Self {
+        let mut other = self.without_picture();
+        if !self.is_running()
+            && !self.is_out_of_date(scene)
+            && let Some(picture) = self.kept_picture()
+        {
+            other.restore(picture);
+        }
+        other
+    }
+
+    /// Returns a state without a picture, with the same settings.
+    fn without_picture(&self) -> Self {
+        Rendering { settings: self.settings, display: self.display, ..Rendering::new(self.trees.clone()) }
     }
 
     /// Returns the job, running or ended.

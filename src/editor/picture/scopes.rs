@@ -127,11 +127,13 @@ pub fn legend_ui(ui: &Ui, view: Rect, display: PictureDisplay) {
 }
 
 /// Draws the light at the spot under the pointer, below the bar of the view.
-pub fn spot_ui(ui: &mut Ui, view: Rect, reading: &SpotReading) {
+/// `comparison` is the difference from another picture, in words.
+pub fn spot_ui(ui: &mut Ui, view: Rect, reading: &SpotReading, comparison: Option<String>) {
+    let comparison = comparison.map_or(String::new(), |text| format!("    {text}"));
     let place = Rect::from_min_max(view.left_top() + vec2(8.0, 46.0), Pos2::new(view.right() - 8.0, view.top() + 76.0));
     ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
         let dark = Frame::new().fill(Color32::from_black_alpha(170)).inner_margin(4).corner_radius(4);
-        dark.show(ui, |ui| ui.label(RichText::new(spot_text(reading)).small()));
+        dark.show(ui, |ui| ui.label(RichText::new(spot_text(reading) + &comparison).small()));
     });
 }
 

@@ -9,9 +9,10 @@ use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::panels::menu::MenuState;
-use crate::editor::panels::thumbnails::Thumbnails;
-use crate::editor::panels::{self, add, help, inspector, menu, outliner, render, status, view_bar};
+use crate::editor::panels::{self, add, help, inspector, menu, outliner, render, status, variants, view_bar};
+use crate::editor::picture::picture_view::PictureInput;
 use crate::editor::picture::rendering::Rendering;
+use crate::editor::picture::variant_pictures::VariantPictures;
 use crate::editor::ui::side_panel::PanelWidths;
 use crate::editor::ui::theme;
 use crate::editor::ui::toasts::Toasts;
@@ -25,7 +26,7 @@ use crate::editor::window::recent::RecentFiles;
 use crate::editor::window::recovery::Recovery;
 use crate::editor::window::rescue;
 use crate::editor::window::session::Session;
-use crate::jobs::{Estimate, Forecast, ForecastSubject, Forecaster, MeterJob, PatternJob, RenderOutcome, sentence};
+use crate::jobs::{Estimate, Forecast, ForecastSubject, RenderOutcome, sentence};
 use crate::raytrace::{GeometryCache, Settings};
 use crate::scene::SceneChange;
 use eframe::egui::text_selection::LabelSelectionState;
@@ -72,11 +73,12 @@ pub struct App {
     pub(super) views: ViewState,
     pub(super) panels: PanelState,
     pub(super) rendering: Rendering,
+    pub(super) variant_pictures: VariantPictures,
     pub(super) background: BackgroundState,
     pub(super) session: Session,
     pub(super) toasts: Toasts,
     pub(super) window: WindowState,
-    diagnostics: Diagnostics,
+    pub(super) diagnostics: Diagnostics,
 }
 
 /// Two device losses within this time switch to the CPU preview.
@@ -100,6 +102,7 @@ impl App {
             views: ViewState::new(Viewport::new(preview, TracedView::new(geometry.clone()))),
             panels: PanelState::new(files::presets()),
             rendering: Rendering::new(geometry.clone()),
+            variant_pictures: VariantPictures::default(),
             background: BackgroundState::new(geometry),
             session: Session::new(
                 options.dialogs,
@@ -123,6 +126,7 @@ impl App {
         self.views.viewport.preview.move_to(creation.wgpu_render_state.as_ref(), ctx);
         self.views.viewport.traced_view.move_to(ctx);
         self.rendering.move_to(ctx);
+        self.variant_pictures.move_to(ctx);
         self.background.thumbnails.renew(ctx);
         let why = self.window.device_loss.take().unwrap_or_default();
         let news = "The GPU was lost and the window was opened again; the studio is as you left it.";
@@ -175,75 +179,6 @@ impl App {
         ctx.send_viewport_cmd(ViewportCommand::Close);
     }
 
-    /// Returns the open studio.
-    pub fn document(&self) -> &Document {
-        &self.document
-    }
-
-    /// Returns the selection.
-    pub fn selection(&self) -> &Selection {
-        &self.selection
-    }
-
-    /// Returns render settings, job and picture.
-    pub fn rendering(&self) -> &Rendering {
-        &self.rendering
-    }
-
-    /// Returns the mutable render settings.
-    pub fn rendering_mut(&mut self) -> &mut Rendering {
-        &mut self.rendering
-    }
-
-    /// Returns the messages.
-    pub fn toasts(&self) -> &Toasts {
-        &self.toasts
-    }
-
-    /// Returns the viewport.
-    pub fn viewport(&self) -> &Viewport {
-        &self.views.viewport
-    }
-
-    /// Returns the light meter's job.
-    pub fn meter(&self) -> &MeterJob {
-        &self.background.meter
-    }
-
-    /// Returns the pattern check of the selected figure's face.
-    pub fn pattern(&self) -> &PatternJob {
-        &self.background.pattern
-    }
-
-    /// Returns the thumbnails.
-    pub fn thumbnails(&self) -> &Thumbnails {
-        &self.background.thumbnails
-    }
-
-    /// Returns the title of the window.
-    pub fn title(&self) -> &str {
-        &self.window.title
-    }
-
-    /// Returns the central view.
-    pub fn central_view(&self) -> CentralView {
-        self.views.central
-    }
-
-    /// Returns true during background work: files, a render, the start of the preview or its full image, a file dialog.
-    pub fn is_busy(&self) -> bool {
-        self.background.is_busy()
-            || self.rendering.is_busy()
-            || self.session.is_waiting()
-            || self.views.viewport.preview.is_starting()
-            || (self.views.viewport.preview.is_draft() && self.views.central != CentralView::Picture)
-    }
-
-    /// Returns the time from the start of the program to the end of the first frame.
-    pub fn first_frame(&self) -> Option<Duration> {
-        self.diagnostics.first_frame
-    }
-
     /// Takes all results and requests that arrived since the last frame.
     pub(super) fn take_in(&mut self, ctx: &Context, out: &mut Vec<Command>) {
         for done in self.background.finished() {
@@ -255,7 +190,10 @@ impl App {
         self.check_file_on_focus(ctx);
         self.keep_unsaved(ctx);
         self.load_wanted_assets(ctx);
-        self.rendering.update(self.document.scene(), ctx);
+        let scene = self.document.scene();
+        self.variant_pictures.follow(&mut self.rendering, scene);
+        self.rendering.update(scene, ctx);
+        self.variant_pictures.update(&self.rendering, self.views.picture.comparison, scene, ctx);
         self.update_forecast();
         let document = &self.document;
         self.background.meter.update(document.scene(), document.assets(), document.revision(), &wake(ctx));
@@ -292,11 +230,6 @@ impl App {
             let subject = ForecastSubject { revision: self.document.revisions().image, method };
             self.background.forecaster.learn(subject, forecast, measured);
         }
-    }
-
-    /// Returns the forecast of renders.
-    pub fn forecaster(&self) -> &Forecaster {
-        &self.background.forecaster
     }
 
     /// Collects the commands of shortcuts, unless a text field, prompt or menu has the keyboard.
@@ -381,9 +314,20 @@ impl App {
             view_bar::view_bar_ui(ui, self.menu_state(), &mut follows, out);
             self.views.viewport.camera_follows = follows;
         });
+        if !self.document.scene().variants.is_empty() {
+            let (scene, pictures) = (self.document.scene(), &self.variant_pictures);
+            Panel::top("variants").frame(bar).show(ui, |ui| {
+                variants::variants_ui(ui, scene, pictures, &mut self.panels.variants, out);
+            });
+        }
         if self.views.central == CentralView::Picture {
             self.views.viewport.traced_view.pause();
-            self.views.picture.ui(ui, &self.rendering, self.document.scene(), out);
+            let input = PictureInput {
+                rendering: &self.rendering,
+                pictures: &self.variant_pictures,
+                scene: self.document.scene(),
+            };
+            self.views.picture.ui(ui, input, out);
             return;
         }
         let (width, height) = self.rendering.settings.pixels(&self.document.scene().camera);

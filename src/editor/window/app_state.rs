@@ -7,6 +7,7 @@ use crate::editor::document::files::PresetInfo;
 use crate::editor::panels::outliner::OutlinerState;
 use crate::editor::panels::presets::PresetPicker;
 use crate::editor::panels::thumbnails::Thumbnails;
+use crate::editor::panels::variants::VariantsState;
 use crate::editor::picture::picture_view::PictureView;
 use crate::editor::ui::side_panel::SidePanel;
 use crate::editor::viewport::viewport_area::Viewport;
@@ -51,6 +52,8 @@ impl ViewState {
 pub struct PanelState {
     /// The name field of the list of items.
     pub outliner: OutlinerState,
+    /// The name field of the list of variants.
+    pub variants: VariantsState,
     /// The list of shipped studios, open or closed.
     pub preset_picker: PresetPicker,
     /// The shipped studios.
@@ -76,6 +79,7 @@ impl PanelState {
     pub fn new(presets: Vec<PresetInfo>) -> Self {
         PanelState {
             outliner: OutlinerState::default(),
+            variants: VariantsState::default(),
             preset_picker: PresetPicker::default(),
             presets,
             catalog_tab: CatalogTab::Lights,

@@ -1,6 +1,7 @@
 //! The window: application state, execution of commands, files and dialogs, recovery, the native window.
 
 pub mod app;
+mod app_access;
 pub mod app_state;
 pub mod background_tasks;
 pub mod dialogs;

@@ -107,6 +107,17 @@ impl App {
                 }
             }
             Command::ResetMix => self.rendering.mix = Mix::default(),
+            Command::ShowVariant(id) => drop(self.document.show_variant(id)),
+            Command::ShowVariantAt(index) => self.show_variant_at(index),
+            Command::AddVariant => {
+                let name = self.document.scene().variants.next_name();
+                self.apply(Action::AddVariant(name), None);
+            }
+            Command::BeginRenameVariant(id) => {
+                let name = self.document.scene().variants.name(id).unwrap_or_default().to_owned();
+                self.panels.variants.begin_rename(id, name);
+            }
+            Command::Compare(comparison) => self.views.picture.comparison = comparison,
             Command::ShowView(centre) => self.views.central = centre,
             Command::ToggleCameraView => {
                 self.views.central =
@@ -303,7 +314,27 @@ impl App {
         self.apply(action, None);
     }
 
+    fn show_variant_at(&mut self, index: usize) {
+        let variants = &self.document.scene().variants;
+        let id = variants.list().nth(index).map(|(id, _)| id);
+        match id {
+            Some(id) => drop(self.document.show_variant(id)),
+            None if variants.is_empty() => {
+                self.toasts.info("The studio has no variants: add one in the menu Variants.")
+            }
+            None => self.toasts.info(format!("There is no variant number {}.", index + 1)),
+        }
+    }
+
     fn render(&mut self, ctx: &Context) {
+        // The variant may have been shown in this frame
+        self.variant_pictures.follow(&mut self.rendering, self.document.scene());
+        if let Some(id) = self.variant_pictures.running() {
+            let name = self.document.scene().variants.name(id).unwrap_or_default();
+            self.toasts
+                .info(format!("The picture of {name} is being rendered: wait for it, or show {name} and cancel it."));
+            return;
+        }
         let folder = self.document.folder().map(std::path::Path::to_owned);
         self.rendering.start(self.document.scene(), &self.document.finished_assets(), folder, ctx);
         self.views.central = CentralView::Picture;

@@ -1,6 +1,6 @@
 //! Execution of file commands: open, save, import, export, drops, and their prompts.
 
-use crate::editor::commands::choices::CentralView;
+use crate::editor::commands::choices::{CentralView, Comparison};
 use crate::editor::commands::command::Command;
 use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::document::action::Action;
@@ -208,6 +208,8 @@ impl App {
         self.rendering.clear();
         self.views.viewport.traced_view.clear();
         self.document = Document::new(opened.scene, opened.assets, opened.path);
+        self.variant_pictures.clear(self.document.scene());
+        self.views.picture.comparison = Comparison::default();
         self.document.set_stamp(opened.stamp);
         self.session.file_change_put_off = false;
         self.selection = Selection::default();

@@ -38,7 +38,7 @@ impl CaptureInfo {
     pub fn new(scene: &Scene) -> Self {
         let Camera { f_number, shutter_s, iso, focal_length_mm, sensor, .. } = scene.camera;
         CaptureInfo {
-            studio: scene.name.clone(),
+            studio: scene.title(),
             f_number: Dial::FNumber.printed(f_number),
             shutter_s: Dial::Shutter.printed(shutter_s),
             iso: Dial::Iso.printed(iso),

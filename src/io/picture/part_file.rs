@@ -253,7 +253,7 @@ mod tests {
         let sums = render_part(&prepared, &loaded.scene, &settings, 0..2, &RenderControl::new(), &mut |_| {});
         PicturePart {
             render: RenderId::new(&loaded.scene, &loaded.assets, "test"),
-            studio: loaded.scene.name.clone(),
+            studio: loaded.scene.title(),
             samples: 0..2,
             of: 9,
             info: PictureInfo::new(&loaded.scene, "path", 2, u64::from(u32::MAX)),

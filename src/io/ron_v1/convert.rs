@@ -1,208 +1,74 @@
-//! Converts format 1 to and from the scene. Files refer to objects and lights by name, the scene by id; ids follow the
-//! order of the file.
+//! Converts the parts of format 1 to and from those of a scene. Files refer to objects and lights by name, the scene by
+//! id.
 
 use super::figure::GazeV1;
 use super::mannequin;
+use super::names::{LightIds, ObjectIds, UnknownName};
 use super::{
     AimV1, BarnDoorsV1, CameraV1, ColorV1, ConeV1, EmitterV1, FacingV1, FocusV1, GelV1, LightV1, MaterialV1, MeterV1,
     ModifierV1, ObjectV1, OrientationV1, OutputV1, PartMaterialV1, PersonV1, PowerV1, ReceptorV1, RoleV1, RoomV1,
-    SceneV1, SensorV1, ShapeV1, SoloV1,
+    SensorV1, ShapeV1,
 };
 use crate::scene::{
     Aim, BarnDoors, Camera, ColorSource, Cone, Emitter, Facing, Focus, Gaze, Gel, Light, LightColor, LightId, Material,
-    Meter, Modifier, Object, ObjectId, Orientation, Output, Power, Receptor, Role, Room, Scene, Sensor, Shape, Solo,
+    Meter, Modifier, Object, ObjectId, Orientation, Output, Power, Receptor, Role, Room, Scene, Sensor, Shape,
     Transform,
 };
 use glam::Vec3;
-use std::collections::HashMap;
 
-/// A reference to an object or a light that the file does not have.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(in crate::io) struct UnknownName {
-    /// The kind it refers to: `object` or `light`.
-    pub kind: &'static str,
-    /// The field that refers to it, such as `lights[2] "Key" aim.name`.
-    pub place: String,
-    /// The name.
-    pub name: String,
-    /// All names of this kind.
-    pub known: Vec<String>,
-}
-
-/// Object ids by name, the index in the file. The first of two equal names counts.
-struct ObjectIds(HashMap<String, ObjectId>);
-
-impl ObjectIds {
-    fn of(objects: &[ObjectV1]) -> Self {
-        let mut ids = HashMap::new();
-        for (index, object) in (0..).zip(objects) {
-            ids.entry(object.name.clone()).or_insert(ObjectId(index));
-        }
-        ObjectIds(ids)
-    }
-
-    fn id(&self, name: &str, place: &str) -> Result<ObjectId, UnknownName> {
-        self.0.get(name).copied().ok_or_else(|| {
-            let mut known: Vec<String> = self.0.keys().cloned().collect();
-            known.sort_unstable();
-            UnknownName { kind: "object", place: place.to_owned(), name: name.to_owned(), known }
-        })
-    }
-
-    fn aim(&self, aim: AimV1, place: &str) -> Result<Aim, UnknownName> {
-        Ok(match aim {
-            AimV1::Point(x, y, z) => Aim::Point(Vec3::new(x, y, z)),
-            AimV1::Object { name, offset } => {
-                Aim::Object { object: self.id(&name, &format!("{place}aim.name"))?, offset: Vec3::from(offset) }
-            }
-            AimV1::Angles { yaw_deg, pitch_deg } => Aim::Angles { yaw_deg, pitch_deg },
-        })
-    }
-
-    fn focus(&self, focus: FocusV1) -> Result<Focus, UnknownName> {
-        Ok(match focus {
-            FocusV1::OnAim => Focus::OnAim,
-            FocusV1::OnObject { name, offset } => {
-                Focus::OnObject { object: self.id(&name, "camera.focus.name")?, offset: Vec3::from(offset) }
-            }
-            FocusV1::Distance(distance) => Focus::Distance(distance),
-        })
-    }
-}
-
-/// Light ids by name, the index in the file. The first of two equal names counts.
-struct LightIds(HashMap<String, LightId>);
-
-impl LightIds {
-    fn of(lights: &[LightV1]) -> Self {
-        let mut ids = HashMap::new();
-        for (index, light) in (0..).zip(lights) {
-            ids.entry(light.name.clone()).or_insert(LightId(index));
-        }
-        LightIds(ids)
-    }
-
-    fn id(&self, name: &str, place: &str) -> Result<LightId, UnknownName> {
-        self.0.get(name).copied().ok_or_else(|| {
-            let mut known: Vec<String> = self.0.keys().cloned().collect();
-            known.sort_unstable();
-            UnknownName { kind: "light", place: place.to_owned(), name: name.to_owned(), known }
-        })
-    }
-
-    fn gaze(&self, gaze: GazeV1, place: &str) -> Result<Gaze, UnknownName> {
-        Ok(match gaze {
-            GazeV1::Camera => Gaze::Camera,
-            GazeV1::Light(name) => Gaze::Light(self.id(&name, place)?),
-        })
-    }
-}
-
-/// Converts a file to a scene. The scene may have equal names and other errors, which `scene::validate` finds.
-pub(in crate::io) fn scene_from_v1(file: SceneV1) -> Result<Scene, UnknownName> {
-    let ids = ObjectIds::of(&file.objects);
-    let light_ids = LightIds::of(&file.lights);
-    let solo = file.solo.map(|solo| solo_from(solo, &light_ids)).transpose()?;
-    Ok(Scene {
-        name: file.name,
-        description: file.description,
-        camera: camera_from(file.camera, &ids)?,
-        room: file.room.map(Room::from),
-        objects: (0..)
-            .zip(file.objects)
-            .map(|(index, object)| object_from(object, index, &light_ids))
-            .collect::<Result<_, _>>()?,
-        lights: (0..)
-            .zip(file.lights)
-            .map(|(index, light)| light_from(light, index, &ids))
-            .collect::<Result<_, _>>()?,
-        meter: file.meter.map(Meter::from),
-        solo,
-    })
-}
-
-/// Resolves the names of soloed lights to ids.
-fn solo_from(file: SoloV1, lights: &LightIds) -> Result<Solo, UnknownName> {
-    let ids = |names: Vec<String>, place: &str| {
-        names.iter().map(|name| lights.id(name, place)).collect::<Result<Vec<_>, _>>()
-    };
-    Ok(Solo { lights: ids(file.lights, "solo.lights")?, restores: ids(file.restores, "solo.restores")? })
-}
-
-fn solo_to(scene: &Scene, solo: &Solo) -> SoloV1 {
-    let names = |ids: &[LightId]| ids.iter().filter_map(|id| Some(scene.light(*id)?.name.clone())).collect();
-    SoloV1 { lights: names(&solo.lights), restores: names(&solo.restores) }
-}
-
-/// Converts a scene with unique names to a file. An aim at a deleted object becomes a point.
-pub(in crate::io) fn v1_from_scene(scene: &Scene) -> SceneV1 {
-    SceneV1 {
-        format: 1,
-        name: scene.name.clone(),
-        description: scene.description.clone(),
-        camera: camera_to(scene),
-        room: scene.room.as_ref().map(RoomV1::from),
-        objects: scene.objects.iter().map(|object| object_to(scene, object)).collect(),
-        lights: scene.lights.iter().map(|light| light_to(scene, light)).collect(),
-        meter: scene.meter.map(MeterV1::from),
-        solo: scene.solo.as_ref().map(|solo| solo_to(scene, solo)),
-    }
-}
-
-fn camera_from(file: CameraV1, ids: &ObjectIds) -> Result<Camera, UnknownName> {
+pub(super) fn camera_from(file: CameraV1, ids: &ObjectIds) -> Result<Camera, UnknownName> {
     Ok(Camera {
         position: Vec3::from(file.position),
         aim: ids.aim(file.aim, "camera.")?,
         roll_deg: file.roll_deg,
         sensor: file.sensor.into(),
-        orientation: match file.orientation {
-            OrientationV1::Landscape => Orientation::Landscape,
-            OrientationV1::Portrait => Orientation::Portrait,
-        },
+        orientation: file.orientation.into(),
         focal_length_mm: file.focal_length_mm,
         f_number: file.f_number,
         shutter_s: file.shutter_s,
         iso: file.iso,
         white_balance_k: file.white_balance_k,
         nd_stops: file.nd_stops,
-        focus: ids.focus(file.focus)?,
+        focus: ids.focus(file.focus, "camera.")?,
         depth_of_field: file.depth_of_field,
         focus_breathing: file.focus_breathing,
         meter_constant: file.meter_constant,
     })
 }
 
-fn camera_to(scene: &Scene) -> CameraV1 {
+pub(super) fn camera_to(scene: &Scene) -> CameraV1 {
     let camera = &scene.camera;
     CameraV1 {
         position: camera.position.to_array(),
         aim: aim_to(scene, &camera.aim, camera.position),
         roll_deg: camera.roll_deg,
         sensor: camera.sensor.into(),
-        orientation: match camera.orientation {
-            Orientation::Landscape => OrientationV1::Landscape,
-            Orientation::Portrait => OrientationV1::Portrait,
-        },
+        orientation: camera.orientation.into(),
         focal_length_mm: camera.focal_length_mm,
         f_number: camera.f_number,
         shutter_s: camera.shutter_s,
         iso: camera.iso,
         white_balance_k: camera.white_balance_k,
         nd_stops: camera.nd_stops,
-        focus: match camera.focus {
-            Focus::OnAim => FocusV1::OnAim,
-            Focus::OnObject { object, offset } => scene.object(object).map_or(FocusV1::OnAim, |object| {
-                FocusV1::OnObject { name: object.name.clone(), offset: offset.to_array() }
-            }),
-            Focus::Distance(distance) => FocusV1::Distance(distance),
-        },
+        focus: focus_to(scene, camera.focus),
         depth_of_field: camera.depth_of_field,
         focus_breathing: camera.focus_breathing,
         meter_constant: camera.meter_constant,
     }
 }
 
-fn aim_to(scene: &Scene, aim: &Aim, position: Vec3) -> AimV1 {
+pub(super) fn focus_to(scene: &Scene, focus: Focus) -> FocusV1 {
+    match focus {
+        Focus::OnAim => FocusV1::OnAim,
+        Focus::OnObject { object, offset } => scene.object(object).map_or(FocusV1::OnAim, |object| FocusV1::OnObject {
+            name: object.name.clone(),
+            offset: offset.to_array(),
+        }),
+        Focus::Distance(distance) => FocusV1::Distance(distance),
+    }
+}
+
+pub(super) fn aim_to(scene: &Scene, aim: &Aim, position: Vec3) -> AimV1 {
     let point = |p: Vec3| AimV1::Point(p.x, p.y, p.z);
     match *aim {
         Aim::Point(target) => point(target),
@@ -214,7 +80,7 @@ fn aim_to(scene: &Scene, aim: &Aim, position: Vec3) -> AimV1 {
     }
 }
 
-fn object_from(mut file: ObjectV1, index: u32, lights: &LightIds) -> Result<Object, UnknownName> {
+pub(super) fn object_from(mut file: ObjectV1, index: u32, lights: &LightIds) -> Result<Object, UnknownName> {
     let is_mannequin = matches!(file.shape, ShapeV1::Mannequin { .. });
     let gaze = match &mut file.shape {
         ShapeV1::Figure(person) => person.gaze.take(),
@@ -251,11 +117,11 @@ fn gaze_to(scene: &Scene, shape: &Shape) -> Option<GazeV1> {
     match figure.gaze {
         Gaze::Pose => None,
         Gaze::Camera => Some(GazeV1::Camera),
-        Gaze::Light(light) => scene.light(light).map(|light| GazeV1::Light(light.name.clone())),
+        Gaze::Light(light) => scene.light_of_any_variant(light).map(|light| GazeV1::Light(light.name.clone())),
     }
 }
 
-fn object_to(scene: &Scene, object: &Object) -> ObjectV1 {
+pub(super) fn object_to(scene: &Scene, object: &Object) -> ObjectV1 {
     let part = |(part, material): &(String, Material)| PartMaterialV1 {
         part: part.clone(),
         material: MaterialV1::from(material),
@@ -277,28 +143,18 @@ fn object_to(scene: &Scene, object: &Object) -> ObjectV1 {
     }
 }
 
-fn light_from(file: LightV1, index: u32, ids: &ObjectIds) -> Result<Light, UnknownName> {
-    let place = format!("lights[{index}] {:?} ", file.name);
+/// Converts a light; `place` is that of its fields.
+pub(super) fn light_from(file: LightV1, id: LightId, place: &str, ids: &ObjectIds) -> Result<Light, UnknownName> {
     Ok(Light {
-        id: LightId(index),
+        id,
         role: file.role.into(),
         position: Vec3::from(file.position),
-        aim: ids.aim(file.aim, &place)?,
+        aim: ids.aim(file.aim, place)?,
         roll_deg: file.roll_deg,
         emitter: file.emitter.into(),
         modifier: file.modifier.into(),
         power: Power { output: file.power.output.into(), dial_stops: file.power.dial_stops },
-        color: LightColor {
-            source: match file.color {
-                ColorV1::Kelvin(kelvin) => ColorSource::Kelvin(kelvin),
-                ColorV1::Rgb(r, g, b) => ColorSource::Rgb([r, g, b]),
-            },
-            gel: match file.gel {
-                GelV1::NoGel => Gel::None,
-                GelV1::Mired(shift) => Gel::Mired(shift),
-                GelV1::Tint(r, g, b) => Gel::Tint([r, g, b]),
-            },
-        },
+        color: LightColor { source: file.color.into(), gel: file.gel.into() },
         on: file.on,
         visible_to_camera: file.visible_to_camera,
         muted: file.muted,
@@ -307,7 +163,7 @@ fn light_from(file: LightV1, index: u32, ids: &ObjectIds) -> Result<Light, Unkno
     })
 }
 
-fn light_to(scene: &Scene, light: &Light) -> LightV1 {
+pub(super) fn light_to(scene: &Scene, light: &Light) -> LightV1 {
     LightV1 {
         name: light.name.clone(),
         role: light.role.into(),
@@ -317,19 +173,50 @@ fn light_to(scene: &Scene, light: &Light) -> LightV1 {
         emitter: light.emitter.into(),
         modifier: light.modifier.into(),
         power: PowerV1 { output: light.power.output.into(), dial_stops: light.power.dial_stops },
-        color: match light.color.source {
-            ColorSource::Kelvin(kelvin) => ColorV1::Kelvin(kelvin),
-            ColorSource::Rgb([r, g, b]) => ColorV1::Rgb(r, g, b),
-        },
-        gel: match light.color.gel {
-            Gel::None => GelV1::NoGel,
-            Gel::Mired(shift) => GelV1::Mired(shift),
-            Gel::Tint([r, g, b]) => GelV1::Tint(r, g, b),
-        },
+        color: light.color.source.into(),
+        gel: light.color.gel.into(),
         on: light.on,
         visible_to_camera: light.visible_to_camera,
         muted: light.muted,
         locked: light.locked,
+    }
+}
+
+impl From<ColorV1> for ColorSource {
+    fn from(file: ColorV1) -> Self {
+        match file {
+            ColorV1::Kelvin(kelvin) => ColorSource::Kelvin(kelvin),
+            ColorV1::Rgb(r, g, b) => ColorSource::Rgb([r, g, b]),
+        }
+    }
+}
+
+impl From<ColorSource> for ColorV1 {
+    fn from(source: ColorSource) -> Self {
+        match source {
+            ColorSource::Kelvin(kelvin) => ColorV1::Kelvin(kelvin),
+            ColorSource::Rgb([r, g, b]) => ColorV1::Rgb(r, g, b),
+        }
+    }
+}
+
+impl From<GelV1> for Gel {
+    fn from(file: GelV1) -> Self {
+        match file {
+            GelV1::NoGel => Gel::None,
+            GelV1::Mired(shift) => Gel::Mired(shift),
+            GelV1::Tint(r, g, b) => Gel::Tint([r, g, b]),
+        }
+    }
+}
+
+impl From<Gel> for GelV1 {
+    fn from(gel: Gel) -> Self {
+        match gel {
+            Gel::None => GelV1::NoGel,
+            Gel::Mired(shift) => GelV1::Mired(shift),
+            Gel::Tint([r, g, b]) => GelV1::Tint(r, g, b),
+        }
     }
 }
 
@@ -449,6 +336,7 @@ macro_rules! same_variants {
     };
 }
 
+same_variants!(OrientationV1 <=> Orientation { Landscape, Portrait });
 same_variants!(RoleV1 <=> Role { Key, Fill, Rim, Hair, Background, Accent });
 same_variants!(SensorV1 <=> Sensor {
     FullFrame, ApsC, MicroFourThirds, Medium44x33, Medium54x40, Custom { width_mm, height_mm },

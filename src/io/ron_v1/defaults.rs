@@ -1,6 +1,6 @@
 //! Default values of fields that a file may leave out, and the tests by which a writer leaves them out.
 
-use crate::scene::{Camera, Material, Output};
+use crate::scene::{Camera, Material, Output, Variants};
 
 /// Three numbers, written `(x, y, z)`.
 pub(super) type Triple = [f32; 3];
@@ -49,4 +49,13 @@ pub(super) fn default_ior() -> f32 {
 
 pub(super) fn is_default_ior(value: &f32) -> bool {
     *value == default_ior()
+}
+
+/// Name of the studio itself among its variants.
+pub(super) fn studio_name() -> String {
+    Variants::STUDIO_NAME.to_owned()
+}
+
+pub(super) fn is_studio_name(name: &str) -> bool {
+    name == Variants::STUDIO_NAME
 }

@@ -2,18 +2,23 @@
 //! scene can change without breaking files. A later format gets its own module, and this one an upgrade step.
 //!
 //! Lengths are metres, angles degrees; other units are part of the names. Default values may be left out (a scale of 1,
-//! a light that is on). [`convert`] resolves names to ids.
+//! a light that is on). [`scene`] and [`convert`] resolve names to ids.
 
 mod convert;
 mod defaults;
 mod figure;
 mod mannequin;
 mod material;
+mod names;
+mod scene;
+mod variants;
 
-pub(super) use convert::{UnknownName, scene_from_v1, v1_from_scene};
+pub(super) use names::UnknownName;
+pub(super) use scene::{scene_from_v1, v1_from_scene};
 
 use defaults::{
-    Triple, default_efficacy, default_meter_constant, is_default, is_default_meter_constant, is_one, is_true, one, yes,
+    Triple, default_efficacy, default_meter_constant, is_default, is_default_meter_constant, is_one, is_studio_name,
+    is_true, one, studio_name, yes,
 };
 use figure::PersonV1;
 use mannequin::{MannequinPoseV1, MannequinV1};
@@ -39,6 +44,8 @@ pub(super) struct SceneV1 {
     meter: Option<MeterV1>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     solo: Option<SoloV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    variants: Option<VariantsV1>,
 }
 
 /// The soloed lights, by name, and those that were on before.
@@ -354,4 +361,105 @@ enum GelV1 {
     NoGel,
     Mired(f32),
     Tint(f32, f32, f32),
+}
+
+/// The variants.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "Variants", deny_unknown_fields)]
+struct VariantsV1 {
+    /// Name of the studio itself among them.
+    #[serde(default = "studio_name", skip_serializing_if = "is_studio_name")]
+    studio: String,
+    /// The shown variant, in a copy that is kept for the case of a crash.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    shown: Option<String>,
+    others: Vec<VariantV1>,
+}
+
+/// One variant. Lights and objects are referred to by name.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "Variant", deny_unknown_fields)]
+struct VariantV1 {
+    name: String,
+    #[serde(default, skip_serializing_if = "is_default")]
+    camera: CameraDifferenceV1,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    lights: Vec<LightDifferenceV1>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    removed_lights: Vec<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    added_lights: Vec<LightV1>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    hidden: Vec<String>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    visible: Vec<String>,
+}
+
+#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "CameraDifference", deny_unknown_fields)]
+struct CameraDifferenceV1 {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    position: Option<Triple>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    aim: Option<AimV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    roll_deg: Option<f32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    sensor: Option<SensorV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    orientation: Option<OrientationV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    focal_length_mm: Option<f32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    f_number: Option<f32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    shutter_s: Option<f32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    iso: Option<f32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    white_balance_k: Option<f32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    nd_stops: Option<f32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    focus: Option<FocusV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    depth_of_field: Option<bool>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    focus_breathing: Option<bool>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    meter_constant: Option<f32>,
+}
+
+/// What differs in the light of this name. Output and dial are fields of their own: of the power, often the dial differs
+/// alone.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "LightDifference", deny_unknown_fields)]
+struct LightDifferenceV1 {
+    light: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    role: Option<RoleV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    position: Option<Triple>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    aim: Option<AimV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    roll_deg: Option<f32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    emitter: Option<EmitterV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    modifier: Option<ModifierV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    output: Option<OutputV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    dial_stops: Option<f32>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    color: Option<ColorV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    gel: Option<GelV1>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    on: Option<bool>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    visible_to_camera: Option<bool>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    muted: Option<bool>,
 }

@@ -53,6 +53,10 @@ impl Check {
         self.place = place;
     }
 
+    pub fn findings(&self) -> &[Finding] {
+        &self.findings
+    }
+
     pub fn has_findings(&self) -> bool {
         !self.findings.is_empty()
     }

@@ -36,7 +36,7 @@ impl Finding {
 
     /// Returns true if the finding is about two equal names, which loading and saving rename.
     pub fn is_name_clash(&self) -> bool {
-        self.message == NAME_CLASH
+        self.message.ends_with(NAME_CLASH)
     }
 }
 

@@ -13,6 +13,7 @@ mod light_warnings;
 mod material;
 mod object;
 mod placement;
+mod variants;
 
 pub use finding::{Finding, Severity};
 pub use placement::placement;
@@ -63,6 +64,7 @@ pub fn validate(scene: &Scene) -> Vec<Finding> {
     }
     check.enter(String::new());
     light_warnings::warn_of_lights(scene, &mut check);
+    variants::check_variants(scene, &mut check);
     check.finish()
 }
 

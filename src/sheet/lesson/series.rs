@@ -267,7 +267,7 @@ impl Studio<'_> {
     }
 
     fn lesson(&self, title: &str, about: String, columns: usize, cells: Vec<LessonCell>) -> Lesson {
-        let name = &self.scene.name;
+        let name = self.scene.title();
         let title = if name.is_empty() { title.to_owned() } else { format!("{title} \u{2013} {name}") };
         Lesson { title, about, columns, cells }
     }

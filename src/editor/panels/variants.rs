@@ -1,0 +1,118 @@
+//! The row of the studio's variants, over the views.
+
+use crate::editor::commands::command::Command;
+use crate::editor::commands::menu_entry::entry;
+use crate::editor::document::action::Action;
+use crate::editor::picture::variant_pictures::VariantPictures;
+use crate::editor::ui::{theme, widgets};
+use crate::scene::{Scene, SetupDifference, VariantId};
+use eframe::egui::{Button, Key, RichText, TextEdit, Ui};
+
+/// The state of the row.
+#[derive(Clone, Debug, Default)]
+pub struct VariantsState {
+    /// The variant being renamed, the text, and true once the field has had the focus.
+    rename: Option<(VariantId, String, bool)>,
+}
+
+impl VariantsState {
+    /// Opens the name field of a variant.
+    pub fn begin_rename(&mut self, id: VariantId, name: String) {
+        self.rename = Some((id, name, false));
+    }
+}
+
+/// Draws the row.
+pub fn variants_ui(
+    ui: &mut Ui,
+    scene: &Scene,
+    pictures: &VariantPictures,
+    state: &mut VariantsState,
+    out: &mut Vec<Command>,
+) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        ui.label(RichText::new("Variants").weak());
+        for (index, (id, name)) in scene.variants.list().enumerate() {
+            if state.rename.as_ref().is_some_and(|(renamed, ..)| *renamed == id) {
+                rename_ui(ui, state, out);
+                continue;
+            }
+            let shown = id == scene.variants.shown();
+            let text = RichText::new(if name.is_empty() { "unnamed" } else { name });
+            let button = ui.add(Button::selectable(shown, text));
+            widgets::named(ui, &button, &format!("Variant {name}"));
+            if button.clicked() {
+                out.push(Command::ShowVariant(id));
+            }
+            if button.double_clicked() {
+                out.push(Command::BeginRenameVariant(id));
+            }
+            button.context_menu(|ui| entries(ui, scene, id, out));
+            let key = if index < 9 { format!(" (Ctrl+{})", index + 1) } else { String::new() };
+            let hint = "Double-click to rename; right-click for more.";
+            button.on_hover_text(format!("{}{key}. {hint}", difference_text(scene, id)));
+            if pictures.running() == Some(id) {
+                ui.label(RichText::new("rendering").color(theme::ACCENT).small());
+            }
+        }
+        let add = ui.button("+");
+        widgets::named(ui, &add, "Add variant");
+        if add.on_hover_text("Add a variant, equal to what is shown").clicked() {
+            out.push(Command::AddVariant);
+        }
+    });
+}
+
+/// Draws the menu entries of a variant.
+pub fn entries(ui: &mut Ui, scene: &Scene, id: VariantId, out: &mut Vec<Command>) {
+    let name = scene.variants.name(id).unwrap_or_default();
+    let is_other = id != scene.variants.studio_id;
+    let make = format!("Make {name} the studio");
+    let tip = "It becomes what the file opens with; what was the studio becomes a variant. Pictures stay as they are.";
+    entry(ui, is_other, &make, tip, Command::Apply(Action::MakeStudio(id)), out);
+    entry(ui, true, &format!("Rename {name}"), "Give the variant another name", Command::BeginRenameVariant(id), out);
+    let delete = Command::Apply(Action::DeleteVariant(id));
+    entry(ui, is_other, &format!("Delete {name}"), "Its lights and its picture go; the studio stays", delete, out);
+}
+
+/// Returns what a variant changes in the studio, in words: `Key, Fill, camera`.
+pub fn difference_text(scene: &Scene, id: VariantId) -> String {
+    if id == scene.variants.studio_id {
+        return "The studio itself".to_owned();
+    }
+    // The difference of the shown variant is not stored
+    let of_studio = scene.as_variant(scene.variants.studio_id);
+    let studio = of_studio.as_ref().unwrap_or(scene);
+    let variant = studio.variants.others.iter().find(|variant| variant.id == id);
+    let Some(difference) = variant.map(|variant| &variant.difference) else { return String::new() };
+    let SetupDifference { camera, lights, removed_lights, added_lights, hidden, visible } = difference;
+    let light_name = |id| studio.light(id).map_or(String::new(), |light| light.name.clone());
+    let object_name = |id| studio.object(id).map_or(String::new(), |object| object.name.clone());
+    let changed = lights.iter().map(|(id, _)| light_name(*id));
+    let removed = removed_lights.iter().map(|id| format!("no {}", light_name(*id)));
+    let added = added_lights.iter().map(|light| format!("with {}", light.name));
+    let camera = (!camera.is_empty()).then(|| "camera".to_owned());
+    let hidden = hidden.iter().map(|id| format!("{} hidden", object_name(*id)));
+    let visible = visible.iter().map(|id| format!("{} visible", object_name(*id)));
+    let parts: Vec<String> = changed.chain(removed).chain(added).chain(camera).chain(hidden).chain(visible).collect();
+    match parts.as_slice() {
+        [] => "Equal to the studio".to_owned(),
+        parts => format!("Differs in: {}", parts.join(", ")),
+    }
+}
+
+fn rename_ui(ui: &mut Ui, state: &mut VariantsState, out: &mut Vec<Command>) {
+    let Some((id, text, had_focus)) = &mut state.rename else { return };
+    let field = ui.name_inputs("Name of the variant", |ui| ui.add(TextEdit::singleline(text).desired_width(140.0)));
+    if !*had_focus {
+        field.request_focus();
+        *had_focus = true;
+    }
+    if field.lost_focus() {
+        if !ui.input(|i| i.key_pressed(Key::Escape)) {
+            out.push(Command::Apply(Action::RenameVariant(*id, text.clone())));
+        }
+        state.rename = None;
+    }
+}

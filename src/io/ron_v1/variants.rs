@@ -1,0 +1,174 @@
+//! Converts the variants of a studio to and from format 1.
+
+use super::convert::{aim_to, focus_to, light_from, light_to};
+use super::defaults::is_studio_name;
+use super::names::{LightIds, ObjectIds, UnknownName};
+use super::{CameraDifferenceV1, LightDifferenceV1, VariantV1, VariantsV1};
+use crate::scene::{CameraDifference, LightDifference, LightId, Scene, SetupDifference, Variant, VariantId, Variants};
+use glam::Vec3;
+
+/// Converts the variants of a file. Returns the shown one, too.
+pub(super) fn variants_from(
+    file: Option<VariantsV1>,
+    objects: &ObjectIds,
+    lights: &LightIds,
+) -> Result<(Variants, Option<VariantId>), UnknownName> {
+    let Some(VariantsV1 { studio, shown, others }) = file else { return Ok((Variants::default(), None)) };
+    let others = (1..).zip(others).map(|(id, variant)| variant_from(variant, id, objects, lights));
+    let variants = Variants::new(studio, others.collect::<Result<_, _>>()?);
+    let Some(name) = shown else { return Ok((variants, None)) };
+    match variants.named(&name) {
+        Some(id) => Ok((variants, Some(id))),
+        None => {
+            let known = variants.list().map(|(_, name)| name.to_owned()).collect();
+            Err(UnknownName { kind: "variant", place: "variants.shown".to_owned(), name, known })
+        }
+    }
+}
+
+fn variant_from(file: VariantV1, id: u32, objects: &ObjectIds, lights: &LightIds) -> Result<Variant, UnknownName> {
+    let VariantV1 { name, camera, lights: changed, removed_lights, added_lights, hidden, visible } = file;
+    let place = format!("variants.others[{}] {name:?} ", id - 1);
+    let at = |list: &str, index: usize| format!("{place}{list}[{index}]");
+    let object_ids = |list: &str, names: Vec<String>| {
+        let ids = names.iter().enumerate().map(|(i, name)| objects.id(name, &at(list, i)));
+        ids.collect::<Result<Vec<_>, _>>()
+    };
+    let changed = changed.into_iter().enumerate().map(|(i, light)| {
+        let place = at("lights", i);
+        Ok((
+            lights.id(&light.light, &format!("{place}.light"))?,
+            light_difference_from(light, &format!("{place}."), objects)?,
+        ))
+    });
+    let removed = removed_lights.iter().enumerate().map(|(i, name)| lights.id(name, &at("removed_lights", i)));
+    let added = added_lights.into_iter().enumerate().map(|(i, light)| {
+        let id = lights.added_id(&light.name);
+        light_from(light, id, &format!("{}.", at("added_lights", i)), objects)
+    });
+    let difference = SetupDifference {
+        camera: camera_difference_from(camera, &format!("{place}camera."), objects)?,
+        lights: changed.collect::<Result<_, _>>()?,
+        removed_lights: removed.collect::<Result<_, _>>()?,
+        added_lights: added.collect::<Result<_, _>>()?,
+        hidden: object_ids("hidden", hidden)?,
+        visible: object_ids("visible", visible)?,
+    };
+    Ok(Variant { id: VariantId(id), name, difference })
+}
+
+fn camera_difference_from(
+    file: CameraDifferenceV1,
+    place: &str,
+    objects: &ObjectIds,
+) -> Result<CameraDifference, UnknownName> {
+    Ok(CameraDifference {
+        position: file.position.map(Vec3::from),
+        aim: file.aim.map(|aim| objects.aim(aim, place)).transpose()?,
+        roll_deg: file.roll_deg,
+        sensor: file.sensor.map(Into::into),
+        orientation: file.orientation.map(Into::into),
+        focal_length_mm: file.focal_length_mm,
+        f_number: file.f_number,
+        shutter_s: file.shutter_s,
+        iso: file.iso,
+        white_balance_k: file.white_balance_k,
+        nd_stops: file.nd_stops,
+        focus: file.focus.map(|focus| objects.focus(focus, place)).transpose()?,
+        depth_of_field: file.depth_of_field,
+        focus_breathing: file.focus_breathing,
+        meter_constant: file.meter_constant,
+    })
+}
+
+fn light_difference_from(
+    file: LightDifferenceV1,
+    place: &str,
+    objects: &ObjectIds,
+) -> Result<LightDifference, UnknownName> {
+    Ok(LightDifference {
+        role: file.role.map(Into::into),
+        position: file.position.map(Vec3::from),
+        aim: file.aim.map(|aim| objects.aim(aim, place)).transpose()?,
+        roll_deg: file.roll_deg,
+        emitter: file.emitter.map(Into::into),
+        modifier: file.modifier.map(Into::into),
+        output: file.output.map(Into::into),
+        dial_stops: file.dial_stops,
+        source: file.color.map(Into::into),
+        gel: file.gel.map(Into::into),
+        on: file.on,
+        visible_to_camera: file.visible_to_camera,
+        muted: file.muted,
+    })
+}
+
+/// Converts the variants of a scene that shows the studio itself; none without any. `shown` is noted if it is another.
+pub(super) fn variants_to(scene: &Scene, shown: VariantId) -> Option<VariantsV1> {
+    let Variants { studio_id, studio_name, others, .. } = &scene.variants;
+    let shown = scene.variants.name(shown).filter(|_| shown != *studio_id);
+    let is_plain = others.is_empty() && is_studio_name(studio_name);
+    (!is_plain).then(|| VariantsV1 {
+        studio: studio_name.clone(),
+        shown: shown.map(str::to_owned),
+        others: others.iter().map(|variant| variant_to(scene, variant)).collect(),
+    })
+}
+
+fn variant_to(scene: &Scene, Variant { id: _, name, difference }: &Variant) -> VariantV1 {
+    let SetupDifference { camera, lights, removed_lights, added_lights, hidden, visible } = difference;
+    let light_name = |id: &LightId| Some(scene.light(*id)?.name.clone());
+    let object_names = |ids: &[_]| ids.iter().filter_map(|id| Some(scene.object(*id)?.name.clone())).collect();
+    VariantV1 {
+        name: name.clone(),
+        camera: camera_difference_to(scene, camera),
+        lights: lights.iter().filter_map(|(id, light)| light_difference_to(scene, *id, light)).collect(),
+        removed_lights: removed_lights.iter().filter_map(light_name).collect(),
+        added_lights: added_lights.iter().map(|light| light_to(scene, light)).collect(),
+        hidden: object_names(hidden),
+        visible: object_names(visible),
+    }
+}
+
+fn camera_difference_to(scene: &Scene, camera: &CameraDifference) -> CameraDifferenceV1 {
+    let position = camera.position.unwrap_or(scene.camera.position);
+    CameraDifferenceV1 {
+        position: camera.position.map(|position| position.to_array()),
+        aim: camera.aim.map(|aim| aim_to(scene, &aim, position)),
+        roll_deg: camera.roll_deg,
+        sensor: camera.sensor.map(Into::into),
+        orientation: camera.orientation.map(Into::into),
+        focal_length_mm: camera.focal_length_mm,
+        f_number: camera.f_number,
+        shutter_s: camera.shutter_s,
+        iso: camera.iso,
+        white_balance_k: camera.white_balance_k,
+        nd_stops: camera.nd_stops,
+        focus: camera.focus.map(|focus| focus_to(scene, focus)),
+        depth_of_field: camera.depth_of_field,
+        focus_breathing: camera.focus_breathing,
+        meter_constant: camera.meter_constant,
+    }
+}
+
+/// Converts the difference of a light; none if the studio has no such light.
+fn light_difference_to(scene: &Scene, id: LightId, difference: &LightDifference) -> Option<LightDifferenceV1> {
+    let light = scene.light(id)?;
+    let position = difference.position.unwrap_or(light.position);
+    Some(LightDifferenceV1 {
+        light: light.name.clone(),
+        role: difference.role.map(Into::into),
+        position: difference.position.map(|position| position.to_array()),
+        aim: difference.aim.map(|aim| aim_to(scene, &aim, position)),
+        roll_deg: difference.roll_deg,
+        emitter: difference.emitter.map(Into::into),
+        modifier: difference.modifier.map(Into::into),
+        output: difference.output.map(Into::into),
+        dial_stops: difference.dial_stops,
+        color: difference.source.map(Into::into),
+        gel: difference.gel.map(Into::into),
+        on: difference.on,
+        visible_to_camera: difference.visible_to_camera,
+        muted: difference.muted,
+    })
+}
