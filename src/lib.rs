@@ -35,7 +35,8 @@
 //! 3. Nothing that a file can say makes the program panic, hang or eat memory without bound. Loading is checked once,
 //!    at the border; a bad file names the field, the value and the line, and leaves the open scene as it was.
 //! 4. A save never destroys the older file: write beside it, fsync, rename.
-//! 5. The editor changes the scene only through `Action`s: menus, shortcuts, gizmos, undo and tests all use them.
+//! 5. The editor changes the scene only through `Action`s: menus, shortcuts, gizmos, undo and tests all use them. Which
+//!    variant it shows is no change.
 //! 6. The UI thread never traces and never waits for a trace.
 //! 7. Every non-finite value meets one gate before the film: counted, reported with its pixel and sample, shown black.
 

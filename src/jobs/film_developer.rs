@@ -19,8 +19,8 @@ pub struct Developed<I> {
     pub picture: Arc<Picture>,
     /// The picture before the denoiser; none if `picture` is not denoised.
     pub noisy: Option<Arc<Picture>>,
-    /// Name of the denoiser, for the picture's file.
-    pub denoiser: Option<&'static str>,
+    /// The network that denoised the picture; none if it is not denoised.
+    pub denoiser: Option<Quality>,
     /// For the screen.
     pub image: I,
     /// Samples per pixel.
@@ -109,7 +109,7 @@ impl<I: Send + 'static> FilmDeveloper<I> {
                         film: Arc::downgrade(&request.film),
                         picture: picture.picture.clone(),
                         noisy: picture.noisy.clone(),
-                        denoiser: picture.quality.map(Quality::label),
+                        denoiser: picture.quality,
                         image: to_image(&picture.picture, &request.development),
                         spp: request.film.spp(),
                         method: request.film.method(),

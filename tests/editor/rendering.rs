@@ -143,6 +143,16 @@ fn denoise_shows_marks_relights_and_exports_the_picture_without_noise() {
     window.state_mut().run(Command::ExportPicture, None, &egui::Context::default());
     settle(&mut window);
     assert_eq!(catchlight::io::read_exr(&file).as_ref(), Ok(&*denoised));
+    let header = exr::meta::MetaData::read_from_file(&file, false).unwrap().headers;
+    let parts: Vec<String> =
+        header.iter().map(|part| part.own_attributes.layer_name.as_ref().unwrap().to_string()).collect();
+    let lights = scene(&window).lights.iter().map(|light| light.name.as_str());
+    // After the lights, surfaces that glow
+    assert_eq!(parts, ["picture"].into_iter().chain(lights).chain(["Glow"]).collect::<Vec<_>>());
+    let names: Vec<String> = header[0].channels.list.iter().map(|channel| channel.name.to_string()).collect();
+    for name in ["R", "noisy.R", "albedo.G", "normal.Z", "Z", "id"] {
+        assert!(names.iter().any(|channel| channel == name), "{name} in {names:?}");
+    }
     // Lights change the denoised picture: one stop more doubles it
     let lights = scene(&window).lights.clone();
     for mut light in lights {

@@ -1,9 +1,13 @@
 //! Reads and writes studios, models, assets and pictures, with errors as messages to the user.
 
+use crate::denoise::{Quality, denoise_layers};
 use crate::editor::document::studio_document::Document;
-use crate::io::{self, AssetFiles, FileStamp, KeptPicture, LayeredPicture, PictureInfo, RecoveryFolder, RecoveryInfo};
+use crate::io::{
+    self, AssetFiles, FileStamp, KeptPicture, LayeredPicture, PictureFormat, PictureInfo, RecoveryFolder, RecoveryInfo,
+};
 use crate::jobs::sentence;
-use crate::photo::Picture;
+use crate::photo::{LazyPicture, Picture};
+use crate::raytrace::Film;
 use crate::scene::{Aim, Assets, Camera, Material, Mesh, Room, Scene};
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -153,10 +157,55 @@ pub fn save(document: &Document, path: &Path) -> Result<(), String> {
     io::save_scene(document.scene(), path).map_err(|e| sentence(&e))
 }
 
-/// Writes a picture in the format of its extension.
-///
-/// `noisy` is the picture before the denoiser, which an EXR file holds, too.
-pub fn export(path: &Path, picture: &Picture, noisy: Option<&Picture>, info: &PictureInfo) -> Result<(), String> {
-    let file = io::picture_file(path, LayeredPicture::alone(picture), noisy.map(LayeredPicture::alone), None, info);
+/// A rendered picture that is to be written.
+#[derive(Debug)]
+pub struct PictureExport {
+    /// The picture.
+    pub picture: Arc<Picture>,
+    /// The picture before the denoiser, and the network; none if it is not denoised.
+    pub denoised_from: Option<(Arc<Picture>, Quality)>,
+    /// The film of the picture, if it is still there.
+    pub film: Option<Arc<Film>>,
+    /// The studio, with the lights as in the picture.
+    pub scene: Scene,
+    /// The settings of the render.
+    pub info: PictureInfo,
+}
+
+/// Writes a picture in the format of its extension. An EXR file also gets a part for each light, the AOVs, and the picture
+/// and the lights before the denoiser.
+pub fn export(path: &Path, export: &PictureExport) -> Result<(), String> {
+    let PictureExport { picture, denoised_from, film, scene, info } = export;
+    let is_exr = PictureFormat::of(path).is_ok_and(|format| format == PictureFormat::Exr);
+    let film =
+        film.as_deref().filter(|film| is_exr && (film.width(), film.height()) == (picture.width, picture.height));
+    let aovs = film.and_then(Film::aovs);
+    let mut traced = film.map(|film| film.lazy_layers(scene)).unwrap_or_default();
+    let mut shown = Vec::new();
+    if let Some((noisy, quality)) = denoised_from {
+        shown = film.and_then(|film| denoised_layers(film, scene, noisy, *quality)).unwrap_or_default();
+        traced.truncate(shown.len());
+    }
+    let file = match denoised_from {
+        Some((noisy, quality)) => {
+            let info = PictureInfo { denoiser: Some(quality.label()), ..info.clone() };
+            let noisy = LayeredPicture { picture: noisy, layers: &traced };
+            let shown = LayeredPicture { picture, layers: &shown };
+            io::picture_file(path, shown, Some(noisy), aovs.as_ref(), &info)
+        }
+        None => io::picture_file(path, LayeredPicture { picture, layers: &traced }, None, aovs.as_ref(), info),
+    };
     file.and_then(|file| file.write()).map_err(|e| sentence(&e))
+}
+
+/// Denoises the layers of a film. None for a film without albedo and normals.
+fn denoised_layers(
+    film: &Film,
+    scene: &Scene,
+    noisy: &Picture,
+    quality: Quality,
+) -> Option<Vec<(String, LazyPicture<'static>)>> {
+    let (names, layers): (Vec<String>, Vec<Picture>) = film.develop_layers(scene).into_iter().unzip();
+    let denoised = denoise_layers(noisy, &layers, &film.denoiser_aovs()?, quality, &|| false).ok()?;
+    Some(names.into_iter().zip(denoised.layers.into_iter().map(LazyPicture::from)).collect())
 }

@@ -1,4 +1,5 @@
-//! The open studio: scene, assets, file, history. The scene changes only in [`Document::apply`], undo and redo.
+//! The open studio: scene, assets, file, history. The scene changes only in [`Document::apply`], undo and redo;
+//! [`Document::show_variant`] shows another of its variants.
 
 use crate::editor::document::action::Action;
 use crate::editor::document::action_error::ActionError;

@@ -12,6 +12,8 @@ use eframe::egui::{
     Align2, Color32, CursorIcon, FontId, Painter, Pos2, Rect, Sense, Stroke, TextureId, Ui, pos2, vec2,
 };
 
+/// Distance of the names from the top of the view, points: under the bar and the read-out.
+const LABEL_TOP: f32 = 84.0;
 /// Width of the line that is dragged, points.
 const GRIP: f32 = 12.0;
 
@@ -97,8 +99,8 @@ impl PicturePane<'_> {
                 image(&painter, self.texture, place, *wipe..1.0);
                 let x = place.left() + place.width() * *wipe;
                 painter.vline(x, view.y_range(), Stroke::new(2.0, theme::ACCENT));
-                label(&painter, pos2(x - 8.0, view.bottom() - 16.0), Align2::RIGHT_BOTTOM, names[0]);
-                label(&painter, pos2(x + 8.0, view.bottom() - 16.0), Align2::LEFT_BOTTOM, names[1]);
+                label(&painter, pos2(x - 8.0, view.top() + LABEL_TOP), Align2::RIGHT_TOP, names[0]);
+                label(&painter, pos2(x + 8.0, view.top() + LABEL_TOP), Align2::LEFT_TOP, names[1]);
                 (place, Rect::from_min_max(pos2(x, view.top()), view.max))
             }
             CompareMode::SideBySide => {
@@ -112,7 +114,7 @@ impl PicturePane<'_> {
                 for ((half, texture, size), name) in halves.into_iter().zip(names) {
                     let painter = ui.painter_at(half);
                     image(&painter, texture, Rect::from_center_size(half.center() + offset, size), 0.0..1.0);
-                    label(&painter, half.center_bottom() - vec2(0.0, 16.0), Align2::CENTER_BOTTOM, name);
+                    label(&painter, half.center_top() + vec2(0.0, LABEL_TOP), Align2::CENTER_TOP, name);
                 }
                 painter.vline(view.center().x, view.y_range(), Stroke::new(1.0, Color32::from_gray(70)));
                 (Rect::from_center_size(right.center() + offset, self.place.size()), right)

@@ -1,6 +1,6 @@
 //! Execution of exports: pictures, set-up sheets and lesson sheets.
 
-use crate::editor::document::files;
+use crate::editor::document::files::{self, PictureExport};
 use crate::editor::window::app::App;
 use crate::editor::window::background_tasks::TaskResult;
 use crate::editor::window::run_file_command::waker;
@@ -24,13 +24,20 @@ impl App {
     /// Writes the rendered picture in the background.
     pub(super) fn export_picture_to(&mut self, path: PathBuf, ctx: &Context) {
         let (Some(developed), Some(job)) = (self.rendering.developed(), self.rendering.job()) else { return };
-        let (picture, noisy) = (developed.picture.clone(), developed.noisy.clone());
+        let scene = self.rendering.mix.mixed(self.document.scene()).into_owned();
         let seed = job.settings.seed.into();
-        let info = PictureInfo::new(self.document.scene(), developed.method, developed.spp, seed);
-        let info = PictureInfo { denoiser: developed.denoiser, ..info };
+        let export = PictureExport {
+            picture: developed.picture.clone(),
+            denoised_from: developed.noisy.clone().zip(developed.denoiser),
+            film: developed.film.upgrade(),
+            info: PictureInfo::new(&scene, developed.method, developed.spp, seed),
+            scene,
+        };
         let film = developed.film.clone();
         let work = move || {
-            let result = files::export(&path, &picture, noisy.as_deref(), &info);
+            let written = || files::export(&path, &export);
+            let pool = background_pool(0, "export").map_err(|error| sentence(&error));
+            let result = pool.and_then(|pool| pool.install(written));
             TaskResult::Exported(path, film, result)
         };
         self.background.exports.start(work, waker(ctx));
