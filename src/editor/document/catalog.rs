@@ -16,7 +16,7 @@ pub enum CatalogTab {
     Figures,
     /// Props and products.
     Props,
-    /// Paper rolls.
+    /// Paper rolls and cloths.
     Backdrops,
 }
 
@@ -45,13 +45,32 @@ pub enum CatalogKind {
     Figure(usize),
     /// A parametric shape with a material, on the floor.
     Prop(PropShape, MaterialPreset),
-    /// A paper roll.
-    Paper {
+    /// A paper roll, or a cloth that hangs and lies like one.
+    Roll {
         /// Width, metres.
         width_m: f32,
-        /// Material of the paper.
-        paper: MaterialPreset,
+        /// Its surface.
+        surface: RollSurface,
     },
+}
+
+/// The surface of a backdrop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RollSurface {
+    /// A preset.
+    Preset(MaterialPreset),
+    /// Matte paper or cloth of this albedo, linear RGB. Typical values: makers state none.
+    Matte([f32; 3]),
+}
+
+impl RollSurface {
+    /// Returns the material.
+    pub fn material(self) -> Material {
+        match self {
+            RollSurface::Preset(preset) => preset.material(),
+            RollSurface::Matte(base_color) => Material { base_color, ..MaterialPreset::WhitePaper.material() },
+        }
+    }
 }
 
 /// Shapes of props with their sizes, metres.
@@ -103,7 +122,12 @@ const fn prop(name: &'static str, tip: &'static str, shape: PropShape, material:
 }
 
 const fn paper(name: &'static str, tip: &'static str, width_m: f32, paper: MaterialPreset) -> CatalogEntry {
-    CatalogEntry { name, tip, kind: CatalogKind::Paper { width_m, paper } }
+    CatalogEntry { name, tip, kind: CatalogKind::Roll { width_m, surface: RollSurface::Preset(paper) } }
+}
+
+/// Returns the entry of a coloured paper, or a cloth, 2.72 m wide.
+const fn colored(name: &'static str, tip: &'static str, albedo: [f32; 3]) -> CatalogEntry {
+    CatalogEntry { name, tip, kind: CatalogKind::Roll { width_m: 2.72, surface: RollSurface::Matte(albedo) } }
 }
 
 const RACK: usize = NamedModifier::ALL.len();
@@ -156,7 +180,7 @@ const FIGURES: [CatalogEntry; figures::READY.len()] = {
     entries
 };
 
-const PROPS: [CatalogEntry; 16] = [
+const PROPS: [CatalogEntry; 22] = [
     prop("Box", "A box of 50 cm.", PropShape::Box([0.5, 0.5, 0.5]), MaterialPreset::MatteFabric),
     prop("Sphere", "A matte ball of 30 cm.", PropShape::Sphere(0.15), MaterialPreset::MatteFabric),
     prop("Cylinder", "An upright cylinder, 30 cm across.", PropShape::Cylinder(0.15, 0.4), MaterialPreset::MatteFabric),
@@ -185,6 +209,42 @@ const PROPS: [CatalogEntry; 16] = [
         PropShape::Card(1.2, 2.4),
         MaterialPreset::BlackVelvet,
     ),
+    prop(
+        "Card 60 x 90, white",
+        "Bounces light into the shadows of a bust or a table.",
+        PropShape::Card(0.6, 0.9),
+        MaterialPreset::WhitePaper,
+    ),
+    prop(
+        "Card 60 x 90, black",
+        "Takes light away: a dark edge on glass, a darker cheek.",
+        PropShape::Card(0.6, 0.9),
+        MaterialPreset::BlackVelvet,
+    ),
+    prop(
+        "Card 60 x 90, silver",
+        "Bounces more, and harder, than white.",
+        PropShape::Card(0.6, 0.9),
+        MaterialPreset::BrushedAluminium,
+    ),
+    prop(
+        "Card A3, white",
+        "30 x 42 cm: bounces light on a table.",
+        PropShape::Card(0.297, 0.42),
+        MaterialPreset::WhitePaper,
+    ),
+    prop(
+        "Card A4, white",
+        "21 x 30 cm: a small bounce beside a product.",
+        PropShape::Card(0.21, 0.297),
+        MaterialPreset::WhitePaper,
+    ),
+    prop(
+        "Card A4, black",
+        "21 x 30 cm: a small flag beside a product.",
+        PropShape::Card(0.21, 0.297),
+        MaterialPreset::BlackVelvet,
+    ),
     prop("Grey card", "18 % grey, 20 x 25 cm.", PropShape::Card(0.2, 0.25), MaterialPreset::GreyCard),
     prop("Chrome ball", "A mirror ball: shows every light around it.", PropShape::Sphere(0.1), MaterialPreset::Chrome),
     prop(
@@ -210,7 +270,7 @@ const PROPS: [CatalogEntry; 16] = [
     prop("Gold bar", "A gold block.", PropShape::Box([0.16, 0.04, 0.07]), MaterialPreset::Gold),
 ];
 
-const BACKDROPS: [CatalogEntry; 9] = [
+const BACKDROPS: [CatalogEntry; 22] = [
     paper("White paper 1.35 m", "A narrow roll, for heads and busts.", 1.35, MaterialPreset::WhitePaper),
     paper("White paper 2.72 m", "The usual roll, for one full figure.", 2.72, MaterialPreset::WhitePaper),
     paper("White paper 3.55 m", "A wide roll, for groups.", 3.55, MaterialPreset::WhitePaper),
@@ -220,6 +280,19 @@ const BACKDROPS: [CatalogEntry; 9] = [
     paper("Black paper 1.35 m", "A narrow roll, for heads and busts.", 1.35, MaterialPreset::BlackPaper),
     paper("Black paper 2.72 m", "The usual roll, for one full figure.", 2.72, MaterialPreset::BlackPaper),
     paper("Black paper 3.55 m", "A wide roll, for groups.", 3.55, MaterialPreset::BlackPaper),
+    colored("Light grey paper", "Half a stop under white: white or mid-grey as it is lit.", [0.52, 0.52, 0.53]),
+    colored("Dark grey paper", "A stop and a half under mid-grey: dark without being black.", [0.1, 0.1, 0.105]),
+    colored("Cream paper", "A warm near-white.", [0.76, 0.69, 0.56]),
+    colored("Beige paper", "A sandy tone, for skin and products.", [0.52, 0.4, 0.27]),
+    colored("Brown paper", "A dark, warm tone.", [0.12, 0.065, 0.04]),
+    colored("Pink paper", "A pale pink.", [0.78, 0.45, 0.5]),
+    colored("Red paper", "A strong red: it colours what stands close.", [0.42, 0.025, 0.03]),
+    colored("Yellow paper", "A strong yellow.", [0.78, 0.48, 0.03]),
+    colored("Sky blue paper", "A pale blue.", [0.26, 0.46, 0.68]),
+    colored("Navy paper", "A dark blue.", [0.015, 0.03, 0.085]),
+    colored("Key green paper", "To cut a subject out; keep it two metres behind.", [0.06, 0.4, 0.07]),
+    colored("Muslin, natural", "Unbleached cotton, on the floor and up the wall.", [0.62, 0.55, 0.43]),
+    colored("Canvas, grey", "A painted canvas, plain: warm, darker than grey paper.", [0.17, 0.16, 0.145]),
 ];
 
 /// Returns the entries of a tab.
@@ -250,8 +323,8 @@ impl CatalogEntry {
             }
             CatalogKind::Figure(index) => CatalogItem::Object(new_figure(&figures::READY[index])),
             CatalogKind::Prop(shape, material) => CatalogItem::Object(new_prop(self.name, shape, material.material())),
-            CatalogKind::Paper { width_m, paper } => CatalogItem::Object(Object {
-                material: paper.material(),
+            CatalogKind::Roll { width_m, surface } => CatalogItem::Object(Object {
+                material: surface.material(),
                 ..Object::new(self.name, Shape::Sweep { width_m, height_m: 2.75, depth_m: 3.0, radius_m: 0.6 })
             }),
         }

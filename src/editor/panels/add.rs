@@ -6,7 +6,7 @@ use crate::editor::panels::thumbnails::{THING_POINTS, Thumbnails};
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets;
 use crate::io;
-use crate::scene::{Emitter, MaterialPreset};
+use crate::scene::{Emitter, Material};
 use eframe::egui::{self, Button, Color32, CornerRadius, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, vec2};
 
 /// Draws the catalog; `tab` is the open one.
@@ -108,13 +108,15 @@ fn paint_icon(painter: &egui::Painter, rect: egui::Rect, kind: &CatalogKind) {
             let shoulders = [c + vec2(-6.0, 8.0), c + vec2(-3.5, 1.0), c + vec2(3.5, 1.0), c + vec2(6.0, 8.0)];
             painter.add(egui::Shape::convex_polygon(shoulders.to_vec(), line.color, Stroke::NONE));
         }
-        CatalogKind::Prop(_, preset) => paint_patch(painter, c, *preset, vec2(12.0, 12.0)),
-        CatalogKind::Paper { width_m, paper } => paint_patch(painter, c, *paper, vec2(5.0 * width_m.min(3.0), 14.0)),
+        CatalogKind::Prop(_, preset) => paint_patch(painter, c, &preset.material(), vec2(12.0, 12.0)),
+        CatalogKind::Roll { width_m, surface } => {
+            paint_patch(painter, c, &surface.material(), vec2(5.0 * width_m.min(3.0), 14.0));
+        }
     }
 }
 
-fn paint_patch(painter: &egui::Painter, c: egui::Pos2, preset: MaterialPreset, size: egui::Vec2) {
-    let [r, g, b] = preset.material().base_color.map(|v| (crate::color::srgb_encode(v) * 255.0) as u8);
+fn paint_patch(painter: &egui::Painter, c: egui::Pos2, material: &Material, size: egui::Vec2) {
+    let [r, g, b] = material.base_color.map(|v| (crate::color::srgb_encode(v) * 255.0) as u8);
     let rect = egui::Rect::from_center_size(c, size);
     painter.rect(
         rect,
