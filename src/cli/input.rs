@@ -4,6 +4,7 @@ use super::failure::Failure;
 use super::{terminal, warnings};
 use crate::figures;
 use crate::io::{self, Loaded};
+use crate::scene::placement;
 use anyhow::{Context, anyhow};
 use glam::Vec3;
 use rayon::ThreadPool;
@@ -37,7 +38,10 @@ impl StudioArguments {
         figures::show_variant(&mut loaded.scene, id);
         // Eyes that follow another camera belong to other figures
         let folder = self.scene.parent().filter(|_| self.scene.exists());
-        io::load_assets(&loaded.scene, folder, &mut loaded.assets);
+        let mut found = io::load_assets(&loaded.scene, folder, &mut loaded.assets);
+        found.extend(placement(&loaded.scene, &loaded.assets));
+        found.retain(|finding| !loaded.warnings.contains(finding));
+        warnings::lines(&found).iter().for_each(terminal::warning);
         Ok(loaded)
     }
 }

@@ -60,7 +60,7 @@ fn gaze_target(scene: &Scene, gaze: Gaze) -> Option<Vec3> {
         Gaze::Pose => None,
         Gaze::Camera => Some(scene.camera.position),
         Gaze::Light(light) => {
-            let light = scene.light(light)?;
+            let light = scene.light_of_any_variant(light)?;
             let away = scene.aim_vector(&light.aim, light.position).normalize_or_zero() * FAR_M;
             Some(if light.emitter.is_infinite() { light.position - away } else { light.position })
         }

@@ -106,8 +106,8 @@ pub fn parse_scene(text: &str) -> Result<(Scene, Vec<Finding>), LoadError> {
     Ok((scene, warnings))
 }
 
-/// Returns the text of a scene file. Parsing it gives the same scene, with ids in list order and, if a variant is shown,
-/// without a solo.
+/// Returns the text of a scene file. Parsing it gives the same scene, with ids in list order and, if another variant than
+/// the studio itself is shown, without the solo of that variant.
 pub fn write_scene(scene: &Scene) -> String {
     let shown = scene.variants.shown();
     let mut unique = scene.as_variant(scene.variants.studio_id).unwrap_or_else(|| scene.clone());

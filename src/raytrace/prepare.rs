@@ -55,7 +55,8 @@ pub(super) fn prepare_all(
     assign_layers: AssignLayers,
     cache: &GeometryCache,
 ) -> Result<RenderScene, PrepareError> {
-    if let Some(error) = scene::validate(scene).into_iter().find(|f| f.severity == Severity::Error) {
+    if let Some(error) = scene::validate(&scene.without_variants()).into_iter().find(|f| f.severity == Severity::Error)
+    {
         return Err(PrepareError::Invalid(format!("{}: {}", error.place, error.message)));
     }
 

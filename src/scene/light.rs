@@ -132,6 +132,19 @@ pub struct Solo {
     pub restores: Vec<LightId>,
 }
 
+impl Solo {
+    /// Restores the switches of lights. Those added during the solo keep theirs.
+    pub fn end(self, lights: &mut [Light]) {
+        for light in lights {
+            if self.restores.contains(&light.id) {
+                light.on = true;
+            } else if self.lights.contains(&light.id) {
+                light.on = false;
+            }
+        }
+    }
+}
+
 /// One light of the studio.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {

@@ -110,13 +110,8 @@ impl Scene {
 
     /// Ends the solo and restores the switches. Lights added during the solo keep theirs.
     pub fn end_solo(&mut self) {
-        let Some(solo) = self.solo.take() else { return };
-        for light in &mut self.lights {
-            if solo.restores.contains(&light.id) {
-                light.on = true;
-            } else if solo.lights.contains(&light.id) {
-                light.on = false;
-            }
+        if let Some(solo) = self.solo.take() {
+            solo.end(&mut self.lights);
         }
     }
 
@@ -165,7 +160,9 @@ impl Scene {
     /// Returns the object or light, of any variant, that has this name.
     pub fn name_owner(&self, name: &str) -> Option<NameOwner> {
         let object = self.objects.iter().find(|object| object.name == name).map(|object| NameOwner::Object(object.id));
-        let mut lights = self.lights.iter().chain(self.variants.stored_lights());
+        // The names of stored lights follow when another variant is shown
+        let stored = self.variants.stored_lights().filter(|light| self.light(light.id).is_none());
+        let mut lights = self.lights.iter().chain(stored);
         object.or_else(|| lights.find(|light| light.name == name).map(|light| NameOwner::Light(light.id)))
     }
 

@@ -102,6 +102,9 @@ fn pictures_of_variants_are_kept_and_compared_in_stops() {
     assert!((sum(&window) / of_a - 0.5).abs() < 1e-3, "{}", sum(&window) / of_a);
     assert!(window.query_by_label("Out of date").is_none());
 
+    // A variant that was seen before there was a picture takes one, too
+    run(&mut window, Command::ShowVariantAt(0));
+    run(&mut window, Command::ShowVariantAt(1));
     let difference = Comparison { mode: CompareMode::Difference, with: None };
     run(&mut window, Command::Compare(difference));
     let app = window.state();
@@ -138,17 +141,22 @@ fn a_render_goes_on_while_another_variant_is_shown() {
     run(&mut window, Command::Apply(Action::SetCamera(Box::new(camera))));
     let rendering = window.state_mut().rendering_mut();
     rendering.settings.size = PictureSize::Custom(48, 32);
-    rendering.settings.samples = 2;
+    // More than end within this test
+    rendering.settings.samples = 60_000;
     rendering.settings.quality = Quality::Custom;
     let ctx = egui::Context::default();
     window.state_mut().run(Command::Render, None, &ctx);
     window.state_mut().run(Command::ShowVariantAt(0), None, &ctx);
     window.state_mut().run(Command::Render, None, &ctx);
-    let running = window.state().variant_pictures().running();
-    assert!(running.is_none() || window.state().toasts().texts(ToastKind::Info)[0].contains("is being rendered"));
+    assert!(window.state().toasts().texts(ToastKind::Info)[0].contains("is being rendered"));
+    window.state_mut().run(Command::ShowVariantAt(1), None, &ctx);
+    window.state_mut().run(Command::CancelRender, None, &ctx);
     settle(&mut window);
+    window.state_mut().rendering_mut().settings.samples = 2;
+    click(&mut window, "Render the picture");
+    run(&mut window, Command::ShowVariantAt(0));
     let app = window.state();
     let b = app.document().scene().variants.named("B").unwrap();
-    assert!(app.variant_pictures().has_picture(b), "it was finished in the background");
+    assert!(app.variant_pictures().has_picture(b), "it is kept for B");
     assert_eq!(app.rendering().settings.samples, 2, "the settings are those of the window");
 }

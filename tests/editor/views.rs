@@ -111,7 +111,8 @@ fn a_length_is_typed_in_any_unit() {
 fn the_list_of_keys_names_every_key() {
     let Some(mut window) = preset_window() else { return };
     press(&mut window, Modifiers::NONE, Key::F1);
-    for binding in &catchlight::editor::KEY_BINDINGS {
+    // Ctrl+2 to Ctrl+9 are described beside Ctrl+1
+    for binding in catchlight::editor::KEY_BINDINGS.iter().filter(|binding| !binding.meaning.is_empty()) {
         assert!(window.query_all_by_label(binding.meaning).next().is_some(), "{}", binding.meaning);
     }
 }

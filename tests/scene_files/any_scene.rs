@@ -274,7 +274,7 @@ fn variant(objects: usize) -> impl Strategy<Value = VariantParts> {
 
 /// Adds a variant with another camera, other or fewer lights, one more, and another visibility. The studio is shown.
 fn with_variant(mut scene: Scene, (name, camera, lights): VariantParts) -> Scene {
-    let (count, solo) = (scene.lights.len(), scene.solo.take());
+    let count = scene.lights.len();
     let studio = scene.variants.shown();
     assert!(scene.add_variant(format!("{name} v")).is_some());
     scene.camera = camera;
@@ -291,7 +291,7 @@ fn with_variant(mut scene: Scene, (name, camera, lights): VariantParts) -> Scene
     }
     scene.objects.iter_mut().for_each(|object| object.visible = !object.visible);
     scene.show_variant(studio);
-    scene.solo = solo;
+    scene.drop_equal_parts_of_variants();
     scene
 }
 

@@ -46,6 +46,8 @@ pub fn delete(scene: &mut Scene, items: &[Item]) -> Result<(), ActionError> {
             Item::Light(id) => {
                 scene.light(id).ok_or(ActionError::Gone)?;
                 scene.lights.retain(|l| l.id != id);
+                // A light that is added later may get its id
+                scene.drop_equal_parts_of_variants();
                 if scene.light_of_any_variant(id).is_none() {
                     release_gazes(scene, id);
                 }

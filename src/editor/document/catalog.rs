@@ -209,6 +209,29 @@ const PROPS: [CatalogEntry; 22] = [
         PropShape::Card(1.2, 2.4),
         MaterialPreset::BlackVelvet,
     ),
+    prop("Grey card", "18 % grey, 20 x 25 cm.", PropShape::Card(0.2, 0.25), MaterialPreset::GreyCard),
+    prop("Chrome ball", "A mirror ball: shows every light around it.", PropShape::Sphere(0.1), MaterialPreset::Chrome),
+    prop(
+        "Grey ball",
+        "An 18 % grey ball: shows where the light falls.",
+        PropShape::Sphere(0.1),
+        MaterialPreset::GreyCard,
+    ),
+    prop("Glass ball", "A ball of clear glass.", PropShape::Sphere(0.08), MaterialPreset::ClearGlass),
+    prop(
+        "Flacon",
+        "A block of clear glass, 6 x 11 x 4 cm.",
+        PropShape::Box([0.06, 0.11, 0.04]),
+        MaterialPreset::ClearGlass,
+    ),
+    prop("Can", "A drink can of aluminium.", PropShape::Cylinder(0.033, 0.116), MaterialPreset::BrushedAluminium),
+    prop(
+        "Glossy pack",
+        "A shiny carton, 10 x 16 x 5 cm.",
+        PropShape::Box([0.1, 0.16, 0.05]),
+        MaterialPreset::GlossyPlastic,
+    ),
+    prop("Gold bar", "A gold block.", PropShape::Box([0.16, 0.04, 0.07]), MaterialPreset::Gold),
     prop(
         "Card 60 x 90, white",
         "Bounces light into the shadows of a bust or a table.",
@@ -245,29 +268,6 @@ const PROPS: [CatalogEntry; 22] = [
         PropShape::Card(0.21, 0.297),
         MaterialPreset::BlackVelvet,
     ),
-    prop("Grey card", "18 % grey, 20 x 25 cm.", PropShape::Card(0.2, 0.25), MaterialPreset::GreyCard),
-    prop("Chrome ball", "A mirror ball: shows every light around it.", PropShape::Sphere(0.1), MaterialPreset::Chrome),
-    prop(
-        "Grey ball",
-        "An 18 % grey ball: shows where the light falls.",
-        PropShape::Sphere(0.1),
-        MaterialPreset::GreyCard,
-    ),
-    prop("Glass ball", "A ball of clear glass.", PropShape::Sphere(0.08), MaterialPreset::ClearGlass),
-    prop(
-        "Flacon",
-        "A block of clear glass, 6 x 11 x 4 cm.",
-        PropShape::Box([0.06, 0.11, 0.04]),
-        MaterialPreset::ClearGlass,
-    ),
-    prop("Can", "A drink can of aluminium.", PropShape::Cylinder(0.033, 0.116), MaterialPreset::BrushedAluminium),
-    prop(
-        "Glossy pack",
-        "A shiny carton, 10 x 16 x 5 cm.",
-        PropShape::Box([0.1, 0.16, 0.05]),
-        MaterialPreset::GlossyPlastic,
-    ),
-    prop("Gold bar", "A gold block.", PropShape::Box([0.16, 0.04, 0.07]), MaterialPreset::Gold),
 ];
 
 const BACKDROPS: [CatalogEntry; 22] = [

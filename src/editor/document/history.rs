@@ -14,6 +14,8 @@ pub struct MergeKey {
     pub press_id: u64,
     /// The dragged items.
     pub targets: Vec<Item>,
+    /// The variant that they belong to.
+    pub variant: VariantId,
 }
 
 #[derive(Clone, Debug)]
@@ -22,8 +24,8 @@ struct HistoryStep {
     /// The scene before the step in the undo list, after it in the redo list.
     scene: Scene,
     merge: Option<MergeKey>,
-    /// The variant that was shown after the step.
-    shown: VariantId,
+    /// The variants that were shown before and after the step.
+    shown: [VariantId; 2],
 }
 
 /// The undo and redo lists.
@@ -34,8 +36,8 @@ pub struct History {
 }
 
 impl History {
-    /// Records a step from the scene `before`, after which variant `shown` is shown. A step with the merge key of the last one is merged with it. Clears the
-    /// redo list.
+    /// Records a step from the scene `before`, after which variant `shown` is shown. A step with the merge key of the last
+    /// one is merged with it. Clears the redo list.
     pub fn record(&mut self, before: Scene, label: String, merge: Option<MergeKey>, shown: VariantId) {
         self.redo.clear();
         let joins = merge.is_some() && self.undo.last().is_some_and(|last| last.merge == merge);
@@ -45,21 +47,23 @@ impl History {
         if self.undo.len() == CAPACITY {
             self.undo.remove(0);
         }
+        let shown = [before.variants.shown(), shown];
         self.undo.push(HistoryStep { label, scene: before, merge, shown });
     }
 
     /// Undoes the last step, in the variant that it changed; returns its label.
     pub fn undo(&mut self, scene: &mut Scene) -> Option<String> {
         let step = self.undo.pop()?;
-        figures::show_variant(scene, step.shown);
+        figures::show_variant(scene, step.shown[1]);
         let after = std::mem::replace(scene, step.scene);
         self.redo.push(HistoryStep { label: step.label.clone(), scene: after, merge: None, shown: step.shown });
         Some(step.label)
     }
 
-    /// Redoes the step undone last; returns its label.
+    /// Redoes the step undone last, in the variant that it changed; returns its label.
     pub fn redo(&mut self, scene: &mut Scene) -> Option<String> {
         let step = self.redo.pop()?;
+        figures::show_variant(scene, step.shown[0]);
         let before = std::mem::replace(scene, step.scene);
         self.undo.push(HistoryStep { label: step.label.clone(), scene: before, merge: None, shown: step.shown });
         Some(step.label)
@@ -116,7 +120,7 @@ mod tests {
     #[test]
     fn one_drag_is_one_step_and_the_next_drag_another() {
         let mut history = History::default();
-        let key = |press_id, target| Some(MergeKey { press_id, targets: vec![target] });
+        let key = |press_id, target| Some(MergeKey { press_id, targets: vec![target], variant: VariantId::default() });
         for name in ["a", "b", "c"] {
             history.record(named(name), "drag".into(), key(1, Item::Camera), VariantId::default());
         }

@@ -24,6 +24,8 @@ pub struct Document {
     /// State of the file when it was read or written last.
     stamp: Option<FileStamp>,
     saved: Scene,
+    /// The scene differs from `saved`.
+    is_changed: bool,
     /// The studio counts as changed even where it equals `saved`.
     is_unsaved: bool,
     history: History,
@@ -86,13 +88,16 @@ impl Document {
 
     /// Returns true if there are unsaved changes.
     pub fn is_dirty(&self) -> bool {
-        // Which variant is shown is no change
-        let shown = self.saved.variants.shown();
-        let is_same = match figures::as_variant(&self.scene, shown).filter(|_| self.scene.variants.shown() != shown) {
-            Some(scene) => scene == self.saved,
-            None => self.scene == self.saved,
+        self.is_unsaved || self.is_changed
+    }
+
+    /// Compares the scene with the saved one. Which variant is shown is no change.
+    fn compare_with_saved(&mut self) {
+        let of_studio = |scene: &Scene| figures::as_variant(scene, scene.variants.studio_id);
+        self.is_changed = match self.scene.variants.is_empty() && self.saved.variants.is_empty() {
+            true => self.scene != self.saved,
+            false => of_studio(&self.scene) != of_studio(&self.saved),
         };
-        self.is_unsaved || !is_same
     }
 
     /// Returns the state of the file when it was read or written last.
@@ -141,8 +146,11 @@ impl Document {
         let before = self.scene.clone();
         let label = action.label(&before);
         let targets = action.targets();
-        let merge = press_id.filter(|_| !targets.is_empty()).map(|press_id| MergeKey { press_id, targets });
+        let variant = before.variants.shown();
+        let merge = press_id.filter(|_| !targets.is_empty()).map(|press_id| MergeKey { press_id, targets, variant });
         let checked = |scene: &Scene| match new_error(&before, scene) {
+            // Of a variant that is not shown, the place says which
+            Some(error) if error.place.starts_with("variants") => Err(ActionError::Invalid(error.to_string())),
             Some(error) => Err(ActionError::Invalid(error.message)),
             None => Ok(()),
         };
@@ -150,6 +158,7 @@ impl Document {
             checked(&self.scene)?;
             // Only valid figures have eyes to turn.
             figures::follow_gazes(&mut self.scene);
+            self.scene.drop_equal_parts_of_variants();
             checked(&self.scene).map(|()| select)
         });
         if done.is_err() {
@@ -174,6 +183,7 @@ impl Document {
         if self.scene != *before {
             self.revisions.note(&SceneChange::between(before, &self.scene));
             self.keep_meshes(before);
+            self.compare_with_saved();
         }
     }
 
@@ -290,7 +300,7 @@ impl Document {
     /// Marks the current scene as saved to `path`.
     pub fn mark_saved(&mut self, path: PathBuf) {
         self.imported.clear();
-        (self.saved, self.is_unsaved) = (self.scene.clone(), false);
+        (self.saved, self.is_unsaved, self.is_changed) = (self.scene.clone(), false, false);
         self.stamp = FileStamp::of(&path).ok();
         self.path = Some(path);
     }
@@ -304,141 +314,4 @@ fn new_error(before: &Scene, after: &Scene) -> Option<Finding> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::editor::document::catalog;
-    use crate::scene::{Figure, Gaze, Object};
-    use std::sync::Arc;
-
-    fn with_a_light() -> (Document, crate::scene::Light) {
-        let mut document = Document::default();
-        let light = catalog::light_named("Octa 120").unwrap();
-        document.apply(Action::AddLight(Box::new(light)), None).unwrap();
-        let light = document.scene().lights[0].clone();
-        (document, light)
-    }
-
-    #[test]
-    fn a_drag_is_one_step_and_dirty_ends_where_it_began() {
-        let (mut document, mut light) = with_a_light();
-        document.mark_saved("a.ron".into());
-        for i in 0..20 {
-            light.position.x = i as f32 * 0.1;
-            document.apply(Action::SetLight(Box::new(light.clone())), Some(7)).unwrap();
-        }
-        assert!(document.is_dirty());
-        assert_eq!(document.undo().as_deref(), Some("Move Octa 120"));
-        assert!(!document.is_dirty());
-        document.redo();
-        assert_eq!(document.scene().lights[0].position.x, 1.9);
-    }
-
-    fn with_a_person() -> (Document, ObjectId) {
-        let mut document = Document::default();
-        let object = Object::new("Person", Shape::Figure(Box::default()));
-        document.apply(Action::AddObject(Box::new(object)), None).unwrap();
-        let id = document.scene().objects[0].id;
-        (document, id)
-    }
-
-    fn change_figure(document: &mut Document, id: ObjectId, change: impl FnOnce(&mut Figure)) {
-        let mut object = document.scene().object(id).unwrap().clone();
-        if let Shape::Figure(figure) = &mut object.shape {
-            change(figure);
-        }
-        document.apply(Action::SetObject(Box::new(object)), None).unwrap();
-    }
-
-    fn gaze(document: &Document) -> [f32; 2] {
-        let Shape::Figure(figure) = &document.scene().objects[0].shape else { panic!("a person") };
-        [figure.pose.torso.gaze_yaw_deg, figure.pose.torso.gaze_pitch_deg]
-    }
-
-    #[test]
-    fn eyes_follow_the_camera_until_the_light_that_they_follow_is_deleted() {
-        let (mut document, id) = with_a_person();
-        let mut camera = document.scene().camera.clone();
-        camera.position = glam::Vec3::new(0.6, 1.6, 2.5);
-        document.apply(Action::SetCamera(Box::new(camera.clone())), None).unwrap();
-        assert_eq!(gaze(&document), [0.0; 2]);
-        change_figure(&mut document, id, |figure| figure.gaze = Gaze::Camera);
-        assert!((gaze(&document)[0] - 13.75).abs() < 1.0, "{:?}", gaze(&document));
-        camera.position.x = -0.6;
-        document.apply(Action::SetCamera(Box::new(camera)), None).unwrap();
-        assert!((gaze(&document)[0] + 13.75).abs() < 1.0, "{:?}", gaze(&document));
-        document.undo();
-        assert!(gaze(&document)[0] > 12.0);
-        let light = catalog::light_named("Octa 120").unwrap();
-        document.apply(Action::AddLight(Box::new(light)), None).unwrap();
-        let light = document.scene().lights[0].id;
-        change_figure(&mut document, id, |figure| figure.gaze = Gaze::Light(light));
-        let at_light = gaze(&document);
-        document.apply(Action::Delete(vec![Item::Light(light)]), None).unwrap();
-        let Shape::Figure(figure) = &document.scene().objects[0].shape else { panic!("a person") };
-        assert_eq!((figure.gaze, gaze(&document)), (Gaze::Pose, at_light));
-    }
-
-    #[test]
-    fn a_changed_figure_keeps_its_meshes_until_the_new_ones_are_built() {
-        let (mut document, id) = with_a_person();
-        let first = document.wanted_assets();
-        let load = |document: &Document| {
-            let mut assets = document.finished_assets();
-            assert_eq!(io::load_assets(document.scene(), None, &mut assets), []);
-            assets
-        };
-        let shown = |document: &Document| document.assets().mesh_of(&document.scene().objects[0].shape).unwrap();
-        document.insert_assets(load(&document), &first);
-        assert!(document.wanted_assets().is_empty());
-        let before = shown(&document);
-        for teeth in [0.2, 0.4] {
-            change_figure(&mut document, id, |figure| figure.expression.teeth = teeth);
-            assert!(Arc::ptr_eq(&shown(&document), &before), "the older mesh is shown");
-            assert_eq!(document.wanted_assets().len(), 1, "the new one is wanted");
-            let figure = &document.scene().objects[0].shape;
-            assert!(document.finished_assets().mesh_of(figure).is_none(), "a render does not get the older one");
-        }
-        // What was built for a state that the slider has left is shown until the newest is there
-        let (late, wanted) = (load(&document), document.wanted_assets());
-        change_figure(&mut document, id, |figure| figure.expression.teeth = 0.6);
-        document.insert_assets(late, &wanted);
-        let between = shown(&document);
-        assert!(!Arc::ptr_eq(&between, &before));
-        let wanted = document.wanted_assets();
-        assert_eq!(wanted.len(), 1);
-        document.insert_assets(load(&document), &wanted);
-        assert!(!Arc::ptr_eq(&shown(&document), &between) && document.wanted_assets().is_empty());
-    }
-
-    #[test]
-    fn two_studios_are_never_at_the_same_revision() {
-        // Regression: the meter kept the reading of the previous studio, since both were at their first revision.
-        let open = || Document::new(Scene::default(), Assets::default(), None);
-        assert_ne!(open().revision(), open().revision());
-        assert_ne!(open().revision(), Document::default().revision());
-    }
-
-    #[test]
-    fn a_rejected_action_changes_nothing() {
-        let (mut document, _) = with_a_light();
-        let (revision, depth) = (document.revision(), document.history().depth());
-        assert!(document.apply(Action::Rename(Item::Camera, "Eye".into()), None).is_err());
-        let same = document.scene().camera.clone();
-        document.apply(Action::SetCamera(Box::new(same)), None).unwrap();
-        assert_eq!((revision, depth), (document.revision(), document.history().depth()));
-    }
-
-    #[test]
-    fn imported_files_get_relative_names_that_do_not_clash() {
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::create_dir(folder.path().join("props")).unwrap();
-        std::fs::write(folder.path().join("props/chair.obj"), "").unwrap();
-        let path = Some(folder.path().join("a.ron"));
-        let mut document = Document::new(Scene::default(), Assets::default(), path);
-        assert_eq!(document.asset_path_for(&folder.path().join("props/chair.obj"), "models"), "props/chair.obj");
-        let outside = Path::new("/somewhere/chair.obj");
-        assert_eq!(document.asset_path_for(outside, "models"), "models/chair.obj");
-        document.note_import("models/chair.obj".into(), "/elsewhere/chair.obj".into());
-        assert_eq!(document.asset_path_for(outside, "models"), "models/chair-2.obj");
-    }
-}
+mod tests;

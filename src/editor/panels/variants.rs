@@ -49,9 +49,11 @@ pub fn variants_ui(
                 out.push(Command::BeginRenameVariant(id));
             }
             button.context_menu(|ui| entries(ui, scene, id, out));
-            let key = if index < 9 { format!(" (Ctrl+{})", index + 1) } else { String::new() };
-            let hint = "Double-click to rename; right-click for more.";
-            button.on_hover_text(format!("{}{key}. {hint}", difference_text(scene, id)));
+            button.on_hover_ui(|ui| {
+                let key = if index < 9 { format!(" (Ctrl+{})", index + 1) } else { String::new() };
+                let hint = "Double-click to rename; right-click for more.";
+                ui.label(format!("{}{key}. {hint}", difference_text(scene, id)));
+            });
             if pictures.running() == Some(id) {
                 ui.label(RichText::new("rendering").color(theme::ACCENT).small());
             }

@@ -5,6 +5,7 @@ use crate::editor::commands::command::Command;
 use crate::editor::picture::rendering::Rendering;
 use crate::editor::picture::variant_pictures::VariantPictures;
 use crate::editor::ui::{legend, theme, widgets};
+use crate::figures;
 use crate::photo::text::signed_stops;
 use crate::photo::{DIFFERENCE_STOPS, Spot, difference_color, stops_above};
 use crate::scene::{Scene, VariantId};
@@ -82,38 +83,40 @@ impl PicturePane<'_> {
     pub fn ui(&self, ui: &mut Ui, view: Rect, wipe: &mut f32) -> (Rect, Rect) {
         let painter = ui.painter_at(view);
         let Some((id, other)) = self.input.pictures.other(self.comparison) else {
-            image(&painter, self.texture, self.place, 0.0..1.0);
+            image(&painter, self.texture, self.place);
             return (self.place, view);
         };
         let Some(other_texture) = other.texture() else { return (self.place, view) };
-        let names = [self.name(id), self.name(self.input.scene.variants.shown())];
+        let names = [self.name_of(id, other), self.name_of(self.input.scene.variants.shown(), self.input.rendering)];
+        let names = names.each_ref().map(String::as_str);
+        // The other picture keeps its shape, at the height of the shown one
+        let other_size = other.size().map_or(self.place.size(), |(width, height)| {
+            vec2(self.place.height() * width as f32 / height as f32, self.place.height())
+        });
         match self.comparison.mode {
             CompareMode::Off => {
-                image(&painter, self.texture, self.place, 0.0..1.0);
+                image(&painter, self.texture, self.place);
                 (self.place, view)
             }
             CompareMode::Wipe => {
                 let place = self.place;
                 self.drag_wipe(ui, view, wipe);
-                image(&painter, other_texture, place, 0.0..*wipe);
-                image(&painter, self.texture, place, *wipe..1.0);
                 let x = place.left() + place.width() * *wipe;
+                let (left, right) = view.split_left_right_at_x(x.clamp(view.left(), view.right()));
+                image(&ui.painter_at(left), other_texture, Rect::from_center_size(place.center(), other_size));
+                image(&ui.painter_at(right), self.texture, place);
                 painter.vline(x, view.y_range(), Stroke::new(2.0, theme::ACCENT));
                 label(&painter, pos2(x - 8.0, view.top() + LABEL_TOP), Align2::RIGHT_TOP, names[0]);
                 label(&painter, pos2(x + 8.0, view.top() + LABEL_TOP), Align2::LEFT_TOP, names[1]);
-                (place, Rect::from_min_max(pos2(x, view.top()), view.max))
+                (place, right)
             }
             CompareMode::SideBySide => {
                 let [left, right] = view.split_left_right_at_fraction(0.5).into();
-                // The other picture keeps its shape, at the height of the shown one
-                let size = other.size().map_or(self.place.size(), |(width, height)| {
-                    vec2(self.place.height() * width as f32 / height as f32, self.place.height())
-                });
                 let offset = self.place.center() - view.center();
-                let halves = [(left, other_texture, size), (right, self.texture, self.place.size())];
+                let halves = [(left, other_texture, other_size), (right, self.texture, self.place.size())];
                 for ((half, texture, size), name) in halves.into_iter().zip(names) {
                     let painter = ui.painter_at(half);
-                    image(&painter, texture, Rect::from_center_size(half.center() + offset, size), 0.0..1.0);
+                    image(&painter, texture, Rect::from_center_size(half.center() + offset, size));
                     label(&painter, half.center_top() + vec2(0.0, LABEL_TOP), Align2::CENTER_TOP, name);
                 }
                 painter.vline(view.center().x, view.y_range(), Stroke::new(1.0, Color32::from_gray(70)));
@@ -126,18 +129,22 @@ impl PicturePane<'_> {
         }
     }
 
-    fn name(&self, id: VariantId) -> &str {
-        self.input.scene.variants.name(id).unwrap_or_default()
+    /// Returns the name of a variant, with a mark if its picture is out of date.
+    fn name_of(&self, id: VariantId, rendering: &Rendering) -> String {
+        let name = self.input.scene.variants.name(id).unwrap_or_default();
+        let scene = figures::as_variant(self.input.scene, id);
+        let is_old = scene.is_some_and(|scene| rendering.is_out_of_date(&scene));
+        if is_old { format!("{name} (out of date)") } else { name.to_owned() }
     }
 
     fn difference(&self, painter: &Painter, view: Rect, [other, shown]: [&str; 2]) {
         match self.input.pictures.difference(self.input.rendering, self.comparison) {
-            None => image(painter, self.texture, self.place, 0.0..1.0),
+            None => image(painter, self.texture, self.place),
             Some(Err(message)) => {
                 painter.text(view.center(), Align2::CENTER_CENTER, message, FontId::proportional(14.0), Color32::GRAY);
             }
             Some(Ok((texture, mean))) => {
-                image(painter, texture, self.place, 0.0..1.0);
+                image(painter, texture, self.place);
                 let line = |stops: i32| {
                     let text = match stops {
                         0 => "equal, within 1/6 stop".to_owned(),
@@ -182,12 +189,10 @@ pub fn spot_text(pixel: (u32, u32), input: PictureInput<'_>, comparison: Compari
     Some(format!("{} stops against {name}", signed_stops(stops_above(shown, other))))
 }
 
-/// Paints the part of a picture between two shares of its width.
-fn image(painter: &Painter, texture: TextureId, place: Rect, shares: std::ops::Range<f32>) {
-    let x = |share: f32| place.left() + place.width() * share;
-    let part = Rect::from_min_max(pos2(x(shares.start), place.top()), pos2(x(shares.end), place.bottom()));
-    let uv = Rect::from_min_max(Pos2::new(shares.start, 0.0), Pos2::new(shares.end, 1.0));
-    painter.image(texture, part, uv, Color32::WHITE);
+/// Paints a picture.
+fn image(painter: &Painter, texture: TextureId, place: Rect) {
+    let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+    painter.image(texture, place, uv, Color32::WHITE);
 }
 
 fn label(painter: &Painter, at: Pos2, align: Align2, text: &str) {

@@ -203,9 +203,12 @@ impl Rendering {
         Some(KeptPicture { film, scene, settings, is_complete: *job.phase() == RenderPhase::Done })
     }
 
-    /// Notes the film whose picture was exported: it need not be kept for the case of a crash.
-    pub fn mark_exported(&mut self, film: Weak<Film>) {
-        self.exported = Some(film);
+    /// Notes that the picture of a film was exported, if it is this one: it need not be kept for the case of a crash.
+    pub fn mark_exported(&mut self, film: &Weak<Film>) {
+        let is_here = |held: &Arc<Film>| film.ptr_eq(&Arc::downgrade(held));
+        if self.film.as_ref().is_some_and(is_here) {
+            self.exported = Some(film.clone());
+        }
     }
 
     /// Cancels the job and keeps its samples.
@@ -220,20 +223,18 @@ impl Rendering {
         *self = self.without_picture();
     }
 
-    /// Returns a state with the same film if a picture of `scene` can be developed from it, else without a picture.
-    pub fn for_other_lights(&self, scene: &Scene) -> Self {
-        let mut other = self.without_picture();
-        if !self.is_running()
-            && !self.is_out_of_date(scene)
-            && let Some(picture) = self.kept_picture()
-        {
-            other.restore(picture);
+    /// Returns a state with the same film if a picture of `scene` can be developed from it.
+    pub fn for_other_lights(&self, scene: &Scene) -> Option<Self> {
+        if self.is_running() || self.is_out_of_date(scene) {
+            return None;
         }
-        other
+        let mut other = self.without_picture();
+        other.restore(self.kept_picture()?);
+        Some(other)
     }
 
     /// Returns a state without a picture, with the same settings.
-    fn without_picture(&self) -> Self {
+    pub fn without_picture(&self) -> Self {
         Rendering { settings: self.settings, display: self.display, ..Rendering::new(self.trees.clone()) }
     }
 
@@ -392,9 +393,12 @@ fn is_of(film: &Film, settings: &Settings) -> bool {
     (film.width(), film.height()) == (settings.width, settings.height)
 }
 
-/// Returns the image of a picture; larger ones than a texture are reduced by means of 2x2, 3x3 ... pixels.
 fn shown_within(picture: &Picture, display: PictureDisplay, most: usize) -> ColorImage {
-    let (size, codes) = ([picture.width as usize, picture.height as usize], display.to_srgb8(picture));
+    image_within([picture.width as usize, picture.height as usize], &display.to_srgb8(picture), most)
+}
+
+/// Returns an image of display values; larger ones than a texture are reduced by means of 2x2, 3x3 ... pixels.
+pub(super) fn image_within(size: [usize; 2], codes: &[[u8; 3]], most: usize) -> ColorImage {
     let times = size[0].max(size[1]).div_ceil(most.max(1)).max(1);
     if times == 1 {
         return ColorImage::from_rgb(size, codes.as_flattened());

@@ -1,17 +1,19 @@
 //! The rendered pictures of the variants of a studio, and the comparison of two of them.
 
 use crate::editor::commands::choices::{CompareMode, Comparison};
-use crate::editor::picture::rendering::Rendering;
+use crate::editor::picture::rendering::{Rendering, image_within};
 use crate::editor::ui::image_texture::ImageTexture;
 use crate::editor::ui::wake::wake;
 use crate::figures;
+use crate::io::KeptPicture;
 use crate::jobs::Priority;
 use crate::jobs::worker::{Inbox, Interrupt, Worker, WorkerSettings};
 use crate::photo::{Picture, PictureDifference};
+use crate::raytrace::Film;
 use crate::scene::{Scene, VariantId};
-use eframe::egui::{Color32, ColorImage, Context, TextureId};
+use eframe::egui::{ColorImage, Context, TextureId};
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 /// Two pictures: the shown one, and the other.
 type Pair = [Arc<Picture>; 2];
@@ -32,9 +34,13 @@ pub struct VariantPictures {
     others: HashMap<VariantId, Rendering>,
     worker: Worker<(Pair, usize), ShownDifference>,
     requested: Option<Pair>,
-    latest: Option<(Pair, Option<f32>)>,
+    /// The newest comparison: the mean difference in stops, or why there is none.
+    latest: Option<(Pair, Result<f32, String>)>,
     texture: ImageTexture,
 }
+
+/// Message for pictures of different sizes.
+const OTHER_SIZES: &str = "The two pictures have different sizes: render both in one size to compare them.";
 
 const WORKER: WorkerSettings = WorkerSettings {
     name: "difference",
@@ -71,7 +77,12 @@ impl VariantPictures {
     pub fn follow(&mut self, rendering: &mut Rendering, scene: &Scene) {
         let shown = scene.variants.shown();
         if shown != self.shown {
-            let next = self.others.remove(&shown).unwrap_or_else(|| rendering.for_other_lights(scene));
+            let kept = self.others.remove(&shown);
+            let next = match kept {
+                Some(kept) if kept.is_busy() || (kept.texture().is_some() && !kept.is_out_of_date(scene)) => kept,
+                // A picture that is only to be relit is better than one that is out of date
+                kept => rendering.for_other_lights(scene).or(kept).unwrap_or_else(|| rendering.without_picture()),
+            };
             let former = std::mem::replace(rendering, next);
             (rendering.settings, rendering.display) = (former.settings, former.display);
             self.others.insert(self.shown, former);
@@ -98,14 +109,20 @@ impl VariantPictures {
     }
 
     fn update_difference(&mut self, rendering: &Rendering, comparison: Comparison, ctx: &Context) {
-        if let Some(Ok(difference)) = self.worker.take() {
-            let mean = difference.image.map(|(image, mean)| {
-                self.texture.set(ctx, image);
-                mean
-            });
-            self.latest = Some((difference.of, mean));
+        match (self.worker.take(), self.requested.clone()) {
+            (Some(Ok(difference)), _) => {
+                let mean = difference.image.map(|(image, mean)| {
+                    self.texture.set(ctx, image);
+                    mean
+                });
+                self.latest = Some((difference.of, mean.ok_or_else(|| OTHER_SIZES.to_owned())));
+            }
+            (Some(Err(message)), Some(requested)) => self.latest = Some((requested, Err(message))),
+            _ => {}
         }
         if comparison.mode != CompareMode::Difference {
+            // The pictures need no memory meanwhile
+            (self.requested, self.latest) = (None, None);
             return;
         }
         let Some(pair) = self.pair(rendering, comparison) else { return };
@@ -138,14 +155,29 @@ impl VariantPictures {
         self.others.get(&id).is_some_and(|other| other.texture().is_some())
     }
 
-    /// Returns the difference of the two pictures: its texture, and its mean in stops. None until it is there; an error
-    /// if the pictures have different sizes.
+    /// Returns the difference of the two pictures: its texture, and its mean in stops, or why there is none. None until it
+    /// is there.
     pub fn difference(&self, rendering: &Rendering, comparison: Comparison) -> Option<Result<(TextureId, f32), &str>> {
         let pair = self.pair(rendering, comparison)?;
         let (_, mean) = self.latest.as_ref().filter(|(of, _)| is_same(of, &pair))?;
         match mean {
-            Some(mean) => Some(Ok((self.texture.id()?, *mean))),
-            None => Some(Err("The two pictures have different sizes: render both in one size to compare them.")),
+            Ok(mean) => Some(Ok((self.texture.id()?, *mean))),
+            Err(message) => Some(Err(message)),
+        }
+    }
+
+    /// Returns the picture to keep for the case of a crash: the one in the window, else one of another variant.
+    pub fn to_keep(&self, rendering: &Rendering) -> Option<KeptPicture> {
+        let running_first = |(id, other): &(&VariantId, &Rendering)| (!other.is_running(), **id);
+        let mut others: Vec<_> = self.others.iter().collect();
+        others.sort_by_key(running_first);
+        rendering.to_keep().or_else(|| others.into_iter().find_map(|(_, other)| other.to_keep()))
+    }
+
+    /// Notes the film whose picture was exported.
+    pub fn mark_exported(&mut self, rendering: &mut Rendering, film: &Weak<Film>) {
+        for rendering in self.others.values_mut().chain([rendering]) {
+            rendering.mark_exported(film);
         }
     }
 
@@ -174,20 +206,9 @@ fn is_same(pair: &Pair, other: &Pair) -> bool {
 fn serve(inbox: &Inbox<(Pair, usize), ShownDifference>) {
     while let Some(((of, max_side), _)) = inbox.next() {
         let difference = PictureDifference::between(&of[0], &of[1]);
-        let image = difference.map(|difference| (image_within(&difference, max_side), difference.mean_stops));
+        let image = difference.map(|PictureDifference { size, srgb8, mean_stops }| {
+            (image_within([size.0 as usize, size.1 as usize], &srgb8, max_side), mean_stops)
+        });
         inbox.publish(ShownDifference { of, image });
     }
-}
-
-/// Returns the image of a difference; of a larger one than a texture only every second, third ... pixel.
-fn image_within(difference: &PictureDifference, max_side: usize) -> ColorImage {
-    let (width, height) = (difference.size.0 as usize, difference.size.1 as usize);
-    let step = width.max(height).div_ceil(max_side.max(1)).max(1);
-    let rows = (0..height).step_by(step);
-    let pixels = rows.flat_map(|y| (0..width).step_by(step).map(move |x| y * width + x));
-    let pixels = pixels.map(|at| {
-        let [r, g, b] = difference.srgb8[at];
-        Color32::from_rgb(r, g, b)
-    });
-    ColorImage::new([width.div_ceil(step), height.div_ceil(step)], pixels.collect())
 }

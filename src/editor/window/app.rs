@@ -159,7 +159,7 @@ impl App {
         let elsewhere: Vec<PathBuf> = home.into_iter().chain([std::env::temp_dir()]).collect();
         let rescued = rescue::rescue(&self.document, &elsewhere);
         // A picture has no other place.
-        if matches!(rescued, Some(Ok(_))) && self.rendering.to_keep().is_none() {
+        if matches!(rescued, Some(Ok(_))) && self.variant_pictures.to_keep(&self.rendering).is_none() {
             self.end_recovery();
         }
         rescued

@@ -18,7 +18,7 @@ use crate::editor::document::studio_document::Document;
 use crate::editor::viewport::tools::place_light::{LightPlacement, can_be_placed};
 use crate::editor::viewport::tools::place_light_drag::PlaceLightDrag;
 use crate::editor::window::app::App;
-use crate::scene::{Aim, Emitter, LightId, Object, Scene, Solo};
+use crate::scene::{Aim, Emitter, LightId, Object, Scene, Solo, VariantId};
 use eframe::egui::{Context, ViewportCommand};
 use std::collections::HashSet;
 
@@ -107,7 +107,7 @@ impl App {
                 }
             }
             Command::ResetMix => self.rendering.mix = Mix::default(),
-            Command::ShowVariant(id) => drop(self.document.show_variant(id)),
+            Command::ShowVariant(id) => self.show_variant(id),
             Command::ShowVariantAt(index) => self.show_variant_at(index),
             Command::AddVariant => {
                 let name = self.document.scene().variants.next_name();
@@ -314,16 +314,31 @@ impl App {
         self.apply(action, None);
     }
 
+    /// Shows the variant at a place in the list.
     fn show_variant_at(&mut self, index: usize) {
         let variants = &self.document.scene().variants;
         let id = variants.list().nth(index).map(|(id, _)| id);
         match id {
-            Some(id) => drop(self.document.show_variant(id)),
+            Some(id) => self.show_variant(id),
             None if variants.is_empty() => {
                 self.toasts.info("The studio has no variants: add one in the menu Variants.")
             }
             None => self.toasts.info(format!("There is no variant number {}.", index + 1)),
         }
+    }
+
+    /// Shows the variant that another state of the studio shows, if it is still there, with its picture.
+    pub(super) fn show_variant_of(&mut self, other: &Scene) {
+        let name = other.variants.name(other.variants.shown());
+        if let Some(id) = name.and_then(|name| self.document.scene().variants.named(name)) {
+            self.show_variant(id);
+        }
+    }
+
+    /// Shows a variant with its picture.
+    fn show_variant(&mut self, id: VariantId) {
+        self.document.show_variant(id);
+        self.variant_pictures.follow(&mut self.rendering, self.document.scene());
     }
 
     fn render(&mut self, ctx: &Context) {

@@ -179,7 +179,7 @@ impl App {
                 }
             }
             TaskResult::Exported(path, film, Ok(())) => {
-                self.rendering.mark_exported(film);
+                self.variant_pictures.mark_exported(&mut self.rendering, &film);
                 self.toasts.info(format!("Picture written to {}", path.display()));
             }
             TaskResult::Exported(_, _, Err(message)) => {

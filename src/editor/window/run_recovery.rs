@@ -24,8 +24,9 @@ impl App {
 
     /// Keeps unsaved changes on the disk.
     pub(super) fn keep_unsaved(&mut self, ctx: &Context) {
-        let (now, picture) = (ctx.input(|i| i.time), self.rendering.to_keep());
-        let (document, is_rendering) = (&self.document, self.rendering.is_running());
+        let (now, picture) = (ctx.input(|i| i.time), self.variant_pictures.to_keep(&self.rendering));
+        let (document, is_rendering) =
+            (&self.document, self.rendering.is_running() || self.variant_pictures.running().is_some());
         let content = WindowContent { document, picture: picture.as_ref(), is_rendering };
         if let Some(seconds) = self.session.recovery.update(content, now, &wake(ctx)) {
             ctx.request_repaint_after(Duration::from_secs_f64(seconds));
@@ -101,6 +102,7 @@ impl App {
                     (true, None) => "The studio is open again, without its picture.",
                 });
                 if let Some(picture) = picture {
+                    self.show_variant_of(&picture.scene);
                     self.rendering.restore(picture);
                     self.views.central = CentralView::Picture;
                 }

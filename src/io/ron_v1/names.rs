@@ -6,10 +6,10 @@ use crate::scene::{Aim, Focus, Gaze, LightId, ObjectId};
 use glam::Vec3;
 use std::collections::HashMap;
 
-/// A reference to an object or a light that the file does not have.
+/// A reference to an object, a light or a variant that the file does not have.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::io) struct UnknownName {
-    /// The kind it refers to: `object` or `light`.
+    /// The kind it refers to: `object`, `light` or `variant`.
     pub kind: &'static str,
     /// The field that refers to it, such as `lights[2] "Key" aim.name`.
     pub place: String,
@@ -84,23 +84,29 @@ impl LightIds {
         LightIds { of_studio, added }
     }
 
+    /// Returns the id of a light of the studio itself.
     pub fn id(&self, name: &str, place: &str) -> Result<LightId, UnknownName> {
-        self.of_studio.get(name).or_else(|| self.added.get(name)).copied().ok_or_else(|| {
-            let mut known: Vec<String> = self.of_studio.keys().chain(self.added.keys()).cloned().collect();
-            known.sort_unstable();
-            UnknownName { kind: "light", place: place.to_owned(), name: name.to_owned(), known }
-        })
+        self.of_studio.get(name).copied().ok_or_else(|| unknown_light(name, place, self.of_studio.keys()))
     }
 
     /// Returns the id of a light that a variant adds. It may have the name of a light of the studio.
-    pub fn added_id(&self, name: &str) -> LightId {
-        self.added.get(name).copied().unwrap_or(LightId(u32::MAX))
+    pub fn added_id(&self, name: &str, place: &str) -> Result<LightId, UnknownName> {
+        self.added.get(name).copied().ok_or_else(|| unknown_light(name, place, self.added.keys()))
     }
 
     pub fn gaze(&self, gaze: GazeV1, place: &str) -> Result<Gaze, UnknownName> {
         Ok(match gaze {
             GazeV1::Camera => Gaze::Camera,
-            GazeV1::Light(name) => Gaze::Light(self.id(&name, place)?),
+            GazeV1::Light(name) => Gaze::Light(match self.added.get(&name) {
+                Some(added) if !self.of_studio.contains_key(&name) => *added,
+                _ => self.id(&name, place)?,
+            }),
         })
     }
+}
+
+fn unknown_light<'a>(name: &str, place: &str, known: impl Iterator<Item = &'a String>) -> UnknownName {
+    let mut known: Vec<String> = known.cloned().collect();
+    known.sort_unstable();
+    UnknownName { kind: "light", place: place.to_owned(), name: name.to_owned(), known }
 }

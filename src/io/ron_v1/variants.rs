@@ -4,8 +4,11 @@ use super::convert::{aim_to, focus_to, light_from, light_to};
 use super::defaults::is_studio_name;
 use super::names::{LightIds, ObjectIds, UnknownName};
 use super::{CameraDifferenceV1, LightDifferenceV1, VariantV1, VariantsV1};
-use crate::scene::{CameraDifference, LightDifference, LightId, Scene, SetupDifference, Variant, VariantId, Variants};
+use crate::scene::{
+    CameraDifference, Light, LightDifference, LightId, ObjectId, Scene, SetupDifference, Variant, VariantId, Variants,
+};
 use glam::Vec3;
+use std::collections::HashMap;
 
 /// Converts the variants of a file. Returns the shown one, too.
 pub(super) fn variants_from(
@@ -43,8 +46,9 @@ fn variant_from(file: VariantV1, id: u32, objects: &ObjectIds, lights: &LightIds
     });
     let removed = removed_lights.iter().enumerate().map(|(i, name)| lights.id(name, &at("removed_lights", i)));
     let added = added_lights.into_iter().enumerate().map(|(i, light)| {
-        let id = lights.added_id(&light.name);
-        light_from(light, id, &format!("{}.", at("added_lights", i)), objects)
+        let place = format!("{}.", at("added_lights", i));
+        let id = lights.added_id(&light.name, &place)?;
+        light_from(light, id, &place, objects)
     });
     let difference = SetupDifference {
         camera: camera_difference_from(camera, &format!("{place}camera."), objects)?,
@@ -111,18 +115,40 @@ pub(super) fn variants_to(scene: &Scene, shown: VariantId) -> Option<VariantsV1>
     (!is_plain).then(|| VariantsV1 {
         studio: studio_name.clone(),
         shown: shown.map(str::to_owned),
-        others: others.iter().map(|variant| variant_to(scene, variant)).collect(),
+        others: {
+            let names = Names::of(scene);
+            others.iter().map(|variant| variant_to(scene, &names, variant)).collect()
+        },
     })
 }
 
-fn variant_to(scene: &Scene, Variant { id: _, name, difference }: &Variant) -> VariantV1 {
+/// Lights and names of objects by id: a linear search for each would be quadratic.
+struct Names<'a> {
+    lights: HashMap<LightId, &'a Light>,
+    objects: HashMap<ObjectId, &'a str>,
+}
+
+impl<'a> Names<'a> {
+    fn of(scene: &'a Scene) -> Self {
+        Names {
+            lights: scene.lights.iter().map(|light| (light.id, light)).collect(),
+            objects: scene.objects.iter().map(|object| (object.id, object.name.as_str())).collect(),
+        }
+    }
+}
+
+fn variant_to(scene: &Scene, names: &Names<'_>, Variant { id: _, name, difference }: &Variant) -> VariantV1 {
     let SetupDifference { camera, lights, removed_lights, added_lights, hidden, visible } = difference;
-    let light_name = |id: &LightId| Some(scene.light(*id)?.name.clone());
-    let object_names = |ids: &[_]| ids.iter().filter_map(|id| Some(scene.object(*id)?.name.clone())).collect();
+    let light_name = |id: &LightId| Some(names.lights.get(id)?.name.clone());
+    let object_names =
+        |ids: &[ObjectId]| ids.iter().filter_map(|id| Some((*names.objects.get(id)?).to_owned())).collect();
     VariantV1 {
         name: name.clone(),
         camera: camera_difference_to(scene, camera),
-        lights: lights.iter().filter_map(|(id, light)| light_difference_to(scene, *id, light)).collect(),
+        lights: lights
+            .iter()
+            .filter_map(|(id, light)| Some(light_difference_to(scene, names.lights.get(id)?, light)))
+            .collect(),
         removed_lights: removed_lights.iter().filter_map(light_name).collect(),
         added_lights: added_lights.iter().map(|light| light_to(scene, light)).collect(),
         hidden: object_names(hidden),
@@ -151,11 +177,10 @@ fn camera_difference_to(scene: &Scene, camera: &CameraDifference) -> CameraDiffe
     }
 }
 
-/// Converts the difference of a light; none if the studio has no such light.
-fn light_difference_to(scene: &Scene, id: LightId, difference: &LightDifference) -> Option<LightDifferenceV1> {
-    let light = scene.light(id)?;
+/// Converts the difference from a light of the studio.
+fn light_difference_to(scene: &Scene, light: &Light, difference: &LightDifference) -> LightDifferenceV1 {
     let position = difference.position.unwrap_or(light.position);
-    Some(LightDifferenceV1 {
+    LightDifferenceV1 {
         light: light.name.clone(),
         role: difference.role.map(Into::into),
         position: difference.position.map(|position| position.to_array()),
@@ -170,5 +195,5 @@ fn light_difference_to(scene: &Scene, id: LightId, difference: &LightDifference)
         on: difference.on,
         visible_to_camera: difference.visible_to_camera,
         muted: difference.muted,
-    })
+    }
 }

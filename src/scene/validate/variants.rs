@@ -28,8 +28,8 @@ pub(super) fn check_variants(scene: &Scene, check: &mut Check) {
             continue;
         }
         // Findings that the shown variant has, too, are not repeated
-        let Some(other) = scene.as_variant(id) else { continue };
-        for finding in validate(&other.without_variants()) {
+        let Some(other) = scene.variant_alone(id) else { continue };
+        for finding in validate(&other) {
             if !known.insert(identity(&finding)) {
                 continue;
             }

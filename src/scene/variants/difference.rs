@@ -6,7 +6,7 @@ use crate::scene::{
     Sensor,
 };
 use glam::Vec3;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// Declares the difference of one struct from another: each field is `Some` new value where they differ.
 macro_rules! difference {
@@ -99,7 +99,7 @@ pub struct SetupDifference {
 }
 
 impl SetupDifference {
-    /// Returns the difference of `to` from `from`.
+    /// Returns the difference of `to` from `from`, both without a solo.
     pub(super) fn between(from: &StudioSetup, to: &StudioSetup) -> Self {
         let by_id = |setup: &'_ StudioSetup| -> HashMap<LightId, usize> {
             setup.lights.iter().enumerate().map(|(index, light)| (light.id, index)).collect()
@@ -138,8 +138,9 @@ impl SetupDifference {
     }
 }
 
-/// Returns the ids of `some` that are not in `others`.
+/// Returns the ids of `some` that are not in `others`, each once, in order.
 fn without(some: &[ObjectId], others: &[ObjectId]) -> Vec<ObjectId> {
     let others: HashSet<ObjectId> = others.iter().copied().collect();
-    some.iter().filter(|id| !others.contains(id)).copied().collect()
+    let some: BTreeSet<ObjectId> = some.iter().filter(|id| !others.contains(id)).copied().collect();
+    some.into_iter().collect()
 }

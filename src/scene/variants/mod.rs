@@ -118,7 +118,7 @@ impl Variants {
     /// Returns every aim that is stored here instead of in the scene, to change it.
     pub fn stored_aims_mut(&mut self) -> impl Iterator<Item = &mut Aim> {
         let studio = self.shown.iter_mut().flat_map(|shown| {
-            let StudioSetup { camera, lights, hidden: _ } = &mut *shown.studio;
+            let StudioSetup { camera, lights, hidden: _, solo: _ } = &mut *shown.studio;
             std::iter::once(&mut camera.aim).chain(lights.iter_mut().map(|light| &mut light.aim))
         });
         let others = self.others.iter_mut().flat_map(|variant| {

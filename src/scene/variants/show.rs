@@ -6,8 +6,8 @@ use crate::scene::{Light, LightId, ObjectId, Scene};
 use std::collections::HashMap;
 
 impl Scene {
-    /// Shows a variant: camera, lights and visibility become its own. Ends a solo. Returns false if there is no such
-    /// variant.
+    /// Shows a variant: camera, lights and visibility become its own. A solo of the studio itself waits for it, that of
+    /// another variant ends. Returns false if there is no such variant.
     ///
     /// The eyes of figures do not follow; see [`crate::figures::show_variant`].
     pub fn show_variant(&mut self, id: VariantId) -> bool {
@@ -20,9 +20,9 @@ impl Scene {
         let studio = self.hide_variant();
         match self.variants.others.iter_mut().find(|variant| variant.id == id) {
             Some(variant) => {
-                // Of two equal studios, the stored differences are equal, too
+                // Cleared, so that scenes with the same variant shown compare equal
                 let difference = std::mem::take(&mut variant.difference);
-                difference.applied(&studio).put_into(self);
+                difference.applied(&studio.without_solo()).put_into(self);
                 self.variants.shown = Some(ShownVariant { id, studio: Box::new(studio) });
             }
             None => studio.put_into(self),
@@ -33,12 +33,11 @@ impl Scene {
     /// Stores what is shown as its variant. Returns the set-up of the studio itself, which the caller has to show or to
     /// store.
     fn hide_variant(&mut self) -> StudioSetup {
-        self.end_solo();
         self.update_stored_lights();
         let setup = StudioSetup::of(self);
         let Some(ShownVariant { id, studio }) = self.variants.shown.take() else { return setup };
         if let Some(variant) = self.variants.others.iter_mut().find(|variant| variant.id == id) {
-            variant.difference = SetupDifference::between(&studio, &setup);
+            variant.difference = SetupDifference::between(&studio.without_solo(), &setup.without_solo());
         }
         *studio
     }
@@ -54,11 +53,22 @@ impl Scene {
         }
     }
 
-    /// Drops from the differences of variants what does not differ from the studio, which must be shown itself.
+    /// Drops from the differences of variants what does not differ from the studio, and lights that it does not have.
     pub fn drop_equal_parts_of_variants(&mut self) {
-        let studio = StudioSetup::of(self);
-        for variant in &mut self.variants.others {
+        if self.variants.is_empty() {
+            return;
+        }
+        let (shown, studio) = (self.variants.shown(), self.studio_setup());
+        for variant in self.variants.others.iter_mut().filter(|variant| variant.id != shown) {
             variant.difference = SetupDifference::between(&studio, &variant.difference.applied(&studio));
+        }
+    }
+
+    /// Returns the set-up of the studio itself, without a solo.
+    fn studio_setup(&self) -> StudioSetup {
+        match &self.variants.shown {
+            Some(shown) => shown.studio.without_solo(),
+            None => StudioSetup::of(self).without_solo(),
         }
     }
 
@@ -71,7 +81,31 @@ impl Scene {
 
     /// Returns the scene as it is shown, without its variants.
     pub fn without_variants(&self) -> Scene {
-        Scene { variants: Variants::default(), ..self.clone() }
+        let Scene { name, description, camera, room, objects, lights, meter, solo, variants: _ } = self;
+        Scene {
+            name: name.clone(),
+            description: description.clone(),
+            camera: camera.clone(),
+            room: room.clone(),
+            objects: objects.clone(),
+            lights: lights.clone(),
+            meter: *meter,
+            solo: solo.clone(),
+            variants: Variants::default(),
+        }
+    }
+
+    /// Returns the scene that shows a variant, without all others. None if there is no such variant.
+    pub fn variant_alone(&self, id: VariantId) -> Option<Scene> {
+        let mut scene = self.without_variants();
+        if id == self.variants.shown() {
+            return Some(scene);
+        }
+        let studio = self.studio_setup();
+        let setup =
+            if id == self.variants.studio_id { studio } else { self.variants.other(id)?.difference.applied(&studio) };
+        setup.put_into(&mut scene);
+        Some(scene)
     }
 
     /// Adds a variant that is equal to the shown one, and shows it. None if there are [`VARIANT_LIMIT`].
@@ -79,9 +113,8 @@ impl Scene {
         if self.variants.others.len() >= VARIANT_LIMIT {
             return None;
         }
-        self.end_solo();
         let id = self.variants.fresh_id();
-        let setup = StudioSetup::of(self);
+        let setup = StudioSetup::of(self).without_solo();
         let studio = self.hide_variant();
         self.variants.others.push(Variant { id, name, difference: SetupDifference::default() });
         self.variants.shown = Some(ShownVariant { id, studio: Box::new(studio) });
@@ -124,9 +157,8 @@ impl Scene {
         }
         let Some(place) = self.variants.others.iter().position(|variant| variant.id == id) else { return false };
         self.show_variant(id);
-        self.end_solo();
-        let new = StudioSetup::of(self);
-        let old = self.hide_variant();
+        let new = StudioSetup::of(self).without_solo();
+        let old = self.hide_variant().without_solo();
         for variant in &mut self.variants.others {
             let setup = if variant.id == id { old.clone() } else { variant.difference.applied(&old) };
             variant.difference = SetupDifference::between(&new, &setup);

@@ -132,14 +132,56 @@ fn variants_have_different_names() {
 }
 
 #[test]
-fn a_solo_ends_before_another_variant_is_shown() {
+fn the_solo_of_the_studio_waits_for_it_and_that_of_a_variant_ends() {
     let (mut scene, a, b) = with_b();
-    scene.solo = Some(crate::scene::Solo { lights: vec![LightId(2)], restores: vec![LightId(0), LightId(2)] });
-    scene.lights[0].on = false;
+    let solo = |scene: &mut Scene, id| {
+        let restores = scene.lights.iter().filter(|light| light.on).map(|light| light.id).collect();
+        scene.solo = Some(crate::scene::Solo { lights: vec![id], restores });
+        scene.lights.iter_mut().for_each(|light| light.on = light.id == id);
+    };
+    solo(&mut scene, LightId(2));
     scene.show_variant(a);
     assert_eq!(scene.solo, None);
+    solo(&mut scene, LightId(0));
+    let soloed = scene.clone();
     scene.show_variant(b);
-    assert!(scene.lights[0].on);
+    assert!(scene.solo.is_none() && scene.lights.iter().all(|light| light.on), "the switches of B are its own");
+    scene.show_variant(a);
+    assert_eq!(scene, soloed);
+    // A variant is added without the solo
+    scene.add_variant("C".to_owned()).unwrap();
+    assert!(scene.solo.is_none() && scene.lights[1].on);
+}
+
+#[test]
+fn a_variant_keeps_its_switches_while_the_studio_is_soloed() {
+    let (mut scene, a, b) = with_b();
+    scene.lights[0].on = false;
+    scene.show_variant(a);
+    scene.solo = Some(crate::scene::Solo { lights: vec![LightId(1)], restores: vec![LightId(0), LightId(1)] });
+    scene.lights[0].on = false;
+    scene.drop_equal_parts_of_variants();
+    scene.show_variant(b);
+    assert!(!scene.lights[0].on);
+}
+
+#[test]
+fn showing_another_variant_and_returning_changes_nothing() {
+    let (mut scene, a, b) = with_b();
+    scene.show_variant(a);
+    let difference = &mut scene.variants.others[0].difference;
+    difference.hidden = vec![ObjectId(1), ObjectId(0), ObjectId(1)];
+    difference.lights.push((LightId(9), LightDifference { on: Some(false), ..Default::default() }));
+    difference.removed_lights.push(LightId(8));
+    scene.lights[0].power.dial_stops = -1.0;
+    scene.drop_equal_parts_of_variants();
+    let difference = &scene.variants.others[0].difference;
+    assert_eq!((difference.lights.len(), difference.hidden.len(), difference.removed_lights.len()), (0, 2, 1));
+    let before = scene.clone();
+    scene.show_variant(b);
+    scene.show_variant(a);
+    assert_eq!(scene, before);
+    assert_eq!(scene.variant_alone(b), scene.as_variant(b).map(|scene| scene.without_variants()));
 }
 
 #[test]
