@@ -6,23 +6,24 @@ use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
+use crate::editor::ui::name_field::{NameAnswer, NameField};
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets;
 use crate::photo::light_rgb;
 use crate::scene::{Light, Object, Scene};
-use eframe::egui::{self, Button, Key, Response, RichText, ScrollArea, Sense, TextEdit, Ui, vec2};
+use eframe::egui::{self, Button, Response, RichText, ScrollArea, Sense, Ui, vec2};
 
 /// The state of the list.
 #[derive(Clone, Debug, Default)]
 pub struct OutlinerState {
-    /// The item being renamed, the text, and true once the field has had the focus.
-    rename: Option<(Item, String, bool)>,
+    /// The name field of the item that is being renamed.
+    rename: Option<NameField<Item>>,
 }
 
 impl OutlinerState {
     /// Opens the name field of an item.
     pub fn begin_rename(&mut self, item: Item, name: String) {
-        self.rename = Some((item, name, false));
+        self.rename = Some(NameField::new(item, name));
     }
 }
 
@@ -208,7 +209,7 @@ impl OutlinerRows<'_> {
 
     /// Draws the name of an item: click selects, double click renames, right click opens the menu.
     fn name(&mut self, ui: &mut Ui, item: Item, name: &str, tip: String, faded: bool, icons: f32) {
-        if self.state.rename.as_ref().is_some_and(|(renamed, ..)| *renamed == item) {
+        if self.state.rename.as_ref().is_some_and(|field| field.target == item) {
             rename_ui(ui, self.state, icons, self.out);
             return;
         }
@@ -245,18 +246,12 @@ fn name_button(ui: &mut Ui, name: &str, selected: bool, faded: bool, icons: f32)
     response
 }
 
+/// Draws the name field in the place of an item.
 fn rename_ui(ui: &mut Ui, state: &mut OutlinerState, icons: f32, out: &mut Vec<Command>) {
-    let Some((item, text, had_focus)) = &mut state.rename else { return };
-    let width = name_width(ui, icons);
-    let field = ui.name_inputs("New name", |ui| ui.add(TextEdit::singleline(text).desired_width(width)));
-    if !*had_focus {
-        field.request_focus();
-        *had_focus = true;
+    let Some(field) = &mut state.rename else { return };
+    let Some(answer) = field.ui(ui, "New name", name_width(ui, icons)) else { return };
+    if let NameAnswer::Named(name) = answer {
+        out.push(Command::Apply(Action::Rename(field.target, name)));
     }
-    if field.lost_focus() {
-        if !ui.input(|i| i.key_pressed(Key::Escape)) {
-            out.push(Command::Apply(Action::Rename(*item, text.clone())));
-        }
-        state.rename = None;
-    }
+    state.rename = None;
 }

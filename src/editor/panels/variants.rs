@@ -4,21 +4,22 @@ use crate::editor::commands::command::Command;
 use crate::editor::commands::menu_entry::entry;
 use crate::editor::document::action::Action;
 use crate::editor::picture::variant_pictures::VariantPictures;
+use crate::editor::ui::name_field::{NameAnswer, NameField};
 use crate::editor::ui::{theme, widgets};
 use crate::scene::{Scene, SetupDifference, VariantId};
-use eframe::egui::{Button, Key, RichText, TextEdit, Ui};
+use eframe::egui::{Button, RichText, Ui};
 
 /// The state of the row.
 #[derive(Clone, Debug, Default)]
 pub struct VariantsState {
-    /// The variant being renamed, the text, and true once the field has had the focus.
-    rename: Option<(VariantId, String, bool)>,
+    /// The name field of the variant that is being renamed.
+    rename: Option<NameField<VariantId>>,
 }
 
 impl VariantsState {
     /// Opens the name field of a variant.
     pub fn begin_rename(&mut self, id: VariantId, name: String) {
-        self.rename = Some((id, name, false));
+        self.rename = Some(NameField::new(id, name));
     }
 }
 
@@ -34,13 +35,12 @@ pub fn variants_ui(
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.label(RichText::new("Variants").weak());
         for (index, (id, name)) in scene.variants.list().enumerate() {
-            if state.rename.as_ref().is_some_and(|(renamed, ..)| *renamed == id) {
+            if state.rename.as_ref().is_some_and(|field| field.target == id) {
                 rename_ui(ui, state, out);
                 continue;
             }
             let shown = id == scene.variants.shown();
-            let text = RichText::new(if name.is_empty() { "unnamed" } else { name });
-            let button = ui.add(Button::selectable(shown, text));
+            let button = ui.add(Button::selectable(shown, name));
             widgets::named(ui, &button, &format!("Variant {name}"));
             if button.clicked() {
                 out.push(Command::ShowVariant(id));
@@ -78,7 +78,7 @@ pub fn entries(ui: &mut Ui, scene: &Scene, id: VariantId, out: &mut Vec<Command>
     entry(ui, is_other, &format!("Delete {name}"), "Its lights and its picture go; the studio stays", delete, out);
 }
 
-/// Returns what a variant changes in the studio, in words: `Key, Fill, camera`.
+/// Returns the difference of a variant from the studio in words: `Differs in: Key, no Fill, camera`.
 pub fn difference_text(scene: &Scene, id: VariantId) -> String {
     if id == scene.variants.studio_id {
         return "The studio itself".to_owned();
@@ -104,17 +104,12 @@ pub fn difference_text(scene: &Scene, id: VariantId) -> String {
     }
 }
 
+/// Draws the name field in the place of a variant.
 fn rename_ui(ui: &mut Ui, state: &mut VariantsState, out: &mut Vec<Command>) {
-    let Some((id, text, had_focus)) = &mut state.rename else { return };
-    let field = ui.name_inputs("Name of the variant", |ui| ui.add(TextEdit::singleline(text).desired_width(140.0)));
-    if !*had_focus {
-        field.request_focus();
-        *had_focus = true;
+    let Some(field) = &mut state.rename else { return };
+    let Some(answer) = field.ui(ui, "Name of the variant", 140.0) else { return };
+    if let NameAnswer::Named(name) = answer {
+        out.push(Command::Apply(Action::RenameVariant(field.target, name)));
     }
-    if field.lost_focus() {
-        if !ui.input(|i| i.key_pressed(Key::Escape)) {
-            out.push(Command::Apply(Action::RenameVariant(*id, text.clone())));
-        }
-        state.rename = None;
-    }
+    state.rename = None;
 }

@@ -10,7 +10,7 @@ use crate::photo::text::signed_stops;
 use crate::photo::{DIFFERENCE_STOPS, Spot, difference_color, stops_above};
 use crate::scene::{Scene, VariantId};
 use eframe::egui::{
-    Align2, Color32, CursorIcon, FontId, Painter, Pos2, Rect, Sense, Stroke, TextureId, Ui, pos2, vec2,
+    Align2, Color32, CursorIcon, FontId, Painter, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2, pos2, vec2,
 };
 
 /// Distance of the names from the top of the view, points: under the bar and the read-out.
@@ -64,6 +64,14 @@ pub struct PictureInput<'a> {
     pub scene: &'a Scene,
 }
 
+/// The picture of the other variant.
+struct OtherPicture {
+    name: String,
+    texture: TextureId,
+    /// Width and height on the screen, points.
+    size: Vec2,
+}
+
 /// The picture or the pictures in the view.
 #[derive(Debug)]
 pub struct PicturePane<'a> {
@@ -82,51 +90,57 @@ impl PicturePane<'_> {
     /// where the shown picture is, and the part of the view in which it is visible.
     pub fn ui(&self, ui: &mut Ui, view: Rect, wipe: &mut f32) -> (Rect, Rect) {
         let painter = ui.painter_at(view);
-        let Some((id, other)) = self.input.pictures.other(self.comparison) else {
+        let compared = self.input.pictures.other(self.comparison);
+        let Some(other) = compared.and_then(|(id, other)| self.other(id, other)) else {
             image(&painter, self.texture, self.place);
             return (self.place, view);
         };
-        let Some(other_texture) = other.texture() else { return (self.place, view) };
-        let names = [self.name_of(id, other), self.name_of(self.input.scene.variants.shown(), self.input.rendering)];
-        let names = names.each_ref().map(String::as_str);
-        // The other picture keeps its shape, at the height of the shown one
-        let other_size = other.size().map_or(self.place.size(), |(width, height)| {
-            vec2(self.place.height() * width as f32 / height as f32, self.place.height())
-        });
+        let shown = self.name_of(self.input.scene.variants.shown(), self.input.rendering);
         match self.comparison.mode {
             CompareMode::Off => {
                 image(&painter, self.texture, self.place);
                 (self.place, view)
             }
-            CompareMode::Wipe => {
-                let place = self.place;
-                self.drag_wipe(ui, view, wipe);
-                let x = place.left() + place.width() * *wipe;
-                let (left, right) = view.split_left_right_at_x(x.clamp(view.left(), view.right()));
-                image(&ui.painter_at(left), other_texture, Rect::from_center_size(place.center(), other_size));
-                image(&ui.painter_at(right), self.texture, place);
-                painter.vline(x, view.y_range(), Stroke::new(2.0, theme::ACCENT));
-                label(&painter, pos2(x - 8.0, view.top() + LABEL_TOP), Align2::RIGHT_TOP, names[0]);
-                label(&painter, pos2(x + 8.0, view.top() + LABEL_TOP), Align2::LEFT_TOP, names[1]);
-                (place, right)
-            }
-            CompareMode::SideBySide => {
-                let [left, right] = view.split_left_right_at_fraction(0.5).into();
-                let offset = self.place.center() - view.center();
-                let halves = [(left, other_texture, other_size), (right, self.texture, self.place.size())];
-                for ((half, texture, size), name) in halves.into_iter().zip(names) {
-                    let painter = ui.painter_at(half);
-                    image(&painter, texture, Rect::from_center_size(half.center() + offset, size));
-                    label(&painter, half.center_top() + vec2(0.0, LABEL_TOP), Align2::CENTER_TOP, name);
-                }
-                painter.vline(view.center().x, view.y_range(), Stroke::new(1.0, Color32::from_gray(70)));
-                (Rect::from_center_size(right.center() + offset, self.place.size()), right)
-            }
+            CompareMode::Wipe => self.wipe(ui, view, [&other.name, &shown], &other, wipe),
+            CompareMode::SideBySide => self.side_by_side(ui, view, [&other.name, &shown], &other),
             CompareMode::Difference => {
-                self.difference(&painter, view, names);
+                self.difference(&painter, view, [&other.name, &shown]);
                 (self.place, view)
             }
         }
+    }
+
+    /// Returns the other picture at the height of the shown one. None until it has a texture.
+    fn other(&self, id: VariantId, other: &Rendering) -> Option<OtherPicture> {
+        let (width, height) = other.size()?;
+        let size = vec2(self.place.height() * width as f32 / height as f32, self.place.height());
+        Some(OtherPicture { name: self.name_of(id, other), texture: other.texture()?, size })
+    }
+
+    fn wipe(&self, ui: &mut Ui, view: Rect, names: [&str; 2], other: &OtherPicture, wipe: &mut f32) -> (Rect, Rect) {
+        let (painter, place) = (ui.painter_at(view), self.place);
+        self.drag_wipe(ui, view, wipe);
+        let x = place.left() + place.width() * *wipe;
+        let (left, right) = view.split_left_right_at_x(x.clamp(view.left(), view.right()));
+        image(&ui.painter_at(left), other.texture, Rect::from_center_size(place.center(), other.size));
+        image(&ui.painter_at(right), self.texture, place);
+        painter.vline(x, view.y_range(), Stroke::new(2.0, theme::ACCENT));
+        label(&painter, pos2(x - 8.0, view.top() + LABEL_TOP), Align2::RIGHT_TOP, names[0]);
+        label(&painter, pos2(x + 8.0, view.top() + LABEL_TOP), Align2::LEFT_TOP, names[1]);
+        (place, right)
+    }
+
+    fn side_by_side(&self, ui: &Ui, view: Rect, names: [&str; 2], other: &OtherPicture) -> (Rect, Rect) {
+        let [left, right] = view.split_left_right_at_fraction(0.5).into();
+        let offset = self.place.center() - view.center();
+        let halves = [(left, other.texture, other.size), (right, self.texture, self.place.size())];
+        for ((half, texture, size), name) in halves.into_iter().zip(names) {
+            let painter = ui.painter_at(half);
+            image(&painter, texture, Rect::from_center_size(half.center() + offset, size));
+            label(&painter, half.center_top() + vec2(0.0, LABEL_TOP), Align2::CENTER_TOP, name);
+        }
+        ui.painter_at(view).vline(view.center().x, view.y_range(), Stroke::new(1.0, Color32::from_gray(70)));
+        (Rect::from_center_size(right.center() + offset, self.place.size()), right)
     }
 
     /// Returns the name of a variant, with a mark if its picture is out of date.

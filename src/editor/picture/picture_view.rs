@@ -55,10 +55,11 @@ impl PictureView {
             return;
         };
         let pixels = vec2(size.0 as f32, size.1 as f32) / ui.pixels_per_point();
-        let is_halved =
-            self.comparison.mode == CompareMode::SideBySide && input.pictures.other(self.comparison).is_some();
-        let width = if is_halved { 0.5 * rect.width() } else { rect.width() };
-        let fit = (width / pixels.x).min(rect.height() / pixels.y) * 0.97;
+        // Beside another picture, the wider one has to fit into half of the view
+        let is_halved = self.comparison.mode == CompareMode::SideBySide;
+        let beside = input.pictures.other(self.comparison).filter(|_| is_halved).and_then(|(_, other)| other.size());
+        let widest = beside.map_or(pixels.x, |(w, h)| 2.0 * pixels.x.max(pixels.y * w as f32 / h as f32));
+        let fit = (rect.width() / widest).min(rect.height() / pixels.y) * 0.97;
         self.interact(ui, rect, &response, fit);
         let zoom = self.zoom.unwrap_or(fit);
         let place = Rect::from_center_size(rect.center() + self.offset, pixels * zoom);

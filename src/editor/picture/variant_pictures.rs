@@ -139,7 +139,7 @@ impl VariantPictures {
 
     /// Returns the variant that is compared, if it has a picture.
     fn compared(&self, comparison: Comparison) -> Option<VariantId> {
-        let has_picture = |id: &VariantId| self.others.get(id).is_some_and(|other| other.texture().is_some());
+        let has_picture = |id: &VariantId| self.has_picture(*id);
         let first = || self.others.keys().copied().filter(has_picture).min();
         (comparison.mode != CompareMode::Off).then(|| comparison.with.filter(has_picture).or_else(first))?
     }

@@ -1,7 +1,8 @@
-//! UI elements without knowledge of studios: theme, widgets, units, messages, image textures, legends.
+//! UI elements without knowledge of studios: theme, widgets, units, name fields, messages, image textures, legends.
 
 pub mod image_texture;
 pub mod legend;
+pub mod name_field;
 pub mod side_panel;
 pub mod theme;
 pub mod toasts;

@@ -395,71 +395,63 @@ struct VariantV1 {
     visible: Vec<String>,
 }
 
-#[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(rename = "CameraDifference", deny_unknown_fields)]
-struct CameraDifferenceV1 {
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    position: Option<Triple>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    aim: Option<AimV1>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    roll_deg: Option<f32>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    sensor: Option<SensorV1>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    orientation: Option<OrientationV1>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    focal_length_mm: Option<f32>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    f_number: Option<f32>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    shutter_s: Option<f32>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    iso: Option<f32>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    white_balance_k: Option<f32>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    nd_stops: Option<f32>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    focus: Option<FocusV1>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    depth_of_field: Option<bool>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    focus_breathing: Option<bool>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    meter_constant: Option<f32>,
+/// Declares what differs in a struct: in parentheses the fields that are always written, then those that are left out
+/// where they are equal.
+macro_rules! difference {
+    ($(#[$attribute:meta])* struct $name:ident ($($key:ident: $key_type:ty),*) {
+        $($field:ident: $type:ty),+ $(,)?
+    }) => {
+        $(#[$attribute])*
+        struct $name {
+            $($key: $key_type,)*
+            $(
+                #[serde(default, skip_serializing_if = "Option::is_none")]
+                $field: Option<$type>,
+            )+
+        }
+    };
 }
 
-/// What differs in the light of this name. Output and dial are fields of their own: of the power, often the dial differs
-/// alone.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(rename = "LightDifference", deny_unknown_fields)]
-struct LightDifferenceV1 {
-    light: String,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    role: Option<RoleV1>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    position: Option<Triple>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    aim: Option<AimV1>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    roll_deg: Option<f32>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    emitter: Option<EmitterV1>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    modifier: Option<ModifierV1>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    output: Option<OutputV1>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    dial_stops: Option<f32>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    color: Option<ColorV1>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    gel: Option<GelV1>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    on: Option<bool>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    visible_to_camera: Option<bool>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    muted: Option<bool>,
+difference! {
+    #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
+    #[serde(rename = "CameraDifference", deny_unknown_fields)]
+    struct CameraDifferenceV1 () {
+        position: Triple,
+        aim: AimV1,
+        roll_deg: f32,
+        sensor: SensorV1,
+        orientation: OrientationV1,
+        focal_length_mm: f32,
+        f_number: f32,
+        shutter_s: f32,
+        iso: f32,
+        white_balance_k: f32,
+        nd_stops: f32,
+        focus: FocusV1,
+        depth_of_field: bool,
+        focus_breathing: bool,
+        meter_constant: f32,
+    }
+}
+
+difference! {
+    /// What differs in the light of this name. Output and dial are fields of their own: of the power, often the dial differs
+    /// alone.
+    #[derive(Debug, Serialize, Deserialize)]
+    #[serde(rename = "LightDifference", deny_unknown_fields)]
+    struct LightDifferenceV1 (light: String) {
+        role: RoleV1,
+        position: Triple,
+        aim: AimV1,
+        roll_deg: f32,
+        emitter: EmitterV1,
+        modifier: ModifierV1,
+        output: OutputV1,
+        dial_stops: f32,
+        color: ColorV1,
+        gel: GelV1,
+        on: bool,
+        visible_to_camera: bool,
+        muted: bool,
+    }
 }
