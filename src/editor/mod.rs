@@ -27,9 +27,9 @@
 //! - A command: a variant in `commands::command`, an arm in `window::run_command` (files: `window::run_file_command`),
 //!   its key in `commands::shortcuts::KEY_BINDINGS`, its entry in `panels::menu` or `commands::item_menu`.
 //! - An action: a variant in `document::action` with its label and effect; undo follows by itself.
-//! - A transform handle: a variant of `commands::choices::HandleMode`, its modes in
-//!   `viewport::tools::transform_handles`, its effect in `viewport::tools::transform_selection`. Another tool: a file
-//!   in `viewport::tools` that `viewport::viewport_area` calls.
+//! - A transform handle: a variant of `HandlePart` with its shape in `viewport::tools::handle_part`, its drag in
+//!   `handle_drag` there, its effect in `transform_selection`. Another tool: a file in `viewport::tools` that
+//!   `viewport::viewport_area` calls.
 //! - A catalog entry: a line in `document::catalog`.
 
 mod commands;

@@ -32,10 +32,7 @@ const WITHIN_LAYER: [(&str, &str); 1] = [("cli", "editor")];
 /// Rooms that may use a crate which draws on the GPU or in a window.
 const GUI_CRATES: [(&[&str], &[&str]); 2] = [
     (&["wgpu", "bytemuck"], &["preview", "editor"]),
-    (
-        &["egui", "eframe", "winit", "rfd", "transform_gizmo", "wayland_sys", "x11_dl", "x11rb", "xkbcommon_dl"],
-        &["editor"],
-    ),
+    (&["egui", "eframe", "winit", "rfd", "wayland_sys", "x11_dl", "x11rb", "xkbcommon_dl"], &["editor"]),
 ];
 
 /// Import circles that remain inside a room, each explained in the head of its `mod.rs`; the first file of each.

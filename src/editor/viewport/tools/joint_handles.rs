@@ -1,9 +1,9 @@
 //! The joints of a figure as handles: a limb is posed by dragging it.
 
 use crate::editor::document::action::Action;
-use crate::editor::viewport::overlays::markers::{paint_text, place_of};
+use crate::editor::viewport::overlays::markers::paint_text;
 use crate::editor::viewport::tools::handle_pointer::HandlePointer;
-use crate::editor::viewport::tools::transform_handles::HandleView;
+use crate::editor::viewport::tools::handle_view::HandleView;
 use crate::figures::{Joint, PosableBody};
 use crate::scene::{Figure, Object, Pose, Shape, Torso};
 use eframe::egui::{self, Align2, Color32, Pos2, Stroke, vec2};
@@ -88,7 +88,7 @@ impl JointHandles {
     }
 
     /// Finds the joints on the screen.
-    fn show(&mut self, object: &Object, figure: &Figure, HandleView { frame, rect }: HandleView<'_>) {
+    fn show(&mut self, object: &Object, figure: &Figure, view: HandleView<'_>) {
         let body = match self.body.take().filter(|body| body.is_of(figure)) {
             Some(body) => body,
             None => PosableBody::new(figure),
@@ -97,7 +97,7 @@ impl JointHandles {
         let joints = Joint::ALL.into_iter().filter(|joint| joint.is_part_of(figure));
         let on_screen = |joint: Joint| {
             let place = world_from_object.transform_point3(body.place(joint));
-            Some((joint, place_of(frame, rect, place)?))
+            Some((joint, view.place(place)?))
         };
         self.shown = joints.filter_map(on_screen).collect();
         self.body = Some(body);

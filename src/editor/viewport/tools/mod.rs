@@ -2,8 +2,10 @@
 //! a light by a feature.
 
 pub mod click_pick;
-pub mod floor_handle;
+pub mod handle_drag;
+pub mod handle_part;
 pub mod handle_pointer;
+pub mod handle_view;
 pub mod joint_handles;
 pub mod marquee_selection;
 pub mod place_light;
