@@ -237,12 +237,21 @@ fn the_slurm_script_renders_the_missing_parts_when_it_is_run_again() {
     });
 }
 
-/// Needs `openjd` (`pip install openjd-cli`).
+/// Returns true if `openjd` is there (`pip install openjd-cli`); the gate demands it.
+#[cfg(unix)]
+fn has_openjd() -> bool {
+    let has = Command::new("openjd").arg("--version").output().is_ok();
+    assert!(has || std::env::var_os("CATCHLIGHT_REQUIRE_OPENJD").is_none(), "no openjd");
+    if !has {
+        eprintln!("\n!!! SKIPPED, no openjd\n");
+    }
+    has
+}
+
 #[cfg(unix)]
 #[test]
 fn the_job_for_open_job_description_completes_the_picture_after_a_killed_part() {
-    if Command::new("openjd").arg("--version").output().is_err() {
-        eprintln!("\n!!! SKIPPED, no openjd\n");
+    if !has_openjd() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -265,4 +274,40 @@ fn the_job_for_open_job_description_completes_the_picture_after_a_killed_part() 
         }
         job
     });
+}
+
+#[cfg(unix)]
+#[test]
+fn the_series_for_open_job_description_renders_studios_and_variants_and_completes_after_a_killed_part() {
+    if !has_openjd() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let mut scene = catchlight::io::find_preset("product_still_life").unwrap().load().unwrap().scene;
+    scene.add_variant("Dim".to_owned()).unwrap();
+    scene.lights.iter_mut().for_each(|light| light.power.dial_stops -= 1.0);
+    catchlight::io::save_scene(&scene, &path.join("still.ron")).unwrap();
+    let series = "# a comment\na.exr still.ron --size 36x24\n\ndim.exr still.ron --size 36x24 --variant Dim\n";
+    std::fs::write(path.join("series.txt"), series).unwrap();
+    let flaky = killed_once(path, "4..8");
+    let template = Path::new(env!("CARGO_MANIFEST_DIR")).join("farm/series.openjd.yaml");
+    let run = || {
+        let mut job = Command::new("openjd");
+        job.arg("run").arg(&template).args(["--step", "Merge", "--run-dependencies"]);
+        let (series, pictures) = (path.join("series.txt"), path.join("pictures"));
+        let paths = [format!("Series={}", series.display()), format!("Folder={}", pictures.display())];
+        let counts = ["Pictures=2", "Spp=8", "Parts=2"].map(str::to_owned);
+        for parameter in paths.into_iter().chain(counts).chain([format!("Catchlight={}", flaky.display())]) {
+            job.args(["-p", &parameter]);
+        }
+        job.current_dir(path).output().unwrap()
+    };
+    let first = run();
+    assert!(!first.status.success() && path.join("killed").exists(), "{}", stdout(&first));
+    let second = run();
+    assert!(second.status.success(), "{}{}", stdout(&second), stderr(&second));
+    let sum = |name: &str| exr_channel(&path.join("pictures").join(name), "G").unwrap().iter().sum::<f64>();
+    let ratio = sum("dim.exr") / sum("a.exr");
+    assert!((ratio - 0.5).abs() < 1e-3, "{ratio}");
 }
