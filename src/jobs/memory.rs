@@ -7,7 +7,7 @@ use sysinfo::{MemoryRefreshKind, Process, ProcessRefreshKind, ProcessesToUpdate,
 /// The memory of a render from the first ray on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderMemory {
-    /// What it takes, about: film, snapshot, picture. Denoised light layers come on top.
+    /// What it takes, about: film, snapshot, picture, and denoised layers where the render keeps what the denoiser needs.
     pub need: Bytes,
     /// What the process may still take; none where the system does not tell.
     pub free: Option<Bytes>,
@@ -53,11 +53,16 @@ impl fmt::Display for Bytes {
 const PICTURE_BYTES: u64 = 12 + 3;
 /// The memory of developed AOVs, bytes per pixel: those of the file and those of the denoiser.
 const AOV_BYTES: u64 = 2 * 32;
+/// The memory of denoising, bytes per pixel: of each layer, noisy and denoised, and of the factors by which the layers
+/// sum to the picture.
+const DENOISED_LAYER_BYTES: u64 = 2 * 12;
+const DENOISED_SHARES_BYTES: u64 = 2 * 24;
 
 /// Returns the memory that a render of a prepared scene takes: the film, its snapshot if there is one for a checkpoint or
-/// for the window, and the developed picture.
+/// for the window, the developed picture, and with AOVs the layers that are denoised.
 pub(super) fn needed(settings: &Settings, layers: usize, snapshot: bool) -> Bytes {
-    let aovs = if settings.aovs { AOV_BYTES } else { 0 };
+    let denoised = DENOISED_SHARES_BYTES + DENOISED_LAYER_BYTES * layers as u64;
+    let aovs = if settings.aovs { AOV_BYTES + denoised } else { 0 };
     let films = if snapshot { 2 } else { 1 };
     Bytes(films * Film::bytes(settings, layers) + settings.pixels() * (PICTURE_BYTES + aovs))
 }
@@ -209,9 +214,12 @@ mod tests {
         // Five layers of three floats, two blocks of luminance; twice; and the picture.
         assert_eq!(five, Bytes(24_000_000 * (2 * (5 * 12 + 8) + 15)));
         assert_eq!(five.to_string(), "3.6 GB");
-        assert!(
-            needed(&settings, 6, true) > five && needed(&Settings { aovs: true, ..settings.clone() }, 5, true) > five
-        );
+        assert!(needed(&settings, 6, true) > five);
+        // Two sets of AOVs of 32 bytes; five layers, noisy and denoised, and two sets of shares.
+        let with_aovs = Settings { aovs: true, ..settings.clone() };
+        let film = Film::bytes(&with_aovs, 5);
+        let denoising = 24_000_000 * (5 * 24 + 2 * 24);
+        assert_eq!(needed(&with_aovs, 5, false), Bytes(film + 24_000_000 * (15 + 64) + denoising));
         assert_eq!(needed(&settings, 5, false), Bytes(24_000_000 * (5 * 12 + 8 + 15)));
         let quarter = Settings { width: 3000, height: 2000, ..settings };
         assert_eq!(needed(&quarter, 5, true).0 * 4, five.0);
