@@ -6,4 +6,4 @@ target=${CARGO_TARGET_DIR:-target}
 cargo build --release --locked
 "$target/release/catchlight" package-files target/package
 packaging/licences.py target/package/licences.txt
-cargo deb --no-build --locked "$@"
+cargo deb --no-build --locked --strip "$@"
