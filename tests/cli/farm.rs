@@ -239,6 +239,7 @@ fn the_slurm_script_renders_the_missing_parts_when_it_is_run_again() {
 
 /// Returns true if `openjd` is there (`pip install openjd-cli`); the gate demands it.
 #[cfg(unix)]
+#[expect(clippy::print_stderr, reason = "a skipped test says so")]
 fn has_openjd() -> bool {
     let has = Command::new("openjd").arg("--version").output().is_ok();
     assert!(has || std::env::var_os("CATCHLIGHT_REQUIRE_OPENJD").is_none(), "no openjd");
