@@ -5,7 +5,7 @@
 //! braces do not import each other, except that `cli` opens the window of `editor`:
 //!
 //! ```text
-//! { math, color }  <-  scene  <-  photo  <-  { denoise, figures, raytrace, raster, preview }  <-  io
+//! { math, color }  <-  scene  <-  photo  <-  { gear, denoise, figures, raytrace, raster, preview }  <-  io
 //!                                         <-  { jobs, truth }  <-  setup  <-  sheet  <-  { editor, cli }  <-  main
 //! ```
 //!
@@ -14,6 +14,7 @@
 //! | `math`, `color` | frames, warps, error bounds; Kelvin, white balance, tone curve, sRGB |
 //! | `scene` | the studio as plain data, its validation, and the class of every change of it |
 //! | `photo` | photometric lights, exposure, meter arithmetic, portrait patterns, scales in thirds of a stop, pictures |
+//! | `gear` | the list of heads, modifiers and stands, and what a studio needs of it |
 //! | `figures` | people by parameters: body, pose, clothes, hair, and their meshes |
 //! | `raytrace` | the ray tracer: BVH, BSDFs, light sampling, path tracer, photon map, film, light meter, live view |
 //! | `denoise` | the denoiser: a neural network and its weights |
@@ -44,6 +45,7 @@ pub mod cli;
 pub mod color;
 pub mod denoise;
 pub mod figures;
+pub mod gear;
 pub mod io;
 pub mod jobs;
 pub mod math;

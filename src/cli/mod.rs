@@ -14,6 +14,7 @@ mod denoised_output;
 mod failure;
 mod frame_rate_beside_live_view;
 mod frame_times;
+mod gear;
 mod input;
 mod light_crowd;
 mod live_view_times;
@@ -73,6 +74,8 @@ enum Command {
     Chart(chart::Arguments),
     /// List the shipped studios.
     Presets(presets::Arguments),
+    /// List heads, modifiers, stands and booms, with the sources of their figures.
+    Gear(gear::Arguments),
     /// Print readings beside the closed-form values that they should match.
     #[command(hide = true)]
     Truth(truth::Arguments),
@@ -110,6 +113,7 @@ pub fn run(started: Instant) -> ExitCode {
         Some(Command::Check(arguments)) => check::run(&arguments),
         Some(Command::Chart(arguments)) => chart::run(&arguments),
         Some(Command::Presets(arguments)) => presets::run(&arguments),
+        Some(Command::Gear(arguments)) => gear::run(&arguments),
         Some(Command::Truth(arguments)) => truth::run(&arguments),
         Some(Command::PackageFiles(arguments)) => package_files::run(&arguments, Arguments::command()),
         Some(Command::BakeFigures(arguments)) => bake::run(&arguments),

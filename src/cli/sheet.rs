@@ -56,6 +56,10 @@ pub struct Arguments {
     /// Units of lengths.
     #[arg(long, value_enum, default_value_t)]
     units: UnitsArgument,
+    /// Your list of gear, with which the sheet compares the studio: heads used twice, stands that are missing. See
+    /// catchlight gear.
+    #[arg(long, value_name = "FILE", conflicts_with = "series")]
+    gear: Option<PathBuf>,
     /// Write a lesson sheet of this series.
     #[arg(long, value_enum)]
     series: Option<SeriesArgument>,
@@ -81,13 +85,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         UnitsArgument::M => Units::Metres,
         UnitsArgument::Ft => Units::Feet,
     };
+    let own = arguments.gear.as_deref().map(super::gear::read_list).transpose()?.unwrap_or_default();
+    let gear = io::bundled_gear().with(&own);
     let pool = input::thread_pool(arguments.threads.unwrap_or(0).into())?;
     let loaded = pool.install(|| arguments.studio.load())?;
     let (scene, assets) = (&loaded.scene, &loaded.assets);
     let (cache, control) = (GeometryCache::default(), RenderControl::new());
     let content = pool.install(|| -> Result<Option<SheetContent>, Failure> {
         let Some(picture) = draft_picture(scene, assets, arguments.spp, &cache, &control)? else { return Ok(None) };
-        Ok(SheetContent::new(scene, assets, picture, units, &cache, &control)?)
+        Ok(SheetContent::new(scene, assets, picture, units, &gear, &cache, &control)?)
     })?;
     write_sheet(&arguments.output, &content.ok_or(Failure::Interrupted)?)?;
     terminal::progress(format_args!("the sheet is written to {}", arguments.output.display()));

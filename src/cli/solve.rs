@@ -23,7 +23,8 @@ use std::path::{Path, PathBuf};
 /// shutter (f/8), stops over the key (+0.5, -1.5), or white or grey for the background. A light is metered by itself:
 /// at the subject, or where it aims, or, for a rim light, turned to it.
 ///
-/// Dials that change are set to tenths of a stop between full power and 1/512. Lights that no wish concerns keep theirs. Wishes that
+/// Dials that change are set within the range and steps of their heads; of heads that are not known in tenths of a stop
+/// between full power and 1/512. Lights that no wish concerns keep theirs. Wishes that
 /// cannot be met are met as nearly as possible, with a warning.
 #[derive(Debug, clap::Args)]
 #[command(verbatim_doc_comment)]

@@ -17,6 +17,7 @@ mod checkpoint;
 mod error;
 mod figures;
 mod file_stamp;
+mod gear_file;
 mod importers;
 mod jpeg_end;
 mod kept_picture;
@@ -42,6 +43,7 @@ pub use assets::{load_assets, load_assets_from, missing_assets};
 pub use checkpoint::{RenderId, read_checkpoint, write_checkpoint};
 pub use error::{AssetError, LoadError, Problem, SaveError, reason};
 pub use file_stamp::FileStamp;
+pub use gear_file::{GearError, OWN_GEAR_FILE, bundled_gear, own_gear_path, read_gear, save_gear};
 pub use importers::{
     MODEL_FORMATS, ModelFormat, import_model, model_extension_list, model_extensions, model_format_names,
 };

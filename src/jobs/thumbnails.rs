@@ -5,9 +5,7 @@ use super::threads::{Priority, background_pool};
 use super::worker::{Inbox, Interrupt, Wake, Worker, WorkerSettings};
 use crate::color::ToneTable;
 use crate::raster::{self, Framebuffer, NO_OBJECT, Shading};
-use crate::scene::{
-    Aim, Assets, Camera, CameraFrame, ColorSource, Emitter, Gel, Light, LightColor, Object, Output, Scene,
-};
+use crate::scene::{Aim, Assets, Camera, CameraFrame, Emitter, Light, LightColor, Object, Output, Scene};
 use crate::{io, math};
 use glam::{Vec2, Vec3};
 use std::collections::VecDeque;
@@ -164,7 +162,7 @@ fn draw_object(object: Object, side: u32) -> Option<ThumbnailImage> {
 
 /// Returns a sun over the left shoulder and an even surround, two thirds of a stop brighter than f/8 is exposed for.
 fn lights() -> Vec<Light> {
-    let white = LightColor { source: ColorSource::Kelvin(5500.0), gel: Gel::None };
+    let white = LightColor::default();
     let light = |emitter, lux| Light { color: white, ..Light::new(emitter, Output::Lux(lux)) };
     let sun = Light {
         position: Vec3::new(-1.0, 1.5, 1.5),

@@ -16,7 +16,7 @@ use super::light_color::light_rgb;
 use crate::scene::{Camera, Light, Modifier, Output, Scene};
 use glam::{Affine3A, Vec3};
 
-/// The output of a light with its dial and its modifier's loss, in the quantity in which it is stated. The unit is a
+/// The output of a light with its dial and the losses of modifier and gel, in the quantity in which it is stated. The unit is a
 /// photometric one for continuous light and the same with seconds for flash.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Strength {
@@ -31,7 +31,7 @@ pub enum Strength {
 impl Strength {
     /// Converts a light's power. The flux that a grid or a snoot cuts off beside the axis is not subtracted.
     pub fn new(light: &Light) -> Self {
-        let dial = light.power.dial_stops.exp2() * transmittance(&light.modifier);
+        let dial = (light.power.dial_stops - light.color.loss_stops()).exp2() * transmittance(&light.modifier);
         match light.power.output {
             Output::Lumens(flux) => Strength::Flux(flux * dial),
             Output::Candela(intensity) => Strength::AxialIntensity(intensity * dial),
@@ -141,7 +141,7 @@ impl PhotometricLight {
     }
 }
 
-/// Returns the luminous intensity of a light on its axis, cd (cd s for flash), dial and modifier included; 0 for
+/// Returns the luminous intensity of a light on its axis, cd (cd s for flash), dial, modifier and gel included; 0 for
 /// distant lights.
 pub fn axial_intensity(light: &Light) -> f32 {
     PhotometricLight::in_frame(light, Affine3A::IDENTITY, &Camera::default()).axial_intensity()
@@ -161,7 +161,7 @@ pub fn integration_time_s(output: &Output, camera: &Camera) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Cone, Emitter};
+    use crate::scene::{Cone, Emitter, Gel};
 
     #[test]
     fn the_output_ratio_follows_the_dial_in_every_unit() {
@@ -180,6 +180,16 @@ mod tests {
             let after = PhotometricLight::new(&scene, &light);
             assert!((after.output_ratio(before.strength) - 0.5).abs() < 1e-6, "{emitter:?}");
         }
+    }
+
+    #[test]
+    fn a_mounted_gel_takes_its_loss_and_a_compensated_one_none() {
+        let mut light = Light::new(Emitter::RoundPanel { diameter_m: 0.9 }, Output::Lumens(1000.0));
+        let bare = axial_intensity(&light);
+        light.color.gel = Gel::Mired(159.0);
+        assert!((axial_intensity(&light) / bare - (-0.85_f32).exp2()).abs() < 1e-6);
+        light.color.gel_loss_counts = false;
+        assert_eq!(axial_intensity(&light), bare);
     }
 
     #[test]

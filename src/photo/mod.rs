@@ -3,6 +3,7 @@
 
 mod aov;
 pub mod beam;
+mod dial_text;
 pub mod emitter;
 pub mod exposure;
 mod false_color;
@@ -21,6 +22,7 @@ pub mod text;
 pub mod thirds;
 
 pub use aov::AovPicture;
+pub use dial_text::{dial_from_text, dial_text, flash_time_text};
 pub use false_color::{FALSE_STOPS, false_color};
 pub use lazy_picture::LazyPicture;
 pub use light::{PhotometricLight, Strength};

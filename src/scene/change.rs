@@ -5,13 +5,14 @@
 //! preview, the background jobs) interpret the classes; they compare no scenes themselves.
 
 use super::{
-    Camera, Light, LightColor, LightId, Material, Meter, Modifier, Object, Power, Room, Scene, Solo, Transform,
+    Camera, Head, HeadDial, Light, LightColor, LightId, Material, Meter, Modifier, Object, Power, Room, Scene, Solo,
+    Transform,
 };
 
 /// The classes of everything that differs between two scenes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SceneChange {
-    /// Names and the description: nothing to redraw.
+    /// Names, the description and the dials of heads: nothing to redraw.
     pub labels: bool,
     /// Locks, mute marks, the solo list and the variants that are not shown: nothing to redraw. The switches that they
     /// move are in `lights`.
@@ -211,6 +212,19 @@ impl SceneChange {
         self.editing |= *lights != new.lights || *restores != new.restores;
     }
 
+    /// Compares what a head displays; its output is in the power of the light.
+    fn compare_heads(&mut self, old: &Head, new: &Head) {
+        let Head { name, dial, sync_s, hss_loss_stops, t01_s } = old;
+        let HeadDial { scale, lowest_stops, steps_per_stop } = dial;
+        self.labels |= *name != new.name
+            || *scale != new.dial.scale
+            || *lowest_stops != new.dial.lowest_stops
+            || *steps_per_stop != new.dial.steps_per_stop
+            || *sync_s != new.sync_s
+            || *hss_loss_stops != new.hss_loss_stops
+            || *t01_s != new.t01_s;
+    }
+
     fn compare_light_lists(&mut self, old: &[Light], new: &[Light]) {
         for (index, light) in new.iter().enumerate() {
             match find_light(old, index, light.id) {
@@ -233,6 +247,7 @@ impl SceneChange {
             roll_deg,
             emitter,
             modifier,
+            head,
             power,
             color,
             on,
@@ -243,6 +258,11 @@ impl SceneChange {
         self.labels |= *name != new.name;
         self.editing |= *muted != new.muted || *locked != new.locked;
         self.roles |= *role != new.role;
+        match (head, &new.head) {
+            (Some(head), Some(new)) => self.compare_heads(head, new),
+            (None, None) => {}
+            (Some(_), None) | (None, Some(_)) => self.labels = true,
+        }
         let mut change = LightChange {
             id: *id,
             was_on: *on,
@@ -299,8 +319,8 @@ impl LightChange {
     }
 
     fn compare_colors(&mut self, old: &LightColor, new: &LightColor) {
-        let LightColor { source, gel } = old;
-        self.weight |= *source != new.source || *gel != new.gel;
+        let LightColor { source, gel, gel_loss_counts } = old;
+        self.weight |= *source != new.source || *gel != new.gel || *gel_loss_counts != new.gel_loss_counts;
     }
 }
 

@@ -1,7 +1,7 @@
 //! Gels: colour filters of lights, with the names of the swatch book.
 
-/// The gel of a light. It changes the colour alone: colours are scaled to luminance 1. [`Gel::loss_stops`] returns the
-/// loss of the real filter.
+/// The gel of a light. Its colour is scaled to luminance 1; [`Gel::loss_stops`] returns the loss of the real filter, which
+/// counts where [`super::LightColor::gel_loss_counts`] says so.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Gel {
     /// No gel.

@@ -1,6 +1,6 @@
 //! Lights in a photographer's terms: role, emitter, modifier, power, colour.
 
-use super::{Aim, Emitter, Gel, LightId, Modifier};
+use super::{Aim, Emitter, Gel, Head, HeadDial, LightId, Modifier};
 use glam::Vec3;
 
 /// The role of a light in the set-up, as a lighting diagram names it. It labels the light, groups it and colours its
@@ -115,11 +115,20 @@ pub struct LightColor {
     pub source: ColorSource,
     /// Gel.
     pub gel: Gel,
+    /// True if the gel takes its loss from the light, as it does on the set; false if the head makes up for it.
+    pub gel_loss_counts: bool,
+}
+
+impl LightColor {
+    /// Returns the loss of the gel as far as it counts, stops.
+    pub fn loss_stops(&self) -> f32 {
+        if self.gel_loss_counts { self.gel.loss_stops() } else { 0.0 }
+    }
 }
 
 impl Default for LightColor {
     fn default() -> Self {
-        LightColor { source: ColorSource::Kelvin(5500.0), gel: Gel::None }
+        LightColor { source: ColorSource::Kelvin(5500.0), gel: Gel::None, gel_loss_counts: true }
     }
 }
 
@@ -164,6 +173,8 @@ pub struct Light {
     pub emitter: Emitter,
     /// Loss and beam shape.
     pub modifier: Modifier,
+    /// The head behind it, if it is one of the list of gear: its dial. The output is in `power`.
+    pub head: Option<Head>,
     /// Power.
     pub power: Power,
     /// Colour.
@@ -190,6 +201,7 @@ impl Light {
             roll_deg: 0.0,
             emitter,
             modifier: Modifier::default(),
+            head: None,
             power: Power { output, dial_stops: 0.0 },
             color: LightColor::default(),
             on: true,
@@ -197,5 +209,10 @@ impl Light {
             muted: false,
             locked: false,
         }
+    }
+
+    /// Returns the dial of its head; tenths of a stop where the head is not known.
+    pub fn dial(&self) -> HeadDial {
+        self.head.as_ref().map_or(HeadDial::UNKNOWN, |head| head.dial)
     }
 }

@@ -13,6 +13,7 @@ mod fibre;
 mod figure;
 mod focused_lens;
 mod gel;
+mod head;
 mod id;
 mod inventory;
 mod light;
@@ -42,6 +43,7 @@ pub use figure::{
 };
 pub use focused_lens::FocusedLens;
 pub use gel::{Gel, GelFamily, NamedGel};
+pub use head::{DialScale, Head, HeadDial};
 pub use id::{LightId, ObjectId};
 pub use inventory::{AssetField, MaterialSlot};
 pub use light::{ColorSource, Light, LightColor, Output, Power, Role, Solo};

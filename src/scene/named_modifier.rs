@@ -43,12 +43,15 @@ const fn hard(name: &'static str, tip: &'static str, modifier: Modifier) -> Name
 const REFLECTOR_LOSS: Modifier = Modifier::loss(0.3);
 
 impl NamedModifier {
+    /// Name of the entry of a head without a modifier.
+    pub const BARE: &'static str = "Bare bulb";
+
     /// All modifiers, in list order. Losses are typical of makers' and testers' data: 1 to 2 stops for softboxes, more
     /// for larger ones and for more cloth; half a stop for a white dish; 1 stop for a reflective umbrella, 1.7 for a
     /// shoot-through.
     pub const ALL: [NamedModifier; 32] = [
         NamedModifier {
-            name: "Bare bulb",
+            name: NamedModifier::BARE,
             tip: "A head without modifier: light in all directions, hard shadows.",
             emitter: Emitter::Sphere { radius_m: 0.04 },
             modifier: Modifier::loss(0.0),
@@ -119,6 +122,11 @@ impl NamedModifier {
     pub fn of(emitter: &Emitter, modifier: &Modifier) -> Option<&'static NamedModifier> {
         const ALL: &[NamedModifier] = &NamedModifier::ALL;
         ALL.iter().find(|named| named.emitter == *emitter && named.modifier == *modifier)
+    }
+
+    /// Returns true for the entry of a head without a modifier.
+    pub fn is_bare(&self) -> bool {
+        self.name == Self::BARE
     }
 
     /// Returns the modifier of this name.

@@ -3,18 +3,16 @@
 //! Light adds up: the exposure of a place is the sum over the lights of 2^dial times what each gives there at full power.
 //! Wishes are linear equations for 2^dial, to be solved within the range of the heads' dials.
 
-use super::dial_system::{DIAL_STOPS, Group, Relation, System};
+use super::dial_system::{Group, Relation, System};
 use super::metering::MeteredAt;
 use super::transport::{LightTransport, SetupTransport};
 use super::wish::{Wish, WishLevel, WishTarget, key_of, named_lights};
 use crate::math::mean;
-use crate::scene::{LightId, Role, Scene};
+use crate::scene::{HeadDial, LightId, Role, Scene};
 use std::collections::HashSet;
 
-/// Steps of a dial, stops: tenths, as most studio heads have.
-const DIAL_STEP_STOPS: f32 = 0.1;
-/// Largest miss by rounding to a step, stops.
-const TOLERANCE_STOPS: f32 = 0.06;
+/// Largest miss by rounding to a setting, settings.
+const TOLERANCE_STEPS: f32 = 0.6;
 /// Most rounds in which wishes relative to the key follow it, and the change at which they end, stops.
 const MOST_ROUNDS: u32 = 40;
 const SETTLED_STOPS: f32 = 1e-4;
@@ -226,6 +224,13 @@ impl<'a> Solver<'a> {
         self.groups.iter().any(|group| group.members.contains(&light))
     }
 
+    /// Returns the largest distance of two settings of the dials that may be set, stops.
+    fn step_stops(&self) -> f32 {
+        let free = self.groups.iter().flat_map(|group| &group.members).map(|index| &self.setup.lights()[*index]);
+        let steps = free.map(|light| light.dial.step_stops(light.dial_stops));
+        steps.reduce(f32::max).unwrap_or(HeadDial::UNKNOWN.step_stops(0.0))
+    }
+
     fn has_key(&self, group: &Group) -> bool {
         group.members.iter().any(|index| Some(self.setup.lights()[*index].light) == self.key)
     }
@@ -317,7 +322,7 @@ impl<'a> Solver<'a> {
             let relation = Self::relation(wish);
             let mut add = |place: &Place, weight: f32| {
                 // A lower bound is kept after rounding, too
-                let margin = if relation == Relation::AtLeast { (0.5 * DIAL_STEP_STOPS).exp2() } else { 1.0 };
+                let margin = if relation == Relation::AtLeast { (0.5 * self.step_stops()).exp2() } else { 1.0 };
                 let wanted_lux_s = place.wanted_lux_s * margin;
                 if wanted_lux_s.is_finite() && wanted_lux_s > 0.0 {
                     let constant_lux_s = self.exposure(&place.lux_s, place.glow_lux_s, &fixed);
@@ -346,7 +351,7 @@ impl<'a> Solver<'a> {
         let mut rounded = powers.to_vec();
         let groups = self.groups.iter().filter(|group| is_rounded(group));
         for index in groups.flat_map(|group| group.members.iter().copied()) {
-            rounded[index] = nearest_step(self.setup.lights()[index].dial_stops, powers[index].log2()).exp2();
+            rounded[index] = nearest_setting(&self.setup.lights()[index], powers[index].log2()).exp2();
         }
         rounded
     }
@@ -359,7 +364,7 @@ impl<'a> Solver<'a> {
             name: light.name.clone(),
             from_stops: light.dial_stops,
             was_on: light.is_on,
-            to_stops: step_of(light.dial_stops, powers[index]),
+            to_stops: setting_of(light, powers[index]),
         };
         let on_now = |light: &LightTransport| if light.is_on { light.dial_stops.exp2() } else { 0.0 };
         let before: Vec<f32> = self.setup.lights().iter().map(on_now).collect();
@@ -388,17 +393,17 @@ impl<'a> Solver<'a> {
             Relation::AtLeast => over().fold(f32::INFINITY, f32::min).min(0.0),
             Relation::AtMost => over().fold(f32::NEG_INFINITY, f32::max).max(0.0),
         };
-        let missed_stops = (missed.is_nan() || missed.abs() > TOLERANCE_STOPS).then_some(missed);
+        let missed_stops = (missed.is_nan() || missed.abs() > TOLERANCE_STEPS * self.step_stops()).then_some(missed);
         let values = reached.iter().copied();
         let (low, high) = values.fold((f32::INFINITY, 0.0_f32), |(low, high), v| (low.min(v), high.max(v)));
         let limit = |(index, light): (usize, &LightTransport)| {
             let gives = self.is_free(index) && places.iter().any(|place| place.lux_s[index] > 0.0);
-            let stops = after[index].log2();
+            let (stops, lowest) = (after[index].log2(), light.dial.lowest_stops);
             if !gives {
                 None
-            } else if missed < 0.0 && stops > DIAL_STOPS.end() - 0.5 * DIAL_STEP_STOPS {
+            } else if missed < 0.0 && stops > -0.5 * light.dial.step_stops(0.0) {
                 Some(format!("{} is at full power", light.name))
-            } else if missed > 0.0 && stops < DIAL_STOPS.start() + 0.5 * DIAL_STEP_STOPS {
+            } else if missed > 0.0 && stops < lowest + 0.5 * light.dial.step_stops(lowest) {
                 Some(format!("{} is at its lowest setting", light.name))
             } else {
                 None
@@ -418,22 +423,18 @@ impl<'a> Solver<'a> {
 }
 
 /// Returns the setting of a dial that has been rounded to a power, stops; the present one to the last digit.
-fn step_of(present_stops: f32, power: f32) -> f32 {
+fn setting_of(light: &LightTransport, power: f32) -> f32 {
     let stops = power.log2();
-    if (stops - present_stops).abs() < 1e-4 {
-        present_stops
-    } else {
-        (stops / DIAL_STEP_STOPS).round() * DIAL_STEP_STOPS
-    }
+    if (stops - light.dial_stops).abs() < 1e-4 { light.dial_stops } else { light.dial.nearest(stops) }
 }
 
-/// Returns the step of a dial that is nearest to a setting; the present setting if that is as near.
-fn nearest_step(present_stops: f32, stops: f32) -> f32 {
-    let step = (stops / DIAL_STEP_STOPS).round() * DIAL_STEP_STOPS;
-    let is_in_range = *DIAL_STOPS.start() - 1e-3 <= present_stops && present_stops <= *DIAL_STOPS.end() + 1e-3;
-    if is_in_range && (present_stops - stops).abs() <= 0.5 * DIAL_STEP_STOPS {
-        present_stops
+/// Returns the setting of a dial that is nearest to a power, stops; the present setting if that is as near.
+fn nearest_setting(light: &LightTransport, stops: f32) -> f32 {
+    let present = light.dial_stops;
+    let is_in_range = light.dial.lowest_stops - 1e-3 <= present && present <= 1e-3;
+    if is_in_range && (present - stops).abs() <= 0.5 * light.dial.step_stops(stops) {
+        present
     } else {
-        step.clamp(*DIAL_STOPS.start(), *DIAL_STOPS.end())
+        light.dial.nearest(stops)
     }
 }

@@ -3,8 +3,6 @@
 use super::transport::LightTransport;
 use crate::math::{BoundedUnknown, LinearEquation, bounded_least_squares};
 
-/// Range of a head's dial, stops from full power: a head gives no more than that, and few go below 1/512.
-pub const DIAL_STOPS: std::ops::RangeInclusive<f32> = -9.0..=0.0;
 /// Weight of the equation that keeps a light at its present power.
 const KEEP_WEIGHT: f64 = 1e-2;
 /// Greatest excess over a bound that the solver looks at, times the bound.
@@ -28,6 +26,8 @@ pub struct Group {
     pub members: Vec<usize>,
     /// Powers relative to the strongest.
     pub ratios: Vec<f32>,
+    /// Least power of the strongest with which all are within the range of their dials; its own least where there is none.
+    least: f32,
     /// Power of the strongest in the studio, 1 for full power.
     present: f32,
     /// It stays as it is where no equation says otherwise.
@@ -39,16 +39,12 @@ impl Group {
     pub fn new(lights: &[LightTransport], is_kept: bool, members: Vec<usize>) -> Self {
         let power = |index: &usize| lights[*index].dial_stops.exp2();
         let present = members.iter().map(power).fold(0.0, f32::max);
-        Group { ratios: members.iter().map(|index| power(index) / present).collect(), present, is_kept, members }
-    }
-
-    /// Returns the range of the power of the strongest, so that all are within the range of a dial; that of the strongest
-    /// alone if there is none.
-    fn bounds(&self) -> (f32, f32) {
-        let (low, high) = (DIAL_STOPS.start().exp2(), DIAL_STOPS.end().exp2());
-        let weakest = self.ratios.iter().copied().fold(1.0, f32::min);
-        let least = low / weakest;
-        if least < high { (least, high) } else { (low, high) }
+        let ratios: Vec<f32> = members.iter().map(|index| power(index) / present).collect();
+        let lowest = |index: &usize| lights[*index].dial.lowest_stops.exp2();
+        let of_all = members.iter().zip(&ratios).map(|(index, ratio)| lowest(index) / ratio).fold(0.0, f32::max);
+        let strongest =
+            members.iter().zip(&ratios).find(|(_, ratio)| **ratio == 1.0).map_or(0.0, |(index, _)| lowest(index));
+        Group { least: if of_all < 1.0 { of_all } else { strongest }, ratios, present, is_kept, members }
     }
 }
 
@@ -70,10 +66,9 @@ impl<'a> System<'a> {
         };
         let most_energy = groups.iter().map(energy).fold(f32::MIN_POSITIVE, f32::max);
         let unknown = |group: &&Group| {
-            let (least, most) = group.bounds();
             let cost = if group.is_kept { 0.0 } else { energy(group) / most_energy };
             let initial = f64::from(group.present);
-            BoundedUnknown { least: least.into(), most: most.into(), initial, cost: cost.into() }
+            BoundedUnknown { least: group.least.into(), most: 1.0, initial, cost: cost.into() }
         };
         let unknowns: Vec<BoundedUnknown> = groups.iter().map(unknown).collect();
         let mut equations = Vec::new();

@@ -16,7 +16,6 @@ mod transport;
 mod wish;
 
 pub use dial_solver::{DialPlan, PlannedDial, WishOutcome, solve_dials};
-pub use dial_system::DIAL_STOPS;
 pub use light_shape::LightShape;
 pub use measurement_job::MeasurementJob;
 pub use metering::{Background, LightExposure, MeteredAt, MeteredSetup};

@@ -1,15 +1,14 @@
 //! Dial settings against known answers, limits of heads, and the meter.
 
 use super::dial_solver::{DialPlan, solve_dials};
-use super::dial_system::DIAL_STOPS;
 use super::metering::MeteredAt;
 use super::room_audit::{RoomAudit, RoomSurface};
 use super::transport::{LightTransport, SetupTransport};
 use super::wish::{WishError, WishTarget, wishes};
 use crate::raytrace::{GeometryCache, LightMeter, MeterEffort, MeterPoint, RenderControl};
 use crate::scene::{
-    Aim, Assets, Camera, Emitter, Facing, Light, LightId, Material, Meter, Modifier, Object, Output, Receptor, Role,
-    Room, Scene, Shape, Transform,
+    Aim, Assets, Camera, Emitter, Facing, HeadDial, Light, LightId, Material, Meter, Modifier, Object, Output,
+    Receptor, Role, Room, Scene, Shape, Transform,
 };
 use glam::Vec3;
 
@@ -23,6 +22,7 @@ fn light(id: u32, name: &str, role: Role, at: MeteredAt, dial_stops: f32, lux_s:
         role,
         is_on: true,
         has_dial: true,
+        dial: HeadDial::UNKNOWN,
         dial_stops,
         energy_lm_s: 8000.0,
         at,
@@ -97,8 +97,14 @@ fn wishes_beyond_the_dials_are_missed_by_as_much_and_name_the_head() {
     let plan = solve(&setup, "key=f/32,fill=-3");
     assert!((dials(&plan)[1] + 1.0).abs() < 1e-4, "a stop under the fill of now, with the key at full power: {plan:?}");
     let faint = solve(&setup, "fill=-12");
-    assert_eq!(dials(&faint), [*DIAL_STOPS.start()]);
+    assert_eq!(dials(&faint), [HeadDial::UNKNOWN.lowest_stops]);
     assert_eq!(faint.outcomes[0].note().unwrap(), "4.0 stops over: Fill umbrella is at its lowest setting");
+    // A head that goes down to 1/32 only.
+    let mut narrow = key_and_fill();
+    narrow[1].dial = HeadDial { lowest_stops: -5.0, ..HeadDial::UNKNOWN };
+    let plan = solve(&SetupTransport::of_lights(narrow, &[]), "fill=-12");
+    assert_eq!(dials(&plan), [-5.0]);
+    assert_eq!(plan.outcomes[0].note().unwrap(), "8.0 stops over: Fill umbrella is at its lowest setting");
     // The key reaches its wish even if the fill cannot follow.
     let mut weak = key_and_fill();
     (weak[1].own_lux_s, weak[1].subject_lux_s) = (1.0, 1.0);

@@ -9,7 +9,7 @@ use crate::photo::{MIDDLE_GREY, PhotometricLight, clipping_stops};
 use crate::raytrace::{GeometryCache, PrepareError, RenderControl};
 #[cfg(test)]
 use crate::scene::Camera;
-use crate::scene::{Assets, Light, LightId, Modifier, Role, Scene};
+use crate::scene::{Assets, HeadDial, Light, LightId, Modifier, Role, Scene};
 use std::collections::HashSet;
 use std::f32::consts::PI;
 
@@ -26,7 +26,9 @@ pub struct LightTransport {
     pub is_on: bool,
     /// Its output can be set: neither sun nor surround.
     pub has_dial: bool,
-    /// Its dial, stops from full power.
+    /// The dial of its head.
+    pub dial: HeadDial,
+    /// The setting of its dial, stops from full power.
     pub dial_stops: f32,
     /// Luminous energy that it gives in one exposure at full power, lm s.
     pub energy_lm_s: f32,
@@ -95,6 +97,7 @@ impl SetupTransport {
                 role: light.role,
                 is_on: present.on,
                 has_dial: !light.emitter.is_infinite(),
+                dial: present.dial(),
                 dial_stops: present.power.dial_stops,
                 energy_lm_s: full_energy_lm_s(scene, light),
                 at,
@@ -215,12 +218,13 @@ fn lux_s_of(reading: &Reading, light: Option<LightId>) -> f32 {
     reading.lights.iter().find(|read| read.light == light).map_or(0.0, |read| reading.lux_s(read))
 }
 
-/// Returns the luminous energy of a light in one exposure at full power, before its modifier, lm s; 0 for sun and
+/// Returns the luminous energy of a light in one exposure at full power, before modifier and gel, lm s; 0 for sun and
 /// surround.
 fn full_energy_lm_s(scene: &Scene, light: &Light) -> f32 {
     let mut bare = light.clone();
     bare.power.dial_stops = 0.0;
     bare.modifier = Modifier::default();
+    bare.color.gel_loss_counts = false;
     let photometric = PhotometricLight::new(scene, &bare);
     photometric.flux() * photometric.exposure_time_s
 }

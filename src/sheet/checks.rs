@@ -3,7 +3,7 @@
 use super::font::Font;
 use super::lengths::Units;
 use crate::photo::thirds::Dial;
-use crate::scene::{Assets, Finding, Gel, Light, Room, placement, validate};
+use crate::scene::{Assets, Finding, Gel, Head, Light, Room, placement, validate};
 use crate::setup::{LightShape, MeteredSetup};
 use glam::Vec3;
 
@@ -48,7 +48,8 @@ impl Checks {
         if !off.is_empty() {
             checks.add(format!("Switched off in the plan: {}.", off.join(", ")));
         }
-        for light in scene.lights.iter().filter(|light| light.color.gel != Gel::None) {
+        let is_compensated = |light: &&Light| light.color.gel != Gel::None && !light.color.gel_loss_counts;
+        for light in scene.lights.iter().filter(is_compensated) {
             let (name, loss) = (&light.name, light.color.gel.loss_stops());
             checks
                 .add(format!("The gel of {name:?} takes {loss:.1} stops that the dial leaves out: turn the head up."));
@@ -72,12 +73,13 @@ impl Checks {
 
     fn exposure(&mut self, setup: &MeteredSetup<'_>) {
         let camera = &setup.scene.camera;
-        let has_flash = setup.scene.lights.iter().any(|light| light.on && light.power.output.is_flash());
-        if has_flash && camera.shutter_s < 0.99 * SYNC_S {
-            self.add(format!(
-                "{} is faster than the usual flash sync (1/200 to 1/250, typical): high-speed sync, or a longer time.",
-                Dial::Shutter.label(camera.shutter_s)
-            ));
+        let flashes = setup.scene.lights.iter().filter(|light| light.on && light.power.output.is_flash());
+        let mut told = Vec::new();
+        for light in flashes {
+            if let Some(text) = sync_text(light.head.as_ref(), camera.shutter_s).filter(|text| !told.contains(text)) {
+                self.add(text.clone());
+                told.push(text);
+            }
         }
         let flash = setup.reading.flash_fraction().unwrap_or(0.0);
         if (0.02..0.98).contains(&flash) {
@@ -133,6 +135,31 @@ impl Checks {
             self.add(format!("Cable: {:?} needs at least {length} to the nearest wall, or a battery.", light.name));
         }
     }
+}
+
+/// Returns the sentence about a head whose flash the shutter cuts off; none if it gets the whole flash.
+fn sync_text(head: Option<&Head>, shutter_s: f32) -> Option<String> {
+    let sync_s = head.and_then(|head| head.sync_s).unwrap_or(SYNC_S);
+    if shutter_s >= 0.99 * sync_s {
+        return None;
+    }
+    let shutter = Dial::Shutter.label(shutter_s);
+    Some(match head {
+        Some(Head { name, hss_loss_stops: Some(loss), .. }) => {
+            // In high-speed sync the flash is a continuous light: it counts for the time of the shutter
+            let lost = loss + (sync_s / shutter_s).log2();
+            format!(
+                "{shutter} needs high-speed sync: {name} then loses about {lost:.1} stops, which the plan leaves out."
+            )
+        }
+        Some(Head { name, sync_s: Some(_), .. }) => format!(
+            "{shutter} is faster than the sync of {name} ({}), which has no high-speed sync in the list: a longer time.",
+            Dial::Shutter.label(sync_s)
+        ),
+        _ => format!(
+            "{shutter} is faster than the usual flash sync (1/200 to 1/250, typical): high-speed sync, or a longer time."
+        ),
+    })
 }
 
 /// Returns the thing that the place of a finding is about: `"Key"` for `lights[0] "Key" position`, else `camera` for

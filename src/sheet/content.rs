@@ -7,6 +7,7 @@ use super::gear::gear;
 use super::lengths::Units;
 use super::light_facts::LightFacts;
 use super::view::{StudioView, ViewFrom, print_color};
+use crate::gear::{GearList, shortages};
 use crate::photo::Picture;
 use crate::raytrace::{GeometryCache, PrepareError, RenderControl};
 use crate::scene::{Assets, Scene};
@@ -50,8 +51,8 @@ pub struct SheetContent {
 }
 
 impl SheetContent {
-    /// Collects the content of a studio's sheet: reads the meter and looks for stands in the picture. None once
-    /// `control` is cancelled.
+    /// Collects the content of a studio's sheet: reads the meter, looks for stands in the picture, and compares heads,
+    /// modifiers and stands with those that `gear_list` says the user owns. None once `control` is cancelled.
     ///
     /// # Errors
     /// If the scene has errors.
@@ -60,11 +61,13 @@ impl SheetContent {
         assets: &Assets,
         picture: Picture,
         units: Units,
+        gear_list: &GearList,
         cache: &GeometryCache,
         control: &RenderControl,
     ) -> Result<Option<Self>, PrepareError> {
         let Some(setup) = MeteredSetup::new(scene, assets, cache, control)? else { return Ok(None) };
-        let checks = Checks::new(&setup, assets, units);
+        let mut checks = Checks::new(&setup, assets, units);
+        checks.texts.extend(shortages(scene, gear_list, &checks.stands_seen));
         let facts = scene.lights.iter().enumerate();
         let mut facts: Vec<LightFacts> =
             facts.map(|(index, light)| LightFacts::new(&setup, index + 1, light, units, control)).collect();

@@ -1,8 +1,9 @@
 //! The list of gear to bring.
 
 use super::lengths::Units;
-use super::light_facts::{gel_text, head_kind, modifier_text};
-use crate::scene::{Emitter, Light, Scene, Shape};
+use super::light_facts::{gel_text, head_name, modifier_text};
+use crate::photo::flash_time_text;
+use crate::scene::{Emitter, Head, Light, Scene, Shape};
 
 /// Height of a head from which an ordinary stand is too low, metres: typical of stands that fold to a metre.
 const LOW_STAND_M: f32 = 2.4;
@@ -12,7 +13,7 @@ const LOW_STAND_M: f32 = 2.4;
 pub fn gear(scene: &Scene, on_booms: &[usize], units: Units) -> Vec<(usize, String)> {
     let mut list = Vec::new();
     let lights = || scene.lights.iter().enumerate().filter(|(_, light)| !light.emitter.is_infinite());
-    lights().for_each(|(_, light)| add(&mut list, format!("{} head", head_kind(&light.power.output, units))));
+    lights().for_each(|(_, light)| add(&mut list, head(light, units)));
     lights().filter_map(|(_, light)| modifier(light, units)).for_each(|name| add(&mut list, name));
     lights().filter_map(|(_, light)| gel_text(&light.color.gel)).for_each(|gel| add(&mut list, format!("Gel: {gel}")));
     for (index, light) in lights() {
@@ -36,6 +37,16 @@ pub fn gear(scene: &Scene, on_booms: &[usize], units: Units) -> Vec<(usize, Stri
     add(&mut list, format!("Camera, {:.0} mm lens", scene.camera.focal_length_mm));
     add(&mut list, "Light meter".to_owned());
     list
+}
+
+/// Returns the head of a light, with what limits its flash.
+fn head(light: &Light, units: Units) -> String {
+    let name = head_name(light, units);
+    match &light.head {
+        None => format!("{name} head"),
+        Some(Head { t01_s: Some(t01_s), .. }) => format!("{name} (t0.1 {} at full power)", flash_time_text(*t01_s)),
+        Some(_) => name,
+    }
 }
 
 /// Returns the modifier of a head; none for a bare one.

@@ -1,9 +1,9 @@
 //! Facts of a light on a sheet, and its row in the table of lights.
 
 use super::lengths::Units;
-use crate::photo::LightBearing;
 use crate::photo::meter::nearest_third;
 use crate::photo::text::{power_fraction, signed_stops, three_digits};
+use crate::photo::{LightBearing, dial_text};
 use crate::raytrace::RenderControl;
 use crate::scene::{ColorSource, Emitter, Gel, Light, Modifier, NamedModifier, Output, Role};
 use crate::setup::{LightExposure, MeteredAt, MeteredSetup};
@@ -38,6 +38,8 @@ pub struct LightFacts {
     pub modifier: String,
     /// The head and its colour: `Flash 400 Ws, 5500 K, 1/2 CTO`.
     pub head: String,
+    /// Dial, as the head displays it: `1/4`.
+    pub dial_text: String,
     /// Dial, stops from full power.
     pub dial_stops: f32,
     /// Output at this dial: `100 Ws`.
@@ -81,6 +83,7 @@ impl LightFacts {
             is_on: light.on,
             modifier: modifier_text(light, units),
             head: head_text(light, units),
+            dial_text: light_dial_text(light),
             dial_stops: light.power.dial_stops,
             dialled: output_text(&light.power.output, light.power.dial_stops, units),
             bearing,
@@ -149,7 +152,7 @@ impl LightFacts {
         [
             [self.name.clone(), format!("{}{off}", self.role.label())],
             [self.modifier.clone(), self.head.clone()],
-            [power_fraction(self.dial_stops), format!("{} stops, {}", signed_stops(self.dial_stops), self.dialled)],
+            [self.dial_text.clone(), format!("{} stops, {}", signed_stops(self.dial_stops), self.dialled)],
             distance,
             self.height_m.map_or_else(none, |height_m| cell(units.distance(height_m), "middle of front")),
             self.bearing.as_ref().map_or_else(none, direction),
@@ -210,11 +213,22 @@ fn head_text(light: &Light, units: Units) -> String {
         ColorSource::Rgb(_) => "coloured".to_owned(),
     };
     let gel = gel_text(&light.color.gel).map(|gel| format!(", {gel}")).unwrap_or_default();
-    format!("{}, {color}{gel}", head_kind(&light.power.output, units))
+    format!("{}, {color}{gel}", head_name(light, units))
+}
+
+/// Returns the setting of a light's dial as its head displays it; a fraction or a percentage where the head is not known.
+fn light_dial_text(light: &Light) -> String {
+    let stops = light.power.dial_stops;
+    light.head.as_ref().map_or_else(|| power_fraction(stops), |head| dial_text(&head.dial, stops))
+}
+
+/// Returns the name of a light's head, or its kind with its full power where it is not known.
+pub fn head_name(light: &Light, units: Units) -> String {
+    light.head.as_ref().map_or_else(|| head_kind(&light.power.output, units), |head| head.name.clone())
 }
 
 /// Returns a head with its full power: `Flash 400 Ws`.
-pub fn head_kind(output: &Output, units: Units) -> String {
+fn head_kind(output: &Output, units: Units) -> String {
     let kind = if output.is_flash() { "Flash" } else { "Continuous" };
     format!("{kind} {}", output_text(output, 0.0, units))
 }

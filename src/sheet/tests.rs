@@ -7,6 +7,7 @@ use super::font::Font;
 use super::lengths::Units;
 use super::page::page;
 use super::view::{StudioView, ViewFrom};
+use crate::io::bundled_gear;
 use crate::photo::Picture;
 use crate::photo::meter::{Receptor, nearest_third};
 use crate::raytrace::{GeometryCache, LightMeter, MeterEffort, MeterPoint, RenderControl};
@@ -79,7 +80,7 @@ fn studio() -> Scene {
 fn content(scene: &Scene, units: Units) -> SheetContent {
     let picture = Picture { width: 6, height: 4, rgb: vec![[0.18; 3]; 24] };
     let (cache, control) = (GeometryCache::default(), RenderControl::new());
-    SheetContent::new(scene, &Assets::default(), picture, units, &cache, &control).unwrap().unwrap()
+    SheetContent::new(scene, &Assets::default(), picture, units, bundled_gear(), &cache, &control).unwrap().unwrap()
 }
 
 fn text_of(facts: &[(&str, String)], name: &str) -> String {
@@ -147,6 +148,12 @@ fn a_set_up_that_works_has_nothing_to_check_and_faults_are_named() {
     named(&|scene| scene.lights[0].position.y = 3.0, "\"Key\" does not fit");
     named(&|scene| scene.lights[0].position.y = 2.75, "between \"Key\" and the ceiling");
     named(&|scene| scene.camera.shutter_s = 1.0 / 500.0, "high-speed sync");
+    let on_head = |scene: &mut Scene, name: &str| {
+        bundled_gear().head(name).unwrap().mount(&mut scene.lights[1]);
+        scene.camera.shutter_s = 1.0 / 500.0;
+    };
+    named(&|scene| on_head(scene, "Monolight 600 Ws, battery"), "Monolight 600 Ws, battery then loses about 4.0 stops");
+    named(&|scene| on_head(scene, "Monolight 400 Ws"), "faster than the sync of Monolight 400 Ws (1/250)");
     named(&|scene| scene.lights[1].on = false, "Switched off in the plan: Fill");
     named(&|scene| scene.lights[1].power.output = Output::Lumens(2e6), "of the light is continuous");
     named(
@@ -161,7 +168,10 @@ fn a_set_up_that_works_has_nothing_to_check_and_faults_are_named() {
     named(&at_the_camera, "\"Fill\" shines at the lens");
     named(&|scene| scene.room.as_mut().unwrap().size_m.x = 12.0, "Cable: ");
     named(&|scene| scene.camera.position.z = 9.0, "camera: ");
-    named(&|scene| scene.lights[1].color.gel = Gel::Mired(159.0), "The gel of \"Fill\" takes 0.9 stops");
+    named(
+        &|scene| (scene.lights[1].color.gel, scene.lights[1].color.gel_loss_counts) = (Gel::Mired(159.0), false),
+        "The gel of \"Fill\" takes 0.9 stops",
+    );
     named(&|scene| scene.name = "\u{65e5}".to_owned(), "characters that the font of the PDF lacks");
     let has_flare = |change: &dyn Fn(&mut Scene)| {
         let mut scene = scene.clone();
@@ -222,7 +232,8 @@ fn the_key_of_shipped_studios_is_metered_at_the_subject_and_all_lights_have_a_re
         let loaded = preset.load().unwrap();
         let (cache, control) = (GeometryCache::default(), RenderControl::new());
         let picture = Picture::new(4, 4);
-        let sheet = SheetContent::new(&loaded.scene, &loaded.assets, picture, Units::Metres, &cache, &control);
+        let gear = bundled_gear();
+        let sheet = SheetContent::new(&loaded.scene, &loaded.assets, picture, Units::Metres, gear, &cache, &control);
         let sheet = sheet.unwrap().unwrap();
         let key = sheet.lights.iter().map(|light| &light.facts).find(|facts| facts.stops_over_key == Some(0.0));
         let at = if preset.file_name.starts_with("rim") { MeteredAt::Rim } else { MeteredAt::Subject };

@@ -10,7 +10,7 @@ fn completions_and_man_pages_name_every_command_and_option_that_help_names() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let read = |name: &str| fs::read_to_string(folder.path().join("package").join(name)).unwrap();
     let shells = ["completions/catchlight.bash", "completions/_catchlight", "completions/catchlight.fish"];
-    for command in ["render", "merge", "preview", "meter", "check", "chart", "presets"] {
+    for command in ["render", "merge", "preview", "meter", "check", "chart", "presets", "gear"] {
         let help = super::stdout(&catchlight(folder.path(), &[command, "--help"]));
         let page = read(&format!("man/catchlight-{command}.1"));
         assert!(page.contains(".SH SYNOPSIS"), "{page}");

@@ -163,13 +163,13 @@ fn light(objects: usize) -> impl Strategy<Value = Light> {
     let power = (emitter_and_output(), prop_oneof![Just(0.0), number(-20.0, 10.0)]);
     (
         (name(), 0..Role::ALL.len(), vector(-10.0, 10.0), aim(objects), number(-180.0, 180.0)),
-        (power, source, gel, any::<[bool; 4]>()),
+        (power, source, gel, any::<[bool; 5]>(), proptest::option::of(head())),
         modifier(),
     )
         .prop_map(
             |(
                 (name, role, position, aim, roll_deg),
-                (((emitter, output), dial_stops), source, gel, [on, seen, muted, locked]),
+                (((emitter, output), dial_stops), source, gel, [on, seen, muted, locked, gel_loss_counts], head),
                 modifier,
             )| Light {
                 id: LightId(0),
@@ -181,14 +181,34 @@ fn light(objects: usize) -> impl Strategy<Value = Light> {
                 emitter,
                 // Light from infinity can only be weakened.
                 modifier: if emitter.is_infinite() { Modifier::loss(modifier.loss_stops) } else { modifier },
+                head,
                 power: Power { output, dial_stops },
-                color: LightColor { source, gel },
+                color: LightColor { source, gel, gel_loss_counts },
                 on,
                 visible_to_camera: seen,
                 muted,
                 locked,
             },
         )
+}
+
+fn head() -> impl Strategy<Value = Head> {
+    let scale = prop_oneof![
+        Just(DialScale::Fractions),
+        number(0.0, 10.0).prop_map(|full| DialScale::Number { full }),
+        number(1.0, 5000.0).prop_map(|full| DialScale::WattSeconds { full }),
+        Just(DialScale::PerCent)
+    ];
+    let time = || proptest::option::of(number(1e-5, 0.1));
+    (name(), scale, number(-12.0, 0.0), 1..=10_u8, (time(), proptest::option::of(number(0.0, 5.0)), time())).prop_map(
+        |(name, scale, lowest_stops, steps_per_stop, (sync_s, hss_loss_stops, t01_s))| Head {
+            name,
+            dial: HeadDial { scale, lowest_stops, steps_per_stop },
+            sync_s,
+            hss_loss_stops,
+            t01_s,
+        },
+    )
 }
 
 fn modifier() -> impl Strategy<Value = Modifier> {

@@ -46,6 +46,8 @@ fn a_file_holds_what_differs_and_the_shown_studio_is_that_of_the_file() {
     let dim = scene.as_variant(scene.variants.named("Dim").unwrap()).unwrap();
     assert_eq!((dim.camera.f_number, dim.camera.iso), (4.0, 100.0));
     assert_eq!((dim.lights[0].power.dial_stops, dim.lights[0].color.gel), (-2.0, Gel::Mired(100.0)));
+    let counts = [&scene, &dim].map(|scene| scene.lights[0].color.gel_loss_counts);
+    assert_eq!(counts, [true, false], "a gel of an older file takes no light");
     assert_eq!((dim.lights.len(), dim.lights[1].name.as_str(), dim.objects[0].visible), (2, "Rim", false));
     let empty = scene.as_variant(scene.variants.named("Empty").unwrap()).unwrap();
     assert!(empty.lights.is_empty() && empty.objects[0].visible);
@@ -53,7 +55,8 @@ fn a_file_holds_what_differs_and_the_shown_studio_is_that_of_the_file() {
     let written = write_scene(&scene);
     assert_eq!(parse_scene(&written).unwrap().0, scene);
     assert_eq!(write_scene(&parse_scene(&written).unwrap().0), written);
-    assert!(written.contains("lights: [(light: \"Key\", dial_stops: -2.0, gel: Mired(100.0))]"), "{written}");
+    let key = "lights: [(light: \"Key\", dial_stops: -2.0, gel: Mired(100.0), gel_loss_counts: false)]";
+    assert!(written.contains(key), "{written}");
 }
 
 #[test]

@@ -17,7 +17,7 @@ const LAYERS: [&[&str]; 10] = [
     &["math", "color"],
     &["scene"],
     &["photo"],
-    &["denoise", "figures", "raytrace", "raster", "preview"],
+    &["gear", "denoise", "figures", "raytrace", "raster", "preview"],
     &["io"],
     &["jobs", "truth"],
     &["setup"],

@@ -4,6 +4,7 @@ use crate::editor::commands::choices::{CentralView, Comparison, HandleMode, Live
 use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::document::action::Action;
 use crate::editor::document::framing::Framing;
+use crate::editor::document::gear_shelf::GearEntry;
 use crate::editor::document::item::Item;
 use crate::editor::document::light_mix::Fader;
 use crate::photo::PictureDisplay;
@@ -148,6 +149,12 @@ pub enum Command {
     ToggleDials,
     /// Shows or hides the window of the room's part in the light.
     ToggleRoomAudit,
+    /// Shows or hides the window of the user's gear.
+    ToggleGear,
+    /// Notes how many pieces of an entry of the list of gear the user owns.
+    SetOwned(GearEntry, u32),
+    /// Reads the user's list of gear again.
+    ReadGear,
     /// Sets the dials of lights.
     SetDials(Box<DialPlan>),
     /// Shows or hides the list of keys.

@@ -2,8 +2,7 @@
 
 use crate::figures::{self, ReadyFigure};
 use crate::scene::{
-    Aim, ColorSource, Emitter, Gel, Light, LightColor, Material, MaterialPreset, Modifier, NamedModifier, Object,
-    Output, Power, Shape,
+    Aim, Emitter, Light, Material, MaterialPreset, Modifier, NamedModifier, Object, Output, Power, Shape,
 };
 use glam::Vec3;
 
@@ -100,7 +99,7 @@ pub struct CatalogEntry {
 }
 
 /// A studio flash head of 400 Ws.
-const HEAD: Output = Output::FlashWs { energy_ws: 400.0, efficacy_lm_s_per_ws: Output::DEFAULT_EFFICACY };
+pub const HEAD: Output = Output::FlashWs { energy_ws: 400.0, efficacy_lm_s_per_ws: Output::DEFAULT_EFFICACY };
 
 /// Returns the entry of a flash head with a named modifier.
 const fn modified(named: &NamedModifier) -> CatalogEntry {
@@ -369,7 +368,8 @@ fn new_prop(name: &str, shape: PropShape, material: Material) -> Object {
     object
 }
 
-fn new_light(name: &str, emitter: Emitter, modifier: Modifier, output: Output) -> Light {
+/// Returns a light before placement, whose dial makes up for the loss of its modifier.
+pub fn new_light(name: &str, emitter: Emitter, modifier: Modifier, output: Output) -> Light {
     // The dial compensates for the modifier's loss in thirds, so that all modifiers are about equally bright.
     let loss_thirds = (3.0 * (modifier.loss_stops + modifier.scrim_stops)).round();
     Light {
@@ -378,7 +378,6 @@ fn new_light(name: &str, emitter: Emitter, modifier: Modifier, output: Output) -
         aim: Aim::Point(Vec3::new(0.0, 1.4, 0.0)),
         modifier,
         power: Power { output, dial_stops: -3.0 + loss_thirds / 3.0 },
-        color: LightColor { source: ColorSource::Kelvin(5500.0), gel: Gel::None },
         visible_to_camera: matches!(emitter, Emitter::Surround),
         ..Light::new(emitter, output)
     }

@@ -1,9 +1,9 @@
 //! Changes of lights over the finished picture, to be tried before they are made in the studio.
 
 use crate::editor::document::action::Action;
+use crate::photo::dial_text;
 use crate::raytrace::Layer;
 use crate::scene::{ColorSource, Light, LightId, Scene};
-use crate::setup::DIAL_STOPS;
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
@@ -109,11 +109,14 @@ impl Mix {
         Cow::Owned(mixed)
     }
 
-    /// Returns the action that makes the changes in the studio: dials, colours and mutes. A solo is for judging alone. None
+    /// Returns the action that makes the changes in the studio: dials, to the settings of their heads, colours and mutes. A solo is for judging alone. None
     /// if there is nothing to change.
     pub fn action(&self, scene: &Scene) -> Option<Action> {
         let changed = scene.lights.iter().filter_map(|light| {
-            let changed = self.fader(light.id).changed(light);
+            let mut changed = self.fader(light.id).changed(light);
+            if let Some(head) = changed.head.as_ref().filter(|_| self.fader(light.id).thirds != 0) {
+                changed.power.dial_stops = head.dial.nearest(changed.power.dial_stops);
+            }
             (changed != *light).then(|| Action::SetLight(Box::new(changed)))
         });
         let mut actions: Vec<Action> = changed.collect();
@@ -126,13 +129,15 @@ impl Mix {
     /// Returns the reason why the head of a light can't be set as the fader is; none if it can.
     pub fn out_of_range(&self, light: &Light) -> Option<String> {
         let fader = self.fader(light.id);
-        let dial = fader.changed(light).power.dial_stops;
+        let stops = fader.changed(light).power.dial_stops;
+        let dial = light.dial();
         if fader.thirds == 0 {
             None
-        } else if dial > DIAL_STOPS.end() + ROUNDING {
-            Some(format!("{dial:.1} stops over the head's full power"))
-        } else if dial < DIAL_STOPS.start() - ROUNDING {
-            Some("Under 1/512 of full power, less than heads can be set to".to_owned())
+        } else if stops > ROUNDING {
+            Some(format!("{stops:.1} stops over the head's full power"))
+        } else if stops < dial.lowest_stops - ROUNDING {
+            let lowest = dial_text(&dial, dial.lowest_stops);
+            Some(format!("Under {lowest}, the lowest that the head can be set to"))
         } else {
             None
         }

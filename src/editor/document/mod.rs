@@ -9,6 +9,7 @@ pub mod clipboard;
 pub mod dial_wishes;
 pub mod files;
 pub mod framing;
+pub mod gear_shelf;
 pub mod history;
 pub mod item;
 pub mod light_mix;

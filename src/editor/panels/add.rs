@@ -1,16 +1,27 @@
 //! The catalog panel: adds lights, figures, props and backdrops.
 
 use crate::editor::commands::command::Command;
-use crate::editor::document::catalog::{CatalogEntry, CatalogKind, CatalogTab, entries};
+use crate::editor::document::catalog::{self, CatalogEntry, CatalogItem, CatalogKind, CatalogTab, entries};
+use crate::editor::document::gear_shelf::GearShelf;
 use crate::editor::panels::thumbnails::{THING_POINTS, Thumbnails};
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets;
 use crate::io;
-use crate::scene::{Emitter, Material};
+use crate::scene::{Emitter, Light, Material, Scene};
 use eframe::egui::{self, Button, Color32, CornerRadius, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, vec2};
 
-/// Draws the catalog; `tab` is the open one.
-pub fn add_ui(ui: &mut Ui, tab: &mut CatalogTab, thumbnails: &mut Thumbnails, out: &mut Vec<Command>) {
+/// Side of the icon of a light.
+const ICON_POINTS: f32 = 20.0;
+
+/// Draws the catalog; `tab` is the open one. The user's own heads and modifiers come first among the lights of `scene`.
+pub fn add_ui(
+    ui: &mut Ui,
+    tab: &mut CatalogTab,
+    thumbnails: &mut Thumbnails,
+    gear: &GearShelf,
+    scene: &Scene,
+    out: &mut Vec<Command>,
+) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         ui.label(RichText::new("Add").strong());
@@ -40,12 +51,53 @@ pub fn add_ui(ui: &mut Ui, tab: &mut CatalogTab, thumbnails: &mut Thumbnails, ou
     ui.separator();
     ScrollArea::vertical().id_salt("add list").auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
+        if *tab == CatalogTab::Lights && gear.list().has_own() {
+            own_gear_ui(ui, gear, scene, out);
+        }
         for entry in entries(*tab) {
             if entry_ui(ui, entry, thumbnails) {
                 out.push(Command::AddFromCatalog(Box::new(entry.make())));
             }
         }
     });
+}
+
+/// Draws the heads and modifiers that the user owns, with how many of each the studio leaves.
+fn own_gear_ui(ui: &mut Ui, gear: &GearShelf, scene: &Scene, out: &mut Vec<Command>) {
+    ui.label(RichText::new("My gear").weak().small());
+    let mut entry = |name: &str, owned: u32, tip: &str, icon: &CatalogKind, light: &dyn Fn() -> Light| {
+        let left = match gear.left(scene, name, owned) {
+            left if left > 0 => format!("{left} of {owned} left"),
+            _ => "all used".to_owned(),
+        };
+        if add_row(ui, name, tip, &left, &|painter, rect| paint_icon(painter, rect, icon)) {
+            out.push(Command::AddFromCatalog(Box::new(CatalogItem::Light(light()))));
+        }
+    };
+    for model in gear.list().heads.iter().filter(|model| model.owned > 0) {
+        let light = GearShelf::light_on(model);
+        let icon = CatalogKind::Light(light.emitter, light.modifier, light.power.output);
+        entry(&model.head.name, model.owned, &model.power_text(), &icon, &|| light.clone());
+    }
+    for model in gear.list().modifiers.iter().filter(|model| model.owned > 0) {
+        let icon = CatalogKind::Light(model.emitter, model.modifier, catalog::HEAD);
+        entry(&model.name, model.owned, "On the first head that is free", &icon, &|| gear.light_with(scene, model));
+    }
+    ui.add_space(4.0);
+    ui.label(RichText::new("All lights").weak().small());
+}
+
+/// Draws a row with a small icon; returns true if it is clicked.
+fn add_row(ui: &mut Ui, name: &str, tip: &str, note: &str, icon: &dyn Fn(&egui::Painter, egui::Rect)) -> bool {
+    let row = ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(ICON_POINTS, ICON_POINTS), Sense::hover());
+        icon(ui.painter(), rect);
+        let button = Button::new(name).frame_when_inactive(false).min_size(vec2(ui.available_width(), 22.0)).truncate();
+        let button = ui.add(button.right_text(RichText::new(note).weak().small()));
+        widgets::named(ui, &button, &format!("Add my {name}"));
+        button.on_hover_text(format!("Add: {tip}")).clicked()
+    });
+    row.inner
 }
 
 fn tab_tip(tab: CatalogTab) -> &'static str {
@@ -59,7 +111,7 @@ fn tab_tip(tab: CatalogTab) -> &'static str {
 
 fn entry_ui(ui: &mut Ui, entry: &'static CatalogEntry, thumbnails: &mut Thumbnails) -> bool {
     // Lights have icons of shape and size instead of thumbnails.
-    let side = if matches!(entry.kind, CatalogKind::Light(..)) { 20.0 } else { THING_POINTS };
+    let side = if matches!(entry.kind, CatalogKind::Light(..)) { ICON_POINTS } else { THING_POINTS };
     ui.horizontal(|ui| {
         let (icon, _) = ui.allocate_exact_size(vec2(side, side), Sense::hover());
         match thumbnails.thing(ui.ctx(), entry) {

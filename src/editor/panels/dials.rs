@@ -4,6 +4,7 @@ use crate::editor::commands::command::Command;
 use crate::editor::document::dial_wishes::{DialWishes, WishRow};
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets;
+use crate::photo::dial_text;
 use crate::photo::meter::nearest_third;
 use crate::photo::text::signed_stops;
 use crate::scene::{Light, Scene};
@@ -19,7 +20,7 @@ const HEADINGS: [(&str, &str); 5] = [
     ("Now", "The f-number of a meter at the camera's ISO and shutter, and stops over the key"),
     ("Wish", "f/8, or stops over the key: +0.5, -1.5. Empty: as it is"),
     ("Then", "What the meter would show"),
-    ("Dial", "Stops from full power"),
+    ("Dial", "As the head displays it; stops from full power where the head is not known"),
 ];
 
 /// Draws the window; `open` becomes false when it is closed.
@@ -152,16 +153,21 @@ fn light_row(
             let then = metered.own_lux_s * (dial.to_stops - dial.from_stops).exp2();
             let then = if dial.is_change() { then } else { now };
             exposure_ui(ui, setup, then, plan.key_lux_s);
-            let from = if dial.was_on { signed_stops(dial.from_stops) } else { "off".to_owned() };
-            let text = format!("{from} to {}", signed_stops(dial.to_stops));
-            let text = if dial.is_change() { text } else { signed_stops(dial.to_stops) };
+            let from = if dial.was_on { setting(light, dial.from_stops) } else { "off".to_owned() };
+            let text = format!("{from} to {}", setting(light, dial.to_stops));
+            let text = if dial.is_change() { text } else { setting(light, dial.to_stops) };
             ui.label(RichText::new(text).strong());
         }
         None => {
             ui.label("");
-            ui.label(RichText::new(signed_stops(metered.dial_stops)).weak());
+            ui.label(RichText::new(setting(light, metered.dial_stops)).weak());
         }
     }
+}
+
+/// Formats a setting as the head displays it; stops from full power where the head is not known.
+fn setting(light: &Light, stops: f32) -> String {
+    light.head.as_ref().map_or_else(|| signed_stops(stops), |head| dial_text(&head.dial, stops))
 }
 
 /// Draws the row of a place: reading, wish, then the reading of the plan.

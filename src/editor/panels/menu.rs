@@ -83,6 +83,7 @@ fn light_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     ui.set_min_width(200.0);
     entry(ui, true, "Set dials by wish\u{2026}", DIALS_TIP, Command::ToggleDials, out);
     entry(ui, true, "What the room adds\u{2026}", AUDIT_TIP, Command::ToggleRoomAudit, out);
+    entry(ui, true, "My gear\u{2026}", GEAR_TIP, Command::ToggleGear, out);
     ui.separator();
     ui.menu_button("Lesson sheet", |ui| lesson_entries(ui, state.selection.lights().last().copied(), out));
 }
@@ -106,6 +107,7 @@ fn variants_menu(ui: &mut Ui, scene: &Scene, out: &mut Vec<Command>) {
 
 const DIALS_TIP: &str = "Name the f-number of the key and stops of the others; the dials follow from the meter";
 const AUDIT_TIP: &str = "How much of the light comes by walls, ceiling, floor and backdrops; spill and flare";
+const GEAR_TIP: &str = "The heads, modifiers and stands that you own: first on the shelf, and counted";
 const SHEET_TIP: &str = "One page to build the studio again from: picture, plan, list of lights; PDF, SVG or HTML";
 
 fn recent_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {

@@ -3,6 +3,7 @@
 pub mod add;
 pub mod dials;
 pub mod file_change_prompt;
+pub mod gear;
 pub mod help;
 pub mod inspector;
 pub mod menu;

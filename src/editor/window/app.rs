@@ -5,6 +5,7 @@ use crate::editor::commands::command::Command;
 use crate::editor::commands::shortcuts::{KEY_BINDINGS, KeyBinding, clipboard_command};
 use crate::editor::document::files;
 use crate::editor::document::files::StudioSource;
+use crate::editor::document::gear_shelf::GearShelf;
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
@@ -100,7 +101,7 @@ impl App {
             document: Document::default(),
             selection: Selection::default(),
             views: ViewState::new(Viewport::new(preview, TracedView::new(geometry.clone()))),
-            panels: PanelState::new(files::presets()),
+            panels: PanelState::new(files::presets(), GearShelf::load(options.settings_folder.as_deref())),
             rendering: Rendering::new(geometry.clone()),
             variant_pictures: VariantPictures::default(),
             background: BackgroundState::new(geometry),
@@ -292,7 +293,8 @@ impl App {
         left.show(ui, "things", Panel::left("things").frame(side), LEFT, |ui| {
             let add_height = (ui.available_height() * 0.46).max(120.0);
             Panel::top("add").frame(Frame::new()).default_size(add_height).resizable(true).show(ui, |ui| {
-                add::add_ui(ui, &mut self.panels.catalog_tab, &mut self.background.thumbnails, out);
+                let (tab, thumbnails) = (&mut self.panels.catalog_tab, &mut self.background.thumbnails);
+                add::add_ui(ui, tab, thumbnails, &self.panels.gear, self.document.scene(), out);
             });
             outliner::outliner_ui(ui, &self.document, &self.selection, &mut self.panels.outliner, out);
         });
@@ -301,7 +303,8 @@ impl App {
                 let (rendering, forecaster) = (&mut self.rendering, &mut self.background.forecaster);
                 render::render_ui(ui, rendering, forecaster, &self.document, self.views.central, out);
             });
-            inspector::inspector_ui(ui, &self.document, &self.selection, &self.background.pattern, out);
+            let (patterns, gear) = (&self.background.pattern, self.panels.gear.list());
+            inspector::inspector_ui(ui, &self.document, &self.selection, patterns, gear, out);
         });
         (self.panels.left, self.panels.right) = (left, right);
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| self.central_ui(ui, out)).response.rect

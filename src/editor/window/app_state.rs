@@ -4,6 +4,8 @@ use crate::editor::commands::choices::{CentralView, HandleMode};
 use crate::editor::document::catalog::CatalogTab;
 use crate::editor::document::dial_wishes::DialWishes;
 use crate::editor::document::files::PresetInfo;
+use crate::editor::document::gear_shelf::GearShelf;
+use crate::editor::panels::gear::GearTab;
 use crate::editor::panels::outliner::OutlinerState;
 use crate::editor::panels::presets::PresetPicker;
 use crate::editor::panels::thumbnails::Thumbnails;
@@ -66,6 +68,12 @@ pub struct PanelState {
     pub show_dials: bool,
     /// True while the window of the room's part in the light is open.
     pub show_room_audit: bool,
+    /// True while the window of the user's gear is open.
+    pub show_gear: bool,
+    /// The open list of that window.
+    pub gear_tab: GearTab,
+    /// The list of gear.
+    pub gear: GearShelf,
     /// The wanted exposures.
     pub dial_wishes: DialWishes,
     /// The panel of catalog and item list.
@@ -76,7 +84,7 @@ pub struct PanelState {
 
 impl PanelState {
     /// Starts with the lights of the catalog.
-    pub fn new(presets: Vec<PresetInfo>) -> Self {
+    pub fn new(presets: Vec<PresetInfo>, gear: GearShelf) -> Self {
         PanelState {
             outliner: OutlinerState::default(),
             variants: VariantsState::default(),
@@ -86,6 +94,9 @@ impl PanelState {
             show_help: false,
             show_dials: false,
             show_room_audit: false,
+            show_gear: false,
+            gear_tab: GearTab::default(),
+            gear,
             dial_wishes: DialWishes::default(),
             left: SidePanel::default(),
             right: SidePanel::default(),

@@ -147,6 +147,9 @@ impl App {
             }
             Command::ToggleDials => self.panels.show_dials = !self.panels.show_dials,
             Command::ToggleRoomAudit => self.panels.show_room_audit = !self.panels.show_room_audit,
+            Command::ToggleGear => self.toggle_gear(),
+            Command::SetOwned(entry, count) => self.set_owned(&entry, count),
+            Command::ReadGear => self.panels.gear.read(),
             Command::SetDials(plan) => self.set_dials(&plan),
             Command::ToggleHelp => self.panels.show_help = !self.panels.show_help,
             Command::Open
@@ -294,6 +297,8 @@ impl App {
             self.panels.show_dials = false;
         } else if self.panels.show_room_audit {
             self.panels.show_room_audit = false;
+        } else if self.panels.show_gear {
+            self.panels.show_gear = false;
         } else {
             self.selection = Selection::default();
         }

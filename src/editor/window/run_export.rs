@@ -4,6 +4,7 @@ use crate::editor::document::files::{self, PictureExport};
 use crate::editor::window::app::App;
 use crate::editor::window::background_tasks::TaskResult;
 use crate::editor::window::run_file_command::waker;
+use crate::gear::GearList;
 use crate::io::PictureInfo;
 use crate::jobs::{background_pool, sentence};
 use crate::photo::Picture;
@@ -54,8 +55,9 @@ impl App {
         if picture.is_none() {
             self.toasts.info("A small picture is rendered for the sheet; go on meanwhile.");
         }
+        let gear = self.panels.gear.list().clone();
         let work = move || {
-            let result = export_sheet(&path, &scene, &assets, picture, units);
+            let result = export_sheet(&path, &scene, &assets, picture, units, &gear);
             TaskResult::SheetExported("Set-up", path, result)
         };
         self.background.exports.start(work, waker(ctx));
@@ -103,6 +105,7 @@ fn export_sheet(
     assets: &Assets,
     picture: Option<Arc<Picture>>,
     units: Units,
+    gear: &GearList,
 ) -> Result<(), String> {
     SheetFormat::of(path).map_err(|error| sentence(&error))?;
     let pool = background_pool(0, "sheet").map_err(|error| sentence(&error))?;
@@ -113,7 +116,7 @@ fn export_sheet(
             None => draft_picture(scene, assets, SAMPLES, &cache, &control)?,
         };
         let picture = picture.unwrap_or_default();
-        SheetContent::new(scene, assets, picture, units, &cache, &control)
+        SheetContent::new(scene, assets, picture, units, gear, &cache, &control)
     });
     let content = content.map_err(|error| sentence(&error))?.ok_or("It was cancelled.")?;
     write_sheet(path, &content).map_err(|error| sentence(&error))

@@ -2,6 +2,7 @@
 //! id.
 
 use super::figure::GazeV1;
+use super::head::{head_from, head_to};
 use super::mannequin;
 use super::names::{LightIds, ObjectIds, UnknownName};
 use super::{
@@ -145,6 +146,7 @@ pub(super) fn object_to(scene: &Scene, object: &Object) -> ObjectV1 {
 
 /// Converts a light; `place` is that of its fields.
 pub(super) fn light_from(file: LightV1, id: LightId, place: &str, ids: &ObjectIds) -> Result<Light, UnknownName> {
+    let gel = file.gel.into();
     Ok(Light {
         id,
         role: file.role.into(),
@@ -153,8 +155,13 @@ pub(super) fn light_from(file: LightV1, id: LightId, place: &str, ids: &ObjectId
         roll_deg: file.roll_deg,
         emitter: file.emitter.into(),
         modifier: file.modifier.into(),
+        head: file.head.map(head_from),
         power: Power { output: file.power.output.into(), dial_stops: file.power.dial_stops },
-        color: LightColor { source: file.color.into(), gel: file.gel.into() },
+        color: LightColor {
+            source: file.color.into(),
+            gel,
+            gel_loss_counts: file.gel_loss_counts.unwrap_or(gel == Gel::None),
+        },
         on: file.on,
         visible_to_camera: file.visible_to_camera,
         muted: file.muted,
@@ -172,9 +179,11 @@ pub(super) fn light_to(scene: &Scene, light: &Light) -> LightV1 {
         roll_deg: light.roll_deg,
         emitter: light.emitter.into(),
         modifier: light.modifier.into(),
+        head: light.head.as_ref().map(head_to),
         power: PowerV1 { output: light.power.output.into(), dial_stops: light.power.dial_stops },
         color: light.color.source.into(),
         gel: light.color.gel.into(),
+        gel_loss_counts: Some(light.color.gel_loss_counts).filter(|counts| *counts != (light.color.gel == Gel::None)),
         on: light.on,
         visible_to_camera: light.visible_to_camera,
         muted: light.muted,

@@ -7,12 +7,15 @@
 mod convert;
 mod defaults;
 mod figure;
+mod gear;
+mod head;
 mod mannequin;
 mod material;
 mod names;
 mod scene;
 mod variants;
 
+pub(super) use gear::{GearV1, gear_from_v1, v1_from_gear};
 pub(super) use names::UnknownName;
 pub(super) use scene::{scene_from_v1, v1_from_scene};
 
@@ -21,6 +24,7 @@ use defaults::{
     is_true, one, studio_name, yes,
 };
 use figure::PersonV1;
+use head::{HeadChangeV1, HeadV1};
 use mannequin::{MannequinPoseV1, MannequinV1};
 use material::MaterialV1;
 use serde::{Deserialize, Serialize};
@@ -251,10 +255,16 @@ struct LightV1 {
     emitter: EmitterV1,
     #[serde(default, skip_serializing_if = "is_default")]
     modifier: ModifierV1,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    head: Option<HeadV1>,
     power: PowerV1,
     color: ColorV1,
     #[serde(default, skip_serializing_if = "is_default")]
     gel: GelV1,
+    /// Whether the gel takes its loss from the light. Without the field it does if there is no gel yet: files with gels
+    /// are older than the field, and their lights make up for the loss.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    gel_loss_counts: Option<bool>,
     #[serde(default = "yes", skip_serializing_if = "is_true")]
     on: bool,
     #[serde(default, skip_serializing_if = "is_default")]
@@ -446,10 +456,12 @@ difference! {
         roll_deg: f32,
         emitter: EmitterV1,
         modifier: ModifierV1,
+        head: HeadChangeV1,
         output: OutputV1,
         dial_stops: f32,
         color: ColorV1,
         gel: GelV1,
+        gel_loss_counts: bool,
         on: bool,
         visible_to_camera: bool,
         muted: bool,

@@ -4,7 +4,7 @@ use super::convert::{camera_from, camera_to, light_from, light_to, object_from, 
 use super::names::{LightIds, ObjectIds, UnknownName};
 use super::variants::{variants_from, variants_to};
 use super::{MeterV1, RoomV1, SceneV1, SoloV1};
-use crate::scene::{LightId, Meter, Room, Scene, Solo, VariantId};
+use crate::scene::{Light, LightId, Meter, Room, Scene, Solo, VariantId};
 
 /// Converts a file to a scene that shows the studio itself, and returns the variant that is to be shown, if any. The
 /// scene may have equal names and other errors, which `scene::validate` finds.
@@ -13,7 +13,14 @@ pub(in crate::io) fn scene_from_v1(file: SceneV1) -> Result<(Scene, Option<Varia
     let added = file.variants.as_ref().map_or(&[][..], |variants| &variants.others);
     let light_ids = LightIds::of(&file.lights, added);
     let solo = file.solo.map(|solo| solo_from(solo, &light_ids)).transpose()?;
-    let (variants, shown) = variants_from(file.variants, &ids, &light_ids)?;
+    let lights: Vec<Light> = (0..)
+        .zip(file.lights)
+        .map(|(index, light)| {
+            let place = format!("lights[{index}] {:?} ", light.name);
+            light_from(light, LightId(index), &place, &ids)
+        })
+        .collect::<Result<_, _>>()?;
+    let (variants, shown) = variants_from(file.variants, &ids, &light_ids, &lights)?;
     let scene = Scene {
         name: file.name,
         description: file.description,
@@ -23,13 +30,7 @@ pub(in crate::io) fn scene_from_v1(file: SceneV1) -> Result<(Scene, Option<Varia
             .zip(file.objects)
             .map(|(index, object)| object_from(object, index, &light_ids))
             .collect::<Result<_, _>>()?,
-        lights: (0..)
-            .zip(file.lights)
-            .map(|(index, light)| {
-                let place = format!("lights[{index}] {:?} ", light.name);
-                light_from(light, LightId(index), &place, &ids)
-            })
-            .collect::<Result<_, _>>()?,
+        lights,
         meter: file.meter.map(Meter::from),
         solo,
         variants,

@@ -2,22 +2,25 @@
 
 use super::convert::{aim_to, focus_to, light_from, light_to};
 use super::defaults::is_studio_name;
+use super::head::{head_change_from, head_change_to};
 use super::names::{LightIds, ObjectIds, UnknownName};
 use super::{CameraDifferenceV1, LightDifferenceV1, VariantV1, VariantsV1};
 use crate::scene::{
-    CameraDifference, Light, LightDifference, LightId, ObjectId, Scene, SetupDifference, Variant, VariantId, Variants,
+    CameraDifference, Gel, Light, LightDifference, LightId, ObjectId, Scene, SetupDifference, Variant, VariantId,
+    Variants,
 };
 use glam::Vec3;
 use std::collections::HashMap;
 
-/// Converts the variants of a file. Returns the shown one, too.
+/// Converts the variants of a file; `studio` are the lights of the studio itself. Returns the shown one, too.
 pub(super) fn variants_from(
     file: Option<VariantsV1>,
     objects: &ObjectIds,
     lights: &LightIds,
+    studio_lights: &[Light],
 ) -> Result<(Variants, Option<VariantId>), UnknownName> {
     let Some(VariantsV1 { studio, shown, others }) = file else { return Ok((Variants::default(), None)) };
-    let others = (1..).zip(others).map(|(id, variant)| variant_from(variant, id, objects, lights));
+    let others = (1..).zip(others).map(|(id, variant)| variant_from(variant, id, objects, lights, studio_lights));
     let variants = Variants::new(studio, others.collect::<Result<_, _>>()?);
     let Some(name) = shown else { return Ok((variants, None)) };
     match variants.named(&name) {
@@ -29,7 +32,13 @@ pub(super) fn variants_from(
     }
 }
 
-fn variant_from(file: VariantV1, id: u32, objects: &ObjectIds, lights: &LightIds) -> Result<Variant, UnknownName> {
+fn variant_from(
+    file: VariantV1,
+    id: u32,
+    objects: &ObjectIds,
+    lights: &LightIds,
+    studio_lights: &[Light],
+) -> Result<Variant, UnknownName> {
     let VariantV1 { name, camera, lights: changed, removed_lights, added_lights, hidden, visible } = file;
     let place = format!("variants.others[{}] {name:?} ", id - 1);
     let at = |list: &str, index: usize| format!("{place}{list}[{index}]");
@@ -39,10 +48,9 @@ fn variant_from(file: VariantV1, id: u32, objects: &ObjectIds, lights: &LightIds
     };
     let changed = changed.into_iter().enumerate().map(|(i, light)| {
         let place = at("lights", i);
-        Ok((
-            lights.id(&light.light, &format!("{place}.light"))?,
-            light_difference_from(light, &format!("{place}."), objects)?,
-        ))
+        let id = lights.id(&light.light, &format!("{place}.light"))?;
+        let changed = studio_lights.iter().find(|light| light.id == id);
+        Ok((id, light_difference_from(light, changed, &format!("{place}."), objects)?))
     });
     let removed = removed_lights.iter().enumerate().map(|(i, name)| lights.id(name, &at("removed_lights", i)));
     let added = added_lights.into_iter().enumerate().map(|(i, light)| {
@@ -85,11 +93,17 @@ fn camera_difference_from(
     })
 }
 
+/// Converts the difference from a light of the studio, if it is one.
 fn light_difference_from(
     file: LightDifferenceV1,
+    changed: Option<&Light>,
     place: &str,
     objects: &ObjectIds,
 ) -> Result<LightDifference, UnknownName> {
+    let gel: Option<Gel> = file.gel.map(Into::into);
+    // A gel without the field is older than it: the light makes up for its loss
+    let older = gel.filter(|gel| *gel != Gel::None).map(|_| false);
+    let counts = file.gel_loss_counts.or(older);
     Ok(LightDifference {
         role: file.role.map(Into::into),
         position: file.position.map(Vec3::from),
@@ -97,10 +111,12 @@ fn light_difference_from(
         roll_deg: file.roll_deg,
         emitter: file.emitter.map(Into::into),
         modifier: file.modifier.map(Into::into),
+        head: file.head.map(head_change_from),
         output: file.output.map(Into::into),
         dial_stops: file.dial_stops,
         source: file.color.map(Into::into),
-        gel: file.gel.map(Into::into),
+        gel,
+        gel_loss_counts: counts.filter(|counts| changed.is_none_or(|light| light.color.gel_loss_counts != *counts)),
         on: file.on,
         visible_to_camera: file.visible_to_camera,
         muted: file.muted,
@@ -188,10 +204,13 @@ fn light_difference_to(scene: &Scene, light: &Light, difference: &LightDifferenc
         roll_deg: difference.roll_deg,
         emitter: difference.emitter.map(Into::into),
         modifier: difference.modifier.map(Into::into),
+        head: difference.head.as_ref().map(|head| head_change_to(head.as_ref())),
         output: difference.output.map(Into::into),
         dial_stops: difference.dial_stops,
         color: difference.source.map(Into::into),
         gel: difference.gel.map(Into::into),
+        // A gel is written with what its loss does
+        gel_loss_counts: difference.gel_loss_counts.or(difference.gel.map(|_| light.color.gel_loss_counts)),
         on: difference.on,
         visible_to_camera: difference.visible_to_camera,
         muted: difference.muted,

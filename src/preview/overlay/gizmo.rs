@@ -323,24 +323,15 @@ fn has_direction(emitter: &Emitter) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Aim, LightColor, LightId, Modifier, Output, Power};
+    use crate::scene::{Aim, LightId, Output};
 
     fn studio() -> Scene {
         let light = |id, x, emitter| Light {
             id: LightId(id),
             name: format!("Light {id}"),
-            role: Role::Key,
             position: Vec3::new(x, 1.5, 0.0),
             aim: Aim::Point(Vec3::ZERO),
-            roll_deg: 0.0,
-            emitter,
-            modifier: Modifier::default(),
-            power: Power { output: Output::Lumens(1000.0), dial_stops: 0.0 },
-            color: LightColor::default(),
-            on: true,
-            visible_to_camera: false,
-            muted: false,
-            locked: false,
+            ..Light::new(emitter, Output::Lumens(1000.0))
         };
         Scene {
             lights: vec![

@@ -2,8 +2,12 @@
 
 use super::aim::check_aim;
 use super::check::{Allowed, Check, POSITION, SIZE, TURN};
-use crate::scene::{BarnDoors, ColorSource, Cone, Emitter, Gel, Light, Modifier, Output, Power, Scene};
+use crate::scene::{
+    BarnDoors, ColorSource, Cone, DialScale, Emitter, Gel, Head, Light, Modifier, Output, Power, Scene,
+};
 
+/// Longest name of a head.
+const MOST_NAME: usize = 100;
 const AMOUNT: Allowed = Allowed::between(0.0, 1e9, "");
 /// Upper limit: the luminous efficacy of monochromatic light at 555 nm, 683 lm/W.
 const EFFICACY: Allowed = Allowed::between(0.0, 683.0, "lm s per Ws");
@@ -15,6 +19,9 @@ pub(super) fn check_light(scene: &Scene, light: &Light, check: &mut Check) {
     check.number("roll_deg", light.roll_deg, TURN);
     check_emitter(&light.emitter, check);
     check_modifier(&light.modifier, check);
+    if let Some(head) = &light.head {
+        check_head(head, check);
+    }
     check_power(&light.power, check);
     check_pairing(light, check);
     match light.color.source {
@@ -79,6 +86,31 @@ fn check_modifier(modifier: &Modifier, check: &mut Check) {
         check.number("modifier.doors.right_deg", right_deg, FLAP);
         check.number("modifier.doors.top_deg", top_deg, FLAP);
         check.number("modifier.doors.bottom_deg", bottom_deg, FLAP);
+    }
+}
+
+fn check_head(head: &Head, check: &mut Check) {
+    const TIME: Allowed = Allowed::between(1e-7, 10.0, "s");
+    if head.name.is_empty() || head.name.chars().count() > MOST_NAME {
+        check.error("head.name", format!("a head has a name of 1 to {MOST_NAME} characters"));
+    }
+    check.number("head.dial.lowest_stops", head.dial.lowest_stops, Allowed::between(-20.0, 0.0, "stops"));
+    if head.dial.steps_per_stop == 0 {
+        check.error("head.dial.steps_per_stop", "a dial has at least 1 setting a stop".to_owned());
+    }
+    match head.dial.scale {
+        DialScale::Fractions | DialScale::PerCent => {}
+        DialScale::Number { full } => check.number("head.dial.scale.full", full, Allowed::between(-100.0, 1000.0, "")),
+        DialScale::WattSeconds { full } => {
+            check.number("head.dial.scale.full", full, Allowed::between(0.1, 1e6, "Ws"));
+        }
+    }
+    let times = [("head.sync_s", head.sync_s), ("head.t01_s", head.t01_s)];
+    for (field, time_s) in times.into_iter().filter_map(|(field, time_s)| Some((field, time_s?))) {
+        check.number(field, time_s, TIME);
+    }
+    if let Some(loss) = head.hss_loss_stops {
+        check.number("head.hss_loss_stops", loss, Allowed::between(0.0, 20.0, "stops"));
     }
 }
 

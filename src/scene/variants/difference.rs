@@ -2,7 +2,7 @@
 
 use super::setup::StudioSetup;
 use crate::scene::{
-    Aim, Camera, ColorSource, Emitter, Focus, Gel, Light, LightId, Modifier, ObjectId, Orientation, Output, Role,
+    Aim, Camera, ColorSource, Emitter, Focus, Gel, Head, Light, LightId, Modifier, ObjectId, Orientation, Output, Role,
     Sensor,
 };
 use glam::Vec3;
@@ -50,10 +50,12 @@ difference! {
         roll_deg: f32 = roll_deg,
         emitter: Emitter = emitter,
         modifier: Modifier = modifier,
+        head: Option<Head> = head,
         output: Output = power.output,
         dial_stops: f32 = power.dial_stops,
         source: ColorSource = color.source,
         gel: Gel = color.gel,
+        gel_loss_counts: bool = color.gel_loss_counts,
         on: bool = on,
         visible_to_camera: bool = visible_to_camera,
         muted: bool = muted,

@@ -1,7 +1,7 @@
 use super::*;
 use crate::scene::{
-    Camera, ColorSource, Emitter, Focus, Gel, LightColor, LightId, Modifier, Object, ObjectId, Orientation, Output,
-    Power, Role, Scene, Sensor, Shape,
+    Camera, ColorSource, Emitter, Focus, Gel, Head, HeadDial, LightColor, LightId, Modifier, Object, ObjectId,
+    Orientation, Output, Power, Role, Scene, Sensor, Shape,
 };
 use glam::Vec3;
 
@@ -197,8 +197,15 @@ fn every_field_of_light_and_camera_is_compared() {
         roll_deg: 1.0,
         emitter: Emitter::Surround,
         modifier: Modifier { loss_stops: 1.0, ..Modifier::default() },
+        head: Some(Head {
+            name: "Monolight".to_owned(),
+            dial: HeadDial::UNKNOWN,
+            sync_s: None,
+            hss_loss_stops: None,
+            t01_s: None,
+        }),
         power: Power { output: Output::Lux(1.0), dial_stops: -1.0 },
-        color: LightColor { source: ColorSource::Kelvin(3200.0), gel: Gel::Mired(1.0) },
+        color: LightColor { source: ColorSource::Kelvin(3200.0), gel: Gel::Mired(1.0), gel_loss_counts: false },
         on: false,
         visible_to_camera: true,
         muted: true,

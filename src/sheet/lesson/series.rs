@@ -7,7 +7,7 @@ use crate::photo::meter::{Reading, nearest_third};
 use crate::photo::text::{signed_hundredths, signed_stops};
 use crate::raytrace::{GeometryCache, PrepareError, RenderControl};
 use crate::scene::{Aim, Assets, Light, LightId, Material, NamedModifier, Room, Scene};
-use crate::setup::{DIAL_STOPS, MeteredSetup};
+use crate::setup::MeteredSetup;
 use glam::Vec3;
 
 /// Angles round from the camera and up at which a light is shown, degrees.
@@ -291,7 +291,7 @@ impl Studio<'_> {
     fn exposed_note(&self, scene: &Scene) -> String {
         let dial = scene.lights.iter().find(|light| light.on).map_or(0.0, |light| light.power.dial_stops);
         let number = nearest_third(scene.camera.f_number);
-        if dial > *DIAL_STOPS.end() {
+        if dial > 0.0 {
             format!("{number} takes {:.1} stops more than full power", dial)
         } else {
             format!("{number} at {} stops", signed_stops(dial))

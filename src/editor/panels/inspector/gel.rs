@@ -1,11 +1,12 @@
 //! The gel rows of a light's inspector.
 
-use crate::editor::ui::widgets::{self, NumberField, fact, row};
-use crate::scene::{Gel, GelFamily};
+use crate::editor::ui::widgets::{self, NumberField, row};
+use crate::scene::{Gel, GelFamily, LightColor};
 use eframe::egui::{ComboBox, Ui};
 
 /// Draws the gel rows.
-pub(super) fn gel_rows(ui: &mut Ui, gel: &mut Gel) {
+pub(super) fn gel_rows(ui: &mut Ui, color: &mut LightColor) {
+    let gel = &mut color.gel;
     let current = gel.name().unwrap_or(match gel {
         Gel::None => "None",
         Gel::Mired(_) => "Other mired shift",
@@ -42,9 +43,16 @@ pub(super) fn gel_rows(ui: &mut Ui, gel: &mut Gel) {
         }
     });
     if *gel != Gel::None {
-        let tip =
-            "What the real filter takes from white light. It is not taken from the power here: turn up the head by it.";
-        fact(ui, "Gel costs", tip, format!("{:.1} stops on the set", gel.loss_stops()));
+        let loss = gel.loss_stops();
+        let tip = format!("The filter takes {loss:.1} stops from white light");
+        row(ui, "Its loss", &tip, |ui| {
+            let choices = [
+                (true, "Counts", "As mounted: the meter shows the light behind the gel"),
+                (false, "Made up for", "The head is turned up by the loss on the set; the meter stays"),
+            ];
+            widgets::choice(ui, &mut color.gel_loss_counts, &choices);
+            ui.label(format!("{loss:.1} stops"));
+        });
     }
 }
 

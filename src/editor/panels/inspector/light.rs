@@ -1,7 +1,7 @@
 //! The inspector of a light.
 
 use super::power::{self, PowerUnit};
-use super::{InspectorContext, aim, gel, modifier, text_ui, title};
+use super::{InspectorContext, aim, gel, head, modifier, text_ui, title};
 use crate::color::rgb_from_kelvin;
 use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::commands::command::Command;
@@ -10,12 +10,13 @@ use crate::editor::document::item::Item;
 use crate::editor::document::readout;
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, NumberField, fact, row, section};
+use crate::gear::GearList;
 use crate::photo::light::axial_intensity;
-use crate::photo::text::{power_fraction, signed_stops, three_digits};
+use crate::photo::text::{signed_stops, three_digits};
 use crate::photo::thirds::Dial;
 use crate::photo::{LightBearing, exposure, light_rgb};
 use crate::scene::{ColorSource, Emitter, Light, LightId, Output, Role, Scene};
-use eframe::egui::{ComboBox, Label, RichText, Slider, SliderClamping, Ui, vec2};
+use eframe::egui::{ComboBox, RichText, Slider, SliderClamping, Ui, vec2};
 
 /// Draws the inspector of a light.
 pub(super) fn light_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: LightId) {
@@ -41,7 +42,7 @@ pub(super) fn light_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Ligh
     role_row(ui, &mut light);
     modifier::kind_rows(ui, scene, &mut light);
     ui.separator();
-    section(ui, "Power", true, |ui| power_rows(ui, scene, &mut light));
+    section(ui, "Power", true, |ui| power_rows(ui, scene, context.gear, &mut light));
     section(ui, "Colour", true, |ui| color_rows(ui, scene, &mut light));
     section(ui, "At the subject", true, |ui| readouts(ui, scene, &light));
     section(ui, "Place and aim", true, |ui| {
@@ -83,8 +84,15 @@ const LUMENS: NumberField = NumberField::new(20.0, 0.0, 100_000_000.0, 0, " lm")
 const CANDELA: NumberField = NumberField::new(20.0, 0.0, 100_000_000.0, 0, " cd");
 const LUX: NumberField = NumberField::new(20.0, 0.0, 100_000_000.0, 0, " lx");
 
-fn power_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
-    dial_rows(ui, scene, light);
+fn power_rows(ui: &mut Ui, scene: &Scene, gear: &GearList, light: &mut Light) {
+    if !light.emitter.is_infinite() {
+        head::head_row(ui, scene, gear, light);
+    }
+    head::dial_rows(ui, scene, light);
+    if let Some(head) = &light.head {
+        head::head_facts(ui, gear, head, &light.power.output);
+        return;
+    }
     let unit = PowerUnit::of(&light.power.output);
     row(ui, "Stated as", "The unit of its full power. Changing the unit keeps the exposure.", |ui| {
         let units: &[PowerUnit] = if light.emitter.is_infinite() { &PowerUnit::INFINITE } else { &PowerUnit::FINITE };
@@ -120,47 +128,6 @@ fn power_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     });
 }
 
-/// Draws the power dial: a slider in tenths of a stop, buttons in thirds, and a button that meters.
-fn dial_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
-    let dial = &mut light.power.dial_stops;
-    row(ui, "Dial", "Stops from full power: 0 is full, \u{2212}1 half, \u{2212}2 a quarter", |ui| {
-        ui.spacing_mut().slider_width = (ui.available_width() - 64.0).max(60.0);
-        let mut shown = *dial;
-        let slider = Slider::new(&mut shown, -9.0..=1.0)
-            .step_by(0.1)
-            .clamping(SliderClamping::Never)
-            .update_while_editing(false)
-            .custom_formatter(|v, _| signed_stops(v as f32))
-            .custom_parser(|text| text.replace('\u{2212}', "-").trim().parse().ok());
-        let response = ui.name_inputs("Dial", |ui| ui.add(slider));
-        let response = response.on_hover_text("Drag, or click the number and type it");
-        if response.changed() && shown.is_finite() {
-            *dial = shown;
-        }
-    });
-    row(ui, "", "", |ui| {
-        let dial = &mut light.power.dial_stops;
-        ui.spacing_mut().item_spacing.x = 2.0;
-        for (sign, name, thirds) in
-            [("\u{2212}\u{2153}", "A third of a stop less", -1.0), ("+\u{2153}", "A third of a stop more", 1.0)]
-        {
-            if widgets::small_button(ui, sign, name).on_hover_text(name).clicked() {
-                *dial = ((*dial * 3.0 + thirds).round()) / 3.0;
-            }
-        }
-        ui.add_space(6.0);
-        ui.add(Label::new(RichText::new(power_fraction(*dial)).weak())).on_hover_text("The part of full power");
-        ui.add_space(6.0);
-        let tip = format!(
-            "Turns the dial, in thirds, so that a meter at the aim reads the camera's {}",
-            Dial::FNumber.label(scene.camera.f_number)
-        );
-        if ui.button("Meter").on_hover_text(tip).clicked() {
-            light.power.dial_stops = readout::dial_for(scene, light, 0.0);
-        }
-    });
-}
-
 fn color_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     let white = scene.camera.white_balance_k;
     row(ui, "Source", "Where its colour comes from", |ui| {
@@ -183,7 +150,7 @@ fn color_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
             row(ui, "Colour", "Only the hue counts: brightness comes from the power", |ui| widgets::color_ui(ui, rgb));
         }
     }
-    gel::gel_rows(ui, &mut light.color.gel);
+    gel::gel_rows(ui, &mut light.color);
 }
 
 /// Named colour temperatures.

@@ -5,6 +5,7 @@ mod camera;
 mod fibre;
 mod figure;
 mod gel;
+mod head;
 mod light;
 mod material;
 mod meter;
@@ -20,6 +21,7 @@ use crate::editor::document::item::{Item, name_of_all};
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::ui::widgets::{row, small_button};
+use crate::gear::GearList;
 use crate::jobs::PatternJob;
 use crate::scene::Light;
 use eframe::egui::{self, RichText, ScrollArea, TextEdit, Ui};
@@ -28,6 +30,7 @@ use eframe::egui::{self, RichText, ScrollArea, TextEdit, Ui};
 struct InspectorContext<'a> {
     document: &'a Document,
     patterns: &'a PatternJob,
+    gear: &'a GearList,
     out: &'a mut Vec<Command>,
 }
 
@@ -37,11 +40,12 @@ pub fn inspector_ui(
     document: &Document,
     selection: &Selection,
     patterns: &PatternJob,
+    gear: &GearList,
     out: &mut Vec<Command>,
 ) {
     ScrollArea::vertical().id_salt("inspector").auto_shrink([false, false]).show(ui, |ui| {
         ui.add_space(4.0);
-        let mut context = InspectorContext { document, patterns, out };
+        let mut context = InspectorContext { document, patterns, gear, out };
         if selection.len() > 1 {
             several_ui(ui, &mut context, selection);
         }

@@ -3,7 +3,7 @@
 use crate::editor::document::readout;
 use crate::photo::emitter::EmitterShape;
 use crate::photo::light::{axial_intensity, transmittance};
-use crate::scene::{Camera, Emitter, Light, Modifier, Output, Scene};
+use crate::scene::{Camera, Emitter, Light, LightColor, Modifier, Output, Scene};
 
 /// A unit of power.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,10 +57,11 @@ impl PowerUnit {
 /// Returns the output of a light in another unit: at equal intensity, and between flash and continuous light at equal
 /// exposure at the camera's shutter.
 pub fn convert(light: &Light, camera: &Camera, unit: PowerUnit) -> Output {
-    // Power is stated before the modifier, whatever its unit.
+    // Power is stated before modifier and gel, whatever its unit.
     let full = Light {
         power: crate::scene::Power { dial_stops: 0.0, ..light.power },
         modifier: Modifier::default(),
+        color: LightColor { gel_loss_counts: false, ..light.color },
         ..light.clone()
     };
     let per_flux = EmitterShape::new(&light.emitter).intensity_per_flux().unwrap_or(1.0);
@@ -95,7 +96,7 @@ pub fn change_emitter(scene: &Scene, light: &mut Light, emitter: Emitter, modifi
     if was == is {
         return;
     }
-    let passed = light.power.dial_stops.exp2() * transmittance(&modifier);
+    let passed = (light.power.dial_stops - light.color.loss_stops()).exp2() * transmittance(&modifier);
     let full = before.lux_s / scene.camera.shutter_s / passed;
     light.power.output = if is {
         Output::Lux(full)
@@ -116,11 +117,13 @@ pub fn change_emitter(scene: &Scene, light: &mut Light, emitter: Emitter, modifi
 mod tests {
     use super::*;
     use crate::editor::document::catalog;
+    use crate::scene::Gel;
 
     #[test]
     fn every_unit_gives_the_same_exposure() {
         let scene = Scene::default();
         let mut light = catalog::light_named("Strip 30 x 120").unwrap();
+        light.color.gel = Gel::Mired(159.0);
         let lux_s = readout::at_aim(&scene, &light).lux_s;
         for unit in PowerUnit::FINITE.into_iter().chain(PowerUnit::FINITE.into_iter().rev()) {
             light.power.output = convert(&light, &scene.camera, unit);
