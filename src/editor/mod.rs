@@ -48,6 +48,7 @@ pub use document::action::Action;
 pub use document::action_error::ActionError;
 pub use document::arrange::MirrorPlane;
 pub use document::files::StudioSource;
+pub use document::gear_shelf::GearEntry;
 pub use document::item::Item;
 pub use document::light_mix::Fader;
 pub use document::selection::Selection;

@@ -26,6 +26,7 @@ mod camera;
 mod device;
 mod dials;
 mod files;
+mod gear;
 mod panels;
 mod placing;
 mod recovery;
