@@ -1,6 +1,6 @@
 //! Makes the names of a scene's objects and lights unique, which files need to refer to them.
 
-use crate::scene::{Finding, LightId, Scene, VARIANT_LIMIT};
+use crate::scene::{Finding, LightId, Scene, VARIANT_LIMIT, name_stem};
 use std::collections::{HashMap, HashSet};
 
 /// Gives the later of two equal names a number, with a warning each. Aims refer to objects by id, so they are
@@ -70,8 +70,7 @@ struct NameAllocator {
 
 impl NameAllocator {
     fn fresh(&mut self, name: &str) -> String {
-        let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
-        let stem = if stem.is_empty() { name } else { stem };
+        let stem = name_stem(name, |stem| self.taken.contains(stem));
         let number = self.numbers.entry(stem.to_owned()).or_insert(1);
         loop {
             *number += 1;

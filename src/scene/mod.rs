@@ -148,14 +148,13 @@ impl Scene {
     }
 
     /// Returns the first of `wanted`, `wanted 2`, `wanted 3` ... that is not the name of an object or of a light of any
-    /// variant.
+    /// variant. A copy of `Key 2` is `Key 3` where there is a `Key`; one of `Octa 120` is `Octa 120 2`.
     pub fn unique_name(&self, wanted: &str) -> String {
         let taken = |name: &str| self.name_owner(name).is_some();
         if !taken(wanted) {
             return wanted.to_owned();
         }
-        let stem = wanted.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
-        let stem = if stem.is_empty() { wanted } else { stem };
+        let stem = name_stem(wanted, taken);
         (2..).map(|n| format!("{stem} {n}")).find(|name| !taken(name)).unwrap_or_default()
     }
 
@@ -205,4 +204,11 @@ impl Scene {
     pub fn focused_lens(&self) -> FocusedLens {
         FocusedLens::new(self, &self.camera)
     }
+}
+
+/// Returns a name without the number that tells it from its likes: a number counts as one where something bears the name
+/// without it, and is part of the name otherwise.
+pub fn name_stem(name: &str, is_taken: impl Fn(&str) -> bool) -> &str {
+    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
+    if stem.is_empty() || !is_taken(stem) { name } else { stem }
 }

@@ -280,6 +280,12 @@ mod tests {
         let copy = Action::Duplicate(vec![Item::Light(light)]).apply(&mut scene).unwrap()[0];
         assert_ne!(copy, Item::Light(light));
         assert_ne!(copy.name(&scene), Item::Light(light).name(&scene));
+        Action::Rename(Item::Light(light), "Octa 120".to_owned()).apply(&mut scene).unwrap();
+        let mut copied = |item: Item| Action::Duplicate(vec![item]).apply(&mut scene).unwrap()[0];
+        let second = copied(Item::Light(light));
+        let third = copied(second);
+        let names = [second, third].map(|copy| copy.name(&scene));
+        assert_eq!(names, ["Octa 120 2", "Octa 120 3"], "a size is no number of copies");
     }
 
     #[test]

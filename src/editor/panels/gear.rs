@@ -12,7 +12,6 @@ use eframe::egui::{self, DragValue, Grid, Label, Rect, RichText, ScrollArea, Ui,
 /// Height of the list, which scrolls.
 const LIST_HEIGHT: f32 = 300.0;
 const NAME_WIDTH: f32 = 190.0;
-const FACTS_WIDTH: f32 = 250.0;
 const MOST_OWNED: u32 = 999;
 
 /// The lists of the window.
@@ -167,8 +166,7 @@ pub fn head_text(head: &Head) -> String {
 }
 
 fn row_ui(ui: &mut Ui, row: &GearRow, uses: &[GearUse], out: &mut Vec<Command>) {
-    let name = ui.add_sized(vec2(NAME_WIDTH, 18.0), Label::new(&row.name).truncate().halign(egui::Align::LEFT));
-    name.on_hover_text(&row.tip);
+    widgets::role_name(ui, None, &row.name, NAME_WIDTH).on_hover_text(&row.tip);
     let mut owned = row.owned;
     let field = ui.add(DragValue::new(&mut owned).range(0..=MOST_OWNED).speed(0.03).update_while_editing(false));
     widgets::named(ui, &field, &format!("Own {}", row.name));
@@ -183,9 +181,5 @@ fn row_ui(ui: &mut Ui, row: &GearRow, uses: &[GearUse], out: &mut Vec<Command>) 
         }
         (used, _) => drop(ui.label(used.to_string())),
     }
-    let facts = ui.add_sized(
-        vec2(FACTS_WIDTH, 18.0),
-        Label::new(RichText::new(&row.facts).weak()).truncate().halign(egui::Align::LEFT),
-    );
-    facts.on_hover_text(&row.tip);
+    ui.label(RichText::new(&row.facts).weak()).on_hover_text(&row.tip);
 }
