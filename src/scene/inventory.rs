@@ -127,7 +127,8 @@ fn shape_asset(shape: &Shape) -> Option<AssetRef<'_>> {
         | Shape::Box { .. }
         | Shape::Sphere { .. }
         | Shape::Cylinder { .. }
-        | Shape::Sweep { .. } => None,
+        | Shape::Sweep { .. }
+        | Shape::VFlat { .. } => None,
     }
 }
 

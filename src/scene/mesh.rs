@@ -159,6 +159,7 @@ mod tests {
             (Shape::Cylinder { radius_m: 0.3, height_m: 2.0 }, true),
             (Shape::Plane { width_m: 1.0, depth_m: 2.0 }, false),
             (Shape::Sweep { width_m: 2.0, height_m: 3.0, depth_m: 2.0, radius_m: 0.5 }, false),
+            (Shape::VFlat { wing_m: 1.2, height_m: 2.4, angle_deg: 90.0 }, false),
         ] {
             assert_eq!(tessellate(&shape).unwrap().is_closed(), closed, "{shape:?}");
         }

@@ -49,9 +49,23 @@ pub enum Shape {
         /// Radius of the curve between them.
         radius_m: f32,
     },
+    /// Two boards that meet in a vertical edge through the origin and open to +Z.
+    VFlat {
+        /// Width of each board.
+        wing_m: f32,
+        /// Height of the boards, half of it below the origin.
+        height_m: f32,
+        /// Angle between the boards, degrees: 180 is one flat board.
+        angle_deg: f32,
+    },
 }
 
 impl Shape {
+    /// Returns true for paper, cloth and boards, which stand behind or beside a subject and are none.
+    pub fn is_sheet(&self) -> bool {
+        matches!(self, Shape::Plane { .. } | Shape::Sweep { .. } | Shape::VFlat { .. })
+    }
+
     /// Returns the label in lists.
     pub fn label(&self) -> &'static str {
         match self {
@@ -62,6 +76,7 @@ impl Shape {
             Shape::Sphere { .. } => "Sphere",
             Shape::Cylinder { .. } => "Cylinder",
             Shape::Sweep { .. } => "Backdrop",
+            Shape::VFlat { .. } => "V-flat",
         }
     }
 }

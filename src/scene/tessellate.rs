@@ -20,6 +20,7 @@ pub fn tessellate(shape: &Shape) -> Option<Mesh> {
         Shape::Sphere { radius_m } => sphere(radius_m),
         Shape::Cylinder { radius_m, height_m } => cylinder(radius_m, height_m),
         Shape::Sweep { width_m, height_m, depth_m, radius_m } => sweep(width_m, height_m, depth_m, radius_m),
+        Shape::VFlat { wing_m, height_m, angle_deg } => v_flat(wing_m, height_m, angle_deg),
     };
     Some(mesh.with_single_part("surface"))
 }
@@ -136,6 +137,17 @@ fn disc(radius: f32, y: f32, normal: Vec3) -> Mesh {
     mesh
 }
 
+/// Returns the two boards of a V-flat, which face each other.
+fn v_flat(wing: f32, height: f32, angle_deg: f32) -> Mesh {
+    let (sin, cos) = (0.5 * angle_deg.to_radians()).sin_cos();
+    let [left, right] = [-1.0, 1.0].map(|side| Vec3::new(side * sin, 0.0, cos) * (0.5 * wing));
+    let up = Vec3::Y * (0.5 * height);
+    // The edge is the right end of the left board, and the left end of the right one
+    let mut mesh = quad(left, -left, up);
+    mesh.append(&quad(right, right, up));
+    mesh
+}
+
 /// Returns the surface of a profile from the front edge of the floor over the curve to the top of the wall.
 fn sweep(width: f32, height: f32, depth: f32, radius: f32) -> Mesh {
     let radius = radius.min(height).min(depth).max(0.0);
@@ -210,6 +222,12 @@ mod tests {
         let plane = tessellate(&Shape::Plane { width_m: 2.0, depth_m: 1.0 }).unwrap();
         winding_agrees_with_normals(&plane);
         assert_eq!(plane.normals[0], Vec3::Y);
+        let v_flat = tessellate(&Shape::VFlat { wing_m: 1.2, height_m: 2.4, angle_deg: 60.0 }).unwrap();
+        winding_agrees_with_normals(&v_flat);
+        let (low, high) = v_flat.bounds();
+        assert!((low - Vec3::new(-0.6, -1.2, 0.0)).length() < 1e-6, "{low}");
+        assert!((high - Vec3::new(0.6, 1.2, 1.2 * 0.75_f32.sqrt())).length() < 1e-6, "{high}");
+        assert!(v_flat.normals[0].x > 0.8 && v_flat.normals[4].x < -0.8, "the boards face each other");
         let sweep = Shape::Sweep { width_m: 2.72, height_m: 3.0, depth_m: 4.0, radius_m: 0.8 };
         let sweep = tessellate(&sweep).unwrap();
         winding_agrees_with_normals(&sweep);

@@ -7,7 +7,7 @@ use super::metering::MeteredSetup;
 use crate::math::mean;
 use crate::photo::meter::Reading;
 use crate::raytrace::{GeometryCache, LightMeter, MeterEffort, MeterPoint, PrepareError, RenderControl};
-use crate::scene::{Assets, Material, Role, Room, Scene, Shape};
+use crate::scene::{Assets, Material, Role, Room, Scene};
 use std::collections::BTreeMap;
 
 /// Albedo of white emulsion paint, typical.
@@ -44,7 +44,7 @@ impl RoomSurface {
     /// Returns true if the studio has such a surface.
     fn is_in(self, scene: &Scene) -> bool {
         match self {
-            RoomSurface::Backdrops => scene.objects.iter().any(|object| object.visible && is_backdrop(&object.shape)),
+            RoomSurface::Backdrops => scene.objects.iter().any(|object| object.visible && object.shape.is_sheet()),
             _ => scene.room.is_some(),
         }
     }
@@ -63,17 +63,13 @@ impl RoomSurface {
             *surface = material.clone();
         }
         if self == RoomSurface::Backdrops {
-            for object in painted.objects.iter_mut().filter(|object| is_backdrop(&object.shape)) {
+            for object in painted.objects.iter_mut().filter(|object| object.shape.is_sheet()) {
                 object.material = material.clone();
                 object.part_materials.clear();
             }
         }
         painted
     }
-}
-
-fn is_backdrop(shape: &Shape) -> bool {
-    matches!(shape, Shape::Sweep { .. } | Shape::Plane { .. })
 }
 
 fn matte(albedo: f32) -> Material {

@@ -85,6 +85,11 @@ fn shape() -> impl Strategy<Value = Shape> {
         vector(1e-5, 1e5).prop_map(|size_m| Shape::Box { size_m }),
         size().prop_map(|radius_m| Shape::Sphere { radius_m }),
         (size(), size()).prop_map(|(radius_m, height_m)| Shape::Cylinder { radius_m, height_m }),
+        (size(), size(), number(5.0, 180.0)).prop_map(|(wing_m, height_m, angle_deg)| Shape::VFlat {
+            wing_m,
+            height_m,
+            angle_deg
+        }),
         (size(), size(), size(), number(0.0, 1e5)).prop_map(|(width_m, height_m, depth_m, radius_m)| Shape::Sweep {
             width_m,
             height_m,

@@ -3,7 +3,6 @@
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
-use crate::scene::Shape;
 use glam::Vec3;
 
 /// Returns the bounding box of the selection, or of all figures, props and lights if no selected item has a position.
@@ -15,7 +14,7 @@ pub fn bounds(document: &Document, selection: &Selection) -> Option<(Vec3, Vec3)
         item => item.position(scene).map(point),
     };
     join(selection.items().iter().filter_map(of_item)).or_else(|| {
-        let things = scene.objects.iter().filter(|o| !matches!(o.shape, Shape::Sweep { .. } | Shape::Plane { .. }));
+        let things = scene.objects.iter().filter(|o| !o.shape.is_sheet());
         let things = things.filter_map(|object| document.assets().object_bounds(object));
         join(things.chain(scene.lights.iter().filter(|l| !l.emitter.is_infinite()).map(|l| point(l.position))))
     })

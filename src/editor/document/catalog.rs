@@ -85,6 +85,8 @@ pub enum PropShape {
     Plane(f32, f32),
     /// Width and height, vertical, facing the front.
     Card(f32, f32),
+    /// Width of each of two boards, and height.
+    VFlat(f32, f32),
 }
 
 /// An entry of the catalog.
@@ -198,14 +200,14 @@ const PROPS: [CatalogEntry; 22] = [
     ),
     prop(
         "V-flat, white",
-        "1.2 x 2.4 m of white board: bounces light back.",
-        PropShape::Card(1.2, 2.4),
+        "Two white boards of 1.2 x 2.4 m: beside the subject they bounce light back.",
+        PropShape::VFlat(1.2, 2.4),
         MaterialPreset::WhitePaper,
     ),
     prop(
         "V-flat, black",
-        "1.2 x 2.4 m of black board: takes light away.",
-        PropShape::Card(1.2, 2.4),
+        "Two black boards of 1.2 x 2.4 m: beside the subject they take light away.",
+        PropShape::VFlat(1.2, 2.4),
         MaterialPreset::BlackVelvet,
     ),
     prop("Grey card", "18 % grey, 20 x 25 cm.", PropShape::Card(0.2, 0.25), MaterialPreset::GreyCard),
@@ -361,6 +363,7 @@ fn new_prop(name: &str, shape: PropShape, material: Material) -> Object {
         PropShape::Cylinder(radius_m, height_m) => (Shape::Cylinder { radius_m, height_m }, 0.5 * height_m, 0.0),
         PropShape::Plane(width_m, depth_m) => (Shape::Plane { width_m, depth_m }, 0.002, 0.0),
         PropShape::Card(width_m, height_m) => (Shape::Plane { width_m, depth_m: height_m }, 0.5 * height_m, 90.0),
+        PropShape::VFlat(wing_m, height_m) => (Shape::VFlat { wing_m, height_m, angle_deg: 90.0 }, 0.5 * height_m, 0.0),
     };
     let mut object = Object { material, ..Object::new(name, shape) };
     object.transform.position.y = height_m;

@@ -2,10 +2,14 @@
 
 use crate::editor::document::item::Item;
 use crate::editor::document::readout;
-use crate::figures;
-use crate::scene::{Aim, Assets, Light, Object, ObjectId, Role, Scene, Shape};
-use glam::{Quat, Vec3};
+use crate::figures::{self, Joint, PosableBody};
+use crate::scene::{Aim, Assets, Light, MaterialPreset, Object, ObjectId, Role, Scene, Shape};
+use glam::{Quat, Vec2, Vec3};
 
+/// Distance between the subject's middle and the opening of a V-flat beside it, metres.
+const BESIDE_M: f32 = 0.45;
+/// Radius of a stool, metres.
+const STOOL_RADIUS_M: f32 = 0.17;
 /// Height of the aim point without a subject, metres.
 const NOTHING_HEIGHT_M: f32 = 1.3;
 
@@ -24,14 +28,13 @@ pub fn aim_offset(object: &Object, assets: &Assets) -> Vec3 {
 
 /// Returns the subject: the selected object, else the first figure, else the first object that is no backdrop.
 pub fn subject(scene: &Scene, selected: Option<Item>) -> Option<ObjectId> {
-    let is_backdrop = |object: &Object| matches!(object.shape, Shape::Sweep { .. } | Shape::Plane { .. });
     let selected = match selected {
-        Some(Item::Object(id)) => scene.object(id).filter(|o| !is_backdrop(o)),
+        Some(Item::Object(id)) => scene.object(id).filter(|o| !o.shape.is_sheet()),
         _ => None,
     };
     selected
         .or_else(|| scene.objects.iter().find(|o| matches!(o.shape, Shape::Figure(_))))
-        .or_else(|| scene.objects.iter().find(|o| !is_backdrop(o)))
+        .or_else(|| scene.objects.iter().find(|o| !o.shape.is_sheet()))
         .map(|o| o.id)
 }
 
@@ -83,7 +86,8 @@ pub fn place_light(scene: &Scene, assets: &Assets, selected: Option<Item>, light
     light.position = target + (around * cos + Vec3::Y * sin) * distance_m;
     light.position.y = light.position.y.max(0.1);
     // The dial ends at full power.
-    light.power.dial_stops = readout::dial_for(scene, light, stops).min(0.0);
+    let stops = readout::dial_for(scene, light, stops).min(0.0);
+    light.power.dial_stops = light.head.as_ref().map_or(stops, |head| head.dial.nearest(stops));
 }
 
 /// Positions a new object: figures and props on free floor, backdrops behind the subject and facing the camera.
@@ -98,10 +102,51 @@ pub fn place_object(scene: &Scene, selected: Option<Item>, object: &mut Object) 
         object.transform.rotation_deg.y = front.x.atan2(front.z).to_degrees();
         return;
     }
+    if let Shape::VFlat { wing_m, angle_deg, .. } = object.shape {
+        place_beside(scene, subject(scene, selected), wing_m * (0.5 * angle_deg.to_radians()).cos(), object);
+        return;
+    }
     let step = if matches!(object.shape, Shape::Figure(_)) { 0.9 } else { 0.5 };
     let height_m = object.transform.position.y;
     let free = (0..64).map(|i| row_place(i, step)).find(|place| is_free(scene, *place, step)).unwrap_or(Vec3::ZERO);
     object.transform.position = free + Vec3::Y * height_m;
+}
+
+/// Returns a round stool that fits under a seated figure, up to what is lowest over it; none for anything else.
+pub fn stool_under(object: &Object, assets: &Assets) -> Option<Object> {
+    let Shape::Figure(figure) = &object.shape else { return None };
+    let seat_m = figure.pose.seat_m?;
+    let hips = PosableBody::new(figure).place(Joint::Hips);
+    let place = object.transform.world_from_object().transform_point3(Vec3::new(hips.x, 0.0, hips.z));
+    let is_over = |point: &&Vec3| Vec2::new(point.x - hips.x, point.z - hips.z).length() < STOOL_RADIUS_M;
+    let mesh = assets.coarse_mesh_of(&object.shape);
+    let over = mesh.iter().flat_map(|mesh| mesh.positions.iter()).filter(is_over).map(|point| point.y);
+    let lowest_m = over.reduce(f32::min).unwrap_or(seat_m).clamp(0.5 * seat_m, 1.2 * seat_m);
+    let height_m = lowest_m * object.transform.scale.y.abs();
+    let shape = Shape::Cylinder { radius_m: STOOL_RADIUS_M, height_m };
+    let mut stool = Object { material: MaterialPreset::MatteFabric.material(), ..Object::new("Stool", shape) };
+    stool.transform.position = place + Vec3::Y * (0.5 * height_m);
+    Some(stool)
+}
+
+/// Stands a V-flat beside the subject, open to it: on the side away from the key light, or on the other if something is
+/// there. `depth_m` is its depth.
+fn place_beside(scene: &Scene, subject: Option<ObjectId>, depth_m: f32, object: &mut Object) {
+    let middle = subject.and_then(|id| scene.object(id)).map_or(Vec3::ZERO, |subject| subject.transform.position);
+    let front = towards_camera(scene, middle);
+    let right = Vec3::Y.cross(front);
+    let key = scene.lights.iter().find(|light| light.role == Role::Key && !light.emitter.is_infinite());
+    let from_key = key.map_or(1.0, |key| -(key.position - middle).dot(right).signum());
+    let places = [from_key, -from_key].map(|side| (right * side, middle + right * (side * (depth_m + BESIDE_M))));
+    let is_free = |place: Vec3| {
+        scene.objects.iter().filter(|o| matches!(o.shape, Shape::VFlat { .. })).all(|o| {
+            let apart = o.transform.position - place;
+            apart.x.hypot(apart.z) > BESIDE_M
+        })
+    };
+    let (away, place) = places.into_iter().find(|(_, place)| is_free(*place)).unwrap_or(places[0]);
+    (object.transform.position.x, object.transform.position.z) = (place.x, place.z);
+    object.transform.rotation_deg.y = (-away.x).atan2(-away.z).to_degrees();
 }
 
 /// Returns the candidate position `i`: in a row outwards from the middle, then in further rows towards the front.
@@ -123,11 +168,61 @@ mod tests {
     use super::*;
     use crate::editor::document::action::Action;
     use crate::editor::document::catalog;
+    use crate::scene::{Asset, AssetRef, Figure};
 
     fn add(scene: &mut Scene, name: &str) {
         let mut object = catalog::object_named(name).unwrap();
         place_object(scene, None, &mut object);
         Action::AddObject(Box::new(object)).apply(scene).unwrap();
+    }
+
+    #[test]
+    fn a_stool_fits_under_a_seated_person() {
+        let mut person = catalog::object_named("Boy, 10, short hair").unwrap();
+        assert!(stool_under(&person, &Assets::default()).is_none(), "a standing person needs none");
+        person.transform.position = Vec3::new(1.0, 0.0, -0.5);
+        person.transform.rotation_deg.y = 90.0;
+        let Shape::Figure(figure) = &mut person.shape else { panic!("a figure") };
+        figure.pose = figures::NamedPose::Seated.pose();
+        let seat_m = figure.pose.seat_m.unwrap();
+        let meshes = figures::build(figure);
+        let mut assets = Assets::default();
+        let key = AssetRef::figure(std::borrow::Cow::Owned(Figure::clone(figure)));
+        assets.insert(key, Asset::Figure(meshes.clone()));
+        let stool = stool_under(&person, &assets).unwrap();
+        let Shape::Cylinder { height_m, radius_m } = stool.shape else { panic!("a round stool") };
+        assert!((0.8 * seat_m..1.05 * seat_m).contains(&height_m), "{height_m} m for a seat of {seat_m} m");
+        assert_eq!(stool.transform.position.y, 0.5 * height_m, "it stands on the floor");
+        let to_world = person.transform.world_from_object();
+        let over = |point: &Vec3| {
+            let from = to_world.transform_point3(*point) - stool.transform.position;
+            from.x.hypot(from.z) < radius_m
+        };
+        let trunk: Vec<f32> = meshes.fine.positions.iter().filter(|point| over(point)).map(|point| point.y).collect();
+        let lowest = trunk.iter().copied().fold(f32::INFINITY, f32::min);
+        assert!(trunk.len() > 100 && (lowest - height_m).abs() < 0.01, "{lowest} m over the floor, stool {height_m} m");
+    }
+
+    #[test]
+    fn v_flats_stand_beside_the_subject_open_to_it_first_on_the_side_away_from_the_key() {
+        let mut scene = Scene::default();
+        add(&mut scene, "Boy, 10, short hair");
+        let mut key = catalog::light_named("Softbox 60 x 90").unwrap();
+        place_light(&scene, &Assets::default(), None, &mut key);
+        Action::AddLight(Box::new(key)).apply(&mut scene).unwrap();
+        let person = scene.objects[0].transform.position;
+        let to_key = scene.lights[0].position - person;
+        for (name, is_away) in [("V-flat, white", true), ("V-flat, black", false)] {
+            add(&mut scene, name);
+            let flat = scene.objects.last().unwrap();
+            let from_person = (flat.transform.position - person) * Vec3::new(1.0, 0.0, 1.0);
+            assert_eq!(from_person.dot(to_key) < 0.0, is_away, "{name}");
+            assert!((1.0..1.6).contains(&from_person.length()), "{from_person}");
+            let opens = flat.transform.world_from_object().transform_vector3(Vec3::Z);
+            assert!(opens.dot(from_person) < -1.0, "{name} opens to the person: {opens}");
+        }
+        let [white, black] = [1, 2].map(|index| scene.objects[index].transform.position - person);
+        assert!(white.x * black.x < 0.0 || white.z * black.z < 0.0, "one on each side");
     }
 
     #[test]

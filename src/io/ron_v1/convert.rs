@@ -304,6 +304,7 @@ impl From<ShapeV1> for Shape {
             ShapeV1::Sweep { width_m, height_m, depth_m, radius_m } => {
                 Shape::Sweep { width_m, height_m, depth_m, radius_m }
             }
+            ShapeV1::VFlat { wing_m, height_m, angle_deg } => Shape::VFlat { wing_m, height_m, angle_deg },
         }
     }
 }
@@ -320,6 +321,7 @@ impl From<&Shape> for ShapeV1 {
             Shape::Sweep { width_m, height_m, depth_m, radius_m } => {
                 ShapeV1::Sweep { width_m, height_m, depth_m, radius_m }
             }
+            Shape::VFlat { wing_m, height_m, angle_deg } => ShapeV1::VFlat { wing_m, height_m, angle_deg },
         }
     }
 }

@@ -240,6 +240,11 @@ enum ShapeV1 {
         depth_m: f32,
         radius_m: f32,
     },
+    VFlat {
+        wing_m: f32,
+        height_m: f32,
+        angle_deg: f32,
+    },
 }
 
 #[derive(Debug, Serialize, Deserialize)]

@@ -81,9 +81,11 @@ impl ShadowCasting {
     pub fn of(shape: &Shape, world_from_object: &Affine3A) -> Self {
         match shape {
             // The garments of a figure are open.
-            Shape::Plane { .. } | Shape::Sweep { .. } | Shape::MeshFile { .. } | Shape::Figure(_) => {
-                ShadowCasting::Sheet
-            }
+            Shape::Plane { .. }
+            | Shape::Sweep { .. }
+            | Shape::VFlat { .. }
+            | Shape::MeshFile { .. }
+            | Shape::Figure(_) => ShadowCasting::Sheet,
             Shape::Box { .. } | Shape::Sphere { .. } | Shape::Cylinder { .. } => {
                 let mirrored = world_from_object.matrix3.determinant() < 0.0;
                 if mirrored { ShadowCasting::MirroredSolid } else { ShadowCasting::Solid }

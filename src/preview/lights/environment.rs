@@ -72,13 +72,9 @@ impl Environment {
     }
 }
 
-fn is_backdrop(shape: &Shape) -> bool {
-    matches!(shape, Shape::Sweep { .. } | Shape::Plane { .. })
-}
-
 /// Returns the mean position of the subjects, which are all visible objects except backdrops.
 fn probe(scene: &Scene) -> Option<Vec3> {
-    let subjects = scene.objects.iter().filter(|o| o.visible && !is_backdrop(&o.shape));
+    let subjects = scene.objects.iter().filter(|o| o.visible && !o.shape.is_sheet());
     let (mut sum, mut count) = (Vec3::ZERO, 0.0);
     for object in subjects {
         // The origin of a figure is between its feet
@@ -104,7 +100,7 @@ fn backdrop_triangles(scene: &Scene) -> Vec<BackdropTriangle> {
     if let Some(room) = &scene.room {
         add(&room_mesh(room), Affine3A::IDENTITY, &|part| room.material_of(part).base_color);
     }
-    for object in scene.objects.iter().filter(|o| o.visible && is_backdrop(&o.shape)) {
+    for object in scene.objects.iter().filter(|o| o.visible && o.shape.is_sheet()) {
         let Some(mesh) = tessellate(&object.shape) else { continue };
         add(&mesh, object.transform.world_from_object(), &|part| {
             let material = object.material_of(part);

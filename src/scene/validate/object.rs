@@ -48,5 +48,10 @@ fn check_shape(shape: &Shape, check: &mut Check) {
             check.number("shape.depth_m", depth_m, SIZE);
             check.number("shape.radius_m", radius_m, Allowed::between(0.0, 1e5, "m"));
         }
+        Shape::VFlat { wing_m, height_m, angle_deg } => {
+            check.number("shape.wing_m", wing_m, SIZE);
+            check.number("shape.height_m", height_m, SIZE);
+            check.number("shape.angle_deg", angle_deg, Allowed::between(5.0, 180.0, "degrees"));
+        }
     }
 }

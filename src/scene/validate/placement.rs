@@ -70,6 +70,11 @@ impl<'a> ObjectBounds<'a> {
             Shape::Sweep { width_m, height_m, depth_m, .. } => {
                 (Vec3::new(-0.5 * width_m, 0.0, 0.0), Vec3::new(0.5 * width_m, height_m, depth_m))
             }
+            Shape::VFlat { wing_m, height_m, angle_deg } => {
+                let (sin, cos) = (0.5 * angle_deg.to_radians()).sin_cos();
+                let corner = Vec3::new(wing_m * sin, 0.5 * height_m, wing_m * cos);
+                (Vec3::new(-corner.x, -corner.y, 0.0), corner)
+            }
         };
         Some(ObjectBounds { object, world_from_object: object.transform.world_from_object(), low, high })
     }
@@ -84,7 +89,7 @@ impl<'a> ObjectBounds<'a> {
                 Shape::Box { .. } | Shape::Figure(_) => in_box,
                 Shape::Sphere { radius_m } => p.length() < radius_m,
                 Shape::Cylinder { radius_m, .. } => in_box && across < radius_m,
-                Shape::MeshFile { .. } | Shape::Plane { .. } | Shape::Sweep { .. } => false,
+                Shape::MeshFile { .. } | Shape::Plane { .. } | Shape::Sweep { .. } | Shape::VFlat { .. } => false,
             }
     }
 }

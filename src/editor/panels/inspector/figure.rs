@@ -67,11 +67,12 @@ pub(super) fn framing_rows(ui: &mut Ui, id: ObjectId, out: &mut Vec<Command>) {
     });
 }
 
-/// Draws the sections of an object that is a figure.
-pub(super) fn figure_ui(ui: &mut Ui, scene: &Scene, object: &mut Object) {
+/// Draws the sections of an object that is a figure; returns true if a stool under it is wanted.
+pub(super) fn figure_ui(ui: &mut Ui, scene: &Scene, object: &mut Object) -> bool {
     section(ui, "Person", true, |ui| person_rows(ui, object));
     let falls_short = figures::gaze_falls_short(scene, object);
-    let Shape::Figure(figure) = &mut object.shape else { return };
+    let Shape::Figure(figure) = &mut object.shape else { return false };
+    let mut wants_stool = false;
     section(ui, "Face", false, |ui| set_rows(ui, &mut figure.face));
     section(ui, "Expression", false, |ui| {
         row(ui, "Expression", "A starting point for the sliders below", |ui| {
@@ -82,9 +83,10 @@ pub(super) fn figure_ui(ui: &mut Ui, scene: &Scene, object: &mut Object) {
     });
     section(ui, "Pose", true, |ui| {
         gaze_row(ui, scene, &mut figure.gaze, falls_short);
-        pose_rows(ui, figure);
+        wants_stool = pose_rows(ui, figure);
     });
     section(ui, "Clothes and hair", false, |ui| clothes_rows(ui, figure));
+    wants_stool
 }
 
 fn person_rows(ui: &mut Ui, object: &mut Object) {
@@ -131,7 +133,9 @@ fn gaze_row(ui: &mut Ui, scene: &Scene, gaze: &mut Gaze, falls_short: bool) {
     }
 }
 
-fn pose_rows(ui: &mut Ui, figure: &mut Figure) {
+/// Draws the rows of the pose; returns true if a stool is wanted.
+fn pose_rows(ui: &mut Ui, figure: &mut Figure) -> bool {
+    let mut wants_stool = false;
     row(ui, "Pose", "A starting point for the sliders below", |ui| {
         picker(ui, "pose", NamedPose::ALL.into_iter().map(|p| (p.label(), p.pose())), &mut figure.pose);
         if ui.button("Mirror").on_hover_text("Exchanges left and right").clicked() {
@@ -147,6 +151,10 @@ fn pose_rows(ui: &mut Ui, figure: &mut Figure) {
                 *seat_m = seat_cm / 100.0;
             }
         });
+        row(ui, "", "", |ui| {
+            let button = ui.small_button("Put a stool under").on_hover_text("A round stool as high as the seat");
+            wants_stool = button.clicked();
+        });
     }
     section(ui, "Head and body", true, |ui| {
         let follows = figure.gaze != Gaze::Pose;
@@ -158,6 +166,7 @@ fn pose_rows(ui: &mut Ui, figure: &mut Figure) {
     for (name, leg) in ["Left leg", "Right leg"].into_iter().zip(&mut pose.legs) {
         section(ui, name, false, |ui| set_rows::<Leg>(ui, leg));
     }
+    wants_stool
 }
 
 fn clothes_rows(ui: &mut Ui, figure: &mut Figure) {

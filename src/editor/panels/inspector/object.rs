@@ -6,7 +6,7 @@ use super::{InspectorContext, text_ui, title};
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
-use crate::editor::document::placement::wrap_deg;
+use crate::editor::document::placement::{stool_under, wrap_deg};
 use crate::editor::ui::widgets::{self, DEGREES, METRES, NumberField, SIZE_CM, row, section};
 use crate::scene::{Assets, Object, ObjectId, Shape, TextureSlot};
 use eframe::egui::{Button, RichText, Ui};
@@ -37,7 +37,11 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Obj
                 face_rows(ui, context.patterns.face(id));
             }
             framing_rows(ui, id, context.out);
-            figure_ui(ui, scene, &mut object);
+            if figure_ui(ui, scene, &mut object)
+                && let Some(stool) = stool_under(&object, assets)
+            {
+                context.out.push(Command::Apply(Action::AddObject(Box::new(stool))));
+            }
         }
         _ => section(ui, "Shape and size", true, |ui| shape_rows(ui, assets, &mut object)),
     }
@@ -94,6 +98,12 @@ fn shape_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
                 ("Curve", radius_m, 100.0),
             ];
             centimetres(ui, sizes);
+        }
+        Shape::VFlat { wing_m, height_m, angle_deg } => {
+            centimetres(ui, &mut [("Each board", wing_m, 100.0), ("Height", height_m, 100.0)]);
+            row(ui, "Opened", "Angle between the boards: 180\u{b0} is one flat board", |ui| {
+                NumberField::new(1.0, 5.0, 180.0, 0, "\u{b0}").ui(ui, angle_deg)
+            });
         }
     }
     scale_rows(ui, assets, object);
