@@ -7,6 +7,7 @@ mod checkpoints;
 mod denoiser;
 mod extremes;
 mod farm;
+mod gear;
 mod output;
 mod package;
 mod picture_files;
