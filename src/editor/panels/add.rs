@@ -64,7 +64,7 @@ fn entry_ui(ui: &mut Ui, entry: &'static CatalogEntry, thumbnails: &mut Thumbnai
         let (icon, _) = ui.allocate_exact_size(vec2(side, side), Sense::hover());
         match thumbnails.thing(ui.ctx(), entry) {
             Some(picture) => picture.paint(ui, icon),
-            None => paint_icon(ui.painter(), icon, &entry.kind),
+            None => paint_icon(ui, icon, &entry.kind),
         }
         let size = vec2(ui.available_width(), side.max(22.0));
         let button = Button::new(entry.name).frame_when_inactive(false).min_size(size);
@@ -76,9 +76,9 @@ fn entry_ui(ui: &mut Ui, entry: &'static CatalogEntry, thumbnails: &mut Thumbnai
 }
 
 /// Paints the icon of an entry.
-fn paint_icon(painter: &egui::Painter, rect: egui::Rect, kind: &CatalogKind) {
-    let (c, line) = (rect.center(), Stroke::new(1.3, Color32::from_gray(170)));
-    let glow = theme::ACCENT;
+fn paint_icon(ui: &Ui, rect: egui::Rect, kind: &CatalogKind) {
+    let (c, line) = (rect.center(), Stroke::new(1.3, ui.visuals().text_color()));
+    let (painter, glow) = (ui.painter(), theme::accent(ui));
     match kind {
         CatalogKind::Light(Emitter::RectPanel { width_m, height_m }, ..) => {
             let scale = 14.0 / width_m.max(*height_m);

@@ -8,6 +8,7 @@ pub mod inspector;
 pub mod menu;
 pub mod meter;
 pub mod outliner;
+pub mod preferences;
 pub mod presets;
 pub mod prompts;
 pub mod quality;

@@ -2,6 +2,7 @@
 
 pub mod image_texture;
 pub mod legend;
+pub mod lengths;
 pub mod name_field;
 pub mod side_panel;
 pub mod theme;

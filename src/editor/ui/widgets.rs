@@ -238,7 +238,9 @@ pub fn lamp_toggle(ui: &mut Ui, on: bool, glow: Color32, name: &str) -> Response
         let c = rect.center();
         let stroke = egui::Stroke::new(1.3, if on { glow } else { visuals.fg_stroke.color.gamma_multiply(0.4) });
         if on {
-            painter.circle_filled(c - vec2(0.0, 1.5), 4.5, glow);
+            // The rim shows a white lamp on a light panel
+            let rim = egui::Stroke::new(1.0, visuals.fg_stroke.color.gamma_multiply(0.5));
+            painter.circle(c - vec2(0.0, 1.5), 4.5, glow, rim);
         } else {
             painter.circle_stroke(c - vec2(0.0, 1.5), 4.0, stroke);
         }

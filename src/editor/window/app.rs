@@ -22,7 +22,6 @@ use crate::editor::viewport::live::traced_view::TracedView;
 use crate::editor::viewport::viewport_area::{Viewport, ViewportInput};
 use crate::editor::window::app_state::{BackgroundState, Diagnostics, PanelState, ViewState, WindowState};
 use crate::editor::window::dialogs::FileDialogs;
-use crate::editor::window::recent::RecentFiles;
 use crate::editor::window::recovery::Recovery;
 use crate::editor::window::rescue;
 use crate::editor::window::session::Session;
@@ -42,7 +41,7 @@ pub struct EditorOptions {
     pub initial: Option<StudioSource>,
     /// The file dialogs.
     pub dialogs: FileDialogs,
-    /// Folder of the list of recent studios; none keeps it in memory.
+    /// Folder of the preferences and of the list of recent studios; none keeps them in memory.
     pub settings_folder: Option<PathBuf>,
     /// Folder where unsaved studios are kept for the case of a crash; none keeps none.
     pub recovery_folder: Option<PathBuf>,
@@ -104,15 +103,12 @@ impl App {
             rendering: Rendering::new(geometry.clone()),
             variant_pictures: VariantPictures::default(),
             background: BackgroundState::new(geometry),
-            session: Session::new(
-                options.dialogs,
-                RecentFiles::load(options.settings_folder),
-                Recovery::new(options.recovery_folder),
-            ),
+            session: Session::new(options.dialogs, options.settings_folder, Recovery::new(options.recovery_folder)),
             toasts: Toasts::default(),
             window: WindowState::default(),
             diagnostics: Diagnostics::new(options.started),
         };
+        app.use_preferences(ctx);
         let first = options.initial.unwrap_or(StudioSource::Preset(0));
         app.load(first, ctx);
         app.look_for_unsaved(ctx);
@@ -123,6 +119,7 @@ impl App {
     pub fn move_to(&mut self, creation: &eframe::CreationContext<'_>) {
         let ctx = &creation.egui_ctx;
         theme::install(ctx);
+        self.use_preferences(ctx);
         self.views.viewport.preview.move_to(creation.wgpu_render_state.as_ref(), ctx);
         self.views.viewport.traced_view.move_to(ctx);
         self.rendering.move_to(ctx);
@@ -320,6 +317,7 @@ impl App {
                 variants::variants_ui(ui, scene, pictures, &mut self.panels.variants, out);
             });
         }
+        theme::draw_over_picture(ui);
         if self.views.central == CentralView::Picture {
             self.views.viewport.traced_view.pause();
             let input = PictureInput {
@@ -408,6 +406,7 @@ impl eframe::App for App {
         let middle = self.panels_ui(ui, &mut out);
         self.panels.preset_picker.ui(&ctx, &self.panels.presets, &mut self.background.thumbnails, &mut out);
         help::help_ui(&ctx, &mut self.panels.show_help);
+        self.preferences_ui(&ctx, &mut out);
         self.setup_windows_ui(&ctx, middle, &mut out);
         self.ask(&ctx, &mut out);
         self.drop_hint(&ctx);

@@ -60,6 +60,8 @@ pub struct PanelState {
     pub presets: Vec<PresetInfo>,
     /// The open tab of the catalog.
     pub catalog_tab: CatalogTab,
+    /// True while the preferences are open.
+    pub show_preferences: bool,
     /// True while the list of keys is open.
     pub show_help: bool,
     /// True while the window of wanted exposures is open.
@@ -83,6 +85,7 @@ impl PanelState {
             preset_picker: PresetPicker::default(),
             presets,
             catalog_tab: CatalogTab::Lights,
+            show_preferences: false,
             show_help: false,
             show_dials: false,
             show_room_audit: false,

@@ -148,6 +148,8 @@ impl App {
             Command::ToggleDials => self.panels.show_dials = !self.panels.show_dials,
             Command::ToggleRoomAudit => self.panels.show_room_audit = !self.panels.show_room_audit,
             Command::SetDials(plan) => self.set_dials(&plan),
+            Command::TogglePreferences => self.panels.show_preferences = !self.panels.show_preferences,
+            Command::SetPreferences(preferences) => self.set_preferences(preferences, ctx),
             Command::ToggleHelp => self.panels.show_help = !self.panels.show_help,
             Command::Open
             | Command::Save
@@ -286,6 +288,8 @@ impl App {
             self.views.viewport.cancel_drag();
         } else if self.panels.show_help {
             self.panels.show_help = false;
+        } else if self.panels.show_preferences {
+            self.panels.show_preferences = false;
         } else if self.views.viewport.place_light.is_some() {
             self.views.viewport.place_light = None;
         } else if matches!(self.views.central, CentralView::Light(_)) {
