@@ -26,6 +26,7 @@ mod camera;
 mod device;
 mod dials;
 mod files;
+mod help;
 mod panels;
 mod placing;
 mod preferences;

@@ -157,4 +157,6 @@ pub enum Command {
     SetPreferences(Preferences),
     /// Shows or hides the list of keys.
     ToggleHelp,
+    /// Shows or hides version and licences.
+    ToggleAbout,
 }

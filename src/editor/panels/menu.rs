@@ -48,7 +48,7 @@ pub fn menu_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
         ui.menu_button("Light", |ui| light_menu(ui, state, out));
         ui.menu_button("Variants", |ui| variants_menu(ui, state.document.scene(), out));
         ui.menu_button("Render", |ui| render_menu(ui, state, out));
-        ui.menu_button("Help", |ui| entry(ui, true, "Keys and mouse", "How to move around", Command::ToggleHelp, out));
+        ui.menu_button("Help", |ui| help_menu(ui, out));
     });
 }
 
@@ -200,6 +200,13 @@ pub const HANDLES: [(HandleMode, &str, &str); 4] = [
     (HandleMode::Scale, "Size", "Handles that scale the selected thing"),
     (HandleMode::Pose, "Pose", "Joints of the selected person: drag a hand, a foot, the head"),
 ];
+
+fn help_menu(ui: &mut Ui, out: &mut Vec<Command>) {
+    ui.set_min_width(200.0);
+    entry(ui, true, "Keys and mouse", "How to move around", Command::ToggleHelp, out);
+    ui.separator();
+    entry(ui, true, "About Catchlight", "Version and licences", Command::ToggleAbout, out);
+}
 
 fn render_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     ui.set_min_width(200.0);

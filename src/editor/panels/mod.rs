@@ -1,5 +1,6 @@
 //! The panels around the viewport. Each `*_ui` function draws from the document and pushes commands.
 
+pub mod about;
 pub mod add;
 pub mod dials;
 pub mod file_change_prompt;

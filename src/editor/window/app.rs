@@ -9,7 +9,7 @@ use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::panels::menu::MenuState;
-use crate::editor::panels::{self, add, help, inspector, menu, outliner, render, status, variants, view_bar};
+use crate::editor::panels::{self, about, add, help, inspector, menu, outliner, render, status, variants, view_bar};
 use crate::editor::picture::picture_view::PictureInput;
 use crate::editor::picture::rendering::Rendering;
 use crate::editor::picture::variant_pictures::VariantPictures;
@@ -406,6 +406,7 @@ impl eframe::App for App {
         let middle = self.panels_ui(ui, &mut out);
         self.panels.preset_picker.ui(&ctx, &self.panels.presets, &mut self.background.thumbnails, &mut out);
         help::help_ui(&ctx, &mut self.panels.show_help);
+        about::about_ui(&ctx, &mut self.panels.show_about);
         self.preferences_ui(&ctx, &mut out);
         self.setup_windows_ui(&ctx, middle, &mut out);
         self.ask(&ctx, &mut out);

@@ -62,6 +62,8 @@ pub struct PanelState {
     pub catalog_tab: CatalogTab,
     /// True while the preferences are open.
     pub show_preferences: bool,
+    /// True while version and licences are shown.
+    pub show_about: bool,
     /// True while the list of keys is open.
     pub show_help: bool,
     /// True while the window of wanted exposures is open.
@@ -86,6 +88,7 @@ impl PanelState {
             presets,
             catalog_tab: CatalogTab::Lights,
             show_preferences: false,
+            show_about: false,
             show_help: false,
             show_dials: false,
             show_room_audit: false,
