@@ -157,6 +157,8 @@ pub enum Command {
     SetPreferences(Preferences),
     /// Shows or hides the list of keys.
     ToggleHelp,
+    /// Starts the tour of the window.
+    StartTour,
     /// Shows or hides version and licences.
     ToggleAbout,
 }

@@ -204,6 +204,7 @@ pub const HANDLES: [(HandleMode, &str, &str); 4] = [
 fn help_menu(ui: &mut Ui, out: &mut Vec<Command>) {
     ui.set_min_width(200.0);
     entry(ui, true, "Keys and mouse", "How to move around", Command::ToggleHelp, out);
+    entry(ui, true, "Tour", "Six cards about the parts of the window", Command::StartTour, out);
     ui.separator();
     entry(ui, true, "About Catchlight", "Version and licences", Command::ToggleAbout, out);
 }

@@ -18,5 +18,6 @@ pub mod render;
 pub mod room_audit;
 pub mod status;
 pub mod thumbnails;
+pub mod tour;
 pub mod variants;
 pub mod view_bar;

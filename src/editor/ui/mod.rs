@@ -10,3 +10,4 @@ pub mod toasts;
 pub mod units;
 pub mod wake;
 pub mod widgets;
+pub mod window_part;

@@ -17,6 +17,7 @@ use crate::editor::ui::side_panel::PanelWidths;
 use crate::editor::ui::theme;
 use crate::editor::ui::toasts::Toasts;
 use crate::editor::ui::wake::wake;
+use crate::editor::ui::window_part::WindowPart;
 use crate::editor::viewport::live::preview_host::{PreviewHost, ViewOptions};
 use crate::editor::viewport::live::traced_view::TracedView;
 use crate::editor::viewport::viewport_area::{Viewport, ViewportInput};
@@ -45,6 +46,8 @@ pub struct EditorOptions {
     pub settings_folder: Option<PathBuf>,
     /// Folder where unsaved studios are kept for the case of a crash; none keeps none.
     pub recovery_folder: Option<PathBuf>,
+    /// At the first start, the tour of the window is shown; it needs the folder of the preferences.
+    pub offers_tour: bool,
     /// What the live view shows at first.
     pub view_options: ViewOptions,
     /// Start of the program, for the time to the first frame.
@@ -58,6 +61,7 @@ impl Default for EditorOptions {
             dialogs: FileDialogs::Desktop,
             settings_folder: None,
             recovery_folder: None,
+            offers_tour: false,
             view_options: ViewOptions::default(),
             started: Instant::now(),
         }
@@ -109,6 +113,9 @@ impl App {
             diagnostics: Diagnostics::new(options.started),
         };
         app.use_preferences(ctx);
+        if options.offers_tour && app.session.preferences.is_first_start() {
+            app.panels.tour.open();
+        }
         let first = options.initial.unwrap_or(StudioSource::Preset(0));
         app.load(first, ctx);
         app.look_for_unsaved(ctx);
@@ -289,15 +296,18 @@ impl App {
         left.show(ui, "things", Panel::left("things").frame(side), LEFT, |ui| {
             let add_height = (ui.available_height() * 0.46).max(120.0);
             Panel::top("add").frame(Frame::new()).default_size(add_height).resizable(true).show(ui, |ui| {
+                WindowPart::Shelf.note(ui.ctx(), ui.max_rect());
                 add::add_ui(ui, &mut self.panels.catalog_tab, &mut self.background.thumbnails, out);
             });
             outliner::outliner_ui(ui, &self.document, &self.selection, &mut self.panels.outliner, out);
         });
         right.show(ui, "details", Panel::right("details").frame(side), RIGHT, |ui| {
             Panel::bottom("render").frame(Frame::new()).resizable(false).show(ui, |ui| {
+                WindowPart::Render.note(ui.ctx(), ui.max_rect());
                 let (rendering, forecaster) = (&mut self.rendering, &mut self.background.forecaster);
                 render::render_ui(ui, rendering, forecaster, &self.document, self.views.central, out);
             });
+            WindowPart::Inspector.note(ui.ctx(), ui.available_rect_before_wrap());
             inspector::inspector_ui(ui, &self.document, &self.selection, &self.background.pattern, out);
         });
         (self.panels.left, self.panels.right) = (left, right);
@@ -408,6 +418,7 @@ impl eframe::App for App {
         help::help_ui(&ctx, &mut self.panels.show_help);
         about::about_ui(&ctx, &mut self.panels.show_about);
         self.preferences_ui(&ctx, &mut out);
+        self.tour_ui(&ctx, middle, &mut out);
         self.setup_windows_ui(&ctx, middle, &mut out);
         self.ask(&ctx, &mut out);
         self.drop_hint(&ctx);

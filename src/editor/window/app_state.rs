@@ -7,6 +7,7 @@ use crate::editor::document::files::PresetInfo;
 use crate::editor::panels::outliner::OutlinerState;
 use crate::editor::panels::presets::PresetPicker;
 use crate::editor::panels::thumbnails::Thumbnails;
+use crate::editor::panels::tour::Tour;
 use crate::editor::panels::variants::VariantsState;
 use crate::editor::picture::picture_view::PictureView;
 use crate::editor::ui::side_panel::SidePanel;
@@ -70,6 +71,8 @@ pub struct PanelState {
     pub show_dials: bool,
     /// True while the window of the room's part in the light is open.
     pub show_room_audit: bool,
+    /// The card of the tour.
+    pub tour: Tour,
     /// The wanted exposures.
     pub dial_wishes: DialWishes,
     /// The panel of catalog and item list.
@@ -92,6 +95,7 @@ impl PanelState {
             show_help: false,
             show_dials: false,
             show_room_audit: false,
+            tour: Tour::default(),
             dial_wishes: DialWishes::default(),
             left: SidePanel::default(),
             right: SidePanel::default(),

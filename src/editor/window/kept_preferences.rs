@@ -28,12 +28,26 @@ impl KeptPreferences {
         &self.preferences
     }
 
+    /// Returns true without a file, and writes one. Without a folder, no start is the first.
+    pub fn is_first_start(&self) -> bool {
+        let file = self.folder.as_ref().map(|folder| folder.join(FILE_NAME));
+        let is_first = file.is_some_and(|file| !file.exists());
+        if is_first {
+            self.write();
+        }
+        is_first
+    }
+
     /// Changes the preferences and writes the file.
     pub fn set(&mut self, preferences: Preferences) {
         if preferences == self.preferences {
             return;
         }
         self.preferences = preferences;
+        self.write();
+    }
+
+    fn write(&self) {
         let Some(folder) = &self.folder else { return };
         let text = format!("{:#}\n", to_json(&self.preferences));
         let written = std::fs::create_dir_all(folder).and_then(|()| std::fs::write(folder.join(FILE_NAME), text));
