@@ -3,14 +3,21 @@
 use crate::editor::commands::command::Command;
 use crate::editor::document::catalog::{CatalogEntry, CatalogKind, CatalogTab, entries};
 use crate::editor::panels::thumbnails::{THING_POINTS, Thumbnails};
+use crate::editor::ui::search::{is_match, search_ui};
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets;
 use crate::io;
 use crate::scene::{Emitter, Material};
 use eframe::egui::{self, Button, Color32, CornerRadius, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, vec2};
 
-/// Draws the catalog; `tab` is the open one.
-pub fn add_ui(ui: &mut Ui, tab: &mut CatalogTab, thumbnails: &mut Thumbnails, out: &mut Vec<Command>) {
+/// Draws the catalog; `tab` is the open one. A query shows what is found in all tabs instead.
+pub fn add_ui(
+    ui: &mut Ui,
+    tab: &mut CatalogTab,
+    query: &mut String,
+    thumbnails: &mut Thumbnails,
+    out: &mut Vec<Command>,
+) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {
         ui.label(RichText::new("Add").strong());
@@ -32,20 +39,34 @@ pub fn add_ui(ui: &mut Ui, tab: &mut CatalogTab, thumbnails: &mut Thumbnails, ou
         // The last name fits in the narrowest window.
         ui.spacing_mut().button_padding.x = if ui.available_width() < 228.0 { 4.0 } else { 6.0 };
         for each in CatalogTab::ALL {
-            if ui.selectable_label(*tab == each, each.label()).on_hover_text(tab_tip(each)).clicked() {
+            let is_open = *tab == each && query.is_empty();
+            if ui.selectable_label(is_open, each.label()).on_hover_text(tab_tip(each)).clicked() {
                 *tab = each;
+                query.clear();
             }
         }
     });
+    search_ui(ui, "Search the shelf", query).on_hover_text("In all tabs, by name and tip; Esc leaves the field");
     ui.separator();
     ScrollArea::vertical().id_salt("add list").auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
-        for entry in entries(*tab) {
+        let found = found(*tab, query);
+        if found.is_empty() {
+            ui.label(RichText::new("Nothing on the shelf has these words.").weak());
+        }
+        for entry in found {
             if entry_ui(ui, entry, thumbnails) {
                 out.push(Command::AddFromCatalog(Box::new(entry.make())));
             }
         }
     });
+}
+
+/// Returns what has the words of a query, or, without one, what is in a tab.
+fn found(tab: CatalogTab, query: &str) -> Vec<&'static CatalogEntry> {
+    let tabs = if query.trim().is_empty() { vec![tab] } else { CatalogTab::ALL.to_vec() };
+    let all = tabs.into_iter().flat_map(entries);
+    all.filter(|entry| is_match(query, &[entry.name, entry.tip])).collect()
 }
 
 fn tab_tip(tab: CatalogTab) -> &'static str {

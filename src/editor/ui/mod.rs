@@ -4,6 +4,7 @@ pub mod image_texture;
 pub mod legend;
 pub mod lengths;
 pub mod name_field;
+pub mod search;
 pub mod side_panel;
 pub mod theme;
 pub mod toasts;

@@ -297,7 +297,8 @@ impl App {
             let add_height = (ui.available_height() * 0.46).max(120.0);
             Panel::top("add").frame(Frame::new()).default_size(add_height).resizable(true).show(ui, |ui| {
                 WindowPart::Shelf.note(ui.ctx(), ui.max_rect());
-                add::add_ui(ui, &mut self.panels.catalog_tab, &mut self.background.thumbnails, out);
+                let PanelState { catalog_tab, shelf_query, .. } = &mut self.panels;
+                add::add_ui(ui, catalog_tab, shelf_query, &mut self.background.thumbnails, out);
             });
             outliner::outliner_ui(ui, &self.document, &self.selection, &mut self.panels.outliner, out);
         });

@@ -61,6 +61,8 @@ pub struct PanelState {
     pub presets: Vec<PresetInfo>,
     /// The open tab of the catalog.
     pub catalog_tab: CatalogTab,
+    /// What is searched for in the catalog.
+    pub shelf_query: String,
     /// True while the preferences are open.
     pub show_preferences: bool,
     /// True while version and licences are shown.
@@ -90,6 +92,7 @@ impl PanelState {
             preset_picker: PresetPicker::default(),
             presets,
             catalog_tab: CatalogTab::Lights,
+            shelf_query: String::new(),
             show_preferences: false,
             show_about: false,
             show_help: false,
