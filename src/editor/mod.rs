@@ -43,6 +43,7 @@ mod window;
 pub use commands::choices::{CentralView, CompareMode, Comparison, HandleMode, LiveMode, PlaceLightBy, ViewSide};
 pub use commands::command::Command;
 pub use commands::file_purpose::FilePurpose;
+pub use commands::preferences::Preferences;
 pub use commands::shortcuts::{KEY_BINDINGS, KeyBinding};
 pub use document::action::Action;
 pub use document::action_error::ActionError;

@@ -54,7 +54,7 @@ pub use picture::{
     encode_part, encode_png, export_picture, export_shown, picture_file, read_exr, read_part,
 };
 pub use plain_file::{check_file, write_file};
-pub use presets::{Preset, find_preset, presets};
+pub use presets::{Preset, PresetGroup, find_preset, presets};
 pub use recovery::{RecoveryFolder, RecoveryInfo};
 pub use scene_file::{FILE_LIMIT_BYTES, FORMAT, Loaded, load_scene, parse_scene, save_scene, write_scene};
 pub use state_folder::state_folder;

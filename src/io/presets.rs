@@ -9,6 +9,8 @@ use std::sync::LazyLock;
 pub struct Preset {
     /// Name of its file in `studio_presets`.
     pub file_name: &'static str,
+    /// What it is for.
+    pub group: PresetGroup,
     /// Title, as in the file.
     pub name: String,
     /// Purpose of the set-up in one line, as in the file.
@@ -28,33 +30,62 @@ impl Preset {
     }
 }
 
+/// What a preset is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PresetGroup {
+    /// One person, by flash.
+    Portrait,
+    /// Several people.
+    Groups,
+    /// Things.
+    Product,
+    /// Light that shines all the time, for film and video and from windows.
+    Continuous,
+}
+
+impl PresetGroup {
+    /// All groups, in menu order.
+    pub const ALL: [PresetGroup; 4] =
+        [PresetGroup::Portrait, PresetGroup::Groups, PresetGroup::Product, PresetGroup::Continuous];
+
+    /// Returns the heading.
+    pub fn label(self) -> &'static str {
+        match self {
+            PresetGroup::Portrait => "Portrait",
+            PresetGroup::Groups => "Groups",
+            PresetGroup::Product => "Product",
+            PresetGroup::Continuous => "Continuous light",
+        }
+    }
+}
+
 macro_rules! embedded {
-    ($($file:literal),+ $(,)?) => {
-        &[$(($file, include_str!(concat!("../../studio_presets/", $file)))),+]
+    ($($group:ident $file:literal),+ $(,)?) => {
+        &[$((PresetGroup::$group, $file, include_str!(concat!("../../studio_presets/", $file)))),+]
     };
 }
 
-/// File names and contents, in menu order: portraits from the plain to the special, then groups, then products.
-const FILES: &[(&str, &str)] = embedded![
-    "three_point.ron",
-    "rembrandt.ron",
-    "butterfly.ron",
-    "loop.ron",
-    "split.ron",
-    "clamshell.ron",
-    "rim_low_key.ron",
-    "high_key.ron",
-    "gel_portrait.ron",
-    "window_light.ron",
-    "group.ron",
-    "interview.ron",
-    "product_still_life.ron",
+/// Groups, file names and contents: portraits from the plain to the special, then groups, then products.
+const FILES: &[(PresetGroup, &str, &str)] = embedded![
+    Portrait "three_point.ron",
+    Portrait "rembrandt.ron",
+    Portrait "butterfly.ron",
+    Portrait "loop.ron",
+    Portrait "split.ron",
+    Portrait "clamshell.ron",
+    Portrait "rim_low_key.ron",
+    Portrait "high_key.ron",
+    Portrait "gel_portrait.ron",
+    Continuous "window_light.ron",
+    Groups "group.ron",
+    Continuous "interview.ron",
+    Product "product_still_life.ron",
 ];
 
 /// Returns all presets, in menu order.
 pub fn presets() -> &'static [Preset] {
     static PRESETS: LazyLock<Vec<Preset>> =
-        LazyLock::new(|| FILES.iter().map(|&(file, text)| preset(file, text)).collect());
+        LazyLock::new(|| FILES.iter().map(|&(group, file, text)| preset(group, file, text)).collect());
     &PRESETS
 }
 
@@ -65,15 +96,25 @@ pub fn find_preset(name: &str) -> Option<&'static Preset> {
     presets().iter().find(|p| p.file_name.trim_end_matches(".ron") == stem || p.name.to_lowercase() == wanted)
 }
 
-fn preset(file_name: &'static str, text: &'static str) -> Preset {
+fn preset(group: PresetGroup, file_name: &'static str, text: &'static str) -> Preset {
     let (name, description) = scene_file::parse_scene(text)
         .map_or_else(|error| (file_name.to_owned(), error.to_string()), |(scene, _)| (scene.name, scene.description));
-    Preset { file_name, name, description, text }
+    Preset { file_name, group, name, description, text }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn studios_without_a_flash_are_those_of_continuous_light_and_products() {
+        for preset in presets() {
+            let scene = preset.load().unwrap().scene;
+            let flashes = scene.lights.iter().any(|light| light.power.output.is_flash());
+            let is_continuous = matches!(preset.group, PresetGroup::Continuous | PresetGroup::Product);
+            assert_eq!(!flashes, is_continuous, "{}", preset.name);
+        }
+    }
 
     #[test]
     fn presets_are_found_by_file_and_by_title() {

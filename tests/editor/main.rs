@@ -6,7 +6,7 @@
 use adapter::headless_gpu;
 use catchlight::editor::{
     Action, App, CentralView, Command, CompareMode, Comparison, DialogAnswer, EditorOptions, Fader, FileDialogs, Item,
-    LiveMode, PictureSize, Quality, StudioSource, ToastKind, ViewOptions,
+    LiveMode, PictureSize, Preferences, Quality, StudioSource, ToastKind, ViewOptions,
 };
 use catchlight::scene::{Aim, ColorSource, HairStyle, Scene, Shape};
 use catchlight::sheet::LessonSeries;
@@ -27,8 +27,10 @@ mod device;
 mod dials;
 mod files;
 mod gear;
+mod help;
 mod panels;
 mod placing;
+mod preferences;
 mod recovery;
 mod rendering;
 mod selection;

@@ -191,3 +191,49 @@ fn the_light_meter_reads_in_the_background_follows_the_dial_and_can_be_undone() 
     assert_eq!((scene(&window).meter, undo_depth(&window)), (None, 0));
     assert!(window.query_by_label_contains("key:fill").is_none(), "no meter, no read-out");
 }
+
+/// Types into the text field of a label.
+fn search(window: &mut Window, field: &str, query: &str) {
+    window.get_by_role_and_label(egui::accesskit::Role::TextInput, field).click();
+    settle(window);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    window.event(Event::Text(query.to_owned()));
+    settle(window);
+}
+
+#[test]
+fn the_shelf_is_searched_in_all_tabs_and_a_tab_ends_the_search() {
+    let Some(mut window) = preset_window() else { return };
+    let shown = |window: &Window, name: &str| window.query_by_label(&format!("Add {name}")).is_some();
+    assert!(shown(&window, "Octa 120") && !shown(&window, "Chrome ball"));
+    search(&mut window, "Search the shelf", "chrome BALL");
+    assert!(shown(&window, "Chrome ball") && !shown(&window, "Octa 120"));
+    let things = scene(&window).objects.len();
+    click(&mut window, "Add Chrome ball");
+    assert_eq!(scene(&window).objects.len(), things + 1);
+    search(&mut window, "Search the shelf", "unobtainium");
+    assert!(window.query_by_label_contains("Nothing on the shelf").is_some());
+    window.get_all_by_label("Lights").next().unwrap().click();
+    settle(&mut window);
+    assert!(shown(&window, "Octa 120") && !shown(&window, "Chrome ball"));
+}
+
+#[test]
+fn the_list_of_studios_is_grouped_and_searched_while_typing() {
+    let Some(mut window) = preset_window() else { return };
+    press(&mut window, Modifiers::COMMAND, Key::N);
+    let below = |window: &Window, name: &str| window.get_by_label(name).rect().top();
+    let tops = ["Portrait", "Rembrandt", "Groups", "Family group", "Product", "Continuous light", "Interview"]
+        .map(|name| below(&window, name));
+    assert!(tops.is_sorted(), "{tops:?}");
+    // The field has the focus: what is typed is searched for, and Enter opens the first studio found.
+    window.event(Event::Text("tungsten film".to_owned()));
+    settle(&mut window);
+    assert!(window.query_by_label("Interview").is_some() && window.query_by_label("Rembrandt").is_none());
+    press(&mut window, Modifiers::NONE, Key::Enter);
+    assert_eq!(scene(&window).name, "Interview");
+    press(&mut window, Modifiers::COMMAND, Key::N);
+    assert!(window.query_by_label("Rembrandt").is_some(), "the last search is forgotten");
+    press(&mut window, Modifiers::NONE, Key::Escape);
+    assert!(window.query_by_label("Rembrandt").is_none(), "Esc closes the list");
+}

@@ -1,6 +1,7 @@
 //! Windows of many sizes: resized, minimised, moved between screens.
 
 use super::*;
+use egui_kittest::kittest::NodeT;
 
 /// Widths and heights in points. A minimised window has none on some desktops.
 const SIZES: [(f32, f32); 14] = [
@@ -154,4 +155,54 @@ fn the_narrowest_window_has_one_row_of_tools_and_a_wider_one_restores_the_panels
     settle(&mut window);
     let after = side_widths(&window);
     assert!((after[0] - before[0]).abs() < 1.0 && (after[1] - before[1]).abs() < 1.0, "{after:?}, not {before:?}");
+}
+
+/// Returns the fields and buttons right of the view that reach over the edge of the panel, and the panel's width.
+fn cut_at_the_edge(window: &Window) -> (Vec<String>, f32) {
+    use egui::accesskit::Role;
+    let roles = [
+        Role::Button,
+        Role::CheckBox,
+        Role::ComboBox,
+        Role::RadioButton,
+        Role::Slider,
+        Role::SpinButton,
+        Role::TextInput,
+    ];
+    let edge = window.ctx.content_rect().right() - 8.0;
+    let view = window.get_by_label("Viewport").rect();
+    let fields = window.query_all_by(|node| roles.contains(&node.role()));
+    let cut = fields.filter(|node| node.rect().left() > view.right() && node.rect().right() > edge);
+    let name = |node: egui_kittest::Node<'_>| format!("{:?} {:?}", node.accesskit_node().label(), node.rect());
+    (cut.map(name).collect(), window.ctx.content_rect().right() - view.right())
+}
+
+#[test]
+fn the_narrowest_inspector_shows_all_of_its_buttons_and_keeps_its_width() {
+    let Some(mut window) = preset_window() else { return };
+    window.set_size(vec2(900.0, 2600.0));
+    let (mut all_cut, mut widths) = (Vec::new(), Vec::new());
+    for index in [0, 9] {
+        run(&mut window, Command::NewFromPreset(index));
+        run(&mut window, Command::CameraFromView);
+        click(&mut window, "Tools");
+        window.get_by_label("Light meter").click();
+        settle(&mut window);
+        press(&mut window, Modifiers::NONE, Key::Escape);
+        let items: Vec<Item> = {
+            let scene = scene(&window);
+            let objects = scene.objects.iter().map(|o| Item::Object(o.id));
+            let lights = scene.lights.iter().map(|l| Item::Light(l.id));
+            objects.chain(lights).chain([Item::Camera, Item::Room, Item::Meter]).collect()
+        };
+        let all = items[..2].to_vec();
+        for selected in items.iter().map(|item| vec![*item]).chain([all]) {
+            select(&mut window, &selected);
+            let (cut, width) = cut_at_the_edge(&window);
+            all_cut.extend(cut.iter().map(|name| format!("{index} {selected:?}: {name}")));
+            widths.push(width);
+        }
+    }
+    assert!(all_cut.is_empty(), "{all_cut:#?}");
+    assert!(widths.iter().all(|width| (width - widths[0]).abs() < 0.5), "the panel widens: {widths:?}");
 }

@@ -2,6 +2,7 @@
 
 use crate::editor::commands::choices::{CentralView, Comparison, HandleMode, LiveMode, PlaceLightBy, ViewSide};
 use crate::editor::commands::file_purpose::FilePurpose;
+use crate::editor::commands::preferences::Preferences;
 use crate::editor::document::action::Action;
 use crate::editor::document::framing::Framing;
 use crate::editor::document::gear_shelf::GearEntry;
@@ -157,6 +158,14 @@ pub enum Command {
     ReadGear,
     /// Sets the dials of lights.
     SetDials(Box<DialPlan>),
+    /// Shows or hides the preferences.
+    TogglePreferences,
+    /// Changes the preferences.
+    SetPreferences(Preferences),
     /// Shows or hides the list of keys.
     ToggleHelp,
+    /// Starts the tour of the window.
+    StartTour,
+    /// Shows or hides version and licences.
+    ToggleAbout,
 }

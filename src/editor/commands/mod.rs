@@ -5,4 +5,5 @@ pub mod command;
 pub mod file_purpose;
 pub mod item_menu;
 pub mod menu_entry;
+pub mod preferences;
 pub mod shortcuts;

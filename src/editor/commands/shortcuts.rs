@@ -49,7 +49,7 @@ pub fn clipboard_command(event: &Event) -> Option<Command> {
 
 /// All key bindings, in the order of the list. Those of the clipboard arrive as events of the system instead of keys; see
 /// [`clipboard_command`]. Of two with the same key, the one with more modifiers comes first.
-pub const KEY_BINDINGS: [KeyBinding; 51] = [
+pub const KEY_BINDINGS: [KeyBinding; 52] = [
     bind(ctrl_shift(Key::S), || Command::SaveAs, "Save the studio to another file"),
     bind(ctrl_shift(Key::Z), || Command::Redo, "Do the last step again"),
     bind(
@@ -68,6 +68,7 @@ pub const KEY_BINDINGS: [KeyBinding; 51] = [
     bind(ctrl(Key::S), || Command::Save, "Save the studio"),
     bind(ctrl(Key::I), || Command::Import, "Import a model (OBJ)"),
     bind(ctrl(Key::E), || Command::ExportPicture, "Export the rendered picture"),
+    bind(ctrl(Key::Comma), || Command::TogglePreferences, "Preferences: scale, theme, units, meter constant"),
     bind(ctrl(Key::Q), || Command::Quit, "Quit"),
     bind(ctrl(Key::Z), || Command::Undo, "Take the last step back"),
     bind(ctrl(Key::Y), || Command::Redo, "Do the last step again"),

@@ -3,7 +3,8 @@
 use crate::denoise::{Quality, denoise_layers};
 use crate::editor::document::studio_document::Document;
 use crate::io::{
-    self, AssetFiles, FileStamp, KeptPicture, LayeredPicture, PictureFormat, PictureInfo, RecoveryFolder, RecoveryInfo,
+    self, AssetFiles, FileStamp, KeptPicture, LayeredPicture, PictureFormat, PictureInfo, PresetGroup, RecoveryFolder,
+    RecoveryInfo,
 };
 use crate::jobs::sentence;
 use crate::photo::{LazyPicture, Picture};
@@ -17,6 +18,8 @@ use std::sync::Arc;
 /// Name and description of a shipped studio.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PresetInfo {
+    /// What it is for.
+    pub group: PresetGroup,
     /// Name.
     pub name: String,
     /// One line on its use.
@@ -25,7 +28,7 @@ pub struct PresetInfo {
 
 /// Returns the shipped studios, in list order.
 pub fn presets() -> Vec<PresetInfo> {
-    let info = |p: &io::Preset| PresetInfo { name: p.name.to_string(), description: p.description.to_string() };
+    let info = |p: &io::Preset| PresetInfo { group: p.group, name: p.name.clone(), description: p.description.clone() };
     io::presets().iter().map(info).collect()
 }
 

@@ -4,19 +4,23 @@ use crate::editor::commands::command::Command;
 use crate::editor::document::catalog::{self, CatalogEntry, CatalogItem, CatalogKind, CatalogTab, entries};
 use crate::editor::document::gear_shelf::GearShelf;
 use crate::editor::panels::thumbnails::{THING_POINTS, Thumbnails};
+use crate::editor::ui::search::{is_match, search_ui};
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets;
+use crate::gear::{HeadModel, ModifierModel};
 use crate::io;
-use crate::scene::{Emitter, Light, Material, Scene};
+use crate::scene::{Emitter, Material, Scene};
 use eframe::egui::{self, Button, Color32, CornerRadius, RichText, ScrollArea, Sense, Stroke, StrokeKind, Ui, vec2};
 
 /// Side of the icon of a light.
 const ICON_POINTS: f32 = 20.0;
 
-/// Draws the catalog; `tab` is the open one. The user's own heads and modifiers come first among the lights of `scene`.
+/// Draws the catalog; `tab` is the open one. The user's own heads and modifiers come first among the lights of `scene`. A
+/// query shows what is found in all tabs instead.
 pub fn add_ui(
     ui: &mut Ui,
     tab: &mut CatalogTab,
+    query: &mut String,
     thumbnails: &mut Thumbnails,
     gear: &GearShelf,
     scene: &Scene,
@@ -43,18 +47,23 @@ pub fn add_ui(
         // The last name fits in the narrowest window.
         ui.spacing_mut().button_padding.x = if ui.available_width() < 228.0 { 4.0 } else { 6.0 };
         for each in CatalogTab::ALL {
-            if ui.selectable_label(*tab == each, each.label()).on_hover_text(tab_tip(each)).clicked() {
+            let is_open = *tab == each && query.is_empty();
+            if ui.selectable_label(is_open, each.label()).on_hover_text(tab_tip(each)).clicked() {
                 *tab = each;
+                query.clear();
             }
         }
     });
+    search_ui(ui, "Search the shelf", query).on_hover_text("In all tabs, by name and tip; Esc leaves the field");
     ui.separator();
     ScrollArea::vertical().id_salt("add list").auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
-        if *tab == CatalogTab::Lights && gear.list().has_own() {
-            own_gear_ui(ui, gear, scene, out);
+        let (found, own) = (found(*tab, query), own_gear(gear, *tab, query));
+        if found.is_empty() && own.is_empty() {
+            ui.label(RichText::new("Nothing on the shelf has these words.").weak());
         }
-        for entry in entries(*tab) {
+        own_gear_ui(ui, &own, gear, scene, out);
+        for entry in found {
             if entry_ui(ui, entry, thumbnails) {
                 out.push(Command::AddFromCatalog(Box::new(entry.make())));
             }
@@ -62,42 +71,82 @@ pub fn add_ui(
     });
 }
 
-/// Draws the heads and modifiers that the user owns, with how many of each the studio leaves.
-fn own_gear_ui(ui: &mut Ui, gear: &GearShelf, scene: &Scene, out: &mut Vec<Command>) {
+/// A head or a modifier that the user owns.
+enum OwnGear<'a> {
+    Head(&'a HeadModel),
+    Modifier(&'a ModifierModel),
+}
+
+impl OwnGear<'_> {
+    fn name(&self) -> &str {
+        match self {
+            OwnGear::Head(model) => &model.head.name,
+            OwnGear::Modifier(model) => &model.name,
+        }
+    }
+}
+
+/// Returns the heads and modifiers of the user that have the words of a query, or, without one, are in a tab.
+fn own_gear<'a>(gear: &'a GearShelf, tab: CatalogTab, query: &str) -> Vec<OwnGear<'a>> {
+    let list = gear.list();
+    let heads = list.heads.iter().filter(|model| model.owned > 0).map(OwnGear::Head);
+    let modifiers = list.modifiers.iter().filter(|model| model.owned > 0).map(OwnGear::Modifier);
+    let is_in_tab = tab == CatalogTab::Lights || !query.trim().is_empty();
+    heads.chain(modifiers).filter(|own| is_in_tab && is_match(query, &[own.name()])).collect()
+}
+
+/// Draws heads and modifiers of the user, with how many of each the studio leaves.
+fn own_gear_ui(ui: &mut Ui, own: &[OwnGear<'_>], gear: &GearShelf, scene: &Scene, out: &mut Vec<Command>) {
+    if own.is_empty() {
+        return;
+    }
     ui.label(RichText::new("My gear").weak().small());
-    let mut entry = |name: &str, owned: u32, tip: &str, icon: &CatalogKind, light: &dyn Fn() -> Light| {
-        let left = match gear.left(scene, name, owned) {
+    for each in own {
+        let (owned, tip, icon) = match each {
+            OwnGear::Head(model) => {
+                let light = GearShelf::light_on(model);
+                let icon = CatalogKind::Light(light.emitter, light.modifier, light.power.output);
+                (model.owned, model.power_text(), icon)
+            }
+            OwnGear::Modifier(model) => {
+                let icon = CatalogKind::Light(model.emitter, model.modifier, catalog::HEAD);
+                (model.owned, "On the first head that is free".to_owned(), icon)
+            }
+        };
+        let left = match gear.left(scene, each.name(), owned) {
             left if left > 0 => format!("{left} of {owned} left"),
             _ => "all used".to_owned(),
         };
-        if add_row(ui, name, tip, &left, &|painter, rect| paint_icon(painter, rect, icon)) {
-            out.push(Command::AddFromCatalog(Box::new(CatalogItem::Light(light()))));
+        if add_row(ui, each.name(), &tip, &left, &icon) {
+            let light = match each {
+                OwnGear::Head(model) => GearShelf::light_on(model),
+                OwnGear::Modifier(model) => gear.light_with(scene, model),
+            };
+            out.push(Command::AddFromCatalog(Box::new(CatalogItem::Light(light))));
         }
-    };
-    for model in gear.list().heads.iter().filter(|model| model.owned > 0) {
-        let light = GearShelf::light_on(model);
-        let icon = CatalogKind::Light(light.emitter, light.modifier, light.power.output);
-        entry(&model.head.name, model.owned, &model.power_text(), &icon, &|| light.clone());
-    }
-    for model in gear.list().modifiers.iter().filter(|model| model.owned > 0) {
-        let icon = CatalogKind::Light(model.emitter, model.modifier, catalog::HEAD);
-        entry(&model.name, model.owned, "On the first head that is free", &icon, &|| gear.light_with(scene, model));
     }
     ui.add_space(4.0);
-    ui.label(RichText::new("All lights").weak().small());
+    ui.label(RichText::new("All").weak().small());
 }
 
-/// Draws a row with a small icon; returns true if it is clicked.
-fn add_row(ui: &mut Ui, name: &str, tip: &str, note: &str, icon: &dyn Fn(&egui::Painter, egui::Rect)) -> bool {
+/// Draws a row with the icon of a light; returns true if it is clicked.
+fn add_row(ui: &mut Ui, name: &str, tip: &str, note: &str, icon: &CatalogKind) -> bool {
     let row = ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(ICON_POINTS, ICON_POINTS), Sense::hover());
-        icon(ui.painter(), rect);
+        paint_icon(ui, rect, icon);
         let button = Button::new(name).frame_when_inactive(false).min_size(vec2(ui.available_width(), 22.0)).truncate();
         let button = ui.add(button.right_text(RichText::new(note).weak().small()));
         widgets::named(ui, &button, &format!("Add my {name}"));
         button.on_hover_text(format!("Add: {tip}")).clicked()
     });
     row.inner
+}
+
+/// Returns what has the words of a query, or, without one, what is in a tab.
+fn found(tab: CatalogTab, query: &str) -> Vec<&'static CatalogEntry> {
+    let tabs = if query.trim().is_empty() { vec![tab] } else { CatalogTab::ALL.to_vec() };
+    let all = tabs.into_iter().flat_map(entries);
+    all.filter(|entry| is_match(query, &[entry.name, entry.tip])).collect()
 }
 
 fn tab_tip(tab: CatalogTab) -> &'static str {
@@ -116,7 +165,7 @@ fn entry_ui(ui: &mut Ui, entry: &'static CatalogEntry, thumbnails: &mut Thumbnai
         let (icon, _) = ui.allocate_exact_size(vec2(side, side), Sense::hover());
         match thumbnails.thing(ui.ctx(), entry) {
             Some(picture) => picture.paint(ui, icon),
-            None => paint_icon(ui.painter(), icon, &entry.kind),
+            None => paint_icon(ui, icon, &entry.kind),
         }
         let size = vec2(ui.available_width(), side.max(22.0));
         let button = Button::new(entry.name).frame_when_inactive(false).min_size(size);
@@ -128,9 +177,9 @@ fn entry_ui(ui: &mut Ui, entry: &'static CatalogEntry, thumbnails: &mut Thumbnai
 }
 
 /// Paints the icon of an entry.
-fn paint_icon(painter: &egui::Painter, rect: egui::Rect, kind: &CatalogKind) {
-    let (c, line) = (rect.center(), Stroke::new(1.3, Color32::from_gray(170)));
-    let glow = theme::ACCENT;
+fn paint_icon(ui: &Ui, rect: egui::Rect, kind: &CatalogKind) {
+    let (c, line) = (rect.center(), Stroke::new(1.3, ui.visuals().text_color()));
+    let (painter, glow) = (ui.painter(), theme::accent(ui));
     match kind {
         CatalogKind::Light(Emitter::RectPanel { width_m, height_m }, ..) => {
             let scale = 14.0 / width_m.max(*height_m);

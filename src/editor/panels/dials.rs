@@ -73,7 +73,7 @@ fn table_ui(
     ui.add_space(4.0);
     ui.set_max_width(470.0);
     match &plan {
-        Err(message) => drop(ui.label(RichText::new(message).color(theme::BAD))),
+        Err(message) => drop(ui.label(RichText::new(message).color(theme::bad(ui)))),
         Ok(plan) => plan_ui(ui, plan),
     }
     ui.horizontal(|ui| {
@@ -104,7 +104,7 @@ fn plan_ui(ui: &mut Ui, plan: &DialPlan) {
     for outcome in &plan.outcomes {
         if let Some(note) = outcome.note() {
             let text = format!("{} cannot be {}: {note}.", outcome.wish.name, outcome.wish.level);
-            wrapped(ui, RichText::new(text).color(theme::ACCENT));
+            wrapped(ui, RichText::new(text).color(theme::accent(ui)));
         } else if let Some(stops) = outcome.evenness_stops {
             wrapped(ui, RichText::new(format!("The background is even to \u{b1}{stops:.1} stops.")).weak());
         }
@@ -217,7 +217,7 @@ fn wish_ui(ui: &mut Ui, wishes: &mut DialWishes, row: WishRow, name: &str, hint:
     let mut text = wishes.text(row).to_owned();
     let mut field = TextEdit::singleline(&mut text).hint_text(hint);
     if wishes.is_wrong(row) {
-        field = field.text_color(theme::BAD);
+        field = field.text_color(theme::bad(ui));
     }
     let field = ui.add_sized(vec2(WISH_WIDTH, 20.0), field);
     widgets::named(ui, &field, &format!("Wish for {name}"));

@@ -4,7 +4,7 @@ use crate::editor::commands::shortcuts::{KEY_BINDINGS, KeyBinding};
 use eframe::egui::{self, Grid, RichText, ScrollArea, Ui, vec2};
 
 /// Mouse actions and held keys.
-const MOUSE: [(&str, &str); 18] = [
+const MOUSE: [(&str, &str); 19] = [
     ("Left click", "Select what is under the pointer"),
     ("Shift or Ctrl + click", "Take it in or out; in the list Shift takes all from the last to here"),
     ("Left drag", "Select what lies in a box; with Shift or Ctrl: too"),
@@ -23,6 +23,7 @@ const MOUSE: [(&str, &str); 18] = [
     ("Click a number", "Type it, with any unit: 150 cm, 1.5 m, 5 ft"),
     ("Drop a file", "A studio (.ron) opens, a model (.obj) comes in"),
     ("Esc in a dialog", "Close it"),
+    ("Ctrl + plus, minus, 0", "Larger, smaller or usual texts and buttons"),
 ];
 
 /// Draws the list; `open` becomes false when it is closed.

@@ -9,6 +9,7 @@ use crate::editor::commands::menu_entry::entry;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::panels::variants;
+use crate::editor::ui::lengths;
 use crate::io;
 use crate::scene::Scene;
 use crate::sheet::Units;
@@ -47,7 +48,7 @@ pub fn menu_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
         ui.menu_button("Light", |ui| light_menu(ui, state, out));
         ui.menu_button("Variants", |ui| variants_menu(ui, state.document.scene(), out));
         ui.menu_button("Render", |ui| render_menu(ui, state, out));
-        ui.menu_button("Help", |ui| entry(ui, true, "Keys and mouse", "How to move around", Command::ToggleHelp, out));
+        ui.menu_button("Help", |ui| help_menu(ui, out));
     });
 }
 
@@ -70,9 +71,12 @@ fn file_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
         Command::ExportPicture,
         out,
     );
-    for (units, text) in
-        [(Units::Metres, "Export set-up sheet\u{2026}"), (Units::Feet, "Export set-up sheet in feet\u{2026}")]
-    {
+    let units = lengths::units(ui.ctx());
+    let (other, in_other) = match units {
+        Units::Metres => (Units::Feet, "Export set-up sheet in feet\u{2026}"),
+        Units::Feet => (Units::Metres, "Export set-up sheet in metres\u{2026}"),
+    };
+    for (units, text) in [(units, "Export set-up sheet\u{2026}"), (other, in_other)] {
         entry(ui, true, text, SHEET_TIP, Command::ExportSheet(units), out);
     }
     ui.separator();
@@ -108,6 +112,7 @@ fn variants_menu(ui: &mut Ui, scene: &Scene, out: &mut Vec<Command>) {
 const DIALS_TIP: &str = "Name the f-number of the key and stops of the others; the dials follow from the meter";
 const AUDIT_TIP: &str = "How much of the light comes by walls, ceiling, floor and backdrops; spill and flare";
 const GEAR_TIP: &str = "The heads, modifiers and stands that you own: first on the shelf, and counted";
+const PREFERENCES_TIP: &str = "Size of texts, dark or light, metres or feet, meter constant";
 const SHEET_TIP: &str = "One page to build the studio again from: picture, plan, list of lights; PDF, SVG or HTML";
 
 fn recent_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
@@ -143,6 +148,8 @@ fn edit_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     entry(ui, true, "Paste", "The lights and things on the clipboard", Command::RequestPaste, out);
     selection_entries(ui, state.document.scene(), state.selection, out);
     entry(ui, true, "Show and unmute all", "Nothing is hidden or muted any more", Command::ShowAll, out);
+    ui.separator();
+    entry(ui, true, "Preferences\u{2026}", PREFERENCES_TIP, Command::TogglePreferences, out);
 }
 
 fn view_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
@@ -195,6 +202,14 @@ pub const HANDLES: [(HandleMode, &str, &str); 4] = [
     (HandleMode::Scale, "Size", "Handles that scale the selected thing"),
     (HandleMode::Pose, "Pose", "Joints of the selected person: drag a hand, a foot, the head"),
 ];
+
+fn help_menu(ui: &mut Ui, out: &mut Vec<Command>) {
+    ui.set_min_width(200.0);
+    entry(ui, true, "Keys and mouse", "How to move around", Command::ToggleHelp, out);
+    entry(ui, true, "Tour", "Six cards about the parts of the window", Command::StartTour, out);
+    ui.separator();
+    entry(ui, true, "About Catchlight", "Version and licences", Command::ToggleAbout, out);
+}
 
 fn render_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     ui.set_min_width(200.0);

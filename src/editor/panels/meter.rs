@@ -10,6 +10,9 @@ use crate::photo::thirds::Dial;
 use crate::scene::{Meter, Receptor};
 use eframe::egui::{self, Context, Frame, Grid, Id, Label, Rect, RichText, Ui, vec2};
 
+/// Width of the read-out, points.
+const WIDTH: f32 = 300.0;
+
 /// Draws the read-out: a small movable window, initially in the upper left corner of the view.
 pub fn meter_ui(
     ctx: &Context,
@@ -27,16 +30,17 @@ pub fn meter_ui(
         .default_pos(view.min + vec2(10.0, 44.0))
         .constrain_to(view)
         .resizable(false)
-        .default_width(300.0)
+        .default_width(WIDTH)
         .frame(Frame::window(&ctx.global_style()).inner_margin(8));
     window.show(ctx, |ui| {
-        ui.set_max_width(300.0);
+        // Readings of other lengths leave the buttons where they are
+        ui.set_width(WIDTH);
         match reading {
             Some(Ok(reading)) => reading_ui(ui, reading),
             Some(Err(message)) => drop(ui.label(message)),
             None => drop(ui.label(RichText::new("Reading\u{2026}").weak())),
         }
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let button = ui.small_button("Select the meter");
             if button.on_hover_text("Move it with its handles, set it up in the inspector").clicked() {
                 out.push(Command::Select(Some(Item::Meter)));

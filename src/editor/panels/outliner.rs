@@ -123,7 +123,7 @@ impl OutlinerRows<'_> {
         ui.add_space(6.0);
         ui.horizontal(|ui| {
             let text = format!("Lights: {} of {} alone", solo.lights.len(), scene.lights.len());
-            ui.label(RichText::new(text).color(theme::ACCENT).small());
+            ui.label(RichText::new(text).color(theme::accent(ui)).small());
             let button = ui.small_button("End solo");
             if button.on_hover_text("Bring back what was on before (O)").clicked() {
                 self.out.push(Command::Apply(Action::Solo(Vec::new())));

@@ -3,22 +3,26 @@
 use crate::editor::commands::command::Command;
 use crate::editor::document::files::PresetInfo;
 use crate::editor::panels::thumbnails::{STUDIO_POINTS, Thumbnail, Thumbnails};
+use crate::editor::ui::search::{is_match, search_ui};
 use crate::editor::ui::widgets;
+use crate::io::PresetGroup;
 use eframe::egui::{self, Atom, Button, Key, Modifiers, RichText, ScrollArea, Ui, vec2};
 
 /// Height of the list, points. It is the same from the first frame on, so that the buttons below it do not move.
 const LIST_POINTS: f32 = 520.0;
 
-/// The marked studio of the list; none while the list is closed.
-#[derive(Clone, Copy, Debug, Default)]
+/// The list of studios: which one is marked, and what is searched for.
+#[derive(Clone, Debug, Default)]
 pub struct PresetPicker {
+    /// None while the list is closed.
     marked: Option<usize>,
+    query: String,
 }
 
 impl PresetPicker {
     /// Opens the list.
     pub fn open(&mut self) {
-        self.marked = Some(0);
+        *self = PresetPicker { marked: Some(0), query: String::new() };
     }
 
     /// Returns true while the list is open.
@@ -34,20 +38,14 @@ impl PresetPicker {
         thumbnails: &mut Thumbnails,
         out: &mut Vec<Command>,
     ) {
-        let Some(mut marked) = self.marked else { return };
-        let before = marked;
-        let mut choice = None;
-        let pressed = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
-        if pressed(Key::ArrowDown) {
-            marked = (marked + 1).min(presets.len().saturating_sub(1));
-        }
-        if pressed(Key::ArrowUp) {
-            marked = marked.saturating_sub(1);
-        }
-        if pressed(Key::Enter) {
-            choice = Some(marked);
-        }
-        let by_key = marked != before;
+        let Some(marked) = self.marked else { return };
+        let before = found(presets, &self.query);
+        let mut marked = moved_by_key(ctx, &before, marked);
+        let by_key = Some(marked) != self.marked;
+        let mut choice = ctx
+            .input_mut(|i| i.consume_key(Modifiers::NONE, Key::Enter))
+            .then_some(marked)
+            .filter(|_| !before.is_empty());
         let modal = widgets::dialog(ctx, "presets").show(ctx, |ui| {
             ui.set_width(560.0);
             ui.heading("New from preset");
@@ -55,9 +53,27 @@ impl PresetPicker {
                 RichText::new("Each is a lit studio to start from. Your own file comes into being when you save.")
                     .weak(),
             );
+            let field = search_ui(ui, "Search studios", &mut self.query);
+            if ui.memory(|memory| memory.focused().is_none()) {
+                field.request_focus();
+            }
             ui.separator();
+            let shown = found(presets, &self.query);
+            if !shown.contains(&marked) {
+                marked = shown.first().copied().unwrap_or(0);
+            }
             ScrollArea::vertical().max_height(LIST_POINTS).min_scrolled_height(LIST_POINTS).show(ui, |ui| {
-                for (i, preset) in presets.iter().enumerate() {
+                ui.set_min_height(LIST_POINTS);
+                if shown.is_empty() {
+                    ui.label(RichText::new("No studio has these words.").weak());
+                }
+                let mut group = None;
+                for &i in &shown {
+                    let preset = &presets[i];
+                    if group.replace(preset.group) != Some(preset.group) {
+                        ui.add_space(4.0);
+                        ui.label(RichText::new(preset.group.label()).strong());
+                    }
                     let response = preset_row(ui, preset, thumbnails.studio(ctx, i), i == marked);
                     if response.clicked() {
                         marked = i;
@@ -72,8 +88,7 @@ impl PresetPicker {
             });
             ui.separator();
             ui.horizontal(|ui| {
-                let enabled = marked < presets.len();
-                if ui.add_enabled(enabled, Button::new("Open this studio")).clicked() {
+                if ui.add_enabled(!shown.is_empty(), Button::new("Open this studio")).clicked() {
                     choice = Some(marked);
                 }
                 let tip = "A room without lights and figures";
@@ -92,6 +107,23 @@ impl PresetPicker {
             out.push(Command::NewFromPreset(index));
         }
     }
+}
+
+/// Returns the studios that have the words of a query, by group.
+fn found(presets: &[PresetInfo], query: &str) -> Vec<usize> {
+    let is_found = |preset: &PresetInfo| is_match(query, &[preset.group.label(), &preset.name, &preset.description]);
+    let in_group =
+        |group: PresetGroup| (0..presets.len()).filter(move |i| presets[*i].group == group && is_found(&presets[*i]));
+    PresetGroup::ALL.into_iter().flat_map(in_group).collect()
+}
+
+/// Returns the studio that the arrow keys lead to from the marked one.
+fn moved_by_key(ctx: &egui::Context, shown: &[usize], marked: usize) -> usize {
+    let Some(place) = shown.iter().position(|i| *i == marked) else { return marked };
+    let pressed = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
+    let down = if pressed(Key::ArrowDown) { place + 1 } else { place };
+    let place = if pressed(Key::ArrowUp) { down.saturating_sub(1) } else { down };
+    shown.get(place).copied().unwrap_or(marked)
 }
 
 /// Draws a row with thumbnail, name and description of a studio.

@@ -34,7 +34,7 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
     if settings.quality == Quality::Custom {
         let text =
             format!("{} samples: {}", settings.samples, estimate_text(forecast.estimate(pixels, settings.samples)));
-        ui.label(RichText::new(text).color(theme::ACCENT));
+        ui.label(RichText::new(text).color(theme::accent(ui)));
     }
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     let chosen = forecast.estimate(pixels, settings.samples);

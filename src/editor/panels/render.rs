@@ -186,6 +186,6 @@ fn thumbnail_ui(ui: &mut Ui, rendering: &Rendering, scene: &Scene, out: &mut Vec
         }
     });
     if rendering.is_out_of_date(scene) && !rendering.is_running() {
-        ui.label(RichText::new(OUT_OF_DATE).color(theme::ACCENT).small());
+        ui.label(RichText::new(OUT_OF_DATE).color(theme::accent(ui)).small());
     }
 }

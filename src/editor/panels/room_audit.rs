@@ -70,7 +70,7 @@ fn audit_ui(ui: &mut Ui, audit: &RoomAudit) {
     }
     for name in &audit.flaring {
         let text = format!("{name} shines at the lens: shade it with a flag, or use a lens hood.");
-        ui.add(Label::new(RichText::new(text).color(theme::ACCENT)).wrap());
+        ui.add(Label::new(RichText::new(text).color(theme::accent(ui))).wrap());
     }
 }
 

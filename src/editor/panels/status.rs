@@ -4,7 +4,9 @@ use crate::editor::commands::choices::CentralView;
 use crate::editor::document::item::{Item, name_of_all};
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
+use crate::editor::ui::lengths;
 use crate::scene::Scene;
+use crate::sheet::Units;
 use eframe::egui::{self, RichText, Ui};
 
 /// Draws the status line.
@@ -19,7 +21,7 @@ pub fn status_ui(
         let scene = document.scene();
         match selection.items() {
             [] => ui.label(RichText::new("Nothing selected").weak()),
-            [item] => ui.label(selection_line(scene, *item)),
+            [item] => ui.label(selection_line(scene, *item, lengths::units(ui.ctx()))),
             several => ui.label(format!("{} selected", name_of_all(several, scene))),
         };
         if let Some(busy) = busy {
@@ -32,10 +34,17 @@ pub fn status_ui(
     });
 }
 
-fn selection_line(scene: &Scene, item: Item) -> String {
+fn selection_line(scene: &Scene, item: Item, units: Units) -> String {
     let locked = if item.is_locked(scene) { ", locked" } else { "" };
     match item.position(scene) {
-        Some(p) => format!("{} at {:.2}, {:.2}, {:.2} m{locked}", item.name(scene), p.x, p.y, p.z),
+        Some(p) => {
+            let [x, y, z] = p.to_array().map(|metres| match units {
+                Units::Metres => format!("{metres:.2}"),
+                Units::Feet => units.distance(metres),
+            });
+            let unit = if units == Units::Metres { " m" } else { "" };
+            format!("{} at {x}, {y}, {z}{unit}{locked}", item.name(scene))
+        }
         None => item.name(scene),
     }
 }

@@ -55,7 +55,7 @@ pub fn variants_ui(
                 ui.label(format!("{}{key}. {hint}", difference_text(scene, id)));
             });
             if pictures.running() == Some(id) {
-                ui.label(RichText::new("rendering").color(theme::ACCENT).small());
+                ui.label(RichText::new("rendering").color(theme::accent(ui)).small());
             }
         }
         let add = ui.button("+");

@@ -7,8 +7,9 @@ use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
 use crate::editor::ui::widgets;
+use crate::editor::ui::window_part::WindowPart;
 use crate::scene::{Facing, Meter, Receptor, Scene};
-use eframe::egui::{Button, Ui};
+use eframe::egui::{Button, Rect, Ui};
 
 /// Width below which tools and actions move into a menu, points.
 const NARROW: f32 = 660.0;
@@ -33,6 +34,7 @@ pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool,
                 ui.separator();
                 actions_ui(ui, state, camera_follows, out);
             });
+            WindowPart::Meter.note(ui.ctx(), tools.response.rect);
             tools.response.on_hover_text("Handles, snap, light meter, camera");
         } else {
             handles_ui(ui, state, out);
@@ -50,7 +52,9 @@ fn centre_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
         (CentralView::Camera, "Camera", "What the picture will frame (1)"),
         (CentralView::Picture, "Picture", "The rendered picture (3)"),
     ];
+    let before = ui.cursor().min;
     widgets::choice(ui, &mut centre, &views);
+    WindowPart::Picture.note(ui.ctx(), Rect::from_min_max(before, ui.min_rect().right_bottom()));
     if let CentralView::Light(id) = state.central_view
         && let Some(light) = state.document.scene().light(id)
     {
@@ -95,6 +99,7 @@ fn actions_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool, out:
         out.push(Command::FrameSelection);
     }
     let meter = ui.add(Button::selectable(state.document.scene().meter.is_some(), "Light meter"));
+    WindowPart::Meter.note(ui.ctx(), meter.rect);
     if meter.on_hover_text("Puts a light meter where the camera aims, or selects it").clicked() {
         out.push(put_meter_up(state.document.scene()));
     }

@@ -135,8 +135,8 @@ impl Toasts {
 fn toast_ui(ui: &mut egui::Ui, toast: &Toast, width: f32) -> bool {
     let color = match toast.kind {
         ToastKind::Info => theme::GOOD,
-        ToastKind::Warning => theme::ACCENT,
-        ToastKind::Error => theme::BAD,
+        ToastKind::Warning => theme::accent(ui),
+        ToastKind::Error => theme::bad(ui),
     };
     let frame = Frame::popup(ui.style()).stroke(egui::Stroke::new(1.0, color)).inner_margin(10);
     frame

@@ -8,6 +8,9 @@ use glam::Vec3;
 /// Width of the label column, points.
 const LABEL_WIDTH: f32 = 96.0;
 
+/// Width of the number beside a slider, points.
+const SLIDER_NUMBER_WIDTH: f32 = 60.0;
+
 /// Draws a collapsible section of a panel.
 pub fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) {
     ui.add_space(2.0);
@@ -22,7 +25,8 @@ pub fn section(ui: &mut Ui, title: &str, open: bool, add: impl FnOnce(&mut Ui)) 
     ui.separator();
 }
 
-/// Draws a label with its fields to the right. The label names every field of the row without a name.
+/// Draws a label with its fields to the right; those that do not fit there go on in the next line. The label names
+/// every field of the row without a name.
 pub fn row<R>(ui: &mut Ui, label: &str, tip: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         let size = vec2(LABEL_WIDTH, ui.spacing().interact_size.y);
@@ -31,7 +35,16 @@ pub fn row<R>(ui: &mut Ui, label: &str, tip: &str, add: impl FnOnce(&mut Ui) -> 
             ui.add(egui::Label::new(RichText::new(label).weak()).truncate());
         });
         cell.response.on_hover_text(tip);
-        ui.name_inputs(label, add)
+        let layout = egui::Layout::left_to_right(egui::Align::Center).with_main_wrap(true);
+        let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
+        let fields = |ui: &mut Ui| {
+            ui.set_max_width(size.x);
+            // A slider with its number fits into the line
+            let slider = size.x - SLIDER_NUMBER_WIDTH - ui.spacing().item_spacing.x;
+            ui.spacing_mut().slider_width = slider.clamp(40.0, ui.spacing().slider_width);
+            ui.name_inputs(label, add)
+        };
+        ui.allocate_ui_with_layout(size, layout, fields).inner
     })
     .inner
 }
@@ -101,7 +114,8 @@ pub fn vec3_ui(ui: &mut Ui, name: &str, number: NumberField, value: &mut Vec3) {
         ("y", Color32::from_rgb(128, 190, 96), "up"),
         ("z", Color32::from_rgb(96, 148, 222), "to the front of the room"),
     ];
-    ui.spacing_mut().item_spacing.x = 3.0;
+    // Three fields fit into the narrowest panel
+    (ui.spacing_mut().item_spacing.x, ui.spacing_mut().button_padding.x) = (2.0, 2.0);
     for (i, (axis, color, tip)) in AXES.into_iter().enumerate() {
         ui.label(RichText::new(axis).color(color).small());
         ui.name_inputs(format!("{name} {axis}"), |ui| number.ui(ui, &mut value[i])).on_hover_text(tip);
@@ -238,7 +252,9 @@ pub fn lamp_toggle(ui: &mut Ui, on: bool, glow: Color32, name: &str) -> Response
         let c = rect.center();
         let stroke = egui::Stroke::new(1.3, if on { glow } else { visuals.fg_stroke.color.gamma_multiply(0.4) });
         if on {
-            painter.circle_filled(c - vec2(0.0, 1.5), 4.5, glow);
+            // The rim shows a white lamp on a light panel
+            let rim = egui::Stroke::new(1.0, visuals.fg_stroke.color.gamma_multiply(0.5));
+            painter.circle(c - vec2(0.0, 1.5), 4.5, glow, rim);
         } else {
             painter.circle_stroke(c - vec2(0.0, 1.5), 4.0, stroke);
         }

@@ -10,7 +10,7 @@ use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::panels::menu::MenuState;
-use crate::editor::panels::{self, add, help, inspector, menu, outliner, render, status, variants, view_bar};
+use crate::editor::panels::{self, about, add, help, inspector, menu, outliner, render, status, variants, view_bar};
 use crate::editor::picture::picture_view::PictureInput;
 use crate::editor::picture::rendering::Rendering;
 use crate::editor::picture::variant_pictures::VariantPictures;
@@ -18,12 +18,12 @@ use crate::editor::ui::side_panel::PanelWidths;
 use crate::editor::ui::theme;
 use crate::editor::ui::toasts::Toasts;
 use crate::editor::ui::wake::wake;
+use crate::editor::ui::window_part::WindowPart;
 use crate::editor::viewport::live::preview_host::{PreviewHost, ViewOptions};
 use crate::editor::viewport::live::traced_view::TracedView;
 use crate::editor::viewport::viewport_area::{Viewport, ViewportInput};
 use crate::editor::window::app_state::{BackgroundState, Diagnostics, PanelState, ViewState, WindowState};
 use crate::editor::window::dialogs::FileDialogs;
-use crate::editor::window::recent::RecentFiles;
 use crate::editor::window::recovery::Recovery;
 use crate::editor::window::rescue;
 use crate::editor::window::session::Session;
@@ -43,10 +43,12 @@ pub struct EditorOptions {
     pub initial: Option<StudioSource>,
     /// The file dialogs.
     pub dialogs: FileDialogs,
-    /// Folder of the list of recent studios; none keeps it in memory.
+    /// Folder of the preferences and of the list of recent studios; none keeps them in memory.
     pub settings_folder: Option<PathBuf>,
     /// Folder where unsaved studios are kept for the case of a crash; none keeps none.
     pub recovery_folder: Option<PathBuf>,
+    /// At the first start, the tour of the window is shown; it needs the folder of the preferences.
+    pub offers_tour: bool,
     /// What the live view shows at first.
     pub view_options: ViewOptions,
     /// Start of the program, for the time to the first frame.
@@ -60,6 +62,7 @@ impl Default for EditorOptions {
             dialogs: FileDialogs::Desktop,
             settings_folder: None,
             recovery_folder: None,
+            offers_tour: false,
             view_options: ViewOptions::default(),
             started: Instant::now(),
         }
@@ -105,15 +108,15 @@ impl App {
             rendering: Rendering::new(geometry.clone()),
             variant_pictures: VariantPictures::default(),
             background: BackgroundState::new(geometry),
-            session: Session::new(
-                options.dialogs,
-                RecentFiles::load(options.settings_folder),
-                Recovery::new(options.recovery_folder),
-            ),
+            session: Session::new(options.dialogs, options.settings_folder, Recovery::new(options.recovery_folder)),
             toasts: Toasts::default(),
             window: WindowState::default(),
             diagnostics: Diagnostics::new(options.started),
         };
+        app.use_preferences(ctx);
+        if options.offers_tour && app.session.preferences.is_first_start() {
+            app.panels.tour.open();
+        }
         let first = options.initial.unwrap_or(StudioSource::Preset(0));
         app.load(first, ctx);
         app.look_for_unsaved(ctx);
@@ -124,6 +127,7 @@ impl App {
     pub fn move_to(&mut self, creation: &eframe::CreationContext<'_>) {
         let ctx = &creation.egui_ctx;
         theme::install(ctx);
+        self.use_preferences(ctx);
         self.views.viewport.preview.move_to(creation.wgpu_render_state.as_ref(), ctx);
         self.views.viewport.traced_view.move_to(ctx);
         self.rendering.move_to(ctx);
@@ -293,16 +297,20 @@ impl App {
         left.show(ui, "things", Panel::left("things").frame(side), LEFT, |ui| {
             let add_height = (ui.available_height() * 0.46).max(120.0);
             Panel::top("add").frame(Frame::new()).default_size(add_height).resizable(true).show(ui, |ui| {
-                let (tab, thumbnails) = (&mut self.panels.catalog_tab, &mut self.background.thumbnails);
-                add::add_ui(ui, tab, thumbnails, &self.panels.gear, self.document.scene(), out);
+                WindowPart::Shelf.note(ui.ctx(), ui.max_rect());
+                let PanelState { catalog_tab, shelf_query, gear, .. } = &mut self.panels;
+                let (thumbnails, scene) = (&mut self.background.thumbnails, self.document.scene());
+                add::add_ui(ui, catalog_tab, shelf_query, thumbnails, gear, scene, out);
             });
             outliner::outliner_ui(ui, &self.document, &self.selection, &mut self.panels.outliner, out);
         });
         right.show(ui, "details", Panel::right("details").frame(side), RIGHT, |ui| {
             Panel::bottom("render").frame(Frame::new()).resizable(false).show(ui, |ui| {
+                WindowPart::Render.note(ui.ctx(), ui.max_rect());
                 let (rendering, forecaster) = (&mut self.rendering, &mut self.background.forecaster);
                 render::render_ui(ui, rendering, forecaster, &self.document, self.views.central, out);
             });
+            WindowPart::Inspector.note(ui.ctx(), ui.available_rect_before_wrap());
             let (patterns, gear) = (&self.background.pattern, self.panels.gear.list());
             inspector::inspector_ui(ui, &self.document, &self.selection, patterns, gear, out);
         });
@@ -323,6 +331,7 @@ impl App {
                 variants::variants_ui(ui, scene, pictures, &mut self.panels.variants, out);
             });
         }
+        theme::draw_over_picture(ui);
         if self.views.central == CentralView::Picture {
             self.views.viewport.traced_view.pause();
             let input = PictureInput {
@@ -411,6 +420,9 @@ impl eframe::App for App {
         let middle = self.panels_ui(ui, &mut out);
         self.panels.preset_picker.ui(&ctx, &self.panels.presets, &mut self.background.thumbnails, &mut out);
         help::help_ui(&ctx, &mut self.panels.show_help);
+        about::about_ui(&ctx, &mut self.panels.show_about);
+        self.preferences_ui(&ctx, &mut out);
+        self.tour_ui(&ctx, middle, &mut out);
         self.setup_windows_ui(&ctx, middle, &mut out);
         self.ask(&ctx, &mut out);
         self.drop_hint(&ctx);

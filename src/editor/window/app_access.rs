@@ -1,6 +1,7 @@
 //! Read access to the application, for the window's main loop and for tests.
 
 use crate::editor::commands::choices::CentralView;
+use crate::editor::commands::preferences::Preferences;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::panels::thumbnails::Thumbnails;
@@ -36,6 +37,11 @@ impl App {
     /// Returns the pictures of the variants that are not shown.
     pub fn variant_pictures(&self) -> &VariantPictures {
         &self.variant_pictures
+    }
+
+    /// Returns the preferences.
+    pub fn preferences(&self) -> &Preferences {
+        self.session.preferences.get()
     }
 
     /// Returns the messages.

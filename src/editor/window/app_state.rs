@@ -9,6 +9,7 @@ use crate::editor::panels::gear::GearTab;
 use crate::editor::panels::outliner::OutlinerState;
 use crate::editor::panels::presets::PresetPicker;
 use crate::editor::panels::thumbnails::Thumbnails;
+use crate::editor::panels::tour::Tour;
 use crate::editor::panels::variants::VariantsState;
 use crate::editor::picture::picture_view::PictureView;
 use crate::editor::ui::side_panel::SidePanel;
@@ -62,6 +63,12 @@ pub struct PanelState {
     pub presets: Vec<PresetInfo>,
     /// The open tab of the catalog.
     pub catalog_tab: CatalogTab,
+    /// What is searched for in the catalog.
+    pub shelf_query: String,
+    /// True while the preferences are open.
+    pub show_preferences: bool,
+    /// True while version and licences are shown.
+    pub show_about: bool,
     /// True while the list of keys is open.
     pub show_help: bool,
     /// True while the window of wanted exposures is open.
@@ -74,6 +81,8 @@ pub struct PanelState {
     pub gear_tab: GearTab,
     /// The list of gear.
     pub gear: GearShelf,
+    /// The card of the tour.
+    pub tour: Tour,
     /// The wanted exposures.
     pub dial_wishes: DialWishes,
     /// The panel of catalog and item list.
@@ -91,12 +100,16 @@ impl PanelState {
             preset_picker: PresetPicker::default(),
             presets,
             catalog_tab: CatalogTab::Lights,
+            shelf_query: String::new(),
+            show_preferences: false,
+            show_about: false,
             show_help: false,
             show_dials: false,
             show_room_audit: false,
             show_gear: false,
             gear_tab: GearTab::default(),
             gear,
+            tour: Tour::default(),
             dial_wishes: DialWishes::default(),
             left: SidePanel::default(),
             right: SidePanel::default(),

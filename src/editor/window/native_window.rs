@@ -45,6 +45,7 @@ pub fn run(initial: Option<PathBuf>) -> Result<(), EditorError> {
         initial: initial.map(StudioSource::named),
         settings_folder: recent::settings_folder(),
         recovery_folder: io::state_folder().map(|folder| folder.join("recovery")),
+        offers_tour: true,
         started,
         ..EditorOptions::default()
     };

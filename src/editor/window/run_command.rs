@@ -151,6 +151,10 @@ impl App {
             Command::SetOwned(entry, count) => self.set_owned(&entry, count),
             Command::ReadGear => self.panels.gear.read(),
             Command::SetDials(plan) => self.set_dials(&plan),
+            Command::TogglePreferences => self.panels.show_preferences = !self.panels.show_preferences,
+            Command::SetPreferences(preferences) => self.set_preferences(preferences, ctx),
+            Command::StartTour => self.panels.tour.open(),
+            Command::ToggleAbout => self.panels.show_about = !self.panels.show_about,
             Command::ToggleHelp => self.panels.show_help = !self.panels.show_help,
             Command::Open
             | Command::Save
@@ -287,8 +291,12 @@ impl App {
         if self.views.viewport.is_dragging() {
             self.document.abandon(self.window.press_id);
             self.views.viewport.cancel_drag();
-        } else if self.panels.show_help {
-            self.panels.show_help = false;
+        } else if self.panels.tour.close() {
+            // It was the innermost
+        } else if self.panels.show_help || self.panels.show_about {
+            (self.panels.show_help, self.panels.show_about) = (false, false);
+        } else if self.panels.show_preferences {
+            self.panels.show_preferences = false;
         } else if self.views.viewport.place_light.is_some() {
             self.views.viewport.place_light = None;
         } else if matches!(self.views.central, CentralView::Light(_)) {

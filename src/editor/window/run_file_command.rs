@@ -152,7 +152,12 @@ impl App {
 
     pub(super) fn take_done(&mut self, done: TaskResult, ctx: &Context) {
         match done {
-            TaskResult::Opened(_, Ok(opened)) => self.show_opened(*opened, ctx),
+            TaskResult::Opened(source, Ok(mut opened)) => {
+                if !matches!(source, StudioSource::File(_)) {
+                    self.session.preferences.get().calibrate(&mut opened.scene.camera);
+                }
+                self.show_opened(*opened, ctx);
+            }
             TaskResult::Opened(source, Err(message)) => {
                 if let StudioSource::File(path) = source
                     && !path.exists()

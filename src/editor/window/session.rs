@@ -5,9 +5,11 @@ use crate::editor::document::files::StudioSource;
 use crate::editor::document::item::Item;
 use crate::editor::panels::prompts::PathPrompt;
 use crate::editor::window::dialogs::{DialogAnswer, FileDialogs};
+use crate::editor::window::kept_preferences::KeptPreferences;
 use crate::editor::window::recent::RecentFiles;
 use crate::editor::window::recovery::Recovery;
 use crate::scene::TextureSlot;
+use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
 
 /// An operation that waits for the prompt for unsaved changes.
@@ -42,6 +44,7 @@ pub struct Session {
     pub(super) dialogs: FileDialogs,
     /// Studios opened recently.
     pub(super) recent: RecentFiles,
+    pub(super) preferences: KeptPreferences,
     pub(super) dialog: Option<(FilePurpose, Receiver<DialogAnswer>)>,
     pub(super) prompt: Option<PathPrompt>,
     pub(super) unsaved_prompt: Option<PendingOperation>,
@@ -58,11 +61,12 @@ pub struct Session {
 }
 
 impl Session {
-    /// Returns a session with these dialogs, recent studios and recovery.
-    pub fn new(dialogs: FileDialogs, recent: RecentFiles, recovery: Recovery) -> Self {
+    /// Returns a session with these dialogs, with what a settings folder holds, and with this recovery.
+    pub fn new(dialogs: FileDialogs, settings_folder: Option<PathBuf>, recovery: Recovery) -> Self {
         Session {
             dialogs,
-            recent,
+            recent: RecentFiles::load(settings_folder.clone()),
+            preferences: KeptPreferences::load(settings_folder),
             dialog: None,
             prompt: None,
             unsaved_prompt: None,

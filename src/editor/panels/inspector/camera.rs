@@ -5,11 +5,13 @@ use super::{InspectorContext, aim, title};
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::placement::aim_offset;
+use crate::editor::ui::lengths;
 use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, NumberField, dial_ui, fact, row, section};
 use crate::photo::text::three_digits;
 use crate::photo::thirds::Dial;
 use crate::photo::{exposure, nd_filter};
 use crate::scene::{Assets, Camera, Focus, FocusedLens, Orientation, Scene, Sensor};
+use crate::sheet::Units;
 use eframe::egui::{ComboBox, Ui};
 
 /// Draws the inspector of the camera.
@@ -128,7 +130,10 @@ fn lens_rows(ui: &mut Ui, scene: &Scene, camera: &mut Camera) {
         ui,
         "Field",
         "What fits into the picture at the distance of the aim",
-        format!("{:.2} \u{d7} {:.2} m", field.x, field.y),
+        match lengths::units(ui.ctx()) {
+            Units::Metres => format!("{:.2} \u{d7} {:.2} m", field.x, field.y),
+            units => format!("{} \u{d7} {}", units.distance(field.x), units.distance(field.y)),
+        },
     );
 }
 
@@ -175,7 +180,7 @@ fn focus_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, camera: &mut Camera) 
     });
     match &mut camera.focus {
         Focus::Distance(distance) => drop(row(ui, "At", AT_TIP, |ui| FOCUS_DISTANCE.ui(ui, distance))),
-        Focus::OnAim | Focus::OnObject { .. } => fact(ui, "At", AT_TIP, format!("{} m", metres(at))),
+        Focus::OnAim | Focus::OnObject { .. } => fact(ui, "At", AT_TIP, from_lens(ui, at)),
     }
     lens_facts(ui, camera, &lens);
 }
@@ -201,22 +206,25 @@ fn lens_facts(ui: &mut Ui, camera: &Camera, lens: &FocusedLens) {
         let text = if m > 0.0 { format!("{scale}, \u{2212}{stops:.2} stops: as {works_as}") } else { "0".to_owned() };
         fact(ui, "Magnification", tip, text);
         if let Some(focus_m) = lens.focus_m {
-            let from_sensor = format!("{} m", metres(focus_m + lens.image_distance_m()));
+            let from_sensor = from_lens(ui, focus_m + lens.image_distance_m());
             fact(ui, "From the sensor", "What the distance scale of a lens shows", from_sensor);
         }
     }
     let sharp =
         lens.depth_of_field_m(camera.f_number, camera.sensor.sharp_circle_m()).filter(|_| camera.depth_of_field);
     if let Some((near, far)) = sharp {
-        let far_text = if far.is_finite() { format!("{} m", metres(far)) } else { "infinity".to_owned() };
+        let far_text = if far.is_finite() { from_lens(ui, far) } else { "infinity".to_owned() };
         let deep = far - near;
         let depth = if deep < 0.1 { format!(", {:.1} mm deep", deep * 1e3) } else { String::new() };
         let tip = "Blur circles up to 1/1500 of the sensor's diagonal";
-        fact(ui, "Sharp", tip, format!("{} m to {far_text}{depth}", metres(near)));
+        fact(ui, "Sharp", tip, format!("{} to {far_text}{depth}", from_lens(ui, near)));
     }
 }
 
-/// Formats metres: in millimetres below one metre, else in centimetres.
-fn metres(metres: f32) -> String {
-    if metres < 1.0 { format!("{metres:.3}") } else { format!("{metres:.2}") }
+/// Formats a distance from the lens: to the millimetre below one metre, else to the centimetre, or in feet and inches.
+fn from_lens(ui: &Ui, metres: f32) -> String {
+    match lengths::units(ui.ctx()) {
+        Units::Metres if metres < 1.0 => format!("{metres:.3} m"),
+        units => lengths::text(units, metres),
+    }
 }

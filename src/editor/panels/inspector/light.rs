@@ -8,6 +8,7 @@ use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
 use crate::editor::document::readout;
+use crate::editor::ui::lengths;
 use crate::editor::ui::theme;
 use crate::editor::ui::widgets::{self, DEGREES, DISTANCE, METRES, NumberField, fact, row, section};
 use crate::gear::GearList;
@@ -37,7 +38,7 @@ pub(super) fn light_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Ligh
             _ => "",
         };
         ui.add_space(6.0);
-        ui.label(RichText::new(why).color(theme::MUTED).small());
+        ui.label(RichText::new(why).color(theme::bad(ui)).small());
     });
     role_row(ui, &mut light);
     modifier::kind_rows(ui, scene, &mut light);
@@ -208,7 +209,7 @@ fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
         fact(ui, "Intensity", "On the light's axis, dial included", format!("{intensity} {unit}"));
     }
     if let Some(distance) = at.distance_m {
-        fact(ui, "Distance", "From the light to what it aims at", format!("{distance:.2} m"));
+        fact(ui, "Distance", "From the light to what it aims at", lengths::shown(ui.ctx(), distance));
     }
     if !light.on {
         ui.label(RichText::new("The light is off; these are its values when it is on.").weak().small());

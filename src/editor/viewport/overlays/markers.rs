@@ -3,6 +3,7 @@
 
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
+use crate::editor::ui::lengths;
 use crate::editor::ui::theme;
 use crate::scene::{CameraFrame, Light, Scene};
 use eframe::egui::{Align2, Color32, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, vec2};
@@ -130,7 +131,7 @@ fn paint_aim(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect, 
     let color = theme::role_color(light.role);
     paint_aim_line(painter, frame, rect, light.position, target, color);
     let (Some(from), Some(to)) = (place_of(frame, rect, light.position), place_of(frame, rect, target)) else { return };
-    let text = format!("{:.2} m", (target - light.position).length());
+    let text = lengths::shown(painter.ctx(), (target - light.position).length());
     let place = from.lerp(to, 0.6) + vec2(8.0, 0.0);
     paint_text(painter, place, Align2::LEFT_CENTER, &text, color.gamma_multiply(0.7));
 }

@@ -1,11 +1,13 @@
 //! A drag of a transform handle: from the path of the pointer to the transform of the selection.
 
 use crate::editor::document::action::Action;
+use crate::editor::ui::lengths;
 use crate::editor::viewport::tools::handle_part::{HandleAxes, HandlePart, SIZE};
 use crate::editor::viewport::tools::handle_pointer::{HandlePointer, STEP_DEG, STEP_M};
 use crate::editor::viewport::tools::handle_view::HandleView;
 use crate::editor::viewport::tools::transform_selection::{DragSelection, DragTransform};
 use crate::editor::viewport::tools::typed_number::TypedNumber;
+use crate::sheet::Units;
 use eframe::egui::Pos2;
 use glam::Vec3;
 use std::f32::consts::{PI, TAU};
@@ -212,30 +214,29 @@ impl HandleDrag {
         if self.has_changed { self.held.changed(self.with_typed_amount()) } else { None }
     }
 
-    /// Returns the amount of the drag as text, typed or measured.
-    pub fn amount(&self) -> String {
+    /// Returns the amount of the drag as text, typed (in metres) or measured.
+    pub fn amount(&self, units: Units) -> String {
         let unit = match self.change {
             DragTransform::Move(_) => " m",
             DragTransform::Rotate(..) => "\u{b0}",
             DragTransform::Scale(_) => " times",
         };
-        let number = match self.change {
-            _ if !self.typed.text().is_empty() => return format!("{}{unit}    Enter sets it", self.typed.text()),
+        match self.change {
+            _ if !self.typed.text().is_empty() => format!("{}{unit}    Enter sets it", self.typed.text()),
             DragTransform::Move(by) => {
                 let to_aim = self.start.aim.filter(|_| self.part == HandlePart::MoveAlongAim);
                 let left = to_aim.and_then(|aim| Some(aim.distance_m? - by.dot(aim.direction)));
-                if let Some(left) = left {
-                    return format!("{left:.2} m to its aim");
+                match left {
+                    Some(left) => format!("{} to its aim", lengths::text(units, left)),
+                    None => lengths::text(units, by.length()),
                 }
-                format!("{:.2}", by.length())
             }
-            DragTransform::Rotate(_, angle) => format!("{:.1}", angle.to_degrees().abs()),
+            DragTransform::Rotate(_, angle) => format!("{:.1}{unit}", angle.to_degrees().abs()),
             DragTransform::Scale(factor) => {
                 let most = factor.to_array().into_iter().max_by(|a, b| (a - 1.0).abs().total_cmp(&(b - 1.0).abs()));
-                format!("{:.2}", most.unwrap_or(1.0))
+                format!("{:.2}{unit}", most.unwrap_or(1.0))
             }
-        };
-        format!("{number}{unit}")
+        }
     }
 }
 
@@ -308,7 +309,10 @@ mod tests {
             assert!(snapped.length() > 0.1 && (0..3).filter(is_moved).all(|i| off[i] < 1e-3), "{part:?}: {snapped}");
         }
         let path = [place, place + Vec3::NEG_Z * 0.6].map(|point| view.place(point).unwrap());
-        assert_eq!(drag(HandlePart::MoveAlongAim, HandleMode::Move, view, path, false).amount(), "1.40 m to its aim");
+        assert_eq!(
+            drag(HandlePart::MoveAlongAim, HandleMode::Move, view, path, false).amount(Units::Metres),
+            "1.40 m to its aim"
+        );
         let through = [place, place + Vec3::NEG_Z * 2.6].map(|point| view.place(point).unwrap());
         let stopped = drag(HandlePart::MoveAlongAim, HandleMode::Move, view, through, false).change;
         assert_eq!(stopped, DragTransform::Move(Vec3::NEG_Z * (2.0 - MIN_AIM_M)), "no light is moved through its aim");

@@ -3,6 +3,7 @@
 use crate::editor::commands::choices::HandleMode;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
+use crate::editor::ui::lengths;
 use crate::editor::viewport::overlays::markers::paint_text;
 use crate::editor::viewport::tools::handle_drag::HandleDrag;
 use crate::editor::viewport::tools::handle_part::{HandleAxes, HandlePart, HandleShape, part_at, parts};
@@ -91,7 +92,7 @@ impl TransformHandles {
         }
         let Some(pointer) = pointer else { return };
         let text = match (&self.drag, active) {
-            (Some(drag), _) => drag.amount(),
+            (Some(drag), _) => drag.amount(lengths::units(painter.ctx())),
             (None, Some(HandlePart::MoveAlongAim)) => "Nearer or farther, at the same angle".to_owned(),
             _ => return,
         };
