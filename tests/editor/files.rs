@@ -107,6 +107,28 @@ fn files_can_be_dropped_and_models_travel_with_the_studio() {
 }
 
 #[test]
+fn a_model_in_millimetres_is_as_large_as_the_thing_and_stays_on_the_floor_when_its_height_is_set() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let model = folder.path().join("bottle.obj");
+    std::fs::write(&model, "v -40 -150 0\nv 40 -150 0\nv 0 150 0\nv 0 -150 40\nf 1 2 3\nf 2 4 3\nf 4 1 3\nf 1 4 2\n")
+        .unwrap();
+    let mut window = window_with_answers([]);
+    drop_file(&mut window, &model);
+    let bottle = |window: &Window| scene(window).objects.last().unwrap().transform;
+    assert_eq!(bottle(&window).scale, glam::Vec3::splat(0.001));
+    assert!((bottle(&window).position.y - 0.15).abs() < 1e-5, "{:?}", bottle(&window));
+    let told = window.state().toasts().texts(ToastKind::Info);
+    assert!(told.iter().any(|text| text.contains("in mm: 30.0 cm high")), "{told:?}");
+    click(&mut window, "cm");
+    assert!((bottle(&window).scale.y - 0.01).abs() < 1e-6 && (bottle(&window).position.y - 1.5).abs() < 1e-4);
+    run(&mut window, Command::Undo);
+    assert_eq!(bottle(&window).scale, glam::Vec3::splat(0.001), "one step");
+}
+
+#[test]
 fn a_model_whose_file_was_deleted_after_the_import_is_saved_with_the_studio() {
     if !has_adapter() {
         return;

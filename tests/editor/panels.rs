@@ -89,7 +89,7 @@ fn a_name_that_is_taken_is_refused_in_plain_words() {
 fn a_figure_from_the_list_has_its_mesh_and_becomes_the_target_of_new_lights() {
     let Some(mut window) = preset_window_at(1.0) else { return };
     click(&mut window, "Figures");
-    click(&mut window, "Add Boy, 10, short hair");
+    click(&mut window, "Add Woman, 34, long hair");
     let Some(Item::Object(id)) = window.state().selection().last() else { panic!("the figure is selected") };
     let shape = scene(&window).object(id).unwrap().shape.clone();
     let mesh = window.state().document().assets().mesh_of(&shape);

@@ -6,6 +6,7 @@ use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::document::action::Action;
 use crate::editor::document::files::{self, ImportedModel, OpenedStudio, StudioSource};
 use crate::editor::document::item::Item;
+use crate::editor::document::model_size::fit_model;
 use crate::editor::document::placement;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
@@ -234,7 +235,7 @@ impl App {
         let path = self.document.asset_path_for(&file, "models");
         let stem = file.file_stem().map_or_else(|| "Model".to_owned(), |stem| stem.to_string_lossy().into_owned());
         let mut assets = Assets::default();
-        assets.insert_mesh(path.clone(), mesh);
+        assets.insert_mesh(path.clone(), mesh.clone());
         self.document.insert_assets(assets, &Default::default());
         self.document.note_import(path.clone(), file.clone());
         let folder = file.parent().unwrap_or(Path::new("")).to_owned();
@@ -245,8 +246,10 @@ impl App {
             part_materials,
             ..Object::new(stem, Shape::MeshFile { path })
         };
+        let size = fit_model(&mut object, &mesh);
         placement::place_object(self.document.scene(), self.selection.last(), &mut object);
         self.apply(Action::AddObject(Box::new(object)), None);
+        size.into_iter().for_each(|sentence| self.toasts.info(sentence));
         warnings.into_iter().for_each(|warning| self.toasts.warning(warning));
     }
 

@@ -6,9 +6,10 @@ use super::{InspectorContext, text_ui, title};
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
+use crate::editor::document::model_size::MODEL_UNITS;
 use crate::editor::document::placement::{stool_under, wrap_deg};
 use crate::editor::ui::widgets::{self, DEGREES, METRES, NumberField, SIZE_CM, row, section};
-use crate::scene::{Assets, Object, ObjectId, Shape, TextureSlot};
+use crate::scene::{Assets, Object, ObjectId, Shape, TextureSlot, Transform};
 use eframe::egui::{Button, RichText, Ui};
 use glam::Vec3;
 
@@ -123,6 +124,10 @@ fn scale_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
         Shape::Figure(_) => assets.mesh_of(&object.shape).map(|mesh| mesh.bounds().1.y).filter(|h| *h > 0.0),
         _ => None,
     };
+    let model_bounds = match &object.shape {
+        Shape::MeshFile { .. } => assets.mesh_of(&object.shape).map(|mesh| mesh.bounds()),
+        _ => None,
+    };
     let before = scale.y;
     let mut factor = before;
     match height_m {
@@ -136,6 +141,10 @@ fn scale_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
     if factor != before && before != 0.0 {
         *scale *= factor / before;
     }
+    if let Some((low, high)) = model_bounds.filter(|(low, high)| high.y > low.y) {
+        model_rows(ui, low.y, high.y, &mut object.transform);
+    }
+    let scale = &mut object.transform.scale;
     if !is_uniform {
         row(ui, "Each axis", "Scale along its own axes", |ui| {
             widgets::vec3_ui(ui, "Scale", NumberField::new(0.005, 0.001, 1000.0, 3, ""), scale);
@@ -145,6 +154,31 @@ fn scale_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
                 *scale = Vec3::splat(scale.y);
             }
         });
+    }
+}
+
+/// Draws the unit of a model's file and its height, by which it is scaled on the spot. `low` and `high` are its ends in its
+/// own unit.
+fn model_rows(ui: &mut Ui, low: f32, high: f32, transform: &mut Transform) {
+    let mut scale = transform.scale.y;
+    row(ui, "Unit", "Of the lengths in the model's file", |ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for (unit, metres) in MODEL_UNITS {
+            let is_it = (scale / metres - 1.0).abs() < 1e-4;
+            let tip = format!("Then it is {:.1} cm high", 100.0 * metres * (high - low));
+            if ui.selectable_label(is_it, unit).on_hover_text(tip).clicked() {
+                scale = metres;
+            }
+        }
+    });
+    row(ui, "Height", "The model is scaled to it, evenly", |ui| {
+        NumberField::new(0.2, 0.1, 10_000.0, 1, " cm").scaled_ui(ui, &mut scale, 100.0 * (high - low))
+    });
+    let before = transform.scale.y;
+    if scale != before && before != 0.0 {
+        // What stands on the floor, or on a table, stays on it
+        transform.position.y += low * (before - scale);
+        transform.scale *= scale / before;
     }
 }
 
