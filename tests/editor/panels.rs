@@ -96,7 +96,7 @@ fn a_figure_from_the_list_has_its_mesh_and_becomes_the_target_of_new_lights() {
     assert!(mesh.is_some_and(|mesh| mesh.triangles.len() > 1000), "{:?}", window.state().toasts());
     window.get_all_by_label("Lights").next().unwrap().click();
     settle(&mut window);
-    click(&mut window, "Add Beauty dish 55");
+    click(&mut window, "Add Softbox 60 x 60");
     let light = scene(&window).lights.last().unwrap();
     assert!(matches!(light.aim, Aim::Object { object, .. } if object == id));
 }

@@ -3,6 +3,7 @@
 use super::*;
 use catchlight::editor::ViewSide;
 use catchlight::scene::Emitter;
+use egui_kittest::kittest::NodeT;
 use glam::Vec3;
 use std::f32::consts::FRAC_1_SQRT_2;
 
@@ -297,4 +298,37 @@ fn a_light_is_mirrored_to_the_other_side_and_back() {
     press(&mut window, Modifiers::NONE, Key::X);
     assert!((scene(&window).lights[0].position - key.position).length() < 1e-4);
     assert_eq!((scene(&window).lights.len(), undo_depth(&window)), (4, 2));
+}
+
+#[test]
+fn the_meter_and_its_dials_stay_over_the_rendered_picture_and_the_tools_in_their_places() {
+    let Some(mut window) = preset_window() else { return };
+    click(&mut window, "Light meter");
+    wait_until(&mut window, |app| app.meter().reading().is_some());
+    // The list of the studio has a button of that name, too
+    let button = |window: &Window| {
+        let buttons = window.get_all_by_role_and_label(egui::accesskit::Role::Button, "Light meter");
+        buttons.map(|button| button.rect()).min_by(|a, b| a.top().total_cmp(&b.top())).unwrap()
+    };
+    let before = button(&window);
+    render_tiny(&mut window);
+    assert_eq!(window.state().central_view(), CentralView::Picture);
+    assert!(window.query_by_label_contains("key:fill").is_some(), "the reading is there");
+    assert_eq!(button(&window), before);
+    // It follows the dials over the picture.
+    let mut light = scene(&window).lights[0].clone();
+    light.power.dial_stops -= 1.0;
+    let read = |window: &Window| window.state().meter().reading().unwrap().as_ref().unwrap().f_number();
+    let brighter = read(&window);
+    run(&mut window, Command::Apply(Action::SetLight(Box::new(light))));
+    assert!(read(&window) < brighter);
+    assert_eq!(window.state().central_view(), CentralView::Picture);
+    // Handles have nothing to hold on to there.
+    let is_enabled = |window: &Window| {
+        let turn = window.get_by_role_and_label(egui::accesskit::Role::Button, "Turn");
+        !turn.accesskit_node().is_disabled()
+    };
+    assert!(!is_enabled(&window));
+    press(&mut window, Modifiers::NONE, Key::Num1);
+    assert!(is_enabled(&window));
 }

@@ -27,7 +27,7 @@ pub fn meter_ui(
     };
     let window = egui::Window::new(RichText::new(title).size(14.0).strong())
         .id(Id::unique("light meter"))
-        .default_pos(view.min + vec2(10.0, 44.0))
+        .default_pos(view.min + vec2(10.0, 84.0))
         .constrain_to(view)
         .resizable(false)
         .default_width(WIDTH)

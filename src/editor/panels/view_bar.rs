@@ -22,22 +22,21 @@ pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool,
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         centre_ui(ui, state, out);
-        if state.central_view == CentralView::Picture {
-            return;
-        }
         ui.separator();
-        live_ui(ui, state.live, out);
+        // A picture has nothing to drag; the tools stay where they are
+        let is_live = state.central_view != CentralView::Picture;
+        ui.add_enabled_ui(is_live, |ui| live_ui(ui, state.live, out));
         ui.separator();
         if is_narrow {
             let tools = ui.menu_button("Tools", |ui| {
-                handles_ui(ui, state, out);
+                ui.add_enabled_ui(is_live, |ui| handles_ui(ui, state, out));
                 ui.separator();
                 actions_ui(ui, state, camera_follows, out);
             });
             WindowPart::Meter.note(ui.ctx(), tools.response.rect);
             tools.response.on_hover_text("Handles, snap, light meter, camera");
         } else {
-            handles_ui(ui, state, out);
+            ui.add_enabled_ui(is_live, |ui| handles_ui(ui, state, out));
             ui.separator();
             actions_ui(ui, state, camera_follows, out);
         }

@@ -331,6 +331,7 @@ impl App {
                 variants::variants_ui(ui, scene, pictures, &mut self.panels.variants, out);
             });
         }
+        let view = ui.available_rect_before_wrap();
         theme::draw_over_picture(ui);
         if self.views.central == CentralView::Picture {
             self.views.viewport.traced_view.pause();
@@ -340,6 +341,7 @@ impl App {
                 scene: self.document.scene(),
             };
             self.views.picture.ui(ui, input, out);
+            self.meter_ui(ui.ctx(), view, out);
             return;
         }
         let (width, height) = self.rendering.settings.pixels(&self.document.scene().camera);
@@ -350,10 +352,14 @@ impl App {
             handles: self.views.handles,
             picture_aspect: width as f32 / height as f32,
         };
-        let view = ui.available_rect_before_wrap();
         self.views.viewport.ui(ui, input, out);
+        self.meter_ui(ui.ctx(), view, out);
+    }
+
+    /// Draws the read-out of the light meter over the view, if there is one.
+    fn meter_ui(&self, ctx: &Context, view: Rect, out: &mut Vec<Command>) {
         if let Some(meter) = &self.document.scene().meter {
-            panels::meter::meter_ui(ui.ctx(), view, meter, self.background.meter.reading(), out);
+            panels::meter::meter_ui(ctx, view, meter, self.background.meter.reading(), out);
         }
     }
 
