@@ -36,6 +36,16 @@ fn choose(window: &mut Window, button: &str, entries: &[&str]) {
 }
 
 #[test]
+fn false_colour_is_one_click_away_and_one_back() {
+    let Some(mut window) = preset_window() else { return };
+    let channel = |window: &Window| window.state().viewport().preview.view_options.channel;
+    click(&mut window, "False colour");
+    assert_eq!(channel(&window), Channel::Illuminance);
+    click(&mut window, "False colour");
+    assert_eq!(channel(&window), Channel::Lit);
+}
+
+#[test]
 fn every_channel_changes_the_image_and_lit_restores_it() {
     let Some(mut window) = preset_window_at(0.5) else { return };
     let lit = view(&mut window);

@@ -40,6 +40,8 @@ pub fn add_ui(
             {
                 out.push(Command::Import);
             }
+            search_ui(ui, "Search the shelf", query)
+                .on_hover_text("In all tabs, by name and tip; Esc leaves the field");
         });
     });
     ui.horizontal(|ui| {
@@ -54,7 +56,6 @@ pub fn add_ui(
             }
         }
     });
-    search_ui(ui, "Search the shelf", query).on_hover_text("In all tabs, by name and tip; Esc leaves the field");
     ui.separator();
     ScrollArea::vertical().id_salt("add list").auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;

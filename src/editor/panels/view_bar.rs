@@ -25,18 +25,18 @@ pub fn view_bar_ui(ui: &mut Ui, state: MenuState<'_>, camera_follows: &mut bool,
         ui.separator();
         // A picture has nothing to drag; the tools stay where they are
         let is_live = state.central_view != CentralView::Picture;
-        ui.add_enabled_ui(is_live, |ui| live_ui(ui, state.live, out));
+        live_ui(ui, state.live, is_live, out);
         ui.separator();
         if is_narrow {
             let tools = ui.menu_button("Tools", |ui| {
-                ui.add_enabled_ui(is_live, |ui| handles_ui(ui, state, out));
+                handles_ui(ui, state, is_live, out);
                 ui.separator();
                 actions_ui(ui, state, camera_follows, out);
             });
             WindowPart::Meter.note(ui.ctx(), tools.response.rect);
             tools.response.on_hover_text("Handles, snap, light meter, camera");
         } else {
-            ui.add_enabled_ui(is_live, |ui| handles_ui(ui, state, out));
+            handles_ui(ui, state, is_live, out);
             ui.separator();
             actions_ui(ui, state, camera_follows, out);
         }
@@ -67,27 +67,30 @@ fn centre_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     }
 }
 
-fn live_ui(ui: &mut Ui, mode: LiveMode, out: &mut Vec<Command>) {
-    let mut chosen = mode;
+/// Draws the choice of the live view's renderer. Its buttons wrap with the row: a layout of their own would not.
+fn live_ui(ui: &mut Ui, mode: LiveMode, is_enabled: bool, out: &mut Vec<Command>) {
+    ui.spacing_mut().item_spacing.x = 2.0;
     let modes = [
         (LiveMode::Quick, "Quick", "Live: drawn at once; bounced light, mirrors and glass are estimated (2)"),
         (LiveMode::True, "True", "Live: traced as the picture will be, the noise clears within moments (2)"),
     ];
-    widgets::choice(ui, &mut chosen, &modes);
-    if chosen != mode {
-        out.push(Command::SetLiveMode(chosen));
+    for (each, text, tip) in modes {
+        let button = ui.add_enabled(is_enabled, Button::selectable(mode == each, text));
+        if button.on_hover_text(tip).clicked() && mode != each {
+            out.push(Command::SetLiveMode(each));
+        }
     }
 }
 
-fn handles_ui(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
+fn handles_ui(ui: &mut Ui, state: MenuState<'_>, is_enabled: bool, out: &mut Vec<Command>) {
     for (handle, text, tip) in HANDLES {
         let key = Command::SetHandles(handle).shortcut().map(|s| ui.ctx().format_shortcut(&s)).unwrap_or_default();
         let button = Button::selectable(state.handles == handle, text);
-        if ui.add(button).on_hover_text(format!("{tip} ({key})")).clicked() {
+        if ui.add_enabled(is_enabled, button).on_hover_text(format!("{tip} ({key})")).clicked() {
             out.push(Command::SetHandles(handle));
         }
     }
-    let snap = ui.add(Button::selectable(state.snap, "Snap"));
+    let snap = ui.add_enabled(is_enabled, Button::selectable(state.snap, "Snap"));
     if snap.on_hover_text(format!("{SNAP_TIP} (G)")).clicked() {
         out.push(Command::ToggleSnap);
     }

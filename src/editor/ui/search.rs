@@ -9,7 +9,7 @@ pub fn is_match(query: &str, texts: &[&str]) -> bool {
     query.to_lowercase().split_whitespace().all(|word| texts.iter().any(|text| text.contains(word)))
 }
 
-/// Draws the search field of a list, with this accessible name, over the whole width.
+/// Draws the search field of a list, with this accessible name, over the width that is left.
 pub fn search_ui(ui: &mut Ui, name: &str, query: &mut String) -> Response {
     let field = TextEdit::singleline(query).hint_text("Search").desired_width(f32::INFINITY);
     let response = ui.add(field);

@@ -6,8 +6,11 @@ use crate::editor::viewport::live::preview_host::ViewOptions;
 use crate::photo::{FALSE_STOPS, exposure, false_color};
 use crate::preview::{Channel, Gloss};
 use crate::scene::Scene;
-use eframe::egui::{Checkbox, Painter, RadioButton, Rect, Ui, UiBuilder, vec2};
+use eframe::egui::{Button, Checkbox, Painter, RadioButton, Rect, Ui, UiBuilder, vec2};
 use std::f32::consts::PI;
+
+/// Width of the view below which the axes would cover the switch of false colour, points.
+const NARROW: f32 = 380.0;
 
 /// Draws the menu in the upper left corner of the view and changes `view_options`. The CPU preview (`on_cpu`) has
 /// neither channels nor a choice of highlights.
@@ -15,52 +18,73 @@ pub fn channel_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, view_options: &mu
     if on_cpu {
         (view_options.channel, view_options.gloss) = (Channel::Lit, Gloss::Ggx);
     }
-    let place = Rect::from_min_size(view.min + vec2(8.0, 8.0), vec2(220.0, 24.0));
+    let place = Rect::from_min_size(view.min + vec2(8.0, 8.0), vec2(360.0, 24.0));
     ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
-        let title = title(scene, view_options);
-        ui.menu_button(title, |ui| {
-            ui.set_min_width(210.0);
-            for channel in Channel::ALL {
-                let radio = RadioButton::new(view_options.channel == channel, channel.label());
-                let response = ui.add_enabled(!on_cpu || channel == Channel::Lit, radio);
-                if response.on_hover_text(tip(channel)).on_disabled_hover_text(NEEDS_DEVICE).clicked() {
-                    view_options.channel = channel;
-                }
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            menu_ui(ui, scene, view_options, on_cpu);
+            if view.width() > NARROW {
+                false_color_ui(ui, view_options, on_cpu);
             }
-            ui.separator();
-            let lights = ui.menu_button("Show the light of", |ui| {
-                ui.set_min_width(160.0);
-                ui.radio_value(&mut view_options.only_light, None, "All lights");
-                for light in &scene.lights {
-                    ui.radio_value(&mut view_options.only_light, Some(light.id), &light.name);
-                }
-            });
-            lights.response.on_hover_text(
-                "One light's share, in this view alone: meter and pictures keep them all. \
-                 Solo (O) switches the others off.",
-            );
-            let mut blinn_phong = view_options.gloss == Gloss::BlinnPhong;
-            let tip = "Quicker highlights without the emitter's shape, instead of GGX";
-            let checkbox = Checkbox::new(&mut blinn_phong, "Blinn-Phong highlights");
-            if ui.add_enabled(!on_cpu, checkbox).on_hover_text(tip).changed() {
-                view_options.gloss = if blinn_phong { Gloss::BlinnPhong } else { Gloss::Ggx };
-            }
-            let tip = "While nothing moves, the live view is drawn several times, each time through other points of its \
-                       pixels, and shows the average";
-            let checkbox = Checkbox::new(&mut view_options.smooth_edges, "Smooth edges");
-            ui.add_enabled(!on_cpu, checkbox).on_hover_text(tip);
-            let tip = "What walls, floor and backdrops throw back. Off, Quick shows the direct light of the lights alone";
-            let checkbox = Checkbox::new(&mut view_options.bounced_light, "Bounced light");
-            ui.add_enabled(!on_cpu, checkbox).on_hover_text(tip);
-            let tip = "The traced view (True) shows smoothed light while it is worked on; settled, it is as traced. \
-                       Pictures that are rendered are never smoothed.";
-            ui.checkbox(&mut view_options.smooth, "Low-noise preview").on_hover_text(tip);
-        })
-        .response
-        .on_hover_text("What the view shows of the studio");
+        });
     });
     if view_options.channel == Channel::Illuminance {
         paint_legend(&ui.painter_at(view), view, scene);
+    }
+}
+
+/// Draws the menu of channels, of the light that is shown, and of the view's quality.
+fn menu_ui(ui: &mut Ui, scene: &Scene, view_options: &mut ViewOptions, on_cpu: bool) {
+    let title = title(scene, view_options);
+    ui.menu_button(title, |ui| {
+        ui.set_min_width(210.0);
+        for channel in Channel::ALL {
+            let radio = RadioButton::new(view_options.channel == channel, channel.label());
+            let response = ui.add_enabled(!on_cpu || channel == Channel::Lit, radio);
+            if response.on_hover_text(tip(channel)).on_disabled_hover_text(NEEDS_DEVICE).clicked() {
+                view_options.channel = channel;
+            }
+        }
+        ui.separator();
+        let lights = ui.menu_button("Show the light of", |ui| {
+            ui.set_min_width(160.0);
+            ui.radio_value(&mut view_options.only_light, None, "All lights");
+            for light in &scene.lights {
+                ui.radio_value(&mut view_options.only_light, Some(light.id), &light.name);
+            }
+        });
+        lights.response.on_hover_text(
+            "One light's share, in this view alone: meter and pictures keep them all. \
+             Solo (O) switches the others off.",
+        );
+        let mut blinn_phong = view_options.gloss == Gloss::BlinnPhong;
+        let tip = "Quicker highlights without the emitter's shape, instead of GGX";
+        let checkbox = Checkbox::new(&mut blinn_phong, "Blinn-Phong highlights");
+        if ui.add_enabled(!on_cpu, checkbox).on_hover_text(tip).changed() {
+            view_options.gloss = if blinn_phong { Gloss::BlinnPhong } else { Gloss::Ggx };
+        }
+        let tip = "While nothing moves, the live view is drawn several times, each time through other points of its \
+                   pixels, and shows the average";
+        let checkbox = Checkbox::new(&mut view_options.smooth_edges, "Smooth edges");
+        ui.add_enabled(!on_cpu, checkbox).on_hover_text(tip);
+        let tip = "What walls, floor and backdrops throw back. Off, Quick shows the direct light of the lights alone";
+        let checkbox = Checkbox::new(&mut view_options.bounced_light, "Bounced light");
+        ui.add_enabled(!on_cpu, checkbox).on_hover_text(tip);
+        let tip = "The traced view (True) shows smoothed light while it is worked on; settled, it is as traced. \
+                   Pictures that are rendered are never smoothed.";
+        ui.checkbox(&mut view_options.smooth, "Low-noise preview").on_hover_text(tip);
+    })
+    .response
+    .on_hover_text("What the view shows of the studio");
+}
+
+/// Draws the switch of the false-colour illuminance.
+fn false_color_ui(ui: &mut Ui, view_options: &mut ViewOptions, on_cpu: bool) {
+    let is_on = view_options.channel == Channel::Illuminance;
+    let button = ui.add_enabled(!on_cpu, Button::selectable(is_on, "False colour").frame(true));
+    let tip = "A colour a stop: the direct light on surfaces against the exposure that the camera is set for";
+    if button.on_hover_text(tip).on_disabled_hover_text(NEEDS_DEVICE).clicked() {
+        view_options.channel = if is_on { Channel::Lit } else { Channel::Illuminance };
     }
 }
 
