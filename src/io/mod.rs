@@ -50,8 +50,9 @@ pub use importers::{
 pub use kept_picture::KeptPicture;
 pub use model::{ImportedModel, ModelLimits};
 pub use picture::{
-    CaptureInfo, LayeredPicture, PictureFile, PictureFormat, PictureInfo, PicturePart, check_picture_file, encode_jpeg,
-    encode_part, encode_png, export_picture, export_shown, picture_file, read_exr, read_part,
+    CaptureInfo, LayeredPicture, PictureFile, PictureFormat, PictureInfo, PicturePart, RenderedPicture,
+    check_picture_file, encode_jpeg, encode_part, encode_png, export_picture, export_shown, picture_file, read_exr,
+    read_part, read_rendered,
 };
 pub use plain_file::{check_file, write_file};
 pub use presets::{Preset, PresetGroup, find_preset, presets};

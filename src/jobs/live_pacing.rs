@@ -6,6 +6,7 @@
 use super::clock::Clock;
 use super::threads::background_pool;
 use crate::color::ToneTable;
+use crate::photo::Picture;
 use crate::raytrace::{AtrousFilter, GeometryCache, LiveCamera, LivePicture, PrepareError, RenderControl, SampleId};
 use crate::scene::{Assets, Scene};
 use rayon::prelude::*;
@@ -30,6 +31,8 @@ pub struct LiveImage {
     pub height: usize,
     /// sRGB bytes for the screen, three per pixel, rows from the top.
     pub rgb: Vec<u8>,
+    /// The scene-linear picture of the same size.
+    pub picture: Arc<Picture>,
     /// Samples that every pixel has.
     pub spp: u32,
     /// Nothing is left to trace.
@@ -185,7 +188,8 @@ impl LivePacing {
             let row = |row: &[[f32; 3]]| row.iter().flat_map(|rgb| tone.display_srgb8(*rgb)).collect::<Vec<u8>>();
             let rgb = picture.rgb.par_chunks(picture.width.max(1) as usize).flat_map_iter(row).collect();
             let (width, height) = (picture.width as usize, picture.height as usize);
-            LiveImage { width, height, rgb, spp: traced.spp(), is_done: traced.is_converged() }
+            let (spp, is_done) = (traced.spp(), traced.is_converged());
+            LiveImage { width, height, rgb, picture: Arc::new(picture), spp, is_done }
         })
     }
 }

@@ -21,6 +21,7 @@ mod render;
 mod render_job;
 mod render_part;
 mod sentence;
+mod spot_meter;
 mod threads;
 mod thumbnails;
 pub mod worker;
@@ -40,6 +41,7 @@ pub use render::{RenderError, RenderInput, RenderStage, Rendered, render, render
 pub use render_job::{RenderJob, RenderOutcome, RenderPhase, RenderRequest};
 pub use render_part::{RenderedPart, render_part};
 pub use sentence::sentence;
+pub use spot_meter::{SpotMeterJob, SpotRay};
 pub use threads::{Priority, background_pool};
 pub use thumbnails::{BACKGROUND, ThumbnailImage, ThumbnailJob, ThumbnailSubject, draw_thumbnail};
 pub use worker::Wake;

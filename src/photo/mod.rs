@@ -20,6 +20,7 @@ pub mod portrait_pattern;
 mod scopes;
 pub mod text;
 pub mod thirds;
+mod waveform;
 
 pub use aov::AovPicture;
 pub use dial_text::{dial_from_text, dial_text, flash_time_text};
@@ -31,3 +32,4 @@ pub use light_color::light_rgb;
 pub use picture::Picture;
 pub use picture_difference::{DIFFERENCE_STOPS, PictureDifference, difference_color, stops_above};
 pub use scopes::{Histogram, MIDDLE_GREY, PictureDisplay, Spot, clipping_stops};
+pub use waveform::Waveform;

@@ -1,5 +1,7 @@
 //! Scene-linear pictures, before the tone curve.
 
+use glam::Vec2;
+
 /// A scene-linear RGB picture after exposure and white balance: a correctly metered grey card is 0.18. Rows from the
 /// top.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -21,6 +23,18 @@ impl Picture {
     /// Returns the pixel at (x, y), y down.
     pub fn at(&self, x: u32, y: u32) -> [f32; 3] {
         self.rgb[y as usize * self.width as usize + x as usize]
+    }
+
+    /// Returns the part between two corners, in fractions of width and height from the top left; at least a pixel of a
+    /// picture that has any.
+    pub fn cropped(&self, [low, high]: [Vec2; 2]) -> Picture {
+        let range = |low: f32, high: f32, pixels: u32| {
+            let first = ((low * pixels as f32).round() as u32).min(pixels.saturating_sub(1));
+            first..((high * pixels as f32).round() as u32).clamp(first + 1, pixels.max(first + 1)).min(pixels)
+        };
+        let (columns, rows) = (range(low.x, high.x, self.width), range(low.y, high.y, self.height));
+        let rgb = rows.clone().flat_map(|y| columns.clone().map(move |x| self.at(x, y))).collect();
+        Picture { width: columns.len() as u32, height: rows.len() as u32, rgb }
     }
 
     /// Resizes by the nearest pixel.
@@ -64,6 +78,19 @@ pub(super) fn nearest(i: u32, from: u32, to: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_crop_has_the_pixels_between_its_corners() {
+        let rgb = (0..24).map(|at| [at as f32; 3]).collect();
+        let picture = Picture { width: 6, height: 4, rgb };
+        assert_eq!(picture.cropped([Vec2::ZERO, Vec2::ONE]), picture);
+        let middle = picture.cropped([Vec2::new(0.34, 0.25), Vec2::new(0.66, 0.75)]);
+        assert_eq!((middle.width, middle.height), (2, 2));
+        assert_eq!(middle.rgb, [8.0, 9.0, 14.0, 15.0].map(|value| [value; 3]));
+        let corner = picture.cropped([Vec2::ONE, Vec2::ONE]);
+        assert_eq!((corner.width, corner.height, corner.rgb[0]), (1, 1, [23.0; 3]));
+        assert_eq!(Picture::default().cropped([Vec2::ZERO, Vec2::ONE]), Picture::default());
+    }
 
     #[test]
     fn a_slow_gradient_in_the_dark_has_no_contour_lines() {

@@ -2,7 +2,8 @@
 
 use super::false_color::{FALSE_STOPS, false_color};
 use super::picture::Picture;
-use crate::color::{display_srgb8, luminance};
+use crate::color::{ToneTable, display_srgb8, luminance};
+use rayon::prelude::*;
 
 /// Value of a correctly metered grey card.
 pub const MIDDLE_GREY: f32 = 0.18;
@@ -34,7 +35,10 @@ impl PictureDisplay {
     pub fn to_srgb8(self, picture: &Picture) -> Vec<[u8; 3]> {
         match self {
             PictureDisplay::Plain => picture.to_srgb8(),
-            PictureDisplay::FalseColor => picture.rgb.iter().map(|rgb| false_band_color(*rgb)).collect(),
+            PictureDisplay::FalseColor => {
+                let (black, white) = (least_value_of(1), least_value_of(255));
+                picture.rgb.par_iter().map(|rgb| false_band_color(*rgb, black, white)).collect()
+            }
             PictureDisplay::Zebra { thirds_under } => {
                 let limit = value_at(clipping_stops() - f32::from(thirds_under) / 3.0);
                 striped(picture, |rgb| rgb.into_iter().any(|value| value >= limit))
@@ -73,27 +77,30 @@ fn stops_from_grey(rgb: [f32; 3]) -> f32 {
 /// Returns how many stops above middle grey a picture is clipped: the least value that is displayed with the highest
 /// code.
 pub fn clipping_stops() -> f32 {
+    (least_value_of(255) / MIDDLE_GREY).log2()
+}
+
+/// Returns the least value that is displayed with this code or a higher one.
+fn least_value_of(code: u8) -> f32 {
     // The tone curve is monotonic: bisect
-    let (mut low, mut high) = (0.0_f32, 8.0_f32);
-    for _ in 0..24 {
+    let (mut low, mut high) = (-16.0_f32, 8.0_f32);
+    for _ in 0..32 {
         let middle = 0.5 * (low + high);
-        if is_white(value_at(middle)) { high = middle } else { low = middle }
+        if display_srgb8([value_at(middle); 3])[0] >= code { high = middle } else { low = middle }
     }
-    high
+    value_at(high)
 }
 
-fn is_white(value: f32) -> bool {
-    display_srgb8([value; 3])[0] == 255
-}
-
-/// Returns the false colour of a pixel: that of its luminance in whole stops from middle grey.
-fn false_band_color(rgb: [f32; 3]) -> [u8; 3] {
-    let codes = display_srgb8(rgb);
-    match codes {
-        [0, 0, 0] => codes,
-        _ if codes.contains(&255) => [255; 3],
-        _ => false_color(stops_from_grey(rgb).round().clamp(FALSE_STOPS.0 as f32, FALSE_STOPS.1 as f32)),
+/// Returns the false colour of a pixel: that of its luminance in whole stops from middle grey; black where all channels
+/// are below `black`, white where one is not below `white`.
+fn false_band_color(rgb: [f32; 3], black: f32, white: f32) -> [u8; 3] {
+    if rgb.into_iter().any(|value| value >= white) {
+        return [255; 3];
     }
+    if !rgb.into_iter().any(|value| value >= black) {
+        return [0; 3];
+    }
+    false_color(stops_from_grey(rgb).round().clamp(FALSE_STOPS.0 as f32, FALSE_STOPS.1 as f32))
 }
 
 /// Numbers of pixels by display value, from black to white.
@@ -111,9 +118,10 @@ impl Histogram {
     /// Counts the pixels of a picture.
     pub fn of(picture: &Picture) -> Self {
         let mut histogram = Histogram { luminance: [0; 256], rgb: [[0; 256]; 3], clipped: [0; 2] };
+        let tone = ToneTable::new();
         for rgb in &picture.rgb {
-            let codes = display_srgb8(*rgb);
-            let grey = display_srgb8([luminance((*rgb).into()); 3])[0];
+            let codes = tone.display_srgb8(*rgb);
+            let [grey, ..] = tone.display_srgb8([luminance((*rgb).into()); 3]);
             histogram.luminance[usize::from(grey)] += 1;
             for (counts, code) in histogram.rgb.iter_mut().zip(codes) {
                 counts[usize::from(code)] += 1;
@@ -195,7 +203,8 @@ mod tests {
     fn a_picture_is_clipped_where_its_highest_code_begins() {
         let stops = clipping_stops();
         assert!(stops > 3.0 && stops < 4.5, "{stops}");
-        assert!(!is_white(MIDDLE_GREY * (stops - 0.01).exp2()) && is_white(MIDDLE_GREY * stops.exp2()));
+        let is_white = |stops: f32| display_srgb8([MIDDLE_GREY * stops.exp2(); 3]) == [255; 3];
+        assert!(!is_white(stops - 0.01) && is_white(stops + 1e-4));
     }
 
     #[test]
@@ -205,9 +214,9 @@ mod tests {
         assert!(colors[0] == colors[1] && colors[0] == colors[2] && colors[3] == colors[4]);
         assert_eq!((colors[0], colors[3], colors[5]), (false_color(0.0), false_color(1.0), false_color(-6.0)));
         assert_eq!((colors[6], colors[7]), (false_color(-6.0), [255; 3]));
-        assert_eq!(false_band_color([0.0; 3]), [0; 3]);
-        // One channel suffices
-        assert_eq!(false_band_color([9.0, 0.1, 0.1]), [255; 3]);
+        // One channel suffices for clipping
+        let extremes = Picture { width: 3, height: 1, rgb: vec![[0.0; 3], [9.0, 0.1, 0.1], [f32::NAN; 3]] };
+        assert_eq!(PictureDisplay::FalseColor.to_srgb8(&extremes), [[0; 3], [255; 3], [0; 3]]);
     }
 
     #[test]

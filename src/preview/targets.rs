@@ -116,12 +116,14 @@ impl Targets {
     }
 }
 
-/// The render targets of a renderer, recreated when size or output change.
+/// The render targets of a renderer, one set for each output, recreated when the size changes.
 #[derive(Debug)]
 pub(crate) struct RenderTargets {
     layouts: TargetLayouts,
     pub current: Targets,
-    /// Number of times that the textures have been replaced.
+    /// The targets of the output that is not drawn now, if it ever was.
+    other: Option<Targets>,
+    /// Number of times that the textures for display have been replaced.
     pub generation: u64,
 }
 
@@ -129,22 +131,26 @@ impl RenderTargets {
     /// Targets of one pixel.
     pub fn new(device: &wgpu::Device, layouts: TargetLayouts) -> Self {
         let current = Targets::new(device, &layouts, (1, 1), Output::Display, false);
-        RenderTargets { layouts, current, generation: 0 }
+        RenderTargets { layouts, current, other: None, generation: 0 }
     }
 
-    /// Recreates the targets if size or output differ from the current ones, or if the diffusion pass needs a coarse
-    /// target of full size; returns true if it did. The size is clamped to what the device supports, and to at least
-    /// one pixel.
+    /// Exchanges the targets for those of another output, and recreates them if the size differs, or if the diffusion
+    /// pass needs a coarse target of full size; returns true if it did either. The size is clamped to what the device
+    /// supports, and to at least one pixel.
     pub fn resize(&mut self, device: &wgpu::Device, size: (u32, u32), output: Output, diffuses: bool) -> bool {
         let largest = device.limits().max_texture_dimension_2d;
         let size = (size.0.clamp(1, largest), size.1.clamp(1, largest));
-        let is_coarse_full = self.current.is_coarse_full || diffuses;
-        let stale =
-            self.current.size != size || self.current.output != output || self.current.is_coarse_full != is_coarse_full;
-        if stale {
-            self.current = Targets::new(device, &self.layouts, size, output, is_coarse_full);
-            self.generation += 1;
+        let is_other = self.current.output != output;
+        if is_other {
+            let other = self.other.take().unwrap_or_else(|| Targets::new(device, &self.layouts, (1, 1), output, false));
+            self.other = Some(std::mem::replace(&mut self.current, other));
         }
-        stale
+        let is_coarse_full = self.current.is_coarse_full || diffuses;
+        let is_stale = self.current.size != size || self.current.is_coarse_full != is_coarse_full;
+        if is_stale {
+            self.current = Targets::new(device, &self.layouts, size, output, is_coarse_full);
+            self.generation += u64::from(output == Output::Display);
+        }
+        is_stale || is_other
     }
 }

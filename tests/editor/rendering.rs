@@ -2,7 +2,7 @@
 
 use super::*;
 use catchlight::editor::SpotReading;
-use catchlight::photo::{Histogram, PictureDisplay};
+use catchlight::photo::{Histogram, Picture, PictureDisplay};
 
 #[test]
 fn light_changes_redevelop_the_picture_without_tracing() {
@@ -161,7 +161,7 @@ fn denoise_shows_marks_relights_and_exports_the_picture_without_noise() {
     }
     settle(&mut window);
     assert!(is_marked(&window));
-    let sum = |picture: &catchlight::photo::Picture| picture.rgb.iter().flatten().sum::<f32>();
+    let sum = |picture: &Picture| picture.rgb.iter().flatten().sum::<f32>();
     let ratio = sum(&picture(&window)) / sum(&denoised);
     // The brightness of the network's input does not depend on that of the picture, but for rounding.
     assert!((ratio - 2.0).abs() < 1e-3, "{ratio}");
@@ -191,15 +191,18 @@ fn scopes_show_clipping_false_colour_zebra_and_the_light_under_the_pointer() {
     window.hover_at(place.center());
     settle(&mut window);
     assert!(window.query_all_by_label_contains("stops from middle grey").next().is_some());
-    let button = window.get_by_label("Exposure").rect().center();
+    let button = window.get_by_label("Scopes").rect().center();
     window.hover_at(button);
     settle(&mut window);
     click_at(&mut window, button, Modifiers::NONE);
-    assert!(window.query_by_label("False colour").is_some(), "the menu is open");
+    assert!(window.query_by_label("Stops in false colour").is_some(), "the menu is open");
     click(&mut window, "Histogram");
     assert!(window.query_all_by_label_contains("Histogram: ").next().is_none());
+    assert!(window.query_by_label("Waveform of the picture").is_none());
+    click(&mut window, "Waveform");
+    assert!(window.query_by_label("Waveform of the picture").is_some());
     // The displays follow the menu; the pixels for the file stay
-    click(&mut window, "False colour");
+    click(&mut window, "Stops in false colour");
     settle(&mut window);
     assert_eq!(window.state().rendering().display, PictureDisplay::FalseColor);
     for display in [PictureDisplay::Zebra { thirds_under: 2 }, PictureDisplay::SkinZebra, PictureDisplay::Plain] {
@@ -218,6 +221,52 @@ fn scopes_show_clipping_false_colour_zebra_and_the_light_under_the_pointer() {
     let share = |reading: &SpotReading| reading.lights.iter().find(|(name, _)| *name == key).unwrap().1;
     assert!(share(&reading) > 0.2 && share(&without) == 0.0, "{reading:?} and {without:?}");
     assert!(without.spot.stops() < reading.spot.stops());
+}
+
+#[test]
+fn an_exr_picture_opens_with_its_studio_and_can_be_mixed() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("portrait.exr");
+    let mut window = window_with_answers([file.clone()]);
+    render_tiny(&mut window);
+    run(&mut window, Command::ExportPicture);
+    let rendered = scene(&window).clone();
+    let picture = |window: &Window| window.state().rendering().developed().unwrap().picture.clone();
+    let before = picture(&window);
+    // Another studio is open when the picture is dropped on the window
+    run(&mut window, Command::NewFromPreset(3));
+    assert_ne!(*scene(&window), rendered);
+    files::drop_file(&mut window, &file);
+    assert_eq!((errors(&window), scene(&window)), (Vec::new(), &rendered));
+    assert!(window.query_by_label("Picture view").is_some() && window.query_by_label("Out of date").is_none());
+    let near = |a: &Picture, b: &Picture, factor: f32| {
+        // Samples of skin that are negative are cut off in the file
+        let off: f32 = a.rgb.iter().flatten().zip(b.rgb.iter().flatten()).map(|(a, b)| (a * factor - b).abs()).sum();
+        off < 0.01 * b.rgb.iter().flatten().sum::<f32>()
+    };
+    assert!(near(&before, &picture(&window), 1.0));
+    assert!(!window.state().document().is_dirty() && window.state().document().path().is_none());
+    click(&mut window, "Mixer");
+    for light in &rendered.lights {
+        run(&mut window, Command::MixLights(vec![light.id], Fader { thirds: -3, ..Fader::default() }));
+    }
+    assert!(near(&before, &picture(&window), 0.5));
+    click(&mut window, "Apply to studio");
+    assert_eq!(scene(&window).lights[0].power.dial_stops, rendered.lights[0].power.dial_stops - 1.0);
+    // A picture of another program, and a damaged one
+    for content in [&b"no picture"[..], &std::fs::read(&file).unwrap()[..2000]] {
+        let other = folder.path().join("other.exr");
+        std::fs::write(&other, content).unwrap();
+        run(&mut window, Command::Undo);
+        files::drop_file(&mut window, &other);
+        assert!(errors(&window).iter().any(|error| error.contains("other.exr")), "{:?}", errors(&window));
+        assert_eq!(*scene(&window), rendered, "what is open stays open");
+        run(&mut window, Command::Redo);
+        run(&mut window, Command::Undo);
+    }
 }
 
 #[test]

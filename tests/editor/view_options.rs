@@ -1,6 +1,7 @@
 //! The display options of the live view: channels, single light, denoising.
 
 use super::*;
+use catchlight::photo::{FALSE_STOPS, PictureDisplay, false_color};
 use catchlight::preview::Channel;
 use image::RgbaImage;
 
@@ -38,11 +39,57 @@ fn choose(window: &mut Window, button: &str, entries: &[&str]) {
 #[test]
 fn false_colour_is_one_click_away_and_one_back() {
     let Some(mut window) = preset_window() else { return };
-    let channel = |window: &Window| window.state().viewport().preview.view_options.channel;
+    let display = |window: &Window| window.state().viewport().preview.view_options.display;
     click(&mut window, "False colour");
-    assert_eq!(channel(&window), Channel::Illuminance);
+    assert_eq!(display(&window), PictureDisplay::FalseColor);
     click(&mut window, "False colour");
-    assert_eq!(channel(&window), Channel::Lit);
+    assert_eq!(display(&window), PictureDisplay::Plain);
+}
+
+#[test]
+fn scopes_over_both_live_views_read_their_scene_linear_pictures() {
+    let Some(mut window) = preset_window_at(0.5) else { return };
+    let plain = view(&mut window);
+    let depth = undo_depth(&window);
+    for mode in [LiveMode::Quick, LiveMode::True] {
+        run(&mut window, Command::SetLiveMode(mode));
+        wait_until(&mut window, |app| mode == LiveMode::Quick || app.viewport().traced_view.is_settled());
+        let histogram = |window: &Window| window.query_all_by_label_contains("Histogram: ").next().is_some();
+        assert!(!histogram(&window), "{mode:?}: no scope is on at first");
+        click(&mut window, "Scopes");
+        click(&mut window, "Histogram");
+        click(&mut window, "Waveform");
+        assert!(histogram(&window) && window.query_by_label("Waveform of the picture").is_some(), "{mode:?}");
+        click(&mut window, "Spot under the pointer");
+        click(&mut window, "Stops in false colour");
+        press(&mut window, Modifiers::NONE, Key::Escape);
+        // Every pixel has a colour of the legend, clipped white or black; a photo has others
+        let colors: Vec<[u8; 3]> =
+            (FALSE_STOPS.0..=FALSE_STOPS.1).map(|stops| false_color(stops as f32)).chain([[0; 3], [255; 3]]).collect();
+        let known = |picture: &RgbaImage| {
+            let near =
+                |pixel: &[u8; 4]| colors.iter().any(|color| color.iter().zip(pixel).all(|(a, b)| a.abs_diff(*b) <= 2));
+            picture.pixels().filter(|pixel| near(&pixel.0)).count() as f64 / picture.pixels().len() as f64
+        };
+        assert!(window.query_by_label("As a photo").is_none(), "Esc closes the menu");
+        let shown = view(&mut window);
+        assert!(known(&shown) > 0.6 && known(&plain) < 0.4, "{mode:?}: {} and {}", known(&shown), known(&plain));
+        // The light under the pointer, with the lights that give it
+        let middle = window.get_by_label("Viewport").rect().center();
+        move_to(&mut window, middle);
+        settle(&mut window);
+        let lux = window.query_all_by_label_contains(" lx over 1/").next();
+        assert!(lux.is_some(), "{mode:?}: stops, RGB, lux and the lights under the pointer");
+        click(&mut window, "Scopes");
+        for entry in ["As a photo", "Histogram", "Waveform", "Spot under the pointer"] {
+            click(&mut window, entry);
+        }
+        press(&mut window, Modifiers::NONE, Key::Escape);
+        assert!(!histogram(&window), "{mode:?}");
+    }
+    run(&mut window, Command::SetLiveMode(LiveMode::Quick));
+    assert!(apart(&view(&mut window), &plain) < 0.01, "without scopes the view is as before");
+    assert_eq!(undo_depth(&window), depth, "a look is no change of the studio");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Shadows, textures, picking, overlay, caching between frames and robustness.
 
 use super::*;
+use catchlight::photo::{PictureDisplay, Spot, false_color};
 
 #[test]
 fn objects_cast_contact_shadows_for_every_kind_of_light() {
@@ -349,5 +350,52 @@ fn samples_that_are_averaged_on_the_gpu_equal_their_mean() {
         // The plate is under the shoulder of the tone curve, which the average would not commute with.
         let expected = color::srgb_encode(linear[1].min(1.0)) * 255.0;
         assert!((f32::from(pixel.0[1]) - expected).abs() < 2.5, "{} for {expected}", pixel.0[1]);
+    }
+}
+
+#[test]
+fn scopes_agree_between_preview_traced_view_and_final_picture() {
+    let Some(mut renderer) = shared_renderer() else { return };
+    // A grey card that is lit as the camera is set for, one of twice and one of a quarter of its reflectance
+    let mut scene =
+        Scene { camera: Camera { position: Vec3::new(0.0, 1.0, 3.0), ..Camera::default() }, ..Scene::default() };
+    scene.camera.aim = Aim::Point(Vec3::new(0.0, 1.0, 0.0));
+    scene.camera.focal_length_mm = 50.0;
+    for (index, reflectance) in [0.045_f32, 0.18, 0.36].into_iter().enumerate() {
+        let shape = Shape::Box { size_m: Vec3::new(0.2, 0.3, 0.01) };
+        let position = Vec3::new(0.3 * (index as f32 - 1.0), 1.0, 0.0);
+        let material = Material { base_color: [reflectance; 3], ..grey_card() };
+        scene.objects.push(object(index as u32, shape, position, material));
+    }
+    // E = pi L / reflectance: a card of 18 % is middle grey where a white one has the value 1
+    let lux_s = PI / exposure::pixel_per_cd_s_m2(&scene);
+    let distance_m = 20.0;
+    let candela = lux_s / scene.camera.shutter_s * distance_m * distance_m;
+    let position = Vec3::new(0.0, 1.0, distance_m);
+    scene.lights.push(light(0, position, Vec3::new(0.0, 1.0, 0.0), Emitter::Point, Output::Candela(candela)));
+    let (width, height) = scene.camera.picture_size(240);
+    let assets = Assets::default();
+
+    let preview = renderer.linear_picture(&PreviewInput::camera_view(&scene, &assets, (width, height))).unwrap();
+    let control = raytrace::RenderControl::new();
+    let mut live = raytrace::LivePicture::default();
+    let frame = scene.camera_frame(width as f32 / height as f32);
+    live.update(&scene, &assets, raytrace::LiveCamera::pinhole(frame, (width, height))).unwrap();
+    while !live.is_converged() {
+        live.trace(100_000, &control);
+    }
+    let settings = raytrace::Settings { width, height, spp: 32, ..raytrace::Settings::default() };
+    let prepared = raytrace::prepare(&scene, &assets).unwrap();
+    let film = raytrace::render(&prepared, &settings, &control, &mut |_| std::ops::ControlFlow::Continue(()));
+    let pictures = [("preview", preview), ("traced view", live.develop(&scene)), ("picture", film.develop(&scene))];
+    for (name, picture) in pictures {
+        let bands = PictureDisplay::FalseColor.to_srgb8(&picture);
+        for (object, stops) in scene.objects.iter().zip([-2.0, 0.0, 1.0]) {
+            let place = frame.project(object.transform.position).unwrap() * Vec2::new(width as f32, height as f32);
+            let (x, y) = (place.x as u32, place.y as u32);
+            let spot = Spot::around((x, y), (width, height), |x, y| picture.at(x, y));
+            assert!((spot.stops() - stops).abs() < 0.02, "{name}: {} for {stops} stops", spot.stops());
+            assert_eq!(bands[(y * width + x) as usize], false_color(stops), "{name}");
+        }
     }
 }

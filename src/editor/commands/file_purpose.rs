@@ -8,7 +8,7 @@ use std::path::PathBuf;
 /// The purpose of a file dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilePurpose {
-    /// A scene to open.
+    /// A scene to open, or a rendered picture with its scene.
     OpenScene,
     /// The file to save the scene to.
     SaveScene,
@@ -60,7 +60,8 @@ impl FilePurpose {
     /// Returns name and extensions of the file type.
     pub fn filter(self) -> (String, &'static [&'static str]) {
         match self {
-            FilePurpose::OpenScene | FilePurpose::SaveScene => ("Catchlight studio".to_owned(), &["ron"]),
+            FilePurpose::OpenScene => ("Catchlight studio, or rendered picture".to_owned(), &["ron", "exr"]),
+            FilePurpose::SaveScene => ("Catchlight studio".to_owned(), &["ron"]),
             FilePurpose::ImportModel => (format!("{} model", io::model_format_names()), io::model_extensions()),
             FilePurpose::OpenTexture => ("Picture".to_owned(), io::TEXTURE_EXTENSIONS),
             FilePurpose::ExportPicture => ("Picture".to_owned(), &["png", "jpg", "tif", "exr"]),

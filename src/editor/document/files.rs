@@ -52,6 +52,8 @@ pub struct OpenedStudio {
     pub path: Option<PathBuf>,
     /// State of the file when it was read; for a recovered studio, when it was read or written last.
     pub stamp: Option<FileStamp>,
+    /// The rendered picture that it was read from.
+    pub picture: Option<KeptPicture>,
 }
 
 /// A studio that was kept when its window ended.
@@ -96,8 +98,28 @@ impl StudioSource {
     }
 }
 
-/// Reads a studio with its assets.
+/// Returns true for the name of a rendered picture that holds its studio.
+pub fn is_rendered_picture(path: &Path) -> bool {
+    PictureFormat::of(path).is_ok_and(|format| format == PictureFormat::Exr)
+}
+
+/// Reads a rendered picture, with its studio and the assets of that beside it. The studio has no file: saving it asks for
+/// one.
+fn open_rendered(path: &Path) -> Result<Box<OpenedStudio>, String> {
+    let rendered = io::read_rendered(path).map_err(|why| format!("{}: {why}", path.display()))?;
+    let scene = Scene::clone(&rendered.picture.scene);
+    let (assets, missing) = load_assets(&scene, path.parent(), &Assets::default(), &BTreeMap::new());
+    let warnings = rendered.findings.iter().map(ToString::to_string).chain(missing).collect();
+    Ok(Box::new(OpenedStudio { scene, assets, warnings, path: None, stamp: None, picture: Some(rendered.picture) }))
+}
+
+/// Reads a studio with its assets, or a rendered picture with its studio.
 pub fn open(source: &StudioSource) -> Result<Box<OpenedStudio>, String> {
+    if let StudioSource::File(path) = source
+        && is_rendered_picture(path)
+    {
+        return open_rendered(path);
+    }
     // Taken first: a change while the file is read counts as a change.
     let stamp = match source {
         StudioSource::File(path) => FileStamp::of(path).ok(),
@@ -111,7 +133,8 @@ pub fn open(source: &StudioSource) -> Result<Box<OpenedStudio>, String> {
         }
         StudioSource::Memory(scene) => {
             let (assets, warnings) = load_assets(scene, None, &Assets::default(), &BTreeMap::new());
-            return Ok(Box::new(OpenedStudio { scene: Scene::clone(scene), assets, warnings, path: None, stamp }));
+            let (scene, picture) = (Scene::clone(scene), None);
+            return Ok(Box::new(OpenedStudio { scene, assets, warnings, path: None, stamp, picture }));
         }
     };
     let path = match source {
@@ -119,7 +142,8 @@ pub fn open(source: &StudioSource) -> Result<Box<OpenedStudio>, String> {
         StudioSource::Preset(_) | StudioSource::Memory(_) => None,
     };
     let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
-    Ok(Box::new(OpenedStudio { scene: loaded.scene, assets: loaded.assets, warnings, path, stamp }))
+    let (scene, assets) = (loaded.scene, loaded.assets);
+    Ok(Box::new(OpenedStudio { scene, assets, warnings, path, stamp, picture: None }))
 }
 
 /// Reads an unsaved studio with its assets and its rendered picture.
@@ -128,7 +152,8 @@ pub fn recover(folder: &RecoveryFolder, info: &RecoveryInfo) -> Result<Box<Recov
     let RecoveryInfo { path, stamp, imported, .. } = info.clone();
     let (assets, warnings) = load_assets(&scene, path.as_deref().and_then(Path::parent), &Assets::default(), &imported);
     let picture = folder.read_picture(&assets);
-    Ok(Box::new(RecoveredStudio { opened: OpenedStudio { scene, assets, warnings, path, stamp }, picture }))
+    let opened = OpenedStudio { scene, assets, warnings, path, stamp, picture: None };
+    Ok(Box::new(RecoveredStudio { opened, picture }))
 }
 
 /// Reads a model.

@@ -3,9 +3,10 @@
 use crate::editor::commands::choices::{CompareMode, Comparison};
 use crate::editor::commands::command::Command;
 use crate::editor::picture::compare::{self, PicturePane};
+use crate::editor::picture::mixer;
 use crate::editor::picture::rendering::{OUT_OF_DATE, Rendering};
-use crate::editor::picture::{mixer, scopes};
-use crate::editor::ui::theme;
+use crate::editor::ui::scopes::{self, ScopeCharts};
+use crate::editor::ui::{spot_readout, theme};
 use eframe::egui::{self, Color32, Pos2, Rect, RichText, Sense, Ui, Vec2, vec2};
 
 pub use crate::editor::picture::compare::PictureInput;
@@ -17,8 +18,8 @@ pub struct PictureView {
     zoom: Option<f32>,
     /// Offset of the picture's middle from the view's middle, points.
     offset: Vec2,
-    /// The histogram lies over the picture.
-    shows_histogram: bool,
+    /// The scopes over the picture.
+    charts: ScopeCharts,
     /// The mixer lies over the picture.
     shows_mixer: bool,
     /// The comparison with the picture of another variant.
@@ -32,7 +33,7 @@ impl Default for PictureView {
         PictureView {
             zoom: None,
             offset: Vec2::ZERO,
-            shows_histogram: true,
+            charts: ScopeCharts { histogram: true, waveform: false, spot: true },
             shows_mixer: false,
             comparison: Comparison::default(),
             wipe: 0.5,
@@ -67,9 +68,7 @@ impl PictureView {
         let (place, visible) = pane.ui(ui, rect, &mut self.wipe);
         if let Some(developed) = rendering.developed() {
             scopes::legend_ui(ui, rect, developed.image.display);
-            if self.shows_histogram {
-                scopes::histogram_ui(ui, rect, &developed.image.histogram);
-            }
+            scopes::charts_ui(ui, rect, self.charts, rendering.charts());
         }
         let pixel = |pointer: Pos2| {
             let at = (pointer - place.min) / place.size() * vec2(size.0 as f32, size.1 as f32);
@@ -81,9 +80,9 @@ impl PictureView {
         }
         // Drawn after the bar: a widget before it would change the ids of the bar's widgets, which closes their menus
         let pointer = response.hover_pos().filter(|pointer| !bar.contains(*pointer) && visible.contains(*pointer));
-        let pixel = pointer.and_then(pixel);
+        let pixel = pointer.and_then(pixel).filter(|_| self.charts.spot);
         if let Some((pixel, reading)) = pixel.and_then(|pixel| Some((pixel, rendering.read_spot(pixel, scene)?))) {
-            scopes::spot_ui(ui, rect, &reading, compare::spot_text(pixel, input, self.comparison));
+            spot_readout::spot_ui(ui, rect, &reading, compare::spot_text(pixel, input, self.comparison));
         }
     }
 
@@ -150,7 +149,9 @@ impl PictureView {
         }
         ui.label(RichText::new(format!("{:.0} %", zoom * 100.0)).weak());
         denoise_ui(ui, rendering, out);
-        scopes::menu_ui(ui, rendering, &mut self.shows_histogram, out);
+        let mut display = rendering.display;
+        scopes::scopes_ui(ui, &mut display, &mut self.charts);
+        out.extend((display != rendering.display).then_some(Command::DisplayPicture(display)));
         compare::menu_ui(ui, input, self.comparison, out);
         ui.toggle_value(&mut self.shows_mixer, "Mixer")
             .on_hover_text("A fader for each light over the picture, without rendering again");

@@ -2,17 +2,23 @@
 
 use crate::editor::document::light_mix::{Mix, MixerRow};
 use crate::editor::ui::image_texture::ImageTexture;
+use crate::editor::ui::scopes::{ChartData, waveform_image};
+use crate::editor::ui::spot_readout::{SpotLux, SpotReading};
 use crate::editor::ui::wake::wake;
 use crate::io::KeptPicture;
 use crate::jobs::{Developed, Development, FilmDeveloper, RenderJob, RenderOutcome, RenderPhase, RenderRequest};
-use crate::photo::{Histogram, Picture, PictureDisplay, Spot};
+use crate::photo::{Histogram, Picture, PictureDisplay, Spot, Waveform, exposure};
 use crate::raytrace::{self, Film, GeometryCache, Method, Settings};
 use crate::scene::{Assets, Camera, Light, LightId, Scene, SceneChange};
 use eframe::egui::{Color32, ColorImage, Context, TextureId};
 use std::collections::HashMap;
+use std::f32::consts::PI;
 use std::path::PathBuf;
 use std::sync::{Arc, Weak};
 use std::time::Duration;
+
+/// Albedo under which the light on a surface can't be told from what it reflects.
+const LEAST_ALBEDO: f32 = 0.01;
 
 /// The quality of a render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,22 +107,21 @@ pub struct ShownPicture {
     pub display: PictureDisplay,
     /// The histogram of the whole picture.
     pub histogram: Histogram,
+    /// The image of its waveform.
+    waveform: Arc<ColorImage>,
 }
 
 impl ShownPicture {
     fn new(picture: &Picture, development: &Development) -> Self {
         let image = shown_within(picture, development.display, development.max_side);
-        ShownPicture { image: Arc::new(image), display: development.display, histogram: Histogram::of(picture) }
+        let waveform = Arc::new(waveform_image(&Waveform::of(picture)));
+        ShownPicture {
+            image: Arc::new(image),
+            display: development.display,
+            histogram: Histogram::of(picture),
+            waveform,
+        }
     }
-}
-
-/// The light at a spot of the picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SpotReading {
-    /// The spot.
-    pub spot: Spot,
-    /// Names of the lights with their share of the light before the denoiser, the largest first.
-    pub lights: Vec<(String, f32)>,
 }
 
 /// The state of the rendered picture: settings, job, film and developed image.
@@ -142,6 +147,7 @@ pub struct Rendering {
     developed: Option<Developed<ShownPicture>>,
     develop_failure: Option<String>,
     image_texture: ImageTexture,
+    waveform_texture: ImageTexture,
 }
 
 impl Rendering {
@@ -161,6 +167,7 @@ impl Rendering {
             developed: None,
             develop_failure: None,
             image_texture: ImageTexture::default(),
+            waveform_texture: ImageTexture::default(),
         }
     }
 
@@ -181,10 +188,11 @@ impl Rendering {
         (self.job, self.develop_failure) = (Some(RenderJob::start(request, &wake(ctx))), None);
     }
 
-    /// Shows a picture that was rendered before.
-    pub fn restore(&mut self, picture: KeptPicture) {
+    /// Shows a picture that was rendered before. One that a file holds need not be kept for the case of a crash.
+    pub fn restore(&mut self, picture: KeptPicture, is_in_file: bool) {
         let KeptPicture { film, scene, settings, is_complete } = picture;
         self.clear();
+        self.exported = is_in_file.then(|| Arc::downgrade(&film));
         self.job = Some(RenderJob::ended(scene, settings, film, is_complete));
     }
 
@@ -229,7 +237,7 @@ impl Rendering {
             return None;
         }
         let mut other = self.without_picture();
-        other.restore(self.kept_picture()?);
+        other.restore(self.kept_picture()?, false);
         Some(other)
     }
 
@@ -261,6 +269,7 @@ impl Rendering {
     /// Uploads the picture to the window's current device.
     pub fn move_to(&mut self, ctx: &Context) {
         self.image_texture.renew(ctx);
+        self.waveform_texture.renew(ctx);
     }
 
     /// Returns the picture for export; none while only a reduced one is available.
@@ -300,11 +309,23 @@ impl Rendering {
         let mixed = self.mix.mixed(scene);
         let layers = film.lazy_layers(&mixed).into_iter();
         let lights = layers.map(|(name, layer)| (name, Spot::around(pixel, size, |x, y| layer.at(x, y)).luminance()));
-        let mut lights: Vec<(String, f32)> = lights.collect();
-        let sum: f32 = lights.iter().map(|(_, light)| light).sum();
-        lights.iter_mut().for_each(|(_, light)| *light /= sum.max(f32::MIN_POSITIVE));
-        lights.sort_by(|a, b| b.1.total_cmp(&a.1));
-        Some(SpotReading { spot, lights })
+        let lights: Vec<(String, f32)> = lights.collect();
+        // L = albedo E / pi
+        let albedo = Spot::around(pixel, size, |x, y| film.albedo_at(x, y).unwrap_or([0.0; 3])).luminance();
+        let lux_s = spot.luminance() * PI / (albedo * exposure::pixel_per_cd_s_m2(scene));
+        let is_known = albedo >= LEAST_ALBEDO && lux_s.is_finite();
+        let lux = is_known.then_some(SpotLux { lux_s, shutter_s: scene.camera.shutter_s });
+        Some(SpotReading::new(spot, lux, lights))
+    }
+
+    /// Returns the charts of the picture; none while there is no whole picture.
+    pub fn charts(&self) -> ChartData<'_> {
+        match self.developed() {
+            Some(developed) => {
+                ChartData { histogram: Some(&developed.image.histogram), waveform: self.waveform_texture.id() }
+            }
+            None => ChartData::default(),
+        }
     }
 
     /// Returns true if the picture on the screen is denoised.
@@ -356,6 +377,7 @@ impl Rendering {
         match self.developer.take() {
             Some(Ok(developed)) => {
                 self.image_texture.set(ctx, developed.image.image.clone());
+                self.waveform_texture.set(ctx, developed.image.waveform.clone());
                 self.developed = Some(developed);
             }
             Some(Err(message)) => self.develop_failure = Some(message),

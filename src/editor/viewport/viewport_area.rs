@@ -8,9 +8,10 @@ use crate::editor::document::bounds::bounds;
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::{Selection, centre};
 use crate::editor::document::studio_document::Document;
-use crate::editor::ui::theme;
+use crate::editor::ui::{scopes, spot_readout, theme};
 use crate::editor::viewport::live::channel_menu::channel_menu_ui;
-use crate::editor::viewport::live::preview_host::PreviewHost;
+use crate::editor::viewport::live::live_scopes::LiveScopes;
+use crate::editor::viewport::live::preview_host::{PreviewHost, ViewOptions};
 use crate::editor::viewport::live::traced_view::TracedView;
 use crate::editor::viewport::navigation::{camera_as_view, light_as_view, moved_camera, moved_light, steer};
 use crate::editor::viewport::overlays::axis_widget::{self, axis_widget_ui};
@@ -26,9 +27,13 @@ use crate::editor::viewport::tools::marquee_selection::MarqueeSelection;
 use crate::editor::viewport::tools::place_light_drag::PlaceLightDrag;
 use crate::editor::viewport::tools::transform_handles::TransformHandles;
 use crate::preview::{Channel, Overlay, Pick, is_dark};
+use crate::raytrace::GeometryCache;
 use crate::scene::{Camera, CameraFrame, Object, Scene, Shape};
-use eframe::egui::{self, Align2, Color32, EventFilter, FontId, Pos2, Rect, Response, RichText, Sense, Ui, vec2};
+use eframe::egui::{
+    self, Align2, Color32, Context, EventFilter, FontId, Pos2, Rect, Response, RichText, Sense, Ui, vec2,
+};
 use glam::{Vec2, Vec3};
+use std::sync::Arc;
 
 /// Fraction of the view that the picture's frame fills in the camera view.
 const FRAME_MARGIN: f32 = 0.92;
@@ -63,14 +68,15 @@ pub struct Viewport {
     pub preview: PreviewHost,
     /// The traced view.
     pub traced_view: TracedView,
+    scopes: LiveScopes,
     handles: TransformHandles,
     joints: JointHandles,
     marquee: Option<MarqueeSelection>,
 }
 
 impl Viewport {
-    /// Returns a viewport with these renderers.
-    pub fn new(preview: PreviewHost, traced_view: TracedView) -> Self {
+    /// Returns a viewport with these renderers, and with scopes that share the BLAS cache.
+    pub fn new(preview: PreviewHost, traced_view: TracedView, cache: Arc<GeometryCache>) -> Self {
         Viewport {
             view: StudioView::default(),
             camera_follows: false,
@@ -78,6 +84,7 @@ impl Viewport {
             place_light: None,
             preview,
             traced_view,
+            scopes: LiveScopes::new(cache),
             handles: TransformHandles::default(),
             joints: JointHandles::default(),
             marquee: None,
@@ -90,6 +97,17 @@ impl Viewport {
         let is_placing = self.place_light.as_ref().is_some_and(PlaceLightDrag::is_dragging);
         let handles = self.handles.is_dragging() || self.joints.is_dragging();
         handles || is_placing || self.marquee.is_some()
+    }
+
+    /// Uploads the images of the views to the window's current device.
+    pub fn move_to(&mut self, ctx: &Context) {
+        self.traced_view.move_to(ctx);
+        self.scopes.move_to(ctx);
+    }
+
+    /// Returns true while the light under the pointer is being read.
+    pub fn is_reading_spot(&self) -> bool {
+        self.scopes.is_busy()
     }
 
     /// Returns true if the pointer is on a handle.
@@ -138,6 +156,8 @@ impl Viewport {
         if input.central_view == CentralView::Studio {
             axis_widget_ui(ui, rect, &self.view, &frame, out);
         }
+        // Last: a widget that comes and goes would change the ids of those after it, which closes their menus
+        self.scopes_ui(ui, &response, input.document, &frame);
     }
 
     /// Returns the camera frame of the view, and the rectangle of the picture (camera view only).
@@ -309,6 +329,12 @@ impl Viewport {
         let traced =
             self.traced_view.show(ui.ctx(), input.document, frame, size, through_camera, self.preview.view_options);
         let preview = self.preview.show(ui.ctx(), input.document, frame, size, overlay, traced.is_some());
+        let view_options = self.preview.view_options;
+        let linear = if traced.is_some() { self.traced_view.picture() } else { self.preview.linear_picture() };
+        let linear = linear.filter(|_| view_options.has_scopes());
+        let scopes = (view_options.display, view_options.charts);
+        let scoped = self.scopes.show(ui.ctx(), linear, scopes, part_of(rect, picture.unwrap_or(rect)));
+        let traced = scoped.or(traced);
         if traced.or(preview).is_none() {
             painter.rect_filled(rect, 0.0, theme::SURROUND);
         }
@@ -371,6 +397,23 @@ impl Viewport {
         }
     }
 
+    /// Draws legend and charts of the scopes, and the light under the pointer.
+    fn scopes_ui(&mut self, ui: &mut Ui, response: &Response, document: &Document, frame: &CameraFrame) {
+        let (view, ViewOptions { display, charts, .. }) = (response.rect, self.preview.view_options);
+        if !self.preview.view_options.has_scopes() {
+            return;
+        }
+        scopes::legend_ui(ui, view, display);
+        scopes::charts_ui(ui, view, charts, self.scopes.charts());
+        let is_still = charts.spot && !self.is_dragging();
+        if let Some(pointer) = response.hover_pos().filter(|_| is_still) {
+            let point = (pointer - view.min) / view.size();
+            if let Some(reading) = self.scopes.read_spot(ui.ctx(), document, frame, Vec2::new(point.x, point.y)) {
+                spot_readout::spot_ui(ui, view, &reading, None);
+            }
+        }
+    }
+
     /// Draws the note that the CPU draws the view, with the reason.
     fn cpu_notice_ui(&mut self, ui: &mut Ui, rect: Rect) {
         let Some(why) = self.preview.failure().map(str::to_owned) else { return };
@@ -426,6 +469,12 @@ impl Viewport {
             ..Overlay::default()
         }
     }
+}
+
+/// Returns the corners of a rectangle in fractions of a view.
+fn part_of(view: Rect, part: Rect) -> [Vec2; 2] {
+    let inside = |at: Pos2| Vec2::new((at.x - view.left()) / view.width(), (at.y - view.top()) / view.height());
+    [inside(part.min), inside(part.max)].map(|at| at.clamp(Vec2::ZERO, Vec2::ONE))
 }
 
 /// Returns the figure whose joints are handles: the selected one, if it is alone and not locked.

@@ -103,7 +103,7 @@ impl App {
         let mut app = App {
             document: Document::default(),
             selection: Selection::default(),
-            views: ViewState::new(Viewport::new(preview, TracedView::new(geometry.clone()))),
+            views: ViewState::new(Viewport::new(preview, TracedView::new(geometry.clone()), geometry.clone())),
             panels: PanelState::new(files::presets(), GearShelf::load(options.settings_folder.as_deref())),
             rendering: Rendering::new(geometry.clone()),
             variant_pictures: VariantPictures::default(),
@@ -129,7 +129,7 @@ impl App {
         theme::install(ctx);
         self.use_preferences(ctx);
         self.views.viewport.preview.move_to(creation.wgpu_render_state.as_ref(), ctx);
-        self.views.viewport.traced_view.move_to(ctx);
+        self.views.viewport.move_to(ctx);
         self.rendering.move_to(ctx);
         self.variant_pictures.move_to(ctx);
         self.background.thumbnails.renew(ctx);

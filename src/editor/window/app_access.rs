@@ -86,6 +86,7 @@ impl App {
             || self.variant_pictures.is_busy()
             || self.session.is_waiting()
             || self.views.viewport.preview.is_starting()
+            || self.views.viewport.is_reading_spot()
             || (self.views.viewport.preview.is_draft() && self.views.central != CentralView::Picture)
     }
 

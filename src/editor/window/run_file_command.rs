@@ -227,6 +227,10 @@ impl App {
             self.views.central = CentralView::Studio;
         }
         self.views.viewport.frame_selection(&self.document, &self.selection);
+        if let Some(picture) = opened.picture {
+            self.rendering.restore(picture, true);
+            self.views.central = CentralView::Picture;
+        }
         ctx.request_repaint();
     }
 
@@ -325,10 +329,10 @@ impl App {
             let path = file.path().to_owned();
             let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
             match ending.as_str() {
-                "ron" => out.push(Command::OpenPath(path)),
+                "ron" | "exr" => out.push(Command::OpenPath(path)),
                 _ if ModelFormat::of(&path).is_some() => out.push(Command::ImportPath(path)),
                 _ => self.toasts.error(format!(
-                    "Only studios (.ron) and models ({}) can be dropped here, not {}.",
+                    "Only studios (.ron), rendered pictures (.exr) and models ({}) can be dropped here, not {}.",
                     io::model_extension_list(),
                     path.display()
                 )),

@@ -103,7 +103,7 @@ impl App {
                 });
                 if let Some(picture) = picture {
                     self.show_variant_of(&picture.scene);
-                    self.rendering.restore(picture);
+                    self.rendering.restore(picture, false);
                     self.views.central = CentralView::Picture;
                 }
             }

@@ -13,9 +13,15 @@ use std::io::Cursor;
 
 /// Name of the part with all lights, before the parts of single lights.
 pub(super) const WHOLE: &str = "picture";
+/// Name of the attribute with the studio that was rendered, as in its file.
+pub(super) const STUDIO_FILE: &str = "catchlightStudio";
+/// Text of a picture without a studio.
+pub(super) const NO_STUDIO: &[u8] = b"_";
+/// Longest text of a studio that a picture holds, bytes.
+const LONGEST_STUDIO: usize = 4 << 20;
 /// Channels of the pixels that are shown, and of those before the denoiser.
 pub(super) const SHOWN_CHANNELS: [&str; 3] = ["R", "G", "B"];
-const NOISY_CHANNELS: [&str; 3] = ["noisy.R", "noisy.G", "noisy.B"];
+pub(super) const NOISY_CHANNELS: [&str; 3] = ["noisy.R", "noisy.G", "noisy.B"];
 
 pub(super) fn image<'a>(
     shown: LayeredPicture<'a>,
@@ -28,7 +34,8 @@ pub(super) fn image<'a>(
     channels.extend(noisy.into_iter().flat_map(|noisy| picture_channels(NOISY_CHANNELS, noisy.picture)));
     channels.extend(aovs.into_iter().flat_map(aov_channels));
     let size = (picture.width as usize, picture.height as usize);
-    let whole = part(WHOLE, size, channels, info);
+    let mut whole = part(WHOLE, size, channels, info);
+    whole.attributes.other.insert(text(STUDIO_FILE), AttributeValue::Text(studio_text(info)));
     let layer = |(index, (name, layer)): (usize, &'a (String, LazyPicture<'a>))| {
         let mut channels = Vec::from(layer_channels(SHOWN_CHANNELS, layer));
         let noisy = noisy.and_then(|noisy| noisy.layers.get(index));
@@ -132,6 +139,13 @@ pub(super) fn vector_channels<'a>(
 ) -> [ExrChannel<'a>; 3] {
     let channel = |index: usize| AnyChannel::new(names[index], ChannelSamples::f32(move |x, y| pixel(x, y)[index]));
     [0, 1, 2].map(channel)
+}
+
+/// Returns the text of the rendered studio in UTF-8; [`NO_STUDIO`] for none and for one that is too long.
+pub(super) fn studio_text(info: &PictureInfo) -> Text {
+    let studio = info.studio.as_bytes();
+    let is_fit = !studio.is_empty() && studio.len() <= LONGEST_STUDIO;
+    Text::from_slice_unchecked(if is_fit { studio } else { NO_STUDIO })
 }
 
 /// Converts text to EXR's byte strings: at most 200 bytes, not empty, `_` for characters that are not printable ASCII.

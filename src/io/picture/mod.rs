@@ -2,17 +2,21 @@
 
 mod channel_samples;
 mod exr_file;
+mod exr_header;
 mod icc;
 mod metadata;
 mod part_file;
 mod picture_file;
+mod rendered_file;
 
 pub use metadata::CaptureInfo;
 pub use part_file::{PicturePart, encode_part, read_part};
 pub use picture_file::PictureFile;
+pub use rendered_file::{RenderedPicture, read_rendered};
 
 use super::atomic;
 use super::error::SaveError;
+use super::scene_file::write_scene;
 use crate::photo::{AovPicture, LazyPicture, Picture, exposure};
 use crate::scene::Scene;
 use image::codecs::jpeg::JpegEncoder;
@@ -41,6 +45,8 @@ pub struct PictureInfo {
     pub denoiser: Option<&'static str>,
     /// The camera's settings.
     pub capture: CaptureInfo,
+    /// The studio as it was rendered, in the form of its file.
+    pub studio: String,
 }
 
 /// A picture and its light layers.
@@ -70,6 +76,7 @@ impl PictureInfo {
             method: method.to_owned(),
             denoiser: None,
             capture: CaptureInfo::new(scene),
+            studio: write_scene(scene),
         }
     }
 }

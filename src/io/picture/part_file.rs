@@ -5,21 +5,20 @@
 //! ([`ExactSum`]) in four unsigned channels, the lowest 32 bits first: `R.0` to `R.3`. Every pixel has the same number
 //! of samples; the header says which, and of which render.
 
+use super::PictureInfo;
 use super::channel_samples::{ChannelSamples, ExrChannel, ExrPart};
-use super::exr_file::{SHOWN_CHANNELS, WHOLE, checked_size, part, text, vector_channels};
+use super::exr_file::{SHOWN_CHANNELS, STUDIO_FILE, WHOLE, checked_size, part, studio_text, text, vector_channels};
+use super::exr_header::{Header, read_parts};
 use super::picture_file::{Content, PictureFile};
-use super::{CaptureInfo, PictureInfo};
 use crate::io::checkpoint::RenderId;
 use crate::io::error::{SaveError, reason};
 use crate::raytrace::{ExactSum, FilmPart, NonFiniteReport, PartAovs, PartLayer, PixelSum};
-use exr::meta::MetaData;
 use exr::meta::attribute::AttributeValue;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer, LayerAttributes,
-    Layers, ReadChannels, ReadLayers,
+    Layers,
 };
 use glam::Vec3;
-use std::io::Cursor;
 use std::ops::Range;
 use std::path::Path;
 
@@ -48,8 +47,6 @@ const OF: &str = "samplesOfWhole";
 const LAYER: &str = "layerName";
 const WEIGHT: &str = "weight";
 
-type ReadExrPart = Layer<AnyChannels<FlatSamples>>;
-
 /// Encodes a part for its file.
 ///
 /// # Errors
@@ -67,6 +64,7 @@ pub fn encode_part<'a>(path: &Path, value: &'a PicturePart) -> Result<PictureFil
     picture.attributes.other.extend([
         (text(RENDER), AttributeValue::Text(text(&value.render.to_string()))),
         (text(STUDIO), AttributeValue::Text(text(&value.studio))),
+        (text(STUDIO_FILE), AttributeValue::Text(studio_text(&value.info))),
         (text(FIRST), whole(value.samples.start)?),
         (text(END), whole(value.samples.end)?),
         (text(OF), whole(value.of)?),
@@ -131,18 +129,8 @@ pub fn read_part(path: &Path) -> Result<PicturePart, String> {
 }
 
 fn decode(content: &[u8]) -> Result<PicturePart, String> {
-    // Check the sizes before memory is allocated for any of them
-    let meta = MetaData::read_from_buffered(Cursor::new(content), false).map_err(|error| error.to_string())?;
-    meta.headers.iter().try_for_each(|header| checked_size(header.layer_size).map(|_| ()))?;
-    let image = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .all_layers()
-        .all_attributes()
-        .from_buffered(Cursor::new(content))
-        .map_err(|error| error.to_string())?;
-    let (picture, layers) = image.layer_data.split_first().ok_or("it is empty")?;
+    let parts = read_parts(content)?;
+    let (picture, layers) = parts.split_first().ok_or("it is empty")?;
     let whole = Header(picture);
     let render = whole.text(RENDER).ok_or("it is no part of a picture (render --samples writes them)")?;
     let render = RenderId::parse(&render).ok_or("the render that it is a part of has no number")?;
@@ -164,41 +152,7 @@ fn decode(content: &[u8]) -> Result<PicturePart, String> {
     Ok(PicturePart { render, studio: whole.text(STUDIO).unwrap_or_default(), samples, of, info: whole.info()?, sums })
 }
 
-/// A part of an EXR file as it was read.
-struct Header<'a>(&'a ReadExrPart);
-
 impl Header<'_> {
-    fn attribute(&self, name: &str) -> Option<&AttributeValue> {
-        self.0.attributes.other.get(&text(name))
-    }
-
-    fn text(&self, name: &str) -> Option<String> {
-        match self.attribute(name)? {
-            AttributeValue::Text(text) => Some(text.to_string()),
-            _ => None,
-        }
-    }
-
-    /// Returns a number of samples.
-    fn samples(&self, name: &str) -> Result<u32, String> {
-        let missing = || format!("{name} is missing");
-        match self.attribute(name) {
-            Some(AttributeValue::I32(samples)) => u32::try_from(*samples).map_err(|_| missing()),
-            _ => Err(missing()),
-        }
-    }
-
-    fn info(&self) -> Result<PictureInfo, String> {
-        let scale = match self.attribute("exposureScale_cd_s_m2_per_unit") {
-            Some(AttributeValue::F32(scale)) => *scale,
-            _ => return Err("the exposure scale is missing".to_owned()),
-        };
-        let seed = self.text("seed").and_then(|seed| seed.parse().ok()).ok_or("the seed is missing")?;
-        let method = self.text("method").ok_or("the method is missing")?;
-        let (spp, capture) = (self.samples("spp")?, CaptureInfo::read_attributes(&self.0.attributes, text));
-        Ok(PictureInfo { cd_s_m2_per_unit: scale, spp, seed, method, denoiser: None, capture })
-    }
-
     fn layer(&self, size: exr::math::Vec2<usize>) -> Result<PartLayer, String> {
         if self.0.size != size {
             return Err("its layers differ in size".to_owned());
@@ -233,10 +187,6 @@ impl Header<'_> {
         };
         let words = [words(0)?, words(1)?, words(2)?, words(3)?];
         Ok((0..words[0].len()).map(|pixel| ExactSum::from_words(words.map(|word| word[pixel]))).collect())
-    }
-
-    fn channel(&self, name: &str) -> Option<&FlatSamples> {
-        self.0.channel_data.list.iter().find(|channel| channel.name.eq(name)).map(|channel| &channel.sample_data)
     }
 }
 

@@ -63,6 +63,15 @@ impl AovTile {
         self.seen_normal[pixel] += surface.normal;
     }
 
+    /// Sets a pixel to `samples` times the values of a picture's pixel. What mirrors and clear glass show is not known:
+    /// they count as what is seen.
+    pub fn set(&mut self, pixel: usize, samples: f32, picture: &AovPicture, at: usize) {
+        let [albedo, normal] = [picture.albedo[at], picture.normal[at]].map(|value| Vec3::from(value) * samples);
+        (self.albedo[pixel], self.normal[pixel]) = (albedo, normal);
+        (self.seen_albedo[pixel], self.seen_normal[pixel]) = (albedo, normal);
+        (self.depth_m[pixel], self.object_id[pixel]) = (picture.depth_m[at], picture.object_id[at]);
+    }
+
     /// Returns true if both have the same number of pixels.
     pub fn has_shape_of(&self, other: &Self) -> bool {
         let lengths = |tile: &Self| {
@@ -72,9 +81,14 @@ impl AovTile {
         lengths(self) == lengths(other)
     }
 
+    /// Returns the albedo of a pixel, with sums scaled by `per_sample`.
+    pub fn albedo(&self, pixel: usize, per_sample: f32) -> [f32; 3] {
+        (self.albedo[pixel] * per_sample).to_array()
+    }
+
     /// Writes a pixel to a picture's pixel, with sums scaled by `per_sample`.
     pub fn write(&self, pixel: usize, per_sample: f32, picture: &mut AovPicture, at: usize) {
-        picture.albedo[at] = (self.albedo[pixel] * per_sample).to_array();
+        picture.albedo[at] = self.albedo(pixel, per_sample);
         picture.normal[at] = (self.normal[pixel] * per_sample).to_array();
         picture.depth_m[at] = self.depth_m[pixel];
         picture.object_id[at] = self.object_id[pixel];

@@ -2,7 +2,7 @@
 
 use crate::photo::{PhotometricLight, Strength};
 use crate::raytrace::lights::TracedLight;
-use crate::scene::{Light, LightId, Scene};
+use crate::scene::{Light, LightId, Role, Scene};
 use glam::Vec3;
 use std::collections::HashMap;
 
@@ -59,6 +59,18 @@ impl Layer {
     /// A layer that several sources share, as yet without lights.
     pub fn shared(name: &str) -> Self {
         Layer { name: name.to_owned(), light: None, traced: None, members: Vec::new() }
+    }
+
+    /// Returns the name of the layer that the lights of a role share.
+    pub fn name_of_role(role: Role) -> String {
+        format!("{} lights", role.label())
+    }
+
+    /// The layer that the lights of a role share, of those that are on.
+    pub fn of_role(role: Role, scene: &Scene) -> Self {
+        let lights = scene.lights.iter().filter(|light| light.on && light.role == role);
+        let members = lights.map(|light| Member::new(light, shared_layer_tint(light, scene))).collect();
+        Layer { members, ..Layer::shared(&Self::name_of_role(role)) }
     }
 
     /// Returns the lights whose light the layer holds; none for that of emissive surfaces.
@@ -125,7 +137,7 @@ pub fn assign_layers(scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec
 pub fn share_layers(scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<Layer> {
     let mut layers: Vec<Layer> = Vec::new();
     for (traced, light) in lights {
-        let name = format!("{} lights", light.role.label());
+        let name = Layer::name_of_role(light.role);
         let known = layers.iter().position(|layer| layer.name == name);
         traced.layer = known.unwrap_or(layers.len());
         traced.tint = shared_layer_tint(light, scene);
@@ -142,7 +154,7 @@ pub fn share_layers(scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<
 mod tests {
     use super::*;
     use crate::raytrace::{RenderControl, Settings, is_up_to_date, prepare, render};
-    use crate::scene::{Assets, Emitter, Output, Role, Room};
+    use crate::scene::{Assets, Emitter, Output, Room};
     use std::ops::ControlFlow;
 
     /// Returns a room with so many key lights and fill lights, a warm one among each.

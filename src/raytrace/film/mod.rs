@@ -2,6 +2,7 @@
 //! render.
 
 mod aov;
+mod from_layers;
 mod gate;
 mod layer;
 mod noise;
@@ -174,13 +175,24 @@ impl Film {
         let layers = self.layers.iter().zip(self.weights(scene)).enumerate();
         let one = |(layer, (info, weight)): (usize, (&Layer, Vec3))| {
             let picture = LazyPicture::new((self.width, self.height), move |x, y| {
-                let tile = &self.tiles[((y / TILE) * self.width.div_ceil(TILE) + x / TILE) as usize];
-                let pixel = ((y % TILE) * tile.width + x % TILE) as usize;
+                let (tile, pixel) = self.pixel_at(x, y);
                 (tile.sums.at(layer, pixel) * weight * tile.per_sample()).max(Vec3::ZERO).to_array()
             });
             (info.name.clone(), picture)
         };
         layers.map(one).collect()
+    }
+
+    /// Returns the tile of a pixel and its index there.
+    fn pixel_at(&self, x: u32, y: u32) -> (&FilmTile, usize) {
+        let tile = &self.tiles[((y / TILE) * self.width.div_ceil(TILE) + x / TILE) as usize];
+        (tile, ((y % TILE) * tile.width + x % TILE) as usize)
+    }
+
+    /// Returns the mean albedo of the surfaces in a pixel; none unless [`Settings::aovs`] asked for it.
+    pub fn albedo_at(&self, x: u32, y: u32) -> Option<[f32; 3]> {
+        let (tile, pixel) = self.pixel_at(x, y);
+        tile.aovs.as_ref().map(|aovs| aovs.albedo(pixel, tile.per_sample()))
     }
 
     /// Returns the factor of each layer from a picture with the lights of `from` to one with those of `to`. None if a

@@ -38,6 +38,13 @@ impl LiveCamera {
         LiveCamera { aperture: Lens::new(scene).aperture(), ..Self::pinhole(frame, size) }
     }
 
+    /// Returns origin and unit direction of the ray through a picture point, world space: (0, 0) is the top left corner,
+    /// (1, 1) the bottom right. From an eye outside of a room, it begins behind the near wall.
+    pub fn view_ray(frame: &CameraFrame, room: Option<&Room>, point: Vec2) -> (Vec3, Vec3) {
+        let (from, direction) = Self::pinhole(*frame, (1, 1)).around(Vec3::ZERO, room).ray(point, Vec2::splat(0.5));
+        (from, direction.normalize())
+    }
+
     /// Returns the same view for a tracer with this origin. From outside a room, its near walls are clipped.
     pub(super) fn around(self, origin: Vec3, room: Option<&Room>) -> Self {
         let corners = room.map(|room| corners(room).map(|corner| corner - origin));

@@ -1,16 +1,17 @@
 //! The menu of the live view's options (channel, single light, highlights) and the legend of the false-colour
 //! illuminance.
 
-use crate::editor::ui::legend;
+use crate::editor::ui::{legend, scopes};
 use crate::editor::viewport::live::preview_host::ViewOptions;
+use crate::photo::text::three_digits;
 use crate::photo::{FALSE_STOPS, exposure, false_color};
 use crate::preview::{Channel, Gloss};
 use crate::scene::Scene;
-use eframe::egui::{Button, Checkbox, Painter, RadioButton, Rect, Ui, UiBuilder, vec2};
+use eframe::egui::{Checkbox, Painter, RadioButton, Rect, Ui, UiBuilder, vec2};
 use std::f32::consts::PI;
 
-/// Width of the view below which the axes would cover the switch of false colour, points.
-const NARROW: f32 = 380.0;
+/// Width of the view below which the axes would cover false colour and scopes, points.
+const NARROW: f32 = 440.0;
 
 /// Draws the menu in the upper left corner of the view and changes `view_options`. The CPU preview (`on_cpu`) has
 /// neither channels nor a choice of highlights.
@@ -23,8 +24,8 @@ pub fn channel_menu_ui(ui: &mut Ui, view: Rect, scene: &Scene, view_options: &mu
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             menu_ui(ui, scene, view_options, on_cpu);
-            if view.width() > NARROW {
-                false_color_ui(ui, view_options, on_cpu);
+            if view.width() > NARROW && view_options.channel == Channel::Lit {
+                scopes::scopes_ui(ui, &mut view_options.display, &mut view_options.charts);
             }
         });
     });
@@ -78,16 +79,6 @@ fn menu_ui(ui: &mut Ui, scene: &Scene, view_options: &mut ViewOptions, on_cpu: b
     .on_hover_text("What the view shows of the studio");
 }
 
-/// Draws the switch of the false-colour illuminance.
-fn false_color_ui(ui: &mut Ui, view_options: &mut ViewOptions, on_cpu: bool) {
-    let is_on = view_options.channel == Channel::Illuminance;
-    let button = ui.add_enabled(!on_cpu, Button::selectable(is_on, "False colour").frame(true));
-    let tip = "A colour a stop: the direct light on surfaces against the exposure that the camera is set for";
-    if button.on_hover_text(tip).on_disabled_hover_text(NEEDS_DEVICE).clicked() {
-        view_options.channel = if is_on { Channel::Lit } else { Channel::Illuminance };
-    }
-}
-
 fn title(scene: &Scene, view_options: &ViewOptions) -> String {
     match view_options.only_light.and_then(|id| scene.light(id)) {
         Some(light) => format!("{}: light of {} only", view_options.channel.label(), light.name),
@@ -120,19 +111,11 @@ fn legend_lines(scene: &Scene) -> Vec<([u8; 3], String)> {
     let lux_s = PI / exposure::pixel_per_cd_s_m2(scene);
     let line = |stops: i32| {
         let lux_s = lux_s * (stops as f32).exp2();
-        let text = format!("{stops:+}   {} lx s   {} lx", rounded(lux_s), rounded(lux_s / scene.camera.shutter_s));
+        let [lux_s, lux] = [lux_s, lux_s / scene.camera.shutter_s].map(three_digits);
+        let text = format!("{stops:+}   {lux_s} lx s   {lux} lx");
         (false_color(stops as f32), text)
     };
     (FALSE_STOPS.0..=FALSE_STOPS.1).rev().map(line).collect()
-}
-
-/// Formats two or three significant digits.
-fn rounded(value: f32) -> String {
-    match value {
-        v if v < 1.0 => format!("{v:.2}"),
-        v if v < 100.0 => format!("{v:.1}"),
-        v => format!("{v:.0}"),
-    }
 }
 
 fn paint_legend(painter: &Painter, view: Rect, scene: &Scene) {

@@ -3,6 +3,7 @@
 
 use crate::color::ToneTable;
 use crate::editor::ui::image_texture::ImageTexture;
+use crate::photo::Picture;
 use crate::preview::{Gizmos, GpuLine, GpuTint, Pick, PreviewInput, REACH_PX};
 use crate::raster::{Framebuffer, NO_OBJECT, Rasterizer, Shading};
 use crate::scene::{CameraFrame, LightId, ObjectId, Scene};
@@ -93,6 +94,11 @@ impl CpuPreview {
             Color32::from_rgb(r, g, b)
         };
         ColorImage::new(size, picture.rgb.par_iter().zip(&drawing.inverse_depths).map(shown).collect())
+    }
+
+    /// Returns the scene-linear picture of the last image.
+    pub fn picture(&self) -> Option<&Picture> {
+        self.drawn.as_ref().map(|drawn| &drawn.drawing.picture)
     }
 
     /// Returns the texture of the last image.

@@ -3,9 +3,11 @@
 
 use crate::editor::document::revisions::Revisions;
 use crate::editor::document::studio_document::Document;
+use crate::editor::ui::scopes::ScopeCharts;
 use crate::editor::ui::wake::wake;
 use crate::editor::viewport::live::cpu_preview::CpuPreview;
 use crate::jobs::BounceJob;
+use crate::photo::{Picture, PictureDisplay};
 use crate::preview::{Channel, Gloss, LossFlag, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
 use crate::scene::{CameraFrame, LightId};
 use eframe::egui::{Context, Painter, Rect, TextureId};
@@ -37,6 +39,8 @@ struct PreviewKey {
     options: Options,
     /// Number of the bounced light's grid.
     bounced_light: u64,
+    /// Scopes read the scene-linear picture.
+    is_read: bool,
 }
 
 /// Display options of the live view; not part of the scene, neither saved nor undone.
@@ -54,6 +58,17 @@ pub struct ViewOptions {
     pub smooth_edges: bool,
     /// True to add the light that surfaces throw on each other.
     pub bounced_light: bool,
+    /// How the lit picture is displayed.
+    pub display: PictureDisplay,
+    /// The read-outs over it.
+    pub charts: ScopeCharts,
+}
+
+impl ViewOptions {
+    /// Returns true if scopes read the picture.
+    pub fn has_scopes(&self) -> bool {
+        self.channel == Channel::Lit && (self.display != PictureDisplay::Plain || self.charts.any())
+    }
 }
 
 impl Default for ViewOptions {
@@ -65,6 +80,8 @@ impl Default for ViewOptions {
             smooth: false,
             smooth_edges: true,
             bounced_light: true,
+            display: PictureDisplay::Plain,
+            charts: ScopeCharts::default(),
         }
     }
 }
@@ -80,6 +97,8 @@ pub struct PreviewHost {
     cpu_preview: CpuPreview,
     bounced_light: BounceJob,
     texture: Option<(TextureId, u64)>,
+    /// The scene-linear picture, if scopes read it.
+    linear: Option<Arc<Picture>>,
     shown: Option<PreviewKey>,
     /// Time at which the current draft was drawn; none for a full image.
     draft_since: Option<Instant>,
@@ -107,6 +126,7 @@ impl PreviewHost {
             cpu_preview: CpuPreview::default(),
             bounced_light: BounceJob::default(),
             texture: None,
+            linear: None,
             shown: None,
             draft_since: None,
             samples: 0,
@@ -213,20 +233,26 @@ impl PreviewHost {
             PreviewStage::Ready(renderer) => renderer.draws_drafts(),
             PreviewStage::Failed(_) => CpuPreview::draws_drafts(size),
         };
-        let ViewOptions { channel, only_light, gloss, smooth: _, smooth_edges, bounced_light } = self.view_options;
+        let ViewOptions { channel, only_light, gloss, smooth_edges, bounced_light, display, .. } = self.view_options;
         // A deleted light no longer hides the others.
         let only_light = only_light.filter(|id| document.scene().light(*id).is_some());
+        let is_read = self.view_options.has_scopes() && !overlay_alone;
+        if !is_read {
+            self.linear = None;
+        }
+        let is_lit = channel == Channel::Lit && !overlay_alone;
+        // What displays the picture otherwise is drawn below the overlays
+        let overlay_alone = overlay_alone || (is_read && display != PictureDisplay::Plain);
         let options =
             Options { channel, only_light, gloss, overlay_alone, bounce_estimate: bounced_light, ..Options::default() };
         // Names and locks do not affect the image.
         let revisions = Revisions { document: 0, ..document.revisions() };
-        let is_lit = channel == Channel::Lit && !overlay_alone;
         if matches!(self.stage, PreviewStage::Ready(_)) && is_lit && bounced_light {
             let numbers = (revisions.image, revisions.surfaces);
             self.bounced_light.update(document.scene(), document.assets(), only_light, numbers, &wake(ctx));
         }
         let generation = self.bounced_light.generation();
-        let wanted = PreviewKey { revisions, frame, size, overlay, options, bounced_light: generation };
+        let wanted = PreviewKey { revisions, frame, size, overlay, options, bounced_light: generation, is_read };
         let changed =
             self.shown.as_ref().is_none_or(|shown| PreviewKey { bounced_light: generation, ..shown.clone() } != wanted);
         // New bounced light alone is no motion: it waits for the full image after a draft.
@@ -236,7 +262,7 @@ impl PreviewHost {
         let settled = self.draft_since.is_some_and(|since| since.elapsed() >= SETTLED);
         if changed || brightened || settled || is_oversampled {
             // The first image is drawn in full: nothing is in motion.
-            let draft = changed && drafts && self.shown.is_some() && !overlay_alone;
+            let draft = changed && drafts && self.shown.is_some() && (is_read || !overlay_alone);
             self.draw(ctx, document, wanted, draft, 0);
             self.draft_since = draft.then(Instant::now);
         } else if self.draft_since.is_none() && self.samples < most_samples {
@@ -276,17 +302,32 @@ impl PreviewHost {
             overlay: wanted.overlay.clone(),
             options: Options { draft, sample, ..wanted.options },
         };
+        let reads_now = wanted.is_read && sample == 0 && (wanted.options.overlay_alone || !draft);
         if let PreviewStage::Ready(renderer) = &mut self.stage {
-            match renderer.render(&input).map(|_| ()) {
+            // Before the picture for the screen, whose ids and gizmos are picked
+            let linear = reads_now.then(|| renderer.linear_picture(&linear_input(&input))).transpose();
+            let drawn = linear.and_then(|linear| {
+                self.linear = linear.map(Arc::new).or(self.linear.take());
+                renderer.render(&input).map(|_| ())
+            });
+            match drawn {
                 Ok(()) => self.register(),
                 Err(error) => self.use_cpu(&crate::jobs::sentence(&error)),
             }
         }
         if let PreviewStage::Failed(_) = self.stage {
             self.cpu_preview.draw(ctx, &input, wanted.revisions.surfaces);
+            if reads_now {
+                self.linear = self.cpu_preview.picture().cloned().map(Arc::new);
+            }
         }
         (self.draws, self.last_draw, self.shown) = (self.draws + 1, began.elapsed(), Some(wanted));
         self.samples = if draft { 0 } else { sample + 1 };
+    }
+
+    /// Returns the scene-linear picture of the image, if scopes read it.
+    pub fn linear_picture(&self) -> Option<&Arc<Picture>> {
+        self.linear.as_ref()
     }
 
     /// Paints the overlays of the CPU preview in `rect`; those of the GPU preview are part of its image.
@@ -335,6 +376,15 @@ impl PreviewHost {
             PreviewStage::Starting(_) => None,
         }
     }
+}
+
+/// Returns the input of the picture that scopes read: at half the size while something moves.
+fn linear_input<'a>(input: &PreviewInput<'a>) -> PreviewInput<'a> {
+    let PreviewInput { size, options, overlay, .. } = input;
+    let size = if options.draft { (size.0.div_ceil(2), size.1.div_ceil(2)) } else { *size };
+    let overlay = Overlay { void_color: overlay.void_color, work_light: overlay.work_light, ..Overlay::default() };
+    let options = Options { draft: false, overlay_alone: false, ..*options };
+    PreviewInput { size, overlay, options, ..input.clone() }
 }
 
 fn start(state: &RenderState, loss: LossFlag, ctx: &Context) -> PreviewStage {

@@ -6,6 +6,7 @@ use crate::editor::ui::image_texture::ImageTexture;
 use crate::editor::ui::wake::wake;
 use crate::editor::viewport::live::preview_host::ViewOptions;
 use crate::jobs::{LiveImage, LiveJob, LiveRequest};
+use crate::photo::Picture;
 use crate::preview::Channel;
 use crate::raytrace::{GeometryCache, LiveCamera, MAX_LIGHT_LAYERS};
 use crate::scene::{CameraFrame, LightId};
@@ -34,6 +35,8 @@ pub struct TracedView {
     job: LiveJob,
     requested: Option<TracedViewKey>,
     image_texture: ImageTexture,
+    /// The scene-linear picture of the image.
+    picture: Option<Arc<Picture>>,
     /// Samples per pixel of the current image, and true if it is finished.
     shown: Option<(u32, bool)>,
     failure: Option<String>,
@@ -56,7 +59,7 @@ impl TracedView {
     /// Clears the image, because another studio was opened.
     pub fn clear(&mut self) {
         self.image_texture.clear();
-        (self.shown, self.requested, self.failure) = (None, None, None);
+        (self.shown, self.requested, self.failure, self.picture) = (None, None, None, None);
     }
 
     /// Uploads the image to the window's current device.
@@ -119,6 +122,7 @@ impl TracedView {
 
     fn take_in(&mut self, image: LiveImage, ctx: &Context) {
         (self.shown, self.failure) = (Some((image.spp, image.is_done)), None);
+        self.picture = Some(image.picture);
         self.image_texture.set(ctx, ColorImage::from_rgb([image.width, image.height], &image.rgb));
     }
 
@@ -140,6 +144,11 @@ impl TracedView {
     /// Returns true if the scene cannot be traced.
     pub fn has_failed(&self) -> bool {
         self.mode == LiveMode::True && self.failure.is_some()
+    }
+
+    /// Returns the scene-linear picture of the image.
+    pub fn picture(&self) -> Option<&Arc<Picture>> {
+        self.picture.as_ref()
     }
 
     /// Returns true if there is an image.

@@ -1,0 +1,203 @@
+//! Rendered pictures that are read back from EXR files, with their lights and the studio.
+
+use super::PictureInfo;
+use super::exr_file::{NOISY_CHANNELS, SHOWN_CHANNELS, checked_size, text};
+use super::exr_header::{Header, ReadExrPart, read_parts};
+use crate::io::error::{Problem, reason};
+use crate::io::kept_picture::KeptPicture;
+use crate::io::scene_file::parse_scene;
+use crate::photo::{AovPicture, Picture};
+use crate::raytrace::{Film, Layer, Method, Settings};
+use crate::scene::{Finding, Role, Scene};
+use exr::prelude::FlatSamples;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A rendered picture with its studio.
+#[derive(Debug)]
+pub struct RenderedPicture {
+    /// The studio as it was rendered, with the picture.
+    pub picture: KeptPicture,
+    /// What is odd about the studio.
+    pub findings: Vec<Finding>,
+}
+
+/// Reads a rendered picture with the layers of its lights, so that they can be mixed, and the studio that it shows.
+///
+/// # Errors
+/// If the file can't be read, or is no EXR picture of Catchlight with its studio.
+pub fn read_rendered(path: &Path) -> Result<RenderedPicture, String> {
+    let content = std::fs::read(path).map_err(|error| reason(&error))?;
+    decode(&content)
+}
+
+fn decode(content: &[u8]) -> Result<RenderedPicture, String> {
+    let parts = read_parts(content)?;
+    let (whole, lights) = parts.split_first().ok_or("it is empty")?;
+    let studio =
+        Header(whole).studio().ok_or("there is no studio in it: Catchlight writes one into its EXR pictures")?;
+    let (scene, findings) =
+        parse_scene(&studio).map_err(|error| error.problems().first().map_or(error.to_string(), Problem::to_string))?;
+    let info = Header(whole).info()?;
+    let aovs = aovs(whole)?;
+    let settings = settings(whole, &info, aovs.is_some())?;
+    let mut layers = Vec::new();
+    for part in lights {
+        let name = part.attributes.layer_name.as_ref().map(ToString::to_string).unwrap_or_default();
+        // A light that was off has a black layer
+        if let Some(layer) = layer_of(&scene, &name) {
+            layers.push((layer, picture(part, &settings)?));
+        }
+    }
+    if layers.is_empty() {
+        layers.push((Layer::shared("Picture"), picture(whole, &settings)?));
+    }
+    let photons = info.method.contains("photons");
+    let film = Arc::new(Film::from_layers(&settings, photons, &scene, &layers, aovs.as_ref()));
+    let picture = KeptPicture { film, scene: Arc::new(scene), settings, is_complete: true };
+    Ok(RenderedPicture { picture, findings })
+}
+
+fn settings(whole: &ReadExrPart, info: &PictureInfo, aovs: bool) -> Result<Settings, String> {
+    let (width, height) = checked_size(whole.size)?;
+    let method = match info.method.split(',').next().unwrap_or_default() {
+        "whitted" => Method::Whitted,
+        "direct" => Method::Direct,
+        _ => Method::Path,
+    };
+    let (spp, seed) = (info.spp.max(1), u32::try_from(info.seed).unwrap_or_default());
+    Ok(Settings { width, height, method, spp, seed, aovs, ..Settings::default() })
+}
+
+/// Returns the layer of a part by its name: that of a light, or of the lights of a role that share one, as far as they
+/// are on. None for a light that is off.
+fn layer_of(scene: &Scene, name: &str) -> Option<Layer> {
+    let is_named = |own: &str| text(own).as_slice() == text(name).as_slice();
+    if let Some(light) = scene.lights.iter().find(|light| is_named(&light.name)) {
+        return light.on.then(|| Layer::of_light(light));
+    }
+    let role = Role::ALL.into_iter().find(|role| Layer::name_of_role(*role) == name);
+    Some(role.map_or_else(|| Layer::shared(name), |role| Layer::of_role(role, scene)))
+}
+
+/// Returns the pixels of a part before the denoiser, those that are shown if there are no others.
+fn picture(part: &ReadExrPart, settings: &Settings) -> Result<Picture, String> {
+    let Settings { width, height, .. } = *settings;
+    if checked_size(part.size)? != (width, height) {
+        return Err("its layers differ in size".to_owned());
+    }
+    let rgb = vectors(part, NOISY_CHANNELS).or_else(|| vectors(part, SHOWN_CHANNELS));
+    let rgb = rgb.ok_or("a layer has no red, green and blue")?;
+    let finite = |rgb: [f32; 3]| rgb.map(|value| if value.is_finite() { value } else { 0.0 });
+    Ok(Picture { width, height, rgb: rgb.into_iter().map(finite).collect() })
+}
+
+/// Returns the AOVs, if there are any.
+fn aovs(part: &ReadExrPart) -> Result<Option<AovPicture>, String> {
+    let (width, height) = checked_size(part.size)?;
+    let header = Header(part);
+    let (Some(FlatSamples::F32(depth_m)), Some(FlatSamples::U32(object_id))) =
+        (header.channel("Z"), header.channel("id"))
+    else {
+        return Ok(None);
+    };
+    let albedo = vectors(part, ["albedo.R", "albedo.G", "albedo.B"]).ok_or("the albedo is missing")?;
+    let normal = vectors(part, ["normal.X", "normal.Y", "normal.Z"]).ok_or("the normals are missing")?;
+    Ok(Some(AovPicture { width, height, albedo, normal, depth_m: depth_m.clone(), object_id: object_id.clone() }))
+}
+
+/// Returns the vectors of three channels, rows from the top; none if one is missing.
+fn vectors(part: &ReadExrPart, names: [&str; 3]) -> Option<Vec<[f32; 3]>> {
+    let channel = |name| -> Option<Vec<f32>> { Some(Header(part).channel(name)?.values_as_f32().collect()) };
+    let [x, y, z] = [channel(names[0])?, channel(names[1])?, channel(names[2])?];
+    Some(x.into_iter().zip(y).zip(z).map(|((x, y), z)| [x, y, z]).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::{LayeredPicture, picture_file, presets};
+    use crate::raytrace::{RenderControl, prepare, render};
+    use std::ops::ControlFlow;
+
+    /// Renders a shipped studio, and returns its film with the bytes of its file.
+    fn rendered(index: usize, change: impl Fn(&mut Scene)) -> (Film, Scene, Vec<u8>) {
+        let mut loaded = presets()[index].load().unwrap();
+        change(&mut loaded.scene);
+        let prepared = prepare(&loaded.scene, &loaded.assets).unwrap();
+        let settings = Settings { width: 37, height: 21, spp: 4, aovs: true, ..Settings::default() };
+        let film = render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
+        let (picture, layers, aovs) = (film.develop(&loaded.scene), film.lazy_layers(&loaded.scene), film.aovs());
+        let info = PictureInfo::new(&loaded.scene, film.method(), film.spp(), 7);
+        let shown = LayeredPicture { picture: &picture, layers: &layers };
+        let bytes = picture_file(Path::new("a.exr"), shown, None, aovs.as_ref(), &info).unwrap().bytes();
+        drop(layers);
+        (film, loaded.scene, bytes)
+    }
+
+    /// Compares two pictures. Samples of skin that are negative are cut off in a file: of few samples, some pixels differ.
+    fn assert_same(a: &Picture, b: &Picture) {
+        assert_eq!((a.width, a.height), (b.width, b.height));
+        let values = || a.rgb.iter().flatten().zip(b.rgb.iter().flatten());
+        let differ = values().filter(|(a, b)| (*a - *b).abs() > 1e-4 * b.abs().max(0.01)).count();
+        assert!(differ * 12 < a.rgb.len() * 3, "{differ} of {}", a.rgb.len() * 3);
+        let off: f32 = values().map(|(a, b)| (a - b).abs()).sum();
+        assert!(off < 0.01 * b.rgb.iter().flatten().sum::<f32>(), "{off}");
+    }
+
+    #[test]
+    fn a_picture_comes_back_with_studio_and_lights_and_can_be_mixed() {
+        let (film, scene, bytes) = rendered(0, |scene| scene.lights[0].name = "R\u{e9}mi".to_owned());
+        let RenderedPicture { picture: read, findings } = decode(&bytes).unwrap();
+        assert!(findings.is_empty(), "{findings:?}");
+        assert_eq!((&*read.scene, read.film.spp(), read.settings.seed), (&scene, 4, 7));
+        assert_eq!((read.film.method(), read.film.aovs()), (film.method(), film.aovs()));
+        assert_same(&read.film.develop(&scene), &film.develop(&scene));
+        // As a new development of the film: a light dimmed, one in another colour, one off
+        let mut mixed = scene.clone();
+        mixed.lights[0].power.dial_stops -= 2.0;
+        mixed.lights[1].color.source = crate::scene::ColorSource::Kelvin(3200.0);
+        mixed.lights[2].on = false;
+        assert_same(&read.film.develop(&mixed), &film.develop(&mixed));
+        assert_ne!(read.film.develop(&mixed), read.film.develop(&scene));
+    }
+
+    #[test]
+    fn lights_that_share_a_layer_are_mixed_together() {
+        let (film, scene, bytes) = rendered(0, |scene| {
+            let key = scene.lights[0].clone();
+            for copy in 0..20_u32 {
+                let id = crate::scene::LightId(scene.lights.len() as u32);
+                scene.lights.push(crate::scene::Light { id, name: format!("Copy {copy}"), ..key.clone() });
+            }
+        });
+        let read = decode(&bytes).unwrap().picture;
+        assert_eq!(read.film.layers(), film.layers());
+        let mut dimmed = scene.clone();
+        dimmed
+            .lights
+            .iter_mut()
+            .filter(|light| light.role == Role::Key)
+            .for_each(|light| light.power.dial_stops -= 1.0);
+        assert_same(&read.film.develop(&dimmed), &film.develop(&dimmed));
+    }
+
+    #[test]
+    fn other_pictures_and_damaged_ones_are_errors() {
+        let (_, scene, bytes) = rendered(0, |_| {});
+        let picture = Picture::new(4, 4);
+        let info = PictureInfo { studio: String::new(), ..PictureInfo::new(&scene, "path", 1, 0) };
+        let alone = picture_file(Path::new("a.exr"), LayeredPicture::alone(&picture), None, None, &info).unwrap();
+        assert!(decode(&alone.bytes()).unwrap_err().contains("no studio in it"));
+        assert!(decode(b"a picture").is_err());
+        for length in (0..bytes.len()).step_by(bytes.len() / 60) {
+            assert!(decode(&bytes[..length]).is_err(), "{length}");
+        }
+        // Bytes of the header, one after the other: an error or a picture, and no panic
+        for at in 0..1500 {
+            let mut damaged = bytes.clone();
+            damaged[at] ^= 0x41;
+            let _ = decode(&damaged);
+        }
+    }
+}
