@@ -59,4 +59,4 @@ pub use presets::{Preset, PresetGroup, find_preset, presets};
 pub use recovery::{RecoveryFolder, RecoveryInfo};
 pub use scene_file::{FILE_LIMIT_BYTES, FORMAT, Loaded, load_scene, parse_scene, save_scene, write_scene};
 pub use state_folder::state_folder;
-pub use texture::TEXTURE_EXTENSIONS;
+pub use texture::{TEXTURE_EXTENSIONS, is_texture_file};

@@ -13,6 +13,12 @@ use std::path::Path;
 /// Extensions of texture files, without the dot.
 pub const TEXTURE_EXTENSIONS: &[&str] = &["png", "jpg", "jpeg"];
 
+/// Returns true if a file has the extension of a texture, in upper or lower case.
+pub fn is_texture_file(path: &Path) -> bool {
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    extension.is_some_and(|extension| TEXTURE_EXTENSIONS.contains(&extension.as_str()))
+}
+
 /// Largest image file, bytes.
 const FILE_LIMIT_BYTES: u64 = 512 << 20;
 /// Largest width or height, pixels.

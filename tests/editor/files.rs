@@ -1,6 +1,7 @@
 //! Opening, saving, dropping and importing of files, invalid files, unsaved changes.
 
 use super::*;
+use catchlight::scene::TextureSlot;
 
 /// A file on the desktop.
 #[derive(Debug)]
@@ -236,4 +237,43 @@ fn a_lesson_sheet_is_exported_for_the_selected_light() {
     let html = std::fs::read_to_string(lesson).unwrap();
     assert!(html.contains("Colour of the room") && html.matches("<figure>").count() == 3, "{}", html.len());
     assert!(export(ToastKind::Error).contains(".png or .html") && !wrong.exists());
+}
+
+#[test]
+fn a_model_comes_in_with_its_texture_and_the_surfaces_of_its_groups() {
+    let Some(mut window) = preset_window() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, content: &str| std::fs::write(folder.path().join(name), content).unwrap();
+    image::RgbImage::from_pixel(4, 4, image::Rgb([200, 40, 40])).save(folder.path().join("red.png")).unwrap();
+    write("a.mtl", "newmtl red\nKd 1 1 1\nmap_Kd red.png\nnewmtl blue\nKd 0.1 0.1 0.8\n");
+    let corners = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 0 1\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n";
+    let groups =
+        "g front\nusemtl red\nf 1/1 2/2 3/3\ng left\nusemtl blue\nf 1/1 4/2 2/3\ng back\nusemtl red\nf 2/1 4/2 3/3\n";
+    write("shop.obj", &format!("{corners}{groups}"));
+    drop_file(&mut window, &folder.path().join("shop.obj"));
+    let told = [ToastKind::Info, ToastKind::Warning, ToastKind::Error]
+        .map(|kind| window.state().toasts().texts(kind))
+        .concat();
+    assert!(told.iter().all(|text| !text.contains("shop.obj") && !text.contains("texture")), "{told:?}");
+    // The surface of the whole is that of the first group, and one group has its own
+    let object = scene(&window).objects.last().unwrap().clone();
+    assert!(object.name == "shop" && object.material.textures.base_color.is_some(), "{object:?}");
+    let [(part, blue)] = &object.part_materials[..] else { panic!("{object:?}") };
+    assert!(part == "left" && blue.base_color[2] > 0.5 && blue.textures.base_color.is_none());
+}
+
+#[test]
+fn a_model_that_is_chosen_as_a_texture_is_refused_and_told() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let model = folder.path().join("pyramid.obj");
+    std::fs::write(&model, PYRAMID).unwrap();
+    let mut window = window_with_answers([model]);
+    let before = scene(&window).clone();
+    run(&mut window, Command::ChooseTexture(Item::Room, Some("floor".to_owned()), TextureSlot::BaseColor));
+    let error = errors(&window).pop().unwrap();
+    assert!(error.contains("pyramid.obj is no picture") && error.contains("Import model"), "{error}");
+    assert_eq!(*scene(&window), before);
 }

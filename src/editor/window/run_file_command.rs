@@ -16,7 +16,7 @@ use crate::editor::window::background_tasks::TaskResult;
 use crate::editor::window::dialogs::DialogAnswer;
 use crate::editor::window::session::PendingOperation;
 use crate::io::{self, ModelFormat};
-use crate::scene::{Assets, Material, MaterialPreset, Object, Shape, TextureRef, TextureSlot};
+use crate::scene::{Assets, Material, MaterialPreset, Mesh, Object, Shape, TextureRef, TextureSlot};
 use eframe::egui::{self, Align2, Color32, Context, Id, LayerId, Order, ViewportCommand};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::TryRecvError;
@@ -243,13 +243,10 @@ impl App {
         self.document.insert_assets(assets, &Default::default());
         self.document.note_import(path.clone(), file.clone());
         let folder = file.parent().unwrap_or(Path::new("")).to_owned();
-        let part_materials =
+        let part_materials: Vec<_> =
             part_materials.into_iter().map(|(part, m)| (part, self.adopt_textures(m, &folder))).collect();
-        let mut object = Object {
-            material: MaterialPreset::MatteFabric.material(),
-            part_materials,
-            ..Object::new(stem, Shape::MeshFile { path })
-        };
+        let (material, part_materials) = surfaces_of(&mesh, part_materials);
+        let mut object = Object { material, part_materials, ..Object::new(stem, Shape::MeshFile { path }) };
         let size = fit_model(&mut object, &mesh);
         placement::place_object(self.document.scene(), self.selection.last(), &mut object);
         self.apply(Action::AddObject(Box::new(object)), None);
@@ -277,6 +274,13 @@ impl App {
 
     fn use_texture(&mut self, file: &Path) {
         let Some((item, part, slot)) = self.session.texture_for.take() else { return };
+        if !io::is_texture_file(file) {
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            let kinds = io::TEXTURE_EXTENSIONS.join(", ");
+            let hint = ModelFormat::of(file).map_or("", |_| " It is a model: File > Import model brings it in.");
+            self.toasts.error(format!("{name} is no picture, so it can't be a texture ({kinds}).{hint}"));
+            return;
+        }
         let path = self.document.asset_path_for(file, "textures");
         self.document.note_import(path.clone(), file.to_owned());
         let texture = Some(TextureRef::File(path));
@@ -398,6 +402,17 @@ impl App {
             }
         }
     }
+}
+
+/// Returns the surface of a whole model, and those of the parts that differ from it. The whole has that of the first part
+/// if all parts have one.
+fn surfaces_of(mesh: &Mesh, mut parts: Vec<(String, Material)>) -> (Material, Vec<(String, Material)>) {
+    let has_own = |part: &str| parts.iter().any(|(name, _)| name == part);
+    let first = mesh.part_names().next().filter(|_| mesh.part_names().all(has_own));
+    let first = first.and_then(|first| parts.iter().find(|(name, _)| name == first));
+    let Some((_, material)) = first.cloned() else { return (MaterialPreset::MatteFabric.material(), parts) };
+    parts.retain(|(_, own)| *own != material);
+    (material, parts)
 }
 
 /// Returns a callback that repaints the window once.

@@ -166,8 +166,9 @@ mod tests {
     fn lights_that_share_a_layer_are_mixed_together() {
         let (film, scene, bytes) = rendered(0, |scene| {
             let key = scene.lights[0].clone();
-            for copy in 0..20_u32 {
-                let id = crate::scene::LightId(scene.lights.len() as u32);
+            let first = scene.lights.last().map_or(0, |light| light.id.0 + 1);
+            for copy in 0..20 {
+                let id = crate::scene::LightId(first + copy);
                 scene.lights.push(crate::scene::Light { id, name: format!("Copy {copy}"), ..key.clone() });
             }
         });
