@@ -37,7 +37,7 @@ impl ScopeCharts {
 pub fn scopes_ui(ui: &mut Ui, display: &mut PictureDisplay, charts: &mut ScopeCharts) {
     let is_on = *display == PictureDisplay::FalseColor;
     let tip = "A colour for each stop about middle grey; clipped white is white";
-    if ui.add(Button::selectable(is_on, "False colour").frame(true)).on_hover_text(tip).clicked() {
+    if ui.add(Button::new("False colour").selected(is_on)).on_hover_text(tip).clicked() {
         *display = if is_on { PictureDisplay::Plain } else { PictureDisplay::FalseColor };
     }
     // A click inside leaves it open, as for the slider

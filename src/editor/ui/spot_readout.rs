@@ -46,13 +46,19 @@ impl SpotReading {
         }];
         parts.push(format!("RGB {r} {g} {b}"));
         parts.extend(self.lux.map(|SpotLux { lux_s, shutter_s }| {
-            format!("{} lx over {}", three_digits(lux_s / shutter_s), Dial::Shutter.label(shutter_s))
+            format!("{} lx over {}", three_digits(rounded(lux_s / shutter_s)), Dial::Shutter.label(shutter_s))
         }));
         let shown = self.lights.iter().filter(|(_, share)| *share >= LEAST_SHARE);
         let lights: Vec<String> = shown.map(|(name, share)| format!("{name} {:.0} %", share * 100.0)).collect();
         parts.extend((!lights.is_empty()).then(|| lights.join(", ")));
         parts.join("    ")
     }
+}
+
+/// Rounds to three significant digits: the error of a quick reading is about 1 %.
+fn rounded(lux: f32) -> f32 {
+    let step = 10.0_f32.powf((lux.log10() - 2.0).floor());
+    if step.is_normal() { (lux / step).round() * step } else { lux }
 }
 
 /// Draws the light at the spot under the pointer, below the bar of the view.
@@ -79,6 +85,7 @@ mod tests {
         let reading = SpotReading::new(Spot { rgb: [0.36; 3] }, lux, lights);
         let text = "+1.0 stops from middle grey    RGB 162 162 162    1250 lx over 1/125    Key 70 %, Fill 30 %";
         assert_eq!(reading.text(), text);
+        assert_eq!([13_969.0, 1250.4, 9.876, 0.0].map(rounded), [14_000.0, 1250.0, 9.88, 0.0]);
         let black = SpotReading::new(Spot { rgb: [0.0; 3] }, None, Vec::new());
         assert_eq!(black.text(), "black    RGB 0 0 0");
     }

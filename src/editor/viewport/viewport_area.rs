@@ -334,11 +334,10 @@ impl Viewport {
         let linear = linear.filter(|_| view_options.has_scopes());
         let scopes = (view_options.display, view_options.charts);
         let scoped = self.scopes.show(ui.ctx(), linear, scopes, part_of(rect, picture.unwrap_or(rect)));
-        let traced = scoped.or(traced);
-        if traced.or(preview).is_none() {
+        if scoped.or(traced).or(preview).is_none() {
             painter.rect_filled(rect, 0.0, theme::SURROUND);
         }
-        for texture in [traced, preview].into_iter().flatten() {
+        for texture in [scoped.or(traced), preview].into_iter().flatten() {
             let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
             painter.image(texture, rect, uv, Color32::WHITE);
         }
@@ -403,7 +402,8 @@ impl Viewport {
         if !self.preview.view_options.has_scopes() {
             return;
         }
-        scopes::legend_ui(ui, view, display);
+        // Above the line that tells how far the traced view is
+        scopes::legend_ui(ui, view.with_max_y(view.bottom() - 24.0), display);
         scopes::charts_ui(ui, view, charts, self.scopes.charts());
         let is_still = charts.spot && !self.is_dragging();
         if let Some(pointer) = response.hover_pos().filter(|_| is_still) {
