@@ -4,7 +4,7 @@
 
 use super::error::AssetError;
 use super::model::{ImportedModel, ModelLimits};
-use super::obj;
+use super::{gltf_model, obj};
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -26,13 +26,22 @@ pub struct ModelFormat {
 type EmbeddedImageReader = fn(&Path, u32, &ModelLimits) -> Result<Vec<u8>, AssetError>;
 
 /// Every model format, in the order of dialogs.
-pub const MODEL_FORMATS: &[ModelFormat] = &[ModelFormat {
-    name: "OBJ",
-    extensions: &["obj"],
-    limits: ModelLimits { file_bytes: 1 << 30, triangles: 20_000_000 },
-    import: obj::import,
-    embedded_image: None,
-}];
+pub const MODEL_FORMATS: &[ModelFormat] = &[
+    ModelFormat {
+        name: "glTF",
+        extensions: &["glb", "gltf"],
+        limits: ModelLimits { file_bytes: 1 << 30, triangles: 20_000_000 },
+        import: gltf_model::import,
+        embedded_image: Some(gltf_model::embedded_image),
+    },
+    ModelFormat {
+        name: "OBJ",
+        extensions: &["obj"],
+        limits: ModelLimits { file_bytes: 1 << 30, triangles: 20_000_000 },
+        import: obj::import,
+        embedded_image: None,
+    },
+];
 
 impl ModelFormat {
     /// Returns the format of a file by its extension, in upper or lower case; `None` for other files.

@@ -18,6 +18,7 @@ mod error;
 mod figures;
 mod file_stamp;
 mod gear_file;
+mod gltf_model;
 mod importers;
 mod jpeg_end;
 mod kept_picture;

@@ -277,3 +277,43 @@ fn a_model_that_is_chosen_as_a_texture_is_refused_and_told() {
     assert!(error.contains("pyramid.obj is no picture") && error.contains("Import model"), "{error}");
     assert_eq!(*scene(&window), before);
 }
+
+#[test]
+fn a_gltf_model_comes_in_with_the_image_inside_and_travels_with_the_studio() {
+    let Some(_) = has_adapter().then_some(()) else { return };
+    let (folder, home) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let base64 = |bytes: &[u8]| base64::Engine::encode(&base64::engine::general_purpose::STANDARD, bytes);
+    let corners: [f32; 15] = [0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
+    let bytes: Vec<u8> = corners.iter().flat_map(|value| value.to_le_bytes()).collect();
+    let mut png = std::io::Cursor::new(Vec::new());
+    image::RgbImage::from_pixel(2, 2, image::Rgb([9, 90, 200])).write_to(&mut png, image::ImageFormat::Png).unwrap();
+    let json = format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scenes": [{{"nodes": [0]}}], "nodes": [{{"name": "Label", "mesh": 0}}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "TEXCOORD_0": 1}}, "material": 0}}]}}],
+        "materials": [{{"pbrMetallicRoughness": {{"baseColorTexture": {{"index": 0}}, "metallicFactor": 0}}}}],
+        "textures": [{{"source": 0}}], "images": [{{"uri": "data:image/png;base64,{}"}}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [0.2, 0.3, 0]}},
+                      {{"bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "VEC2"}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 60}}],
+        "buffers": [{{"byteLength": 60, "uri": "data:application/octet-stream;base64,{}"}}]}}"#,
+        base64(png.get_ref()),
+        base64(&bytes)
+    );
+    let model = folder.path().join("label.gltf");
+    std::fs::write(&model, json).unwrap();
+    let studio = home.path().join("shop.ron");
+    let mut window = window_with_answers([studio.clone()]);
+    drop_file(&mut window, &model);
+    assert_eq!((errors(&window), window.state().toasts().texts(ToastKind::Warning)), (Vec::new(), Vec::new()));
+    let object = scene(&window).objects.last().unwrap().clone();
+    let texture = object.material.textures.base_color.clone().unwrap();
+    assert!(object.name == "label" && object.part_materials.is_empty() && texture.path() == "models/label.gltf");
+    assert_eq!(window.state().document().assets().texture(&texture).unwrap().rgb[0], [9, 90, 200]);
+    // Saved, the model lies beside the studio, and the image in it is found again
+    run(&mut window, Command::SaveAs);
+    std::fs::remove_dir_all(folder.path()).unwrap();
+    run(&mut window, Command::OpenPath(studio));
+    let document = window.state().document();
+    assert_eq!((errors(&window), document.scene().objects.last()), (Vec::new(), Some(&object)));
+    assert!(document.assets().mesh("models/label.gltf").is_some() && document.assets().texture(&texture).is_some());
+}

@@ -31,13 +31,8 @@ pub fn add_ui(
         ui.label(RichText::new("Add").strong());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let formats = io::model_format_names();
-            let import = ui.add(Button::new(format!("Import {formats}\u{2026}")).small());
-            if import
-                .on_hover_text(format!(
-                    "Bring in a model from an {formats} file (Ctrl+I), or drop the file on the window"
-                ))
-                .clicked()
-            {
+            let tip = format!("Bring in a model ({formats}; Ctrl+I), or drop its file on the window");
+            if ui.add(Button::new("Import\u{2026}").small()).on_hover_text(tip).clicked() {
                 out.push(Command::Import);
             }
             search_ui(ui, "Search the shelf", query)

@@ -21,7 +21,7 @@ const MOUSE: [(&str, &str); 19] = [
     ("Click an end of the axes", "Look from there, without perspective"),
     ("Drag a number", "Change it; Shift: finely"),
     ("Click a number", "Type it, with any unit: 150 cm, 1.5 m, 5 ft"),
-    ("Drop a file", "A studio (.ron) opens, a model (.obj) comes in"),
+    ("Drop a file", "A studio (.ron) or a rendered picture (.exr) opens, a model (.glb, .gltf, .obj) comes in"),
     ("Esc in a dialog", "Close it"),
     ("Ctrl + plus, minus, 0", "Larger, smaller or usual texts and buttons"),
 ];

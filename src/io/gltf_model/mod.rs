@@ -1,0 +1,108 @@
+//! glTF 2.0 models: one mesh with a part for each node and material, from GLB files and from self-contained JSON.
+//!
+//! Skins and morph targets are applied as the file poses them. What the renderers have no property for is named in a
+//! warning.
+
+mod accessors;
+mod buffers;
+mod materials;
+mod nodes;
+#[cfg(test)]
+mod tests;
+
+use super::error::{AssetError, cut};
+use super::model::{ImportedModel, ModelLimits};
+use super::read::read_limited;
+use crate::scene::{Mesh, MeshPart};
+use buffers::ModelFile;
+use glam::Vec3;
+use materials::MaterialReader;
+use nodes::Nodes;
+use std::collections::HashMap;
+use std::path::Path;
+
+/// Largest absolute coordinate of a vertex, in the file's unit.
+const COORDINATE_LIMIT: f32 = 1e6;
+
+/// Imports the default scene of a glTF file.
+///
+/// # Errors
+/// If the file can't be read, exceeds the limits, needs an extension that is not read, or has a mistake.
+pub(super) fn import(path: &Path, limits: &ModelLimits) -> Result<ImportedModel, AssetError> {
+    let bytes = read_limited(path, limits.file_bytes)?;
+    let bad_model =
+        |message: String| AssetError::BadModel { format: "glTF", message: cut(message), path: path.to_owned() };
+    let file = ModelFile::parse(&bytes).map_err(bad_model)?;
+    assemble(&file, path, limits).map_err(bad_model)
+}
+
+/// Returns the bytes of an image inside a glTF file.
+///
+/// # Errors
+/// As [`import`], and if there is no such image inside.
+pub(super) fn embedded_image(path: &Path, image: u32, limits: &ModelLimits) -> Result<Vec<u8>, AssetError> {
+    let bytes = read_limited(path, limits.file_bytes)?;
+    let bad_model =
+        |message: String| AssetError::BadModel { format: "glTF", message: cut(message), path: path.to_owned() };
+    let file = ModelFile::parse(&bytes).map_err(bad_model)?;
+    file.image(image).map_err(bad_model)
+}
+
+/// Builds the mesh of all nodes and collects their materials.
+fn assemble(file: &ModelFile, path: &Path, limits: &ModelLimits) -> Result<ImportedModel, String> {
+    let mut materials = MaterialReader::new(file, path);
+    let (mut mesh, mut part_materials, mut names) = (Mesh::default(), Vec::new(), HashMap::new());
+    let nodes = Nodes::new(&file.document);
+    for primitive in nodes.primitives() {
+        let piece = primitive.mesh(file, &nodes, limits.triangles - mesh.triangles.len())?;
+        if piece.triangles.is_empty() {
+            continue;
+        }
+        let name = unique(&mut names, primitive.name());
+        part_materials.push((name.clone(), materials.read(&primitive.primitive.material())));
+        join(&mut mesh, piece, name);
+    }
+    if mesh.triangles.is_empty() {
+        return Err("it has no triangles".to_owned());
+    }
+    if let Some(p) = mesh.positions.iter().find(|p| !p.is_finite() || p.abs().max_element() > COORDINATE_LIMIT) {
+        return Err(format!("the vertex {p} is not within {COORDINATE_LIMIT}"));
+    }
+    let mut warnings = materials.into_warnings();
+    if nodes.has_lines() {
+        warnings.push("lines and points are left out".to_owned());
+    }
+    Ok(ImportedModel { mesh, part_materials, warnings })
+}
+
+/// Returns a name that no part has yet: the name itself, or followed by a number.
+fn unique(names: &mut HashMap<String, u32>, name: String) -> String {
+    let uses = names.entry(name.clone()).and_modify(|uses| *uses += 1).or_insert(1);
+    match *uses {
+        1 => name,
+        number => unique(names, format!("{name} {number}")),
+    }
+}
+
+/// Appends a part. Attributes that some parts lack are filled in: texture coordinates with 0, colours with white.
+fn join(mesh: &mut Mesh, piece: Mesh, name: String) {
+    let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
+    let total = vertices + piece.positions.len();
+    if !(mesh.uvs.is_empty() && piece.uvs.is_empty()) {
+        mesh.uvs.resize(vertices, Default::default());
+        mesh.uvs.extend(piece.uvs);
+        mesh.uvs.resize(total, Default::default());
+    }
+    if !(mesh.colors.is_empty() && piece.colors.is_empty()) {
+        mesh.colors.resize(vertices, Vec3::ONE);
+        mesh.colors.extend(piece.colors);
+        mesh.colors.resize(total, Vec3::ONE);
+    }
+    mesh.positions.extend(piece.positions);
+    mesh.normals.extend(piece.normals);
+    // The triangles of a mesh are limited, and so are its vertices
+    let first = u32::try_from(vertices).unwrap_or(u32::MAX);
+    mesh.triangles.extend(piece.triangles.into_iter().map(|corners| corners.map(|corner| corner + first)));
+    let range = [triangles, mesh.triangles.len()].map(|index| u32::try_from(index).unwrap_or(u32::MAX));
+    mesh.parts.push(MeshPart { name, triangles: range[0]..range[1] });
+}
