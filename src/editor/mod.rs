@@ -13,11 +13,11 @@
 //! ```
 //! - `document`: the open studio, its history and selection, the actions, the catalog, placement of new items, changes of
 //!   lights that are tried over the picture.
-//! - `ui`: theme, widgets, units, messages; nothing about studios.
+//! - `ui`: theme, widgets, units, messages, scopes; nothing about studios.
 //! - `commands`: the commands, their keys, and the menu entries of an item.
 //! - `viewport`: navigation and the live view; `live` makes the images, `overlays` paints over them, `tools` holds the
 //!   transform handles, the selection by click or box, and the placing of lights.
-//! - `picture`: render settings, the finished picture and its view, with scopes and mixer.
+//! - `picture`: render settings, the finished picture and its view, with mixer and comparison.
 //! - `panels`: menu bar, catalog, item list, inspector, render panel, light meter, prompts.
 //! - `window`: [`App`], execution of commands, files, dialogs, recovery, the native window.
 //!

@@ -99,7 +99,7 @@ impl StudioSource {
 }
 
 /// Returns true for the name of a rendered picture that holds its studio.
-pub fn is_rendered_picture(path: &Path) -> bool {
+fn is_rendered_picture(path: &Path) -> bool {
     PictureFormat::of(path).is_ok_and(|format| format == PictureFormat::Exr)
 }
 

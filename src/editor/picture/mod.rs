@@ -1,4 +1,4 @@
-//! The rendered picture: the state of a render, the view that shows it.
+//! The rendered picture: the state of a render, the view that shows it, and its mixer.
 
 mod compare;
 pub mod mixer;

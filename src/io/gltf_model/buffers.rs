@@ -65,6 +65,16 @@ impl ModelFile {
         Ok(ModelFile { document, buffers })
     }
 
+    /// Returns a sentence for each thing in the file that is no surface, and for each extension that is not read.
+    pub fn left_out(&self) -> Vec<String> {
+        let has_lights = self.document.lights().is_some_and(|lights| lights.len() > 0);
+        let things = [("lamps", has_lights), ("cameras", self.document.cameras().len() > 0)];
+        let things = things.into_iter().filter(|(_, is_there)| *is_there).map(|(name, _)| name.to_owned());
+        let unknown = self.document.extensions_used().filter(|name| !KNOWN_EXTENSIONS.contains(name));
+        let unknown = unknown.map(|name| format!("the properties of {name}"));
+        things.chain(unknown).map(|what| format!("{what} are left out")).collect()
+    }
+
     /// Returns the bytes of a buffer.
     pub fn bytes(&self, buffer: &gltf::Buffer<'_>) -> &[u8] {
         self.buffers.get(buffer.index()).map_or(&[], Vec::as_slice)

@@ -69,6 +69,7 @@ fn assemble(file: &ModelFile, path: &Path, limits: &ModelLimits) -> Result<Impor
         return Err(format!("the vertex {p} is not within {COORDINATE_LIMIT}"));
     }
     let mut warnings = materials.into_warnings();
+    warnings.extend(file.left_out());
     if nodes.has_lines() {
         warnings.push("lines and points are left out".to_owned());
     }

@@ -120,12 +120,13 @@ impl NodePrimitive<'_> {
         // Blend the morph targets and the joints
         let mesh = self.node.mesh();
         let weights = self.node.weights().or_else(|| mesh.as_ref().and_then(|mesh| mesh.weights()));
-        for ((offsets, turns, _), weight) in reader.read_morph_targets().zip(weights.unwrap_or_default()) {
+        for ((offsets, normal_offsets, _), weight) in reader.read_morph_targets().zip(weights.unwrap_or_default()) {
             let add = |values: &mut [Vec3], offset: [f32; 3], at: usize| {
                 values.get_mut(at).into_iter().for_each(|value| *value += Vec3::from(offset) * *weight);
             };
             offsets.into_iter().flatten().enumerate().for_each(|(at, offset)| add(&mut positions, offset, at));
-            turns.into_iter().flatten().enumerate().for_each(|(at, turn)| add(&mut normals, turn, at));
+            let normal_offsets = normal_offsets.into_iter().flatten().enumerate();
+            normal_offsets.for_each(|(at, offset)| add(&mut normals, offset, at));
         }
         let skin = self.node.skin().zip(reader.read_joints(0)).zip(reader.read_weights(0));
         let world = nodes.world[self.node.index()];

@@ -146,6 +146,11 @@ fn damaged_files_and_unread_extensions_are_told() {
     assert!(imported(&good.replacen(r#""children": [1]}, {"#, &many, 1), &bin).is_ok());
     // A cycle of nodes ends
     let _ = imported(&good.replacen(r#""scale": [-1, 1, 1]"#, r#""children": [0]"#, 1), &bin);
+    let used = r#""extensionsUsed": ["KHR_materials_sheen"], "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}], "scene""#;
+    let warnings = imported(&good.replacen(r#""scene""#, used, 1), &bin).unwrap().warnings;
+    for left_out in ["cameras are left out", "the properties of KHR_materials_sheen are left out"] {
+        assert!(warnings.iter().any(|warning| warning == left_out), "{warnings:?}");
+    }
     // Every byte of the file, one after the other: an error or a model, and no panic
     let whole = glb(&good, &bin);
     let folder = tempfile::tempdir().unwrap();

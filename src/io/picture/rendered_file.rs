@@ -8,7 +8,7 @@ use crate::io::kept_picture::KeptPicture;
 use crate::io::scene_file::parse_scene;
 use crate::photo::{AovPicture, Picture};
 use crate::raytrace::{Film, Layer, Method, Settings};
-use crate::scene::{Finding, Role, Scene};
+use crate::scene::{Finding, Light, Role, Scene};
 use exr::prelude::FlatSamples;
 use std::path::Path;
 use std::sync::Arc;
@@ -41,11 +41,11 @@ fn decode(content: &[u8]) -> Result<RenderedPicture, String> {
     let info = Header(whole).info()?;
     let aovs = aovs(whole)?;
     let settings = settings(whole, &info, aovs.is_some())?;
-    let mut layers = Vec::new();
+    let (mut layers, mut unused) = (Vec::new(), scene.lights.iter().collect());
     for part in lights {
         let name = part.attributes.layer_name.as_ref().map(ToString::to_string).unwrap_or_default();
         // A light that was off has a black layer
-        if let Some(layer) = layer_of(&scene, &name) {
+        if let Some(layer) = layer_of(&scene, &mut unused, &name) {
             layers.push((layer, picture(part, &settings)?));
         }
     }
@@ -70,10 +70,12 @@ fn settings(whole: &ReadExrPart, info: &PictureInfo, aovs: bool) -> Result<Setti
 }
 
 /// Returns the layer of a part by its name: that of a light, or of the lights of a role that share one, as far as they
-/// are on. None for a light that is off.
-fn layer_of(scene: &Scene, name: &str) -> Option<Layer> {
+/// are on. None for a light that is off. `unused` has the lights without a part so far: parts of lights with one name
+/// are in the lights' order.
+fn layer_of(scene: &Scene, unused: &mut Vec<&Light>, name: &str) -> Option<Layer> {
     let is_named = |own: &str| text(own).as_slice() == text(name).as_slice();
-    if let Some(light) = scene.lights.iter().find(|light| is_named(&light.name)) {
+    if let Some(index) = unused.iter().position(|light| is_named(&light.name)) {
+        let light = unused.remove(index);
         return light.on.then(|| Layer::of_light(light));
     }
     let role = Role::ALL.into_iter().find(|role| Layer::name_of_role(*role) == name);
@@ -160,6 +162,16 @@ mod tests {
         mixed.lights[2].on = false;
         assert_same(&read.film.develop(&mixed), &film.develop(&mixed));
         assert_ne!(read.film.develop(&mixed), read.film.develop(&scene));
+    }
+
+    #[test]
+    fn lights_of_one_name_keep_their_own_layers() {
+        let (film, scene, bytes) = rendered(0, |scene| scene.lights[1].name = scene.lights[0].name.clone());
+        let read = decode(&bytes).unwrap().picture;
+        assert_eq!(read.film.layers(), film.layers());
+        let mut dark = scene.clone();
+        dark.lights[1].on = false;
+        assert_same(&read.film.develop(&dark), &film.develop(&dark));
     }
 
     #[test]
