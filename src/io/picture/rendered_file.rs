@@ -181,7 +181,7 @@ mod tests {
             let first = scene.lights.last().map_or(0, |light| light.id.0 + 1);
             for copy in 0..20 {
                 let id = crate::scene::LightId(first + copy);
-                scene.lights.push(crate::scene::Light { id, name: format!("Copy {copy}"), ..key.clone() });
+                scene.lights.push(Light { id, name: format!("Copy {copy}"), ..key.clone() });
             }
         });
         let read = decode(&bytes).unwrap().picture;
