@@ -165,8 +165,13 @@ mod tests {
     }
 
     #[test]
-    fn lights_of_one_name_keep_their_own_layers() {
-        let (film, scene, bytes) = rendered(0, |scene| scene.lights[1].name = scene.lights[0].name.clone());
+    fn lights_whose_names_are_equal_in_a_file_keep_their_own_layers() {
+        // EXR names layers in Latin-1: other letters become question marks
+        let (film, scene, bytes) = rendered(0, |scene| {
+            for (light, name) in scene.lights.iter_mut().zip(["\u{4e3b}\u{5149}", "\u{8f85}\u{5149}"]) {
+                light.name = name.to_owned();
+            }
+        });
         let read = decode(&bytes).unwrap().picture;
         assert_eq!(read.film.layers(), film.layers());
         let mut dark = scene.clone();
