@@ -82,7 +82,7 @@ mod tests {
         assert_eq!(figures, FIGURES as usize);
         for count in [1, 4, 60] {
             let scene = lit_by(&crowd, count);
-            let total: f32 = scene.lights.iter().map(axial_intensity).sum();
+            let total: f32 = scene.lights.iter().map(|light| axial_intensity(light, None)).sum();
             assert!((total / (EXPOSURE_LUX_S * RING_M * RING_M) - 1.0).abs() < 1e-3, "{count}: {total}");
             assert_eq!((scene.lights.len(), crate::scene::validate(&scene).len()), (count as usize, 0));
         }

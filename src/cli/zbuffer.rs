@@ -21,7 +21,7 @@ pub fn picture(loaded: &Loaded, (width, height): (u32, u32), side: u32) -> (Pict
     let mut rasterizer = Rasterizer::new(&loaded.scene, &loaded.assets);
     let fine = (width * side, height * side);
     let mut drawing = Framebuffer::default();
-    rasterizer.draw(&loaded.scene, &camera, fine, Shading::default(), &mut drawing);
+    rasterizer.draw(&loaded.scene, &loaded.assets, &camera, fine, Shading::default(), &mut drawing);
     let picture = if side == 1 { drawing.picture } else { reduced(&drawing.picture, side) };
     (picture, rasterizer.triangle_count())
 }
@@ -59,7 +59,7 @@ pub fn time(loaded: &Loaded, (width, height): (u32, u32), frames: u32) -> FrameT
                 * Affine3A::from_translation(-pivot)
                 * camera.world_from_camera;
             let began = Instant::now();
-            rasterizer.draw(&loaded.scene, &moved, (width, height), Shading::default(), &mut drawing);
+            rasterizer.draw(&loaded.scene, &loaded.assets, &moved, (width, height), Shading::default(), &mut drawing);
             std::hint::black_box(&drawing);
             began.elapsed().as_secs_f64() * 1e3
         })

@@ -26,15 +26,17 @@ impl HeadModel {
     /// Puts a light on this head: dial, output and colour temperature are the head's, and the dial is set to the exposure
     /// that the light had, as far as the head has it. Between flash and continuous light the dial stays.
     pub fn mount(&self, light: &mut Light) {
-        let before = (axial_intensity(light), light.power.output.is_flash());
+        let before = (axial_intensity(light, None), light.power.output.is_flash());
+        // A measured light was another luminaire, whose distribution is not known here
+        let was_measured = light.photometric_file.take().is_some();
         if let Some(front) = self.front {
             (light.emitter, light.modifier) = (front, Modifier::default());
         }
         light.head = Some(self.head.clone());
         light.power.output = self.output;
         light.color.source = ColorSource::Kelvin(self.kelvin);
-        let change = (before.0 / axial_intensity(light)).log2();
-        let is_comparable = before.1 == self.output.is_flash() && change.is_finite();
+        let change = (before.0 / axial_intensity(light, None)).log2();
+        let is_comparable = before.1 == self.output.is_flash() && change.is_finite() && !was_measured;
         let stops = light.power.dial_stops + if is_comparable { change } else { 0.0 };
         light.power.dial_stops = self.head.dial.nearest(stops);
     }
@@ -72,7 +74,7 @@ pub struct ModifierModel {
 impl ModifierModel {
     /// Returns true if a light has this modifier.
     pub fn is_on(&self, light: &Light) -> bool {
-        self.emitter == light.emitter && self.modifier == light.modifier
+        self.emitter == light.emitter && self.modifier == light.modifier && light.photometric_file.is_none()
     }
 }
 
@@ -182,10 +184,10 @@ mod tests {
         let octa = NamedModifier::named("Octa 120").unwrap();
         let mut light = Light { modifier: octa.modifier, ..Light::new(octa.emitter, flash(400.0)) };
         light.power.dial_stops = -2.0;
-        let before = axial_intensity(&light);
+        let before = axial_intensity(&light, None);
         model("Large", flash(800.0)).mount(&mut light);
         assert_eq!(light.power.dial_stops, -3.0);
-        assert!((axial_intensity(&light) / before - 1.0).abs() < 1e-5);
+        assert!((axial_intensity(&light, None) / before - 1.0).abs() < 1e-5);
         assert_eq!((light.emitter, light.color.source), (octa.emitter, ColorSource::Kelvin(5600.0)));
         model("Small", flash(50.0)).mount(&mut light);
         assert_eq!(light.power.dial_stops, 0.0, "full power is the most there is");

@@ -1,8 +1,8 @@
 //! Finds the files that a scene refers to, and copies them beside a saved scene.
 
 use super::error::AssetError;
-use super::{atomic, obj, texture};
-use crate::scene::{AssetRef, Assets, Mesh, Scene, Texture, TextureRef, path_complaint};
+use super::{atomic, obj, photometric, texture};
+use crate::scene::{AssetRef, Assets, IntensityTable, Mesh, Scene, Texture, TextureRef, path_complaint};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -35,6 +35,8 @@ pub enum AssetSource {
     Mesh(Arc<Mesh>),
     /// A texture whose file no longer exists.
     Texture(Arc<Texture>),
+    /// The distribution of a photometric file that no longer exists.
+    Photometry(Arc<IntensityTable>),
 }
 
 impl<'a> AssetFiles<'a> {
@@ -82,7 +84,9 @@ impl AssetCopy {
         let AssetCopy { from, to } = self;
         let failed = |error| match from {
             AssetSource::File(file) => AssetError::Copy { error, path: file.clone() },
-            AssetSource::Mesh(_) | AssetSource::Texture(_) => AssetError::Copy { error, path: to.clone() },
+            AssetSource::Mesh(_) | AssetSource::Texture(_) | AssetSource::Photometry(_) => {
+                AssetError::Copy { error, path: to.clone() }
+            }
         };
         if to.exists() {
             let is_same = from.content(to).map_err(failed)? == std::fs::read(to).map_err(failed)?;
@@ -104,6 +108,7 @@ impl AssetSource {
     fn content(&self, to: &Path) -> std::io::Result<Vec<u8>> {
         match self {
             AssetSource::File(file) => std::fs::read(file),
+            AssetSource::Photometry(table) => Ok(photometric::encode(table).into_bytes()),
             AssetSource::Mesh(mesh) => Ok(obj::write(mesh).into_bytes()),
             AssetSource::Texture(image) => texture::encode(image, to).map_err(std::io::Error::other),
         }
@@ -115,6 +120,9 @@ impl AssetSource {
 fn in_memory(asset: &AssetRef<'_>, assets: &Assets) -> Option<AssetSource> {
     match asset {
         AssetRef::Mesh(path) if path.to_lowercase().ends_with(".obj") => assets.mesh(path).map(AssetSource::Mesh),
+        AssetRef::Photometry(path) if path.to_lowercase().ends_with(".ies") => {
+            assets.photometry(path).map(AssetSource::Photometry)
+        }
         AssetRef::Texture(reference) if matches!(**reference, TextureRef::File(_)) => {
             assets.texture(reference).map(AssetSource::Texture)
         }

@@ -2,6 +2,7 @@
 
 use super::asset_files::AssetFiles;
 use super::error::AssetError;
+use super::photometric::{PhotometricFile, read_photometric_file};
 use super::texture_memory::TextureMemory;
 use super::{figures, importers, texture};
 use crate::scene::{Asset, AssetField, AssetKey, AssetRef, Assets, Finding, Scene, TextureRef};
@@ -82,6 +83,11 @@ fn load(key: &AssetKey, files: AssetFiles<'_>, memory: &TextureMemory) -> Result
             let asset = Asset::Texture(memory.share(decoded.texture, &file)?);
             Ok(LoadedAsset { asset, warnings: warnings.into_iter().collect() })
         }
+        AssetRef::Photometry(path) => {
+            let PhotometricFile { table, warnings } = read_photometric_file(&files.find(path)?)?;
+            let warnings = warnings.into_iter().map(|warning| format!("{path}: {warning}")).collect();
+            Ok(LoadedAsset { asset: Asset::Photometry(Arc::new(table)), warnings })
+        }
     }
 }
 
@@ -90,6 +96,7 @@ fn consequence(key: &AssetKey) -> &'static str {
     match key {
         AssetRef::Mesh(_) | AssetRef::Figure(_) => "the object is left out",
         AssetRef::Texture(_) => "the surface is shown without its texture",
+        AssetRef::Photometry(_) => "the light shines as its emitter does, without its measured distribution",
     }
 }
 

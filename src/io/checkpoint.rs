@@ -56,6 +56,7 @@ fn content_hash(asset: &Asset) -> u64 {
     match asset {
         Asset::Mesh(mesh) => mesh.hash_content(&mut hasher),
         Asset::Texture(image) => (image.width, image.height, &image.rgb).hash(&mut hasher),
+        Asset::Photometry(table) => table.hash_content(&mut hasher),
         Asset::Figure(_) => {}
     }
     hasher.finish()

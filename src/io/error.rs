@@ -249,6 +249,22 @@ pub enum AssetError {
         /// The model file.
         path: PathBuf,
     },
+    /// The extension belongs to no photometric format.
+    #[error("Catchlight reads photometric files of the type .ies (IES LM-63) and .ldt (EULUMDAT): {}", path.display())]
+    UnknownPhotometricFormat {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The photometric file has a mistake.
+    #[error("not a usable {format} file: {message}: {}", path.display())]
+    BadPhotometry {
+        /// Name of the format.
+        format: &'static str,
+        /// The mistake, with its line where known.
+        message: String,
+        /// The file.
+        path: PathBuf,
+    },
     /// The texture could not be decoded.
     #[error("not a usable PNG or JPEG: {message}: {}", path.display())]
     BadTexture {

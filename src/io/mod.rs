@@ -27,6 +27,7 @@ mod locate;
 mod model;
 mod obj;
 mod parse_errors;
+mod photometric;
 mod picture;
 mod plain_file;
 mod presets;
@@ -50,6 +51,7 @@ pub use importers::{
 };
 pub use kept_picture::KeptPicture;
 pub use model::{ImportedModel, ModelLimits};
+pub use photometric::{PHOTOMETRIC_EXTENSIONS, PhotometricFile, is_photometric_file, read_photometric_file};
 pub use picture::{
     CaptureInfo, LayeredPicture, PictureFile, PictureFormat, PictureInfo, PicturePart, RenderedPicture,
     check_picture_file, encode_jpeg, encode_part, encode_png, export_picture, export_shown, picture_file, read_exr,

@@ -1,7 +1,8 @@
-//! The beam that a modifier leaves of a light: the transmission of a dish's or snoot's cone, a grid and barn doors by
-//! direction.
+//! The beam of a light by direction: what a modifier leaves of it, the transmission of a dish's or snoot's cone, a grid
+//! and barn doors; and a measured distribution.
 
 use super::emitter::{EmitterShape, cone_falloff_at};
+use super::measured_beam::MeasuredBeam;
 use crate::scene::{BarnDoors, Cone, Modifier};
 use glam::Vec3;
 use std::f32::consts::TAU;
@@ -9,7 +10,8 @@ use std::f32::consts::TAU;
 /// Width of the penumbra of a barn door's edge, degrees: the lamp behind it has a size.
 pub const DOOR_EDGE_DEG: f32 = 4.0;
 
-/// Angular transmission of a modifier, without its loss. The axis of a grid passes everything.
+/// Angular transmission of a modifier, without its loss, times a measured distribution. The axis of a grid passes
+/// everything.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beam {
     /// Cone of a dish or a snoot.
@@ -18,13 +20,24 @@ pub struct Beam {
     pub grid_deg: Option<f32>,
     /// Barn doors.
     pub doors: Option<BarnDoors>,
+    /// Measured distribution.
+    pub measured: Option<MeasuredBeam>,
 }
 
 impl Beam {
     /// Converts a modifier; none where it passes all directions alike.
     pub fn new(modifier: &Modifier) -> Option<Self> {
         let Modifier { loss_stops: _, scrim_stops: _, beam: cone, grid_deg, doors } = *modifier;
-        modifier.narrows().then_some(Beam { cone, grid_deg, doors })
+        modifier.narrows().then_some(Beam { cone, grid_deg, doors, measured: None })
+    }
+
+    /// As [`Beam::new`], for a light with a measured distribution.
+    pub fn with_measured(modifier: &Modifier, measured: Option<MeasuredBeam>) -> Option<Self> {
+        match (Self::new(modifier), measured) {
+            (beam, None) => beam,
+            (Some(beam), measured) => Some(Beam { measured, ..beam }),
+            (None, measured) => Some(Beam { cone: None, grid_deg: None, doors: None, measured }),
+        }
     }
 
     /// Returns the cones whose falloffs multiply: that of the dish or snoot, and that of the grid.
@@ -33,14 +46,19 @@ impl Beam {
         self.cone.into_iter().chain(grid)
     }
 
-    /// Returns the transmission in a unit direction of the light's frame (right, up, back: the axis is -Z), 0 to 1.
+    /// Returns the transmission in a unit direction of the light's frame (right, up, back: the axis is -Z): 0 to 1, and up
+    /// to [`MeasuredBeam::largest_factor`] with a measured distribution.
     pub fn transmission(&self, direction_light: Vec3) -> f32 {
         let Vec3 { x, y, z } = direction_light;
         let angle_rad = x.hypot(y).atan2(-z);
         let cone = self.cone.map_or(1.0, |cone| cone_falloff_at(angle_rad, cone.inner_deg, cone.outer_deg));
         let grid = self.grid_deg.map_or(1.0, |full_deg| cone_falloff_at(angle_rad, 0.0, full_deg));
         let doors = self.doors.map_or(1.0, |doors| doors_transmission(&doors, direction_light));
-        cone * grid * doors
+        let window = cone * grid * doors;
+        match &self.measured {
+            Some(measured) if window > 0.0 => window * measured.factor(direction_light),
+            _ => window,
+        }
     }
 }
 
@@ -63,12 +81,17 @@ pub fn doors_transmission(doors: &BarnDoors, direction_light: Vec3) -> f32 {
         * flap(doors.bottom_deg, -up_deg)
 }
 
-/// Returns the fraction of an emitter's flux that a beam transmits, 0 to 1; 1 for distant lights.
+/// Returns the fraction of an emitter's flux that a beam transmits, 0 to 1; 1 for distant lights. The flux of a measured
+/// light is that of its file.
 pub fn transmitted_flux_fraction(shape: &EmitterShape, beam: Option<&Beam>) -> f32 {
     let Some(beam) = beam.filter(|_| !shape.is_distant()) else { return 1.0 };
-    // Midpoint rule in polar and azimuth angle; only doors depend on the azimuth.
+    let is_bare = beam.cones().next().is_none() && beam.doors.is_none();
+    if is_bare && beam.measured.as_ref().is_some_and(|measured| !measured.is_panel()) {
+        return 1.0;
+    }
+    // Midpoint rule in polar and azimuth angle; only doors and measured distributions depend on the azimuth.
     const POLAR_STEPS: u32 = 180;
-    let azimuth_steps = if beam.doors.is_some() { 90 } else { 1 };
+    let azimuth_steps = if beam.doors.is_some() || beam.measured.is_some() { 90 } else { 1 };
     let widest = shape.widest_angle_rad();
     let (mut transmitted, mut total) = (0.0, 0.0);
     for i in 0..POLAR_STEPS {
@@ -80,6 +103,10 @@ pub fn transmitted_flux_fraction(shape: &EmitterShape, beam: Option<&Beam>) -> f
             transmitted += weight * beam.transmission(Vec3::new(sin * cos_azimuth, sin * sin_azimuth, -cos));
             total += weight;
         }
+    }
+    if let Some(measured) = &beam.measured {
+        let step_sr = widest / POLAR_STEPS as f32 * TAU / azimuth_steps as f32;
+        return transmitted * step_sr / measured.table().solid_angle_sr();
     }
     if total > 0.0 { transmitted / total } else { 1.0 }
 }

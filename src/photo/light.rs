@@ -3,18 +3,21 @@
 //! [`PhotometricLight`] is the only conversion from a [`Light`] to physics; the path tracer, the z-buffer renderer, the
 //! preview, the light meter and the editor's read-outs repack it.
 //!
-//! To add an emitter, add a variant to [`EmitterShape`] and its arms in `photo/emitter.rs`. To add a luminous intensity
-//! distribution, such as an IES table, add a variant to [`super::emitter::IntensityDistribution`] in the same file. The
+//! To add an emitter, add a variant to [`EmitterShape`] and its arms in `photo/emitter.rs`. A measured luminous intensity
+//! distribution is part of the [`Beam`]. To add another distribution by formula, add a variant to
+//! [`super::emitter::IntensityDistribution`] in the same file. The
 //! compiler then reports one missing arm per renderer: `TracedLight::new` (`raytrace/lights/mod.rs`),
 //! `RasterLights::add` (`raster/lights.rs`), `gpu_light` (`preview/lights/light_table.rs`); and, for a new shape only,
 //! `TracedLight`'s sampling, `irradiance_per_color` (`preview/lights/environment.rs`), `add_emitters`
 //! (`preview/geometry/draw_list.rs`) and the read-out `on_axis` (`editor/document/readout.rs`).
 
 use super::beam::{self, Beam};
-use super::emitter::EmitterShape;
+use super::emitter::{EmitterShape, IntensityDistribution};
 use super::light_color::light_rgb;
-use crate::scene::{Camera, Light, Modifier, Output, Scene};
+use super::measured_beam::MeasuredBeam;
+use crate::scene::{Assets, Camera, Emitter, IntensityTable, Light, Modifier, Output, Scene};
 use glam::{Affine3A, Vec3};
+use std::sync::Arc;
 
 /// The output of a light with its dial and the losses of modifier and gel, in the quantity in which it is stated. The unit is a
 /// photometric one for continuous light and the same with seconds for flash.
@@ -22,7 +25,7 @@ use glam::{Affine3A, Vec3};
 pub enum Strength {
     /// Luminous flux of the bare emitter, lm; or lm s.
     Flux(f32),
-    /// Luminous intensity on the axis, cd; or cd s.
+    /// Luminous intensity on the axis, cd; or cd s. Of a measured light, its largest intensity.
     AxialIntensity(f32),
     /// Illuminance normal to a sun's direction, or on a plane that faces half of a surround, lx.
     Illuminance(f32),
@@ -55,7 +58,7 @@ pub struct PhotometricLight {
     pub shape: EmitterShape,
     /// Rigid frame: right, up, back (the light shines along -Z), and the centre of the emitter.
     pub world_from_light: Affine3A,
-    /// Angular transmission of the modifier; none where it passes all directions alike.
+    /// Angular transmission of the modifier, times the measured distribution; none where all directions are alike.
     pub beam: Option<Beam>,
     /// Output.
     pub strength: Strength,
@@ -72,17 +75,29 @@ pub struct PhotometricLight {
 }
 
 impl PhotometricLight {
-    /// Converts a light of a scene.
-    pub fn new(scene: &Scene, light: &Light) -> Self {
-        Self::in_frame(light, scene.light_frame(light), &scene.camera)
+    /// Converts a light of a scene, whose measured distribution is among the assets.
+    pub fn new(scene: &Scene, assets: &Assets, light: &Light) -> Self {
+        Self::in_frame(light, assets.intensity_table(light), scene.light_frame(light), &scene.camera)
     }
 
-    /// Converts a light with a given frame.
-    pub fn in_frame(light: &Light, world_from_light: Affine3A, camera: &Camera) -> Self {
+    /// Converts a light with a given measured distribution and frame.
+    pub fn in_frame(
+        light: &Light,
+        table: Option<Arc<IntensityTable>>,
+        world_from_light: Affine3A,
+        camera: &Camera,
+    ) -> Self {
+        let table = table.filter(|_| !light.emitter.is_infinite());
+        let shape = match light.emitter {
+            // The measured distribution takes the place of the cone
+            Emitter::Spot { .. } if table.is_some() => EmitterShape::Point(IntensityDistribution::Isotropic),
+            ref emitter => EmitterShape::new(emitter),
+        };
+        let measured = table.map(|table| MeasuredBeam::new(table, &light.emitter));
         PhotometricLight {
-            shape: EmitterShape::new(&light.emitter),
+            shape,
             world_from_light,
-            beam: Beam::new(&light.modifier),
+            beam: Beam::with_measured(&light.modifier, measured),
             strength: Strength::new(light),
             tint: light_rgb(&light.color, camera.white_balance_k),
             exposure_time_s: integration_time_s(&light.power.output, camera),
@@ -102,9 +117,24 @@ impl PhotometricLight {
         -Vec3::from(self.world_from_light.matrix3.z_axis)
     }
 
-    /// Returns the luminous intensity on the axis, cd (cd s for flash); 0 for distant lights.
+    /// Returns the luminous intensity on the axis, cd (cd s for flash); 0 for distant lights. Of a measured light it is
+    /// the largest intensity, to which [`Beam::transmission`] is relative.
     pub fn axial_intensity(&self) -> f32 {
         self.axial(self.strength)
+    }
+
+    /// Returns the measured distribution.
+    pub fn measured(&self) -> Option<&MeasuredBeam> {
+        self.beam.as_ref()?.measured.as_ref()
+    }
+
+    /// Returns axial intensity over flux, 1/sr; none for distant lights. The flux of a measured light is that of its
+    /// file, whatever the shape of its emitter.
+    pub fn intensity_per_flux(&self) -> Option<f32> {
+        match self.measured() {
+            Some(measured) => Some(1.0 / measured.table().solid_angle_sr()),
+            None => self.shape.intensity_per_flux(),
+        }
     }
 
     /// Returns the illuminance of a distant light, lx; 0 for others.
@@ -119,32 +149,39 @@ impl PhotometricLight {
 
     /// Returns the luminous flux that leaves the modifier, lm (lm s for flash); 0 for distant lights.
     pub fn flux(&self) -> f32 {
-        let bare = self.shape.intensity_per_flux().map_or(0.0, |per_flux| self.axial_intensity() / per_flux);
+        let bare = self.intensity_per_flux().map_or(0.0, |per_flux| self.axial_intensity() / per_flux);
         bare * beam::transmitted_flux_fraction(&self.shape, self.beam.as_ref())
     }
 
-    /// Returns the output over an earlier output of the same light; exactly 1 where it did not change.
-    pub fn output_ratio(&self, earlier: Strength) -> f32 {
-        let axial = |strength| match strength {
-            Strength::Illuminance(lux) => lux,
-            Strength::Flux(_) | Strength::AxialIntensity(_) => self.axial(strength),
-        };
-        if self.strength == earlier { 1.0 } else { axial(self.strength) / axial(earlier) }
-    }
-
     fn axial(&self, strength: Strength) -> f32 {
-        match strength {
-            Strength::Flux(flux) => flux * self.shape.intensity_per_flux().unwrap_or(0.0),
-            Strength::AxialIntensity(intensity) => intensity,
-            Strength::Illuminance(_) => 0.0,
-        }
+        let in_place = self.measured().map_or(1.0, |measured| measured.tilt_factor(self.axis()));
+        in_place
+            * match strength {
+                Strength::Flux(flux) => flux * self.intensity_per_flux().unwrap_or(0.0),
+                Strength::AxialIntensity(intensity) => intensity,
+                Strength::Illuminance(_) => 0.0,
+            }
     }
 }
 
-/// Returns the luminous intensity of a light on its axis, cd (cd s for flash), dial, modifier and gel included; 0 for
-/// distant lights.
-pub fn axial_intensity(light: &Light) -> f32 {
-    PhotometricLight::in_frame(light, Affine3A::IDENTITY, &Camera::default()).axial_intensity()
+/// Returns the output of a light over an earlier one of it; exactly 1 where it did not change. Both outputs of a light
+/// with a photometric file must be in one quantity, flux or intensity: their ratio is then that of any distribution.
+pub fn output_ratio(light: &Light, earlier: Strength) -> f32 {
+    let now = Strength::new(light);
+    let per_flux = EmitterShape::new(&light.emitter).intensity_per_flux().unwrap_or(0.0);
+    let axial = |strength| match strength {
+        Strength::Illuminance(amount) | Strength::AxialIntensity(amount) => amount,
+        Strength::Flux(flux) => flux * per_flux,
+    };
+    if now == earlier { 1.0 } else { axial(now) / axial(earlier) }
+}
+
+/// Returns the luminous intensity of a light on its axis, or the largest of a measured one, cd (cd s for flash); dial,
+/// modifier and gel included, without the tilt of the lamp. 0 for distant lights.
+pub fn axial_intensity(light: &Light, table: Option<&Arc<IntensityTable>>) -> f32 {
+    // Straight down, where the output of a lamp is measured
+    let down = Affine3A::from_rotation_x(-0.5 * std::f32::consts::PI);
+    PhotometricLight::in_frame(light, table.cloned(), down, &Camera::default()).axial_intensity()
 }
 
 /// Returns the transmittance of a modifier's cloth, dish and scrim, the same in all directions, 0 to 1.
@@ -165,7 +202,7 @@ mod tests {
 
     #[test]
     fn the_output_ratio_follows_the_dial_in_every_unit() {
-        let (cone, scene) = (Cone { inner_deg: 20.0, outer_deg: 40.0 }, Scene::default());
+        let cone = Cone { inner_deg: 20.0, outer_deg: 40.0 };
         let spot = Emitter::Spot { inner_deg: cone.inner_deg, outer_deg: cone.outer_deg };
         let cases = [
             (spot, Output::Lumens(800.0)),
@@ -174,32 +211,31 @@ mod tests {
         ];
         for (emitter, output) in cases {
             let mut light = Light::new(emitter, output);
-            let before = PhotometricLight::new(&scene, &light);
-            assert_eq!(before.output_ratio(before.strength), 1.0);
+            let before = Strength::new(&light);
+            assert_eq!(output_ratio(&light, before), 1.0);
             light.power.dial_stops = -1.0;
-            let after = PhotometricLight::new(&scene, &light);
-            assert!((after.output_ratio(before.strength) - 0.5).abs() < 1e-6, "{emitter:?}");
+            assert!((output_ratio(&light, before) - 0.5).abs() < 1e-6, "{emitter:?}");
         }
     }
 
     #[test]
     fn a_mounted_gel_takes_its_loss_and_a_compensated_one_none() {
         let mut light = Light::new(Emitter::RoundPanel { diameter_m: 0.9 }, Output::Lumens(1000.0));
-        let bare = axial_intensity(&light);
+        let bare = axial_intensity(&light, None);
         light.color.gel = Gel::Mired(159.0);
-        assert!((axial_intensity(&light) / bare - (-0.85_f32).exp2()).abs() < 1e-6);
+        assert!((axial_intensity(&light, None) / bare - (-0.85_f32).exp2()).abs() < 1e-6);
         light.color.gel_loss_counts = false;
-        assert_eq!(axial_intensity(&light), bare);
+        assert_eq!(axial_intensity(&light, None), bare);
     }
 
     #[test]
     fn a_beam_cuts_flux_and_leaves_the_axis() {
         let scene = Scene::default();
         let mut light = Light::new(Emitter::RectPanel { width_m: 0.6, height_m: 0.9 }, Output::Lumens(1000.0));
-        let bare = PhotometricLight::new(&scene, &light);
+        let bare = PhotometricLight::new(&scene, &Assets::default(), &light);
         assert!((bare.flux() - 1000.0).abs() < 0.01 && bare.beam.is_none());
         light.modifier.grid_deg = Some(40.0);
-        let gridded = PhotometricLight::new(&scene, &light);
+        let gridded = PhotometricLight::new(&scene, &Assets::default(), &light);
         assert_eq!(gridded.axial_intensity(), bare.axial_intensity());
         assert!(gridded.flux() < 0.2 * bare.flux(), "{} lm", gridded.flux());
     }

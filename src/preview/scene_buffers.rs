@@ -1,15 +1,17 @@
-//! Bind group 0 of all passes: frame constants, surfaces, lights, light tiles, bounced light.
+//! Bind group 0 of all passes: frame constants, surfaces, lights, light tiles, bounced light, intensity tables.
 
 use super::geometry::surface::GpuSurface;
 use super::lights::bounced_light::BouncedLightTexture;
 use super::lights::environment::Environment;
+use super::lights::intensity_tables::IntensityTables;
 use super::lights::light_table::{Ambient, GpuLight, MAX_LIGHTS};
 use super::lights::light_tiles::TILES_BYTES;
 use crate::photo::irradiance_grid::{GridLayout, IrradianceGrid};
-use crate::scene::CameraFrame;
+use crate::scene::{CameraFrame, IntensityTable};
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu;
 use glam::Vec3;
+use std::sync::Arc;
 
 /// Near plane, metres. Reversed float depth allows a small value without loss of precision.
 pub(crate) const NEAR_M: f32 = 0.005;
@@ -108,6 +110,8 @@ pub(crate) struct FrameData<'a> {
     /// Lights per tile; none where they are not read.
     pub tiles: Option<&'a [[u32; 4]]>,
     pub bounced_light: &'a IrradianceGrid,
+    /// The measured distributions of the lights.
+    pub tables: &'a [Arc<IntensityTable>],
 }
 
 /// Size of the light buffer, bytes.
@@ -154,6 +158,7 @@ pub(crate) struct SceneBuffers {
     lights: wgpu::Buffer,
     tiles: wgpu::Buffer,
     bounced_light: BouncedLightTexture,
+    intensity_tables: IntensityTables,
 }
 
 impl SceneBuffers {
@@ -188,6 +193,14 @@ impl SceneBuffers {
                     },
                 ),
                 texture_entry(5, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+                texture_entry(
+                    6,
+                    wgpu::BindingType::Texture {
+                        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                        view_dimension: wgpu::TextureViewDimension::D2Array,
+                        multisampled: false,
+                    },
+                ),
             ],
         });
         let frame = uniform(device, "frame", size_of::<GpuFrame>() as u64);
@@ -195,8 +208,10 @@ impl SceneBuffers {
         let tiles = uniform(device, "light tiles", TILES_BYTES);
         let surfaces = GrowingBuffer::new(device, "surfaces", 64 * size_of::<GpuSurface>() as u64);
         let bounced_light = BouncedLightTexture::new(device);
-        let bind_group = bind(device, &layout, [&frame, &surfaces.buffer, &lights, &tiles], &bounced_light);
-        SceneBuffers { layout, bind_group, frame, surfaces, lights, tiles, bounced_light }
+        let intensity_tables = IntensityTables::new(device);
+        let buffers = [&frame, &surfaces.buffer, &lights, &tiles];
+        let bind_group = bind(device, &layout, buffers, &bounced_light, &intensity_tables);
+        SceneBuffers { layout, bind_group, frame, surfaces, lights, tiles, bounced_light, intensity_tables }
     }
 
     /// The layout of the bind group.
@@ -211,7 +226,7 @@ impl SceneBuffers {
 
     /// Uploads a frame's data.
     pub fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, data: &FrameData) {
-        let FrameData { frame, surfaces, lights, tiles, bounced_light } = *data;
+        let FrameData { frame, surfaces, lights, tiles, bounced_light, tables } = *data;
         queue.write_buffer(&self.frame, 0, bytemuck::bytes_of(frame));
         let lights: &[u8] = bytemuck::cast_slice(&lights[..lights.len().min(MAX_LIGHTS)]);
         if !lights.is_empty() {
@@ -222,9 +237,10 @@ impl SceneBuffers {
         }
         let new_surfaces = self.surfaces.write(device, queue, bytemuck::cast_slice(surfaces));
         let new_bounced_light = self.bounced_light.write(device, queue, bounced_light);
-        if new_surfaces || new_bounced_light {
+        let new_tables = self.intensity_tables.write(device, queue, tables);
+        if new_surfaces || new_bounced_light || new_tables {
             let buffers = [&self.frame, &self.surfaces.buffer, &self.lights, &self.tiles];
-            self.bind_group = bind(device, &self.layout, buffers, &self.bounced_light);
+            self.bind_group = bind(device, &self.layout, buffers, &self.bounced_light, &self.intensity_tables);
         }
     }
 }
@@ -239,10 +255,12 @@ fn bind(
     layout: &wgpu::BindGroupLayout,
     buffers: [&wgpu::Buffer; 4],
     bounced_light: &BouncedLightTexture,
+    intensity_tables: &IntensityTables,
 ) -> wgpu::BindGroup {
     let light = [
         wgpu::BindingResource::TextureView(&bounced_light.view),
         wgpu::BindingResource::Sampler(&bounced_light.sampler),
+        wgpu::BindingResource::TextureView(&intensity_tables.view),
     ];
     let resources = buffers.map(wgpu::Buffer::as_entire_binding).into_iter().chain(light);
     let entries: Vec<_> =

@@ -4,8 +4,8 @@ use super::approx::{self, max, min};
 use super::gbuffer_row::{PADDED_WIDTH, RowScalar, RowVec3, WIDTH};
 use crate::photo::beam::{Beam, doors_transmission};
 use crate::photo::emitter::{EmitterShape, IntensityDistribution};
-use crate::photo::{PhotometricLight, exposure};
-use crate::scene::{BarnDoors, Cone, Scene};
+use crate::photo::{MeasuredBeam, PhotometricLight, exposure};
+use crate::scene::{Assets, BarnDoors, Cone, Scene};
 use glam::{Mat3A, Vec3, Vec3A};
 use std::f32::consts::PI;
 
@@ -35,6 +35,8 @@ pub(super) struct RasterLight {
     cones: Vec<ConeFalloff>,
     /// Barn doors, and the rotation from world space into the light's frame.
     doors: Option<(BarnDoors, Mat3A)>,
+    /// Measured distribution, and the same rotation.
+    measured: Option<(MeasuredBeam, Mat3A)>,
 }
 
 /// The lights that are on.
@@ -66,7 +68,7 @@ impl IncidentLight {
 }
 
 impl RasterLights {
-    pub fn new(scene: &Scene, eye: Vec3) -> Self {
+    pub fn new(scene: &Scene, assets: &Assets, eye: Vec3) -> Self {
         let pixel_per_cd_s_m2 = exposure::pixel_per_cd_s_m2(scene);
         let mut all = RasterLights {
             lights: Vec::new(),
@@ -75,7 +77,7 @@ impl RasterLights {
             emission_scale: pixel_per_cd_s_m2 * scene.camera.shutter_s,
         };
         for light in scene.lights.iter().filter(|light| light.on) {
-            let light = PhotometricLight::new(scene, light);
+            let light = PhotometricLight::new(scene, assets, light);
             // A closed room blocks distant lights
             if light.shape.is_distant() && scene.room.is_some() {
                 continue;
@@ -114,6 +116,7 @@ impl RasterLights {
                 strength,
                 cones,
                 doors: light.beam.as_ref().and_then(|beam| beam.doors).map(|doors| (doors, light_from_world)),
+                measured: light.measured().map(|measured| (measured.clone(), light_from_world)),
             });
         }
     }
@@ -148,6 +151,15 @@ impl RasterLight {
                 if incident.factor[i] > 0.0 {
                     let away_light = *light_from_world * Vec3A::from(-incident.direction.at(i));
                     incident.factor[i] *= doors_transmission(doors, away_light.into());
+                }
+            }
+        }
+        // Measured distribution, only where there is light
+        if let Some((measured, light_from_world)) = &self.measured {
+            for i in 0..WIDTH {
+                if incident.factor[i] > 0.0 {
+                    let away_light = *light_from_world * Vec3A::from(-incident.direction.at(i));
+                    incident.factor[i] *= measured.factor(away_light.into());
                 }
             }
         }

@@ -47,7 +47,7 @@ const CHUNK_VERTICES: usize = 1 << 20;
 /// Draws a scene from a camera. A size of 0 counts as 1.
 pub fn draw(scene: &Scene, assets: &Assets, camera: &CameraFrame, size: (u32, u32), shading: Shading) -> Framebuffer {
     let mut framebuffer = Framebuffer::default();
-    Rasterizer::new(scene, assets).draw(scene, camera, size, shading, &mut framebuffer);
+    Rasterizer::new(scene, assets).draw(scene, assets, camera, size, shading, &mut framebuffer);
     framebuffer
 }
 
@@ -79,25 +79,26 @@ impl Rasterizer {
     pub fn draw(
         &mut self,
         scene: &Scene,
+        assets: &Assets,
         camera: &CameraFrame,
         size: (u32, u32),
         shading: Shading,
         framebuffer: &mut Framebuffer,
     ) {
-        self.draw_chunks(CHUNK_VERTICES, (scene, camera), size, shading, framebuffer);
+        self.draw_chunks(CHUNK_VERTICES, (scene, assets, camera), size, shading, framebuffer);
     }
 
     fn draw_chunks(
         &mut self,
         most_vertices: usize,
-        (scene, camera): (&Scene, &CameraFrame),
+        (scene, assets, camera): (&Scene, &Assets, &CameraFrame),
         size: (u32, u32),
         shading: Shading,
         framebuffer: &mut Framebuffer,
     ) {
         let Rasterizer { geometry, vertices, batches } = self;
         let viewport = Viewport::new(size);
-        let frame = FrameShading::new(geometry, RasterLights::new(scene, camera.position()), shading);
+        let frame = FrameShading::new(geometry, RasterLights::new(scene, assets, camera.position()), shading);
         framebuffer.clear(viewport, frame.background_radiance());
         // A chunk after the other, over what is nearer of those before
         for chunk in &geometry.chunks(most_vertices) {
@@ -127,7 +128,7 @@ mod tests {
         // Once per row that the ball crosses, and in a row that it does not.
         for corner in [0, 20 * 60] {
             assert_eq!(drawn.objects[corner], NO_OBJECT);
-            let expected = RasterLights::new(&scene, Vec3::Z * 2.0).background_radiance;
+            let expected = RasterLights::new(&scene, &Assets::default(), Vec3::Z * 2.0).background_radiance;
             assert!(expected.min_element() > 0.0);
             assert_eq!(drawn.picture.rgb[corner], expected.to_array());
         }
@@ -142,7 +143,7 @@ mod tests {
             let frame = |most_vertices| {
                 let mut framebuffer = Framebuffer::default();
                 let mut rasterizer = Rasterizer::new(&loaded.scene, &loaded.assets);
-                let seen = (&loaded.scene, &camera);
+                let seen = (&loaded.scene, &loaded.assets, &camera);
                 rasterizer.draw_chunks(most_vertices, seen, (150, 100), shading, &mut framebuffer);
                 (framebuffer, rasterizer.geometry.chunks(most_vertices).len())
             };

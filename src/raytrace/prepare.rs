@@ -79,7 +79,7 @@ pub(super) fn prepare_all(
     cache.store_merged(aggregate.merged().clone());
 
     // Convert the lights and derive the plan
-    let (lights, light_ids, layers) = convert_lights(scene, origin, assign_layers);
+    let (lights, light_ids, layers) = convert_lights(scene, assets, origin, assign_layers);
     let layer_times = layer_times(&lights, &layers);
     let lens = Lens::new(scene);
     let plan = RenderPlan::new(&tables.materials, &lights, &lens, aggregate.strand_count());
@@ -210,10 +210,11 @@ fn unique<'a>(meshes: impl Iterator<Item = &'a Arc<Mesh>>) -> Vec<Arc<Mesh>> {
 /// Converts the lights that are on, assigns their layers, and returns the ids of the scene's lights with them.
 fn convert_lights(
     scene: &Scene,
+    assets: &Assets,
     origin: Vec3,
     assign_layers: AssignLayers,
 ) -> (Vec<TracedLight>, Vec<LightId>, Vec<Layer>) {
-    let traced = |light| Some((TracedLight::new(&PhotometricLight::new(scene, light), origin)?, light));
+    let traced = |light| Some((TracedLight::new(&PhotometricLight::new(scene, assets, light), origin)?, light));
     let mut lights: Vec<(TracedLight, &Light)> = scene.lights.iter().filter(|l| l.on).filter_map(traced).collect();
     let layers = assign_layers(scene, &mut lights);
     let (lights, ids) = lights.into_iter().map(|(light, source)| (light, source.id)).unzip();

@@ -1,6 +1,6 @@
 //! The meshes and textures that a scene refers to, in memory. `io` loads them; renderers only read.
 
-use super::{Figure, Mesh, Object, Scene, Shape, Texture, TextureRef, tessellate};
+use super::{Figure, IntensityTable, Light, Mesh, Object, Scene, Shape, Texture, TextureRef, tessellate};
 use glam::Vec3;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -15,6 +15,8 @@ pub enum AssetRef<'a> {
     Figure(Box<Cow<'a, Figure>>),
     /// A texture, by its file.
     Texture(Cow<'a, TextureRef>),
+    /// A photometric file, by its path.
+    Photometry(Cow<'a, str>),
 }
 
 /// An asset reference that owns its path.
@@ -32,13 +34,14 @@ impl<'a> AssetRef<'a> {
             AssetRef::Mesh(path) => AssetRef::Mesh(Cow::Owned(path.into_owned())),
             AssetRef::Figure(figure) => AssetRef::figure(Cow::Owned(figure.into_owned())),
             AssetRef::Texture(texture) => AssetRef::Texture(Cow::Owned(texture.into_owned())),
+            AssetRef::Photometry(path) => AssetRef::Photometry(Cow::Owned(path.into_owned())),
         }
     }
 
     /// Returns the path of the file that holds the asset; `None` for assets that are part of the program.
     pub fn path(&self) -> Option<&str> {
         match self {
-            AssetRef::Mesh(path) => Some(path),
+            AssetRef::Mesh(path) | AssetRef::Photometry(path) => Some(path),
             AssetRef::Figure(_) => None,
             AssetRef::Texture(texture) => Some(texture.path()),
         }
@@ -54,6 +57,8 @@ pub enum Asset {
     Figure(FigureMeshes),
     /// An image.
     Texture(Arc<Texture>),
+    /// A measured luminous intensity distribution.
+    Photometry(Arc<IntensityTable>),
 }
 
 /// The meshes of a figure.
@@ -81,7 +86,8 @@ impl Asset {
             (Asset::Mesh(a), Asset::Mesh(b)) => Arc::ptr_eq(a, b),
             (Asset::Texture(a), Asset::Texture(b)) => Arc::ptr_eq(a, b),
             (Asset::Figure(a), Asset::Figure(b)) => Arc::ptr_eq(&a.fine, &b.fine),
-            (Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_), _) => false,
+            (Asset::Photometry(a), Asset::Photometry(b)) => Arc::ptr_eq(a, b),
+            (Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) | Asset::Photometry(_), _) => false,
         }
     }
 }
@@ -114,6 +120,11 @@ impl Assets {
         self.insert(AssetRef::Texture(Cow::Owned(texture)), Asset::Texture(image));
     }
 
+    /// Adds the distribution of a photometric file.
+    pub fn insert_photometry(&mut self, path: impl Into<String>, table: Arc<IntensityTable>) {
+        self.insert(AssetRef::Photometry(Cow::Owned(path.into())), Asset::Photometry(table));
+    }
+
     /// Adds all assets of another collection.
     pub fn extend(&mut self, other: Assets) {
         self.loaded.extend(other.loaded);
@@ -136,7 +147,7 @@ impl Assets {
             AssetRef::Figure(figure) => {
                 scene.objects.iter().any(|o| matches!(&o.shape, Shape::Figure(used) if **used == ***figure))
             }
-            AssetRef::Mesh(_) | AssetRef::Texture(_) => true,
+            AssetRef::Mesh(_) | AssetRef::Texture(_) | AssetRef::Photometry(_) => true,
         };
         self.loaded.retain(|key, _| is_used(key));
     }
@@ -160,15 +171,29 @@ impl Assets {
     pub fn figure(&self, figure: &Figure) -> Option<FigureMeshes> {
         match self.get(&AssetRef::figure(Cow::Borrowed(figure)))? {
             Asset::Figure(meshes) => Some(meshes),
-            Asset::Mesh(_) | Asset::Texture(_) => None,
+            Asset::Mesh(_) | Asset::Texture(_) | Asset::Photometry(_) => None,
         }
+    }
+
+    /// Returns the distribution of a photometric file, by its path.
+    pub fn photometry(&self, path: &str) -> Option<Arc<IntensityTable>> {
+        match self.get(&AssetRef::Photometry(Cow::Borrowed(path)))? {
+            Asset::Photometry(table) => Some(table),
+            Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) => None,
+        }
+    }
+
+    /// Returns the measured distribution of a light; none for one without a photometric file, or whose file is not
+    /// loaded.
+    pub fn intensity_table(&self, light: &Light) -> Option<Arc<IntensityTable>> {
+        self.photometry(light.photometric_file.as_deref()?)
     }
 
     /// Returns a texture.
     pub fn texture(&self, texture: &TextureRef) -> Option<Arc<Texture>> {
         match self.get(&AssetRef::Texture(Cow::Borrowed(texture)))? {
             Asset::Texture(image) => Some(image),
-            Asset::Mesh(_) | Asset::Figure(_) => None,
+            Asset::Mesh(_) | Asset::Figure(_) | Asset::Photometry(_) => None,
         }
     }
 
@@ -220,7 +245,7 @@ impl Assets {
     fn get_mesh(&self, key: &AssetRef<'_>) -> Option<Arc<Mesh>> {
         match self.get(key)? {
             Asset::Mesh(mesh) => Some(mesh),
-            Asset::Texture(_) | Asset::Figure(_) => None,
+            Asset::Texture(_) | Asset::Figure(_) | Asset::Photometry(_) => None,
         }
     }
 }

@@ -246,6 +246,7 @@ impl SceneChange {
             aim,
             roll_deg,
             emitter,
+            photometric_file,
             modifier,
             head,
             power,
@@ -274,7 +275,10 @@ impl SceneChange {
                 || *aim != new.aim
                 || *roll_deg != new.roll_deg
                 || *emitter != new.emitter
-                || *visible_to_camera != new.visible_to_camera,
+                || *photometric_file != new.photometric_file
+                || *visible_to_camera != new.visible_to_camera
+                // What was traced of a measured light does not say its peak intensity for a flux
+                || (photometric_file.is_some() && power.output.states_flux() != new.power.output.states_flux()),
         };
         change.compare_modifiers(modifier, &new.modifier);
         change.compare_powers(power, &new.power);

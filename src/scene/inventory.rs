@@ -41,6 +41,13 @@ pub enum AssetField {
         /// The material's texture slot.
         texture: TextureSlot,
     },
+    /// The photometric file of `lights[index]`.
+    Photometry {
+        /// Index into [`Scene::lights`].
+        index: usize,
+    },
+    /// The photometric file of a light of another variant than the shown one.
+    VariantPhotometry,
 }
 
 impl Scene {
@@ -56,7 +63,13 @@ impl Scene {
             let shape = shape_asset(&object.shape).map(|asset| (AssetField::Shape { index }, asset));
             shape.into_iter().chain(object_materials(index, object).flat_map(texture_assets))
         });
-        room_materials(self).flat_map(texture_assets).chain(objects)
+        let lights = self.lights.iter().enumerate().filter_map(|(index, light)| {
+            let path = light.photometric_file.as_deref()?;
+            Some((AssetField::Photometry { index }, AssetRef::Photometry(Cow::Borrowed(path))))
+        });
+        let stored = self.variants.stored_photometric_files();
+        let stored = stored.map(|path| (AssetField::VariantPhotometry, AssetRef::Photometry(Cow::Borrowed(path))));
+        room_materials(self).flat_map(texture_assets).chain(objects).chain(lights).chain(stored)
     }
 
     /// Returns true if some surface emits light, hidden objects included.
@@ -72,6 +85,11 @@ impl Scene {
                 self.object_place(index, if is_file { "shape.path" } else { "shape" })
             }
             AssetField::Texture { material, texture } => self.texture_place(material, texture.field()),
+            AssetField::VariantPhotometry => "variants".to_owned(),
+            AssetField::Photometry { index } => {
+                let name = self.lights.get(index).map_or("", |light| &light.name);
+                format!("lights[{index}] {name:?} photometric_file")
+            }
         }
     }
 
@@ -135,7 +153,7 @@ fn shape_asset(shape: &Shape) -> Option<AssetRef<'_>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Extent, Figure, MaterialTextures, TextureRef};
+    use crate::scene::{Emitter, Extent, Figure, Light, MaterialTextures, Output, TextureRef};
 
     #[test]
     fn materials_and_assets_are_listed_with_the_fields_that_hold_them() {
@@ -154,6 +172,10 @@ mod tests {
                 object("Chair", Shape::MeshFile { path: "chair.obj".to_owned() }),
                 object("Bust", Shape::Figure(Box::new(figure))),
             ],
+            lights: vec![Light {
+                photometric_file: Some("lamp.ies".to_owned()),
+                ..Light::new(Emitter::Point, Output::Lumens(100.0))
+            }],
             ..Scene::default()
         };
         assert_eq!(scene.materials().count(), 3 + 2 + 2);
@@ -165,6 +187,7 @@ mod tests {
             ("objects[0] \"Chair\" part_materials[0].material.base_color_texture", image("iris.png")),
             ("objects[1] \"Bust\" shape", AssetRef::figure(Cow::Owned(figure))),
             ("objects[1] \"Bust\" part_materials[0].material.base_color_texture", image("iris.png")),
+            ("lights[0] \"Light\" photometric_file", AssetRef::Photometry(Cow::Borrowed("lamp.ies"))),
         ];
         assert_eq!(assets, expected.map(|(place, asset)| (place.to_owned(), asset)));
     }

@@ -57,7 +57,8 @@ impl Role {
 pub enum Output {
     /// Continuous luminous flux, lm.
     Lumens(f32),
-    /// Continuous intensity on the axis, cd.
+    /// Continuous intensity on the axis, cd; of a light with a photometric file its largest intensity, as with all
+    /// outputs that name the axis.
     Candela(f32),
     /// Continuous, metered on the axis: `lux` at `distance_m`, far field (I = E d²).
     LuxAt {
@@ -87,6 +88,11 @@ impl Output {
     /// Returns true for a flash, whose exposure does not depend on the shutter time.
     pub fn is_flash(&self) -> bool {
         matches!(self, Output::FlashWs { .. } | Output::FlashGuideNumber(_))
+    }
+
+    /// Returns true if it states luminous flux or energy; intensity or illuminance otherwise.
+    pub fn states_flux(&self) -> bool {
+        matches!(self, Output::Lumens(_) | Output::FlashWs { .. })
     }
 }
 
@@ -171,6 +177,9 @@ pub struct Light {
     pub roll_deg: f32,
     /// Luminous surface.
     pub emitter: Emitter,
+    /// Path of the photometric file (IES, EULUMDAT) with its measured luminous intensity by direction, which takes the
+    /// place of the emitter's own; relative to the scene file. The power says how much light it gives.
+    pub photometric_file: Option<String>,
     /// Loss and beam shape.
     pub modifier: Modifier,
     /// The head behind it, if it is one of the list of gear: its dial. The output is in `power`.
@@ -200,6 +209,7 @@ impl Light {
             aim: Aim::Point(Vec3::NEG_Z),
             roll_deg: 0.0,
             emitter,
+            photometric_file: None,
             modifier: Modifier::default(),
             head: None,
             power: Power { output, dial_stops: 0.0 },

@@ -24,8 +24,8 @@ impl MeteredSetup<'_> {
         let corner_deg = frame.half_extent.length().atan().to_degrees();
         let to_camera = (camera - light.position).normalize_or_zero();
         let beam_deg = match light.emitter {
-            Emitter::Spot { outer_deg, .. } => 0.5 * outer_deg,
-            Emitter::Point | Emitter::Sphere { .. } => 180.0,
+            Emitter::Spot { outer_deg, .. } if light.photometric_file.is_none() => 0.5 * outer_deg,
+            Emitter::Spot { .. } | Emitter::Point | Emitter::Sphere { .. } => 180.0,
             _ => PANEL_BEAM_DEG,
         };
         // Angles of grids and dishes go from edge to edge

@@ -108,8 +108,9 @@ impl<'a> MeteredSetup<'a> {
     /// there is none, and for lights that shine in all directions or from afar.
     pub fn aim_of(&self, light: &Light) -> Option<Vec3> {
         match light.emitter {
-            Emitter::Point | Emitter::Sphere { .. } | Emitter::Sun { .. } | Emitter::Surround => None,
-            Emitter::Spot { .. } | Emitter::RectPanel { .. } | Emitter::RoundPanel { .. } => match light.aim {
+            Emitter::Point | Emitter::Sphere { .. } if light.photometric_file.is_none() => None,
+            Emitter::Sun { .. } | Emitter::Surround => None,
+            _ => match light.aim {
                 Aim::Angles { .. } => self.first_on_axis(light).map(|surface| surface.position),
                 Aim::Point(_) | Aim::Object { .. } => Some(self.scene.aim_point(&light.aim, light.position)),
             },

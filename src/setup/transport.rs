@@ -99,7 +99,7 @@ impl SetupTransport {
                 has_dial: !light.emitter.is_infinite(),
                 dial: present.dial(),
                 dial_stops: present.power.dial_stops,
-                energy_lm_s: full_energy_lm_s(scene, light),
+                energy_lm_s: full_energy_lm_s(scene, assets, light),
                 at,
                 own_lux_s: own_lux_s * power,
                 subject_lux_s: lux_s_of(&setup.reading, light_id) * power,
@@ -220,11 +220,11 @@ fn lux_s_of(reading: &Reading, light: Option<LightId>) -> f32 {
 
 /// Returns the luminous energy of a light in one exposure at full power, before modifier and gel, lm s; 0 for sun and
 /// surround.
-fn full_energy_lm_s(scene: &Scene, light: &Light) -> f32 {
+fn full_energy_lm_s(scene: &Scene, assets: &Assets, light: &Light) -> f32 {
     let mut bare = light.clone();
     bare.power.dial_stops = 0.0;
     bare.modifier = Modifier::default();
     bare.color.gel_loss_counts = false;
-    let photometric = PhotometricLight::new(scene, &bare);
+    let photometric = PhotometricLight::new(scene, assets, &bare);
     photometric.flux() * photometric.exposure_time_s
 }

@@ -174,6 +174,10 @@ fn round_text(place: &LightBearing) -> String {
 
 /// Returns the modifier's name if it is one that is sold, else its front with its accessories.
 pub fn modifier_text(light: &Light, units: Units) -> String {
+    if let Some(path) = &light.photometric_file {
+        let name = path.rsplit('/').next().unwrap_or(path);
+        return format!("Measured light {name}{}", accessories(&light.modifier).concat());
+    }
     match NamedModifier::of(&light.emitter, &light.modifier) {
         Some(named) => named.name.to_owned(),
         None => front_text(&light.emitter, units) + &accessories(&light.modifier).concat(),

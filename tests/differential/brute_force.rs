@@ -230,7 +230,7 @@ impl FrontEmitter {
             (Emitter::Surround, Output::Lux(lux)) => f64::from(lux) / PI,
             other => panic!("a light without extent or in other units: {other:?}"),
         };
-        let luminance = PhotometricLight::new(scene, light).tint.as_dvec3() * luminance;
+        let luminance = PhotometricLight::new(scene, &Assets::default(), light).tint.as_dvec3() * luminance;
         let is_visible = light.visible_to_camera;
         FrontEmitter { shape: light.emitter, centre: light.position.as_dvec3(), axes, luminance, is_visible }
     }

@@ -28,6 +28,7 @@ mod dials;
 mod files;
 mod gear;
 mod help;
+mod measured_light;
 mod panels;
 mod placing;
 mod preferences;

@@ -72,6 +72,40 @@ fn changed_models_are_errors_or_meshes_whose_numbers_are_finite() {
     });
 }
 
+const IES: &str = "IESNA:LM-63-2002\n[LUMINAIRE] Lamp\nTILT=INCLUDE\n1\n2\n0 90\n1 0.5\n1 -1 1.5 3 3 1 1 0.5 -0.5 0\n0.9 1 60\n\
+    0 45 90\n0 90 180\n100 80 5\n100 60 4\n100 40 3\n";
+const FLOODLIGHT: &str = "IESNA91\nTILT=NONE\n1 1000 1 3 2 2 2 0 0 0\n1 1 60\n-20 0 20\n0 30\n5 80 5\n4 60 4\n";
+
+/// Returns a EULUMDAT file of four C-planes.
+fn eulumdat() -> String {
+    let head =
+        "Works\n1\n4\n4\n90\n3\n45\nreport\nLamp\n1\na.ldt\ntoday\n600\n300\n80\n600\n300\n0\n0\n0\n0\n100\n90\n1\n0";
+    let lamps = "1\n1\nLED\n2000\n3000\n80\n20";
+    let ratios = ["0.5"; 10].join("\n");
+    format!("{head}\n{lamps}\n{ratios}\n0\n90\n180\n270\n0\n45\n90\n300\n200\n10\n300\n150\n5\n")
+}
+
+#[test]
+fn changed_photometric_files_are_errors_or_lights_whose_numbers_are_finite() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = [" 1e38", " -1", " 0", "\n360\n", " 1e-30", "nan", "inf", "TILT=", "999999999", ",", "\r", "\u{1a}"];
+    for (name, corpus) in [("ies", vec![IES.into(), FLOODLIGHT.into()]), ("ldt", vec![eulumdat().into_bytes()])] {
+        let path = folder.path().join("a").with_extension(name);
+        fuzz(name, &corpus, &words, |input| {
+            fs::write(&path, input).unwrap();
+            let Ok(file) = io::read_photometric_file(&path) else { return false };
+            let table = file.table;
+            assert!(table.flux_lm() > 0.0 && table.flux_lm().is_finite() && table.peak_cd().is_finite());
+            assert!(table.solid_angle_sr() > 0.0 && table.solid_angle_sr() < 12.6, "{}", table.solid_angle_sr());
+            for direction in [glam::Vec3::X, glam::Vec3::NEG_Y, glam::Vec3::NEG_Z, glam::Vec3::Z] {
+                // Interpolation rounds
+                assert!((0.0..=1.0001 * table.peak_cd()).contains(&table.candela_towards(direction)));
+            }
+            true
+        });
+    }
+}
+
 /// Returns a small picture with all values from dark to bright.
 fn gradient(width: u32, height: u32) -> Picture {
     let value = |i: u32| [i as f32 / 700.0, (i % 31) as f32 / 31.0, (i % 7) as f32];

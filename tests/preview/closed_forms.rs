@@ -53,7 +53,7 @@ fn integrate_panel(light: &Light, point: Vec3) -> f32 {
         Emitter::RoundPanel { diameter_m } => (Vec2::splat(diameter_m * 0.5), PI * diameter_m * diameter_m / 4.0, true),
         _ => unreachable!("only panels are integrated here"),
     };
-    let (luminance, steps) = (axial_intensity(light) / area, 400);
+    let (luminance, steps) = (axial_intensity(light, None) / area, 400);
     let mut sum = 0.0;
     for i in 0..steps * steps {
         let cell = Vec2::new((i % steps) as f32 + 0.5, (i / steps) as f32 + 0.5) * 2.0 / steps as f32 - 1.0;
@@ -76,7 +76,7 @@ fn a_sphere_partly_below_the_horizon_is_clipped() {
         let lamp = light(0, place, Vec3::ZERO, Emitter::Sphere { radius_m }, Output::Lumens(1000.0));
         let scene = floor_under(lamp);
         let point = Vec3::new(1.2, 0.0, 0.0);
-        let luminance = axial_intensity(&scene.lights[0]) / (PI * radius_m * radius_m);
+        let luminance = axial_intensity(&scene.lights[0], None) / (PI * radius_m * radius_m);
         let expected = luminance * cosine_weighted_cap(place - point, radius_m);
         // Without shadows: where the floor intersects the sphere, its centre is in the floor's shadow
         assert_close(unshadowed_lux_at(&mut renderer, &scene, point), expected, 0.015, &format!("{height} m up"));

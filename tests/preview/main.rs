@@ -30,6 +30,7 @@ mod drafts;
 mod each_light;
 mod hair;
 mod lens;
+mod measured_light;
 #[path = "../studio/people.rs"]
 mod people;
 mod picture;

@@ -12,6 +12,7 @@ mod analytic_glass;
 mod analytic_light;
 mod analytic_transmission;
 mod formulas;
+mod measured_light;
 mod meter;
 mod modifiers;
 mod noise;

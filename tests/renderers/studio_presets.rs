@@ -3,7 +3,7 @@
 
 use catchlight::io::presets;
 use catchlight::photo::{PhotometricLight, exposure};
-use catchlight::scene::{Emitter, Light, Role, Scene};
+use catchlight::scene::{Assets, Emitter, Light, Role, Scene};
 use std::f32::consts::PI;
 
 /// Returns the direct luminous exposure (lux s) of one light on a receptor at its aim that faces it.
@@ -20,7 +20,7 @@ fn metered_lux_s(scene: &Scene, light: &Light) -> f32 {
         Emitter::Point | Emitter::Sphere { .. } | Emitter::Spot { .. } => 1.0 / (distance * distance),
         Emitter::Sun { .. } | Emitter::Surround => return f32::NAN,
     };
-    let light = PhotometricLight::new(scene, light);
+    let light = PhotometricLight::new(scene, &Assets::default(), light);
     light.axial_intensity() * per_axial_intensity * light.exposure_time_s
 }
 

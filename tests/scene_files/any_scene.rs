@@ -160,7 +160,8 @@ fn emitter_and_output() -> impl Strategy<Value = (Emitter, Output)> {
     })
 }
 
-fn light(objects: usize) -> impl Strategy<Value = Light> {
+/// On the heap: the nested strategies are too large for the stack of a test in a build without optimisation.
+fn light(objects: usize) -> BoxedStrategy<Light> {
     let source =
         prop_oneof![number(1000.0, 25_000.0).prop_map(ColorSource::Kelvin), color(1000.0).prop_map(ColorSource::Rgb)];
     let gel =
@@ -169,13 +170,13 @@ fn light(objects: usize) -> impl Strategy<Value = Light> {
     (
         (name(), 0..Role::ALL.len(), vector(-10.0, 10.0), aim(objects), number(-180.0, 180.0)),
         (power, source, gel, any::<[bool; 5]>(), proptest::option::of(head())),
-        modifier(),
+        (modifier(), proptest::option::of(Just("lamps/down light.ies".to_owned()))),
     )
         .prop_map(
             |(
                 (name, role, position, aim, roll_deg),
                 (((emitter, output), dial_stops), source, gel, [on, seen, muted, locked, gel_loss_counts], head),
-                modifier,
+                (modifier, photometric_file),
             )| Light {
                 id: LightId(0),
                 name,
@@ -184,6 +185,7 @@ fn light(objects: usize) -> impl Strategy<Value = Light> {
                 aim,
                 roll_deg,
                 emitter,
+                photometric_file: photometric_file.filter(|_| !emitter.is_infinite()),
                 // Light from infinity can only be weakened.
                 modifier: if emitter.is_infinite() { Modifier::loss(modifier.loss_stops) } else { modifier },
                 head,
@@ -195,6 +197,7 @@ fn light(objects: usize) -> impl Strategy<Value = Light> {
                 locked,
             },
         )
+        .boxed()
 }
 
 fn head() -> impl Strategy<Value = Head> {

@@ -50,6 +50,12 @@ fn path(folder: &Path, loaded: &Loaded, settings: &Settings) -> PathBuf {
         (AssetRef::Texture(texture), Asset::Texture(image)) => Some((texture.to_string(), &image.rgb)),
         _ => None,
     });
+    let tables = loaded.assets.iter().filter_map(|(key, asset)| match asset {
+        Asset::Photometry(table) => Some((key.path(), table)),
+        _ => None,
+    });
+    let by_path: BTreeMap<_, _> = tables.collect();
+    by_path.into_values().for_each(|table| table.hash_content(&mut hasher));
     let by_text: BTreeMap<_, _> = textures.collect();
     by_text.into_iter().for_each(|texture| texture.hash(&mut hasher));
     folder.join(format!("reference-{:016x}.exr", hasher.finish()))

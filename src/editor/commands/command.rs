@@ -90,6 +90,10 @@ pub enum Command {
     Import,
     /// Imports this model.
     ImportPath(PathBuf),
+    /// Gives this light (none: a new one) the photometric file that a dialog selects.
+    MeasuredLight(Option<LightId>),
+    /// Gives this light (none: a new one) this photometric file.
+    MeasuredLightPath(Option<LightId>, PathBuf),
     /// Sets the texture of the material of this item's part (none: the item's own) from a dialog.
     ChooseTexture(Item, Option<String>, TextureSlot),
     /// Writes the rendered picture to a file that a dialog selects.

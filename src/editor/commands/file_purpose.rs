@@ -14,6 +14,8 @@ pub enum FilePurpose {
     SaveScene,
     /// A model to import.
     ImportModel,
+    /// A photometric file for this light; for a new one, none.
+    OpenMeasuredLight(Option<LightId>),
     /// A texture for a material.
     OpenTexture,
     /// The file to write the rendered picture to.
@@ -31,6 +33,7 @@ impl FilePurpose {
             FilePurpose::OpenScene => "Open studio".to_owned(),
             FilePurpose::SaveScene => "Save studio".to_owned(),
             FilePurpose::ImportModel => format!("Import {} model", io::model_format_names()),
+            FilePurpose::OpenMeasuredLight(_) => "Choose photometric file".to_owned(),
             FilePurpose::OpenTexture => "Choose texture".to_owned(),
             FilePurpose::ExportPicture => "Export picture".to_owned(),
             FilePurpose::ExportSheet(_) => "Export set-up sheet".to_owned(),
@@ -45,7 +48,10 @@ impl FilePurpose {
             | FilePurpose::ExportPicture
             | FilePurpose::ExportSheet(_)
             | FilePurpose::ExportLesson(..) => true,
-            FilePurpose::OpenScene | FilePurpose::ImportModel | FilePurpose::OpenTexture => false,
+            FilePurpose::OpenScene
+            | FilePurpose::ImportModel
+            | FilePurpose::OpenMeasuredLight(_)
+            | FilePurpose::OpenTexture => false,
         }
     }
 
@@ -63,6 +69,7 @@ impl FilePurpose {
             FilePurpose::OpenScene => ("Catchlight studio, or rendered picture".to_owned(), &["ron", "exr"]),
             FilePurpose::SaveScene => ("Catchlight studio".to_owned(), &["ron"]),
             FilePurpose::ImportModel => (format!("{} model", io::model_format_names()), io::model_extensions()),
+            FilePurpose::OpenMeasuredLight(_) => ("IES, EULUMDAT".to_owned(), io::PHOTOMETRIC_EXTENSIONS),
             FilePurpose::OpenTexture => ("Picture".to_owned(), io::TEXTURE_EXTENSIONS),
             FilePurpose::ExportPicture => ("Picture".to_owned(), &["png", "jpg", "tif", "exr"]),
             FilePurpose::ExportSheet(_) => ("Set-up sheet".to_owned(), SHEET_EXTENSIONS),

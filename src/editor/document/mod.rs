@@ -13,6 +13,7 @@ pub mod gear_shelf;
 pub mod history;
 pub mod item;
 pub mod light_mix;
+pub mod measured_light;
 pub mod model_size;
 pub mod placement;
 pub mod readout;

@@ -86,7 +86,7 @@ pub fn place_light(scene: &Scene, assets: &Assets, selected: Option<Item>, light
     light.position = target + (around * cos + Vec3::Y * sin) * distance_m;
     light.position.y = light.position.y.max(0.1);
     // The dial ends at full power.
-    let stops = readout::dial_for(scene, light, stops).min(0.0);
+    let stops = readout::dial_for(scene, assets, light, stops).min(0.0);
     light.power.dial_stops = light.head.as_ref().map_or(stops, |head| head.dial.nearest(stops));
 }
 
@@ -245,7 +245,9 @@ mod tests {
         }
         let roles: Vec<Role> = scene.lights.iter().map(|l| l.role).collect();
         assert_eq!(roles, [Role::Key, Role::Fill, Role::Rim]);
-        let over = |i: usize| readout::stops_over_camera(&scene, readout::at_aim(&scene, &scene.lights[i]).lux_s);
+        let over = |i: usize| {
+            readout::stops_over_camera(&scene, readout::at_aim(&scene, &Assets::default(), &scene.lights[i]).lux_s)
+        };
         assert!(over(0).abs() < 0.2 && (over(1) + 2.0).abs() < 0.2, "{} {}", over(0), over(1));
         assert!(scene.lights[0].position.x < 0.0, "the key comes from the camera's left");
         assert!(scene.lights[2].position.z < 0.0, "the rim comes from behind");

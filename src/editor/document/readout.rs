@@ -3,8 +3,8 @@
 use crate::photo::beam::Beam;
 use crate::photo::emitter::EmitterShape;
 use crate::photo::{PhotometricLight, Strength, exposure};
-use crate::scene::{Light, Scene};
-use glam::Vec2;
+use crate::scene::{Assets, Light, Scene};
+use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
 /// The reading of a light at its aim point, on a surface that faces it.
@@ -19,9 +19,9 @@ pub struct AimReadout {
 }
 
 /// Returns the reading of a light at its own aim point, on or off.
-pub fn at_aim(scene: &Scene, light: &Light) -> AimReadout {
+pub fn at_aim(scene: &Scene, assets: &Assets, light: &Light) -> AimReadout {
     let distance = scene.aim_vector(&light.aim, light.position).length();
-    let light = PhotometricLight::new(scene, light);
+    let light = PhotometricLight::new(scene, assets, light);
     let illuminance = on_axis(&light, distance);
     AimReadout {
         distance_m: (!light.shape.is_distant()).then_some(distance),
@@ -38,7 +38,10 @@ fn on_axis(light: &PhotometricLight, distance_m: f32) -> f32 {
     let intensity = light.axial_intensity();
     let h = distance_m.max(1e-3);
     match light.shape {
-        EmitterShape::Point(_) | EmitterShape::Sphere { .. } => intensity / (h * h),
+        EmitterShape::Point(_) | EmitterShape::Sphere { .. } => {
+            let on_axis = light.measured().map_or(1.0, |measured| measured.factor(Vec3::NEG_Z));
+            intensity * on_axis / (h * h)
+        }
         EmitterShape::Rect { half_size_m } => match &light.beam {
             Some(beam) => intensity * beamed_panel(beam, half_size_m, false, h),
             None => {
@@ -87,8 +90,8 @@ pub fn stops_over_camera(scene: &Scene, lux_s: f32) -> f32 {
 
 /// Returns the power dial, in whole thirds of a stop, that puts this light `stops` over the camera's setting at its
 /// aim.
-pub fn dial_for(scene: &Scene, light: &Light, stops: f32) -> f32 {
-    let over = stops_over_camera(scene, at_aim(scene, light).lux_s);
+pub fn dial_for(scene: &Scene, assets: &Assets, light: &Light, stops: f32) -> f32 {
+    let over = stops_over_camera(scene, at_aim(scene, assets, light).lux_s);
     if over.is_finite() {
         ((light.power.dial_stops + stops - over) * 3.0).round() / 3.0
     } else {
@@ -110,7 +113,7 @@ mod tests {
     }
 
     fn on_axis(light: &Light, distance_m: f32) -> f32 {
-        super::on_axis(&PhotometricLight::new(&Scene::default(), light), distance_m)
+        super::on_axis(&PhotometricLight::new(&Scene::default(), &Assets::default(), light), distance_m)
     }
 
     #[test]
@@ -152,11 +155,11 @@ mod tests {
         light.aim = Aim::Point(Vec3::ZERO);
         for (stops, nd_stops) in [(0.0, 0.0), (-1.0, 0.0), (1.5, 0.0), (0.0, 3.0)] {
             scene.camera.nd_stops = nd_stops;
-            light.power.dial_stops = dial_for(&scene, &light, stops);
-            let over = stops_over_camera(&scene, at_aim(&scene, &light).lux_s);
+            light.power.dial_stops = dial_for(&scene, &Assets::default(), &light, stops);
+            let over = stops_over_camera(&scene, at_aim(&scene, &Assets::default(), &light).lux_s);
             assert!((over - stops).abs() < 1.0 / 6.0 + 1e-3, "{over} for {stops}");
         }
         scene.camera.f_number = 0.0;
-        assert!(dial_for(&scene, &light, 0.0).is_finite());
+        assert!(dial_for(&scene, &Assets::default(), &light, 0.0).is_finite());
     }
 }

@@ -63,6 +63,8 @@ fn file_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     ui.separator();
     let import = format!("Import {}\u{2026}", io::model_format_names());
     entry(ui, true, &import, "Bring in a model", Command::Import, out);
+    let measured = Command::MeasuredLight(None);
+    entry(ui, true, "Measured light (IES, EULUMDAT)\u{2026}", "Add a light from a photometric file", measured, out);
     entry(
         ui,
         state.has_picture,

@@ -366,7 +366,7 @@ impl Viewport {
         let side = self.view.side.filter(|_| input.central_view == CentralView::Studio);
         if let Some(side) = side {
             floor_plan::paint_grid(&painter, &frame, rect, side, self.view.target, self.view.half_height_m());
-            floor_plan::paint_distances(&painter, scene, &frame, rect, input.selection);
+            floor_plan::paint_distances(&painter, input.document, &frame, rect, input.selection);
         }
         if traced.is_some() || self.traced_view.has_failed() {
             markers::paint_note(&painter, rect, &self.traced_view.status(), side.is_some());

@@ -1,10 +1,11 @@
 //! File operations in the background and their results.
 
 use crate::editor::document::files::{ImportedModel, OpenedStudio, RecoveredStudio, StudioSource};
+use crate::editor::document::measured_light::MeasuredFile;
 use crate::editor::window::recovery::Unsaved;
 use crate::io::FileStamp;
 use crate::raytrace::Film;
-use crate::scene::{AssetKey, Assets};
+use crate::scene::{AssetKey, Assets, LightId};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Weak;
@@ -17,6 +18,8 @@ pub enum TaskResult {
     Opened(StudioSource, Result<Box<OpenedStudio>, String>),
     /// An imported model or an error.
     Imported(Result<Box<ImportedModel>, String>),
+    /// A photometric file for a light (none: a new one), or an error.
+    Measured(Option<LightId>, Result<Box<MeasuredFile>, String>),
     /// Assets of the scene: those loaded, those requested, and warnings.
     Assets(Assets, BTreeSet<AssetKey>, Vec<String>),
     /// The unsaved studios of windows that have ended.

@@ -16,6 +16,7 @@ pub mod rescue;
 pub mod run_command;
 pub mod run_export;
 pub mod run_file_command;
+mod run_measured_light;
 pub mod run_preferences;
 pub mod run_recovery;
 pub mod run_setup;

@@ -161,6 +161,8 @@ impl App {
             | Command::SaveAs
             | Command::Import
             | Command::ImportPath(_)
+            | Command::MeasuredLight(_)
+            | Command::MeasuredLightPath(..)
             | Command::ChooseTexture(..)
             | Command::ExportPicture
             | Command::ExportSheet(_)

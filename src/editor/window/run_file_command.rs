@@ -34,6 +34,8 @@ impl App {
             Command::ImportPath(path) => {
                 self.background.tasks.start(move || TaskResult::Imported(files::import(path)), waker(ctx));
             }
+            Command::MeasuredLight(light) => self.ask_for_path(FilePurpose::OpenMeasuredLight(light), ctx),
+            Command::MeasuredLightPath(light, path) => self.read_measured_light(light, path, ctx),
             Command::ChooseTexture(item, part, slot) => {
                 self.session.texture_for = Some((item, part, slot));
                 self.ask_for_path(FilePurpose::OpenTexture, ctx);
@@ -126,6 +128,7 @@ impl App {
             FilePurpose::OpenScene => self.replace_with(StudioSource::File(path), ctx),
             FilePurpose::SaveScene => self.save_to(path, ctx),
             FilePurpose::ImportModel => self.run_file_command(Command::ImportPath(path), ctx),
+            FilePurpose::OpenMeasuredLight(light) => self.read_measured_light(light, path, ctx),
             FilePurpose::OpenTexture => self.use_texture(&path),
             FilePurpose::ExportPicture => self.export_picture_to(path, ctx),
             FilePurpose::ExportSheet(units) => self.export_sheet_to(path, units, ctx),
@@ -170,6 +173,10 @@ impl App {
             TaskResult::Imported(Ok(imported)) => self.bring_in(*imported),
             TaskResult::Imported(Err(message)) => {
                 self.toasts.error(format!("The model could not be brought in. {message}"))
+            }
+            TaskResult::Measured(light, Ok(measured)) => self.use_measured_light(light, *measured),
+            TaskResult::Measured(_, Err(message)) => {
+                self.toasts.error(format!("The photometric file could not be used. {message}"))
             }
             TaskResult::Assets(assets, tried, warnings) => {
                 self.document.insert_assets(assets, &tried);
@@ -335,8 +342,12 @@ impl App {
             match ending.as_str() {
                 "ron" | "exr" => out.push(Command::OpenPath(path)),
                 _ if ModelFormat::of(&path).is_some() => out.push(Command::ImportPath(path)),
+                _ if io::is_photometric_file(&path) => {
+                    out.push(Command::MeasuredLightPath(self.light_for_drop(), path));
+                }
                 _ => self.toasts.error(format!(
-                    "Only studios (.ron), rendered pictures (.exr) and models ({}) can be dropped here, not {}.",
+                    "Only studios (.ron), rendered pictures (.exr), models ({}) and photometric files (.ies, .ldt) can be \
+                     dropped here, not {}.",
                     io::model_extension_list(),
                     path.display()
                 )),
@@ -353,7 +364,7 @@ impl App {
         let rect = ctx.content_rect();
         painter.rect_filled(rect, 0.0, Color32::from_black_alpha(170));
         let models = io::model_extension_list();
-        let text = format!("Drop a studio (.ron) to open it, a model ({models}) to bring it in");
+        let text = format!("Drop a studio (.ron) to open it, a model ({models}) or light (.ies, .ldt) to bring it in");
         painter.text(rect.center(), Align2::CENTER_CENTER, text, egui::FontId::proportional(20.0), Color32::WHITE);
     }
 

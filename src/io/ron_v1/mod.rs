@@ -258,6 +258,8 @@ struct LightV1 {
     #[serde(default, skip_serializing_if = "is_default")]
     roll_deg: f32,
     emitter: EmitterV1,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    photometric_file: Option<String>,
     #[serde(default, skip_serializing_if = "is_default")]
     modifier: ModifierV1,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -301,6 +303,16 @@ enum EmitterV1 {
     RoundPanel { diameter_m: f32 },
     Sun { angular_diameter_deg: f32 },
     Surround,
+}
+
+/// The photometric file of a variant's light where it differs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "PhotometricFileChange", deny_unknown_fields)]
+enum PhotometricFileChangeV1 {
+    /// None.
+    NoFile,
+    /// This one, by its path.
+    File(String),
 }
 
 /// A light modifier: losses and beam shapers.
@@ -460,6 +472,7 @@ difference! {
         aim: AimV1,
         roll_deg: f32,
         emitter: EmitterV1,
+        photometric_file: PhotometricFileChangeV1,
         modifier: ModifierV1,
         head: HeadChangeV1,
         output: OutputV1,

@@ -4,7 +4,7 @@ use super::convert::{aim_to, focus_to, light_from, light_to};
 use super::defaults::is_studio_name;
 use super::head::{head_change_from, head_change_to};
 use super::names::{LightIds, ObjectIds, UnknownName};
-use super::{CameraDifferenceV1, LightDifferenceV1, VariantV1, VariantsV1};
+use super::{CameraDifferenceV1, LightDifferenceV1, PhotometricFileChangeV1, VariantV1, VariantsV1};
 use crate::scene::{
     CameraDifference, Gel, Light, LightDifference, LightId, ObjectId, Scene, SetupDifference, Variant, VariantId,
     Variants,
@@ -110,6 +110,10 @@ fn light_difference_from(
         aim: file.aim.map(|aim| objects.aim(aim, place)).transpose()?,
         roll_deg: file.roll_deg,
         emitter: file.emitter.map(Into::into),
+        photometric_file: file.photometric_file.map(|change| match change {
+            PhotometricFileChangeV1::NoFile => None,
+            PhotometricFileChangeV1::File(path) => Some(path),
+        }),
         modifier: file.modifier.map(Into::into),
         head: file.head.map(head_change_from),
         output: file.output.map(Into::into),
@@ -203,6 +207,10 @@ fn light_difference_to(scene: &Scene, light: &Light, difference: &LightDifferenc
         aim: difference.aim.map(|aim| aim_to(scene, &aim, position)),
         roll_deg: difference.roll_deg,
         emitter: difference.emitter.map(Into::into),
+        photometric_file: difference.photometric_file.clone().map(|file| match file {
+            None => PhotometricFileChangeV1::NoFile,
+            Some(path) => PhotometricFileChangeV1::File(path),
+        }),
         modifier: difference.modifier.map(Into::into),
         head: difference.head.as_ref().map(|head| head_change_to(head.as_ref())),
         output: difference.output.map(Into::into),

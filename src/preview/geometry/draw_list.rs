@@ -141,7 +141,7 @@ impl DrawList {
 
     fn add_emitters(&mut self, scene: &Scene, uploads: &mut Uploads) {
         for light in scene.lights.iter().filter(|light| light.on && light.visible_to_camera) {
-            let (id, light) = (light.id, PhotometricLight::new(scene, light));
+            let (id, light) = (light.id, PhotometricLight::new(scene, uploads.assets, light));
             let (emitter, scale) = match light.shape {
                 EmitterShape::Sphere { radius_m } => (EmitterSurface::Sphere, Vec3::splat(radius_m)),
                 EmitterShape::Rect { half_size_m } => (EmitterSurface::Square, half_size_m.extend(1.0)),
@@ -150,7 +150,8 @@ impl DrawList {
             };
             let Some(area_m2) = light.shape.projected_area_m2() else { continue };
             let world_from_emitter = light.world_from_light * Affine3A::from_scale(scale);
-            let luminance = picture_scale(&light, scene) * light.axial_intensity() / area_m2;
+            let on_axis = light.measured().map_or(1.0, |measured| measured.factor(Vec3::NEG_Z));
+            let luminance = picture_scale(&light, scene) * light.axial_intensity() * on_axis / area_m2;
             if !world_from_emitter.is_finite() || !luminance.is_finite() {
                 continue;
             }

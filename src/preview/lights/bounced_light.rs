@@ -68,7 +68,7 @@ fn create(device: &wgpu::Device, counts: UVec3) -> wgpu::Texture {
 }
 
 /// Converts a value to IEEE 754 binary16, from 0 to the largest finite one.
-fn half(value: f32) -> u16 {
+pub(super) fn half(value: f32) -> u16 {
     const LARGEST: f32 = 65504.0;
     let clamped = if value > 0.0 { value.min(LARGEST) } else { 0.0 };
     // The product has the exponent of the half; adding half of the last place rounds.

@@ -1,13 +1,15 @@
 //! The light buffer: photometric lights packed for the shaders in picture units (exposure, shutter and white balance
 //! folded in), so that a shader's sum is the scene-linear pixel.
 
+use super::intensity_tables::MAX_TABLES;
 use crate::photo::beam::Beam;
 use crate::photo::emitter::{EmitterShape, IntensityDistribution};
-use crate::photo::{PhotometricLight, exposure};
-use crate::scene::{Cone, LightId, Material, Room, Scene};
+use crate::photo::{MeasuredBeam, PhotometricLight, exposure};
+use crate::scene::{Assets, Cone, IntensityTable, LightId, Material, Room, Scene};
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 /// Maximum number of lights; further lights are not shown.
 pub(crate) const MAX_LIGHTS: usize = 256;
@@ -53,7 +55,8 @@ pub(crate) struct GpuLight {
     pub cull_radius_m: f32,
     /// Half angles of the beam, radians: inner, outer, and the cutoff of a grid.
     pub beam_rad: [f32; 3],
-    /// 1 if a modifier narrows the beam, else 0.
+    /// 0 if all directions are alike; else 1, and twice the layer of the measured distribution plus one, where there is
+    /// one.
     pub has_beam: u32,
     /// Angles of the barn doors from the axis, radians: left, right, top, bottom.
     pub doors_rad: [f32; 4],
@@ -128,6 +131,8 @@ pub(crate) struct LightTable {
     pub ids: Vec<LightId>,
     /// The photometric lights from which `lights` were packed.
     pub photometric: Vec<PhotometricLight>,
+    /// The measured distributions of `lights`, in the order of the texture's layers.
+    pub tables: Vec<Arc<IntensityTable>>,
     /// One past the last light of each group.
     pub ends: [u32; 4],
     pub ambient: Ambient,
@@ -135,18 +140,18 @@ pub(crate) struct LightTable {
 
 impl LightTable {
     /// Packs the lights of a scene, or one of them alone.
-    pub fn new(scene: &Scene, bounce_estimate: bool, only: Option<LightId>) -> Self {
+    pub fn new(scene: &Scene, assets: &Assets, bounce_estimate: bool, only: Option<LightId>) -> Self {
         let mut table = LightTable::default();
         let mut lights: Vec<(GpuLight, LightId, PhotometricLight)> = Vec::new();
         let mut flux = Vec3::ZERO;
         for light in scene.lights.iter().filter(|light| light.on && only.is_none_or(|id| id == light.id)) {
-            let (id, light) = (light.id, PhotometricLight::new(scene, light));
+            let (id, light) = (light.id, PhotometricLight::new(scene, assets, light));
             if light.shape.is_distant() && scene.room.is_some() {
                 // A closed room blocks suns and surrounds
                 continue;
             }
             let scale = picture_scale(&light, scene);
-            let Some(gpu) = gpu_light(&light, scale) else {
+            let Some(mut gpu) = gpu_light(&light, scale) else {
                 let irradiance = scale * light.illuminance();
                 table.ambient.irradiance += irradiance;
                 table.ambient.void_radiance += if light.visible_to_camera { irradiance / PI } else { Vec3::ZERO };
@@ -154,6 +159,9 @@ impl LightTable {
             };
             if !is_usable(&gpu) || lights.len() == MAX_LIGHTS {
                 continue;
+            }
+            if let Some(measured) = light.measured() {
+                gpu.has_beam |= 2 * table.layer_of(measured.table());
             }
             flux += scale * light.flux();
             lights.push((gpu, id, light));
@@ -175,6 +183,16 @@ impl LightTable {
 }
 
 impl LightTable {
+    /// Returns the layer of a measured distribution plus one; 0 beyond [`MAX_TABLES`].
+    fn layer_of(&mut self, table: &Arc<IntensityTable>) -> u32 {
+        let known = self.tables.iter().position(|known| Arc::ptr_eq(known, table));
+        let layer = known.unwrap_or(self.tables.len());
+        if known.is_none() && layer < MAX_TABLES {
+            self.tables.push(table.clone());
+        }
+        if layer < MAX_TABLES { layer as u32 + 1 } else { 0 }
+    }
+
     /// Returns true for the groups that have lights.
     pub fn groups_present(&self) -> [bool; 4] {
         let [delta, spheres, rects, discs] = self.ends;
@@ -212,7 +230,8 @@ fn gpu_light(light: &PhotometricLight, scale: Vec3) -> Option<GpuLight> {
         doors_rad: [OPEN_RAD; 4],
         ..GpuLight::zeroed()
     };
-    gpu.cull_radius_m = (scale.max_element() * intensity / (PI * CULL_RADIANCE)).max(0.0).sqrt();
+    let largest = intensity * light.measured().map_or(1.0, MeasuredBeam::largest_factor);
+    gpu.cull_radius_m = (scale.max_element() * largest / (PI * CULL_RADIANCE)).max(0.0).sqrt();
     match light.shape {
         EmitterShape::Point(IntensityDistribution::Isotropic) => gpu.kind = LightKind::Point as u32,
         EmitterShape::Point(IntensityDistribution::Cone(Cone { inner_deg, outer_deg })) => {
@@ -281,7 +300,7 @@ mod tests {
         let lamp = light(Emitter::Point, Output::Lumens(1000.0));
         let scale = |light: &Light, shutter_s: f32| {
             let scene = Scene { camera: Camera { shutter_s, ..Camera::default() }, ..Scene::default() };
-            picture_scale(&PhotometricLight::in_frame(light, Affine3A::IDENTITY, &scene.camera), &scene)
+            picture_scale(&PhotometricLight::in_frame(light, None, Affine3A::IDENTITY, &scene.camera), &scene)
         };
         let (slow, fast) = (1.0 / 60.0, 1.0 / 120.0);
         assert_eq!(scale(&flash, slow), scale(&flash, fast));
@@ -304,10 +323,10 @@ mod tests {
     fn lights_that_are_off_are_left_out_and_lights_without_size_stay_finite() {
         let mut scene = Scene { lights: vec![light(Emitter::Point, Output::Lumens(1000.0))], ..Scene::default() };
         scene.lights[0].on = false;
-        assert!(LightTable::new(&scene, true, None).lights.is_empty());
+        assert!(LightTable::new(&scene, &Assets::default(), true, None).lights.is_empty());
         scene.lights[0] = light(Emitter::RectPanel { width_m: 0.0, height_m: 0.0 }, Output::Lumens(1000.0));
-        assert_eq!(LightTable::new(&scene, true, None).lights.len(), 1);
+        assert_eq!(LightTable::new(&scene, &Assets::default(), true, None).lights.len(), 1);
         scene.lights[0].power.dial_stops = f32::NAN;
-        assert!(LightTable::new(&scene, true, None).lights.is_empty());
+        assert!(LightTable::new(&scene, &Assets::default(), true, None).lights.is_empty());
     }
 }

@@ -2,5 +2,6 @@
 
 pub mod bounced_light;
 pub mod environment;
+pub mod intensity_tables;
 pub mod light_table;
 pub mod light_tiles;

@@ -1,7 +1,7 @@
 //! Gizmos of lights, camera and floor grid, as lines and tinted triangles.
 
 use crate::preview::input::{Overlay, Pick};
-use crate::scene::{Camera, CameraFrame, Emitter, Light, Role, Scene};
+use crate::scene::{Assets, Camera, CameraFrame, Emitter, IntensityTable, Light, Role, Scene};
 use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Vec2, Vec3};
 use std::f32::consts::TAU;
@@ -81,14 +81,14 @@ impl LineStyle {
 
 impl Gizmos {
     /// Builds the gizmos that `overlay` enables, sized for `view`.
-    pub fn new(scene: &Scene, overlay: &Overlay, view: &CameraFrame) -> Self {
+    pub fn new(scene: &Scene, assets: &Assets, overlay: &Overlay, view: &CameraFrame) -> Self {
         let mut gizmos = Gizmos::default();
         if overlay.grid {
             gizmos.add_grid(view.position());
         }
         if overlay.light_gizmos {
             for light in &scene.lights {
-                gizmos.add_light(scene, light, overlay, view);
+                gizmos.add_light(scene, assets, light, overlay, view);
             }
         }
         if let Some(aspect) = overlay.camera_gizmo.filter(|aspect| *aspect > 0.0) {
@@ -145,7 +145,7 @@ impl Gizmos {
         }
     }
 
-    fn add_light(&mut self, scene: &Scene, light: &Light, overlay: &Overlay, view: &CameraFrame) {
+    fn add_light(&mut self, scene: &Scene, assets: &Assets, light: &Light, overlay: &Overlay, view: &CameraFrame) {
         if light.emitter == Emitter::Surround {
             return;
         }
@@ -168,15 +168,47 @@ impl Gizmos {
         self.handles.push((pick, first..self.lines.len()));
 
         let reach = scene.aim_vector(&light.aim, light.position).length();
-        if let Emitter::Spot { inner_deg, outer_deg } = light.emitter {
+        if let Some(table) = assets.intensity_table(light) {
+            let planes = if selected { 16 } else { 4 };
+            self.add_photometric_solid(&table, &frame, style.faint(0.6), planes, (0.3 * reach).clamp(0.2, 0.8));
+        } else if let Emitter::Spot { inner_deg, outer_deg } = light.emitter {
             self.add_cone(&frame, style, inner_deg.min(outer_deg), outer_deg, reach.clamp(0.4, 2.5));
         }
-        if has_direction(&light.emitter) && reach > 1e-3 {
+        if (has_direction(&light.emitter) || light.photometric_file.is_some()) && reach > 1e-3 {
             self.line(
                 LineStyle { through: 0.12, ..style.faint(if selected { 0.7 } else { 0.28 }) },
                 light.position,
                 scene.aim_point(&light.aim, light.position),
             );
+        }
+    }
+
+    /// Adds the photometric solid of a measured light: half planes of it, whose distance from the light is the intensity,
+    /// with the largest at `radius_m`.
+    fn add_photometric_solid(
+        &mut self,
+        table: &IntensityTable,
+        frame: &Affine3A,
+        style: LineStyle,
+        planes: usize,
+        radius_m: f32,
+    ) {
+        const ROWS: usize = 36;
+        for plane in 0..planes {
+            let horizontal_deg = 360.0 * plane as f32 / planes as f32;
+            let turn = Vec2::from_angle(horizontal_deg.to_radians());
+            // Denser near the axis, where beams are narrow
+            let points: Vec<Vec3> = (0..=ROWS)
+                .map(|row| {
+                    let vertical_deg = 180.0 * (row as f32 / ROWS as f32).powi(2);
+                    let (across, ahead) = vertical_deg.to_radians().sin_cos();
+                    let length = radius_m * table.candela_at(vertical_deg, horizontal_deg) / table.peak_cd();
+                    frame.transform_point3(length * Vec3::new(across * turn.x, across * turn.y, -ahead))
+                })
+                .collect();
+            for pair in points.windows(2).filter(|pair| pair[0] != pair[1]) {
+                self.line(style, pair[0], pair[1]);
+            }
         }
     }
 
@@ -349,7 +381,7 @@ mod tests {
         let scene = studio();
         let frame = scene.camera_frame(1.5);
         let overlay = Overlay { light_gizmos: true, ..Overlay::default() };
-        let gizmos = Gizmos::new(&scene, &overlay, &frame);
+        let gizmos = Gizmos::new(&scene, &Assets::default(), &overlay, &frame);
         assert!(gizmos.lines.iter().all(|line| line.from.iter().all(|x| x.is_finite())));
         let line = gizmos.lines[gizmos.handles[0].1.start];
         let corner = frame.project(line.from.into()).unwrap() * Vec2::new(600.0, 400.0);
@@ -360,7 +392,7 @@ mod tests {
     #[test]
     fn the_default_overlay_has_no_gizmos() {
         let scene = studio();
-        let gizmos = Gizmos::new(&scene, &Overlay::default(), &scene.camera_frame(1.5));
+        let gizmos = Gizmos::new(&scene, &Assets::default(), &Overlay::default(), &scene.camera_frame(1.5));
         assert!(gizmos.lines.is_empty() && gizmos.tints.is_empty());
     }
 }

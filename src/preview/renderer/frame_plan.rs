@@ -49,7 +49,7 @@ impl FramePlan {
         // Collect the scene's draw calls and lights
         let options = input.options;
         let list = DrawList::new(input.scene, &input.overlay, uploads);
-        let lights = LightTable::new(input.scene, options.bounce_estimate, options.only_light);
+        let lights = LightTable::new(input.scene, input.assets, options.bounce_estimate, options.only_light);
         let is_cpu = uploads.gpu.is_cpu;
         let is_draft = options.draft && is_cpu && output == Output::Display;
 

@@ -199,7 +199,7 @@ impl PreviewRenderer {
         let mut plan = self.plan(input, output);
         let stale = self.upload(&mut plan, input.options.shadow_resolution);
         let gizmos = match output {
-            Output::Display => Gizmos::new(input.scene, &input.overlay, &input.frame),
+            Output::Display => Gizmos::new(input.scene, input.assets, &input.overlay, &input.frame),
             Output::Linear => Gizmos::default(),
         };
         self.encode(input, &plan, &stale, &gizmos);
@@ -233,6 +233,7 @@ impl PreviewRenderer {
             lights: &lights.lights,
             tiles: tiles.as_deref(),
             bounced_light,
+            tables: &lights.tables,
         };
         self.buffers.write(device, queue, &data);
         self.caches.draws.write(device, queue, &list.draws);

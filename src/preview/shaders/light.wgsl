@@ -124,7 +124,31 @@ fn flap(open_rad: f32, angle_rad: f32) -> f32 {
     return select(saturate((open_rad - angle_rad) / DOOR_EDGE_RAD + 0.5), 1.0, open_rad >= 0.5 * PI);
 }
 
-// Returns the transmission of a light's modifier in a unit direction away from the light; twin of `photo::beam`.
+// Cosine to the axis of a panel under which its luminance stays; twin of `photo::measured_beam`.
+const LEAST_PANEL_COSINE: f32 = 0.1;
+
+// Returns the factor of a measured distribution in a unit direction away from the light; twin of `photo::measured_beam`.
+fn measured_factor(light: u32, away: vec3f) -> f32 {
+    let layer = lights[light].has_beam >> 1u;
+    if layer == 0u {
+        return 1.0;
+    }
+    let right = dot(away, normalize(lights[light].right));
+    let up = dot(away, normalize(lights[light].up));
+    let ahead = dot(away, lights[light].axis);
+    let across = sqrt(right * right + up * up);
+    // The plane does not matter on the axis
+    let turn = atan2(up, select(right, 1.0, across < 1e-6)) / (2.0 * PI);
+    let down = sqrt(saturate(atan2(across, ahead) / PI));
+    let size = vec2f(textureDimensions(intensity_tables));
+    let at = (vec2f(fract(turn), down) * (size - 1.0) + 0.5) / size;
+    let relative = textureSampleLevel(intensity_tables, bounced_light_sampler, at, layer - 1u, 0.0).x;
+    let kind = lights[light].kind;
+    return relative / select(1.0, max(ahead, LEAST_PANEL_COSINE), kind == KIND_RECT || kind == KIND_DISC);
+}
+
+// Returns the transmission of a light's modifier, times its measured distribution, in a unit direction away from the
+// light; twin of `photo::beam`.
 fn beam_transmission(light: u32, away: vec3f) -> f32 {
     if lights[light].has_beam == 0u {
         return 1.0;
@@ -139,7 +163,7 @@ fn beam_transmission(light: u32, away: vec3f) -> f32 {
         part *= flap(doors.x, -across) * flap(doors.y, across) * flap(doors.z, up) * flap(doors.w, -up);
         part = select(0.0, part, cosine > 0.0);
     }
-    return part;
+    return part * measured_factor(light, away);
 }
 
 // Returns the mean transmission over points of a panel, weighted by their contribution to the receiver.

@@ -81,8 +81,8 @@ struct Light {
     color: vec3f,
     // Distance at which the light falls under 1/256 of display white, metres; 0 for a sun, which has none.
     cull_radius_m: f32,
-    // Half angles of the beam, radians: inner, outer, and the cutoff of a grid. `has_beam` is 1 if a modifier narrows
-    // it.
+    // Half angles of the beam, radians: inner, outer, and the cutoff of a grid. `has_beam` is 0 if all directions are
+    // alike; else 1, and twice the layer of the measured distribution plus one, where there is one.
     beam_rad: vec3f,
     has_beam: u32,
     // Angles of the barn doors from the axis, radians: left, right, top, bottom.
@@ -99,6 +99,8 @@ struct Light {
 // in z.
 @group(0) @binding(4) var bounced_light: texture_3d<f32>;
 @group(0) @binding(5) var bounced_light_sampler: sampler;
+// Measured intensities relative to their peaks, a layer a table: see `intensity_tables.rs`.
+@group(0) @binding(6) var intensity_tables: texture_2d_array<f32>;
 
 const TILE_COLUMNS: u32 = 16u;
 const TILE_ROWS: u32 = 9u;

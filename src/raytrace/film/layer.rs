@@ -1,6 +1,7 @@
 //! Film layers: one per light, so that lights can be dimmed and coloured after the render.
 
-use crate::photo::{PhotometricLight, Strength};
+use crate::photo::light::{integration_time_s, output_ratio};
+use crate::photo::{Strength, light_rgb};
 use crate::raytrace::lights::TracedLight;
 use crate::scene::{Light, LightId, Role, Scene};
 use glam::Vec3;
@@ -41,9 +42,7 @@ impl Member {
     /// has no light of the channel.
     fn factor(&self, scene: &Scene, lights: &HashMap<LightId, &Light>) -> [Option<f32>; 3] {
         let light = lights.get(&self.light).filter(|light| light.on);
-        let now = light.map_or(Vec3::ZERO, |light| {
-            shared_layer_tint(light, scene) * PhotometricLight::new(scene, light).output_ratio(self.strength)
-        });
+        let now = light.map_or(Vec3::ZERO, |light| exposed_tint(light, scene) * output_ratio(light, self.strength));
         [0, 1, 2]
             .map(|channel| (self.tint[channel] > 0.0 || now[channel] > 0.0).then(|| now[channel] / self.tint[channel]))
     }
@@ -69,7 +68,7 @@ impl Layer {
     /// The layer that the lights of a role share, of those that are on.
     pub fn of_role(role: Role, scene: &Scene) -> Self {
         let lights = scene.lights.iter().filter(|light| light.on && light.role == role);
-        let members = lights.map(|light| Member::new(light, shared_layer_tint(light, scene))).collect();
+        let members = lights.map(|light| Member::new(light, exposed_tint(light, scene))).collect();
         Layer { members, ..Layer::shared(&Self::name_of_role(role)) }
     }
 
@@ -107,15 +106,13 @@ impl Layer {
         let Some(traced) = self.traced else { return self.shared_factor(scene).unwrap_or(Vec3::ONE) };
         let light = self.light.and_then(|id| scene.light(id)).filter(|light| light.on);
         let Some(light) = light else { return Vec3::ZERO };
-        let light = PhotometricLight::new(scene, light);
-        light.tint * (light.output_ratio(traced) * light.exposure_time_s)
+        exposed_tint(light, scene) * output_ratio(light, traced)
     }
 }
 
-/// Colour times exposure time of a light in a shared layer.
-fn shared_layer_tint(light: &Light, scene: &Scene) -> Vec3 {
-    let light = PhotometricLight::new(scene, light);
-    light.tint * light.exposure_time_s
+/// Colour times exposure time of a light.
+fn exposed_tint(light: &Light, scene: &Scene) -> Vec3 {
+    light_rgb(&light.color, scene.camera.white_balance_k) * integration_time_s(&light.power.output, &scene.camera)
 }
 
 /// Assigns each light its layer: one per light, or one per role above [`MAX_LIGHT_LAYERS`]. The last layer holds
@@ -140,7 +137,7 @@ pub fn share_layers(scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<
         let name = Layer::name_of_role(light.role);
         let known = layers.iter().position(|layer| layer.name == name);
         traced.layer = known.unwrap_or(layers.len());
-        traced.tint = shared_layer_tint(light, scene);
+        traced.tint = exposed_tint(light, scene);
         if known.is_none() {
             layers.push(Layer::shared(&name));
         }

@@ -61,7 +61,7 @@ impl LightMeter {
         let studio = MeteredStudio::new(scene, assets, around, cache)?;
         let layer_of = |light: &Light| studio.lights.iter().position(|metered| metered.id == light.id);
         let on = scene.lights.iter().filter(|light| light.on);
-        let order = on.map(|light| (blank_reading(scene, light), layer_of(light))).collect();
+        let order = on.map(|light| (blank_reading(light), layer_of(light))).collect();
         Ok(LightMeter { studio, order, blank: Reading::new(Vec::new(), scene) })
     }
 

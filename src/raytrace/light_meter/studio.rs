@@ -1,6 +1,6 @@
 //! A scene prepared for the light meter.
 
-use crate::photo::PhotometricLight;
+use crate::photo::light_rgb;
 use crate::photo::meter::LightReading;
 use crate::raytrace::film::Layer;
 use crate::raytrace::geometry_cache::GeometryCache;
@@ -42,8 +42,8 @@ impl MeteredStudio {
         prepared.emission_time_s = 1.0;
         let metered = |layer: &Layer| {
             let light = layer.light.and_then(|id| scene.light(id))?;
-            let rgb = PhotometricLight::new(scene, light).tint;
-            Some(MeteredLight { id: light.id, blank: blank_reading(scene, light), rgb })
+            let rgb = light_rgb(&light.color, scene.camera.white_balance_k);
+            Some(MeteredLight { id: light.id, blank: blank_reading(light), rgb })
         };
         let lights = prepared.layers.iter().filter_map(metered).collect();
         let has_emission = prepared.materials.iter().any(|material| material.is_emissive());
@@ -57,12 +57,11 @@ impl MeteredStudio {
 }
 
 /// Assigns each light a layer of its own with white light, however many there are.
-fn one_layer_per_light(scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<Layer> {
-    for (layer, (traced, light)) in lights.iter_mut().enumerate() {
+fn one_layer_per_light(_scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<Layer> {
+    for (layer, (traced, _)) in lights.iter_mut().enumerate() {
         traced.layer = layer;
         // Raise the importance of weak lights for light sampling: each has a reading with its own relative error.
-        let strength = PhotometricLight::new(scene, light).axial_intensity_or_illuminance();
-        traced.time_s = (traced.time_s / strength).sqrt();
+        traced.time_s = (traced.time_s / traced.output).sqrt();
         // A path from the receptor must not see emitters, which are found by light sampling.
         traced.visible_to_camera = false;
     }
@@ -70,12 +69,12 @@ fn one_layer_per_light(scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> V
 }
 
 /// Returns a reading without light.
-pub fn blank_reading(scene: &Scene, light: &Light) -> LightReading {
+pub fn blank_reading(light: &Light) -> LightReading {
     LightReading {
         light: Some(light.id),
         name: light.name.clone(),
         role: Some(light.role),
-        flash: PhotometricLight::new(scene, light).is_flash,
+        flash: light.power.output.is_flash(),
         direct: 0.0,
         bounced: 0.0,
         standard_error: 0.0,

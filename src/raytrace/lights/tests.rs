@@ -5,15 +5,16 @@ use super::*;
 use crate::math::{Ray, look_at, orthonormal_basis};
 use crate::photo::PhotometricLight;
 use crate::raytrace::bvh::TraversalStack;
-use crate::scene::{Camera, Emitter, Light, Output};
+use crate::scene::{Camera, Emitter, IntensityTable, Light, Output};
 use crate::statistics::{ChiSquare, SampleMean, TestRng, sidak_level};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 /// Returns a light at the origin that emits along -Z.
 fn traced(emitter: Emitter, output: Output) -> TracedLight {
     let light = Light::new(emitter, output);
-    let light = PhotometricLight::in_frame(&light, look_at(Vec3::ZERO, Vec3::NEG_Z, 0.0), &Camera::default());
+    let light = PhotometricLight::in_frame(&light, None, look_at(Vec3::ZERO, Vec3::NEG_Z, 0.0), &Camera::default());
     TracedLight::new(&light, Vec3::ZERO).unwrap()
 }
 
@@ -222,6 +223,12 @@ fn light_sampling_agrees_with_the_intersection_of_rays() {
 }
 
 /// Returns lights of all kinds around the origin.
+/// Returns a measured distribution with a narrow beam to one side.
+fn lopsided_table() -> Arc<IntensityTable> {
+    let candela = [[50.0, 900.0, 20.0, 0.0], [50.0, 30.0, 10.0, 0.0], [50.0, 900.0, 20.0, 0.0]].concat();
+    Arc::new(IntensityTable::new(vec![0.0, 20.0, 40.0, 120.0], vec![0.0, 180.0, 360.0], candela).unwrap())
+}
+
 pub(super) fn random_lights(count: usize, rng: &mut TestRng) -> Vec<TracedLight> {
     let emitters = [
         Emitter::Point,
@@ -241,7 +248,8 @@ pub(super) fn random_lights(count: usize, rng: &mut TestRng) -> Vec<TracedLight>
         let position = rng.direction() * rng.range(0.5, 4.0);
         let frame = look_at(position, position + rng.direction(), 0.0);
         let camera = Camera { shutter_s: rng.range(0.01, 1.0), ..Camera::default() };
-        TracedLight::new(&PhotometricLight::in_frame(&light, frame, &camera), Vec3::ZERO).unwrap()
+        let table = (i % 7 == 3).then(lopsided_table);
+        TracedLight::new(&PhotometricLight::in_frame(&light, table, frame, &camera), Vec3::ZERO).unwrap()
     };
     (0..count).map(light).collect()
 }

@@ -42,13 +42,15 @@ pub struct TracedLight {
     pub tint: Vec3,
     /// Time for which the light contributes to the exposure, seconds (1 for flash). Part of the importance.
     pub time_s: f32,
+    /// Axial intensity, cd, or illuminance of a distant light, lx; with seconds for flash.
+    pub output: f32,
     /// True if camera rays hit the emitter.
     pub visible_to_camera: bool,
-    /// Angular transmission of a grid, snoot or barn doors.
+    /// Angular transmission of a grid, snoot or barn doors, times a measured distribution.
     beam: Option<OrientedBeam>,
 }
 
-/// The angular transmission of a modifier, with the rotation into the light's frame.
+/// The angular transmission of a modifier, times a measured distribution, with the rotation into the light's frame.
 #[derive(Clone, Debug)]
 struct OrientedBeam {
     beam: Beam,
@@ -120,12 +122,13 @@ impl TracedLight {
             layer: 0,
             tint: Vec3::ONE,
             time_s: light.exposure_time_s,
+            output,
             visible_to_camera: light.visible_to_camera,
             beam: light.beam.clone().map(|beam| OrientedBeam { beam, light_from_world }),
         })
     }
 
-    /// Returns true if a modifier limits the light's directions.
+    /// Returns true if a modifier or a measured distribution limits the light's directions.
     pub(super) fn has_beam(&self) -> bool {
         self.beam.is_some()
     }

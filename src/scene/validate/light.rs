@@ -14,10 +14,18 @@ const EFFICACY: Allowed = Allowed::between(0.0, 683.0, "lm s per Ws");
 
 pub(super) fn check_light(scene: &Scene, light: &Light, check: &mut Check) {
     check.vector("position", light.position, POSITION);
-    let has_direction = !matches!(light.emitter, Emitter::Point | Emitter::Sphere { .. } | Emitter::Surround);
+    let is_even = matches!(light.emitter, Emitter::Point | Emitter::Sphere { .. } | Emitter::Surround);
+    let has_direction = !is_even || light.photometric_file.is_some();
     check_aim(scene, &light.aim, light.position, has_direction, check);
     check.number("roll_deg", light.roll_deg, TURN);
     check_emitter(&light.emitter, check);
+    if let Some(path) = &light.photometric_file {
+        check.asset_path("photometric_file", path);
+        if light.emitter.is_infinite() {
+            let kind = light.emitter.label().to_lowercase();
+            check.error("photometric_file", format!("a {kind} shines from infinity; its light has no distribution"));
+        }
+    }
     check_modifier(&light.modifier, check);
     if let Some(head) = &light.head {
         check_head(head, check);

@@ -1,7 +1,8 @@
-//! Warnings about unlikely positions: a light inside an object, a camera behind the wall.
+//! Warnings about unlikely positions: a light inside an object, a camera behind the wall, a panel before most of its
+//! measured light.
 
 use super::finding::Finding;
-use crate::scene::{Assets, Object, Room, Scene, Shape};
+use crate::scene::{Assets, Emitter, Light, Object, Room, Scene, Shape};
 use glam::{Affine3A, Vec2, Vec3};
 
 /// Returns warnings about the positions of camera and lights. Objects whose mesh is missing are skipped.
@@ -29,8 +30,22 @@ pub fn placement(scene: &Scene, assets: &Assets) -> Vec<Finding> {
         if let Some(solid) = solids.iter().find(|solid| solid.contains(light.position)) {
             warn(&place, format!("{} is inside {:?}", light.position, solid.object.name));
         }
+        if let Some(part) = part_behind_panel(assets, light).filter(|part| *part > 0.1) {
+            let place = format!("lights[{index}] {:?} photometric_file", light.name);
+            let percent = 100.0 * part;
+            let message =
+                format!("{percent:.0} % of its light goes behind the panel and is lost; a point shows all of it");
+            warn(&place, message);
+        }
     }
     findings
+}
+
+/// Returns the part of a measured light's flux that goes behind its panel; none for other lights.
+fn part_behind_panel(assets: &Assets, light: &Light) -> Option<f32> {
+    let is_panel = matches!(light.emitter, Emitter::RectPanel { .. } | Emitter::RoundPanel { .. });
+    let table = assets.intensity_table(light).filter(|_| is_panel)?;
+    Some(table.flux_behind_lm() / table.flux_lm())
 }
 
 fn is_outside(room: &Room, point: Vec3) -> bool {

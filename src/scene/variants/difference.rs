@@ -49,6 +49,7 @@ difference! {
         aim: Aim = aim,
         roll_deg: f32 = roll_deg,
         emitter: Emitter = emitter,
+        photometric_file: Option<String> = photometric_file,
         modifier: Modifier = modifier,
         head: Option<Head> = head,
         output: Output = power.output,

@@ -129,6 +129,13 @@ impl Variants {
         studio.chain(others)
     }
 
+    /// Returns the path of every photometric file that is stored here instead of in the scene.
+    pub fn stored_photometric_files(&self) -> impl Iterator<Item = &str> {
+        let lights = self.stored_lights().filter_map(|light| light.photometric_file.as_deref());
+        let changed = self.others.iter().flat_map(|variant| &variant.difference.lights);
+        lights.chain(changed.filter_map(|(_, light)| light.photometric_file.as_ref()?.as_deref()))
+    }
+
     /// Returns every focus that is stored here instead of in the scene, to change it.
     pub fn stored_focuses_mut(&mut self) -> impl Iterator<Item = &mut Focus> {
         let studio = self.shown.iter_mut().map(|shown| &mut shown.studio.camera.focus);

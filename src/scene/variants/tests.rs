@@ -196,6 +196,7 @@ fn every_field_of_light_and_camera_is_compared() {
         aim: Aim::Point(Vec3::Y),
         roll_deg: 1.0,
         emitter: Emitter::Surround,
+        photometric_file: Some("lamp.ies".to_owned()),
         modifier: Modifier { loss_stops: 1.0, ..Modifier::default() },
         head: Some(Head {
             name: "Monolight".to_owned(),

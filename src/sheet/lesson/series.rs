@@ -239,7 +239,8 @@ impl Studio<'_> {
     fn modifiers(&self, light: &Light) -> Result<Lesson, LessonError> {
         let mut cells = Vec::new();
         for named in MODIFIERS.iter().filter_map(|name| NamedModifier::named(name)) {
-            let mut scene = self.alone(Light { emitter: named.emitter, modifier: named.modifier, ..light.clone() });
+            let (emitter, modifier) = (named.emitter, named.modifier);
+            let mut scene = self.alone(Light { emitter, modifier, photometric_file: None, ..light.clone() });
             self.expose(&mut scene)?;
             let note = self.exposed_note(&scene);
             cells.push(LessonCell { caption: named.name.to_owned(), note, scene });

@@ -8,7 +8,7 @@ use crate::gear::{GearList, HeadModel, gear_use};
 use crate::photo::text::{power_fraction, signed_stops};
 use crate::photo::thirds::Dial;
 use crate::photo::{dial_from_text, dial_text};
-use crate::scene::{Head, HeadDial, Light, Output, Scene};
+use crate::scene::{Assets, Head, HeadDial, Light, Output, Scene};
 use eframe::egui::{ComboBox, Label, RichText, Slider, SliderClamping, Ui};
 
 /// Draws the list of heads: those that the user owns come first.
@@ -69,7 +69,7 @@ pub(super) fn head_facts(ui: &mut Ui, gear: &GearList, head: &Head, output: &Out
 
 /// Draws the power dial: a slider in the settings of the head, buttons in thirds, and a button that meters. A head that is
 /// not known has tenths of a stop.
-pub(super) fn dial_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
+pub(super) fn dial_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, light: &mut Light) {
     let head = light.head.as_ref().map(|head| head.dial);
     let tip = match head {
         Some(_) => "As the head displays it",
@@ -121,7 +121,7 @@ pub(super) fn dial_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
             Dial::FNumber.label(scene.camera.f_number)
         );
         if ui.button("Meter").on_hover_text(tip).clicked() {
-            let metered = readout::dial_for(scene, light, 0.0);
+            let metered = readout::dial_for(scene, assets, light, 0.0);
             light.power.dial_stops = head.map_or(metered, |dial| dial.nearest(metered));
         }
     });

@@ -1,7 +1,7 @@
 //! The inspector of a light.
 
 use super::power::{self, PowerUnit};
-use super::{InspectorContext, aim, gel, head, modifier, text_ui, title};
+use super::{InspectorContext, aim, gel, head, measured, modifier, text_ui, title};
 use crate::color::rgb_from_kelvin;
 use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::commands::command::Command;
@@ -16,7 +16,7 @@ use crate::photo::light::axial_intensity;
 use crate::photo::text::{signed_stops, three_digits};
 use crate::photo::thirds::Dial;
 use crate::photo::{LightBearing, exposure, light_rgb};
-use crate::scene::{ColorSource, Emitter, Light, LightId, Output, Role, Scene};
+use crate::scene::{Assets, ColorSource, Emitter, Light, LightId, Output, Role, Scene};
 use eframe::egui::{ComboBox, RichText, Slider, SliderClamping, Ui, vec2};
 
 /// Draws the inspector of a light.
@@ -41,11 +41,12 @@ pub(super) fn light_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Ligh
         ui.label(RichText::new(why).color(theme::bad(ui)).small());
     });
     role_row(ui, &mut light);
-    modifier::kind_rows(ui, scene, &mut light);
+    modifier::kind_rows(ui, scene, assets, &mut light);
+    measured::measured_rows(ui, assets, &mut light, context.out);
     ui.separator();
-    section(ui, "Power", true, |ui| power_rows(ui, scene, context.gear, &mut light));
+    section(ui, "Power", true, |ui| power_rows(ui, (scene, assets), context.gear, &mut light));
     section(ui, "Colour", true, |ui| color_rows(ui, scene, &mut light));
-    section(ui, "At the subject", true, |ui| readouts(ui, scene, &light));
+    section(ui, "At the subject", true, |ui| readouts(ui, scene, assets, &light));
     section(ui, "Place and aim", true, |ui| {
         if light.emitter == Emitter::Surround {
             ui.label(RichText::new("It shines from everywhere, so it has no place.").weak());
@@ -85,11 +86,11 @@ const LUMENS: NumberField = NumberField::new(20.0, 0.0, 100_000_000.0, 0, " lm")
 const CANDELA: NumberField = NumberField::new(20.0, 0.0, 100_000_000.0, 0, " cd");
 const LUX: NumberField = NumberField::new(20.0, 0.0, 100_000_000.0, 0, " lx");
 
-fn power_rows(ui: &mut Ui, scene: &Scene, gear: &GearList, light: &mut Light) {
+fn power_rows(ui: &mut Ui, (scene, assets): (&Scene, &Assets), gear: &GearList, light: &mut Light) {
     if !light.emitter.is_infinite() {
         head::head_row(ui, scene, gear, light);
     }
-    head::dial_rows(ui, scene, light);
+    head::dial_rows(ui, scene, assets, light);
     if let Some(head) = &light.head {
         head::head_facts(ui, gear, head, &light.power.output);
         return;
@@ -102,7 +103,7 @@ fn power_rows(ui: &mut Ui, scene: &Scene, gear: &GearList, light: &mut Light) {
             |ui| {
                 for &each in units {
                     if ui.selectable_label(unit == each, each.label()).clicked() && unit != each {
-                        light.power.output = power::convert(light, &scene.camera, each);
+                        light.power.output = power::convert(light, assets, &scene.camera, each);
                     }
                 }
             },
@@ -186,8 +187,8 @@ pub(super) fn kelvin_row(ui: &mut Ui, label: &str, kelvin: &mut f32) {
     });
 }
 
-fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
-    let at = readout::at_aim(scene, light);
+fn readouts(ui: &mut Ui, scene: &Scene, assets: &Assets, light: &Light) {
+    let at = readout::at_aim(scene, assets, light);
     let camera = &scene.camera;
     let flash = light.power.output.is_flash();
     let n = exposure::f_number_to_set(scene, at.lux_s);
@@ -205,8 +206,13 @@ fn readouts(ui: &mut Ui, scene: &Scene, light: &Light) {
     fact(ui, what, "On a surface at the aim that faces the light", format!("{} {unit}", three_digits(at.illuminance)));
     if !light.emitter.is_infinite() {
         let unit = if flash { "cd s" } else { "cd" };
-        let intensity = three_digits(axial_intensity(light));
-        fact(ui, "Intensity", "On the light's axis, dial included", format!("{intensity} {unit}"));
+        let table = assets.intensity_table(light);
+        let intensity = three_digits(axial_intensity(light, table.as_ref()));
+        let (label, tip) = match table {
+            Some(_) => ("Peak intensity", "The largest of all directions, dial included"),
+            None => ("Intensity", "On the light's axis, dial included"),
+        };
+        fact(ui, label, tip, format!("{intensity} {unit}"));
     }
     if let Some(distance) = at.distance_m {
         fact(ui, "Distance", "From the light to what it aims at", lengths::shown(ui.ctx(), distance));

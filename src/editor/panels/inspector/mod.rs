@@ -8,6 +8,7 @@ mod gel;
 mod head;
 mod light;
 mod material;
+mod measured;
 mod meter;
 mod modifier;
 mod object;

@@ -5,7 +5,9 @@ use crate::editor::document::catalog::{self, CatalogKind, CatalogTab};
 use crate::editor::ui::widgets::{NumberField, SIZE_CM, fact, row};
 use crate::photo::beam::{Beam, beam_loss_stops};
 use crate::photo::emitter::EmitterShape;
-use crate::scene::{BarnDoors, Cone, Emitter, HARD_GRIDS_DEG, Light, Modifier, NamedModifier, SOFT_GRIDS_DEG, Scene};
+use crate::scene::{
+    Assets, BarnDoors, Cone, Emitter, HARD_GRIDS_DEG, Light, Modifier, NamedModifier, SOFT_GRIDS_DEG, Scene,
+};
 use eframe::egui::{ComboBox, Ui};
 
 const CONE: NumberField = NumberField::new(0.5, 0.5, 180.0, 1, "\u{b0}");
@@ -13,8 +15,8 @@ const FLAP: NumberField = NumberField::new(0.5, 0.0, 90.0, 0, "\u{b0}");
 const STOPS: NumberField = NumberField::new(0.02, 0.0, 10.0, 1, " stops");
 
 /// Draws the rows of modifier and size.
-pub(super) fn kind_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
-    kind_row(ui, scene, light);
+pub(super) fn kind_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, light: &mut Light) {
+    kind_row(ui, scene, assets, light);
     size_rows(ui, &mut light.emitter);
 }
 
@@ -29,7 +31,7 @@ pub(super) fn modifier_rows(ui: &mut Ui, light: &mut Light) {
 }
 
 /// Draws the list of named modifiers; other lights show the name of their emitter.
-fn kind_row(ui: &mut Ui, scene: &Scene, light: &mut Light) {
+fn kind_row(ui: &mut Ui, scene: &Scene, assets: &Assets, light: &mut Light) {
     let listed = catalog::entries(CatalogTab::Lights).iter();
     let is_current = |e: &catalog::CatalogEntry| matches!(e.kind, CatalogKind::Light(emitter, modifier, _) if emitter == light.emitter && modifier == light.modifier);
     let known = NamedModifier::of(&light.emitter, &light.modifier).map(|named| named.name);
@@ -39,7 +41,7 @@ fn kind_row(ui: &mut Ui, scene: &Scene, light: &mut Light) {
         let of_same_beam = Modifier { loss_stops: named.modifier.loss_stops, ..light.modifier };
         named.emitter == light.emitter && named.modifier == Modifier { scrim_stops: 0.0, ..of_same_beam }
     });
-    let shown = known.or(by_shape.map(|named| named.name));
+    let shown = known.or(by_shape.map(|named| named.name)).filter(|_| light.photometric_file.is_none());
     row(ui, "Modifier", "What shapes the light. Choosing another keeps the head's power.", |ui| {
         let current = shown.unwrap_or_else(|| light.emitter.label());
         let width = ui.available_width() - 8.0;
@@ -49,11 +51,11 @@ fn kind_row(ui: &mut Ui, scene: &Scene, light: &mut Light) {
                 let CatalogKind::Light(emitter, modifier, _) = entry.kind else { continue };
                 let label = ui.selectable_label(known == Some(entry.name), entry.name);
                 if label.on_hover_text(entry.tip).clicked() {
-                    power::change_emitter(scene, light, emitter, modifier);
+                    power::change_emitter(scene, assets, light, emitter, modifier);
                 }
             }
             if ui.selectable_label(light.emitter == Emitter::Point, "Point").clicked() {
-                power::change_emitter(scene, light, Emitter::Point, Modifier::default());
+                power::change_emitter(scene, assets, light, Emitter::Point, Modifier::default());
             }
         });
     });

@@ -1,9 +1,10 @@
 //! Units of power, and the conversion between them at equal exposure.
 
 use crate::editor::document::readout;
-use crate::photo::emitter::EmitterShape;
-use crate::photo::light::{axial_intensity, transmittance};
-use crate::scene::{Camera, Emitter, Light, LightColor, Modifier, Output, Scene};
+use crate::photo::light::transmittance;
+use crate::photo::{PhotometricLight, Strength};
+use crate::scene::{Assets, Camera, Emitter, Light, LightColor, Modifier, Output, Scene};
+use glam::Affine3A;
 
 /// A unit of power.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +57,7 @@ impl PowerUnit {
 
 /// Returns the output of a light in another unit: at equal intensity, and between flash and continuous light at equal
 /// exposure at the camera's shutter.
-pub fn convert(light: &Light, camera: &Camera, unit: PowerUnit) -> Output {
+pub fn convert(light: &Light, assets: &Assets, camera: &Camera, unit: PowerUnit) -> Output {
     // Power is stated before modifier and gel, whatever its unit.
     let full = Light {
         power: crate::scene::Power { dial_stops: 0.0, ..light.power },
@@ -64,7 +65,10 @@ pub fn convert(light: &Light, camera: &Camera, unit: PowerUnit) -> Output {
         color: LightColor { gel_loss_counts: false, ..light.color },
         ..light.clone()
     };
-    let per_flux = EmitterShape::new(&light.emitter).intensity_per_flux().unwrap_or(1.0);
+    // The position in which a lamp burns changes all units alike
+    let table = assets.intensity_table(light);
+    let bare = PhotometricLight::in_frame(&full, table, Affine3A::IDENTITY, camera);
+    let per_flux = bare.intensity_per_flux().unwrap_or(1.0);
     let was_flash = light.power.output.is_flash();
     let is_flash = matches!(unit, PowerUnit::FlashWs | PowerUnit::GuideNumber);
     let time = match (was_flash, is_flash) {
@@ -72,7 +76,12 @@ pub fn convert(light: &Light, camera: &Camera, unit: PowerUnit) -> Output {
         (false, true) => camera.shutter_s,
         _ => 1.0,
     };
-    let intensity = axial_intensity(&full) * time;
+    let intensity = time
+        * match bare.strength {
+            Strength::Flux(flux) => flux * per_flux,
+            Strength::AxialIntensity(intensity) => intensity,
+            Strength::Illuminance(_) => 0.0,
+        };
     match unit {
         PowerUnit::Lumens => Output::Lumens(intensity / per_flux),
         PowerUnit::Candela => Output::Candela(intensity),
@@ -88,9 +97,10 @@ pub fn convert(light: &Light, camera: &Camera, unit: PowerUnit) -> Output {
 }
 
 /// Sets emitter and modifier of a light and keeps its power; between finite and infinite emitters it keeps the exposure
-/// at the aim.
-pub fn change_emitter(scene: &Scene, light: &mut Light, emitter: Emitter, modifier: Modifier) {
-    let before = readout::at_aim(scene, light);
+/// at the aim. A photometric file is taken off: it is of another luminaire.
+pub fn change_emitter(scene: &Scene, assets: &Assets, light: &mut Light, emitter: Emitter, modifier: Modifier) {
+    let before = readout::at_aim(scene, assets, light);
+    light.photometric_file = None;
     let (was, is) = (light.emitter.is_infinite(), emitter.is_infinite());
     (light.emitter, light.modifier) = (emitter, modifier);
     if was == is {
@@ -107,6 +117,7 @@ pub fn change_emitter(scene: &Scene, light: &mut Light, emitter: Emitter, modifi
                 power: crate::scene::Power { output: Output::LuxAt { lux: full, distance_m }, ..light.power },
                 ..light.clone()
             },
+            assets,
             &scene.camera,
             PowerUnit::FlashWs,
         )
@@ -124,10 +135,10 @@ mod tests {
         let scene = Scene::default();
         let mut light = catalog::light_named("Strip 30 x 120").unwrap();
         light.color.gel = Gel::Mired(159.0);
-        let lux_s = readout::at_aim(&scene, &light).lux_s;
+        let lux_s = readout::at_aim(&scene, &Assets::default(), &light).lux_s;
         for unit in PowerUnit::FINITE.into_iter().chain(PowerUnit::FINITE.into_iter().rev()) {
-            light.power.output = convert(&light, &scene.camera, unit);
-            let now = readout::at_aim(&scene, &light).lux_s;
+            light.power.output = convert(&light, &Assets::default(), &scene.camera, unit);
+            let now = readout::at_aim(&scene, &Assets::default(), &light).lux_s;
             assert!((now / lux_s - 1.0).abs() < 1e-4, "{unit:?}: {now}, not {lux_s}");
         }
     }
@@ -136,10 +147,16 @@ mod tests {
     fn changing_a_bulb_to_sun_and_back_keeps_the_exposure() {
         let scene = Scene::default();
         let mut light = catalog::light_named("Bare bulb").unwrap();
-        let lux_s = readout::at_aim(&scene, &light).lux_s;
-        change_emitter(&scene, &mut light, Emitter::Sun { angular_diameter_deg: 0.5 }, Modifier::default());
-        assert!((readout::at_aim(&scene, &light).lux_s / lux_s - 1.0).abs() < 1e-3);
-        change_emitter(&scene, &mut light, Emitter::Point, Modifier::loss(1.0));
-        assert!((readout::at_aim(&scene, &light).lux_s / lux_s - 1.0).abs() < 1e-3);
+        let lux_s = readout::at_aim(&scene, &Assets::default(), &light).lux_s;
+        change_emitter(
+            &scene,
+            &Assets::default(),
+            &mut light,
+            Emitter::Sun { angular_diameter_deg: 0.5 },
+            Modifier::default(),
+        );
+        assert!((readout::at_aim(&scene, &Assets::default(), &light).lux_s / lux_s - 1.0).abs() < 1e-3);
+        change_emitter(&scene, &Assets::default(), &mut light, Emitter::Point, Modifier::loss(1.0));
+        assert!((readout::at_aim(&scene, &Assets::default(), &light).lux_s / lux_s - 1.0).abs() < 1e-3);
     }
 }

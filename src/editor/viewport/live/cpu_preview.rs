@@ -71,14 +71,14 @@ impl CpuPreview {
             None => input.scene,
         };
         let mut drawing = self.drawn.take().map(|drawn| drawn.drawing).unwrap_or_default();
-        rasterizer.draw(scene, &input.frame, size, Shading::default(), &mut drawing);
+        rasterizer.draw(scene, input.assets, &input.frame, size, Shading::default(), &mut drawing);
         let selected = |object: &ObjectId| input.overlay.selects(Pick::Object(*object));
         let objects: Vec<ObjectId> = input.scene.objects.iter().map(|object| object.id).collect();
         let selected: Vec<bool> = objects.iter().map(selected).collect();
         let mut image = self.image(&drawing, input);
         outline(&mut image, &drawing.objects, &selected);
         self.image_texture.set(ctx, image);
-        let gizmos = Gizmos::new(input.scene, &input.overlay, &input.frame);
+        let gizmos = Gizmos::new(input.scene, input.assets, &input.overlay, &input.frame);
         self.drawn = Some(CpuFrame { drawing, frame: input.frame, gizmos, objects, scale });
     }
 

@@ -5,11 +5,12 @@ use crate::editor::commands::choices::ViewSide;
 use crate::editor::document::item::Item;
 use crate::editor::document::readout;
 use crate::editor::document::selection::Selection;
+use crate::editor::document::studio_document::Document;
 use crate::editor::ui::lengths::{self, FOOT_M};
 use crate::editor::ui::theme;
 use crate::editor::viewport::overlays::markers::{label_place, paint_aim_line, paint_text, place_of};
 use crate::photo::text::signed_stops;
-use crate::scene::{CameraFrame, Light, Role, Scene};
+use crate::scene::{Assets, CameraFrame, Light, Role, Scene};
 use crate::sheet::Units;
 use eframe::egui::{Align2, Color32, Painter, Rect, Stroke, vec2};
 use glam::Vec3;
@@ -86,7 +87,8 @@ fn label(length: f32, step: f32) -> String {
 
 /// Paints lines from lights and camera to their aim points, with the distance under each name and, for lights that are
 /// on, the stops against the key at the aim point.
-pub fn paint_distances(painter: &Painter, scene: &Scene, frame: &CameraFrame, rect: Rect, selection: &Selection) {
+pub fn paint_distances(painter: &Painter, document: &Document, frame: &CameraFrame, rect: Rect, selection: &Selection) {
+    let (scene, assets) = (document.scene(), document.assets());
     let key = key_light(scene);
     for light in scene.lights.iter().filter(|light| !light.emitter.is_infinite()) {
         let target = scene.aim_point(&light.aim, light.position);
@@ -96,7 +98,7 @@ pub fn paint_distances(painter: &Painter, scene: &Scene, frame: &CameraFrame, re
         let has_handles = selection.items() == [Item::Light(light.id)];
         let (offset, align) = label_place(place, rect, has_handles);
         let distance = lengths::shown(painter.ctx(), (target - light.position).length());
-        let text = distance_label(scene, light, key, &distance);
+        let text = distance_label(scene, assets, light, key, &distance);
         paint_text(painter, place + offset + vec2(0.0, 13.0), align, &text, color.gamma_multiply(0.85));
     }
     let camera = &scene.camera;
@@ -112,10 +114,10 @@ fn key_light(scene: &Scene) -> Option<&Light> {
     scene.lights.iter().find(|light| light.on && light.role == Role::Key)
 }
 
-fn distance_label(scene: &Scene, light: &Light, key: Option<&Light>, distance: &str) -> String {
+fn distance_label(scene: &Scene, assets: &Assets, light: &Light, key: Option<&Light>, distance: &str) -> String {
     let stops = key
         .filter(|key| key.id != light.id && light.on)
-        .map(|key| (readout::at_aim(scene, light).lux_s / readout::at_aim(scene, key).lux_s).log2());
+        .map(|key| (readout::at_aim(scene, assets, light).lux_s / readout::at_aim(scene, assets, key).lux_s).log2());
     match stops.filter(|stops| stops.is_finite()) {
         Some(stops) => format!("{distance}  {} stops to the key", signed_stops(stops)),
         None => distance.to_owned(),
@@ -138,8 +140,11 @@ mod tests {
             Action::AddLight(Box::new(bulb)).apply(&mut scene).unwrap();
         }
         let key = key_light(&scene);
-        assert_eq!(distance_label(&scene, &scene.lights[1], key, "2.00 m"), "2.00 m  \u{2212}2.0 stops to the key");
-        assert_eq!(distance_label(&scene, &scene.lights[0], key, "1.00 m"), "1.00 m");
+        assert_eq!(
+            distance_label(&scene, &Assets::default(), &scene.lights[1], key, "2.00 m"),
+            "2.00 m  \u{2212}2.0 stops to the key"
+        );
+        assert_eq!(distance_label(&scene, &Assets::default(), &scene.lights[0], key, "1.00 m"), "1.00 m");
     }
 
     #[test]
