@@ -261,3 +261,16 @@ fn lights_are_weighted_or_traced_again_one_by_one() {
         &[("added", |s| s.lights.push(Light { id: LightId(9), ..s.lights[0].clone() }))],
     );
 }
+
+#[test]
+fn a_measured_light_is_traced_again_when_its_power_is_stated_in_another_quantity() {
+    let mut lumens = scene();
+    lumens.lights[0].photometric_file = Some("lamp.ies".to_owned());
+    let class = |output| {
+        let mut now = lumens.clone();
+        now.lights[0].power.output = output;
+        SceneChange::between(&lumens, &now).lights[0].transport
+    };
+    assert!(class(Output::Candela(500.0)));
+    assert!(!class(Output::Lumens(500.0)) && !class(Output::FlashWs { energy_ws: 5.0, efficacy_lm_s_per_ws: 40.0 }));
+}
