@@ -26,6 +26,7 @@ mod lights;
 mod material;
 mod primitive_stage;
 mod shade;
+mod surface_texture;
 mod tile;
 mod triangle;
 mod vertex_stage;

@@ -13,7 +13,6 @@ pub mod gear_shelf;
 pub mod history;
 pub mod item;
 pub mod light_mix;
-pub mod model_size;
 pub mod placement;
 pub mod readout;
 pub mod revisions;
