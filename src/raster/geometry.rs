@@ -2,9 +2,9 @@
 
 use super::binning::BATCH_TRIANGLES;
 use super::framebuffer::NO_OBJECT;
-use super::surface_texture::{SurfaceTexture, has_holes};
+use super::surface_texture::SurfaceTexture;
 use super::triangle::PrimitiveState;
-use crate::scene::{Assets, Material, Mesh, Scene, TextureSlot, room_mesh, strand_ribbons};
+use crate::scene::{Alpha, Assets, Material, Mesh, Scene, TextureSlot, room_mesh, strand_ribbons};
 use glam::Affine3A;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -51,6 +51,11 @@ impl Surface {
     /// Returns true if the surface has a texture.
     pub fn is_textured(&self) -> bool {
         self.textures.iter().any(Option::is_some)
+    }
+
+    /// Returns true if the surface is not all there.
+    pub fn has_holes(&self) -> bool {
+        self.material.alpha != Alpha::Opaque && self.material.transmission <= 0.0
     }
 }
 
@@ -130,7 +135,7 @@ impl SceneGeometry {
 
     /// Returns true if some surface is not all there.
     pub fn has_holes(&self) -> bool {
-        self.surfaces.iter().any(has_holes)
+        self.surfaces.iter().any(Surface::has_holes)
     }
 
     /// Returns the chunks in which the instances are drawn, in scene order. A chunk of several instances has at most

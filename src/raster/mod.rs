@@ -27,6 +27,7 @@ mod material;
 mod primitive_stage;
 mod shade;
 mod surface_texture;
+mod textured_triangle;
 mod tile;
 mod triangle;
 mod vertex_stage;

@@ -7,7 +7,8 @@ use super::gbuffer_row::{GBufferRow, PADDED_WIDTH, RowScalar, RowVec3, Span, Ver
 use super::geometry::{Chunk, SceneGeometry, Surface};
 use super::lights::{IncidentLight, RasterLights};
 use super::material::{RowMaterials, ShadingMaterial, SpecularGeometry};
-use super::surface_texture::{PixelFactors, TexturedTriangle, has_holes, linear_from_srgb};
+use super::surface_texture::{PixelFactors, linear_from_srgb};
+use super::textured_triangle::TexturedTriangle;
 use super::triangle::TriangleId;
 use super::vertex_stage::ChunkVertices;
 use crate::math::simd::{self, Avx2, SimdTask};
@@ -229,7 +230,7 @@ impl<'a> FragmentShader<'a> {
     /// Returns a test of a triangle's pixels, by their barycentric coordinates over w and their place; none for a surface
     /// that is all there.
     pub fn hole_test(&self, id: TriangleId) -> Option<impl Fn(Vec3, (usize, usize)) -> bool> {
-        let surface = Some(&self.geometry.surfaces[id.surface as usize]).filter(|surface| has_holes(surface))?;
+        let surface = Some(&self.geometry.surfaces[id.surface as usize]).filter(|surface| surface.has_holes())?;
         let mesh = &self.geometry.instances[surface.instance as usize].mesh;
         let corners = mesh.triangles[id.triangle as usize].map(|i| i as usize);
         let triangle = TexturedTriangle::new(surface, mesh, corners);

@@ -54,16 +54,18 @@ fn placement() -> impl Strategy<Value = TexturePlacement> {
     )
 }
 
-fn textures() -> impl Strategy<Value = MaterialTextures> {
-    let slots = proptest::array::uniform4((proptest::option::of(texture()), proptest::option::of(placement())));
-    (slots, number(-16.0, 16.0)).prop_map(|(slots, normal_scale)| {
-        let mut textures = MaterialTextures { normal_scale, ..MaterialTextures::default() };
-        for (slot, (texture, placement)) in TextureSlot::ALL.into_iter().zip(slots) {
-            *textures.get_mut(slot) = texture;
-            textures.placements[slot as usize] = placement.unwrap_or_default();
-        }
-        textures
-    })
+fn textures() -> BoxedStrategy<MaterialTextures> {
+    let slots = proptest::array::uniform4((proptest::option::of(texture()), proptest::option::of(placement().boxed())));
+    (slots, number(-16.0, 16.0))
+        .prop_map(|(slots, normal_scale)| {
+            let mut textures = MaterialTextures { normal_scale, ..MaterialTextures::default() };
+            for (slot, (texture, placement)) in TextureSlot::ALL.into_iter().zip(slots) {
+                *textures.get_mut(slot) = texture;
+                textures.placements[slot as usize] = placement.unwrap_or_default();
+            }
+            textures
+        })
+        .boxed()
 }
 
 fn alpha() -> impl Strategy<Value = Alpha> {

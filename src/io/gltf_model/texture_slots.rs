@@ -51,19 +51,16 @@ impl<'a> SlotTexture<'a> {
 
     /// Reads a normal texture, whose transform the crate leaves in the JSON.
     fn of_normals(normals: &gltf::material::NormalTexture<'a>, json: Option<&Value>) -> Self {
-        let numbers = |name: &str| -> Option<Vec<f32>> {
-            json?.get(name)?.as_array()?.iter().map(|number| number.as_f64().map(|number| number as f32)).collect()
-        };
-        let pair = |name: &str, default| numbers(name).and_then(|pair| pair.try_into().ok()).unwrap_or(default);
-        let rotation = json.and_then(|json| json.get("rotation")?.as_f64()).unwrap_or(0.0);
+        let pair = |name: &str| serde_json::from_value::<[f32; 2]>(json?.get(name)?.clone()).ok();
+        let rotation = json.and_then(|json| serde_json::from_value::<f32>(json.get("rotation")?.clone()).ok());
         let set = json.and_then(|json| u32::try_from(json.get("texCoord")?.as_u64()?).ok());
         SlotTexture {
             texture: normals.texture(),
             set: set.unwrap_or(normals.tex_coord()),
             transform: Transform {
-                offset: pair("offset", [0.0; 2]),
-                rotation_rad: rotation as f32,
-                scale: pair("scale", [1.0; 2]),
+                offset: pair("offset").unwrap_or([0.0; 2]),
+                rotation_rad: rotation.unwrap_or(0.0),
+                scale: pair("scale").unwrap_or([1.0; 2]),
             },
         }
     }

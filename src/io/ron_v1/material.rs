@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename = "Material", deny_unknown_fields)]
+#[expect(clippy::large_enum_variant, reason = "a material is read or written, and not kept")]
 pub(super) enum MaterialV1 {
     Preset(PresetV1),
     Custom {
