@@ -15,6 +15,7 @@ mod failure;
 mod frame_rate_beside_live_view;
 mod frame_times;
 mod gear;
+mod import;
 mod input;
 mod light_crowd;
 mod live_view_times;
@@ -54,6 +55,8 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Make a studio of a model: on a grey sweep under a softbox, or with the lamps and the camera of its file.
+    Import(import::Arguments),
     /// Render a studio to a picture, without a window.
     Render(render::Arguments),
     /// Make a picture of its parts, which `render --samples` wrote, perhaps on different machines.
@@ -103,6 +106,7 @@ pub fn run(started: Instant) -> ExitCode {
     };
     let result = match arguments.command {
         None => open(arguments.scene),
+        Some(Command::Import(arguments)) => import::run(&arguments),
         Some(Command::Render(arguments)) => render::run(&arguments, started),
         Some(Command::Merge(arguments)) => merge::run(&arguments),
         Some(Command::Preview(arguments)) => preview::run(&arguments),

@@ -1,8 +1,9 @@
 //! Finds the files that a scene refers to, and copies them beside a saved scene.
 
+use super::contained_file::find_in;
 use super::error::AssetError;
-use super::{atomic, obj, photometric, texture};
-use crate::scene::{AssetRef, Assets, IntensityTable, Mesh, Scene, Texture, TextureRef, path_complaint};
+use super::{atomic, importers, obj, photometric, texture};
+use crate::scene::{AssetRef, Assets, IntensityTable, Mesh, Scene, Texture, TextureRef};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -70,7 +71,9 @@ impl<'a> AssetFiles<'a> {
                 None => Some(AssetCopy { from: in_memory(&asset, assets)?, to }),
             }
         };
-        by_path.into_iter().filter_map(copy).collect()
+        let copies: Vec<AssetCopy> = by_path.into_iter().filter_map(copy).collect();
+        let companions: Vec<AssetCopy> = copies.iter().flat_map(companions).collect();
+        copies.into_iter().chain(companions).collect()
     }
 }
 
@@ -115,6 +118,16 @@ impl AssetSource {
     }
 }
 
+/// Returns the copies of the files with data of a model that is copied itself.
+fn companions(copy: &AssetCopy) -> Vec<AssetCopy> {
+    let AssetSource::File(model) = &copy.from else { return Vec::new() };
+    let beside = |name: String| {
+        let from = AssetSource::File(find_in(&name, model.parent()).ok()?);
+        Some(AssetCopy { from, to: copy.to.parent()?.join(name) })
+    };
+    importers::companions(model).into_iter().filter_map(beside).collect()
+}
+
 /// Returns a loaded asset as the content of its file. None for a format that is not written, such as a model with
 /// images in its file.
 fn in_memory(asset: &AssetRef<'_>, assets: &Assets) -> Option<AssetSource> {
@@ -128,20 +141,6 @@ fn in_memory(asset: &AssetRef<'_>, assets: &Assets) -> Option<AssetSource> {
         }
         _ => None,
     }
-}
-
-/// Returns the file of a relative path. It must lie in the folder, also after symbolic links are followed.
-fn find_in(path: &str, folder: Option<&Path>) -> Result<PathBuf, AssetError> {
-    let bad_path = |reason| AssetError::BadPath { reason, path: path.to_owned() };
-    if let Some(reason) = path_complaint(path) {
-        return Err(bad_path(reason));
-    }
-    let folder = folder.ok_or_else(|| AssetError::NoFolder { path: path.to_owned() })?;
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let read_error = |error| AssetError::Read { error, path: folder.join(path) };
-    let root = folder.canonicalize().map_err(read_error)?;
-    let file = root.join(path).canonicalize().map_err(read_error)?;
-    if file.starts_with(&root) { Ok(file) } else { Err(bad_path("a link leads out of the scene's folder")) }
 }
 
 #[cfg(test)]
@@ -199,7 +198,7 @@ mod tests {
     #[test]
     fn a_texture_whose_file_was_deleted_is_written_from_memory() {
         let home = tempfile::tempdir().unwrap();
-        let texture = Arc::new(Texture { width: 2, height: 1, rgb: vec![[200, 100, 50], [1, 2, 3]] });
+        let texture = Arc::new(Texture::opaque(2, 1, vec![[200, 100, 50], [1, 2, 3]]));
         let imported = BTreeMap::from([("textures/wood.png".to_owned(), home.path().join("gone.png"))]);
         let floor = Material {
             textures: MaterialTextures::with_base_color(TextureRef::file("textures/wood.png")),

@@ -18,6 +18,8 @@ pub struct ModelFormat {
     /// Limits that the importer holds.
     pub limits: ModelLimits,
     import: fn(&Path, &ModelLimits) -> Result<ImportedModel, AssetError>,
+    /// Returns the files with data of a model, by their paths from its folder; `None` for formats of one file.
+    companions: Option<fn(&Path, &ModelLimits) -> Vec<String>>,
     /// Returns the bytes of the PNG or JPEG file with this index inside a model file; `None` for formats without.
     embedded_image: Option<EmbeddedImageReader>,
 }
@@ -32,6 +34,7 @@ pub const MODEL_FORMATS: &[ModelFormat] = &[
         extensions: &["glb", "gltf"],
         limits: ModelLimits { file_bytes: 1 << 30, triangles: 20_000_000 },
         import: gltf_model::import,
+        companions: Some(gltf_model::companions),
         embedded_image: Some(gltf_model::embedded_image),
     },
     ModelFormat {
@@ -39,6 +42,7 @@ pub const MODEL_FORMATS: &[ModelFormat] = &[
         extensions: &["obj"],
         limits: ModelLimits { file_bytes: 1 << 30, triangles: 20_000_000 },
         import: obj::import,
+        companions: None,
         embedded_image: None,
     },
 ];
@@ -59,6 +63,12 @@ impl ModelFormat {
 pub fn import_model(path: &Path) -> Result<ImportedModel, AssetError> {
     let format = format_of(path)?;
     (format.import)(path, &format.limits)
+}
+
+/// Returns the files with data of a model, by their paths from its folder: they go where the model goes.
+pub(super) fn companions(path: &Path) -> Vec<String> {
+    let Some(format) = ModelFormat::of(path) else { return Vec::new() };
+    format.companions.map_or_else(Vec::new, |companions| companions(path, &format.limits))
 }
 
 /// Returns the bytes of an image inside a model file, a PNG or JPEG file by itself.

@@ -14,6 +14,7 @@ mod asset_files;
 mod assets;
 mod atomic;
 mod checkpoint;
+mod contained_file;
 mod error;
 mod figures;
 mod file_stamp;
@@ -25,6 +26,9 @@ mod kept_picture;
 mod layout;
 mod locate;
 mod model;
+mod model_set_up;
+mod model_size;
+mod model_studio;
 mod obj;
 mod parse_errors;
 mod photometric;
@@ -50,7 +54,9 @@ pub use importers::{
     MODEL_FORMATS, ModelFormat, import_model, model_extension_list, model_extensions, model_format_names,
 };
 pub use kept_picture::KeptPicture;
-pub use model::{ImportedModel, ModelLimits};
+pub use model::{ImportedModel, ModelLimits, ModelSetUp};
+pub use model_size::{MODEL_UNITS, fit_model};
+pub use model_studio::{ModelStudio, studio_of};
 pub use photometric::{PHOTOMETRIC_EXTENSIONS, PhotometricFile, is_photometric_file, read_photometric_file};
 pub use picture::{
     CaptureInfo, LayeredPicture, PictureFile, PictureFormat, PictureInfo, PicturePart, RenderedPicture,

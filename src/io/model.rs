@@ -1,6 +1,6 @@
 //! The result of a model importer, and the limits that importers hold.
 
-use crate::scene::{Material, Mesh};
+use crate::scene::{Camera, Light, Material, Mesh};
 
 /// The largest model that an importer accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +18,17 @@ pub struct ImportedModel {
     pub mesh: Mesh,
     /// Materials by the name of a part. Texture paths are relative to the model's folder.
     pub part_materials: Vec<(String, Material)>,
+    /// Lamps and camera of the file.
+    pub set_up: ModelSetUp,
     /// Missing files and repaired data, one sentence each.
     pub warnings: Vec<String>,
+}
+
+/// The set-up of a model, in its space.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ModelSetUp {
+    /// Its lamps, on, without modifiers. Point and spot lamps have their candela, suns their lux.
+    pub lights: Vec<Light>,
+    /// Its first camera with a perspective.
+    pub camera: Option<Camera>,
 }

@@ -60,14 +60,22 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<DecodedTexture, AssetE
     limits.max_image_height = Some(SIDE_LIMIT);
     limits.max_alloc = Some(MEMORY_LIMIT_BYTES);
     reader.limits(limits);
-    let picture = reader.decode().map_err(|error| bad(error.to_string()))?.into_rgb8();
-    let (width, height) = picture.dimensions();
+    let picture = reader.decode().map_err(|error| bad(error.to_string()))?;
+    let (width, height) = (picture.width(), picture.height());
     if width == 0 || height == 0 {
         return Err(bad("it has no pixels".to_owned()));
     }
-    let rgb = picture.pixels().map(|pixel| pixel.0).collect();
+    let (rgb, alpha) = if picture.color().has_alpha() {
+        let picture = picture.into_rgba8();
+        let alpha: Vec<u8> = picture.pixels().map(|pixel| pixel.0[3]).collect();
+        let is_opaque = alpha.iter().all(|value| *value == u8::MAX);
+        let rgb = picture.pixels().map(|image::Rgba([red, green, blue, _])| [*red, *green, *blue]).collect();
+        (rgb, if is_opaque { Vec::new() } else { alpha })
+    } else {
+        (picture.into_rgb8().pixels().map(|pixel| pixel.0).collect(), Vec::new())
+    };
     let warning = is_cut_off(bytes).then_some("the file is cut off; what is missing of the picture is grey");
-    Ok(DecodedTexture { texture: Texture { width, height, rgb }, warning })
+    Ok(DecodedTexture { texture: Texture { width, height, rgb, alpha }, warning })
 }
 
 /// Returns the bytes of an image file with a texture, for one whose file no longer exists: JPEG for a path that ends so,
@@ -75,17 +83,18 @@ pub(super) fn decode(bytes: &[u8], path: &Path) -> Result<DecodedTexture, AssetE
 pub(super) fn encode(texture: &Texture, path: &Path) -> Result<Vec<u8>, String> {
     const JPEG_QUALITY: u8 = 98;
     let mut file = Vec::new();
+    let (width, height) = (texture.width, texture.height);
     let rgb = texture.rgb.as_flattened();
     let color = ExtendedColorType::Rgb8;
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     let encoded = match ending.as_str() {
-        "jpg" | "jpeg" => JpegEncoder::new_with_quality(&mut file, JPEG_QUALITY).write_image(
-            rgb,
-            texture.width,
-            texture.height,
-            color,
-        ),
-        _ => PngEncoder::new(&mut file).write_image(rgb, texture.width, texture.height, color),
+        "jpg" | "jpeg" => JpegEncoder::new_with_quality(&mut file, JPEG_QUALITY).write_image(rgb, width, height, color),
+        _ if texture.alpha.is_empty() => PngEncoder::new(&mut file).write_image(rgb, width, height, color),
+        _ => {
+            let pixel = |([red, green, blue], alpha): (&[u8; 3], &u8)| [*red, *green, *blue, *alpha];
+            let rgba: Vec<[u8; 4]> = texture.rgb.iter().zip(&texture.alpha).map(pixel).collect();
+            PngEncoder::new(&mut file).write_image(rgba.as_flattened(), width, height, ExtendedColorType::Rgba8)
+        }
     };
     encoded.map(|()| file).map_err(|error| error.to_string())
 }
@@ -109,6 +118,20 @@ mod tests {
         assert_eq!(warning, None);
         assert_eq!((texture.width, texture.height), (3, 2));
         assert_eq!(texture.rgb[5], [100, 100, 7]);
+    }
+
+    #[test]
+    fn alpha_is_kept_where_a_pixel_is_transparent_and_written_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("leaf.png");
+        for (alpha, expected) in [(vec![255, 7], vec![255, 7]), (vec![255, 255], vec![])] {
+            let pixels = image::RgbaImage::from_raw(2, 1, vec![1, 2, 3, alpha[0], 4, 5, 6, alpha[1]]).unwrap();
+            pixels.save(&path).unwrap();
+            let texture = load(&path).unwrap().texture;
+            assert_eq!(texture, Texture { width: 2, height: 1, rgb: vec![[1, 2, 3], [4, 5, 6]], alpha: expected });
+            std::fs::write(&path, encode(&texture, &path).unwrap()).unwrap();
+            assert_eq!(load(&path).unwrap().texture, texture);
+        }
     }
 
     #[test]

@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     fn texture(width: u32, red: u8) -> Texture {
-        Texture { width, height: 10, rgb: vec![[red, 0, 0]; width as usize * 10] }
+        Texture::opaque(width, 10, vec![[red, 0, 0]; width as usize * 10])
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! A G-buffer row: the surface attributes of the pixels of one row of a tile, as a structure of arrays, so that plain
 //! loops shade eight pixels at a time.
 
+use super::surface_texture::PixelFactors;
 use super::viewport::TILE_WIDTH;
 use glam::Vec3;
 use std::ops::Range;
@@ -74,6 +75,8 @@ pub(super) struct GBufferRow {
     /// Second interpolated vector.
     pub second: RowVec3,
     pub uv: [RowScalar; 2],
+    /// What textures give to the material, where the surface has textures.
+    pub factors: [PixelFactors; PADDED_WIDTH],
     /// Normal of the triangle's plane, of any length.
     pub geometric_normal: RowVec3,
     /// Mean vertex colour of the triangle, where its mesh has colours.
@@ -85,7 +88,8 @@ impl GBufferRow {
     pub fn new(background: u32) -> Self {
         let (surface, uv) = ([background; PADDED_WIDTH], [[0.0; PADDED_WIDTH]; 2]);
         let [first, second, geometric_normal, color] = [RowVec3::ZERO; 4];
-        GBufferRow { surface, first, second, uv, geometric_normal, color }
+        let factors = [PixelFactors::ONE; PADDED_WIDTH];
+        GBufferRow { surface, first, second, uv, factors, geometric_normal, color }
     }
 
     /// Returns the surfaces of the first `width` pixels, each with its range of pixels.

@@ -2,8 +2,9 @@
 
 use super::binning::BATCH_TRIANGLES;
 use super::framebuffer::NO_OBJECT;
+use super::surface_texture::SurfaceTexture;
 use super::triangle::PrimitiveState;
-use crate::scene::{Assets, Material, Mesh, Scene, Texture, TextureSlot, room_mesh, strand_ribbons};
+use crate::scene::{Alpha, Assets, Material, Mesh, Scene, TextureSlot, room_mesh, strand_ribbons};
 use glam::Affine3A;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -43,7 +44,19 @@ pub(super) struct Surface {
     pub instance: u32,
     pub material: Material,
     /// By slot.
-    pub textures: [Option<Arc<Texture>>; TextureSlot::COUNT],
+    pub textures: [Option<SurfaceTexture>; TextureSlot::COUNT],
+}
+
+impl Surface {
+    /// Returns true if the surface has a texture.
+    pub fn is_textured(&self) -> bool {
+        self.textures.iter().any(Option::is_some)
+    }
+
+    /// Returns true if the surface is not all there.
+    pub fn has_holes(&self) -> bool {
+        self.material.alpha != Alpha::Opaque && self.material.transmission <= 0.0
+    }
 }
 
 /// The triangles of a batch: consecutive in a mesh, all of one surface.
@@ -104,7 +117,9 @@ impl SceneGeometry {
         let first_batch = self.batches.len();
         for part in &mesh.parts {
             let material = material(&part.name);
-            let textures = material.textures.look_up(|texture| assets.texture(texture));
+            let textures = material.textures.look_up(|slot, texture| {
+                Some(SurfaceTexture::new(assets.texture(texture)?, slot, material.textures.placement(slot)))
+            });
             let end = (part.triangles.end as usize).min(mesh.triangles.len());
             let starts = (part.triangles.start as usize..end).step_by(BATCH_TRIANGLES);
             let surface = self.surfaces.len() as u32;
@@ -116,6 +131,11 @@ impl SceneGeometry {
         }
         let batches = first_batch..self.batches.len();
         self.instances.push(MeshInstance { mesh, world_from_object, object, first_surface, state, batches });
+    }
+
+    /// Returns true if some surface is not all there.
+    pub fn has_holes(&self) -> bool {
+        self.surfaces.iter().any(Surface::has_holes)
     }
 
     /// Returns the chunks in which the instances are drawn, in scene order. A chunk of several instances has at most

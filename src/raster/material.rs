@@ -2,6 +2,7 @@
 
 use super::approx::{self, max, min};
 use super::gbuffer_row::{PADDED_WIDTH, RowScalar, RowVec3, WIDTH, splat};
+use super::surface_texture::PixelFactors;
 use crate::scene::Material;
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -26,23 +27,24 @@ pub(super) struct ShadingMaterial {
 }
 
 impl ShadingMaterial {
-    /// Converts a material; `emission_scale` is the picture value of 1 cd/m2.
-    pub fn new(material: &Material, emission_scale: f32) -> Self {
-        let base = Vec3::from(material.base_color);
+    /// Converts a material where textures give these factors; `emission_scale` is the picture value of 1 cd/m2.
+    pub fn new(material: &Material, factors: &PixelFactors, emission_scale: f32) -> Self {
+        let base = Vec3::from(material.base_color) * factors.color;
+        let (metallic, roughness) = (material.metallic * factors.metallic, material.roughness * factors.roughness);
         let dielectric = ((material.ior - 1.0) / (material.ior + 1.0)).powi(2);
         // Exponent of a lobe as wide as GGX of this roughness: 2 / alpha2 - 2. Mirrors are blurred to what a pixel can
         // still show.
-        let alpha2 = material.roughness.max(0.1).powi(4);
+        let alpha2 = roughness.max(0.1).powi(4);
         let exponent = (2.0 / alpha2 - 2.0).max(0.0);
         let opaque = 1.0 - material.transmission * (1.0 - GLASS_DIFFUSE);
-        let diffuse = (1.0 - material.metallic) * opaque * (1.0 - dielectric);
+        let diffuse = (1.0 - metallic) * opaque * (1.0 - dielectric);
         ShadingMaterial {
             diffuse: base * (diffuse / PI),
-            f0: Vec3::splat(dielectric).lerp(base, material.metallic),
+            f0: Vec3::splat(dielectric).lerp(base, metallic),
             exponent,
             // Akenine-Moller, Real-Time Rendering, section 9.8: (n + 8) / 8 pi.
             normalization: (exponent + 8.0) / (8.0 * PI),
-            emission: Vec3::from(material.emission_cd_m2) * emission_scale,
+            emission: Vec3::from(material.emission_cd_m2) * factors.emission * emission_scale,
         }
     }
 }

@@ -26,6 +26,8 @@ mod lights;
 mod material;
 mod primitive_stage;
 mod shade;
+mod surface_texture;
+mod textured_triangle;
 mod tile;
 mod triangle;
 mod vertex_stage;

@@ -4,15 +4,15 @@
 
 use super::approx::max;
 use super::gbuffer_row::{GBufferRow, PADDED_WIDTH, RowScalar, RowVec3, Span, VertexAttributes, WIDTH, splat};
-use super::geometry::{Chunk, SceneGeometry};
+use super::geometry::{Chunk, SceneGeometry, Surface};
 use super::lights::{IncidentLight, RasterLights};
 use super::material::{RowMaterials, ShadingMaterial, SpecularGeometry};
+use super::surface_texture::{PixelFactors, linear_from_srgb};
+use super::textured_triangle::TexturedTriangle;
 use super::triangle::TriangleId;
 use super::vertex_stage::ChunkVertices;
-use crate::color::srgb_decode;
 use crate::math::simd::{self, Avx2, SimdTask};
-use crate::scene::{Texture, TextureSlot};
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
 use std::f32::consts::PI;
 use std::ops::Range;
@@ -87,15 +87,17 @@ pub(super) struct FrameShading {
     materials: Vec<ShadingMaterial>,
     /// Linear value of each sRGB byte.
     linear_from_srgb: [f32; 256],
+    /// Some surface is not all there.
+    has_holes: bool,
 }
 
 impl FrameShading {
     pub fn new(geometry: &SceneGeometry, lights: RasterLights, shading: Shading) -> Self {
         let material =
-            |surface: &super::geometry::Surface| ShadingMaterial::new(&surface.material, lights.emission_scale);
+            |surface: &Surface| ShadingMaterial::new(&surface.material, &PixelFactors::ONE, lights.emission_scale);
         let materials = geometry.surfaces.iter().map(material).collect();
-        let linear_from_srgb = std::array::from_fn(|i| srgb_decode(i as f32 / 255.0));
-        FrameShading { lights, shading, materials, linear_from_srgb }
+        let linear_from_srgb = linear_from_srgb();
+        FrameShading { lights, shading, materials, linear_from_srgb, has_holes: geometry.has_holes() }
     }
 
     /// Returns the radiance of pixels that show no surface: that of a visible surround.
@@ -195,7 +197,44 @@ impl<'a> FragmentShader<'a> {
             }
         }
         splat(&mut row.surface, &span.pixels, id.surface);
+        if surface.is_textured() {
+            self.write_textures(row, span, TexturedTriangle::new(surface, &instance.mesh, corners), vertices);
+        }
         instance.object
+    }
+
+    /// Writes what the textures of a triangle give to the pixels of a span: factors of the material, and normals.
+    fn write_textures(
+        &self,
+        row: &mut GBufferRow,
+        span: &Span,
+        triangle: TexturedTriangle<'_>,
+        vertices: [&VertexAttributes; 3],
+    ) {
+        for i in span.pixels.clone() {
+            let over_w = span.start + span.step * (i - span.pixels.start) as f32;
+            row.factors[i] = triangle.factors(over_w, &self.frame.linear_from_srgb);
+        }
+        if matches!(self.frame.shading, Shading::Lambert | Shading::BlinnPhong) {
+            triangle.tilt_normals(span, vertices, |i, tilted| {
+                row.second.set(i, tilted(row.first.at(i), row.second.at(i)));
+            });
+        }
+    }
+
+    /// Returns true if pixels show triangles with holes, which [`FragmentShader::is_there`] tests.
+    pub fn has_holes(&self) -> bool {
+        self.frame.has_holes
+    }
+
+    /// Returns a test of a triangle's pixels, by their barycentric coordinates over w and their place; none for a surface
+    /// that is all there.
+    pub fn hole_test(&self, id: TriangleId) -> Option<impl Fn(Vec3, (usize, usize)) -> bool> {
+        let surface = Some(&self.geometry.surfaces[id.surface as usize]).filter(|surface| surface.has_holes())?;
+        let mesh = &self.geometry.instances[surface.instance as usize].mesh;
+        let corners = mesh.triangles[id.triangle as usize].map(|i| i as usize);
+        let triangle = TexturedTriangle::new(surface, mesh, corners);
+        Some(move |over_w, pixel| triangle.is_there(over_w, pixel))
     }
 
     /// Computes the scene-linear values of a row's pixels.
@@ -207,8 +246,8 @@ impl<'a> FragmentShader<'a> {
         for (surface, pixels) in row.surfaces(rgb.len()) {
             if let Some(material) = self.frame.materials.get(surface as usize) {
                 materials.set(&pixels, material);
-                self.apply_colors(row, surface, pixels.clone(), &mut materials.diffuse);
-                self.apply_texture(row, surface, pixels, &mut materials.diffuse);
+                self.apply_textures(row, surface, pixels.clone(), materials);
+                self.apply_colors(row, surface, pixels, &mut materials.diffuse);
                 any_surface = true;
             }
         }
@@ -243,16 +282,16 @@ impl<'a> FragmentShader<'a> {
         }
     }
 
-    /// Multiplies the diffuse BRDF of pixels by the texture of their surface.
+    /// Sets the materials of pixels of a textured surface, each by what its textures give.
     #[inline(always)]
-    fn apply_texture(&self, row: &GBufferRow, surface: u32, pixels: Range<usize>, diffuse: &mut RowVec3) {
-        let textures = &self.geometry.surfaces[surface as usize].textures;
-        let Some(texture) = &textures[TextureSlot::BaseColor as usize] else { return };
+    fn apply_textures(&self, row: &GBufferRow, surface: u32, pixels: Range<usize>, materials: &mut RowMaterials) {
+        let surface = &self.geometry.surfaces[surface as usize];
+        if !surface.is_textured() {
+            return;
+        }
         for i in pixels {
-            if let Some(rgb) = nearest_texel(texture, Vec2::new(row.uv[0][i], row.uv[1][i])) {
-                let linear = Vec3::from(rgb.map(|c| self.frame.linear_from_srgb[usize::from(c)]));
-                diffuse.set(i, diffuse.at(i) * linear);
-            }
+            let scale = self.frame.lights.emission_scale;
+            materials.set(&(i..i + 1), &ShadingMaterial::new(&surface.material, &row.factors[i], scale));
         }
     }
 
@@ -369,11 +408,4 @@ fn position([x, y, z, ..]: &VertexAttributes) -> Vec3 {
 fn geometric_normal(vertices: [&VertexAttributes; 3]) -> Vec3 {
     let [a, b, c] = vertices.map(position);
     (b - a).cross(c - a)
-}
-
-fn nearest_texel(texture: &Texture, uv: Vec2) -> Option<[u8; 3]> {
-    let wrapped = uv - uv.floor();
-    let texel = |part: f32, count: u32| ((part * count as f32) as u32).min(count.saturating_sub(1)) as usize;
-    let (x, y) = (texel(wrapped.x, texture.width), texel(1.0 - wrapped.y, texture.height));
-    texture.rgb.get(y * texture.width as usize + x).copied()
 }

@@ -56,7 +56,10 @@ impl SimdTask for TileRowTask<'_> {
             tile.load_depths(viewport, self.inverse_depths);
             for batch in batches {
                 for (key, triangle) in batch.triangles_in_tile(row * columns + column) {
-                    tile.rasterize(triangle, key);
+                    match shader.has_holes().then(|| shader.hole_test(triangle.id)).flatten() {
+                        Some(is_there) => tile.rasterize_with_holes(triangle, key, is_there),
+                        None => tile.rasterize(triangle, key),
+                    }
                 }
             }
             for y in (0..tile.height).filter(|y| tile.is_covered(*y)) {
@@ -141,6 +144,37 @@ impl Tile {
             Some(area) if triangle.fits_within(SMALL_TRIANGLE) => self.rasterize_pixels(triangle, area, key),
             Some(area) => self.rasterize_scanlines(triangle, area, key),
             None => {}
+        }
+    }
+
+    /// Rasterizes a triangle with a depth test at those pixels that pass another test: of their barycentric coordinates
+    /// over w and their place on the screen.
+    fn rasterize_with_holes(
+        &mut self,
+        triangle: &ScreenTriangle,
+        key: u32,
+        is_there: impl Fn(Vec3, (usize, usize)) -> bool,
+    ) {
+        let Some((columns, rows)) = self.overlap(triangle) else { return };
+        let mut edges = triangle.edge_functions(self.x + columns.start, self.y + rows.start);
+        let [inverse_w, step_right, step_down] =
+            triangle.barycentric_over_w(self.x + columns.start, self.y + rows.start).map(Vec3::element_sum);
+        for (row, y) in rows.enumerate() {
+            let (mut low, mut high) = (0, columns.len() as i64);
+            edges.iter().for_each(|edge| edge.narrow(&mut low, &mut high));
+            edges.iter_mut().for_each(|edge| edge.start += edge.per_row);
+            if low >= high {
+                continue;
+            }
+            let pixels = columns.start + low as usize..columns.start + high as usize;
+            let span = triangle.span(self.x, self.y + y, pixels.clone());
+            for i in pixels.clone() {
+                let over_w = span.start + span.step * (i - pixels.start) as f32;
+                if is_there(over_w, (self.x + i, self.y + y)) {
+                    let here = inverse_w + step_down * row as f32 + step_right * (i - columns.start) as f32;
+                    depth_test(here, key, &mut self.inverse_w[y][i], &mut self.visible[y][i]);
+                }
+            }
         }
     }
 

@@ -51,6 +51,10 @@ impl RayCaster<'_> {
     ) -> Option<Connection> {
         let LightSample { direction, distance, .. } = *sample;
         if !self.scene.plan().refraction {
+            if self.scene.plan().coverage {
+                let passed = self.passed_light(origin, direction, distance);
+                return (passed > 0.0).then(|| Connection::on_line(sample, Vec3::splat(passed)));
+            }
             let is_visible = !self.occluded(origin, direction, distance);
             return is_visible.then(|| Connection::on_line(sample, Vec3::ONE));
         }

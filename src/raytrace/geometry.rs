@@ -6,7 +6,7 @@ use super::simd::{Kernels, SlabRay, TriangleHit};
 use super::strand_geometry::StrandGeometry;
 use crate::math::{self, Ray, gamma};
 use crate::scene::Mesh;
-use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
+use glam::{Affine2, Affine3A, Mat3A, Vec2, Vec3, Vec3A};
 use std::sync::{Arc, OnceLock};
 
 /// A mesh with its BLASes.
@@ -175,12 +175,12 @@ impl Instance {
             (smooth, smooth_surface_offset(local, corners, normals, weights))
         };
         // Interpolate the texture coordinates
-        let uv = if mesh.uvs.is_empty() {
-            Vec2::ZERO
-        } else {
-            let uvs = indices.map(|i| mesh.uvs[i]);
-            uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2]
+        let interpolate = |values: &[Vec2]| {
+            let [a, b, c] = indices.map(|i| values.get(i).copied().unwrap_or_default());
+            a * weights[0] + b * weights[1] + c * weights[2]
         };
+        let uv = interpolate(&mesh.uvs);
+        let second_uv = if mesh.second_uvs.is_empty() { Vec2::ZERO } else { interpolate(&mesh.second_uvs) };
         // Interpolate the colour
         let color = if mesh.colors.is_empty() {
             Vec3::ONE
@@ -196,11 +196,28 @@ impl Instance {
             geometric_normal: geometric_normal.into(),
             normal: normal.into(),
             uv,
+            second_uv,
             color,
             material: self.materials.get(part).copied().unwrap_or(0),
             is_thin: self.is_thin,
             strand: None,
         }
+    }
+
+    /// Returns the derivatives of the position on a triangle by the coordinates of a picture, world space, for the
+    /// transform from the texture coordinates to those of the picture. Returns none where the texture has no area.
+    pub fn position_derivatives(
+        &self,
+        triangle: u32,
+        second_uvs: bool,
+        picture_from_mesh: &Affine2,
+    ) -> Option<[Vec3; 2]> {
+        let mesh = self.geometry.mesh();
+        let [a, b, c] = self.world_corners(triangle as usize);
+        let uvs = if second_uvs { &mesh.second_uvs } else { &mesh.uvs };
+        let corners = mesh.triangles[triangle as usize].map(|i| uvs.get(i as usize).copied().unwrap_or_default());
+        let [uv_a, uv_b, uv_c] = corners.map(|uv| picture_from_mesh.transform_vector2(uv));
+        math::position_derivatives([b - a, c - a], [uv_b - uv_a, uv_c - uv_a])
     }
 
     /// Returns the error bound of a transformed point, including that of the transform back to object space that a ray
@@ -246,6 +263,8 @@ pub struct SurfaceInteraction {
     pub normal: Vec3,
     /// Texture coordinates.
     pub uv: Vec2,
+    /// Texture coordinates of the second set.
+    pub second_uv: Vec2,
     /// Interpolated vertex colour, a factor of the base colour.
     pub color: Vec3,
     /// Index into the material table.
@@ -268,6 +287,11 @@ pub struct StrandCoordinates {
 }
 
 impl SurfaceInteraction {
+    /// Returns the origin of a ray that passes the surface straight, as if it were not there.
+    pub fn pass_origin(&self, direction: Vec3) -> Vec3 {
+        math::offset_origin(self.position, self.position_error, self.geometric_normal, direction)
+    }
+
     /// Returns the origin of a ray that leaves the surface in `direction`, offset by the error bound.
     pub fn spawn_origin(&self, direction: Vec3) -> Vec3 {
         let is_outwards = direction.dot(self.geometric_normal) > 0.0;

@@ -5,7 +5,7 @@
 //! of the last `prepare` are never evicted; of the others, [`MAX_UNUSED_TRIANGLES`] are kept.
 
 use super::aggregate::MergedBlas;
-use super::bsdf::TracedMaterial;
+use super::bsdf::{RoughnessTables, TracedMaterial};
 use super::geometry::MeshGeometry;
 use crate::scene::{Material, Mesh};
 use rayon::prelude::*;
@@ -112,6 +112,11 @@ impl GeometryCache {
     /// Returns a material of the last scene, with any texture.
     pub(super) fn material(&self, material: &Material) -> Option<TracedMaterial> {
         self.lock().materials.iter().find(|(known, _)| known == material).map(|(_, traced)| traced.clone())
+    }
+
+    /// Returns the directional albedos for every roughness that materials of the last scene have.
+    pub(super) fn roughness_tables(&self) -> Vec<Arc<RoughnessTables>> {
+        self.lock().materials.iter().filter_map(|(_, traced)| traced.roughness_tables().cloned()).collect()
     }
 
     /// Stores a scene's materials for the next `prepare`.

@@ -20,6 +20,7 @@ mod bvh;
 mod caustics;
 mod connection;
 mod control;
+mod coverage;
 mod emitters;
 mod events;
 mod exact_sum;
@@ -63,6 +64,7 @@ mod strand_surface;
 mod strand_tests;
 mod subsurface;
 mod texture;
+mod textured_surface;
 mod wavefront;
 mod whitted;
 

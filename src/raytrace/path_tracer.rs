@@ -195,7 +195,7 @@ impl<'a> PathTracer<'a> {
                 sink.record(|| PathEvent::Miss);
                 return;
             };
-            let surface = scene.aggregate.surface(&hit);
+            let surface = scene.surface(&path.ray, &hit);
             let material = &scene.materials[surface.material as usize];
             let wo = -path.ray.direction;
             let outside = wo.dot(surface.geometric_normal) >= 0.0;
@@ -234,7 +234,7 @@ impl<'a> PathTracer<'a> {
             // Add the surface's emission
             if material.is_emissive() {
                 sink.record(|| PathEvent::Emission);
-                sink.add(scene.emission_layer(), path.throughput * material.emission * scene.emission_time_s);
+                sink.add(scene.emission_layer(), path.throughput * scene.emission(&surface) * scene.emission_time_s);
             }
 
             // Describe the surface that the camera sees, or sees by mirrors and clear glass

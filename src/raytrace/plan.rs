@@ -3,6 +3,7 @@
 use super::bsdf::TracedMaterial;
 use super::lens::Lens;
 use super::lights::TracedLight;
+use crate::scene::{Alpha, TextureSlot};
 use std::fmt;
 
 /// Part of the light after which further bounces are cut.
@@ -29,6 +30,10 @@ pub struct RenderPlan {
     pub refraction: bool,
     /// Light scatters under surfaces.
     pub subsurface: bool,
+    /// Normal maps tilt shading normals.
+    pub normal_maps: bool,
+    /// Rays pass surfaces that are not all there.
+    pub coverage: bool,
     /// The lens has an aperture.
     pub lens: bool,
     /// All lights are sampled at the first hit, rather than one by its importance.
@@ -134,6 +139,16 @@ impl RenderPlan {
         } else {
             "nothing soft under its surface: no walks".to_owned()
         });
+        let normal_maps = materials.iter().any(|material| material.texture(TextureSlot::Normal).is_some());
+        if normal_maps {
+            reasons.push("normal maps: shading normals are tilted".to_owned());
+        }
+        let coverage = materials.iter().any(|material| material.coverage != Alpha::Opaque);
+        reasons.push(if coverage {
+            "masked or blended surfaces: rays look up whether a surface is there".to_owned()
+        } else {
+            "all surfaces are wholly there: no alpha".to_owned()
+        });
         let has_aperture = lens.has_aperture();
         reasons.push(if has_aperture {
             "depth of field: rays start on the lens".to_owned()
@@ -179,6 +194,8 @@ impl RenderPlan {
             has_area_emitters,
             refraction,
             subsurface,
+            normal_maps,
+            coverage,
             lens: has_aperture,
             sample_all_lights,
             photons,

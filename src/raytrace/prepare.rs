@@ -1,7 +1,7 @@
 //! Preparation: the scene that the user edits becomes the flat tables that the tracer reads.
 
 use super::aggregate::Aggregate;
-use super::bsdf::TracedMaterial;
+use super::bsdf::{RoughnessTables, TracedMaterial};
 use super::caustics::CausticCasters;
 use super::film::{self, Layer};
 use super::geometry::Instance;
@@ -12,7 +12,9 @@ use super::plan::RenderPlan;
 use super::render_scene::{ROOM, RenderScene};
 use super::texture::TextureMap;
 use crate::photo::{PhotometricLight, exposure};
-use crate::scene::{self, Assets, Light, LightId, Material, Mesh, Scene, Severity, Shape, TextureRef};
+use crate::scene::{
+    self, Assets, Light, LightId, Material, Mesh, Scene, Severity, Shape, TexturePlacement, TextureRef, TextureSlot,
+};
 use glam::{Affine3A, Vec3};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -127,7 +129,8 @@ struct Tables<'a> {
     materials: Vec<TracedMaterial>,
     known: Vec<Material>,
     textures: Vec<TextureMap>,
-    texture_index: HashMap<TextureRef, u32>,
+    /// Indices into `textures`, by encoding and placement.
+    texture_index: HashMap<TextureRef, Vec<(bool, TexturePlacement, u32)>>,
 }
 
 impl<'a> Tables<'a> {
@@ -139,21 +142,45 @@ impl<'a> Tables<'a> {
         if let Some(index) = self.known.iter().position(|m| m == material) {
             return index as u32;
         }
-        let textures = material.textures.look_up(|texture| self.texture(texture, assets));
+        let textures = material
+            .textures
+            .look_up(|slot, texture| self.texture(texture, slot.is_srgb(), material.textures.placement(slot), assets));
         self.known.push(material.clone());
-        let mut traced = self.cache.material(material).unwrap_or_else(|| TracedMaterial::new(material));
+        let is_mapped = textures[TextureSlot::MetallicRoughness as usize].is_some();
+        let cached = self.cache.material(material).filter(|known| known.roughness_tables().is_some() == is_mapped);
+        let mut traced = cached.unwrap_or_else(|| {
+            let mut traced = TracedMaterial::new(material);
+            if is_mapped {
+                traced.map_gloss(material, self.roughness_tables(material.ior));
+            }
+            traced
+        });
         traced.textures = textures;
         self.materials.push(traced);
         self.known.len() as u32 - 1
     }
 
-    fn texture(&mut self, texture: &TextureRef, assets: &Assets) -> Option<u32> {
-        if let Some(&index) = self.texture_index.get(texture) {
-            return Some(index);
+    /// Returns the directional albedos for every roughness, which materials of one index of refraction share.
+    fn roughness_tables(&self, ior: f32) -> Arc<RoughnessTables> {
+        let known = self.materials.iter().filter_map(TracedMaterial::roughness_tables);
+        let known = known.cloned().chain(self.cache.roughness_tables()).find(|tables| tables.ior() == ior);
+        known.unwrap_or_else(|| Arc::new(RoughnessTables::new(ior)))
+    }
+
+    fn texture(
+        &mut self,
+        texture: &TextureRef,
+        is_srgb: bool,
+        placement: &TexturePlacement,
+        assets: &Assets,
+    ) -> Option<u32> {
+        let maps = self.texture_index.entry(texture.clone()).or_default();
+        if let Some((.., index)) = maps.iter().find(|(srgb, known, _)| *srgb == is_srgb && known == placement) {
+            return Some(*index);
         }
-        self.textures.push(TextureMap::new(&assets.texture(texture)?));
+        self.textures.push(TextureMap::new(&assets.texture(texture)?, is_srgb, placement));
         let index = self.textures.len() as u32 - 1;
-        self.texture_index.insert(texture.clone(), index);
+        maps.push((is_srgb, *placement, index));
         Some(index)
     }
 }

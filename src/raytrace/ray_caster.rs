@@ -37,14 +37,23 @@ impl<'a> RayCaster<'a> {
 
     /// Returns the closest hit.
     pub fn intersect(&mut self, ray: &Ray) -> Option<Hit> {
+        let hit = self.intersect_all(ray)?;
+        if self.scene.plan().coverage { self.meet(ray, hit) } else { Some(hit) }
+    }
+
+    /// Returns the closest hit, also of a surface that is not there.
+    pub(super) fn intersect_all(&mut self, ray: &Ray) -> Option<Hit> {
         self.rays += 1;
         self.scene.aggregate.intersect(ray, &mut self.stack)
     }
 
     /// Returns true if a surface lies between a point and an emitter at `distance` from it.
     pub fn occluded(&mut self, origin: Vec3, direction: Vec3, distance: f32) -> bool {
-        self.rays += 1;
         let ray = Ray { origin, direction, t_max: shadow_ray_end(origin, distance) };
+        if self.scene.plan().coverage {
+            return self.intersect(&ray).is_some();
+        }
+        self.rays += 1;
         self.scene.aggregate.occluded(&ray, &mut self.stack)
     }
 

@@ -12,7 +12,7 @@ use super::plan::RenderPlan;
 use super::sink::{FirstHit, FirstObject, SeenSurface};
 use super::texture::TextureMap;
 use crate::math::Ray;
-use crate::scene::{LightId, TextureSlot};
+use crate::scene::LightId;
 use glam::Vec3;
 
 /// A scene ready for tracing. Positions are relative to `origin`.
@@ -89,8 +89,8 @@ impl RenderScene {
         if let (Some(strand), Some(fibre)) = (&surface.strand, material.fibre()) {
             return Bsdf::of_fibre(fibre, strand.tangent, strand.h, wo);
         }
-        let texture = self.texture_value(surface);
-        let bsdf = Bsdf::new(material, texture, surface.normal, surface.geometric_normal, wo);
+        let factors = self.texture_factors(surface);
+        let bsdf = Bsdf::new(material, factors, surface.normal, surface.geometric_normal, wo);
         let outside = wo.dot(surface.geometric_normal) >= 0.0;
         if self.plan.subsurface && outside && surface.strand.is_none() && material.extinction_per_m().is_some() {
             return bsdf.with_subsurface();
@@ -103,12 +103,6 @@ impl RenderScene {
             if surface.is_thin { Boundary::ThinPane } else { Boundary::Interface(interface()) },
             polarisation,
         )
-    }
-
-    /// Factor of the base colour at a surface, from the texture and the vertex colours.
-    pub(super) fn texture_value(&self, surface: &SurfaceInteraction) -> Vec3 {
-        let texture = self.materials[surface.material as usize].texture(TextureSlot::BaseColor);
-        texture.map_or(surface.color, |texture| self.textures[texture as usize].at(surface.uv) * surface.color)
     }
 
     /// The reflectance at a surface, for the albedo AOV and ambient light.

@@ -14,6 +14,8 @@ use glam::Vec3;
 
 /// Maximum number of clear surfaces on the way to a light.
 const MAX_CLEAR_SURFACES: u32 = 64;
+/// Maximum number of surfaces between two of them that are not all there.
+const MAX_PASSED: u32 = 4096;
 
 /// The treatment of bodies on a shadow ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,12 +108,36 @@ impl RayCaster<'_> {
     pub fn trace_shadow_ray(&mut self, query: &ShadowQuery, origin: Vec3, direction: Vec3) -> ShadowRayEnd {
         let mut shadow_ray = ShadowRay::new(self.scene, query, origin, direction);
         for _ in 0..MAX_CLEAR_SURFACES {
-            let Some(hit) = self.intersect(&shadow_ray.ray) else { return shadow_ray.arrive() };
+            let Some(hit) = self.next_surface(&mut shadow_ray) else { return shadow_ray.arrive() };
             if let Err(end) = shadow_ray.pass(&hit) {
                 return end;
             }
         }
         ShadowRayEnd::Blocked
+    }
+}
+
+impl RayCaster<'_> {
+    /// Returns the next surface on a shadow ray, and weights the ray where it passes others that are not all there.
+    fn next_surface(&mut self, shadow_ray: &mut ShadowRay<'_>) -> Option<Hit> {
+        let hit = self.intersect_all(&shadow_ray.ray)?;
+        if !self.scene.plan().coverage {
+            return Some(hit);
+        }
+        let (mut next, mut hit, mut travelled) = (shadow_ray.ray, hit, 0.0);
+        for _ in 0..MAX_PASSED {
+            let surface = self.scene.aggregate.surface(&hit);
+            let coverage = self.scene.coverage(&surface);
+            if coverage >= 1.0 {
+                break;
+            }
+            shadow_ray.passed *= 1.0 - coverage;
+            travelled += hit.t;
+            let t_max = next.t_max - hit.t;
+            next = Ray { origin: surface.pass_origin(next.direction), t_max, ..next };
+            hit = self.scene.aggregate.intersect(&next, &mut self.stack)?;
+        }
+        Some(Hit { t: travelled + hit.t, ..hit })
     }
 }
 
@@ -126,6 +152,8 @@ struct ShadowRay<'a> {
     path: StraightPath,
     faces: FaceStack,
     wavefront: Wavefront,
+    /// Part of the light that surfaces let pass which are not all there.
+    passed: f32,
 }
 
 /// A clear surface on a shadow ray.
@@ -152,6 +180,7 @@ impl<'a> ShadowRay<'a> {
             path: StraightPath::default(),
             faces: FaceStack::new(direction, query.between_bodies),
             wavefront: Wavefront::new(direction),
+            passed: 1.0,
         }
     }
 
@@ -162,7 +191,8 @@ impl<'a> ShadowRay<'a> {
         }
         // The space beyond the last surface, up to the sun, is not inside of anything.
         let rest = if self.ray.t_max.is_finite() { self.ray.t_max } else { 0.0 };
-        let transmittance = self.faces.transmittance(self.media.transmittance(&self.scene.materials, rest));
+        let transmittance =
+            self.faces.transmittance(self.media.transmittance(&self.scene.materials, rest)) * self.passed;
         let mut wavefront = self.wavefront;
         let mut miss = Vec3::ZERO;
         if let Target::Point(point) = self.query.target {
@@ -176,14 +206,14 @@ impl<'a> ShadowRay<'a> {
 
     /// Passes a surface, or ends the ray there.
     fn pass(&mut self, hit: &Hit) -> Result<(), ShadowRayEnd> {
-        let surface = &self.scene.aggregate.surface(hit);
+        let surface = &self.scene.surface(&self.ray, hit);
         let material = &self.scene.materials[surface.material as usize];
         if !material.transmits() || (self.query.mode == BodyMode::Block && !surface.is_thin) {
             return Err(ShadowRayEnd::Blocked);
         }
         let clear = ClearSurface {
             surface,
-            color: material.transmission_color(self.scene.texture_value(surface), surface.is_thin),
+            color: self.scene.material_point(surface).transmission_color(surface.is_thin),
             gap: self.media.transmittance(&self.scene.materials, hit.t),
             distance: hit.t,
             is_inside: self.path.open_normal().is_some(),

@@ -45,6 +45,7 @@ pub fn surface(instance: &Instance, hit: &StrandHit) -> SurfaceInteraction {
         geometric_normal: facing,
         normal: normal.normalize_or(facing),
         uv: Vec2::new(u, 0.5 + 0.5 * h),
+        second_uv: Vec2::ZERO,
         color: Vec3::ONE,
         material: instance.materials.get(part).copied().unwrap_or(0),
         is_thin: true,

@@ -60,7 +60,7 @@ fn trace_ray(
         sink.record(|| PathEvent::Miss);
         return;
     };
-    let surface = scene.aggregate.surface(&hit);
+    let surface = scene.surface(&ray, &hit);
     if depth == 0 {
         sink.first_hit(|| scene.first_hit(&ray, &hit, &surface));
         sink.seen_surface(|| scene.seen_surface(&ray, throughput, &surface));
@@ -85,7 +85,7 @@ fn trace_ray(
     let material = &scene.materials[surface.material as usize];
     if material.is_emissive() {
         sink.record(|| PathEvent::Emission);
-        sink.add(scene.emission_layer(), throughput * material.emission * scene.emission_time_s);
+        sink.add(scene.emission_layer(), throughput * scene.emission(&surface) * scene.emission_time_s);
     }
 
     // Add direct and ambient light on fibres, from all sides
@@ -102,7 +102,7 @@ fn trace_ray(
     let side = if outside { 1.0 } else { -1.0 };
     let smooth = surface.normal * side;
     let normal = if smooth.dot(view_dir) > 0.0 { smooth } else { surface.geometric_normal * side };
-    let phong = material.phong(scene.texture_value(&surface));
+    let phong = scene.material_point(&surface).phong();
     add_direct_light(caster, &surface, &media, throughput, sink, |light_dir| {
         let above = light_dir.dot(normal) > 0.0 && light_dir.dot(surface.geometric_normal) * side > 0.0;
         if above { phong.eval(light_dir, view_dir, normal) * light_dir.dot(normal) } else { Vec3::ZERO }

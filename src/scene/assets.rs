@@ -273,7 +273,7 @@ mod tests {
     use super::*;
 
     fn image() -> Arc<Texture> {
-        Arc::new(Texture { width: 1, height: 1, rgb: vec![[7; 3]] })
+        Arc::new(Texture::opaque(1, 1, vec![[7; 3]]))
     }
 
     #[test]

@@ -189,6 +189,7 @@ impl SceneChange {
             subsurface,
             emission_cd_m2,
             fibre,
+            alpha,
         } = old;
         self.materials |= *base_color != new.base_color
             || *textures != new.textures
@@ -199,7 +200,8 @@ impl SceneChange {
             || *absorption_per_m != new.absorption_per_m
             || *subsurface != new.subsurface
             || *emission_cd_m2 != new.emission_cd_m2
-            || *fibre != new.fibre;
+            || *fibre != new.fibre
+            || *alpha != new.alpha;
     }
 
     fn compare_meters(&mut self, old: &Meter, new: &Meter) {

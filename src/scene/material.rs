@@ -26,6 +26,38 @@ pub struct Material {
     pub emission_cd_m2: [f32; 3],
     /// Strands of this material are such fibres; they ignore the properties of surfaces above, emission excepted.
     pub fibre: Option<Fibre>,
+    /// Parts of the surface that are not there.
+    pub alpha: Alpha,
+}
+
+/// The parts of a surface that are not there, by the alpha of its base colour's texture. Light passes them straight and
+/// unchanged: leaves and lace, not glass.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum Alpha {
+    /// All of the surface is there.
+    #[default]
+    Opaque,
+    /// The surface is there where the texture's alpha is at least `cutoff`.
+    Mask {
+        /// Least alpha that is there.
+        cutoff: f32,
+    },
+    /// The surface covers a part of each point: the texture's alpha times `opacity`.
+    Blend {
+        /// Factor of the texture's alpha.
+        opacity: f32,
+    },
+}
+
+impl Alpha {
+    /// Returns the part of a point that is there, 0 to 1, for the texture's alpha.
+    pub fn coverage(self, texture_alpha: f32) -> f32 {
+        match self {
+            Alpha::Opaque => 1.0,
+            Alpha::Mask { cutoff } => f32::from(u8::from(texture_alpha >= cutoff)),
+            Alpha::Blend { opacity } => (texture_alpha * opacity).clamp(0.0, 1.0),
+        }
+    }
 }
 
 /// Scattering of light under the surface of skin, wax or marble. The base colour stays the albedo of a thick body.
@@ -60,6 +92,7 @@ impl Default for Material {
             subsurface: None,
             emission_cd_m2: [0.0; 3],
             fibre: None,
+            alpha: Alpha::Opaque,
         }
     }
 }

@@ -17,7 +17,7 @@ pub struct MeshPart {
 
 /// An indexed triangle mesh in object space, metres. Front faces wind counter-clockwise.
 ///
-/// `normals`, `uvs` and `colors` are either empty or as long as `positions`. `parts` cover all triangles, in order.
+/// `normals`, `uvs`, `second_uvs` and `colors` are either empty or as long as `positions`. `parts` cover all triangles, in order.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Mesh {
     /// Vertex positions, metres.
@@ -26,6 +26,8 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates, (0, 0) at the picture's bottom left; empty where the mesh has none.
     pub uvs: Vec<Vec2>,
+    /// A second set of texture coordinates, for textures whose placement asks for it; empty where the mesh has none.
+    pub second_uvs: Vec<Vec2>,
     /// Vertex colours, scene-linear, 0 to 1: factors of the base colour. Empty means 1.
     pub colors: Vec<Vec3>,
     /// Vertex indices, three a triangle.
@@ -76,6 +78,11 @@ impl Mesh {
         } else {
             self.uvs.clear();
         }
+        if !(self.second_uvs.is_empty() && other.second_uvs.is_empty()) {
+            self.second_uvs.resize(self.positions.len(), Vec2::ZERO);
+            self.second_uvs.extend(&other.second_uvs);
+            self.second_uvs.resize(self.positions.len() + other.positions.len(), Vec2::ZERO);
+        }
         if !(self.colors.is_empty() && other.colors.is_empty()) {
             self.colors.resize(self.positions.len(), Vec3::ONE);
             self.colors.extend(&other.colors);
@@ -98,7 +105,9 @@ impl Mesh {
             vectors.len().hash(hasher);
             vectors.iter().for_each(|v| bits(v).hash(hasher));
         }
-        self.uvs.iter().for_each(|uv| [uv.x.to_bits(), uv.y.to_bits()].hash(hasher));
+        for uvs in [&self.uvs, &self.second_uvs] {
+            uvs.iter().for_each(|uv| [uv.x.to_bits(), uv.y.to_bits()].hash(hasher));
+        }
         self.triangles.hash(hasher);
         self.parts.hash(hasher);
         self.strands.hash_content(hasher);

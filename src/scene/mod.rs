@@ -29,6 +29,7 @@ mod room;
 mod strands;
 mod tessellate;
 mod texture;
+mod texture_placement;
 mod validate;
 mod variants;
 
@@ -49,7 +50,7 @@ pub use id::{LightId, ObjectId};
 pub use intensity_table::IntensityTable;
 pub use inventory::{AssetField, MaterialSlot};
 pub use light::{ColorSource, Light, LightColor, Output, Power, Role, Solo};
-pub use material::{Material, MaterialPreset, Subsurface};
+pub use material::{Alpha, Material, MaterialPreset, Subsurface};
 pub use mesh::{Mesh, MeshPart};
 pub use meter::{Facing, Meter, Receptor};
 pub use modifier::{BarnDoors, Cone, Modifier};
@@ -60,6 +61,7 @@ pub use room::Room;
 pub use strands::{StrandPart, StrandPoint, Strands};
 pub use tessellate::{ROOM_STANDS_BACK_M, room_mesh, tessellate};
 pub use texture::{MaterialTextures, Texture, TextureRef, TextureSlot};
+pub use texture_placement::{TexturePlacement, Wrap};
 pub use validate::{Finding, LIST_LIMIT, Severity, placement, validate};
 pub use variants::{CameraDifference, LightDifference, SetupDifference, VARIANT_LIMIT, Variant, VariantId, Variants};
 

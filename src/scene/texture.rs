@@ -1,16 +1,26 @@
 //! Texture images, references to them, and the texture slots of a material.
 
+use super::TexturePlacement;
 use std::fmt;
 
-/// A decoded image: 8-bit sRGB, rows from the top.
+/// A decoded image of 8 bits a channel, rows from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Texture {
     /// Pixels across.
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// `width * height` pixels, red green blue, sRGB-encoded.
+    /// `width * height` pixels, red green blue. Their encoding is that of the slot: see [`TextureSlot::is_srgb`].
     pub rgb: Vec<[u8; 3]>,
+    /// Alpha of the pixels, 255 for opaque; empty for an image without a transparent pixel.
+    pub alpha: Vec<u8>,
+}
+
+impl Texture {
+    /// Returns an image without transparent pixels.
+    pub fn opaque(width: u32, height: u32, rgb: Vec<[u8; 3]>) -> Self {
+        Texture { width, height, rgb, alpha: Vec::new() }
+    }
 }
 
 /// The source of a texture's bytes, a PNG or JPEG image. Paths are relative to the scene file, `/` between folders.
@@ -76,42 +86,96 @@ impl fmt::Display for TextureRef {
 /// A property of a material that a texture can vary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TextureSlot {
-    /// Multiplies [`super::Material::base_color`].
+    /// Multiplies [`super::Material::base_color`]; its alpha is that of [`super::Alpha`].
     BaseColor,
+    /// Green multiplies [`super::Material::roughness`], blue [`super::Material::metallic`].
+    MetallicRoughness,
+    /// Multiplies [`super::Material::emission_cd_m2`].
+    Emission,
+    /// Tilts the shading normal: red along +U, green along +V, blue along the normal, each from -1 to 1.
+    Normal,
 }
 
 impl TextureSlot {
     /// Number of slots; `slot as usize` is an index below it.
-    pub const COUNT: usize = 1;
+    pub const COUNT: usize = 4;
 
     /// Every slot, by index.
-    pub const ALL: [TextureSlot; Self::COUNT] = [TextureSlot::BaseColor];
+    pub const ALL: [TextureSlot; Self::COUNT] =
+        [TextureSlot::BaseColor, TextureSlot::MetallicRoughness, TextureSlot::Emission, TextureSlot::Normal];
 
     /// Returns the name of the slot's field in a scene file.
     pub fn field(self) -> &'static str {
         match self {
             TextureSlot::BaseColor => "base_color_texture",
+            TextureSlot::MetallicRoughness => "metallic_roughness_texture",
+            TextureSlot::Emission => "emission_texture",
+            TextureSlot::Normal => "normal_texture",
+        }
+    }
+
+    /// Returns the name of the field with the placement of the slot's texture.
+    pub fn placement_field(self) -> &'static str {
+        match self {
+            TextureSlot::BaseColor => "base_color_placement",
+            TextureSlot::MetallicRoughness => "metallic_roughness_placement",
+            TextureSlot::Emission => "emission_placement",
+            TextureSlot::Normal => "normal_placement",
+        }
+    }
+
+    /// Returns true for colours, whose pixels are sRGB-encoded; false for data, whose pixels are linear.
+    pub fn is_srgb(self) -> bool {
+        match self {
+            TextureSlot::BaseColor | TextureSlot::Emission => true,
+            TextureSlot::MetallicRoughness | TextureSlot::Normal => false,
         }
     }
 }
 
 /// The textures of a material, at most one a slot.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct MaterialTextures {
     /// Multiplies [`super::Material::base_color`].
     pub base_color: Option<TextureRef>,
+    /// Multiplies [`super::Material::roughness`] and [`super::Material::metallic`].
+    pub metallic_roughness: Option<TextureRef>,
+    /// Multiplies [`super::Material::emission_cd_m2`].
+    pub emission: Option<TextureRef>,
+    /// Tilts the shading normal.
+    pub normal: Option<TextureRef>,
+    /// Factor of the normal texture's tilt; 1 is as drawn.
+    pub normal_scale: f32,
+    /// How each texture lies on the surface, by slot.
+    pub placements: [TexturePlacement; TextureSlot::COUNT],
+}
+
+impl Default for MaterialTextures {
+    fn default() -> Self {
+        MaterialTextures {
+            base_color: None,
+            metallic_roughness: None,
+            emission: None,
+            normal: None,
+            normal_scale: 1.0,
+            placements: [TexturePlacement::default(); TextureSlot::COUNT],
+        }
+    }
 }
 
 impl MaterialTextures {
     /// Returns textures with only the base colour's.
     pub fn with_base_color(texture: TextureRef) -> Self {
-        MaterialTextures { base_color: Some(texture) }
+        MaterialTextures { base_color: Some(texture), ..MaterialTextures::default() }
     }
 
     /// Returns the texture of a slot.
     pub fn get(&self, slot: TextureSlot) -> Option<&TextureRef> {
         match slot {
             TextureSlot::BaseColor => self.base_color.as_ref(),
+            TextureSlot::MetallicRoughness => self.metallic_roughness.as_ref(),
+            TextureSlot::Emission => self.emission.as_ref(),
+            TextureSlot::Normal => self.normal.as_ref(),
         }
     }
 
@@ -119,7 +183,15 @@ impl MaterialTextures {
     pub fn get_mut(&mut self, slot: TextureSlot) -> &mut Option<TextureRef> {
         match slot {
             TextureSlot::BaseColor => &mut self.base_color,
+            TextureSlot::MetallicRoughness => &mut self.metallic_roughness,
+            TextureSlot::Emission => &mut self.emission,
+            TextureSlot::Normal => &mut self.normal,
         }
+    }
+
+    /// Returns how the texture of a slot lies on the surface.
+    pub fn placement(&self, slot: TextureSlot) -> &TexturePlacement {
+        &self.placements[slot as usize]
     }
 
     /// Returns the textures that are set, with their slots.
@@ -128,8 +200,11 @@ impl MaterialTextures {
     }
 
     /// Looks every texture up. Returns the results by slot index; `None` for slots that are empty or not found.
-    pub fn look_up<T>(&self, mut find: impl FnMut(&TextureRef) -> Option<T>) -> [Option<T>; TextureSlot::COUNT] {
-        TextureSlot::ALL.map(|slot| self.get(slot).and_then(&mut find))
+    pub fn look_up<T>(
+        &self,
+        mut find: impl FnMut(TextureSlot, &TextureRef) -> Option<T>,
+    ) -> [Option<T>; TextureSlot::COUNT] {
+        TextureSlot::ALL.map(|slot| self.get(slot).and_then(|texture| find(slot, texture)))
     }
 }
 
@@ -162,7 +237,7 @@ mod tests {
             let reference = TextureRef::file(slot.field());
             *textures.get_mut(slot) = Some(reference.clone());
             assert_eq!(textures.iter().collect::<Vec<_>>(), [(slot, &reference)]);
-            assert_eq!(textures.look_up(|found| Some(found == &reference))[index], Some(true));
+            assert_eq!(textures.look_up(|_, found| Some(found == &reference))[index], Some(true));
         }
     }
 }

@@ -130,7 +130,7 @@ fn changed_textures_are_warnings_or_images() {
     let folder = tempfile::tempdir().unwrap();
     let corpus = [PictureFormat::Png, PictureFormat::Jpeg].map(|format| encoded(folder.path(), format));
     let textured = |name: &str| {
-        let textures = MaterialTextures { base_color: Some(TextureRef::File(name.to_owned())) };
+        let textures = MaterialTextures::with_base_color(TextureRef::File(name.to_owned()));
         let preset = presets()[0].load().unwrap();
         let ball = Object {
             shape: Shape::Sphere { radius_m: 0.1 },

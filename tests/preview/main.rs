@@ -40,6 +40,7 @@ mod soft_surfaces;
 mod stored;
 #[path = "../studio/strands.rs"]
 mod strands;
+mod texture_maps;
 mod textures;
 mod thin_shadows;
 

@@ -103,7 +103,7 @@ fn a_texture_is_upright_and_filtered() {
     let mut assets = Assets::default();
     // Upper half red, lower half blue.
     let rgb = (0..64 * 64).map(|i| if i < 32 * 64 { [255, 0, 0] } else { [0, 0, 255] }).collect();
-    assets.insert_texture(TextureRef::file("flag.png"), Arc::new(Texture { width: 64, height: 64, rgb }));
+    assets.insert_texture(TextureRef::file("flag.png"), Arc::new(Texture::opaque(64, 64, rgb)));
     let cloth = Material { textures: MaterialTextures::with_base_color(TextureRef::file("flag.png")), ..grey_card() };
     let front = Vec3::new(0.0, 0.0, 4.0);
     let scene = Scene {

@@ -14,7 +14,7 @@ fn grazing_floor(renderer: &mut PreviewRenderer, is_white: impl Fn(u32, u32) -> 
     let mut assets = Assets::default();
     let code = |i: u32| if is_white(i % TEXELS, i / TEXELS) { [255; 3] } else { [0; 3] };
     let rgb = (0..TEXELS * TEXELS).map(code).collect();
-    assets.insert_texture(TextureRef::file("floor.png"), Arc::new(Texture { width: TEXELS, height: TEXELS, rgb }));
+    assets.insert_texture(TextureRef::file("floor.png"), Arc::new(Texture::opaque(TEXELS, TEXELS, rgb)));
     let lamp = light(0, Vec3::Y * 3.0, Vec3::ZERO, Emitter::Point, Output::Candela(10.0));
     let mut scene = floor_under(lamp);
     scene.objects[0].material.textures.base_color = Some(TextureRef::file("floor.png"));

@@ -266,7 +266,7 @@ fn a_texture_is_upright_on_a_card() {
     scene.lights.push(light(Emitter::Point, Output::Lumens(1000.0), Vec3::new(0.0, 0.3, 1.0)));
     let rgb = vec![[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
     let mut assets = Assets::default();
-    assets.insert_texture(TextureRef::file("quarters.png"), std::sync::Arc::new(Texture { width: 2, height: 2, rgb }));
+    assets.insert_texture(TextureRef::file("quarters.png"), std::sync::Arc::new(Texture::opaque(2, 2, rgb)));
     let settings = Settings { width: 8, height: 8, method: Method::Direct, spp: 4, ..Settings::default() };
     let picture = film_with(&scene, &assets, &settings).develop(&scene);
     let strongest = |x, y| {

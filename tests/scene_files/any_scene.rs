@@ -39,10 +39,47 @@ fn fibre() -> impl Strategy<Value = Fibre> {
     })
 }
 
+fn placement() -> impl Strategy<Value = TexturePlacement> {
+    let pair = || (number(-100.0, 100.0), number(-100.0, 100.0));
+    let wrap = || (0..3_usize).prop_map(|index| Wrap::ALL[index]);
+    (pair(), number(-360.0, 360.0), pair(), (wrap(), wrap()), any::<bool>(), any::<bool>()).prop_map(
+        |(offset, rotation_deg, scale, wrap, nearest, second_uvs)| TexturePlacement {
+            offset: offset.into(),
+            rotation_deg,
+            scale: scale.into(),
+            wrap: wrap.into(),
+            nearest,
+            second_uvs,
+        },
+    )
+}
+
+fn textures() -> BoxedStrategy<MaterialTextures> {
+    let slots = proptest::array::uniform4((proptest::option::of(texture()), proptest::option::of(placement().boxed())));
+    (slots, number(-16.0, 16.0))
+        .prop_map(|(slots, normal_scale)| {
+            let mut textures = MaterialTextures { normal_scale, ..MaterialTextures::default() };
+            for (slot, (texture, placement)) in TextureSlot::ALL.into_iter().zip(slots) {
+                *textures.get_mut(slot) = texture;
+                textures.placements[slot as usize] = placement.unwrap_or_default();
+            }
+            textures
+        })
+        .boxed()
+}
+
+fn alpha() -> impl Strategy<Value = Alpha> {
+    prop_oneof![
+        Just(Alpha::Opaque),
+        number(0.0, 1.0).prop_map(|cutoff| Alpha::Mask { cutoff }),
+        number(0.0, 1.0).prop_map(|opacity| Alpha::Blend { opacity }),
+    ]
+}
+
 fn material() -> impl Strategy<Value = Material> {
     let custom = (
         color(0.999),
-        proptest::option::of(texture()),
+        (textures(), alpha()),
         number(0.0, 1.0),
         number(0.0, 1.0),
         number(1.0, 4.0),
@@ -52,10 +89,20 @@ fn material() -> impl Strategy<Value = Material> {
         proptest::option::of(fibre()),
     )
         .prop_map(
-            |(base_color, texture, metallic, roughness, ior, absorption_per_m, free_path, emission_cd_m2, fibre)| {
+            |(
+                base_color,
+                (textures, alpha),
+                metallic,
+                roughness,
+                ior,
+                absorption_per_m,
+                free_path,
+                emission_cd_m2,
+                fibre,
+            )| {
                 Material {
                     base_color,
-                    textures: MaterialTextures { base_color: texture },
+                    textures,
                     metallic,
                     roughness,
                     ior,
@@ -65,6 +112,7 @@ fn material() -> impl Strategy<Value = Material> {
                         .map(|mean_free_path_mm| Subsurface { mean_free_path_mm: mean_free_path_mm.into() }),
                     emission_cd_m2,
                     fibre,
+                    alpha,
                 }
             },
         );

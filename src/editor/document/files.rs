@@ -74,7 +74,7 @@ pub struct ImportedModel {
     pub mesh: Arc<Mesh>,
     /// Materials by part.
     pub part_materials: Vec<(String, Material)>,
-    /// Warnings of the importer.
+    /// Warnings of the importer, and what it has beside surfaces.
     pub warnings: Vec<String>,
 }
 
@@ -159,7 +159,11 @@ pub fn recover(folder: &RecoveryFolder, info: &RecoveryInfo) -> Result<Box<Recov
 /// Reads a model.
 pub fn import(file: PathBuf) -> Result<Box<ImportedModel>, String> {
     let model = io::import_model(&file).map_err(|e| sentence(&e))?;
-    let (mesh, part_materials, warnings) = (Arc::new(model.mesh), model.part_materials, model.warnings);
+    let (mesh, part_materials, mut warnings) = (Arc::new(model.mesh), model.part_materials, model.warnings);
+    if !model.set_up.is_empty() {
+        let what = "Lamps and cameras of the file are left out here: catchlight import makes a studio with them.";
+        warnings.push(what.to_owned());
+    }
     Ok(Box::new(ImportedModel { file, mesh, part_materials, warnings }))
 }
 

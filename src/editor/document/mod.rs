@@ -14,7 +14,6 @@ pub mod history;
 pub mod item;
 pub mod light_mix;
 pub mod measured_light;
-pub mod model_size;
 pub mod placement;
 pub mod readout;
 pub mod revisions;

@@ -6,7 +6,6 @@ use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::document::action::Action;
 use crate::editor::document::files::{self, ImportedModel, OpenedStudio, StudioSource};
 use crate::editor::document::item::Item;
-use crate::editor::document::model_size::fit_model;
 use crate::editor::document::placement;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
@@ -254,7 +253,7 @@ impl App {
             part_materials.into_iter().map(|(part, m)| (part, self.adopt_textures(m, &folder))).collect();
         let (material, part_materials) = surfaces_of(&mesh, part_materials);
         let mut object = Object { material, part_materials, ..Object::new(stem, Shape::MeshFile { path }) };
-        let size = fit_model(&mut object, &mesh);
+        let size = io::fit_model(&mut object, &mesh);
         placement::place_object(self.document.scene(), self.selection.last(), &mut object);
         self.apply(Action::AddObject(Box::new(object)), None);
         size.into_iter().for_each(|sentence| self.toasts.info(sentence));

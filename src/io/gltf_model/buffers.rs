@@ -1,9 +1,17 @@
 //! The document of a glTF file with its buffers, and the images inside.
 
+use crate::io::contained_file::find_in;
+use crate::io::model::ModelLimits;
+use crate::io::read::read_limited;
+use crate::scene::path_complaint;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use gltf::image::Source;
+use gltf::json::validation::Checked;
 use gltf::{Document, Gltf};
+use percent_encoding::percent_decode_str;
+use serde_json::Value;
+use std::path::Path;
 
 /// Extensions whose content is read, or that can be left out of a picture.
 const KNOWN_EXTENSIONS: [&str; 9] = [
@@ -23,14 +31,17 @@ pub struct ModelFile {
     /// The checked document.
     pub document: Document,
     buffers: Vec<Vec<u8>>,
+    /// The document as JSON, where it has properties that the crate leaves out.
+    json: Option<Value>,
 }
 
 impl ModelFile {
     /// Parses GLB or JSON, with its buffers.
     ///
     /// # Errors
-    /// If the file is damaged, needs an unknown extension, or has buffers in other files.
-    pub fn parse(bytes: &[u8]) -> Result<Self, String> {
+    /// If the file is damaged, needs an unknown extension, or has buffers that can't be read. Buffers in other files are
+    /// read beside `place`, the file's path and limits; without it they are empty.
+    pub fn parse(bytes: &[u8], place: Option<(&Path, &ModelLimits)>) -> Result<Self, String> {
         // An extension that is needed gets its own words, before the document is checked
         let unchecked = Gltf::from_slice_without_validation(bytes).map_err(|error| error.to_string())?;
         if let Some(unknown) = unchecked.extensions_required().find(|name| !KNOWN_EXTENSIONS.contains(name)) {
@@ -43,6 +54,8 @@ impl ModelFile {
             return Err("a mesh has an array that is not there".to_owned());
         }
         let Gltf { document, mut blob } = Gltf::from_slice(bytes).map_err(|error| error.to_string())?;
+        // As it would at a lamp that is not there, and at a spot lamp without angles
+        check_lamps(document.as_json())?;
         // The document's check leaves this out, and reading such an image would panic
         if document.as_json().images.iter().any(|image| match image.buffer_view {
             Some(_) => image.mime_type.is_none(),
@@ -50,11 +63,16 @@ impl ModelFile {
         }) {
             return Err("an image has no data, or data of no type".to_owned());
         }
+        let mut left = place.map_or(0, |(_, limits)| limits.file_bytes);
         let buffer = |buffer: gltf::Buffer<'_>| {
-            let bytes = match buffer.source() {
-                gltf::buffer::Source::Bin => blob.take().ok_or("its binary part is missing")?,
-                gltf::buffer::Source::Uri(uri) => data_uri(uri)
-                    .ok_or_else(|| format!("its data lie in another file, {uri:?}: export it as one GLB file"))??,
+            let bytes = match (buffer.source(), place) {
+                (gltf::buffer::Source::Bin, _) => blob.take().ok_or("its binary part is missing")?,
+                (gltf::buffer::Source::Uri(uri), place) => match (data_uri(uri), place) {
+                    (Some(bytes), _) => bytes?,
+                    (None, Some((path, _))) => external(uri, path, &mut left)?,
+                    // An image inside of the file does not need it
+                    (None, None) => return Ok(Vec::new()),
+                },
             };
             if bytes.len() < buffer.length() {
                 return Err("its data are cut off".to_owned());
@@ -62,17 +80,21 @@ impl ModelFile {
             Ok(bytes)
         };
         let buffers = document.buffers().map(buffer).collect::<Result<_, String>>()?;
-        Ok(ModelFile { document, buffers })
+        let has_transforms = document.extensions_used().any(|name| name == "KHR_texture_transform");
+        let json = has_transforms.then(|| json_of(bytes)).flatten();
+        Ok(ModelFile { document, buffers, json })
     }
 
-    /// Returns a sentence for each thing in the file that is no surface, and for each extension that is not read.
+    /// Returns a sentence for each extension that is not read.
     pub fn left_out(&self) -> Vec<String> {
-        let has_lights = self.document.lights().is_some_and(|lights| lights.len() > 0);
-        let things = [("lamps", has_lights), ("cameras", self.document.cameras().len() > 0)];
-        let things = things.into_iter().filter(|(_, is_there)| *is_there).map(|(name, _)| name.to_owned());
         let unknown = self.document.extensions_used().filter(|name| !KNOWN_EXTENSIONS.contains(name));
-        let unknown = unknown.map(|name| format!("the properties of {name}"));
-        things.chain(unknown).map(|what| format!("{what} are left out")).collect()
+        unknown.map(|name| format!("the properties of {name} are left out")).collect()
+    }
+
+    /// Returns the transform of the normal texture of a material.
+    pub fn normal_texture_transform(&self, material: Option<usize>) -> Option<&Value> {
+        let materials = self.json.as_ref()?.get("materials")?;
+        materials.get(material?)?.get("normalTexture")?.get("extensions")?.get("KHR_texture_transform")
     }
 
     /// Returns the bytes of a buffer.
@@ -98,6 +120,57 @@ impl ModelFile {
             Source::Uri { uri, .. } => data_uri(uri).ok_or_else(missing)?,
         }
     }
+}
+
+/// Checks that lamps are there and that spot lamps have their angles.
+fn check_lamps(root: &gltf::json::Root) -> Result<(), String> {
+    let lights = root.extensions.as_ref().and_then(|all| all.khr_lights_punctual.as_ref()).map(|all| &all.lights);
+    let is_damaged = |light: &gltf::json::extensions::scene::khr_lights_punctual::Light| {
+        use gltf::json::extensions::scene::khr_lights_punctual::Type;
+        match light.type_ {
+            Checked::Valid(Type::Spot) => light.spot.is_none(),
+            Checked::Valid(Type::Directional | Type::Point) => false,
+            Checked::Invalid => true,
+        }
+    };
+    if lights.is_some_and(|lights| lights.iter().any(is_damaged)) {
+        return Err("a lamp has no type, or no angles".to_owned());
+    }
+    let count = lights.map_or(0, Vec::len);
+    let mut references = root.nodes.iter().filter_map(|node| node.extensions.as_ref()?.khr_lights_punctual.as_ref());
+    if references.any(|reference| reference.light.value() >= count) {
+        return Err("a node has a lamp that is not there".to_owned());
+    }
+    Ok(())
+}
+
+/// Reads a buffer from another file in the folder tree of the model, of at most `left` bytes.
+fn external(uri: &str, model: &Path, left: &mut u64) -> Result<Vec<u8>, String> {
+    let name = file_name(uri).ok_or_else(|| format!("its data lie in {uri:?}, which is no file beside it"))?;
+    let bytes = find_in(&name, model.parent()).and_then(|file| read_limited(&file, *left));
+    let bytes = bytes.map_err(|error| format!("its data can't be read: {error}"))?;
+    *left = left.saturating_sub(bytes.len() as u64);
+    Ok(bytes)
+}
+
+/// Returns the path from a model's folder that a URI names; none for data, and for what is not in the folder.
+fn file_name(uri: &str) -> Option<String> {
+    let name = percent_decode_str(uri).decode_utf8().ok()?.into_owned();
+    (!uri.starts_with("data:") && !uri.contains("://") && path_complaint(&name).is_none()).then_some(name)
+}
+
+/// Returns the files with the buffers of a document, by their paths from its folder; see [`super::companions`].
+pub fn companions(bytes: &[u8]) -> Vec<String> {
+    let Ok(document) = Gltf::from_slice_without_validation(bytes) else { return Vec::new() };
+    let buffers = document.document.as_json().buffers.iter();
+    buffers.filter_map(|buffer| file_name(buffer.uri.as_deref()?)).collect()
+}
+
+/// Parses the JSON of a GLB or JSON file.
+fn json_of(bytes: &[u8]) -> Option<Value> {
+    let is_binary = bytes.starts_with(b"glTF");
+    let glb = is_binary.then(|| gltf::Glb::from_slice(bytes).ok()).flatten();
+    serde_json::from_slice(glb.as_ref().map_or(bytes, |glb| &glb.json)).ok()
 }
 
 /// Decodes the bytes of a `data:` URI; none for another URI.

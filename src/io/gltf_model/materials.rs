@@ -1,31 +1,30 @@
 //! Materials of glTF files.
 
-use super::buffers::{ModelFile, data_uri};
-use crate::color::srgb_decode;
-use crate::io::texture;
-use crate::scene::{Material, MaterialTextures, TextureRef, path_complaint};
+use super::buffers::ModelFile;
+use super::texture_slots::{SlotTexture, UvSets};
+use crate::scene::{Alpha, Material, MaterialTextures, TextureRef, TextureSlot, path_complaint};
 use gltf::image::Source;
 use gltf::material::AlphaMode;
 use percent_encoding::percent_decode_str;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Largest reflectance: a reflectance of 1 would absorb nothing.
 const MOST_REFLECTED: f32 = 0.98;
+/// Largest luminance of a glowing surface, cd/m2.
+const MOST_GLOWING: f32 = 1e9;
 
 /// Reads materials, and collects what they have that is left out.
 pub struct MaterialReader<'a> {
     file: &'a ModelFile,
     path: &'a Path,
     warnings: BTreeSet<String>,
-    /// Mean colours of images, sRGB-encoded, 0 to 1.
-    means: HashMap<usize, Option<[f32; 3]>>,
 }
 
 impl<'a> MaterialReader<'a> {
     /// Returns a reader for a file at a path.
     pub fn new(file: &'a ModelFile, path: &'a Path) -> Self {
-        MaterialReader { file, path, warnings: BTreeSet::new(), means: HashMap::new() }
+        MaterialReader { file, path, warnings: BTreeSet::new() }
     }
 
     /// Returns a sentence for each property that some material has and that is left out.
@@ -33,63 +32,75 @@ impl<'a> MaterialReader<'a> {
         self.warnings.into_iter().collect()
     }
 
-    /// Converts a material. Of maps other than that of the base colour, the mean counts.
+    /// Converts a material.
     pub fn read(&mut self, material: &gltf::Material<'_>) -> Material {
         let pbr = material.pbr_metallic_roughness();
-        let [red, green, blue, alpha] = pbr.base_color_factor();
-        let mut roughness = pbr.roughness_factor();
-        let mut metallic = pbr.metallic_factor();
-        if let Some(map) = pbr.metallic_roughness_texture() {
-            // Green has the roughness, blue the metal, both linear
-            let mean = self.mean(&map.texture());
-            (roughness, metallic) = mean.map_or((roughness, 0.0), |mean| (roughness * mean[1], metallic * mean[2]));
-            self.leave_out("maps of roughness and metal are taken as their mean");
-        }
+        let [red, green, blue, opacity] = pbr.base_color_factor();
         let transmission = material.transmission().map_or(0.0, |transmission| transmission.transmission_factor());
-        let transmission = match material.alpha_mode() {
-            AlphaMode::Blend => transmission.max(1.0 - alpha),
-            AlphaMode::Opaque | AlphaMode::Mask => transmission,
-        };
-        if material.alpha_mode() != AlphaMode::Opaque && pbr.base_color_texture().is_some() {
-            self.leave_out("transparent parts of textures are shown opaque");
-        }
-        if material.normal_texture().is_some() {
-            self.leave_out("normal maps are left out");
+        if material.transmission().is_some_and(|transmission| transmission.transmission_texture().is_some()) {
+            self.leave_out("maps of transmission are left out");
         }
         if material.unlit() {
             self.leave_out("surfaces that are to be shown unlit are lit");
         }
-        let most = if transmission > 0.0 { 1.0 } else { MOST_REFLECTED };
+        if material.occlusion_texture().is_some() {
+            self.leave_out("occlusion maps are left out: the light itself finds what hides it");
+        }
         let unit = |value: f32| if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 };
-        let base_color = pbr.base_color_texture().and_then(|texture| self.texture(&texture.texture()));
+        let alpha = match material.alpha_mode() {
+            AlphaMode::Opaque => Alpha::Opaque,
+            // The factor is that of the texture's alpha
+            AlphaMode::Mask => Alpha::Mask { cutoff: unit(material.alpha_cutoff().unwrap_or(0.5) / opacity.max(1e-6)) },
+            AlphaMode::Blend => Alpha::Blend { opacity: unit(opacity) },
+        };
+        // Glass is seen through by itself; what is wholly there needs no test
+        let alpha = match alpha {
+            Alpha::Mask { .. } | Alpha::Blend { .. } if transmission > 0.0 => Alpha::Opaque,
+            Alpha::Mask { cutoff } if cutoff <= 0.0 => Alpha::Opaque,
+            Alpha::Blend { opacity } if opacity >= 1.0 && pbr.base_color_texture().is_none() => Alpha::Opaque,
+            alpha => alpha,
+        };
+        let most = if transmission > 0.0 { 1.0 } else { MOST_REFLECTED };
         Material {
             base_color: [red, green, blue].map(|value| unit(value).min(most)),
-            textures: MaterialTextures { base_color },
-            metallic: unit(metallic),
-            roughness: unit(roughness),
+            textures: self.textures(material),
+            metallic: unit(pbr.metallic_factor()),
+            roughness: unit(pbr.roughness_factor()),
             ior: material.ior().filter(|ior| (1.0..=4.0).contains(ior)).unwrap_or(1.5).max(1.01),
             transmission: unit(transmission),
             absorption_per_m: absorption_per_m(material),
-            emission_cd_m2: self.emission_cd_m2(material),
+            emission_cd_m2: emission_cd_m2(material),
+            alpha,
             ..Material::default()
         }
     }
 
-    fn leave_out(&mut self, what: &str) {
-        self.warnings.insert(what.to_owned());
+    /// Returns the textures of a material, with their placements.
+    fn textures(&mut self, material: &gltf::Material<'_>) -> MaterialTextures {
+        let sets = UvSets::of(self.file, material);
+        let scale = material.normal_texture().map_or(1.0, |normals| normals.scale());
+        let normal_scale = if scale.is_finite() { scale.clamp(-16.0, 16.0) } else { 1.0 };
+        let mut textures = MaterialTextures { normal_scale, ..MaterialTextures::default() };
+        for slot in TextureSlot::ALL {
+            let Some(source) = SlotTexture::of(self.file, material, slot) else { continue };
+            if slot == TextureSlot::Emission && emission_cd_m2(material) == [0.0; 3] {
+                continue;
+            }
+            if !sets.contain(source.set) {
+                self.leave_out("textures by a third set of texture coordinates are left out");
+                continue;
+            }
+            let reference = self.texture(&source.texture);
+            if reference.is_some() {
+                textures.placements[slot as usize] = source.placement(&sets);
+            }
+            *textures.get_mut(slot) = reference;
+        }
+        textures
     }
 
-    /// Returns the luminance of a glowing surface: the factors are in cd/m2 (glTF 2.0, section 3.9.4).
-    fn emission_cd_m2(&mut self, material: &gltf::Material<'_>) -> [f32; 3] {
-        let strength = material.emissive_strength().unwrap_or(1.0);
-        let factor = material.emissive_factor().map(|value| value * strength);
-        if factor == [0.0; 3] || !factor.iter().all(|value| value.is_finite() && *value >= 0.0) {
-            return [0.0; 3];
-        }
-        let Some(map) = material.emissive_texture() else { return factor };
-        self.leave_out("maps of glowing surfaces are taken as their mean");
-        let mean = self.mean(&map.texture()).unwrap_or([0.0; 3]).map(srgb_decode);
-        [0, 1, 2].map(|channel| factor[channel] * mean[channel])
+    fn leave_out(&mut self, what: &str) {
+        self.warnings.insert(what.to_owned());
     }
 
     /// Returns the reference to a texture's image: in the model, or a file beside it. None if it leads out of the folder.
@@ -112,31 +123,14 @@ impl<'a> MaterialReader<'a> {
             }
         }
     }
-
-    /// Returns the mean of an image's values, 0 to 1; none if it can't be read.
-    fn mean(&mut self, texture: &gltf::Texture<'_>) -> Option<[f32; 3]> {
-        let (file, path) = (self.file, self.path);
-        *self.means.entry(texture.source().index()).or_insert_with(|| {
-            let bytes = match texture.source().source() {
-                Source::View { view, .. } => file.view(&view)?.to_vec(),
-                Source::Uri { uri, .. } => match data_uri(uri) {
-                    Some(bytes) => bytes.ok()?,
-                    None => {
-                        let name = percent_decode_str(uri).decode_utf8().ok()?;
-                        let beside = path.parent()?.join(&*name);
-                        let decoded = path_complaint(&name).is_none().then(|| texture::load(&beside).ok())??;
-                        return Some(mean_of(&decoded.texture.rgb));
-                    }
-                },
-            };
-            Some(mean_of(&texture::decode(&bytes, path).ok()?.texture.rgb))
-        })
-    }
 }
 
-fn mean_of(pixels: &[[u8; 3]]) -> [f32; 3] {
-    let sum = |channel: usize| pixels.iter().map(|pixel| u64::from(pixel[channel])).sum::<u64>();
-    [0, 1, 2].map(|channel| sum(channel) as f32 / (255.0 * pixels.len().max(1) as f32))
+/// Returns the luminance of a glowing surface: the factors are in cd/m2 (glTF 2.0, section 3.9.4).
+fn emission_cd_m2(material: &gltf::Material<'_>) -> [f32; 3] {
+    let strength = material.emissive_strength().unwrap_or(1.0);
+    let factor = material.emissive_factor().map(|value| value * strength);
+    let is_usable = factor.iter().all(|value| value.is_finite() && (0.0..=MOST_GLOWING).contains(value));
+    if is_usable { factor } else { [0.0; 3] }
 }
 
 /// Returns the absorption inside of a body, from the colour that is left after a distance.

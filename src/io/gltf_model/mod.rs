@@ -7,8 +7,10 @@ mod accessors;
 mod buffers;
 mod materials;
 mod nodes;
+mod set_up;
 #[cfg(test)]
 mod tests;
+mod texture_slots;
 
 use super::error::{AssetError, cut};
 use super::model::{ImportedModel, ModelLimits};
@@ -32,7 +34,7 @@ pub(super) fn import(path: &Path, limits: &ModelLimits) -> Result<ImportedModel,
     let bytes = read_limited(path, limits.file_bytes)?;
     let bad_model =
         |message: String| AssetError::BadModel { format: "glTF", message: cut(message), path: path.to_owned() };
-    let file = ModelFile::parse(&bytes).map_err(bad_model)?;
+    let file = ModelFile::parse(&bytes, Some((path, limits))).map_err(bad_model)?;
     assemble(&file, path, limits).map_err(bad_model)
 }
 
@@ -44,8 +46,14 @@ pub(super) fn embedded_image(path: &Path, image: u32, limits: &ModelLimits) -> R
     let bytes = read_limited(path, limits.file_bytes)?;
     let bad_model =
         |message: String| AssetError::BadModel { format: "glTF", message: cut(message), path: path.to_owned() };
-    let file = ModelFile::parse(&bytes).map_err(bad_model)?;
+    let file = ModelFile::parse(&bytes, None).map_err(bad_model)?;
     file.image(image).map_err(bad_model)
+}
+
+/// Returns the files with data of a glTF file, by their paths from its folder. Pictures are none of them: materials name
+/// them. Empty for a file that can't be read.
+pub(super) fn companions(path: &Path, limits: &ModelLimits) -> Vec<String> {
+    read_limited(path, limits.file_bytes).map(|bytes| buffers::companions(&bytes)).unwrap_or_default()
 }
 
 /// Builds the mesh of all nodes and collects their materials.
@@ -73,7 +81,7 @@ fn assemble(file: &ModelFile, path: &Path, limits: &ModelLimits) -> Result<Impor
     if nodes.has_lines() {
         warnings.push("lines and points are left out".to_owned());
     }
-    Ok(ImportedModel { mesh, part_materials, warnings })
+    Ok(ImportedModel { mesh, part_materials, set_up: set_up::read(&nodes), warnings })
 }
 
 /// Returns a name that no part has yet: the name itself, or followed by a number.
@@ -93,6 +101,11 @@ fn join(mesh: &mut Mesh, piece: Mesh, name: String) {
         mesh.uvs.resize(vertices, Default::default());
         mesh.uvs.extend(piece.uvs);
         mesh.uvs.resize(total, Default::default());
+    }
+    if !(mesh.second_uvs.is_empty() && piece.second_uvs.is_empty()) {
+        mesh.second_uvs.resize(vertices, Default::default());
+        mesh.second_uvs.extend(piece.second_uvs);
+        mesh.second_uvs.resize(total, Default::default());
     }
     if !(mesh.colors.is_empty() && piece.colors.is_empty()) {
         mesh.colors.resize(vertices, Vec3::ONE);

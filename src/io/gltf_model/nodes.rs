@@ -2,11 +2,11 @@
 
 use super::accessors;
 use super::buffers::ModelFile;
+use super::texture_slots::UvSets;
 use crate::scene::Mesh;
 use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
 use gltf::mesh::Mode;
 use gltf::mesh::util::ReadIndices;
-use gltf::texture::TextureTransform;
 use gltf::{Document, Node, Primitive, Skin};
 
 /// The nodes of a scene with their transforms.
@@ -14,6 +14,8 @@ pub struct Nodes<'a> {
     /// World transforms by the node's index; identity for nodes that are not in the scene.
     world: Vec<Mat4>,
     with_mesh: Vec<Node<'a>>,
+    /// Nodes with a lamp or a camera.
+    with_set_up: Vec<Node<'a>>,
 }
 
 /// A primitive of a node.
@@ -34,7 +36,11 @@ impl<'a> Nodes<'a> {
             None => document.nodes().map(|node| (node, Mat4::IDENTITY)).collect(),
         };
         pending.reverse();
-        let mut nodes = Nodes { world: vec![Mat4::IDENTITY; document.nodes().len()], with_mesh: Vec::new() };
+        let mut nodes = Nodes {
+            world: vec![Mat4::IDENTITY; document.nodes().len()],
+            with_mesh: Vec::new(),
+            with_set_up: Vec::new(),
+        };
         let mut is_seen = vec![false; nodes.world.len()];
         while let Some((node, parent)) = pending.pop() {
             // Nodes of a valid file form trees
@@ -45,6 +51,9 @@ impl<'a> Nodes<'a> {
             nodes.world[node.index()] = world;
             let children: Vec<_> = node.children().map(|child| (child, world)).collect();
             pending.extend(children.into_iter().rev());
+            if node.light().is_some() || node.camera().is_some() {
+                nodes.with_set_up.push(node.clone());
+            }
             nodes.with_mesh.extend(node.mesh().is_some().then_some(node));
         }
         nodes
@@ -58,6 +67,11 @@ impl<'a> Nodes<'a> {
     /// Returns true if there are primitives without a surface.
     pub fn has_lines(&self) -> bool {
         self.all().any(|primitive| !primitive.is_surface())
+    }
+
+    /// Returns the nodes with a lamp or a camera, and their transforms.
+    pub fn placed(&self) -> impl Iterator<Item = (&Node<'a>, Mat4)> {
+        self.with_set_up.iter().map(|node| (node, self.world[node.index()]))
     }
 
     fn all(&self) -> impl Iterator<Item = NodePrimitive<'a>> + '_ {
@@ -157,7 +171,9 @@ impl NodePrimitive<'_> {
         let turned = |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
         let triangles = triangles.into_iter().map(turned).collect();
         let has_normals = normals.len() == vertices && normals.iter().all(|normal| normal.is_normalized());
-        let uvs = self.uvs(file).filter(|uvs| uvs.len() == vertices && uvs.iter().all(|uv| uv.is_finite()));
+        let sets = UvSets::of(file, &self.primitive.material());
+        let uvs = self.uvs(file, sets.first.or(Some(0)), vertices);
+        let second_uvs = self.uvs(file, sets.second, vertices);
         let colors: Vec<Vec3> = match reader.read_colors(0) {
             // Alpha is left out: there is no property for it
             Some(colors) => {
@@ -166,26 +182,16 @@ impl NodePrimitive<'_> {
             None => Vec::new(),
         };
         let colors = if colors.len() == vertices { colors } else { Vec::new() };
-        let mesh = Mesh { positions, normals, uvs: uvs.unwrap_or_default(), colors, triangles, ..Mesh::default() };
+        let mesh = Mesh { positions, normals, uvs, second_uvs, colors, triangles, ..Mesh::default() };
         Ok(if has_normals { mesh } else { flat(mesh) })
     }
 
-    /// Returns the texture coordinates of the base colour, from the bottom left.
-    fn uvs(&self, file: &ModelFile) -> Option<Vec<Vec2>> {
+    /// Returns a set of texture coordinates, from the bottom left; empty where it is missing or damaged.
+    fn uvs(&self, file: &ModelFile, set: Option<u32>, vertices: usize) -> Vec<Vec2> {
         let reader = self.primitive.reader(|buffer| Some(file.bytes(&buffer)));
-        let texture = self.primitive.material().pbr_metallic_roughness().base_color_texture();
-        let transform = texture.as_ref().and_then(|texture| texture.texture_transform());
-        let own = texture.as_ref().map_or(0, |texture| texture.tex_coord());
-        let set = transform.as_ref().and_then(TextureTransform::tex_coord).unwrap_or(own);
-        let moved = |uv: [f32; 2]| {
-            let uv = transform.as_ref().map_or(Vec2::from(uv), |transform| {
-                let scaled = Vec2::from(uv) * Vec2::from(transform.scale());
-                // The rotation is counter-clockwise in a picture whose origin is at the top left
-                Vec2::from_angle(-transform.rotation()).rotate(scaled) + Vec2::from(transform.offset())
-            });
-            Vec2::new(uv.x, 1.0 - uv.y)
-        };
-        Some(reader.read_tex_coords(set)?.into_f32().map(moved).collect())
+        let uvs = set.and_then(|set| reader.read_tex_coords(set)).map(|uvs| uvs.into_f32());
+        let uvs: Vec<Vec2> = uvs.into_iter().flatten().map(|[u, v]| Vec2::new(u, 1.0 - v)).collect();
+        if uvs.len() == vertices && uvs.iter().all(|uv| uv.is_finite()) { uvs } else { Vec::new() }
     }
 
     fn triangles(&self, indices: Option<ReadIndices<'_>>, vertices: usize) -> Result<Vec<[u32; 3]>, String> {
@@ -216,10 +222,11 @@ fn flat(mesh: Mesh) -> Mesh {
     let order = || mesh.triangles.iter().flatten().map(|corner| *corner as usize);
     let pick = |values: &[Vec3]| -> Vec<Vec3> { order().filter_map(|corner| values.get(corner)).copied().collect() };
     let (positions, colors) = (pick(&mesh.positions), pick(&mesh.colors));
-    let uvs = order().filter_map(|corner| mesh.uvs.get(corner)).copied().collect();
+    let pick_uvs = |uvs: &[Vec2]| order().filter_map(|corner| uvs.get(corner)).copied().collect();
+    let (uvs, second_uvs) = (pick_uvs(&mesh.uvs), pick_uvs(&mesh.second_uvs));
     let normals =
         positions.as_chunks().0.iter().flat_map(|[a, b, c]| [(b - a).cross(c - a).normalize_or(Vec3::Y); 3]).collect();
     let corners = u32::try_from(positions.len()).unwrap_or(u32::MAX);
     let triangles = (0..corners / 3).map(|index| [0, 1, 2].map(|corner| 3 * index + corner)).collect();
-    Mesh { positions, normals, uvs, colors, triangles, ..Mesh::default() }
+    Mesh { positions, normals, uvs, second_uvs, colors, triangles, ..Mesh::default() }
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::TextureRef;
+use crate::scene::{Alpha, TextureRef, Wrap};
 use glam::Vec2;
 
 const LIMITS: ModelLimits = ModelLimits { file_bytes: 1 << 20, triangles: 100 };
@@ -42,8 +42,8 @@ fn document(png: usize) -> String {
                   {{"name": "Cap", "mesh": 1, "scale": [-1, 1, 1]}}, {{"name": "Elsewhere", "mesh": 0}}],
         "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}}, "indices": 3, "material": 0}}]}},
                    {{"primitives": [{{"attributes": {{"POSITION": 0}}, "indices": 3, "material": 1}}]}}],
-        "materials": [{{"name": "Label", "pbrMetallicRoughness": {{"baseColorTexture": {{"index": 0}}, "baseColorFactor": [1, 0.5, 0, 1], "metallicFactor": 0, "roughnessFactor": 0.4}}, "normalTexture": {{"index": 0}}}},
-                      {{"name": "Glass", "pbrMetallicRoughness": {{"metallicRoughnessTexture": {{"index": 0}}}}, "emissiveFactor": [0, 0, 1],
+        "materials": [{{"name": "Label", "pbrMetallicRoughness": {{"baseColorTexture": {{"index": 0}}, "baseColorFactor": [1, 0.5, 0, 1], "metallicFactor": 0, "roughnessFactor": 0.4}}, "normalTexture": {{"index": 0, "scale": 0.5}}, "occlusionTexture": {{"index": 0}}}},
+                      {{"name": "Glass", "pbrMetallicRoughness": {{"metallicRoughnessTexture": {{"index": 0}}}}, "emissiveFactor": [0, 0, 1], "emissiveTexture": {{"index": 0}},
                         "extensions": {{"KHR_materials_transmission": {{"transmissionFactor": 0.9}}, "KHR_materials_ior": {{"ior": 1.33}},
                                         "KHR_materials_emissive_strength": {{"emissiveStrength": 500}},
                                         "KHR_materials_volume": {{"attenuationDistance": 0.5, "attenuationColor": [0.36787944, 1, 1]}}}}}}],
@@ -70,7 +70,7 @@ fn imported(json: &str, bin: &[u8]) -> Result<ImportedModel, String> {
 #[test]
 fn nodes_become_parts_in_world_space_with_their_materials() {
     let (bin, png) = binary();
-    let ImportedModel { mesh, part_materials, warnings } = imported(&document(png), &bin).unwrap();
+    let ImportedModel { mesh, part_materials, warnings, set_up: _ } = imported(&document(png), &bin).unwrap();
     let names: Vec<&str> = mesh.part_names().collect();
     assert_eq!(names, ["Bottle", "Cap"], "a node outside of the scene is left out");
     assert_eq!(mesh.corners(0), [Vec3::new(1.0, 2.0, 3.0), Vec3::new(2.0, 2.0, 3.0), Vec3::new(1.0, 4.0, 3.0)]);
@@ -85,11 +85,87 @@ fn nodes_become_parts_in_world_space_with_their_materials() {
     assert_eq!(label.base_color, [0.98, 0.5, 0.0]);
     assert_eq!((label.metallic, label.roughness, label.transmission), (0.0, 0.4, 0.0));
     assert_eq!(label.textures.base_color, Some(TextureRef::Embedded { model: "bottle.glb".to_owned(), image: 0 }));
-    // The map has the mean green of 51 / 255 and no blue
-    assert!((glass.roughness - 0.2).abs() < 1e-6 && glass.metallic == 0.0, "{glass:?}");
+    let image = Some(TextureRef::Embedded { model: "bottle.glb".to_owned(), image: 0 });
+    assert_eq!((&label.textures.normal, label.textures.normal_scale), (&image, 0.5));
+    assert_eq!((&glass.textures.metallic_roughness, &glass.textures.base_color), (&image, &None));
+    assert_eq!((glass.roughness, glass.metallic), (1.0, 1.0), "factors of the map");
+    assert_eq!(glass.textures.emission, image);
     assert_eq!((glass.transmission, glass.ior, glass.emission_cd_m2), (0.9, 1.33, [0.0, 0.0, 500.0]));
     assert!((glass.absorption_per_m[0] - 2.0).abs() < 1e-5 && glass.absorption_per_m[1] == 0.0, "{glass:?}");
-    assert_eq!(warnings, ["maps of roughness and metal are taken as their mean", "normal maps are left out"]);
+    assert_eq!(warnings, ["occlusion maps are left out: the light itself finds what hides it"]);
+}
+
+#[test]
+fn placements_of_textures_are_those_of_samplers_transforms_and_coordinate_sets() {
+    let (bin, png) = binary();
+    let label = |from: &str, to: &str| {
+        let json = document(png).replacen(r#""asset""#, r#""extensionsUsed": ["KHR_texture_transform"], "asset""#, 1);
+        assert!(json.contains(from));
+        imported(&json.replacen(from, to, 1), &bin).unwrap()
+    };
+    let base = r#""baseColorTexture": {"index": 0}"#;
+    let turned = label(
+        base,
+        r#""baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"offset": [0.5, 0], "rotation": 1.5707964, "scale": [2, 3]}}}"#,
+    );
+    let placement = turned.part_materials[0].1.textures.placements[0];
+    assert_eq!((placement.offset, placement.scale), ([0.5, 0.0], [2.0, 3.0]));
+    assert!((placement.rotation_deg - 90.0).abs() < 1e-4);
+    let normals = r#""normalTexture": {"index": 0, "scale": 0.5}"#;
+    let second = label(
+        normals,
+        r#""normalTexture": {"index": 0, "texCoord": 0, "extensions": {"KHR_texture_transform": {"offset": [0, 2], "texCoord": 1}}}"#,
+    );
+    let placement = second.part_materials[0].1.textures.placements[3];
+    assert!(placement.offset == [0.0, 2.0] && placement.second_uvs, "{placement:?}");
+    // The mesh has no second set: there is no texture coordinate but 0
+    assert!(second.mesh.second_uvs.is_empty());
+    let with_set = label(r#""TEXCOORD_0": 2}"#, r#""TEXCOORD_0": 2, "TEXCOORD_1": 2}"#);
+    assert!(with_set.mesh.second_uvs.is_empty(), "no texture lies by it");
+    let sampler = label(
+        r#""textures": [{"source": 0}]"#,
+        r#""textures": [{"source": 0, "sampler": 0}], "samplers": [{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}]"#,
+    );
+    let placement = sampler.part_materials[0].1.textures.placements[0];
+    assert!(placement.wrap == [Wrap::Clamp, Wrap::Mirror] && placement.nearest, "{placement:?}");
+}
+
+#[test]
+fn the_second_set_of_coordinates_is_kept_where_a_texture_lies_by_it() {
+    let (bin, png) = binary();
+    let json = document(png)
+        .replacen(
+            r#""normalTexture": {"index": 0, "scale": 0.5}"#,
+            r#""normalTexture": {"index": 0, "texCoord": 3}"#,
+            1,
+        )
+        .replacen(r#""TEXCOORD_0": 2}"#, r#""TEXCOORD_0": 2, "TEXCOORD_3": 2}"#, 1);
+    let model = imported(&json, &bin).unwrap();
+    assert_eq!(model.mesh.second_uvs[..3], model.mesh.uvs[..3]);
+    assert_eq!(model.mesh.second_uvs.len(), model.mesh.positions.len());
+    let third = json.replacen(
+        r#""occlusionTexture": {"index": 0}"#,
+        r#""emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0, "texCoord": 7}"#,
+        1,
+    );
+    let warnings = imported(&third, &bin).unwrap().warnings;
+    assert_eq!(warnings, ["textures by a third set of texture coordinates are left out"]);
+}
+
+#[test]
+fn alpha_is_a_mask_or_a_blend_and_glass_needs_none() {
+    let (bin, png) = binary();
+    let alpha = |properties: &str| {
+        let json = document(png).replacen(r#""name": "Label","#, &format!(r#""name": "Label", {properties},"#), 1);
+        imported(&json, &bin).unwrap().part_materials[0].1.alpha
+    };
+    assert_eq!(alpha(r#""alphaMode": "MASK""#), Alpha::Mask { cutoff: 0.5 });
+    assert_eq!(alpha(r#""alphaMode": "MASK", "alphaCutoff": 0.25"#), Alpha::Mask { cutoff: 0.25 });
+    assert_eq!(alpha(r#""alphaMode": "MASK", "alphaCutoff": 0"#), Alpha::Opaque, "all of it is there");
+    assert_eq!(alpha(r#""alphaMode": "BLEND""#), Alpha::Blend { opacity: 1.0 });
+    assert_eq!(alpha(r#""alphaMode": "OPAQUE""#), Alpha::Opaque);
+    let glass = document(png).replacen(r#""name": "Glass","#, r#""name": "Glass", "alphaMode": "BLEND","#, 1);
+    assert_eq!(imported(&glass, &bin).unwrap().part_materials[1].1.alpha, Alpha::Opaque);
 }
 
 #[test]
@@ -131,6 +207,71 @@ fn joints_and_morph_targets_pose_the_mesh() {
     assert_eq!(mesh.corners(0), [Vec3::new(0.0, 10.0, 1.0), Vec3::new(1.0, 20.0, 1.0), Vec3::new(0.0, 16.0, 1.0)]);
 }
 
+/// Returns a document with a spot lamp, a sun and a camera on a node that stands at (0, 1, 4), and with a mask.
+fn with_set_up(document: &str) -> String {
+    let lamps = r#""extensionsUsed": ["KHR_lights_punctual", "KHR_texture_transform"], "extensions": {"KHR_lights_punctual": {"lights": [
+        {"type": "spot", "name": "Beam", "intensity": 500, "color": [1, 1, 1], "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.3}},
+        {"type": "directional", "intensity": 1000, "color": [1, 0, 0]}]}},
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.4, "aspectRatio": 1.5, "znear": 0.1}}], "asset""#;
+    let nodes = r#"{"name": "Elsewhere", "mesh": 0},
+        {"camera": 0, "translation": [0, 1, 4], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+        {"rotation": [-0.70710678, 0, 0, 0.70710678], "extensions": {"KHR_lights_punctual": {"light": 1}}}]"#;
+    document
+        .replacen(r#""asset""#, lamps, 1)
+        .replacen(r#"{"name": "Elsewhere", "mesh": 0}]"#, nodes, 1)
+        .replacen(r#""nodes": [0]"#, r#""nodes": [0, 3, 4]"#, 1)
+        .replacen(r#""name": "Label","#, r#""name": "Label", "alphaMode": "MASK","#, 1)
+}
+
+#[test]
+fn lamps_have_their_candela_and_lux_and_the_camera_its_field_of_view() {
+    use crate::scene::{Emitter, Output};
+    let (bin, png) = binary();
+    let set_up = imported(&with_set_up(&document(png)), &bin).unwrap().set_up;
+    let [beam, sun] = &set_up.lights[..] else { panic!("{set_up:?}") };
+    assert_eq!(
+        (beam.name.as_str(), beam.power.output, beam.position),
+        ("Beam", Output::Candela(500.0), Vec3::new(0.0, 1.0, 4.0))
+    );
+    let Emitter::Spot { inner_deg, outer_deg } = beam.emitter else { panic!("{beam:?}") };
+    assert!((inner_deg - 0.2_f32.to_degrees()).abs() < 1e-4 && (outer_deg - 0.6_f32.to_degrees()).abs() < 1e-4);
+    // Red has 0.2126 of the luminance of white; the sun shines straight down
+    let Output::Lux(lux) = sun.power.output else { panic!("{sun:?}") };
+    assert!((lux - 212.6).abs() < 0.1, "{lux}");
+    let crate::scene::Aim::Point(aim) = sun.aim else { panic!("{sun:?}") };
+    assert!((aim - sun.position).distance(Vec3::NEG_Y) < 1e-5, "{aim}");
+    let camera = set_up.camera.unwrap();
+    assert!((camera.focal_length_mm - 12.0 / 0.2_f32.tan()).abs() < 1e-3 && camera.roll_deg.abs() < 1e-4, "{camera:?}");
+    assert_eq!(camera.position, Vec3::new(0.0, 1.0, 4.0));
+}
+
+#[test]
+fn data_in_a_file_beside_the_model_are_read_and_go_where_the_model_goes() {
+    let (bin, png) = binary();
+    let folder = tempfile::tempdir().unwrap();
+    let json = document(png).replacen(r#""buffers": [{"#, r#""buffers": [{"uri": "data/two%20bottles.bin", "#, 1);
+    let path = folder.path().join("bottle.gltf");
+    std::fs::write(&path, json).unwrap();
+    std::fs::create_dir(folder.path().join("data")).unwrap();
+    std::fs::write(folder.path().join("data/two bottles.bin"), &bin).unwrap();
+    let model = import(&path, &LIMITS).unwrap();
+    assert_eq!(model.mesh.triangles.len(), 2);
+    assert_eq!(companions(&path, &LIMITS), ["data/two bottles.bin"]);
+    // A studio elsewhere takes both along
+    let elsewhere = tempfile::tempdir().unwrap();
+    let studio = crate::io::studio_of(model, &path, elsewhere.path()).unwrap();
+    let files = crate::io::AssetFiles { folder: None, imported: &studio.imported };
+    for copy in files.copies_into(elsewhere.path(), &studio.scene, &Default::default()) {
+        copy.make().unwrap();
+    }
+    assert_eq!(std::fs::read(elsewhere.path().join("models/data/two bottles.bin")).unwrap(), bin);
+    assert!(import(&elsewhere.path().join("models/bottle.gltf"), &LIMITS).is_ok());
+    // Too large a file is refused before it is read
+    let small = ModelLimits { file_bytes: 4000, ..LIMITS };
+    std::fs::write(folder.path().join("data/two bottles.bin"), vec![0; 9000]).unwrap();
+    assert!(import(&path, &small).unwrap_err().to_string().contains("too large"));
+}
+
 #[test]
 fn damaged_files_and_unread_extensions_are_told() {
     let (bin, png) = binary();
@@ -141,18 +282,24 @@ fn damaged_files_and_unread_extensions_are_told() {
     assert!(error(r#""byteLength": 36}"#, r#""byteLength": 35}"#).contains("beyond its data"));
     assert!(error(r#""count": 3, "type": "SCALAR""#, r#""count": 4, "type": "SCALAR""#).contains("beyond its data"));
     assert!(error(r#""type": "VEC2""#, r#""type": "VEC4""#).contains("wrong kind of numbers"));
-    assert!(error(r#""buffers": [{"#, r#""buffers": [{"uri": "a.bin", "#).contains("export it as one GLB file"));
+    assert!(error(r#""buffers": [{"#, r#""buffers": [{"uri": "a.bin", "#).contains("its data can't be read"));
+    assert!(error(r#""buffers": [{"#, r#""buffers": [{"uri": "../a.bin", "#).contains("which is no file beside it"));
+    assert!(
+        error(r#""buffers": [{"#, r#""buffers": [{"uri": "https://a.b/c.bin", "#)
+            .contains("which is no file beside it")
+    );
     let many = format!(r#""children": [1]}}, {}{{"#, r#"{"name": "x"},"#.repeat(3));
     assert!(imported(&good.replacen(r#""children": [1]}, {"#, &many, 1), &bin).is_ok());
     // A cycle of nodes ends
     let _ = imported(&good.replacen(r#""scale": [-1, 1, 1]"#, r#""children": [0]"#, 1), &bin);
     let used = r#""extensionsUsed": ["KHR_materials_sheen"], "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}], "scene""#;
     let warnings = imported(&good.replacen(r#""scene""#, used, 1), &bin).unwrap().warnings;
-    for left_out in ["cameras are left out", "the properties of KHR_materials_sheen are left out"] {
-        assert!(warnings.iter().any(|warning| warning == left_out), "{warnings:?}");
-    }
+    assert!(
+        warnings.iter().any(|warning| warning == "the properties of KHR_materials_sheen are left out"),
+        "{warnings:?}"
+    );
     // Every byte of the file, one after the other: an error or a model, and no panic
-    let whole = glb(&good, &bin);
+    let whole = glb(&with_set_up(&good), &bin);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.glb");
     for at in 0..whole.len() {

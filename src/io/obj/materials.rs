@@ -87,7 +87,10 @@ pub(super) fn convert(mtl: &tobj::Material) -> Material {
     let number = |value: Option<f32>| value.filter(|v| v.is_finite());
     Material {
         base_color: color,
-        textures: MaterialTextures { base_color: mtl.diffuse_texture.as_deref().and_then(texture_path) },
+        textures: MaterialTextures {
+            base_color: mtl.diffuse_texture.as_deref().and_then(texture_path),
+            ..MaterialTextures::default()
+        },
         // alpha^2 = 2 / (Ns + 2) (Walter et al. 2007, section 5.2), and alpha is the square of the roughness.
         roughness: number(mtl.shininess).map_or(plain.roughness, |ns| (2.0 / (ns.max(0.0) + 2.0)).powf(0.25)),
         ior: number(mtl.optical_density).filter(|n| *n > 1.0).map_or(plain.ior, |n| n.min(4.0)),

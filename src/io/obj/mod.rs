@@ -13,7 +13,7 @@ mod write;
 pub(super) use write::write;
 
 use super::error::{AssetError, cut};
-use super::model::{ImportedModel, ModelLimits};
+use super::model::{ImportedModel, ModelLimits, ModelSetUp};
 use super::read::read_limited;
 use crate::scene::Mesh;
 use chunks::{Elements, ReadError};
@@ -79,7 +79,7 @@ fn assemble(elements: &Elements, library: &mut MaterialLibrary, crease_deg: f32)
         mesh.uvs.clear();
     }
     ensure_normals(&mut mesh, crease_deg, &mut warnings);
-    Ok(ImportedModel { mesh, part_materials, warnings })
+    Ok(ImportedModel { mesh, part_materials, set_up: ModelSetUp::default(), warnings })
 }
 
 /// Gives every vertex a unit normal: the file's if all of them are usable, else computed ones.

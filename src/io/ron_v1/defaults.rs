@@ -18,6 +18,14 @@ pub(super) fn is_true(value: &bool) -> bool {
     *value
 }
 
+pub(super) fn unit() -> f32 {
+    1.0
+}
+
+pub(super) fn is_unit(value: &f32) -> bool {
+    *value == 1.0
+}
+
 pub(super) fn one() -> Triple {
     [1.0; 3]
 }

@@ -1,17 +1,36 @@
 //! Materials in format 1: `Preset(Chrome)`, or `Custom(...)` with the values that differ from the default.
 
-use super::defaults::{Triple, default_ior, default_roughness, is_default, is_default_ior};
-use crate::scene::{Fibre, FibreColor, Material, MaterialPreset, MaterialTextures, Subsurface, TextureRef};
+use super::defaults::{Triple, default_ior, default_roughness, is_default, is_default_ior, is_unit, unit};
+use super::texture_placement::TexturePlacementV1;
+use crate::scene::{
+    Alpha, Fibre, FibreColor, Material, MaterialPreset, MaterialTextures, Subsurface, TexturePlacement, TextureRef,
+    TextureSlot,
+};
 use serde::{Deserialize, Serialize};
 
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename = "Material", deny_unknown_fields)]
+#[expect(clippy::large_enum_variant, reason = "a material is read or written, and not kept")]
 pub(super) enum MaterialV1 {
     Preset(PresetV1),
     Custom {
         base_color: Triple,
         #[serde(default, skip_serializing_if = "Option::is_none")]
         base_color_texture: Option<String>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        base_color_placement: Option<TexturePlacementV1>,
+        #[serde(default, skip_serializing_if = "is_default")]
+        alpha: AlphaV1,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        metallic_roughness_texture: Option<String>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        metallic_roughness_placement: Option<TexturePlacementV1>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        normal_texture: Option<String>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        normal_placement: Option<TexturePlacementV1>,
+        #[serde(default = "unit", skip_serializing_if = "is_unit")]
+        normal_scale: f32,
         #[serde(default, skip_serializing_if = "is_default")]
         metallic: f32,
         #[serde(default = "default_roughness")]
@@ -27,8 +46,46 @@ pub(super) enum MaterialV1 {
         #[serde(default, skip_serializing_if = "is_default")]
         emission_cd_m2: Triple,
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        emission_texture: Option<String>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        emission_placement: Option<TexturePlacementV1>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         fibre: Option<FibreV1>,
     },
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Alpha", deny_unknown_fields)]
+pub(super) enum AlphaV1 {
+    #[default]
+    Opaque,
+    Mask {
+        cutoff: f32,
+    },
+    Blend {
+        #[serde(default = "unit", skip_serializing_if = "is_unit")]
+        opacity: f32,
+    },
+}
+
+impl From<AlphaV1> for Alpha {
+    fn from(alpha: AlphaV1) -> Self {
+        match alpha {
+            AlphaV1::Opaque => Alpha::Opaque,
+            AlphaV1::Mask { cutoff } => Alpha::Mask { cutoff },
+            AlphaV1::Blend { opacity } => Alpha::Blend { opacity },
+        }
+    }
+}
+
+impl From<Alpha> for AlphaV1 {
+    fn from(alpha: Alpha) -> Self {
+        match alpha {
+            Alpha::Opaque => AlphaV1::Opaque,
+            Alpha::Mask { cutoff } => AlphaV1::Mask { cutoff },
+            Alpha::Blend { opacity } => AlphaV1::Blend { opacity },
+        }
+    }
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -131,6 +188,13 @@ impl From<MaterialV1> for Material {
             MaterialV1::Custom {
                 base_color,
                 base_color_texture,
+                base_color_placement,
+                alpha,
+                metallic_roughness_texture,
+                metallic_roughness_placement,
+                normal_texture,
+                normal_placement,
+                normal_scale,
                 metallic,
                 roughness,
                 ior,
@@ -138,10 +202,27 @@ impl From<MaterialV1> for Material {
                 absorption_per_m,
                 subsurface,
                 emission_cd_m2,
+                emission_texture,
+                emission_placement,
                 fibre,
             } => Material {
                 base_color,
-                textures: MaterialTextures { base_color: base_color_texture.as_deref().map(TextureRef::parse) },
+                textures: MaterialTextures {
+                    base_color: base_color_texture.as_deref().map(TextureRef::parse),
+                    metallic_roughness: metallic_roughness_texture.as_deref().map(TextureRef::parse),
+                    emission: emission_texture.as_deref().map(TextureRef::parse),
+                    normal: normal_texture.as_deref().map(TextureRef::parse),
+                    normal_scale,
+                    placements: TextureSlot::ALL.map(|slot| {
+                        let placement = match slot {
+                            TextureSlot::BaseColor => base_color_placement,
+                            TextureSlot::MetallicRoughness => metallic_roughness_placement,
+                            TextureSlot::Emission => emission_placement,
+                            TextureSlot::Normal => normal_placement,
+                        };
+                        placement.map(TexturePlacement::from).unwrap_or_default()
+                    }),
+                },
                 metallic,
                 roughness,
                 ior,
@@ -150,6 +231,7 @@ impl From<MaterialV1> for Material {
                 subsurface: subsurface.map(|SubsurfaceV1 { mean_free_path_mm }| Subsurface { mean_free_path_mm }),
                 emission_cd_m2,
                 fibre: fibre.map(Fibre::from),
+                alpha: alpha.into(),
             },
         }
     }
@@ -163,7 +245,7 @@ impl From<&Material> for MaterialV1 {
         }
         let Material {
             base_color,
-            textures: MaterialTextures { base_color: base_color_texture },
+            textures,
             metallic,
             roughness,
             ior,
@@ -172,10 +254,23 @@ impl From<&Material> for MaterialV1 {
             subsurface,
             emission_cd_m2,
             fibre,
+            alpha,
         } = material.clone();
+        let texture = |slot: TextureSlot| textures.get(slot).map(TextureRef::to_string);
+        let placement = |slot: TextureSlot| {
+            let placement = *textures.placement(slot);
+            (placement != TexturePlacement::default()).then(|| placement.into())
+        };
         MaterialV1::Custom {
             base_color,
-            base_color_texture: base_color_texture.map(|texture| texture.to_string()),
+            base_color_texture: texture(TextureSlot::BaseColor),
+            base_color_placement: placement(TextureSlot::BaseColor),
+            alpha: alpha.into(),
+            metallic_roughness_texture: texture(TextureSlot::MetallicRoughness),
+            metallic_roughness_placement: placement(TextureSlot::MetallicRoughness),
+            normal_texture: texture(TextureSlot::Normal),
+            normal_placement: placement(TextureSlot::Normal),
+            normal_scale: textures.normal_scale,
             metallic,
             roughness,
             ior,
@@ -183,6 +278,8 @@ impl From<&Material> for MaterialV1 {
             absorption_per_m,
             subsurface: subsurface.map(|Subsurface { mean_free_path_mm }| SubsurfaceV1 { mean_free_path_mm }),
             emission_cd_m2,
+            emission_texture: texture(TextureSlot::Emission),
+            emission_placement: placement(TextureSlot::Emission),
             fibre: fibre.map(FibreV1::from),
         }
     }

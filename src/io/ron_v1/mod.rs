@@ -13,6 +13,7 @@ mod mannequin;
 mod material;
 mod names;
 mod scene;
+mod texture_placement;
 mod variants;
 
 pub(super) use gear::{GearV1, gear_from_v1, v1_from_gear};

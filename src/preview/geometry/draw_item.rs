@@ -1,8 +1,9 @@
 //! Draw items: a run of a mesh's triangles with its surface, its pass and its face culling.
 
 use super::mesh_cache::MeshKey;
+use super::texture_cache::TextureKeys;
 use crate::preview::input::sample_point;
-use crate::scene::{Shape, TextureSlot};
+use crate::scene::Shape;
 use eframe::wgpu;
 use glam::Affine3A;
 use std::ops::Range;
@@ -15,7 +16,9 @@ pub(crate) struct DrawItem {
     /// Index of its surface record; the id buffer stores it plus one.
     pub surface: u32,
     /// Keys of the cached textures, by slot.
-    pub textures: [usize; TextureSlot::COUNT],
+    pub textures: TextureKeys,
+    /// The surface is not all there.
+    pub has_holes: bool,
     pub pass: DrawPass,
     pub shadow: ShadowCasting,
     /// Sides of glass in drawing order: the far side of a solid first.

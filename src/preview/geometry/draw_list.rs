@@ -5,13 +5,12 @@ use super::draw_item::{DrawItem, DrawPass, ShadowCasting, Sides, StrandItem};
 use super::mesh_cache::{EmitterSurface, MeshKey};
 use super::oriented_box::OrientedBox;
 use super::surface::{FLAG_EMITTER, FLAG_GLOWS, FLAG_HOVERED, FLAG_SELECTED, GpuDraw, GpuSurface, diffusion_m};
-use super::texture_cache::WHITE;
 use crate::photo::PhotometricLight;
 use crate::photo::emitter::EmitterShape;
 use crate::preview::gpu::context::GpuContext;
 use crate::preview::input::{Overlay, Pick};
 use crate::preview::lights::light_table::{emission, picture_scale};
-use crate::scene::{Assets, Fibre, FibreColor, Material, MeshPart, Object, Scene};
+use crate::scene::{Alpha, Assets, Fibre, FibreColor, Material, MeshPart, Object, Scene, TextureRef};
 use glam::{Affine3A, Vec3};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -114,6 +113,10 @@ impl DrawList {
                 self.casters.push(caster);
                 mesh.hash(signature);
                 world_from_object.to_cols_array().map(f32::to_bits).hash(signature);
+                for item in self.items.iter().rev().take(parts.len()).filter(|item| item.has_holes) {
+                    let maps = self.draws[item.surface as usize].maps();
+                    (&item.indices, item.textures, bytemuck::bytes_of(maps)).hash(signature);
+                }
             }
             if flags != 0 {
                 self.outlined.push(caster);
@@ -193,7 +196,7 @@ impl DrawList {
             diffusion_m: diffusion_m(material),
             unused_1: 0,
         };
-        self.draws.push(GpuDraw::new(self.surfaces.len() as u32, world_from_object, &surface));
+        self.draws.push(GpuDraw::new(self.surfaces.len() as u32, world_from_object, &surface, material));
         self.surfaces.push(surface);
         self.transforms.push(*world_from_object);
         self.picks.push(pick);
@@ -201,16 +204,16 @@ impl DrawList {
     }
 
     fn add_item(&mut self, mesh: MeshKey, part: &MeshPart, surface: u32, material: &Material, uploads: &mut Uploads) {
-        let textures = material.textures.look_up(|texture| {
-            let image = uploads.assets.texture(texture)?;
-            Some(uploads.caches.textures.ensure(&uploads.gpu.device, &uploads.gpu.queue, &image))
-        });
+        let Uploads { gpu, caches, assets } = uploads;
+        let image = |texture: &TextureRef| assets.texture(texture);
+        let textures = caches.textures.ensure(&gpu.device, &gpu.queue, &material.textures, image);
         let glass = material.transmission > 0.0;
         self.items.push(DrawItem {
             mesh,
             indices: part.triangles.start * 3..part.triangles.end * 3,
             surface,
-            textures: textures.map(|texture| texture.unwrap_or(WHITE)),
+            textures,
+            has_holes: material.alpha != Alpha::Opaque && !glass,
             pass: if glass { DrawPass::Glass } else { DrawPass::Opaque },
             shadow: ShadowCasting::None,
             glass_sides: &[Sides::Both],

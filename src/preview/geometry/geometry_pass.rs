@@ -3,13 +3,12 @@
 use super::clusters::ObjectFrustum;
 use super::draw_item::{DrawPass, Sides};
 use super::draw_list::DrawList;
-use super::pipelines::GeometryPipelines;
+use super::pipelines::{GeometryPipelines, Sampled};
 use super::strands::StrandPipelines;
-use super::texture_cache::WHITE;
 use crate::preview::frame_resources::FrameResources;
 use crate::preview::gpu::bindings::{color_attachment, depth_attachment};
 use crate::preview::scene_buffers::NEAR_M;
-use crate::scene::{CameraFrame, TextureSlot};
+use crate::scene::CameraFrame;
 use eframe::wgpu;
 use glam::Mat4;
 
@@ -47,9 +46,8 @@ pub(crate) fn draw(
     let clip_from_world = camera.clip_from_world(NEAR_M);
     for item in list.items.iter().filter(|item| item.pass != DrawPass::Glass) {
         let sides = list.sides(item, camera.position());
-        let base_color = item.textures[TextureSlot::BaseColor as usize];
-        pass.set_pipeline(pipelines.get(base_color != WHITE, sides));
-        pass.set_bind_group(2, caches.textures.get(base_color), &[]);
+        pass.set_pipeline(pipelines.get(Sampled::of(item), sides));
+        pass.set_bind_group(2, caches.textures.get(&item.textures), &[]);
         let world_from_object = list.transforms[item.surface as usize];
         let clip_from_object = clip_from_world * Mat4::from(world_from_object);
         let eye_object = world_from_object.inverse().transform_point3(camera.position());

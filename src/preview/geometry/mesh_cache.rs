@@ -22,13 +22,16 @@ struct Vertex {
     uv: [f32; 2],
     /// Factor of the base colour, 255 for 1.
     color: [u8; 4],
+    second_uv: [f32; 2],
 }
 
 /// Layout of the vertex buffer.
 pub(crate) const VERTEX_LAYOUT: wgpu::VertexBufferLayout<'static> = wgpu::VertexBufferLayout {
     array_stride: size_of::<Vertex>() as u64,
     step_mode: wgpu::VertexStepMode::Vertex,
-    attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x2, 3 => Unorm8x4],
+    attributes: &wgpu::vertex_attr_array![
+        0 => Float32x3, 1 => Float32x3, 2 => Float32x2, 3 => Unorm8x4, 4 => Float32x2
+    ],
 };
 
 /// The mesh of an emitter that is visible to the camera.
@@ -163,6 +166,7 @@ fn upload(device: &wgpu::Device, mesh: &Mesh, frame: u64) -> Option<GpuMesh> {
             normal: mesh.normals.get(i).copied().unwrap_or(Vec3::ZERO).into(),
             uv: mesh.uvs.get(i).copied().unwrap_or(Vec2::ZERO).into(),
             color: mesh.colors.get(i).map_or([255; 4], |color| color.extend(1.0).to_array().map(unorm8)),
+            second_uv: mesh.second_uvs.get(i).copied().unwrap_or(Vec2::ZERO).into(),
         })
         .collect();
     let buffer = |label, contents, usage| {

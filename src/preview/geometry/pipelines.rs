@@ -1,7 +1,8 @@
 //! Pipelines of the geometry pass. Constructors of pipelines are tables; they run long for that reason.
 
-use super::draw_item::Sides;
+use super::draw_item::{DrawItem, Sides};
 use super::mesh_cache::VERTEX_LAYOUT;
+use super::texture_cache::TextureKey;
 use crate::preview::gpu::pipeline::{BindGroupLayouts, pipeline_layout, reversed_depth};
 use crate::preview::shaders;
 use crate::preview::targets::{DEPTH_FORMAT, GBUFFER_FORMAT, ID_FORMAT};
@@ -12,15 +13,50 @@ use eframe::wgpu;
 /// by decimetres.
 const BEHIND_COPLANAR: f64 = 1.0 - 1e-4;
 
-/// The pipelines of the geometry pass: untextured and textured, each by `Sides`.
+/// What the geometry pass samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sampled {
+    /// No texture.
+    Nothing = 0,
+    /// The texture of the base colour.
+    BaseColor = 1,
+    /// All textures.
+    Everything = 2,
+    /// All textures; what is not there is discarded.
+    Holes = 3,
+}
+
+impl Sampled {
+    /// All variants, in the order of their values.
+    const ALL: [Sampled; 4] = [Sampled::Nothing, Sampled::BaseColor, Sampled::Everything, Sampled::Holes];
+
+    /// Returns what is sampled for an item.
+    pub fn of(item: &DrawItem) -> Self {
+        let [base_color, others @ ..] = &item.textures;
+        match (item.has_holes, others.iter().any(TextureKey::is_texture)) {
+            (true, _) => Sampled::Holes,
+            (false, true) => Sampled::Everything,
+            (false, false) if base_color.is_texture() => Sampled::BaseColor,
+            (false, false) => Sampled::Nothing,
+        }
+    }
+
+    /// Returns the constants of the fragment shader.
+    fn constants(self) -> [(&'static str, f64); 2] {
+        let textures = (self as u32).min(Sampled::Everything as u32);
+        [("TEXTURES", textures.into()), ("HOLES", f64::from(u8::from(self == Sampled::Holes)))]
+    }
+}
+
+/// The pipelines of the geometry pass: by what they sample, each by `Sides`.
 #[derive(Debug)]
-pub(crate) struct GeometryPipelines([[wgpu::RenderPipeline; 4]; 2]);
+pub(crate) struct GeometryPipelines([[wgpu::RenderPipeline; 4]; 4]);
 
 impl GeometryPipelines {
     pub fn new(device: &wgpu::Device, layouts: &BindGroupLayouts) -> Self {
         let module = shaders::module(device, "geometry", shaders::GEOMETRY);
         let layout = pipeline_layout(device, "geometry", &[&layouts.scene, &layouts.draw, &layouts.texture]);
-        let geometry = |textured: bool, sides: Sides| {
+        let geometry = |sampled: Sampled, sides: Sides| {
             device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some("geometry"),
                 layout: Some(&layout),
@@ -38,7 +74,7 @@ impl GeometryPipelines {
                     module: &module,
                     entry_point: Some("fragment"),
                     compilation_options: wgpu::PipelineCompilationOptions {
-                        constants: &[("TEXTURED", f64::from(u8::from(textured)))],
+                        constants: &sampled.constants(),
                         ..Default::default()
                     },
                     targets: &[Some(GBUFFER_FORMAT.into()), Some(ID_FORMAT.into())],
@@ -47,12 +83,12 @@ impl GeometryPipelines {
                 cache: None,
             })
         };
-        GeometryPipelines([false, true].map(|textured| Sides::ALL.map(|sides| geometry(textured, sides))))
+        GeometryPipelines(Sampled::ALL.map(|sampled| Sides::ALL.map(|sides| geometry(sampled, sides))))
     }
 
     /// Returns the pipeline that draws a run of triangles into the G-buffer.
-    pub fn get(&self, textured: bool, sides: Sides) -> &wgpu::RenderPipeline {
-        &self.0[usize::from(textured)][sides as usize]
+    pub fn get(&self, sampled: Sampled, sides: Sides) -> &wgpu::RenderPipeline {
+        &self.0[sampled as usize][sides as usize]
     }
 }
 

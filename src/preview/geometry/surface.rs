@@ -1,5 +1,6 @@
 //! Surface records as the shaders read them.
 
+use super::gpu_maps::GpuMaps;
 use crate::scene::Material;
 use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Vec3};
@@ -71,11 +72,12 @@ pub(crate) struct GpuDraw {
     normal_from_object: [[f32; 4]; 3],
     /// Packed colour, packed gloss, id with outline flags, and 1 for an emitter.
     surface: [u32; 4],
+    maps: GpuMaps,
 }
 
 impl GpuDraw {
     /// Packs the record of the surface with this index.
-    pub fn new(index: u32, world_from_object: &Affine3A, surface: &GpuSurface) -> Self {
+    pub fn new(index: u32, world_from_object: &Affine3A, surface: &GpuSurface, material: &Material) -> Self {
         let (axes, t) = (world_from_object.matrix3, world_from_object.translation);
         let (x, y, z) = (Vec3::from(axes.x_axis), Vec3::from(axes.y_axis), Vec3::from(axes.z_axis));
         // Transform normals by the cofactor matrix, which exists for every scale, including zero and negative ones
@@ -88,11 +90,20 @@ impl GpuDraw {
             normal_from_object: [0, 1, 2].map(normal_row),
             surface: [
                 pack_color(surface.base_color, u32::from(surface.glows())),
-                pack_gloss(surface.roughness, surface.metallic, surface.ior),
+                match surface.glows() {
+                    true => pack_glowing_gloss(surface.roughness, surface.metallic),
+                    false => pack_gloss(surface.roughness, surface.metallic, surface.ior),
+                },
                 (index + 1) | surface.outline_bits(),
                 u32::from(surface.is_emitter()),
             ],
+            maps: GpuMaps::new(material),
         }
+    }
+
+    /// Returns how textures lie on the surface.
+    pub fn maps(&self) -> &GpuMaps {
+        &self.maps
     }
 }
 
@@ -100,6 +111,13 @@ impl GpuDraw {
 fn pack_color(color: [f32; 3], kind: u32) -> u32 {
     let [r, g, b] = color.map(|c| (c.clamp(0.0, 1.0).sqrt() * 1023.0 + 0.5) as u32);
     r | g << 10 | b << 20 | kind << 30
+}
+
+/// Packs roughness in 8 bits and metallic in 6 of a surface that glows all over; twin of `pack_glowing_gloss` in
+/// `scene.wgsl`.
+fn pack_glowing_gloss(roughness: f32, metallic: f32) -> u32 {
+    let bits = |value: f32, max: f32| (value * max + 0.5) as u32;
+    bits(roughness, 255.0) | bits(metallic, 63.0) << 8 | 0x3_ffff << 14
 }
 
 /// Packs roughness and the square root of the dielectric F0 in 12 bits each, metallic in 8; the inverse of

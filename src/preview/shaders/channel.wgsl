@@ -32,7 +32,7 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(at.xy);
     let packed = textureLoad(gbuffer, pixel, 0);
     let id = textureLoad(ids, pixel, 0).xy;
-    let gloss = unpack_gloss(packed.w);
+    let gloss = gloss_at(packed, id.x);
     let depth_m = frame.near_m / max(bitcast<f32>(id.y), 1e-9);
     var value = vec3f(0.0);
     if CHANNEL == BASE_COLOR {

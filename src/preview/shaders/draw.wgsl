@@ -9,6 +9,12 @@ struct Draw {
     normal_row_2: vec4f,
     // Packed colour, packed gloss, id with outline flags, and 1 for an emitter.
     surface: vec4u,
+    // Transforms of texture coordinates by slot: the columns of the matrix, and the offsets of two slots each.
+    uv_matrix: array<vec4f, 4>,
+    uv_offset: array<vec4f, 2>,
+    // Scale of the normal map; least alpha that is there, negative for blended surfaces; factor of the alpha of those; bits
+    // of the slots that lie by the second set of texture coordinates.
+    maps: vec4f,
 }
 
 @group(1) @binding(0) var<uniform> draw: Draw;

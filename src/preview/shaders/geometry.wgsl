@@ -1,6 +1,9 @@
 // The geometry pass: writes the G-buffer and the id buffer.
 
-override TEXTURED: bool = false;
+// Textures that are sampled: 0 none, 1 the base colour's, 2 all.
+override TEXTURES: u32 = 0;
+// Discards what is not there of a surface.
+override HOLES: bool = false;
 // Factor of the depth that is tested: slightly under 1 for the room, so that paper on its floor wins.
 override DEPTH_FACTOR: f32 = 1.0;
 
@@ -8,7 +11,8 @@ struct VertexOutput {
     @builtin(position) clip: vec4f,
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
-    @location(2) uv: vec2f,
+    // Both sets of texture coordinates.
+    @location(2) uvs: vec4f,
     @location(3) color: vec3f,
 }
 
@@ -18,25 +22,50 @@ fn vertex(
     @location(1) normal: vec3f,
     @location(2) uv: vec2f,
     @location(3) color: vec4f,
+    @location(4) second_uv: vec2f,
 ) -> VertexOutput {
     var out: VertexOutput;
     out.world = world_from_object(position);
     out.normal = world_normal(normal);
     out.clip = frame.clip_from_world * vec4f(out.world, 1.0);
     out.clip.z *= DEPTH_FACTOR;
-    // Texture rows are stored from the top
-    out.uv = vec2f(uv.x, 1.0 - uv.y);
+    out.uvs = vec4f(uv, second_uv);
     out.color = color.rgb;
     return out;
 }
-
-@group(2) @binding(0) var base_color_texture: texture_2d<f32>;
-@group(2) @binding(1) var base_color_sampler: sampler;
 
 struct FragmentOutput {
     @location(0) gbuffer: vec4u,
     // Surface index plus one with outline flags, and the bits of the depth.
     @location(1) id: vec2u,
+}
+
+// Returns the normal tilted by a pixel of a normal map; twin of `math::tilted_normal`. `d1` and `d2` are differences of the
+// position, `duv1` and `duv2` those of the picture's coordinates.
+fn tilted_normal(normal: vec3f, d1: vec3f, d2: vec3f, duv1: vec2f, duv2: vec2f, direction: vec3f) -> vec3f {
+    let determinant = duv1.x * duv2.y - duv1.y * duv2.x;
+    let side = select(-1.0, 1.0, determinant >= 0.0);
+    let du = (d1 * duv2.y - d2 * duv1.y) * side;
+    let dv = (d2 * duv1.x - d1 * duv2.x) * side;
+    let along = du - normal * dot(normal, du);
+    let squared = dot(along, along);
+    let tangent = along * inverseSqrt(max(squared, 1e-37));
+    var bitangent = cross(normal, tangent);
+    bitangent *= select(-1.0, 1.0, dot(bitangent, dv) >= 0.0);
+    let tilted = tangent * direction.x + bitangent * direction.y + normal * direction.z;
+    let usable = abs(determinant) > 1e-30 && squared > 1e-37 && dot(tilted, tilted) > 1e-12;
+    return select(normal, tilted * inverseSqrt(max(dot(tilted, tilted), 1e-12)), usable);
+}
+
+// Bends a normal towards the geometric normal until the view is mirrored above the surface; twin of `math::bend_above`.
+fn bend_above(normal: vec3f, geometric_normal: vec3f, view_dir: vec3f) -> vec3f {
+    let c = max(dot(view_dir, geometric_normal), 1e-6);
+    let a = dot(view_dir, normal);
+    let d = dot(normal, geometric_normal);
+    let root = sqrt(max(a * a + c * (c - 2.0 * a * d), 0.0));
+    let s = select((root - a) / c, (c - 2.0 * a * d) / max(a + root, 1e-12), a > 0.0);
+    let bent = normalize(normalize(normal + geometric_normal * s) + geometric_normal * 1e-3);
+    return select(bent, normal, a > 0.0 && 2.0 * a * d >= c);
 }
 
 @fragment
@@ -51,16 +80,39 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> FragmentOut
 
     // Surface kind in the two upper bits: 0 lit, 1 lit and emissive, 2 the front of an emitter
     var color = draw.surface.x;
-    if TEXTURED {
-        let texel = textureSample(base_color_texture, base_color_sampler, in.uv).rgb;
-        color = pack_color(unpack_color(color) * texel, color >> 30u);
+    var gloss = draw.surface.y;
+    if TEXTURES > 0u {
+        let texel = textureSample(base_color_texture, base_color_sampler, from_top(slot_uv(SLOT_BASE_COLOR, in.uvs)));
+        color = pack_color(unpack_color(color) * texel.rgb, color >> 30u);
+        if HOLES {
+            if coverage(texel.a) <= screen_threshold(vec2u(in.clip.xy)) {
+                discard;
+            }
+        }
+    }
+    if TEXTURES > 1u {
+        // Roughness and metal, and what glows of a surface
+        let factors = textureSample(gloss_texture, gloss_sampler, from_top(slot_uv(SLOT_GLOSS, in.uvs))).rgb;
+        let glow = textureSample(emission_texture, emission_sampler, from_top(slot_uv(SLOT_EMISSION, in.uvs))).rgb;
+        let glows = color >> 30u == 1u;
+        let values = select(unpack_gloss(gloss), unpack_glowing_gloss(gloss, 0.0), glows) * vec3f(factors.g, 1.0, factors.b);
+        gloss = select(pack_gloss(values), pack_glowing_gloss(values, glow), glows);
+        // The normal map
+        let normal_uv = slot_uv(SLOT_NORMAL, in.uvs);
+        let texel = textureSample(normal_texture, normal_sampler, from_top(normal_uv)).rgb * 2.0 - 1.0;
+        let direction = vec3f(texel.xy * draw.maps.x, texel.z);
+        let d1 = dpdx(in.world);
+        let d2 = dpdy(in.world);
+        let tilted = tilted_normal(normalize(normal), d1, d2, dpdx(normal_uv), dpdy(normal_uv), direction);
+        let bent = bend_above(tilted, normalize(geometric_normal), normalize(to_eye));
+        normal = select(normal, bent, draw.maps.x != 0.0);
     }
     if any(in.color < vec3f(0.999)) {
         color = pack_color(unpack_color(color) * in.color, color >> 30u);
     }
     color = select(color, 2u << 30u, draw.surface.w != 0u && front);
     var out: FragmentOutput;
-    out.gbuffer = vec4u(pack_direction(normal), color, pack_direction(geometric_normal), draw.surface.y);
+    out.gbuffer = vec4u(pack_direction(normal), color, pack_direction(geometric_normal), gloss);
     // Derive the stored depth from 1/w, which DEPTH_FACTOR does not change
     out.id = vec2u(draw.surface.z, bitcast<u32>(frame.near_m * in.clip.w));
     return out;

@@ -152,7 +152,7 @@ fn shade(p: GBufferSample) -> ShadedLight {
     // Reconstruct the shading point from the G-buffer
     let depth = max(bitcast<f32>(p.id.y), 1e-9);
     let ray = pixel_ray(p.at);
-    let gloss = unpack_gloss(p.packed.w);
+    let gloss = gloss_at(p.packed, p.id.x);
     let position = frame.eye + ray * (frame.near_m / depth);
     let s = shading(position, unpack_direction(p.packed.x), -normalize(ray), unpack_color(p.packed.y), gloss);
     // Ambient and environment light
@@ -276,7 +276,9 @@ fn shade(p: GBufferSample) -> ShadedLight {
         specular = scattered;
     }
     if kind != 0u {
-        specular = select(specular, vec3f(0.0), kind == 2u) + surfaces[(p.id.x & ID_INDEX_MASK) - 1u].emission;
+        let glow = select(vec3f(1.0), unpack_glow(p.packed.w), kind == 1u);
+        let emission = surfaces[(p.id.x & ID_INDEX_MASK) - 1u].emission * glow;
+        specular = select(specular, vec3f(0.0), kind == 2u) + emission;
     }
     specular = select(specular, frame.void_radiance, p.id.x == 0u);
     return ShadedLight(diffuse, specular);

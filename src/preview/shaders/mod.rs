@@ -3,8 +3,13 @@
 use eframe::wgpu;
 
 /// The geometry pass.
-pub(crate) const GEOMETRY: &str =
-    concat!(include_str!("scene.wgsl"), include_str!("draw.wgsl"), include_str!("geometry.wgsl"));
+pub(crate) const GEOMETRY: &str = concat!(
+    "const TEXTURE_GROUP: u32 = 2;\n",
+    include_str!("scene.wgsl"),
+    include_str!("draw.wgsl"),
+    include_str!("textures.wgsl"),
+    include_str!("geometry.wgsl")
+);
 /// The geometry pass of strands.
 pub(crate) const STRANDS: &str =
     concat!(include_str!("scene.wgsl"), include_str!("draw.wgsl"), include_str!("strands.wgsl"));
@@ -14,6 +19,14 @@ pub(crate) const SHADOW_STRANDS: &str =
 /// The shadow map pass.
 pub(crate) const SHADOW_MAP: &str =
     concat!(include_str!("scene.wgsl"), include_str!("draw.wgsl"), include_str!("shadow_map.wgsl"));
+/// The shadow map pass of surfaces that are not all there.
+pub(crate) const SHADOW_HOLES: &str = concat!(
+    "const TEXTURE_GROUP: u32 = 3;\n",
+    include_str!("scene.wgsl"),
+    include_str!("draw.wgsl"),
+    include_str!("textures.wgsl"),
+    include_str!("shadow_holes.wgsl")
+);
 /// The shadow mask pass.
 pub(crate) const SHADOW_MASK: &str = concat!(include_str!("scene.wgsl"), include_str!("shadow_mask.wgsl"));
 /// The blur pass of the shadow masks.
@@ -77,6 +90,7 @@ mod tests {
             ("strands", STRANDS),
             ("strand shadows", SHADOW_STRANDS),
             ("shadow map", SHADOW_MAP),
+            ("shadows with holes", SHADOW_HOLES),
             ("shadow mask", SHADOW_MASK),
             ("shadow blur", SHADOW_BLUR),
             ("still picture", STILL),

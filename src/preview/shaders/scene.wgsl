@@ -142,6 +142,40 @@ fn unpack_gloss(packed: u32) -> vec3f {
     return vec3f(vec3u(packed, packed >> 12u, packed >> 24u) & vec3u(4095u, 4095u, 255u)) / vec3f(4095.0, 4095.0, 255.0);
 }
 
+// Packs roughness, the square root of the dielectric F0, and metallic; twin of `pack_gloss` in `surface.rs`.
+fn pack_gloss(values: vec3f) -> u32 {
+    let q = vec3u(saturate(values) * vec3f(4095.0, 4095.0, 255.0) + 0.5);
+    return q.x | (q.y << 12u) | (q.z << 24u);
+}
+
+// Packs roughness in 8 bits and metallic in 6 of a surface that glows, and the square root of the part of its emission in 6
+// bits a channel; twin of `pack_glowing_gloss` in `surface.rs`. Its dielectric F0 is in its surface record.
+fn pack_glowing_gloss(values: vec3f, emission: vec3f) -> u32 {
+    let q = vec2u(saturate(values.xz) * vec2f(255.0, 63.0) + 0.5);
+    let e = vec3u(sqrt(saturate(emission)) * 63.0 + 0.5);
+    return q.x | (q.y << 8u) | (e.x << 14u) | (e.y << 20u) | (e.z << 26u);
+}
+
+// Returns roughness, the square root of the dielectric F0, and metallic of a surface that glows, by its index of refraction.
+fn unpack_glowing_gloss(packed: u32, ior: f32) -> vec3f {
+    let q = vec2f(vec2u(packed, packed >> 8u) & vec2u(255u, 63u)) / vec2f(255.0, 63.0);
+    return vec3f(q.x, (ior - 1.0) / (ior + 1.0), q.y);
+}
+
+// Returns the part of its emission that a surface gives off at a pixel.
+fn unpack_glow(packed: u32) -> vec3f {
+    let q = vec3f(vec3u(packed >> 14u, packed >> 20u, packed >> 26u) & vec3u(63u)) / 63.0;
+    return q * q;
+}
+
+// Returns roughness, the square root of the dielectric F0, and metallic at a pixel of the G-buffer with this id.
+fn gloss_at(packed: vec4u, id: u32) -> vec3f {
+    if packed.y >> 30u == 1u {
+        return unpack_glowing_gloss(packed.w, surfaces[(id & ID_INDEX_MASK) - 1u].ior);
+    }
+    return unpack_gloss(packed.w);
+}
+
 // Packs radiance or irradiance as RGB9E5 (shared exponent): precise to 0.2 % of the largest channel, 2^-24 to 65408.
 fn pack_radiance(value: vec3f) -> u32 {
     let color = clamp(value, vec3f(0.0), vec3f(65408.0));

@@ -64,8 +64,11 @@ impl ShadowPasses {
         let mut pass = self.maps.begin_pass(encoder, layer, side);
         pass.set_bind_group(0, resources.scene, &[]);
         for item in &casters.items {
-            if let Some(pipeline) = self.pipelines.map(item.shadow, side) {
+            if let Some(pipeline) = self.pipelines.map(item.shadow, item.has_holes, side) {
                 pass.set_pipeline(pipeline);
+                if item.has_holes {
+                    pass.set_bind_group(3, resources.caches.textures.get(&item.textures), &[]);
+                }
                 resources.caches.draw(&mut pass, item);
             }
         }

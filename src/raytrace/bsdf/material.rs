@@ -1,13 +1,13 @@
 //! A material prepared for tracing: its parameters and the directional albedo tables of its lobes.
 
-use super::albedo::{AlbedoTable, AlbedoTables};
+use super::albedo::AlbedoTables;
 use super::fibre::TracedFibre;
 use super::ggx;
-use crate::color::luminance;
+use super::roughness_tables::RoughnessTables;
 use crate::math::safe_sqrt;
-use crate::scene::{Material, TextureSlot};
+use crate::scene::{Alpha, Material, TextureSlot};
 use glam::Vec3;
-use std::f32::consts::PI;
+use std::sync::Arc;
 
 /// Roughness alpha below which a metal counts as nearly specular.
 const POLISHED_ALPHA: f32 = 0.05;
@@ -34,26 +34,40 @@ pub struct TracedMaterial {
     extinction_per_m: Option<Vec3>,
     /// Emitted luminance times colour, cd/m2.
     pub emission: Vec3,
-    /// Directional albedo of the dielectric coat.
-    pub(super) coat_albedo: AlbedoTable,
-    /// Directional albedo of the metal for a reflectance of 1.
-    pub(super) metal_albedo: AlbedoTable,
+    /// Directional albedos of the dielectric coat, and of the metal for a reflectance of 1.
+    pub(super) tables: AlbedoTables,
     /// True if the material has a metal or a coat.
     pub(super) has_microfacets: bool,
+    /// Roughness and metal where a texture varies them.
+    pub(super) mapped_gloss: Option<MappedGloss>,
+    /// Factor of the tilt of the normal map.
+    pub normal_scale: f32,
+    /// Parts of the surface that are not there. Glass is all there.
+    pub coverage: Alpha,
     /// The fibre that strands of the material are.
     fibre: Option<TracedFibre>,
+}
+
+/// Roughness and metal that a texture varies.
+#[derive(Clone, Debug)]
+pub(super) struct MappedGloss {
+    /// The user's roughness, a factor of the texture's.
+    pub roughness: f32,
+    /// The user's metal, a factor of the texture's.
+    pub metallic: f32,
+    /// The user's transmission.
+    pub transmission: f32,
+    /// Directional albedos for every roughness.
+    pub tables: Arc<RoughnessTables>,
 }
 
 impl TracedMaterial {
     /// Tabulates the directional albedos of a material. The caller sets its textures.
     pub fn new(material: &Material) -> Self {
         let alpha = material.roughness * material.roughness;
-        // Metals are opaque: only the rest transmits, and the metal is a larger part of the opaque lobes.
-        let transmission =
-            if material.fibre.is_some() { 0.0 } else { material.transmission * (1.0 - material.metallic) };
-        let opaque = 1.0 - transmission;
-        let metallic = if opaque > 0.0 { (material.metallic / opaque).min(1.0) } else { 0.0 };
-        let AlbedoTables { coat, perfect_reflector } = AlbedoTables::new(material.ior, alpha);
+        let clear = if material.fibre.is_some() { 0.0 } else { material.transmission };
+        let (transmission, metallic) = Self::divide(clear, material.metallic);
+        let tables = AlbedoTables::new(material.ior, alpha);
         TracedMaterial {
             base_color: material.base_color.into(),
             textures: [None; TextureSlot::COUNT],
@@ -64,11 +78,36 @@ impl TracedMaterial {
             absorption_per_m: material.absorption_per_m.into(),
             extinction_per_m: extinction_per_m(material),
             emission: material.emission_cd_m2.into(),
-            has_microfacets: metallic > 0.0 || coat.mean > MIN_COAT_ALBEDO,
-            coat_albedo: coat,
-            metal_albedo: perfect_reflector,
+            has_microfacets: metallic > 0.0 || tables.coat.mean > MIN_COAT_ALBEDO,
+            tables,
+            mapped_gloss: None,
+            normal_scale: material.textures.normal_scale,
+            coverage: if clear > 0.0 { Alpha::Opaque } else { material.alpha },
             fibre: material.fibre.as_ref().map(TracedFibre::new),
         }
+    }
+
+    /// Lets the texture of roughness and metal vary a material. `tables` are those of its index of refraction.
+    pub fn map_gloss(&mut self, material: &Material, tables: Arc<RoughnessTables>) {
+        let Material { roughness, metallic, .. } = *material;
+        let transmission = if material.fibre.is_some() { 0.0 } else { material.transmission };
+        // Where the texture has no metal, all of the transmission is there
+        self.transmission = transmission;
+        self.has_microfacets = true;
+        self.mapped_gloss = Some(MappedGloss { roughness, metallic, transmission, tables });
+    }
+
+    /// Returns the tables of a material with mapped roughness.
+    pub fn roughness_tables(&self) -> Option<&Arc<RoughnessTables>> {
+        self.mapped_gloss.as_ref().map(|mapped| &mapped.tables)
+    }
+
+    /// Returns the weight of the dielectric lobe and the metallic part of the opaque lobes. Metals are opaque: only the
+    /// rest transmits, and the metal is a larger part of the opaque lobes.
+    pub(super) fn divide(transmission: f32, metallic: f32) -> (f32, f32) {
+        let transmission = transmission * (1.0 - metallic);
+        let opaque = 1.0 - transmission;
+        (transmission, if opaque > 0.0 { (metallic / opaque).min(1.0) } else { 0.0 })
     }
 
     /// Returns the texture of a slot, an index into the scene's textures.
@@ -91,17 +130,6 @@ impl TracedMaterial {
         self.transmission > 0.0
     }
 
-    /// Returns the factor on light that is transmitted at a surface, besides Fresnel's equations: the weight of the
-    /// dielectric lobe times [`transmission_tint`].
-    pub fn transmission_color(&self, texture: Vec3, is_thin: bool) -> Vec3 {
-        transmission_tint(self.base_color * texture, is_thin) * self.transmission
-    }
-
-    /// Returns the GGX roughness alpha: the square of the user's roughness.
-    pub fn alpha(&self) -> f32 {
-        self.alpha
-    }
-
     /// Returns the index of refraction.
     pub fn ior(&self) -> f32 {
         self.ior
@@ -117,9 +145,9 @@ impl TracedMaterial {
         self.extinction_per_m
     }
 
-    /// Returns true if the microfacet lobe is a delta function.
-    pub(super) fn is_smooth(&self) -> bool {
-        self.alpha < ggx::MIN_ALPHA
+    /// Returns true if the microfacet lobe is a delta function. One with a map never is.
+    fn is_smooth(&self) -> bool {
+        self.mapped_gloss.is_none() && self.alpha < ggx::MIN_ALPHA
     }
 
     /// Returns the reflectance for the albedo AOV: the base colour, which is also that of transmitted light.
@@ -133,12 +161,14 @@ impl TracedMaterial {
             return fibre.albedo().max_element().max(self.base_color.max_element());
         }
         let base = self.base_color.max_element();
-        if self.transmission > 0.0 { 1.0_f32.max(base) } else { base + (1.0 - base) * self.coat_albedo.mean }
+        let coat = self.roughness_tables().map_or(self.tables.coat.mean, |tables| tables.largest_coat_mean());
+        if self.transmission > 0.0 { 1.0_f32.max(base) } else { base + (1.0 - base) * coat }
     }
 
     /// Returns true if nearly all light is scattered into one direction: clear glass, mirrors and polished metal.
     pub fn is_nearly_specular(&self) -> bool {
-        self.transmits() || (self.metallic > 0.5 && self.alpha < POLISHED_ALPHA)
+        let is_polished = self.mapped_gloss.is_none() && self.metallic > 0.5 && self.alpha < POLISHED_ALPHA;
+        self.transmits() || is_polished
     }
 
     /// Returns true for clear glass and perfect mirrors, which cast caustics.
@@ -149,26 +179,8 @@ impl TracedMaterial {
     /// Returns true if the BSDF has a lobe that is not a delta function, so that light sampling can contribute.
     pub fn has_non_specular_lobe(&self) -> bool {
         let has_diffuse = self.metallic < 1.0 && self.base_color.max_element() > 0.0;
-        self.transmission < 1.0 && (has_diffuse || !self.is_smooth())
-    }
-
-    /// Returns the directional albedo of the coat.
-    #[inline]
-    pub(super) fn coat_albedo(&self, cos: f32) -> f32 {
-        if self.has_microfacets { self.coat_albedo.at(cos) } else { 0.0 }
-    }
-
-    /// Returns the probability of sampling the microfacet lobe rather than the diffuse one: its part of the albedo.
-    pub(super) fn microfacet_probability(&self, base_color: Vec3, coat_albedo: f32) -> f32 {
-        let color = luminance(base_color);
-        let microfacet = (1.0 - self.metallic) * coat_albedo + self.metallic * color.max(0.04);
-        let diffuse = (1.0 - self.metallic) * (1.0 - coat_albedo) * color;
-        if diffuse <= 0.0 { 1.0 } else { microfacet / (microfacet + diffuse) }
-    }
-
-    /// Returns the diffuse BSDF without its factor for the incident direction (Kelemen and Szirmay-Kalos 2001).
-    pub(super) fn diffuse_factor(&self, base_color: Vec3, coat_albedo: f32) -> Vec3 {
-        base_color * ((1.0 - self.metallic) * (1.0 - coat_albedo) / (PI * (1.0 - self.coat_albedo.mean).max(1e-4)))
+        let is_metal_in_places = self.mapped_gloss.as_ref().is_some_and(|mapped| mapped.metallic > 0.0);
+        is_metal_in_places || (self.transmission < 1.0 && (has_diffuse || !self.is_smooth()))
     }
 }
 

@@ -1,7 +1,7 @@
 //! The microfacet lobe: GGX reflection by the metal and by the dielectric coat. A delta lobe where the surface is
 //! smooth.
 
-use super::material::TracedMaterial;
+use super::material_point::MaterialPoint;
 use super::{fresnel, ggx};
 use glam::{Vec2, Vec3};
 
@@ -18,47 +18,41 @@ impl MicrofacetLobe {
 
     /// Returns the lobe of a material for an outgoing direction, local frame.
     #[inline(always)]
-    pub fn new(material: &TracedMaterial, wo: Vec3) -> Self {
-        MicrofacetLobe { lambda_o: if material.has_microfacets { ggx::lambda(wo, material.alpha) } else { 0.0 } }
+    pub fn new(material: &MaterialPoint<'_>, wo: Vec3) -> Self {
+        MicrofacetLobe { lambda_o: if material.has_microfacets() { ggx::lambda(wo, material.alpha) } else { 0.0 } }
     }
 
     /// Returns BSDF times cosine, and the pdf times the lobe's `probability`. Both are 0 for a delta lobe.
     #[inline(always)]
-    pub fn eval(
-        &self,
-        material: &TracedMaterial,
-        base_color: Vec3,
-        wo: Vec3,
-        wi: Vec3,
-        probability: f32,
-    ) -> (Vec3, f32) {
-        if !material.has_microfacets || material.is_smooth() {
+    pub fn eval(&self, material: &MaterialPoint<'_>, wo: Vec3, wi: Vec3, probability: f32) -> (Vec3, f32) {
+        if !material.has_microfacets() || material.is_smooth() {
             return (Vec3::ZERO, 0.0);
         }
         let m = (wo + wi).normalize_or(Vec3::Z);
         let cos_half = wo.dot(m).clamp(0.0, 1.0);
         // D / (4 cos_o): times G1(o) it is the density of visible normals, times F G2 the BSDF times cosine
         let shape = ggx::distribution(m, material.alpha) / (4.0 * wo.z);
-        let value = reflectance(material, base_color, wo, cos_half)
-            * (shape / (1.0 + self.lambda_o + ggx::lambda(wi, material.alpha)));
+        let value =
+            reflectance(material, wo, cos_half) * (shape / (1.0 + self.lambda_o + ggx::lambda(wi, material.alpha)));
         (value, probability * shape / (1.0 + self.lambda_o))
     }
 
     /// Samples an incident direction of a rough lobe by visible normals, local frame.
-    pub fn sample(material: &TracedMaterial, wo: Vec3, u: Vec2) -> Vec3 {
+    pub fn sample(material: &MaterialPoint<'_>, wo: Vec3, u: Vec2) -> Vec3 {
         ggx::reflect(wo, ggx::sample_visible_normal(wo, material.alpha, u))
     }
 }
 
 /// Returns the Fresnel reflectance, mixed from metal and coat. The metal is scaled for light that is reflected between
 /// facets (Turquin 2019).
-pub fn reflectance(material: &TracedMaterial, base_color: Vec3, wo: Vec3, cos_half: f32) -> Vec3 {
+pub fn reflectance(material: &MaterialPoint<'_>, wo: Vec3, cos_half: f32) -> Vec3 {
+    let base_color = material.base_color;
     let mut color = Vec3::ZERO;
     if material.metallic < 1.0 {
-        color += Vec3::splat((1.0 - material.metallic) * fresnel::dielectric(cos_half, material.ior));
+        color += Vec3::splat((1.0 - material.metallic) * fresnel::dielectric(cos_half, material.material.ior));
     }
     if material.metallic > 0.0 {
-        let missing = 1.0 / material.metal_albedo.at(wo.z).max(1e-3) - 1.0;
+        let missing = 1.0 / material.metal_albedo(wo.z).max(1e-3) - 1.0;
         let compensation = Vec3::ONE + base_color * missing;
         color += fresnel::schlick(base_color, cos_half) * compensation * material.metallic;
     }

@@ -28,9 +28,11 @@ pub mod fresnel;
 mod ggx;
 mod lobe;
 mod material;
+mod material_point;
 mod microfacet;
 mod phong;
 mod polarisation;
+mod roughness_tables;
 mod sample;
 mod shading_geometry;
 mod subsurface;
@@ -40,7 +42,9 @@ pub use dielectric::{Boundary, DielectricInterface, pane_transmittance};
 pub use fibre::{FibreBsdf, TracedFibre};
 use glam::{Vec2, Vec3};
 pub use material::TracedMaterial;
+pub use material_point::{MaterialPoint, TextureFactors};
 pub use polarisation::{Polarisation, TransmittedLight};
+pub use roughness_tables::RoughnessTables;
 pub use sample::BsdfSample;
 pub use surface::SurfaceBsdf;
 
@@ -54,10 +58,16 @@ pub enum Bsdf<'a> {
 }
 
 impl<'a> Bsdf<'a> {
-    /// Returns the BSDF of a surface for the outgoing direction `wo` (unit, world space), outward normals and a texture
-    /// value. A clear material is a body in air; see [`Bsdf::with_boundary`] for others.
-    pub fn new(material: &'a TracedMaterial, texture: Vec3, normal: Vec3, geometric_normal: Vec3, wo: Vec3) -> Self {
-        Bsdf::Surface(SurfaceBsdf::new(material, texture, normal, geometric_normal, wo))
+    /// Returns the BSDF of a surface for the outgoing direction `wo` (unit, world space), outward normals and texture
+    /// values. A clear material is a body in air; see [`Bsdf::with_boundary`] for others.
+    pub fn new(
+        material: &'a TracedMaterial,
+        textures: impl Into<TextureFactors>,
+        normal: Vec3,
+        geometric_normal: Vec3,
+        wo: Vec3,
+    ) -> Self {
+        Bsdf::Surface(SurfaceBsdf::new(material, textures, normal, geometric_normal, wo))
     }
 
     /// Returns the same BSDF with this boundary, for a path that accepts this polarisation.

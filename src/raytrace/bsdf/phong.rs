@@ -4,7 +4,8 @@
 //! the reflectance at normal incidence. Base and lobe do not share energy, unlike in [`super::Bsdf`].
 
 use super::ggx;
-use super::material::{TracedMaterial, transmission_tint};
+use super::material::transmission_tint;
+use super::material_point::MaterialPoint;
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -24,12 +25,13 @@ pub struct Phong {
     base_color: Vec3,
 }
 
-impl TracedMaterial {
-    /// Returns the Phong parameters of the material with a texture value.
-    pub fn phong(&self, texture: Vec3) -> Phong {
-        let base = self.base_color * texture;
+impl MaterialPoint<'_> {
+    /// Returns the Phong parameters at the point.
+    pub fn phong(&self) -> Phong {
+        let base = self.base_color;
         let opaque = 1.0 - self.transmission;
-        let f0 = ((self.ior - 1.0) / (self.ior + 1.0)).powi(2);
+        let ior = self.material.ior;
+        let f0 = ((ior - 1.0) / (ior + 1.0)).powi(2);
         let reflectance = Vec3::splat(f0).lerp(base, self.metallic) * opaque;
         let (glossy, specular) = if self.is_smooth() { (Vec3::ZERO, reflectance) } else { (reflectance, Vec3::ZERO) };
         let alpha = self.alpha.max(ggx::MIN_ALPHA);

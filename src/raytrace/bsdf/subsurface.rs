@@ -34,23 +34,24 @@ impl<'a> SurfaceBsdf<'a> {
 
     /// Returns the part of the light that the coat transmits towards the outgoing direction.
     pub fn coat_transmission(&self) -> f32 {
-        1.0 - self.material.coat_albedo(self.geometry.wo.z)
+        1.0 - self.point.coat_albedo(self.geometry.wo.z)
     }
 
     /// Returns the base colour: of the material, times its texture.
     pub fn base_color(&self) -> Vec3 {
-        self.base_color
+        self.point.base_color
     }
 
     /// Returns the BSDF where a walk comes out: a diffuse lobe under the coat, for any outgoing direction.
     pub fn at_exit(material: &'a TracedMaterial, normal: Vec3, geometric_normal: Vec3) -> Self {
-        let factor = material.diffuse_factor(Vec3::ONE, 0.0);
-        SurfaceBsdf::new(material, Vec3::ONE, normal, geometric_normal, normal).with_diffuse_lobe_alone(factor)
+        let bsdf = SurfaceBsdf::new(material, Vec3::ONE, normal, geometric_normal, normal);
+        let factor = bsdf.point.diffuse_factor(Vec3::ONE, 0.0);
+        bsdf.with_diffuse_lobe_alone(factor)
     }
 
     /// Returns the BSDF of a diffuse lobe under the coat, with a base colour that may be negative, at the same point.
     pub fn with_diffuse_base(self, base_color: Vec3) -> Self {
-        self.with_diffuse_lobe_alone(self.material.diffuse_factor(base_color, 1.0 - self.coat_transmission()))
+        self.with_diffuse_lobe_alone(self.point.diffuse_factor(base_color, 1.0 - self.coat_transmission()))
     }
 
     fn with_diffuse_lobe_alone(self, factor: Vec3) -> Self {

@@ -4,6 +4,7 @@ use super::dielectric::{Boundary, DielectricInterface, DielectricLobe};
 use super::diffuse::DiffuseLobe;
 use super::lobe::{Lobe, LobeProbabilities};
 use super::material::TracedMaterial;
+use super::material_point::{MaterialPoint, TextureFactors};
 use super::microfacet::{self, MicrofacetLobe};
 use super::polarisation::Polarisation;
 use super::sample::BsdfSample;
@@ -13,9 +14,7 @@ use glam::{Vec2, Vec3};
 /// The BSDF at a point of a surface for one outgoing direction.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceBsdf<'a> {
-    pub(super) material: &'a TracedMaterial,
-    /// Of the material, times its texture.
-    pub(super) base_color: Vec3,
+    pub(super) point: MaterialPoint<'a>,
     pub(super) geometry: ShadingGeometry,
     pub(super) probabilities: LobeProbabilities,
     pub(super) dielectric: DielectricLobe,
@@ -24,27 +23,33 @@ pub struct SurfaceBsdf<'a> {
 }
 
 impl<'a> SurfaceBsdf<'a> {
-    /// Returns the BSDF for the outgoing direction `wo` (unit, world space), outward normals and a texture value. A
+    /// Returns the BSDF for the outgoing direction `wo` (unit, world space), outward normals and texture values. A
     /// clear material is a body in air; see [`SurfaceBsdf::with_boundary`] for others.
-    pub fn new(material: &'a TracedMaterial, texture: Vec3, normal: Vec3, geometric_normal: Vec3, wo: Vec3) -> Self {
+    pub fn new(
+        material: &'a TracedMaterial,
+        textures: impl Into<TextureFactors>,
+        normal: Vec3,
+        geometric_normal: Vec3,
+        wo: Vec3,
+    ) -> Self {
         let is_outside = wo.dot(geometric_normal) >= 0.0;
         let geometry = ShadingGeometry::new(normal, geometric_normal, wo);
-        let base_color = material.base_color * texture;
+        let point = MaterialPoint::new(material, textures.into());
+        let base_color = point.base_color;
         let eta = if is_outside { material.ior } else { 1.0 / material.ior };
         let boundary = Boundary::Interface(DielectricInterface { eta, starts_inside: false });
-        let coat_albedo = material.coat_albedo(geometry.wo.z);
+        let coat_albedo = point.coat_albedo(geometry.wo.z);
         SurfaceBsdf {
-            material,
-            base_color,
+            point,
             geometry,
             probabilities: LobeProbabilities {
-                dielectric: material.transmission,
-                microfacet: material.microfacet_probability(base_color, coat_albedo),
+                dielectric: point.transmission,
+                microfacet: point.microfacet_probability(coat_albedo),
                 base: Lobe::Diffuse,
             },
             dielectric: DielectricLobe { ior: material.ior, base_color, boundary, polarisation: Polarisation::NONE },
-            microfacet: MicrofacetLobe::new(material, geometry.wo),
-            diffuse: DiffuseLobe { factor: material.diffuse_factor(base_color, coat_albedo) },
+            microfacet: MicrofacetLobe::new(&point, geometry.wo),
+            diffuse: DiffuseLobe { factor: point.diffuse_factor(base_color, coat_albedo) },
         }
     }
 
@@ -61,19 +66,19 @@ impl<'a> SurfaceBsdf<'a> {
     /// Returns the Fresnel reflectance of clear glass, which is the probability that [`SurfaceBsdf::sample`] samples
     /// reflection: for lobe numbers below it. Returns none for materials with other lobes.
     pub fn dielectric_reflectance(&self) -> Option<f32> {
-        (self.material.transmission >= 1.0).then(|| self.dielectric.reflectance(&self.geometry))
+        (self.point.transmission >= 1.0).then(|| self.dielectric.reflectance(&self.geometry))
     }
 
     /// Returns true if it has a lobe that is not a delta function.
     pub fn has_non_specular_lobe(&self) -> bool {
-        self.material.has_non_specular_lobe()
+        self.point.has_non_specular_lobe()
     }
 
     /// Returns BSDF times cosine, and the density of [`SurfaceBsdf::sample`] (1/sr), for a unit world direction. Delta lobes
     /// are left out of both.
     pub fn eval(&self, direction: Vec3) -> (Vec3, f32) {
         let wi = self.geometry.to_local(direction);
-        if wi.z <= 0.0 || !self.geometry.is_above(direction) || self.material.transmission >= 1.0 {
+        if wi.z <= 0.0 || !self.geometry.is_above(direction) || self.point.transmission >= 1.0 {
             return (Vec3::ZERO, 0.0);
         }
         self.eval_local(wi)
@@ -87,7 +92,7 @@ impl<'a> SurfaceBsdf<'a> {
             value += lobe_value;
             pdf += lobe_pdf;
         }
-        let opaque = 1.0 - self.material.transmission;
+        let opaque = 1.0 - self.point.transmission;
         (value * opaque, pdf * opaque)
     }
 
@@ -97,8 +102,8 @@ impl<'a> SurfaceBsdf<'a> {
         let probability = self.probabilities.opaque(lobe);
         match lobe {
             Lobe::Dielectric | Lobe::Subsurface => (Vec3::ZERO, 0.0),
-            Lobe::Microfacet => self.microfacet.eval(self.material, self.base_color, self.geometry.wo, wi, probability),
-            Lobe::Diffuse => self.diffuse.eval(wi, self.material.coat_albedo(wi.z), probability),
+            Lobe::Microfacet => self.microfacet.eval(&self.point, self.geometry.wo, wi, probability),
+            Lobe::Diffuse => self.diffuse.eval(wi, self.point.coat_albedo(wi.z), probability),
         }
     }
 
@@ -109,8 +114,8 @@ impl<'a> SurfaceBsdf<'a> {
         let (lobe, u_lobe) = self.probabilities.sample(u_lobe);
         let wi = match lobe {
             Lobe::Dielectric => return self.dielectric.sample(&self.geometry, u_lobe),
-            Lobe::Microfacet if self.material.is_smooth() => return self.sample_smooth_microfacet(),
-            Lobe::Microfacet => MicrofacetLobe::sample(self.material, self.geometry.wo, u),
+            Lobe::Microfacet if self.point.is_smooth() => return self.sample_smooth_microfacet(),
+            Lobe::Microfacet => MicrofacetLobe::sample(&self.point, self.geometry.wo, u),
             Lobe::Diffuse => DiffuseLobe::sample(u),
             Lobe::Subsurface => return None,
         };
@@ -127,7 +132,7 @@ impl<'a> SurfaceBsdf<'a> {
     /// Samples the microfacet lobe of a smooth surface: specular reflection.
     fn sample_smooth_microfacet(&self) -> Option<BsdfSample> {
         let wo = self.geometry.wo;
-        let reflectance = microfacet::reflectance(self.material, self.base_color, wo, wo.z);
+        let reflectance = microfacet::reflectance(&self.point, wo, wo.z);
         let weight = reflectance / self.probabilities.microfacet;
         Some(BsdfSample { weight, ..BsdfSample::specular(self.geometry.specular_reflection()?) })
     }

@@ -189,7 +189,7 @@ impl<'a> PhotonTracer<'a> {
             }
             let Some(hit) = hit else { return };
             throughput *= media.transmittance(&scene.materials, hit.t);
-            surface = scene.aggregate.surface(&hit);
+            surface = scene.surface(&ray, &hit);
             wo = -direction;
             let cos = wo.dot(surface.geometric_normal);
             let gathers =

@@ -131,7 +131,7 @@ fn trace_path(
     let (mut media, mut polarisation, mut travelled) = (MediumStack::default(), Polarisation::NONE, 0.0);
     for depth in 0..scene.plan().max_depth {
         let Some(hit) = caster.intersect(&ray) else { return };
-        let surface = scene.aggregate.surface(&hit);
+        let surface = scene.surface(&ray, &hit);
         travelled += hit.t;
         let wo = -ray.direction;
         let cos = wo.dot(surface.geometric_normal);

@@ -48,7 +48,7 @@ impl LightMeter {
         let scene = &self.studio.scene;
         let ray = Ray { origin: origin - scene.origin, direction, t_max: length_m };
         let hit = RayCaster::new(scene).intersect(&ray)?;
-        let surface = scene.aggregate.surface(&hit);
+        let surface = scene.surface(&ray, &hit);
         let (object, part) = scene.object_and_part(&hit);
         let side = if surface.normal.dot(direction) > 0.0 { -1.0 } else { 1.0 };
         Some(SurfacePoint { object, part, position: surface.position + scene.origin, normal: surface.normal * side })

@@ -154,7 +154,7 @@ impl<'a> TileTracer<'a> {
         let Some(hit) = self.sampler.tracer.caster.intersect(&ray) else {
             return PrimaryHit::BACKGROUND;
         };
-        let surface = scene.aggregate.surface(&hit);
+        let surface = scene.surface(&ray, &hit);
         let material = &scene.materials[surface.material as usize];
         let is_in_front =
             |light: &TracedLight| light.intersect(origin, direction).is_some_and(|emitter| emitter.distance < hit.t);
@@ -165,7 +165,7 @@ impl<'a> TileTracer<'a> {
             normal: if surface.normal.dot(direction) > 0.0 { -surface.normal } else { surface.normal },
             object: scene.aggregate.instances()[hit.instance as usize].object,
             material: surface.material,
-            alpha: if is_view_dependent { PrimaryHit::VIEW_DEPENDENT } else { material.alpha() },
+            alpha: if is_view_dependent { PrimaryHit::VIEW_DEPENDENT } else { scene.material_point(&surface).alpha },
             texture: scene.texture_value(&surface),
         }
     }

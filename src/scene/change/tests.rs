@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::scene::{
-    Aim, BarnDoors, ColorSource, Cone, Emitter, Facing, Focus, Gel, ObjectId, Orientation, Output, Receptor, Role,
-    Sensor, Shape, Subsurface, TextureRef,
+    Aim, Alpha, BarnDoors, ColorSource, Cone, Emitter, Facing, Focus, Gel, ObjectId, Orientation, Output, Receptor,
+    Role, Sensor, Shape, Subsurface, TextureRef,
 };
 use glam::Vec3;
 
@@ -197,6 +197,10 @@ fn shapes_and_surfaces_need_preparation() {
             ("part_materials.material", |s| s.objects[0].part_materials[0].1.ior = 1.1),
             ("base_color", |s| s.objects[0].material.base_color[0] = 0.1),
             ("base_color_texture", |s| s.objects[0].material.textures.base_color = Some(TextureRef::file("a.png"))),
+            ("normal_texture", |s| s.objects[0].material.textures.normal = Some(TextureRef::file("a.png"))),
+            ("normal_scale", |s| s.objects[0].material.textures.normal_scale = 2.0),
+            ("emission_placement", |s| s.objects[0].material.textures.placements[2].nearest = true),
+            ("alpha", |s| s.objects[0].material.alpha = Alpha::Mask { cutoff: 0.5 }),
             ("metallic", |s| s.objects[0].material.metallic = 1.0),
             ("roughness", |s| s.objects[0].material.roughness = 0.1),
             ("ior", |s| s.objects[0].material.ior = 1.1),

@@ -2,7 +2,7 @@
 
 use super::check::{Allowed, Check};
 use crate::scene::fibre::MIN_ROUGHNESS;
-use crate::scene::{Fibre, FibreColor, Material};
+use crate::scene::{Alpha, Fibre, FibreColor, Material, TexturePlacement, TextureSlot};
 
 /// Reflectances lie in [0, 1): a closed room with reflectance 1 has no finite solution.
 const REFLECTANCE: Allowed = Allowed::between(0.0, 0.999, "");
@@ -16,9 +16,7 @@ pub(super) fn check_material(field: &str, material: &Material, check: &mut Check
     let name = |part: &str| format!("{field}.{part}");
     let is_clear = material.transmission == 1.0 && material.metallic == 0.0;
     check.color(&name("base_color"), material.base_color, if is_clear { TRANSMITTANCE } else { REFLECTANCE });
-    for (slot, texture) in material.textures.iter() {
-        check.asset_path(&name(slot.field()), texture.path());
-    }
+    check_textures(field, material, check);
     check.number(&name("metallic"), material.metallic, FRACTION);
     check.number(&name("roughness"), material.roughness, FRACTION);
     check.number(&name("ior"), material.ior, Allowed::between(1.0, 4.0, ""));
@@ -41,6 +39,31 @@ pub(super) fn check_material(field: &str, material: &Material, check: &mut Check
     }
     if material.metallic > 0.0 && material.transmission > 0.0 {
         check.warning(&name("transmission"), "a metal is not transparent; its share of metal stays opaque".to_owned());
+    }
+}
+
+fn check_textures(field: &str, material: &Material, check: &mut Check) {
+    let name = |part: &str| format!("{field}.{part}");
+    for (slot, texture) in material.textures.iter() {
+        check.asset_path(&name(slot.field()), texture.path());
+    }
+    check.number(&name("normal_scale"), material.textures.normal_scale, Allowed::between(-16.0, 16.0, ""));
+    for slot in TextureSlot::ALL {
+        let TexturePlacement { offset, rotation_deg, scale, wrap: _, nearest: _, second_uvs: _ } =
+            *material.textures.placement(slot);
+        let place = name(slot.placement_field());
+        let pictures = Allowed::between(-1e4, 1e4, "pictures");
+        offset.into_iter().for_each(|value| check.number(&format!("{place}.offset"), value, pictures));
+        check.number(&format!("{place}.rotation_deg"), rotation_deg, Allowed::between(-360.0, 360.0, "degrees"));
+        scale.into_iter().for_each(|value| check.number(&format!("{place}.scale"), value, pictures));
+    }
+    match material.alpha {
+        Alpha::Opaque => {}
+        Alpha::Mask { cutoff } => check.number(&name("alpha.cutoff"), cutoff, FRACTION),
+        Alpha::Blend { opacity } => check.number(&name("alpha.opacity"), opacity, FRACTION),
+    }
+    if material.textures.emission.is_some() && !material.is_emissive() {
+        check.warning(&name("emission_texture"), "the surface does not glow: emission_cd_m2 is 0".to_owned());
     }
 }
 

@@ -3,7 +3,7 @@
 use super::fibre::fibre_rows;
 use super::unit_slider::unit_slider;
 use crate::editor::ui::widgets::{self, NumberField, row};
-use crate::scene::{Material, MaterialPreset, Subsurface, TextureRef, TextureSlot};
+use crate::scene::{Alpha, Material, MaterialPreset, Subsurface, TextureRef, TextureSlot};
 use eframe::egui::{ComboBox, Ui};
 
 /// Returns the name of the preset that equals a material, or "Custom".
@@ -44,11 +44,7 @@ pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> Option
             };
             ui.label(text).on_hover_text(tip);
         });
-        for slot in TextureSlot::ALL {
-            if texture_row(ui, slot, material.textures.get_mut(slot)) {
-                choose = Some(slot);
-            }
-        }
+        choose = texture_rows(ui, material);
         unit_slider(ui, "Roughness", "0 is a mirror or polished, 1 is matte", &mut material.roughness);
         unit_slider(ui, "Metal", "0 is skin, paper, plastic; 1 is metal", &mut material.metallic);
         unit_slider(ui, "Clear", "0 is opaque, 1 is clear glass or water", &mut material.transmission);
@@ -83,10 +79,70 @@ pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> Option
     choose
 }
 
+/// Draws the rows of all texture slots, and of what depends on them. Returns the slot whose texture is to be chosen.
+fn texture_rows(ui: &mut Ui, material: &mut Material) -> Option<TextureSlot> {
+    let mut choose = None;
+    for slot in TextureSlot::ALL {
+        // A map of what does not glow shows nothing
+        if slot == TextureSlot::Emission && !material.is_emissive() && material.textures.emission.is_none() {
+            continue;
+        }
+        if texture_row(ui, slot, material.textures.get_mut(slot)) {
+            choose = Some(slot);
+        }
+    }
+    if material.textures.normal.is_some() {
+        row(
+            ui,
+            "Relief",
+            "How strong the relief of the normal map is; 1 is as drawn, less than 0 turns it inside out",
+            |ui| NumberField::new(0.02, -4.0, 4.0, 2, "").ui(ui, &mut material.textures.normal_scale),
+        );
+    }
+    if material.transmission == 0.0 {
+        alpha_rows(ui, &mut material.alpha);
+    }
+    choose
+}
+
+/// Draws the rows of what is not there of a surface.
+fn alpha_rows(ui: &mut Ui, alpha: &mut Alpha) {
+    const CHOICES: [(&str, Alpha); 3] = [
+        ("None", Alpha::Opaque),
+        ("Cut out", Alpha::Mask { cutoff: 0.5 }),
+        ("See-through", Alpha::Blend { opacity: 1.0 }),
+    ];
+    let is_same = |a: &Alpha, b: &Alpha| std::mem::discriminant(a) == std::mem::discriminant(b);
+    let tip = "What the transparent parts of the texture are: leaves and lace are cut out, veils are see-through. Light \
+               passes what is not there";
+    row(ui, "Holes", tip, |ui| {
+        let current = CHOICES.iter().find(|(_, choice)| is_same(choice, alpha)).map_or("None", |(name, _)| name);
+        ComboBox::from_id_salt("alpha").selected_text(current).show_ui(ui, |ui| {
+            for (name, choice) in CHOICES {
+                if ui.selectable_label(name == current, name).clicked() && name != current {
+                    *alpha = choice;
+                }
+            }
+        });
+    });
+    match alpha {
+        Alpha::Opaque => {}
+        Alpha::Mask { cutoff } => unit_slider(ui, "Least alpha", "Where the texture has less, there is a hole", cutoff),
+        Alpha::Blend { opacity } => {
+            unit_slider(ui, "Opacity", "0 lets all light pass, 1 as much as the texture", opacity)
+        }
+    }
+}
+
 /// Draws the row of a texture slot. Returns true if a texture is to be chosen.
 fn texture_row(ui: &mut Ui, slot: TextureSlot, texture: &mut Option<TextureRef>) -> bool {
     let (label, tip) = match slot {
         TextureSlot::BaseColor => ("Texture", "A picture that multiplies the colour"),
+        TextureSlot::MetallicRoughness => {
+            ("Gloss map", "A picture whose green multiplies the roughness and whose blue multiplies the metal")
+        }
+        TextureSlot::Emission => ("Glow map", "A picture that multiplies the glow"),
+        TextureSlot::Normal => ("Normal map", "A picture of fine relief: it tilts the surface for the light"),
     };
     let mut choose = false;
     row(ui, label, tip, |ui| match texture.as_ref().map(TextureRef::to_string) {

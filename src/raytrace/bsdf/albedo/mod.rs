@@ -29,7 +29,7 @@ struct Spacing {
 }
 
 /// The tables of a material.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct AlbedoTables {
     /// Of the dielectric coat.
     pub coat: AlbedoTable,

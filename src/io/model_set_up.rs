@@ -1,0 +1,57 @@
+//! The lamps and the camera of a model in a studio: moved and scaled with the model.
+
+use super::model::ModelSetUp;
+use crate::scene::{Aim, Camera, Light, Mesh, Output, Transform};
+use glam::Vec3;
+
+/// Illuminance that an average picture is exposed for, lx s: where the lamps' light is metered.
+const METERED_LUX_S: [f32; 2] = [0.1, 1e6];
+
+impl ModelSetUp {
+    /// Returns true if there is nothing to take over.
+    pub fn is_empty(&self) -> bool {
+        self.lights.is_empty() && self.camera.is_none()
+    }
+
+    /// Returns the lights and the camera as they stand around a model with a transform. A model in centimetres is a
+    /// hundredth as large, and its lamps give as much light at its surface. The camera aims at the model's middle depth.
+    pub fn around(&self, transform: &Transform, mesh: &Mesh) -> (Vec<Light>, Option<Camera>) {
+        let scale = transform.scale.x.abs();
+        let world_from_model = transform.world_from_object();
+        let (low, high) = mesh.bounds();
+        let middle = world_from_model.transform_point3(0.5 * (low + high));
+        let point = |position: Vec3| world_from_model.transform_point3(position);
+        let aim = |position: Vec3, aim: &Aim| match *aim {
+            Aim::Point(target) => {
+                let forward = (point(target) - point(position)).normalize_or(Vec3::NEG_Z);
+                let distance = (middle - point(position)).dot(forward).max(0.1);
+                Aim::Point(point(position) + forward * distance)
+            }
+            other => other,
+        };
+        let light = |light: &Light| {
+            let mut placed =
+                Light { position: point(light.position), aim: aim(light.position, &light.aim), ..light.clone() };
+            if let Output::Candela(intensity) = &mut placed.power.output {
+                *intensity *= scale * scale;
+            }
+            placed
+        };
+        let camera = self.camera.as_ref().map(|camera| Camera {
+            position: point(camera.position),
+            aim: aim(camera.position, &camera.aim),
+            ..camera.clone()
+        });
+        (self.lights.iter().map(light).collect(), camera)
+    }
+}
+
+/// Sets the shutter of a camera for an exposure, lx s per second of the lamps at the subject, to f-number and ISO of the
+/// camera.
+pub fn expose_for(camera: &mut Camera, lux: f32) {
+    // N^2 / t = E S / C (an incident meter)
+    let seconds = camera.meter_constant * camera.f_number.powi(2) / (lux * camera.iso);
+    if (METERED_LUX_S[0]..=METERED_LUX_S[1]).contains(&lux) {
+        camera.shutter_s = seconds.clamp(1.0 / 8000.0, 30.0);
+    }
+}

@@ -1,0 +1,84 @@
+//! What textures change at a surface: its normal, the parameters of its material, its emission, and whether it is there.
+
+use super::aggregate::{Hit, Primitive};
+use super::bsdf::{MaterialPoint, TextureFactors, TracedMaterial};
+use super::geometry::SurfaceInteraction;
+use super::render_scene::RenderScene;
+use super::texture::TextureMap;
+use crate::math::{Ray, bend_above, decode_normal, tilted_normal};
+use crate::scene::{Alpha, TextureSlot};
+use glam::Vec3;
+
+impl RenderScene {
+    /// Returns the surface interaction at a hit of a ray, with the normal of its normal map.
+    pub(super) fn surface(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
+        let surface = self.aggregate.surface(hit);
+        if self.plan.normal_maps { self.with_normal_map(surface, ray.direction, hit) } else { surface }
+    }
+
+    /// Replaces the shading normal by that of the normal map. The mirror direction of the ray stays above the surface.
+    fn with_normal_map(&self, surface: SurfaceInteraction, direction: Vec3, hit: &Hit) -> SurfaceInteraction {
+        let material = self.material_of(&surface);
+        let (Some(map), Primitive::Triangle(triangle)) = (self.texture(material, TextureSlot::Normal), &hit.primitive)
+        else {
+            return surface;
+        };
+        let instance = &self.aggregate.instances()[hit.instance as usize];
+        let derivatives =
+            instance.position_derivatives(triangle.triangle, map.uses_second_uvs(), map.picture_from_mesh());
+        let Some(derivatives) = derivatives else { return surface };
+        let tilt = decode_normal(map.at_surface(&surface), material.normal_scale);
+        let normal = tilted_normal(surface.normal, derivatives, tilt);
+        // From behind, the same relief is seen from its back
+        let side = if direction.dot(surface.geometric_normal) > 0.0 { -1.0 } else { 1.0 };
+        let view_dir = -direction.normalize_or_zero();
+        let normal = bend_above(normal * side, surface.geometric_normal * side, view_dir) * side;
+        SurfaceInteraction { normal, ..surface }
+    }
+
+    /// Returns the material of a surface.
+    pub(super) fn material_of(&self, surface: &SurfaceInteraction) -> &TracedMaterial {
+        &self.materials[surface.material as usize]
+    }
+
+    /// Returns the texture of a material in a slot.
+    fn texture(&self, material: &TracedMaterial, slot: TextureSlot) -> Option<&TextureMap> {
+        self.textures.get(material.texture(slot)? as usize)
+    }
+
+    /// Returns the factors of the textures and the vertex colours at a surface.
+    pub(super) fn texture_factors(&self, surface: &SurfaceInteraction) -> TextureFactors {
+        let material = self.material_of(surface);
+        let gloss = self.texture(material, TextureSlot::MetallicRoughness);
+        let [_, roughness, metallic] = gloss.map_or(Vec3::ONE, |map| map.at_surface(surface)).to_array();
+        TextureFactors { color: self.texture_value(surface), roughness, metallic }
+    }
+
+    /// Returns the factor of the base colour at a surface, from the texture and the vertex colours.
+    pub(super) fn texture_value(&self, surface: &SurfaceInteraction) -> Vec3 {
+        let map = self.texture(self.material_of(surface), TextureSlot::BaseColor);
+        map.map_or(surface.color, |map| map.at_surface(surface) * surface.color)
+    }
+
+    /// Returns the parameters of the material at a surface.
+    pub(super) fn material_point(&self, surface: &SurfaceInteraction) -> MaterialPoint<'_> {
+        MaterialPoint::new(self.material_of(surface), self.texture_factors(surface))
+    }
+
+    /// Returns the luminance that a surface emits, times its colour, cd/m2.
+    pub(super) fn emission(&self, surface: &SurfaceInteraction) -> Vec3 {
+        let material = self.material_of(surface);
+        let map = self.texture(material, TextureSlot::Emission);
+        map.map_or(material.emission, |map| material.emission * map.at_surface(surface))
+    }
+
+    /// Returns the part of a surface that is there, 0 to 1.
+    pub(super) fn coverage(&self, surface: &SurfaceInteraction) -> f32 {
+        let material = self.material_of(surface);
+        if material.coverage == Alpha::Opaque || surface.strand.is_some() {
+            return 1.0;
+        }
+        let map = self.texture(material, TextureSlot::BaseColor);
+        material.coverage.coverage(map.map_or(1.0, |map| map.alpha_at_surface(surface)))
+    }
+}
