@@ -3,7 +3,7 @@
 use super::aggregate::Hit;
 use super::bsdf::{TracedMaterial, fresnel};
 use super::face_stack::{ClearFace, FaceStack};
-use super::geometry::SurfaceInteraction;
+use super::geometry::{PassedBodies, SurfaceInteraction};
 use super::medium_stack::MediumStack;
 use super::ray_caster::{RayCaster, shadow_ray_end};
 use super::render_scene::RenderScene;
@@ -84,17 +84,20 @@ pub struct ShadowQuery {
     pub mode: BodyMode,
     /// Reflections between bodies with parallel faces are included.
     pub between_bodies: bool,
+    /// The bodies of lights that it passes: that of its own light.
+    pub passed: PassedBodies,
 }
 
 impl RayCaster<'_> {
     /// Returns the transmittance of thin panes from a point to a light at `distance`; bodies block it.
-    pub fn pane_transmittance(&mut self, origin: Vec3, direction: Vec3, distance: f32) -> Vec3 {
+    pub fn pane_transmittance(&mut self, origin: Vec3, direction: Vec3, distance: f32, passed: PassedBodies) -> Vec3 {
         let query = ShadowQuery {
             target: Target::Infinity,
             distance,
             media: MediumStack::default(),
             mode: BodyMode::Block,
             between_bodies: false,
+            passed,
         };
         match self.trace_shadow_ray(&query, origin, direction) {
             ShadowRayEnd::Arrived(arrival) => arrival.transmittance,
@@ -106,7 +109,7 @@ impl RayCaster<'_> {
     pub fn trace_shadow_ray(&mut self, query: &ShadowQuery, origin: Vec3, direction: Vec3) -> ShadowRayEnd {
         let mut shadow_ray = ShadowRay::new(self.scene, query, origin, direction);
         for _ in 0..MAX_CLEAR_SURFACES {
-            let Some(hit) = self.intersect(&shadow_ray.ray) else { return shadow_ray.arrive() };
+            let Some(hit) = self.intersect_passing(&shadow_ray.ray, query.passed) else { return shadow_ray.arrive() };
             if let Err(end) = shadow_ray.pass(&hit) {
                 return end;
             }
