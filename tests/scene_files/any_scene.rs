@@ -326,12 +326,13 @@ fn scene() -> impl Strategy<Value = Scene> {
         (
             name(),
             name(),
-            camera(objects),
-            proptest::option::of(room()),
-            proptest::collection::vec(object(), objects),
-            proptest::collection::vec(light(objects), 0..4),
+            // Boxed, as materials are
+            camera(objects).boxed(),
+            proptest::option::of(room()).boxed(),
+            proptest::collection::vec(object(), objects).boxed(),
+            proptest::collection::vec(light(objects), 0..4).boxed(),
             (any::<(bool, bool, bool)>(), 0..Bodies::ALL.len()),
-            proptest::option::of(variant(objects)),
+            proptest::option::of(variant(objects)).boxed(),
         )
             .prop_map(
                 |(
