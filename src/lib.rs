@@ -12,7 +12,7 @@
 //! | room | contents |
 //! |---|---|
 //! | `math`, `color` | frames, warps, error bounds; Kelvin, white balance, tone curve, sRGB |
-//! | `scene` | the studio as plain data, its validation, and the class of every change of it |
+//! | `scene` | the studio as plain data with the meshes of shapes and gear, its validation, and the class of every change of it |
 //! | `photo` | photometric lights, exposure, meter arithmetic, portrait patterns, scales in thirds of a stop, pictures |
 //! | `gear` | the list of heads, modifiers and stands, and what a studio needs of it |
 //! | `figures` | people by parameters: body, pose, clothes, hair, and their meshes |

@@ -4,7 +4,7 @@ use super::binning::BATCH_TRIANGLES;
 use super::framebuffer::NO_OBJECT;
 use super::surface_texture::SurfaceTexture;
 use super::triangle::PrimitiveState;
-use crate::scene::{Alpha, Assets, Material, Mesh, Scene, TextureSlot, room_mesh, strand_ribbons};
+use crate::scene::{Alpha, Assets, Material, Mesh, Scene, TextureSlot, body_material, room_mesh, strand_ribbons};
 use glam::Affine3A;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -101,7 +101,16 @@ impl SceneGeometry {
             }
             geometry.add(mesh, world_from_object, index, state, assets, material);
         }
+        geometry.add_bodies(scene, assets);
         geometry
+    }
+
+    /// Adds the bodies of lights that the camera sees.
+    fn add_bodies(&mut self, scene: &Scene, assets: &Assets) {
+        let state = PrimitiveState { cull_back_faces: true, depth_factor: 1.0 };
+        for piece in scene.light_bodies().filter(|(_, body)| body.is_seen).flat_map(|(_, body)| body.pieces()) {
+            self.add(Arc::new(piece.shape.mesh()), piece.world_from_piece, NO_OBJECT, state, assets, body_material);
+        }
     }
 
     fn add(

@@ -51,17 +51,19 @@ impl RayCaster<'_> {
     ) -> Option<Connection> {
         let LightSample { direction, distance, .. } = *sample;
         if !self.scene.plan().refraction {
+            let passed = light.own_body();
             if self.scene.plan().coverage {
-                let passed = self.passed_light(origin, direction, distance);
-                return (passed > 0.0).then(|| Connection::on_line(sample, Vec3::splat(passed)));
+                let part = self.passed_light(origin, direction, distance, passed);
+                return (part > 0.0).then(|| Connection::on_line(sample, Vec3::splat(part)));
             }
-            let is_visible = !self.occluded(origin, direction, distance);
+            let is_visible = !self.occluded(origin, direction, distance, passed);
             return is_visible.then(|| Connection::on_line(sample, Vec3::ONE));
         }
         let target = if distance.is_finite() { Target::Point(origin + direction * distance) } else { Target::Infinity };
         let is_approximate = sample.pdf.is_none() && !self.photon_caustics();
+        let passed = light.own_body();
         let mut query =
-            ShadowQuery { target, distance, media, mode: BodyMode::Refract, between_bodies: is_approximate };
+            ShadowQuery { target, distance, media, mode: BodyMode::Refract, between_bodies: is_approximate, passed };
         match self.solve(&query, origin, light, sample) {
             Ok(connection) => connection,
             Err(CausticPath) if is_approximate => {
@@ -116,7 +118,8 @@ impl RayCaster<'_> {
     ) -> f32 {
         let to_point = point - origin;
         let (distance, target) = (to_point.length(), Target::Point(point));
-        let query = ShadowQuery { target, distance, media, mode: BodyMode::Refract, between_bodies: false };
+        let (mode, passed) = (BodyMode::Refract, light.own_body());
+        let query = ShadowQuery { target, distance, media, mode, between_bodies: false, passed };
         let ShadowRayEnd::Arrived(arrival) = self.trace_shadow_ray(&query, origin, direction) else { return 0.0 };
         let line = to_point / distance;
         light.pdf(origin, line, distance) * density_ratio(light, point, (line, distance), direction, &arrival)

@@ -4,6 +4,7 @@
 //! ray and the triangle, so that the result does not depend on the order of work. Shadow rays are weighted instead.
 
 use super::aggregate::{Hit, Primitive};
+use super::geometry::PassedBodies;
 use super::ray_caster::{RayCaster, shadow_ray_end};
 use crate::math::Ray;
 use glam::Vec3;
@@ -15,7 +16,7 @@ const NEGLIGIBLE: f32 = 1e-4;
 
 impl RayCaster<'_> {
     /// Returns the first surface from `hit` on that the ray meets.
-    pub(super) fn meet(&mut self, ray: &Ray, hit: Hit) -> Option<Hit> {
+    pub(super) fn meet(&mut self, ray: &Ray, hit: Hit, passed: PassedBodies) -> Option<Hit> {
         let (mut next, mut hit, mut travelled) = (*ray, hit, 0.0);
         for _ in 0..MAX_PASSED {
             let surface = self.scene.aggregate.surface(&hit);
@@ -25,22 +26,22 @@ impl RayCaster<'_> {
             }
             travelled += hit.t;
             next = Ray { origin: surface.pass_origin(ray.direction), t_max: ray.t_max - travelled, ..next };
-            hit = self.scene.aggregate.intersect(&next, &mut self.stack)?;
+            hit = self.scene.aggregate.intersect(&next, passed, &mut self.stack)?;
         }
         Some(Hit { t: travelled + hit.t, ..hit })
     }
 
     /// Returns the part of the light that passes from a point to an emitter at `distance`, 0 to 1, where no surface
     /// transmits but by not being there.
-    pub(super) fn passed_light(&mut self, origin: Vec3, direction: Vec3, distance: f32) -> f32 {
+    pub(super) fn passed_light(&mut self, origin: Vec3, direction: Vec3, distance: f32, passed: PassedBodies) -> f32 {
         self.rays += 1;
         let mut ray = Ray { origin, direction, t_max: shadow_ray_end(origin, distance) };
-        let mut passed = 1.0;
+        let mut part = 1.0;
         for _ in 0..MAX_PASSED {
-            let Some(hit) = self.scene.aggregate.intersect(&ray, &mut self.stack) else { return passed };
+            let Some(hit) = self.scene.aggregate.intersect(&ray, passed, &mut self.stack) else { return part };
             let surface = self.scene.aggregate.surface(&hit);
-            passed *= 1.0 - self.scene.coverage(&surface);
-            if passed < NEGLIGIBLE {
+            part *= 1.0 - self.scene.coverage(&surface);
+            if part < NEGLIGIBLE {
                 return 0.0;
             }
             ray = Ray { origin: surface.pass_origin(direction), t_max: ray.t_max - hit.t, ..ray };

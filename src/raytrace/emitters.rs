@@ -1,7 +1,9 @@
 //! Emitter hits: light of emitters that rays cross, weighted against light sampling and photons.
 //!
-//! Emitters neither cast shadows nor stop light; the camera alone sees their front as solid.
+//! Emitters neither cast shadows nor stop light; the camera alone sees their front as solid. The body of a light, if it
+//! has one, stops all light but its own.
 
+use super::aggregate::Hit;
 use super::caustics::CausticMis;
 use super::events::PathEvent;
 use super::geometry::SurfaceInteraction;
@@ -81,7 +83,7 @@ pub fn power_heuristic(pdf: f32, other_pdf: f32) -> f32 {
 
 impl RayCaster<'_> {
     /// Adds the nearest emitter that the camera sees in front of a surface at `distance`. Returns true if there is one,
-    /// which hides what is behind it.
+    /// which hides what is behind it. Emitters that are seen before their bodies add their light and hide nothing.
     pub fn add_visible_emitter(&mut self, ray: &Ray, distance: f32, sink: &mut impl RadianceSink) -> bool {
         let visible = || {
             self.scene
@@ -94,6 +96,7 @@ impl RayCaster<'_> {
         let nearest = visible()
             .filter(|(_, _, hit)| is_before(ray, hit.distance, distance))
             .min_by(|a, b| a.2.distance.total_cmp(&b.2.distance));
+        self.add_emitters_before_bodies(ray, nearest.map_or(distance, |(.., hit)| hit.distance), sink);
         let Some((_, nearest, nearest_hit)) = nearest else { return false };
         let distance = nearest_hit.distance;
         sink.first_hit(|| FirstHit {
@@ -112,18 +115,60 @@ impl RayCaster<'_> {
         true
     }
 
-    /// Adds the emitters that a scattered ray crosses before a surface at `distance`, weighted against light sampling
-    /// and photons at `vertex`.
-    pub fn add_emitter_hits(
+    /// Adds the emitters that the camera sees before their bodies, up to a distance.
+    fn add_emitters_before_bodies(&self, ray: &Ray, distance: f32, sink: &mut impl RadianceSink) {
+        for (light, index) in self.scene.lights.iter().zip(0..).filter(|(light, _)| light.glows_before_body) {
+            let hit = light.intersect(ray.origin, ray.direction);
+            if let Some(hit) = hit.filter(|hit| is_before(ray, hit.distance, distance)) {
+                sink.record(|| PathEvent::VisibleEmitter { light: index, distance: hit.distance });
+                sink.add(light.layer, light.tint * hit.luminance);
+            }
+        }
+    }
+
+    /// Adds the emitter of a light that lies behind its own body, at which a scattered ray ends: light sampling lets
+    /// light pass the body of its light, too. Panes between both block it here.
+    fn add_hit_behind_own_body(
         &mut self,
         ray: &Ray,
-        distance: f32,
+        surface: &Hit,
         throughput: Vec3,
         vertex: &MisVertex,
         media: &MediumStack,
         sink: &mut impl RadianceSink,
     ) {
         let scene = self.scene;
+        let Some(body) = scene.aggregate.instances()[surface.instance as usize].body else { return };
+        let Some((light, index)) = scene.lights.iter().zip(0..).find(|(light, _)| light.has_body(body.light)) else {
+            return;
+        };
+        let Some(hit) = light.intersect(ray.origin, ray.direction) else { return };
+        let is_counted = is_before(ray, hit.distance, surface.t);
+        if is_counted || self.occluded(ray.origin, ray.direction, hit.distance, light.own_body()) {
+            return;
+        }
+        let mis_weight = if light.is_sampled() { scene.mis_weight(vertex, ray, index, &hit, media) } else { 1.0 };
+        let throughput = throughput * media.transmittance(&scene.materials, hit.distance);
+        sink.record(|| PathEvent::EmitterHit { light: index, distance: hit.distance, mis_weight });
+        sink.add(light.layer, throughput * light.tint * (hit.luminance * mis_weight));
+    }
+
+    /// Adds the emitters that a scattered ray crosses before the surface that it hits, weighted against light sampling
+    /// and photons at `vertex`.
+    pub fn add_emitter_hits(
+        &mut self,
+        ray: &Ray,
+        surface: Option<&Hit>,
+        throughput: Vec3,
+        vertex: &MisVertex,
+        media: &MediumStack,
+        sink: &mut impl RadianceSink,
+    ) {
+        let scene = self.scene;
+        if let Some(surface) = surface {
+            self.add_hit_behind_own_body(ray, surface, throughput, vertex, media, sink);
+        }
+        let distance = surface.map_or(f32::INFINITY, |hit| hit.t);
         // An emitter may lie on the surface.
         let t_max = distance + 2.0 * EMITTER_CONTACT * (distance + ray.origin.abs().max_element());
         scene.emitter_bvh.for_each_hit(&scene.lights, &Ray { t_max, ..*ray }, &mut self.stack, |index, hit| {

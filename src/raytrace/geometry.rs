@@ -5,7 +5,7 @@ use super::bvh::TraversalStack;
 use super::simd::{Kernels, SlabRay, TriangleHit};
 use super::strand_geometry::StrandGeometry;
 use crate::math::{self, Ray, gamma};
-use crate::scene::Mesh;
+use crate::scene::{LightId, Mesh};
 use glam::{Affine2, Affine3A, Mat3A, Vec2, Vec3, Vec3A};
 use std::sync::{Arc, OnceLock};
 
@@ -60,6 +60,42 @@ fn part_of_triangle(mesh: &Mesh) -> Vec<u16> {
     parts
 }
 
+/// The light of an instance that is a part of its body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BodyInstance {
+    /// The light.
+    pub light: LightId,
+    /// True if camera rays pass it.
+    pub is_hidden: bool,
+}
+
+/// The bodies of lights that a ray passes as if they were not there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PassedBodies {
+    /// None.
+    #[default]
+    None,
+    /// Those that are hidden from the camera.
+    Hidden,
+    /// That of a light: its own light passes it.
+    Of(LightId),
+    /// All.
+    All,
+}
+
+impl PassedBodies {
+    /// Returns true for an instance that the ray passes.
+    #[inline(always)]
+    fn contain(self, body: Option<BodyInstance>) -> bool {
+        match (self, body) {
+            (_, None) | (PassedBodies::None, Some(_)) => false,
+            (PassedBodies::Hidden, Some(body)) => body.is_hidden,
+            (PassedBodies::Of(light), Some(body)) => body.light == light,
+            (PassedBodies::All, Some(_)) => true,
+        }
+    }
+}
+
 /// A mesh with a transform and materials. World positions in the ray tracer are relative to the camera, so that
 /// precision near the camera does not depend on the distance from the origin.
 #[derive(Debug)]
@@ -73,6 +109,8 @@ pub struct Instance {
     pub materials: Vec<u32>,
     /// True for a clear mesh that encloses no volume: a thin pane.
     pub is_thin: bool,
+    /// The light that it is a part of: a modifier, a head or a stand.
+    pub body: Option<BodyInstance>,
     world_from_object: Affine3A,
     object_from_world: Affine3A,
     /// Absolute values of both transforms, for error bounds.
@@ -98,12 +136,19 @@ impl Instance {
             object,
             materials,
             is_thin: false,
+            body: None,
             world_from_object,
             object_from_world,
             abs_world_from_object: abs(&world_from_object),
             abs_object_from_world: abs(&object_from_world),
             normal_matrix,
         })
+    }
+
+    /// Returns true if a ray that passes these bodies passes the instance.
+    #[inline(always)]
+    pub fn is_passed(&self, passed: PassedBodies) -> bool {
+        passed.contain(self.body)
     }
 
     /// Returns the transform of the instance.

@@ -68,7 +68,8 @@ impl ProbeScene {
         let origin = layout.low + 0.5 * layout.step_m * (layout.counts.as_vec3() - 1.0);
         // Probes are decimetres apart: the coarse meshes of figures without their hair serve
         let coarse = assets.clone().map_figures(|meshes| meshes.coarse_with_strands(|_| false));
-        let render_scene = prepare_all(scene, &coarse, origin, assign_invisible_layers, cache)?;
+        let mut render_scene = prepare_all(scene, &coarse, origin, assign_invisible_layers, cache)?;
+        render_scene.aggregate.show_bodies();
         let is_inside = (0..layout.len())
             .into_par_iter()
             .map_init(
@@ -147,7 +148,7 @@ fn bounds(scene: &Scene, assets: &Assets) -> Option<(Vec3, Vec3)> {
 
 /// Assigns film layers, and hides all emitters from the paths: theirs is direct light.
 fn assign_invisible_layers(scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> Vec<Layer> {
-    lights.iter_mut().for_each(|(traced, _)| traced.visible_to_camera = false);
+    lights.iter_mut().for_each(|(traced, _)| traced.hide_from_camera());
     assign_layers(scene, lights)
 }
 

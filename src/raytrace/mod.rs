@@ -80,7 +80,7 @@ pub use light_meter::{DirectLight, LightMeter, MeterEffort, MeterPoint, MeterRes
 pub use live::{AtrousFilter, LiveCamera, LivePicture};
 pub use plan::{RenderPlan, Shortcut};
 pub use prepare::{PrepareError, prepare, prepare_kept, prepare_shared};
-pub use primary_objects::primary_objects;
+pub use primary_objects::{bodies_in_picture, primary_objects};
 pub use render::{empty_film, render, resume};
 pub use render_part::render_part;
 pub use render_scene::RenderScene;

@@ -11,7 +11,7 @@ use super::bsdf::{Bsdf, Polarisation, SurfaceBsdf};
 use super::caustics::{CausticMis, GatherDensities, GatherPoint, PhotonMap};
 use super::emitters::MisVertex;
 use super::events::{Lobe, PathEnd, PathEvent, PathVertex};
-use super::geometry::SurfaceInteraction;
+use super::geometry::{PassedBodies, SurfaceInteraction};
 use super::lights::LightImportances;
 use super::limits::PathLimits;
 use super::medium_stack::MediumStack;
@@ -179,7 +179,8 @@ impl<'a> PathTracer<'a> {
         let scene = self.caster.scene;
         loop {
             // Intersect the ray with the studio
-            let hit = self.caster.intersect(&path.ray);
+            let passed = if path.depth == 0 { PassedBodies::Hidden } else { PassedBodies::None };
+            let hit = self.caster.intersect_passing(&path.ray, passed);
             let distance = hit.map_or(f32::INFINITY, |hit| hit.t);
 
             // Add the light of emitters in front of the surface
@@ -189,7 +190,7 @@ impl<'a> PathTracer<'a> {
                 }
             } else {
                 let PathState { ray, throughput, mis_vertex, media, .. } = &*path;
-                self.caster.add_emitter_hits(ray, distance, *throughput, mis_vertex, media, sink);
+                self.caster.add_emitter_hits(ray, hit.as_ref(), *throughput, mis_vertex, media, sink);
             }
             let Some(hit) = hit else {
                 sink.record(|| PathEvent::Miss);

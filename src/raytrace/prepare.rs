@@ -4,7 +4,7 @@ use super::aggregate::Aggregate;
 use super::bsdf::{RoughnessTables, TracedMaterial};
 use super::caustics::CausticCasters;
 use super::film::{self, Layer};
-use super::geometry::Instance;
+use super::geometry::{BodyInstance, Instance};
 use super::geometry_cache::GeometryCache;
 use super::lens::Lens;
 use super::lights::{EmitterBvh, LightSampler, TracedLight};
@@ -73,7 +73,7 @@ pub(super) fn prepare_all(
             let clear = p.materials.iter().any(|&m| tables.materials[m as usize].transmits());
             let is_thin = clear && !geometry.is_closed();
             let mut placed = Instance::new(geometry, relative_to(p.world_from_object, origin), p.object, p.materials)?;
-            placed.is_thin = is_thin;
+            (placed.is_thin, placed.body) = (is_thin, p.body);
             Some(placed)
         })
         .collect();
@@ -121,6 +121,7 @@ struct Placed {
     world_from_object: Affine3A,
     object: u32,
     materials: Vec<u32>,
+    body: Option<BodyInstance>,
 }
 
 /// Materials and textures without duplicates.
@@ -191,16 +192,31 @@ fn place_meshes(scene: &Scene, assets: &Assets, tables: &mut Tables<'_>) -> Vec<
     if let Some(room) = &scene.room {
         let mesh = Arc::new(scene::room_mesh(room));
         let materials = mesh.parts.iter().map(|p| tables.material(room.material_of(&p.name), assets)).collect();
-        placed.push(Placed { mesh, world_from_object: Affine3A::IDENTITY, object: ROOM, materials });
+        placed.push(Placed { mesh, world_from_object: Affine3A::IDENTITY, object: ROOM, materials, body: None });
     }
     let mut round = RoundMeshes::default();
     for (index, object) in scene.objects.iter().enumerate().filter(|(_, o)| o.visible) {
         let Some((mesh, size)) = round.mesh_of(&object.shape, assets) else { continue };
         let materials = mesh.part_names().map(|part| tables.material(object.material_of(part), assets)).collect();
         let world_from_object = object.transform.world_from_object() * Affine3A::from_scale(size);
-        placed.push(Placed { mesh, world_from_object, object: index as u32, materials });
+        placed.push(Placed { mesh, world_from_object, object: index as u32, materials, body: None });
     }
+    place_bodies(scene, assets, tables, &mut placed);
     placed
+}
+
+/// Adds the bodies of the lights. Like the room, they are no objects.
+fn place_bodies(scene: &Scene, assets: &Assets, tables: &mut Tables<'_>, placed: &mut Vec<Placed>) {
+    for (light, body) in scene.light_bodies() {
+        let instance = BodyInstance { light: light.id, is_hidden: !body.is_seen };
+        for piece in body.pieces() {
+            let mesh = Arc::new(piece.shape.mesh());
+            let materials =
+                mesh.part_names().map(|part| tables.material(&scene::body_material(part), assets)).collect();
+            let world_from_object = piece.world_from_piece;
+            placed.push(Placed { mesh, world_from_object, object: ROOM, materials, body: Some(instance) });
+        }
+    }
 }
 
 /// The meshes of a unit sphere and cylinder, shared by all spheres and cylinders: thousands of them fit in memory.
@@ -241,7 +257,15 @@ fn convert_lights(
     origin: Vec3,
     assign_layers: AssignLayers,
 ) -> (Vec<TracedLight>, Vec<LightId>, Vec<Layer>) {
-    let traced = |light| Some((TracedLight::new(&PhotometricLight::new(scene, assets, light), origin)?, light));
+    let bodies: HashMap<LightId, bool> = scene.light_bodies().map(|(light, body)| (light.id, body.is_seen)).collect();
+    let traced = |light: &'_ Light| {
+        let traced = TracedLight::new(&PhotometricLight::new(scene, assets, light), origin)?;
+        Some(match bodies.get(&light.id) {
+            Some(is_seen) => traced.with_body(light.id, *is_seen),
+            None => traced,
+        })
+    };
+    let traced = |light| Some((traced(light)?, light));
     let mut lights: Vec<(TracedLight, &Light)> = scene.lights.iter().filter(|l| l.on).filter_map(traced).collect();
     let layers = assign_layers(scene, &mut lights);
     let (lights, ids) = lights.into_iter().map(|(light, source)| (light, source.id)).unzip();

@@ -143,13 +143,15 @@ impl RenderScene {
     /// The film's description of the first hit of a camera ray.
     pub(super) fn first_hit(&self, ray: &Ray, hit: &Hit, surface: &SurfaceInteraction) -> FirstHit {
         let (object, _) = self.object_and_part(hit);
+        let is_body = self.aggregate.instances()[hit.instance as usize].body.is_some();
+        let no_object = if is_body { FirstObject::Emitter } else { FirstObject::Room };
         let side = if surface.normal.dot(ray.direction) > 0.0 { -1.0 } else { 1.0 };
         FirstHit {
             ray: *ray,
             distance: hit.t,
             normal: surface.normal * side,
             albedo: self.albedo(surface),
-            object: object.map_or(FirstObject::Room, FirstObject::Object),
+            object: object.map_or(no_object, FirstObject::Object),
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::aggregate::Hit;
 use super::bsdf::{TracedMaterial, fresnel};
 use super::face_stack::{ClearFace, FaceStack};
-use super::geometry::SurfaceInteraction;
+use super::geometry::{PassedBodies, SurfaceInteraction};
 use super::medium_stack::MediumStack;
 use super::ray_caster::{RayCaster, shadow_ray_end};
 use super::render_scene::RenderScene;
@@ -86,17 +86,20 @@ pub struct ShadowQuery {
     pub mode: BodyMode,
     /// Reflections between bodies with parallel faces are included.
     pub between_bodies: bool,
+    /// The bodies of lights that it passes: that of its own light.
+    pub passed: PassedBodies,
 }
 
 impl RayCaster<'_> {
     /// Returns the transmittance of thin panes from a point to a light at `distance`; bodies block it.
-    pub fn pane_transmittance(&mut self, origin: Vec3, direction: Vec3, distance: f32) -> Vec3 {
+    pub fn pane_transmittance(&mut self, origin: Vec3, direction: Vec3, distance: f32, passed: PassedBodies) -> Vec3 {
         let query = ShadowQuery {
             target: Target::Infinity,
             distance,
             media: MediumStack::default(),
             mode: BodyMode::Block,
             between_bodies: false,
+            passed,
         };
         match self.trace_shadow_ray(&query, origin, direction) {
             ShadowRayEnd::Arrived(arrival) => arrival.transmittance,
@@ -120,7 +123,8 @@ impl RayCaster<'_> {
 impl RayCaster<'_> {
     /// Returns the next surface on a shadow ray, and weights the ray where it passes others that are not all there.
     fn next_surface(&mut self, shadow_ray: &mut ShadowRay<'_>) -> Option<Hit> {
-        let hit = self.intersect_all(&shadow_ray.ray)?;
+        let bodies = shadow_ray.query.passed;
+        let hit = self.intersect_all(&shadow_ray.ray, bodies)?;
         if !self.scene.plan().coverage {
             return Some(hit);
         }
@@ -135,7 +139,7 @@ impl RayCaster<'_> {
             travelled += hit.t;
             let t_max = next.t_max - hit.t;
             next = Ray { origin: surface.pass_origin(next.direction), t_max, ..next };
-            hit = self.scene.aggregate.intersect(&next, &mut self.stack)?;
+            hit = self.scene.aggregate.intersect(&next, bodies, &mut self.stack)?;
         }
         Some(Hit { t: travelled + hit.t, ..hit })
     }

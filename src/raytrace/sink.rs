@@ -50,7 +50,7 @@ pub struct SeenSurface {
 /// The object that a camera ray meets first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FirstObject {
-    /// An emitter that the camera sees.
+    /// An emitter that the camera sees, or the body of a light.
     Emitter,
     /// The room.
     Room,

@@ -2,7 +2,7 @@
 
 use super::aggregate::{Aggregate, Hit, Primitive};
 use super::bvh::TraversalStack;
-use super::geometry::{Instance, MeshGeometry};
+use super::geometry::{Instance, MeshGeometry, PassedBodies};
 use super::simd::{LANES, RibbonRay, SegmentHit, SegmentPacket};
 use super::strand_geometry::StrandHit;
 use super::{Method, RenderControl, Settings, prepare, render};
@@ -79,10 +79,10 @@ fn the_closest_hit_of_strands_is_that_of_brute_force_under_any_transform() {
                 let t_max = truth.map_or(ray.t_max, |hit| hit.t);
                 truth = packet.intersect(&ribbon_ray, t_max).or(truth);
             }
-            let ours = aggregate.intersect(&ray, &mut stack);
+            let ours = aggregate.intersect(&ray, PassedBodies::None, &mut stack);
             // Of two segments at one distance either may be returned.
             assert_eq!(ours.map(|hit| hit.t), truth.map(|hit| hit.t), "ray {i}: {ray:?}");
-            assert_eq!(aggregate.occluded(&ray, &mut stack), truth.is_some(), "ray {i}: {ray:?}");
+            assert_eq!(aggregate.occluded(&ray, PassedBodies::None, &mut stack), truth.is_some(), "ray {i}: {ray:?}");
             hits += usize::from(truth.is_some());
         }
         assert!(hits > 300, "only {hits} rays hit anything: too few for the test");
@@ -112,7 +112,7 @@ fn the_surface_of_a_strand_has_its_tangent_offset_and_position() {
             // Seen from +Z, N x T = Z x T points outwards: h counts in that direction.
             let origin = (outwards * (1.0 + 0.002 * h) + Vec3::Z) * scale;
             let ray = Ray { origin, direction: Vec3::NEG_Z, t_max: f32::INFINITY };
-            let hit = aggregate.intersect(&ray, &mut stack).unwrap();
+            let hit = aggregate.intersect(&ray, PassedBodies::None, &mut stack).unwrap();
             assert_eq!(strand_hit(&hit).ray_direction, Vec3::NEG_Z);
             let surface = aggregate.surface(&hit);
             let strand = surface.strand.unwrap();
@@ -154,11 +154,14 @@ fn rays_that_leave_a_fibre_do_not_hit_it_again() {
             let direction = rng.direction();
             let origin = axis - direction * rng.range(0.001, 3.0);
             let ray = Ray { origin: origin + rng.direction() * radius_m, direction, t_max: f32::INFINITY };
-            let Some(hit) = aggregate.intersect(&ray, &mut stack) else { continue };
+            let Some(hit) = aggregate.intersect(&ray, PassedBodies::None, &mut stack) else { continue };
             let surface = aggregate.surface(&hit);
             let away = rng.direction();
             let again = Ray { origin: surface.spawn_origin(away), direction: away, t_max: f32::INFINITY };
-            assert!(!aggregate.occluded(&again, &mut stack), "left the fibre and hit it: {ray:?} {again:?}");
+            assert!(
+                !aggregate.occluded(&again, PassedBodies::None, &mut stack),
+                "left the fibre and hit it: {ray:?} {again:?}"
+            );
             left += 1;
         }
         assert!(left > 20_000, "{left} hits");
@@ -178,7 +181,7 @@ fn a_strand_is_as_wide_as_its_radius_says() {
     let hits = SampleMean::of((0..100_000).map(|_| {
         let origin = Vec3::new(rng.range(-0.5, 1.5), rng.range(-0.05, 0.05), 3.0);
         let ray = Ray { origin, direction: Vec3::NEG_Z, t_max: f32::INFINITY };
-        f64::from(u8::from(aggregate.intersect(&ray, &mut stack).is_some()))
+        f64::from(u8::from(aggregate.intersect(&ray, PassedBodies::None, &mut stack).is_some()))
     }));
     // A trapezium and two half discs, of an area of 0.2.
     let area = 0.03 + 0.5 * std::f64::consts::PI * (0.02_f64.powi(2) + 0.01_f64.powi(2));

@@ -48,11 +48,11 @@ fn trace_ray(
     let PendingRay { ray, mut throughput, media, depth } = pending_ray;
 
     // Intersect the ray with the studio, and add the light of emitters in front of the surface
-    let hit = caster.intersect(&ray);
+    let hit = if depth == 0 { caster.intersect_from_camera(&ray) } else { caster.intersect(&ray) };
     let distance = hit.map_or(f32::INFINITY, |hit| hit.t);
     if depth > 0 {
         let vertex = MisVertex::new(ray.origin, ray.direction);
-        caster.add_emitter_hits(&ray, distance, throughput, &vertex, &media, sink);
+        caster.add_emitter_hits(&ray, hit.as_ref(), throughput, &vertex, &media, sink);
     } else if caster.add_visible_emitter(&ray, distance, sink) {
         return;
     }

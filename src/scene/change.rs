@@ -5,8 +5,8 @@
 //! preview, the background jobs) interpret the classes; they compare no scenes themselves.
 
 use super::{
-    Camera, Head, HeadDial, Light, LightColor, LightId, Material, Meter, Modifier, Object, Power, Room, Scene, Solo,
-    Transform,
+    Camera, Head, HeadDial, Light, LightBody, LightColor, LightId, Material, Meter, Modifier, Object, Power, Room,
+    Scene, Solo, Transform,
 };
 
 /// The classes of everything that differs between two scenes.
@@ -33,7 +33,7 @@ pub struct SceneChange {
     pub view: bool,
     /// The plane of focus: trace again with depth of field.
     pub focus: bool,
-    /// Shapes, transforms and visibility of objects, and the room's size: prepare geometry.
+    /// Shapes, transforms and visibility of objects and of the bodies of lights, and the room's size: prepare geometry.
     pub geometry: bool,
     /// Surfaces: prepare materials and textures.
     pub materials: bool,
@@ -64,7 +64,7 @@ impl SceneChange {
     /// Compares two scenes. Lights are matched by id, objects by their place in the list.
     pub fn between(old: &Scene, new: &Scene) -> Self {
         let mut change = SceneChange::default();
-        let Scene { name, description, camera, room, objects, lights, meter, solo, variants } = old;
+        let Scene { name, description, camera, room, objects, lights, bodies: _, meter, solo, variants } = old;
         change.labels |= *name != new.name || *description != new.description;
         change.compare_cameras(camera, &new.camera);
         change.compare_magnifications(old, new);
@@ -76,6 +76,7 @@ impl SceneChange {
         change.geometry |= objects.len() != new.objects.len();
         objects.iter().zip(&new.objects).for_each(|(object, new)| change.compare_objects(object, new));
         change.compare_light_lists(lights, &new.lights);
+        change.compare_bodies(old, new);
         match (meter, &new.meter) {
             (Some(meter), Some(new)) => change.compare_meters(meter, new),
             (None, None) => {}
@@ -239,6 +240,15 @@ impl SceneChange {
         self.lights.extend(removed.map(|(_, light)| LightChange::of_removed(light)));
     }
 
+    /// Compares what stands on the set for the lights: modifiers, heads and stands. They are geometry, also of lights
+    /// that are off. Of `bodies` and of a light's `body` nothing else depends.
+    fn compare_bodies(&mut self, old: &Scene, new: &Scene) {
+        let bodies = |scene: &'_ Scene| -> Vec<(LightId, LightBody)> {
+            scene.light_bodies().map(|(light, body)| (light.id, body)).collect()
+        };
+        self.geometry |= bodies(old) != bodies(new);
+    }
+
     fn compare_lights(&mut self, old: &Light, new: &Light) {
         let Light {
             id,
@@ -255,6 +265,7 @@ impl SceneChange {
             color,
             on,
             visible_to_camera,
+            body: _,
             muted,
             locked,
         } = old;

@@ -1,6 +1,6 @@
 //! Lights in a photographer's terms: role, emitter, modifier, power, colour.
 
-use super::{Aim, Emitter, Gel, Head, HeadDial, LightId, Modifier};
+use super::{Aim, BodyChoice, Emitter, Gel, Head, HeadDial, LightId, Modifier};
 use glam::Vec3;
 
 /// The role of a light in the set-up, as a lighting diagram names it. It labels the light, groups it and colours its
@@ -192,6 +192,8 @@ pub struct Light {
     pub on: bool,
     /// True if the camera sees the emitter itself. Mirrors and glass always show it.
     pub visible_to_camera: bool,
+    /// Its body: modifier, head and stand.
+    pub body: BodyChoice,
     /// Muted: off, and on again when it is unmuted. Ignored while `on`.
     pub muted: bool,
     /// Locked: the editor neither moves nor deletes it, and clicks in a view ignore it.
@@ -216,8 +218,18 @@ impl Light {
             color: LightColor::default(),
             on: true,
             visible_to_camera: false,
+            body: BodyChoice::AsStudio,
             muted: false,
             locked: false,
+        }
+    }
+
+    /// Hides emitter and body from the camera. Mirrors and glass show them, and the body casts its shadow. A body that is
+    /// off stays off.
+    pub fn hide_from_camera(&mut self) {
+        self.visible_to_camera = false;
+        if self.body != BodyChoice::Off {
+            self.body = BodyChoice::InReflections;
         }
     }
 

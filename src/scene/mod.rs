@@ -6,6 +6,8 @@
 
 mod aim;
 mod assets;
+mod bodies;
+mod body;
 mod camera;
 mod change;
 mod emitter;
@@ -22,6 +24,7 @@ mod material;
 mod mesh;
 mod meter;
 mod modifier;
+mod modifier_kind;
 mod named_modifier;
 mod object;
 mod ribbons;
@@ -35,6 +38,8 @@ mod variants;
 
 pub use aim::Aim;
 pub use assets::{Asset, AssetKey, AssetRef, Assets, FigureMeshes, path_complaint};
+pub use bodies::{Bodies, BodyChoice};
+pub use body::{BodyPiece, LightBody, ModifierShape, PieceShape, body_material};
 pub use camera::{Camera, CameraFrame, Focus, Orientation, Sensor};
 pub use change::{LightChange, SceneChange};
 pub use emitter::Emitter;
@@ -54,6 +59,7 @@ pub use material::{Alpha, Material, MaterialPreset, Subsurface};
 pub use mesh::{Mesh, MeshPart};
 pub use meter::{Facing, Meter, Receptor};
 pub use modifier::{BarnDoors, Cone, Modifier};
+pub use modifier_kind::ModifierKind;
 pub use named_modifier::{HARD_GRIDS_DEG, NamedModifier, SOFT_GRIDS_DEG};
 pub use object::{Object, Shape, Transform};
 pub use ribbons::strand_ribbons;
@@ -83,6 +89,8 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// Lights, in list order; film layers have the same order.
     pub lights: Vec<Light>,
+    /// The bodies of lights, where a light does not say otherwise.
+    pub bodies: Bodies,
     /// The light meter, if there is one.
     pub meter: Option<Meter>,
     /// The solo, if some lights are on alone.

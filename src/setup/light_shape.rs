@@ -1,6 +1,6 @@
 //! The places of a light's front, its head and its stand in the room.
 
-use crate::scene::{Emitter, Light, Scene};
+use crate::scene::{Emitter, Light, ModifierShape, Scene};
 use glam::{Affine3A, Vec3};
 use std::f32::consts::TAU;
 
@@ -50,6 +50,8 @@ impl LightShape {
             Emitter::Point => (vec![light.position], circle(0.7 * HEAD_M.1, HEAD_M.0), HEAD_M.0),
             Emitter::Sun { .. } | Emitter::Surround => return None,
         };
+        // The head of an umbrella is not behind its front
+        let depth_m = ModifierShape::of(light).map_or(depth_m, |shape| shape.stand_point_m());
         let axis = -Vec3::from(frame.matrix3.z_axis);
         Some(LightShape { front, back, head: at(&frame, [0.0, 0.0, depth_m]), axis })
     }

@@ -54,8 +54,10 @@ impl Checks {
             checks
                 .add(format!("The gel of {name:?} takes {loss:.1} stops that the dial leaves out: turn the head up."));
         }
+        // The stands and fronts in the picture are told above
+        let is_other = |finding: &Finding| !finding.place.ends_with(" body");
         for Finding { place, message, .. } in
-            validate(&scene.without_variants()).into_iter().chain(placement(scene, assets))
+            validate(&scene.without_variants()).into_iter().chain(placement(scene, assets).into_iter().filter(is_other))
         {
             checks.add(format!("{}: {message}.", thing_of(&place)));
         }
@@ -101,7 +103,7 @@ impl Checks {
                 self.add(format!("The stand of {:?} would be in the picture: a boom, or move it.", light.name));
             }
             if shape.surface_points().any(|point| setup.is_seen(point)) {
-                let hidden = if light.visible_to_camera { "" } else { " (the plan hides it)" };
+                let hidden = if setup.scene.camera_sees_light(light) { "" } else { " (the plan hides it)" };
                 self.add(format!("{:?} itself is in the picture{hidden}: move it out, or retouch.", light.name));
             }
         }

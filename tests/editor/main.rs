@@ -22,6 +22,7 @@ use std::time::Duration;
 
 #[path = "../studio/adapter.rs"]
 mod adapter;
+mod bodies;
 mod camera;
 mod device;
 mod dials;

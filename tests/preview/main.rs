@@ -23,6 +23,7 @@ use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 #[path = "../studio/adapter.rs"]
 mod adapter;
 mod against_tracer;
+mod bodies;
 mod bounced_light;
 mod channels;
 mod closed_forms;

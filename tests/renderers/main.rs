@@ -11,6 +11,7 @@ mod analytic_camera;
 mod analytic_glass;
 mod analytic_light;
 mod analytic_transmission;
+mod bodies;
 mod formulas;
 mod measured_light;
 mod meter;

@@ -218,13 +218,13 @@ fn light(objects: usize) -> BoxedStrategy<Light> {
     (
         (name(), 0..Role::ALL.len(), vector(-10.0, 10.0), aim(objects), number(-180.0, 180.0)),
         (power, source, gel, any::<[bool; 5]>(), proptest::option::of(head())),
-        (modifier(), proptest::option::of(Just("lamps/down light.ies".to_owned()))),
+        (modifier(), 0..4_usize, proptest::option::of(Just("lamps/down light.ies".to_owned()))),
     )
         .prop_map(
             |(
                 (name, role, position, aim, roll_deg),
                 (((emitter, output), dial_stops), source, gel, [on, seen, muted, locked, gel_loss_counts], head),
-                (modifier, photometric_file),
+                (modifier, body, photometric_file),
             )| Light {
                 id: LightId(0),
                 name,
@@ -241,6 +241,7 @@ fn light(objects: usize) -> BoxedStrategy<Light> {
                 color: LightColor { source, gel, gel_loss_counts },
                 on,
                 visible_to_camera: seen,
+                body: [BodyChoice::AsStudio, BodyChoice::On, BodyChoice::InReflections, BodyChoice::Off][body],
                 muted,
                 locked,
             },
@@ -376,12 +377,13 @@ fn scene() -> impl Strategy<Value = Scene> {
         (
             name(),
             name(),
-            camera(objects),
-            proptest::option::of(room()),
-            proptest::collection::vec(object(), objects),
-            proptest::collection::vec(light(objects), 0..4),
-            any::<(bool, bool, bool)>(),
-            proptest::option::of(variant(objects)),
+            // Boxed, as materials are
+            camera(objects).boxed(),
+            proptest::option::of(room()).boxed(),
+            proptest::collection::vec(object(), objects).boxed(),
+            proptest::collection::vec(light(objects), 0..4).boxed(),
+            (any::<(bool, bool, bool)>(), 0..Bodies::ALL.len()),
+            proptest::option::of(variant(objects)).boxed(),
         )
             .prop_map(
                 |(
@@ -391,7 +393,7 @@ fn scene() -> impl Strategy<Value = Scene> {
                     room,
                     mut objects,
                     mut lights,
-                    (has_meter, on_camera, has_solo),
+                    ((has_meter, on_camera, has_solo), bodies),
                     variant,
                 )| {
                     // As after loading: ids in list order, names unique.
@@ -412,7 +414,9 @@ fn scene() -> impl Strategy<Value = Scene> {
                     let ids = |on| lights.iter().filter(|l| l.on == on).map(|l| l.id).collect();
                     let solo = has_solo.then(|| Solo { lights: ids(true), restores: ids(false) });
                     let variants = Variants::default();
-                    let scene = Scene { name, description, camera, room, objects, lights, meter, solo, variants };
+                    let bodies = Bodies::ALL[bodies];
+                    let scene =
+                        Scene { name, description, camera, room, objects, lights, bodies, meter, solo, variants };
                     variant.into_iter().fold(scene, with_variant)
                 },
             )

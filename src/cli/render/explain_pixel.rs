@@ -146,8 +146,10 @@ impl Names<'_> {
 
     fn vertex(&self, vertex: &PathVertex) -> String {
         let PathVertex { depth, position, distance, normal, object, part, material, throughput } = vertex;
-        let object = object
-            .map_or("Room", |index| self.scene.objects.get(index as usize).map_or("?", |object| object.name.as_str()));
+        let no_object = if matches!(part.as_str(), "floor" | "walls" | "ceiling") { "Room" } else { "Body of a light" };
+        let object = object.map_or(no_object, |index| {
+            self.scene.objects.get(index as usize).map_or("?", |object| object.name.as_str())
+        });
         let part = if part.is_empty() { String::new() } else { format!(", part {part}") };
         format!(
             "vertex {depth}: {object}{part}, material {material}, at {}, {distance} m, normal {}, throughput {}",

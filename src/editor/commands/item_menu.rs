@@ -3,10 +3,11 @@
 use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::commands::command::Command;
 use crate::editor::commands::menu_entry::entry;
+use crate::editor::document::action::Action;
 use crate::editor::document::framing::Framing;
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
-use crate::scene::{LightId, ObjectId, Scene, Shape};
+use crate::scene::{Light, LightId, ObjectId, Scene, Shape};
 use crate::sheet::LessonSeries;
 use eframe::egui::Ui;
 
@@ -55,6 +56,26 @@ fn framing_entries(ui: &mut Ui, id: ObjectId, out: &mut Vec<Command>) {
 pub const FRAMING_TIP: &str =
     "Moves the camera, from the side on which it is, so far away that this part fills the picture";
 
+/// Label of the command that hides lights from the camera.
+pub const HIDE_FROM_CAMERA: &str = "Hide from camera";
+pub const HIDE_TIP: &str = "Front, modifier, head and stand: mirrors show them, and they cast shadows";
+
+/// Draws the entry that hides the selected lights from the camera, if it sees some of them.
+fn hide_entry(ui: &mut Ui, scene: &Scene, selection: &Selection, out: &mut Vec<Command>) {
+    let lights = selection.lights();
+    let seen = lights.iter().filter_map(|id| scene.light(*id)).filter(|light| scene.camera_sees_light(light));
+    let hide = |light: &Light| {
+        let mut light = light.clone();
+        light.hide_from_camera();
+        Action::SetLight(Box::new(light))
+    };
+    let actions: Vec<Action> = seen.map(hide).collect();
+    if !actions.is_empty() {
+        let command = Command::Apply(Action::Together { label: HIDE_FROM_CAMERA.to_owned(), actions });
+        entry(ui, true, HIDE_FROM_CAMERA, HIDE_TIP, command, out);
+    }
+}
+
 /// Draws the entries that write lesson sheets about a light, the key for none.
 pub fn lesson_entries(ui: &mut Ui, light: Option<LightId>, out: &mut Vec<Command>) {
     ui.set_min_width(200.0);
@@ -95,6 +116,7 @@ pub fn selection_entries(ui: &mut Ui, scene: &Scene, selection: &Selection, out:
         ui.menu_button("Frame in the picture", |ui| framing_entries(ui, *id, out));
         entry(ui, true, "Aim, focus and meter at the face", FACE_TIP, Command::SetUpAtFace(*id), out);
     }
+    hide_entry(ui, scene, selection, out);
     if let [Item::Light(light)] = selection.items() {
         ui.menu_button("Lesson sheet", |ui| lesson_entries(ui, Some(*light), out));
     }

@@ -4,7 +4,7 @@ use crate::editor::document::action_error::ActionError;
 use crate::editor::document::arrange::{self, MirrorPlane, add_light, add_object};
 use crate::editor::document::item::{Item, name_of_all};
 use crate::editor::document::switches;
-use crate::scene::{Camera, Light, LightId, Meter, NameOwner, Object, Room, Scene, VARIANT_LIMIT, VariantId};
+use crate::scene::{Bodies, Camera, Light, LightId, Meter, NameOwner, Object, Room, Scene, VARIANT_LIMIT, VariantId};
 
 /// A change of the scene. New objects and lights get their id and a unique name when the action is applied.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +21,8 @@ pub enum Action {
     SetCamera(Box<Camera>),
     /// Replaces the room; none removes it.
     SetRoom(Option<Box<Room>>),
+    /// Sets what is there of the bodies of all lights.
+    SetBodies(Bodies),
     /// Adds or replaces the light meter; none removes it.
     SetMeter(Option<Meter>),
     /// Sets title and description of the studio.
@@ -80,6 +82,7 @@ impl Action {
             Action::SetLight(light) => light_change_label(scene, light),
             Action::SetCamera(_) => "Change camera".to_owned(),
             Action::SetRoom(_) => "Change room".to_owned(),
+            Action::SetBodies(bodies) => format!("Bodies of lights: {}", bodies.label().to_lowercase()),
             Action::SetMeter(None) => "Take the meter away".to_owned(),
             Action::SetMeter(Some(_)) if scene.meter.is_none() => "Put a meter up".to_owned(),
             Action::SetMeter(Some(_)) => "Change light meter".to_owned(),
@@ -114,7 +117,7 @@ impl Action {
             Action::SetObject(object) => vec![Item::Object(object.id)],
             Action::SetLight(light) => vec![Item::Light(light.id)],
             Action::SetCamera(_) => vec![Item::Camera],
-            Action::SetRoom(_) => vec![Item::Room],
+            Action::SetRoom(_) | Action::SetBodies(_) => vec![Item::Room],
             Action::SetMeter(_) => vec![Item::Meter],
             Action::Together { actions, .. } => actions.iter().flat_map(Action::targets).collect(),
             _ => Vec::new(),
@@ -131,6 +134,7 @@ impl Action {
             Action::SetLight(new) => set_light(scene, *new)?,
             Action::SetCamera(camera) => scene.camera = *camera,
             Action::SetRoom(room) => scene.room = room.map(|room| *room),
+            Action::SetBodies(bodies) => scene.bodies = bodies,
             Action::SetMeter(meter) => {
                 let is_new = scene.meter.is_none() && meter.is_some();
                 scene.meter = meter;

@@ -9,7 +9,7 @@ use crate::io::{
 use crate::jobs::sentence;
 use crate::photo::{LazyPicture, Picture};
 use crate::raytrace::Film;
-use crate::scene::{Aim, Assets, Camera, Material, Mesh, Room, Scene};
+use crate::scene::{Aim, Assets, Bodies, Camera, Material, Mesh, Room, Scene};
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -32,11 +32,13 @@ pub fn presets() -> Vec<PresetInfo> {
     io::presets().iter().map(info).collect()
 }
 
-/// Returns a room without lights and figures, with a camera at the height of a face.
+/// Returns a room without lights and figures, with a camera at the height of a face. The bodies of its lights are there
+/// but for the camera, which may stand among them.
 pub fn empty_studio() -> Scene {
     let camera =
         Camera { position: Vec3::new(0.0, 1.55, 3.2), aim: Aim::Point(Vec3::new(0.0, 1.5, 0.0)), ..Camera::default() };
-    Scene { name: "New studio".to_owned(), room: Some(Room::default()), camera, ..Scene::default() }
+    let bodies = Bodies::InReflections;
+    Scene { name: "New studio".to_owned(), room: Some(Room::default()), camera, bodies, ..Scene::default() }
 }
 
 /// A studio loaded from a file or from the shipped ones.

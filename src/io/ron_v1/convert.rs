@@ -165,6 +165,7 @@ pub(super) fn light_from(file: LightV1, id: LightId, place: &str, ids: &ObjectId
         },
         on: file.on,
         visible_to_camera: file.visible_to_camera,
+        body: file.body.into(),
         muted: file.muted,
         locked: file.locked,
         name: file.name,
@@ -188,6 +189,7 @@ pub(super) fn light_to(scene: &Scene, light: &Light) -> LightV1 {
         gel_loss_counts: Some(light.color.gel_loss_counts).filter(|counts| *counts != (light.color.gel == Gel::None)),
         on: light.on,
         visible_to_camera: light.visible_to_camera,
+        body: light.body.into(),
         muted: light.muted,
         locked: light.locked,
     }
@@ -326,27 +328,6 @@ impl From<&Shape> for ShapeV1 {
             Shape::VFlat { wing_m, height_m, angle_deg } => ShapeV1::VFlat { wing_m, height_m, angle_deg },
         }
     }
-}
-
-/// Implements both conversions between an enum of the file and one of the scene with the same variants.
-macro_rules! same_variants {
-    ($file:ident <=> $scene:ident { $($variant:ident $(($x:ident))? $({ $($field:ident),+ })?),+ $(,)? }) => {
-        impl From<$file> for $scene {
-            fn from(value: $file) -> Self {
-                match value {
-                    $($file::$variant $(($x))? $({ $($field),+ })? => $scene::$variant $(($x))? $({ $($field),+ })?),+
-                }
-            }
-        }
-
-        impl From<$scene> for $file {
-            fn from(value: $scene) -> Self {
-                match value {
-                    $($scene::$variant $(($x))? $({ $($field),+ })? => $file::$variant $(($x))? $({ $($field),+ })?),+
-                }
-            }
-        }
-    };
 }
 
 same_variants!(OrientationV1 <=> Orientation { Landscape, Portrait });

@@ -4,6 +4,10 @@
 //! Lengths are metres, angles degrees; other units are part of the names. Default values may be left out (a scale of 1,
 //! a light that is on). [`scene`] and [`convert`] resolve names to ids.
 
+#[macro_use]
+mod same_variants;
+
+mod bodies;
 mod convert;
 mod defaults;
 mod figure;
@@ -20,6 +24,7 @@ pub(super) use gear::{GearV1, gear_from_v1, v1_from_gear};
 pub(super) use names::UnknownName;
 pub(super) use scene::{scene_from_v1, v1_from_scene};
 
+use bodies::{BodiesV1, BodyChoiceV1};
 use defaults::{
     Triple, default_efficacy, default_meter_constant, is_default, is_default_meter_constant, is_one, is_studio_name,
     is_true, one, studio_name, yes,
@@ -45,6 +50,8 @@ pub(super) struct SceneV1 {
     objects: Vec<ObjectV1>,
     #[serde(default)]
     lights: Vec<LightV1>,
+    #[serde(default, skip_serializing_if = "is_default")]
+    bodies: BodiesV1,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     meter: Option<MeterV1>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -278,6 +285,8 @@ struct LightV1 {
     #[serde(default, skip_serializing_if = "is_default")]
     visible_to_camera: bool,
     #[serde(default, skip_serializing_if = "is_default")]
+    body: BodyChoiceV1,
+    #[serde(default, skip_serializing_if = "is_default")]
     muted: bool,
     #[serde(default, skip_serializing_if = "is_default")]
     locked: bool,
@@ -483,6 +492,7 @@ difference! {
         gel_loss_counts: bool,
         on: bool,
         visible_to_camera: bool,
+        body: BodyChoiceV1,
         muted: bool,
     }
 }

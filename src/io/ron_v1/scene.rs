@@ -31,6 +31,7 @@ pub(in crate::io) fn scene_from_v1(file: SceneV1) -> Result<(Scene, Option<Varia
             .map(|(index, object)| object_from(object, index, &light_ids))
             .collect::<Result<_, _>>()?,
         lights,
+        bodies: file.bodies.into(),
         meter: file.meter.map(Meter::from),
         solo,
         variants,
@@ -62,6 +63,7 @@ pub(in crate::io) fn v1_from_scene(scene: &Scene, shown: VariantId) -> SceneV1 {
         room: scene.room.as_ref().map(RoomV1::from),
         objects: scene.objects.iter().map(|object| object_to(scene, object)).collect(),
         lights: scene.lights.iter().map(|light| light_to(scene, light)).collect(),
+        bodies: scene.bodies.into(),
         meter: scene.meter.map(MeterV1::from),
         solo: scene.solo.as_ref().map(|solo| solo_to(scene, solo)),
         variants: variants_to(scene, shown),

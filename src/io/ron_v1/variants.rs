@@ -123,6 +123,7 @@ fn light_difference_from(
         gel_loss_counts: counts.filter(|counts| changed.is_none_or(|light| light.color.gel_loss_counts != *counts)),
         on: file.on,
         visible_to_camera: file.visible_to_camera,
+        body: file.body.map(Into::into),
         muted: file.muted,
     })
 }
@@ -221,6 +222,7 @@ fn light_difference_to(scene: &Scene, light: &Light, difference: &LightDifferenc
         gel_loss_counts: difference.gel_loss_counts.or(difference.gel.map(|_| light.color.gel_loss_counts)),
         on: difference.on,
         visible_to_camera: difference.visible_to_camera,
+        body: difference.body.map(Into::into),
         muted: difference.muted,
     }
 }

@@ -36,6 +36,8 @@ pub(crate) enum DrawPass {
     OneSided,
     /// The glass pass over the lit picture: clear glass or water.
     Glass,
+    /// Shadow maps alone: the body of a light that the camera does not see.
+    Shadow,
 }
 
 /// The sides of triangles that are drawn.

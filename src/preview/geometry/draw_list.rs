@@ -10,7 +10,9 @@ use crate::photo::emitter::EmitterShape;
 use crate::preview::gpu::context::GpuContext;
 use crate::preview::input::{Overlay, Pick};
 use crate::preview::lights::light_table::{emission, picture_scale};
-use crate::scene::{Alpha, Assets, Fibre, FibreColor, Material, MeshPart, Object, Scene, TextureRef};
+use crate::scene::{
+    Alpha, Assets, BodyPiece, Fibre, FibreColor, Light, Material, MeshPart, Object, Scene, TextureRef, body_material,
+};
 use glam::{Affine3A, Vec3};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -59,6 +61,7 @@ impl DrawList {
         let mut signature = DefaultHasher::new();
         list.add_room(scene, uploads);
         list.add_objects(scene, overlay, uploads, &mut signature);
+        list.add_bodies(scene, overlay, uploads, &mut signature);
         list.add_emitters(scene, uploads);
         list.caster_signature = signature.finish();
         // Sort by pass (opaque before glass), then by texture, to reduce state changes
@@ -93,7 +96,7 @@ impl DrawList {
             else {
                 continue;
             };
-            let caster = OrientedBox { world_from_object, low, high };
+            let caster = OrientedBox { world_from_object, low, high, body_of: None };
             let pick = Pick::Object(object.id);
             let flags = outline_flags(overlay, pick);
             for part in &parts {
@@ -142,8 +145,39 @@ impl DrawList {
         }
     }
 
+    /// Adds the bodies of lights. Those that the camera does not see cast shadows alone.
+    fn add_bodies(&mut self, scene: &Scene, overlay: &Overlay, uploads: &mut Uploads, signature: &mut impl Hasher) {
+        for (light, body) in scene.light_bodies() {
+            let pick = Pick::Light(light.id);
+            let flags = outline_flags(overlay, pick);
+            for BodyPiece { shape, world_from_piece } in body.pieces() {
+                let Some(mesh) = uploads.caches.meshes.body(&uploads.gpu.device, &shape) else { continue };
+                let Some((parts, (low, high))) = uploads.caches.meshes.get(mesh).map(|m| (m.parts.clone(), m.bounds))
+                else {
+                    continue;
+                };
+                let caster = OrientedBox { world_from_object: world_from_piece, low, high, body_of: Some(light.id) };
+                for part in &parts {
+                    let material = body_material(&part.name);
+                    let surface = self.add_surface(&world_from_piece, &material, scene, flags, Some(pick));
+                    self.add_item(mesh, part, surface, &material, uploads);
+                    let Some(item) = self.items.last_mut() else { continue };
+                    (item.shadow, item.caster) = (ShadowCasting::Solid, self.casters.len());
+                    item.pass = if body.is_seen { DrawPass::Opaque } else { DrawPass::Shadow };
+                }
+                self.casters.push(caster);
+                mesh.hash(signature);
+                world_from_piece.to_cols_array().map(f32::to_bits).hash(signature);
+                if flags != 0 && body.is_seen {
+                    self.outlined.push(caster);
+                }
+            }
+        }
+    }
+
     fn add_emitters(&mut self, scene: &Scene, uploads: &mut Uploads) {
-        for light in scene.lights.iter().filter(|light| light.on && light.visible_to_camera) {
+        let is_seen = |light: &&Light| scene.camera_sees_light(light);
+        for light in scene.lights.iter().filter(|light| light.on).filter(is_seen) {
             let (id, light) = (light.id, PhotometricLight::new(scene, uploads.assets, light));
             let (emitter, scale) = match light.shape {
                 EmitterShape::Sphere { radius_m } => (EmitterSurface::Sphere, Vec3::splat(radius_m)),

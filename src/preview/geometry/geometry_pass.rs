@@ -44,7 +44,7 @@ pub(crate) fn draw(
     });
     pass.set_bind_group(0, scene, &[]);
     let clip_from_world = camera.clip_from_world(NEAR_M);
-    for item in list.items.iter().filter(|item| item.pass != DrawPass::Glass) {
+    for item in list.items.iter().filter(|item| matches!(item.pass, DrawPass::Opaque | DrawPass::OneSided)) {
         let sides = list.sides(item, camera.position());
         pass.set_pipeline(pipelines.get(Sampled::of(item), sides));
         pass.set_bind_group(2, caches.textures.get(&item.textures), &[]);

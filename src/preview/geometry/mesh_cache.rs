@@ -2,7 +2,7 @@
 
 use super::clusters::{Cluster, Clustered};
 use super::strands::GpuStrands;
-use crate::scene::{Assets, Mesh, MeshPart, Room, Shape, room_mesh, tessellate};
+use crate::scene::{Assets, Mesh, MeshPart, PieceShape, Room, Shape, room_mesh, tessellate};
 use bytemuck::{Pod, Zeroable};
 use eframe::wgpu::{self, util::DeviceExt as _};
 use glam::{Vec2, Vec3};
@@ -52,6 +52,7 @@ pub(crate) enum MeshKey {
     Parametric(u8, [u32; 4]),
     Room([u32; 3]),
     Emitter(EmitterSurface),
+    Body([u32; 8]),
 }
 
 /// A mesh on the GPU.
@@ -121,6 +122,11 @@ impl MeshCache {
     /// Returns the key of an emitter's mesh, uploading it on first use.
     pub fn emitter(&mut self, device: &wgpu::Device, surface: EmitterSurface) -> Option<MeshKey> {
         self.ensure(device, MeshKey::Emitter(surface), || emitter_mesh(surface))
+    }
+
+    /// Returns the key of the mesh of a piece of a light's body, uploading it on first use.
+    pub fn body(&mut self, device: &wgpu::Device, piece: &PieceShape) -> Option<MeshKey> {
+        self.ensure(device, MeshKey::Body(piece.key()), || Some(piece.mesh()))
     }
 
     fn ensure(&mut self, device: &wgpu::Device, key: MeshKey, make: impl FnOnce() -> Option<Mesh>) -> Option<MeshKey> {

@@ -1,5 +1,6 @@
 //! Oriented bounding boxes.
 
+use crate::scene::LightId;
 use glam::{Affine3A, Vec3};
 
 /// The bounding box of a mesh in object space, with the object's transform.
@@ -8,6 +9,8 @@ pub(crate) struct OrientedBox {
     pub world_from_object: Affine3A,
     pub low: Vec3,
     pub high: Vec3,
+    /// The light whose body it bounds: its own light passes it.
+    pub body_of: Option<LightId>,
 }
 
 /// The corners of each face of a box, as indices into [`OrientedBox::corners`].

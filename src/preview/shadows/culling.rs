@@ -18,10 +18,11 @@ pub(crate) fn caster_signature(list: &DrawList, view: &ShadowView) -> u64 {
     hasher.finish()
 }
 
-/// Returns true if a caster's box may intersect the view's frustum and is closer than the light's radius.
+/// Returns true if a caster's box may intersect the view's frustum and is closer than the light's radius, and is not that
+/// of the light's own body.
 pub(crate) fn is_visible(list: &DrawList, caster: usize, view: &ShadowView) -> bool {
     let Some(caster) = list.casters.get(caster) else { return false };
-    if !view.is_in_radius(caster.distance(view.eye)) {
+    if caster.body_of == Some(view.light) || !view.is_in_radius(caster.distance(view.eye)) {
         return false;
     }
     let corners = caster.corners().map(|corner| view.clip_from_world * corner.extend(1.0));

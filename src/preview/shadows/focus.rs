@@ -81,7 +81,8 @@ impl VisibleReceivers {
 fn room_corners(room: &Room) -> [Vec3; 8] {
     let half = 0.5 * room.size_m + ROOM_STANDS_BACK_M;
     let centre = Vec3::Y * (0.5 * room.size_m.y);
-    OrientedBox { world_from_object: Affine3A::from_translation(centre), low: -half, high: half }.corners()
+    OrientedBox { world_from_object: Affine3A::from_translation(centre), low: -half, high: half, body_of: None }
+        .corners()
 }
 
 /// Clips a polygon in camera space to the frustum (Sutherland and Hodgman 1974).
@@ -118,6 +119,7 @@ mod tests {
             world_from_object: Affine3A::IDENTITY,
             low: Vec3::new(-1.0, -0.1, -1.0),
             high: Vec3::new(1.0, 0.0, 1.0),
+            body_of: None,
         }
     }
 

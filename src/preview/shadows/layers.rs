@@ -1,6 +1,7 @@
 //! Allocation of shadow map layers. A light keeps its layers from frame to frame, and a map is redrawn only when its
 //! view or the casters in its view have changed.
 
+use crate::scene::LightId;
 use glam::{Mat4, Vec3};
 
 /// Light id and emitter part; part 0 is the whole emitter, seen from its centre.
@@ -21,6 +22,8 @@ pub(crate) struct ShadowView {
     pub eye: Vec3,
     /// Light radius, metres, beyond which the light is negligible; 0 for a sun, which has none.
     pub cull_radius_m: f32,
+    /// The light, which passes its own body.
+    pub light: LightId,
 }
 
 impl ShadowView {
@@ -172,6 +175,7 @@ mod tests {
             clip_from_world: Mat4::from_translation(Vec3::new(x, face as f32, light as f32)),
             eye: Vec3::ZERO,
             cull_radius_m: 0.0,
+            light: LightId(light),
         };
         LightViews { owner: (light, 0), views: (0..count).map(view).collect() }
     }

@@ -64,7 +64,7 @@ mod tests {
 
     fn caster_at(z: f32) -> OrientedBox {
         let world_from_object = Affine3A::from_translation(Vec3::Z * z);
-        OrientedBox { world_from_object, low: Vec3::splat(-0.5), high: Vec3::splat(0.5) }
+        OrientedBox { world_from_object, low: Vec3::splat(-0.5), high: Vec3::splat(0.5), body_of: None }
     }
 
     #[test]

@@ -4,9 +4,10 @@ use super::focus::VisibleReceivers;
 use super::layers::{LightViews, ShadowView, ViewOwner};
 use super::parts::emitter_parts;
 use super::slots::{GpuShadowSlot, GpuShadows};
-use super::views::fit_views;
+use super::views::{fit_views, is_in_one_view};
 use crate::preview::geometry::oriented_box::OrientedBox;
 use crate::preview::lights::light_table::{GpuLight, LightTable};
+use crate::scene::LightId;
 use bytemuck::Zeroable;
 use glam::{Vec2, Vec3};
 
@@ -36,8 +37,9 @@ impl ShadowPlan {
         let count = table.lights.len().min(MAX_SHADOWS);
         plan.masks = vec![GpuShadows::zeroed(); count.div_ceil(4)];
         // Cull casters by light radius
+        let lights = table.lights[..count].iter().zip(&table.ids);
         let reached: Vec<Vec<OrientedBox>> =
-            table.lights[..count].iter().map(|light| casters_in_radius(light, casters)).collect();
+            lights.map(|(light, id)| with_bodies_in_view(light, *id, casters_in_radius(light, casters))).collect();
         // Fit a view at the centre of each emitter first, so that every light has a shadow before one is subdivided
         for (index, casters) in reached.iter().enumerate() {
             let slot = plan.add(&table.lights[index], (table.ids[index].0, 0), casters, receivers);
@@ -94,7 +96,7 @@ impl ShadowPlan {
         if !views.is_empty() {
             (slot.layer, slot.softness) = (self.lights.len() as u32, light.softness().into());
             let (eye, cull_radius_m) = (light.position.into(), light.cull_radius_m);
-            let view = |clip_from_world| ShadowView { clip_from_world, eye, cull_radius_m };
+            let view = |clip_from_world| ShadowView { clip_from_world, eye, cull_radius_m, light: LightId(owner.0) };
             self.lights.push(LightViews { owner, views: views.into_iter().map(view).collect() });
         }
         slot
@@ -142,12 +144,21 @@ fn casters_in_radius(light: &GpuLight, casters: &[OrientedBox]) -> Vec<OrientedB
     casters.iter().filter(reaches).copied().collect()
 }
 
+/// Removes the bodies of lights for which a light's map would have to be larger: a map is fitted to the objects and to the
+/// bodies in its view. Others cast a shadow only where they reach into it.
+fn with_bodies_in_view(light: &GpuLight, id: LightId, casters: Vec<OrientedBox>) -> Vec<OrientedBox> {
+    let objects: Vec<OrientedBox> = casters.iter().filter(|caster| caster.body_of.is_none()).copied().collect();
+    let is_other = |caster: &&OrientedBox| caster.body_of.is_some_and(|owner| owner != id);
+    let bodies: Vec<OrientedBox> = casters.iter().filter(is_other).copied().collect();
+    let bodies = bodies.into_iter().filter(|body| is_in_one_view(light, &objects, body));
+    objects.iter().copied().chain(bodies).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::preview::lights::light_table::LightKind;
     use crate::preview::shadows::slots::Projection;
-    use crate::scene::LightId;
     use glam::{Affine3A, Mat4};
 
     fn unit_box_at(centre: Vec3) -> OrientedBox {
@@ -155,6 +166,7 @@ mod tests {
             world_from_object: Affine3A::from_translation(centre),
             low: Vec3::splat(-0.5),
             high: Vec3::splat(0.5),
+            body_of: None,
         }
     }
 

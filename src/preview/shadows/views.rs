@@ -29,14 +29,7 @@ pub(crate) fn fit_views(
         return (GpuShadowSlot::zeroed(), Vec::new());
     }
     // Bound the casters and the penumbra
-    let frame = Affine3A::from_mat3_translation(
-        glam::Mat3::from_cols(
-            Vec3::from(light.right).normalize_or(Vec3::X),
-            Vec3::from(light.up).normalize_or(Vec3::Y),
-            -Vec3::from(light.axis),
-        ),
-        light.position.into(),
-    );
+    let frame = light_frame(light);
     let spot_limit = light.outer_rad.min(1.3).tan().min(MAX_TANGENT);
     let nearest = casters.iter().map(|caster| caster.distance(light.position.into())).fold(f32::INFINITY, f32::min);
     // The largest penumbra, as tangents, is the margin around visible receivers
@@ -64,6 +57,36 @@ pub(crate) fn fit_views(
         Some((slot, view)) => (slot, vec![view]),
         None => (GpuShadowSlot::zeroed(), Vec::new()),
     }
+}
+
+/// Returns true if a box is inside of the largest single view that a light can have of the casters; a sun has no view of
+/// more than those.
+pub(crate) fn is_in_one_view(light: &GpuLight, casters: &[OrientedBox], added: &OrientedBox) -> bool {
+    let all_within = |frame: &Affine3A| added.corners().iter().all(|corner| is_within(frame, *corner));
+    match light.kind {
+        kind if kind == LightKind::Sun as u32 => false,
+        kind if [LightKind::Spot, LightKind::Rect, LightKind::Disc].iter().any(|each| *each as u32 == kind) => {
+            all_within(&light_frame(light))
+        }
+        _ => {
+            let count = (8 * casters.len()) as f32;
+            let middle = casters.iter().flat_map(OrientedBox::corners).sum::<Vec3>() / count;
+            let position = Vec3::from(light.position);
+            casters.is_empty() || all_within(&crate::math::look_at(position, middle, 0.0))
+        }
+    }
+}
+
+/// Returns the frame of a light.
+fn light_frame(light: &GpuLight) -> Affine3A {
+    Affine3A::from_mat3_translation(
+        glam::Mat3::from_cols(
+            Vec3::from(light.right).normalize_or(Vec3::X),
+            Vec3::from(light.up).normalize_or(Vec3::Y),
+            -Vec3::from(light.axis),
+        ),
+        light.position.into(),
+    )
 }
 
 /// Returns true if a point is inside of the largest single view of a frame.

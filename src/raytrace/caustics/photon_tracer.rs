@@ -107,7 +107,7 @@ impl<'a> PhotonTracer<'a> {
 
         // Trace the shadow ray; bodies of glass block it, as photons through them start at the outer one
         let origin = surface.spawn_origin(to_light);
-        let visibility = self.caster.pane_transmittance(origin, to_light, sample.distance);
+        let visibility = self.caster.pane_transmittance(origin, to_light, sample.distance, light.own_body());
         if visibility == Vec3::ZERO {
             return None;
         }

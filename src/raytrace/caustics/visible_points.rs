@@ -3,6 +3,7 @@
 use super::grid::{HashGrid, Positioned};
 use crate::math::{Ray, quantile};
 use crate::raytrace::bsdf::Polarisation;
+use crate::raytrace::geometry::PassedBodies;
 use crate::raytrace::lens::{PixelCamera, camera_ray};
 use crate::raytrace::medium_stack::MediumStack;
 use crate::raytrace::ray_caster::RayCaster;
@@ -130,7 +131,8 @@ fn trace_path(
     let mut ray = Ray { origin, direction, t_max: f32::INFINITY };
     let (mut media, mut polarisation, mut travelled) = (MediumStack::default(), Polarisation::NONE, 0.0);
     for depth in 0..scene.plan().max_depth {
-        let Some(hit) = caster.intersect(&ray) else { return };
+        let passed = if depth == 0 { PassedBodies::Hidden } else { PassedBodies::None };
+        let Some(hit) = caster.intersect_passing(&ray, passed) else { return };
         let surface = scene.surface(&ray, &hit);
         travelled += hit.t;
         let wo = -ray.direction;

@@ -5,6 +5,7 @@ use super::point::MeterPoint;
 use super::receptor::ReceptorFrame;
 use super::sampling::{DirectLight, sample_direct};
 use crate::math::Ray;
+use crate::raytrace::geometry::PassedBodies;
 use crate::raytrace::lights::TracedLight;
 use crate::raytrace::medium_stack::MediumStack;
 use crate::raytrace::ray_caster::RayCaster;
@@ -43,11 +44,11 @@ impl LightMeter {
         })
     }
 
-    /// Returns the first surface within `length_m` of a ray in world space.
+    /// Returns the first surface within `length_m` of a ray in world space. Bodies of lights do not count.
     pub fn first_surface(&self, origin: Vec3, direction: Vec3, length_m: f32) -> Option<SurfacePoint<'_>> {
         let scene = &self.studio.scene;
         let ray = Ray { origin: origin - scene.origin, direction, t_max: length_m };
-        let hit = RayCaster::new(scene).intersect(&ray)?;
+        let hit = RayCaster::new(scene).intersect_passing(&ray, PassedBodies::All)?;
         let surface = scene.surface(&ray, &hit);
         let (object, part) = scene.object_and_part(&hit);
         let side = if surface.normal.dot(direction) > 0.0 { -1.0 } else { 1.0 };

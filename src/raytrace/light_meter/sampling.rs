@@ -9,6 +9,7 @@ use crate::color::luminance;
 use crate::raytrace::caustics::{PhotonMap, PhotonTracer, StartDensity};
 use crate::raytrace::control::RenderControl;
 use crate::raytrace::film::{NonFiniteGate, NonFiniteReport};
+use crate::raytrace::geometry::PassedBodies;
 use crate::raytrace::lights::{LightSample, TracedLight};
 use crate::raytrace::limits::PathLimits;
 use crate::raytrace::medium_stack::MediumStack;
@@ -158,7 +159,7 @@ impl RoundSampler<'_> {
     fn add_surrounds(&self, caster: &mut RayCaster<'_>, direction: Vec3, sink: &mut impl RadianceSink) {
         let origin = self.receptor.origin;
         let surrounds = || self.studio.scene.lights.iter().filter(|light| !light.is_sampled());
-        if surrounds().next().is_none() || caster.occluded(origin, direction, f32::INFINITY) {
+        if surrounds().next().is_none() || caster.occluded(origin, direction, f32::INFINITY, PassedBodies::None) {
             return;
         }
         for light in surrounds() {

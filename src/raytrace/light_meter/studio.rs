@@ -40,6 +40,7 @@ impl MeteredStudio {
         let mut prepared = prepare_all(scene, assets, around, one_layer_per_light, cache)?;
         // Emissive surfaces are read in lux, like any continuous light.
         prepared.emission_time_s = 1.0;
+        prepared.aggregate.show_bodies();
         let metered = |layer: &Layer| {
             let light = layer.light.and_then(|id| scene.light(id))?;
             let rgb = light_rgb(&light.color, scene.camera.white_balance_k);
@@ -63,7 +64,7 @@ fn one_layer_per_light(_scene: &Scene, lights: &mut [(TracedLight, &Light)]) -> 
         // Raise the importance of weak lights for light sampling: each has a reading with its own relative error.
         traced.time_s = (traced.time_s / traced.output).sqrt();
         // A path from the receptor must not see emitters, which are found by light sampling.
-        traced.visible_to_camera = false;
+        traced.hide_from_camera();
     }
     lights.iter().map(|(_, light)| Layer::of_light(light)).chain([Layer::shared("Glow")]).collect()
 }

@@ -8,7 +8,8 @@ use crate::math::angle_between;
 use crate::photo::PhotometricLight;
 use crate::photo::beam::Beam;
 use crate::photo::emitter::{EmitterShape, IntensityDistribution, cone_falloff_at};
-use crate::scene::Cone;
+use crate::raytrace::geometry::PassedBodies;
+use crate::scene::{Cone, LightId};
 use glam::{Mat3, Vec2, Vec3, Vec3A};
 use std::f32::consts::PI;
 
@@ -44,8 +45,12 @@ pub struct TracedLight {
     pub time_s: f32,
     /// Axial intensity, cd, or illuminance of a distant light, lx; with seconds for flash.
     pub output: f32,
-    /// True if camera rays hit the emitter.
+    /// True if camera rays hit the emitter, which hides what is behind it.
     pub visible_to_camera: bool,
+    /// True if camera rays see the emitter before its body: it hides nothing.
+    pub glows_before_body: bool,
+    /// The light of the scene, if it has a body.
+    body_of: Option<LightId>,
     /// Angular transmission of a grid, snoot or barn doors, times a measured distribution.
     beam: Option<OrientedBeam>,
 }
@@ -124,8 +129,36 @@ impl TracedLight {
             time_s: light.exposure_time_s,
             output,
             visible_to_camera: light.visible_to_camera,
+            glows_before_body: false,
+            body_of: None,
             beam: light.beam.clone().map(|beam| OrientedBeam { beam, light_from_world }),
         })
+    }
+
+    /// Gives the light a body, which camera rays see or pass.
+    pub fn with_body(mut self, light: LightId, is_seen: bool) -> Self {
+        (self.body_of, self.glows_before_body) = (Some(light), is_seen && !self.visible_to_camera);
+        self
+    }
+
+    /// Returns the body that its light passes.
+    pub fn own_body(&self) -> PassedBodies {
+        self.body_of.map_or(PassedBodies::None, PassedBodies::Of)
+    }
+
+    /// Returns true for the light with this body.
+    pub fn has_body(&self, light: LightId) -> bool {
+        self.body_of == Some(light)
+    }
+
+    /// Returns true if camera rays see the emitter.
+    pub fn is_seen(&self) -> bool {
+        self.visible_to_camera || self.glows_before_body
+    }
+
+    /// Hides the emitter from rays that start at the camera, or at a receptor.
+    pub fn hide_from_camera(&mut self) {
+        (self.visible_to_camera, self.glows_before_body) = (false, false);
     }
 
     /// Returns true if a modifier or a measured distribution limits the light's directions.

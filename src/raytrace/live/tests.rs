@@ -1,6 +1,7 @@
 //! Tests of the samples that the live view keeps and discards, and of its convergence to a render.
 
 use super::*;
+use crate::raytrace::geometry::PassedBodies;
 use crate::raytrace::{Settings, render};
 use crate::scene::{
     Aim, Camera, CameraFrame, Emitter, Light, Material, Object, ObjectId, Output, Room, Shape, Transform,
@@ -198,7 +199,7 @@ fn disoccluded_pixels_are_traced() {
         for (pixel, hit) in tile.primary_hits.iter().enumerate().filter(|(_, hit)| hit.object == 0) {
             let from = old_eye - traced.origin;
             let to = hit.position - from;
-            if caster.occluded(from, to.normalize(), 0.99 * to.length()) {
+            if caster.occluded(from, to.normalize(), 0.99 * to.length(), PassedBodies::None) {
                 hidden += 1;
                 wrong += usize::from(tile.sums.at(0, pixel).w > 1.0);
             }

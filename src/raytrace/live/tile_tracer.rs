@@ -151,14 +151,14 @@ impl<'a> TileTracer<'a> {
         let scene = self.context.scene;
         let (origin, direction) = camera_ray(self.context.camera, &Sampler::new(x, y, 0, SEED));
         let ray = Ray { origin, direction, t_max: f32::INFINITY };
-        let Some(hit) = self.sampler.tracer.caster.intersect(&ray) else {
+        let Some(hit) = self.sampler.tracer.caster.intersect_from_camera(&ray) else {
             return PrimaryHit::BACKGROUND;
         };
         let surface = scene.surface(&ray, &hit);
         let material = &scene.materials[surface.material as usize];
         let is_in_front =
             |light: &TracedLight| light.intersect(origin, direction).is_some_and(|emitter| emitter.distance < hit.t);
-        let shows_emitter = || scene.lights.iter().any(|light| light.visible_to_camera && is_in_front(light));
+        let shows_emitter = || scene.lights.iter().any(|light| light.is_seen() && is_in_front(light));
         let is_view_dependent = material.transmits() || shows_emitter();
         PrimaryHit {
             position: surface.position,

@@ -5,6 +5,7 @@ use crate::scene::{
     Aim, Alpha, BarnDoors, ColorSource, Cone, Emitter, Facing, Focus, Gel, ObjectId, Orientation, Output, Receptor,
     Role, Sensor, Shape, Subsurface, TextureRef,
 };
+use crate::scene::{Bodies, BodyChoice};
 use glam::Vec3;
 
 const LIGHT: LightId = LightId(3);
@@ -184,6 +185,9 @@ fn shapes_and_surfaces_need_preparation() {
             ("objects.position", |s| s.objects[0].transform.position.x += 1.0),
             ("objects.rotation_deg", |s| s.objects[0].transform.rotation_deg.x += 1.0),
             ("objects.scale", |s| s.objects[0].transform.scale.x += 1.0),
+            ("bodies", |s| s.bodies = Bodies::InReflections),
+            ("lights.body", |s| s.lights[0].body = BodyChoice::On),
+            ("lights.body of a light that is off", |s| s.lights[1].body = BodyChoice::InReflections),
         ],
     );
     assert_class(
@@ -212,6 +216,42 @@ fn shapes_and_surfaces_need_preparation() {
             ("emission_cd_m2", |s| s.objects[0].material.emission_cd_m2[0] = 1.0),
         ],
     );
+}
+
+#[test]
+fn the_body_of_a_moved_light_is_geometry_and_dimming_moves_none() {
+    let with_bodies = || Scene { bodies: Bodies::On, ..scene() };
+    let is_geometry = |edit: Edit| {
+        let mut edited = with_bodies();
+        edit(&mut edited);
+        SceneChange::between(&with_bodies(), &edited).geometry
+    };
+    let moved: &[(&str, Edit)] = &[
+        ("position", |s| s.lights[0].position.x += 1.0),
+        ("position of a light that is off", |s| s.lights[1].position.x += 1.0),
+        ("aim", |s| s.lights[0].aim = Aim::Point(Vec3::X)),
+        ("roll_deg", |s| s.lights[0].roll_deg = 5.0),
+        ("emitter", |s| s.lights[0].emitter = Emitter::Point),
+        ("modifier.grid_deg", |s| s.lights[0].modifier.grid_deg = Some(30.0)),
+        ("modifier.doors", |s| s.lights[0].modifier.doors = Some(BarnDoors::HALF_OPEN)),
+        ("bodies", |s| s.bodies = Bodies::InReflections),
+        ("body", |s| s.lights[0].body = BodyChoice::Off),
+        ("removed", |s| drop(s.lights.remove(0))),
+    ];
+    for (field, edit) in moved {
+        assert!(is_geometry(*edit), "{field}");
+    }
+    let dimmed: &[(&str, Edit)] = &[
+        ("on", |s| s.lights[0].on = false),
+        ("power.dial_stops", |s| s.lights[0].power.dial_stops = -1.0),
+        ("color.gel", |s| s.lights[0].color.gel = Gel::Mired(159.0)),
+        ("modifier.loss_stops", |s| s.lights[0].modifier.loss_stops = 0.7),
+        ("body, said again", |s| s.lights[0].body = BodyChoice::On),
+        ("camera", |s| s.camera.position.x += 1.0),
+    ];
+    for (field, edit) in dimmed {
+        assert!(!is_geometry(*edit), "{field}");
+    }
 }
 
 #[test]

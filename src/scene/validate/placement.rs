@@ -38,6 +38,10 @@ pub fn placement(scene: &Scene, assets: &Assets) -> Vec<Finding> {
             warn(&place, message);
         }
     }
+    for (index, light) in scene.lights.iter().enumerate().filter(|(_, light)| scene.is_body_in_picture(light)) {
+        let place = format!("lights[{index}] {:?} body", light.name);
+        warn(&place, "it stands in the picture: move it, or hide it from the camera".to_owned());
+    }
     findings
 }
 

@@ -2,8 +2,8 @@
 
 use super::setup::StudioSetup;
 use crate::scene::{
-    Aim, Camera, ColorSource, Emitter, Focus, Gel, Head, Light, LightId, Modifier, ObjectId, Orientation, Output, Role,
-    Sensor,
+    Aim, BodyChoice, Camera, ColorSource, Emitter, Focus, Gel, Head, Light, LightId, Modifier, ObjectId, Orientation,
+    Output, Role, Sensor,
 };
 use glam::Vec3;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -59,6 +59,7 @@ difference! {
         gel_loss_counts: bool = color.gel_loss_counts,
         on: bool = on,
         visible_to_camera: bool = visible_to_camera,
+        body: BodyChoice = body,
         muted: bool = muted,
     }
 }

@@ -81,7 +81,7 @@ impl Scene {
 
     /// Returns the scene as it is shown, without its variants.
     pub fn without_variants(&self) -> Scene {
-        let Scene { name, description, camera, room, objects, lights, meter, solo, variants: _ } = self;
+        let Scene { name, description, camera, room, objects, lights, bodies, meter, solo, variants: _ } = self;
         Scene {
             name: name.clone(),
             description: description.clone(),
@@ -89,6 +89,7 @@ impl Scene {
             room: room.clone(),
             objects: objects.clone(),
             lights: lights.clone(),
+            bodies: *bodies,
             meter: *meter,
             solo: solo.clone(),
             variants: Variants::default(),

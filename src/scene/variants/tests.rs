@@ -1,7 +1,7 @@
 use super::*;
 use crate::scene::{
-    Camera, ColorSource, Emitter, Focus, Gel, Head, HeadDial, LightColor, LightId, Modifier, Object, ObjectId,
-    Orientation, Output, Power, Role, Scene, Sensor, Shape,
+    BodyChoice, Camera, ColorSource, Emitter, Focus, Gel, Head, HeadDial, LightColor, LightId, Modifier, Object,
+    ObjectId, Orientation, Output, Power, Role, Scene, Sensor, Shape,
 };
 use glam::Vec3;
 
@@ -192,6 +192,7 @@ fn every_field_of_light_and_camera_is_compared() {
         name: "Key".to_owned(),
         locked: false,
         role: Role::Rim,
+        body: BodyChoice::On,
         position: Vec3::X,
         aim: Aim::Point(Vec3::Y),
         roll_deg: 1.0,

@@ -62,7 +62,7 @@ pub(super) fn light_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Ligh
             });
         });
     });
-    section(ui, "Loss, grid and flaps", true, |ui| modifier::modifier_rows(ui, &mut light));
+    section(ui, "Loss, grid and flaps", true, |ui| modifier::modifier_rows(ui, scene, &mut light));
     if light != *original {
         context.out.push(Command::Apply(Action::SetLight(Box::new(light))));
     }

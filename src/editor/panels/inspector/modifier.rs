@@ -1,14 +1,17 @@
 //! The modifier rows of a light's inspector: modifier, size, losses, grid and barn doors.
 
 use super::power;
+use crate::editor::commands::item_menu::{HIDE_FROM_CAMERA, HIDE_TIP};
 use crate::editor::document::catalog::{self, CatalogKind, CatalogTab};
+use crate::editor::ui::theme;
 use crate::editor::ui::widgets::{NumberField, SIZE_CM, fact, row};
 use crate::photo::beam::{Beam, beam_loss_stops};
 use crate::photo::emitter::EmitterShape;
 use crate::scene::{
-    Assets, BarnDoors, Cone, Emitter, HARD_GRIDS_DEG, Light, Modifier, NamedModifier, SOFT_GRIDS_DEG, Scene,
+    Assets, BarnDoors, Bodies, BodyChoice, Cone, Emitter, HARD_GRIDS_DEG, Light, Modifier, ModifierShape,
+    NamedModifier, SOFT_GRIDS_DEG, Scene,
 };
-use eframe::egui::{ComboBox, Ui};
+use eframe::egui::{ComboBox, RichText, Ui};
 
 const CONE: NumberField = NumberField::new(0.5, 0.5, 180.0, 1, "\u{b0}");
 const FLAP: NumberField = NumberField::new(0.5, 0.0, 90.0, 0, "\u{b0}");
@@ -20,14 +23,45 @@ pub(super) fn kind_rows(ui: &mut Ui, scene: &Scene, assets: &Assets, light: &mut
     size_rows(ui, &mut light.emitter);
 }
 
-/// Draws the rows of losses, grid, barn doors and visibility.
-pub(super) fn modifier_rows(ui: &mut Ui, light: &mut Light) {
+/// Draws the rows of losses, grid, barn doors, visibility and body.
+pub(super) fn modifier_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
     if light.emitter != Emitter::Surround {
         loss_rows(ui, light);
     }
     row(ui, "In the picture", "Mirrors and glass always show it", |ui| {
         ui.checkbox(&mut light.visible_to_camera, "Camera sees it");
     });
+    if ModifierShape::of(light).is_some() {
+        body_rows(ui, scene, light);
+    }
+}
+
+/// Draws the rows of the light's body: modifier, head and stand.
+fn body_rows(ui: &mut Ui, scene: &Scene, light: &mut Light) {
+    let as_studio = format!("As the studio ({})", scene.bodies.label().to_lowercase());
+    let label = |choice| match choice {
+        BodyChoice::AsStudio => as_studio.as_str(),
+        BodyChoice::On => Bodies::On.label(),
+        BodyChoice::InReflections => Bodies::InReflections.label(),
+        BodyChoice::Off => Bodies::Off.label(),
+    };
+    let tip = "Modifier, head and stand: what blocks the light of others and shows in chrome";
+    row(ui, "Body", tip, |ui| {
+        let list = ComboBox::from_id_salt("body").selected_text(label(light.body)).width(ui.available_width() - 8.0);
+        list.show_ui(ui, |ui| {
+            for choice in BodyChoice::ALL {
+                ui.selectable_value(&mut light.body, choice, label(choice));
+            }
+        });
+    });
+    if scene.is_body_in_picture(light) {
+        row(ui, "", "Some of it is inside of the frame, unless something hides it", |ui| {
+            ui.label(RichText::new("It stands in the picture.").color(theme::bad(ui)).small());
+            if ui.button(HIDE_FROM_CAMERA).on_hover_text(HIDE_TIP).clicked() {
+                light.hide_from_camera();
+            }
+        });
+    }
 }
 
 /// Draws the list of named modifiers; other lights show the name of their emitter.

@@ -6,13 +6,14 @@ use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::Item;
 use crate::editor::ui::widgets::{NumberField, row};
-use crate::scene::Room;
-use eframe::egui::{RichText, Ui};
+use crate::scene::{Bodies, Room};
+use eframe::egui::{ComboBox, RichText, Ui};
 
 /// Draws the inspector of the room.
 pub(super) fn room_ui(ui: &mut Ui, context: &mut InspectorContext<'_>) {
     let original = &context.document.scene().room;
     title(ui, "Room", "");
+    bodies_row(ui, context);
     let mut is_there = original.is_some();
     ui.checkbox(&mut is_there, "Floor, walls and ceiling")
         .on_hover_text("They bounce light around. Without them the studio is an endless black void.");
@@ -41,5 +42,23 @@ pub(super) fn room_ui(ui: &mut Ui, context: &mut InspectorContext<'_>) {
     }
     if original.as_ref() != Some(&room) {
         context.out.push(Command::Apply(Action::SetRoom(Some(Box::new(room)))));
+    }
+}
+
+/// Draws the row of the bodies of all lights.
+fn bodies_row(ui: &mut Ui, context: &mut InspectorContext<'_>) {
+    let mut bodies = context.document.scene().bodies;
+    let tip = "Modifiers, heads and stands of all lights. They block the light of others and show in chrome; meter and \
+               light of their own stay as they are. A light may differ.";
+    row(ui, "Bodies", tip, |ui| {
+        let list = ComboBox::from_id_salt("bodies").selected_text(bodies.label()).width(ui.available_width() - 8.0);
+        list.show_ui(ui, |ui| {
+            for each in Bodies::ALL {
+                ui.selectable_value(&mut bodies, each, each.label());
+            }
+        });
+    });
+    if bodies != context.document.scene().bodies {
+        context.out.push(Command::Apply(Action::SetBodies(bodies)));
     }
 }
