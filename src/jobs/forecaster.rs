@@ -152,10 +152,11 @@ fn run(pilot: &Pilot, cache: &GeometryCache, control: &Arc<RenderControl>) -> Op
         _ => {}
     });
     let rendered = rendered.ok()?;
-    let (spp, noise_stops) = (rendered.film.spp(), rendered.film.noise_stops());
-    let pixels = u64::from(settings.width) * u64::from(settings.height);
-    let forecast = Forecast::from_render(rendered.build_s, rendered.trace_s, pixels, spp, noise_stops)?;
-    Some(first_noise.map_or(forecast, |noise| forecast.with_noise_at(FIRST_SPP, noise)))
+    let forecast = Forecast::from_render(rendered.build_s, rendered.trace_s, &rendered.film)?;
+    Some(match first_noise {
+        Some(noise) => forecast.with_noise_at(FIRST_SPP, noise),
+        None => forecast,
+    })
 }
 
 #[cfg(test)]

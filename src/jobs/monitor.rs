@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 /// Numbers for a progress bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Part of the samples that are taken, 0 to 1.
+    /// Part of the work that is done, 0 to 1: of the samples, or of the rays that a noise limit is predicted to need.
     pub fraction: f32,
-    /// Samples per pixel so far.
+    /// Samples per pixel so far, on average.
     pub samples: f32,
     /// Rays per second, millions.
     pub mrays_s: f32,
@@ -26,6 +26,8 @@ pub struct RenderMonitor {
     control: Arc<RenderControl>,
     pixels: u64,
     spp: u32,
+    /// The render ends by its noise: the number of samples is not known in advance.
+    ends_by_noise: bool,
     started: Instant,
     stages: Mutex<StageTimes>,
 }
@@ -37,6 +39,10 @@ struct StageTimes {
     coarse: Option<Instant>,
     /// Samples of the coarse picture, which are not the picture's own.
     coarse_samples: u64,
+    /// Rays of the coarse picture.
+    coarse_rays: u64,
+    /// Rays of the whole picture, as far as they can be predicted.
+    predicted_rays: Option<u64>,
     first_pass: Option<Instant>,
     ended: Option<Instant>,
 }
@@ -48,6 +54,7 @@ impl RenderMonitor {
             control,
             pixels: u64::from(settings.width) * u64::from(settings.height),
             spp: settings.spp,
+            ends_by_noise: settings.noise_stops.is_some(),
             started: Instant::now(),
             stages: Mutex::default(),
         }
@@ -58,7 +65,7 @@ impl RenderMonitor {
         &self.control
     }
 
-    /// Returns the number of samples of the whole picture.
+    /// Returns the largest number of samples of the whole picture.
     pub fn total_samples(&self) -> u64 {
         (self.pixels * u64::from(self.spp)).max(1)
     }
@@ -66,15 +73,22 @@ impl RenderMonitor {
     /// Returns the current progress.
     pub fn progress(&self) -> Progress {
         let stages = *locked(&self.stages);
-        let total = self.total_samples();
-        let done = self.control.samples_done().saturating_sub(stages.coarse_samples).min(total);
+        let samples = self.control.samples_done().saturating_sub(stages.coarse_samples);
+        let rays = self.control.rays().saturating_sub(stages.coarse_rays);
+        let is_over = stages.ended.is_some() && !self.control.is_cancelled();
+        let (done, total) = match (self.ends_by_noise, stages.predicted_rays) {
+            (true, _) if is_over => (1, 1),
+            (true, Some(total)) => (rays.min(total), total.max(1)),
+            (true, None) => (0, 1),
+            (false, _) => (samples.min(self.total_samples()), self.total_samples()),
+        };
         let end = stages.ended.unwrap_or_else(Instant::now);
         let tracing_s = stages.tracing.map_or(0.0, |since| (end - since).as_secs_f64());
         let fraction = done as f64 / total as f64;
         let is_enough = tracing_s > 0.3 && fraction > 0.002;
         Progress {
             fraction: fraction as f32,
-            samples: done as f32 / self.pixels.max(1) as f32,
+            samples: samples as f32 / self.pixels.max(1) as f32,
             mrays_s: if tracing_s > 0.0 { (self.control.rays() as f64 * 1e-6 / tracing_s) as f32 } else { 0.0 },
             elapsed: end - self.started,
             left: is_enough.then(|| Duration::from_secs_f64(tracing_s * (1.0 - fraction) / fraction)),
@@ -98,7 +112,8 @@ impl RenderMonitor {
 
     pub(super) fn finish_coarse(&self) {
         let mut stages = locked(&self.stages);
-        (stages.coarse, stages.coarse_samples) = (Some(Instant::now()), self.control.samples_done());
+        stages.coarse = Some(Instant::now());
+        (stages.coarse_samples, stages.coarse_rays) = (self.control.samples_done(), self.control.rays());
     }
 
     pub(super) fn finish_pass(&self) {
@@ -107,6 +122,13 @@ impl RenderMonitor {
             stages.first_pass = Some(Instant::now());
             log::debug!("every pixel has a sample after {} ms", self.started.elapsed().as_millis());
         }
+    }
+
+    /// Takes the prediction of the rays that are still needed after a pass.
+    pub(super) fn predict_rays_left(&self, left: u64) {
+        let mut stages = locked(&self.stages);
+        let done = self.control.rays().saturating_sub(stages.coarse_rays);
+        stages.predicted_rays = Some(done + left);
     }
 
     pub(super) fn finish(&self) {

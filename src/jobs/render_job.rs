@@ -35,17 +35,13 @@ impl RenderPhase {
     }
 }
 
-/// Cost and noise of a render that was not cancelled.
+/// Cost of a render that was not cancelled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderOutcome {
     /// Time to load missing assets and to build BVHs and tables, seconds.
     pub build_s: f64,
     /// Time to trace, seconds.
     pub trace_s: f64,
-    /// Samples per pixel.
-    pub spp: u32,
-    /// Estimated noise of the picture, stops.
-    pub noise_stops: f32,
 }
 
 /// A render to be made in the background.
@@ -215,8 +211,7 @@ fn run(task: &Task, inbox: &Inbox<Task, Report>) {
     // Publish the outcome.
     report.phase = if control.is_cancelled() { RenderPhase::Cancelled } else { RenderPhase::Done };
     if !control.is_cancelled() {
-        let (spp, noise_stops) = (film.spp(), film.noise_stops());
-        report.outcome = Some(RenderOutcome { build_s: load_s + build_s, trace_s, spp, noise_stops });
+        report.outcome = Some(RenderOutcome { build_s: load_s + build_s, trace_s });
     }
     if film.spp() > 0 {
         report.film = Some(Arc::new(film));

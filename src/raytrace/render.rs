@@ -5,6 +5,7 @@ use super::control::RenderControl;
 use super::film::{Film, FilmTile};
 use super::lens::FilmCamera;
 use super::limits::PathLimits;
+use super::noise_target::NoiseTarget;
 use super::passes::{self, PassSchedule, RenderPhotons, SamplePass};
 use super::path_tracer::PathTracer;
 use super::pixel_sampler::PixelSampler;
@@ -14,9 +15,6 @@ use super::settings::Settings;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-
-/// Samples per pixel before the noise of a tile is estimated: fewer make the estimate unreliable.
-const MIN_NOISE_SPP: u32 = 8;
 
 /// Returns the film of a render before its first sample.
 pub fn empty_film(scene: &RenderScene, settings: &Settings) -> Film {
@@ -45,12 +43,13 @@ pub fn resume(
 ) -> Film {
     let camera = scene.lens.film_camera(settings.width, settings.height);
     let photons = RenderPhotons::new(scene, settings, control);
+    let target = NoiseTarget::of(settings);
     // Each pass adds samples to the noisiest tile.
     let taken = film.most_spp();
     for pass in PassSchedule::new(scene, settings).passes().skip_while(|pass| pass.first_sample < taken) {
         let photon_map = photons.trace(pass, control);
         let job = TileJob { scene, photon_map: photon_map.as_ref(), camera: &camera, settings, control, pass };
-        let needs_samples = |tile: &&mut Arc<FilmTile>| !is_quiet(tile, settings);
+        let needs_samples = |tile: &&mut Arc<FilmTile>| target.is_none_or(|target| !target.is_met(tile));
         let mut noisy: Vec<&mut Arc<FilmTile>> = film.tiles_mut().iter_mut().filter(needs_samples).collect();
         if noisy.is_empty() || !noisy.par_iter_mut().with_max_len(1).all(|tile| job.run(Arc::make_mut(tile))) {
             break;
@@ -60,12 +59,6 @@ pub fn resume(
         }
     }
     film
-}
-
-/// Returns true if a tile needs no more samples.
-fn is_quiet(tile: &FilmTile, settings: &Settings) -> bool {
-    let within = |limit: f32| tile.noise_stops().is_none_or(|noise| noise <= limit);
-    tile.spp() >= MIN_NOISE_SPP && settings.noise_stops.is_some_and(within)
 }
 
 /// A pass of one tile.
@@ -102,7 +95,10 @@ impl TileJob<'_> {
             }
         }
         tile.blocks.finish_pass(samples);
-        self.control.count(pixel_sampler.tracer.caster.rays, tile.pixels() as u64 * u64::from(samples));
+        let (rays, samples) = (pixel_sampler.tracer.caster.rays, tile.pixels() as u64 * u64::from(samples));
+        tile.rays += rays;
+        tile.traced_samples += samples;
+        self.control.count(rays, samples);
         true
     }
 }

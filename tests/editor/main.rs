@@ -296,7 +296,7 @@ fn render_tiny(window: &mut Window) {
     let rendering = window.state_mut().rendering_mut();
     rendering.settings.size = PictureSize::Custom(48, 32);
     rendering.settings.samples = 2;
-    rendering.settings.quality = Quality::Custom;
+    (rendering.settings.quality, rendering.settings.denoise) = (Quality::Custom, false);
     settle(window);
     click(window, "Render the picture");
     let rendering = window.state().rendering();

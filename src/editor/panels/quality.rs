@@ -4,14 +4,15 @@ use crate::editor::picture::rendering::{Quality, RenderSettings};
 use crate::editor::ui::theme;
 use crate::editor::ui::units::duration_text;
 use crate::jobs::{Estimate, Forecaster};
+use crate::raytrace::NoiseTarget;
 use crate::scene::Camera;
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, vec2};
 use std::time::Duration;
 
 /// Height of the chart, points.
 const HEIGHT: f32 = 110.0;
-/// The quality presets with their labels.
-const PRESETS: [(Quality, &str); 3] = [(Quality::Draft, "Draft"), (Quality::Good, "Good"), (Quality::Final, "Final")];
+/// Limits of noise of the chart's line, stops.
+const LINE: [f32; 11] = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03, 0.015, 0.008, 0.004, 0.002, 0.001];
 
 /// Draws a line per preset, which selects it, and the chart.
 pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, forecaster: &Forecaster) {
@@ -23,30 +24,38 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
         ui.label(RichText::new(text).weak().small());
         return;
     };
-    for (quality, word) in PRESETS {
-        let Some(samples) = quality.samples() else { continue };
-        let text = format!("{word}: {}", estimate_text(forecast.estimate(pixels, samples)));
-        let tip = format!("{samples} samples, estimated from a pilot picture and from what renders took");
+    let shown = *settings;
+    let by_noise = |noise_stops: f32| {
+        let target = NoiseTarget::new(shown.traced_noise_stops(noise_stops));
+        shown.shown_estimate(forecast.estimate_by_noise(pixels, target))
+    };
+    let of = |quality: Quality| match quality.noise_stops() {
+        Some(noise) => by_noise(noise),
+        None => shown.shown_estimate(forecast.estimate(pixels, shown.samples)),
+    };
+    for (quality, word) in Quality::BY_NOISE {
+        let text = format!("{word}: {}", estimate_text(of(quality)));
+        let tip = "Estimated from a pilot picture and from what renders took";
         if ui.selectable_label(settings.quality == quality, text).on_hover_text(tip).clicked() {
-            (settings.quality, settings.samples) = (quality, samples);
+            settings.quality = quality;
         }
     }
+    let chosen = of(settings.quality);
     if settings.quality == Quality::Custom {
-        let text =
-            format!("{} samples: {}", settings.samples, estimate_text(forecast.estimate(pixels, settings.samples)));
+        let text = format!("{} samples: {}", settings.samples, estimate_text(chosen));
         ui.label(RichText::new(text).color(theme::accent(ui)));
     }
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
-    let chosen = forecast.estimate(pixels, settings.samples);
     let label = format!("Noise against time; chosen: {}", estimate_text(chosen));
     crate::editor::ui::widgets::named(ui, &response, &label);
     response.on_hover_text(
         "Line: estimate. Rings: draft, good, final. Dot: your choice. Crosses: renders as they came out.",
     );
-    let at = |samples: u32| forecast.estimate(pixels, samples);
-    let marks: Vec<Estimate> = PRESETS.iter().filter_map(|(quality, _)| quality.samples()).map(at).collect();
-    let line: Vec<Estimate> = (0..=14).map(|power| at(1 << power)).collect();
-    QualityChart::around(rect, &line[1..13]).paint(&ui.painter_at(rect), &line, &marks, chosen, forecaster.measured());
+    let marks = Quality::BY_NOISE.map(|(quality, _)| of(quality));
+    let line = LINE.map(by_noise);
+    let measured: Vec<Estimate> =
+        forecaster.measured().iter().map(|estimate| shown.shown_estimate(*estimate)).collect();
+    QualityChart::around(rect, &line).paint(&ui.painter_at(rect), &line, &marks, chosen, &measured);
 }
 
 /// Formats an estimate: `6 s, 0.10 stops`.

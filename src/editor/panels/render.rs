@@ -75,21 +75,23 @@ fn size_rows(ui: &mut Ui, settings: &mut RenderSettings, scene: &Scene) {
 }
 
 fn quality_rows(ui: &mut Ui, settings: &mut RenderSettings) {
-    row(ui, "Quality", "More samples, less noise, more time: four times the samples halve the noise", |ui| {
+    row(ui, "Quality", "The noise that the picture may have; half the noise takes about four times as long", |ui| {
         let choices = [
-            (Quality::Draft, "Draft", "16 samples: seconds, to judge the light"),
-            (Quality::Good, "Good", "128 samples: to show around"),
-            (Quality::Final, "Final", "1024 samples: to deliver"),
+            (Quality::Draft, "Draft", "To judge the light: noise of a tenth of a stop"),
+            (Quality::Good, "Good", "To share: noise of 0.03 stops"),
+            (Quality::Final, "Final", "To print: noise of 0.01 stops"),
+            (Quality::Custom, "Custom", "A fixed number of light paths through each pixel"),
         ];
         widgets::choice(ui, &mut settings.quality, &choices);
-        settings.samples = settings.quality.samples().unwrap_or(settings.samples);
     });
-    row(ui, "Samples", "Light paths through each pixel", |ui| {
-        let mut samples = settings.samples as f32;
-        NumberField::new(1.0, 1.0, 65_536.0, 0, "").ui(ui, &mut samples);
-        if samples as u32 != settings.samples {
-            (settings.samples, settings.quality) = (samples as u32, Quality::Custom);
-        }
+    if settings.quality == Quality::Custom {
+        row(ui, "Samples", "Light paths through each pixel", |ui| {
+            let mut samples = settings.samples as f32;
+            NumberField::new(1.0, 1.0, 65_536.0, 0, "").ui(ui, &mut samples);
+            settings.samples = samples as u32;
+        });
+    }
+    row(ui, "Light", "What is traced", |ui| {
         ComboBox::from_id_salt("method")
             .selected_text(method_label(settings.method))
             .width(ui.available_width() - 8.0)
@@ -147,7 +149,10 @@ fn progress_ui(ui: &mut Ui, rendering: &Rendering) {
     let bar = ui.add(bar.text(RichText::new(progress_text(phase, &progress)).small()));
     widgets::named(ui, &bar, "Progress");
     if *phase != RenderPhase::Preparing {
-        let samples = format!("{:.0} of {} samples", progress.samples.floor(), job.settings.spp);
+        let samples = match job.settings.noise_stops {
+            Some(_) => format!("{:.0} samples on average", progress.samples),
+            None => format!("{:.0} of {} samples", progress.samples.floor(), job.settings.spp),
+        };
         // A picture of an earlier run has its samples alone.
         let text = if progress.mrays_s > 0.0 {
             format!("{samples}    {:.1} Mrays/s    {}", progress.mrays_s, duration_text(progress.elapsed))

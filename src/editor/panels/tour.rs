@@ -44,8 +44,8 @@ const CARDS: [(WindowPart, &str, &str); 6] = [
     (
         WindowPart::Render,
         "Render",
-        "Traces the picture that the camera would take (R). Draft takes seconds; the line above the button says how \
-         long it takes on this machine.",
+        "Traces the picture that the camera would take (R). Quality is the noise that it may have; \"Time and noise\" says \
+         how long that takes on this machine.",
     ),
     (
         WindowPart::Picture,

@@ -28,7 +28,7 @@ use crate::editor::window::recovery::Recovery;
 use crate::editor::window::rescue;
 use crate::editor::window::session::Session;
 use crate::jobs::{Estimate, Forecast, ForecastSubject, RenderOutcome, sentence};
-use crate::raytrace::{GeometryCache, Settings};
+use crate::raytrace::GeometryCache;
 use crate::scene::SceneChange;
 use eframe::egui::text_selection::LabelSelectionState;
 use eframe::egui::{self, CentralPanel, Context, Frame, Margin, Panel, Rangef, Rect, Ui, ViewportCommand};
@@ -226,13 +226,12 @@ impl App {
     fn update_forecast(&mut self) {
         let Some((job, outcome)) = self.rendering.take_outcome() else { return };
         if !SceneChange::between(&job.scene, self.document.scene()).needs_redraw() {
-            let Settings { width, height, method, .. } = job.settings;
-            let RenderOutcome { build_s, trace_s, spp, noise_stops } = outcome;
-            let pixels = u64::from(width) * u64::from(height);
+            let RenderOutcome { build_s, trace_s } = outcome;
             // Renders of few samples have no noise estimate
-            let Some(forecast) = Forecast::from_render(build_s, trace_s, pixels, spp, noise_stops) else { return };
-            let measured = Estimate { seconds: build_s + trace_s, noise_stops: noise_stops.into() };
-            let subject = ForecastSubject { revision: self.document.revisions().image, method };
+            let Some(film) = job.film() else { return };
+            let Some(forecast) = Forecast::from_render(build_s, trace_s, film) else { return };
+            let measured = Estimate { seconds: build_s + trace_s, noise_stops: forecast.noise_stops() };
+            let subject = ForecastSubject { revision: self.document.revisions().image, method: job.settings.method };
             self.background.forecaster.learn(subject, forecast, measured);
         }
     }

@@ -17,6 +17,8 @@ pub(super) const WHOLE: &str = "picture";
 pub(super) const STUDIO_FILE: &str = "catchlightStudio";
 /// Text of a picture without a studio.
 pub(super) const NO_STUDIO: &[u8] = b"_";
+/// Characters of a layer's name that stay when its part gets a number.
+const LONGEST_STEM: usize = 180;
 /// Longest text of a studio that a picture holds, bytes.
 const LONGEST_STUDIO: usize = 4 << 20;
 /// Channels of the pixels that are shown, and of those before the denoiser.
@@ -36,11 +38,12 @@ pub(super) fn image<'a>(
     let size = (picture.width as usize, picture.height as usize);
     let mut whole = part(WHOLE, size, channels, info);
     whole.attributes.other.insert(text(STUDIO_FILE), AttributeValue::Text(studio_text(info)));
-    let layer = |(index, (name, layer)): (usize, &'a (String, LazyPicture<'a>))| {
+    let part_names = part_names(layers.iter().map(|(name, _)| name.as_str()));
+    let layer = |(index, (_, layer)): (usize, &'a (String, LazyPicture<'a>))| {
         let mut channels = Vec::from(layer_channels(SHOWN_CHANNELS, layer));
         let noisy = noisy.and_then(|noisy| noisy.layers.get(index));
         channels.extend(noisy.into_iter().flat_map(|(_, noisy)| layer_channels(NOISY_CHANNELS, noisy)));
-        part(name, size, channels, info)
+        part(&part_names[index], size, channels, info)
     };
     let parts = std::iter::once(whole).chain(layers.iter().enumerate().map(layer));
     Image::from_layers(ImageAttributes::new(IntegerBounds::from_dimensions(size)), parts.collect::<Layers<_>>())
@@ -146,6 +149,31 @@ pub(super) fn studio_text(info: &PictureInfo) -> Text {
     let studio = info.studio.as_bytes();
     let is_fit = !studio.is_empty() && studio.len() <= LONGEST_STUDIO;
     Text::from_slice_unchecked(if is_fit { studio } else { NO_STUDIO })
+}
+
+/// Returns the names of the parts of layers. No two parts of a file may have one name, and names that differ in letters
+/// that EXR does not have are equal there: later ones get a number.
+fn part_names<'a>(layers: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut taken = vec![text(WHOLE)];
+    let unique = |name: &str| {
+        let stem: String = name.chars().take(LONGEST_STEM).collect();
+        let numbered = (2..).map(|number| format!("{stem} {number}"));
+        let mut names = std::iter::once(name.to_owned()).chain(numbered);
+        let name = names.find(|name| !taken.contains(&text(name))).unwrap_or_default();
+        taken.push(text(&name));
+        name
+    };
+    layers.map(unique).collect()
+}
+
+/// Returns true if a part has the name of a layer, or that with a number.
+pub(super) fn is_part_name(part: &str, layer: &str) -> bool {
+    let stem: String = layer.chars().take(LONGEST_STEM).collect();
+    let numbered = || {
+        let number = part.strip_prefix(&text(&stem).to_string())?.strip_prefix(' ')?;
+        number.parse::<u32>().ok()
+    };
+    text(part) == text(layer) || numbered().is_some()
 }
 
 /// Converts text to EXR's byte strings: at most 200 bytes, not empty, `_` for characters that are not printable ASCII.

@@ -1,7 +1,7 @@
 //! Rendered pictures that are read back from EXR files, with their lights and the studio.
 
 use super::PictureInfo;
-use super::exr_file::{NOISY_CHANNELS, SHOWN_CHANNELS, checked_size, text};
+use super::exr_file::{NOISY_CHANNELS, SHOWN_CHANNELS, checked_size, is_part_name, text};
 use super::exr_header::{Header, ReadExrPart, read_parts};
 use crate::io::error::{Problem, reason};
 use crate::io::kept_picture::KeptPicture;
@@ -70,11 +70,11 @@ fn settings(whole: &ReadExrPart, info: &PictureInfo, aovs: bool) -> Result<Setti
 }
 
 /// Returns the layer of a part by its name: that of a light, or of the lights of a role that share one, as far as they
-/// are on. None for a light that is off. `unused` has the lights without a part so far: parts of lights with one name
-/// are in the lights' order.
+/// are on. None for a light that is off. `unused` has the lights without a part so far: parts whose names differ by a
+/// number alone are in the lights' order.
 fn layer_of(scene: &Scene, unused: &mut Vec<&Light>, name: &str) -> Option<Layer> {
-    let is_named = |own: &str| text(own).as_slice() == text(name).as_slice();
-    if let Some(index) = unused.iter().position(|light| is_named(&light.name)) {
+    let exact = unused.iter().position(|light| text(&light.name) == text(name));
+    if let Some(index) = exact.or_else(|| unused.iter().position(|light| is_part_name(name, &light.name))) {
         let light = unused.remove(index);
         return light.on.then(|| Layer::of_light(light));
     }
@@ -166,7 +166,7 @@ mod tests {
 
     #[test]
     fn lights_whose_names_are_equal_in_a_file_keep_their_own_layers() {
-        // EXR names layers in Latin-1: other letters become question marks
+        // Their letters become underlines, and the export failed: a file has no two parts of one name
         let (film, scene, bytes) = rendered(0, |scene| {
             for (light, name) in scene.lights.iter_mut().zip(["\u{4e3b}\u{5149}", "\u{8f85}\u{5149}"]) {
                 light.name = name.to_owned();

@@ -13,7 +13,7 @@ mod tile;
 use aov::AovTile;
 pub use gate::{NonFiniteGate, NonFiniteReport};
 pub use layer::{Layer, MAX_LIGHT_LAYERS, assign_layers, share_layers};
-pub use noise::{MIN_ESTIMATE_SPP, SampleBlocks};
+pub use noise::{MIN_ESTIMATE_SPP, MIN_ROUGH_ESTIMATE_SPP, SampleBlocks};
 pub use sums::LayerSums;
 pub use tile::{FilmTile, TILE};
 
@@ -143,6 +143,12 @@ impl Film {
     /// are [`MIN_ESTIMATE_SPP`] samples; none for tiles that are too dark.
     pub fn tile_noise_stops(&self) -> Vec<Option<f32>> {
         self.tiles.iter().map(|tile| tile.noise_stops()).collect()
+    }
+
+    /// Returns samples per pixel and roughly estimated noise of each tile: as [`Film::tile_noise_stops`], but from two
+    /// samples on.
+    pub fn tile_noise(&self) -> Vec<(u32, Option<f32>)> {
+        self.tiles.iter().map(|tile| (tile.spp(), tile.blocks.rough_noise_stops(tile.mean()))).collect()
     }
 
     /// The tiles.

@@ -29,6 +29,10 @@ pub struct FilmTile {
     pub aovs: Option<Box<AovTile>>,
     /// Discarded non-finite contributions.
     pub nonfinite: NonFiniteReport,
+    /// Rays that this run has traced for the tile.
+    pub rays: u64,
+    /// Pixel samples that this run has traced.
+    pub traced_samples: u64,
 }
 
 impl FilmTile {
@@ -43,6 +47,8 @@ impl FilmTile {
             blocks: SampleBlocks::new(pixels),
             aovs: aovs.then(|| Box::new(AovTile::new(pixels))),
             nonfinite: NonFiniteReport::default(),
+            rays: 0,
+            traced_samples: 0,
         }
     }
 
@@ -97,7 +103,12 @@ impl FilmTile {
 
     /// Estimated noise, see [`SampleBlocks::noise_stops`].
     pub fn noise_stops(&self) -> Option<f32> {
-        self.blocks.noise_stops(self.blocks.mean())
+        self.blocks.noise_stops(self.mean())
+    }
+
+    /// Mean exposed luminance of its pixels.
+    pub fn mean(&self) -> f32 {
+        self.blocks.mean()
     }
 
     /// The sink of one sample of a pixel, behind the non-finite gate. `layer_times` are the seconds for which each
