@@ -104,11 +104,13 @@ impl Forecast {
         self.estimate_by(pixels, f64::from(spp), &|_| f64::from(spp))
     }
 
-    /// Returns time and noise of a render of `pixels` pixels that ends when each tile has no more noise than `target`.
-    pub fn estimate_by_noise(&self, pixels: u64, target: NoiseTarget) -> Estimate {
+    /// Returns time and noise of a render of `pixels` pixels that ends when each tile has no more noise than `target`, or
+    /// so many samples.
+    pub fn estimate_by_noise(&self, pixels: u64, target: NoiseTarget, most_spp: u32) -> Estimate {
         let least = f64::from(target.least_spp());
         let error = relative_error(target.limit_stops());
-        self.estimate_by(pixels, least, &|tile| tile.spp_for(error, self.convergence).max(least))
+        let most = f64::from(most_spp).max(least);
+        self.estimate_by(pixels, least, &|tile| tile.spp_for(error, self.convergence).clamp(least, most))
     }
 
     /// Returns the estimate for samples per pixel by tile, and for dark tiles.
@@ -169,10 +171,12 @@ mod tests {
         // Half of the tiles have a quarter of the noise of the others
         let [quiet, noisy] = [0.05, 0.2].map(|error: f32| (1.0 + error).log2());
         let forecast = forecast(&[quiet, noisy], 16).unwrap();
-        let estimate = forecast.estimate_by_noise(10_000, target((1.1_f32).log2()));
+        let estimate = forecast.estimate_by_noise(10_000, target((1.1_f32).log2()), 1024);
         // 64 samples for the noisy ones; the quiet ones have less noise than that after the least number, 8
         assert!((estimate.seconds - 0.5 - 10_000.0 * 36.0 / 80_000.0).abs() < 1e-3, "{estimate:?}");
         assert!((error(estimate) - 0.1).abs() < 1e-4, "{estimate:?}");
+        let capped = forecast.estimate_by_noise(10_000, target((1.1_f32).log2()), 16);
+        assert!((capped.seconds - 0.5 - 10_000.0 * 12.0 / 80_000.0).abs() < 1e-3, "{capped:?}");
         let even = forecast.estimate(10_000, 64);
         assert!(even.seconds > 1.6 * estimate.seconds && error(even) < 0.1 + 1e-4);
     }

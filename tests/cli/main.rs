@@ -8,6 +8,7 @@ mod denoiser;
 mod extremes;
 mod farm;
 mod gear;
+mod import;
 mod output;
 mod package;
 mod picture_files;

@@ -25,12 +25,12 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
         return;
     };
     let shown = *settings;
-    let by_noise = |noise_stops: f32| {
+    let by_noise = |noise_stops: f32, most_samples: u32| {
         let target = NoiseTarget::new(shown.traced_noise_stops(noise_stops));
-        shown.shown_estimate(forecast.estimate_by_noise(pixels, target))
+        shown.shown_estimate(forecast.estimate_by_noise(pixels, target, most_samples))
     };
-    let of = |quality: Quality| match quality.noise_stops() {
-        Some(noise) => by_noise(noise),
+    let of = |quality: Quality| match quality.noise_stops().zip(quality.most_samples()) {
+        Some((noise, most)) => by_noise(noise, most),
         None => shown.shown_estimate(forecast.estimate(pixels, shown.samples)),
     };
     for (quality, word) in Quality::BY_NOISE {
@@ -52,7 +52,7 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
         "Line: estimate. Rings: draft, good, final. Dot: your choice. Crosses: renders as they came out.",
     );
     let marks = Quality::BY_NOISE.map(|(quality, _)| of(quality));
-    let line = LINE.map(by_noise);
+    let line = LINE.map(|noise| by_noise(noise, u32::MAX));
     let measured: Vec<Estimate> =
         forecaster.measured().iter().map(|estimate| shown.shown_estimate(*estimate)).collect();
     QualityChart::around(rect, &line).paint(&ui.painter_at(rect), &line, &marks, chosen, &measured);

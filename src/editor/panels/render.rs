@@ -77,9 +77,9 @@ fn size_rows(ui: &mut Ui, settings: &mut RenderSettings, scene: &Scene) {
 fn quality_rows(ui: &mut Ui, settings: &mut RenderSettings) {
     row(ui, "Quality", "The noise that the picture may have; half the noise takes about four times as long", |ui| {
         let choices = [
-            (Quality::Draft, "Draft", "To judge the light: noise of a tenth of a stop"),
-            (Quality::Good, "Good", "To share: noise of 0.03 stops"),
-            (Quality::Final, "Final", "To print: noise of 0.01 stops"),
+            (Quality::Draft, "Draft", "To judge the light: noise of a tenth of a stop, or 16 samples"),
+            (Quality::Good, "Good", "To share: noise of 0.03 stops, or 128 samples"),
+            (Quality::Final, "Final", "To print: noise of 0.01 stops, or 1024 samples"),
             (Quality::Custom, "Custom", "A fixed number of light paths through each pixel"),
         ];
         widgets::choice(ui, &mut settings.quality, &choices);

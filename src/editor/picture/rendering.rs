@@ -25,8 +25,6 @@ const LEAST_ALBEDO: f32 = 0.01;
 /// Part of the noise that the denoiser leaves, at least: a third to a tenth by the README's table, apart from chrome and
 /// clear glass.
 const DENOISED_NOISE: f32 = 1.0 / 3.0;
-/// Samples per pixel of a render that ends by its noise, at most.
-const MAX_SAMPLES: u32 = 65_536;
 
 /// The quality of a render: the noise that its picture may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +50,16 @@ impl Quality {
             Quality::Draft => Some(0.1),
             Quality::Good => Some(0.03),
             Quality::Final => Some(0.01),
+            Quality::Custom => None,
+        }
+    }
+
+    /// Returns the samples per pixel at most, which parts like hair before a rim light reach; none for custom.
+    pub fn most_samples(self) -> Option<u32> {
+        match self {
+            Quality::Draft => Some(16),
+            Quality::Good => Some(128),
+            Quality::Final => Some(1024),
             Quality::Custom => None,
         }
     }
@@ -117,7 +125,7 @@ impl RenderSettings {
     fn render_settings(&self, camera: &Camera) -> Settings {
         let (width, height) = self.pixels(camera);
         let noise_stops = self.quality.noise_stops().map(|shown| self.traced_noise_stops(shown));
-        let spp = if noise_stops.is_some() { MAX_SAMPLES } else { self.samples.max(1) };
+        let spp = self.quality.most_samples().unwrap_or(self.samples.max(1));
         Settings { width, height, method: self.method, spp, noise_stops, aovs: true, ..Settings::default() }
     }
 }
