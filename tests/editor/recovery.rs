@@ -93,6 +93,7 @@ fn a_rendered_picture_survives_a_crash_with_its_lights_until_it_is_exported() {
     let mut second = window(options(&recovery, None, std::slice::from_ref(&exported)));
     assert!(is_offered(&second));
     assert!(second.query_by_label_contains("before the picture of \"portrait.ron\" was exported").is_some());
+    second.state_mut().rendering_mut().settings.denoise = false;
     click(&mut second, "Recover");
     assert!(second.state().rendering().job().is_some(), "{:?}", second.state().toasts().texts(ToastKind::Warning));
     wait_until(&mut second, |app| app.rendering().developed().is_some());
