@@ -17,7 +17,7 @@ use super::limits::PathLimits;
 use super::medium_stack::MediumStack;
 use super::ray_caster::RayCaster;
 use super::render_scene::RenderScene;
-use super::roulette::{path_survival, survives};
+use super::roulette::{survival_probability, survives};
 use super::sampler::{self, Dimensions, Sampler};
 use super::sink::RadianceSink;
 use crate::math::Ray;
@@ -484,7 +484,7 @@ impl<'a> PathTracer<'a> {
         }
 
         // Play Russian roulette
-        let survival = path_survival(path.throughput, path.roulette_scale, depth, path.non_specular_depth);
+        let survival = survival_probability(path.throughput, path.roulette_scale, depth);
         sink.record(|| PathEvent::Roulette { survival, u: roulette });
         if !survives(&mut path.throughput, survival, roulette) {
             sink.record(|| PathEvent::End(PathEnd::Roulette));

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 /// Side of a compared block, pixels: hair is noise from pixel to pixel.
 const BLOCK: u32 = 6;
 /// Samples per pixel: 216 a block.
-const SPP: u32 = 12;
+const SPP: u32 = 6;
 /// Part of a block that hair must cover to be compared.
 const HAIR: f32 = 0.5;
 

@@ -8,7 +8,7 @@ use crate::raytrace::geometry::SurfaceInteraction;
 use crate::raytrace::medium_stack::MediumStack;
 use crate::raytrace::ray_caster::RayCaster;
 use crate::raytrace::render_scene::RenderScene;
-use crate::raytrace::roulette::{photon_survival, survives};
+use crate::raytrace::roulette::{survival_probability, survives};
 use crate::raytrace::sampler::{self, Dimensions, Sampler};
 use crate::raytrace::straight_path::StraightPath;
 use glam::Vec3;
@@ -161,7 +161,7 @@ impl<'a> PhotonTracer<'a> {
                 specular_depth += 1;
                 throughput *= shading_correction(wo, sample.direction, surface.normal, surface.geometric_normal);
             }
-            let survival = photon_survival(throughput, depth);
+            let survival = survival_probability(throughput, 1.0, depth);
             if !survives(&mut throughput, survival, roulette) {
                 return;
             }
