@@ -222,7 +222,7 @@ impl<'a> FragmentShader<'a> {
         }
     }
 
-    /// Returns true if pixels show triangles with holes, which [`FragmentShader::is_there`] tests.
+    /// Returns true if pixels show triangles with holes, which the fragment shader tests.
     pub fn has_holes(&self) -> bool {
         self.frame.has_holes
     }
