@@ -1,6 +1,6 @@
 //! The chart of noise against render time, with the draft, good, final and current settings.
 
-use crate::editor::picture::rendering::{Quality, RenderSettings};
+use crate::editor::picture::render_settings::{Quality, RenderSettings};
 use crate::editor::ui::theme;
 use crate::editor::ui::units::duration_text;
 use crate::jobs::{Estimate, Forecaster};

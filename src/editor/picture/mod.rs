@@ -3,5 +3,6 @@
 mod compare;
 pub mod mixer;
 pub mod picture_view;
+pub mod render_settings;
 pub mod rendering;
 pub mod variant_pictures;

@@ -1,0 +1,122 @@
+//! The settings of the render panel: size, quality and method.
+
+use crate::jobs::Estimate;
+use crate::raytrace::{Method, Settings};
+use crate::scene::Camera;
+
+/// Part of the noise that the denoiser leaves, at least: a third to a tenth by the README's table, apart from chrome and
+/// clear glass.
+const DENOISED_NOISE: f32 = 1.0 / 3.0;
+
+/// The quality of a render: the noise that its picture may have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quality {
+    /// To judge the light.
+    Draft,
+    /// To share.
+    Good,
+    /// To print.
+    Final,
+    /// The typed number of samples.
+    Custom,
+}
+
+impl Quality {
+    /// The qualities that are stated as noise, with their labels.
+    pub const BY_NOISE: [(Quality, &str); 3] =
+        [(Quality::Draft, "Draft"), (Quality::Good, "Good"), (Quality::Final, "Final")];
+
+    /// Returns the noise that the shown picture may have, stops; none for custom.
+    pub fn noise_stops(self) -> Option<f32> {
+        match self {
+            Quality::Draft => Some(0.1),
+            Quality::Good => Some(0.03),
+            Quality::Final => Some(0.01),
+            Quality::Custom => None,
+        }
+    }
+
+    /// Returns the samples per pixel at most, which parts like hair before a rim light reach; none for custom.
+    pub fn most_samples(self) -> Option<u32> {
+        match self {
+            Quality::Draft => Some(16),
+            Quality::Good => Some(128),
+            Quality::Final => Some(1024),
+            Quality::Custom => None,
+        }
+    }
+}
+
+/// Size of the picture, by its longer side or freely.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureSize {
+    /// The sensor's shape, with this longer side in pixels.
+    LongEdge(u32),
+    /// Any size; a crop of the sensor where the shape differs.
+    Custom(u32, u32),
+}
+
+/// The settings of the render panel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RenderSettings {
+    /// Size of the picture.
+    pub size: PictureSize,
+    /// Quality.
+    pub quality: Quality,
+    /// Samples per pixel, for [`Quality::Custom`].
+    pub samples: u32,
+    /// Rendering method.
+    pub method: Method,
+    /// The picture is shown and exported without its noise.
+    pub denoise: bool,
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        RenderSettings {
+            size: PictureSize::LongEdge(1080),
+            quality: Quality::Draft,
+            samples: 64,
+            method: Method::Path,
+            denoise: true,
+        }
+    }
+}
+
+impl RenderSettings {
+    /// Returns width and height, pixels.
+    pub fn pixels(&self, camera: &Camera) -> (u32, u32) {
+        match self.size {
+            PictureSize::LongEdge(edge) => camera.picture_size(edge),
+            PictureSize::Custom(width, height) => (width.max(1), height.max(1)),
+        }
+    }
+
+    /// Returns the traced noise of a picture that is shown with so much, stops.
+    pub fn traced_noise_stops(&self, shown_stops: f32) -> f32 {
+        if self.denoise { shown_stops / DENOISED_NOISE } else { shown_stops }
+    }
+
+    /// Returns the estimate of the picture as it is shown.
+    pub fn shown_estimate(&self, traced: Estimate) -> Estimate {
+        let part = if self.denoise { f64::from(DENOISED_NOISE) } else { 1.0 };
+        Estimate { noise_stops: traced.noise_stops * part, ..traced }
+    }
+
+    /// Returns the settings of a render.
+    pub(super) fn render_settings(&self, camera: &Camera) -> Settings {
+        let (width, height) = self.pixels(camera);
+        let noise_stops = self.quality.noise_stops().map(|shown| self.traced_noise_stops(shown));
+        let spp = self.quality.most_samples().unwrap_or(self.samples.max(1));
+        Settings { width, height, method: self.method, spp, noise_stops, aovs: true, ..Settings::default() }
+    }
+}
+
+/// Returns the name of a method in lists.
+pub fn method_label(method: Method) -> &'static str {
+    match method {
+        Method::Whitted => "Hard shadows, no bounced light",
+        Method::Direct => "Direct light only",
+        Method::Path => "With bounced light",
+    }
+}
