@@ -225,7 +225,19 @@ fn a_lesson_sheet_is_exported_for_the_selected_light() {
     }
     let folder = tempfile::tempdir().unwrap();
     let [lesson, wrong] = ["lesson.html", "lesson.pdf"].map(|name| folder.path().join(name));
-    let mut window = window_with_answers([lesson.clone(), wrong.clone()]);
+    // A ball in the figure's place: a lesson has three renders
+    let mut scene = catchlight::io::presets()[0].load().unwrap().scene;
+    for object in &mut scene.objects {
+        if matches!(object.shape, Shape::Figure(_)) {
+            object.shape = Shape::Sphere { radius_m: 0.2 };
+            object.part_materials.clear();
+        }
+    }
+    let mut window = window(EditorOptions {
+        initial: Some(StudioSource::Memory(Box::new(scene))),
+        dialogs: FileDialogs::scripted([lesson.clone(), wrong.clone()]),
+        ..EditorOptions::default()
+    });
     let fill = scene(&window).lights[1].id;
     let mut export = |kind: ToastKind| {
         let command = Command::ExportLesson(LessonSeries::Room, Some(fill));

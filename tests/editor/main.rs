@@ -132,9 +132,10 @@ fn bald_preset() -> StudioSource {
     StudioSource::Memory(Box::new(SCENE.clone()))
 }
 
-/// Returns the view options of a window in tests that are not about them: one sample a pixel, direct light.
+/// Returns the view options of a window in tests that are not about them: one sample a pixel, direct light, coarse
+/// shadows.
 fn plain_view() -> ViewOptions {
-    ViewOptions { smooth_edges: false, bounced_light: false, ..ViewOptions::default() }
+    ViewOptions { smooth_edges: false, bounced_light: false, shadow_resolution: 128, ..ViewOptions::default() }
 }
 
 /// Returns options that open [`bald_preset`].

@@ -58,6 +58,8 @@ pub struct ViewOptions {
     pub smooth_edges: bool,
     /// True to add the light that surfaces throw on each other.
     pub bounced_light: bool,
+    /// Width and height of a light's shadow map, texels.
+    pub shadow_resolution: u32,
     /// How the lit picture is displayed.
     pub display: PictureDisplay,
     /// The read-outs over it.
@@ -80,6 +82,7 @@ impl Default for ViewOptions {
             smooth: false,
             smooth_edges: true,
             bounced_light: true,
+            shadow_resolution: Options::default().shadow_resolution,
             display: PictureDisplay::Plain,
             charts: ScopeCharts::default(),
         }
@@ -233,7 +236,8 @@ impl PreviewHost {
             PreviewStage::Ready(renderer) => renderer.draws_drafts(),
             PreviewStage::Failed(_) => CpuPreview::draws_drafts(size),
         };
-        let ViewOptions { channel, only_light, gloss, smooth_edges, bounced_light, display, .. } = self.view_options;
+        let ViewOptions { channel, only_light, gloss, smooth_edges, bounced_light, shadow_resolution, display, .. } =
+            self.view_options;
         // A deleted light no longer hides the others.
         let only_light = only_light.filter(|id| document.scene().light(*id).is_some());
         let is_read = self.view_options.has_scopes() && !overlay_alone;
@@ -243,8 +247,15 @@ impl PreviewHost {
         let is_lit = channel == Channel::Lit && !overlay_alone;
         // What displays the picture otherwise is drawn below the overlays
         let overlay_alone = overlay_alone || (is_read && display != PictureDisplay::Plain);
-        let options =
-            Options { channel, only_light, gloss, overlay_alone, bounce_estimate: bounced_light, ..Options::default() };
+        let options = Options {
+            channel,
+            only_light,
+            gloss,
+            overlay_alone,
+            bounce_estimate: bounced_light,
+            shadow_resolution,
+            ..Options::default()
+        };
         // Names and locks do not affect the image.
         let revisions = Revisions { document: 0, ..document.revisions() };
         if matches!(self.stage, PreviewStage::Ready(_)) && is_lit && bounced_light {
