@@ -248,7 +248,7 @@ impl Document {
             }
         }
         self.assets.extend(loaded);
-        self.assets.drop_unused_figures(&self.scene);
+        self.assets.drop_unused_made(&self.scene);
         let assets = &self.assets;
         self.stand_ins.retain(|key, _| assets.contains(key));
         self.failed.extend(self.missing_assets().intersection(tried).cloned());

@@ -142,7 +142,7 @@ impl MeshCache {
 
 fn parametric_key(shape: &Shape) -> Option<MeshKey> {
     let (tag, numbers) = match *shape {
-        Shape::MeshFile { .. } | Shape::Figure(_) => return None,
+        Shape::MeshFile { .. } | Shape::Figure(_) | Shape::Tank(_) => return None,
         Shape::Plane { width_m, depth_m } => (0, [width_m, depth_m, 0.0, 0.0]),
         Shape::Box { size_m } => (1, [size_m.x, size_m.y, size_m.z, 0.0]),
         Shape::Sphere { radius_m } => (2, [radius_m, 0.0, 0.0, 0.0]),

@@ -71,8 +71,8 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Obj
 
 fn shape_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
     match &mut object.shape {
-        // A figure has sections of its own.
-        Shape::Figure(_) => {}
+        // Figures and tanks have sections of their own.
+        Shape::Figure(_) | Shape::Tank(_) => {}
         Shape::MeshFile { path } => {
             row(ui, "File", "The model, relative to the studio's file", |ui| ui.label(path.as_str()));
         }
