@@ -46,6 +46,11 @@ impl<'a> AssetRef<'a> {
         }
     }
 
+    /// Returns true for a water tank.
+    pub fn is_tank(&self) -> bool {
+        matches!(self, AssetRef::Tank(_))
+    }
+
     /// Returns the path of the file that holds the asset; `None` for assets that are part of the program.
     pub fn path(&self) -> Option<&str> {
         match self {
@@ -255,7 +260,8 @@ impl Assets {
         self.loaded.len() == other.loaded.len() && self.loaded.iter().all(same)
     }
 
-    fn get<'k>(&self, key: &AssetRef<'k>) -> Option<Asset> {
+    /// Returns an asset.
+    pub fn get<'k>(&self, key: &AssetRef<'k>) -> Option<Asset> {
         // The map is covariant in its keys, so that a borrowed key needs no copy of its path.
         let loaded: &HashMap<AssetRef<'k>, Asset> = &self.loaded;
         loaded.get(key).cloned()
