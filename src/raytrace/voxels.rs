@@ -233,7 +233,12 @@ mod tests {
             assert_eq!(inside, Some(VoxelHit { t: 0.0, normal: IVec3::ZERO, ..expected }));
             assert_eq!(hit(Vec3::splat(f32::NAN), Vec3::X, way), None);
         }
-        assert_eq!(VoxelGrid::new([0, 4, 4], |_| true).intersect(&Ray { origin: Vec3::ZERO, direction: Vec3::X, t_max: 1.0 }, VoxelWay::Cells).0, None);
+        assert_eq!(
+            VoxelGrid::new([0, 4, 4], |_| true)
+                .intersect(&Ray { origin: Vec3::ZERO, direction: Vec3::X, t_max: 1.0 }, VoxelWay::Cells)
+                .0,
+            None
+        );
         assert_eq!(grid.bytes(), 8 * 4 + 64, "seven of eight bricks are empty");
     }
 }

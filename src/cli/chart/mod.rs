@@ -10,6 +10,7 @@ mod reference;
 mod scaling;
 mod traversal;
 mod voxel_drawing;
+mod voxel_row;
 mod voxels;
 
 use super::failure::Failure;

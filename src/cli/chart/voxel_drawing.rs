@@ -1,6 +1,6 @@
 //! The drawing of the study of voxels: time of a frame against the view distance, both logarithmic.
 
-use super::voxels::{VoxelRow, Way};
+use super::voxel_row::{VoxelRow, Way};
 use anyhow::anyhow;
 use plotters::prelude::*;
 use std::path::Path;

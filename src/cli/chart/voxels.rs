@@ -5,6 +5,7 @@
 //! ends at the view distance.
 
 use super::voxel_drawing;
+use super::voxel_row::{VoxelRow, Way};
 use crate::cli::failure::Failure;
 use crate::cli::terminal;
 use crate::math::{Ray, orthonormal_basis, warp};
@@ -13,7 +14,6 @@ use crate::scene::{Tank, TankLook, Terrain};
 use crate::water::{FULL, Simulation, surface_of};
 use anyhow::Context;
 use glam::{Vec2, Vec3};
-use serde::Serialize;
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
@@ -29,42 +29,6 @@ const BOUNCES: [usize; 4] = [1, 2, 4, 8];
 const DISTANCES: [f32; 8] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
 /// Time for which passes over all rays are repeated, seconds. The fastest one counts: it is disturbed least.
 const TIMED_S: f64 = 0.15;
-
-/// A way of finding the first cell on a ray.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
-    /// Grid traversal, with or without the bricks.
-    Grid(VoxelWay),
-    /// The BVH over the faces.
-    Bvh,
-}
-
-impl Way {
-    /// All, in the order of the table.
-    pub(super) const ALL: [Way; 3] = [Way::Grid(VoxelWay::Cells), Way::Grid(VoxelWay::Bricks), Way::Bvh];
-
-    /// Returns the name in tables.
-    pub(super) fn label(self) -> &'static str {
-        match self {
-            Way::Grid(VoxelWay::Cells) => "cells",
-            Way::Grid(VoxelWay::Bricks) => "bricks",
-            Way::Bvh => "bvh",
-        }
-    }
-}
-
-/// One measurement, on one thread.
-#[derive(Debug, Serialize)]
-pub(super) struct VoxelRow {
-    pub way: &'static str,
-    pub bounces: usize,
-    pub distance_cells: f32,
-    pub frame_ms: f64,
-    pub rays: usize,
-    pub hits: usize,
-    /// Cells and bricks that a ray visits in the mean; none for the BVH.
-    pub visits_per_ray: Option<f64>,
-}
 
 /// The landscape, prepared for all ways.
 struct Landscape {
@@ -103,7 +67,8 @@ impl Landscape {
         let [_, height, _] = cells.map(f32::from);
         let terrain =
             Terrain::Hills { seed: 5, low_m: 0.1 * height, high_m: 0.9 * height, period_m: 0.8 * f32::from(cells[0]) };
-        let tank = Tank { cells, cell_m: 1.0, terrain, water_m: 0.35 * height, look: TankLook::Cubes, ..Tank::default() };
+        let tank =
+            Tank { cells, cell_m: 1.0, terrain, water_m: 0.35 * height, look: TankLook::Cubes, ..Tank::default() };
         let simulation = Simulation::new(&tank);
         let start = simulation.grid();
         let grid = VoxelGrid::new(start.size(), |at| start.level(start.index(at)) >= FULL / 2);
@@ -130,7 +95,9 @@ impl Landscape {
             for bounces in BOUNCES {
                 let rays: usize = levels[..bounces].iter().map(Vec::len).sum();
                 let visits = match way {
-                    Way::Grid(way) => Some(levels[..bounces].iter().flatten().map(|ray| self.visits(ray, way)).sum::<u64>()),
+                    Way::Grid(way) => {
+                        Some(levels[..bounces].iter().flatten().map(|ray| self.visits(ray, way)).sum::<u64>())
+                    }
                     Way::Bvh => None,
                 };
                 rows.push(VoxelRow {
@@ -214,9 +181,9 @@ fn csv(rows: &[VoxelRow]) -> String {
 /// Returns the table of frame times, and the law that they follow.
 fn table(rows: &[VoxelRow]) -> String {
     let mut text = String::from("| way | bounces |");
-    DISTANCES.iter().for_each(|distance| drop(write!(text, " {distance} cells |")));
+    text.extend(DISTANCES.map(|distance| format!(" {distance} cells |")));
     text += "\n|---|---|";
-    DISTANCES.iter().for_each(|_| text += "---|");
+    text.extend(DISTANCES.map(|_| "---|"));
     text.push('\n');
     for way in Way::ALL.map(Way::label) {
         for bounces in BOUNCES {
@@ -256,11 +223,8 @@ impl Law {
         let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
         let (x, y) = (mean(|p| p.0), mean(|p| p.1));
         let sum = |of: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>();
-        let (xx, xy, yy) = (
-            sum(&|p| (p.0 - x) * (p.0 - x)),
-            sum(&|p| (p.0 - x) * (p.1 - y)),
-            sum(&|p| (p.1 - y) * (p.1 - y)),
-        );
+        let (xx, xy, yy) =
+            (sum(&|p| (p.0 - x) * (p.0 - x)), sum(&|p| (p.0 - x) * (p.1 - y)), sum(&|p| (p.1 - y) * (p.1 - y)));
         (xx > 0.0 && yy > 0.0).then(|| Law {
             ray_ns: y - xy / xx * x,
             visit_ns: xy / xx,

@@ -98,10 +98,10 @@ pub enum TankLook {
 impl Tank {
     /// Largest number of cells along an axis.
     pub const MAX_SIDE: u16 = 256;
-    /// Largest number of cells: 128 x 128 x 128. The simulation takes four bytes a cell.
+    /// Largest number of cells: 128 x 128 x 128. The simulation takes six bytes a cell.
     pub const MAX_CELLS: usize = 1 << 21;
-    /// Largest number of steps times columns of cells: a minute and a half for 128 x 128 columns.
-    pub const MAX_COLUMN_STEPS: u64 = 1 << 27;
+    /// Largest number of steps times columns of cells: a minute for 128 x 128 columns.
+    pub const MAX_COLUMN_STEPS: u64 = 1 << 26;
     /// Largest number of springs.
     pub const MAX_SPRINGS: usize = 16;
     /// Largest number of blocks.

@@ -4,6 +4,7 @@
 //! in one place: a ray in the water meets the ground first.
 
 mod cubes;
+mod falling;
 mod nets;
 mod smooth;
 

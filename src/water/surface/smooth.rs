@@ -4,6 +4,7 @@
 //! of two cells gives exactly that height, so that water at rest is a plane to the last bit of its level.
 
 use super::FILM;
+use super::falling;
 use super::nets::Field;
 use crate::scene::Mesh;
 use crate::water::grid::{FULL, Grid};
@@ -24,16 +25,20 @@ pub(super) fn surfaces(grid: &Grid) -> [Mesh; 3] {
     let metal = |cell: usize| f32::from(u8::from(grid.is_metal(cell)));
     let metal: Vec<f32> = (0..ground.len()).map(metal).collect();
     [
-        surface(size, &ground, Content { falls: false, bias: 0.0, side: 1.0 }),
-        surface(size, &metal, Content { falls: false, bias: INSET, side: 1.0 }),
-        surface(size, &water_levels(grid), Content { falls: true, bias: 0.0, side: 1.0 + 4.0 * INSET }),
+        surface(size, &ground, Content { falling: None, bias: 0.0, side: 1.0 }),
+        surface(size, &metal, Content { falling: None, bias: INSET, side: 1.0 }),
+        surface(
+            size,
+            &water_levels(grid),
+            Content { falling: falling::field(grid), bias: 0.0, side: 1.0 + 4.0 * INSET },
+        ),
     ]
 }
 
 /// How the field of a content follows from its parts of the cells.
 struct Content {
-    /// It falls as a stream where nothing carries it.
-    falls: bool,
+    /// The field of what falls, in all cells.
+    falling: Option<Vec<f32>>,
     /// Added to all samples.
     bias: f32,
     /// Factor of the samples beyond the sides: 1 puts the surface into the sides of the tank, more into their inside.
@@ -42,7 +47,7 @@ struct Content {
 
 /// Returns the surface of a content, of which the parts of the cells are filled from below.
 fn surface(size: [usize; 3], parts: &[f32], content: Content) -> Mesh {
-    if parts.iter().all(|part| *part <= 0.0) {
+    if content.falling.is_none() && parts.iter().all(|part| *part <= 0.0) {
         return Mesh::default();
     }
     let [nx, ny, nz] = size;
@@ -50,9 +55,13 @@ fn surface(size: [usize; 3], parts: &[f32], content: Content) -> Mesh {
     let field = Field::new([nx + 2, ny + 2, nz + 2], |x, z, samples| {
         let nearest = |at: usize, count: usize| at.clamp(1, count) - 1;
         let is_beyond = x != nearest(x, nx) + 1 || z != nearest(z, nz) + 1;
-        let column = &parts[(nearest(z, nz) * nx + nearest(x, nx)) * ny..][..ny];
+        let bottom = (nearest(z, nz) * nx + nearest(x, nx)) * ny;
         for (y, sample) in samples.iter_mut().enumerate().skip(1) {
-            *sample = signed_height(column, y - 1, content.falls) + content.bias;
+            *sample = signed_height(&parts[bottom..][..ny], y - 1) + content.bias;
+        }
+        if let Some(falling) = &content.falling {
+            let fields = samples[1..=ny].iter_mut().zip(&falling[bottom..]);
+            fields.for_each(|(sample, falling)| *sample = sample.max(*falling));
         }
         samples[0] = -samples[1].abs() * content.side;
         if is_beyond {
@@ -63,17 +72,12 @@ fn surface(size: [usize; 3], parts: &[f32], content: Content) -> Mesh {
 }
 
 /// Returns the signed height of a cell's middle below the surface in its column, in cells, clamped to 1.
-fn signed_height(column: &[f32], y: usize, falls: bool) -> f32 {
+fn signed_height(column: &[f32], y: usize) -> f32 {
     let part = |y: usize| column.get(y).copied().unwrap_or(0.0);
     let is_full = |y: usize| part(y) >= ALMOST_FULL;
-    let is_carried = y == 0 || is_full(y - 1);
     let own = part(y);
     if is_full(y) {
         0.5 + part(y + 1).min(0.5)
-    } else if own > 0.0 && falls && !is_carried {
-        // A stream whose cross-section is this part of the cell's
-        let half_width = 0.5 * own.sqrt();
-        half_width / (1.0 - half_width)
     } else if own > 0.0 {
         own - 0.5
     } else {
@@ -87,8 +91,8 @@ fn water_levels(grid: &Grid) -> Vec<f32> {
     let [nx, ny, nz] = grid.size();
     let full = f32::from(FULL);
     let mut levels = vec![0.0; nx * ny * nz];
-    // Cells with water, and the full cells below them
-    for cell in 0..levels.len() {
+    // Cells with water that something carries, and the full cells below them
+    for cell in (0..levels.len()).filter(|&cell| !falling::falls(grid, cell)) {
         let water = f32::from(grid.water(cell)) / full;
         let is_on_water = cell % ny > 0 && grid.water(cell - 1) > 0 && grid.level(cell - 1) == FULL;
         if water >= FILM || (water > 0.0 && is_on_water) {
@@ -147,7 +151,7 @@ mod tests {
     fn a_column_has_exactly_the_height_to_which_it_is_filled() {
         for height in [0.05_f32, 0.4, 0.5, 0.6, 0.95, 1.0, 1.02, 1.5, 2.7, 3.0] {
             let column: Vec<f32> = (0..5).map(|y| (height - y as f32).clamp(0.0, 1.0)).collect();
-            let samples: Vec<f32> = (0..5).map(|y| signed_height(&column, y, true)).collect();
+            let samples: Vec<f32> = (0..5).map(|y| signed_height(&column, y)).collect();
             let below = samples.iter().rposition(|sample| *sample > 0.0);
             // Below the middle of the lowest cell the sample beneath the tank counts
             let found = match below {
