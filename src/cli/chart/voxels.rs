@@ -21,6 +21,8 @@ use std::time::Instant;
 
 /// Cells of the landscape.
 const CELLS: [u16; 3] = [128, 64, 128];
+/// Height of the camera over the ground, cells.
+const EYE_CELLS: f32 = 4.0;
 /// Picture size, pixels.
 const SIZE: (u32, u32) = (320, 200);
 /// Numbers of bounces.
@@ -32,7 +34,8 @@ const TIMED_S: f64 = 0.15;
 
 /// The landscape, prepared for all ways.
 struct Landscape {
-    cells: [u16; 3],
+    /// Place of the camera.
+    eye: Vec3,
     grid: VoxelGrid,
     bvh: Intersector,
 }
@@ -76,13 +79,18 @@ impl Landscape {
         let mut body = start.clone();
         (0..tank.cell_count()).for_each(|cell| body.set_ground(cell, start.level(cell)));
         let faces = surface_of(&body, TankLook::Cubes, Vec3::ZERO, 1.0);
-        Landscape { cells, grid, bvh: Intersector::new(&Arc::new(faces), IntersectionMethod::Bvh) }
+        // Some cells over the ground of a quarter of the way across
+        let [x, z] = [cells[0] / 4, cells[2] / 4].map(usize::from);
+        let is_filled = |y: &usize| start.level(start.index([x, *y, z])) >= FULL / 2;
+        let top = (0..usize::from(cells[1])).filter(is_filled).count();
+        let eye = Vec3::new(x as f32, top as f32 + EYE_CELLS, z as f32) + 0.5;
+        Landscape { eye, grid, bvh: Intersector::new(&Arc::new(faces), IntersectionMethod::Bvh) }
     }
 
     /// Measures all ways and numbers of bounces for a view distance, in cells.
     fn measure(&self, distance: f32, size: (u32, u32), timed_s: f64) -> Vec<VoxelRow> {
         // The rays of each bounce, and their hits
-        let mut levels = vec![primary_rays(self.cells, size, distance)];
+        let mut levels = vec![primary_rays(self.eye, size, distance)];
         let mut hits = Vec::new();
         for bounce in 0..BOUNCES.into_iter().max().unwrap_or(1) {
             let (next, count) = self.scatter(&levels[bounce], distance, bounce as u32);
@@ -154,17 +162,15 @@ impl Landscape {
     }
 }
 
-/// Returns the rays of a camera over a corner of the landscape, which looks across it.
-fn primary_rays(cells: [u16; 3], (width, height): (u32, u32), distance: f32) -> Vec<Ray> {
-    let [x, y, z] = cells.map(f32::from);
-    let origin = Vec3::new(0.2 * x, 0.85 * y, 0.2 * z);
-    let ahead = (Vec3::new(0.8 * x, 0.1 * y, 0.8 * z) - origin).normalize_or(Vec3::X);
+/// Returns the rays of a camera that looks across the landscape.
+fn primary_rays(eye: Vec3, (width, height): (u32, u32), distance: f32) -> Vec<Ray> {
+    let ahead = Vec3::new(1.0, -0.35, 1.0).normalize_or(Vec3::X);
     let right = ahead.cross(Vec3::Y).normalize_or(Vec3::Z);
     let up = right.cross(ahead);
     let ray = |pixel: u32| {
         let at = Vec2::new((pixel % width) as f32 + 0.5, (pixel / width) as f32 + 0.5) / width as f32;
         let offset = right * (at.x - 0.5) * 1.6 - up * (at.y - 0.5 * height as f32 / width as f32) * 1.6;
-        Ray { origin, direction: (ahead + offset).normalize_or(ahead), t_max: distance }
+        Ray { origin: eye, direction: (ahead + offset).normalize_or(ahead), t_max: distance }
     };
     (0..width * height).map(ray).collect()
 }
@@ -240,7 +246,7 @@ mod tests {
     #[test]
     fn all_ways_find_the_same_cells_and_the_law_is_fitted() {
         let landscape = Landscape::new([32, 64, 32]);
-        let mut rays = primary_rays(landscape.cells, (24, 16), 200.0);
+        let mut rays = primary_rays(landscape.eye, (24, 16), 200.0);
         rays.extend(landscape.scatter(&rays, 200.0, 0).0);
         let mut hits = 0;
         let distances = landscape.bvh.distances(&rays);
