@@ -5,7 +5,7 @@
 //! braces do not import each other, except that `cli` opens the window of `editor`:
 //!
 //! ```text
-//! { math, color }  <-  scene  <-  photo  <-  { gear, denoise, figures, raytrace, raster, preview }  <-  io
+//! { math, color }  <-  scene  <-  photo  <-  { gear, denoise, figures, water, raytrace, raster, preview }  <-  io
 //!                                         <-  { jobs, truth }  <-  setup  <-  sheet  <-  { editor, cli }  <-  main
 //! ```
 //!
@@ -16,6 +16,7 @@
 //! | `photo` | photometric lights, exposure, meter arithmetic, portrait patterns, scales in thirds of a stop, pictures |
 //! | `gear` | the list of heads, modifiers and stands, and what a studio needs of it |
 //! | `figures` | people by parameters: body, pose, clothes, hair, and their meshes |
+//! | `water` | water in a tank: cells, the automaton that moves them, the surfaces of water and ground |
 //! | `raytrace` | the ray tracer: BVH, BSDFs, light sampling, path tracer, photon map, film, light meter, live view |
 //! | `denoise` | the denoiser: a neural network and its weights |
 //! | `raster` | the z-buffer renderer on the CPU |
@@ -56,6 +57,7 @@ pub mod scene;
 pub mod setup;
 pub mod sheet;
 pub mod truth;
+pub mod water;
 
 #[cfg(feature = "gui")]
 pub mod editor;

@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::{terminal, warnings};
 use crate::figures;
 use crate::io::{self, Loaded};
-use crate::scene::placement;
+use crate::scene::{Scene, Shape, placement};
 use anyhow::{Context, anyhow};
 use glam::Vec3;
 use rayon::ThreadPool;
@@ -25,18 +25,29 @@ pub struct StudioArguments {
     /// Variant of the studio, by its name [default: the studio itself].
     #[arg(long, value_name = "NAME")]
     pub variant: Option<String>,
+    /// Time of its water tanks, seconds since their start [default: as in the studio].
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub at_time: Option<f32>,
 }
 
 impl StudioArguments {
-    /// Loads the studio and shows the variant. Warnings go to stderr.
+    /// Loads the studio, shows the variant and sets the time. Warnings go to stderr.
     pub fn load(&self) -> anyhow::Result<Loaded> {
         let mut loaded = load_studio(&self.scene)?;
-        let Some(name) = &self.variant else { return Ok(loaded) };
-        let variants = &loaded.scene.variants;
-        let names = || variants.list().map(|(_, name)| name).collect::<Vec<_>>().join(", ");
-        let id = variants.named(name).ok_or_else(|| anyhow!("there is no variant {name:?}; there are: {}", names()))?;
-        figures::show_variant(&mut loaded.scene, id);
-        // Eyes that follow another camera belong to other figures
+        if self.variant.is_none() && self.at_time.is_none() {
+            return Ok(loaded);
+        }
+        if let Some(name) = &self.variant {
+            let variants = &loaded.scene.variants;
+            let names = || variants.list().map(|(_, name)| name).collect::<Vec<_>>().join(", ");
+            let id =
+                variants.named(name).ok_or_else(|| anyhow!("there is no variant {name:?}; there are: {}", names()))?;
+            figures::show_variant(&mut loaded.scene, id);
+        }
+        if let Some(time_s) = self.at_time {
+            set_time(&mut loaded.scene, time_s)?;
+        }
+        // Eyes that follow another camera belong to other figures, and water at another time is another mesh
         let folder = self.scene.parent().filter(|_| self.scene.exists());
         let mut found = io::load_assets(&loaded.scene, folder, &mut loaded.assets);
         found.extend(placement(&loaded.scene, &loaded.assets));
@@ -44,6 +55,24 @@ impl StudioArguments {
         warnings::lines(&found).iter().for_each(terminal::warning);
         Ok(loaded)
     }
+}
+
+/// Sets the time of all water tanks.
+fn set_time(scene: &mut Scene, time_s: f32) -> anyhow::Result<()> {
+    let mut count = 0;
+    for object in &mut scene.objects {
+        let Shape::Tank(tank) = &mut object.shape else { continue };
+        let longest_s = tank.longest_s();
+        anyhow::ensure!(
+            (0.0..=longest_s).contains(&time_s),
+            "--at-time {time_s}: the time of {:?} must be from 0 to {longest_s} s",
+            object.name
+        );
+        tank.time_s = time_s;
+        count += 1;
+    }
+    anyhow::ensure!(count > 0, "--at-time: the studio has no water tank");
+    Ok(())
 }
 
 /// Loads a studio: a file, or a shipped one by name. Warnings go to stderr.

@@ -4,7 +4,7 @@ use super::asset_files::AssetFiles;
 use super::error::AssetError;
 use super::photometric::{PhotometricFile, read_photometric_file};
 use super::texture_memory::TextureMemory;
-use super::{figures, importers, texture};
+use super::{figures, importers, tanks, texture};
 use crate::scene::{Asset, AssetField, AssetKey, AssetRef, Assets, Finding, Scene, TextureRef};
 use rayon::prelude::*;
 use std::collections::HashSet;
@@ -71,6 +71,7 @@ fn load(key: &AssetKey, files: AssetFiles<'_>, memory: &TextureMemory) -> Result
         AssetRef::Figure(figure) => {
             Ok(LoadedAsset { asset: Asset::Figure(figures::meshes(figure)), warnings: Vec::new() })
         }
+        AssetRef::Tank(tank) => Ok(LoadedAsset { asset: Asset::Tank(tanks::mesh(tank)), warnings: Vec::new() }),
         AssetRef::Texture(reference) => {
             let file = files.find(reference.path())?;
             let decoded = match **reference {
@@ -94,7 +95,7 @@ fn load(key: &AssetKey, files: AssetFiles<'_>, memory: &TextureMemory) -> Result
 /// Returns the first words of the warning for an asset that could not be loaded.
 fn consequence(key: &AssetKey) -> &'static str {
     match key {
-        AssetRef::Mesh(_) | AssetRef::Figure(_) => "the object is left out",
+        AssetRef::Mesh(_) | AssetRef::Figure(_) | AssetRef::Tank(_) => "the object is left out",
         AssetRef::Texture(_) => "the surface is shown without its texture",
         AssetRef::Photometry(_) => "the light shines as its emitter does, without its measured distribution",
     }

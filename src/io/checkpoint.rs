@@ -57,7 +57,8 @@ fn content_hash(asset: &Asset) -> u64 {
         Asset::Mesh(mesh) => mesh.hash_content(&mut hasher),
         Asset::Texture(image) => (image.width, image.height, &image.rgb).hash(&mut hasher),
         Asset::Photometry(table) => table.hash_content(&mut hasher),
-        Asset::Figure(_) => {}
+        // The scene holds all that they are made of
+        Asset::Figure(_) | Asset::Tank(_) => {}
     }
     hasher.finish()
 }

@@ -40,6 +40,7 @@ mod recovery;
 mod ron_v1;
 mod scene_file;
 mod state_folder;
+mod tanks;
 mod texture;
 mod texture_memory;
 mod unique_names;

@@ -80,6 +80,7 @@ const FILES: &[(PresetGroup, &str, &str)] = embedded![
     Groups "group.ron",
     Continuous "interview.ron",
     Product "product_still_life.ron",
+    Product "tank_landscape.ron",
 ];
 
 /// Returns all presets, in menu order.

@@ -66,6 +66,7 @@ mod strand_tests;
 mod subsurface;
 mod texture;
 mod textured_surface;
+mod voxels;
 mod wavefront;
 mod whitted;
 
@@ -90,3 +91,4 @@ pub use replay::{Replay, brightest_sample, replay};
 pub use retrace::is_up_to_date;
 pub use sampler::SampleId;
 pub use settings::{Method, Settings};
+pub use voxels::{VoxelGrid, VoxelHit, VoxelWay};

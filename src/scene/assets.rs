@@ -1,6 +1,6 @@
 //! The meshes and textures that a scene refers to, in memory. `io` loads them; renderers only read.
 
-use super::{Figure, IntensityTable, Light, Mesh, Object, Scene, Shape, Texture, TextureRef, tessellate};
+use super::{Figure, IntensityTable, Light, Mesh, Object, Scene, Shape, Tank, Texture, TextureRef, tessellate};
 use glam::Vec3;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -17,6 +17,8 @@ pub enum AssetRef<'a> {
     Texture(Cow<'a, TextureRef>),
     /// A photometric file, by its path.
     Photometry(Cow<'a, str>),
+    /// A water tank.
+    Tank(Box<Cow<'a, Tank>>),
 }
 
 /// An asset reference that owns its path.
@@ -28,6 +30,11 @@ impl<'a> AssetRef<'a> {
         AssetRef::Figure(Box::new(figure))
     }
 
+    /// Returns the reference to a water tank.
+    pub fn tank(tank: Cow<'a, Tank>) -> Self {
+        AssetRef::Tank(Box::new(tank))
+    }
+
     /// Returns the same reference with a path of its own.
     pub fn into_owned(self) -> AssetKey {
         match self {
@@ -35,14 +42,20 @@ impl<'a> AssetRef<'a> {
             AssetRef::Figure(figure) => AssetRef::figure(Cow::Owned(figure.into_owned())),
             AssetRef::Texture(texture) => AssetRef::Texture(Cow::Owned(texture.into_owned())),
             AssetRef::Photometry(path) => AssetRef::Photometry(Cow::Owned(path.into_owned())),
+            AssetRef::Tank(tank) => AssetRef::tank(Cow::Owned(tank.into_owned())),
         }
+    }
+
+    /// Returns true for a water tank.
+    pub fn is_tank(&self) -> bool {
+        matches!(self, AssetRef::Tank(_))
     }
 
     /// Returns the path of the file that holds the asset; `None` for assets that are part of the program.
     pub fn path(&self) -> Option<&str> {
         match self {
             AssetRef::Mesh(path) | AssetRef::Photometry(path) => Some(path),
-            AssetRef::Figure(_) => None,
+            AssetRef::Figure(_) | AssetRef::Tank(_) => None,
             AssetRef::Texture(texture) => Some(texture.path()),
         }
     }
@@ -59,6 +72,8 @@ pub enum Asset {
     Texture(Arc<Texture>),
     /// A measured luminous intensity distribution.
     Photometry(Arc<IntensityTable>),
+    /// The ground and the water of a tank.
+    Tank(Arc<Mesh>),
 }
 
 /// The meshes of a figure.
@@ -83,11 +98,11 @@ impl FigureMeshes {
 impl Asset {
     fn is_same(&self, other: &Asset) -> bool {
         match (self, other) {
-            (Asset::Mesh(a), Asset::Mesh(b)) => Arc::ptr_eq(a, b),
+            (Asset::Mesh(a), Asset::Mesh(b)) | (Asset::Tank(a), Asset::Tank(b)) => Arc::ptr_eq(a, b),
             (Asset::Texture(a), Asset::Texture(b)) => Arc::ptr_eq(a, b),
             (Asset::Figure(a), Asset::Figure(b)) => Arc::ptr_eq(&a.fine, &b.fine),
             (Asset::Photometry(a), Asset::Photometry(b)) => Arc::ptr_eq(a, b),
-            (Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) | Asset::Photometry(_), _) => false,
+            (Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) | Asset::Photometry(_) | Asset::Tank(_), _) => false,
         }
     }
 }
@@ -141,11 +156,14 @@ impl Assets {
         self
     }
 
-    /// Drops the figures that a scene does not refer to: each change of a parameter makes another.
-    pub fn drop_unused_figures(&mut self, scene: &Scene) {
+    /// Drops the figures and tanks that a scene does not refer to: each change of a parameter makes another.
+    pub fn drop_unused_made(&mut self, scene: &Scene) {
         let is_used = |key: &AssetKey| match key {
             AssetRef::Figure(figure) => {
                 scene.objects.iter().any(|o| matches!(&o.shape, Shape::Figure(used) if **used == ***figure))
+            }
+            AssetRef::Tank(tank) => {
+                scene.objects.iter().any(|o| matches!(&o.shape, Shape::Tank(used) if **used == ***tank))
             }
             AssetRef::Mesh(_) | AssetRef::Texture(_) | AssetRef::Photometry(_) => true,
         };
@@ -171,15 +189,20 @@ impl Assets {
     pub fn figure(&self, figure: &Figure) -> Option<FigureMeshes> {
         match self.get(&AssetRef::figure(Cow::Borrowed(figure)))? {
             Asset::Figure(meshes) => Some(meshes),
-            Asset::Mesh(_) | Asset::Texture(_) | Asset::Photometry(_) => None,
+            Asset::Mesh(_) | Asset::Texture(_) | Asset::Photometry(_) | Asset::Tank(_) => None,
         }
+    }
+
+    /// Returns the mesh of a water tank.
+    pub fn tank(&self, tank: &Tank) -> Option<Arc<Mesh>> {
+        self.get_mesh(&AssetRef::tank(Cow::Borrowed(tank)))
     }
 
     /// Returns the distribution of a photometric file, by its path.
     pub fn photometry(&self, path: &str) -> Option<Arc<IntensityTable>> {
         match self.get(&AssetRef::Photometry(Cow::Borrowed(path)))? {
             Asset::Photometry(table) => Some(table),
-            Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) => None,
+            Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) | Asset::Tank(_) => None,
         }
     }
 
@@ -193,7 +216,7 @@ impl Assets {
     pub fn texture(&self, texture: &TextureRef) -> Option<Arc<Texture>> {
         match self.get(&AssetRef::Texture(Cow::Borrowed(texture)))? {
             Asset::Texture(image) => Some(image),
-            Asset::Mesh(_) | Asset::Figure(_) | Asset::Photometry(_) => None,
+            Asset::Mesh(_) | Asset::Figure(_) | Asset::Photometry(_) | Asset::Tank(_) => None,
         }
     }
 
@@ -207,6 +230,7 @@ impl Assets {
         match shape {
             Shape::MeshFile { path } => self.mesh(path),
             Shape::Figure(figure) => self.figure(figure).map(|meshes| meshes.fine),
+            Shape::Tank(tank) => self.tank(tank),
             primitive => tessellate(primitive).map(Arc::new),
         }
     }
@@ -236,7 +260,8 @@ impl Assets {
         self.loaded.len() == other.loaded.len() && self.loaded.iter().all(same)
     }
 
-    fn get<'k>(&self, key: &AssetRef<'k>) -> Option<Asset> {
+    /// Returns an asset.
+    pub fn get<'k>(&self, key: &AssetRef<'k>) -> Option<Asset> {
         // The map is covariant in its keys, so that a borrowed key needs no copy of its path.
         let loaded: &HashMap<AssetRef<'k>, Asset> = &self.loaded;
         loaded.get(key).cloned()
@@ -244,7 +269,7 @@ impl Assets {
 
     fn get_mesh(&self, key: &AssetRef<'_>) -> Option<Arc<Mesh>> {
         match self.get(key)? {
-            Asset::Mesh(mesh) => Some(mesh),
+            Asset::Mesh(mesh) | Asset::Tank(mesh) => Some(mesh),
             Asset::Texture(_) | Asset::Figure(_) | Asset::Photometry(_) => None,
         }
     }

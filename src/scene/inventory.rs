@@ -141,6 +141,7 @@ fn shape_asset(shape: &Shape) -> Option<AssetRef<'_>> {
     match shape {
         Shape::MeshFile { path } => Some(AssetRef::Mesh(Cow::Borrowed(path))),
         Shape::Figure(figure) => Some(AssetRef::figure(Cow::Borrowed(figure))),
+        Shape::Tank(tank) => Some(AssetRef::tank(Cow::Borrowed(tank))),
         Shape::Plane { .. }
         | Shape::Box { .. }
         | Shape::Sphere { .. }

@@ -1,6 +1,6 @@
 //! Objects: figures, props, backdrops.
 
-use super::{Figure, Material, ObjectId};
+use super::{Figure, Material, ObjectId, Tank};
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
 /// Geometry of an object in its own space, metres.
@@ -58,6 +58,8 @@ pub enum Shape {
         /// Angle between the boards, degrees: 180 is one flat board.
         angle_deg: f32,
     },
+    /// A block of ground and water in cells. Its origin is the centre of its underside.
+    Tank(Box<Tank>),
 }
 
 impl Shape {
@@ -77,6 +79,7 @@ impl Shape {
             Shape::Cylinder { .. } => "Cylinder",
             Shape::Sweep { .. } => "Backdrop",
             Shape::VFlat { .. } => "V-flat",
+            Shape::Tank(_) => "Water tank",
         }
     }
 }

@@ -11,10 +11,10 @@ const ROWS: u32 = 64;
 /// Segments of a sweep's curve.
 const CURVE: u32 = 48;
 
-/// Returns the mesh of a parametric shape; `None` for shapes that are loaded.
+/// Returns the mesh of a parametric shape; `None` for shapes that are loaded or computed.
 pub fn tessellate(shape: &Shape) -> Option<Mesh> {
     let mesh = match *shape {
-        Shape::MeshFile { .. } | Shape::Figure(_) => return None,
+        Shape::MeshFile { .. } | Shape::Figure(_) | Shape::Tank(_) => return None,
         Shape::Plane { width_m, depth_m } => quad(Vec3::ZERO, Vec3::X * width_m * 0.5, Vec3::NEG_Z * depth_m * 0.5),
         Shape::Box { size_m } => cuboid(Vec3::ZERO, size_m * 0.5),
         Shape::Sphere { radius_m } => sphere(radius_m),

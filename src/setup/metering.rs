@@ -267,6 +267,7 @@ fn is_large(object: &Object) -> bool {
         Shape::Figure(_) => 0.0,
         Shape::Plane { .. } | Shape::Sweep { .. } | Shape::MeshFile { .. } => f32::INFINITY,
         Shape::Box { size_m } => (size_m * scale).max_element(),
+        Shape::Tank(ref tank) => (tank.size_m() * scale).max_element(),
         Shape::Sphere { radius_m } => 2.0 * radius_m * scale.max_element(),
         Shape::VFlat { wing_m, height_m, .. } => (Vec3::new(wing_m, height_m, wing_m) * scale).max_element(),
         Shape::Cylinder { radius_m, height_m } => {

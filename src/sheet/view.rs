@@ -275,7 +275,7 @@ impl StudioView {
 impl Outlined {
     fn new(object: &Object, assets: &Assets, from: ViewFrom, turn: Mat3) -> Option<Self> {
         let mesh = match &object.shape {
-            Shape::MeshFile { .. } | Shape::Figure(_) => assets.coarse_mesh_of(&object.shape)?,
+            Shape::MeshFile { .. } | Shape::Figure(_) | Shape::Tank(_) => assets.coarse_mesh_of(&object.shape)?,
             shape => std::sync::Arc::new(tessellate(shape)?),
         };
         let world_from_object = object.transform.world_from_object();

@@ -42,6 +42,7 @@ mod variants;
 mod view_options;
 mod viewport;
 mod views;
+mod water;
 
 type Window = Harness<'static, App>;
 

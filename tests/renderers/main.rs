@@ -27,4 +27,5 @@ mod studio;
 mod studio_presets;
 mod subsurface;
 mod truth;
+mod water;
 mod whitted;

@@ -89,6 +89,43 @@ fn a_figure_out_of_range_that_looks_somewhere_is_refused_and_never_built() {
 }
 
 #[test]
+fn a_tank_out_of_bounds_is_refused_and_never_built() {
+    let tank = "Tank((cells: (8, 8, 8), cell_m: 0.1, terrain: Flat(height_m: 0.1), \
+                springs: [(at_m: (0.0, 0.1, 0.0), litres_per_s: 1.0)], \
+                blocks: [(from: (0, 0, 0), to: (1, 1, 1), content: Metal)], time_s: 2.0))";
+    let with = |text: &str| SMALL.replacen("Sphere(radius_m: 0.1)", text, 1);
+    assert!(parse_scene(&with(tank)).unwrap().1.is_empty());
+    let many = |item: &str, count: usize| format!("[{}]", vec![item; count].join(", "));
+    let blocks = many("(from: (0, 0, 0), to: (1, 1, 1), content: Air)", 300);
+    let cases: &[(&str, &str, &[&str])] = &[
+        ("(8, 8, 8)", "(0, 8, 8)", &["shape.cells", "0 cells", "1 to 256", "line 16"]),
+        ("(8, 8, 8)", "(257, 8, 8)", &["shape.cells", "257"]),
+        ("(8, 8, 8)", "(256, 256, 256)", &["shape.cells", "16777216", "2097152"]),
+        ("(8, 8, 8)", "(70000, 8, 8)", &["cells", "70000"]),
+        ("(8, 8, 8)", "(-1, 8, 8)", &["cells", "-1"]),
+        ("cell_m: 0.1", "cell_m: 0.0", &["shape.cell_m", "0 m"]),
+        ("cell_m: 0.1", "cell_m: NaN", &["shape.cell_m", "NaN"]),
+        ("Flat(height_m: 0.1)", "Flat(height_m: inf)", &["shape.terrain.height_m", "inf"]),
+        ("Flat(height_m: 0.1)", "Hills(seed: 1, low_m: 0.0, high_m: 1.0, period_m: 0.0)", &["shape.terrain.period_m"]),
+        ("time_s: 2.0", "time_s: 1e9", &["shape.time_s", "1000000000", "0 to 120 s"]),
+        ("time_s: 2.0", "time_s: -1.0", &["shape.time_s", "-1"]),
+        ("time_s: 2.0", "time_s: 2.0, water_m: 1e30", &["shape.water_m"]),
+        ("litres_per_s: 1.0", "litres_per_s: 1e30", &["shape.springs[0].litres_per_s"]),
+        ("litres_per_s: 1.0", "litres_per_s: 1.0, switches_s: [2.0, 1.0]", &["shape.springs[0].switches_s", "order"]),
+        ("to: (1, 1, 1)", "to: (1, 1, 1), too: 1", &["too"]),
+        ("from: (0, 0, 0)", "from: (2, 0, 0)", &["shape.blocks[0].to"]),
+        ("content: Metal", "content: Lava", &["Lava", "Air, Ground"]),
+        ("[(from: (0, 0, 0), to: (1, 1, 1), content: Metal)]", &blocks, &["shape.blocks", "300", "256"]),
+    ];
+    for (from, to, words) in cases {
+        let text = with(&tank.replacen(from, to, 1));
+        assert_ne!(text, with(tank), "{from}");
+        let message = refused(&text);
+        assert!(words.iter().all(|word| message.contains(word)), "{to}: {message}");
+    }
+}
+
+#[test]
 fn empty_and_binary_files_are_refused() {
     for text in ["", " \n", "\u{feff}", "\0\0\0", "()", "[]", "1", "(format: 1)", "\"", "/*", "r#\"", "PK\u{3}\u{4}"] {
         assert!(!refused(text).is_empty());

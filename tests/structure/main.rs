@@ -17,7 +17,7 @@ const LAYERS: [&[&str]; 10] = [
     &["math", "color"],
     &["scene"],
     &["photo"],
-    &["gear", "denoise", "figures", "raytrace", "raster", "preview"],
+    &["gear", "denoise", "figures", "water", "raytrace", "raster", "preview"],
     &["io"],
     &["jobs", "truth"],
     &["setup"],

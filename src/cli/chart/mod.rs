@@ -9,6 +9,9 @@ mod picture_error;
 mod reference;
 mod scaling;
 mod traversal;
+mod voxel_drawing;
+mod voxel_row;
+mod voxels;
 
 use super::failure::Failure;
 use super::input;
@@ -57,6 +60,10 @@ pub struct Arguments {
     /// Compare the caustic of a mirror's edge in close-ups with its closed form, for 1, 4, 16 ... samples up to --spp.
     #[arg(long, conflicts_with_all = ["traversal", "scaling", "noise", "scenes", "reference_spp"])]
     caustics: bool,
+    /// Measure the time of a frame of cells against bounces and view distance: by every cell, by bricks, by the BVH; writes
+    /// voxels.csv, voxels.svg and voxels.md into the folder.
+    #[arg(long, requires = "output", conflicts_with_all = ["traversal", "scaling", "noise", "caustics", "scenes", "reference_spp"])]
+    voxels: bool,
     /// Ranges of --scaling.
     #[command(flatten)]
     range: scaling::ScalingRange,
@@ -75,6 +82,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     if arguments.caustics {
         return caustics::run(arguments.spp, arguments.json);
+    }
+    if let (true, Some(folder)) = (arguments.voxels, &arguments.output) {
+        return voxels::run(folder, arguments.json);
     }
     match (&arguments.traversal, &arguments.output) {
         (Some(model), _) => {

@@ -144,6 +144,10 @@ pub enum Command {
     SetUpAtFace(ObjectId),
     /// Moves the camera to the studio view's viewpoint.
     CameraFromView,
+    /// Lets the water of a tank run in the studio; none holds it.
+    PlayTank(Option<ObjectId>),
+    /// Sets the speed of the water that runs, as a multiple of nature's.
+    SetTankSpeed(f32),
     /// Selects the renderer of the live view.
     SetLiveMode(LiveMode),
     /// Switches to the other renderer of the live view.

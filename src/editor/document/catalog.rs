@@ -2,7 +2,7 @@
 
 use crate::figures::{self, ReadyFigure};
 use crate::scene::{
-    Aim, Emitter, Light, Material, MaterialPreset, Modifier, NamedModifier, Object, Output, Power, Shape,
+    Aim, Emitter, Light, Material, MaterialPreset, Modifier, NamedModifier, Object, Output, Power, Shape, Spring, Tank,
 };
 use glam::Vec3;
 
@@ -87,6 +87,8 @@ pub enum PropShape {
     Card(f32, f32),
     /// Width of each of two boards, and height.
     VFlat(f32, f32),
+    /// A landscape with water.
+    Tank,
 }
 
 /// An entry of the catalog.
@@ -181,7 +183,7 @@ const FIGURES: [CatalogEntry; figures::READY.len()] = {
     entries
 };
 
-const PROPS: [CatalogEntry; 22] = [
+const PROPS: [CatalogEntry; 23] = [
     prop("Box", "A box of 50 cm.", PropShape::Box([0.5, 0.5, 0.5]), MaterialPreset::MatteFabric),
     prop("Sphere", "A matte ball of 30 cm.", PropShape::Sphere(0.15), MaterialPreset::MatteFabric),
     prop("Cylinder", "An upright cylinder, 30 cm across.", PropShape::Cylinder(0.15, 0.4), MaterialPreset::MatteFabric),
@@ -268,6 +270,12 @@ const PROPS: [CatalogEntry; 22] = [
         "21 x 30 cm: a small flag beside a product.",
         PropShape::Card(0.21, 0.297),
         MaterialPreset::BlackVelvet,
+    ),
+    prop(
+        "Water landscape",
+        "Hills with a lake and a spring, 64 x 64 cm: its water runs.",
+        PropShape::Tank,
+        MaterialPreset::PaintedWall,
     ),
 ];
 
@@ -363,12 +371,21 @@ fn new_prop(name: &str, shape: PropShape, material: Material) -> Object {
         PropShape::Cylinder(radius_m, height_m) => (Shape::Cylinder { radius_m, height_m }, 0.5 * height_m, 0.0),
         PropShape::Plane(width_m, depth_m) => (Shape::Plane { width_m, depth_m }, 0.002, 0.0),
         PropShape::Card(width_m, height_m) => (Shape::Plane { width_m, depth_m: height_m }, 0.5 * height_m, 90.0),
+        PropShape::Tank => (Shape::Tank(Box::new(spring_landscape())), 0.0, 0.0),
         PropShape::VFlat(wing_m, height_m) => (Shape::VFlat { wing_m, height_m, angle_deg: 90.0 }, 0.5 * height_m, 0.0),
     };
     let mut object = Object { material, ..Object::new(name, shape) };
+    if matches!(object.shape, Shape::Tank(_)) {
+        object.part_materials.push(("water".to_owned(), Tank::water_material()));
+    }
     object.transform.position.y = height_m;
     object.transform.rotation_deg.x = pitch_deg;
     object
+}
+
+/// Returns a landscape with a spring above it.
+fn spring_landscape() -> Tank {
+    Tank { springs: vec![Spring::new(Vec3::new(0.08, 0.3, -0.08), 0.1)], ..Tank::default() }
 }
 
 /// Returns a light before placement, whose dial makes up for the loss of its modifier.
@@ -406,7 +423,10 @@ mod tests {
     fn props_stand_on_the_floor() {
         for entry in &PROPS {
             let CatalogItem::Object(object) = entry.make() else { unreachable!() };
-            let mesh = crate::scene::tessellate(&object.shape).unwrap();
+            let Some(mesh) = crate::scene::tessellate(&object.shape) else {
+                assert!(matches!(object.shape, Shape::Tank(_)) && object.transform.position.y == 0.0);
+                continue;
+            };
             let world = object.transform.world_from_object();
             let low = mesh.positions.iter().map(|p| world.transform_point3(*p).y).fold(f32::MAX, f32::min);
             assert!((0.0..0.003).contains(&(low + 1e-6)), "{}: {low}", entry.name);

@@ -20,3 +20,4 @@ pub mod revisions;
 pub mod selection;
 pub mod studio_document;
 pub mod switches;
+pub mod tank_player;

@@ -9,7 +9,7 @@ use crate::editor::document::revisions::Revisions;
 use crate::figures;
 use crate::io::{self, AssetFiles, FileStamp};
 use crate::scene::{
-    Asset, AssetKey, AssetRef, Assets, Finding, ObjectId, Scene, SceneChange, Severity, Shape, VariantId, validate,
+    AssetKey, AssetRef, Assets, Finding, ObjectId, Scene, SceneChange, Severity, Shape, Tank, VariantId, validate,
 };
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -210,16 +210,16 @@ impl Document {
         done
     }
 
-    /// Lets changed figures keep the meshes of before until their own are built, so that they do not vanish meanwhile.
+    /// Lets changed figures and tanks keep the meshes of before until their own are built, so that they do not vanish
+    /// meanwhile.
     fn keep_meshes(&mut self, before: &Scene) {
         for object in &self.scene.objects {
-            let older = before.object(object.id).map(|object| &object.shape);
-            let (Shape::Figure(new), Some(Shape::Figure(old))) = (&object.shape, older) else { continue };
-            let missing = self.assets.figure(new).is_none();
-            if let Some(meshes) = self.assets.figure(old).filter(|_| missing) {
-                let key = AssetRef::figure(Cow::Owned(**new));
-                self.assets.insert(key.clone(), Asset::Figure(meshes));
-                self.stand_ins.insert(key, object.id);
+            let older = before.object(object.id).and_then(|object| made_key(&object.shape));
+            let (Some(new), Some(old)) = (made_key(&object.shape), older) else { continue };
+            let is_missing = new.is_tank() == old.is_tank() && !self.assets.contains(&new);
+            if let Some(made) = self.assets.get(&old).filter(|_| is_missing) {
+                self.assets.insert(new.clone(), made);
+                self.stand_ins.insert(new, object.id);
             }
         }
     }
@@ -238,17 +238,15 @@ impl Document {
     /// Adds assets that were loaded in the background. Those of `tried` that are still missing have failed.
     pub fn insert_assets(&mut self, loaded: Assets, tried: &BTreeSet<AssetKey>) {
         for (key, built) in loaded.iter() {
-            // A figure that has changed since it was sent off: what was built is nearer to it than what stands in
+            // It has changed since it was sent off: what was built is nearer to it than what stands in
             let owner = self.stand_ins.remove(key).and_then(|owner| self.scene.object(owner));
-            if let Some(Shape::Figure(now)) = owner.map(|object| &object.shape) {
-                let now = AssetRef::figure(Cow::Owned(**now));
-                if self.stand_ins.contains_key(&now) {
-                    self.assets.insert(now, built.clone());
-                }
+            let now = owner.and_then(|object| made_key(&object.shape));
+            if let Some(now) = now.filter(|now| self.stand_ins.contains_key(now)) {
+                self.assets.insert(now, built.clone());
             }
         }
         self.assets.extend(loaded);
-        self.assets.drop_unused_figures(&self.scene);
+        self.assets.drop_unused_made(&self.scene);
         let assets = &self.assets;
         self.stand_ins.retain(|key, _| assets.contains(key));
         self.failed.extend(self.missing_assets().intersection(tried).cloned());
@@ -311,6 +309,15 @@ fn new_error(before: &Scene, after: &Scene) -> Option<Finding> {
     let errors = |scene| validate(scene).into_iter().filter(|f| f.severity == Severity::Error);
     let old: Vec<Finding> = errors(before).collect();
     errors(after).find(|error| !old.contains(error))
+}
+
+/// Returns the reference to what is built of a shape's parameters: a figure or a tank.
+fn made_key(shape: &Shape) -> Option<AssetKey> {
+    match shape {
+        Shape::Figure(figure) => Some(AssetRef::figure(Cow::Owned(**figure))),
+        Shape::Tank(tank) => Some(AssetRef::tank(Cow::Owned(Tank::clone(tank)))),
+        _ => None,
+    }
 }
 
 #[cfg(test)]

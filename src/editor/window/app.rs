@@ -194,6 +194,7 @@ impl App {
         self.take_close_request(ctx);
         self.check_file_on_focus(ctx);
         self.keep_unsaved(ctx);
+        self.advance_tank(ctx);
         self.load_wanted_assets(ctx);
         let scene = self.document.scene();
         self.variant_pictures.follow(&mut self.rendering, scene);
@@ -311,7 +312,8 @@ impl App {
             });
             WindowPart::Inspector.note(ui.ctx(), ui.available_rect_before_wrap());
             let (patterns, gear) = (&self.background.pattern, self.panels.gear.list());
-            inspector::inspector_ui(ui, &self.document, &self.selection, patterns, gear, out);
+            let player = &self.panels.tank_player;
+            inspector::inspector_ui(ui, &self.document, &self.selection, patterns, gear, player, out);
         });
         (self.panels.left, self.panels.right) = (left, right);
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| self.central_ui(ui, out)).response.rect

@@ -5,6 +5,7 @@ use crate::editor::document::catalog::CatalogTab;
 use crate::editor::document::dial_wishes::DialWishes;
 use crate::editor::document::files::PresetInfo;
 use crate::editor::document::gear_shelf::GearShelf;
+use crate::editor::document::tank_player::TankPlayer;
 use crate::editor::panels::gear::GearTab;
 use crate::editor::panels::outliner::OutlinerState;
 use crate::editor::panels::presets::PresetPicker;
@@ -85,6 +86,8 @@ pub struct PanelState {
     pub tour: Tour,
     /// The wanted exposures.
     pub dial_wishes: DialWishes,
+    /// The water that runs.
+    pub tank_player: TankPlayer,
     /// The panel of catalog and item list.
     pub left: SidePanel,
     /// The panel of inspector and render settings.
@@ -111,6 +114,7 @@ impl PanelState {
             gear,
             tour: Tour::default(),
             dial_wishes: DialWishes::default(),
+            tank_player: TankPlayer::default(),
             left: SidePanel::default(),
             right: SidePanel::default(),
         }

@@ -20,5 +20,6 @@ mod run_measured_light;
 pub mod run_preferences;
 pub mod run_recovery;
 pub mod run_setup;
+mod run_tank;
 pub mod run_time_libraries;
 pub mod session;

@@ -134,6 +134,8 @@ impl App {
             Command::SetLiveMode(mode) => self.views.viewport.traced_view.mode = mode,
             Command::ToggleLiveMode => self.views.viewport.traced_view.toggle(),
             Command::SetHandles(handle) => self.views.handles = handle,
+            Command::PlayTank(tank) => self.play_tank(tank),
+            Command::SetTankSpeed(speed) => self.panels.tank_player.set_speed(speed),
             Command::FrameFigure(id, framing) => {
                 let (scene, assets) = (self.document.scene(), self.document.assets());
                 if let Some(action) = frame_figure(scene, assets, id, framing) {

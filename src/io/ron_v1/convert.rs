@@ -309,6 +309,7 @@ impl From<ShapeV1> for Shape {
                 Shape::Sweep { width_m, height_m, depth_m, radius_m }
             }
             ShapeV1::VFlat { wing_m, height_m, angle_deg } => Shape::VFlat { wing_m, height_m, angle_deg },
+            ShapeV1::Tank(tank) => Shape::Tank(Box::new((*tank).into())),
         }
     }
 }
@@ -326,6 +327,7 @@ impl From<&Shape> for ShapeV1 {
                 ShapeV1::Sweep { width_m, height_m, depth_m, radius_m }
             }
             Shape::VFlat { wing_m, height_m, angle_deg } => ShapeV1::VFlat { wing_m, height_m, angle_deg },
+            Shape::Tank(tank) => ShapeV1::Tank(Box::new((*tank).into())),
         }
     }
 }

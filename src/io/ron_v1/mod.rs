@@ -17,6 +17,7 @@ mod mannequin;
 mod material;
 mod names;
 mod scene;
+mod tank;
 mod texture_placement;
 mod variants;
 
@@ -34,6 +35,7 @@ use head::{HeadChangeV1, HeadV1};
 use mannequin::{MannequinPoseV1, MannequinV1};
 use material::MaterialV1;
 use serde::{Deserialize, Serialize};
+use tank::TankV1;
 
 /// The whole file.
 #[derive(Debug, Serialize, Deserialize)]
@@ -253,6 +255,7 @@ enum ShapeV1 {
         height_m: f32,
         angle_deg: f32,
     },
+    Tank(Box<TankV1>),
 }
 
 #[derive(Debug, Serialize, Deserialize)]

@@ -91,7 +91,7 @@ impl ShadowCasting {
             | Shape::VFlat { .. }
             | Shape::MeshFile { .. }
             | Shape::Figure(_) => ShadowCasting::Sheet,
-            Shape::Box { .. } | Shape::Sphere { .. } | Shape::Cylinder { .. } => {
+            Shape::Box { .. } | Shape::Sphere { .. } | Shape::Cylinder { .. } | Shape::Tank(_) => {
                 let mirrored = world_from_object.matrix3.determinant() < 0.0;
                 if mirrored { ShadowCasting::MirroredSolid } else { ShadowCasting::Solid }
             }

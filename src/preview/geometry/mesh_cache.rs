@@ -91,7 +91,12 @@ impl MeshCache {
     pub fn begin_frame(&mut self) {
         self.frame += 1;
         let frame = self.frame;
-        self.meshes.retain(|_, mesh| frame - mesh.last_used <= KEPT_FRAMES);
+        // Nobody can ask any more for a mesh that only the cache holds: a figure or water as it was before
+        let is_gone = |mesh: &GpuMesh| mesh._source.as_ref().is_some_and(|source| Arc::strong_count(source) == 1);
+        self.meshes.retain(|_, mesh| {
+            let unused = frame - mesh.last_used;
+            unused <= KEPT_FRAMES && (unused <= 1 || !is_gone(mesh))
+        });
     }
 
     /// Returns the mesh of a key.
@@ -142,7 +147,7 @@ impl MeshCache {
 
 fn parametric_key(shape: &Shape) -> Option<MeshKey> {
     let (tag, numbers) = match *shape {
-        Shape::MeshFile { .. } | Shape::Figure(_) => return None,
+        Shape::MeshFile { .. } | Shape::Figure(_) | Shape::Tank(_) => return None,
         Shape::Plane { width_m, depth_m } => (0, [width_m, depth_m, 0.0, 0.0]),
         Shape::Box { size_m } => (1, [size_m.x, size_m.y, size_m.z, 0.0]),
         Shape::Sphere { radius_m } => (2, [radius_m, 0.0, 0.0, 0.0]),

@@ -13,6 +13,7 @@ mod light_warnings;
 mod material;
 mod object;
 mod placement;
+mod tank;
 mod variants;
 
 pub use finding::{Finding, Severity};

@@ -1,7 +1,7 @@
 //! Checks the room and the objects.
 
 use super::check::{Allowed, Check, POSITION, SIZE, TURN};
-use super::{figure, material};
+use super::{figure, material, tank};
 use crate::scene::{Object, Room, Shape};
 use std::collections::HashSet;
 
@@ -32,6 +32,7 @@ fn check_shape(shape: &Shape, check: &mut Check) {
     match *shape {
         Shape::MeshFile { ref path } => check.asset_path("shape.path", path),
         Shape::Figure(ref figure) => figure::check_figure(figure, check),
+        Shape::Tank(ref tank) => tank::check_tank(tank, check),
         Shape::Plane { width_m, depth_m } => {
             check.number("shape.width_m", width_m, SIZE);
             check.number("shape.depth_m", depth_m, SIZE);

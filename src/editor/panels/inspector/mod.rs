@@ -14,6 +14,7 @@ mod modifier;
 mod object;
 mod power;
 mod room;
+mod tank;
 mod unit_slider;
 
 use crate::editor::commands::command::Command;
@@ -21,6 +22,7 @@ use crate::editor::document::action::Action;
 use crate::editor::document::item::{Item, name_of_all};
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
+use crate::editor::document::tank_player::TankPlayer;
 use crate::editor::ui::widgets::{row, small_button};
 use crate::gear::GearList;
 use crate::jobs::PatternJob;
@@ -32,6 +34,7 @@ struct InspectorContext<'a> {
     document: &'a Document,
     patterns: &'a PatternJob,
     gear: &'a GearList,
+    player: &'a TankPlayer,
     out: &'a mut Vec<Command>,
 }
 
@@ -42,11 +45,12 @@ pub fn inspector_ui(
     selection: &Selection,
     patterns: &PatternJob,
     gear: &GearList,
+    player: &TankPlayer,
     out: &mut Vec<Command>,
 ) {
     ScrollArea::vertical().id_salt("inspector").auto_shrink([false, false]).show(ui, |ui| {
         ui.add_space(4.0);
-        let mut context = InspectorContext { document, patterns, gear, out };
+        let mut context = InspectorContext { document, patterns, gear, player, out };
         if selection.len() > 1 {
             several_ui(ui, &mut context, selection);
         }

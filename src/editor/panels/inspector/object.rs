@@ -2,6 +2,7 @@
 
 use super::figure::{face_rows, figure_ui, framing_rows};
 use super::material::{material_group, material_rows, preset_name};
+use super::tank::tank_ui;
 use super::{InspectorContext, text_ui, title};
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
@@ -32,7 +33,8 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Obj
         );
     });
     ui.separator();
-    match object.shape {
+    match &mut object.shape {
+        Shape::Tank(tank) => tank_ui(ui, id, tank, context.player, context.out),
         Shape::Figure(_) => {
             if original.visible {
                 face_rows(ui, context.patterns.face(id));
@@ -71,8 +73,8 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Obj
 
 fn shape_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
     match &mut object.shape {
-        // A figure has sections of its own.
-        Shape::Figure(_) => {}
+        // Figures and tanks have sections of their own.
+        Shape::Figure(_) | Shape::Tank(_) => {}
         Shape::MeshFile { path } => {
             row(ui, "File", "The model, relative to the studio's file", |ui| ui.label(path.as_str()));
         }

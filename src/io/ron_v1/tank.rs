@@ -1,0 +1,120 @@
+//! Water tanks in the scene file.
+
+use super::defaults::{Triple, is_default};
+use crate::scene::{Block, CellContent, Spring, Tank, TankLook, Terrain};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// A water tank.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename = "Tank", deny_unknown_fields)]
+pub(super) struct TankV1 {
+    cells: (u16, u16, u16),
+    cell_m: f32,
+    terrain: TerrainV1,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    blocks: Vec<BlockV1>,
+    #[serde(default, skip_serializing_if = "is_default")]
+    water_m: f32,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    springs: Vec<SpringV1>,
+    #[serde(default, skip_serializing_if = "is_default")]
+    time_s: f32,
+    #[serde(default, skip_serializing_if = "is_default")]
+    look: TankLookV1,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename = "Terrain", deny_unknown_fields)]
+enum TerrainV1 {
+    Flat { height_m: f32 },
+    Basin { floor_m: f32, rim_m: f32 },
+    Hills { seed: u32, low_m: f32, high_m: f32, period_m: f32 },
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename = "Block", deny_unknown_fields)]
+struct BlockV1 {
+    from: (u16, u16, u16),
+    to: (u16, u16, u16),
+    content: CellContentV1,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(rename = "CellContent")]
+enum CellContentV1 {
+    Air,
+    Ground,
+    Metal,
+    Water,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "TankLook")]
+enum TankLookV1 {
+    #[default]
+    Smooth,
+    Cubes,
+}
+
+/// A spring; without its switches it is on from the start.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename = "Spring", deny_unknown_fields)]
+struct SpringV1 {
+    at_m: Triple,
+    litres_per_s: f32,
+    #[serde(default = "on_from_the_start", skip_serializing_if = "is_on_from_the_start")]
+    switches_s: Vec<f32>,
+}
+
+fn on_from_the_start() -> Vec<f32> {
+    vec![0.0]
+}
+
+fn is_on_from_the_start(switches_s: &[f32]) -> bool {
+    switches_s == [0.0]
+}
+
+same_variants!(TerrainV1 <=> Terrain {
+    Flat { height_m }, Basin { floor_m, rim_m }, Hills { seed, low_m, high_m, period_m },
+});
+same_variants!(CellContentV1 <=> CellContent { Air, Ground, Metal, Water });
+same_variants!(TankLookV1 <=> TankLook { Smooth, Cubes });
+
+impl From<TankV1> for Tank {
+    fn from(file: TankV1) -> Self {
+        let TankV1 { cells, cell_m, terrain, blocks, water_m, springs, time_s, look } = file;
+        let block = |BlockV1 { from, to, content }| Block { from: from.into(), to: to.into(), content: content.into() };
+        let spring =
+            |SpringV1 { at_m, litres_per_s, switches_s }| Spring { at_m: Vec3::from(at_m), litres_per_s, switches_s };
+        Tank {
+            cells: cells.into(),
+            cell_m,
+            terrain: terrain.into(),
+            blocks: blocks.into_iter().map(block).collect(),
+            water_m,
+            springs: springs.into_iter().map(spring).collect(),
+            time_s,
+            look: look.into(),
+        }
+    }
+}
+
+impl From<Tank> for TankV1 {
+    fn from(tank: Tank) -> Self {
+        let Tank { cells, cell_m, terrain, blocks, water_m, springs, time_s, look } = tank;
+        let block = |Block { from, to, content }| BlockV1 { from: from.into(), to: to.into(), content: content.into() };
+        let spring =
+            |Spring { at_m, litres_per_s, switches_s }| SpringV1 { at_m: at_m.to_array(), litres_per_s, switches_s };
+        TankV1 {
+            cells: cells.into(),
+            cell_m,
+            terrain: terrain.into(),
+            blocks: blocks.into_iter().map(block).collect(),
+            water_m,
+            springs: springs.into_iter().map(spring).collect(),
+            time_s,
+            look: look.into(),
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! The start of a tank: its ground, its still water and its blocks.
+
+use super::grid::{FULL, Grid};
+use crate::scene::{Block, CellContent, Tank, Terrain};
+use glam::{IVec2, Vec2};
+
+/// Octaves of the noise of hills.
+const OCTAVES: u32 = 5;
+
+/// Returns the cells of a tank at its start.
+pub fn start(tank: &Tank) -> Grid {
+    let mut grid = Grid::new(tank.cells.map(usize::from));
+    let [nx, ny, nz] = grid.size();
+    let units = |height_m: f32| f64::from(height_m) / f64::from(tank.cell_m) * f64::from(FULL);
+    // The share of a height that is in a cell
+    let share = |units: f64, y: usize| (units - y as f64 * f64::from(FULL)).round().clamp(0.0, f64::from(FULL)) as u16;
+    let heights_m = heights_m(tank);
+    for z in 0..nz {
+        for x in 0..nx {
+            let (ground, water) = (units(heights_m[z * nx + x]), units(tank.water_m));
+            for y in 0..ny {
+                let cell = grid.index([x, y, z]);
+                grid.set_ground(cell, share(ground, y));
+                grid.set_level(cell, share(water, y));
+            }
+        }
+    }
+    tank.blocks.iter().for_each(|block| place(&mut grid, block));
+    grid
+}
+
+fn place(grid: &mut Grid, block: &Block) {
+    let Block { from, to, content } = *block;
+    let range = |axis: usize| usize::from(from[axis])..(usize::from(to[axis]) + 1).min(grid.size()[axis]);
+    let [xs, ys, zs] = [range(0), range(1), range(2)];
+    for z in zs {
+        for x in xs.clone() {
+            for y in ys.clone() {
+                let cell = grid.index([x, y, z]);
+                match content {
+                    CellContent::Air => grid.set_ground(cell, 0),
+                    CellContent::Ground => grid.set_ground(cell, FULL),
+                    CellContent::Metal => grid.set_metal(cell),
+                    CellContent::Water => {
+                        grid.set_ground(cell, 0);
+                        grid.set_level(cell, FULL);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Returns the height of the ground in each column, metres, rows along X.
+fn heights_m(tank: &Tank) -> Vec<f32> {
+    let [nx, _, nz] = tank.cells.map(i32::from);
+    // Twice the offset of a column from the middle, in cells: exact, so that a basin is symmetric to the bit
+    let columns = (0..nz).flat_map(|z| (0..nx).map(move |x| IVec2::new(2 * x + 1 - nx, 2 * z + 1 - nz)));
+    match tank.terrain {
+        Terrain::Flat { height_m } => vec![height_m; (nx * nz) as usize],
+        Terrain::Basin { floor_m, rim_m } => columns
+            .map(|offset| {
+                let from_middle = (offset.abs().as_vec2() / IVec2::new(nx, nz).as_vec2()).length().min(1.0);
+                floor_m + (rim_m - floor_m) * smooth_step(from_middle)
+            })
+            .collect(),
+        Terrain::Hills { seed, low_m, high_m, period_m } => {
+            let scale = 0.5 * tank.cell_m / period_m;
+            let noise: Vec<f32> = columns.map(|offset| fractal_noise(seed, offset.as_vec2() * scale)).collect();
+            let low = noise.iter().copied().fold(f32::INFINITY, f32::min);
+            let high = noise.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+            let range = (high - low).max(1e-6);
+            noise.iter().map(|value| low_m + (high_m - low_m) * ((value - low) / range)).collect()
+        }
+    }
+}
+
+fn smooth_step(t: f32) -> f32 {
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// Returns the sum of octaves of gradient noise, each of twice the frequency and somewhat less than half the height of
+/// the one before.
+fn fractal_noise(seed: u32, at: Vec2) -> f32 {
+    (0..OCTAVES)
+        .map(|octave| gradient_noise(seed ^ octave, at * (1 << octave) as f32) * 0.46_f32.powi(octave as i32))
+        .sum()
+}
+
+/// Returns gradient noise with the fifth-order fade of Perlin 2002, "Improving Noise".
+fn gradient_noise(seed: u32, at: Vec2) -> f32 {
+    let corner = at.floor();
+    let (t, corner) = (at - corner, corner.as_ivec2());
+    let fade = t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+    let slope = |dx: i32, dy: i32| {
+        let offset = IVec2::new(dx, dy);
+        gradient(seed, corner + offset).dot(t - offset.as_vec2())
+    };
+    let low = slope(0, 0) + (slope(1, 0) - slope(0, 0)) * fade.x;
+    let high = slope(0, 1) + (slope(1, 1) - slope(0, 1)) * fade.x;
+    low + (high - low) * fade.y
+}
+
+/// Returns the gradient at a lattice point: one of eight directions, from a hash of the point.
+fn gradient(seed: u32, point: IVec2) -> Vec2 {
+    const DIAGONAL: f32 = std::f32::consts::FRAC_1_SQRT_2;
+    let hash = mix(seed ^ mix(point.x as u32 ^ mix(point.y as u32)));
+    let straight = [Vec2::X, Vec2::Y, Vec2::NEG_X, Vec2::NEG_Y];
+    let diagonal = [Vec2::ONE, Vec2::new(-1.0, 1.0), Vec2::NEG_ONE, Vec2::new(1.0, -1.0)];
+    let index = (hash >> 8 & 3) as usize;
+    if hash & 1 == 0 { straight[index] } else { diagonal[index] * DIAGONAL }
+}
+
+/// Mixes the bits of a number: the finaliser of MurmurHash3 (Appleby).
+fn mix(mut value: u32) -> u32 {
+    value = value.wrapping_add(0x9e37_79b9);
+    value = (value ^ value >> 16).wrapping_mul(0x85eb_ca6b);
+    value = (value ^ value >> 13).wrapping_mul(0xc2b2_ae35);
+    value ^ value >> 16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hills_fill_their_range_and_the_seed_chooses_them() {
+        let hills = |seed| Tank {
+            terrain: Terrain::Hills { seed, low_m: 0.03, high_m: 0.2, period_m: 0.3 },
+            ..Tank::default()
+        };
+        let heights = heights_m(&hills(1));
+        let (low, high) = heights.iter().fold((1.0_f32, 0.0_f32), |(low, high), &h| (low.min(h), high.max(h)));
+        assert!((low - 0.03).abs() < 1e-6 && (high - 0.2).abs() < 1e-6, "{low} to {high}");
+        let steepest =
+            heights.chunks(64).flat_map(|row| row.windows(2)).map(|w| (w[0] - w[1]).abs()).fold(0.0, f32::max);
+        assert!(steepest < 0.03, "a landscape, not noise: {steepest} m from column to column");
+        assert_ne!(heights, heights_m(&hills(2)));
+    }
+
+    #[test]
+    fn still_water_fills_what_is_below_its_level_and_blocks_replace_it() {
+        let block = |at, content| Block { from: at, to: at, content };
+        let tank = Tank {
+            cells: [4, 4, 4],
+            cell_m: 0.1,
+            terrain: Terrain::Flat { height_m: 0.15 },
+            water_m: 0.275,
+            blocks: vec![
+                block([0, 3, 0], CellContent::Water),
+                block([1, 0, 0], CellContent::Air),
+                block([2, 2, 0], CellContent::Metal),
+                block([3, 2, 0], CellContent::Ground),
+            ],
+            ..Tank::default()
+        };
+        let grid = start(&tank);
+        let column = |x, z| -> Vec<(u16, u16)> {
+            (0..4).map(|y| grid.index([x, y, z])).map(|cell| (grid.ground(cell), grid.water(cell))).collect()
+        };
+        assert_eq!(column(0, 1), [(FULL, 0), (FULL / 2, FULL / 2), (0, FULL / 4 * 3), (0, 0)]);
+        assert_eq!(column(0, 0)[3], (0, FULL));
+        assert_eq!(column(1, 0)[0], (0, 0), "a cave is dry at the start");
+        assert_eq!(column(2, 0)[2], (FULL, 0));
+        assert!(grid.is_metal(grid.index([2, 2, 0])) && !grid.is_metal(grid.index([3, 2, 0])));
+    }
+}
