@@ -1,6 +1,6 @@
 //! Objects: figures, props, backdrops.
 
-use super::{Figure, Material, ObjectId};
+use super::{Figure, Material, ObjectId, PropModel};
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
 /// Geometry of an object in its own space, metres.
@@ -58,12 +58,22 @@ pub enum Shape {
         /// Angle between the boards, degrees: 180 is one flat board.
         angle_deg: f32,
     },
+    /// A prop of a fixed form, on the floor.
+    Prop(PropModel),
 }
 
 impl Shape {
     /// Returns true for paper, cloth and boards, which stand behind or beside a subject and are none.
     pub fn is_sheet(&self) -> bool {
-        matches!(self, Shape::Plane { .. } | Shape::Sweep { .. } | Shape::VFlat { .. })
+        match self {
+            Shape::Plane { .. } | Shape::Sweep { .. } | Shape::VFlat { .. } => true,
+            Shape::Prop(model) => model.is_backdrop(),
+            Shape::MeshFile { .. }
+            | Shape::Figure(_)
+            | Shape::Box { .. }
+            | Shape::Sphere { .. }
+            | Shape::Cylinder { .. } => false,
+        }
     }
 
     /// Returns the label in lists.
@@ -77,6 +87,7 @@ impl Shape {
             Shape::Cylinder { .. } => "Cylinder",
             Shape::Sweep { .. } => "Backdrop",
             Shape::VFlat { .. } => "V-flat",
+            Shape::Prop(model) => model.label(),
         }
     }
 }

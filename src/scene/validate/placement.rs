@@ -81,7 +81,9 @@ struct ObjectBounds<'a> {
 impl<'a> ObjectBounds<'a> {
     fn of(object: &'a Object, assets: &Assets) -> Option<Self> {
         let (low, high) = match object.shape {
-            Shape::MeshFile { .. } | Shape::Figure(_) => assets.coarse_mesh_of(&object.shape)?.bounds(),
+            Shape::MeshFile { .. } | Shape::Figure(_) | Shape::Prop(_) => {
+                assets.coarse_mesh_of(&object.shape)?.bounds()
+            }
             Shape::Plane { width_m, depth_m } => centred(Vec3::new(width_m, 0.0, depth_m)),
             Shape::Box { size_m } => centred(size_m),
             Shape::Sphere { radius_m } => centred(Vec3::splat(2.0 * radius_m)),
@@ -108,7 +110,11 @@ impl<'a> ObjectBounds<'a> {
                 Shape::Box { .. } | Shape::Figure(_) => in_box,
                 Shape::Sphere { radius_m } => p.length() < radius_m,
                 Shape::Cylinder { radius_m, .. } => in_box && across < radius_m,
-                Shape::MeshFile { .. } | Shape::Plane { .. } | Shape::Sweep { .. } | Shape::VFlat { .. } => false,
+                Shape::MeshFile { .. }
+                | Shape::Plane { .. }
+                | Shape::Sweep { .. }
+                | Shape::VFlat { .. }
+                | Shape::Prop(_) => false,
             }
     }
 }
