@@ -11,6 +11,9 @@ use std::ops::Range;
 /// Diffuse fraction of a transmissive surface, so that glass stays visible.
 const GLASS_DIFFUSE: f32 = 0.15;
 
+/// Reflectance of lacquer at normal incidence.
+const LACQUER_F0: f32 = 0.04;
+
 /// A material with the factors of its lobes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ShadingMaterial {
@@ -29,14 +32,21 @@ pub(super) struct ShadingMaterial {
 impl ShadingMaterial {
     /// Converts a material where textures give these factors; `emission_scale` is the picture value of 1 cd/m2.
     pub fn new(material: &Material, factors: &PixelFactors, emission_scale: f32) -> Self {
-        let base = Vec3::from(material.base_color) * factors.color;
-        let (metallic, roughness) = (material.metallic * factors.metallic, material.roughness * factors.roughness);
-        let dielectric = ((material.ior - 1.0) / (material.ior + 1.0)).powi(2);
+        let plain = material.plain_base();
+        let base = Vec3::from(plain.base_color) * factors.color;
+        let (metallic, mut roughness) = (material.metallic * factors.metallic, plain.roughness * factors.roughness);
+        let mut dielectric = ((material.ior - 1.0) / (material.ior + 1.0)).powi(2);
+        // Lacquer over plastic and paint takes the place of their highlight; that of metal stays
+        if let Some(coat) = material.clearcoat.filter(|_| metallic < 0.5) {
+            roughness += (coat.roughness - roughness) * coat.amount;
+            dielectric += LACQUER_F0 * coat.amount * (1.0 - dielectric);
+        }
         // Exponent of a lobe as wide as GGX of this roughness: 2 / alpha2 - 2. Mirrors are blurred to what a pixel can
         // still show.
         let alpha2 = roughness.max(0.1).powi(4);
         let exponent = (2.0 / alpha2 - 2.0).max(0.0);
-        let opaque = 1.0 - material.transmission * (1.0 - GLASS_DIFFUSE);
+        let far_side = if material.is_translucent() { material.translucency } else { 0.0 };
+        let opaque = (1.0 - material.transmission * (1.0 - GLASS_DIFFUSE)) * (1.0 - far_side);
         let diffuse = (1.0 - metallic) * opaque * (1.0 - dielectric);
         ShadingMaterial {
             diffuse: base * (diffuse / PI),

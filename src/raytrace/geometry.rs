@@ -245,6 +245,7 @@ impl Instance {
             color,
             material: self.materials.get(part).copied().unwrap_or(0),
             is_thin: self.is_thin,
+            tangent: Vec3::ZERO,
             strand: None,
         }
     }
@@ -316,6 +317,8 @@ pub struct SurfaceInteraction {
     pub material: u32,
     /// True for a clear mesh that encloses no volume: a thin pane. True for strands.
     pub is_thin: bool,
+    /// Direction across the grooves of a brushed surface, world space, of any length; zero for others.
+    pub tangent: Vec3,
     /// Position on the strand, for hits of strands.
     pub strand: Option<StrandCoordinates>,
 }

@@ -82,7 +82,11 @@ impl<'a> PathTracer<'a> {
             visibility,
             mis_weight,
         };
-        let connection = self.caster.connect(surface.spawn_origin(sample.direction), light, &sample, path.media);
+        let mut media = path.media;
+        if bsdf.enters_body(sample.direction) {
+            media.cross(surface.material, point.outside);
+        }
+        let connection = self.caster.connect(surface.spawn_origin(sample.direction), light, &sample, media);
         let Some(Connection { direction, value: light_value, pdf, transmittance }) = connection else {
             sink.record(|| event(sample.pdf, bsdf_pdf, Vec3::ZERO, 0.0));
             return;

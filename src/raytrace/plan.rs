@@ -32,6 +32,8 @@ pub struct RenderPlan {
     pub subsurface: bool,
     /// Normal maps tilt shading normals.
     pub normal_maps: bool,
+    /// Brushed surfaces need their tangents.
+    pub tangents: bool,
     /// Rays pass surfaces that are not all there.
     pub coverage: bool,
     /// The lens has an aperture.
@@ -143,6 +145,10 @@ impl RenderPlan {
         if normal_maps {
             reasons.push("normal maps: shading normals are tilted".to_owned());
         }
+        let tangents = materials.iter().any(TracedMaterial::is_brushed);
+        if tangents {
+            reasons.push("brushed surfaces: highlights lie across their grooves".to_owned());
+        }
         let coverage = materials.iter().any(|material| material.coverage != Alpha::Opaque);
         reasons.push(if coverage {
             "masked or blended surfaces: rays look up whether a surface is there".to_owned()
@@ -195,6 +201,7 @@ impl RenderPlan {
             refraction,
             subsurface,
             normal_maps,
+            tangents,
             coverage,
             lens: has_aperture,
             sample_all_lights,

@@ -90,7 +90,10 @@ impl RenderScene {
             return Bsdf::of_fibre(fibre, strand.tangent, strand.h, wo);
         }
         let factors = self.texture_factors(surface);
-        let bsdf = Bsdf::new(material, factors, surface.normal, surface.geometric_normal, wo);
+        let mut bsdf = Bsdf::new(material, factors, surface.normal, surface.geometric_normal, wo);
+        if self.plan.tangents && surface.tangent != Vec3::ZERO {
+            bsdf = bsdf.with_tangent(surface.tangent);
+        }
         let outside = wo.dot(surface.geometric_normal) >= 0.0;
         if self.plan.subsurface && outside && surface.strand.is_none() && material.extinction_per_m().is_some() {
             return bsdf.with_subsurface();

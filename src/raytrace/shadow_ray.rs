@@ -212,7 +212,7 @@ impl<'a> ShadowRay<'a> {
     fn pass(&mut self, hit: &Hit) -> Result<(), ShadowRayEnd> {
         let surface = &self.scene.surface(&self.ray, hit);
         let material = &self.scene.materials[surface.material as usize];
-        if !material.transmits() || (self.query.mode == BodyMode::Block && !surface.is_thin) {
+        if !material.is_clear() || (self.query.mode == BodyMode::Block && !surface.is_thin) {
             return Err(ShadowRayEnd::Blocked);
         }
         let clear = ClearSurface {

@@ -126,6 +126,7 @@ mod tests {
             color: Vec3::ONE,
             material,
             strand: None,
+            tangent: Vec3::ZERO,
             is_thin: false,
         }
     }

@@ -49,6 +49,7 @@ pub fn surface(instance: &Instance, hit: &StrandHit) -> SurfaceInteraction {
         color: Vec3::ONE,
         material: instance.materials.get(part).copied().unwrap_or(0),
         is_thin: true,
+        tangent: Vec3::ZERO,
         strand: Some(StrandCoordinates { tangent: tangent.normalize_or(along), h, u }),
     }
 }

@@ -7,13 +7,30 @@ use super::render_scene::RenderScene;
 use super::texture::TextureMap;
 use crate::math::{Ray, bend_above, decode_normal, tilted_normal};
 use crate::scene::{Alpha, TextureSlot};
-use glam::Vec3;
+use glam::{Affine2, Vec3};
 
 impl RenderScene {
     /// Returns the surface interaction at a hit of a ray, with the normal of its normal map.
     pub(super) fn surface(&self, ray: &Ray, hit: &Hit) -> SurfaceInteraction {
         let surface = self.aggregate.surface(hit);
-        if self.plan.normal_maps { self.with_normal_map(surface, ray.direction, hit) } else { surface }
+        let surface = if self.plan.normal_maps { self.with_normal_map(surface, ray.direction, hit) } else { surface };
+        if self.plan.tangents { self.with_tangent(surface, hit) } else { surface }
+    }
+
+    /// Adds the direction across the grooves of a brushed surface: the texture's U axis, turned. Without texture
+    /// coordinates, U is horizontal.
+    fn with_tangent(&self, surface: SurfaceInteraction, hit: &Hit) -> SurfaceInteraction {
+        let material = self.material_of(&surface);
+        let Primitive::Triangle(triangle) = &hit.primitive else { return surface };
+        if !material.is_brushed() {
+            return surface;
+        }
+        let instance = &self.aggregate.instances()[hit.instance as usize];
+        let derivatives = instance.position_derivatives(triangle.triangle, false, &Affine2::IDENTITY);
+        let along_u = derivatives.map_or_else(|| Vec3::Y.cross(surface.normal), |[along_u, _]| along_u);
+        let across_u = surface.normal.cross(along_u);
+        let (sin, cos) = material.brushing_angle().sin_cos();
+        SurfaceInteraction { tangent: along_u * cos + across_u * sin, ..surface }
     }
 
     /// Replaces the shading normal by that of the normal map. The mirror direction of the ray stays above the surface.

@@ -191,6 +191,11 @@ impl SceneChange {
             emission_cd_m2,
             fibre,
             alpha,
+            clearcoat,
+            sheen,
+            anisotropy,
+            frosting,
+            translucency,
         } = old;
         self.materials |= *base_color != new.base_color
             || *textures != new.textures
@@ -202,7 +207,12 @@ impl SceneChange {
             || *subsurface != new.subsurface
             || *emission_cd_m2 != new.emission_cd_m2
             || *fibre != new.fibre
-            || *alpha != new.alpha;
+            || *alpha != new.alpha
+            || *clearcoat != new.clearcoat
+            || *sheen != new.sheen
+            || *anisotropy != new.anisotropy
+            || *frosting != new.frosting
+            || *translucency != new.translucency;
     }
 
     fn compare_meters(&mut self, old: &Meter, new: &Meter) {

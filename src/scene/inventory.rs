@@ -147,7 +147,8 @@ fn shape_asset(shape: &Shape) -> Option<AssetRef<'_>> {
         | Shape::Sphere { .. }
         | Shape::Cylinder { .. }
         | Shape::Sweep { .. }
-        | Shape::VFlat { .. } => None,
+        | Shape::VFlat { .. }
+        | Shape::Prop(_) => None,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Objects: figures, props, backdrops.
 
-use super::{Figure, Material, ObjectId, Tank};
+use super::{Figure, Material, ObjectId, PropModel, Tank};
 use glam::{Affine3A, EulerRot, Quat, Vec3};
 
 /// Geometry of an object in its own space, metres.
@@ -60,12 +60,23 @@ pub enum Shape {
     },
     /// A block of ground and water in cells. Its origin is the centre of its underside.
     Tank(Box<Tank>),
+    /// A prop of a fixed form, on the floor.
+    Prop(PropModel),
 }
 
 impl Shape {
     /// Returns true for paper, cloth and boards, which stand behind or beside a subject and are none.
     pub fn is_sheet(&self) -> bool {
-        matches!(self, Shape::Plane { .. } | Shape::Sweep { .. } | Shape::VFlat { .. })
+        match self {
+            Shape::Plane { .. } | Shape::Sweep { .. } | Shape::VFlat { .. } => true,
+            Shape::Prop(model) => model.is_backdrop(),
+            Shape::MeshFile { .. }
+            | Shape::Figure(_)
+            | Shape::Box { .. }
+            | Shape::Sphere { .. }
+            | Shape::Cylinder { .. }
+            | Shape::Tank(_) => false,
+        }
     }
 
     /// Returns the label in lists.
@@ -80,6 +91,7 @@ impl Shape {
             Shape::Sweep { .. } => "Backdrop",
             Shape::VFlat { .. } => "V-flat",
             Shape::Tank(_) => "Water tank",
+            Shape::Prop(model) => model.label(),
         }
     }
 }

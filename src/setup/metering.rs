@@ -264,7 +264,8 @@ impl<'a> MeteredSetup<'a> {
 fn is_large(object: &Object) -> bool {
     let scale = object.transform.scale.abs();
     let edge_m = match object.shape {
-        Shape::Figure(_) => 0.0,
+        Shape::Prop(model) if model.is_backdrop() => f32::INFINITY,
+        Shape::Figure(_) | Shape::Prop(_) => 0.0,
         Shape::Plane { .. } | Shape::Sweep { .. } | Shape::MeshFile { .. } => f32::INFINITY,
         Shape::Box { size_m } => (size_m * scale).max_element(),
         Shape::Tank(ref tank) => (tank.size_m() * scale).max_element(),

@@ -30,6 +30,7 @@ mod closed_forms;
 mod drafts;
 mod each_light;
 mod hair;
+mod layers;
 mod lens;
 mod measured_light;
 #[path = "../studio/people.rs"]

@@ -13,6 +13,7 @@ mod analytic_light;
 mod analytic_transmission;
 mod bodies;
 mod formulas;
+mod layers;
 mod measured_light;
 mod meter;
 mod modifiers;

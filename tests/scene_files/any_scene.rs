@@ -76,10 +76,29 @@ fn alpha() -> impl Strategy<Value = Alpha> {
     ]
 }
 
+/// Lacquer, sheen, brushing, frosting and translucency.
+type Layers = (Option<Clearcoat>, Option<Sheen>, Option<Anisotropy>, f32, f32);
+
+fn layers() -> BoxedStrategy<Layers> {
+    let unit = || number(0.0, 1.0);
+    let clearcoat = (unit(), unit()).prop_map(|(amount, roughness)| Clearcoat { amount, roughness });
+    let sheen = (color(1.0), unit()).prop_map(|(color, roughness)| Sheen { color, roughness });
+    let anisotropy =
+        (unit(), number(-360.0, 360.0)).prop_map(|(strength, rotation_deg)| Anisotropy { strength, rotation_deg });
+    (
+        proptest::option::of(clearcoat),
+        proptest::option::of(sheen),
+        proptest::option::of(anisotropy),
+        prop_oneof![Just(0.0), unit()],
+        prop_oneof![Just(0.0), unit()],
+    )
+        .boxed()
+}
+
 fn material() -> impl Strategy<Value = Material> {
     let custom = (
         color(0.999),
-        (textures(), alpha()),
+        (textures(), alpha(), layers()),
         number(0.0, 1.0),
         number(0.0, 1.0),
         number(1.0, 4.0),
@@ -91,7 +110,7 @@ fn material() -> impl Strategy<Value = Material> {
         .prop_map(
             |(
                 base_color,
-                (textures, alpha),
+                (textures, alpha, (clearcoat, sheen, anisotropy, frosting, translucency)),
                 metallic,
                 roughness,
                 ior,
@@ -113,6 +132,11 @@ fn material() -> impl Strategy<Value = Material> {
                     emission_cd_m2,
                     fibre,
                     alpha,
+                    clearcoat,
+                    sheen,
+                    anisotropy,
+                    frosting,
+                    translucency,
                 }
             },
         );
@@ -134,6 +158,7 @@ fn shape() -> impl Strategy<Value = Shape> {
         size().prop_map(|radius_m| Shape::Sphere { radius_m }),
         tank().prop_map(|tank| Shape::Tank(Box::new(tank))),
         (size(), size()).prop_map(|(radius_m, height_m)| Shape::Cylinder { radius_m, height_m }),
+        (0..PropModel::ALL.len()).prop_map(|index| Shape::Prop(PropModel::ALL[index])),
         (size(), size(), number(5.0, 180.0)).prop_map(|(wing_m, height_m, angle_deg)| Shape::VFlat {
             wing_m,
             height_m,

@@ -1,8 +1,10 @@
 //! The catalog of lights, figures, props and backdrops that can be added to a studio.
 
+use super::prop_list::{MODEL_BACKDROPS, MODELS, new_model};
 use crate::figures::{self, ReadyFigure};
 use crate::scene::{
-    Aim, Emitter, Light, Material, MaterialPreset, Modifier, NamedModifier, Object, Output, Power, Shape, Spring, Tank,
+    Aim, Emitter, Light, Material, MaterialPreset, Modifier, NamedModifier, Object, Output, Power, PropModel, Shape,
+    Spring, Tank,
 };
 use glam::Vec3;
 
@@ -44,6 +46,8 @@ pub enum CatalogKind {
     Figure(usize),
     /// A parametric shape with a material, on the floor.
     Prop(PropShape, MaterialPreset),
+    /// A generated model on the floor, with its own materials or another for the whole.
+    Model(PropModel, Option<MaterialPreset>),
     /// A paper roll, or a cloth that hangs and lies like one.
     Roll {
         /// Width, metres.
@@ -183,7 +187,7 @@ const FIGURES: [CatalogEntry; figures::READY.len()] = {
     entries
 };
 
-const PROPS: [CatalogEntry; 23] = [
+const SHAPES: [CatalogEntry; 23] = [
     prop("Box", "A box of 50 cm.", PropShape::Box([0.5, 0.5, 0.5]), MaterialPreset::MatteFabric),
     prop("Sphere", "A matte ball of 30 cm.", PropShape::Sphere(0.15), MaterialPreset::MatteFabric),
     prop("Cylinder", "An upright cylinder, 30 cm across.", PropShape::Cylinder(0.15, 0.4), MaterialPreset::MatteFabric),
@@ -279,7 +283,24 @@ const PROPS: [CatalogEntry; 23] = [
     ),
 ];
 
-const BACKDROPS: [CatalogEntry; 22] = [
+/// Shapes and cards, then generated models.
+const PROPS: [CatalogEntry; SHAPES.len() + MODELS.len()] = joined(&SHAPES, &MODELS);
+
+/// Paper and cloth, then generated models.
+const BACKDROPS: [CatalogEntry; ROLLS.len() + MODEL_BACKDROPS.len()] = joined(&ROLLS, &MODEL_BACKDROPS);
+
+/// Returns two lists one after the other; they are not empty.
+const fn joined<const N: usize>(first: &[CatalogEntry], second: &[CatalogEntry]) -> [CatalogEntry; N] {
+    let mut list = [first[0]; N];
+    let mut i = 0;
+    while i < N {
+        list[i] = if i < first.len() { first[i] } else { second[i - first.len()] };
+        i += 1;
+    }
+    list
+}
+
+const ROLLS: [CatalogEntry; 22] = [
     paper("White paper 1.35 m", "A narrow roll, for heads and busts.", 1.35, MaterialPreset::WhitePaper),
     paper("White paper 2.72 m", "The usual roll, for one full figure.", 2.72, MaterialPreset::WhitePaper),
     paper("White paper 3.55 m", "A wide roll, for groups.", 3.55, MaterialPreset::WhitePaper),
@@ -332,6 +353,7 @@ impl CatalogEntry {
             }
             CatalogKind::Figure(index) => CatalogItem::Object(new_figure(&figures::READY[index])),
             CatalogKind::Prop(shape, material) => CatalogItem::Object(new_prop(self.name, shape, material.material())),
+            CatalogKind::Model(model, whole) => CatalogItem::Object(new_model(self.name, model, whole)),
             CatalogKind::Roll { width_m, surface } => CatalogItem::Object(Object {
                 material: surface.material(),
                 ..Object::new(self.name, Shape::Sweep { width_m, height_m: 2.75, depth_m: 3.0, radius_m: 0.6 })

@@ -15,6 +15,7 @@ pub mod item;
 pub mod light_mix;
 pub mod measured_light;
 pub mod placement;
+mod prop_list;
 pub mod readout;
 pub mod revisions;
 pub mod selection;

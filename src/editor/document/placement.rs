@@ -92,7 +92,8 @@ pub fn place_light(scene: &Scene, assets: &Assets, selected: Option<Item>, light
 
 /// Positions a new object: figures and props on free floor, backdrops behind the subject and facing the camera.
 pub fn place_object(scene: &Scene, selected: Option<Item>, object: &mut Object) {
-    if matches!(object.shape, Shape::Sweep { .. }) {
+    if matches!(object.shape, Shape::Sweep { .. }) || matches!(object.shape, Shape::Prop(model) if model.is_backdrop())
+    {
         let middle = subject(scene, selected)
             .and_then(|id| scene.object(id))
             .map_or(Vec3::ZERO, |o| Vec3::new(o.transform.position.x, 0.0, o.transform.position.z));

@@ -205,6 +205,10 @@ fn paint_icon(ui: &Ui, rect: egui::Rect, kind: &CatalogKind) {
             let shoulders = [c + vec2(-6.0, 8.0), c + vec2(-3.5, 1.0), c + vec2(3.5, 1.0), c + vec2(6.0, 8.0)];
             painter.add(egui::Shape::convex_polygon(shoulders.to_vec(), line.color, Stroke::NONE));
         }
+        CatalogKind::Model(model, whole) => {
+            let own = || model.materials().into_iter().next().map(|(_, material)| material).unwrap_or_default();
+            paint_patch(painter, c, &whole.map_or_else(own, |preset| preset.material()), vec2(10.0, 13.0));
+        }
         CatalogKind::Prop(_, preset) => paint_patch(painter, c, &preset.material(), vec2(12.0, 12.0)),
         CatalogKind::Roll { width_m, surface } => {
             paint_patch(painter, c, &surface.material(), vec2(5.0 * width_m.min(3.0), 14.0));

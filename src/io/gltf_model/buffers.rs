@@ -14,8 +14,20 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Extensions whose content is read, or that can be left out of a picture.
-const KNOWN_EXTENSIONS: [&str; 9] = [
+/// Extensions of materials that the crate does not read.
+const LAYER_EXTENSIONS: [&str; 4] = [
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_sheen",
+];
+
+const KNOWN_EXTENSIONS: [&str; 13] = [
     "KHR_lights_punctual",
+    LAYER_EXTENSIONS[0],
+    LAYER_EXTENSIONS[1],
+    LAYER_EXTENSIONS[2],
+    LAYER_EXTENSIONS[3],
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_specular",
@@ -80,8 +92,8 @@ impl ModelFile {
             Ok(bytes)
         };
         let buffers = document.buffers().map(buffer).collect::<Result<_, String>>()?;
-        let has_transforms = document.extensions_used().any(|name| name == "KHR_texture_transform");
-        let json = has_transforms.then(|| json_of(bytes)).flatten();
+        let needs_json = |name: &str| name == "KHR_texture_transform" || LAYER_EXTENSIONS.contains(&name);
+        let json = document.extensions_used().any(needs_json).then(|| json_of(bytes)).flatten();
         Ok(ModelFile { document, buffers, json })
     }
 
@@ -95,6 +107,11 @@ impl ModelFile {
     pub fn normal_texture_transform(&self, material: Option<usize>) -> Option<&Value> {
         let materials = self.json.as_ref()?.get("materials")?;
         materials.get(material?)?.get("normalTexture")?.get("extensions")?.get("KHR_texture_transform")
+    }
+
+    /// Returns the extension of a material that the crate does not read, as the file has it.
+    pub fn material_extension(&self, material: Option<usize>, name: &str) -> Option<&Value> {
+        self.json.as_ref()?.get("materials")?.get(material?)?.get("extensions")?.get(name)
     }
 
     /// Returns the bytes of a buffer.

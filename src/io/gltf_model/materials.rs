@@ -1,6 +1,7 @@
 //! Materials of glTF files.
 
 use super::buffers::ModelFile;
+use super::layers::add_layers;
 use super::texture_slots::{SlotTexture, UvSets};
 use crate::scene::{Alpha, Material, MaterialTextures, TextureRef, TextureSlot, path_complaint};
 use gltf::image::Source;
@@ -61,7 +62,7 @@ impl<'a> MaterialReader<'a> {
             alpha => alpha,
         };
         let most = if transmission > 0.0 { 1.0 } else { MOST_REFLECTED };
-        Material {
+        let mut read = Material {
             base_color: [red, green, blue].map(|value| unit(value).min(most)),
             textures: self.textures(material),
             metallic: unit(pbr.metallic_factor()),
@@ -72,7 +73,10 @@ impl<'a> MaterialReader<'a> {
             emission_cd_m2: emission_cd_m2(material),
             alpha,
             ..Material::default()
-        }
+        };
+        let left_out = add_layers(self.file, material, &mut read);
+        self.warnings.extend(left_out);
+        read
     }
 
     /// Returns the textures of a material, with their placements.

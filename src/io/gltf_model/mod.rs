@@ -5,6 +5,7 @@
 
 mod accessors;
 mod buffers;
+mod layers;
 mod materials;
 mod nodes;
 mod set_up;

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::{Alpha, TextureRef, Wrap};
+use crate::scene::{Alpha, Clearcoat, Sheen, TextureRef, Wrap};
 use glam::Vec2;
 
 const LIMITS: ModelLimits = ModelLimits { file_bytes: 1 << 20, triangles: 100 };
@@ -273,6 +273,30 @@ fn data_in_a_file_beside_the_model_are_read_and_go_where_the_model_goes() {
 }
 
 #[test]
+fn lacquer_sheen_brushing_and_translucency_are_those_of_the_extensions() {
+    let (bin, png) = binary();
+    let extensions = r#"{"name": "Label", "extensions": {
+        "KHR_materials_clearcoat": {"clearcoatFactor": 0.75, "clearcoatRoughnessFactor": 7, "clearcoatTexture": {"index": 0}},
+        "KHR_materials_sheen": {"sheenColorFactor": [0.25, "red", 0.5], "sheenRoughnessFactor": 0.5},
+        "KHR_materials_anisotropy": {"anisotropyStrength": 0.5, "anisotropyRotation": 1.5707964},
+        "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.25}},"#;
+    let json = document(png).replacen(r#"{"name": "Label","#, extensions, 1);
+    let used = r#""extensionsUsed": ["KHR_materials_clearcoat"], "scene""#;
+    let model = imported(&json.replacen(r#""scene""#, used, 1), &bin).unwrap();
+    let [(_, label), (_, glass)] = &model.part_materials[..] else { panic!("{:?}", model.part_materials) };
+    assert_eq!(label.clearcoat, Some(Clearcoat { amount: 0.75, roughness: 1.0 }));
+    assert_eq!(label.sheen, Some(Sheen { color: [0.25, 0.0, 0.5], roughness: 0.5 }));
+    let anisotropy = label.anisotropy.unwrap();
+    assert!(anisotropy.strength == 0.5 && (anisotropy.rotation_deg - 90.0).abs() < 1e-4);
+    assert_eq!((label.translucency, label.frosting, glass.frosting), (0.25, 0.0, 1.0));
+    assert!(
+        model.warnings.contains(&"maps of KHR_materials_clearcoat are left out".to_owned()),
+        "{:?}",
+        model.warnings
+    );
+}
+
+#[test]
 fn damaged_files_and_unread_extensions_are_told() {
     let (bin, png) = binary();
     let good = document(png);
@@ -292,10 +316,10 @@ fn damaged_files_and_unread_extensions_are_told() {
     assert!(imported(&good.replacen(r#""children": [1]}, {"#, &many, 1), &bin).is_ok());
     // A cycle of nodes ends
     let _ = imported(&good.replacen(r#""scale": [-1, 1, 1]"#, r#""children": [0]"#, 1), &bin);
-    let used = r#""extensionsUsed": ["KHR_materials_sheen"], "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}], "scene""#;
+    let used = r#""extensionsUsed": ["KHR_materials_iridescence"], "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}], "scene""#;
     let warnings = imported(&good.replacen(r#""scene""#, used, 1), &bin).unwrap().warnings;
     assert!(
-        warnings.iter().any(|warning| warning == "the properties of KHR_materials_sheen are left out"),
+        warnings.iter().any(|warning| warning == "the properties of KHR_materials_iridescence are left out"),
         "{warnings:?}"
     );
     // Every second byte of the file, one after the other: an error or a model, and no panic

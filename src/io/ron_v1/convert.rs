@@ -7,8 +7,8 @@ use super::mannequin;
 use super::names::{LightIds, ObjectIds, UnknownName};
 use super::{
     AimV1, BarnDoorsV1, CameraV1, ColorV1, ConeV1, EmitterV1, FacingV1, FocusV1, GelV1, LightV1, MaterialV1, MeterV1,
-    ModifierV1, ObjectV1, OrientationV1, OutputV1, PartMaterialV1, PersonV1, PowerV1, ReceptorV1, RoleV1, RoomV1,
-    SensorV1, ShapeV1,
+    ModifierV1, ObjectV1, OrientationV1, OutputV1, PartMaterialV1, PowerV1, ReceptorV1, RoleV1, RoomV1, SensorV1,
+    ShapeV1,
 };
 use crate::scene::{
     Aim, BarnDoors, Camera, ColorSource, Cone, Emitter, Facing, Focus, Gaze, Gel, Light, LightColor, LightId, Material,
@@ -291,43 +291,6 @@ impl From<&Room> for RoomV1 {
             floor: MaterialV1::from(&room.floor),
             walls: MaterialV1::from(&room.walls),
             ceiling: MaterialV1::from(&room.ceiling),
-        }
-    }
-}
-
-impl From<ShapeV1> for Shape {
-    fn from(file: ShapeV1) -> Self {
-        match file {
-            ShapeV1::MeshFile { path } => Shape::MeshFile { path },
-            ShapeV1::Figure(person) => Shape::Figure(Box::new((*person).into())),
-            ShapeV1::Mannequin { figure, pose } => Shape::Figure(Box::new(mannequin::person(figure, pose))),
-            ShapeV1::Plane { width_m, depth_m } => Shape::Plane { width_m, depth_m },
-            ShapeV1::Box { size_m } => Shape::Box { size_m: Vec3::from(size_m) },
-            ShapeV1::Sphere { radius_m } => Shape::Sphere { radius_m },
-            ShapeV1::Cylinder { radius_m, height_m } => Shape::Cylinder { radius_m, height_m },
-            ShapeV1::Sweep { width_m, height_m, depth_m, radius_m } => {
-                Shape::Sweep { width_m, height_m, depth_m, radius_m }
-            }
-            ShapeV1::VFlat { wing_m, height_m, angle_deg } => Shape::VFlat { wing_m, height_m, angle_deg },
-            ShapeV1::Tank(tank) => Shape::Tank(Box::new((*tank).into())),
-        }
-    }
-}
-
-impl From<&Shape> for ShapeV1 {
-    fn from(shape: &Shape) -> Self {
-        match shape.clone() {
-            Shape::MeshFile { path } => ShapeV1::MeshFile { path },
-            Shape::Figure(figure) => ShapeV1::Figure(Box::new(PersonV1::from(&*figure))),
-            Shape::Plane { width_m, depth_m } => ShapeV1::Plane { width_m, depth_m },
-            Shape::Box { size_m } => ShapeV1::Box { size_m: size_m.to_array() },
-            Shape::Sphere { radius_m } => ShapeV1::Sphere { radius_m },
-            Shape::Cylinder { radius_m, height_m } => ShapeV1::Cylinder { radius_m, height_m },
-            Shape::Sweep { width_m, height_m, depth_m, radius_m } => {
-                ShapeV1::Sweep { width_m, height_m, depth_m, radius_m }
-            }
-            Shape::VFlat { wing_m, height_m, angle_deg } => ShapeV1::VFlat { wing_m, height_m, angle_deg },
-            Shape::Tank(tank) => ShapeV1::Tank(Box::new((*tank).into())),
         }
     }
 }

@@ -1,10 +1,12 @@
 //! Materials in format 1: `Preset(Chrome)`, or `Custom(...)` with the values that differ from the default.
 
 use super::defaults::{Triple, default_ior, default_roughness, is_default, is_default_ior, is_unit, unit};
+use super::material_layers::{AnisotropyV1, ClearcoatV1, SheenV1};
+use super::material_preset::PresetV1;
 use super::texture_placement::TexturePlacementV1;
 use crate::scene::{
-    Alpha, Fibre, FibreColor, Material, MaterialPreset, MaterialTextures, Subsurface, TexturePlacement, TextureRef,
-    TextureSlot,
+    Alpha, Anisotropy, Clearcoat, Fibre, FibreColor, Material, MaterialPreset, MaterialTextures, Sheen, Subsurface,
+    TexturePlacement, TextureRef, TextureSlot,
 };
 use serde::{Deserialize, Serialize};
 
@@ -51,6 +53,16 @@ pub(super) enum MaterialV1 {
         emission_placement: Option<TexturePlacementV1>,
         #[serde(default, skip_serializing_if = "Option::is_none")]
         fibre: Option<FibreV1>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        clearcoat: Option<ClearcoatV1>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        sheen: Option<SheenV1>,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        anisotropy: Option<AnisotropyV1>,
+        #[serde(default, skip_serializing_if = "is_default")]
+        frosting: f32,
+        #[serde(default, skip_serializing_if = "is_default")]
+        translucency: f32,
     },
 }
 
@@ -131,56 +143,6 @@ impl From<Fibre> for FibreV1 {
     }
 }
 
-/// Declares the presets' names in the file and both conversions.
-macro_rules! presets {
-    ($($name:ident),+ $(,)?) => {
-        #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-        #[serde(rename = "Preset")]
-        pub(super) enum PresetV1 { $($name),+ }
-
-        impl From<PresetV1> for MaterialPreset {
-            fn from(preset: PresetV1) -> Self {
-                match preset { $(PresetV1::$name => MaterialPreset::$name),+ }
-            }
-        }
-
-        impl From<MaterialPreset> for PresetV1 {
-            fn from(preset: MaterialPreset) -> Self {
-                match preset { $(MaterialPreset::$name => PresetV1::$name),+ }
-            }
-        }
-    };
-}
-
-presets!(
-    SkinLight,
-    SkinMedium,
-    SkinDark,
-    HairBlack,
-    HairDarkBrown,
-    HairBrown,
-    HairBlond,
-    HairRed,
-    HairGrey,
-    HairWhite,
-    Eye,
-    MatteFabric,
-    Satin,
-    BlackVelvet,
-    GlossyPlastic,
-    Chrome,
-    BrushedAluminium,
-    Gold,
-    ClearGlass,
-    Water,
-    WhitePaper,
-    GreyPaper,
-    BlackPaper,
-    GreyCard,
-    PaintedWall,
-    StudioFloor,
-);
-
 impl From<MaterialV1> for Material {
     fn from(material: MaterialV1) -> Self {
         match material {
@@ -205,6 +167,11 @@ impl From<MaterialV1> for Material {
                 emission_texture,
                 emission_placement,
                 fibre,
+                clearcoat,
+                sheen,
+                anisotropy,
+                frosting,
+                translucency,
             } => Material {
                 base_color,
                 textures: MaterialTextures {
@@ -232,6 +199,11 @@ impl From<MaterialV1> for Material {
                 emission_cd_m2,
                 fibre: fibre.map(Fibre::from),
                 alpha: alpha.into(),
+                clearcoat: clearcoat.map(Clearcoat::from),
+                sheen: sheen.map(Sheen::from),
+                anisotropy: anisotropy.map(Anisotropy::from),
+                frosting,
+                translucency,
             },
         }
     }
@@ -255,6 +227,11 @@ impl From<&Material> for MaterialV1 {
             emission_cd_m2,
             fibre,
             alpha,
+            clearcoat,
+            sheen,
+            anisotropy,
+            frosting,
+            translucency,
         } = material.clone();
         let texture = |slot: TextureSlot| textures.get(slot).map(TextureRef::to_string);
         let placement = |slot: TextureSlot| {
@@ -281,6 +258,11 @@ impl From<&Material> for MaterialV1 {
             emission_texture: texture(TextureSlot::Emission),
             emission_placement: placement(TextureSlot::Emission),
             fibre: fibre.map(FibreV1::from),
+            clearcoat: clearcoat.map(ClearcoatV1::from),
+            sheen: sheen.map(SheenV1::from),
+            anisotropy: anisotropy.map(AnisotropyV1::from),
+            frosting,
+            translucency,
         }
     }
 }

@@ -15,8 +15,12 @@ mod gear;
 mod head;
 mod mannequin;
 mod material;
+mod material_layers;
+mod material_preset;
 mod names;
+mod prop;
 mod scene;
+mod shape;
 mod tank;
 mod texture_placement;
 mod variants;
@@ -30,12 +34,10 @@ use defaults::{
     Triple, default_efficacy, default_meter_constant, is_default, is_default_meter_constant, is_one, is_studio_name,
     is_true, one, studio_name, yes,
 };
-use figure::PersonV1;
 use head::{HeadChangeV1, HeadV1};
-use mannequin::{MannequinPoseV1, MannequinV1};
 use material::MaterialV1;
 use serde::{Deserialize, Serialize};
-use tank::TankV1;
+use shape::ShapeV1;
 
 /// The whole file.
 #[derive(Debug, Serialize, Deserialize)]
@@ -216,46 +218,6 @@ struct ObjectV1 {
 struct PartMaterialV1 {
     part: String,
     material: MaterialV1,
-}
-
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(rename = "Shape", deny_unknown_fields)]
-enum ShapeV1 {
-    MeshFile {
-        path: String,
-    },
-    Figure(Box<PersonV1>),
-    /// Read as a figure; written no more.
-    Mannequin {
-        figure: MannequinV1,
-        pose: MannequinPoseV1,
-    },
-    Plane {
-        width_m: f32,
-        depth_m: f32,
-    },
-    Box {
-        size_m: Triple,
-    },
-    Sphere {
-        radius_m: f32,
-    },
-    Cylinder {
-        radius_m: f32,
-        height_m: f32,
-    },
-    Sweep {
-        width_m: f32,
-        height_m: f32,
-        depth_m: f32,
-        radius_m: f32,
-    },
-    VFlat {
-        wing_m: f32,
-        height_m: f32,
-        angle_deg: f32,
-    },
-    Tank(Box<TankV1>),
 }
 
 #[derive(Debug, Serialize, Deserialize)]

@@ -90,7 +90,8 @@ impl ShadowCasting {
             | Shape::Sweep { .. }
             | Shape::VFlat { .. }
             | Shape::MeshFile { .. }
-            | Shape::Figure(_) => ShadowCasting::Sheet,
+            | Shape::Figure(_)
+            | Shape::Prop(_) => ShadowCasting::Sheet,
             Shape::Box { .. } | Shape::Sphere { .. } | Shape::Cylinder { .. } | Shape::Tank(_) => {
                 let mirrored = world_from_object.matrix3.determinant() < 0.0;
                 if mirrored { ShadowCasting::MirroredSolid } else { ShadowCasting::Solid }

@@ -4,14 +4,17 @@ use super::caches::GeometryCaches;
 use super::draw_item::{DrawItem, DrawPass, ShadowCasting, Sides, StrandItem};
 use super::mesh_cache::{EmitterSurface, MeshKey};
 use super::oriented_box::OrientedBox;
-use super::surface::{FLAG_EMITTER, FLAG_GLOWS, FLAG_HOVERED, FLAG_SELECTED, GpuDraw, GpuSurface, diffusion_m};
+use super::surface::{
+    FLAG_EMITTER, FLAG_GLOWS, FLAG_HOVERED, FLAG_SELECTED, GpuDraw, GpuSurface, diffusion_m, packed_layers,
+};
 use crate::photo::PhotometricLight;
 use crate::photo::emitter::EmitterShape;
 use crate::preview::gpu::context::GpuContext;
 use crate::preview::input::{Overlay, Pick};
 use crate::preview::lights::light_table::{emission, picture_scale};
 use crate::scene::{
-    Alpha, Assets, BodyPiece, Fibre, FibreColor, Light, Material, MeshPart, Object, Scene, TextureRef, body_material,
+    Alpha, Assets, BodyPiece, Fibre, FibreColor, Light, Material, MeshPart, Object, PlainBase, Scene, TextureRef,
+    body_material,
 };
 use glam::{Affine3A, Vec3};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -218,15 +221,16 @@ impl DrawList {
     ) -> u32 {
         let glow = emission(material, scene);
         let glows = glow.is_finite() && glow.max_element() > 0.0;
+        let PlainBase { base_color, roughness } = material.plain_base();
         let surface = GpuSurface {
-            base_color: material.base_color.map(|c| c.clamp(0.0, 1.0)),
-            roughness: material.roughness.clamp(0.0, 1.0),
+            base_color: base_color.map(|c| c.clamp(0.0, 1.0)),
+            roughness: roughness.clamp(0.0, 1.0),
             emission: if glows { glow.into() } else { [0.0; 3] },
             metallic: material.metallic.clamp(0.0, 1.0),
             ior: material.ior.clamp(1.0, 4.0),
             transmission: material.transmission.clamp(0.0, 1.0),
             flags: flags | if glows { FLAG_GLOWS } else { 0 },
-            unused: 0,
+            layers: packed_layers(material),
             diffusion_m: diffusion_m(material),
             unused_1: 0,
         };

@@ -154,6 +154,7 @@ fn parametric_key(shape: &Shape) -> Option<MeshKey> {
         Shape::Cylinder { radius_m, height_m } => (3, [radius_m, height_m, 0.0, 0.0]),
         Shape::Sweep { width_m, height_m, depth_m, radius_m } => (4, [width_m, height_m, depth_m, radius_m]),
         Shape::VFlat { wing_m, height_m, angle_deg } => (5, [wing_m, height_m, angle_deg, 0.0]),
+        Shape::Prop(model) => (6, [f32::from(model as u8), 0.0, 0.0, 0.0]),
     };
     Some(MeshKey::Parametric(tag, numbers.map(f32::to_bits)))
 }

@@ -26,7 +26,8 @@ pub(crate) struct GpuSurface {
     pub ior: f32,
     pub transmission: f32,
     pub flags: u32,
-    pub unused: u32,
+    /// Amount and roughness of lacquer, translucency, frosting, 8 bits each.
+    pub layers: u32,
     /// Shape parameters of the diffusion profile, metres; 0 for hard surfaces.
     pub diffusion_m: [f32; 3],
     pub unused_1: u32,
@@ -60,6 +61,14 @@ pub(crate) fn diffusion_m(material: &Material) -> [f32; 3] {
         let scale = 1.9 - albedo + 3.5 * (albedo - 0.8).powi(2);
         1e-3 * subsurface.mean_free_path_mm[channel] / scale
     })
+}
+
+/// Packs the layers of a material that the lighting and the glass pass draw, for `unpack4x8unorm`.
+pub(crate) fn packed_layers(material: &Material) -> u32 {
+    let (amount, roughness) = material.clearcoat.map_or((0.0, 0.0), |coat| (coat.amount, coat.roughness));
+    let translucency = if material.is_translucent() { material.translucency } else { 0.0 };
+    let bytes = [amount, roughness, translucency, material.frosting].map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8);
+    u32::from_le_bytes(bytes)
 }
 
 /// The record of a draw call; twin of `Draw` in `draw.wgsl`.

@@ -31,6 +31,7 @@ pub(crate) fn draw(
         illuminance: false,
         gloss: Gloss::Ggx,
         has_fibres: false,
+        has_layers: false,
     };
     let mut draws = Vec::new();
     for item in list.items.iter().filter(|item| item.pass == DrawPass::Glass) {

@@ -31,6 +31,8 @@ pub(crate) struct LightingVariant {
     pub gloss: Gloss,
     /// Strands are present.
     pub has_fibres: bool,
+    /// Surfaces with lacquer or translucency are present.
+    pub has_layers: bool,
 }
 
 /// Returns a WGSL flag: 1 or 0.
@@ -70,6 +72,7 @@ pub(crate) fn lighting(
         ("HAS_BEAMS", flag(variant.has_beams)),
         ("ILLUMINANCE", flag(variant.illuminance)),
         ("HAS_FIBRES", flag(variant.has_fibres && !variant.illuminance)),
+        ("HAS_LAYERS", flag(variant.has_layers && !variant.illuminance)),
         ("BLINN_PHONG", flag(variant.gloss == Gloss::BlinnPhong)),
     ];
     let layout = pipeline_layout(device, "lighting", &[&layouts.scene, &layouts.gbuffer, &layouts.masks]);

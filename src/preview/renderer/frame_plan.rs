@@ -88,6 +88,8 @@ impl FramePlan {
             illuminance: options.channel == Channel::Illuminance,
             gloss: options.gloss,
             has_fibres: !self.list.strands.is_empty(),
+            // Frosting, in the last byte, is the glass pass's
+            has_layers: self.list.surfaces.iter().any(|surface| surface.layers & 0x00ff_00ff != 0),
         }
     }
 

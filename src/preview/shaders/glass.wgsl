@@ -70,7 +70,8 @@ fn fragment(in: VertexOutput) -> FragmentOutput {
     let is_flat = dot(fwidth(normal), vec3f(1.0)) < FLAT;
     let s = (draw.surface.z & ID_INDEX_MASK) - 1u;
     let n_dot_v = max(dot(normal, view), 1e-3);
-    let gloss = vec3f(surfaces[s].roughness, (surfaces[s].ior - 1.0) / (surfaces[s].ior + 1.0), 0.0);
+    let frosting = unpack4x8unorm(surfaces[s].layers).w;
+    let gloss = vec3f(max(surfaces[s].roughness, frosting), (surfaces[s].ior - 1.0) / (surfaces[s].ior + 1.0), 0.0);
     let coat = shading(in.world, normal, view, vec3f(0.0), gloss);
     let mirror = reflect(-view, normal);
     let fresnel = fresnel(coat.material, n_dot_v);
@@ -95,9 +96,11 @@ fn fragment(in: VertexOutput) -> FragmentOutput {
     }
     let rim = pow(1.0 - n_dot_v, 3.0);
     let cover = select(ALPHA_ROUND, ALPHA_FLAT, is_flat);
-    let alpha = saturate(mix(cover, 1.0, rim) + 1.0 - surfaces[s].transmission);
+    // Frosted glass hides what is behind it: the blurred environment takes its place
+    let hidden = saturate(1.5 * frosting);
+    let alpha = saturate(mix(mix(cover, 1.0, rim), 1.0, hidden) + 1.0 - surfaces[s].transmission);
     let around = environment(in.world, -view, 1.0);
-    let beyond = environment(in.world, select(through_sphere(view, normal, surfaces[s].ior), -view, is_flat), 0.0);
+    let beyond = environment(in.world, select(through_sphere(view, normal, surfaces[s].ior), -view, is_flat), frosting);
     // Attenuate at entry and exit
     let body = surfaces[s].base_color * beyond
         * ((1.0 - fresnel) * (1.0 - fresnel) * select(1.0, TRANSMITTED_FLAT, is_flat));

@@ -24,6 +24,8 @@ override HAS_BEAMS: bool = true;
 override ILLUMINANCE: bool = false;
 // Strands are present.
 override HAS_FIBRES: bool = false;
+// Surfaces with lacquer or translucency are present.
+override HAS_LAYERS: bool = false;
 // Uses Blinn-Phong highlights instead of GGX.
 override BLINN_PHONG: bool = false;
 
@@ -146,6 +148,9 @@ fn receiving_normal(s: Shading, is_fibre: bool, light: u32) -> vec3f {
     return select(s.normal, to_light * inverseSqrt(max(dot(to_light, to_light), 1e-12)), is_fibre);
 }
 
+// Square root of the F0 of lacquer, of index 1.5.
+const LACQUER_SQRT_F0: f32 = 0.2;
+
 // Shades a pixel. The loops test at their end: there is at least one light of each kind, and a CPU rasteriser would pay
 // for the extra iteration that a test at the start costs.
 fn shade(p: GBufferSample) -> ShadedLight {
@@ -161,6 +166,19 @@ fn shade(p: GBufferSample) -> ShadedLight {
         diffuse = vec3f(0.0);
     }
     var specular = environment(position, reflect(-s.view, s.normal), gloss.x) * s.material.reflectance;
+
+    // Lacquer reflects and lets the rest through; a translucent sheet is lit from its far side, too, where shadows are
+    // left out
+    var layers = vec4f(0.0);
+    var lacquer: Shading;
+    var lacquer_light = vec3f(0.0);
+    var far_side = vec3f(0.0);
+    if HAS_LAYERS {
+        layers = unpack4x8unorm(surfaces[max(p.id.x & ID_INDEX_MASK, 1u) - 1u].layers) * select(1.0, 0.0, p.id.x == 0u);
+        lacquer = shading(position, s.normal, s.view, vec3f(0.0), vec3f(layers.y, LACQUER_SQRT_F0, 0.0));
+        lacquer_light = environment(position, reflect(-s.view, s.normal), layers.y) * lacquer.material.reflectance;
+        far_side = ambient(position, -s.normal);
+    }
 
     // Fibres have their tangent in place of the normal, and scatter light over the whole sphere
     let is_fibre = HAS_FIBRES && p.packed.y >> 30u == 3u;
@@ -193,6 +211,11 @@ fn shade(p: GBufferSample) -> ShadedLight {
             } else {
                 specular += delta_highlight(s, a.xyz, lights[light].radius) * color;
             }
+            if HAS_LAYERS {
+                lacquer_light += delta_highlight(lacquer, a.xyz, lights[light].radius) * color;
+                far_side += lights[light].color
+                    * (a.w * present(k, deltas_end(tile)) * max(-dot(s.normal, a.xyz), 0.0));
+            }
             k++;
             continuing {
                 break if k >= deltas_end(tile);
@@ -215,6 +238,12 @@ fn shade(p: GBufferSample) -> ShadedLight {
                 * (light_visibility(light) * present(k, spheres_end(tile)) * radius_window(light, a.centre) * a.transmission);
             diffuse += color * (a.irradiance * coat_factor(s, a.cosine, a.irradiance / PI));
             specular += color * emitter_highlight(s, a, true);
+            if HAS_LAYERS {
+                lacquer_light += color * emitter_highlight(lacquer, a, true);
+                let far = sphere_light(light, position, -s.normal);
+                far_side += lights[light].color
+                    * (present(k, spheres_end(tile)) * radius_window(light, a.centre) * far.transmission * far.irradiance);
+            }
             k++;
             continuing {
                 break if k >= spheres_end(tile);
@@ -237,6 +266,12 @@ fn shade(p: GBufferSample) -> ShadedLight {
                 * (light_visibility(light) * present(k, rects_end(tile)) * panel_radius_window(light, a.centre) * a.transmission);
             diffuse += color * (a.irradiance * coat_factor(s, a.cosine, a.irradiance / PI));
             specular += color * emitter_highlight(s, a, false);
+            if HAS_LAYERS {
+                lacquer_light += color * emitter_highlight(lacquer, a, false);
+                let far = panel_light(light, position, -s.normal, false);
+                far_side += lights[light].color
+                    * (present(k, rects_end(tile)) * panel_radius_window(light, a.centre) * far.transmission * far.irradiance);
+            }
             k++;
             continuing {
                 break if k >= rects_end(tile);
@@ -259,6 +294,12 @@ fn shade(p: GBufferSample) -> ShadedLight {
                 * (light_visibility(light) * present(k, discs_end(tile)) * panel_radius_window(light, a.centre) * a.transmission);
             diffuse += color * (a.irradiance * coat_factor(s, a.cosine, a.irradiance / PI));
             specular += color * emitter_highlight(s, a, true);
+            if HAS_LAYERS {
+                lacquer_light += color * emitter_highlight(lacquer, a, true);
+                let far = panel_light(light, position, -s.normal, true);
+                far_side += lights[light].color
+                    * (present(k, discs_end(tile)) * panel_radius_window(light, a.centre) * far.transmission * far.irradiance);
+            }
             k++;
             continuing {
                 break if k >= discs_end(tile);
@@ -267,6 +308,11 @@ fn shade(p: GBufferSample) -> ShadedLight {
     }
     if ILLUMINANCE {
         return ShadedLight(diffuse / PI, vec3f(0.0));
+    }
+    if HAS_LAYERS {
+        let past = 1.0 - layers.x * lacquer.material.reflectance.x;
+        diffuse = mix(diffuse, far_side, layers.z) * past;
+        specular = specular * past + lacquer_light * layers.x;
     }
     diffuse *= s.material.diffuse / PI;
     // Add emission. Surface kinds: 1 lit and emissive, 2 the front of an emitter

@@ -58,7 +58,8 @@ struct Surface {
     ior: f32,
     transmission: f32,
     flags: u32,
-    unused: u32,
+    // Amount and roughness of lacquer, translucency, frosting, 8 bits each.
+    layers: u32,
     // Shape parameters of the diffusion profile, metres: red, green, blue; 0 for hard surfaces.
     diffusion_m: vec3f,
     unused_1: u32,

@@ -3,6 +3,7 @@
 use super::albedo::AlbedoTables;
 use super::fibre::TracedFibre;
 use super::ggx;
+use super::layers::SurfaceLayers;
 use super::roughness_tables::RoughnessTables;
 use crate::math::safe_sqrt;
 use crate::scene::{Alpha, Material, TextureSlot};
@@ -46,6 +47,8 @@ pub struct TracedMaterial {
     pub coverage: Alpha,
     /// The fibre that strands of the material are.
     fibre: Option<TracedFibre>,
+    /// What the surface has besides its base.
+    layers: Option<Arc<SurfaceLayers>>,
 }
 
 /// Roughness and metal that a texture varies.
@@ -68,6 +71,9 @@ impl TracedMaterial {
         let clear = if material.fibre.is_some() { 0.0 } else { material.transmission };
         let (transmission, metallic) = Self::divide(clear, material.metallic);
         let tables = AlbedoTables::new(material.ior, alpha);
+        let layers = SurfaceLayers::new(material, alpha, &tables).map(Arc::new);
+        // Layers lie over a base that is never a delta lobe
+        let alpha = if layers.is_some() { alpha.max(ggx::MIN_ALPHA) } else { alpha };
         TracedMaterial {
             base_color: material.base_color.into(),
             textures: [None; TextureSlot::COUNT],
@@ -76,7 +82,7 @@ impl TracedMaterial {
             ior: material.ior,
             transmission,
             absorption_per_m: material.absorption_per_m.into(),
-            extinction_per_m: extinction_per_m(material),
+            extinction_per_m: extinction_per_m(material).filter(|_| layers.is_none()),
             emission: material.emission_cd_m2.into(),
             has_microfacets: metallic > 0.0 || tables.coat.mean > MIN_COAT_ALBEDO,
             tables,
@@ -84,6 +90,7 @@ impl TracedMaterial {
             normal_scale: material.textures.normal_scale,
             coverage: if clear > 0.0 { Alpha::Opaque } else { material.alpha },
             fibre: material.fibre.as_ref().map(TracedFibre::new),
+            layers,
         }
     }
 
@@ -94,6 +101,7 @@ impl TracedMaterial {
         // Where the texture has no metal, all of the transmission is there
         self.transmission = transmission;
         self.has_microfacets = true;
+        self.layers = self.layers.as_ref().map(|layers| Arc::new(layers.over_mapped_base(&tables)));
         self.mapped_gloss = Some(MappedGloss { roughness, metallic, transmission, tables });
     }
 
@@ -118,6 +126,27 @@ impl TracedMaterial {
     /// Returns the fibre that strands of the material are; none for materials of surfaces.
     pub fn fibre(&self) -> Option<&TracedFibre> {
         self.fibre.as_ref()
+    }
+
+    /// Returns what the surface has besides its base.
+    pub fn layers(&self) -> Option<&SurfaceLayers> {
+        self.layers.as_deref()
+    }
+
+    /// Returns true if the surface is brushed, so that its tangent matters.
+    pub fn is_brushed(&self) -> bool {
+        self.layers().is_some_and(|layers| layers.brushing.is_some())
+    }
+
+    /// Returns the direction across the grooves of a brushed surface, radians from its tangent.
+    pub fn brushing_angle(&self) -> f32 {
+        let brushing = self.layers().and_then(|layers| layers.brushing.as_ref());
+        brushing.map_or(0.0, |brushing| brushing.anisotropy.rotation_deg.to_radians())
+    }
+
+    /// Returns true if the faces of what transmits are smooth: light passes them by refraction or straight.
+    pub fn is_clear(&self) -> bool {
+        self.transmits() && self.layers().is_none_or(|layers| layers.frost.is_none())
     }
 
     /// Returns true if the surface emits light.
@@ -162,25 +191,28 @@ impl TracedMaterial {
         }
         let base = self.base_color.max_element();
         let coat = self.roughness_tables().map_or(self.tables.coat.mean, |tables| tables.largest_coat_mean());
+        let layered = self.layers().map_or(0.0, SurfaceLayers::largest_albedo);
+        let coat = coat + (1.0 - coat) * layered;
         if self.transmission > 0.0 { 1.0_f32.max(base) } else { base + (1.0 - base) * coat }
     }
 
     /// Returns true if nearly all light is scattered into one direction: clear glass, mirrors and polished metal.
     pub fn is_nearly_specular(&self) -> bool {
         let is_polished = self.mapped_gloss.is_none() && self.metallic > 0.5 && self.alpha < POLISHED_ALPHA;
-        self.transmits() || is_polished
+        self.is_clear() || is_polished
     }
 
     /// Returns true for clear glass and perfect mirrors, which cast caustics.
     pub fn is_caustic_caster(&self) -> bool {
-        self.transmits() || (self.metallic > 0.5 && self.is_smooth())
+        self.is_clear() || (self.metallic > 0.5 && self.is_smooth())
     }
 
     /// Returns true if the BSDF has a lobe that is not a delta function, so that light sampling can contribute.
     pub fn has_non_specular_lobe(&self) -> bool {
         let has_diffuse = self.metallic < 1.0 && self.base_color.max_element() > 0.0;
         let is_metal_in_places = self.mapped_gloss.as_ref().is_some_and(|mapped| mapped.metallic > 0.0);
-        is_metal_in_places || (self.transmission < 1.0 && (has_diffuse || !self.is_smooth()))
+        let is_frosted = self.layers().is_some_and(|layers| layers.frost.is_some());
+        is_metal_in_places || is_frosted || (self.transmission < 1.0 && (has_diffuse || !self.is_smooth()))
     }
 }
 

@@ -9,6 +9,9 @@
 //!
 //! Materials that scatter light under the surface have a walk (`super::subsurface`) in place of the diffuse lobe.
 //!
+//! Surfaces with lacquer, sheen, brushing, frosting or light to their far side have a BSDF of their own (`layered.rs`),
+//! so that all others stay as quick as they are.
+//!
 //! A strand of hair is a fibre instead (`fibre.rs`), which scatters light over the whole sphere.
 //!
 //! A new lobe of surfaces needs
@@ -23,9 +26,14 @@
 mod albedo;
 mod dielectric;
 mod diffuse;
+mod direction_table;
+mod facets;
 mod fibre;
 pub mod fresnel;
+mod frost;
 mod ggx;
+mod layered;
+mod layers;
 mod lobe;
 mod material;
 mod material_point;
@@ -35,12 +43,14 @@ mod polarisation;
 mod roughness_tables;
 mod sample;
 mod shading_geometry;
+mod sheen;
 mod subsurface;
 mod surface;
 
 pub use dielectric::{Boundary, DielectricInterface, pane_transmittance};
 pub use fibre::{FibreBsdf, TracedFibre};
 use glam::{Vec2, Vec3};
+pub use layered::LayeredBsdf;
 pub use material::TracedMaterial;
 pub use material_point::{MaterialPoint, TextureFactors};
 pub use polarisation::{Polarisation, TransmittedLight};
@@ -53,6 +63,8 @@ pub use surface::SurfaceBsdf;
 pub enum Bsdf<'a> {
     /// Of a surface.
     Surface(SurfaceBsdf<'a>),
+    /// Of a surface with lacquer, sheen, brushing, frosting or light to its far side.
+    Layered(LayeredBsdf<'a>),
     /// Of a fibre.
     Fibre(FibreBsdf<'a>),
 }
@@ -67,24 +79,57 @@ impl<'a> Bsdf<'a> {
         geometric_normal: Vec3,
         wo: Vec3,
     ) -> Self {
-        Bsdf::Surface(SurfaceBsdf::new(material, textures, normal, geometric_normal, wo))
+        match material.layers() {
+            None => Bsdf::Surface(SurfaceBsdf::new(material, textures, normal, geometric_normal, wo)),
+            Some(layers) => {
+                Bsdf::Layered(LayeredBsdf::new((material, layers), textures.into(), normal, geometric_normal, wo))
+            }
+        }
+    }
+
+    /// Returns the same BSDF whose brushing is across `tangent`, world space.
+    pub fn with_tangent(self, tangent: Vec3) -> Self {
+        match self {
+            Bsdf::Layered(layered) => Bsdf::Layered(layered.with_tangent(tangent)),
+            Bsdf::Surface(_) | Bsdf::Fibre(_) => self,
+        }
     }
 
     /// Returns the same BSDF with this boundary, for a path that accepts this polarisation.
     pub fn with_boundary(self, boundary: Boundary, polarisation: Polarisation) -> Self {
         match self {
             Bsdf::Surface(surface) => Bsdf::Surface(surface.with_boundary(boundary, polarisation)),
+            Bsdf::Layered(layered) => Bsdf::Layered(layered.with_boundary(boundary, polarisation)),
             Bsdf::Fibre(_) => self,
         }
     }
 
-    /// Returns the shading normal on the side of the outgoing direction; zero for fibres, which scatter light from all
-    /// directions.
+    /// Returns the shading normal on the side of the outgoing direction; zero for fibres, frosted glass and translucent
+    /// sheets, which scatter light from all directions.
     pub fn normal(&self) -> Vec3 {
         match self {
             Bsdf::Surface(surface) => surface.normal(),
+            Bsdf::Layered(layered) if layered.is_two_sided() => Vec3::ZERO,
+            Bsdf::Layered(layered) => layered.normal(),
             Bsdf::Fibre(_) => Vec3::ZERO,
         }
+    }
+
+    /// Returns the cosine between the shading normal and another normal; of both sides for a surface that scatters light
+    /// from both.
+    pub fn normal_cosine(&self, normal: Vec3) -> f32 {
+        match self {
+            Bsdf::Surface(surface) => surface.normal().dot(normal),
+            Bsdf::Layered(layered) if layered.is_two_sided() => layered.normal().dot(normal).abs(),
+            Bsdf::Layered(layered) => layered.normal().dot(normal),
+            Bsdf::Fibre(_) => 0.0,
+        }
+    }
+
+    /// Returns true if light from a direction reaches the path through the face of a body of frosted glass, so that it
+    /// comes from the body's other side.
+    pub fn enters_body(&self, direction: Vec3) -> bool {
+        matches!(self, Bsdf::Layered(layered) if layered.enters_body(direction))
     }
 
     /// Returns the Fresnel reflectance of clear glass, which is the probability that [`Bsdf::sample`] samples
@@ -92,7 +137,7 @@ impl<'a> Bsdf<'a> {
     pub fn dielectric_reflectance(&self) -> Option<f32> {
         match self {
             Bsdf::Surface(surface) => surface.dielectric_reflectance(),
-            Bsdf::Fibre(_) => None,
+            Bsdf::Layered(_) | Bsdf::Fibre(_) => None,
         }
     }
 
@@ -100,6 +145,7 @@ impl<'a> Bsdf<'a> {
     pub fn has_non_specular_lobe(&self) -> bool {
         match self {
             Bsdf::Surface(surface) => surface.has_non_specular_lobe(),
+            Bsdf::Layered(layered) => layered.has_non_specular_lobe(),
             Bsdf::Fibre(_) => true,
         }
     }
@@ -114,7 +160,7 @@ impl<'a> Bsdf<'a> {
     pub fn with_subsurface(self) -> Self {
         match self {
             Bsdf::Surface(surface) => Bsdf::Surface(surface.with_subsurface()),
-            Bsdf::Fibre(_) => self,
+            Bsdf::Layered(_) | Bsdf::Fibre(_) => self,
         }
     }
 
@@ -128,7 +174,7 @@ impl<'a> Bsdf<'a> {
     pub fn soft_surface(&self) -> Option<&SurfaceBsdf<'a>> {
         match self {
             Bsdf::Surface(surface) => Some(surface).filter(|surface| surface.samples_walks()),
-            Bsdf::Fibre(_) => None,
+            Bsdf::Layered(_) | Bsdf::Fibre(_) => None,
         }
     }
 
@@ -138,6 +184,7 @@ impl<'a> Bsdf<'a> {
     pub fn eval(&self, direction: Vec3) -> (Vec3, f32) {
         match self {
             Bsdf::Surface(surface) => surface.eval(direction),
+            Bsdf::Layered(layered) => layered.eval(direction),
             Bsdf::Fibre(fibre) => fibre.eval(direction),
         }
     }
@@ -148,10 +195,13 @@ impl<'a> Bsdf<'a> {
     pub fn sample(&self, u_lobe: f32, u: Vec2) -> Option<BsdfSample> {
         match self {
             Bsdf::Surface(surface) => surface.sample(u_lobe, u),
+            Bsdf::Layered(layered) => layered.sample(u_lobe, u),
             Bsdf::Fibre(fibre) => fibre.sample(u_lobe, u),
         }
     }
 }
 
+#[cfg(test)]
+mod layered_tests;
 #[cfg(test)]
 mod tests;

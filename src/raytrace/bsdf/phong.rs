@@ -30,13 +30,14 @@ impl MaterialPoint<'_> {
     pub fn phong(&self) -> Phong {
         let base = self.base_color;
         let opaque = 1.0 - self.transmission;
+        let far_side = self.material.layers().map_or(0.0, |layers| layers.translucency);
         let ior = self.material.ior;
         let f0 = ((ior - 1.0) / (ior + 1.0)).powi(2);
         let reflectance = Vec3::splat(f0).lerp(base, self.metallic) * opaque;
         let (glossy, specular) = if self.is_smooth() { (Vec3::ZERO, reflectance) } else { (reflectance, Vec3::ZERO) };
         let alpha = self.alpha.max(ggx::MIN_ALPHA);
         Phong {
-            albedo: base * ((1.0 - self.metallic) * opaque),
+            albedo: base * ((1.0 - self.metallic) * opaque * (1.0 - far_side)),
             glossy,
             exponent: (2.0 / (alpha * alpha) - 2.0).max(0.0),
             specular,

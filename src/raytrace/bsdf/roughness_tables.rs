@@ -28,6 +28,11 @@ impl RoughnessTables {
         self.ior
     }
 
+    /// Returns the levels, from smooth to rough.
+    pub fn levels(&self) -> &[AlbedoTables] {
+        &self.levels
+    }
+
     /// Returns the levels below and above a roughness in 0..1, and how near to the upper one it is, 0 to 1.
     pub fn around(&self, roughness: f32) -> (&AlbedoTables, &AlbedoTables, f32) {
         let position = roughness.clamp(0.0, 1.0) * STEPS as f32;

@@ -31,6 +31,16 @@ impl ShadingGeometry {
         ShadingGeometry { tangent, bitangent, normal, geometric_normal, wo, wo_world }
     }
 
+    /// Returns the frame whose X axis is along this direction, world space, as far as the surface allows.
+    pub fn with_tangent(self, tangent: Vec3) -> Self {
+        let along = tangent - self.normal * tangent.dot(self.normal);
+        let Some(tangent) = along.try_normalize() else { return self };
+        let bitangent = self.normal.cross(tangent);
+        let w = self.wo_world;
+        let wo = Vec3::new(w.dot(tangent), w.dot(bitangent), self.wo.z);
+        ShadingGeometry { tangent, bitangent, wo, ..self }
+    }
+
     /// Transforms a local direction to world space.
     pub fn to_world(self, w: Vec3) -> Vec3 {
         self.tangent * w.x + self.bitangent * w.y + self.normal * w.z

@@ -145,7 +145,7 @@ fn pdfs_integrate_to_one() {
 
 /// Cells of directions about an axis. `1 - cos` is `k ((1 + 2/k)^s - 1)` for s in 0..1, which resolves both a narrow
 /// lobe (`1 - cos` about `k`) and a wide one; the azimuth is uniform.
-struct DirectionCells {
+pub(super) struct DirectionCells {
     axis: Vec3,
     tangent: Vec3,
     bitangent: Vec3,
@@ -156,12 +156,12 @@ impl DirectionCells {
     const RINGS: usize = 12;
     const TURNS: usize = 16;
 
-    fn about(axis: Vec3, k: f64) -> Self {
+    pub fn about(axis: Vec3, k: f64) -> Self {
         let (tangent, bitangent) = orthonormal_basis(axis);
         DirectionCells { axis, tangent, bitangent, k }
     }
 
-    fn index(&self, direction: Vec3) -> usize {
+    pub fn index(&self, direction: Vec3) -> usize {
         let drop = 0.5 * f64::from((direction - self.axis).length_squared());
         let s = (drop / self.k).ln_1p() / (2.0 / self.k).ln_1p();
         let turn = f64::from(direction.dot(self.bitangent).atan2(direction.dot(self.tangent)) / TAU);
@@ -170,10 +170,9 @@ impl DirectionCells {
         cell(s, Self::RINGS) * Self::TURNS + cell(turn, Self::TURNS)
     }
 
-    /// Integrates a density over each cell by the midpoint rule.
-    fn integrate(&self, pdf: impl Fn(Vec3) -> f64) -> Vec<f64> {
-        const FINE: usize = 40;
-        let (rings, turns) = (Self::RINGS * FINE, Self::TURNS * FINE);
+    /// Integrates a density over each cell by the midpoint rule, with so many steps along each side of it.
+    pub fn integrate(&self, fine: usize, pdf: impl Fn(Vec3) -> f64) -> Vec<f64> {
+        let (rings, turns) = (Self::RINGS * fine, Self::TURNS * fine);
         let mut sums = vec![0.0; Self::RINGS * Self::TURNS];
         for i in 0..rings {
             let s = (i as f64 + 0.5) / rings as f64;
@@ -185,14 +184,14 @@ impl DirectionCells {
                 let (y, x) = (TAU * (j as f32 + 0.5) / turns as f32).sin_cos();
                 let side = self.tangent * x + self.bitangent * y;
                 let direction = (self.axis * (1.0 - drop) as f32 + side * sin).normalize();
-                sums[i / FINE * Self::TURNS + j / FINE] += pdf(direction) * solid_angle;
+                sums[i / fine * Self::TURNS + j / fine] += pdf(direction) * solid_angle;
             }
         }
         sums
     }
 }
 
-fn view(cos: f32) -> Vec3 {
+pub(super) fn view(cos: f32) -> Vec3 {
     Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos)
 }
 
@@ -217,7 +216,7 @@ fn sampled_directions_follow_their_pdf_for_every_lobe_roughness_and_angle() {
         // Towards grazing angles the lobe narrows by the cosine in one direction.
         let width = f64::from(material.alpha.max(1e-3) * cos);
         let cells = DirectionCells::about(Vec3::new(-view(*cos).x, 0.0, *cos), 2.0 * width * width);
-        let expected = cells.integrate(|direction| f64::from(bsdf.eval(direction).1));
+        let expected = cells.integrate(40, |direction| f64::from(bsdf.eval(direction).1));
         let mut counts = vec![0.0; expected.len()];
         // Discarded and specular samples have no density and share one cell.
         let mut rest = 0.0;

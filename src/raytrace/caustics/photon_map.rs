@@ -144,7 +144,7 @@ impl PhotonLookup {
         let (mut layer, mut sum) = (0, Vec3::ZERO);
         self.grid.near(surface.position, radius).for_each(|(photon, distance2)| {
             if u32::from(photon.specular_depth) > max_specular_depth
-                || photon.normal.dot(bsdf.normal()) < MIN_NORMAL_COSINE
+                || bsdf.normal_cosine(photon.normal) < MIN_NORMAL_COSINE
             {
                 return;
             }

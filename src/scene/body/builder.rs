@@ -9,7 +9,7 @@ const SMOOTH_COSINE: f32 = 0.6;
 
 /// Builds a mesh, part after part. All solids are closed, and their front faces are outside.
 #[derive(Debug, Default)]
-pub(super) struct Builder {
+pub(in crate::scene) struct Builder {
     mesh: Mesh,
 }
 
@@ -45,8 +45,13 @@ impl Builder {
         }
     }
 
+    /// Returns the number of vertices so far.
+    pub fn vertex_count(&self) -> usize {
+        self.mesh.positions.len()
+    }
+
     /// Adds a flat quadrilateral.
-    fn flat_quad(&mut self, corners: [Vec3; 4]) {
+    pub fn flat_quad(&mut self, corners: [Vec3; 4]) {
         let normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]).try_normalize().unwrap_or(Vec3::Y);
         self.quad(corners, [normal; 4]);
     }

@@ -4,7 +4,7 @@
 //! and reflects the light of others. [`LightBody`] says what stands on the set for a light, and compares equal where
 //! nothing of it differs; [`LightBody::pieces`] lists its meshes.
 
-mod builder;
+pub(super) mod builder;
 mod hard;
 mod material;
 mod shape;

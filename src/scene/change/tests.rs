@@ -5,7 +5,7 @@ use crate::scene::{
     Aim, Alpha, BarnDoors, ColorSource, Cone, Emitter, Facing, Focus, Gel, ObjectId, Orientation, Output, Receptor,
     Role, Sensor, Shape, Subsurface, TextureRef,
 };
-use crate::scene::{Bodies, BodyChoice};
+use crate::scene::{Anisotropy, Bodies, BodyChoice, Clearcoat, Sheen};
 use glam::Vec3;
 
 const LIGHT: LightId = LightId(3);
@@ -214,6 +214,13 @@ fn shapes_and_surfaces_need_preparation() {
                 s.objects[0].material.subsurface = Some(Subsurface { mean_free_path_mm: [1.0; 3] });
             }),
             ("emission_cd_m2", |s| s.objects[0].material.emission_cd_m2[0] = 1.0),
+            ("clearcoat", |s| s.objects[0].material.clearcoat = Some(Clearcoat::POLISHED)),
+            ("sheen", |s| s.objects[0].material.sheen = Some(Sheen { color: [0.5; 3], roughness: 0.5 })),
+            ("anisotropy", |s| {
+                s.objects[0].material.anisotropy = Some(Anisotropy { strength: 0.5, rotation_deg: 0.0 });
+            }),
+            ("frosting", |s| s.objects[0].material.frosting = 0.3),
+            ("translucency", |s| s.objects[0].material.translucency = 0.3),
         ],
     );
 }

@@ -2,7 +2,7 @@
 
 use super::check::{Allowed, Check};
 use crate::scene::fibre::MIN_ROUGHNESS;
-use crate::scene::{Alpha, Fibre, FibreColor, Material, TexturePlacement, TextureSlot};
+use crate::scene::{Alpha, Anisotropy, Clearcoat, Fibre, FibreColor, Material, Sheen, TexturePlacement, TextureSlot};
 
 /// Reflectances lie in [0, 1): a closed room with reflectance 1 has no finite solution.
 const REFLECTANCE: Allowed = Allowed::between(0.0, 0.999, "");
@@ -30,6 +30,7 @@ pub(super) fn check_material(field: &str, material: &Material, check: &mut Check
                 .warning(&field, "light passes through something clear: nothing scatters under its surface".to_owned());
         }
     }
+    check_layers(field, material, check);
     check.color(&name("emission_cd_m2"), material.emission_cd_m2, Allowed::between(0.0, 1e9, "cd/m2"));
     if let Some(fibre) = &material.fibre {
         check_fibre(&name("fibre"), fibre, check);
@@ -39,6 +40,40 @@ pub(super) fn check_material(field: &str, material: &Material, check: &mut Check
     }
     if material.metallic > 0.0 && material.transmission > 0.0 {
         check.warning(&name("transmission"), "a metal is not transparent; its share of metal stays opaque".to_owned());
+    }
+}
+
+/// Checks lacquer, sheen, brushing, frosting and translucency.
+fn check_layers(field: &str, material: &Material, check: &mut Check) {
+    let name = |part: &str| format!("{field}.{part}");
+    if let Some(Clearcoat { amount, roughness }) = material.clearcoat {
+        check.number(&name("clearcoat.amount"), amount, FRACTION);
+        check.number(&name("clearcoat.roughness"), roughness, FRACTION);
+    }
+    if let Some(Sheen { color, roughness }) = material.sheen {
+        check.color(&name("sheen.color"), color, FRACTION);
+        check.number(&name("sheen.roughness"), roughness, FRACTION);
+    }
+    if let Some(Anisotropy { strength, rotation_deg }) = material.anisotropy {
+        check.number(&name("anisotropy.strength"), strength, FRACTION);
+        check.number(&name("anisotropy.rotation_deg"), rotation_deg, Allowed::between(-360.0, 360.0, "degrees"));
+    }
+    check.number(&name("frosting"), material.frosting, FRACTION);
+    check.number(&name("translucency"), material.translucency, FRACTION);
+    if material.frosting > 0.0 && material.transmission == 0.0 {
+        check.warning(&name("frosting"), "nothing is clear here: transmission is 0".to_owned());
+    }
+    if material.translucency > 0.0 && !material.is_translucent() {
+        let why = "metal and what is clear let no light through evenly: translucency does nothing here";
+        check.warning(&name("translucency"), why.to_owned());
+    }
+    let has_layers = material.clearcoat.is_some()
+        || material.sheen.is_some()
+        || material.anisotropy.is_some()
+        || material.is_translucent();
+    if has_layers && material.subsurface.is_some() {
+        let why = "a surface with lacquer, sheen, brushing or translucency has no scattering under it";
+        check.warning(&name("subsurface"), why.to_owned());
     }
 }
 

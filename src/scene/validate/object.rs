@@ -37,6 +37,8 @@ fn check_shape(shape: &Shape, check: &mut Check) {
             check.number("shape.width_m", width_m, SIZE);
             check.number("shape.depth_m", depth_m, SIZE);
         }
+        // Its size is that of its object's scale
+        Shape::Prop(_) => {}
         Shape::Box { size_m } => check.vector("shape.size_m", size_m, SIZE),
         Shape::Sphere { radius_m } => check.number("shape.radius_m", radius_m, SIZE),
         Shape::Cylinder { radius_m, height_m } => {

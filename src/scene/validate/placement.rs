@@ -81,7 +81,7 @@ struct ObjectBounds<'a> {
 impl<'a> ObjectBounds<'a> {
     fn of(object: &'a Object, assets: &Assets) -> Option<Self> {
         let (low, high) = match object.shape {
-            Shape::MeshFile { .. } | Shape::Figure(_) | Shape::Tank(_) => {
+            Shape::MeshFile { .. } | Shape::Figure(_) | Shape::Prop(_) | Shape::Tank(_) => {
                 assets.coarse_mesh_of(&object.shape)?.bounds()
             }
             Shape::Plane { width_m, depth_m } => centred(Vec3::new(width_m, 0.0, depth_m)),
@@ -114,6 +114,7 @@ impl<'a> ObjectBounds<'a> {
                 | Shape::Plane { .. }
                 | Shape::Sweep { .. }
                 | Shape::VFlat { .. }
+                | Shape::Prop(_)
                 | Shape::Tank(_) => false,
             }
     }

@@ -1,6 +1,7 @@
 //! The rows of a material.
 
 use super::fibre::fibre_rows;
+use super::surface_layers::layer_rows;
 use super::unit_slider::unit_slider;
 use crate::editor::ui::widgets::{self, NumberField, row};
 use crate::scene::{Alpha, Material, MaterialPreset, Subsurface, TextureRef, TextureSlot};
@@ -61,6 +62,7 @@ pub fn material_rows(ui: &mut Ui, salt: &str, material: &mut Material) -> Option
                 );
             });
         }
+        layer_rows(ui, material);
         if material.transmission == 0.0 {
             subsurface_rows(ui, &mut material.subsurface);
         }

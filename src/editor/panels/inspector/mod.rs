@@ -14,6 +14,7 @@ mod modifier;
 mod object;
 mod power;
 mod room;
+mod surface_layers;
 mod tank;
 mod unit_slider;
 

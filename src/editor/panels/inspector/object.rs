@@ -75,6 +75,9 @@ fn shape_rows(ui: &mut Ui, assets: &Assets, object: &mut Object) {
     match &mut object.shape {
         // Figures and tanks have sections of their own.
         Shape::Figure(_) | Shape::Tank(_) => {}
+        Shape::Prop(model) => {
+            row(ui, "Prop", "A thing of a fixed form; its scale changes its size", |ui| ui.label(model.label()));
+        }
         Shape::MeshFile { path } => {
             row(ui, "File", "The model, relative to the studio's file", |ui| ui.label(path.as_str()));
         }
