@@ -5,7 +5,7 @@ use crate::water::{self, Simulation};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-/// Number of simulations and of meshes that are kept. A simulation takes six bytes a cell and 32 a column: at most
+/// Number of simulations and of meshes that are kept. A simulation takes six bytes a cell and 16 a column: at most
 /// 14 MB.
 const CAPACITY: usize = 4;
 
