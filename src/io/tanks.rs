@@ -79,9 +79,9 @@ mod tests {
         (0..20).for_each(|i| drop(mesh(&small(i), None)));
         // The picture of the ground is another file, or was changed
         let terrain = crate::scene::Terrain::Picture { path: "a.png".to_owned(), low_m: 0.0, high_m: 0.3 };
-        let tank = Tank { cells: [8, 8, 8], terrain, ..Tank::default() };
+        let tank = Tank { cells: [8, 8, 8], cell_m: 0.05, terrain, water_m: 0.0, ..Tank::default() };
         let of = |value: u8| mesh(&tank, Some(&Texture::opaque(1, 1, vec![[value; 3]]))).bounds().1.y;
-        assert!(of(0) < of(50) && of(0) < of(50));
+        assert!(of(20) < of(90) && of(20) < of(90));
         let cache = CACHE.lock().unwrap();
         assert!(cache.simulations.len() <= CAPACITY && cache.meshes.len() <= CAPACITY);
     }
