@@ -243,10 +243,10 @@ fn spread_column(
         next[stale.clone()].copy_from_slice(&grid.water[bottom..][stale]);
     }
     let mut has_moved = false;
-    for layer in usize::from(low)..usize::from(top) {
+    for (layer, units) in next.iter_mut().enumerate().take(top.into()).skip(low.into()) {
         let cell = bottom + layer;
         let inflow: i32 = neighbours.iter().flatten().map(|&other| flow(grid, other * ny + layer, cell, layer)).sum();
-        next[layer] = (i32::from(grid.water(cell)) + inflow) as u16;
+        *units = (i32::from(grid.water(cell)) + inflow) as u16;
         has_moved |= inflow != 0;
     }
     let level = |layer: usize| grid.ground(bottom + layer) + next[layer];
