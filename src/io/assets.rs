@@ -71,7 +71,13 @@ fn load(key: &AssetKey, files: AssetFiles<'_>, memory: &TextureMemory) -> Result
         AssetRef::Figure(figure) => {
             Ok(LoadedAsset { asset: Asset::Figure(figures::meshes(figure)), warnings: Vec::new() })
         }
-        AssetRef::Tank(tank) => Ok(LoadedAsset { asset: Asset::Tank(tanks::mesh(tank)), warnings: Vec::new() }),
+        AssetRef::Tank(tank) => {
+            let heights = tank.height_picture().map(|path| texture::load(&files.find(path)?)).transpose()?;
+            let warning = heights.as_ref().and_then(|heights| heights.warning);
+            let warning = warning.zip(tank.height_picture()).map(|(warning, path)| format!("{path}: {warning}"));
+            let mesh = tanks::mesh(tank, heights.map(|heights| heights.texture).as_ref());
+            Ok(LoadedAsset { asset: Asset::Tank(mesh), warnings: warning.into_iter().collect() })
+        }
         AssetRef::Texture(reference) => {
             let file = files.find(reference.path())?;
             let decoded = match **reference {

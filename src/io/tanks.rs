@@ -1,42 +1,53 @@
 //! The meshes of water tanks, simulated on first use.
 
-use crate::scene::{Mesh, Tank};
+use crate::scene::{Mesh, Tank, Texture};
 use crate::water::{self, Simulation};
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-/// Number of simulations and of meshes that are kept. A simulation takes six bytes a cell and 32 a column: at most
+/// Number of simulations and of meshes that are kept. A simulation takes six bytes a cell and 16 a column: at most
 /// 14 MB.
 const CAPACITY: usize = 4;
 
-/// The last simulations and meshes, the latest last.
+/// The last simulations and meshes, the latest last, with the hash of the picture of the ground.
 #[derive(Default)]
 struct Cache {
-    simulations: Vec<Simulation>,
-    meshes: Vec<(Tank, Arc<Mesh>)>,
+    simulations: Vec<(u64, Simulation)>,
+    meshes: Vec<(u64, Tank, Arc<Mesh>)>,
 }
 
 static CACHE: LazyLock<Mutex<Cache>> = LazyLock::new(Mutex::default);
 
-/// Returns the mesh of a tank at its time. A simulation of an earlier time goes on from there.
-pub(super) fn mesh(tank: &Tank) -> Arc<Mesh> {
+/// Returns the mesh of a tank at its time, of which `heights` is the picture of the ground. A simulation of an earlier
+/// time goes on from there.
+pub(super) fn mesh(tank: &Tank, heights: Option<&Texture>) -> Arc<Mesh> {
+    let hash = heights.map_or(0, content_hash);
     // A panic with the lock held leaves the lists intact: they change by whole entries
     let cache = || CACHE.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, mesh)) = cache().meshes.iter().find(|(known, _)| known == tank) {
+    if let Some((.., mesh)) = cache().meshes.iter().find(|(known_hash, known, _)| *known_hash == hash && known == tank)
+    {
         return mesh.clone();
     }
     let earlier = {
         let mut cache = cache();
-        let found = cache.simulations.iter().rposition(|simulation| simulation.leads_to(tank));
-        found.map(|index| cache.simulations.remove(index))
+        let found =
+            cache.simulations.iter().rposition(|(known, simulation)| *known == hash && simulation.leads_to(tank));
+        found.map(|index| cache.simulations.remove(index).1)
     };
     // Simulate without the lock, so that several tanks are simulated in parallel
-    let mut simulation = earlier.unwrap_or_else(|| Simulation::new(tank));
+    let mut simulation = earlier.unwrap_or_else(|| Simulation::with_heights(tank, heights));
     simulation.run_to(tank);
     let mesh = Arc::new(water::mesh(simulation.grid(), tank));
     let mut cache = cache();
-    keep(&mut cache.simulations, simulation);
-    keep(&mut cache.meshes, (tank.clone(), mesh.clone()));
+    keep(&mut cache.simulations, (hash, simulation));
+    keep(&mut cache.meshes, (hash, tank.clone(), mesh.clone()));
     mesh
+}
+
+fn content_hash(picture: &Texture) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    (picture.width, picture.height, &picture.rgb).hash(&mut hasher);
+    hasher.finish()
 }
 
 fn keep<T>(list: &mut Vec<T>, latest: T) {
@@ -61,10 +72,16 @@ mod tests {
             water::mesh(simulation.grid(), &at(time_s))
         };
         for time_s in [0.5, 1.0, 0.25, 1.0] {
-            assert_eq!(*mesh(&at(time_s)), direct(time_s), "{time_s} s");
+            assert_eq!(*mesh(&at(time_s), None), direct(time_s), "{time_s} s");
         }
-        assert!(Arc::ptr_eq(&mesh(&at(1.0)), &mesh(&at(1.0))));
-        (0..20).for_each(|i| drop(mesh(&Tank { cells: [2, 2, 2], water_m: 0.001 * i as f32, ..Tank::default() })));
+        assert!(Arc::ptr_eq(&mesh(&at(1.0), None), &mesh(&at(1.0), None)));
+        let small = |i: u32| Tank { cells: [2, 2, 2], water_m: 0.001 * i as f32, ..Tank::default() };
+        (0..20).for_each(|i| drop(mesh(&small(i), None)));
+        // The picture of the ground is another file, or was changed
+        let terrain = crate::scene::Terrain::Picture { path: "a.png".to_owned(), low_m: 0.0, high_m: 0.3 };
+        let tank = Tank { cells: [8, 8, 8], cell_m: 0.05, terrain, water_m: 0.0, ..Tank::default() };
+        let of = |value: u8| mesh(&tank, Some(&Texture::opaque(1, 1, vec![[value; 3]]))).bounds().1.y;
+        assert!(of(20) < of(90) && of(20) < of(90));
         let cache = CACHE.lock().unwrap();
         assert!(cache.simulations.len() <= CAPACITY && cache.meshes.len() <= CAPACITY);
     }

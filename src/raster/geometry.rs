@@ -93,7 +93,7 @@ impl SceneGeometry {
                 continue;
             };
             let state = PrimitiveState { cull_back_faces: false, depth_factor: 1.0 };
-            let material = |part: &str| object.material_of(part).clone();
+            let material = |part: &str| object.untraced_material_of(part).into_owned();
             if !mesh.strands.is_empty() {
                 let ribbons = known_ribbons.entry(Arc::as_ptr(&mesh));
                 let ribbons = ribbons.or_insert_with(|| Arc::new(strand_ribbons(&mesh.strands, MAX_RIBBONS)));

@@ -55,7 +55,8 @@ impl<'a> AssetRef<'a> {
     pub fn path(&self) -> Option<&str> {
         match self {
             AssetRef::Mesh(path) | AssetRef::Photometry(path) => Some(path),
-            AssetRef::Figure(_) | AssetRef::Tank(_) => None,
+            AssetRef::Figure(_) => None,
+            AssetRef::Tank(tank) => tank.height_picture(),
             AssetRef::Texture(texture) => Some(texture.path()),
         }
     }

@@ -2,6 +2,7 @@
 
 use super::{Figure, Material, ObjectId, PropModel, Tank};
 use glam::{Affine3A, EulerRot, Quat, Vec3};
+use std::borrow::Cow;
 
 /// Geometry of an object in its own space, metres.
 #[derive(Clone, Debug, PartialEq)]
@@ -176,5 +177,43 @@ impl Object {
     /// Returns the material of a part of the mesh.
     pub fn material_of(&self, part: &str) -> &Material {
         self.part_materials.iter().find(|(name, _)| name == part).map_or(&self.material, |(_, material)| material)
+    }
+
+    /// Returns the material of a part for views that trace no rays through it: the water of a tank has the colour that a
+    /// layer of it has, of a quarter of the tank's height.
+    pub fn untraced_material_of(&self, part: &str) -> Cow<'_, Material> {
+        let material = self.material_of(part);
+        let Shape::Tank(tank) = &self.shape else { return Cow::Borrowed(material) };
+        if material.transmission == 0.0 || material.absorption_per_m == [0.0; 3] {
+            return Cow::Borrowed(material);
+        }
+        let depth_m = 0.25 * tank.size_m().y * self.transform.scale.y.abs();
+        let color = |i: usize| material.base_color[i] * (-material.absorption_per_m[i] * depth_m).exp();
+        Cow::Owned(Material { base_color: [0, 1, 2].map(color), ..material.clone() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn water_that_is_not_traced_has_the_colour_of_a_layer_of_it() {
+        let tank = Tank { cells: [8, 20, 8], cell_m: 0.02, ..Tank::default() };
+        let mut object = Object::new("Tank", Shape::Tank(Box::new(tank)));
+        let water = Material {
+            absorption_per_m: [10.0, 0.0, 1.0],
+            transmission: 1.0,
+            base_color: [1.0; 3],
+            ..Material::default()
+        };
+        object.part_materials.push(("water".to_owned(), water.clone()));
+        // A quarter of 40 cm
+        let shown = object.untraced_material_of("water").base_color;
+        let expected = [(-1.0_f32).exp(), 1.0, (-0.1_f32).exp()];
+        assert!(shown.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{shown:?}");
+        assert_eq!(*object.untraced_material_of("ground"), object.material);
+        object.shape = Shape::Sphere { radius_m: 0.1 };
+        assert_eq!(*object.untraced_material_of("water"), water, "other bodies are as they were");
     }
 }

@@ -82,6 +82,11 @@ impl Grid {
         taken
     }
 
+    /// Returns the memory of the cells, bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.ground[..]) + size_of_val(&self.water[..])
+    }
+
     /// Returns the water in all cells, in units.
     pub fn volume(&self) -> u64 {
         self.water.iter().map(|&units| u64::from(units)).sum()

@@ -12,7 +12,7 @@
 
 use super::grid::{FULL, Grid};
 use super::terrain;
-use crate::scene::{Spring, TANK_STEPS_PER_S, Tank, TankLook};
+use crate::scene::{Spring, TANK_STEPS_PER_S, Tank, TankLook, Texture};
 use rayon::prelude::*;
 
 /// Passes that spread water in a step. More let a wave run further in a second.
@@ -48,9 +48,14 @@ struct Span {
 }
 
 impl Simulation {
-    /// Returns a tank at its start.
+    /// Returns a tank at its start. One whose ground is made of a picture needs [`Simulation::with_heights`].
     pub fn new(tank: &Tank) -> Self {
-        Simulation::of_grid(terrain::start(tank), tank)
+        Simulation::with_heights(tank, None)
+    }
+
+    /// Returns a tank at its start, with the picture of its heights.
+    pub fn with_heights(tank: &Tank, heights: Option<&Texture>) -> Self {
+        Simulation::of_grid(terrain::start(tank, heights), tank)
     }
 
     /// Returns the simulation of these cells, with the springs of a tank.
@@ -238,10 +243,10 @@ fn spread_column(
         next[stale.clone()].copy_from_slice(&grid.water[bottom..][stale]);
     }
     let mut has_moved = false;
-    for layer in usize::from(low)..usize::from(top) {
+    for (layer, units) in next.iter_mut().enumerate().take(top.into()).skip(low.into()) {
         let cell = bottom + layer;
         let inflow: i32 = neighbours.iter().flatten().map(|&other| flow(grid, other * ny + layer, cell, layer)).sum();
-        next[layer] = (i32::from(grid.water(cell)) + inflow) as u16;
+        *units = (i32::from(grid.water(cell)) + inflow) as u16;
         has_moved |= inflow != 0;
     }
     let level = |layer: usize| grid.ground(bottom + layer) + next[layer];

@@ -1,20 +1,20 @@
 //! The start of a tank: its ground, its still water and its blocks.
 
 use super::grid::{FULL, Grid};
-use crate::scene::{Block, CellContent, Tank, Terrain};
+use crate::scene::{Block, CellContent, Tank, Terrain, Texture};
 use glam::{IVec2, Vec2};
 
 /// Octaves of the noise of hills.
 const OCTAVES: u32 = 5;
 
-/// Returns the cells of a tank at its start.
-pub fn start(tank: &Tank) -> Grid {
+/// Returns the cells of a tank at its start. `heights` is the picture of its ground, if that is made of one.
+pub fn start(tank: &Tank, heights: Option<&Texture>) -> Grid {
     let mut grid = Grid::new(tank.cells.map(usize::from));
     let [nx, ny, nz] = grid.size();
     let units = |height_m: f32| f64::from(height_m) / f64::from(tank.cell_m) * f64::from(FULL);
     // The share of a height that is in a cell
     let share = |units: f64, y: usize| (units - y as f64 * f64::from(FULL)).round().clamp(0.0, f64::from(FULL)) as u16;
-    let heights_m = heights_m(tank);
+    let heights_m = heights_m(tank, heights);
     for z in 0..nz {
         for x in 0..nx {
             let (ground, water) = (units(heights_m[z * nx + x]), units(tank.water_m));
@@ -52,7 +52,7 @@ fn place(grid: &mut Grid, block: &Block) {
 }
 
 /// Returns the height of the ground in each column, metres, rows along X.
-fn heights_m(tank: &Tank) -> Vec<f32> {
+fn heights_m(tank: &Tank, picture: Option<&Texture>) -> Vec<f32> {
     let [nx, _, nz] = tank.cells.map(i32::from);
     // Twice the offset of a column from the middle, in cells: exact, so that a basin is symmetric to the bit
     let columns = (0..nz).flat_map(|z| (0..nx).map(move |x| IVec2::new(2 * x + 1 - nx, 2 * z + 1 - nz)));
@@ -72,7 +72,32 @@ fn heights_m(tank: &Tank) -> Vec<f32> {
             let range = (high - low).max(1e-6);
             noise.iter().map(|value| low_m + (high_m - low_m) * ((value - low) / range)).collect()
         }
+        Terrain::Picture { low_m, high_m, .. } => {
+            let size = IVec2::new(nx, nz).as_vec2();
+            let brightness =
+                |offset: IVec2| picture.map_or(0.0, |picture| brightness(picture, 0.5 + 0.5 * offset.as_vec2() / size));
+            columns.map(|offset| low_m + (high_m - low_m) * brightness(offset)).collect()
+        }
     }
+}
+
+/// Returns the brightness of a picture at a place, 0 to 1 from its top left: the luminance of its stored values,
+/// interpolated between pixels.
+fn brightness(picture: &Texture, at: Vec2) -> f32 {
+    let (width, height) = (picture.width as usize, picture.height as usize);
+    if width == 0 || height == 0 {
+        return 0.0;
+    }
+    let last = Vec2::new((width - 1) as f32, (height - 1) as f32);
+    let place = (at * Vec2::new(width as f32, height as f32) - 0.5).clamp(Vec2::ZERO, last);
+    let (low, t) = (place.floor(), place - place.floor());
+    let value = |dx: usize, dy: usize| {
+        let (x, y) = ((low.x as usize + dx).min(width - 1), (low.y as usize + dy).min(height - 1));
+        let [r, g, b] = picture.rgb.get(y * width + x).copied().unwrap_or_default().map(f32::from);
+        (0.2126 * r + 0.7152 * g + 0.0722 * b) / 255.0
+    };
+    let row = |dy: usize| value(0, dy) + (value(1, dy) - value(0, dy)) * t.x;
+    row(0) + (row(1) - row(0)) * t.y
 }
 
 fn smooth_step(t: f32) -> f32 {
@@ -129,13 +154,28 @@ mod tests {
             terrain: Terrain::Hills { seed, low_m: 0.03, high_m: 0.2, period_m: 0.3 },
             ..Tank::default()
         };
-        let heights = heights_m(&hills(1));
+        let heights = heights_m(&hills(1), None);
         let (low, high) = heights.iter().fold((1.0_f32, 0.0_f32), |(low, high), &h| (low.min(h), high.max(h)));
         assert!((low - 0.03).abs() < 1e-6 && (high - 0.2).abs() < 1e-6, "{low} to {high}");
         let steepest =
             heights.chunks(64).flat_map(|row| row.windows(2)).map(|w| (w[0] - w[1]).abs()).fold(0.0, f32::max);
         assert!(steepest < 0.03, "a landscape, not noise: {steepest} m from column to column");
-        assert_ne!(heights, heights_m(&hills(2)));
+        assert_ne!(heights, heights_m(&hills(2), None));
+    }
+
+    #[test]
+    fn a_picture_is_the_ground_with_its_upper_edge_at_the_back() {
+        let terrain = Terrain::Picture { path: "hills.png".to_owned(), low_m: 0.1, high_m: 0.3 };
+        let tank = Tank { cells: [4, 8, 4], terrain, ..Tank::default() };
+        // Black at the back, white at the front right
+        let picture = Texture::opaque(2, 2, vec![[0; 3], [0; 3], [0; 3], [255; 3]]);
+        let heights = heights_m(&tank, Some(&picture));
+        assert!((heights[0] - 0.1).abs() < 1e-6 && (heights[3] - 0.1).abs() < 1e-6, "{heights:?}");
+        assert!((heights[15] - 0.3).abs() < 1e-6 && (heights[12] - 0.1).abs() < 1e-6, "{heights:?}");
+        assert!(heights[10] > 0.1 && heights[10] < 0.3, "interpolated: {heights:?}");
+        assert_eq!(heights_m(&tank, None), [0.1; 16]);
+        let empty = Texture::opaque(0, 0, Vec::new());
+        assert_eq!(heights_m(&tank, Some(&empty)), [0.1; 16]);
     }
 
     #[test]
@@ -154,7 +194,7 @@ mod tests {
             ],
             ..Tank::default()
         };
-        let grid = start(&tank);
+        let grid = start(&tank, None);
         let column = |x, z| -> Vec<(u16, u16)> {
             (0..4).map(|y| grid.index([x, y, z])).map(|cell| (grid.ground(cell), grid.water(cell))).collect()
         };

@@ -27,8 +27,10 @@ fn water_runs_until_it_is_held_and_one_undo_brings_it_back() {
     let scene = Scene { objects: vec![object], ..Scene::default() };
     let initial = Some(StudioSource::Memory(Box::new(scene)));
     let mut window = window(EditorOptions { initial, ..EditorOptions::default() });
-    run(&mut window, Command::Select(Item::Object(ObjectId(0))));
-    click(&mut window, "Play");
+    run(&mut window, Command::Select(Some(Item::Object(ObjectId(0)))));
+    // The window does not come to rest while the water runs
+    window.get_by_label("Play").click();
+    window.run_steps(2);
     wait_until(&mut window, |app| tank(app).time_s > 0.3);
     click(&mut window, "Pause");
     let held_s = tank(window.state()).time_s;

@@ -180,6 +180,11 @@ fn tank() -> impl Strategy<Value = Tank> {
         (height(), height()).prop_map(|(floor_m, rim_m)| Terrain::Basin { floor_m, rim_m }),
         (any::<u32>(), height(), height(), number(1e-5, 1e5))
             .prop_map(|(seed, low_m, high_m, period_m)| Terrain::Hills { seed, low_m, high_m, period_m }),
+        ("[a-z]{1,8}\\.png", height(), height()).prop_map(|(path, low_m, high_m)| Terrain::Picture {
+            path,
+            low_m,
+            high_m
+        }),
     ];
     let contents = [CellContent::Air, CellContent::Ground, CellContent::Metal, CellContent::Water];
     let cell = || [0..100_u16, 0..100, 0..100];

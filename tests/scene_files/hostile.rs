@@ -107,6 +107,11 @@ fn a_tank_out_of_bounds_is_refused_and_never_built() {
         ("cell_m: 0.1", "cell_m: NaN", &["shape.cell_m", "NaN"]),
         ("Flat(height_m: 0.1)", "Flat(height_m: inf)", &["shape.terrain.height_m", "inf"]),
         ("Flat(height_m: 0.1)", "Hills(seed: 1, low_m: 0.0, high_m: 1.0, period_m: 0.0)", &["shape.terrain.period_m"]),
+        (
+            "Flat(height_m: 0.1)",
+            "Picture(path: \"../a.png\", low_m: 0.0, high_m: 1.0)",
+            &["shape.terrain.path", "must not lead out"],
+        ),
         ("time_s: 2.0", "time_s: 1e9", &["shape.time_s", "1000000000", "0 to 120 s"]),
         ("time_s: 2.0", "time_s: -1.0", &["shape.time_s", "-1"]),
         ("time_s: 2.0", "time_s: 2.0, water_m: 1e30", &["shape.water_m"]),

@@ -24,12 +24,13 @@ pub(super) struct TankV1 {
     look: TankLookV1,
 }
 
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename = "Terrain", deny_unknown_fields)]
 enum TerrainV1 {
     Flat { height_m: f32 },
     Basin { floor_m: f32, rim_m: f32 },
     Hills { seed: u32, low_m: f32, high_m: f32, period_m: f32 },
+    Picture { path: String, low_m: f32, high_m: f32 },
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -77,6 +78,7 @@ fn is_on_from_the_start(switches_s: &[f32]) -> bool {
 
 same_variants!(TerrainV1 <=> Terrain {
     Flat { height_m }, Basin { floor_m, rim_m }, Hills { seed, low_m, high_m, period_m },
+    Picture { path, low_m, high_m },
 });
 same_variants!(CellContentV1 <=> CellContent { Air, Ground, Metal, Water });
 same_variants!(TankLookV1 <=> TankLook { Smooth, Cubes });

@@ -103,7 +103,7 @@ impl DrawList {
             let pick = Pick::Object(object.id);
             let flags = outline_flags(overlay, pick);
             for part in &parts {
-                let material = object.material_of(&part.name);
+                let material = &*object.untraced_material_of(&part.name);
                 let surface = self.add_surface(&world_from_object, material, scene, flags, Some(pick));
                 self.add_item(mesh, part, surface, material, uploads);
                 let Some(item) = self.items.last_mut() else { continue };

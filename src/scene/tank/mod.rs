@@ -34,7 +34,7 @@ pub struct Tank {
 }
 
 /// The ground of a tank. Heights are metres above the underside.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Terrain {
     /// A level ground.
     Flat {
@@ -58,6 +58,15 @@ pub enum Terrain {
         high_m: f32,
         /// Distance from hill to hill.
         period_m: f32,
+    },
+    /// The brightness of a picture, of which the upper edge lies at the back.
+    Picture {
+        /// An image file; relative to the scene file, `/` between folders.
+        path: String,
+        /// Height of black.
+        low_m: f32,
+        /// Height of white.
+        high_m: f32,
     },
 }
 
@@ -141,6 +150,14 @@ impl Tank {
         (Self::MAX_COLUMN_STEPS / columns.max(1)).min(120 * 60) as f32 / TANK_STEPS_PER_S
     }
 
+    /// Returns the path of the picture that its ground is made of, if it is.
+    pub fn height_picture(&self) -> Option<&str> {
+        match &self.terrain {
+            Terrain::Picture { path, .. } => Some(path),
+            Terrain::Flat { .. } | Terrain::Basin { .. } | Terrain::Hills { .. } => None,
+        }
+    }
+
     /// Returns the same tank at the start: equal for all times of one recipe.
     pub fn at_start(&self) -> Tank {
         Tank { time_s: 0.0, ..self.clone() }
@@ -152,11 +169,15 @@ impl Tank {
         let bits = |value: f32| (value + 0.0).to_bits();
         let mut key = cells.map(u32::from).to_vec();
         key.extend([bits(*cell_m), bits(*water_m), bits(*time_s), *look as u32, blocks.len() as u32]);
-        key.extend(match *terrain {
-            Terrain::Flat { height_m } => [0, bits(height_m), 0, 0, 0],
-            Terrain::Basin { floor_m, rim_m } => [1, bits(floor_m), bits(rim_m), 0, 0],
-            Terrain::Hills { seed, low_m, high_m, period_m } => [2, seed, bits(low_m), bits(high_m), bits(period_m)],
+        key.extend(match terrain {
+            Terrain::Flat { height_m } => [0, bits(*height_m), 0, 0, 0],
+            Terrain::Basin { floor_m, rim_m } => [1, bits(*floor_m), bits(*rim_m), 0, 0],
+            Terrain::Hills { seed, low_m, high_m, period_m } => {
+                [2, *seed, bits(*low_m), bits(*high_m), bits(*period_m)]
+            }
+            Terrain::Picture { path, low_m, high_m } => [3, path.len() as u32, bits(*low_m), bits(*high_m), 0],
         });
+        key.extend(self.height_picture().unwrap_or_default().bytes().map(u32::from));
         for Block { from, to, content } in blocks {
             key.extend(from.iter().chain(to).map(|&cell| u32::from(cell)));
             key.push(*content as u32);
@@ -221,12 +242,14 @@ mod tests {
         let block = Block { from: [1, 2, 3], to: [4, 5, 6], content: CellContent::Water };
         let spring = Spring { at_m: Vec3::Y, litres_per_s: 0.2, switches_s: vec![0.0, 1.0] };
         let tank = Tank { blocks: vec![block], springs: vec![spring], ..Tank::default() };
-        let changes: [fn(&mut Tank); 16] = [
+        let changes: [fn(&mut Tank); 18] = [
             |t| t.cells[1] = 8,
             |t| t.cell_m = 0.02,
             |t| t.terrain = Terrain::Flat { height_m: 0.1 },
             |t| t.terrain = Terrain::Basin { floor_m: 0.1, rim_m: 0.2 },
             |t| t.terrain = Terrain::Hills { seed: 6, low_m: 0.03, high_m: 0.28, period_m: 0.4 },
+            |t| t.terrain = Terrain::Picture { path: "a.png".to_owned(), low_m: 0.1, high_m: 0.2 },
+            |t| t.terrain = Terrain::Picture { path: "b.png".to_owned(), low_m: 0.1, high_m: 0.2 },
             |t| t.blocks.clear(),
             |t| t.blocks[0].from[0] = 0,
             |t| t.blocks[0].to[2] = 9,

@@ -48,6 +48,11 @@ fn check_cells(tank: &Tank, check: &mut Check) {
 
 fn check_terrain(terrain: &Terrain, check: &mut Check) {
     match *terrain {
+        Terrain::Picture { ref path, low_m, high_m } => {
+            check.asset_path("shape.terrain.path", path);
+            check.number("shape.terrain.low_m", low_m, HEIGHT);
+            check.number("shape.terrain.high_m", high_m, HEIGHT);
+        }
         Terrain::Flat { height_m } => check.number("shape.terrain.height_m", height_m, HEIGHT),
         Terrain::Basin { floor_m, rim_m } => {
             check.number("shape.terrain.floor_m", floor_m, HEIGHT);

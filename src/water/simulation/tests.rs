@@ -177,3 +177,15 @@ fn a_tank_at_rest_waits_for_its_spring_at_no_cost() {
     simulation.run_to(&tank);
     assert!((simulation.poured() as f64 / f64::from(FULL) - 0.5).abs() < 1e-4);
 }
+
+#[test]
+fn the_largest_tank_takes_six_bytes_a_cell_and_sixteen_a_column() {
+    let tank = tank([128, 128, 128], Terrain::Flat { height_m: 0.5 });
+    assert_eq!(tank.cell_count(), Tank::MAX_CELLS);
+    let mut simulation = Simulation::new(&tank);
+    simulation.advance();
+    let Simulation { grid, spans, next, next_spans, .. } = &simulation;
+    let spans = size_of_val(&spans[..]) + size_of_val(&next_spans[..]);
+    assert_eq!(grid.bytes() + size_of_val(&next[..]), 6 * Tank::MAX_CELLS);
+    assert_eq!(spans, 16 * 128 * 128);
+}

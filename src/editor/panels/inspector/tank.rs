@@ -1,5 +1,6 @@
 //! The sections of a water tank: its time, its springs, its ground and its cells.
 
+use super::text_ui;
 use crate::editor::commands::command::Command;
 use crate::editor::document::tank_player::TankPlayer;
 use crate::editor::ui::widgets::{self, METRES, NumberField, fact, row, section};
@@ -109,6 +110,7 @@ enum GroundKind {
     Flat,
     Basin,
     Hills,
+    Picture,
 }
 
 fn ground_rows(ui: &mut Ui, tank: &mut Tank) {
@@ -119,6 +121,7 @@ fn ground_rows(ui: &mut Ui, tank: &mut Tank) {
         Terrain::Flat { .. } => GroundKind::Flat,
         Terrain::Basin { .. } => GroundKind::Basin,
         Terrain::Hills { .. } => GroundKind::Hills,
+        Terrain::Picture { .. } => GroundKind::Picture,
     };
     let mut kind = before;
     row(ui, "Ground", "The shape of the ground", |ui| {
@@ -126,6 +129,7 @@ fn ground_rows(ui: &mut Ui, tank: &mut Tank) {
             (GroundKind::Flat, "Flat", "Level, or none"),
             (GroundKind::Basin, "Basin", "A round basin with a rim"),
             (GroundKind::Hills, "Hills", "Hills and valleys by chance"),
+            (GroundKind::Picture, "Picture", "The brightness of a picture"),
         ];
         widgets::choice(ui, &mut kind, &kinds);
     });
@@ -134,12 +138,24 @@ fn ground_rows(ui: &mut Ui, tank: &mut Tank) {
         tank.terrain = match kind {
             GroundKind::Flat => Terrain::Flat { height_m: 0.1 * top_m },
             GroundKind::Basin => Terrain::Basin { floor_m: 0.1 * top_m, rim_m: 0.7 * top_m },
+            GroundKind::Picture => {
+                Terrain::Picture { path: "heights.png".to_owned(), low_m: 0.1 * top_m, high_m: 0.9 * top_m }
+            }
             GroundKind::Hills => {
                 Terrain::Hills { seed: 5, low_m: 0.1 * top_m, high_m: 0.9 * top_m, period_m: 0.6 * tank.size_m().x }
             }
         };
     }
     match &mut tank.terrain {
+        Terrain::Picture { path, low_m, high_m } => {
+            row(ui, "File", "A picture beside the studio's file, such as heights.png", |ui| {
+                if let Some(typed) = text_ui(ui, "height picture", path, false) {
+                    *path = typed;
+                }
+            });
+            height(ui, "Black", "Height of the ground where the picture is black", low_m);
+            height(ui, "White", "Height of the ground where it is white", high_m);
+        }
         Terrain::Flat { height_m } => height(ui, "Height", "Above the underside; 0 for no ground", height_m),
         Terrain::Basin { floor_m, rim_m } => {
             height(ui, "Floor", "The lowest point, above the underside", floor_m);
