@@ -1,6 +1,8 @@
 //! The meshes and textures that a scene refers to, in memory. `io` loads them; renderers only read.
 
-use super::{Figure, IntensityTable, Light, Mesh, Object, Scene, Shape, Texture, TextureRef, tessellate};
+use super::{
+    Emitter, EnvironmentMap, Figure, IntensityTable, Light, Mesh, Object, Scene, Shape, Texture, TextureRef, tessellate,
+};
 use glam::Vec3;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -17,6 +19,8 @@ pub enum AssetRef<'a> {
     Texture(Cow<'a, TextureRef>),
     /// A photometric file, by its path.
     Photometry(Cow<'a, str>),
+    /// A picture of what surrounds the studio, by its path.
+    Environment(Cow<'a, str>),
 }
 
 /// An asset reference that owns its path.
@@ -35,13 +39,14 @@ impl<'a> AssetRef<'a> {
             AssetRef::Figure(figure) => AssetRef::figure(Cow::Owned(figure.into_owned())),
             AssetRef::Texture(texture) => AssetRef::Texture(Cow::Owned(texture.into_owned())),
             AssetRef::Photometry(path) => AssetRef::Photometry(Cow::Owned(path.into_owned())),
+            AssetRef::Environment(path) => AssetRef::Environment(Cow::Owned(path.into_owned())),
         }
     }
 
     /// Returns the path of the file that holds the asset; `None` for assets that are part of the program.
     pub fn path(&self) -> Option<&str> {
         match self {
-            AssetRef::Mesh(path) | AssetRef::Photometry(path) => Some(path),
+            AssetRef::Mesh(path) | AssetRef::Photometry(path) | AssetRef::Environment(path) => Some(path),
             AssetRef::Figure(_) => None,
             AssetRef::Texture(texture) => Some(texture.path()),
         }
@@ -59,6 +64,8 @@ pub enum Asset {
     Texture(Arc<Texture>),
     /// A measured luminous intensity distribution.
     Photometry(Arc<IntensityTable>),
+    /// A picture of what surrounds the studio.
+    Environment(Arc<EnvironmentMap>),
 }
 
 /// The meshes of a figure.
@@ -87,7 +94,11 @@ impl Asset {
             (Asset::Texture(a), Asset::Texture(b)) => Arc::ptr_eq(a, b),
             (Asset::Figure(a), Asset::Figure(b)) => Arc::ptr_eq(&a.fine, &b.fine),
             (Asset::Photometry(a), Asset::Photometry(b)) => Arc::ptr_eq(a, b),
-            (Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) | Asset::Photometry(_), _) => false,
+            (Asset::Environment(a), Asset::Environment(b)) => Arc::ptr_eq(a, b),
+            (
+                Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) | Asset::Photometry(_) | Asset::Environment(_),
+                _,
+            ) => false,
         }
     }
 }
@@ -125,6 +136,11 @@ impl Assets {
         self.insert(AssetRef::Photometry(Cow::Owned(path.into())), Asset::Photometry(table));
     }
 
+    /// Adds the picture of what surrounds the studio.
+    pub fn insert_environment(&mut self, path: impl Into<String>, map: Arc<EnvironmentMap>) {
+        self.insert(AssetRef::Environment(Cow::Owned(path.into())), Asset::Environment(map));
+    }
+
     /// Adds all assets of another collection.
     pub fn extend(&mut self, other: Assets) {
         self.loaded.extend(other.loaded);
@@ -147,7 +163,7 @@ impl Assets {
             AssetRef::Figure(figure) => {
                 scene.objects.iter().any(|o| matches!(&o.shape, Shape::Figure(used) if **used == ***figure))
             }
-            AssetRef::Mesh(_) | AssetRef::Texture(_) | AssetRef::Photometry(_) => true,
+            AssetRef::Mesh(_) | AssetRef::Texture(_) | AssetRef::Photometry(_) | AssetRef::Environment(_) => true,
         };
         self.loaded.retain(|key, _| is_used(key));
     }
@@ -171,7 +187,7 @@ impl Assets {
     pub fn figure(&self, figure: &Figure) -> Option<FigureMeshes> {
         match self.get(&AssetRef::figure(Cow::Borrowed(figure)))? {
             Asset::Figure(meshes) => Some(meshes),
-            Asset::Mesh(_) | Asset::Texture(_) | Asset::Photometry(_) => None,
+            Asset::Mesh(_) | Asset::Texture(_) | Asset::Photometry(_) | Asset::Environment(_) => None,
         }
     }
 
@@ -179,7 +195,17 @@ impl Assets {
     pub fn photometry(&self, path: &str) -> Option<Arc<IntensityTable>> {
         match self.get(&AssetRef::Photometry(Cow::Borrowed(path)))? {
             Asset::Photometry(table) => Some(table),
-            Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) => None,
+            Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) | Asset::Environment(_) => None,
+        }
+    }
+
+    /// Returns the environment map of a light; none for one without, for one that is no surround, or whose file is not
+    /// loaded.
+    pub fn environment(&self, light: &Light) -> Option<Arc<EnvironmentMap>> {
+        let path = light.environment_map.as_deref().filter(|_| light.emitter == Emitter::Surround)?;
+        match self.get(&AssetRef::Environment(Cow::Borrowed(path)))? {
+            Asset::Environment(map) => Some(map),
+            Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) | Asset::Photometry(_) => None,
         }
     }
 
@@ -193,7 +219,7 @@ impl Assets {
     pub fn texture(&self, texture: &TextureRef) -> Option<Arc<Texture>> {
         match self.get(&AssetRef::Texture(Cow::Borrowed(texture)))? {
             Asset::Texture(image) => Some(image),
-            Asset::Mesh(_) | Asset::Figure(_) | Asset::Photometry(_) => None,
+            Asset::Mesh(_) | Asset::Figure(_) | Asset::Photometry(_) | Asset::Environment(_) => None,
         }
     }
 
@@ -245,7 +271,7 @@ impl Assets {
     fn get_mesh(&self, key: &AssetRef<'_>) -> Option<Arc<Mesh>> {
         match self.get(key)? {
             Asset::Mesh(mesh) => Some(mesh),
-            Asset::Texture(_) | Asset::Figure(_) | Asset::Photometry(_) => None,
+            Asset::Texture(_) | Asset::Figure(_) | Asset::Photometry(_) | Asset::Environment(_) => None,
         }
     }
 }

@@ -123,7 +123,7 @@ pub(super) fn smooth(points: &[(f32, f32)]) -> Vec<(f32, f32)> {
                 + (a * 2.0 - b * 5.0 + c * 4.0 - d) * (t * t)
                 + (b * 3.0 - a - c * 3.0 + d) * (t * t * t);
             let point = cubic * 0.5;
-            profile.push(if step == 0 { points[i] } else { (point.x.max(1e-5), point.y) });
+            profile.push(if step == 0 { points[i] } else { (point.x.max(1e-5), point.y.max(0.0)) });
         }
     }
     profile.extend(points.last());
