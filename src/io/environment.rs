@@ -80,18 +80,18 @@ fn decode_hdr(bytes: &[u8]) -> Result<(u32, u32, Vec<[f32; 3]>), String> {
 fn reduced(width: u32, height: u32, rgb: Vec<[f32; 3]>) -> (u32, u32, Vec<[f32; 3]>) {
     let step = width.div_ceil(MOST_WIDTH).max(height.div_ceil(MOST_WIDTH)).max(1);
     // A rest of a block at the edge would be another solid angle
-    if step == 1 || width % step != 0 || height % step != 0 {
+    if step == 1 || !width.is_multiple_of(step) || !height.is_multiple_of(step) {
         return (width, height, rgb);
     }
     let (columns, rows) = (width / step, height / step);
     let mean = |index: u32| {
         let (column, row) = (index % columns * step, index / columns * step);
-        let mut sum = [0.0_f64; 3];
+        let mut sum = [0.0_f32; 3];
         for (y, x) in (0..step).flat_map(|y| (0..step).map(move |x| (y, x))) {
             let pixel = rgb[((row + y) as usize) * width as usize + (column + x) as usize];
-            sum.iter_mut().zip(pixel).for_each(|(sum, value)| *sum += f64::from(value));
+            sum.iter_mut().zip(pixel).for_each(|(sum, value)| *sum += value);
         }
-        sum.map(|sum| (sum / f64::from(step * step)) as f32)
+        sum.map(|sum| sum / (step * step) as f32)
     };
     (columns, rows, (0..columns * rows).map(mean).collect())
 }

@@ -191,15 +191,22 @@ impl EnvironmentMap {
     /// Returns the vectors of the light of coarse cells: direction times luminance times solid angle.
     fn coarse(&self) -> Vec<Vec3> {
         let step = self.width.div_ceil(COARSE_WIDTH).max(1);
+        // Large pixels are divided: their middle does not stand for them
+        let parts = COARSE_WIDTH.div_ceil(self.width).clamp(1, 16);
         let (columns, rows) = (self.width.div_ceil(step), self.height.div_ceil(step));
-        let mut cells = vec![Vec3::ZERO; (columns * rows) as usize];
+        let mut cells = vec![Vec3::ZERO; (columns * rows * parts * parts) as usize];
         for row in 0..self.height {
             let [top, bottom] = self.heights(row);
             for column in 0..self.width {
                 let pixel = self.rgb[(row * self.width + column) as usize];
-                let direction = self.direction((column as f32 + 0.5) / self.width as f32, 0.5 * (top + bottom));
-                let amount = crate::color::luminance(pixel.into()) * self.solid_angle_sr(row);
-                cells[(row / step * columns + column / step) as usize] += direction * amount;
+                let amount = crate::color::luminance(pixel.into()) * self.solid_angle_sr(row) / (parts * parts) as f32;
+                let cell = (row / step * columns + column / step) as usize;
+                for part in 0..parts * parts {
+                    let [across, down] = [part % parts, part / parts].map(|at| (at as f32 + 0.5) / parts as f32);
+                    let height = top + (bottom - top) * down;
+                    let direction = self.direction((column as f32 + across) / self.width as f32, height);
+                    cells[cell * (parts * parts) as usize + part as usize] += direction * amount;
+                }
             }
         }
         cells
@@ -251,6 +258,9 @@ mod tests {
         let even = EnvironmentMap::new(64, 32, vec![[1.0; 3]; 2048]).unwrap();
         assert!((even.peak_illuminance() / PI - 1.0).abs() < 2e-3, "{}", even.peak_illuminance());
         assert!((even.mean() - Vec3::ONE).abs().max_element() < 1e-5);
+        // Also of a few large pixels
+        let coarse = EnvironmentMap::new(8, 4, vec![[1.0; 3]; 32]).unwrap();
+        assert!((coarse.peak_illuminance() / PI - 1.0).abs() < 5e-3, "{}", coarse.peak_illuminance());
         let mut pixels = vec![[0.0; 3]; 2048];
         pixels[10 * 64 + 40] = [500.0; 3];
         let sun = EnvironmentMap::new(64, 32, pixels).unwrap();
