@@ -1,6 +1,7 @@
 //! Loads the assets that a scene refers to. One that can't be loaded is left out with a warning.
 
 use super::asset_files::AssetFiles;
+use super::environment::{EnvironmentFile, read_environment};
 use super::error::AssetError;
 use super::photometric::{PhotometricFile, read_photometric_file};
 use super::texture_memory::TextureMemory;
@@ -95,6 +96,11 @@ fn load(key: &AssetKey, files: AssetFiles<'_>, memory: &TextureMemory) -> Result
             let warnings = warnings.into_iter().map(|warning| format!("{path}: {warning}")).collect();
             Ok(LoadedAsset { asset: Asset::Photometry(Arc::new(table)), warnings })
         }
+        AssetRef::Environment(path) => {
+            let EnvironmentFile { map, warnings } = read_environment(&files.find(path)?)?;
+            let warnings = warnings.into_iter().map(|warning| format!("{path}: {warning}")).collect();
+            Ok(LoadedAsset { asset: Asset::Environment(Arc::new(map)), warnings })
+        }
     }
 }
 
@@ -103,6 +109,7 @@ fn consequence(key: &AssetKey) -> &'static str {
     match key {
         AssetRef::Mesh(_) | AssetRef::Figure(_) | AssetRef::Tank(_) => "the object is left out",
         AssetRef::Texture(_) => "the surface is shown without its texture",
+        AssetRef::Environment(_) => "the surround is even",
         AssetRef::Photometry(_) => "the light shines as its emitter does, without its measured distribution",
     }
 }
@@ -126,6 +133,21 @@ mod tests {
         assert_eq!(warning.place, "room.floor.base_color_texture");
         assert!(warning.message.starts_with("the surface is shown without its texture: can't read it"), "{warning}");
         assert_eq!(assets.iter().count(), 0);
+    }
+
+    #[test]
+    fn a_missing_environment_map_is_a_warning_and_the_surround_is_even() {
+        use crate::scene::{Emitter, Light, Output};
+        let folder = tempfile::tempdir().unwrap();
+        let light = Light::new(Emitter::Surround, Output::Lux(100.0));
+        let light = Light { environment_map: Some("sky.hdr".to_owned()), ..light };
+        let scene = Scene { lights: vec![light], ..Scene::default() };
+        let mut assets = Assets::default();
+        let warnings = load_assets(&scene, Some(folder.path()), &mut assets);
+        let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+        assert_eq!(warning.place, "lights[0] \"Light\" environment_map");
+        assert!(warning.message.starts_with("the surround is even: can't read it"), "{warning}");
+        assert!(assets.environment(&scene.lights[0]).is_none());
     }
 
     #[test]

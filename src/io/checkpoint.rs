@@ -57,6 +57,7 @@ fn content_hash(asset: &Asset) -> u64 {
         Asset::Mesh(mesh) => mesh.hash_content(&mut hasher),
         Asset::Texture(image) => (image.width, image.height, &image.rgb).hash(&mut hasher),
         Asset::Photometry(table) => table.hash_content(&mut hasher),
+        Asset::Environment(map) => map.hash_content(&mut hasher),
         // The scene holds all that they are made of
         Asset::Figure(_) | Asset::Tank(_) => {}
     }

@@ -265,6 +265,14 @@ pub enum AssetError {
         /// The file.
         path: PathBuf,
     },
+    /// The environment map could not be decoded.
+    #[error("not a usable HDR or EXR picture: {message}: {}", path.display())]
+    BadEnvironment {
+        /// The decoder's message.
+        message: String,
+        /// The file.
+        path: PathBuf,
+    },
     /// The texture could not be decoded.
     #[error("not a usable PNG or JPEG: {message}: {}", path.display())]
     BadTexture {

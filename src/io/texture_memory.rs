@@ -22,7 +22,7 @@ impl TextureMemory {
     pub fn new(assets: &Assets) -> Self {
         let texture = |asset: &Asset| match asset {
             Asset::Texture(texture) => Some(texture.clone()),
-            Asset::Mesh(_) | Asset::Figure(_) | Asset::Photometry(_) | Asset::Tank(_) => None,
+            Asset::Mesh(_) | Asset::Figure(_) | Asset::Photometry(_) | Asset::Tank(_) | Asset::Environment(_) => None,
         };
         let mut textures: Vec<Arc<Texture>> = Vec::new();
         for texture in assets.iter().filter_map(|(_, asset)| texture(asset)) {

@@ -13,6 +13,7 @@
 
 use super::beam::{self, Beam};
 use super::emitter::{EmitterShape, IntensityDistribution};
+use super::environment_light::EnvironmentLight;
 use super::light_color::light_rgb;
 use super::measured_beam::MeasuredBeam;
 use crate::scene::{Assets, Camera, Emitter, IntensityTable, Light, Modifier, Output, Scene};
@@ -60,6 +61,8 @@ pub struct PhotometricLight {
     pub world_from_light: Affine3A,
     /// Angular transmission of the modifier, times the measured distribution; none where all directions are alike.
     pub beam: Option<Beam>,
+    /// Luminance and colour by direction of a surround with an environment map.
+    pub environment: Option<EnvironmentLight>,
     /// Output.
     pub strength: Strength,
     /// Linear RGB of luminance 1, relative to the camera's white balance.
@@ -77,7 +80,9 @@ pub struct PhotometricLight {
 impl PhotometricLight {
     /// Converts a light of a scene, whose measured distribution is among the assets.
     pub fn new(scene: &Scene, assets: &Assets, light: &Light) -> Self {
-        Self::in_frame(light, assets.intensity_table(light), scene.light_frame(light), &scene.camera)
+        let photometric = Self::in_frame(light, assets.intensity_table(light), scene.light_frame(light), &scene.camera);
+        let environment = assets.environment(light).map(|map| EnvironmentLight::new(map, light.roll_deg));
+        PhotometricLight { environment, ..photometric }
     }
 
     /// Converts a light with a given measured distribution and frame.
@@ -98,6 +103,7 @@ impl PhotometricLight {
             shape,
             world_from_light,
             beam: Beam::with_measured(&light.modifier, measured),
+            environment: None,
             strength: Strength::new(light),
             tint: light_rgb(&light.color, camera.white_balance_k),
             exposure_time_s: integration_time_s(&light.power.output, camera),

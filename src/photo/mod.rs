@@ -5,6 +5,7 @@ mod aov;
 pub mod beam;
 mod dial_text;
 pub mod emitter;
+mod environment_light;
 pub mod exposure;
 mod false_color;
 pub mod irradiance_grid;
@@ -25,6 +26,7 @@ mod waveform;
 
 pub use aov::AovPicture;
 pub use dial_text::{dial_from_text, dial_text, flash_time_text};
+pub use environment_light::EnvironmentLight;
 pub use false_color::{FALSE_STOPS, false_color};
 pub use lazy_picture::LazyPicture;
 pub use light::{PhotometricLight, Strength};

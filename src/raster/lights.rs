@@ -101,6 +101,12 @@ impl RasterLights {
             EmitterShape::Disc { radius_m } => LightKind::Panel { area_m2: PI * radius_m * radius_m },
             EmitterShape::Sun { .. } => LightKind::Sun,
             EmitterShape::Surround => {
+                // An environment map is its mean, without directions
+                let mean = light
+                    .environment
+                    .as_ref()
+                    .map_or(Vec3::ONE, |environment| environment.mean_color() * environment.mean_relative_luminance());
+                let strength = strength * mean;
                 self.ambient_irradiance += strength;
                 self.background_radiance += if light.visible_to_camera { strength / PI } else { Vec3::ZERO };
                 return;

@@ -110,7 +110,7 @@ impl RayCaster<'_> {
         // Sun and surround lie behind everything, and may both be visible.
         for (light, index, hit) in visible().filter(|(_, i, _)| distance.is_infinite() || *i == nearest) {
             sink.record(|| PathEvent::VisibleEmitter { light: index, distance: hit.distance });
-            sink.add(light.layer, light.tint * hit.luminance);
+            sink.add(light.layer, light.tint_towards(ray.direction) * hit.luminance);
         }
         true
     }
@@ -121,7 +121,7 @@ impl RayCaster<'_> {
             let hit = light.intersect(ray.origin, ray.direction);
             if let Some(hit) = hit.filter(|hit| is_before(ray, hit.distance, distance)) {
                 sink.record(|| PathEvent::VisibleEmitter { light: index, distance: hit.distance });
-                sink.add(light.layer, light.tint * hit.luminance);
+                sink.add(light.layer, light.tint_towards(ray.direction) * hit.luminance);
             }
         }
     }
@@ -150,7 +150,7 @@ impl RayCaster<'_> {
         let mis_weight = if light.is_sampled() { scene.mis_weight(vertex, ray, index, &hit, media) } else { 1.0 };
         let throughput = throughput * media.transmittance(&scene.materials, hit.distance);
         sink.record(|| PathEvent::EmitterHit { light: index, distance: hit.distance, mis_weight });
-        sink.add(light.layer, throughput * light.tint * (hit.luminance * mis_weight));
+        sink.add(light.layer, throughput * light.tint_towards(ray.direction) * (hit.luminance * mis_weight));
     }
 
     /// Adds the emitters that a scattered ray crosses before the surface that it hits, weighted against light sampling
@@ -182,7 +182,7 @@ impl RayCaster<'_> {
                 throughput *= media.transmittance(&scene.materials, hit.distance);
             }
             sink.record(|| PathEvent::EmitterHit { light: index, distance: hit.distance, mis_weight });
-            sink.add(light.layer, throughput * light.tint * (hit.luminance * mis_weight));
+            sink.add(light.layer, throughput * light.tint_towards(ray.direction) * (hit.luminance * mis_weight));
         });
     }
 }

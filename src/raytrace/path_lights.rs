@@ -96,14 +96,19 @@ impl<'a> PathTracer<'a> {
         // Weight against emitter hits and add the contribution
         let mis_weight = pdf.map_or(1.0, |light_pdf| power_heuristic(light_pdf * pmf, bsdf_pdf * paths));
         sink.record(|| event(pdf, bsdf_pdf, transmittance, mis_weight));
-        let value = path.throughput * transmittance * value * light.tint * (light_value * mis_weight / pmf);
+        let value =
+            path.throughput * transmittance * value * light.tint_towards(direction) * (light_value * mis_weight / pmf);
         sink.add(light.layer, value);
 
         // Add the control variate, whose MIS weight is that of one path
         if let Some(control) = point.control {
             let (value, bsdf_pdf) = control.eval(direction);
             let mis_weight = pdf.map_or(1.0, |light_pdf| power_heuristic(light_pdf * pmf, bsdf_pdf));
-            let value = path.throughput * transmittance * value * light.tint * (light_value * mis_weight / pmf);
+            let value = path.throughput
+                * transmittance
+                * value
+                * light.tint_towards(direction)
+                * (light_value * mis_weight / pmf);
             sink.add(light.layer, value);
         }
     }

@@ -165,7 +165,7 @@ fn add_direct_light(
         });
         if let Some(Connection { direction, value: light_value, transmittance, .. }) = connection {
             let value = if direction == sample.direction { value } else { scatter(direction) };
-            sink.add(light.layer, throughput * transmittance * value * light.tint * light_value);
+            sink.add(light.layer, throughput * transmittance * value * light.tint_towards(direction) * light_value);
         }
     }
 }

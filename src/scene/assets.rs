@@ -1,6 +1,9 @@
 //! The meshes and textures that a scene refers to, in memory. `io` loads them; renderers only read.
 
-use super::{Figure, IntensityTable, Light, Mesh, Object, Scene, Shape, Tank, Texture, TextureRef, tessellate};
+use super::{
+    Emitter, EnvironmentMap, Figure, IntensityTable, Light, Mesh, Object, Scene, Shape, Tank, Texture, TextureRef,
+    tessellate,
+};
 use glam::Vec3;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -19,6 +22,8 @@ pub enum AssetRef<'a> {
     Photometry(Cow<'a, str>),
     /// A water tank.
     Tank(Box<Cow<'a, Tank>>),
+    /// A picture of what surrounds the studio, by its path.
+    Environment(Cow<'a, str>),
 }
 
 /// An asset reference that owns its path.
@@ -43,6 +48,7 @@ impl<'a> AssetRef<'a> {
             AssetRef::Texture(texture) => AssetRef::Texture(Cow::Owned(texture.into_owned())),
             AssetRef::Photometry(path) => AssetRef::Photometry(Cow::Owned(path.into_owned())),
             AssetRef::Tank(tank) => AssetRef::tank(Cow::Owned(tank.into_owned())),
+            AssetRef::Environment(path) => AssetRef::Environment(Cow::Owned(path.into_owned())),
         }
     }
 
@@ -54,7 +60,7 @@ impl<'a> AssetRef<'a> {
     /// Returns the path of the file that holds the asset; `None` for assets that are part of the program.
     pub fn path(&self) -> Option<&str> {
         match self {
-            AssetRef::Mesh(path) | AssetRef::Photometry(path) => Some(path),
+            AssetRef::Mesh(path) | AssetRef::Photometry(path) | AssetRef::Environment(path) => Some(path),
             AssetRef::Figure(_) => None,
             AssetRef::Tank(tank) => tank.height_picture(),
             AssetRef::Texture(texture) => Some(texture.path()),
@@ -75,6 +81,8 @@ pub enum Asset {
     Photometry(Arc<IntensityTable>),
     /// The ground and the water of a tank.
     Tank(Arc<Mesh>),
+    /// A picture of what surrounds the studio.
+    Environment(Arc<EnvironmentMap>),
 }
 
 /// The meshes of a figure.
@@ -103,7 +111,16 @@ impl Asset {
             (Asset::Texture(a), Asset::Texture(b)) => Arc::ptr_eq(a, b),
             (Asset::Figure(a), Asset::Figure(b)) => Arc::ptr_eq(&a.fine, &b.fine),
             (Asset::Photometry(a), Asset::Photometry(b)) => Arc::ptr_eq(a, b),
-            (Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) | Asset::Photometry(_) | Asset::Tank(_), _) => false,
+            (Asset::Environment(a), Asset::Environment(b)) => Arc::ptr_eq(a, b),
+            (
+                Asset::Mesh(_)
+                | Asset::Texture(_)
+                | Asset::Figure(_)
+                | Asset::Photometry(_)
+                | Asset::Tank(_)
+                | Asset::Environment(_),
+                _,
+            ) => false,
         }
     }
 }
@@ -141,6 +158,11 @@ impl Assets {
         self.insert(AssetRef::Photometry(Cow::Owned(path.into())), Asset::Photometry(table));
     }
 
+    /// Adds the picture of what surrounds the studio.
+    pub fn insert_environment(&mut self, path: impl Into<String>, map: Arc<EnvironmentMap>) {
+        self.insert(AssetRef::Environment(Cow::Owned(path.into())), Asset::Environment(map));
+    }
+
     /// Adds all assets of another collection.
     pub fn extend(&mut self, other: Assets) {
         self.loaded.extend(other.loaded);
@@ -166,7 +188,7 @@ impl Assets {
             AssetRef::Tank(tank) => {
                 scene.objects.iter().any(|o| matches!(&o.shape, Shape::Tank(used) if **used == ***tank))
             }
-            AssetRef::Mesh(_) | AssetRef::Texture(_) | AssetRef::Photometry(_) => true,
+            AssetRef::Mesh(_) | AssetRef::Texture(_) | AssetRef::Photometry(_) | AssetRef::Environment(_) => true,
         };
         self.loaded.retain(|key, _| is_used(key));
     }
@@ -190,7 +212,7 @@ impl Assets {
     pub fn figure(&self, figure: &Figure) -> Option<FigureMeshes> {
         match self.get(&AssetRef::figure(Cow::Borrowed(figure)))? {
             Asset::Figure(meshes) => Some(meshes),
-            Asset::Mesh(_) | Asset::Texture(_) | Asset::Photometry(_) | Asset::Tank(_) => None,
+            Asset::Mesh(_) | Asset::Texture(_) | Asset::Photometry(_) | Asset::Tank(_) | Asset::Environment(_) => None,
         }
     }
 
@@ -203,7 +225,17 @@ impl Assets {
     pub fn photometry(&self, path: &str) -> Option<Arc<IntensityTable>> {
         match self.get(&AssetRef::Photometry(Cow::Borrowed(path)))? {
             Asset::Photometry(table) => Some(table),
-            Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) | Asset::Tank(_) => None,
+            Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) | Asset::Tank(_) | Asset::Environment(_) => None,
+        }
+    }
+
+    /// Returns the environment map of a light; none for one without, for one that is no surround, or whose file is not
+    /// loaded.
+    pub fn environment(&self, light: &Light) -> Option<Arc<EnvironmentMap>> {
+        let path = light.environment_map.as_deref().filter(|_| light.emitter == Emitter::Surround)?;
+        match self.get(&AssetRef::Environment(Cow::Borrowed(path)))? {
+            Asset::Environment(map) => Some(map),
+            Asset::Mesh(_) | Asset::Texture(_) | Asset::Figure(_) | Asset::Photometry(_) | Asset::Tank(_) => None,
         }
     }
 
@@ -217,7 +249,7 @@ impl Assets {
     pub fn texture(&self, texture: &TextureRef) -> Option<Arc<Texture>> {
         match self.get(&AssetRef::Texture(Cow::Borrowed(texture)))? {
             Asset::Texture(image) => Some(image),
-            Asset::Mesh(_) | Asset::Figure(_) | Asset::Photometry(_) | Asset::Tank(_) => None,
+            Asset::Mesh(_) | Asset::Figure(_) | Asset::Photometry(_) | Asset::Tank(_) | Asset::Environment(_) => None,
         }
     }
 
@@ -271,7 +303,7 @@ impl Assets {
     fn get_mesh(&self, key: &AssetRef<'_>) -> Option<Arc<Mesh>> {
         match self.get(key)? {
             Asset::Mesh(mesh) | Asset::Tank(mesh) => Some(mesh),
-            Asset::Texture(_) | Asset::Figure(_) | Asset::Photometry(_) => None,
+            Asset::Texture(_) | Asset::Figure(_) | Asset::Photometry(_) | Asset::Environment(_) => None,
         }
     }
 }

@@ -269,6 +269,7 @@ impl SceneChange {
             roll_deg,
             emitter,
             photometric_file,
+            environment_map,
             modifier,
             head,
             power,
@@ -299,6 +300,7 @@ impl SceneChange {
                 || *roll_deg != new.roll_deg
                 || *emitter != new.emitter
                 || *photometric_file != new.photometric_file
+                || *environment_map != new.environment_map
                 || *visible_to_camera != new.visible_to_camera
                 // What was traced of a measured light does not say its peak intensity for a flux
                 || (photometric_file.is_some() && power.output.states_flux() != new.power.output.states_flux()),

@@ -48,6 +48,13 @@ pub enum AssetField {
     },
     /// The photometric file of a light of another variant than the shown one.
     VariantPhotometry,
+    /// The environment map of `lights[index]`.
+    Environment {
+        /// Index into [`Scene::lights`].
+        index: usize,
+    },
+    /// The environment map of a light of another variant than the shown one.
+    VariantEnvironment,
 }
 
 impl Scene {
@@ -69,7 +76,15 @@ impl Scene {
         });
         let stored = self.variants.stored_photometric_files();
         let stored = stored.map(|path| (AssetField::VariantPhotometry, AssetRef::Photometry(Cow::Borrowed(path))));
-        room_materials(self).flat_map(texture_assets).chain(objects).chain(lights).chain(stored)
+        let maps = self.lights.iter().enumerate().filter_map(|(index, light)| {
+            let path = light.environment_map.as_deref()?;
+            Some((AssetField::Environment { index }, AssetRef::Environment(Cow::Borrowed(path))))
+        });
+        let stored_maps = self.variants.stored_environment_maps();
+        let stored_maps =
+            stored_maps.map(|path| (AssetField::VariantEnvironment, AssetRef::Environment(Cow::Borrowed(path))));
+        let surfaces = room_materials(self).flat_map(texture_assets).chain(objects);
+        surfaces.chain(lights).chain(stored).chain(maps).chain(stored_maps)
     }
 
     /// Returns true if some surface emits light, hidden objects included.
@@ -85,7 +100,11 @@ impl Scene {
                 self.object_place(index, if is_file { "shape.path" } else { "shape" })
             }
             AssetField::Texture { material, texture } => self.texture_place(material, texture.field()),
-            AssetField::VariantPhotometry => "variants".to_owned(),
+            AssetField::VariantPhotometry | AssetField::VariantEnvironment => "variants".to_owned(),
+            AssetField::Environment { index } => {
+                let name = self.lights.get(index).map_or("", |light| &light.name);
+                format!("lights[{index}] {name:?} environment_map")
+            }
             AssetField::Photometry { index } => {
                 let name = self.lights.get(index).map_or("", |light| &light.name);
                 format!("lights[{index}] {name:?} photometric_file")

@@ -180,6 +180,9 @@ pub struct Light {
     /// Path of the photometric file (IES, EULUMDAT) with its measured luminous intensity by direction, which takes the
     /// place of the emitter's own; relative to the scene file. The power says how much light it gives.
     pub photometric_file: Option<String>,
+    /// Path of the picture (HDR, EXR) that a surround shines as, equirectangular, its middle towards -Z; relative to the
+    /// scene file. `roll_deg` turns it to the left. The illuminance is that on the plane that gets most of its light.
+    pub environment_map: Option<String>,
     /// Loss and beam shape.
     pub modifier: Modifier,
     /// The head behind it, if it is one of the list of gear: its dial. The output is in `power`.
@@ -212,6 +215,7 @@ impl Light {
             roll_deg: 0.0,
             emitter,
             photometric_file: None,
+            environment_map: None,
             modifier: Modifier::default(),
             head: None,
             power: Power { output, dial_stops: 0.0 },

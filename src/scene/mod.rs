@@ -11,6 +11,7 @@ mod body;
 mod camera;
 mod change;
 mod emitter;
+mod environment_map;
 mod fibre;
 mod figure;
 mod focused_lens;
@@ -47,6 +48,7 @@ pub use body::{BodyPiece, LightBody, ModifierShape, PieceShape, body_material};
 pub use camera::{Camera, CameraFrame, Focus, Orientation, Sensor};
 pub use change::{LightChange, SceneChange};
 pub use emitter::Emitter;
+pub use environment_map::EnvironmentMap;
 pub use fibre::{Fibre, FibreColor};
 pub use figure::{
     Arm, Beard, Body, Bottom, Expression, Extent, Face, Figure, Gaze, HairStyle, Leg, Parameter, ParameterSet, Pose,

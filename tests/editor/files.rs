@@ -226,15 +226,15 @@ fn a_lesson_sheet_is_exported_for_the_selected_light() {
     let folder = tempfile::tempdir().unwrap();
     let [lesson, wrong] = ["lesson.html", "lesson.pdf"].map(|name| folder.path().join(name));
     // A ball in the figure's place: a lesson has three renders
-    let mut scene = catchlight::io::presets()[0].load().unwrap().scene;
-    for object in &mut scene.objects {
+    let mut studio = catchlight::io::presets()[0].load().unwrap().scene;
+    for object in &mut studio.objects {
         if matches!(object.shape, Shape::Figure(_)) {
             object.shape = Shape::Sphere { radius_m: 0.2 };
             object.part_materials.clear();
         }
     }
     let mut window = window(EditorOptions {
-        initial: Some(StudioSource::Memory(Box::new(scene))),
+        initial: Some(StudioSource::Memory(Box::new(studio))),
         dialogs: FileDialogs::scripted([lesson.clone(), wrong.clone()]),
         ..EditorOptions::default()
     });

@@ -29,6 +29,7 @@ mod channels;
 mod closed_forms;
 mod drafts;
 mod each_light;
+mod environment;
 mod hair;
 mod layers;
 mod lens;

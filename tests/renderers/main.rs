@@ -12,6 +12,7 @@ mod analytic_glass;
 mod analytic_light;
 mod analytic_transmission;
 mod bodies;
+mod environment;
 mod formulas;
 mod layers;
 mod measured_light;

@@ -300,6 +300,7 @@ fn light(objects: usize) -> BoxedStrategy<Light> {
                 aim,
                 roll_deg,
                 emitter,
+                environment_map: photometric_file.clone().filter(|_| emitter == Emitter::Surround),
                 photometric_file: photometric_file.filter(|_| !emitter.is_infinite()),
                 // Light from infinity can only be weakened.
                 modifier: if emitter.is_infinite() { Modifier::loss(modifier.loss_stops) } else { modifier },

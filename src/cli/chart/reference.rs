@@ -56,6 +56,12 @@ fn path(folder: &Path, loaded: &Loaded, settings: &Settings) -> PathBuf {
     });
     let by_path: BTreeMap<_, _> = tables.collect();
     by_path.into_values().for_each(|table| table.hash_content(&mut hasher));
+    let maps = loaded.assets.iter().filter_map(|(key, asset)| match asset {
+        Asset::Environment(map) => Some((key.path(), map)),
+        _ => None,
+    });
+    let by_path: BTreeMap<_, _> = maps.collect();
+    by_path.into_values().for_each(|map| map.hash_content(&mut hasher));
     let by_text: BTreeMap<_, _> = textures.collect();
     by_text.into_iter().for_each(|texture| texture.hash(&mut hasher));
     folder.join(format!("reference-{:016x}.exr", hasher.finish()))

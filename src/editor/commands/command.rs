@@ -94,6 +94,10 @@ pub enum Command {
     MeasuredLight(Option<LightId>),
     /// Gives this light (none: a new one) this photometric file.
     MeasuredLightPath(Option<LightId>, PathBuf),
+    /// Gives this surround (none: a new one) the environment map that a dialog selects.
+    EnvironmentMap(Option<LightId>),
+    /// Gives this surround (none: a new one) this environment map.
+    EnvironmentMapPath(Option<LightId>, PathBuf),
     /// Sets the texture of the material of this item's part (none: the item's own) from a dialog.
     ChooseTexture(Item, Option<String>, TextureSlot),
     /// Writes the rendered picture to a file that a dialog selects.

@@ -16,6 +16,8 @@ pub enum FilePurpose {
     ImportModel,
     /// A photometric file for this light; for a new one, none.
     OpenMeasuredLight(Option<LightId>),
+    /// An environment map for this surround; for a new one, none.
+    OpenEnvironment(Option<LightId>),
     /// A texture for a material.
     OpenTexture,
     /// The file to write the rendered picture to.
@@ -34,6 +36,7 @@ impl FilePurpose {
             FilePurpose::SaveScene => "Save studio".to_owned(),
             FilePurpose::ImportModel => format!("Import {} model", io::model_format_names()),
             FilePurpose::OpenMeasuredLight(_) => "Choose photometric file".to_owned(),
+            FilePurpose::OpenEnvironment(_) => "Choose environment map".to_owned(),
             FilePurpose::OpenTexture => "Choose texture".to_owned(),
             FilePurpose::ExportPicture => "Export picture".to_owned(),
             FilePurpose::ExportSheet(_) => "Export set-up sheet".to_owned(),
@@ -51,6 +54,7 @@ impl FilePurpose {
             FilePurpose::OpenScene
             | FilePurpose::ImportModel
             | FilePurpose::OpenMeasuredLight(_)
+            | FilePurpose::OpenEnvironment(_)
             | FilePurpose::OpenTexture => false,
         }
     }
@@ -70,6 +74,7 @@ impl FilePurpose {
             FilePurpose::SaveScene => ("Catchlight studio".to_owned(), &["ron"]),
             FilePurpose::ImportModel => (format!("{} model", io::model_format_names()), io::model_extensions()),
             FilePurpose::OpenMeasuredLight(_) => ("IES, EULUMDAT".to_owned(), io::PHOTOMETRIC_EXTENSIONS),
+            FilePurpose::OpenEnvironment(_) => ("Panorama".to_owned(), io::ENVIRONMENT_EXTENSIONS),
             FilePurpose::OpenTexture => ("Picture".to_owned(), io::TEXTURE_EXTENSIONS),
             FilePurpose::ExportPicture => ("Picture".to_owned(), &["png", "jpg", "tif", "exr"]),
             FilePurpose::ExportSheet(_) => ("Set-up sheet".to_owned(), SHEET_EXTENSIONS),

@@ -337,6 +337,7 @@ pub fn entries(tab: CatalogTab) -> &'static [CatalogEntry] {
 
 /// The light or object of a catalog entry, before placement.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "an item is made and placed, and not kept")]
 pub enum CatalogItem {
     /// A light.
     Light(Light),

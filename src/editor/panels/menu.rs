@@ -65,6 +65,8 @@ fn file_menu(ui: &mut Ui, state: MenuState<'_>, out: &mut Vec<Command>) {
     entry(ui, true, &import, "Bring in a model", Command::Import, out);
     let measured = Command::MeasuredLight(None);
     entry(ui, true, "Measured light (IES, EULUMDAT)\u{2026}", "Add a light from a photometric file", measured, out);
+    let panorama = Command::EnvironmentMap(None);
+    entry(ui, true, "Environment (HDR, EXR)\u{2026}", "Light the studio by a panorama", panorama, out);
     entry(
         ui,
         state.has_picture,

@@ -3,6 +3,7 @@
 use crate::editor::document::files::{ImportedModel, OpenedStudio, RecoveredStudio, StudioSource};
 use crate::editor::document::measured_light::MeasuredFile;
 use crate::editor::window::recovery::Unsaved;
+use crate::editor::window::run_environment::ReadEnvironment;
 use crate::io::FileStamp;
 use crate::raytrace::Film;
 use crate::scene::{AssetKey, Assets, LightId};
@@ -20,6 +21,8 @@ pub enum TaskResult {
     Imported(Result<Box<ImportedModel>, String>),
     /// A photometric file for a light (none: a new one), or an error.
     Measured(Option<LightId>, Result<Box<MeasuredFile>, String>),
+    /// An environment map for a surround (none: a new one), or an error.
+    Environment(Option<LightId>, Result<Box<ReadEnvironment>, String>),
     /// Assets of the scene: those loaded, those requested, and warnings.
     Assets(Assets, BTreeSet<AssetKey>, Vec<String>),
     /// The unsaved studios of windows that have ended.

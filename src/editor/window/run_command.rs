@@ -165,6 +165,8 @@ impl App {
             | Command::ImportPath(_)
             | Command::MeasuredLight(_)
             | Command::MeasuredLightPath(..)
+            | Command::EnvironmentMap(_)
+            | Command::EnvironmentMapPath(..)
             | Command::ChooseTexture(..)
             | Command::ExportPicture
             | Command::ExportSheet(_)

@@ -35,6 +35,8 @@ impl App {
             }
             Command::MeasuredLight(light) => self.ask_for_path(FilePurpose::OpenMeasuredLight(light), ctx),
             Command::MeasuredLightPath(light, path) => self.read_measured_light(light, path, ctx),
+            Command::EnvironmentMap(light) => self.ask_for_path(FilePurpose::OpenEnvironment(light), ctx),
+            Command::EnvironmentMapPath(light, path) => self.read_environment(light, path, ctx),
             Command::ChooseTexture(item, part, slot) => {
                 self.session.texture_for = Some((item, part, slot));
                 self.ask_for_path(FilePurpose::OpenTexture, ctx);
@@ -128,6 +130,7 @@ impl App {
             FilePurpose::SaveScene => self.save_to(path, ctx),
             FilePurpose::ImportModel => self.run_file_command(Command::ImportPath(path), ctx),
             FilePurpose::OpenMeasuredLight(light) => self.read_measured_light(light, path, ctx),
+            FilePurpose::OpenEnvironment(light) => self.read_environment(light, path, ctx),
             FilePurpose::OpenTexture => self.use_texture(&path),
             FilePurpose::ExportPicture => self.export_picture_to(path, ctx),
             FilePurpose::ExportSheet(units) => self.export_sheet_to(path, units, ctx),
@@ -173,6 +176,8 @@ impl App {
             TaskResult::Imported(Err(message)) => {
                 self.toasts.error(format!("The model could not be brought in. {message}"))
             }
+            TaskResult::Environment(light, Ok(environment)) => self.use_environment(light, *environment),
+            TaskResult::Environment(_, Err(message)) => self.toasts.error(message),
             TaskResult::Measured(light, Ok(measured)) => self.use_measured_light(light, *measured),
             TaskResult::Measured(_, Err(message)) => {
                 self.toasts.error(format!("The photometric file could not be used. {message}"))
@@ -344,9 +349,10 @@ impl App {
                 _ if io::is_photometric_file(&path) => {
                     out.push(Command::MeasuredLightPath(self.light_for_drop(), path));
                 }
+                "hdr" => out.push(Command::EnvironmentMapPath(self.light_for_drop(), path)),
                 _ => self.toasts.error(format!(
-                    "Only studios (.ron), rendered pictures (.exr), models ({}) and photometric files (.ies, .ldt) can be \
-                     dropped here, not {}.",
+                    "Only studios (.ron), rendered pictures (.exr), models ({}), photometric files (.ies, .ldt) and \
+                     panoramas (.hdr) can be dropped here, not {}.",
                     io::model_extension_list(),
                     path.display()
                 )),

@@ -39,8 +39,7 @@ pub fn add_layers(file: &ModelFile, source: &gltf::Material<'_>, material: &mut 
 
 /// Returns a number; 0 where there is none that can be used.
 fn number(json: &Value, name: &str) -> f32 {
-    let value = json.get(name).and_then(Value::as_f64).unwrap_or(0.0) as f32;
-    if value.is_finite() { value } else { 0.0 }
+    json.get(name).map_or(0.0, float)
 }
 
 fn unit(json: &Value, name: &str) -> f32 {
@@ -48,7 +47,10 @@ fn unit(json: &Value, name: &str) -> f32 {
 }
 
 fn color(json: &Value, name: &str) -> [f32; 3] {
-    let values = json.get(name).and_then(Value::as_array);
-    let channel = |index: usize| values.and_then(|values| values.get(index)?.as_f64()).unwrap_or(0.0) as f32;
-    [0, 1, 2].map(|index| if channel(index).is_finite() { channel(index).clamp(0.0, 1.0) } else { 0.0 })
+    let channel = |index: usize| json.get(name).and_then(|values| values.get(index)).map_or(0.0, float);
+    [0, 1, 2].map(|index| channel(index).clamp(0.0, 1.0))
+}
+
+fn float(value: &Value) -> f32 {
+    serde_json::from_value::<f32>(value.clone()).ok().filter(|value| value.is_finite()).unwrap_or(0.0)
 }

@@ -233,6 +233,8 @@ struct LightV1 {
     emitter: EmitterV1,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     photometric_file: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    environment_map: Option<String>,
     #[serde(default, skip_serializing_if = "is_default")]
     modifier: ModifierV1,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -448,6 +450,7 @@ difference! {
         roll_deg: f32,
         emitter: EmitterV1,
         photometric_file: PhotometricFileChangeV1,
+        environment_map: PhotometricFileChangeV1,
         modifier: ModifierV1,
         head: HeadChangeV1,
         output: OutputV1,

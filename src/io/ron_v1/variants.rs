@@ -110,10 +110,8 @@ fn light_difference_from(
         aim: file.aim.map(|aim| objects.aim(aim, place)).transpose()?,
         roll_deg: file.roll_deg,
         emitter: file.emitter.map(Into::into),
-        photometric_file: file.photometric_file.map(|change| match change {
-            PhotometricFileChangeV1::NoFile => None,
-            PhotometricFileChangeV1::File(path) => Some(path),
-        }),
+        photometric_file: file.photometric_file.map(Into::into),
+        environment_map: file.environment_map.map(Into::into),
         modifier: file.modifier.map(Into::into),
         head: file.head.map(head_change_from),
         output: file.output.map(Into::into),
@@ -198,6 +196,21 @@ fn camera_difference_to(scene: &Scene, camera: &CameraDifference) -> CameraDiffe
     }
 }
 
+impl From<PhotometricFileChangeV1> for Option<String> {
+    fn from(change: PhotometricFileChangeV1) -> Self {
+        match change {
+            PhotometricFileChangeV1::NoFile => None,
+            PhotometricFileChangeV1::File(path) => Some(path),
+        }
+    }
+}
+
+impl From<Option<String>> for PhotometricFileChangeV1 {
+    fn from(path: Option<String>) -> Self {
+        path.map_or(PhotometricFileChangeV1::NoFile, PhotometricFileChangeV1::File)
+    }
+}
+
 /// Converts the difference from a light of the studio.
 fn light_difference_to(scene: &Scene, light: &Light, difference: &LightDifference) -> LightDifferenceV1 {
     let position = difference.position.unwrap_or(light.position);
@@ -208,10 +221,8 @@ fn light_difference_to(scene: &Scene, light: &Light, difference: &LightDifferenc
         aim: difference.aim.map(|aim| aim_to(scene, &aim, position)),
         roll_deg: difference.roll_deg,
         emitter: difference.emitter.map(Into::into),
-        photometric_file: difference.photometric_file.clone().map(|file| match file {
-            None => PhotometricFileChangeV1::NoFile,
-            Some(path) => PhotometricFileChangeV1::File(path),
-        }),
+        photometric_file: difference.photometric_file.clone().map(Into::into),
+        environment_map: difference.environment_map.clone().map(Into::into),
         modifier: difference.modifier.map(Into::into),
         head: difference.head.as_ref().map(|head| head_change_to(head.as_ref())),
         output: difference.output.map(Into::into),

@@ -41,7 +41,7 @@ impl Environment {
         // Distance and reflected radiance along a ray
         let radiance = |direction: Vec3| {
             let Some((distance, triangle)) = closest_hit(&triangles, probe, direction) else {
-                return (FAR_M, table.ambient.surround_radiance);
+                return (FAR_M, table.surround_radiance(direction));
             };
             let [a, b, c] = triangle.corners;
             let normal = (b - a).cross(c - a).normalize_or_zero();

@@ -2,6 +2,8 @@
 //! folded in), so that a shader's sum is the scene-linear pixel.
 
 use super::intensity_tables::MAX_TABLES;
+use crate::math::orthonormal_basis;
+use crate::photo::EnvironmentLight;
 use crate::photo::beam::Beam;
 use crate::photo::emitter::{EmitterShape, IntensityDistribution};
 use crate::photo::{MeasuredBeam, PhotometricLight, exposure};
@@ -110,6 +112,9 @@ impl GpuLight {
     }
 }
 
+/// Directions of the mean of an environment map about another.
+const CONE_RAYS: u32 = 64;
+
 /// Ambient light, picture units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Ambient {
@@ -117,7 +122,7 @@ pub(crate) struct Ambient {
     pub irradiance: Vec3,
     /// Irradiance from the bounces in a room, estimated.
     pub bounced: Vec3,
-    /// Radiance of a surround.
+    /// Radiance of even surrounds.
     pub surround_radiance: Vec3,
     /// Radiance of the surrounds that are visible to the camera.
     pub void_radiance: Vec3,
@@ -136,6 +141,8 @@ pub(crate) struct LightTable {
     /// One past the last light of each group.
     pub ends: [u32; 4],
     pub ambient: Ambient,
+    /// Environment maps, with the radiance of an even surround of their illuminance.
+    pub environments: Vec<(EnvironmentLight, Vec3)>,
 }
 
 impl LightTable {
@@ -152,7 +159,12 @@ impl LightTable {
             }
             let scale = picture_scale(&light, scene);
             let Some(mut gpu) = gpu_light(&light, scale) else {
-                let irradiance = scale * light.illuminance();
+                let mut irradiance = scale * light.illuminance();
+                if let Some(environment) = light.environment {
+                    let mean = environment.mean_color() * environment.mean_relative_luminance();
+                    table.environments.push((environment, irradiance / PI));
+                    irradiance *= mean;
+                }
                 table.ambient.irradiance += irradiance;
                 table.ambient.void_radiance += if light.visible_to_camera { irradiance / PI } else { Vec3::ZERO };
                 continue;
@@ -174,7 +186,9 @@ impl LightTable {
         }
         table.ends =
             std::array::from_fn(|group| table.lights.partition_point(|light| light.kind_group() <= group) as u32);
-        table.ambient.surround_radiance = table.ambient.irradiance / PI;
+        let maps =
+            table.environments.iter().map(|(map, even)| map.mean_color() * map.mean_relative_luminance() * *even);
+        table.ambient.surround_radiance = table.ambient.irradiance / PI - maps.sum::<Vec3>();
         if let Some(room) = scene.room.as_ref().filter(|_| bounce_estimate) {
             table.ambient.bounced = bounced_irradiance(room, flux);
         }
@@ -191,6 +205,23 @@ impl LightTable {
             self.tables.push(table.clone());
         }
         if layer < MAX_TABLES { layer as u32 + 1 } else { 0 }
+    }
+
+    /// Returns the radiance of surrounds and environment maps from a direction; of maps, the mean of a wide cone about it,
+    /// for reflections in a box of six faces.
+    pub fn surround_radiance(&self, direction: Vec3) -> Vec3 {
+        let (u, v) = orthonormal_basis(direction);
+        let around = |i: u32| {
+            // A golden spiral over a cone of 45 degrees
+            let height = 1.0 - 0.293 * (i as f32 + 0.5) / CONE_RAYS as f32;
+            let turn = Vec2::from_angle(i as f32 * 2.399_963_2) * (1.0 - height * height).sqrt();
+            (u * turn.x + v * turn.y + direction * height).normalize_or(direction)
+        };
+        let mean = |(map, even): &(EnvironmentLight, Vec3)| {
+            let radiance = |i| map.color(around(i)) * map.relative_luminance(around(i));
+            (0..CONE_RAYS).map(radiance).sum::<Vec3>() * *even / CONE_RAYS as f32
+        };
+        self.ambient.surround_radiance + self.environments.iter().map(mean).sum::<Vec3>()
     }
 
     /// Returns true for the groups that have lights.

@@ -126,7 +126,7 @@ impl<'a> PhotonTracer<'a> {
             position: surface.position,
             direction: to_light,
             normal,
-            flux: light.tint * transmittance * (sample.value * cos * area),
+            flux: light.tint_towards(to_light) * transmittance * (sample.value * cos * area),
             layer: light.layer as u16,
             density: sample.pdf.map_or(f32::INFINITY, density),
             specular_depth: 0,

@@ -84,7 +84,11 @@ impl LightBounds {
                 let radius = safe_sqrt(2.0 * sun.one_minus_cos);
                 LightBounds { is_local: 0.0, ..isotropic(sun.towards, radius, sun.illuminance) }
             }
-            LightSource::Surround { .. } => return None,
+            // From everywhere, most of it from one direction: within a sphere of radius 1 about it, the horizon hides none
+            LightSource::Surround { luminance } => {
+                let towards = light.environment()?.peak_direction();
+                LightBounds { is_local: 0.0, ..isotropic(towards, 1.01, luminance * PI) }
+            }
         })
     }
 

@@ -5,9 +5,9 @@ use super::rect::Rect;
 use super::sphere::Sphere;
 use super::sun::SunDisc;
 use crate::math::angle_between;
-use crate::photo::PhotometricLight;
 use crate::photo::beam::Beam;
 use crate::photo::emitter::{EmitterShape, IntensityDistribution, cone_falloff_at};
+use crate::photo::{EnvironmentLight, PhotometricLight};
 use crate::raytrace::geometry::PassedBodies;
 use crate::scene::{Cone, LightId};
 use glam::{Mat3, Vec2, Vec3, Vec3A};
@@ -53,6 +53,8 @@ pub struct TracedLight {
     body_of: Option<LightId>,
     /// Angular transmission of a grid, snoot or barn doors, times a measured distribution.
     beam: Option<OrientedBeam>,
+    /// Luminance and colour by direction of a surround with an environment map.
+    environment: Option<EnvironmentLight>,
 }
 
 /// The angular transmission of a modifier, times a measured distribution, with the rotation into the light's frame.
@@ -132,6 +134,7 @@ impl TracedLight {
             glows_before_body: false,
             body_of: None,
             beam: light.beam.clone().map(|beam| OrientedBeam { beam, light_from_world }),
+            environment: light.environment.clone(),
         })
     }
 
@@ -234,10 +237,22 @@ impl TracedLight {
         }
     }
 
-    /// Returns true if next-event estimation samples the light. A surround is left to BSDF sampling, which has as
+    /// Returns true if next-event estimation samples the light. An even surround is left to BSDF sampling, which has as
     /// little variance.
     pub fn is_sampled(&self) -> bool {
-        !matches!(self.source, LightSource::Surround { .. })
+        !matches!(self.source, LightSource::Surround { .. }) || self.environment.is_some()
+    }
+
+    /// Returns the environment map that a surround shines as.
+    pub(super) fn environment(&self) -> Option<&EnvironmentLight> {
+        self.environment.as_ref()
+    }
+
+    /// Returns the factor on its contributions from a unit direction towards it: its tint, times the colour of an
+    /// environment map there. Light is a number with one colour a light; a map is the only light whose colour depends on
+    /// the direction.
+    pub fn tint_towards(&self, direction: Vec3) -> Vec3 {
+        self.environment.as_ref().map_or(self.tint, |environment| self.tint * environment.color(direction))
     }
 
     /// Samples a direction from `point` towards the light. Visibility is not tested.
@@ -271,9 +286,10 @@ impl TracedLight {
         Some(LightSample { value: sample.value * self.beam_transmission(-sample.direction), ..sample })
     }
 
-    /// Returns the luminance of a surround, cd/m2; none for other lights.
+    /// Returns the luminance of a surround, cd/m2, the mean of an environment map; none for other lights.
     pub fn surround_luminance(&self) -> Option<f32> {
-        if let LightSource::Surround { luminance } = self.source { Some(luminance) } else { None }
+        let LightSource::Surround { luminance } = self.source else { return None };
+        Some(luminance * self.environment.as_ref().map_or(1.0, EnvironmentLight::mean_relative_luminance))
     }
 
     /// Samples a direction towards the light, without its modifier.
@@ -310,7 +326,12 @@ impl TracedLight {
                 let value = sun.luminance() / pdf;
                 Some(LightSample { direction, distance: f32::INFINITY, value, pdf: Some(pdf) })
             }
-            LightSource::Surround { .. } => None,
+            LightSource::Surround { luminance } => {
+                let environment = self.environment.as_ref()?;
+                let (direction, pdf) = environment.sample(u.into())?;
+                let value = luminance * environment.relative_luminance(direction) / pdf;
+                Some(LightSample { direction, distance: f32::INFINITY, value, pdf: Some(pdf) })
+            }
         }
     }
 
@@ -338,7 +359,10 @@ impl TracedLight {
                 sphere.intersect(origin, direction).map(|distance| EmitterHit::at(distance, luminance))
             }
             LightSource::Sun(sun) => sun.contains(direction).then(|| EmitterHit::at(f32::INFINITY, sun.luminance())),
-            LightSource::Surround { luminance } => Some(EmitterHit::at(f32::INFINITY, luminance)),
+            LightSource::Surround { luminance } => {
+                let relative = self.environment.as_ref().map_or(1.0, |map| map.relative_luminance(direction));
+                Some(EmitterHit::at(f32::INFINITY, luminance * relative))
+            }
         }
     }
 
@@ -350,7 +374,8 @@ impl TracedLight {
             LightSource::Disc { disc, .. } => disc.pdf(point, point + direction * distance),
             LightSource::Sphere { sphere, .. } => sphere.pdf(point),
             LightSource::Sun(sun) => sun.pdf(),
-            LightSource::Point { .. } | LightSource::Spot { .. } | LightSource::Surround { .. } => 0.0,
+            LightSource::Surround { .. } => self.environment.as_ref().map_or(0.0, |map| map.pdf(direction)),
+            LightSource::Point { .. } | LightSource::Spot { .. } => 0.0,
         }
     }
 }

@@ -293,6 +293,7 @@ fn lights_are_weighted_or_traced_again_one_by_one() {
             ("roll_deg", |s| s.lights[0].roll_deg = 5.0),
             ("emitter", |s| s.lights[0].emitter = Emitter::Point),
             ("photometric_file", |s| s.lights[0].photometric_file = Some("lamp.ies".to_owned())),
+            ("environment_map", |s| s.lights[0].environment_map = Some("sky.hdr".to_owned())),
             ("modifier.beam", |s| s.lights[0].modifier.beam = Some(Cone { inner_deg: 10.0, outer_deg: 20.0 })),
             ("modifier.grid_deg", |s| s.lights[0].modifier.grid_deg = Some(30.0)),
             ("modifier.doors", |s| s.lights[0].modifier.doors = Some(BarnDoors::HALF_OPEN)),

@@ -10,7 +10,7 @@
 //! | `material` | the materials of their parts |
 //!
 //! A new prop needs a variant of [`PropModel`] with its label and mesh here, its materials in `material`, its name in
-//! `io/ron_v1/names.rs` and an entry in `editor/document/prop_list.rs`.
+//! `io/ron_v1/prop.rs` and an entry in `editor/document/prop_list.rs`.
 
 mod furniture;
 mod glassware;

@@ -93,29 +93,21 @@ pub(super) fn canvas() -> Mesh {
     })
 }
 
-/// A flag of 60 x 90 cm on a stand.
+/// A flag of 60 x 90 cm on a stand with a heavy foot.
 pub(super) fn flag() -> Mesh {
+    let (middle, side) = (1.02, 0.315);
     let mut solid = Solid::default();
-    solid.part("cloth").slab(Vec3::Y * 1.65, Vec3::new(0.6, 0.9, 0.004));
+    solid.part("cloth").slab(Vec3::Y * middle, Vec3::new(0.6, 0.9, 0.004));
     solid.part("metal");
-    for side in [-1.0, 1.0] {
-        solid.rod(Vec3::new(-0.31, 1.65 + side * 0.455, 0.0), Vec3::new(0.31, 1.65 + side * 0.455, 0.0), 0.005);
+    for edge in [-0.455, 0.455] {
+        solid.rod(Vec3::new(-side, middle + edge, 0.0), Vec3::new(0.31, middle + edge, 0.0), 0.006);
     }
-    solid.rod(Vec3::new(-0.305, 1.19, 0.0), Vec3::new(-0.305, 2.11, 0.0), 0.005);
-    stand(&mut solid, Vec3::new(0.34, 0.0, 0.0), 1.75);
-    solid.rod(Vec3::new(0.30, 1.65, 0.0), Vec3::new(0.35, 1.65, 0.0), 0.012);
+    solid.rod(Vec3::new(-side, 0.02, 0.0), Vec3::new(-side, middle + 0.47, 0.0), 0.014);
+    solid.turned_at(
+        Vec3::X * -side,
+        &[(0.0, 0.0), (0.2, 0.0), (0.205, 0.004), (0.2, 0.016), (0.03, 0.024), (0.0, 0.024)],
+    );
     solid.finish()
-}
-
-/// Adds a C-stand: a column on three legs.
-fn stand(solid: &mut Solid, place: Vec3, height: f32) {
-    solid.rod(place + Vec3::Y * 0.06, place + Vec3::Y * height, 0.0125);
-    for leg in 0..3 {
-        let (sin, cos) = (FRAC_PI_2 + leg as f32 * std::f32::consts::TAU / 3.0).sin_cos();
-        let out = Vec3::new(cos, 0.0, sin) * 0.42;
-        solid.rod(place + Vec3::Y * 0.26, place + out * 0.35 + Vec3::Y * 0.14, 0.009);
-        solid.rod(place + out * 0.35 + Vec3::Y * 0.14, place + out + Vec3::Y * 0.011, 0.009);
-    }
 }
 
 /// A round reflector of 1.1 m, upright.

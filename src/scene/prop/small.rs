@@ -58,14 +58,8 @@ pub(super) fn watch() -> Mesh {
     ]);
     solid.part("strap");
     for side in [-1.0_f32, 1.0] {
-        for piece in 0..7_u8 {
-            let (from, to) = (f32::from(piece) / 7.0, (f32::from(piece) + 1.0) / 7.0);
-            let height = |t: f32| 0.0016 + 0.0026 * (1.0 - t).powi(2);
-            let (z0, z1) = (0.0215 + 0.07 * from, 0.0215 + 0.07 * to);
-            let width = 0.0196 - 0.003 * from;
-            let middle = Vec3::new(0.0, 0.5 * (height(from) + height(to)), side * 0.5 * (z0 + z1));
-            solid.slab(middle, Vec3::new(width, 0.0026, z1 - z0 + 2e-4));
-        }
+        solid.slab(Vec3::new(0.0, 0.0024, side * 0.025), Vec3::new(0.0196, 0.0028, 0.007));
+        solid.chamfered(Vec3::new(0.0, 0.0013, side * 0.06), Vec3::new(0.0188, 0.0024, 0.07), 0.0006);
     }
     solid.finish()
 }

@@ -8,6 +8,8 @@ use glam::{Vec2, Vec3};
 const SIDES: u32 = 72;
 /// Sides of rods and legs.
 const ROD_SIDES: u32 = 20;
+/// Ratio to a neighbour's length from which a segment of a profile is long.
+const LONG_SEGMENT: f32 = 2.5;
 /// Points between two of a smooth profile's.
 const SMOOTH_STEPS: usize = 6;
 
@@ -29,7 +31,7 @@ impl Solid {
     /// starts and ends on the axis, from the bottom over the outside to the top.
     pub fn turned_at(&mut self, place: Vec3, profile: &[(f32, f32)]) -> &mut Self {
         let first = self.builder.vertex_count();
-        self.builder.lathe(profile, SIDES);
+        self.builder.lathe(&held(profile), SIDES);
         self.turned.push((first..self.builder.vertex_count(), place));
         self
     }
@@ -110,11 +112,32 @@ fn z_up(v: Vec3) -> Vec3 {
     Vec3::new(v.x, -v.z, v.y)
 }
 
+/// Returns a profile with another point near the end of each segment that is much longer than its neighbour: its normals
+/// then bend towards those of the neighbour there, and not along all of it.
+fn held(profile: &[(f32, f32)]) -> Vec<(f32, f32)> {
+    let point = |i: usize| Vec2::new(profile[i].0, profile[i].1);
+    let length = |i: usize| (point(i + 1) - point(i)).length();
+    let last = profile.len().saturating_sub(1);
+    let mut points = Vec::new();
+    for (i, start) in profile.iter().enumerate().take(last) {
+        points.push(*start);
+        let way = (point(i + 1) - point(i)).normalize_or_zero();
+        let hold = |neighbour: f32| (length(i) > LONG_SEGMENT * neighbour).then_some(0.5 * neighbour);
+        let from_start = i.checked_sub(1).and_then(|before| hold(length(before)));
+        let from_end = (i + 1 < last).then(|| hold(length(i + 1))).flatten();
+        let near_start = from_start.map(|distance| point(i) + way * distance);
+        let near_end = from_end.map(|distance| point(i + 1) - way * distance);
+        points.extend(near_start.into_iter().chain(near_end).map(|point| (point.x, point.y)));
+    }
+    points.extend(profile.last());
+    points
+}
+
 /// Returns a profile that passes the points smoothly (Catmull and Rom 1974).
 pub(super) fn smooth(points: &[(f32, f32)]) -> Vec<(f32, f32)> {
     let at = |i: usize| points.get(i).or(points.last()).map_or(Vec2::ZERO, |&(r, h)| Vec2::new(r, h));
     let mut profile = Vec::new();
-    for i in 0..points.len().saturating_sub(1) {
+    for (i, start) in points.iter().enumerate().take(points.len().saturating_sub(1)) {
         let [a, b, c, d] = [at(i.saturating_sub(1)), at(i), at(i + 1), at(i + 2)];
         for step in 0..SMOOTH_STEPS {
             let t = step as f32 / SMOOTH_STEPS as f32;
@@ -123,7 +146,7 @@ pub(super) fn smooth(points: &[(f32, f32)]) -> Vec<(f32, f32)> {
                 + (a * 2.0 - b * 5.0 + c * 4.0 - d) * (t * t)
                 + (b * 3.0 - a - c * 3.0 + d) * (t * t * t);
             let point = cubic * 0.5;
-            profile.push(if step == 0 { points[i] } else { (point.x.max(1e-5), point.y) });
+            profile.push(if step == 0 { *start } else { (point.x.max(1e-5), point.y.max(0.0)) });
         }
     }
     profile.extend(points.last());
@@ -155,4 +178,21 @@ fn random(x: i32, y: i32, z: i32) -> f32 {
     bits = (bits ^ (bits >> 12)).wrapping_mul(0x297a_2d39);
     bits ^= bits >> 15;
     bits as f32 / u32::MAX as f32 * 2.0 - 1.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_wall_beside_a_bevel_has_its_own_normals_but_for_its_end() {
+        // Normals that bent along all of the wall lifted rays off it by more than the gap to what it holds
+        let profile = held(&[(0.0, 0.0), (0.9, 0.0), (1.0, 0.1), (1.0, 5.0), (0.0, 5.0)]);
+        let bevel = 0.02_f32.sqrt();
+        assert!(profile.iter().any(|&(r, h)| r == 1.0 && (h - (0.1 + 0.5 * bevel)).abs() < 1e-5), "{profile:?}");
+        assert!(profile.iter().any(|&(r, h)| h == 0.0 && (r - (0.9 - 0.5 * bevel)).abs() < 1e-5), "{profile:?}");
+        // Segments of like length stay
+        let even = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+        assert_eq!(held(&even), even);
+    }
 }

@@ -26,6 +26,12 @@ pub(super) fn check_light(scene: &Scene, light: &Light, check: &mut Check) {
             check.error("photometric_file", format!("a {kind} shines from infinity; its light has no distribution"));
         }
     }
+    if let Some(path) = &light.environment_map {
+        check.asset_path("environment_map", path);
+        if light.emitter != Emitter::Surround {
+            check.warning("environment_map", "the light is no surround: the picture does nothing".to_owned());
+        }
+    }
     check_modifier(&light.modifier, check);
     if let Some(head) = &light.head {
         check_head(head, check);

@@ -50,6 +50,7 @@ difference! {
         roll_deg: f32 = roll_deg,
         emitter: Emitter = emitter,
         photometric_file: Option<String> = photometric_file,
+        environment_map: Option<String> = environment_map,
         modifier: Modifier = modifier,
         head: Option<Head> = head,
         output: Output = power.output,

@@ -136,6 +136,13 @@ impl Variants {
         lights.chain(changed.filter_map(|(_, light)| light.photometric_file.as_ref()?.as_deref()))
     }
 
+    /// Returns the path of every environment map that is stored here instead of in the scene.
+    pub fn stored_environment_maps(&self) -> impl Iterator<Item = &str> {
+        let lights = self.stored_lights().filter_map(|light| light.environment_map.as_deref());
+        let changed = self.others.iter().flat_map(|variant| &variant.difference.lights);
+        lights.chain(changed.filter_map(|(_, light)| light.environment_map.as_ref()?.as_deref()))
+    }
+
     /// Returns every focus that is stored here instead of in the scene, to change it.
     pub fn stored_focuses_mut(&mut self) -> impl Iterator<Item = &mut Focus> {
         let studio = self.shown.iter_mut().map(|shown| &mut shown.studio.camera.focus);

@@ -198,6 +198,7 @@ fn every_field_of_light_and_camera_is_compared() {
         roll_deg: 1.0,
         emitter: Emitter::Surround,
         photometric_file: Some("lamp.ies".to_owned()),
+        environment_map: Some("sky.hdr".to_owned()),
         modifier: Modifier { loss_stops: 1.0, ..Modifier::default() },
         head: Some(Head {
             name: "Monolight".to_owned(),

@@ -1,7 +1,7 @@
 //! The inspector of a light.
 
 use super::power::{self, PowerUnit};
-use super::{InspectorContext, aim, gel, head, measured, modifier, text_ui, title};
+use super::{InspectorContext, aim, environment, gel, head, measured, modifier, text_ui, title};
 use crate::color::rgb_from_kelvin;
 use crate::editor::commands::choices::PlaceLightBy;
 use crate::editor::commands::command::Command;
@@ -43,6 +43,7 @@ pub(super) fn light_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Ligh
     role_row(ui, &mut light);
     modifier::kind_rows(ui, scene, assets, &mut light);
     measured::measured_rows(ui, assets, &mut light, context.out);
+    environment::environment_rows(ui, assets, &mut light, context.out);
     ui.separator();
     section(ui, "Power", true, |ui| power_rows(ui, (scene, assets), context.gear, &mut light));
     section(ui, "Colour", true, |ui| color_rows(ui, scene, &mut light));

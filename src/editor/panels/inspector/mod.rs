@@ -2,6 +2,7 @@
 
 mod aim;
 mod camera;
+mod environment;
 mod fibre;
 mod figure;
 mod gel;

@@ -1,0 +1,63 @@
+//! Execution of the commands about environment maps.
+
+use crate::editor::document::action::Action;
+use crate::editor::document::catalog;
+use crate::editor::window::app::App;
+use crate::editor::window::background_tasks::TaskResult;
+use crate::editor::window::run_file_command::waker;
+use crate::io;
+use crate::jobs::sentence;
+use crate::scene::{Assets, Emitter, EnvironmentMap, LightId, Modifier, Output};
+use eframe::egui::Context;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Illuminance of a new environment, lx: an overcast day.
+const NEW_LUX: f32 = 20_000.0;
+
+/// An environment map that was read.
+#[derive(Debug)]
+pub struct ReadEnvironment {
+    file: PathBuf,
+    map: Arc<EnvironmentMap>,
+    warnings: Vec<String>,
+}
+
+impl App {
+    /// Reads an environment map in the background, for a surround or for a new one.
+    pub(super) fn read_environment(&mut self, light: Option<LightId>, path: PathBuf, ctx: &Context) {
+        let work = move || {
+            let read = io::read_environment(&path).map_err(|error| sentence(&error));
+            let read = read.map(|io::EnvironmentFile { map, warnings }| {
+                Box::new(ReadEnvironment { file: path, map: Arc::new(map), warnings })
+            });
+            TaskResult::Environment(light, read)
+        };
+        self.background.tasks.start(work, waker(ctx));
+    }
+
+    /// Puts an environment map that was read on its surround, or adds a surround with it.
+    pub(super) fn use_environment(&mut self, light: Option<LightId>, environment: ReadEnvironment) {
+        let ReadEnvironment { file, map, warnings } = environment;
+        let path = self.document.asset_path_for(&file, "environments");
+        let mut assets = Assets::default();
+        assets.insert_environment(path.clone(), map);
+        self.document.insert_assets(assets, &Default::default());
+        self.document.note_import(path.clone(), file);
+        let existing = light.and_then(|id| self.document.scene().light(id)).cloned();
+        let action = match existing.filter(|light| light.emitter == Emitter::Surround) {
+            Some(mut light) => {
+                light.environment_map = Some(path);
+                Action::SetLight(Box::new(light))
+            }
+            None => {
+                let output = Output::Lux(NEW_LUX);
+                let mut light = catalog::new_light("Environment", Emitter::Surround, Modifier::default(), output);
+                light.environment_map = Some(path);
+                Action::AddLight(Box::new(light))
+            }
+        };
+        self.apply(action, None);
+        warnings.into_iter().for_each(|warning| self.toasts.warning(warning));
+    }
+}
