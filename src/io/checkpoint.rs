@@ -54,12 +54,13 @@ impl fmt::Display for RenderId {
 fn content_hash(asset: &Asset) -> u64 {
     let mut hasher = DefaultHasher::new();
     match asset {
-        Asset::Mesh(mesh) => mesh.hash_content(&mut hasher),
+        // A tank may be made of a picture
+        Asset::Mesh(mesh) | Asset::Tank(mesh) => mesh.hash_content(&mut hasher),
         Asset::Texture(image) => (image.width, image.height, &image.rgb).hash(&mut hasher),
         Asset::Photometry(table) => table.hash_content(&mut hasher),
         Asset::Environment(map) => map.hash_content(&mut hasher),
-        // The scene holds all that they are made of
-        Asset::Figure(_) | Asset::Tank(_) => {}
+        // The scene holds all that it is made of
+        Asset::Figure(_) => {}
     }
     hasher.finish()
 }
