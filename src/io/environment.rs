@@ -1,9 +1,10 @@
 //! Reads environment maps: equirectangular pictures in Radiance HDR or OpenEXR.
 
 use super::error::AssetError;
-use super::picture::decode_exr;
 use super::read::read_limited;
 use crate::scene::EnvironmentMap;
+use exr::meta::MetaData;
+use exr::prelude::{ReadChannels, ReadLayers};
 use image::ImageDecoder;
 use image::codecs::hdr::HdrDecoder;
 use std::io::Cursor;
@@ -39,12 +40,8 @@ pub struct EnvironmentFile {
 pub fn read_environment(path: &Path) -> Result<EnvironmentFile, AssetError> {
     let bytes = read_limited(path, FILE_LIMIT_BYTES)?;
     let bad = |message: String| AssetError::BadEnvironment { message, path: path.to_owned() };
-    let (width, height, mut rgb) = if bytes.starts_with(b"#?") {
-        decode_hdr(&bytes).map_err(bad)?
-    } else {
-        let picture = decode_exr(&bytes).map_err(bad)?;
-        (picture.width, picture.height, picture.rgb)
-    };
+    let (width, height, mut rgb) =
+        if bytes.starts_with(b"#?") { decode_hdr(&bytes).map_err(bad)? } else { decode_exr(&bytes).map_err(bad)? };
     if width == 0 || height == 0 || rgb.len() as u64 != u64::from(width) * u64::from(height) {
         return Err(bad("it has no pixels".to_owned()));
     }
@@ -63,6 +60,38 @@ pub fn read_environment(path: &Path) -> Result<EnvironmentFile, AssetError> {
     let (width, height, rgb) = reduced(width, height, rgb);
     let map = EnvironmentMap::new(width, height, rgb).ok_or_else(|| bad("it is all black".to_owned()))?;
     Ok(EnvironmentFile { map, warnings })
+}
+
+/// Returns width, height and pixels of the first part with red, green and blue.
+fn decode_exr(bytes: &[u8]) -> Result<(u32, u32, Vec<[f32; 3]>), String> {
+    let checked = |size: exr::math::Vec2<usize>| {
+        let too_large = || format!("the picture of {} x {} pixels is too large", size.width(), size.height());
+        let side = |pixels: usize| u32::try_from(pixels).map_err(|_| too_large());
+        let (width, height) = (side(size.width())?, side(size.height())?);
+        if u64::from(width) * u64::from(height) > MOST_PIXELS { Err(too_large()) } else { Ok((width, height)) }
+    };
+    // Check the sizes before memory is allocated for any of them
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| error.to_string())?;
+    meta.headers.iter().try_for_each(|header| checked(header.layer_size).map(|_| ()))?;
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgb_channels(
+            |size, _| {
+                let (width, height) = checked(size).unwrap_or((0, 0));
+                (width, height, vec![[0.0; 3]; width as usize * height as usize])
+            },
+            |(width, _, pixels): &mut (u32, u32, Vec<[f32; 3]>), at, (r, g, b): (f32, f32, f32)| {
+                if let Some(pixel) = pixels.get_mut(at.y() * *width as usize + at.x()) {
+                    *pixel = [r, g, b];
+                }
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(|error| error.to_string())?;
+    Ok(image.layer_data.channel_data.pixels)
 }
 
 fn decode_hdr(bytes: &[u8]) -> Result<(u32, u32, Vec<[f32; 3]>), String> {

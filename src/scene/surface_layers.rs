@@ -1,6 +1,5 @@
 //! What a surface has besides its base: a clear coat, the sheen of cloth, brushing.
 
-use super::Material;
 use glam::Vec3;
 
 /// A layer of clear lacquer over a surface, of index 1.5: car paint, varnish, nail polish.
@@ -42,40 +41,6 @@ impl Anisotropy {
     /// Returns the GGX alphas across and along the grooves for the alpha of the surface.
     pub fn alphas(self, alpha: f32) -> [f32; 2] {
         [alpha + (1.0 - alpha) * self.strength * self.strength, alpha]
-    }
-}
-
-/// Mean albedo of white sheen over all directions, which varies between 0.15 and 0.3 with its roughness.
-const MEAN_SHEEN: f32 = 0.2;
-
-/// The base colour and roughness by which a renderer without sheen and brushing comes near to a material.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlainBase {
-    /// The base colour with the mean of the sheen.
-    pub base_color: [f32; 3],
-    /// The roughness of a highlight of the same area.
-    pub roughness: f32,
-}
-
-impl Material {
-    /// Returns the base without sheen and brushing: the mean light of the sheen is diffuse, and highlights are round.
-    pub fn plain_base(&self) -> PlainBase {
-        let mut base_color = self.base_color;
-        if let Some(sheen) = &self.sheen {
-            let largest = Vec3::from(sheen.color).max_element().min(1.0);
-            base_color = std::array::from_fn(|channel| {
-                self.base_color[channel] * (1.0 - MEAN_SHEEN * largest) + MEAN_SHEEN * sheen.color[channel]
-            });
-        }
-        let roughness = match self.anisotropy {
-            Some(anisotropy) => {
-                let [across, along] = anisotropy.alphas(self.roughness * self.roughness);
-                // alpha is the square of the roughness
-                (across * along).max(0.0).powf(0.25)
-            }
-            None => self.roughness,
-        };
-        PlainBase { base_color, roughness }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The catalog of lights, figures, props and backdrops that can be added to a studio.
 
-use super::prop_list::{MODEL_BACKDROPS, MODELS, new_model};
+use super::prop_list::{MODEL_BACKDROPS, MODELS, ModelEntry, new_model};
 use crate::figures::{self, ReadyFigure};
 use crate::scene::{
     Aim, Emitter, Light, Material, MaterialPreset, Modifier, NamedModifier, Object, Output, Power, PropModel, Shape,
@@ -290,14 +290,19 @@ const PROPS: [CatalogEntry; SHAPES.len() + MODELS.len()] = joined(&SHAPES, &MODE
 const BACKDROPS: [CatalogEntry; ROLLS.len() + MODEL_BACKDROPS.len()] = joined(&ROLLS, &MODEL_BACKDROPS);
 
 /// Returns two lists one after the other; they are not empty.
-const fn joined<const N: usize>(first: &[CatalogEntry], second: &[CatalogEntry]) -> [CatalogEntry; N] {
+const fn joined<const N: usize>(first: &[CatalogEntry], second: &[ModelEntry]) -> [CatalogEntry; N] {
     let mut list = [first[0]; N];
     let mut i = 0;
     while i < N {
-        list[i] = if i < first.len() { first[i] } else { second[i - first.len()] };
+        list[i] = if i < first.len() { first[i] } else { modelled(&second[i - first.len()]) };
         i += 1;
     }
     list
+}
+
+/// Returns the entry of a generated model.
+const fn modelled(entry: &ModelEntry) -> CatalogEntry {
+    CatalogEntry { name: entry.name, tip: entry.tip, kind: CatalogKind::Model(entry.model, entry.whole) }
 }
 
 const ROLLS: [CatalogEntry; 22] = [

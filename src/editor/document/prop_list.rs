@@ -1,20 +1,32 @@
 //! The catalog's props that are generated models, and the backdrops that are.
 
-use super::catalog::{CatalogEntry, CatalogKind};
 use crate::scene::{MaterialPreset, Object, PropModel, Shape};
 
+/// An entry of a model.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ModelEntry {
+    /// Name of the entry and of the object.
+    pub name: &'static str,
+    /// Tooltip.
+    pub tip: &'static str,
+    /// The model.
+    pub model: PropModel,
+    /// Material of the whole, where it is not the model's own.
+    pub whole: Option<MaterialPreset>,
+}
+
 /// Returns the entry of a model with its own materials.
-const fn model(name: &'static str, tip: &'static str, model: PropModel) -> CatalogEntry {
-    CatalogEntry { name, tip, kind: CatalogKind::Model(model, None) }
+const fn model(name: &'static str, tip: &'static str, model: PropModel) -> ModelEntry {
+    ModelEntry { name, tip, model, whole: None }
 }
 
 /// Returns the entry of a reflector with a face of this material.
-const fn reflector(name: &'static str, tip: &'static str, face: MaterialPreset) -> CatalogEntry {
-    CatalogEntry { name, tip, kind: CatalogKind::Model(PropModel::Reflector, Some(face)) }
+const fn reflector(name: &'static str, tip: &'static str, face: MaterialPreset) -> ModelEntry {
+    ModelEntry { name, tip, model: PropModel::Reflector, whole: Some(face) }
 }
 
 /// The props.
-pub(super) const MODELS: [CatalogEntry; 22] = [
+pub(super) const MODELS: [ModelEntry; 22] = [
     model("Posing stool", "A round stool of 55 cm with a leather seat.", PropModel::PosingStool),
     model("Apple boxes", "A full and a half box of birch plywood: to sit or to stand on.", PropModel::AppleBoxes),
     model("Wood table", "A table of oiled wood.", PropModel::WoodTable),
@@ -56,7 +68,7 @@ pub(super) const MODELS: [CatalogEntry; 22] = [
 ];
 
 /// The backdrops.
-pub(super) const MODEL_BACKDROPS: [CatalogEntry; 2] = [
+pub(super) const MODEL_BACKDROPS: [ModelEntry; 2] = [
     model("Painted canvas", "A hand-painted canvas of 2.4 x 2.7 m, lighter in its middle.", PropModel::Canvas),
     model("Cyclorama corner", "Two white walls and a floor without an edge, 4 x 4 m.", PropModel::CycloramaCorner),
 ];

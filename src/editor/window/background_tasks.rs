@@ -1,9 +1,9 @@
 //! File operations in the background and their results.
 
+use crate::editor::document::environment::ReadEnvironment;
 use crate::editor::document::files::{ImportedModel, OpenedStudio, RecoveredStudio, StudioSource};
 use crate::editor::document::measured_light::MeasuredFile;
 use crate::editor::window::recovery::Unsaved;
-use crate::editor::window::run_environment::ReadEnvironment;
 use crate::io::FileStamp;
 use crate::raytrace::Film;
 use crate::scene::{AssetKey, Assets, LightId};

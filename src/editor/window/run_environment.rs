@@ -2,37 +2,21 @@
 
 use crate::editor::document::action::Action;
 use crate::editor::document::catalog;
+use crate::editor::document::environment::{self, ReadEnvironment};
 use crate::editor::window::app::App;
 use crate::editor::window::background_tasks::TaskResult;
 use crate::editor::window::run_file_command::waker;
-use crate::io;
-use crate::jobs::sentence;
-use crate::scene::{Assets, Emitter, EnvironmentMap, LightId, Modifier, Output};
+use crate::scene::{Assets, Emitter, LightId, Modifier, Output};
 use eframe::egui::Context;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// Illuminance of a new environment, lx: an overcast day.
 const NEW_LUX: f32 = 20_000.0;
 
-/// An environment map that was read.
-#[derive(Debug)]
-pub struct ReadEnvironment {
-    file: PathBuf,
-    map: Arc<EnvironmentMap>,
-    warnings: Vec<String>,
-}
-
 impl App {
     /// Reads an environment map in the background, for a surround or for a new one.
     pub(super) fn read_environment(&mut self, light: Option<LightId>, path: PathBuf, ctx: &Context) {
-        let work = move || {
-            let read = io::read_environment(&path).map_err(|error| sentence(&error));
-            let read = read.map(|io::EnvironmentFile { map, warnings }| {
-                Box::new(ReadEnvironment { file: path, map: Arc::new(map), warnings })
-            });
-            TaskResult::Environment(light, read)
-        };
+        let work = move || TaskResult::Environment(light, environment::read(path));
         self.background.tasks.start(work, waker(ctx));
     }
 

@@ -123,11 +123,6 @@ pub fn read_exr(path: &Path) -> Result<Picture, String> {
     exr_file::decode(&content)
 }
 
-/// Decodes the first part of an EXR file with red, green and blue channels.
-pub(super) fn decode_exr(content: &[u8]) -> Result<Picture, String> {
-    exr_file::decode(content)
-}
-
 /// Writes a picture in the format of the file name's extension. An older file is replaced atomically.
 ///
 /// # Errors

@@ -1,10 +1,10 @@
 //! The dielectric lobe: specular reflection and refraction by clear glass and water, and by thin panes.
 
 use super::fresnel;
-use super::material::transmission_tint;
 use super::polarisation::{InterfaceReflection, Polarisation};
 use super::sample::BsdfSample;
 use super::shading_geometry::ShadingGeometry;
+use super::transmission_tint::transmission_tint;
 use glam::Vec3;
 
 /// The interface between two dielectric media, as a path crosses it.

@@ -8,7 +8,7 @@ use super::albedo::AlbedoTables;
 use super::dielectric::{Boundary, DielectricInterface, DielectricLobe};
 use super::direction_table::DirectionTable;
 use super::facets::Facets;
-use super::material::transmission_tint;
+use super::transmission_tint::transmission_tint;
 use super::{fresnel, ggx};
 use glam::{Vec2, Vec3};
 

@@ -5,7 +5,6 @@ use super::fibre::TracedFibre;
 use super::ggx;
 use super::layers::SurfaceLayers;
 use super::roughness_tables::RoughnessTables;
-use crate::math::safe_sqrt;
 use crate::scene::{Alpha, Material, TextureSlot};
 use glam::Vec3;
 use std::sync::Arc;
@@ -221,11 +220,4 @@ fn extinction_per_m(material: &Material) -> Option<Vec3> {
     let is_opaque = material.transmission == 0.0 && material.metallic < 1.0;
     let subsurface = material.subsurface.filter(|_| is_opaque)?;
     Some(1000.0 / Vec3::from(subsurface.mean_free_path_mm))
-}
-
-/// Returns the colour of light that is transmitted at a surface of this base colour: the base colour at a thin pane, its
-/// square root at each face of a body, so that both faces together have the base colour (Burley 2015, "Extending the
-/// Disney BRDF to a BSDF with Integrated Subsurface Scattering", section 5). Reflected light has no colour.
-pub(super) fn transmission_tint(base_color: Vec3, is_thin: bool) -> Vec3 {
-    if is_thin { base_color } else { base_color.map(safe_sqrt) }
 }

@@ -86,9 +86,9 @@ impl<'a> MaterialPoint<'a> {
     }
 
     /// Returns the factor on light that is transmitted at a surface, besides Fresnel's equations: the weight of the
-    /// dielectric lobe times [`transmission_tint`](super::material::transmission_tint).
+    /// dielectric lobe times [`transmission_tint`](super::transmission_tint::transmission_tint).
     pub fn transmission_color(&self, is_thin: bool) -> Vec3 {
-        super::material::transmission_tint(self.base_color, is_thin) * self.transmission
+        super::transmission_tint::transmission_tint(self.base_color, is_thin) * self.transmission
     }
 
     /// Returns the directional albedo of the coat.

@@ -46,6 +46,7 @@ mod shading_geometry;
 mod sheen;
 mod subsurface;
 mod surface;
+mod transmission_tint;
 
 pub use dielectric::{Boundary, DielectricInterface, pane_transmittance};
 pub use fibre::{FibreBsdf, TracedFibre};

@@ -4,8 +4,8 @@
 //! the reflectance at normal incidence. Base and lobe do not share energy, unlike in [`super::Bsdf`].
 
 use super::ggx;
-use super::material::transmission_tint;
 use super::material_point::MaterialPoint;
+use super::transmission_tint::transmission_tint;
 use glam::Vec3;
 use std::f32::consts::PI;
 
