@@ -17,6 +17,8 @@ pub const ENVIRONMENT_EXTENSIONS: &[&str] = &["hdr", "exr"];
 const FILE_LIMIT_BYTES: u64 = 512 << 20;
 /// Most pixels of a picture.
 const MOST_PIXELS: u64 = 16_384 * 8192;
+/// Most pixels a byte of the file: no compression does better, and a damaged size takes no memory.
+const MOST_PIXELS_PER_BYTE: u64 = 1024;
 /// Pixels across of the map that is kept: 0.18 degrees each.
 const MOST_WIDTH: u32 = 2048;
 /// Largest value, that of half precision: pictures of the sun may hold infinity.
@@ -62,13 +64,18 @@ pub fn read_environment(path: &Path) -> Result<EnvironmentFile, AssetError> {
     Ok(EnvironmentFile { map, warnings })
 }
 
+/// Returns true if a picture of so many pixels is too large, or too large for its file.
+fn is_too_large(width: u32, height: u32, bytes: &[u8]) -> bool {
+    u64::from(width) * u64::from(height) > MOST_PIXELS.min(bytes.len() as u64 * MOST_PIXELS_PER_BYTE)
+}
+
 /// Returns width, height and pixels of the first part with red, green and blue.
 fn decode_exr(bytes: &[u8]) -> Result<(u32, u32, Vec<[f32; 3]>), String> {
     let checked = |size: exr::math::Vec2<usize>| {
         let too_large = || format!("the picture of {} x {} pixels is too large", size.width(), size.height());
         let side = |pixels: usize| u32::try_from(pixels).map_err(|_| too_large());
         let (width, height) = (side(size.width())?, side(size.height())?);
-        if u64::from(width) * u64::from(height) > MOST_PIXELS { Err(too_large()) } else { Ok((width, height)) }
+        if is_too_large(width, height, bytes) { Err(too_large()) } else { Ok((width, height)) }
     };
     // Check the sizes before memory is allocated for any of them
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|error| error.to_string())?;
@@ -97,8 +104,7 @@ fn decode_exr(bytes: &[u8]) -> Result<(u32, u32, Vec<[f32; 3]>), String> {
 fn decode_hdr(bytes: &[u8]) -> Result<(u32, u32, Vec<[f32; 3]>), String> {
     let decoder = HdrDecoder::new(Cursor::new(bytes)).map_err(|error| error.to_string())?;
     let (width, height) = decoder.dimensions();
-    let pixels = u64::from(width) * u64::from(height);
-    if pixels > MOST_PIXELS {
+    if is_too_large(width, height, bytes) {
         return Err(format!("the picture of {width} x {height} pixels is too large"));
     }
     let picture = image::DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())?;

@@ -126,6 +126,19 @@ fn encoded(folder: &Path, format: PictureFormat) -> Vec<u8> {
 }
 
 #[test]
+fn changed_environment_maps_are_errors_or_maps() {
+    let folder = tempfile::tempdir().unwrap();
+    let panorama = image::Rgb32FImage::from_fn(8, 4, |x, y| image::Rgb([x as f32, y as f32, 0.5]));
+    let path = folder.path().join("x.hdr");
+    image::DynamicImage::from(panorama).save(&path).unwrap();
+    let corpus = [encoded(folder.path(), PictureFormat::Exr), fs::read(&path).unwrap()];
+    fuzz("environment", &corpus, &["#?RADIANCE", "-Y 99999 +X 99999", "dataWindow", "channels", "\u{7f}"], |input| {
+        fs::write(&path, input).unwrap();
+        io::read_environment(&path).is_ok()
+    });
+}
+
+#[test]
 fn changed_textures_are_warnings_or_images() {
     let folder = tempfile::tempdir().unwrap();
     let corpus = [PictureFormat::Png, PictureFormat::Jpeg].map(|format| encoded(folder.path(), format));
