@@ -185,11 +185,11 @@ mod tests {
         assert!(io::load_assets(&scene, None, &mut loaded.assets).is_empty());
         let pilot = Pilot { scene: scene.clone(), assets: loaded.assets.clone(), method: Method::Path };
         let forecast = run(&pilot, &cache, &Arc::default()).unwrap();
-        let (width, height) = scene.camera.picture_size(160);
-        let settings = Settings { width, height, spp: 16, ..pilot_settings(&scene.camera, Method::Path) };
+        let (width, height) = scene.camera.picture_size(200);
+        let settings = Settings { width, height, spp: 24, ..pilot_settings(&scene.camera, Method::Path) };
         let prepared = raytrace::prepare_kept(&scene, &loaded.assets, &cache).unwrap();
         let film = render_all_passes(&prepared, &settings, &RenderControl::new());
-        let expected = forecast.estimate(u64::from(width) * u64::from(height), 16).noise_stops;
+        let expected = forecast.estimate(u64::from(width) * u64::from(height), 24).noise_stops;
         let ratio = expected / f64::from(film.noise_stops());
         // Smaller pixels hold fewer edges, and stratified samples do better the more there are.
         assert!((0.5..2.2).contains(&ratio), "{expected} stops expected, {} measured", film.noise_stops());

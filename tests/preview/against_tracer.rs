@@ -8,7 +8,7 @@ fn every_shipped_studio_has_the_layout_of_the_tracer_and_is_not_black() {
     for preset in catchlight::io::presets() {
         let name = preset.file_name;
         let loaded = hairless(preset.load().unwrap());
-        let (width, height) = loaded.scene.camera.picture_size(200);
+        let (width, height) = loaded.scene.camera.picture_size(300);
         let input = PreviewInput::camera_view(&loaded.scene, &loaded.assets, (width, height));
         let picture = renderer.picture(&input).unwrap();
         let bright = picture.pixels().filter(|p| p.0.iter().any(|c| *c > 24)).count();

@@ -527,7 +527,7 @@ fn a_ball_of_glass_focuses_small_lamps_on_the_meter_with_every_seed() {
         let lamp = light(emitter, Output::Lumens(12_566.37), Vec3::Z * 3.0);
         let mut scene = Scene { lights: vec![lamp], ..Scene::default() };
         scene.objects.push(specular(Shape::Sphere { radius_m: 0.1 }, glass.clone(), Vec3::Z * 0.4, Vec3::ZERO));
-        for seed in 0..3 {
+        for seed in 0..5 {
             let effort = MeterEffort { seed, ..MeterEffort::default() };
             let result = read_with(&scene, Vec3::ZERO, Vec3::Z, Receptor::Flat, &effort);
             let reading = &result.reading.lights[0];

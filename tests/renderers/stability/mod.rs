@@ -49,7 +49,7 @@ fn base_scene() -> Scene {
 /// Returns the path-traced picture.
 fn assert_robust(scene: &Scene, assets: &Assets) -> Picture {
     let prepared = raytrace::prepare(scene, assets).unwrap();
-    let settings = Settings { width: 33, height: 20, spp: 4, ..Settings::default() };
+    let settings = Settings { width: 45, height: 30, spp: 4, ..Settings::default() };
     let with = |threads: usize, method: Method| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let settings = Settings { method, ..settings.clone() };
