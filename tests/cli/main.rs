@@ -230,8 +230,8 @@ fn the_zbuffer_draws_on_the_cpu_with_the_exposure_of_the_other_methods() {
 #[test]
 fn the_traced_preview_measures_times_to_a_first_picture_and_writes_the_finished_one() {
     let folder = tempfile::tempdir().unwrap();
-    let traced = ["preview", "product_still_life", "--traced", "--size", "48x30"];
-    let output = catchlight(folder.path(), &[&traced[..], &["--frames", "2", "--json"]].concat());
+    let traced = ["preview", "product_still_life", "--traced", "--size", "64x40"];
+    let output = catchlight(folder.path(), &[&traced[..], &["--frames", "3", "--json"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let report: Value = serde_json::from_str(stdout(&output).trim()).unwrap();
     for key in ["light_moved_ms", "thing_moved_ms", "dimmed_ms", "view_turned_ms"] {
@@ -242,7 +242,7 @@ fn the_traced_preview_measures_times_to_a_first_picture_and_writes_the_finished_
     assert!(report["reused"].as_f64() > Some(0.3), "a turned view reuses most of its pixels: {report}");
     let output = catchlight(folder.path(), &[&traced[..], &["-o", "t.png"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert_eq!(image::open(folder.path().join("t.png")).unwrap().to_rgb8().dimensions(), (48, 30));
+    assert_eq!(image::open(folder.path().join("t.png")).unwrap().to_rgb8().dimensions(), (64, 40));
 }
 
 /// The values of a channel in the first part of an EXR file, by pixel.

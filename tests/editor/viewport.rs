@@ -59,7 +59,7 @@ fn a_click_selects_the_visible_item() {
 
 #[test]
 fn a_click_selects_the_nearer_of_two_objects_at_any_screen_scale() {
-    let Some(mut window) = preset_window_at(0.75) else { return };
+    let Some(mut window) = preset_window_at(1.0) else { return };
     click(&mut window, "Props");
     let add = |window: &mut Window, at: glam::Vec3| {
         click(window, "Add Chrome ball");
@@ -73,7 +73,7 @@ fn a_click_selects_the_nearer_of_two_objects_at_any_screen_scale() {
     let far_at = glam::Vec3::new(1.3, 0.7, 0.6);
     let far = add(&mut window, far_at);
     let near = add(&mut window, far_at.lerp(eye, 0.3));
-    for scale in [0.75, 1.5, 0.5] {
+    for scale in [1.0, 2.0, 0.75] {
         window.set_pixels_per_point(scale);
         for (shown, expected) in [(true, near), (false, far)] {
             let Item::Object(id) = near else { unreachable!() };

@@ -20,3 +20,14 @@ macro_rules! same_variants {
         }
     };
 }
+
+/// Declares an enum of the file with the names of variants of one of the scene, and both conversions.
+macro_rules! named_variants {
+    ($file:ident as $name:literal <=> $scene:ident { $($variant:ident),+ $(,)? }) => {
+        #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
+        #[serde(rename = $name)]
+        pub(super) enum $file { $($variant),+ }
+
+        same_variants!($file <=> $scene { $($variant),+ });
+    };
+}
