@@ -3,8 +3,13 @@
 use crate::color::luminance;
 use glam::Vec3;
 
-/// Depth from which paths may be ended.
-const MIN_DEPTH: u32 = 3;
+/// Depth from which dim paths may be ended.
+const MIN_DEPTH: u32 = 1;
+/// Survival probability from there on, per throughput. With 1 in place of 2, matte and glossy bodies have 25 % more
+/// variance times rays, with depth 3 in place of 1 portraits have up to 35 % more: paths in hair are long and dim.
+const SURVIVAL_PER_THROUGHPUT: f32 = 2.0;
+/// Depth from which bright paths may be ended, too.
+const MIN_DEPTH_OF_BRIGHT: u32 = 3;
 /// The largest survival probability from there on.
 const MAX_SURVIVAL: f32 = 0.95;
 
@@ -17,7 +22,8 @@ pub fn survival_probability(throughput: Vec3, scale: f32, depth: u32) -> f32 {
     } else if depth < MIN_DEPTH {
         1.0
     } else {
-        relative.min(MAX_SURVIVAL)
+        let largest = if depth < MIN_DEPTH_OF_BRIGHT { 1.0 } else { MAX_SURVIVAL };
+        (relative * SURVIVAL_PER_THROUGHPUT).min(largest)
     }
 }
 
@@ -44,9 +50,11 @@ mod tests {
         for dark in [Vec3::ZERO, Vec3::NAN, Vec3::NEG_ONE] {
             assert!(!survives(&mut dark.clone(), survival_probability(dark, 1.0, 0), 0.0));
         }
-        assert_eq!(survival_probability(Vec3::splat(0.01), 1.0, 2), 1.0);
+        assert_eq!(survival_probability(Vec3::splat(0.01), 1.0, 0), 1.0);
+        assert_eq!(survival_probability(Vec3::splat(0.01), 1.0, 1), 0.02);
+        assert_eq!(survival_probability(Vec3::splat(4.0), 1.0, 2), 1.0);
         assert_eq!(survival_probability(Vec3::splat(4.0), 1.0, 3), 0.95);
-        let (half, mut throughput) = (survival_probability(Vec3::splat(2.0), 4.0, 9), Vec3::splat(2.0));
+        let (half, mut throughput) = (survival_probability(Vec3::splat(2.0), 8.0, 9), Vec3::splat(2.0));
         assert!(!survives(&mut throughput, half, 0.5) && survives(&mut throughput, half, 0.49));
         assert_eq!((half, throughput), (0.5, Vec3::splat(4.0)));
     }

@@ -53,7 +53,8 @@ fn errors(renderer: &mut PreviewRenderer, scene: &Scene, assets: &Assets) -> Vec
     let input = PreviewInput { options: Options::direct_only(), ..PreviewInput::camera_view(scene, assets, size) };
     let preview = renderer.linear_picture(&input).unwrap();
     let prepared = raytrace::prepare(scene, assets).unwrap();
-    let settings = Settings { width: size.0, height: size.1, spp: SPP, method: Method::Path, ..Settings::default() };
+    let settings =
+        Settings { width: size.0, height: size.1, spp: SPP, method: Method::Path, aovs: true, ..Settings::default() };
     let film = raytrace::render(&prepared, &settings, &RenderControl::new(), &mut |_| ControlFlow::Continue(()));
     let traced = film.develop(scene);
     let eye = scene.camera.position;
@@ -65,12 +66,12 @@ fn errors(renderer: &mut PreviewRenderer, scene: &Scene, assets: &Assets) -> Vec
             let luminance = |picture: &Picture| {
                 pixels().map(|(x, y)| color::luminance(picture.at(x, y).into())).sum::<f32>() / (BLOCK * BLOCK) as f32
             };
-            // Beside the ball, all that is lit is hair
+            // Beside the ball there is nothing but hair
             let is_hair = |(x, y): (u32, u32)| {
                 let uv = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / Vec2::new(size.0 as f32, size.1 as f32);
                 let (direction, to_ball) = (frame.direction(uv).normalize(), Vec3::Y - eye);
                 let aside = (to_ball - direction * to_ball.dot(direction)).length();
-                aside > 0.103 && color::luminance(traced.at(x, y).into()) > 0.0
+                aside > 0.103 && film.albedo_at(x, y).is_some_and(|albedo| albedo[0] > 0.0)
             };
             let hair = pixels().filter(|&pixel| is_hair(pixel)).count() as f32 / (BLOCK * BLOCK) as f32;
             let value = luminance(&traced);
