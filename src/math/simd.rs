@@ -4,6 +4,8 @@
 //! with AVX2. [`dispatch`] checks which of the two the CPU supports. Neither version fuses or reorders operations, so
 //! both return the same bits.
 
+use std::sync::atomic::{AtomicU8, Ordering};
+
 /// Elements that loops process together: the f32 lanes of one AVX2 register.
 pub const LANES: usize = 8;
 
@@ -21,16 +23,52 @@ pub trait SimdTask {
     fn run(self, avx2: Option<Avx2>) -> Self::Output;
 }
 
+/// What [`dispatch`] may use: unknown at first.
+static WIDTH: AtomicU8 = AtomicU8::new(UNKNOWN);
+const UNKNOWN: u8 = 0;
+const PORTABLE: u8 = 1;
+const WITH_AVX2: u8 = 2;
+
+/// Returns true if the CPU supports AVX2.
+pub fn has_avx2() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    let has_avx2 = std::arch::is_x86_feature_detected!("avx2");
+    #[cfg(not(target_arch = "x86_64"))]
+    let has_avx2 = false;
+    has_avx2
+}
+
+/// Runs a function during which all threads use the portable code, to measure it.
+pub fn without_avx2<T>(run: impl FnOnce() -> T) -> T {
+    WIDTH.store(PORTABLE, Ordering::Relaxed);
+    let result = run();
+    WIDTH.store(UNKNOWN, Ordering::Relaxed);
+    result
+}
+
+/// Returns true if AVX2 is to be used: once detected, a read of one byte.
+#[inline]
+fn uses_avx2() -> bool {
+    match WIDTH.load(Ordering::Relaxed) {
+        UNKNOWN => {
+            let width = if has_avx2() { WITH_AVX2 } else { PORTABLE };
+            WIDTH.store(width, Ordering::Relaxed);
+            width == WITH_AVX2
+        }
+        width => width == WITH_AVX2,
+    }
+}
+
 /// Runs a task with the widest registers that the CPU supports.
 #[inline]
 pub fn dispatch<T: SimdTask>(task: T) -> T::Output {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
+    if uses_avx2() {
         #[expect(
             unsafe_code,
             reason = "a call into code compiled for AVX2, after the check that the CPU supports it"
         )]
-        // SAFETY: the line above has detected AVX2.
+        // SAFETY: `uses_avx2` has detected AVX2.
         return unsafe { compiled_for_avx2(task) };
     }
     task.run(None)

@@ -1,21 +1,22 @@
 //! `catchlight chart [SCENE ...] -o DIR`: the error of every method against its time, compared with the converged
 //! path-traced picture.
 //!
-//! Four errors are stated. The relative mean squared error is the mean over pixels and channels of (x - r)^2 / (r^2 +
-//! 0.01^2) with r from the reference; the constant, four stops below a grey card, bounds the error of black pixels. The
-//! median and the 95th percentile are those of the luminance error over the pixels, in stops. The bias is the error of
+//! Five errors are stated. The relative mean squared error is the mean over pixels and channels of (x - r)^2 / (r^2 +
+//! 0.01^2) with r from the reference; the constant, four stops below a grey card, bounds the error of black pixels. FLIP is
+//! the mean difference that people see on a display. The median and the 95th percentile are those of the luminance error over the pixels, in stops. The bias is the error of
 //! the mean luminance, in stops, in which noise nearly vanishes. Time is that of tracing on all cores; BVHs are built
 //! once.
 
 use super::accuracy_row::{AccuracyRow, Study, csv, markdown};
 use super::picture_error::PictureError;
-use super::{drawing, reference};
+use super::{drawing, front, reference};
 use crate::cli::failure::Failure;
 use crate::cli::input::{load_studio, thread_pool};
 use crate::cli::{terminal, zbuffer};
 use crate::denoise::{Quality, denoise};
 use crate::io::Loaded;
 use crate::jobs::render_all_passes;
+use crate::math::simd;
 use crate::photo::Picture;
 use crate::raytrace::{self, Method, RenderControl, RenderScene, Settings, Shortcut};
 use anyhow::Context;
@@ -48,21 +49,25 @@ pub fn run(input: &AccuracyInput<'_>, folder: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).with_context(|| format!("can't make the folder: {}", folder.display()))?;
     let default = [PathBuf::from("three_point"), PathBuf::from("product_still_life")];
     let scenes = if input.scenes.is_empty() { &default[..] } else { input.scenes };
-    let mut rows = Vec::new();
+    let (mut rows, mut best, mut times) = (Vec::new(), Vec::new(), Vec::new());
     for path in scenes {
         let loaded = load_studio(path)?;
         let measured = measure(input, folder, &loaded)?;
         let stem = path.file_stem().map_or("studio".into(), |stem| stem.to_string_lossy().into_owned());
         drawing::draw(&folder.join(format!("{stem}.svg")), &loaded.scene.name, &measured)?;
+        best.extend(front::best_in_time(&measured));
+        times.extend(front::times_to_error(&measured));
         rows.extend(measured);
     }
     write(&folder.join("chart.csv"), &csv(&rows))?;
-    let table = markdown(&rows);
+    let (table, summary) = (markdown(&rows), front::markdown(&best, &times));
     write(&folder.join("chart.md"), &table)?;
+    write(&folder.join("front.md"), &summary)?;
     if input.json {
         terminal::result(serde_json::to_string(&rows).context("can't write the results")?);
     } else {
-        terminal::result(table.trim_end());
+        terminal::result(table);
+        terminal::result(summary.trim_end());
     }
     Ok(())
 }
@@ -116,6 +121,10 @@ fn measure(input: &AccuracyInput<'_>, folder: &Path, loaded: &Loaded) -> Result<
     for threads in 1..cores {
         let narrow = Settings { spp, ..settings(size, Method::Path) };
         rows.push(studio.row(Study::Threads, format!("path, {threads} of {cores} threads"), narrow, threads)?);
+    }
+    if simd::has_avx2() {
+        let portable = Settings { spp, ..settings(size, Method::Path) };
+        rows.push(simd::without_avx2(|| studio.row(Study::Simd, "path, without AVX2".to_owned(), portable, cores))?);
     }
     let plan = studio.scene.plan().clone();
     for shortcut in Shortcut::ALL {

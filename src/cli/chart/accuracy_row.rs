@@ -36,21 +36,24 @@ pub enum Study {
     Bounces,
     /// Threads of the path tracer.
     Threads,
+    /// Width of the path tracer's SIMD kernels.
+    Simd,
     /// Render plan of the path tracer, without one of its shortcuts.
     Plan,
 }
 
 /// Returns the rows as CSV (RFC 4180).
 pub fn csv(rows: &[AccuracyRow]) -> String {
-    let mut text = "scene,method,spp,threads,trace_s,mrays_s,rel_mse,median_stops,stops_95,bias_stops\n".to_owned();
+    let mut text =
+        "scene,method,spp,threads,trace_s,mrays_s,rel_mse,flip,median_stops,stops_95,bias_stops\n".to_owned();
     for row in rows {
         let AccuracyRow { scene, method, spp, threads, trace_s, mrays_s, error, .. } = row;
-        let PictureError { rel_mse, median_stops, stops_95, bias_stops } = error;
+        let PictureError { rel_mse, flip, median_stops, stops_95, bias_stops } = error;
         let (scene, method) = (quoted(scene), quoted(method));
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "{scene},{method},{spp},{threads},{trace_s:.6},{mrays_s:.4},{rel_mse:.6e},{median_stops:.6},\
+            "{scene},{method},{spp},{threads},{trace_s:.6},{mrays_s:.4},{rel_mse:.6e},{flip:.6},{median_stops:.6},\
              {stops_95:.6},{bias_stops:.6}"
         );
     }
@@ -64,18 +67,18 @@ fn quoted(text: &str) -> String {
 
 /// Returns the rows as a Markdown table.
 pub fn markdown(rows: &[AccuracyRow]) -> String {
-    let mut text = "| studio | method | samples | threads | seconds | Mrays/s | relative MSE | median, stops | 95 %, stops | bias, stops |\n\
-                    |---|---|---|---|---|---|---|---|---|---|\n"
+    let mut text = "| studio | method | samples | threads | seconds | Mrays/s | relative MSE | FLIP | median, stops | 95 %, stops | bias, stops |\n\
+                    |---|---|---|---|---|---|---|---|---|---|---|\n"
         .to_owned();
     for row in rows {
         let AccuracyRow { scene, method, spp, threads, trace_s, mrays_s, error, .. } = row;
-        let PictureError { rel_mse, median_stops, stops_95, bias_stops } = error;
+        let PictureError { rel_mse, flip, median_stops, stops_95, bias_stops } = error;
         let scene = scene.replace('|', "\\|");
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
             "| {scene} | {method} | {spp} | {threads} | {trace_s:.3} | {mrays_s:.2} | {rel_mse:.2e} \
-             | {median_stops:.4} | {stops_95:.4} | {bias_stops:+.4} |"
+             | {flip:.4} | {median_stops:.4} | {stops_95:.4} | {bias_stops:+.4} |"
         );
     }
     text

@@ -1,6 +1,7 @@
-//! The drawing of a chart: error against seconds, both logarithmic, one line per method.
+//! The drawing of a chart: error against seconds, both logarithmic, one line per method, and the front of the best.
 
 use super::accuracy_row::{AccuracyRow, Study};
+use super::front;
 use anyhow::anyhow;
 use plotters::prelude::*;
 use std::path::Path;
@@ -20,6 +21,7 @@ pub fn draw(path: &Path, title: &str, rows: &[AccuracyRow]) -> anyhow::Result<()
 }
 
 fn draw_svg(path: &Path, title: &str, rows: &[AccuracyRow]) -> Result<(), Box<dyn std::error::Error>> {
+    let front = front::front(rows);
     let rows: Vec<&AccuracyRow> = rows.iter().filter(|row| row.study == Study::Method).collect();
     // An error of zero is clamped: the axes are logarithmic.
     let point = |row: &AccuracyRow| (row.trace_s.max(1e-5), row.error.rel_mse.max(1e-9));
@@ -47,6 +49,14 @@ fn draw_svg(path: &Path, title: &str, rows: &[AccuracyRow]) -> Result<(), Box<dy
         .x_label_formatter(&|x| format!("{x:.3}"))
         .y_label_formatter(&|y| format!("{y:.0e}"))
         .draw()?;
+    // The front is drawn below the methods, broad and pale: each point is the best until the next one
+    let steps = front.windows(2).flat_map(|pair| [point(pair[0]), (point(pair[1]).0, point(pair[0]).1)]);
+    let steps: Vec<(f64, f64)> = steps.chain(front.last().map(|row| point(row))).collect();
+    let broad = BLACK.mix(0.2).stroke_width(8);
+    chart
+        .draw_series(LineSeries::new(steps, broad))?
+        .label("best in the time")
+        .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], broad));
     let mut methods: Vec<&str> = rows.iter().map(|row| row.method.as_str()).collect();
     methods.dedup();
     for (method, color) in methods.into_iter().zip(COLORS.iter().cycle()) {

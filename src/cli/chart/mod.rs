@@ -4,6 +4,8 @@ mod accuracy;
 mod accuracy_row;
 mod caustics;
 mod drawing;
+mod flip;
+mod front;
 mod noise;
 mod picture_error;
 mod reference;
@@ -25,7 +27,7 @@ pub struct Arguments {
     /// Studios: .ron files, or names of shipped ones [default: three_point, product_still_life].
     #[arg(conflicts_with = "traversal")]
     scenes: Vec<PathBuf>,
-    /// Folder for chart.csv, chart.md, one drawing (.svg) per studio, and the references, which are reused the next
+    /// Folder for chart.csv, chart.md, front.md, one drawing (.svg) per studio, and the references, which are reused the next
     /// time. It is created if it does not exist.
     #[arg(short, long, value_name = "DIR", required_unless_present_any = ["traversal", "scaling", "noise", "caustics"], conflicts_with_all = ["traversal", "scaling", "noise", "caustics"])]
     output: Option<PathBuf>,

@@ -1,5 +1,6 @@
 //! Errors of a picture against the reference.
 
+use super::flip::mean_flip;
 use crate::cli::percentile::percentile;
 use crate::color::luminance;
 use crate::photo::Picture;
@@ -14,6 +15,8 @@ const DARKEST: f64 = 6e-4;
 pub struct PictureError {
     /// Relative mean squared error.
     pub rel_mse: f64,
+    /// Mean difference that people see on a display, 0 to 1 (FLIP).
+    pub flip: f64,
     /// Median over the pixels of the luminance error, stops.
     pub median_stops: f64,
     /// 95th percentile over the pixels of the luminance error, stops.
@@ -39,6 +42,7 @@ impl PictureError {
         stops.sort_by(f64::total_cmp);
         PictureError {
             rel_mse: sum / (3 * picture.rgb.len()).max(1) as f64,
+            flip: mean_flip(picture, reference),
             median_stops: percentile(&stops, 50),
             stops_95: percentile(&stops, 95),
             bias_stops: (mean.max(f64::MIN_POSITIVE) / reference_mean.max(f64::MIN_POSITIVE)).log2(),
@@ -54,10 +58,11 @@ mod tests {
     fn a_picture_one_stop_brighter_has_an_error_of_one_stop() {
         let reference = Picture { width: 2, height: 1, rgb: vec![[0.2; 3], [0.5; 3]] };
         let over = Picture { rgb: vec![[0.4; 3], [1.0; 3]], ..reference.clone() };
-        let PictureError { rel_mse, median_stops, stops_95, bias_stops } = PictureError::new(&over, &reference);
+        let PictureError { rel_mse, flip, median_stops, stops_95, bias_stops } = PictureError::new(&over, &reference);
         assert!((rel_mse - 1.0).abs() < 2e-3, "{rel_mse}");
+        assert!(0.1 < flip && flip < 1.0, "{flip}");
         assert!([median_stops, stops_95, bias_stops].iter().all(|stops| (stops - 1.0).abs() < 1e-6));
-        let none = PictureError { rel_mse: 0.0, median_stops: 0.0, stops_95: 0.0, bias_stops: 0.0 };
+        let none = PictureError { rel_mse: 0.0, flip: 0.0, median_stops: 0.0, stops_95: 0.0, bias_stops: 0.0 };
         assert_eq!(PictureError::new(&reference, &reference), none);
     }
 }
