@@ -25,8 +25,11 @@ pub struct ModelFormat {
     /// Returns the files with data of a model, by their paths from its folder; `None` for formats of one file.
     companions: Option<fn(&Path, &ModelLimits) -> Vec<String>>,
     /// Opens a model file for the images inside it; `None` for formats without.
-    images: Option<fn(&Path, &ModelLimits) -> Result<ImageReader, AssetError>>,
+    images: Option<OpenImages>,
 }
+
+/// Opens a model file for the images inside it.
+type OpenImages = fn(&Path, &ModelLimits) -> Result<ImageReader, AssetError>;
 
 /// Every model format, in the order of dialogs.
 pub const MODEL_FORMATS: &[ModelFormat] = &[

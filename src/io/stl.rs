@@ -141,7 +141,7 @@ mod tests {
     fn binary(triangles: &[[[f32; 3]; 3]]) -> Vec<u8> {
         let mut bytes = b"solid, as some programs begin".to_vec();
         bytes.resize(80, 0);
-        bytes.extend((triangles.len() as u32).to_le_bytes());
+        bytes.extend(u32::try_from(triangles.len()).unwrap().to_le_bytes());
         for triangle in triangles {
             bytes.extend([0; 12]);
             bytes.extend(triangle.as_flattened().iter().flat_map(|value| value.to_le_bytes()));

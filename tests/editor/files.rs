@@ -403,5 +403,6 @@ fn a_dropped_exr_without_a_studio_becomes_the_environment_if_it_is_a_panorama() 
     assert_eq!((errors(&window).len(), undo_depth(&window)), (0, depth + 1));
     // No panorama: the message of before
     drop_file(&mut window, &square);
+    click(&mut window, "Don't save");
     assert!(errors(&window).iter().any(|error| error.contains("there is no studio in it")), "{:?}", errors(&window));
 }

@@ -29,14 +29,13 @@ fn binary(name: &str) -> Vec<u8> {
     };
     for (row, line) in TEXT[end..].lines().enumerate() {
         for (column, word) in line.split(' ').enumerate() {
-            let value: f64 = word.parse().unwrap();
             put(match (row, column) {
-                (0..5, 0 | 1) => (value as f32).to_le_bytes().to_vec(),
-                (0..5, 2) => value.to_le_bytes().to_vec(),
-                (5, _) => (value as i32).to_le_bytes().to_vec(),
-                (6, 1..) => (value as i16).to_le_bytes().to_vec(),
-                (7.., 2..) => (value as i32).to_le_bytes().to_vec(),
-                _ => vec![value as u8],
+                (0..5, 0 | 1) => word.parse::<f32>().unwrap().to_le_bytes().to_vec(),
+                (0..5, 2) => word.parse::<f64>().unwrap().to_le_bytes().to_vec(),
+                (5, _) => word.parse::<i32>().unwrap().to_le_bytes().to_vec(),
+                (6, 1..) => word.parse::<i16>().unwrap().to_le_bytes().to_vec(),
+                (7.., 2..) => word.parse::<i32>().unwrap().to_le_bytes().to_vec(),
+                _ => vec![word.parse().unwrap()],
             });
         }
     }
