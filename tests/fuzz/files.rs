@@ -84,7 +84,7 @@ fn changed_scans_are_errors_or_meshes_whose_numbers_are_finite() {
     let folder = tempfile::tempdir().unwrap();
     let binary_ply = {
         let head = PLY.replace("ascii", "binary_little_endian");
-        let mut bytes = head[..head.find("end_header\n").unwrap() + 11].as_bytes().to_vec();
+        let mut bytes = head.as_bytes()[..head.find("end_header\n").unwrap() + 11].to_vec();
         for k in 0..4_u8 {
             bytes.extend([k, 1, 2].iter().flat_map(|v| f32::from(*v).to_le_bytes()).chain([k; 3]));
         }

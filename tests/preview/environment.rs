@@ -65,9 +65,7 @@ fn the_sun_of_a_map_casts_its_shadow_and_the_floor_is_as_bright_as_the_tracer_sa
     let camera = Camera { focal_length_mm: 35.0, shutter_s: 1.0 / 500.0, ..camera };
     let scene = Scene { camera, objects, lights: vec![light], ..Scene::default() };
     let (width, height) = (48, 32);
-    let input =
-        PreviewInput { options: Options::direct_only(), ..PreviewInput::camera_view(&scene, &assets, (width, height)) };
-    let drawn = renderer.linear_picture(&input).unwrap();
+    let drawn = renderer.linear_picture(&PreviewInput::camera_view(&scene, &assets, (width, height))).unwrap();
     let prepared = raytrace::prepare(&scene, &assets).unwrap();
     let settings = raytrace::Settings { width, height, spp: 64, ..Default::default() };
     let film = raytrace::render(&prepared, &settings, &raytrace::RenderControl::new(), &mut |_| {
