@@ -91,7 +91,12 @@ fn changed_scans_are_errors_or_meshes_whose_numbers_are_finite() {
         bytes.extend([3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3, 1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0]);
         bytes
     };
-    let binary_stl: Vec<u8> = [vec![32; 80], vec![2, 0, 0, 0], (0..100).collect()].concat();
+    let triangle: Vec<u8> = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5_f32]
+        .iter()
+        .flat_map(|value| value.to_le_bytes())
+        .chain([0; 2])
+        .collect();
+    let binary_stl = [vec![32; 80], vec![2, 0, 0, 0], triangle.clone(), triangle].concat();
     let words =
         ["\nproperty list uchar int a", "\nelement b 3", "4294967295", "-1", "nan", "\nvertex ", "endfacet", "solid"];
     let corpus = [PLY.into(), binary_ply, STL.into(), binary_stl];
