@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
-    /// The model: .glb, .gltf or .obj.
+    /// The model: .glb, .gltf, .obj, .ply or .stl.
     model: PathBuf,
     /// The studio to write, a .ron file.
     #[arg(short, long, value_name = "SCENE.ron")]

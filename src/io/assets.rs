@@ -3,6 +3,7 @@
 use super::asset_files::AssetFiles;
 use super::environment::{EnvironmentFile, read_environment};
 use super::error::AssetError;
+use super::importers::EmbeddedImages;
 use super::photometric::{PhotometricFile, read_photometric_file};
 use super::texture_memory::TextureMemory;
 use super::{figures, importers, tanks, texture};
@@ -23,7 +24,8 @@ pub fn load_assets(scene: &Scene, folder: Option<&Path>, assets: &mut Assets) ->
 pub fn load_assets_from(scene: &Scene, files: AssetFiles<'_>, assets: &mut Assets) -> Vec<Finding> {
     let missing = missing_assets(scene, assets);
     let memory = TextureMemory::new(assets);
-    let load = |(_, key): &(AssetField, AssetKey)| load(key, files, &memory);
+    let images = EmbeddedImages::default();
+    let load = |(_, key): &(AssetField, AssetKey)| load(key, files, &memory, &images);
     let loaded: Vec<Result<LoadedAsset, AssetError>> = if memory.may_overflow(&missing, files) {
         // One after the other, so that the same textures are left out each time.
         missing.iter().map(load).collect()
@@ -62,7 +64,12 @@ struct LoadedAsset {
 }
 
 /// Loads an asset with the loader of its kind.
-fn load(key: &AssetKey, files: AssetFiles<'_>, memory: &TextureMemory) -> Result<LoadedAsset, AssetError> {
+fn load(
+    key: &AssetKey,
+    files: AssetFiles<'_>,
+    memory: &TextureMemory,
+    images: &EmbeddedImages,
+) -> Result<LoadedAsset, AssetError> {
     match key {
         AssetRef::Mesh(path) => {
             let model = importers::import_model(&files.find(path)?)?;
@@ -83,9 +90,7 @@ fn load(key: &AssetKey, files: AssetFiles<'_>, memory: &TextureMemory) -> Result
             let file = files.find(reference.path())?;
             let decoded = match **reference {
                 TextureRef::File(_) => texture::load(&file)?,
-                TextureRef::Embedded { image, .. } => {
-                    texture::decode(&importers::embedded_image(&file, image)?, &file)?
-                }
+                TextureRef::Embedded { image, .. } => texture::decode(&images.image(&file, image)?, &file)?,
             };
             let warnings = decoded.warning.map(|warning| format!("{}: {warning}", reference.path()));
             let asset = Asset::Texture(memory.share(decoded.texture, &file)?);

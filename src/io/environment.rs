@@ -48,8 +48,7 @@ pub fn read_environment(path: &Path) -> Result<EnvironmentFile, AssetError> {
         return Err(bad("it has no pixels".to_owned()));
     }
     let mut warnings = Vec::new();
-    let ratio = width as f32 / height as f32 / 2.0;
-    if !(1.0 / RATIO_TOLERANCE..=RATIO_TOLERANCE).contains(&ratio) {
+    if !is_equirectangular(width as usize, height as usize) {
         warnings.push(format!("{width} x {height} pixels are not twice as wide as high: it may be no panorama"));
     }
     let is_odd = |value: &f32| !(0.0..=LARGEST_VALUE).contains(value);
@@ -62,6 +61,11 @@ pub fn read_environment(path: &Path) -> Result<EnvironmentFile, AssetError> {
     let (width, height, rgb) = reduced(width, height, rgb);
     let map = EnvironmentMap::new(width, height, rgb).ok_or_else(|| bad("it is all black".to_owned()))?;
     Ok(EnvironmentFile { map, warnings })
+}
+
+/// Returns true if a size in pixels is that of an equirectangular picture.
+pub(super) fn is_equirectangular(width: usize, height: usize) -> bool {
+    (1.0 / RATIO_TOLERANCE..=RATIO_TOLERANCE).contains(&(0.5 * width as f32 / height as f32))
 }
 
 /// Returns true if a picture of so many pixels is too large, or too large for its file.

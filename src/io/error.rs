@@ -239,6 +239,9 @@ pub enum AssetError {
         /// The file.
         path: PathBuf,
     },
+    /// The import was cancelled by its user.
+    #[error("the import was cancelled")]
+    Cancelled,
     /// A texture refers to an image inside a model whose format has none.
     #[error("{format} files hold no images, so there is no image {image}: {}", path.display())]
     NoEmbeddedImage {

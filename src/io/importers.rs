@@ -3,10 +3,12 @@
 //! File dialogs, dropped files, mesh files of a scene and error messages all use this list.
 
 use super::error::AssetError;
-use super::model::{ImportedModel, ModelLimits};
-use super::{gltf_model, obj};
-use std::path::Path;
-use std::sync::LazyLock;
+use super::import_progress::ImportProgress;
+use super::model::{ImageReader, ImportedModel, ModelLimits};
+use super::{gltf_model, obj, ply, stl};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 
 /// A format of model files.
 #[derive(Debug)]
@@ -15,35 +17,57 @@ pub struct ModelFormat {
     pub name: &'static str,
     /// Extensions of file names, lower case, without the dot.
     pub extensions: &'static [&'static str],
+    /// True if the format says that its lengths are metres.
+    pub states_metres: bool,
     /// Limits that the importer holds.
     pub limits: ModelLimits,
-    import: fn(&Path, &ModelLimits) -> Result<ImportedModel, AssetError>,
+    import: fn(&Path, &ModelLimits, &ImportProgress) -> Result<ImportedModel, AssetError>,
     /// Returns the files with data of a model, by their paths from its folder; `None` for formats of one file.
     companions: Option<fn(&Path, &ModelLimits) -> Vec<String>>,
-    /// Returns the bytes of the PNG or JPEG file with this index inside a model file; `None` for formats without.
-    embedded_image: Option<EmbeddedImageReader>,
+    /// Opens a model file for the images inside it; `None` for formats without.
+    images: Option<OpenImages>,
 }
 
-/// Reads the image with an index from a model file, within the format's limits.
-type EmbeddedImageReader = fn(&Path, u32, &ModelLimits) -> Result<Vec<u8>, AssetError>;
+/// Opens a model file for the images inside it.
+type OpenImages = fn(&Path, &ModelLimits) -> Result<ImageReader, AssetError>;
 
 /// Every model format, in the order of dialogs.
 pub const MODEL_FORMATS: &[ModelFormat] = &[
     ModelFormat {
         name: "glTF",
         extensions: &["glb", "gltf"],
+        states_metres: true,
         limits: ModelLimits { file_bytes: 1 << 30, triangles: 20_000_000 },
         import: gltf_model::import,
         companions: Some(gltf_model::companions),
-        embedded_image: Some(gltf_model::embedded_image),
+        images: Some(gltf_model::images),
     },
     ModelFormat {
         name: "OBJ",
         extensions: &["obj"],
+        states_metres: false,
         limits: ModelLimits { file_bytes: 1 << 30, triangles: 20_000_000 },
         import: obj::import,
         companions: None,
-        embedded_image: None,
+        images: None,
+    },
+    ModelFormat {
+        name: "PLY",
+        extensions: &["ply"],
+        states_metres: false,
+        limits: ModelLimits { file_bytes: 1 << 30, triangles: 20_000_000 },
+        import: ply::import,
+        companions: None,
+        images: None,
+    },
+    ModelFormat {
+        name: "STL",
+        extensions: &["stl"],
+        states_metres: false,
+        limits: ModelLimits { file_bytes: 1 << 30, triangles: 20_000_000 },
+        import: stl::import,
+        companions: None,
+        images: None,
     },
 ];
 
@@ -55,14 +79,24 @@ impl ModelFormat {
     }
 }
 
-/// Imports a model: one mesh in metres whose parts are the file's groups, with normals, and the materials of the parts.
+/// Imports a model: one mesh whose parts are the file's groups, with normals, and the materials of the parts.
 ///
 /// # Errors
 /// If the extension belongs to no format, or if the file can't be read, exceeds the format's limits or has a mistake;
 /// the message names the line where the format has lines.
 pub fn import_model(path: &Path) -> Result<ImportedModel, AssetError> {
+    import_model_with(path, &ImportProgress::default())
+}
+
+/// As [`import_model`], with a progress that is shown and can be cancelled.
+///
+/// # Errors
+/// As [`import_model`], and if it is cancelled.
+pub fn import_model_with(path: &Path, progress: &ImportProgress) -> Result<ImportedModel, AssetError> {
     let format = format_of(path)?;
-    (format.import)(path, &format.limits)
+    let model = (format.import)(path, &format.limits, progress)?;
+    progress.reach(1.0)?;
+    Ok(model)
 }
 
 /// Returns the files with data of a model, by their paths from its folder: they go where the model goes.
@@ -71,16 +105,41 @@ pub(super) fn companions(path: &Path) -> Vec<String> {
     format.companions.map_or_else(Vec::new, |companions| companions(path, &format.limits))
 }
 
-/// Returns the bytes of an image inside a model file, a PNG or JPEG file by itself.
-///
-/// # Errors
-/// As [`import_model`], and if the format embeds no images.
-pub(super) fn embedded_image(path: &Path, image: u32) -> Result<Vec<u8>, AssetError> {
-    let format = format_of(path)?;
-    match format.embedded_image {
-        Some(read) => read(path, image, &format.limits),
-        None => Err(AssetError::NoEmbeddedImage { format: format.name, image, path: path.to_owned() }),
+/// The images inside of model files. Each file is read and parsed once, for the first of its images.
+#[derive(Default)]
+pub(super) struct EmbeddedImages {
+    files: Mutex<HashMap<PathBuf, OpenModel>>,
+}
+
+/// A model file that is open for its images, or will be.
+type OpenModel = Arc<Mutex<Option<Arc<ImageReader>>>>;
+
+impl EmbeddedImages {
+    /// Returns the bytes of an image inside a model file, a PNG or JPEG file by itself.
+    ///
+    /// # Errors
+    /// As [`import_model`], if the format embeds no images, and if there is no such image.
+    pub fn image(&self, path: &Path, image: u32) -> Result<Vec<u8>, AssetError> {
+        let format = format_of(path)?;
+        let Some(open) = format.images else {
+            return Err(AssetError::NoEmbeddedImage { format: format.name, image, path: path.to_owned() });
+        };
+        let file = locked(&self.files).entry(path.to_owned()).or_default().clone();
+        let reader = {
+            // Others that want an image of this file wait here
+            let mut file = locked(&file);
+            match &*file {
+                Some(reader) => reader.clone(),
+                None => file.insert(Arc::new(open(path, &format.limits)?)).clone(),
+            }
+        };
+        reader(image)
     }
+}
+
+/// Locks a mutex. What it guards is whole even if another thread has panicked.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Returns the extensions of all model formats, without dots.
@@ -137,7 +196,7 @@ mod tests {
 
     #[test]
     fn a_format_without_embedded_images_says_so() {
-        let error = embedded_image(Path::new("chair.obj"), 3).unwrap_err().to_string();
+        let error = EmbeddedImages::default().image(Path::new("chair.obj"), 3).unwrap_err().to_string();
         assert_eq!(error, "OBJ files hold no images, so there is no image 3: chair.obj");
     }
 }

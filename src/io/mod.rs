@@ -21,6 +21,7 @@ mod figures;
 mod file_stamp;
 mod gear_file;
 mod gltf_model;
+mod import_progress;
 mod importers;
 mod jpeg_end;
 mod kept_picture;
@@ -35,12 +36,14 @@ mod parse_errors;
 mod photometric;
 mod picture;
 mod plain_file;
+mod ply;
 mod presets;
 mod read;
 mod recovery;
 mod ron_v1;
 mod scene_file;
 mod state_folder;
+mod stl;
 mod tanks;
 mod texture;
 mod texture_memory;
@@ -53,18 +56,21 @@ pub use environment::{ENVIRONMENT_EXTENSIONS, EnvironmentFile, read_environment}
 pub use error::{AssetError, LoadError, Problem, SaveError, reason};
 pub use file_stamp::FileStamp;
 pub use gear_file::{GearError, OWN_GEAR_FILE, bundled_gear, own_gear_path, read_gear, save_gear};
+pub use import_progress::ImportProgress;
 pub use importers::{
-    MODEL_FORMATS, ModelFormat, import_model, model_extension_list, model_extensions, model_format_names,
+    MODEL_FORMATS, ModelFormat, import_model, import_model_with, model_extension_list, model_extensions,
+    model_format_names,
 };
 pub use kept_picture::KeptPicture;
 pub use model::{ImportedModel, ModelLimits, ModelSetUp};
-pub use model_size::{MODEL_UNITS, fit_model};
+pub use model_set_up::expose_for_lamps;
+pub use model_size::{MODEL_UNITS, fit_model, is_model_size_doubtful, model_unit_m, scale_model};
 pub use model_studio::{ModelStudio, studio_of};
 pub use photometric::{PHOTOMETRIC_EXTENSIONS, PhotometricFile, is_photometric_file, read_photometric_file};
 pub use picture::{
     CaptureInfo, LayeredPicture, PictureFile, PictureFormat, PictureInfo, PicturePart, RenderedPicture,
-    check_picture_file, encode_jpeg, encode_part, encode_png, export_picture, export_shown, picture_file, read_exr,
-    read_part, read_rendered,
+    check_picture_file, encode_jpeg, encode_part, encode_png, export_picture, export_shown, is_panorama, picture_file,
+    read_exr, read_part, read_rendered,
 };
 pub use plain_file::{check_file, write_file};
 pub use presets::{Preset, PresetGroup, find_preset, presets};

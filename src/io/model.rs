@@ -1,5 +1,6 @@
 //! The result of a model importer, and the limits that importers hold.
 
+use super::error::AssetError;
 use crate::scene::{Camera, Light, Material, Mesh};
 
 /// The largest model that an importer accepts.
@@ -10,6 +11,9 @@ pub struct ModelLimits {
     /// Triangles of the mesh.
     pub triangles: usize,
 }
+
+/// Returns the bytes of the image with an index in an open model file, a PNG or JPEG file by itself.
+pub(super) type ImageReader = Box<dyn Fn(u32) -> Result<Vec<u8>, AssetError> + Send + Sync>;
 
 /// A model and the materials that its files give to its parts.
 #[derive(Clone, Debug, PartialEq)]

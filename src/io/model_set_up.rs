@@ -46,12 +46,22 @@ impl ModelSetUp {
     }
 }
 
-/// Sets the shutter of a camera for an exposure, lx s per second of the lamps at the subject, to f-number and ISO of the
-/// camera.
-pub fn expose_for(camera: &mut Camera, lux: f32) {
+/// Sets the shutter of a camera for the light of lamps at a point that faces them, to its f-number and ISO. Light that is
+/// too weak or too strong for a picture leaves it as it is.
+pub fn expose_for_lamps(camera: &mut Camera, lamps: &[Light], point: Vec3) {
+    let lux: f32 = lamps.iter().map(|lamp| lux_at(lamp, point)).sum();
     // N^2 / t = E S / C (an incident meter)
     let seconds = camera.meter_constant * camera.f_number.powi(2) / (lux * camera.iso);
     if (METERED_LUX_S[0]..=METERED_LUX_S[1]).contains(&lux) {
         camera.shutter_s = seconds.clamp(1.0 / 8000.0, 30.0);
+    }
+}
+
+/// Returns the illuminance of a lamp of a model at a point that faces it, lx.
+fn lux_at(light: &Light, point: Vec3) -> f32 {
+    match (light.power.output, light.emitter) {
+        (Output::Lux(lux), _) => lux,
+        (Output::Candela(intensity), _) => intensity / light.position.distance_squared(point).max(1e-4),
+        _ => 0.0,
     }
 }

@@ -2,7 +2,7 @@
 
 use super::error::AssetError;
 use super::model::ImportedModel;
-use super::model_set_up::expose_for;
+use super::model_set_up::expose_for_lamps;
 use super::model_size::fit_model;
 use crate::scene::{
     Aim, Camera, Emitter, Light, LightId, Material, MaterialPreset, Mesh, Object, ObjectId, Output, Scene, Shape,
@@ -56,8 +56,7 @@ pub fn studio_of(model: ImportedModel, file: &Path, folder: &Path) -> Result<Mod
         add_sweep_and_softbox(&mut scene, low, high);
     } else {
         notes.push(format!("{} of the file, and no softbox", counted(lights.len(), "lamp")));
-        let lux = lights.iter().map(|light| lux_at(light, 0.5 * (low + high))).sum();
-        expose_for(&mut scene.camera, lux);
+        expose_for_lamps(&mut scene.camera, &lights, 0.5 * (low + high));
         for (light, id) in lights.into_iter().zip(1..) {
             let name = scene.unique_name(&light.name);
             scene.lights.push(Light { id: LightId(id), name, ..light });
@@ -118,15 +117,6 @@ fn add_sweep_and_softbox(scene: &mut Scene, low: Vec3, high: Vec3) {
         ..Light::new(emitter, output)
     };
     scene.lights.push(softbox);
-}
-
-/// Returns the illuminance of a lamp of a model at a point that faces it, lx.
-fn lux_at(light: &Light, point: Vec3) -> f32 {
-    match (light.power.output, light.emitter) {
-        (Output::Lux(lux), _) => lux,
-        (Output::Candela(intensity), _) => intensity / light.position.distance_squared(point).max(1e-4),
-        _ => 0.0,
-    }
 }
 
 /// The paths by which a studio names the files of a model.

@@ -1,14 +1,26 @@
 //! Reads whole files of bounded size.
 
 use super::error::AssetError;
+use super::import_progress::{ImportProgress, READING};
 use std::io::{ErrorKind, Read};
 use std::path::Path;
+
+/// Bytes that are read at a time.
+const BLOCK_BYTES: u64 = 16 << 20;
 
 /// Returns the content of a regular file of at most `limit_bytes` bytes.
 ///
 /// # Errors
 /// If the file can't be read, is no regular file, or is larger than the limit.
 pub(super) fn read_limited(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, AssetError> {
+    read_model(path, limit_bytes, &ImportProgress::default())
+}
+
+/// As [`read_limited`], for an import that can be cancelled.
+///
+/// # Errors
+/// As [`read_limited`], and if the import is cancelled.
+pub(super) fn read_model(path: &Path, limit_bytes: u64, progress: &ImportProgress) -> Result<Vec<u8>, AssetError> {
     let read_error = |error| AssetError::Read { error, path: path.to_owned() };
     // Opening a pipe would block until another program writes to it.
     let metadata = std::fs::metadata(path).map_err(read_error)?;
@@ -22,10 +34,17 @@ pub(super) fn read_limited(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, Ass
     if metadata.len() > limit_bytes {
         return Err(too_large(metadata.len()));
     }
-    let file = std::fs::File::open(path).map_err(read_error)?;
-    let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or_default());
+    let mut file = std::fs::File::open(path).map_err(read_error)?;
+    let length = usize::try_from(metadata.len()).unwrap_or_default();
+    let mut bytes = Vec::with_capacity(length);
     // It may grow, and some files of the system tell no length.
-    file.take(limit_bytes + 1).read_to_end(&mut bytes).map_err(read_error)?;
+    while bytes.len() as u64 <= limit_bytes {
+        progress.reach_between(READING, bytes.len(), length)?;
+        let part = BLOCK_BYTES.min(limit_bytes + 1 - bytes.len() as u64);
+        if file.by_ref().take(part).read_to_end(&mut bytes).map_err(read_error)? == 0 {
+            break;
+        }
+    }
     if bytes.len() as u64 > limit_bytes { Err(too_large(bytes.len() as u64)) } else { Ok(bytes) }
 }
 

@@ -17,6 +17,19 @@ pub struct EnvironmentLight {
     world_from_map: Quat,
 }
 
+/// The sun of an environment map, for renderers that need a light with a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnvironmentSun {
+    /// Unit direction towards it.
+    pub direction: Vec3,
+    /// Illuminance that it gives on a plane that faces it, over the one that is stated for the map.
+    pub illuminance_part: f32,
+    /// Colour, of luminance 1.
+    pub color: Vec3,
+    /// Half the angle that it is seen under, radians.
+    pub half_angle_rad: f32,
+}
+
 impl PartialEq for EnvironmentLight {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.map, &other.map) && self.world_from_map == other.world_from_map
@@ -51,6 +64,28 @@ impl EnvironmentLight {
     /// Returns the mean colour, of luminance 1.
     pub fn mean_color(&self) -> Vec3 {
         unit_color(self.map.mean())
+    }
+
+    /// Returns the colour, its luminance over that of an even surround of the same stated illuminance, without the sun.
+    pub fn relative_radiance_without_sun(&self, direction: Vec3) -> Vec3 {
+        self.map.without_sun_at(self.world_from_map.inverse() * direction) * PI / self.map.peak_illuminance()
+    }
+
+    /// Returns the mean of that over all directions.
+    pub fn mean_relative_radiance_without_sun(&self) -> Vec3 {
+        self.map.mean_without_sun() * PI / self.map.peak_illuminance()
+    }
+
+    /// Returns the sun of the map, if it has one: a small bright spot that gives much of the light.
+    pub fn sun(&self) -> Option<EnvironmentSun> {
+        let sun = self.map.sun()?;
+        let lux = luminance(sun.irradiance);
+        Some(EnvironmentSun {
+            direction: self.world_from_map * sun.direction,
+            illuminance_part: lux / self.map.peak_illuminance(),
+            color: unit_color(sun.irradiance),
+            half_angle_rad: sun.half_angle_rad,
+        })
     }
 
     /// Returns the unit normal of the plane that gets most light.

@@ -17,7 +17,7 @@ use super::environment_light::EnvironmentLight;
 use super::light_color::light_rgb;
 use super::measured_beam::MeasuredBeam;
 use crate::scene::{Assets, Camera, Emitter, IntensityTable, Light, Modifier, Output, Scene};
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Quat, Vec3};
 use std::sync::Arc;
 
 /// The output of a light with its dial and the losses of modifier and gel, in the quantity in which it is stated. The unit is a
@@ -111,6 +111,20 @@ impl PhotometricLight {
             visible_to_camera: light.visible_to_camera,
             on: light.on,
         }
+    }
+
+    /// Returns the sun of its environment map as a light of its own; none without such a map.
+    pub fn sun_of_environment(&self) -> Option<PhotometricLight> {
+        let sun = self.environment.as_ref()?.sun()?;
+        let Strength::Illuminance(lux) = self.strength else { return None };
+        Some(PhotometricLight {
+            shape: EmitterShape::Sun { half_angle_rad: sun.half_angle_rad },
+            world_from_light: Affine3A::from_quat(Quat::from_rotation_arc(Vec3::Z, sun.direction)),
+            environment: None,
+            strength: Strength::Illuminance(lux * sun.illuminance_part),
+            tint: self.tint * sun.color,
+            ..self.clone()
+        })
     }
 
     /// Returns the centre of the emitter, metres.

@@ -26,7 +26,7 @@ mod waveform;
 
 pub use aov::AovPicture;
 pub use dial_text::{dial_from_text, dial_text, flash_time_text};
-pub use environment_light::EnvironmentLight;
+pub use environment_light::{EnvironmentLight, EnvironmentSun};
 pub use false_color::{FALSE_STOPS, false_color};
 pub use lazy_picture::LazyPicture;
 pub use light::{PhotometricLight, Strength};

@@ -3,7 +3,7 @@
 use super::gbuffer_row::{Span, VertexAttributes};
 use super::geometry::Surface;
 use super::surface_texture::PixelFactors;
-use crate::math::{bend_above, decode_normal, position_derivatives, tilted_normal};
+use crate::math::{decode_normal, position_derivatives, tilted_normal};
 use crate::scene::{Mesh, TextureSlot};
 use glam::{Vec2, Vec3};
 
@@ -65,7 +65,7 @@ impl<'a> TexturedTriangle<'a> {
         let tilt = decode_normal(map.rgb(self.uvs_at(over_w), &[0.0; 256]), scale);
         let side = if geometric_normal.dot(view_dir) < 0.0 { -1.0 } else { 1.0 };
         let outward = if normal.dot(geometric_normal) < 0.0 { -normal } else { normal };
-        bend_above(tilted_normal(outward, derivatives, tilt) * side, geometric_normal * side, view_dir)
+        tilted_normal(outward, derivatives, tilt) * side
     }
 
     /// Returns the derivatives of the position by the picture of the normal map; none without a map.

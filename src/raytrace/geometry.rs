@@ -240,6 +240,7 @@ impl Instance {
             smooth_offset: self.world_from_object.transform_vector3a(smooth_offset).into(),
             geometric_normal: geometric_normal.into(),
             normal: normal.into(),
+            relief_normal: normal.into(),
             uv,
             second_uv,
             color,
@@ -307,6 +308,9 @@ pub struct SurfaceInteraction {
     pub geometric_normal: Vec3,
     /// Interpolated shading normal, on the same side as `geometric_normal`.
     pub normal: Vec3,
+    /// Normal of the diffuse lobe: that of the normal map, where `normal` is bent towards the viewer, and `normal`
+    /// elsewhere.
+    pub relief_normal: Vec3,
     /// Texture coordinates.
     pub uv: Vec2,
     /// Texture coordinates of the second set.

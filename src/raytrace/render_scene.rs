@@ -91,6 +91,9 @@ impl RenderScene {
         }
         let factors = self.texture_factors(surface);
         let mut bsdf = Bsdf::new(material, factors, surface.normal, surface.geometric_normal, wo);
+        if self.plan.normal_maps && surface.relief_normal != surface.normal {
+            bsdf = bsdf.with_relief(surface.relief_normal);
+        }
         if self.plan.tangents && surface.tangent != Vec3::ZERO {
             bsdf = bsdf.with_tangent(surface.tangent);
         }

@@ -121,6 +121,7 @@ mod tests {
             smooth_offset: Vec3::ZERO,
             geometric_normal: normal,
             normal,
+            relief_normal: normal,
             second_uv: glam::Vec2::ZERO,
             uv: glam::Vec2::ZERO,
             color: Vec3::ONE,

@@ -44,6 +44,7 @@ pub fn surface(instance: &Instance, hit: &StrandHit) -> SurfaceInteraction {
         smooth_offset: Vec3::ZERO,
         geometric_normal: facing,
         normal: normal.normalize_or(facing),
+        relief_normal: normal.normalize_or(facing),
         uv: Vec2::new(u, 0.5 + 0.5 * h),
         second_uv: Vec2::ZERO,
         color: Vec3::ONE,

@@ -33,7 +33,9 @@ impl RenderScene {
         SurfaceInteraction { tangent: along_u * cos + across_u * sin, ..surface }
     }
 
-    /// Replaces the shading normal by that of the normal map. The mirror direction of the ray stays above the surface.
+    /// Replaces the shading normal by that of the normal map, bent so that the mirror direction of the ray stays above
+    /// the surface. The diffuse lobe has no such direction: it keeps the normal of the map, or relief that leans away
+    /// from the viewer would be lit as if it faced him.
     fn with_normal_map(&self, surface: SurfaceInteraction, direction: Vec3, hit: &Hit) -> SurfaceInteraction {
         let material = self.material_of(&surface);
         let (Some(map), Primitive::Triangle(triangle)) = (self.texture(material, TextureSlot::Normal), &hit.primitive)
@@ -45,12 +47,12 @@ impl RenderScene {
             instance.position_derivatives(triangle.triangle, map.uses_second_uvs(), map.picture_from_mesh());
         let Some(derivatives) = derivatives else { return surface };
         let tilt = decode_normal(map.at_surface(&surface), material.normal_scale);
-        let normal = tilted_normal(surface.normal, derivatives, tilt);
+        let relief_normal = tilted_normal(surface.normal, derivatives, tilt);
         // From behind, the same relief is seen from its back
         let side = if direction.dot(surface.geometric_normal) > 0.0 { -1.0 } else { 1.0 };
         let view_dir = -direction.normalize_or_zero();
-        let normal = bend_above(normal * side, surface.geometric_normal * side, view_dir) * side;
-        SurfaceInteraction { normal, ..surface }
+        let normal = bend_above(relief_normal * side, surface.geometric_normal * side, view_dir) * side;
+        SurfaceInteraction { normal, relief_normal, ..surface }
     }
 
     /// Returns the material of a surface.

@@ -24,6 +24,43 @@ pub struct EnvironmentMap {
     peak_illuminance: f32,
     peak_direction: Vec3,
     mean: Vec3,
+    sun: Option<BrightSpot>,
+}
+
+/// A small bright spot that gives much of the light: the sun, or a lamp.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BrightSpot {
+    /// Unit direction of its middle.
+    pub direction: Vec3,
+    /// Its light on a plane that faces it, for pixels in cd/m2: lx.
+    pub irradiance: Vec3,
+    /// Half the angle of an even disc of its size, radians.
+    pub half_angle_rad: f32,
+    /// Mean colour around it.
+    around: Vec3,
+    /// Direction of the brightest pixel, and the cosine of the radius in which pixels belong to the spot.
+    centre: Vec3,
+    cos_radius: f32,
+    /// Least luminance of its pixels.
+    least: f32,
+}
+
+impl BrightSpot {
+    /// Radius in which pixels belong to the spot, degrees.
+    const RADIUS_DEG: f32 = 5.0;
+    /// Least luminance of a pixel of the spot, over that of the brightest.
+    const LEAST: f32 = 0.05;
+    /// Least luminance of a pixel of the spot, over the mean of the map.
+    const CONTRAST: f32 = 4.0;
+    /// Least part of the illuminance of the map that a spot gives.
+    const LEAST_PART: f32 = 0.2;
+    /// Largest part of its own light that comes from around the spot: more is a window.
+    const MOST_AROUND: f32 = 0.25;
+
+    /// Returns true if a pixel of a colour in a unit direction belongs to the spot.
+    fn has(&self, direction: Vec3, color: Vec3) -> bool {
+        direction.dot(self.centre) >= self.cos_radius && crate::color::luminance(color) >= self.least
+    }
 }
 
 impl EnvironmentMap {
@@ -44,6 +81,7 @@ impl EnvironmentMap {
             peak_illuminance: 0.0,
             peak_direction: Vec3::Y,
             mean: Vec3::ZERO,
+            sun: None,
         };
         map.tabulate();
         (map.peak_illuminance > 0.0 && map.peak_illuminance.is_finite()).then_some(map)
@@ -73,6 +111,26 @@ impl EnvironmentMap {
     /// Returns the mean colour over all directions.
     pub fn mean(&self) -> Vec3 {
         self.mean
+    }
+
+    /// Returns the small bright spot that gives much of the light, if there is one.
+    pub fn sun(&self) -> Option<&BrightSpot> {
+        self.sun.as_ref()
+    }
+
+    /// Returns the mean colour over all directions without the sun.
+    pub fn mean_without_sun(&self) -> Vec3 {
+        let sun = self.sun.map_or(Vec3::ZERO, |sun| sun.irradiance / (4.0 * PI));
+        (self.mean - sun).max(Vec3::ZERO)
+    }
+
+    /// Returns the colour in a unit direction, that around the sun in its place.
+    pub fn without_sun_at(&self, direction: Vec3) -> Vec3 {
+        let color = self.at(direction);
+        match &self.sun {
+            Some(sun) if sun.has(direction, color) => sun.around,
+            _ => color,
+        }
     }
 
     /// Returns the colour in a unit direction.
@@ -165,6 +223,58 @@ impl EnvironmentMap {
         self.row_ends = rows.into_iter().map(|sum| if total > 0.0 { (sum / total) as f32 } else { 0.0 }).collect();
         self.mean = mean.as_vec3();
         (self.peak_direction, self.peak_illuminance) = self.brightest_plane();
+        self.sun = self.find_sun();
+    }
+
+    /// Finds a small bright spot about the brightest pixel.
+    fn find_sun(&self) -> Option<BrightSpot> {
+        let luminance = |index: usize| crate::color::luminance(self.rgb[index].into());
+        let brightest = (0..self.rgb.len()).max_by(|a, b| luminance(*a).total_cmp(&luminance(*b)))?;
+        let least = BrightSpot::LEAST * luminance(brightest);
+        if least < BrightSpot::CONTRAST * crate::color::luminance(self.mean) {
+            return None;
+        }
+        let (width, middle) = (self.width as usize, |at: usize, of: u32| (at as f32 + 0.5) / of as f32);
+        let direction = |index: usize| {
+            self.direction(middle(index % width, self.width), (PI * middle(index / width, self.height)).cos())
+        };
+        // One pixel around the brightest at least
+        let radius = BrightSpot::RADIUS_DEG.to_radians().max(1.5 * PI / self.height as f32);
+        let (centre, cos_radius) = (direction(brightest), radius.cos());
+        let mut sun = BrightSpot {
+            direction: Vec3::ZERO,
+            irradiance: Vec3::ZERO,
+            half_angle_rad: 0.0,
+            around: Vec3::ZERO,
+            centre,
+            cos_radius,
+            least,
+        };
+        let (mut squares, mut around, mut around_sr, mut bright_around) = (0.0, Vec3::ZERO, 0.0, 0.0);
+        for index in 0..self.rgb.len() {
+            let towards = direction(index);
+            if towards.dot(centre) < (2.0 * radius).cos() {
+                continue;
+            }
+            let (color, solid_angle) = (Vec3::from(self.rgb[index]), self.solid_angle_sr((index / width) as u32));
+            if sun.has(towards, color) {
+                sun.irradiance += color * solid_angle;
+                sun.direction += towards * (luminance(index) * solid_angle);
+                squares += luminance(index).powi(2) * solid_angle;
+            } else if luminance(index) < least {
+                around += color * solid_angle;
+                around_sr += solid_angle;
+            } else {
+                bright_around += luminance(index) * solid_angle;
+            }
+        }
+        let lux = crate::color::luminance(sun.irradiance);
+        sun.direction = sun.direction.try_normalize()?;
+        sun.around = if around_sr > 0.0 { around / around_sr } else { Vec3::ZERO };
+        // The solid angle of an even disc with the same sums
+        sun.half_angle_rad = (lux * lux / (squares * PI)).sqrt();
+        let is_dominant = lux >= BrightSpot::LEAST_PART * self.peak_illuminance;
+        (is_dominant && bright_around <= BrightSpot::MOST_AROUND * lux).then_some(sun)
     }
 
     /// Returns the normal of the plane that gets most light, and its illuminance. A plane is best if its normal is that of
@@ -270,6 +380,37 @@ mod tests {
         let expected = sun.direction(40.5 / 64.0, (PI * 10.5 / 32.0).cos());
         assert!((sun.peak_direction() - expected).length() < 0.01, "{}", sun.peak_direction());
         assert!(expected.x > 0.0 && expected.z < 0.0 && expected.y > 0.0);
+    }
+
+    #[test]
+    fn a_small_bright_spot_is_the_sun_and_a_window_is_none() {
+        // A sky of 1 with a spot of 2 x 2 pixels and a window of 30 degrees
+        let map = |spot: f32, window: f32| {
+            let mut pixels = vec![[1.0, 1.0, 2.0]; 256 * 128];
+            for row in [40, 41] {
+                pixels[row * 256 + 160..][..2].fill([spot; 3]);
+            }
+            (60..80).for_each(|row| pixels[row * 256 + 30..][..20].fill([window; 3]));
+            EnvironmentMap::new(256, 128, pixels).unwrap()
+        };
+        let sunny = map(2000.0, 1.0);
+        let sun = sunny.sun().unwrap();
+        let solid_angle = 2.0 * (sunny.solid_angle_sr(40) + sunny.solid_angle_sr(41));
+        assert!((sun.irradiance / (2000.0 * solid_angle) - 1.0).abs().max_element() < 1e-3, "{sun:?}");
+        assert!((sun.half_angle_rad - (solid_angle / PI).sqrt()).abs() < 1e-4);
+        let expected = sunny.direction(161.0 / 256.0, (PI * 41.0 / 128.0).cos());
+        assert!(sun.direction.distance(expected) < 2e-3, "{} for {expected}", sun.direction);
+        // Without it, the sky is left
+        let sky = Vec3::new(1.0, 1.0, 2.0);
+        assert!(sunny.mean_without_sun().distance(sky) < 0.03, "{}", sunny.mean_without_sun());
+        assert_eq!(
+            [sunny.without_sun_at(sun.direction), sunny.without_sun_at(Vec3::Y)].map(|c| c.distance(sky) < 1e-4),
+            [true; 2]
+        );
+        assert_eq!(sunny.at(sun.direction), Vec3::splat(2000.0));
+        for (spot, window) in [(1.0, 1.0), (1.0, 200.0), (30.0, 1.0)] {
+            assert!(map(spot, window).sun().is_none(), "{spot} {window}");
+        }
     }
 
     #[test]

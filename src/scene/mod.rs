@@ -49,7 +49,7 @@ pub use body::{BodyPiece, LightBody, ModifierShape, PieceShape, body_material};
 pub use camera::{Camera, CameraFrame, Focus, Orientation, Sensor};
 pub use change::{LightChange, SceneChange};
 pub use emitter::Emitter;
-pub use environment_map::EnvironmentMap;
+pub use environment_map::{BrightSpot, EnvironmentMap};
 pub use fibre::{Fibre, FibreColor};
 pub use figure::{
     Arm, Beard, Body, Bottom, Expression, Extent, Face, Figure, Gaze, HairStyle, Leg, Parameter, ParameterSet, Pose,

@@ -1,6 +1,8 @@
 //! Opening, saving, dropping and importing of files, invalid files, unsaved changes.
 
 use super::*;
+use catchlight::io::{PictureInfo, export_picture};
+use catchlight::photo::Picture;
 use catchlight::scene::TextureSlot;
 
 /// A file on the desktop.
@@ -290,29 +292,34 @@ fn a_model_that_is_chosen_as_a_texture_is_refused_and_told() {
     assert_eq!(*scene(&window), before);
 }
 
+/// Returns a textured triangle as a glTF file, of a height in metres.
+fn label_gltf(height: f32) -> String {
+    let base64 = |bytes: &[u8]| base64::Engine::encode(&base64::engine::general_purpose::STANDARD, bytes);
+    let corners: [f32; 15] = [0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, height, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
+    let bytes: Vec<u8> = corners.iter().flat_map(|value| value.to_le_bytes()).collect();
+    let mut png = std::io::Cursor::new(Vec::new());
+    image::RgbImage::from_pixel(2, 2, image::Rgb([9, 90, 200])).write_to(&mut png, image::ImageFormat::Png).unwrap();
+    format!(
+        r#"{{"asset": {{"version": "2.0"}}, "scenes": [{{"nodes": [0]}}], "nodes": [{{"name": "Label", "mesh": 0}}],
+        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "TEXCOORD_0": 1}}, "material": 0}}]}}],
+        "materials": [{{"pbrMetallicRoughness": {{"baseColorTexture": {{"index": 0}}, "metallicFactor": 0}}}}],
+        "textures": [{{"source": 0}}], "images": [{{"uri": "data:image/png;base64,{}"}}],
+        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [0.2, {height}, 0]}},
+                      {{"bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "VEC2"}}],
+        "bufferViews": [{{"buffer": 0, "byteLength": 60}}],
+        "buffers": [{{"byteLength": 60, "uri": "data:application/octet-stream;base64,{}"}}]}}"#,
+        base64(png.get_ref()),
+        base64(&bytes)
+    )
+}
+
 #[test]
 fn a_gltf_model_comes_in_with_the_image_inside_and_travels_with_the_studio() {
     if !has_adapter() {
         return;
     }
     let (folder, home) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    let base64 = |bytes: &[u8]| base64::Engine::encode(&base64::engine::general_purpose::STANDARD, bytes);
-    let corners: [f32; 15] = [0.0, 0.0, 0.0, 0.2, 0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
-    let bytes: Vec<u8> = corners.iter().flat_map(|value| value.to_le_bytes()).collect();
-    let mut png = std::io::Cursor::new(Vec::new());
-    image::RgbImage::from_pixel(2, 2, image::Rgb([9, 90, 200])).write_to(&mut png, image::ImageFormat::Png).unwrap();
-    let json = format!(
-        r#"{{"asset": {{"version": "2.0"}}, "scenes": [{{"nodes": [0]}}], "nodes": [{{"name": "Label", "mesh": 0}}],
-        "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0, "TEXCOORD_0": 1}}, "material": 0}}]}}],
-        "materials": [{{"pbrMetallicRoughness": {{"baseColorTexture": {{"index": 0}}, "metallicFactor": 0}}}}],
-        "textures": [{{"source": 0}}], "images": [{{"uri": "data:image/png;base64,{}"}}],
-        "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [0.2, 0.3, 0]}},
-                      {{"bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "VEC2"}}],
-        "bufferViews": [{{"buffer": 0, "byteLength": 60}}],
-        "buffers": [{{"byteLength": 60, "uri": "data:application/octet-stream;base64,{}"}}]}}"#,
-        base64(png.get_ref()),
-        base64(&bytes)
-    );
+    let json = label_gltf(0.3);
     let model = folder.path().join("label.gltf");
     std::fs::write(&model, json).unwrap();
     let studio = home.path().join("shop.ron");
@@ -330,4 +337,72 @@ fn a_gltf_model_comes_in_with_the_image_inside_and_travels_with_the_studio() {
     let document = window.state().document();
     assert_eq!((errors(&window), document.scene().objects.last()), (Vec::new(), Some(&object)));
     assert!(document.assets().mesh("models/label.gltf").is_some() && document.assets().texture(&texture).is_some());
+}
+
+#[test]
+fn a_gltf_model_of_30_m_is_asked_about_and_comes_with_its_lamp_and_camera_in_one_step() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let set_up = r#""extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "name": "Bulb", "intensity": 40000}]}},
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.4, "znear": 0.1}}],
+        "scenes": [{"nodes": [0, 1, 2]}], "nodes": [
+        {"translation": [0, 100, 0], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+        {"translation": [0, 15, 300], "camera": 0}, "#;
+    let json = label_gltf(30.0).replacen(r#""scenes": [{"nodes": [0]}], "nodes": ["#, set_up, 1);
+    let model = folder.path().join("label.gltf");
+    std::fs::write(&model, json).unwrap();
+    let mut window = window_with_answers([]);
+    let (before, depth) = (scene(&window).clone(), undo_depth(&window));
+    drop_file(&mut window, &model);
+    assert_eq!((errors(&window).len(), scene(&window)), (0, &before), "it asks first");
+    press(&mut window, Modifiers::NONE, Key::Escape);
+    assert_eq!(scene(&window), &before);
+    drop_file(&mut window, &model);
+    click(&mut window, "0.300 m long: its unit is cm");
+    click(&mut window, "Look through its camera");
+    press(&mut window, Modifiers::NONE, Key::Enter);
+    let now = scene(&window).clone();
+    assert_eq!((now.objects.len(), now.lights.len()), (before.objects.len() + 1, before.lights.len() + 1));
+    let (object, lamp) = (now.objects.last().unwrap().transform, now.lights.last().unwrap());
+    assert_eq!((object.scale, lamp.name.as_str()), (glam::Vec3::splat(0.01), "Bulb"));
+    let place = |height: f32, depth: f32| object.position + glam::Vec3::new(0.0, height, depth);
+    assert!(lamp.position.distance(place(1.0, 0.0)) < 1e-4, "{}", lamp.position);
+    assert!(now.camera.position.distance(place(0.15, 3.0)) < 1e-4, "{}", now.camera.position);
+    assert!(now.camera.focal_length_mm != before.camera.focal_length_mm && now.camera.iso == before.camera.iso);
+    assert_eq!(undo_depth(&window), depth + 1);
+    run(&mut window, Command::Undo);
+    assert_eq!(scene(&window), &before);
+}
+
+#[test]
+fn a_dropped_exr_without_a_studio_becomes_the_environment_if_it_is_a_panorama() {
+    if !has_adapter() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, width: u32, height: u32| {
+        let path = folder.path().join(name);
+        let picture = Picture { width, height, rgb: vec![[1.0, 0.9, 0.8]; (width * height) as usize] };
+        let info = PictureInfo { studio: String::new(), ..PictureInfo::new(&Scene::default(), "path", 1, 0) };
+        export_picture(&path, &picture, &info).unwrap();
+        path
+    };
+    let (sky, square) = (write("sky.exr", 16, 8), write("square.exr", 8, 8));
+    let mut window = window_with_answers([]);
+    let (before, depth) = (scene(&window).clone(), undo_depth(&window));
+    select(&mut window, &[]);
+    drop_file(&mut window, &sky);
+    assert_eq!(scene(&window), &before, "it asks first");
+    click(&mut window, "As environment");
+    wait_until(&mut window, |app| app.document().scene().lights.len() > before.lights.len());
+    let light = scene(&window).lights.last().unwrap();
+    assert_eq!(light.environment_map.as_deref(), Some("environments/sky.exr"));
+    assert_eq!((errors(&window).len(), undo_depth(&window)), (0, depth + 1));
+    // No panorama: the message of before
+    drop_file(&mut window, &square);
+    click(&mut window, "Don't save");
+    assert!(errors(&window).iter().any(|error| error.contains("there is no studio in it")), "{:?}", errors(&window));
 }

@@ -1,6 +1,7 @@
 //! Photometric files in the window: dropped, chosen, saved with the studio, refused.
 
 use super::files::drop_file;
+use super::panels::search;
 use super::*;
 use catchlight::scene::{Emitter, Output};
 
@@ -69,7 +70,7 @@ fn a_photometric_file_is_chosen_in_the_inspector_and_removed() {
     let folder = tempfile::tempdir().unwrap();
     let lamp = folder.path().join("half.ies");
     std::fs::write(&lamp, HALF).unwrap();
-    let mut window = window_with_answers([lamp]);
+    let mut window = window_with_answers([lamp.clone(), lamp]);
     let id = scene(&window).lights[0].id;
     select(&mut window, &[Item::Light(id)]);
     click(&mut window, "IES, EULUMDAT\u{2026}");
@@ -77,4 +78,10 @@ fn a_photometric_file_is_chosen_in_the_inspector_and_removed() {
     assert_ne!(scene(&window).lights[0].emitter, Emitter::Point, "a panel keeps its size");
     click(&mut window, "Remove");
     assert_eq!(scene(&window).lights[0].photometric_file, None);
+    // The shelf has such lights, too
+    let before = scene(&window).lights.len();
+    search(&mut window, "Search the shelf", "photometric");
+    click(&mut window, "Add Measured light");
+    wait_until(&mut window, |app| app.document().scene().lights.len() > before);
+    assert_eq!(scene(&window).lights.last().unwrap().photometric_file.as_deref(), Some("lamps/half.ies"));
 }

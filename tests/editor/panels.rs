@@ -193,7 +193,7 @@ fn the_light_meter_reads_in_the_background_follows_the_dial_and_can_be_undone() 
 }
 
 /// Types into the text field of a label.
-fn search(window: &mut Window, field: &str, query: &str) {
+pub fn search(window: &mut Window, field: &str, query: &str) {
     window.get_by_role_and_label(egui::accesskit::Role::TextInput, field).click();
     settle(window);
     window.key_press_modifiers(Modifiers::COMMAND, Key::A);

@@ -72,6 +72,46 @@ fn changed_models_are_errors_or_meshes_whose_numbers_are_finite() {
     });
 }
 
+const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+    property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\n\
+    property list uchar int vertex_indices\nend_header\n0 0 0 1 2 3\n1 0 0 4 5 6\n0 1 0 7 8 9\n0 0 1 9 9 9\n3 0 1 2\n\
+    4 0 1 2 3\n";
+const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1e-2 0\nendloop\nendfacet\n\
+    endsolid a\n";
+
+#[test]
+fn changed_scans_are_errors_or_meshes_whose_numbers_are_finite() {
+    let folder = tempfile::tempdir().unwrap();
+    let binary_ply = {
+        let head = PLY.replace("ascii", "binary_little_endian");
+        let mut bytes = head.as_bytes()[..head.find("end_header\n").unwrap() + 11].to_vec();
+        for k in 0..4_u8 {
+            bytes.extend([k, 1, 2].iter().flat_map(|v| f32::from(*v).to_le_bytes()).chain([k; 3]));
+        }
+        bytes.extend([3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3, 1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0]);
+        bytes
+    };
+    let triangle: Vec<u8> = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5_f32]
+        .iter()
+        .flat_map(|value| value.to_le_bytes())
+        .chain([0; 2])
+        .collect();
+    let binary_stl = [vec![32; 80], vec![2, 0, 0, 0], triangle.clone(), triangle].concat();
+    let words =
+        ["\nproperty list uchar int a", "\nelement b 3", "4294967295", "-1", "nan", "\nvertex ", "endfacet", "solid"];
+    let corpus = [PLY.into(), binary_ply, STL.into(), binary_stl];
+    fuzz("scan", &corpus, &words, |input| {
+        let path = folder.path().join(if input.starts_with(b"pl") { "a.ply" } else { "a.stl" });
+        fs::write(&path, input).unwrap();
+        let Ok(model) = import_model(&path) else { return false };
+        let mesh = &model.mesh;
+        assert!(mesh.positions.iter().chain(&mesh.normals).all(|vector| vector.is_finite()));
+        assert!(mesh.triangles.iter().flatten().all(|index| (*index as usize) < mesh.positions.len()));
+        assert!(mesh.colors.is_empty() || mesh.colors.len() == mesh.positions.len());
+        true
+    });
+}
+
 const IES: &str = "IESNA:LM-63-2002\n[LUMINAIRE] Lamp\nTILT=INCLUDE\n1\n2\n0 90\n1 0.5\n1 -1 1.5 3 3 1 1 0.5 -0.5 0\n0.9 1 60\n\
     0 45 90\n0 90 180\n100 80 5\n100 60 4\n100 40 3\n";
 const FLOODLIGHT: &str = "IESNA91\nTILT=NONE\n1 1000 1 3 2 2 2 0 0 0\n1 1 60\n-20 0 20\n0 30\n5 80 5\n4 60 4\n";

@@ -37,3 +37,48 @@ fn an_even_map_is_drawn_as_the_surround_that_it_is_and_mirrors_show_its_sides() 
     let (left, right) = (mirrored.rgb[12 * 32 + 4], mirrored.rgb[12 * 32 + 27]);
     assert!(right[0] > 1.2 * right[2] && left[2] > 1.2 * left[0], "left {left:?}, right {right:?}");
 }
+
+#[test]
+fn the_sun_of_a_map_casts_its_shadow_and_the_floor_is_as_bright_as_the_tracer_says_in_and_beside_it() {
+    let Some((_gpu, mut renderer)) = renderer() else { return };
+    // A sky with a sun of one pixel, 45 degrees up and to the right, which gives most of the light
+    let mut pixels = vec![[1.0, 1.0, 1.2]; 512 * 256];
+    pixels[64 * 512 + 384] = [40_000.0, 36_000.0, 30_000.0];
+    let mut assets = Assets::default();
+    assets.insert_environment("sky.hdr", Arc::new(EnvironmentMap::new(512, 256, pixels).unwrap()));
+    let light = Light { id: LightId(1), ..Light::new(Emitter::Surround, Output::Lux(40_000.0)) };
+    let light = Light { environment_map: Some("sky.hdr".to_owned()), ..light };
+    let matte = |level: f32| Material { base_color: [level; 3], roughness: 1.0, ior: 1.0, ..Material::default() };
+    let thing = |id: u32, size_m: Vec3, at: Vec3, level: f32| Object {
+        id: ObjectId(id),
+        transform: Transform::at(at),
+        material: matte(level),
+        ..Object::new(format!("Box {id}"), Shape::Box { size_m })
+    };
+    // A small black slab high over the floor hides little of the sky, and its shadow lies 3 m to the left
+    let objects = vec![
+        thing(1, Vec3::new(40.0, 0.1, 40.0), Vec3::NEG_Y * 0.05, 0.5),
+        thing(2, Vec3::new(1.0, 0.02, 1.0), Vec3::Y * 3.0, 0.0),
+    ];
+    let camera =
+        Camera { position: Vec3::new(-2.0, 2.5, 4.0), aim: Aim::Point(Vec3::new(-2.0, 0.0, 0.0)), ..Camera::default() };
+    let camera = Camera { focal_length_mm: 35.0, shutter_s: 1.0 / 500.0, ..camera };
+    let scene = Scene { camera, objects, lights: vec![light], ..Scene::default() };
+    let (width, height) = (48, 32);
+    let drawn = renderer.linear_picture(&PreviewInput::camera_view(&scene, &assets, (width, height))).unwrap();
+    let prepared = raytrace::prepare(&scene, &assets).unwrap();
+    let settings = raytrace::Settings { width, height, spp: 64, ..Default::default() };
+    let film = raytrace::render(&prepared, &settings, &raytrace::RenderControl::new(), &mut |_| {
+        std::ops::ControlFlow::Continue(())
+    });
+    let traced = film.develop(&scene);
+    let mean = |picture: &Picture, column: u32| {
+        let block = (14..17).flat_map(|row| (column..column + 3).map(move |at| (row * width + at) as usize));
+        block.map(|index| picture.rgb[index][1]).sum::<f32>() / 9.0
+    };
+    // The middle of the shadow, and the same row on the other side of the picture
+    let stops = [12, 40].map(|column| (mean(&drawn, column) / mean(&traced, column)).log2());
+    let contrast = (mean(&traced, 40) / mean(&traced, 12)).log2();
+    println!("{stops:?} stops, contrast {contrast}");
+    assert!(contrast > 0.8 && stops.iter().all(|stops| stops.abs() < 0.15), "{stops:?} of {contrast}");
+}

@@ -90,6 +90,8 @@ pub enum Command {
     Import,
     /// Imports this model.
     ImportPath(PathBuf),
+    /// Cancels the imports that run.
+    CancelImports,
     /// Gives this light (none: a new one) the photometric file that a dialog selects.
     MeasuredLight(Option<LightId>),
     /// Gives this light (none: a new one) this photometric file.

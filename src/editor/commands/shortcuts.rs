@@ -66,7 +66,7 @@ pub const KEY_BINDINGS: [KeyBinding; 52] = [
     bind(ctrl(Key::N), || Command::New, "New from a shipped studio"),
     bind(ctrl(Key::O), || Command::Open, "Open a studio"),
     bind(ctrl(Key::S), || Command::Save, "Save the studio"),
-    bind(ctrl(Key::I), || Command::Import, "Import a model (glTF, OBJ)"),
+    bind(ctrl(Key::I), || Command::Import, "Import a model (glTF, OBJ, PLY, STL)"),
     bind(ctrl(Key::E), || Command::ExportPicture, "Export the rendered picture"),
     bind(ctrl(Key::Comma), || Command::TogglePreferences, "Preferences: scale, theme, units, meter constant"),
     bind(ctrl(Key::Q), || Command::Quit, "Quit"),

@@ -3,8 +3,8 @@
 use crate::denoise::{Quality, denoise_layers};
 use crate::editor::document::studio_document::Document;
 use crate::io::{
-    self, AssetFiles, FileStamp, KeptPicture, LayeredPicture, PictureFormat, PictureInfo, PresetGroup, RecoveryFolder,
-    RecoveryInfo,
+    self, AssetFiles, FileStamp, ImportProgress, KeptPicture, LayeredPicture, ModelFormat, ModelSetUp, PictureFormat,
+    PictureInfo, PresetGroup, RecoveryFolder, RecoveryInfo,
 };
 use crate::jobs::sentence;
 use crate::photo::{LazyPicture, Picture};
@@ -76,7 +76,11 @@ pub struct ImportedModel {
     pub mesh: Arc<Mesh>,
     /// Materials by part.
     pub part_materials: Vec<(String, Material)>,
-    /// Warnings of the importer, and what it has beside surfaces.
+    /// Lamps and camera of the file, in the model's space.
+    pub set_up: ModelSetUp,
+    /// True if the file says that its lengths are metres.
+    pub states_metres: bool,
+    /// Warnings of the importer.
     pub warnings: Vec<String>,
 }
 
@@ -159,14 +163,12 @@ pub fn recover(folder: &RecoveryFolder, info: &RecoveryInfo) -> Result<Box<Recov
 }
 
 /// Reads a model.
-pub fn import(file: PathBuf) -> Result<Box<ImportedModel>, String> {
-    let model = io::import_model(&file).map_err(|e| sentence(&e))?;
-    let (mesh, part_materials, mut warnings) = (Arc::new(model.mesh), model.part_materials, model.warnings);
-    if !model.set_up.is_empty() {
-        let what = "Lamps and cameras of the file are left out here: catchlight import makes a studio with them.";
-        warnings.push(what.to_owned());
-    }
-    Ok(Box::new(ImportedModel { file, mesh, part_materials, warnings }))
+pub fn import(file: PathBuf, progress: &ImportProgress) -> Result<Box<ImportedModel>, String> {
+    let model = io::import_model_with(&file, progress).map_err(|e| sentence(&e))?;
+    let io::ImportedModel { mesh, part_materials, set_up, warnings } = model;
+    let states_metres = ModelFormat::of(&file).is_some_and(|format| format.states_metres);
+    let mesh = Arc::new(mesh);
+    Ok(Box::new(ImportedModel { file, mesh, part_materials, set_up, states_metres, warnings }))
 }
 
 /// Reads the assets that a scene refers to and that are not loaded yet. `imported` maps paths in the scene to imported

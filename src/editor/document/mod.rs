@@ -15,6 +15,7 @@ pub mod history;
 pub mod item;
 pub mod light_mix;
 pub mod measured_light;
+pub mod model_import;
 pub mod placement;
 mod prop_list;
 pub mod readout;

@@ -54,8 +54,8 @@ pub fn add_ui(
     ui.separator();
     ScrollArea::vertical().id_salt("add list").auto_shrink([false, false]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
-        let (found, own) = (found(*tab, query), own_gear(gear, *tab, query));
-        if found.is_empty() && own.is_empty() {
+        let (found, own, files) = (found(*tab, query), own_gear(gear, *tab, query), file_lights(*tab, query));
+        if found.is_empty() && own.is_empty() && files.is_empty() {
             ui.label(RichText::new("Nothing on the shelf has these words.").weak());
         }
         own_gear_ui(ui, &own, gear, scene, out);
@@ -64,7 +64,46 @@ pub fn add_ui(
                 out.push(Command::AddFromCatalog(Box::new(entry.make())));
             }
         }
+        for light in files {
+            if file_light_ui(ui, light) {
+                out.push((light.command)());
+            }
+        }
     });
+}
+
+/// A light whose file a dialog selects.
+struct FileLight {
+    name: &'static str,
+    tip: &'static str,
+    command: fn() -> Command,
+}
+
+const FILE_LIGHTS: [FileLight; 2] = [
+    FileLight {
+        name: "Measured light",
+        tip: "A lamp with the distribution of its photometric file (IES, EULUMDAT)",
+        command: || Command::MeasuredLight(None),
+    },
+    FileLight {
+        name: "Environment",
+        tip: "Light from all round, by a panorama (HDR, EXR)",
+        command: || Command::EnvironmentMap(None),
+    },
+];
+
+/// Returns the lights of files that have the words of a query, or, without one, are in a tab.
+fn file_lights(tab: CatalogTab, query: &str) -> Vec<&'static FileLight> {
+    let is_in_tab = tab == CatalogTab::Lights || !query.trim().is_empty();
+    FILE_LIGHTS.iter().filter(|light| is_in_tab && is_match(query, &[light.name, light.tip])).collect()
+}
+
+fn file_light_ui(ui: &mut Ui, light: &FileLight) -> bool {
+    let size = vec2(ui.available_width(), 22.0);
+    let button = Button::new(format!("{}\u{2026}", light.name)).frame_when_inactive(false).min_size(size);
+    let button = ui.add(button.right_text(RichText::new("+").weak()));
+    widgets::named(ui, &button, &format!("Add {}", light.name));
+    button.on_hover_text(format!("Add: {}", light.tip)).clicked()
 }
 
 /// A head or a modifier that the user owns.

@@ -6,6 +6,7 @@ pub mod dials;
 pub mod file_change_prompt;
 pub mod gear;
 pub mod help;
+pub mod import_prompt;
 pub mod inspector;
 pub mod menu;
 pub mod meter;

@@ -34,6 +34,33 @@ pub fn unsaved_changes_ui(ctx: &egui::Context, title: &str, what: &str) -> Optio
     })
 }
 
+/// The answer to the prompt about a panorama.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PanoramaAnswer {
+    /// Light the studio with it.
+    LightTheStudio,
+    /// Leave it out.
+    Cancel,
+}
+
+/// Draws the prompt about a picture without a studio that is twice as wide as high.
+pub fn panorama_ui(ctx: &egui::Context, path: &Path) -> Option<PanoramaAnswer> {
+    let question = Question {
+        name: "panorama",
+        width: 460.0,
+        heading: "Light the studio by a panorama?",
+        answers: &[
+            ("As environment", PanoramaAnswer::LightTheStudio, "The surround shines as this picture (Enter)"),
+            ("Cancel", PanoramaAnswer::Cancel, "Leave it out (Esc)"),
+        ],
+        on_enter: Some(PanoramaAnswer::LightTheStudio),
+    };
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    widgets::question_dialog(ctx, &question, |ui| {
+        ui.label(format!("{name} holds no studio, and it is twice as wide as high, as panoramas are."));
+    })
+}
+
 /// A prompt for a path.
 #[derive(Clone, Debug)]
 pub struct PathPrompt {

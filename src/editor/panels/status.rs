@@ -1,21 +1,28 @@
 //! The status line: the selection, and help on the mouse.
 
 use crate::editor::commands::choices::CentralView;
+use crate::editor::commands::command::Command;
 use crate::editor::document::item::{Item, name_of_all};
+use crate::editor::document::model_import::RunningImport;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::ui::lengths;
 use crate::scene::Scene;
 use crate::sheet::Units;
 use eframe::egui::{self, RichText, Ui};
+use std::time::Duration;
 
-/// Draws the status line.
+/// Time between two looks at the progress of an import.
+const PROGRESS_TIME: Duration = Duration::from_millis(100);
+
+/// Draws the status line. `busy` is what the background does, with the imports in it.
 pub fn status_ui(
     ui: &mut Ui,
     document: &Document,
     selection: &Selection,
     central_view: CentralView,
-    busy: Option<&str>,
+    (busy, imports): (Option<&str>, &[RunningImport]),
+    out: &mut Vec<Command>,
 ) {
     ui.horizontal_centered(|ui| {
         let scene = document.scene();
@@ -24,7 +31,10 @@ pub fn status_ui(
             [item] => ui.label(selection_line(scene, *item, lengths::units(ui.ctx()))),
             several => ui.label(format!("{} selected", name_of_all(several, scene))),
         };
-        if let Some(busy) = busy {
+        if let Some(import) = imports.first() {
+            ui.separator();
+            import_ui(ui, import, out);
+        } else if let Some(busy) = busy {
             ui.separator();
             ui.label(RichText::new(busy).weak());
         }
@@ -32,6 +42,15 @@ pub fn status_ui(
             ui.add(egui::Label::new(RichText::new(hint(central_view)).weak().small()).truncate());
         });
     });
+}
+
+/// Draws how far an import is, and the button that ends it.
+fn import_ui(ui: &mut Ui, import: &RunningImport, out: &mut Vec<Command>) {
+    ui.label(format!("{}: {:.0} %", import.name, 100.0 * import.progress.fraction()));
+    if ui.small_button("Cancel import").on_hover_text("The studio stays as it is").clicked() {
+        out.push(Command::CancelImports);
+    }
+    ui.ctx().request_repaint_after(PROGRESS_TIME);
 }
 
 fn selection_line(scene: &Scene, item: Item, units: Units) -> String {

@@ -17,6 +17,7 @@ pub mod run_command;
 pub mod run_environment;
 mod run_export;
 pub mod run_file_command;
+mod run_import;
 mod run_measured_light;
 pub mod run_preferences;
 pub mod run_recovery;

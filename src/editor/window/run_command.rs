@@ -163,6 +163,7 @@ impl App {
             | Command::SaveAs
             | Command::Import
             | Command::ImportPath(_)
+            | Command::CancelImports
             | Command::MeasuredLight(_)
             | Command::MeasuredLightPath(..)
             | Command::EnvironmentMap(_)

@@ -1,11 +1,14 @@
 //! Execution of the commands about environment maps.
 
+use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::catalog;
 use crate::editor::document::environment::{self, ReadEnvironment};
+use crate::editor::panels::prompts::{self, PanoramaAnswer};
 use crate::editor::window::app::App;
 use crate::editor::window::background_tasks::TaskResult;
 use crate::editor::window::run_file_command::waker;
+use crate::io;
 use crate::scene::{Assets, Emitter, LightId, Modifier, Output};
 use eframe::egui::Context;
 use std::path::PathBuf;
@@ -14,6 +17,27 @@ use std::path::PathBuf;
 const NEW_LUX: f32 = 20_000.0;
 
 impl App {
+    /// Opens a dropped EXR picture with its studio; asks about one that may be a panorama.
+    pub(super) fn take_picture(&mut self, path: PathBuf, out: &mut Vec<Command>) {
+        if io::is_panorama(&path) {
+            self.session.panorama = Some(path);
+        } else {
+            out.push(Command::OpenPath(path));
+        }
+    }
+
+    /// Draws the prompt about a panorama and handles its answer.
+    pub(super) fn ask_about_picture(&mut self, ctx: &Context, out: &mut Vec<Command>) {
+        let Some(answer) = self.session.panorama.as_deref().and_then(|path| prompts::panorama_ui(ctx, path)) else {
+            return;
+        };
+        if let Some(path) = self.session.panorama.take()
+            && answer == PanoramaAnswer::LightTheStudio
+        {
+            out.push(Command::EnvironmentMapPath(self.light_for_drop(), path));
+        }
+    }
+
     /// Reads an environment map in the background, for a surround or for a new one.
     pub(super) fn read_environment(&mut self, light: Option<LightId>, path: PathBuf, ctx: &Context) {
         let work = move || TaskResult::Environment(light, environment::read(path));

@@ -4,9 +4,8 @@ use crate::editor::commands::choices::{CentralView, Comparison};
 use crate::editor::commands::command::Command;
 use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::document::action::Action;
-use crate::editor::document::files::{self, ImportedModel, OpenedStudio, StudioSource};
+use crate::editor::document::files::{self, OpenedStudio, StudioSource};
 use crate::editor::document::item::Item;
-use crate::editor::document::placement;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::panels::prompts::{self, PathAnswer, PathPrompt, UnsavedAnswer};
@@ -15,7 +14,7 @@ use crate::editor::window::background_tasks::TaskResult;
 use crate::editor::window::dialogs::DialogAnswer;
 use crate::editor::window::session::PendingOperation;
 use crate::io::{self, ModelFormat};
-use crate::scene::{Assets, Material, MaterialPreset, Mesh, Object, Shape, TextureRef, TextureSlot};
+use crate::scene::TextureRef;
 use eframe::egui::{self, Align2, Color32, Context, Id, LayerId, Order, ViewportCommand};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::TryRecvError;
@@ -30,9 +29,8 @@ impl App {
             },
             Command::SaveAs => self.ask_for_path(FilePurpose::SaveScene, ctx),
             Command::Import => self.ask_for_path(FilePurpose::ImportModel, ctx),
-            Command::ImportPath(path) => {
-                self.background.tasks.start(move || TaskResult::Imported(files::import(path)), waker(ctx));
-            }
+            Command::ImportPath(path) => self.import(path, ctx),
+            Command::CancelImports => self.cancel_imports(),
             Command::MeasuredLight(light) => self.ask_for_path(FilePurpose::OpenMeasuredLight(light), ctx),
             Command::MeasuredLightPath(light, path) => self.read_measured_light(light, path, ctx),
             Command::EnvironmentMap(light) => self.ask_for_path(FilePurpose::OpenEnvironment(light), ctx),
@@ -126,6 +124,7 @@ impl App {
 
     fn path_chosen(&mut self, purpose: FilePurpose, path: PathBuf, ctx: &Context) {
         match purpose {
+            FilePurpose::OpenScene if io::is_panorama(&path) => self.session.panorama = Some(path),
             FilePurpose::OpenScene => self.replace_with(StudioSource::File(path), ctx),
             FilePurpose::SaveScene => self.save_to(path, ctx),
             FilePurpose::ImportModel => self.run_file_command(Command::ImportPath(path), ctx),
@@ -172,10 +171,7 @@ impl App {
                 }
                 self.toasts.error(format!("The studio could not be opened. {message}"));
             }
-            TaskResult::Imported(Ok(imported)) => self.bring_in(*imported),
-            TaskResult::Imported(Err(message)) => {
-                self.toasts.error(format!("The model could not be brought in. {message}"))
-            }
+            TaskResult::Imported(progress, result) => self.take_import(&progress, result),
             TaskResult::Environment(light, Ok(environment)) => self.use_environment(light, *environment),
             TaskResult::Environment(_, Err(message)) => self.toasts.error(message),
             TaskResult::Measured(light, Ok(measured)) => self.use_measured_light(light, *measured),
@@ -245,44 +241,6 @@ impl App {
         ctx.request_repaint();
     }
 
-    fn bring_in(&mut self, imported: ImportedModel) {
-        let ImportedModel { file, mesh, part_materials, warnings } = imported;
-        let path = self.document.asset_path_for(&file, "models");
-        let stem = file.file_stem().map_or_else(|| "Model".to_owned(), |stem| stem.to_string_lossy().into_owned());
-        let mut assets = Assets::default();
-        assets.insert_mesh(path.clone(), mesh.clone());
-        self.document.insert_assets(assets, &Default::default());
-        self.document.note_import(path.clone(), file.clone());
-        let folder = file.parent().unwrap_or(Path::new("")).to_owned();
-        let part_materials: Vec<_> =
-            part_materials.into_iter().map(|(part, m)| (part, self.adopt_textures(m, &folder))).collect();
-        let (material, part_materials) = surfaces_of(&mesh, part_materials);
-        let mut object = Object { material, part_materials, ..Object::new(stem, Shape::MeshFile { path }) };
-        let size = io::fit_model(&mut object, &mesh);
-        placement::place_object(self.document.scene(), self.selection.last(), &mut object);
-        self.apply(Action::AddObject(Box::new(object)), None);
-        size.into_iter().for_each(|sentence| self.toasts.info(sentence));
-        warnings.into_iter().for_each(|warning| self.toasts.warning(warning));
-    }
-
-    /// Returns an imported model's material with textures named as the open studio can name them.
-    fn adopt_textures(&mut self, mut material: Material, folder: &Path) -> Material {
-        for slot in TextureSlot::ALL {
-            let texture = material.textures.get_mut(slot);
-            if let Some(reference) = texture.take() {
-                let file = folder.join(reference.path());
-                let kind_folder = match reference {
-                    TextureRef::File(_) => "textures",
-                    TextureRef::Embedded { .. } => "models",
-                };
-                let path = self.document.asset_path_for(&file, kind_folder);
-                self.document.note_import(path.clone(), file);
-                *texture = Some(reference.at_path(path));
-            }
-        }
-        material
-    }
-
     fn use_texture(&mut self, file: &Path) {
         let Some((item, part, slot)) = self.session.texture_for.take() else { return };
         if !io::is_texture_file(file) {
@@ -344,7 +302,8 @@ impl App {
             let path = file.path().to_owned();
             let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
             match ending.as_str() {
-                "ron" | "exr" => out.push(Command::OpenPath(path)),
+                "ron" => out.push(Command::OpenPath(path)),
+                "exr" => self.take_picture(path, out),
                 _ if ModelFormat::of(&path).is_some() => out.push(Command::ImportPath(path)),
                 _ if io::is_photometric_file(&path) => {
                     out.push(Command::MeasuredLightPath(self.light_for_drop(), path));
@@ -352,7 +311,7 @@ impl App {
                 "hdr" => out.push(Command::EnvironmentMapPath(self.light_for_drop(), path)),
                 _ => self.toasts.error(format!(
                     "Only studios (.ron), rendered pictures (.exr), models ({}), photometric files (.ies, .ldt) and \
-                     panoramas (.hdr) can be dropped here, not {}.",
+                     panoramas (.hdr, .exr) can be dropped here, not {}.",
                     io::model_extension_list(),
                     path.display()
                 )),
@@ -404,6 +363,8 @@ impl App {
                 UnsavedAnswer::Cancel => {}
             }
         }
+        self.ask_about_model(ctx);
+        self.ask_about_picture(ctx, out);
         self.ask_about_file_change(ctx, out);
         self.ask_to_recover(ctx);
         if let Some(prompt) = &mut self.session.prompt {
@@ -418,17 +379,6 @@ impl App {
             }
         }
     }
-}
-
-/// Returns the surface of a whole model, and those of the parts that differ from it. The whole has that of the first part
-/// if all parts have one.
-fn surfaces_of(mesh: &Mesh, mut parts: Vec<(String, Material)>) -> (Material, Vec<(String, Material)>) {
-    let has_own = |part: &str| parts.iter().any(|(name, _)| name == part);
-    let first = mesh.part_names().next().filter(|_| mesh.part_names().all(has_own));
-    let first = first.and_then(|first| parts.iter().find(|(name, _)| name == first));
-    let Some((_, material)) = first.cloned() else { return (MaterialPreset::MatteFabric.material(), parts) };
-    parts.retain(|(_, own)| *own != material);
-    (material, parts)
 }
 
 /// Returns a callback that repaints the window once.

@@ -3,12 +3,14 @@
 use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::document::files::StudioSource;
 use crate::editor::document::item::Item;
+use crate::editor::panels::import_prompt::PendingModel;
 use crate::editor::panels::prompts::PathPrompt;
 use crate::editor::window::dialogs::{DialogAnswer, FileDialogs};
 use crate::editor::window::kept_preferences::KeptPreferences;
 use crate::editor::window::recent::RecentFiles;
 use crate::editor::window::recovery::Recovery;
 use crate::scene::TextureSlot;
+use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
 
@@ -48,6 +50,10 @@ pub struct Session {
     pub(super) dialog: Option<(FilePurpose, Receiver<DialogAnswer>)>,
     pub(super) prompt: Option<PathPrompt>,
     pub(super) unsaved_prompt: Option<PendingOperation>,
+    /// Imported models that the user is asked about, one after the other.
+    pub(super) models: VecDeque<PendingModel>,
+    /// The panorama that the user is asked about.
+    pub(super) panorama: Option<PathBuf>,
     pub(super) after_save: Option<PendingOperation>,
     /// The item and part whose material gets the chosen texture.
     pub(super) texture_for: Option<(Item, Option<String>, TextureSlot)>,
@@ -70,6 +76,8 @@ impl Session {
             dialog: None,
             prompt: None,
             unsaved_prompt: None,
+            models: VecDeque::new(),
+            panorama: None,
             after_save: None,
             texture_for: None,
             may_close: false,
@@ -86,7 +94,8 @@ impl Session {
 
     /// Returns true while a prompt about the open studio is open.
     pub fn has_prompt(&self) -> bool {
-        self.prompt.is_some() || self.unsaved_prompt.is_some() || self.file_change.is_some()
+        let is_asking_about_file = !self.models.is_empty() || self.panorama.is_some() || self.file_change.is_some();
+        self.prompt.is_some() || self.unsaved_prompt.is_some() || is_asking_about_file
     }
 
     /// Returns true while a prompt is open in the window.

@@ -14,8 +14,9 @@ mod tests;
 mod texture_slots;
 
 use super::error::{AssetError, cut};
-use super::model::{ImportedModel, ModelLimits};
-use super::read::read_limited;
+use super::import_progress::{ImportProgress, READING};
+use super::model::{ImageReader, ImportedModel, ModelLimits};
+use super::read::{read_limited, read_model};
 use crate::scene::{Mesh, MeshPart};
 use buffers::ModelFile;
 use glam::Vec3;
@@ -31,24 +32,32 @@ const COORDINATE_LIMIT: f32 = 1e6;
 ///
 /// # Errors
 /// If the file can't be read, exceeds the limits, needs an extension that is not read, or has a mistake.
-pub(super) fn import(path: &Path, limits: &ModelLimits) -> Result<ImportedModel, AssetError> {
-    let bytes = read_limited(path, limits.file_bytes)?;
+pub(super) fn import(
+    path: &Path,
+    limits: &ModelLimits,
+    progress: &ImportProgress,
+) -> Result<ImportedModel, AssetError> {
+    let bytes = read_model(path, limits.file_bytes, progress)?;
     let bad_model =
         |message: String| AssetError::BadModel { format: "glTF", message: cut(message), path: path.to_owned() };
     let file = ModelFile::parse(&bytes, Some((path, limits))).map_err(bad_model)?;
-    assemble(&file, path, limits).map_err(bad_model)
+    assemble(&file, path, limits, progress).map_err(|error| match error {
+        NoModel::Bad(message) => bad_model(message),
+        NoModel::Cancelled(error) => error,
+    })
 }
 
-/// Returns the bytes of an image inside a glTF file.
+/// Opens a glTF file for the images inside it.
 ///
 /// # Errors
-/// As [`import`], and if there is no such image inside.
-pub(super) fn embedded_image(path: &Path, image: u32, limits: &ModelLimits) -> Result<Vec<u8>, AssetError> {
+/// As [`import`].
+pub(super) fn images(path: &Path, limits: &ModelLimits) -> Result<ImageReader, AssetError> {
     let bytes = read_limited(path, limits.file_bytes)?;
+    let path = path.to_owned();
     let bad_model =
-        |message: String| AssetError::BadModel { format: "glTF", message: cut(message), path: path.to_owned() };
-    let file = ModelFile::parse(&bytes, None).map_err(bad_model)?;
-    file.image(image).map_err(bad_model)
+        move |message: String| AssetError::BadModel { format: "glTF", message: cut(message), path: path.clone() };
+    let file = ModelFile::parse(&bytes, None).map_err(&bad_model)?;
+    Ok(Box::new(move |image| file.image(image).map_err(&bad_model)))
 }
 
 /// Returns the files with data of a glTF file, by their paths from its folder. Pictures are none of them: materials name
@@ -57,12 +66,33 @@ pub(super) fn companions(path: &Path, limits: &ModelLimits) -> Vec<String> {
     read_limited(path, limits.file_bytes).map(|bytes| buffers::companions(&bytes)).unwrap_or_default()
 }
 
+/// The reason why a file gives no model.
+enum NoModel {
+    /// It has a mistake.
+    Bad(String),
+    /// The import was cancelled.
+    Cancelled(AssetError),
+}
+
+impl From<String> for NoModel {
+    fn from(message: String) -> Self {
+        NoModel::Bad(message)
+    }
+}
+
 /// Builds the mesh of all nodes and collects their materials.
-fn assemble(file: &ModelFile, path: &Path, limits: &ModelLimits) -> Result<ImportedModel, String> {
+fn assemble(
+    file: &ModelFile,
+    path: &Path,
+    limits: &ModelLimits,
+    progress: &ImportProgress,
+) -> Result<ImportedModel, NoModel> {
     let mut materials = MaterialReader::new(file, path);
     let (mut mesh, mut part_materials, mut names) = (Mesh::default(), Vec::new(), HashMap::new());
     let nodes = Nodes::new(&file.document);
-    for primitive in nodes.primitives() {
+    let count = nodes.primitives().count();
+    for (index, primitive) in nodes.primitives().enumerate() {
+        progress.reach_between([READING[1], 1.0], index, count).map_err(NoModel::Cancelled)?;
         let piece = primitive.mesh(file, &nodes, limits.triangles - mesh.triangles.len())?;
         if piece.triangles.is_empty() {
             continue;
@@ -72,10 +102,10 @@ fn assemble(file: &ModelFile, path: &Path, limits: &ModelLimits) -> Result<Impor
         join(&mut mesh, piece, name);
     }
     if mesh.triangles.is_empty() {
-        return Err("it has no triangles".to_owned());
+        return Err(NoModel::Bad("it has no triangles".to_owned()));
     }
     if let Some(p) = mesh.positions.iter().find(|p| !p.is_finite() || p.abs().max_element() > COORDINATE_LIMIT) {
-        return Err(format!("the vertex {p} is not within {COORDINATE_LIMIT}"));
+        return Err(NoModel::Bad(format!("the vertex {p} is not within {COORDINATE_LIMIT}")));
     }
     let mut warnings = materials.into_warnings();
     warnings.extend(file.left_out());

@@ -1,4 +1,5 @@
 use super::*;
+use crate::io::importers::EmbeddedImages;
 use crate::scene::{Alpha, Clearcoat, Sheen, TextureRef, Wrap};
 use glam::Vec2;
 
@@ -64,7 +65,7 @@ fn imported(json: &str, bin: &[u8]) -> Result<ImportedModel, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bottle.glb");
     std::fs::write(&path, glb(json, bin)).unwrap();
-    import(&path, &LIMITS).map_err(|error| error.to_string())
+    import(&path, &LIMITS, &ImportProgress::default()).map_err(|error| error.to_string())
 }
 
 #[test]
@@ -174,9 +175,13 @@ fn images_inside_are_read_and_others_are_errors() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bottle.glb");
     std::fs::write(&path, glb(&document(png), &bin)).unwrap();
-    let image = embedded_image(&path, 0, &LIMITS).unwrap();
-    assert_eq!(image, bin[104..]);
-    assert!(embedded_image(&path, 1, &LIMITS).unwrap_err().to_string().contains("no image 1"));
+    let images = EmbeddedImages::default();
+    assert_eq!(images.image(&path, 0).unwrap(), bin[104..]);
+    // The file is read once for all its images
+    std::fs::remove_file(&path).unwrap();
+    assert_eq!(images.image(&path, 0).unwrap(), bin[104..]);
+    assert!(images.image(&path, 1).unwrap_err().to_string().contains("no image 1"));
+    assert!(EmbeddedImages::default().image(&path, 0).is_err());
 }
 
 #[test]
@@ -254,7 +259,7 @@ fn data_in_a_file_beside_the_model_are_read_and_go_where_the_model_goes() {
     std::fs::write(&path, json).unwrap();
     std::fs::create_dir(folder.path().join("data")).unwrap();
     std::fs::write(folder.path().join("data/two bottles.bin"), &bin).unwrap();
-    let model = import(&path, &LIMITS).unwrap();
+    let model = import(&path, &LIMITS, &ImportProgress::default()).unwrap();
     assert_eq!(model.mesh.triangles.len(), 2);
     assert_eq!(companions(&path, &LIMITS), ["data/two bottles.bin"]);
     // A studio elsewhere takes both along
@@ -265,11 +270,11 @@ fn data_in_a_file_beside_the_model_are_read_and_go_where_the_model_goes() {
         copy.make().unwrap();
     }
     assert_eq!(std::fs::read(elsewhere.path().join("models/data/two bottles.bin")).unwrap(), bin);
-    assert!(import(&elsewhere.path().join("models/bottle.gltf"), &LIMITS).is_ok());
+    assert!(import(&elsewhere.path().join("models/bottle.gltf"), &LIMITS, &ImportProgress::default()).is_ok());
     // Too large a file is refused before it is read
     let small = ModelLimits { file_bytes: 4000, ..LIMITS };
     std::fs::write(folder.path().join("data/two bottles.bin"), vec![0; 9000]).unwrap();
-    assert!(import(&path, &small).unwrap_err().to_string().contains("too large"));
+    assert!(import(&path, &small, &ImportProgress::default()).unwrap_err().to_string().contains("too large"));
 }
 
 #[test]
@@ -331,11 +336,11 @@ fn damaged_files_and_unread_extensions_are_told() {
             let mut damaged = whole.clone();
             damaged[at] ^= change;
             std::fs::write(&path, &damaged).unwrap();
-            let _ = import(&path, &LIMITS);
+            let _ = import(&path, &LIMITS, &ImportProgress::default());
         }
     }
     for length in (0..whole.len()).step_by(7) {
         std::fs::write(&path, &whole[..length]).unwrap();
-        assert!(import(&path, &LIMITS).is_err(), "{length}");
+        assert!(import(&path, &LIMITS, &ImportProgress::default()).is_err(), "{length}");
     }
 }

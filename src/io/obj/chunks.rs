@@ -1,6 +1,8 @@
 //! Parses an OBJ file on all cores: chunks of whole lines in parallel, joined in file order.
 
 use super::lines::{ElementCounts, Faces, LineError, ParsedChunk, lines};
+use crate::io::error::AssetError;
+use crate::io::import_progress::{ImportProgress, PARSING};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -31,10 +33,12 @@ pub(super) enum ReadError {
     BadLine(String),
     /// More triangles than the limit; at least this number.
     TooManyTriangles(usize),
+    /// The import was cancelled.
+    Cancelled(AssetError),
 }
 
 /// Parses a whole file. Of several mistakes the first in the file is reported.
-pub(super) fn parse(bytes: &[u8], triangle_limit: usize) -> Result<Elements, ReadError> {
+pub(super) fn parse(bytes: &[u8], triangle_limit: usize, progress: &ImportProgress) -> Result<Elements, ReadError> {
     if bytes.len() > FILE_LIMIT_BYTES {
         return Err(ReadError::TooLarge(bytes.len()));
     }
@@ -46,23 +50,26 @@ pub(super) fn parse(bytes: &[u8], triangle_limit: usize) -> Result<Elements, Rea
         starts.push(total);
         total = total.plus(count);
     }
-    let triangles = AtomicUsize::new(0);
+    let (triangles, parsed) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let parse_chunk = |(bytes, before): (&&[u8], ElementCounts)| {
         // A file over the limit is refused, whatever the rest of it says.
-        if triangles.load(Ordering::Relaxed) > triangle_limit {
+        if triangles.load(Ordering::Relaxed) > triangle_limit || progress.is_cancelled() {
             return Ok(ParsedChunk::default());
         }
         let chunk = ParsedChunk::parse(bytes, before, total)?;
         triangles.fetch_add(chunk.faces.triangles.len(), Ordering::Relaxed);
+        // Whether it is cancelled counts after all chunks
+        let _ = progress.reach_between(PARSING, parsed.fetch_add(1, Ordering::Relaxed), chunks.len());
         Ok(chunk)
     };
-    let parsed: Vec<Result<ParsedChunk, LineError>> = chunks.par_iter().zip(starts).map(parse_chunk).collect();
+    let results: Vec<Result<ParsedChunk, LineError>> = chunks.par_iter().zip(starts).map(parse_chunk).collect();
+    progress.reach(PARSING[1]).map_err(ReadError::Cancelled)?;
     let triangles = triangles.into_inner();
     if triangles > triangle_limit {
         return Err(ReadError::TooManyTriangles(triangles));
     }
     let mut elements = Elements::with_capacity(&total);
-    for (index, chunk) in parsed.into_iter().enumerate() {
+    for (index, chunk) in results.into_iter().enumerate() {
         let chunk = chunk.map_err(|error| {
             let line = error.line + chunks[..index].iter().map(|chunk| lines(chunk).count()).sum::<usize>();
             ReadError::BadLine(format!("line {line}: {}", error.message))

@@ -13,8 +13,9 @@ mod write;
 pub(super) use write::write;
 
 use super::error::{AssetError, cut};
+use super::import_progress::ImportProgress;
 use super::model::{ImportedModel, ModelLimits, ModelSetUp};
-use super::read::read_limited;
+use super::read::read_model;
 use crate::scene::Mesh;
 use chunks::{Elements, ReadError};
 use glam::Vec3;
@@ -30,12 +31,17 @@ const COORDINATE_LIMIT_M: f32 = 1e6;
 ///
 /// # Errors
 /// If the file can't be read, exceeds the limits, or has a mistake; the message names the line of a malformed one.
-pub(super) fn import(path: &Path, limits: &ModelLimits) -> Result<ImportedModel, AssetError> {
-    let bytes = read_limited(path, limits.file_bytes)?;
+pub(super) fn import(
+    path: &Path,
+    limits: &ModelLimits,
+    progress: &ImportProgress,
+) -> Result<ImportedModel, AssetError> {
+    let bytes = read_model(path, limits.file_bytes, progress)?;
     // Some programs begin text files with a byte order mark.
     let text = continued_lines::joined(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes));
     let bad_model = |message: String| AssetError::BadModel { format: "OBJ", message, path: path.to_owned() };
-    let elements = chunks::parse(&text, limits.triangles).map_err(|error| match error {
+    let elements = chunks::parse(&text, limits.triangles, progress).map_err(|error| match error {
+        ReadError::Cancelled(error) => error,
         ReadError::BadLine(message) => bad_model(cut(message)),
         ReadError::TooLarge(bytes) => AssetError::TooLarge {
             what: "the file's number of bytes",
@@ -78,12 +84,24 @@ fn assemble(elements: &Elements, library: &mut MaterialLibrary, crease_deg: f32)
         warnings.push("some texture coordinates are no numbers; all are left out".to_owned());
         mesh.uvs.clear();
     }
-    ensure_normals(&mut mesh, crease_deg, &mut warnings);
+    ensure_normals_with(&mut mesh, crease_deg, &mut warnings);
     Ok(ImportedModel { mesh, part_materials, set_up: ModelSetUp::default(), warnings })
 }
 
-/// Gives every vertex a unit normal: the file's if all of them are usable, else computed ones.
-fn ensure_normals(mesh: &mut Mesh, crease_deg: f32, warnings: &mut Vec<String>) {
+/// Makes triangles of every three vertices; corners at the same position become one vertex.
+pub(super) fn weld_corners(mesh: &mut Mesh) {
+    let first = normals::first_at_same_position(&mesh.positions);
+    mesh.triangles = first.chunks_exact(3).map(|corners| [corners[0], corners[1], corners[2]]).collect();
+}
+
+/// Gives every vertex a unit normal: the file's if all of them are usable, else computed ones, smooth except at hard
+/// edges. Vertices that no triangle has are dropped then.
+pub(super) fn ensure_normals(mesh: &mut Mesh, warnings: &mut Vec<String>) {
+    ensure_normals_with(mesh, normals::CREASE_DEG, warnings);
+}
+
+/// As [`ensure_normals`], for a crease angle.
+fn ensure_normals_with(mesh: &mut Mesh, crease_deg: f32, warnings: &mut Vec<String>) {
     let unit: Option<Vec<Vec3>> = mesh.normals.iter().map(|n| n.try_normalize()).collect();
     match unit {
         Some(unit) if !unit.is_empty() => mesh.normals = unit,

@@ -87,7 +87,7 @@ impl CornersByPosition {
 }
 
 /// Returns for each vertex the first vertex at the same position.
-fn first_at_same_position(positions: &[Vec3]) -> Vec<u32> {
+pub(super) fn first_at_same_position(positions: &[Vec3]) -> Vec<u32> {
     // Adding zero turns -0 into 0.
     let bits = |p: &Vec3| (*p + Vec3::ZERO).to_array().map(f32::to_bits);
     let mut sorted: Vec<([u32; 3], u32)> = positions.par_iter().map(bits).zip(0..to_index(positions.len())).collect();
@@ -146,6 +146,9 @@ fn split_by_normal(mesh: &mut Mesh, by_corner: &[(u32, Vec3)]) {
     mesh.positions = welder.vertices.par_iter().map(|indices| mesh.positions[old(indices)]).collect();
     if !mesh.uvs.is_empty() {
         mesh.uvs = welder.vertices.par_iter().map(|indices| mesh.uvs[old(indices)]).collect();
+    }
+    if !mesh.colors.is_empty() {
+        mesh.colors = welder.vertices.par_iter().map(|indices| mesh.colors[old(indices)]).collect();
     }
 }
 

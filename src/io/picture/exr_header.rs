@@ -29,6 +29,12 @@ pub(super) fn read_parts(content: &[u8]) -> Result<Vec<ReadExrPart>, String> {
     Ok(image.layer_data.into_iter().collect())
 }
 
+/// Returns true if the first part of a picture holds the studio that was rendered.
+pub(super) fn holds_studio(header: &exr::meta::header::Header) -> bool {
+    let studio = header.own_attributes.other.get(&text(STUDIO_FILE));
+    matches!(studio, Some(AttributeValue::Text(studio)) if studio.as_slice() != NO_STUDIO)
+}
+
 /// A part of an EXR file as it was read.
 pub(super) struct Header<'a>(pub &'a ReadExrPart);
 

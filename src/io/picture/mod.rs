@@ -5,11 +5,13 @@ mod exr_file;
 mod exr_header;
 mod icc;
 mod metadata;
+mod panorama;
 mod part_file;
 mod picture_file;
 mod rendered_file;
 
 pub use metadata::CaptureInfo;
+pub use panorama::is_panorama;
 pub use part_file::{PicturePart, encode_part, read_part};
 pub use picture_file::PictureFile;
 pub use rendered_file::{RenderedPicture, read_rendered};

@@ -14,6 +14,9 @@ pub(crate) const FLAG_SELECTED: u32 = 4;
 /// The surface has the hover outline.
 pub(crate) const FLAG_HOVERED: u32 = 8;
 
+/// The surface has a normal map; twin of `FLAG_RELIEF` in `scene.wgsl`.
+pub(crate) const FLAG_RELIEF: u32 = 16;
+
 /// A surface in the storage buffer; twin of `Surface` in `scene.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]

@@ -32,6 +32,7 @@ pub(crate) fn draw(
         gloss: Gloss::Ggx,
         has_fibres: false,
         has_layers: false,
+        has_relief: false,
     };
     let mut draws = Vec::new();
     for item in list.items.iter().filter(|item| item.pass == DrawPass::Glass) {

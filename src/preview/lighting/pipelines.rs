@@ -33,6 +33,8 @@ pub(crate) struct LightingVariant {
     pub has_fibres: bool,
     /// Surfaces with lacquer or translucency are present.
     pub has_layers: bool,
+    /// Surfaces with normal maps are present.
+    pub has_relief: bool,
 }
 
 /// Returns a WGSL flag: 1 or 0.
@@ -73,6 +75,7 @@ pub(crate) fn lighting(
         ("ILLUMINANCE", flag(variant.illuminance)),
         ("HAS_FIBRES", flag(variant.has_fibres && !variant.illuminance)),
         ("HAS_LAYERS", flag(variant.has_layers && !variant.illuminance)),
+        ("HAS_RELIEF", flag(variant.has_relief)),
         ("BLINN_PHONG", flag(variant.gloss == Gloss::BlinnPhong)),
     ];
     let layout = pipeline_layout(device, "lighting", &[&layouts.scene, &layouts.gbuffer, &layouts.masks]);

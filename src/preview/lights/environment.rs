@@ -38,26 +38,26 @@ impl Environment {
     pub fn new(scene: &Scene, table: &LightTable) -> Option<Self> {
         let probe = probe(scene)?;
         let triangles = backdrop_triangles(scene);
-        // Distance and reflected radiance along a ray
-        let radiance = |direction: Vec3| {
-            let Some((distance, triangle)) = closest_hit(&triangles, probe, direction) else {
-                return (FAR_M, table.surround_radiance(direction));
-            };
+        // Distance and reflected radiance along a ray; none where it hits nothing
+        let reflected = |direction: Vec3| {
+            let (distance, triangle) = closest_hit(&triangles, probe, direction)?;
             let [a, b, c] = triangle.corners;
             let normal = (b - a).cross(c - a).normalize_or_zero();
             let facing = if normal.dot(direction) > 0.0 { -normal } else { normal };
             let lit = irradiance(table, probe + distance * direction, facing)
                 + table.ambient.irradiance
                 + table.ambient.bounced;
-            (distance, triangle.albedo * lit / PI)
+            Some((distance, triangle.albedo * lit / PI))
         };
         // One ray per face of the box
-        let faces = FACES.map(radiance);
+        let seen = |direction| reflected(direction).unwrap_or_else(|| (FAR_M, table.surround_radiance(direction)));
+        let faces = FACES.map(seen);
         let distance = faces.map(|(distance, _)| distance);
-        // Integrate the bounced irradiance of each face over the sphere
+        // Integrate the bounced irradiance of each face over the sphere; that of the surround is counted as it comes
         let mut bounced = [Vec3::ZERO; 6];
         for direction in sphere_directions() {
-            let weight = radiance(direction).1 * (2.0 * TAU / RAYS as f32);
+            let Some((_, radiance)) = reflected(direction) else { continue };
+            let weight = radiance * (2.0 * TAU / RAYS as f32);
             for (sum, face) in bounced.iter_mut().zip(FACES) {
                 *sum += weight * face.dot(direction).max(0.0);
             }
@@ -199,8 +199,13 @@ mod tests {
     #[test]
     fn an_empty_scene_has_no_bounced_light() {
         let scene = Scene { objects: vec![subject()], ..Scene::default() };
-        let environment = Environment::new(&scene, &LightTable::default()).unwrap();
+        let mut table = LightTable::default();
+        let environment = Environment::new(&scene, &table).unwrap();
         assert_eq!((environment.radiance, environment.irradiance), ([Vec3::ZERO; 6], [Vec3::ZERO; 6]));
+        // The light of a surround is seen, but not bounced
+        table.ambient.surround_radiance = Vec3::ONE;
+        let environment = Environment::new(&scene, &table).unwrap();
+        assert_eq!((environment.radiance, environment.irradiance), ([Vec3::ONE; 6], [Vec3::ZERO; 6]));
         assert_eq!(Environment::new(&Scene::default(), &LightTable::default()), None);
     }
 }

@@ -159,14 +159,12 @@ impl LightTable {
             }
             let scale = picture_scale(&light, scene);
             let Some(mut gpu) = gpu_light(&light, scale) else {
-                let mut irradiance = scale * light.illuminance();
-                if let Some(environment) = light.environment {
-                    let mean = environment.mean_color() * environment.mean_relative_luminance();
-                    table.environments.push((environment, irradiance / PI));
-                    irradiance *= mean;
+                // The sun of a map casts shadows, as a light of its own
+                if let Some(sun) = light.sun_of_environment().filter(|_| lights.len() < MAX_LIGHTS) {
+                    let packed = gpu_light(&sun, picture_scale(&sun, scene)).filter(is_usable);
+                    lights.extend(packed.map(|gpu| (gpu, id, sun)));
                 }
-                table.ambient.irradiance += irradiance;
-                table.ambient.void_radiance += if light.visible_to_camera { irradiance / PI } else { Vec3::ZERO };
+                table.add_surround(light, scale);
                 continue;
             };
             if !is_usable(&gpu) || lights.len() == MAX_LIGHTS {
@@ -186,8 +184,7 @@ impl LightTable {
         }
         table.ends =
             std::array::from_fn(|group| table.lights.partition_point(|light| light.kind_group() <= group) as u32);
-        let maps =
-            table.environments.iter().map(|(map, even)| map.mean_color() * map.mean_relative_luminance() * *even);
+        let maps = table.environments.iter().map(|(map, even)| map.mean_relative_radiance_without_sun() * *even);
         table.ambient.surround_radiance = table.ambient.irradiance / PI - maps.sum::<Vec3>();
         if let Some(room) = scene.room.as_ref().filter(|_| bounce_estimate) {
             table.ambient.bounced = bounced_irradiance(room, flux);
@@ -197,6 +194,18 @@ impl LightTable {
 }
 
 impl LightTable {
+    /// Adds a surround: an even one, or a map without its sun.
+    fn add_surround(&mut self, light: PhotometricLight, scale: Vec3) {
+        let mut irradiance = scale * light.illuminance();
+        if let Some(environment) = light.environment {
+            let mean = environment.mean_relative_radiance_without_sun();
+            self.environments.push((environment, irradiance / PI));
+            irradiance *= mean;
+        }
+        self.ambient.irradiance += irradiance;
+        self.ambient.void_radiance += if light.visible_to_camera { irradiance / PI } else { Vec3::ZERO };
+    }
+
     /// Returns the layer of a measured distribution plus one; 0 beyond [`MAX_TABLES`].
     fn layer_of(&mut self, table: &Arc<IntensityTable>) -> u32 {
         let known = self.tables.iter().position(|known| Arc::ptr_eq(known, table));
@@ -218,8 +227,8 @@ impl LightTable {
             (u * turn.x + v * turn.y + direction * height).normalize_or(direction)
         };
         let mean = |(map, even): &(EnvironmentLight, Vec3)| {
-            let radiance = |i| map.color(around(i)) * map.relative_luminance(around(i));
-            (0..CONE_RAYS).map(radiance).sum::<Vec3>() * *even / CONE_RAYS as f32
+            (0..CONE_RAYS).map(|i| map.relative_radiance_without_sun(around(i))).sum::<Vec3>() * *even
+                / CONE_RAYS as f32
         };
         self.ambient.surround_radiance + self.environments.iter().map(mean).sum::<Vec3>()
     }

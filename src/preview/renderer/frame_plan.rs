@@ -5,7 +5,7 @@ use crate::preview::channel::Channel;
 use crate::preview::geometry::draw_item::DrawPass;
 use crate::preview::geometry::draw_list::{DrawList, Uploads};
 use crate::preview::geometry::oriented_box::OrientedBox;
-use crate::preview::geometry::surface::diffusion_m;
+use crate::preview::geometry::surface::{FLAG_RELIEF, diffusion_m};
 use crate::preview::input::{Options, PreviewInput};
 use crate::preview::lighting::pipelines::LightingVariant;
 use crate::preview::lights::environment::Environment;
@@ -89,6 +89,7 @@ impl FramePlan {
             gloss: options.gloss,
             has_fibres: !self.list.strands.is_empty(),
             // Frosting, in the last byte, is the glass pass's
+            has_relief: self.list.surfaces.iter().any(|surface| surface.flags & FLAG_RELIEF != 0),
             has_layers: self.list.surfaces.iter().any(|surface| surface.layers & 0x00ff_00ff != 0),
         }
     }

@@ -57,17 +57,6 @@ fn tilted_normal(normal: vec3f, d1: vec3f, d2: vec3f, duv1: vec2f, duv2: vec2f, 
     return select(normal, tilted * inverseSqrt(max(dot(tilted, tilted), 1e-12)), usable);
 }
 
-// Bends a normal towards the geometric normal until the view is mirrored above the surface; twin of `math::bend_above`.
-fn bend_above(normal: vec3f, geometric_normal: vec3f, view_dir: vec3f) -> vec3f {
-    let c = max(dot(view_dir, geometric_normal), 1e-6);
-    let a = dot(view_dir, normal);
-    let d = dot(normal, geometric_normal);
-    let root = sqrt(max(a * a + c * (c - 2.0 * a * d), 0.0));
-    let s = select((root - a) / c, (c - 2.0 * a * d) / max(a + root, 1e-12), a > 0.0);
-    let bent = normalize(normalize(normal + geometric_normal * s) + geometric_normal * 1e-3);
-    return select(bent, normal, a > 0.0 && 2.0 * a * d >= c);
-}
-
 @fragment
 fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> FragmentOutput {
     let to_eye = frame.eye - in.world;
@@ -104,8 +93,8 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> FragmentOut
         let d1 = dpdx(in.world);
         let d2 = dpdy(in.world);
         let tilted = tilted_normal(normalize(normal), d1, d2, dpdx(normal_uv), dpdy(normal_uv), direction);
-        let bent = bend_above(tilted, normalize(geometric_normal), normalize(to_eye));
-        normal = select(normal, bent, draw.maps.x != 0.0);
+        // It is bent towards the viewer where the lighting pass needs that
+        normal = select(normal, tilted, draw.maps.x != 0.0);
     }
     if any(in.color < vec3f(0.999)) {
         color = pack_color(unpack_color(color) * in.color, color >> 30u);

@@ -26,6 +26,8 @@ override ILLUMINANCE: bool = false;
 override HAS_FIBRES: bool = false;
 // Surfaces with lacquer or translucency are present.
 override HAS_LAYERS: bool = false;
+// Surfaces with normal maps are present.
+override HAS_RELIEF: bool = false;
 // Uses Blinn-Phong highlights instead of GGX.
 override BLINN_PHONG: bool = false;
 
@@ -139,13 +141,24 @@ fn emitter_angle2(a: IncidentLight) -> f32 {
     return max(dot(a.right, a.right), dot(a.up, a.up)) / max(dot(a.centre, a.centre), 1e-6);
 }
 
+// Bends a normal towards the geometric normal until the view is mirrored above the surface; twin of `math::bend_above`.
+fn bend_above(normal: vec3f, geometric_normal: vec3f, view_dir: vec3f) -> vec3f {
+    let c = max(dot(view_dir, geometric_normal), 1e-6);
+    let a = dot(view_dir, normal);
+    let d = dot(normal, geometric_normal);
+    let root = sqrt(max(a * a + c * (c - 2.0 * a * d), 0.0));
+    let s = select((root - a) / c, (c - 2.0 * a * d) / max(a + root, 1e-12), a > 0.0);
+    let bent = normalize(normalize(normal + geometric_normal * s) + geometric_normal * 1e-3);
+    return select(bent, normal, a > 0.0 && 2.0 * a * d >= c);
+}
+
 // Returns the normal that a light is received with: towards the light for a fibre.
-fn receiving_normal(s: Shading, is_fibre: bool, light: u32) -> vec3f {
+fn receiving_normal(s: Shading, normal: vec3f, is_fibre: bool, light: u32) -> vec3f {
     if !HAS_FIBRES {
-        return s.normal;
+        return normal;
     }
     let to_light = lights[light].position - s.position;
-    return select(s.normal, to_light * inverseSqrt(max(dot(to_light, to_light), 1e-12)), is_fibre);
+    return select(normal, to_light * inverseSqrt(max(dot(to_light, to_light), 1e-12)), is_fibre);
 }
 
 // Square root of the F0 of lacquer, of index 1.5.
@@ -159,9 +172,18 @@ fn shade(p: GBufferSample) -> ShadedLight {
     let ray = pixel_ray(p.at);
     let gloss = gloss_at(p.packed, p.id.x);
     let position = frame.eye + ray * (frame.near_m / depth);
-    let s = shading(position, unpack_direction(p.packed.x), -normalize(ray), unpack_color(p.packed.y), gloss);
+    // What a normal map leans away from the view mirrors nothing: bend the normal of reflections, and keep that of diffuse
+    // light
+    let normal = unpack_direction(p.packed.x);
+    var mirror_normal = normal;
+    if HAS_RELIEF {
+        let flags = surfaces[max(p.id.x & ID_INDEX_MASK, 1u) - 1u].flags;
+        let bent = bend_above(normal, unpack_direction(p.packed.z), -normalize(ray));
+        mirror_normal = select(normal, bent, p.id.x != 0u && (flags & FLAG_RELIEF) != 0u);
+    }
+    let s = shading(position, mirror_normal, -normalize(ray), unpack_color(p.packed.y), gloss);
     // Ambient and environment light
-    var diffuse = ambient(position, s.normal);
+    var diffuse = ambient(position, normal);
     if ILLUMINANCE {
         diffuse = vec3f(0.0);
     }
@@ -177,7 +199,7 @@ fn shade(p: GBufferSample) -> ShadedLight {
         layers = unpack4x8unorm(surfaces[max(p.id.x & ID_INDEX_MASK, 1u) - 1u].layers) * select(1.0, 0.0, p.id.x == 0u);
         lacquer = shading(position, s.normal, s.view, vec3f(0.0), vec3f(layers.y, LACQUER_SQRT_F0, 0.0));
         lacquer_light = environment(position, reflect(-s.view, s.normal), layers.y) * lacquer.material.reflectance;
-        far_side = ambient(position, -s.normal);
+        far_side = ambient(position, -normal);
     }
 
     // Fibres have their tangent in place of the normal, and scatter light over the whole sphere
@@ -204,7 +226,7 @@ fn shade(p: GBufferSample) -> ShadedLight {
                 let from_light = lights[light].color * (a.w * present(k, deltas_end(tile)));
                 scattered += fibre_light(f, is_fibre, light, from_light, a.xyz, angle2);
             }
-            let cosine = max(dot(s.normal, a.xyz), 0.0);
+            let cosine = max(dot(normal, a.xyz), 0.0);
             diffuse += color * (cosine * coat_factor(s, cosine, 0.0));
             if BLINN_PHONG {
                 specular += blinn_phong(s, a.xyz) * max(dot(s.normal, a.xyz), 0.0) * color;
@@ -214,7 +236,7 @@ fn shade(p: GBufferSample) -> ShadedLight {
             if HAS_LAYERS {
                 lacquer_light += delta_highlight(lacquer, a.xyz, lights[light].radius) * color;
                 far_side += lights[light].color
-                    * (a.w * present(k, deltas_end(tile)) * max(-dot(s.normal, a.xyz), 0.0));
+                    * (a.w * present(k, deltas_end(tile)) * max(-dot(normal, a.xyz), 0.0));
             }
             k++;
             continuing {
@@ -227,7 +249,7 @@ fn shade(p: GBufferSample) -> ShadedLight {
         var k = deltas_end(tile);
         loop {
             let light = tile_light(tile, k);
-            let a = sphere_light(light, position, receiving_normal(s, is_fibre, light));
+            let a = sphere_light(light, position, receiving_normal(s, normal, is_fibre, light));
             if HAS_FIBRES {
                 let from_light = lights[light].color
                     * (present(k, spheres_end(tile)) * radius_window(light, a.centre) * a.transmission * a.irradiance);
@@ -240,7 +262,7 @@ fn shade(p: GBufferSample) -> ShadedLight {
             specular += color * emitter_highlight(s, a, true);
             if HAS_LAYERS {
                 lacquer_light += color * emitter_highlight(lacquer, a, true);
-                let far = sphere_light(light, position, -s.normal);
+                let far = sphere_light(light, position, -normal);
                 far_side += lights[light].color
                     * (present(k, spheres_end(tile)) * radius_window(light, a.centre) * far.transmission * far.irradiance);
             }
@@ -255,7 +277,7 @@ fn shade(p: GBufferSample) -> ShadedLight {
         var k = spheres_end(tile);
         loop {
             let light = tile_light(tile, k);
-            let a = panel_light(light, position, receiving_normal(s, is_fibre, light), false);
+            let a = panel_light(light, position, receiving_normal(s, normal, is_fibre, light), false);
             if HAS_FIBRES {
                 let from_light = lights[light].color
                     * (present(k, rects_end(tile)) * panel_radius_window(light, a.centre) * a.transmission * a.irradiance);
@@ -268,7 +290,7 @@ fn shade(p: GBufferSample) -> ShadedLight {
             specular += color * emitter_highlight(s, a, false);
             if HAS_LAYERS {
                 lacquer_light += color * emitter_highlight(lacquer, a, false);
-                let far = panel_light(light, position, -s.normal, false);
+                let far = panel_light(light, position, -normal, false);
                 far_side += lights[light].color
                     * (present(k, rects_end(tile)) * panel_radius_window(light, a.centre) * far.transmission * far.irradiance);
             }
@@ -283,7 +305,7 @@ fn shade(p: GBufferSample) -> ShadedLight {
         var k = rects_end(tile);
         loop {
             let light = tile_light(tile, k);
-            let a = panel_light(light, position, receiving_normal(s, is_fibre, light), true);
+            let a = panel_light(light, position, receiving_normal(s, normal, is_fibre, light), true);
             if HAS_FIBRES {
                 let from_light = lights[light].color
                     * (present(k, discs_end(tile)) * panel_radius_window(light, a.centre) * a.transmission * a.irradiance);
@@ -296,7 +318,7 @@ fn shade(p: GBufferSample) -> ShadedLight {
             specular += color * emitter_highlight(s, a, true);
             if HAS_LAYERS {
                 lacquer_light += color * emitter_highlight(lacquer, a, true);
-                let far = panel_light(light, position, -s.normal, true);
+                let far = panel_light(light, position, -normal, true);
                 far_side += lights[light].color
                     * (present(k, discs_end(tile)) * panel_radius_window(light, a.centre) * far.transmission * far.irradiance);
             }

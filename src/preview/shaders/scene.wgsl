@@ -65,6 +65,9 @@ struct Surface {
     unused_1: u32,
 }
 
+// Flag of a surface with a normal map.
+const FLAG_RELIEF: u32 = 16u;
+
 // Outline flags in the id buffer; the other bits hold the surface index plus one, 0 for the background.
 const ID_SELECTED: u32 = 1u << 31u;
 const ID_HOVERED: u32 = 1u << 30u;

@@ -96,6 +96,15 @@ impl<'a> Bsdf<'a> {
         }
     }
 
+    /// Returns the same BSDF whose diffuse lobe has this outward normal, world space: its normal was bent towards the
+    /// viewer. Layers are bent with their base.
+    pub fn with_relief(self, normal: Vec3) -> Self {
+        match self {
+            Bsdf::Surface(surface) => Bsdf::Surface(surface.with_relief(normal)),
+            Bsdf::Layered(_) | Bsdf::Fibre(_) => self,
+        }
+    }
+
     /// Returns the same BSDF with this boundary, for a path that accepts this polarisation.
     pub fn with_boundary(self, boundary: Boundary, polarisation: Polarisation) -> Self {
         match self {
@@ -106,9 +115,10 @@ impl<'a> Bsdf<'a> {
     }
 
     /// Returns the shading normal on the side of the outgoing direction; zero for fibres, frosted glass and translucent
-    /// sheets, which scatter light from all directions.
+    /// sheets, which scatter light from all directions, and for two normals.
     pub fn normal(&self) -> Vec3 {
         match self {
+            Bsdf::Surface(surface) if surface.has_relief() => Vec3::ZERO,
             Bsdf::Surface(surface) => surface.normal(),
             Bsdf::Layered(layered) if layered.is_two_sided() => Vec3::ZERO,
             Bsdf::Layered(layered) => layered.normal(),

@@ -15,6 +15,8 @@ pub struct ShadingGeometry {
     pub wo: Vec3,
     /// Outgoing direction, world space.
     pub wo_world: Vec3,
+    /// 1 on the outer side of the surface, -1 on the inner one.
+    side: f32,
 }
 
 impl ShadingGeometry {
@@ -28,7 +30,7 @@ impl ShadingGeometry {
         let (tangent, bitangent) = orthonormal_basis(normal);
         let wo_world = wo;
         let wo = Vec3::new(wo.dot(tangent), wo.dot(bitangent), wo.dot(normal).max(1e-6));
-        ShadingGeometry { tangent, bitangent, normal, geometric_normal, wo, wo_world }
+        ShadingGeometry { tangent, bitangent, normal, geometric_normal, wo, wo_world, side }
     }
 
     /// Returns the frame whose X axis is along this direction, world space, as far as the surface allows.
@@ -39,6 +41,11 @@ impl ShadingGeometry {
         let w = self.wo_world;
         let wo = Vec3::new(w.dot(tangent), w.dot(bitangent), self.wo.z);
         ShadingGeometry { tangent, bitangent, wo, ..self }
+    }
+
+    /// Returns the factor that brings an outward normal to the side of the outgoing direction: 1 or -1.
+    pub fn side(&self) -> f32 {
+        self.side
     }
 
     /// Transforms a local direction to world space.

@@ -14,7 +14,7 @@ impl<'a> SurfaceBsdf<'a> {
     /// Returns the same BSDF with scattering under the surface in place of the diffuse lobe.
     pub fn with_subsurface(self) -> Self {
         let probabilities = LobeProbabilities { base: Lobe::Subsurface, ..self.probabilities };
-        SurfaceBsdf { diffuse: DiffuseLobe { factor: Vec3::ZERO }, probabilities, ..self }
+        SurfaceBsdf { diffuse: DiffuseLobe { factor: Vec3::ZERO, ..self.diffuse }, probabilities, ..self }
     }
 
     /// Returns true if some lobe number samples scattering under the surface.
@@ -58,7 +58,7 @@ impl<'a> SurfaceBsdf<'a> {
         SurfaceBsdf {
             probabilities: LobeProbabilities { dielectric: 0.0, microfacet: 0.0, base: Lobe::Diffuse },
             microfacet: MicrofacetLobe::NONE,
-            diffuse: DiffuseLobe { factor },
+            diffuse: DiffuseLobe { factor, ..self.diffuse },
             ..self
         }
     }

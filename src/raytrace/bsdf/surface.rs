@@ -49,13 +49,31 @@ impl<'a> SurfaceBsdf<'a> {
             },
             dielectric: DielectricLobe { ior: material.ior, base_color, boundary, polarisation: Polarisation::NONE },
             microfacet: MicrofacetLobe::new(&point, geometry.wo),
-            diffuse: DiffuseLobe { factor: point.diffuse_factor(base_color, coat_albedo) },
+            diffuse: DiffuseLobe { factor: point.diffuse_factor(base_color, coat_albedo), normal: None },
         }
     }
 
     /// Returns the same BSDF with this boundary, for a path that accepts this polarisation.
     pub fn with_boundary(self, boundary: Boundary, polarisation: Polarisation) -> Self {
         SurfaceBsdf { dielectric: DielectricLobe { boundary, polarisation, ..self.dielectric }, ..self }
+    }
+
+    /// Returns the same BSDF whose diffuse lobe has this outward normal, world space.
+    pub fn with_relief(self, normal: Vec3) -> Self {
+        let side = self.geometry.side();
+        let normal = Some(self.geometry.to_local(normal * side));
+        SurfaceBsdf { diffuse: DiffuseLobe { normal, ..self.diffuse }, ..self }
+    }
+
+    /// Returns true if the diffuse lobe has a normal of its own.
+    pub fn has_relief(&self) -> bool {
+        self.diffuse.normal.is_some()
+    }
+
+    /// Returns true if a direction in the local frame is above the surface of a lobe.
+    #[inline(always)]
+    fn is_in_front(&self, wi: Vec3) -> bool {
+        wi.z > 0.0 || (self.has_relief() && self.diffuse.cosine(wi) > 0.0)
     }
 
     /// Returns the shading normal on the side of the outgoing direction.
@@ -78,7 +96,7 @@ impl<'a> SurfaceBsdf<'a> {
     /// are left out of both.
     pub fn eval(&self, direction: Vec3) -> (Vec3, f32) {
         let wi = self.geometry.to_local(direction);
-        if wi.z <= 0.0 || !self.geometry.is_above(direction) || self.point.transmission >= 1.0 {
+        if !self.is_in_front(wi) || !self.geometry.is_above(direction) || self.point.transmission >= 1.0 {
             return (Vec3::ZERO, 0.0);
         }
         self.eval_local(wi)
@@ -102,8 +120,15 @@ impl<'a> SurfaceBsdf<'a> {
         let probability = self.probabilities.opaque(lobe);
         match lobe {
             Lobe::Dielectric | Lobe::Subsurface => (Vec3::ZERO, 0.0),
+            Lobe::Microfacet if self.has_relief() && wi.z <= 0.0 => (Vec3::ZERO, 0.0),
             Lobe::Microfacet => self.microfacet.eval(&self.point, self.geometry.wo, wi, probability),
-            Lobe::Diffuse => self.diffuse.eval(wi, self.point.coat_albedo(wi.z), probability),
+            Lobe::Diffuse => {
+                let cosine = self.diffuse.cosine(wi);
+                if self.has_relief() && cosine <= 0.0 {
+                    return (Vec3::ZERO, 0.0);
+                }
+                self.diffuse.eval(cosine, self.point.coat_albedo(cosine), probability)
+            }
         }
     }
 
@@ -116,12 +141,12 @@ impl<'a> SurfaceBsdf<'a> {
             Lobe::Dielectric => return self.dielectric.sample(&self.geometry, u_lobe),
             Lobe::Microfacet if self.point.is_smooth() => return self.sample_smooth_microfacet(),
             Lobe::Microfacet => MicrofacetLobe::sample(&self.point, self.geometry.wo, u),
-            Lobe::Diffuse => DiffuseLobe::sample(u),
+            Lobe::Diffuse => self.diffuse.sample(u),
             Lobe::Subsurface => return None,
         };
         // Discard directions below the surface
         let direction = self.geometry.to_world(wi);
-        if wi.z <= 0.0 || !self.geometry.is_above(direction) {
+        if !self.is_in_front(wi) || !self.geometry.is_above(direction) {
             return None;
         }
         // Evaluate all lobes in that direction

@@ -86,7 +86,7 @@ fn no_normal_map_reflects_more_light_than_arrives() {
                 let wo = warp::cosine_hemisphere(Vec2::new(set[0], set[1]));
                 let tilted = warp::uniform_sphere(Vec2::new(set[2], 0.8 * set[3]));
                 let normal = crate::math::bend_above(tilted, Vec3::Z, wo);
-                let bsdf = Bsdf::new(&white, Vec3::ONE, normal, Vec3::Z, wo);
+                let bsdf = Bsdf::new(&white, Vec3::ONE, normal, Vec3::Z, wo).with_relief(tilted);
                 let weights = (0..1024).map(|k| {
                     let set = sobol_burley::sample_4d(k, 0, 17);
                     let sample = bsdf.sample(set[0], Vec2::new(set[2], set[3]));
@@ -96,9 +96,35 @@ fn no_normal_map_reflects_more_light_than_arrives() {
                 let albedo = weights.sum::<f32>() / 1024.0;
                 // Sampling noise of a white lobe is below 2 %
                 assert!(albedo < 1.02, "{roughness}: albedo {albedo} for {wo} and {normal}");
-                assert!(albedo > 0.2 || wo.z < 0.1, "{roughness}: black, {albedo}, for {wo} and {normal}");
+                let is_lit = tilted.z > 0.0 || material.metallic > 0.0;
+                assert!(albedo > 0.2 || wo.z < 0.1 || !is_lit, "{roughness}: black, {albedo}, for {wo} and {normal}");
             }
         }
+    }
+}
+
+#[test]
+fn relief_that_leans_away_from_the_viewer_is_lit_by_its_own_normal() {
+    // Without a coat: index 1
+    let matte = mapped(&Material { base_color: [0.8; 3], ior: 1.0, roughness: 1.0, ..Material::default() });
+    let (sin, cos) = 40.0_f32.to_radians().sin_cos();
+    let (relief, wo) = (Vec3::new(-sin, 0.0, cos), Vec3::new(0.9, 0.0, 0.19_f32.sqrt()));
+    let bent = crate::math::bend_above(relief, Vec3::Z, wo);
+    assert!(bent.dot(relief) < 0.9, "it is bent by far");
+    for side in [1.0, -1.0] {
+        let bsdf = Bsdf::new(&matte, Vec3::ONE, bent * side, Vec3::Z * side, wo).with_relief(relief * side);
+        for wi in [Vec3::Z, relief, Vec3::new(-0.95, 0.0, 0.0975_f32.sqrt()), Vec3::new(0.95, 0.1, 0.08).normalize()] {
+            // Lambert's law
+            let expected = 0.8 / std::f32::consts::PI * wi.dot(relief).max(0.0);
+            assert!((bsdf.eval(wi).0 - expected).length() < 1e-5, "{wi}: {} for {expected}", bsdf.eval(wi).0);
+        }
+        // A facet sees (1 + cos) / 2 of a sky by its cosine
+        let samples = (0..4096).filter_map(|k| {
+            let set = sobol_burley::sample_4d(k, 0, 23);
+            bsdf.sample(set[0], Vec2::new(set[2], set[3]))
+        });
+        let albedo = samples.map(|sample| sample.weight.x).sum::<f32>() / 4096.0;
+        assert!((albedo - 0.8 * 0.5 * (1.0 + cos)).abs() < 0.005, "{albedo}");
     }
 }
 

@@ -161,7 +161,7 @@ impl PathTracer<'_> {
 
         // Gather photons and sample the lights at the exit, for this path alone
         let material = &self.caster.scene.materials[surface.material as usize];
-        let bsdf = Bsdf::at_exit(material, surface.normal, surface.geometric_normal);
+        let bsdf = Bsdf::at_exit(material, surface.relief_normal, surface.geometric_normal);
         let point = ShadingPoint { surface: &surface, bsdf: &bsdf, importances: None, control: None, ..*soft.point };
         path.split_factor = 1.0;
         self.gather_photons(path, &surface, &bsdf, limits, sink);
