@@ -148,6 +148,18 @@ mod tests {
     }
 
     #[test]
+    fn a_fluid_runs_by_its_frames() {
+        let mut scene = Scene::default();
+        let fluid = Tank { fluid: Some(Box::default()), ..Tank::default() };
+        scene.objects.push(Object::new("Tank", Shape::Tank(Box::new(fluid))));
+        let mut player = TankPlayer::default();
+        player.play(&scene, Some(ObjectId(0)));
+        player.advance(&scene, 0.0, true);
+        player.advance(&scene, 0.013, true).unwrap().apply(&mut scene).unwrap();
+        assert_eq!(time_of(&scene, ObjectId(0)), Some(3.0 / 240.0));
+    }
+
+    #[test]
     fn a_run_ends_at_the_longest_time_and_with_its_tank() {
         let mut scene = Scene::default();
         let late = Tank::default().longest_s() - 0.01;

@@ -94,7 +94,8 @@ pub enum ObstacleForm {
 impl Fluid {
     /// Largest number of drops, of jets and of obstacles.
     pub const MAX_THINGS: usize = 8;
-    /// Largest number of cells: 128 x 64 x 128. The solver takes about 100 bytes a cell while it runs.
+    /// Largest number of cells: 128 x 64 x 128. The solver takes about 100 bytes a cell while it
+    /// runs, the surface 240: 300 MB at most.
     pub const MAX_CELLS: usize = 1 << 20;
     /// Largest number of particles; a jet ends when there are as many. Each takes 60 bytes, and as many while they are
     /// sorted.

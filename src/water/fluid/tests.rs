@@ -188,6 +188,7 @@ fn a_ball_that_falls_in_moves_the_water_away_and_stands_where_it_should() {
 
 #[test]
 fn extremes_neither_fail_nor_lose_water() {
+    assert_eq!(size_of::<Particle>(), 60, "the bound of memory is of this size");
     // Without air, without water, a single cell, all ground, more than there is room for
     let full = column([6, 6, 6], 6, 6);
     assert_eq!(at(&full, 0.05).particles.len(), 6 * 6 * 6 * 8);

@@ -30,7 +30,7 @@ const PASSES: usize = 3;
 /// Passes that tell much water from little.
 const WIDE_PASSES: usize = 6;
 /// Part of water around a sample below which nothing is smoothed, and from which on everything is.
-const MUCH: [f32; 2] = [0.2, 0.42];
+const MUCH: [f32; 2] = [0.3, 0.46];
 /// How much faster the values grow inside, so that smoothing moves no plane.
 const STEEPER: f32 = 3.0;
 /// Largest value of a sample, cells.
