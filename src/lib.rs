@@ -16,7 +16,7 @@
 //! | `photo` | photometric lights, exposure, meter arithmetic, portrait patterns, scales in thirds of a stop, pictures |
 //! | `gear` | the list of heads, modifiers and stands, and what a studio needs of it |
 //! | `figures` | people by parameters: body, pose, clothes, hair, and their meshes |
-//! | `water` | water in a tank: cells, the automaton that moves them, the surfaces of water and ground |
+//! | `water` | water in a tank: cells, the automaton that moves them, the fluid solver, the surfaces of water and ground |
 //! | `raytrace` | the ray tracer: BVH, BSDFs, light sampling, path tracer, photon map, film, light meter, live view |
 //! | `denoise` | the denoiser: a neural network and its weights |
 //! | `raster` | the z-buffer renderer on the CPU |

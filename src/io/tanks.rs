@@ -1,18 +1,21 @@
 //! The meshes of water tanks, simulated on first use.
 
 use crate::scene::{Mesh, Tank, Texture};
-use crate::water::{self, Simulation};
+use crate::water::{self, FluidSimulation, Simulation};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 /// Number of simulations and of meshes that are kept. A simulation takes six bytes a cell and 16 a column: at most
 /// 14 MB.
 const CAPACITY: usize = 4;
+/// Number of fluids that are kept. One takes 60 bytes a particle and 12 a cell: at most 75 MB.
+const FLUIDS: usize = 2;
 
 /// The last simulations and meshes, the latest last, with the hash of the picture of the ground.
 #[derive(Default)]
 struct Cache {
     simulations: Vec<(u64, Simulation)>,
+    fluids: Vec<(u64, FluidSimulation)>,
     meshes: Vec<(u64, Tank, Arc<Mesh>)>,
 }
 
@@ -28,20 +31,31 @@ pub(super) fn mesh(tank: &Tank, heights: Option<&Texture>) -> Arc<Mesh> {
     {
         return mesh.clone();
     }
-    let earlier = {
-        let mut cache = cache();
-        let found =
-            cache.simulations.iter().rposition(|(known, simulation)| *known == hash && simulation.leads_to(tank));
-        found.map(|index| cache.simulations.remove(index).1)
-    };
     // Simulate without the lock, so that several tanks are simulated in parallel
-    let mut simulation = earlier.unwrap_or_else(|| Simulation::with_heights(tank, heights));
-    simulation.run_to(tank);
-    let mesh = Arc::new(water::mesh(simulation.grid(), tank));
-    let mut cache = cache();
-    keep(&mut cache.simulations, (hash, simulation));
-    keep(&mut cache.meshes, (hash, tank.clone(), mesh.clone()));
+    let mesh = if tank.fluid.is_some() {
+        let earlier = take(&mut cache().fluids, |(known, fluid)| *known == hash && fluid.leads_to(tank));
+        let mut fluid = earlier.map_or_else(|| FluidSimulation::new(tank, heights), |(_, fluid)| fluid);
+        fluid.run_to(tank);
+        let mesh = Arc::new(water::fluid_mesh(&fluid, tank));
+        keep(&mut cache().fluids, (hash, fluid), FLUIDS);
+        mesh
+    } else {
+        let leads = |(known, simulation): &(u64, Simulation)| *known == hash && simulation.leads_to(tank);
+        let earlier = take(&mut cache().simulations, leads);
+        let mut simulation =
+            earlier.map_or_else(|| Simulation::with_heights(tank, heights), |(_, simulation)| simulation);
+        simulation.run_to(tank);
+        let mesh = Arc::new(water::mesh(simulation.grid(), tank));
+        keep(&mut cache().simulations, (hash, simulation), CAPACITY);
+        mesh
+    };
+    keep(&mut cache().meshes, (hash, tank.clone(), mesh.clone()), CAPACITY);
     mesh
+}
+
+/// Takes the latest entry that fits out of a list.
+fn take<T>(list: &mut Vec<T>, fits: impl Fn(&T) -> bool) -> Option<T> {
+    list.iter().rposition(fits).map(|index| list.remove(index))
 }
 
 fn content_hash(picture: &Texture) -> u64 {
@@ -50,8 +64,8 @@ fn content_hash(picture: &Texture) -> u64 {
     hasher.finish()
 }
 
-fn keep<T>(list: &mut Vec<T>, latest: T) {
-    let excess = (list.len() + 1).saturating_sub(CAPACITY);
+fn keep<T>(list: &mut Vec<T>, latest: T, capacity: usize) {
+    let excess = (list.len() + 1).saturating_sub(capacity);
     list.drain(..excess);
     list.push(latest);
 }
@@ -59,7 +73,7 @@ fn keep<T>(list: &mut Vec<T>, latest: T) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Spring;
+    use crate::scene::{Block, CellContent, Spring};
     use glam::Vec3;
 
     #[test]
@@ -71,10 +85,18 @@ mod tests {
             simulation.run_to(&at(time_s));
             water::mesh(simulation.grid(), &at(time_s))
         };
+        let block = Block { from: [0, 2, 0], to: [3, 7, 7], content: CellContent::Water };
         for time_s in [0.5, 1.0, 0.25, 1.0] {
             assert_eq!(*mesh(&at(time_s), None), direct(time_s), "{time_s} s");
         }
         assert!(Arc::ptr_eq(&mesh(&at(1.0), None), &mesh(&at(1.0), None)));
+        let fluid = Some(Box::new(crate::scene::Fluid::default()));
+        let splash = |time_s| Tank { cells: [8, 8, 8], blocks: vec![block], fluid: fluid.clone(), ..at(time_s) };
+        for time_s in [0.02, 0.05, 0.01] {
+            let mut direct = FluidSimulation::new(&splash(time_s), None);
+            direct.run_to(&splash(time_s));
+            assert_eq!(*mesh(&splash(time_s), None), water::fluid_mesh(&direct, &splash(time_s)), "{time_s} s");
+        }
         let small = |i: u32| Tank { cells: [2, 2, 2], water_m: 0.001 * i as f32, ..Tank::default() };
         (0..20).for_each(|i| drop(mesh(&small(i), None)));
         // The picture of the ground is another file, or was changed
@@ -84,5 +106,6 @@ mod tests {
         assert!(of(20) < of(90) && of(20) < of(90));
         let cache = CACHE.lock().unwrap();
         assert!(cache.simulations.len() <= CAPACITY && cache.meshes.len() <= CAPACITY);
+        assert!(cache.fluids.len() <= FLUIDS);
     }
 }

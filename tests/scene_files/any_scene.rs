@@ -1,5 +1,6 @@
 //! Property tests: random scenes round-trip, random text and changed bytes never panic.
 
+use super::any_tank::tank;
 use super::preset_text;
 use catchlight::figures::{NamedPose, READY, randomised};
 use catchlight::io::{parse_scene, write_scene};
@@ -7,12 +8,12 @@ use catchlight::scene::*;
 use glam::Vec3;
 use proptest::prelude::*;
 
-fn number(low: f32, high: f32) -> impl Strategy<Value = f32> {
+pub(super) fn number(low: f32, high: f32) -> impl Strategy<Value = f32> {
     prop_oneof![3 => low..=high, 1 => Just(low), 1 => Just(high), 1 => (low..=high).prop_map(f32::round)]
         .prop_map(move |x| x.clamp(low, high))
 }
 
-fn vector(low: f32, high: f32) -> impl Strategy<Value = Vec3> {
+pub(super) fn vector(low: f32, high: f32) -> impl Strategy<Value = Vec3> {
     [number(low, high), number(low, high), number(low, high)].prop_map(Vec3::from)
 }
 
@@ -171,47 +172,6 @@ fn shape() -> impl Strategy<Value = Shape> {
             radius_m
         }),
     ]
-}
-
-fn tank() -> impl Strategy<Value = Tank> {
-    let height = || number(0.0, 1e5);
-    let terrain = prop_oneof![
-        height().prop_map(|height_m| Terrain::Flat { height_m }),
-        (height(), height()).prop_map(|(floor_m, rim_m)| Terrain::Basin { floor_m, rim_m }),
-        (any::<u32>(), height(), height(), number(1e-5, 1e5))
-            .prop_map(|(seed, low_m, high_m, period_m)| Terrain::Hills { seed, low_m, high_m, period_m }),
-        ("[a-z]{1,8}\\.png", height(), height()).prop_map(|(path, low_m, high_m)| Terrain::Picture {
-            path,
-            low_m,
-            high_m
-        }),
-    ];
-    let contents = [CellContent::Air, CellContent::Ground, CellContent::Metal, CellContent::Water];
-    let cell = || [0..100_u16, 0..100, 0..100];
-    let block = (cell(), cell(), 0..4_usize).prop_map(move |(a, b, content)| Block {
-        from: [0, 1, 2].map(|axis| a[axis].min(b[axis])),
-        to: [0, 1, 2].map(|axis| a[axis].max(b[axis])),
-        content: contents[content],
-    });
-    let switches = proptest::collection::btree_set(0..1000_u16, 0..4);
-    let spring = (vector(-0.1, 0.1), number(0.0, 1e6), switches).prop_map(|(at_m, litres_per_s, switches)| Spring {
-        at_m,
-        litres_per_s,
-        switches_s: switches.into_iter().map(f32::from).collect(),
-    });
-    let lists = (proptest::collection::vec(block, 0..3), proptest::collection::vec(spring, 0..3));
-    ([1..=128_u16, 1..=128, 1..=128], number(1e-5, 1e5), terrain, lists, height(), number(0.0, 10.0), any::<bool>())
-        .prop_map(|(cells, cell_m, terrain, (blocks, springs), water_m, time_s, is_smooth)| Tank {
-            cells,
-            cell_m,
-            terrain,
-            blocks,
-            water_m,
-            springs,
-            time_s,
-            look: if is_smooth { TankLook::Smooth } else { TankLook::Cubes },
-        })
-        .boxed()
 }
 
 /// Names with everything that could upset a text format.

@@ -131,6 +131,43 @@ fn a_tank_out_of_bounds_is_refused_and_never_built() {
 }
 
 #[test]
+fn a_fluid_out_of_bounds_is_refused_and_never_simulated() {
+    let tank = "Tank((cells: (8, 8, 8), cell_m: 0.01, terrain: Flat(height_m: 0.0), water_m: 0.02, time_s: 0.1, fluid: (\
+                drops: [(at_m: (0.0, 0.05, 0.0), radius_m: 0.01)], \
+                jets: [(at_m: (0.0, 0.06, 0.0), radius_m: 0.01, velocity_m_s: (0.0, -1.0, 0.0), until_s: 1.0)], \
+                obstacles: [(form: Ball(radius_m: 0.01), at_m: (0.0, 0.0, 0.0))])))";
+    let with = |text: &str| SMALL.replacen("Sphere(radius_m: 0.1)", text, 1);
+    assert!(parse_scene(&with(tank)).unwrap().1.is_empty());
+    let drops = format!("drops: [{}]", vec!["(at_m: (0.0, 0.05, 0.0), radius_m: 0.01)"; 9].join(", "));
+    let cases: &[(&str, &str, &[&str])] = &[
+        ("cells: (8, 8, 8)", "cells: (128, 128, 128)", &["shape.cells", "2097152", "1048576", "line 16"]),
+        ("cells: (8, 8, 8)", "cells: (128, 64, 128)", &["shape.time_s"]),
+        ("water_m: 0.02", "blocks: [(from: (0, 0, 0), to: (99, 99, 99), content: Water)]", &["shape.cell_m", "8000"]),
+        ("time_s: 0.1", "time_s: 21.0", &["shape.time_s", "0 to 20 s"]),
+        ("radius_m: 0.01)], jets", "radius_m: 0.0)], jets", &["shape.fluid.drops[0].radius_m", "0 m"]),
+        ("radius_m: 0.01)], jets", "radius_m: 10.0)], jets", &["shape.cell_m", "particles of water"]),
+        ("radius_m: 0.01, velocity", "radius_m: 100.0, velocity", &["shape.cell_m", "particles of water"]),
+        ("(0.0, -1.0, 0.0)", "(0.0, -1e9, 0.0)", &["shape.fluid.jets[0].velocity_m_s", "y -1000000000"]),
+        ("until_s: 1.0", "until_s: NaN", &["shape.fluid.jets[0].until_s", "NaN"]),
+        ("Ball(radius_m: 0.01)", "Ball(radius_m: inf)", &["shape.fluid.obstacles[0].form.radius_m", "inf"]),
+        (
+            "Ball(radius_m: 0.01)",
+            "Glass(floor_m: 0.02, floor_radius_m: 0.01, rim_m: 0.01, rim_radius_m: 0.01)",
+            &["shape.fluid.obstacles[0].form.rim_m", "above the floor"],
+        ),
+        ("Ball(radius_m: 0.01)", "Teapot(radius_m: 0.01)", &["Teapot"]),
+        ("drops: [(at_m: (0.0, 0.05, 0.0), radius_m: 0.01)]", &drops, &["shape.fluid.drops", "9 drops", "8"]),
+        ("jets:", "springs: [], jets:", &["springs"]),
+    ];
+    for (from, to, words) in cases {
+        let text = with(&tank.replacen(from, to, 1));
+        assert_ne!(text, with(tank), "{from}");
+        let message = refused(&text);
+        assert!(words.iter().all(|word| message.contains(word)), "{to}: {message}");
+    }
+}
+
+#[test]
 fn empty_and_binary_files_are_refused() {
     for text in ["", " \n", "\u{feff}", "\0\0\0", "()", "[]", "1", "(format: 1)", "\"", "/*", "r#\"", "PK\u{3}\u{4}"] {
         assert!(!refused(text).is_empty());

@@ -1,6 +1,7 @@
 //! Scene files: round trips, presets, and malformed input.
 
 mod any_scene;
+mod any_tank;
 mod hostile;
 mod saving;
 mod variants;

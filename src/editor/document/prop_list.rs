@@ -26,7 +26,7 @@ const fn reflector(name: &'static str, tip: &'static str, face: MaterialPreset) 
 }
 
 /// The props.
-pub(super) const MODELS: [ModelEntry; 22] = [
+pub(super) const MODELS: [ModelEntry; 23] = [
     model("Posing stool", "A round stool of 55 cm with a leather seat.", PropModel::PosingStool),
     model("Apple boxes", "A full and a half box of birch plywood: to sit or to stand on.", PropModel::AppleBoxes),
     model("Wood table", "A table of oiled wood.", PropModel::WoodTable),
@@ -57,6 +57,7 @@ pub(super) const MODELS: [ModelEntry; 22] = [
     model("Wine bottle", "A bottle of red wine.", PropModel::WineBottle),
     model("Perfume bottle", "A block of glass with a golden collar.", PropModel::PerfumeBottle),
     model("Drinking glass", "A tumbler of water.", PropModel::DrinkingGlass),
+    model("Empty glass", "A tumbler for a fluid that is poured into it.", PropModel::EmptyGlass),
     model("Wine glass", "A glass of red wine.", PropModel::WineGlass),
     model("Cosmetics jar", "A jar of frosted glass with a lid of aluminium.", PropModel::CosmeticsJar),
     model("Lipstick", "An open lipstick with its cap.", PropModel::Lipstick),

@@ -4,7 +4,7 @@
 //! the time on, so that the window stays fluid however long the water takes. All of a run is one undo step.
 
 use super::action::Action;
-use crate::scene::{ObjectId, Scene, Shape, TANK_STEPS_PER_S};
+use crate::scene::{ObjectId, Scene, Shape};
 
 /// Longest time by which a frame moves the water on, seconds: after a pause it does not leap.
 const LONGEST_FRAME_S: f64 = 0.1;
@@ -91,11 +91,11 @@ impl TankPlayer {
             return None;
         }
         run.time_s += elapsed_s.clamp(0.0, LONGEST_FRAME_S) * f64::from(self.speed);
-        let step = (run.time_s * f64::from(TANK_STEPS_PER_S)) as u32;
+        let step = (run.time_s * f64::from(tank.steps_per_s())) as u32;
         if step <= tank.steps() {
             return None;
         }
-        tank.time_s = (step as f32 / TANK_STEPS_PER_S).min(tank.longest_s());
+        tank.time_s = (step as f32 / tank.steps_per_s()).min(tank.longest_s());
         run.shown_s = tank.time_s;
         Some(Action::SetObject(Box::new(object)))
     }
@@ -145,6 +145,18 @@ mod tests {
         document.undo();
         assert_eq!((tank_time(&document), document.history().undo_label()), (0.0, None));
         assert!(!frame(&mut player, &mut document, 99.2, true) && !player.is_running());
+    }
+
+    #[test]
+    fn a_fluid_runs_by_its_frames() {
+        let mut scene = Scene::default();
+        let fluid = Tank { fluid: Some(Box::default()), ..Tank::default() };
+        scene.objects.push(Object::new("Tank", Shape::Tank(Box::new(fluid))));
+        let mut player = TankPlayer::default();
+        player.play(&scene, Some(ObjectId(0)));
+        player.advance(&scene, 0.0, true);
+        player.advance(&scene, 0.013, true).unwrap().apply(&mut scene).unwrap();
+        assert_eq!(time_of(&scene, ObjectId(0)), Some(3.0 / 240.0));
     }
 
     #[test]

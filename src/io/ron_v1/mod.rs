@@ -11,6 +11,7 @@ mod bodies;
 mod convert;
 mod defaults;
 mod figure;
+mod fluid;
 mod gear;
 mod head;
 mod mannequin;

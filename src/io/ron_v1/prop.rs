@@ -17,6 +17,7 @@ named_variants!(PropV1 as "Prop" <=> PropModel {
     WineBottle,
     PerfumeBottle,
     DrinkingGlass,
+    EmptyGlass,
     WineGlass,
     CosmeticsJar,
     Watch,

@@ -1,6 +1,7 @@
 //! Water tanks in the scene file.
 
 use super::defaults::{Triple, is_default};
+use super::fluid::FluidV1;
 use crate::scene::{Block, CellContent, Spring, Tank, TankLook, Terrain};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -22,6 +23,8 @@ pub(super) struct TankV1 {
     time_s: f32,
     #[serde(default, skip_serializing_if = "is_default")]
     look: TankLookV1,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    fluid: Option<Box<FluidV1>>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -85,7 +88,7 @@ same_variants!(TankLookV1 <=> TankLook { Smooth, Cubes });
 
 impl From<TankV1> for Tank {
     fn from(file: TankV1) -> Self {
-        let TankV1 { cells, cell_m, terrain, blocks, water_m, springs, time_s, look } = file;
+        let TankV1 { cells, cell_m, terrain, blocks, water_m, springs, time_s, look, fluid } = file;
         let block = |BlockV1 { from, to, content }| Block { from: from.into(), to: to.into(), content: content.into() };
         let spring =
             |SpringV1 { at_m, litres_per_s, switches_s }| Spring { at_m: Vec3::from(at_m), litres_per_s, switches_s };
@@ -98,13 +101,14 @@ impl From<TankV1> for Tank {
             springs: springs.into_iter().map(spring).collect(),
             time_s,
             look: look.into(),
+            fluid: fluid.map(|fluid| Box::new((*fluid).into())),
         }
     }
 }
 
 impl From<Tank> for TankV1 {
     fn from(tank: Tank) -> Self {
-        let Tank { cells, cell_m, terrain, blocks, water_m, springs, time_s, look } = tank;
+        let Tank { cells, cell_m, terrain, blocks, water_m, springs, time_s, look, fluid } = tank;
         let block = |Block { from, to, content }| BlockV1 { from: from.into(), to: to.into(), content: content.into() };
         let spring =
             |Spring { at_m, litres_per_s, switches_s }| SpringV1 { at_m: at_m.to_array(), litres_per_s, switches_s };
@@ -117,6 +121,7 @@ impl From<Tank> for TankV1 {
             springs: springs.into_iter().map(spring).collect(),
             time_s,
             look: look.into(),
+            fluid: fluid.map(|fluid| Box::new((*fluid).into())),
         }
     }
 }

@@ -84,14 +84,26 @@ pub(super) fn perfume_bottle() -> Mesh {
     solid.finish()
 }
 
-/// A tumbler of water, 10 cm high.
+/// The outside and the inside of a tumbler, 10 cm high.
+const TUMBLER: ([(f32, f32); 7], [(f32, f32); 6]) = (
+    [(0.0, 0.0), (0.029, 0.0), (0.0315, 0.001), (0.0325, 0.003), (0.0362, 0.099), (0.0358, 0.1), (0.0352, 0.1003)],
+    [(0.0, 0.01), (0.026, 0.0102), (0.0295, 0.0115), (0.0308, 0.0145), (0.0344, 0.099), (0.0347, 0.1)],
+);
+
+/// A tumbler of water.
 pub(super) fn drinking_glass() -> Mesh {
-    let outside =
-        [(0.0, 0.0), (0.029, 0.0), (0.0315, 0.001), (0.0325, 0.003), (0.0362, 0.099), (0.0358, 0.1), (0.0352, 0.1003)];
-    let inside = [(0.0, 0.01), (0.026, 0.0102), (0.0295, 0.0115), (0.0308, 0.0145), (0.0344, 0.099), (0.0347, 0.1)];
+    let (outside, inside) = TUMBLER;
     let mut solid = Solid::default();
     solid.part("glass").turned(&hollow(&outside, &inside));
     solid.part("drink").turned(&drink(&inside, 0.068));
+    solid.finish()
+}
+
+/// A tumbler without a drink.
+pub(super) fn empty_glass() -> Mesh {
+    let (outside, inside) = TUMBLER;
+    let mut solid = Solid::default();
+    solid.part("glass").turned(&hollow(&outside, &inside));
     solid.finish()
 }
 

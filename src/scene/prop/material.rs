@@ -36,6 +36,7 @@ pub(super) fn of(model: PropModel) -> Vec<(&'static str, Material)> {
             ("cap", plastic([0.012, 0.012, 0.013], 0.08)),
         ],
         PropModel::DrinkingGlass => vec![preset("glass", Preset::CrownGlass), preset("drink", Preset::Water)],
+        PropModel::EmptyGlass => vec![preset("glass", Preset::CrownGlass)],
         PropModel::WineGlass => vec![preset("glass", Preset::CrownGlass), preset("drink", Preset::WineRed)],
         PropModel::CosmeticsJar => vec![
             preset("glass", Preset::FrostedGlass),

@@ -52,6 +52,8 @@ pub enum PropModel {
     PerfumeBottle,
     /// Tumbler of water.
     DrinkingGlass,
+    /// Tumbler without a drink.
+    EmptyGlass,
     /// Glass of red wine.
     WineGlass,
     /// Jar of cream.
@@ -72,7 +74,7 @@ pub enum PropModel {
 
 impl PropModel {
     /// All models, in list order.
-    pub const ALL: [PropModel; 22] = [
+    pub const ALL: [PropModel; 23] = [
         PropModel::PosingStool,
         PropModel::AppleBoxes,
         PropModel::AcrylicTable,
@@ -87,6 +89,7 @@ impl PropModel {
         PropModel::WineBottle,
         PropModel::PerfumeBottle,
         PropModel::DrinkingGlass,
+        PropModel::EmptyGlass,
         PropModel::WineGlass,
         PropModel::CosmeticsJar,
         PropModel::Watch,
@@ -114,6 +117,7 @@ impl PropModel {
             PropModel::WineBottle => "Wine bottle",
             PropModel::PerfumeBottle => "Perfume bottle",
             PropModel::DrinkingGlass => "Drinking glass",
+            PropModel::EmptyGlass => "Empty glass",
             PropModel::WineGlass => "Wine glass",
             PropModel::CosmeticsJar => "Cosmetics jar",
             PropModel::Watch => "Watch",
@@ -147,6 +151,7 @@ impl PropModel {
             PropModel::WineBottle => glassware::wine_bottle(),
             PropModel::PerfumeBottle => glassware::perfume_bottle(),
             PropModel::DrinkingGlass => glassware::drinking_glass(),
+            PropModel::EmptyGlass => glassware::empty_glass(),
             PropModel::WineGlass => glassware::wine_glass(),
             PropModel::CosmeticsJar => glassware::cosmetics_jar(),
             PropModel::Watch => small::watch(),

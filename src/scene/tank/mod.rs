@@ -1,7 +1,9 @@
 //! The water tank: a block of cells of air, water, ground and metal, as the recipe from which room `water` makes it.
 
+mod fluid;
 mod spring;
 
+pub use fluid::{Drop, FLUID_FRAMES_PER_S, Fluid, Jet, Obstacle, ObstacleForm};
 pub use spring::Spring;
 
 use super::{Material, MaterialPreset};
@@ -31,6 +33,8 @@ pub struct Tank {
     pub time_s: f32,
     /// How its surfaces are drawn.
     pub look: TankLook,
+    /// Its water as a fluid, which moves by the laws of motion; none for water that flows from cell to cell.
+    pub fluid: Option<Box<Fluid>>,
 }
 
 /// The ground of a tank. Heights are metres above the underside.
@@ -141,11 +145,20 @@ impl Tank {
 
     /// Returns the number of steps that lead to the time shown.
     pub fn steps(&self) -> u32 {
-        (self.time_s * TANK_STEPS_PER_S).round() as u32
+        (self.time_s * self.steps_per_s()).round() as u32
+    }
+
+    /// Returns the steps in a second: a fluid is shown at its frames.
+    pub fn steps_per_s(&self) -> f32 {
+        if self.fluid.is_some() { FLUID_FRAMES_PER_S } else { TANK_STEPS_PER_S }
     }
 
     /// Returns the longest time that may be shown, seconds.
     pub fn longest_s(&self) -> f32 {
+        if self.fluid.is_some() {
+            let frames = Fluid::MAX_CELL_FRAMES / self.cell_count().max(1) as u64;
+            return frames.min(Fluid::MAX_FRAMES) as f32 / FLUID_FRAMES_PER_S;
+        }
         let columns = u64::from(self.cells[0]) * u64::from(self.cells[2]);
         (Self::MAX_COLUMN_STEPS / columns.max(1)).min(120 * 60) as f32 / TANK_STEPS_PER_S
     }
@@ -165,7 +178,7 @@ impl Tank {
 
     /// Returns every value that the mesh depends on, as bits: the key of caches.
     fn key(&self) -> Vec<u32> {
-        let Tank { cells, cell_m, terrain, blocks, water_m, springs, time_s, look } = self;
+        let Tank { cells, cell_m, terrain, blocks, water_m, springs, time_s, look, fluid } = self;
         let bits = |value: f32| (value + 0.0).to_bits();
         let mut key = cells.map(u32::from).to_vec();
         key.extend([bits(*cell_m), bits(*water_m), bits(*time_s), *look as u32, blocks.len() as u32]);
@@ -187,6 +200,10 @@ impl Tank {
             key.extend([bits(*litres_per_s), switches_s.len() as u32]);
             key.extend(switches_s.iter().map(|&time| bits(time)));
         }
+        if let Some(fluid) = fluid {
+            key.push(u32::MAX);
+            key.extend(fluid.key());
+        }
         key
     }
 }
@@ -203,6 +220,7 @@ impl Default for Tank {
             springs: Vec::new(),
             time_s: 0.0,
             look: TankLook::Smooth,
+            fluid: None,
         }
     }
 }
@@ -241,8 +259,20 @@ mod tests {
     fn every_field_is_part_of_the_key() {
         let block = Block { from: [1, 2, 3], to: [4, 5, 6], content: CellContent::Water };
         let spring = Spring { at_m: Vec3::Y, litres_per_s: 0.2, switches_s: vec![0.0, 1.0] };
-        let tank = Tank { blocks: vec![block], springs: vec![spring], ..Tank::default() };
-        let changes: [fn(&mut Tank); 18] = [
+        let fluid = Fluid {
+            drops: vec![Drop { at_m: Vec3::Y, radius_m: 0.01, velocity_m_s: Vec3::ZERO }],
+            jets: vec![Jet { at_m: Vec3::Y, radius_m: 0.01, velocity_m_s: Vec3::NEG_Y, until_s: 1.0 }],
+            obstacles: vec![Obstacle {
+                form: ObstacleForm::Ball { radius_m: 0.1 },
+                at_m: Vec3::ZERO,
+                falls_m_s: 0.0,
+                stands_s: 0.0,
+            }],
+            seed: 1,
+        };
+        let fluid = Some(Box::new(fluid));
+        let tank = Tank { blocks: vec![block], springs: vec![spring], fluid, ..Tank::default() };
+        let changes: [fn(&mut Tank); 29] = [
             |t| t.cells[1] = 8,
             |t| t.cell_m = 0.02,
             |t| t.terrain = Terrain::Flat { height_m: 0.1 },
@@ -261,6 +291,17 @@ mod tests {
             |t| t.springs[0].switches_s = vec![0.0],
             |t| t.time_s = 1.0,
             |t| t.look = TankLook::Cubes,
+            |t| t.fluid = None,
+            |t| t.fluid.as_mut().unwrap().seed = 2,
+            |t| t.fluid.as_mut().unwrap().drops.clear(),
+            |t| t.fluid.as_mut().unwrap().drops[0].radius_m = 0.02,
+            |t| t.fluid.as_mut().unwrap().drops[0].velocity_m_s.y = -1.0,
+            |t| t.fluid.as_mut().unwrap().jets[0].radius_m = 0.02,
+            |t| t.fluid.as_mut().unwrap().jets[0].until_s = 2.0,
+            |t| t.fluid.as_mut().unwrap().obstacles[0].form = ObstacleForm::Cylinder { radius_m: 0.1, height_m: 0.0 },
+            |t| t.fluid.as_mut().unwrap().obstacles[0].at_m.z = 0.1,
+            |t| t.fluid.as_mut().unwrap().obstacles[0].falls_m_s = 1.0,
+            |t| t.fluid.as_mut().unwrap().obstacles[0].stands_s = 1.0,
         ];
         let mut keys = std::collections::BTreeSet::from([tank.clone()]);
         for change in changes {

@@ -8,6 +8,7 @@ mod camera;
 mod check;
 mod figure;
 mod finding;
+mod fluid;
 mod light;
 mod light_warnings;
 mod material;

@@ -1,6 +1,7 @@
 //! Checks a water tank: every number, and the bounds of memory and time.
 
 use super::check::{Allowed, Check, SIZE};
+use super::fluid::check_fluid;
 use crate::scene::{Spring, Tank, Terrain};
 
 /// Heights in a tank, metres.
@@ -28,11 +29,10 @@ pub(super) fn check_tank(tank: &Tank, check: &mut Check) {
     for (index, spring) in tank.springs.iter().take(Tank::MAX_SPRINGS).enumerate() {
         check_spring(&format!("shape.springs[{index}]"), spring, tank, check);
     }
-    check.number(
-        "shape.time_s",
-        tank.time_s,
-        Allowed::between(0.0, tank.longest_s(), "s, for so many columns of cells"),
-    );
+    check.number("shape.time_s", tank.time_s, Allowed::between(0.0, tank.longest_s(), "s, for so many cells"));
+    if let Some(fluid) = &tank.fluid {
+        check_fluid(fluid, tank, check);
+    }
 }
 
 fn check_cells(tank: &Tank, check: &mut Check) {

@@ -3,6 +3,7 @@
 //! It falls cell by cell in portions. The field is their mean over the neighbours, by binomial weights, of the space that
 //! the ground leaves: portions join to streams that cling to the ground.
 
+use crate::water::blur::blur;
 use crate::water::grid::{FULL, Grid};
 
 /// Part of the space from which on falling water is drawn: thinner is spray.
@@ -37,41 +38,9 @@ pub(super) fn field(grid: &Grid) -> Option<Vec<f32>> {
     Some(water.iter().zip(&space).map(signed).collect())
 }
 
-/// Replaces values by the mean of them and their neighbours along an axis, with weights of 1/4, 1/2 and 1/4. Beyond the
-/// ends of the axis it goes on with the last value.
-fn blur(values: &mut [f32], stride: usize, length: usize) {
-    for start in (0..values.len()).filter(|cell| (cell / stride).is_multiple_of(length)) {
-        let mut before = values[start];
-        for at in 0..length {
-            let index = start + at * stride;
-            let own = values[index];
-            let after = if at + 1 < length { values[index + stride] } else { own };
-            values[index] = 0.25 * (before + after) + 0.5 * own;
-            before = own;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_blur_keeps_the_sum_away_from_the_ends_and_a_constant_everywhere() {
-        let [nx, ny, nz] = [5, 7, 6];
-        let mut constant = vec![0.7; nx * ny * nz];
-        let mut point = vec![0.0; nx * ny * nz];
-        point[(3 * nx + 2) * ny + 3] = 1.0;
-        for values in [&mut constant, &mut point] {
-            blur(values, 1, ny);
-            blur(values, ny, nx);
-            blur(values, ny * nx, nz);
-        }
-        assert!(constant.iter().all(|value| (value - 0.7).abs() < 1e-6));
-        assert!((point.iter().sum::<f32>() - 1.0).abs() < 1e-6);
-        assert_eq!(point[(3 * nx + 2) * ny + 3], 0.125);
-        assert_eq!(point[(4 * nx + 1) * ny + 2], 1.0 / 64.0);
-    }
 
     #[test]
     fn a_stream_in_portions_is_one_stream() {

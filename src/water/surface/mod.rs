@@ -6,8 +6,10 @@
 mod cubes;
 mod falling;
 mod nets;
+mod particles;
 mod smooth;
 
+use super::fluid::FluidSimulation;
 use super::grid::Grid;
 use crate::scene::{Mesh, Tank, TankLook};
 use glam::{Vec2, Vec3};
@@ -20,14 +22,27 @@ pub fn mesh(grid: &Grid, tank: &Tank) -> Mesh {
     surface_of(grid, tank.look, tank.low_m(), tank.cell_m)
 }
 
+/// Returns the mesh of a tank with this fluid; its parts are those of [`Tank::PARTS`] that there are.
+pub fn fluid_mesh(simulation: &FluidSimulation, tank: &Tank) -> Mesh {
+    let [ground, metal, _] = surfaces(simulation.grid(), tank.look);
+    placed([ground, metal, particles::surface(simulation)], tank.cells.map(f32::from), tank.low_m(), tank.cell_m)
+}
+
 /// Returns the surfaces of cells of an edge length, metres, from this lowest corner.
 pub fn surface_of(grid: &Grid, look: TankLook, low_m: Vec3, cell_m: f32) -> Mesh {
-    let surfaces = match look {
+    placed(surfaces(grid, look), grid.size().map(|side| side as f32), low_m, cell_m)
+}
+
+fn surfaces(grid: &Grid, look: TankLook) -> [Mesh; 3] {
+    match look {
         TankLook::Smooth => smooth::surfaces(grid),
         TankLook::Cubes => cubes::surfaces(grid),
-    };
+    }
+}
+
+/// Returns the mesh of the surfaces of ground, metal and water, which are in cells.
+fn placed(surfaces: [Mesh; 3], [nx, _, nz]: [f32; 3], low_m: Vec3, cell_m: f32) -> Mesh {
     let mut mesh = Mesh::default();
-    let [nx, _, nz] = grid.size().map(|side| side as f32);
     for (surface, name) in surfaces.into_iter().zip(Tank::PARTS) {
         if !surface.triangles.is_empty() {
             mesh.append(&surface.with_single_part(name));

@@ -25,6 +25,12 @@ impl Field {
         Field { size, values }
     }
 
+    /// Returns the field of these samples: columns along Y, then rows along X, then planes along Z.
+    pub fn from_values(size: [usize; 3], mut values: Vec<f32>) -> Self {
+        values.resize(size.iter().product(), -1.0);
+        Field { size, values }
+    }
+
     fn strides(&self) -> [usize; 3] {
         [self.size[1], 1, self.size[0] * self.size[1]]
     }
@@ -38,6 +44,38 @@ impl Field {
         }
         mesh.compute_smooth_normals();
         mesh
+    }
+
+    /// Returns the surface with the normals of the field, in samples.
+    pub fn smooth_surface(&self) -> Mesh {
+        let mut mesh = self.surface(0.0);
+        for (normal, at) in mesh.normals.iter_mut().zip(&mesh.positions) {
+            let value = |axis: Vec3| self.value(*at + axis) - self.value(*at - axis);
+            let slope = Vec3::new(value(Vec3::X), value(Vec3::Y), value(Vec3::Z));
+            // Where the field has no slope, or another than the faces, those count
+            *normal = (-slope).try_normalize().filter(|smooth| smooth.dot(*normal) > 0.5).unwrap_or(*normal);
+        }
+        mesh
+    }
+
+    /// Returns the value between the samples, by linear interpolation.
+    fn value(&self, at: Vec3) -> f32 {
+        let strides = self.strides();
+        let (mut base, mut t) = (0, Vec3::ZERO);
+        for axis in 0..3 {
+            let last = self.size[axis] - 1;
+            let from = at[axis].clamp(0.0, last as f32);
+            let low = (from as usize).min(last.saturating_sub(1));
+            base += low * strides[axis];
+            t[axis] = from - low as f32;
+        }
+        let weight = |axis: usize, corner: usize| if corner >> axis & 1 == 1 { t[axis] } else { 1.0 - t[axis] };
+        let corner = |i: usize| {
+            let offset: usize = (0..3).map(|axis| (i >> axis & 1) * strides[axis]).sum();
+            let sample = self.values.get(base + offset).copied().unwrap_or(-1.0);
+            weight(0, i) * weight(1, i) * weight(2, i) * sample
+        };
+        (0..8).map(corner).sum()
     }
 
     /// Places the vertices, and returns that of each cube by its lowest sample.

@@ -5,6 +5,7 @@ mod camera;
 mod environment;
 mod fibre;
 mod figure;
+mod fluid;
 mod gel;
 mod head;
 mod light;

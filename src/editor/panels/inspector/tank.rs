@@ -1,10 +1,11 @@
 //! The sections of a water tank: its time, its springs, its ground and its cells.
 
+use super::fluid::{fluid_rows, motion_row};
 use super::text_ui;
 use crate::editor::commands::command::Command;
 use crate::editor::document::tank_player::TankPlayer;
 use crate::editor::ui::widgets::{self, METRES, NumberField, fact, row, section};
-use crate::scene::{ObjectId, Spring, TANK_STEPS_PER_S, Tank, TankLook, Terrain};
+use crate::scene::{ObjectId, Spring, Tank, TankLook, Terrain};
 use eframe::egui::{DragValue, Ui};
 use glam::Vec3;
 
@@ -22,6 +23,7 @@ const FLOW_L_S: f32 = 0.1;
 /// Draws the sections of a tank.
 pub(super) fn tank_ui(ui: &mut Ui, id: ObjectId, tank: &mut Tank, player: &TankPlayer, out: &mut Vec<Command>) {
     section(ui, "Water", true, |ui| {
+        motion_row(ui, tank);
         time_rows(ui, id, tank, player, out);
         row(ui, "Still water", "Height of the water at the start, above the underside", |ui| {
             NumberField::new(0.2, 0.0, 10_000.0, 1, " cm").scaled_ui(ui, &mut tank.water_m, 100.0)
@@ -34,7 +36,11 @@ pub(super) fn tank_ui(ui: &mut Ui, id: ObjectId, tank: &mut Tank, player: &TankP
             widgets::choice(ui, &mut tank.look, &looks);
         });
     });
-    section(ui, "Springs", true, |ui| spring_rows(ui, tank));
+    let size = tank.size_m();
+    match &mut tank.fluid {
+        Some(fluid) => section(ui, "Drops, jets and obstacles", true, |ui| fluid_rows(ui, fluid, size)),
+        None => section(ui, "Springs", true, |ui| spring_rows(ui, tank)),
+    }
     section(ui, "Ground", true, |ui| ground_rows(ui, tank));
     section(ui, "Cells", false, |ui| cell_rows(ui, tank));
     tank.time_s = tank.time_s.min(tank.longest_s());
@@ -43,7 +49,7 @@ pub(super) fn tank_ui(ui: &mut Ui, id: ObjectId, tank: &mut Tank, player: &TankP
 fn time_rows(ui: &mut Ui, id: ObjectId, tank: &mut Tank, player: &TankPlayer, out: &mut Vec<Command>) {
     let longest_s = tank.longest_s();
     row(ui, "Time", "Since the start; a render shows the water at this time", |ui| {
-        NumberField::new(1.0 / f64::from(TANK_STEPS_PER_S), 0.0, longest_s, 2, " s").ui(ui, &mut tank.time_s)
+        NumberField::new(1.0 / f64::from(tank.steps_per_s()), 0.0, longest_s, 3, " s").ui(ui, &mut tank.time_s)
     });
     row(ui, "Run", "The water runs in the studio; undo brings back the time before", |ui| {
         let is_playing = player.is_playing(id);
@@ -51,8 +57,8 @@ fn time_rows(ui: &mut Ui, id: ObjectId, tank: &mut Tank, player: &TankPlayer, ou
         if ui.button(text).on_hover_text(tip).clicked() {
             out.push(Command::PlayTank((!is_playing).then_some(id)));
         }
-        if ui.button("Step").on_hover_text("A sixtieth of a second").clicked() {
-            tank.time_s = (tank.steps() + 1) as f32 / TANK_STEPS_PER_S;
+        if ui.button("Step").on_hover_text("A sixtieth of a second; a fluid: 1/240").clicked() {
+            tank.time_s = (tank.steps() + 1) as f32 / tank.steps_per_s();
         }
         if ui.button("To the start").on_hover_text("The water as it was at first").clicked() {
             out.push(Command::PlayTank(None));
