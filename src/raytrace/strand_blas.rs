@@ -1,7 +1,10 @@
 //! The BLAS of strands: a BVH over their segments.
 //!
 //! Segments are not divided into shorter pieces with tighter boxes: on a head of hair, two or four pieces a segment made
-//! rays 13 to 25 % slower, for there are more leaves, with fewer segments each.
+//! rays 13 to 25 % slower, for there are more leaves, with fewer segments each. Nor are boxes turned along the hair
+//! (Woop et al. 2014, "Exploiting Local Orientation Similarity for Efficient Ray Traversal of Hair and Fur"): subtrees
+//! of a thousand segments, each built in a frame along them, halved the leaves that a ray tests, and made a portrait 4 %
+//! faster, as the time goes into reading nodes and leaves from memory.
 
 use super::blas::{Blas, LeafPacket};
 use super::simd::{Kernels, RibbonRay, SegmentHit, SegmentPacket};

@@ -42,7 +42,7 @@ fn the_inspector_shows_magnification_and_bellows_factor_of_a_macro_lens() {
 
 #[test]
 fn a_person_is_framed_and_metered_by_buttons_and_undone() {
-    let Some(mut window) = preset_window() else { return };
+    let Some(mut window) = figure_window() else { return };
     let before = scene(&window).clone();
     let person = before.objects.iter().find(|object| matches!(object.shape, Shape::Figure(_))).unwrap().id;
     window.state_mut().run(Command::Select(Some(Item::Object(person))), None, &egui::Context::default());

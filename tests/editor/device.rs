@@ -42,7 +42,7 @@ fn a_device_loss_keeps_the_studio_and_its_history() {
         return;
     }
     let (first, device) = renderer();
-    let mut window = window_on(first, |creation| App::new(creation, bald_options()));
+    let mut window = window_on(first, |creation| App::new(creation, plain_options()));
     let begin = scene(&window).clone();
     click(&mut window, "Add Octa 120");
     press(&mut window, Modifiers::COMMAND, Key::D);
@@ -90,7 +90,7 @@ fn a_device_loss_during_a_frame_ends_that_frame() {
         return;
     }
     let (first, device) = renderer();
-    let mut window = window_on(first, |creation| App::new(creation, bald_options()));
+    let mut window = window_on(first, |creation| App::new(creation, plain_options()));
     let _ = device.poll(wgpu::PollType::wait_indefinitely());
     device.destroy();
     // The loss shows when the preview draws its next picture, in the frame that draws the window.
@@ -111,7 +111,7 @@ fn a_device_loss_of_a_minimised_window_is_detected() {
         return;
     }
     let (first, device) = renderer();
-    let mut window = window_on(first, |creation| App::new(creation, bald_options()));
+    let mut window = window_on(first, |creation| App::new(creation, plain_options()));
     click(&mut window, "Add Octa 120");
     destroy(&device);
     let commands = sizes::while_minimised(&mut window, Vec::new());
@@ -123,7 +123,7 @@ fn a_device_loss_of_a_minimised_window_is_detected() {
 /// A window whose renderer has no device at all.
 fn window_without_device() -> Window {
     let builder = Harness::builder().with_size(vec2(1200.0, 800.0)).with_max_steps(60);
-    let mut window = builder.build_eframe(|creation| App::new(creation, bald_options()));
+    let mut window = builder.build_eframe(|creation| App::new(creation, plain_options()));
     settle(&mut window);
     window
 }

@@ -8,7 +8,7 @@ use catchlight::editor::{
     Action, App, CentralView, Command, CompareMode, Comparison, DialogAnswer, EditorOptions, Fader, FileDialogs, Item,
     LiveMode, PictureSize, Preferences, Quality, StudioSource, ToastKind, ViewOptions,
 };
-use catchlight::scene::{Aim, ColorSource, HairStyle, Scene, Shape};
+use catchlight::scene::{Aim, ColorSource, Figure, HairStyle, Scene, Shape};
 use catchlight::sheet::LessonSeries;
 use eframe::egui::{
     self, Event, Key, Modifiers, PointerButton, Pos2, ViewportCommand, ViewportEvent, ViewportId, vec2,
@@ -17,7 +17,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Condvar, LazyLock, Mutex};
+use std::sync::{Arc, Condvar, Mutex, OnceLock};
 use std::time::Duration;
 
 #[path = "../studio/adapter.rs"]
@@ -118,19 +118,36 @@ fn window(options: EditorOptions) -> Window {
     window_at(FEW_PIXELS, options)
 }
 
-/// Returns the first shipped studio with a bald figure: strands take a third of the time of a window, and tests about
-/// hair have their own.
-fn bald_preset() -> StudioSource {
-    static SCENE: LazyLock<Scene> = LazyLock::new(|| {
-        let mut scene = catchlight::io::presets()[0].load().unwrap().scene;
-        for object in &mut scene.objects {
-            if let Shape::Figure(figure) = &mut object.shape {
-                figure.hair = HairStyle::Bald;
-            }
+/// Returns the first shipped studio with another shape for its figure.
+fn preset_with(shape: impl Fn(Figure) -> Shape) -> Scene {
+    let mut scene = catchlight::io::presets()[0].load().unwrap().scene;
+    for object in &mut scene.objects {
+        if let Shape::Figure(figure) = object.shape {
+            object.shape = shape(figure);
         }
-        scene
-    });
-    StudioSource::Memory(Box::new(SCENE.clone()))
+    }
+    scene
+}
+
+/// Returns the first shipped studio with a post in the figure's place, half of it below the floor, so that it stands
+/// where the figure does: the triangles and strands of a figure take most of the time of a window on an emulated GPU.
+fn plain_preset() -> StudioSource {
+    let post = |figure: Figure| Shape::Cylinder { radius_m: 0.09, height_m: 2.0 * figure.body.height_m };
+    static SCENE: OnceLock<Scene> = OnceLock::new();
+    StudioSource::Memory(Box::new(SCENE.get_or_init(|| preset_with(post)).clone()))
+}
+
+/// Returns the first shipped studio with a bald figure: strands take a third of the time of a window with a figure.
+fn bald_preset() -> StudioSource {
+    let bald = |figure: Figure| Shape::Figure(Figure { hair: HairStyle::Bald, ..figure });
+    static SCENE: OnceLock<Scene> = OnceLock::new();
+    StudioSource::Memory(Box::new(SCENE.get_or_init(|| preset_with(bald)).clone()))
+}
+
+/// A window with the bald figure of the first preset; none without an adapter.
+fn figure_window() -> Option<Window> {
+    let options = EditorOptions { initial: Some(bald_preset()), ..EditorOptions::default() };
+    has_adapter().then(|| window(EditorOptions { dialogs: FileDialogs::scripted([]), ..options }))
 }
 
 /// Returns the view options of a window in tests that are not about them: one sample a pixel, direct light, coarse
@@ -139,14 +156,14 @@ fn plain_view() -> ViewOptions {
     ViewOptions { smooth_edges: false, bounced_light: false, shadow_resolution: 128, ..ViewOptions::default() }
 }
 
-/// Returns options that open [`bald_preset`].
-fn bald_options() -> EditorOptions {
-    EditorOptions { initial: Some(bald_preset()), view_options: plain_view(), ..EditorOptions::default() }
+/// Returns options that open [`plain_preset`].
+fn plain_options() -> EditorOptions {
+    EditorOptions { initial: Some(plain_preset()), view_options: plain_view(), ..EditorOptions::default() }
 }
 
-/// A window on the studio of the options, or else on [`bald_preset`], with a [`plain_view`].
+/// A window on the studio of the options, or else on [`plain_preset`], with a [`plain_view`].
 fn window_at(pixels_per_point: f32, options: EditorOptions) -> Window {
-    let initial = options.initial.clone().or_else(|| Some(bald_preset()));
+    let initial = options.initial.clone().or_else(|| Some(plain_preset()));
     let options = EditorOptions { initial, view_options: plain_view(), ..options };
     let builder = Harness::builder().with_size(vec2(1440.0, 900.0)).with_step_dt(1.0 / 30.0).with_max_steps(60);
     let builder = builder.with_pixels_per_point(pixels_per_point);

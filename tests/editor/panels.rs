@@ -28,7 +28,7 @@ fn a_slider_drag_is_one_undo_step_and_the_next_one_another() {
 
 #[test]
 fn a_selected_figure_shows_the_pattern_on_its_face_and_follows_the_key() {
-    let Some(mut window) = preset_window() else { return };
+    let Some(mut window) = figure_window() else { return };
     let figure = scene(&window).objects[0].clone();
     click(&mut window, &figure.name);
     let wait_for = |window: &mut Window, pattern: &str| {

@@ -126,7 +126,7 @@ fn a_typed_number_is_the_exact_move_and_esc_cancels_a_drag() {
 
 #[test]
 fn a_mirrored_copy_is_on_the_other_side_of_the_face() {
-    let Some(mut window) = preset_window() else { return };
+    let Some(mut window) = figure_window() else { return };
     let key = scene(&window).lights[0].clone();
     select(&mut window, &[Item::Light(key.id)]);
     press(&mut window, Modifiers::COMMAND | Modifiers::SHIFT, Key::D);

@@ -137,7 +137,7 @@ fn nothing_is_drawn_while_nothing_changes() {
 
 /// A small window whose live view is traced: a picture of few pixels.
 fn traced_window() -> Window {
-    let mut window = window_at(0.5, bald_options());
+    let mut window = window_at(0.5, plain_options());
     window.set_size(vec2(900.0, 600.0));
     settle(&mut window);
     press(&mut window, Modifiers::NONE, Key::Num2);

@@ -29,7 +29,7 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
         let target = NoiseTarget::new(shown.traced_noise_stops(noise_stops));
         shown.shown_estimate(forecast.estimate_by_noise(pixels, target, most_samples))
     };
-    let of = |quality: Quality| match quality.noise_stops().zip(quality.most_samples()) {
+    let of = |quality: Quality| match quality.noise_stops().zip(shown.most_samples(quality)) {
         Some((noise, most)) => by_noise(noise, most),
         None => shown.shown_estimate(forecast.estimate(pixels, shown.samples)),
     };

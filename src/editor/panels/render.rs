@@ -77,10 +77,18 @@ fn size_rows(ui: &mut Ui, settings: &mut RenderSettings, scene: &Scene) {
 
 fn quality_rows(ui: &mut Ui, settings: &mut RenderSettings) {
     row(ui, "Quality", "The noise that the picture may have; half the noise takes about four times as long", |ui| {
+        let tip = |quality: Quality, words: &str| {
+            settings.most_samples(quality).map_or(words.to_owned(), |most| format!("{words}, or {most} samples"))
+        };
+        let (draft, good, print) = (
+            tip(Quality::Draft, "To judge the light: noise of a tenth of a stop"),
+            tip(Quality::Good, "To share: noise of 0.03 stops"),
+            tip(Quality::Final, "To print: noise of 0.01 stops"),
+        );
         let choices = [
-            (Quality::Draft, "Draft", "To judge the light: noise of a tenth of a stop, or 16 samples"),
-            (Quality::Good, "Good", "To share: noise of 0.03 stops, or 128 samples"),
-            (Quality::Final, "Final", "To print: noise of 0.01 stops, or 1024 samples"),
+            (Quality::Draft, "Draft", draft.as_str()),
+            (Quality::Good, "Good", good.as_str()),
+            (Quality::Final, "Final", print.as_str()),
             (Quality::Custom, "Custom", "A fixed number of light paths through each pixel"),
         ];
         widgets::choice(ui, &mut settings.quality, &choices);

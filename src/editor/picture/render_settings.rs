@@ -36,8 +36,9 @@ impl Quality {
         }
     }
 
-    /// Returns the samples per pixel at most, which parts like hair before a rim light reach; none for custom.
-    pub fn most_samples(self) -> Option<u32> {
+    /// Returns the samples per pixel at most without the denoiser, which parts like hair before a rim light reach; none
+    /// for custom.
+    fn most_samples(self) -> Option<u32> {
         match self {
             Quality::Draft => Some(16),
             Quality::Good => Some(128),
@@ -97,6 +98,13 @@ impl RenderSettings {
         if self.denoise { shown_stops / DENOISED_NOISE } else { shown_stops }
     }
 
+    /// Returns the samples per pixel at most: those that leave as much noise in the shown picture with the denoiser as
+    /// without it. None for custom.
+    pub fn most_samples(&self, quality: Quality) -> Option<u32> {
+        let part = if self.denoise { DENOISED_NOISE * DENOISED_NOISE } else { 1.0 };
+        quality.most_samples().map(|most| (most as f32 * part).ceil() as u32)
+    }
+
     /// Returns the estimate of the picture as it is shown.
     pub fn shown_estimate(&self, traced: Estimate) -> Estimate {
         let part = if self.denoise { f64::from(DENOISED_NOISE) } else { 1.0 };
@@ -107,7 +115,7 @@ impl RenderSettings {
     pub(super) fn render_settings(&self, camera: &Camera) -> Settings {
         let (width, height) = self.pixels(camera);
         let noise_stops = self.quality.noise_stops().map(|shown| self.traced_noise_stops(shown));
-        let spp = self.quality.most_samples().unwrap_or(self.samples.max(1));
+        let spp = self.most_samples(self.quality).unwrap_or(self.samples.max(1));
         Settings { width, height, method: self.method, spp, noise_stops, aovs: true, ..Settings::default() }
     }
 }
@@ -118,5 +126,23 @@ pub fn method_label(method: Method) -> &'static str {
         Method::Whitted => "Hard shadows, no bounced light",
         Method::Direct => "Direct light only",
         Method::Path => "With bounced light",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_denoiser_takes_a_ninth_of_the_samples_at_three_times_the_noise() {
+        let most = |denoise| {
+            let settings = RenderSettings { denoise, ..RenderSettings::default() };
+            Quality::BY_NOISE.map(|(quality, _)| settings.most_samples(quality))
+        };
+        assert_eq!(most(false), [16, 128, 1024].map(Some));
+        assert_eq!(most(true), [2, 15, 114].map(Some));
+        let settings = RenderSettings { denoise: true, ..RenderSettings::default() };
+        assert_eq!(settings.most_samples(Quality::Custom), None);
+        assert!((settings.traced_noise_stops(0.1) - 0.3).abs() < 1e-6);
     }
 }

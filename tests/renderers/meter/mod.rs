@@ -1,4 +1,8 @@
-//! The light meter: readings against closed forms, and the exposure that the command proposes against a render.
+//! The light meter: readings against closed forms; the command and its exposure (`command`); light by mirrors and glass
+//! (`specular`).
+
+mod command;
+mod specular;
 
 use crate::studio;
 use crate::studio::light;
@@ -9,10 +13,7 @@ use catchlight::scene::{
     Aim, Assets, Emitter, Light, LightId, Material, MaterialPreset, Object, Output, Role, Room, Scene, Shape,
 };
 use glam::Vec3;
-use serde_json::Value;
 use std::f32::consts::PI;
-use std::path::Path;
-use std::process::{Command, Output as ProcessOutput};
 
 fn read(scene: &Scene, position: Vec3, facing: Vec3, receptor: Receptor) -> MeterResult {
     read_with(scene, position, facing, receptor, &MeterEffort::default())
@@ -258,127 +259,6 @@ fn a_spot_with_fixed_angles_keeps_its_aim_a_million_metres_away() {
     }
 }
 
-fn catchlight(folder: &Path, arguments: &[&str]) -> ProcessOutput {
-    Command::new(env!("CARGO_BIN_EXE_catchlight")).current_dir(folder).args(arguments).output().unwrap()
-}
-
-fn json(output: &ProcessOutput) -> Value {
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-#[test]
-fn a_grey_card_at_the_metered_exposure_renders_to_its_value() {
-    // Flash through a softbox, a continuous lamp, a slow shutter: the meter adds them, the camera takes its f-number.
-    let mut scene = studio::card_at(Vec3::new(0.0, 1.2, 0.3), 0.2);
-    scene.objects[0].material = MaterialPreset::GreyCard.material();
-    scene.camera.shutter_s = 1.0 / 8.0;
-    scene.camera.iso = 200.0;
-    // The f-number makes up for an ND filter and for the bellows factor of a lens of 100 mm, 0.3 m from the card.
-    (scene.camera.nd_stops, scene.camera.focus_breathing, scene.camera.focal_length_mm) = (2.0, true, 100.0);
-    scene.camera.position = Vec3::new(0.06, 1.2, 0.594);
-    scene.camera.sensor = catchlight::scene::Sensor::Custom { width_mm: 3.0, height_mm: 3.0 };
-    let softbox = Emitter::RectPanel { width_m: 0.6, height_m: 0.9 };
-    let flash = Output::FlashWs { energy_ws: 100.0, efficacy_lm_s_per_ws: 40.0 };
-    let mut key = light(softbox, flash, Vec3::new(0.5, 1.6, 1.9));
-    key.aim = Aim::Point(Vec3::new(0.0, 1.2, 0.3));
-    let mut lamp = light(Emitter::Point, Output::Lumens(90_000.0), Vec3::new(-1.0, 1.0, 2.0));
-    (lamp.id, lamp.name) = (LightId(1), "Lamp".into());
-    scene.lights = vec![key, lamp];
-    let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("card.ron"), catchlight::io::write_scene(&scene)).unwrap();
-    let meter = ["meter", "card.ron", "--at", "0,1.2,0.3", "--facing", "0,0,1", "--json"];
-    let reading = json(&catchlight(folder.path(), &meter));
-    let n = reading["total"]["f_number"].as_f64().unwrap();
-    let bellows_stops = reading["total"]["bellows_stops"].as_f64().unwrap();
-    assert!((bellows_stops - 2.0 * (0.3_f64 / 0.2).log2()).abs() < 1e-3, "{bellows_stops}");
-    assert_eq!(reading["total"]["nd_stops"].as_f64(), Some(2.0));
-    let flash_percent = reading["flash_percent"].as_f64().unwrap();
-    assert!((20.0..80.0).contains(&flash_percent), "both kinds of light count: {flash_percent} % flash");
-    scene.camera.f_number = n as f32;
-    std::fs::write(folder.path().join("card.ron"), catchlight::io::write_scene(&scene)).unwrap();
-    let render = ["render", "card.ron", "-o", "card.exr", "--size", "16x16", "--spp", "256"];
-    assert_eq!(catchlight(folder.path(), &render).status.code(), Some(0));
-    let picture = exr::prelude::read_first_rgba_layer_from_file(
-        folder.path().join("card.exr"),
-        |size, _| vec![[0.0_f32; 3]; size.area()],
-        |pixels: &mut Vec<[f32; 3]>, pixel, (r, g, b, _): (f32, f32, f32, f32)| {
-            let index = pixel.y() * 16 + pixel.x();
-            pixels[index] = [r, g, b];
-        },
-    );
-    let pixels = picture.unwrap().layer_data.channel_data.pixels;
-    let mean = pixels.iter().map(|p| f64::from(p[1])).sum::<f64>() / pixels.len() as f64;
-    // 65536 samples of a smooth light; the frame is 6 mm of the card, lit evenly to 0.1 %.
-    assert!((mean / 0.18 - 1.0).abs() < 0.005, "f/{n}: {mean}");
-}
-
-#[test]
-fn the_json_report_has_the_documented_keys() {
-    let folder = tempfile::tempdir().unwrap();
-    let report =
-        json(&catchlight(folder.path(), &["meter", "three_point", "--at", "-0.05,1.55,0.2", "--dome", "--json"]));
-    assert_eq!(report["receptor"], "dome");
-    assert_eq!(report["at"].as_array().unwrap().len(), 3);
-    for key in ["direct_lux", "bounced_lux", "lux", "lux_s", "ev100", "f_number"] {
-        assert!(report["total"][key].is_number(), "total lacks {key}: {report}");
-    }
-    let lights = report["lights"].as_array().unwrap();
-    assert_eq!(lights.len(), 4);
-    for light in lights {
-        for key in ["name", "direct_lux", "bounced_lux", "lux", "lux_s", "share_stops"] {
-            assert!(!light[key].is_null(), "a light lacks {key}: {light}");
-        }
-    }
-    let sum: f64 = lights.iter().map(|l| l["lux_s"].as_f64().unwrap()).sum();
-    assert!((sum / report["total"]["lux_s"].as_f64().unwrap() - 1.0).abs() < 1e-5);
-    assert_eq!(lights[0]["share_stops"].as_f64(), Some(0.0), "the key is the measure");
-    let table = catchlight(folder.path(), &["meter", "three_point", "--at", "0,1.55,0.2", "--spp", "256"]);
-    let table = String::from_utf8(table.stdout).unwrap();
-    for word in ["Key softbox", "facing the camera", "f/", "key:fill", "EV100", "flash 100.0 %", "fc", "stops"] {
-        assert!(table.contains(word), "no {word} in\n{table}");
-    }
-}
-
-#[test]
-fn wrong_positions_are_errors_with_a_reason_and_odd_ones_are_warnings() {
-    let folder = tempfile::tempdir().unwrap();
-    for (arguments, reason) in [
-        (vec!["--at", "NaN,0,0"], "NaN"),
-        (vec!["--at", "1,2"], "X,Y,Z"),
-        (vec!["--at", "1e30,0,0"], "1000 km"),
-        (vec!["--at", "0,1,0", "--facing", "0,0,0"], "direction"),
-        (vec!["--at", "0,1.55,1.85"], "--facing"),
-        (vec!["--at", "0,1,0", "--spp", "0"], "0"),
-        (vec![], "--at"),
-    ] {
-        let arguments = [vec!["meter", "three_point"], arguments].concat();
-        let output = catchlight(folder.path(), &arguments);
-        let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {complaint}");
-        assert!(complaint.contains(reason) && output.stdout.is_empty(), "{arguments:?}: {complaint}");
-    }
-    let mut metered = Scene::default();
-    metered.lights.push(light(Emitter::Point, Output::Lumens(1000.0), Vec3::Y * 3.0));
-    metered.meter = Some(catchlight::scene::Meter {
-        position: Vec3::Y,
-        facing: catchlight::scene::Facing::Angles { yaw_deg: 0.0, pitch_deg: 90.0 },
-        receptor: Receptor::Flat,
-    });
-    std::fs::write(folder.path().join("own.ron"), catchlight::io::write_scene(&metered)).unwrap();
-    let own = json(&catchlight(folder.path(), &["meter", "own.ron", "--json"]));
-    let expected = 1000.0 / (4.0 * f64::from(PI)) / 4.0;
-    assert!((own["total"]["lux"].as_f64().unwrap() / expected - 1.0).abs() < 1e-3, "the studio's own meter: {own}");
-    for (at, told) in [("0,0.9,0", "inside of \"Woman\""), ("0,9,0", "outside of the room")] {
-        let output = catchlight(folder.path(), &["meter", "three_point", "--at", at, "--spp", "16", "--json"]);
-        let report = json(&output);
-        let complaint = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(complaint.contains(told), "{at}: {complaint}");
-        // Darkness has no exposure value.
-        assert!(report["total"]["ev100"].is_null() || report["total"]["lux"].as_f64().unwrap() > 0.0);
-    }
-}
-
 #[test]
 fn a_closed_room_reads_direct_plus_bounced_light() {
     let paint = Material { base_color: [0.5; 3], ior: 1.0, roughness: 1.0, ..Material::default() };
@@ -437,123 +317,4 @@ fn the_direct_picture_plus_the_metered_bounced_light_is_the_path_traced_picture(
     };
     assert!(rest.standard_error < 0.01 * bounced, "{rest:?} for {bounced}");
     assert!(rest.agrees_with(bounced, 1e-3, 1), "{rest:?} for {bounced}");
-}
-
-/// An object of a material, turned.
-fn specular(shape: Shape, material: Material, position: Vec3, rotation_deg: Vec3) -> Object {
-    let mut object = studio::object("Specular", shape, position);
-    object.transform.rotation_deg = rotation_deg;
-    Object { material, ..object }
-}
-
-#[test]
-fn a_mirror_gives_the_meter_the_illuminance_of_the_lights_image() {
-    // The meter faces up under a lamp at 1 m; a mirror 1 m beside shows its image at (2, 1, 0). Flat: inverse square and
-    // cosine; a dome weights it by (1 + cos) / 2.
-    let mirror = Material { metallic: 1.0, roughness: 0.0, base_color: [0.999; 3], ..Material::default() };
-    let plane = Shape::Plane { width_m: 0.4, depth_m: 0.4 };
-    let cos = 0.2_f64.sqrt();
-    for emitter in [Emitter::Point, Emitter::Sphere { radius_m: 0.005 }, Emitter::Sun { angular_diameter_deg: 0.53 }] {
-        for receptor in [Receptor::Flat, Receptor::Dome] {
-            let mut lamp = light(emitter, Output::Lumens(12_566.37), Vec3::Y);
-            let mut image = 1000.0 / 5.0 * if receptor == Receptor::Flat { cos } else { 0.5 * (1.0 + cos) };
-            if let Emitter::Sun { .. } = emitter {
-                lamp.power.output = Output::Lux(1000.0);
-                lamp.aim = Aim::Angles { yaw_deg: -90.0, pitch_deg: -30.0 };
-                image = if receptor == Receptor::Flat { 500.0 } else { 750.0 };
-            }
-            let mut scene = Scene { lights: vec![lamp], ..Scene::default() };
-            let at = Vec3::new(1.0, 0.5, 0.0);
-            scene.objects.push(specular(plane.clone(), mirror.clone(), at, Vec3::Z * 90.0));
-            let reading = &read(&scene, Vec3::ZERO, Vec3::Y, receptor).reading.lights[0];
-            let (ours, error) = (f64::from(reading.bounced), f64::from(reading.standard_error));
-            // Over a receptor of 1 cm the image's illuminance changes by less than 0.1 %.
-            assert!(
-                (ours - 0.999 * image).abs() < 4.0 * error + 2e-3 * image,
-                "{emitter:?} {receptor:?}: {ours} of {image} lx"
-            );
-            assert!(error < 0.06 * image, "{emitter:?} {receptor:?}: {error} says little");
-        }
-    }
-}
-
-/// Illuminance of a disc of this radius by a lamp of 1 cd through a ball of glass between both, all on one axis: rays in
-/// a plane of the axis, at equal steps of the angle, with all inner reflections. Distances from the ball's centre.
-fn through_ball(lamp: f64, ball: f64, n: f64, disc: f64, disc_radius: f64) -> f64 {
-    use glam::DVec2;
-    let steps = 20_000;
-    let widest = (ball / lamp).asin();
-    let reflectances = |cos: f64, eta: f64| {
-        let (s, p) = studio::closed_forms::fresnel(cos.min(1.0).acos(), eta);
-        [s, p]
-    };
-    let refract = |d: DVec2, normal: DVec2, eta: f64| {
-        let cos = -d.dot(normal);
-        d / eta + normal * (cos / eta - (1.0 - (1.0 - cos * cos) / (eta * eta)).max(0.0).sqrt())
-    };
-    let mut flux = 0.0;
-    for step in 0..steps {
-        let angle = (f64::from(step) + 0.5) / f64::from(steps) * widest;
-        let (mut at, d) = (DVec2::new(0.0, lamp), DVec2::new(angle.sin(), -angle.cos()));
-        let b = at.dot(d);
-        at += d * (-b - (b * b - lamp * lamp + ball * ball).sqrt());
-        let mut weights = reflectances(-d.dot(at / ball), n).map(|r| 1.0 - r);
-        let mut inside = refract(d, at / ball, n);
-        for _ in 0..8 {
-            at -= inside * (2.0 * at.dot(inside));
-            let normal = -at / ball;
-            let faces = reflectances(-inside.dot(normal), 1.0 / n);
-            let out = refract(inside, normal, 1.0 / n);
-            let x = at.x + out.x * (at.y + disc) / -out.y;
-            if out.y < 0.0 && x.abs() < disc_radius {
-                let passed = 0.5 * (weights[0] * (1.0 - faces[0]) + weights[1] * (1.0 - faces[1]));
-                flux += passed * 2.0 * std::f64::consts::PI * angle.sin() * widest / f64::from(steps);
-            }
-            weights = [weights[0] * faces[0], weights[1] * faces[1]];
-            inside -= normal * (2.0 * inside.dot(normal));
-        }
-    }
-    flux / (std::f64::consts::PI * disc_radius * disc_radius)
-}
-
-#[test]
-fn a_ball_of_glass_focuses_small_lamps_on_the_meter_with_every_seed() {
-    // 7 % of the light is that of three inner reflections. The lamp is 2.6 m before the ball's centre, the meter 0.4 m
-    // behind it, with a receptor of 1 cm.
-    let truth = 1000.0 * through_ball(2.6, 0.1, 1.5, 0.4, 0.01);
-    assert!((truth - 63.68).abs() < 0.1, "{truth}");
-    let glass = Material { base_color: [1.0; 3], transmission: 1.0, roughness: 0.0, ior: 1.5, ..Material::default() };
-    for emitter in [Emitter::Point, Emitter::Sphere { radius_m: 0.005 }] {
-        let lamp = light(emitter, Output::Lumens(12_566.37), Vec3::Z * 3.0);
-        let mut scene = Scene { lights: vec![lamp], ..Scene::default() };
-        scene.objects.push(specular(Shape::Sphere { radius_m: 0.1 }, glass.clone(), Vec3::Z * 0.4, Vec3::ZERO));
-        for seed in 0..5 {
-            let effort = MeterEffort { seed, ..MeterEffort::default() };
-            let result = read_with(&scene, Vec3::ZERO, Vec3::Z, Receptor::Flat, &effort);
-            let reading = &result.reading.lights[0];
-            let (ours, error) = (f64::from(reading.sum()), f64::from(reading.standard_error));
-            // The ball is a mesh, which focuses like a ball to 1 %.
-            assert!(
-                (ours - truth).abs() < 0.01 * truth + 4.0 * error,
-                "{emitter:?}, seed {seed}: {ours} of {truth} lx"
-            );
-            assert!(error < 0.03 * truth, "{emitter:?}, seed {seed}: {error} says little");
-        }
-    }
-}
-
-#[test]
-fn a_meter_that_finds_no_light_says_what_mirrors_may_throw_on_it() {
-    // A lamp behind a wall; a mirror shows it to the meter from one direction of many, or from none.
-    let mirror = Material { metallic: 1.0, roughness: 0.0, ..Material::default() };
-    let wall = studio::object("Wall", Shape::Box { size_m: Vec3::new(1.0, 1.0, 0.1) }, Vec3::Z);
-    let lamp = light(Emitter::Point, Output::Lumens(12_566.37), Vec3::Z * 2.0);
-    let mut scene = Scene { objects: vec![wall], lights: vec![lamp], ..Scene::default() };
-    let dark = read(&scene, Vec3::ZERO, Vec3::Z, Receptor::Flat).reading;
-    assert_eq!((dark.total_lux_s(), dark.missed_lux_s()), (0.0, 0.0), "nothing can bring light here");
-    let plane = Shape::Plane { width_m: 0.5, depth_m: 0.5 };
-    scene.objects.push(specular(plane, mirror, Vec3::new(1.5, -0.5, 1.0), Vec3::ZERO));
-    let unknown = read(&scene, Vec3::ZERO, Vec3::Z, Receptor::Flat).reading;
-    assert!(unknown.total_lux_s() == 0.0 && unknown.missed_lux_s() > 0.0, "{unknown:?}");
-    assert!(unknown.missed_lux_s() * 125.0 < 30.0, "{} lx are more than it can be", unknown.missed_lux_s() * 125.0);
 }
