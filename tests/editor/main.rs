@@ -119,10 +119,10 @@ fn window(options: EditorOptions) -> Window {
 }
 
 /// Returns the first shipped studio with another shape for its figure.
-fn preset_with(shape: impl Fn(Figure) -> Shape) -> Scene {
+fn preset_with(shape: impl Fn(&Figure) -> Shape) -> Scene {
     let mut scene = catchlight::io::presets()[0].load().unwrap().scene;
     for object in &mut scene.objects {
-        if let Shape::Figure(figure) = object.shape {
+        if let Shape::Figure(figure) = &object.shape {
             object.shape = shape(figure);
         }
     }
@@ -132,14 +132,14 @@ fn preset_with(shape: impl Fn(Figure) -> Shape) -> Scene {
 /// Returns the first shipped studio with a post in the figure's place, half of it below the floor, so that it stands
 /// where the figure does: the triangles and strands of a figure take most of the time of a window on an emulated GPU.
 fn plain_preset() -> StudioSource {
-    let post = |figure: Figure| Shape::Cylinder { radius_m: 0.09, height_m: 2.0 * figure.body.height_m };
+    let post = |figure: &Figure| Shape::Cylinder { radius_m: 0.09, height_m: 2.0 * figure.body.height_m };
     static SCENE: OnceLock<Scene> = OnceLock::new();
     StudioSource::Memory(Box::new(SCENE.get_or_init(|| preset_with(post)).clone()))
 }
 
 /// Returns the first shipped studio with a bald figure: strands take a third of the time of a window with a figure.
 fn bald_preset() -> StudioSource {
-    let bald = |figure: Figure| Shape::Figure(Figure { hair: HairStyle::Bald, ..figure });
+    let bald = |figure: &Figure| Shape::Figure(Box::new(Figure { hair: HairStyle::Bald, ..*figure }));
     static SCENE: OnceLock<Scene> = OnceLock::new();
     StudioSource::Memory(Box::new(SCENE.get_or_init(|| preset_with(bald)).clone()))
 }
