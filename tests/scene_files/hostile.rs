@@ -138,7 +138,7 @@ fn a_fluid_out_of_bounds_is_refused_and_never_simulated() {
                 obstacles: [(form: Ball(radius_m: 0.01), at_m: (0.0, 0.0, 0.0))])))";
     let with = |text: &str| SMALL.replacen("Sphere(radius_m: 0.1)", text, 1);
     assert!(parse_scene(&with(tank)).unwrap().1.is_empty());
-    let drops = format!("drops: [{}]", vec!["(at_m: (0.0, 0.05, 0.0), radius_m: 0.01)"; 9].join(", "));
+    let drops = format!("drops: [{}]", ["(at_m: (0.0, 0.05, 0.0), radius_m: 0.01)"; 9].join(", "));
     let cases: &[(&str, &str, &[&str])] = &[
         ("cells: (8, 8, 8)", "cells: (128, 128, 128)", &["shape.cells", "2097152", "1048576", "line 16"]),
         ("time_s: 0.1", "time_s: 0.1, look: Sand", &["Sand", "Smooth"]),
