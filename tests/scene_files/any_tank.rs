@@ -90,7 +90,7 @@ fn fluid() -> impl Strategy<Value = Fluid> {
                 floor_radius_m,
                 rim_m,
                 rim_radius_m,
-                drink_m: if is_full { 1e-20 } else { 0.0 },
+                drink_m: if is_full { 1e-30 } else { 0.0 },
             }
         ),
     ];

@@ -138,10 +138,10 @@ fn a_fluid_out_of_bounds_is_refused_and_never_simulated() {
                 obstacles: [(form: Ball(radius_m: 0.01), at_m: (0.0, 0.0, 0.0))])))";
     let with = |text: &str| SMALL.replacen("Sphere(radius_m: 0.1)", text, 1);
     assert!(parse_scene(&with(tank)).unwrap().1.is_empty());
-    let drops = format!("drops: [{}]", vec!["(at_m: (0.0, 0.05, 0.0), radius_m: 0.01)"; 9].join(", "));
+    let drops = format!("drops: [{}]", ["(at_m: (0.0, 0.05, 0.0), radius_m: 0.01)"; 9].join(", "));
     let cases: &[(&str, &str, &[&str])] = &[
         ("cells: (8, 8, 8)", "cells: (128, 128, 128)", &["shape.cells", "2097152", "1048576", "line 16"]),
-        ("cells: (8, 8, 8)", "cells: (128, 64, 128)", &["shape.time_s"]),
+        ("time_s: 0.1", "time_s: 0.1, look: Sand", &["Sand", "Smooth"]),
         ("water_m: 0.02", "blocks: [(from: (0, 0, 0), to: (99, 99, 99), content: Water)]", &["shape.cell_m", "8000"]),
         ("time_s: 0.1", "time_s: 21.0", &["shape.time_s", "0 to 20 s"]),
         ("radius_m: 0.01)], jets", "radius_m: 0.0)], jets", &["shape.fluid.drops[0].radius_m", "0 m"]),

@@ -84,26 +84,25 @@ pub(super) fn perfume_bottle() -> Mesh {
     solid.finish()
 }
 
-/// The outside and the inside of a tumbler, 10 cm high.
-const TUMBLER: ([(f32, f32); 7], [(f32, f32); 6]) = (
-    [(0.0, 0.0), (0.029, 0.0), (0.0315, 0.001), (0.0325, 0.003), (0.0362, 0.099), (0.0358, 0.1), (0.0352, 0.1003)],
-    [(0.0, 0.01), (0.026, 0.0102), (0.0295, 0.0115), (0.0308, 0.0145), (0.0344, 0.099), (0.0347, 0.1)],
-);
+/// The outside of a tumbler, 10 cm high.
+const TUMBLER_OUTSIDE: [(f32, f32); 7] =
+    [(0.0, 0.0), (0.029, 0.0), (0.0315, 0.001), (0.0325, 0.003), (0.0362, 0.099), (0.0358, 0.1), (0.0352, 0.1003)];
+/// Its inside.
+const TUMBLER_INSIDE: [(f32, f32); 6] =
+    [(0.0, 0.01), (0.026, 0.0102), (0.0295, 0.0115), (0.0308, 0.0145), (0.0344, 0.099), (0.0347, 0.1)];
 
 /// A tumbler of water.
 pub(super) fn drinking_glass() -> Mesh {
-    let (outside, inside) = TUMBLER;
     let mut solid = Solid::default();
-    solid.part("glass").turned(&hollow(&outside, &inside));
-    solid.part("drink").turned(&drink(&inside, 0.068));
+    solid.part("glass").turned(&hollow(&TUMBLER_OUTSIDE, &TUMBLER_INSIDE));
+    solid.part("drink").turned(&drink(&TUMBLER_INSIDE, 0.068));
     solid.finish()
 }
 
 /// A tumbler without a drink.
 pub(super) fn empty_glass() -> Mesh {
-    let (outside, inside) = TUMBLER;
     let mut solid = Solid::default();
-    solid.part("glass").turned(&hollow(&outside, &inside));
+    solid.part("glass").turned(&hollow(&TUMBLER_OUTSIDE, &TUMBLER_INSIDE));
     solid.finish()
 }
 

@@ -91,13 +91,13 @@ impl Projection<'_> {
         let mut has_air = false;
         for (i, &(at, cell)) in cells.iter().enumerate() {
             let (mut diagonal, mut divergence) = (0.0, 0.0);
-            for axis in 0..3 {
+            for (axis, velocities) in faces.iter().enumerate() {
                 let low = layout.face(at);
                 let stride = layout.cell_stride(axis);
                 for (face, is_next) in [(low, false), (low + layout.face_stride(axis), true)] {
                     let sign = if is_next { 1.0 } else { -1.0 };
                     let open = self.open[axis][face];
-                    divergence += sign * (open * faces[axis][face] + if axis == 1 { self.pushed[face] } else { 0.0 });
+                    divergence += sign * (open * velocities[face] + if axis == 1 { self.pushed[face] } else { 0.0 });
                     if open == 0.0 {
                         continue;
                     }
