@@ -37,7 +37,7 @@ fn a_figure_is_moved_over_the_floor_by_the_ring_at_its_feet() {
 
 #[test]
 fn a_click_selects_the_visible_item() {
-    let Some(mut window) = preset_window() else { return };
+    let Some(mut window) = figure_window() else { return };
     let (figure, light) = (scene(&window).objects[0].clone(), scene(&window).lights[1].clone());
     let view = window.get_by_label("Viewport").rect();
     let frame = window.state().viewport().view.frame(view.width() / view.height());
