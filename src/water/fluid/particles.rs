@@ -77,7 +77,9 @@ pub(super) fn pour(
     let nozzle = solids.cells_from_m(jet.at_m);
     let radius = jet.radius_m / cell_m;
     let layer = |time_s: f32| (time_s.min(jet.until_s) * velocity.length() / SPACING) as u32;
-    let side = (radius / SPACING).min(WIDEST_JET) as i32 + 1;
+    // No further than the tank
+    let widest = radius.min(solids.reach_from(nozzle));
+    let side = (widest / SPACING).min(WIDEST_JET) as i32 + 1;
     for index in layer(from_s)..layer(to_s) {
         // The layer left the nozzle some time ago
         let age_s = (to_s - (index + 1) as f32 * SPACING / velocity.length()).max(0.0);

@@ -88,6 +88,12 @@ impl Solids {
         self.ground[cell]
     }
 
+    /// Returns a distance from a point within which all of the tank is, cells.
+    pub(super) fn reach_from(&self, at: Vec3) -> f32 {
+        let middle = 0.5 * Vec3::from(self.layout.size().map(|side| side as f32));
+        middle.length() + at.distance(middle)
+    }
+
     /// Returns true for a point between the sides.
     pub(super) fn is_in_tank(&self, at: Vec3) -> bool {
         let high = Vec3::from(self.layout.size().map(|side| side as f32));
