@@ -3,7 +3,7 @@
 use super::photon::{Photon, inner_side_probability};
 use super::start_density::StartDensity;
 use crate::math::Ray;
-use crate::raytrace::bsdf::Polarisation;
+use crate::raytrace::bsdf::{BsdfSample, Polarisation};
 use crate::raytrace::geometry::SurfaceInteraction;
 use crate::raytrace::medium_stack::MediumStack;
 use crate::raytrace::ray_caster::RayCaster;
@@ -15,6 +15,10 @@ use glam::Vec3;
 
 /// Least cosine to the surface by which a photon's flux is divided.
 const MIN_COSINE: f32 = 0.01;
+
+/// Squared length of the normal of refraction, the relative index times one direction plus the other, below which light is
+/// not deviated.
+const UNDEVIATED: f32 = 1e-4;
 
 /// Traces photons for one thread.
 #[derive(Debug)]
@@ -159,7 +163,7 @@ impl<'a> PhotonTracer<'a> {
             throughput *= sample.weight / sample.eta_scale;
             if !sample.is_undeviated {
                 specular_depth += 1;
-                throughput *= shading_correction(wo, sample.direction, surface.normal, surface.geometric_normal);
+                throughput *= shading_correction(wo, &sample, surface.geometric_normal);
             }
             let survival = survival_probability(throughput, 1.0, depth);
             if !survives(&mut throughput, survival, roulette) {
@@ -208,11 +212,19 @@ impl<'a> PhotonTracer<'a> {
     }
 }
 
-/// Factor of a photon's flux at a surface with an interpolated normal, by which photons agree with paths from the
-/// camera (Veach 1997, section 5.3). `wo` and `wi` are the directions towards the light and onwards.
-pub fn shading_correction(wo: Vec3, wi: Vec3, normal: Vec3, geometric_normal: Vec3) -> f32 {
-    let cosines = |normal: Vec3| (wo.dot(normal).abs(), wi.dot(normal).abs());
-    let ((wo_shading, wi_shading), (wo_geometric, wi_geometric)) = (cosines(normal), cosines(geometric_normal));
+/// Returns the factor of a photon's flux at a surface with an interpolated normal, by which photons agree with paths from
+/// the camera (Veach 1997, section 5.3). `wo` is the direction towards the light, the sample's the one onwards. The normal
+/// is the one about which light was mirrored or refracted, which follows from the two: the geometric one where the
+/// interpolated one would have sent it to the wrong side.
+pub fn shading_correction(wo: Vec3, sample: &BsdfSample, geometric_normal: Vec3) -> f32 {
+    let wi = sample.direction;
+    let (wo_geometric, wi_geometric) = (wo.dot(geometric_normal).abs(), wi.dot(geometric_normal).abs());
+    let normal = if sample.is_transmission { wo + wi / sample.eta_scale.sqrt() } else { wo + wi };
+    // Where both sides have next to the same index, light goes on as it came
+    if sample.is_transmission && normal.length_squared() < UNDEVIATED {
+        return 1.0;
+    }
+    let (wo_shading, wi_shading) = (wo.dot(normal).abs(), wi.dot(normal).abs());
     let denominator = wo_geometric * wi_shading;
-    if denominator > 1e-6 { wo_shading * wi_geometric / denominator } else { 0.0 }
+    if denominator > 1e-6 * normal.length() { wo_shading * wi_geometric / denominator } else { 0.0 }
 }

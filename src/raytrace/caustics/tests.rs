@@ -3,6 +3,7 @@ use super::grid::HashGrid;
 use super::photon::Photon;
 use super::photon_tracer::shading_correction;
 use super::*;
+use crate::raytrace::bsdf::BsdfSample;
 use crate::raytrace::{RenderControl, Settings, prepare, render};
 use crate::scene::{Aim, Assets, Camera, Emitter, Light, LightId, Material, Object, ObjectId, Output, Scene, Shape};
 use crate::statistics::TestRng;
@@ -51,12 +52,37 @@ fn grid_queries_match_brute_force() {
 #[test]
 fn the_shading_correction_makes_photons_agree_with_camera_paths() {
     let (from, normal) = (Vec3::new(0.6, 0.8, 0.0), Vec3::new(0.1, 1.0, 0.05).normalize());
-    let to = (2.0 * from.dot(normal) * normal - from).normalize();
-    assert!((shading_correction(from, to, normal, normal) - 1.0).abs() < 1e-6);
+    let mirrored = |normal: Vec3| BsdfSample::specular((2.0 * from.dot(normal) * normal - from).normalize());
+    let to = mirrored(normal);
+    assert!((shading_correction(from, &to, normal) - 1.0).abs() < 1e-6);
     // Reflection has equal cosines to the shading normal: the triangle's foreshortening remains.
-    let expected = to.y / from.y;
-    assert!((shading_correction(from, to, normal, Vec3::Y) / expected - 1.0).abs() < 1e-5);
-    assert_eq!(shading_correction(Vec3::X, to, normal, Vec3::Y), 0.0);
+    let expected = to.direction.y / from.y;
+    assert!((shading_correction(from, &to, Vec3::Y) / expected - 1.0).abs() < 1e-5);
+    assert_eq!(shading_correction(Vec3::X, &to, Vec3::Y), 0.0);
+    // Mirrored about the geometric normal, whatever the interpolated one is
+    assert!((shading_correction(from, &mirrored(Vec3::Y), Vec3::Y) - 1.0).abs() < 1e-5);
+}
+
+#[test]
+fn the_shading_correction_of_refraction_is_about_the_normal_that_refracts() {
+    let (from, normal) = (Vec3::new(0.6, 0.8, 0.0), Vec3::new(0.3, 1.0, 0.05).normalize());
+    for eta in [1.5_f32, 1.0 / 1.1] {
+        // Snell's law: the tangential part of `from` is divided by the relative index
+        let refracted = |normal: Vec3| {
+            let tangential = (normal * from.dot(normal) - from) / eta;
+            let direction = tangential - normal * (1.0 - tangential.length_squared()).sqrt();
+            BsdfSample { is_transmission: true, eta_scale: 1.0 / (eta * eta), ..BsdfSample::specular(direction) }
+        };
+        let to = refracted(normal);
+        let expected = from.dot(normal) * to.direction.y.abs() / (from.y * to.direction.dot(normal).abs());
+        assert!((expected - 1.0).abs() > 0.01);
+        assert!((shading_correction(from, &to, Vec3::Y) / expected - 1.0).abs() < 1e-4, "{eta}");
+        for normal in [normal, Vec3::Y] {
+            assert!((shading_correction(from, &refracted(normal), normal) - 1.0).abs() < 1e-4, "{eta}");
+        }
+    }
+    let straight = BsdfSample { is_transmission: true, ..BsdfSample::specular(-from) };
+    assert_eq!(shading_correction(from, &straight, normal), 1.0);
 }
 
 fn object(id: u32, shape: Shape, position: Vec3, material: Material) -> Object {

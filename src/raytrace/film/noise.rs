@@ -24,12 +24,12 @@ const DARK: f32 = MIDDLE_GREY / 256.0;
 
 /// Samples per pixel from which the noise is estimated: fewer have no two differences.
 pub const MIN_ESTIMATE_SPP: u32 = 4;
-/// Samples per pixel from which the noise is estimated roughly, by one difference: 0.87 to 1.27 of the error on the
+/// Samples per pixel from which the noise is estimated roughly, by one difference: 0.81 to 1.23 of the error on the
 /// shipped studios.
 pub const MIN_ROUGH_ESTIMATE_SPP: u32 = 2;
 /// Logarithm of n V(n) over the difference, before a second difference tells how they fall: the mean of the shipped
 /// studios.
-const FIRST_LOG_RATIO: f64 = -0.46;
+const FIRST_LOG_RATIO: f64 = -0.30;
 /// Factor of this logarithm from a doubling of the samples to the next, as stratification runs out.
 const FADING: f64 = 0.75;
 /// Weight of an observed ratio of differences beside the expected one: the difference of a tile has noise, too.
