@@ -26,16 +26,13 @@ impl SamplingKey {
 pub(super) struct Samplers(Vec<wgpu::Sampler>);
 
 impl Samplers {
-    /// Creates the samplers. Those of a software rasteriser take no more pixels where a surface is seen at a glancing angle:
-    /// llvmpipe would blur what is enlarged, too, and take much longer.
+    /// Creates the samplers.
     pub fn new(device: &wgpu::Device) -> Self {
-        let is_cpu = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
-        let anisotropy = if is_cpu { 1 } else { 8 };
         let keys = Wrap::ALL.into_iter().flat_map(|across| {
             let down = Wrap::ALL.into_iter();
             down.flat_map(move |down| [false, true].map(|nearest| SamplingKey { wrap: [across, down], nearest }))
         });
-        Samplers(keys.map(|key| sampler(device, key, anisotropy)).collect())
+        Samplers(keys.map(|key| sampler(device, key)).collect())
     }
 
     /// Returns the sampler of a key.
@@ -44,7 +41,7 @@ impl Samplers {
     }
 }
 
-fn sampler(device: &wgpu::Device, key: SamplingKey, anisotropy: u16) -> wgpu::Sampler {
+fn sampler(device: &wgpu::Device, key: SamplingKey) -> wgpu::Sampler {
     let address = |wrap: Wrap| match wrap {
         Wrap::Repeat => wgpu::AddressMode::Repeat,
         Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
@@ -59,7 +56,7 @@ fn sampler(device: &wgpu::Device, key: SamplingKey, anisotropy: u16) -> wgpu::Sa
         min_filter: filter,
         mipmap_filter: if key.nearest { wgpu::MipmapFilterMode::Nearest } else { wgpu::MipmapFilterMode::Linear },
         // Anisotropy needs linear filters
-        anisotropy_clamp: if key.nearest { 1 } else { anisotropy },
+        anisotropy_clamp: if key.nearest { 1 } else { 8 },
         ..Default::default()
     })
 }
