@@ -4,6 +4,7 @@ use super::asset_files::AssetFiles;
 use super::environment::{EnvironmentFile, read_environment};
 use super::error::AssetError;
 use super::importers::EmbeddedImages;
+use super::load_progress::LoadProgress;
 use super::photometric::{PhotometricFile, read_photometric_file};
 use super::texture_memory::TextureMemory;
 use super::{figures, importers, tanks, texture};
@@ -17,15 +18,27 @@ use std::sync::Arc;
 /// `folder`, the scene file's own; `None` for a scene without a file. Returns a warning for each asset that is left
 /// out.
 pub fn load_assets(scene: &Scene, folder: Option<&Path>, assets: &mut Assets) -> Vec<Finding> {
-    load_assets_from(scene, AssetFiles::in_folder(folder), assets)
+    load_assets_from(scene, AssetFiles::in_folder(folder), &LoadProgress::default(), assets)
 }
 
-/// As [`load_assets`], for a scene with imported files that lie elsewhere.
-pub fn load_assets_from(scene: &Scene, files: AssetFiles<'_>, assets: &mut Assets) -> Vec<Finding> {
+/// As [`load_assets`], for a scene with imported files that lie elsewhere, and with a progress that is shown. If that is
+/// cancelled, what is not loaded yet is left out.
+pub fn load_assets_from(
+    scene: &Scene,
+    files: AssetFiles<'_>,
+    progress: &LoadProgress,
+    assets: &mut Assets,
+) -> Vec<Finding> {
     let missing = missing_assets(scene, assets);
     let memory = TextureMemory::new(assets);
     let images = EmbeddedImages::default();
-    let load = |(_, key): &(AssetField, AssetKey)| load(key, files, &memory, &images);
+    let load = |(_, key): &(AssetField, AssetKey)| {
+        let progress = progress.part(missing.len());
+        progress.reach(0.0)?;
+        let loaded = load(key, files, (&memory, &images), &progress)?;
+        progress.reach(1.0)?;
+        Ok(loaded)
+    };
     let loaded: Vec<Result<LoadedAsset, AssetError>> = if memory.may_overflow(&missing, files) {
         // One after the other, so that the same textures are left out each time.
         missing.iter().map(load).collect()
@@ -67,12 +80,12 @@ struct LoadedAsset {
 fn load(
     key: &AssetKey,
     files: AssetFiles<'_>,
-    memory: &TextureMemory,
-    images: &EmbeddedImages,
+    (memory, images): (&TextureMemory, &EmbeddedImages),
+    progress: &LoadProgress,
 ) -> Result<LoadedAsset, AssetError> {
     match key {
         AssetRef::Mesh(path) => {
-            let model = importers::import_model(&files.find(path)?)?;
+            let model = importers::import_model_with(&files.find(path)?, progress)?;
             let warnings = model.warnings.into_iter().map(|warning| format!("{path}: {warning}")).collect();
             Ok(LoadedAsset { asset: Asset::Mesh(Arc::new(model.mesh)), warnings })
         }

@@ -3,7 +3,7 @@
 //! File dialogs, dropped files, mesh files of a scene and error messages all use this list.
 
 use super::error::AssetError;
-use super::import_progress::ImportProgress;
+use super::load_progress::LoadProgress;
 use super::model::{ImageReader, ImportedModel, ModelLimits};
 use super::{gltf_model, obj, ply, stl};
 use std::collections::HashMap;
@@ -21,7 +21,7 @@ pub struct ModelFormat {
     pub states_metres: bool,
     /// Limits that the importer holds.
     pub limits: ModelLimits,
-    import: fn(&Path, &ModelLimits, &ImportProgress) -> Result<ImportedModel, AssetError>,
+    import: fn(&Path, &ModelLimits, &LoadProgress) -> Result<ImportedModel, AssetError>,
     /// Returns the files with data of a model, by their paths from its folder; `None` for formats of one file.
     companions: Option<fn(&Path, &ModelLimits) -> Vec<String>>,
     /// Opens a model file for the images inside it; `None` for formats without.
@@ -85,14 +85,14 @@ impl ModelFormat {
 /// If the extension belongs to no format, or if the file can't be read, exceeds the format's limits or has a mistake;
 /// the message names the line where the format has lines.
 pub fn import_model(path: &Path) -> Result<ImportedModel, AssetError> {
-    import_model_with(path, &ImportProgress::default())
+    import_model_with(path, &LoadProgress::default())
 }
 
 /// As [`import_model`], with a progress that is shown and can be cancelled.
 ///
 /// # Errors
 /// As [`import_model`], and if it is cancelled.
-pub fn import_model_with(path: &Path, progress: &ImportProgress) -> Result<ImportedModel, AssetError> {
+pub fn import_model_with(path: &Path, progress: &LoadProgress) -> Result<ImportedModel, AssetError> {
     let format = format_of(path)?;
     let model = (format.import)(path, &format.limits, progress)?;
     progress.reach(1.0)?;

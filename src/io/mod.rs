@@ -21,11 +21,11 @@ mod figures;
 mod file_stamp;
 mod gear_file;
 mod gltf_model;
-mod import_progress;
 mod importers;
 mod jpeg_end;
 mod kept_picture;
 mod layout;
+mod load_progress;
 mod locate;
 mod model;
 mod model_set_up;
@@ -56,12 +56,12 @@ pub use environment::{ENVIRONMENT_EXTENSIONS, EnvironmentFile, read_environment}
 pub use error::{AssetError, LoadError, Problem, SaveError, reason};
 pub use file_stamp::FileStamp;
 pub use gear_file::{GearError, OWN_GEAR_FILE, bundled_gear, own_gear_path, read_gear, save_gear};
-pub use import_progress::ImportProgress;
 pub use importers::{
     MODEL_FORMATS, ModelFormat, import_model, import_model_with, model_extension_list, model_extensions,
     model_format_names,
 };
 pub use kept_picture::KeptPicture;
+pub use load_progress::LoadProgress;
 pub use model::{ImportedModel, ModelLimits, ModelSetUp};
 pub use model_set_up::expose_for_lamps;
 pub use model_size::{MODEL_UNITS, fit_model, is_model_size_doubtful, model_unit_m, scale_model};
@@ -75,6 +75,8 @@ pub use picture::{
 pub use plain_file::{check_file, write_file};
 pub use presets::{Preset, PresetGroup, find_preset, presets};
 pub use recovery::{RecoveryFolder, RecoveryInfo};
-pub use scene_file::{FILE_LIMIT_BYTES, FORMAT, Loaded, load_scene, parse_scene, save_scene, write_scene};
+pub use scene_file::{
+    FILE_LIMIT_BYTES, FORMAT, Loaded, load_scene, load_scene_with, parse_scene, save_scene, write_scene,
+};
 pub use state_folder::state_folder;
 pub use texture::{TEXTURE_EXTENSIONS, is_texture_file};

@@ -1,6 +1,7 @@
 //! The studio presets, embedded in the program.
 
 use super::error::LoadError;
+use super::load_progress::LoadProgress;
 use super::scene_file::{self, Loaded};
 use std::sync::LazyLock;
 
@@ -26,7 +27,7 @@ impl Preset {
     /// As [`parse_scene`](super::parse_scene). A test loads every preset.
     pub fn load(&self) -> Result<Loaded, LoadError> {
         let (scene, warnings) = scene_file::parse_scene(self.text)?;
-        Ok(scene_file::complete(scene, warnings, None))
+        Ok(scene_file::complete(scene, warnings, None, &LoadProgress::default()))
     }
 }
 

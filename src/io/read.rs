@@ -1,7 +1,7 @@
 //! Reads whole files of bounded size.
 
 use super::error::AssetError;
-use super::import_progress::{ImportProgress, READING};
+use super::load_progress::{LoadProgress, READING};
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
@@ -13,14 +13,14 @@ const BLOCK_BYTES: u64 = 16 << 20;
 /// # Errors
 /// If the file can't be read, is no regular file, or is larger than the limit.
 pub(super) fn read_limited(path: &Path, limit_bytes: u64) -> Result<Vec<u8>, AssetError> {
-    read_model(path, limit_bytes, &ImportProgress::default())
+    read_model(path, limit_bytes, &LoadProgress::default())
 }
 
 /// As [`read_limited`], for an import that can be cancelled.
 ///
 /// # Errors
 /// As [`read_limited`], and if the import is cancelled.
-pub(super) fn read_model(path: &Path, limit_bytes: u64, progress: &ImportProgress) -> Result<Vec<u8>, AssetError> {
+pub(super) fn read_model(path: &Path, limit_bytes: u64, progress: &LoadProgress) -> Result<Vec<u8>, AssetError> {
     let read_error = |error| AssetError::Read { error, path: path.to_owned() };
     // Opening a pipe would block until another program writes to it.
     let metadata = std::fs::metadata(path).map_err(read_error)?;

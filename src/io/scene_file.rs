@@ -1,6 +1,8 @@
 //! Reads and writes scene files. Reading checks size and nesting first, then the syntax, then the values.
 
+use super::asset_files::AssetFiles;
 use super::error::{LoadError, Problem, SaveError};
+use super::load_progress::LoadProgress;
 use super::parse_errors::{explain, explain_name, problem_at, problem_of, shorten};
 use super::unique_names::make_names_unique;
 use super::{assets, atomic, layout, locate, ron_v1};
@@ -35,19 +37,32 @@ pub struct Loaded {
 /// If the file can't be read, is larger than [`FILE_LIMIT_BYTES`] or is no usable scene. A missing model or texture is
 /// a warning.
 pub fn load_scene(path: &Path) -> Result<Loaded, LoadError> {
+    load_scene_with(path, &LoadProgress::default())
+}
+
+/// As [`load_scene`], with a progress that is shown. If that is cancelled, assets are left out.
+///
+/// # Errors
+/// As [`load_scene`].
+pub fn load_scene_with(path: &Path, progress: &LoadProgress) -> Result<Loaded, LoadError> {
     let in_file = |error| LoadError::InFile { error: Box::new(error), path: path.to_owned() };
     let text = read_text(path).map_err(|error| match error {
         LoadError::Read { .. } => error,
         other => in_file(other),
     })?;
     let (scene, warnings) = parse_scene(&text).map_err(in_file)?;
-    Ok(complete(scene, warnings, path.parent()))
+    Ok(complete(scene, warnings, path.parent(), progress))
 }
 
 /// Loads the assets of a parsed scene, and adds the warnings about them and about placement.
-pub(super) fn complete(scene: Scene, mut warnings: Vec<Finding>, folder: Option<&Path>) -> Loaded {
+pub(super) fn complete(
+    scene: Scene,
+    mut warnings: Vec<Finding>,
+    folder: Option<&Path>,
+    progress: &LoadProgress,
+) -> Loaded {
     let mut assets = Assets::default();
-    warnings.extend(assets::load_assets(&scene, folder, &mut assets));
+    warnings.extend(assets::load_assets_from(&scene, AssetFiles::in_folder(folder), progress, &mut assets));
     warnings.extend(placement(&scene, &assets));
     Loaded { scene, assets, warnings }
 }

@@ -4,7 +4,7 @@
 //! order of their corners and are not read; corners get smooth normals except at hard edges.
 
 use super::error::{AssetError, cut};
-use super::import_progress::{ImportProgress, PARSING};
+use super::load_progress::{LoadProgress, PARSING};
 use super::model::{ImportedModel, ModelLimits, ModelSetUp};
 use super::obj;
 use super::read::read_model;
@@ -25,11 +25,7 @@ const COORDINATE_LIMIT: f32 = 1e6;
 ///
 /// # Errors
 /// If the file can't be read, exceeds the limits, is cut off, or has a mistake; the message names the line of a text.
-pub(super) fn import(
-    path: &Path,
-    limits: &ModelLimits,
-    progress: &ImportProgress,
-) -> Result<ImportedModel, AssetError> {
+pub(super) fn import(path: &Path, limits: &ModelLimits, progress: &LoadProgress) -> Result<ImportedModel, AssetError> {
     let bytes = read_model(path, limits.file_bytes, progress)?;
     let bad_model =
         |message: String| AssetError::BadModel { format: "STL", message: cut(message), path: path.to_owned() };
@@ -90,7 +86,7 @@ fn read_binary(bytes: &[u8], limit: usize) -> Result<Vec<Vec3>, String> {
 }
 
 /// Returns the corners of a text, three a triangle.
-fn read_text(bytes: &[u8], progress: &ImportProgress) -> Result<Vec<Vec3>, String> {
+fn read_text(bytes: &[u8], progress: &LoadProgress) -> Result<Vec<Vec3>, String> {
     let mut corners = Vec::new();
     for (index, line) in bytes.split(|byte| *byte == b'\n').enumerate() {
         let bad = |what: &str| format!("line {}: {what}", index + 1);
@@ -135,7 +131,7 @@ mod tests {
     fn imported(content: &[u8]) -> Result<ImportedModel, String> {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), content).unwrap();
-        import(file.path(), &LIMITS, &ImportProgress::default()).map_err(|error| error.to_string())
+        import(file.path(), &LIMITS, &LoadProgress::default()).map_err(|error| error.to_string())
     }
 
     fn binary(triangles: &[[[f32; 3]; 3]]) -> Vec<u8> {

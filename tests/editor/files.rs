@@ -408,24 +408,31 @@ fn a_dropped_exr_without_a_studio_becomes_the_environment_if_it_is_a_panorama() 
 }
 
 #[test]
-fn a_cancelled_import_leaves_the_studio_as_it_is() {
+fn a_cancelled_import_or_opening_leaves_the_studio_as_it_is() {
     if !has_adapter() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
     let model = folder.path().join("pyramid.obj");
     std::fs::write(&model, PYRAMID).unwrap();
+    let studio = folder.path().join("other.ron");
+    std::fs::write(&studio, catchlight::io::find_preset("split").unwrap().text).unwrap();
     let mut window = window_with_answers([]);
     let (before, depth) = (scene(&window).clone(), undo_depth(&window));
     // Before a frame takes the result
-    for command in [Command::ImportPath(model.clone()), Command::CancelImports] {
+    for command in [Command::ImportPath(model.clone()), Command::OpenPath(studio.clone()), Command::CancelLoads] {
         window.state_mut().run(command, None, &egui::Context::default());
     }
     settle(&mut window);
-    wait_until(&mut window, |app| !app.toasts().texts(ToastKind::Info).is_empty());
+    wait_until(&mut window, |app| app.toasts().texts(ToastKind::Info).len() > 1);
     let told = window.state().toasts().texts(ToastKind::Info);
     assert!(told.contains(&"The import of pyramid.obj was cancelled."), "{told:?}");
+    assert!(told.contains(&"other.ron was not opened: cancelled."), "{told:?}");
     assert_eq!((scene(&window), undo_depth(&window), errors(&window).len()), (&before, depth, 0));
     drop_file(&mut window, &model);
     assert_eq!(scene(&window).objects.len(), before.objects.len() + 1, "the next one comes in");
+    window.state_mut().run(Command::Undo, None, &egui::Context::default());
+    settle(&mut window);
+    drop_file(&mut window, &studio);
+    wait_until(&mut window, |app| app.document().scene().name != before.name);
 }

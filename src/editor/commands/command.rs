@@ -90,8 +90,8 @@ pub enum Command {
     Import,
     /// Imports this model.
     ImportPath(PathBuf),
-    /// Cancels the imports that run.
-    CancelImports,
+    /// Cancels the models and studios that are read.
+    CancelLoads,
     /// Gives this light (none: a new one) the photometric file that a dialog selects.
     MeasuredLight(Option<LightId>),
     /// Gives this light (none: a new one) this photometric file.

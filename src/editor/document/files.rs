@@ -3,7 +3,7 @@
 use crate::denoise::{Quality, denoise_layers};
 use crate::editor::document::studio_document::Document;
 use crate::io::{
-    self, AssetFiles, FileStamp, ImportProgress, KeptPicture, LayeredPicture, ModelFormat, ModelSetUp, PictureFormat,
+    self, AssetFiles, FileStamp, KeptPicture, LayeredPicture, LoadProgress, ModelFormat, ModelSetUp, PictureFormat,
     PictureInfo, PresetGroup, RecoveryFolder, RecoveryInfo,
 };
 use crate::jobs::sentence;
@@ -96,6 +96,15 @@ pub enum StudioSource {
 }
 
 impl StudioSource {
+    /// Returns the name of the file or the studio.
+    pub fn name(&self) -> String {
+        match self {
+            StudioSource::File(path) => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            StudioSource::Preset(index) => io::presets().get(*index).map(|p| p.name.clone()).unwrap_or_default(),
+            StudioSource::Memory(scene) => scene.name.clone(),
+        }
+    }
+
     /// Returns the file if it exists, else the shipped studio of that name.
     pub fn named(path: PathBuf) -> Self {
         let shipped = path.to_str().filter(|_| !path.exists()).and_then(io::find_preset);
@@ -111,20 +120,22 @@ fn is_rendered_picture(path: &Path) -> bool {
 
 /// Reads a rendered picture, with its studio and the assets of that beside it. The studio has no file: saving it asks for
 /// one.
-fn open_rendered(path: &Path) -> Result<Box<OpenedStudio>, String> {
+fn open_rendered(path: &Path, progress: &LoadProgress) -> Result<Box<OpenedStudio>, String> {
     let rendered = io::read_rendered(path).map_err(|why| format!("{}: {why}", path.display()))?;
     let scene = Scene::clone(&rendered.picture.scene);
-    let (assets, missing) = load_assets(&scene, path.parent(), &Assets::default(), &BTreeMap::new());
+    let mut assets = Assets::default();
+    let missing = io::load_assets_from(&scene, AssetFiles::in_folder(path.parent()), progress, &mut assets);
+    let missing = missing.iter().map(ToString::to_string);
     let warnings = rendered.findings.iter().map(ToString::to_string).chain(missing).collect();
     Ok(Box::new(OpenedStudio { scene, assets, warnings, path: None, stamp: None, picture: Some(rendered.picture) }))
 }
 
-/// Reads a studio with its assets, or a rendered picture with its studio.
-pub fn open(source: &StudioSource) -> Result<Box<OpenedStudio>, String> {
+/// Reads a studio with its assets, or a rendered picture with its studio. Assets are left out if it is cancelled.
+pub fn open(source: &StudioSource, progress: &LoadProgress) -> Result<Box<OpenedStudio>, String> {
     if let StudioSource::File(path) = source
         && is_rendered_picture(path)
     {
-        return open_rendered(path);
+        return open_rendered(path, progress);
     }
     // Taken first: a change while the file is read counts as a change.
     let stamp = match source {
@@ -132,7 +143,7 @@ pub fn open(source: &StudioSource) -> Result<Box<OpenedStudio>, String> {
         StudioSource::Preset(_) | StudioSource::Memory(_) => None,
     };
     let loaded = match source {
-        StudioSource::File(path) => io::load_scene(path).map_err(|e| sentence(&e))?,
+        StudioSource::File(path) => io::load_scene_with(path, progress).map_err(|e| sentence(&e))?,
         StudioSource::Preset(index) => {
             let preset = io::presets().get(*index).ok_or("There is no such studio on the shelf.")?;
             preset.load().map_err(|e| sentence(&e))?
@@ -163,7 +174,7 @@ pub fn recover(folder: &RecoveryFolder, info: &RecoveryInfo) -> Result<Box<Recov
 }
 
 /// Reads a model.
-pub fn import(file: PathBuf, progress: &ImportProgress) -> Result<Box<ImportedModel>, String> {
+pub fn import(file: PathBuf, progress: &LoadProgress) -> Result<Box<ImportedModel>, String> {
     let model = io::import_model_with(&file, progress).map_err(|e| sentence(&e))?;
     let io::ImportedModel { mesh, part_materials, set_up, warnings } = model;
     let states_metres = ModelFormat::of(&file).is_some_and(|format| format.states_metres);
@@ -180,7 +191,8 @@ pub fn load_assets(
     imported: &BTreeMap<String, PathBuf>,
 ) -> (Assets, Vec<String>) {
     let mut assets = known.clone();
-    let warnings = io::load_assets_from(scene, AssetFiles { folder, imported }, &mut assets);
+    let files = AssetFiles { folder, imported };
+    let warnings = io::load_assets_from(scene, files, &LoadProgress::default(), &mut assets);
     (assets, warnings.iter().map(ToString::to_string).collect())
 }
 

@@ -2,18 +2,22 @@
 
 use crate::editor::document::action::Action;
 use crate::editor::document::files::ImportedModel;
-use crate::io::{self, ImportProgress};
+use crate::io::{self, LoadProgress};
 use crate::scene::{Camera, Focus, Light, Object, Scene};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// An import that runs in the background.
+/// A model or a studio that is read in the background.
 #[derive(Clone, Debug)]
-pub struct RunningImport {
-    /// Name of the file.
+pub struct RunningLoad {
+    /// Name of the file or the studio.
     pub name: String,
+    /// Label of the button that ends it.
+    pub cancel: &'static str,
+    /// Time of the window from which on it is shown, seconds: most studios are read by then.
+    pub shown_from_s: f64,
     /// How far it is.
-    pub progress: Arc<ImportProgress>,
+    pub progress: Arc<LoadProgress>,
 }
 
 /// The choices of the user about a model that comes in.

@@ -3,7 +3,7 @@
 use crate::editor::commands::choices::CentralView;
 use crate::editor::commands::command::Command;
 use crate::editor::document::item::{Item, name_of_all};
-use crate::editor::document::model_import::RunningImport;
+use crate::editor::document::model_import::RunningLoad;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::ui::lengths;
@@ -12,16 +12,16 @@ use crate::sheet::Units;
 use eframe::egui::{self, RichText, Ui};
 use std::time::Duration;
 
-/// Time between two looks at the progress of an import.
+/// Time between two looks at the progress of a file.
 const PROGRESS_TIME: Duration = Duration::from_millis(100);
 
-/// Draws the status line. `busy` is what the background does, with the imports in it.
+/// Draws the status line. `busy` is what the background does, with the files that are read.
 pub fn status_ui(
     ui: &mut Ui,
     document: &Document,
     selection: &Selection,
     central_view: CentralView,
-    (busy, imports): (Option<&str>, &[RunningImport]),
+    (busy, loads): (Option<&str>, &[RunningLoad]),
     out: &mut Vec<Command>,
 ) {
     ui.horizontal_centered(|ui| {
@@ -31,9 +31,10 @@ pub fn status_ui(
             [item] => ui.label(selection_line(scene, *item, lengths::units(ui.ctx()))),
             several => ui.label(format!("{} selected", name_of_all(several, scene))),
         };
-        if let Some(import) = imports.first() {
+        let now = ui.input(|i| i.time);
+        if let Some(load) = loads.iter().find(|load| load.shown_from_s <= now) {
             ui.separator();
-            import_ui(ui, import, out);
+            load_ui(ui, load, out);
         } else if let Some(busy) = busy {
             ui.separator();
             ui.label(RichText::new(busy).weak());
@@ -44,11 +45,11 @@ pub fn status_ui(
     });
 }
 
-/// Draws how far an import is, and the button that ends it.
-fn import_ui(ui: &mut Ui, import: &RunningImport, out: &mut Vec<Command>) {
-    ui.label(format!("{}: {:.0} %", import.name, 100.0 * import.progress.fraction()));
-    if ui.small_button("Cancel import").on_hover_text("The studio stays as it is").clicked() {
-        out.push(Command::CancelImports);
+/// Draws how far a file is read, and the button that ends it.
+fn load_ui(ui: &mut Ui, load: &RunningLoad, out: &mut Vec<Command>) {
+    ui.label(format!("{}: {:.0} %", load.name, 100.0 * load.progress.fraction()));
+    if ui.small_button(load.cancel).on_hover_text("The studio stays as it is").clicked() {
+        out.push(Command::CancelLoads);
     }
     ui.ctx().request_repaint_after(PROGRESS_TIME);
 }

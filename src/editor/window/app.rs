@@ -291,7 +291,7 @@ impl App {
         Panel::top("menu").frame(bar).show(ui, |ui| menu::menu_ui(ui, self.menu_state(), out));
         Panel::bottom("status").frame(bar).exact_size(26.0).show(ui, |ui| {
             let activity = self.background.activity();
-            let busy = (activity, &*self.background.imports);
+            let busy = (activity, &*self.background.loads);
             status::status_ui(ui, &self.document, &self.selection, self.views.central, busy, out);
         });
         let (mut left, mut right) = (self.panels.left, self.panels.right);

@@ -5,7 +5,7 @@ use crate::editor::document::catalog::CatalogTab;
 use crate::editor::document::dial_wishes::DialWishes;
 use crate::editor::document::files::PresetInfo;
 use crate::editor::document::gear_shelf::GearShelf;
-use crate::editor::document::model_import::RunningImport;
+use crate::editor::document::model_import::RunningLoad;
 use crate::editor::document::tank_player::TankPlayer;
 use crate::editor::panels::gear::GearTab;
 use crate::editor::panels::outliner::OutlinerState;
@@ -127,8 +127,8 @@ impl PanelState {
 pub struct BackgroundState {
     /// File operations that the studio waits for.
     pub tasks: BackgroundTasks,
-    /// The imports of models among them.
-    pub imports: Vec<RunningImport>,
+    /// The models and studios among them that are read.
+    pub loads: Vec<RunningLoad>,
     /// Pictures and sheets that are made and written.
     pub exports: BackgroundTasks,
     /// The reading of the light meter.
@@ -150,7 +150,7 @@ impl BackgroundState {
     pub fn new(geometry: Arc<GeometryCache>) -> Self {
         BackgroundState {
             tasks: BackgroundTasks::default(),
-            imports: Vec::new(),
+            loads: Vec::new(),
             exports: BackgroundTasks::default(),
             meter: MeterJob::new(geometry.clone()),
             transport: MeasurementJob::new(SetupTransport::measure, geometry.clone()),

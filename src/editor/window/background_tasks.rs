@@ -4,7 +4,7 @@ use crate::editor::document::environment::ReadEnvironment;
 use crate::editor::document::files::{ImportedModel, OpenedStudio, RecoveredStudio, StudioSource};
 use crate::editor::document::measured_light::MeasuredFile;
 use crate::editor::window::recovery::Unsaved;
-use crate::io::{FileStamp, ImportProgress};
+use crate::io::{FileStamp, LoadProgress};
 use crate::raytrace::Film;
 use crate::scene::{AssetKey, Assets, LightId};
 use std::collections::BTreeSet;
@@ -15,10 +15,10 @@ use std::sync::{Arc, Weak};
 /// The result of a background task.
 #[derive(Debug)]
 pub enum TaskResult {
-    /// An opened studio or an error, with the source.
-    Opened(StudioSource, Result<Box<OpenedStudio>, String>),
+    /// An opened studio or an error, with the source and the progress of its reading.
+    Opened(StudioSource, Arc<LoadProgress>, Result<Box<OpenedStudio>, String>),
     /// An imported model or an error, with the progress of its import.
-    Imported(Arc<ImportProgress>, Result<Box<ImportedModel>, String>),
+    Imported(Arc<LoadProgress>, Result<Box<ImportedModel>, String>),
     /// A photometric file for a light (none: a new one), or an error.
     Measured(Option<LightId>, Result<Box<MeasuredFile>, String>),
     /// An environment map for a surround (none: a new one), or an error.

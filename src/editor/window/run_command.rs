@@ -163,7 +163,7 @@ impl App {
             | Command::SaveAs
             | Command::Import
             | Command::ImportPath(_)
-            | Command::CancelImports
+            | Command::CancelLoads
             | Command::MeasuredLight(_)
             | Command::MeasuredLightPath(..)
             | Command::EnvironmentMap(_)

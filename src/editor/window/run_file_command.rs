@@ -13,11 +13,16 @@ use crate::editor::window::app::App;
 use crate::editor::window::background_tasks::TaskResult;
 use crate::editor::window::dialogs::DialogAnswer;
 use crate::editor::window::session::PendingOperation;
-use crate::io::{self, ModelFormat};
+use crate::io::{self, LoadProgress, ModelFormat};
 use crate::scene::TextureRef;
 use eframe::egui::{self, Align2, Color32, Context, Id, LayerId, Order, ViewportCommand};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::TryRecvError;
+use std::time::Duration;
+
+/// Time that a studio is read before its progress is shown, seconds.
+const QUIET_S: f64 = 0.4;
 
 impl App {
     pub(super) fn run_file_command(&mut self, command: Command, ctx: &Context) {
@@ -30,7 +35,7 @@ impl App {
             Command::SaveAs => self.ask_for_path(FilePurpose::SaveScene, ctx),
             Command::Import => self.ask_for_path(FilePurpose::ImportModel, ctx),
             Command::ImportPath(path) => self.import(path, ctx),
-            Command::CancelImports => self.cancel_imports(),
+            Command::CancelLoads => self.cancel_loads(),
             Command::MeasuredLight(light) => self.ask_for_path(FilePurpose::OpenMeasuredLight(light), ctx),
             Command::MeasuredLightPath(light, path) => self.read_measured_light(light, path, ctx),
             Command::EnvironmentMap(light) => self.ask_for_path(FilePurpose::OpenEnvironment(light), ctx),
@@ -52,9 +57,12 @@ impl App {
 
     /// Loads another studio in the background.
     pub(super) fn load(&mut self, source: StudioSource, ctx: &Context) {
+        let shown_from_s = ctx.input(|i| i.time) + QUIET_S;
+        let progress = self.begin_load(source.name(), "Cancel opening", shown_from_s);
+        ctx.request_repaint_after(Duration::from_secs_f64(QUIET_S));
         let work = move || {
-            let result = files::open(&source);
-            TaskResult::Opened(source, result)
+            let result = files::open(&source, &progress);
+            TaskResult::Opened(source, progress, result)
         };
         self.background.tasks.start(work, waker(ctx));
     }
@@ -155,22 +163,37 @@ impl App {
         }
     }
 
-    pub(super) fn take_done(&mut self, done: TaskResult, ctx: &Context) {
-        match done {
-            TaskResult::Opened(source, Ok(mut opened)) => {
+    /// Takes a studio that was read, unless it was cancelled.
+    fn take_opened(
+        &mut self,
+        source: &StudioSource,
+        progress: &Arc<LoadProgress>,
+        result: Result<Box<OpenedStudio>, String>,
+        ctx: &Context,
+    ) {
+        let name = self.end_load(progress);
+        match result {
+            _ if progress.is_cancelled() => self.toasts.info(format!("{name} was not opened: cancelled.")),
+            Ok(mut opened) => {
                 if !matches!(source, StudioSource::File(_)) {
                     self.session.preferences.get().calibrate(&mut opened.scene.camera);
                 }
                 self.show_opened(*opened, ctx);
             }
-            TaskResult::Opened(source, Err(message)) => {
+            Err(message) => {
                 if let StudioSource::File(path) = source
                     && !path.exists()
                 {
-                    self.session.recent.forget(&path);
+                    self.session.recent.forget(path);
                 }
                 self.toasts.error(format!("The studio could not be opened. {message}"));
             }
+        }
+    }
+
+    pub(super) fn take_done(&mut self, done: TaskResult, ctx: &Context) {
+        match done {
+            TaskResult::Opened(source, progress, result) => self.take_opened(&source, &progress, result, ctx),
             TaskResult::Imported(progress, result) => self.take_import(&progress, result),
             TaskResult::Environment(light, Ok(environment)) => self.use_environment(light, *environment),
             TaskResult::Environment(_, Err(message)) => self.toasts.error(message),

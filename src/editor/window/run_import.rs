@@ -1,13 +1,13 @@
 //! Bringing imported models into the studio, after a prompt where something is to be chosen.
 
 use crate::editor::document::files::{self, ImportedModel};
-use crate::editor::document::model_import::{self, ModelChoice, RunningImport};
+use crate::editor::document::model_import::{self, ModelChoice, RunningLoad};
 use crate::editor::document::placement;
 use crate::editor::panels::import_prompt::{ImportAnswer, PendingModel, import_ui};
 use crate::editor::window::app::App;
 use crate::editor::window::background_tasks::TaskResult;
 use crate::editor::window::run_file_command::waker;
-use crate::io::{self, ImportProgress};
+use crate::io::{self, LoadProgress};
 use crate::scene::{Assets, Material, MaterialPreset, Mesh, Object, Shape, TextureRef, TextureSlot};
 use eframe::egui::Context;
 use std::path::{Path, PathBuf};
@@ -17,8 +17,7 @@ impl App {
     /// Reads a model in the background.
     pub(super) fn import(&mut self, path: PathBuf, ctx: &Context) {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let progress: Arc<ImportProgress> = Arc::default();
-        self.background.imports.push(RunningImport { name, progress: progress.clone() });
+        let progress = self.begin_load(name, "Cancel import", 0.0);
         let work = move || {
             let result = files::import(path, &progress);
             TaskResult::Imported(progress, result)
@@ -26,15 +25,27 @@ impl App {
         self.background.tasks.start(work, waker(ctx));
     }
 
-    /// Cancels the imports that run.
-    pub(super) fn cancel_imports(&mut self) {
-        self.background.imports.iter().for_each(|import| import.progress.cancel());
+    /// Lists a file that is read in the background, and returns its progress.
+    pub(super) fn begin_load(&mut self, name: String, cancel: &'static str, shown_from_s: f64) -> Arc<LoadProgress> {
+        let progress: Arc<LoadProgress> = Arc::default();
+        self.background.loads.push(RunningLoad { name, cancel, shown_from_s, progress: progress.clone() });
+        progress
+    }
+
+    /// Removes a file that is read from the list, and returns its name.
+    pub(super) fn end_load(&mut self, progress: &Arc<LoadProgress>) -> String {
+        let place = self.background.loads.iter().position(|load| Arc::ptr_eq(&load.progress, progress));
+        place.map(|place| self.background.loads.remove(place).name).unwrap_or_default()
+    }
+
+    /// Cancels the models and studios that are read.
+    pub(super) fn cancel_loads(&mut self) {
+        self.background.loads.iter().for_each(|load| load.progress.cancel());
     }
 
     /// Takes the result of an import, unless it was cancelled.
-    pub(super) fn take_import(&mut self, progress: &Arc<ImportProgress>, result: Result<Box<ImportedModel>, String>) {
-        let place = self.background.imports.iter().position(|import| Arc::ptr_eq(&import.progress, progress));
-        let name = place.map(|place| self.background.imports.remove(place).name).unwrap_or_default();
+    pub(super) fn take_import(&mut self, progress: &Arc<LoadProgress>, result: Result<Box<ImportedModel>, String>) {
+        let name = self.end_load(progress);
         match result {
             _ if progress.is_cancelled() => self.toasts.info(format!("The import of {name} was cancelled.")),
             Ok(model) => self.take_model(model),

@@ -14,7 +14,7 @@ mod tests;
 mod texture_slots;
 
 use super::error::{AssetError, cut};
-use super::import_progress::{ImportProgress, READING};
+use super::load_progress::{LoadProgress, READING};
 use super::model::{ImageReader, ImportedModel, ModelLimits};
 use super::read::{read_limited, read_model};
 use crate::scene::{Mesh, MeshPart};
@@ -32,11 +32,7 @@ const COORDINATE_LIMIT: f32 = 1e6;
 ///
 /// # Errors
 /// If the file can't be read, exceeds the limits, needs an extension that is not read, or has a mistake.
-pub(super) fn import(
-    path: &Path,
-    limits: &ModelLimits,
-    progress: &ImportProgress,
-) -> Result<ImportedModel, AssetError> {
+pub(super) fn import(path: &Path, limits: &ModelLimits, progress: &LoadProgress) -> Result<ImportedModel, AssetError> {
     let bytes = read_model(path, limits.file_bytes, progress)?;
     let bad_model =
         |message: String| AssetError::BadModel { format: "glTF", message: cut(message), path: path.to_owned() };
@@ -85,7 +81,7 @@ fn assemble(
     file: &ModelFile,
     path: &Path,
     limits: &ModelLimits,
-    progress: &ImportProgress,
+    progress: &LoadProgress,
 ) -> Result<ImportedModel, NoModel> {
     let mut materials = MaterialReader::new(file, path);
     let (mut mesh, mut part_materials, mut names) = (Mesh::default(), Vec::new(), HashMap::new());

@@ -65,7 +65,7 @@ fn imported(json: &str, bin: &[u8]) -> Result<ImportedModel, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bottle.glb");
     std::fs::write(&path, glb(json, bin)).unwrap();
-    import(&path, &LIMITS, &ImportProgress::default()).map_err(|error| error.to_string())
+    import(&path, &LIMITS, &LoadProgress::default()).map_err(|error| error.to_string())
 }
 
 #[test]
@@ -259,7 +259,7 @@ fn data_in_a_file_beside_the_model_are_read_and_go_where_the_model_goes() {
     std::fs::write(&path, json).unwrap();
     std::fs::create_dir(folder.path().join("data")).unwrap();
     std::fs::write(folder.path().join("data/two bottles.bin"), &bin).unwrap();
-    let model = import(&path, &LIMITS, &ImportProgress::default()).unwrap();
+    let model = import(&path, &LIMITS, &LoadProgress::default()).unwrap();
     assert_eq!(model.mesh.triangles.len(), 2);
     assert_eq!(companions(&path, &LIMITS), ["data/two bottles.bin"]);
     // A studio elsewhere takes both along
@@ -270,11 +270,11 @@ fn data_in_a_file_beside_the_model_are_read_and_go_where_the_model_goes() {
         copy.make().unwrap();
     }
     assert_eq!(std::fs::read(elsewhere.path().join("models/data/two bottles.bin")).unwrap(), bin);
-    assert!(import(&elsewhere.path().join("models/bottle.gltf"), &LIMITS, &ImportProgress::default()).is_ok());
+    assert!(import(&elsewhere.path().join("models/bottle.gltf"), &LIMITS, &LoadProgress::default()).is_ok());
     // Too large a file is refused before it is read
     let small = ModelLimits { file_bytes: 4000, ..LIMITS };
     std::fs::write(folder.path().join("data/two bottles.bin"), vec![0; 9000]).unwrap();
-    assert!(import(&path, &small, &ImportProgress::default()).unwrap_err().to_string().contains("too large"));
+    assert!(import(&path, &small, &LoadProgress::default()).unwrap_err().to_string().contains("too large"));
 }
 
 #[test]
@@ -336,11 +336,11 @@ fn damaged_files_and_unread_extensions_are_told() {
             let mut damaged = whole.clone();
             damaged[at] ^= change;
             std::fs::write(&path, &damaged).unwrap();
-            let _ = import(&path, &LIMITS, &ImportProgress::default());
+            let _ = import(&path, &LIMITS, &LoadProgress::default());
         }
     }
     for length in (0..whole.len()).step_by(7) {
         std::fs::write(&path, &whole[..length]).unwrap();
-        assert!(import(&path, &LIMITS, &ImportProgress::default()).is_err(), "{length}");
+        assert!(import(&path, &LIMITS, &LoadProgress::default()).is_err(), "{length}");
     }
 }

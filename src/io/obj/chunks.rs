@@ -2,7 +2,7 @@
 
 use super::lines::{ElementCounts, Faces, LineError, ParsedChunk, lines};
 use crate::io::error::AssetError;
-use crate::io::import_progress::{ImportProgress, PARSING};
+use crate::io::load_progress::{LoadProgress, PARSING};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -38,7 +38,7 @@ pub(super) enum ReadError {
 }
 
 /// Parses a whole file. Of several mistakes the first in the file is reported.
-pub(super) fn parse(bytes: &[u8], triangle_limit: usize, progress: &ImportProgress) -> Result<Elements, ReadError> {
+pub(super) fn parse(bytes: &[u8], triangle_limit: usize, progress: &LoadProgress) -> Result<Elements, ReadError> {
     if bytes.len() > FILE_LIMIT_BYTES {
         return Err(ReadError::TooLarge(bytes.len()));
     }

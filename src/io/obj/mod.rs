@@ -13,7 +13,7 @@ mod write;
 pub(super) use write::write;
 
 use super::error::{AssetError, cut};
-use super::import_progress::ImportProgress;
+use super::load_progress::LoadProgress;
 use super::model::{ImportedModel, ModelLimits, ModelSetUp};
 use super::read::read_model;
 use crate::scene::Mesh;
@@ -31,11 +31,7 @@ const COORDINATE_LIMIT_M: f32 = 1e6;
 ///
 /// # Errors
 /// If the file can't be read, exceeds the limits, or has a mistake; the message names the line of a malformed one.
-pub(super) fn import(
-    path: &Path,
-    limits: &ModelLimits,
-    progress: &ImportProgress,
-) -> Result<ImportedModel, AssetError> {
+pub(super) fn import(path: &Path, limits: &ModelLimits, progress: &LoadProgress) -> Result<ImportedModel, AssetError> {
     let bytes = read_model(path, limits.file_bytes, progress)?;
     // Some programs begin text files with a byte order mark.
     let text = continued_lines::joined(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes));

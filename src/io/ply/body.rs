@@ -1,7 +1,7 @@
 //! The rows of numbers after the header of a PLY file.
 
 use super::header::{Element, Encoding, Property, Scalar};
-use crate::io::import_progress::{ImportProgress, PARSING};
+use crate::io::load_progress::{LoadProgress, PARSING};
 
 /// Rows after which the progress is noted.
 const ROWS_PER_LOOK: usize = 1 << 16;
@@ -13,12 +13,12 @@ pub struct Body<'a> {
     rest: &'a [u8],
     length: usize,
     rows: usize,
-    progress: &'a ImportProgress,
+    progress: &'a LoadProgress,
 }
 
 impl<'a> Body<'a> {
     /// Returns the rows of a file after its header.
-    pub fn new(encoding: Encoding, rest: &'a [u8], progress: &'a ImportProgress) -> Self {
+    pub fn new(encoding: Encoding, rest: &'a [u8], progress: &'a LoadProgress) -> Self {
         Body { encoding, rest, length: rest.len(), rows: 0, progress }
     }
 

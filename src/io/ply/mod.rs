@@ -9,7 +9,7 @@ mod header;
 mod tests;
 
 use super::error::{AssetError, cut};
-use super::import_progress::{ImportProgress, PARSING};
+use super::load_progress::{LoadProgress, PARSING};
 use super::model::{ImportedModel, ModelLimits, ModelSetUp};
 use super::obj;
 use super::read::read_model;
@@ -33,11 +33,7 @@ const UV_NAMES: [[&str; 2]; 3] = [["s", "t"], ["u", "v"], ["texture_u", "texture
 ///
 /// # Errors
 /// If the file can't be read, exceeds the limits, is cut off, or has a mistake.
-pub(super) fn import(
-    path: &Path,
-    limits: &ModelLimits,
-    progress: &ImportProgress,
-) -> Result<ImportedModel, AssetError> {
+pub(super) fn import(path: &Path, limits: &ModelLimits, progress: &LoadProgress) -> Result<ImportedModel, AssetError> {
     let bytes = read_model(path, limits.file_bytes, progress)?;
     let bad_model =
         |message: String| AssetError::BadModel { format: "PLY", message: cut(message), path: path.to_owned() };

@@ -13,7 +13,7 @@ const TEXT: &str = "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 5\npr
 fn imported(content: &[u8]) -> Result<ImportedModel, String> {
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), content).unwrap();
-    import(file.path(), &LIMITS, &ImportProgress::default()).map_err(|error| error.to_string())
+    import(file.path(), &LIMITS, &LoadProgress::default()).map_err(|error| error.to_string())
 }
 
 /// Returns the text as a binary file.

@@ -1,45 +1,70 @@
-//! The progress of an import, which another thread shows and can cancel.
+//! The progress of files that are read, which another thread shows and can cancel.
 
 use super::error::AssetError;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 /// Steps of the whole.
 const STEPS: f32 = 1e6;
 
-/// The progress of an import.
+/// The progress of files that are read: a model, or a studio with all that it refers to.
+#[derive(Debug)]
+pub struct LoadProgress {
+    whole: Arc<Whole>,
+    /// Part of the whole that this one is, 0 to 1.
+    weight: f32,
+    /// Steps that it has reached.
+    reached: AtomicU32,
+}
+
+/// What all parts share.
 #[derive(Debug, Default)]
-pub struct ImportProgress {
+struct Whole {
     done: AtomicU32,
     is_cancelled: AtomicBool,
 }
 
-impl ImportProgress {
-    /// Returns the part that is done, 0 to 1.
+impl Default for LoadProgress {
+    fn default() -> Self {
+        LoadProgress { whole: Arc::default(), weight: 1.0, reached: AtomicU32::new(0) }
+    }
+}
+
+impl LoadProgress {
+    /// Returns the part of the whole that is done, 0 to 1.
     pub fn fraction(&self) -> f32 {
-        self.done.load(Ordering::Relaxed) as f32 / STEPS
+        (self.whole.done.load(Ordering::Relaxed) as f32 / STEPS).min(1.0)
     }
 
-    /// Ends the import as soon as it looks: it fails then.
+    /// Returns the progress of one of so many parts, which add up to this one. They are cancelled together.
+    pub(super) fn part(&self, of: usize) -> Self {
+        LoadProgress { whole: self.whole.clone(), weight: self.weight / of.max(1) as f32, ..Self::default() }
+    }
+
+    /// Ends the reading as soon as it looks: it fails then.
     pub fn cancel(&self) {
-        self.is_cancelled.store(true, Ordering::Relaxed);
+        self.whole.is_cancelled.store(true, Ordering::Relaxed);
     }
 
     /// Returns true once it is cancelled.
     pub fn is_cancelled(&self) -> bool {
-        self.is_cancelled.load(Ordering::Relaxed)
+        self.whole.is_cancelled.load(Ordering::Relaxed)
     }
 
-    /// Notes that a part is done, 0 to 1; it never goes back.
+    /// Notes that so much of this part is done, 0 to 1; it never goes back.
     ///
     /// # Errors
-    /// If the import is cancelled.
+    /// If it is cancelled.
     pub(super) fn reach(&self, fraction: f32) -> Result<(), AssetError> {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is clamped")]
-        self.done.fetch_max((fraction.clamp(0.0, 1.0) * STEPS) as u32, Ordering::Relaxed);
+        let steps = (fraction.clamp(0.0, 1.0) * STEPS) as u32;
+        let more = steps.saturating_sub(self.reached.fetch_max(steps, Ordering::Relaxed));
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the weight is at most 1")]
+        self.whole.done.fetch_add((more as f32 * self.weight) as u32, Ordering::Relaxed);
         if self.is_cancelled() { Err(AssetError::Cancelled) } else { Ok(()) }
     }
 
-    /// As [`ImportProgress::reach`], for a number of so many between two parts.
+    /// As [`LoadProgress::reach`], for a number of so many between two parts.
     pub(super) fn reach_between(&self, [start, end]: [f32; 2], done: usize, of: usize) -> Result<(), AssetError> {
         self.reach(start + (end - start) * done as f32 / of.max(1) as f32)
     }
@@ -54,6 +79,19 @@ pub(super) const PARSING: [f32; 2] = [0.3, 0.8];
 mod tests {
     use super::*;
     use crate::io::{MODEL_FORMATS, import_model_with};
+
+    #[test]
+    fn parts_add_up_and_are_cancelled_together() {
+        let whole = LoadProgress::default();
+        let parts = [whole.part(2), whole.part(2)];
+        parts[1].reach(1.0).unwrap();
+        parts[1].reach(0.5).unwrap();
+        assert!((whole.fraction() - 0.5).abs() < 1e-5);
+        parts[0].part(4).reach(1.0).unwrap();
+        assert!((parts[0].fraction() - 0.625).abs() < 1e-5);
+        parts[0].cancel();
+        assert!(whole.is_cancelled() && parts[1].reach(1.0).is_err());
+    }
 
     #[test]
     fn an_import_of_every_format_ends_at_its_end_or_where_it_is_cancelled() {
@@ -74,7 +112,7 @@ mod tests {
         for (name, content) in files {
             let path = folder.path().join(name);
             std::fs::write(&path, content).unwrap();
-            let progress = ImportProgress::default();
+            let progress = LoadProgress::default();
             let model = import_model_with(&path, &progress).unwrap();
             assert_eq!((model.mesh.triangles.len(), progress.fraction()), (1, 1.0), "{name}");
             progress.cancel();
