@@ -37,6 +37,7 @@ mod lights;
 mod limits;
 mod live;
 mod medium_stack;
+mod moments;
 mod noise_target;
 mod passes;
 mod path_lights;

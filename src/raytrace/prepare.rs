@@ -8,6 +8,7 @@ use super::geometry::{BodyInstance, Instance};
 use super::geometry_cache::GeometryCache;
 use super::lens::Lens;
 use super::lights::{EmitterBvh, LightSampler, TracedLight};
+use super::moments::{self, Moment};
 use super::plan::RenderPlan;
 use super::render_scene::{ROOM, RenderScene};
 use super::texture::TextureMap;
@@ -16,6 +17,7 @@ use crate::scene::{
     self, Assets, Light, LightId, Material, Mesh, Scene, Severity, Shape, TexturePlacement, TextureRef, TextureSlot,
 };
 use glam::{Affine3A, Vec3};
+use rayon::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use thiserror::Error;
@@ -37,25 +39,55 @@ pub fn prepare(scene: &Scene, assets: &Assets) -> Result<RenderScene, PrepareErr
 /// Prepares a scene with the acceleration structures that an earlier call left in `cache`: unchanged meshes cost
 /// nothing.
 pub fn prepare_kept(scene: &Scene, assets: &Assets, cache: &GeometryCache) -> Result<RenderScene, PrepareError> {
-    prepare_all(scene, assets, scene.camera.position, film::assign_layers, cache)
+    prepare_moments(scene, assets, film::assign_layers, cache)
 }
 
 /// As [`prepare_kept`], with a film layer for each role of lights, which takes less memory than one for each light.
 pub fn prepare_shared(scene: &Scene, assets: &Assets, cache: &GeometryCache) -> Result<RenderScene, PrepareError> {
-    prepare_all(scene, assets, scene.camera.position, film::share_layers, cache)
+    prepare_moments(scene, assets, film::share_layers, cache)
+}
+
+/// Prepares a scene with all moments of its exposure.
+fn prepare_moments(
+    scene: &Scene,
+    assets: &Assets,
+    assign_layers: AssignLayers,
+    cache: &GeometryCache,
+) -> Result<RenderScene, PrepareError> {
+    let origin = scene.camera.position;
+    let mut prepared = prepare_all(scene, assets, origin, assign_layers, cache)?;
+    let in_moment = |moment: &Moment| prepare_at(scene, assets, origin, assign_layers, cache, Some(moment));
+    prepared.moments = moments::of(scene, assets).par_iter().map(in_moment).collect::<Result<_, _>>()?;
+    if !prepared.moments.is_empty() {
+        let reason = format!("water moves while it is lit: {} moments of the exposure", prepared.moments.len());
+        prepared.plan.reasons.push(reason);
+    }
+    Ok(prepared)
 }
 
 /// Assigns each light its film layer.
 pub(super) type AssignLayers = fn(&Scene, &mut [(TracedLight, &Light)]) -> Vec<Layer>;
 
-/// Prepares a scene with the tracer's origin at a world position, near which coordinates are most precise, and with a
-/// cache of acceleration structures.
+/// Prepares a scene at one time, with the tracer's origin at a world position, near which coordinates are most precise,
+/// and with a cache of acceleration structures.
 pub(super) fn prepare_all(
     scene: &Scene,
     assets: &Assets,
     origin: Vec3,
     assign_layers: AssignLayers,
     cache: &GeometryCache,
+) -> Result<RenderScene, PrepareError> {
+    prepare_at(scene, assets, origin, assign_layers, cache, None)
+}
+
+/// As [`prepare_all`], in a moment of the exposure.
+fn prepare_at(
+    scene: &Scene,
+    assets: &Assets,
+    origin: Vec3,
+    assign_layers: AssignLayers,
+    cache: &GeometryCache,
+    moment: Option<&Moment>,
 ) -> Result<RenderScene, PrepareError> {
     if let Some(error) = scene::validate(&scene.without_variants()).into_iter().find(|f| f.severity == Severity::Error)
     {
@@ -64,7 +96,7 @@ pub(super) fn prepare_all(
 
     // Collect meshes and materials, and instantiate the meshes' acceleration structures
     let mut tables = Tables::new(cache);
-    let placed = place_meshes(scene, assets, &mut tables);
+    let placed = place_meshes(scene, assets, moment, &mut tables);
     let geometries = cache.geometries(&unique(placed.iter().map(|p| &p.mesh)));
     let instances = placed
         .into_iter()
@@ -81,8 +113,14 @@ pub(super) fn prepare_all(
     cache.store_merged(aggregate.merged().clone());
 
     // Convert the lights and derive the plan
-    let (lights, light_ids, layers) = convert_lights(scene, assets, origin, assign_layers);
+    let (mut lights, light_ids, layers) = convert_lights(scene, assets, origin, assign_layers);
     let layer_times = layer_times(&lights, &layers);
+    if let Some(moment) = moment {
+        for (traced, id) in lights.iter_mut().zip(&light_ids) {
+            scene.light(*id).into_iter().for_each(|light| moment.dim(traced, light, &scene.camera));
+        }
+    }
+    let continuous = moment.map_or(1.0, |moment| moment.of_continuous_light(&scene.camera));
     let lens = Lens::new(scene);
     let plan = RenderPlan::new(&tables.materials, &lights, &lens, aggregate.strand_count());
     let casters = match plan.photons {
@@ -102,10 +140,11 @@ pub(super) fn prepare_all(
         light_ids,
         layers,
         layer_times,
-        emission_time_s: scene.camera.shutter_s,
+        emission_time_s: scene.camera.shutter_s * continuous,
         exposure: exposure::pixel_per_cd_s_m2(scene),
         lens,
         plan,
+        moments: Vec::new(),
     })
 }
 
@@ -187,7 +226,7 @@ impl<'a> Tables<'a> {
 }
 
 /// The meshes of the room and of all visible objects, with their transforms and materials.
-fn place_meshes(scene: &Scene, assets: &Assets, tables: &mut Tables<'_>) -> Vec<Placed> {
+fn place_meshes(scene: &Scene, assets: &Assets, moment: Option<&Moment>, tables: &mut Tables<'_>) -> Vec<Placed> {
     let mut placed = Vec::new();
     if let Some(room) = &scene.room {
         let mesh = Arc::new(scene::room_mesh(room));
@@ -197,6 +236,7 @@ fn place_meshes(scene: &Scene, assets: &Assets, tables: &mut Tables<'_>) -> Vec<
     let mut round = RoundMeshes::default();
     for (index, object) in scene.objects.iter().enumerate().filter(|(_, o)| o.visible) {
         let Some((mesh, size)) = round.mesh_of(&object.shape, assets) else { continue };
+        let mesh = moment.map_or_else(|| mesh.clone(), |moment| moment.moved(mesh.clone()));
         let materials = mesh.part_names().map(|part| tables.material(object.material_of(part), assets)).collect();
         let world_from_object = object.transform.world_from_object() * Affine3A::from_scale(size);
         placed.push(Placed { mesh, world_from_object, object: index as u32, materials, body: None });

@@ -10,7 +10,7 @@ use super::passes::{self, PassSchedule, RenderPhotons, SamplePass};
 use super::path_tracer::PathTracer;
 use super::pixel_sampler::PixelSampler;
 use super::render_scene::RenderScene;
-use super::sampler::SampleId;
+use super::sampler::{SampleId, Sampler};
 use super::settings::Settings;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
@@ -81,21 +81,26 @@ impl TileJob<'_> {
         let SamplePass { first_sample, samples } = self.pass;
         let view_axis = self.camera.forward();
         let limits = PathLimits::new(method, self.scene.plan(), max_depth);
-        let tracer = PathTracer::new(self.scene, self.photon_map);
-        let mut pixel_sampler = PixelSampler { tracer, camera: self.camera, method, limits };
+        let in_moment = |scene| {
+            let tracer = PathTracer::new(scene, self.photon_map);
+            PixelSampler { tracer, camera: self.camera, method, limits }
+        };
+        let mut pixel_samplers: Vec<_> = self.scene.moments().iter().map(in_moment).collect();
         tile.blocks.begin_pass();
         for pixel in 0..tile.pixels() {
             let (x, y) = tile.position(pixel);
             for index in first_sample..first_sample + samples {
                 let sample = SampleId { x, y, index, seed };
                 let mut gate = tile.sample_sink(pixel, sample, &self.scene.layer_times, view_axis);
-                pixel_sampler.sample(sample, &mut gate);
+                let moment = self.scene.moment_of(&Sampler::of(sample));
+                pixel_samplers[moment].sample(sample, &mut gate);
                 let luminance = gate.sink.luminance * self.scene.exposure;
                 tile.blocks.add(pixel, luminance);
             }
         }
         tile.blocks.finish_pass(samples);
-        let (rays, samples) = (pixel_sampler.tracer.caster.rays, tile.pixels() as u64 * u64::from(samples));
+        let rays = pixel_samplers.iter().map(|sampler| sampler.tracer.caster.rays).sum::<u64>();
+        let samples = tile.pixels() as u64 * u64::from(samples);
         tile.rays += rays;
         tile.traced_samples += samples;
         self.control.count(rays, samples);

@@ -9,6 +9,7 @@ use super::lens::Lens;
 use super::lights::{EmitterBvh, LightSampler, TracedLight};
 use super::medium_stack::MediumStack;
 use super::plan::RenderPlan;
+use super::sampler::{Dimensions, Sampler};
 use super::sink::{FirstHit, FirstObject, SeenSurface};
 use super::texture::TextureMap;
 use crate::math::Ray;
@@ -41,6 +42,8 @@ pub struct RenderScene {
     pub(super) exposure: f32,
     pub(super) lens: Lens,
     pub(super) plan: RenderPlan,
+    /// The scene in the moments of its exposure; none if one time shows all of it.
+    pub(super) moments: Vec<RenderScene>,
 }
 
 /// Object index of the room's instance.
@@ -54,7 +57,21 @@ impl RenderScene {
 
     /// Replaces the plan, to measure a shortcut. A plan without what the scene needs makes the picture wrong.
     pub fn set_plan(&mut self, plan: RenderPlan) {
+        self.moments.iter_mut().for_each(|moment| moment.plan = plan.clone());
         self.plan = plan;
+    }
+
+    /// The scene in each moment of its exposure, for samples and photons that have [`RenderScene::moment_of`].
+    pub(super) fn moments(&self) -> &[RenderScene] {
+        if self.moments.is_empty() { std::slice::from_ref(self) } else { &self.moments }
+    }
+
+    /// Index of the moment that a sample has.
+    pub(super) fn moment_of(&self, sampler: &Sampler) -> usize {
+        match self.moments.len() {
+            0 => 0,
+            count => ((sampler.set(Dimensions::Time)[0] * count as f32) as usize).min(count - 1),
+        }
     }
 
     /// Number of triangles, each instance counted.

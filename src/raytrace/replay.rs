@@ -10,7 +10,7 @@ use super::passes::{PassSchedule, RenderPhotons, SamplePass};
 use super::path_tracer::PathTracer;
 use super::pixel_sampler::PixelSampler;
 use super::render_scene::RenderScene;
-use super::sampler::SampleId;
+use super::sampler::{SampleId, Sampler};
 use super::settings::Settings;
 use super::sink::RadianceSink;
 use crate::color::luminance;
@@ -94,7 +94,8 @@ impl<'a> PassReplay<'a> {
 
     fn trace(&self, sample: SampleId, sink: &mut impl RadianceSink) {
         let Settings { method, max_depth, .. } = *self.settings;
-        let tracer = PathTracer::new(self.scene, self.photon_map.as_ref());
+        let moment = self.scene.moment_of(&Sampler::of(sample));
+        let tracer = PathTracer::new(&self.scene.moments()[moment], self.photon_map.as_ref());
         let limits = PathLimits::new(method, self.scene.plan(), max_depth);
         PixelSampler { tracer, camera: &self.camera, method, limits }.sample(sample, sink);
     }

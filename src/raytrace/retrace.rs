@@ -4,6 +4,7 @@
 //! layer. Everything else is traced again, one light or the whole picture.
 
 use super::film::{Layer, MAX_LIGHT_LAYERS};
+use super::moments;
 use crate::scene::{LightChange, LightId, Scene, SceneChange};
 use std::collections::HashMap;
 
@@ -35,6 +36,7 @@ impl Retrace {
         let has_baked_time = is_grouped || traced.has_emissive_material();
         if change.geometry
             || change.materials
+            || moments::differ(traced, now)
             || (change.shutter && has_baked_time)
             || (change.white_balance && is_grouped)
         {

@@ -30,6 +30,8 @@ pub enum Dimensions {
         /// Depth of the vertex, from 0.
         depth: u32,
     },
+    /// The moment of the exposure.
+    Time,
     /// Start of a walk under the surface: direction, distance, technique; and the stream of numbers for the rest of it.
     Subsurface {
         /// Depth of the vertex, from 0.
@@ -143,6 +145,7 @@ impl Dimensions {
     fn key(self) -> u32 {
         match self {
             Dimensions::Camera => 0,
+            Dimensions::Time => 1 << 31,
             Dimensions::Bsdf { depth } => 1 + 2 * depth,
             Dimensions::Light { slot, depth } => (2 + 2 * depth) | (slot << 16),
             Dimensions::Subsurface { depth } => (1 + 2 * depth) | (1 << 16),

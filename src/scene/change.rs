@@ -12,7 +12,7 @@ use super::{
 /// The classes of everything that differs between two scenes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SceneChange {
-    /// Names, the description and the dials of heads: nothing to redraw.
+    /// Names, the description, the dials of heads, and their t0.1, by which a render compares what moves: nothing to redraw.
     pub labels: bool,
     /// Locks, mute marks, the solo list and the variants that are not shown: nothing to redraw. The switches that they
     /// move are in `lights`.

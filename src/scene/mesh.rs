@@ -17,7 +17,7 @@ pub struct MeshPart {
 
 /// An indexed triangle mesh in object space, metres. Front faces wind counter-clockwise.
 ///
-/// `normals`, `uvs`, `second_uvs` and `colors` are either empty or as long as `positions`. `parts` cover all triangles, in order.
+/// `normals`, `uvs`, `second_uvs`, `colors` and `velocities` are either empty or as long as `positions`. `parts` cover all triangles, in order.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Mesh {
     /// Vertex positions, metres.
@@ -30,6 +30,8 @@ pub struct Mesh {
     pub second_uvs: Vec<Vec2>,
     /// Vertex colours, scene-linear, 0 to 1: factors of the base colour. Empty means 1.
     pub colors: Vec<Vec3>,
+    /// Velocities of the vertices, m/s; empty for a mesh at rest.
+    pub velocities: Vec<Vec3>,
     /// Vertex indices, three a triangle.
     pub triangles: Vec<[u32; 3]>,
     /// Named ranges of triangles.
@@ -88,6 +90,11 @@ impl Mesh {
             self.colors.extend(&other.colors);
             self.colors.resize(self.positions.len() + other.positions.len(), Vec3::ONE);
         }
+        if !(self.velocities.is_empty() && other.velocities.is_empty()) {
+            self.velocities.resize(self.positions.len(), Vec3::ZERO);
+            self.velocities.extend(&other.velocities);
+            self.velocities.resize(self.positions.len() + other.positions.len(), Vec3::ZERO);
+        }
         self.positions.extend(&other.positions);
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|i| i + base)));
         self.parts.extend(
@@ -98,10 +105,17 @@ impl Mesh {
         );
     }
 
+    /// Returns the mesh, at rest, where it is after some time, seconds: each vertex goes on straight.
+    pub fn moved(&self, time_s: f32) -> Self {
+        let mut mesh = Mesh { velocities: Vec::new(), ..self.clone() };
+        mesh.positions.iter_mut().zip(&self.velocities).for_each(|(at, velocity)| *at += *velocity * time_s);
+        mesh
+    }
+
     /// Feeds everything that the mesh consists of into a hasher.
     pub fn hash_content(&self, hasher: &mut impl Hasher) {
         let bits = |v: &Vec3| [u64::from(v.x.to_bits()) << 32 | u64::from(v.y.to_bits()), v.z.to_bits().into()];
-        for vectors in [&self.positions, &self.normals, &self.colors] {
+        for vectors in [&self.positions, &self.normals, &self.colors, &self.velocities] {
             vectors.len().hash(hasher);
             vectors.iter().for_each(|v| bits(v).hash(hasher));
         }

@@ -18,6 +18,7 @@ mod layers;
 mod measured_light;
 mod meter;
 mod modifiers;
+mod motion_blur;
 mod noise;
 #[path = "../studio/people.rs"]
 mod people;

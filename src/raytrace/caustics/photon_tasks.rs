@@ -37,11 +37,13 @@ impl PhotonTasks {
         let trace_task = |task: u32| {
             let mut receiver = R::default();
             if !control.is_cancelled() {
-                let mut tracer = PhotonTracer::new(scene, starts);
+                let in_moment = |scene| PhotonTracer::new(scene, starts);
+                let mut tracers: Vec<_> = scene.moments().iter().map(in_moment).collect();
                 for index in 0..self.photons {
-                    tracer.trace(&Sampler::new(task, self.set, index, self.seed), self.emitted(), &mut receiver);
+                    let sampler = Sampler::new(task, self.set, index, self.seed);
+                    tracers[scene.moment_of(&sampler)].trace(&sampler, self.emitted(), &mut receiver);
                 }
-                control.count(tracer.caster.rays, 0);
+                control.count(tracers.iter().map(|tracer| tracer.caster.rays).sum(), 0);
             }
             receiver
         };

@@ -51,6 +51,7 @@ fn placed(surfaces: [Mesh; 3], [nx, _, nz]: [f32; 3], low_m: Vec3, cell_m: f32) 
     // Seen from above, a texture covers the tank once
     mesh.uvs = mesh.positions.iter().map(|at| Vec2::new(at.x / nx, 1.0 - at.z / nz)).collect();
     mesh.positions.iter_mut().for_each(|position| *position = low_m + *position * cell_m);
+    mesh.velocities.iter_mut().for_each(|velocity| *velocity *= cell_m);
     mesh
 }
 

@@ -8,7 +8,7 @@ use super::nets::Field;
 use crate::scene::{Fluid, Mesh};
 use crate::water::blur::blur;
 use crate::water::fluid::FluidSimulation;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 /// Samples along the edge of a cell.
 const PER_CELL: f32 = 2.0;
@@ -48,7 +48,34 @@ pub(super) fn surface(simulation: &FluidSimulation) -> Mesh {
     lattice.clip(simulation, &mut values);
     let mut mesh = Field::from_values(lattice.size, values).smooth_surface();
     mesh.positions.iter_mut().for_each(|at| *at = lattice.place(*at));
+    mesh.velocities = velocities(simulation, &mesh.positions);
     mesh
+}
+
+/// Returns the mean velocity of the particles around each place, cells per second: trilinear between the means of cells.
+fn velocities(simulation: &FluidSimulation, places: &[Vec3]) -> Vec<Vec3> {
+    let size = simulation.grid().size();
+    let cell_at = |[x, y, z]: [usize; 3]| (z * size[0] + x) * size[1] + y;
+    let mut sums = vec![Vec4::ZERO; size.iter().product()];
+    for particle in simulation.particles() {
+        let at = [0, 1, 2].map(|axis| (particle.at[axis].max(0.0) as usize).min(size[axis] - 1));
+        sums[cell_at(at)] += particle.velocity.extend(1.0);
+    }
+    let velocity_at = |place: &Vec3| {
+        let low = (*place - 0.5).max(Vec3::ZERO);
+        let fraction = low - low.floor();
+        let sum: Vec4 = (0..8)
+            .map(|corner| {
+                let offsets = [corner & 1, corner >> 1 & 1, corner >> 2];
+                let at = [0, 1, 2].map(|axis| (low[axis] as usize + offsets[axis]).min(size[axis] - 1));
+                let weights =
+                    [0, 1, 2].map(|axis| if offsets[axis] == 1 { fraction[axis] } else { 1.0 - fraction[axis] });
+                sums[cell_at(at)] * weights.iter().product::<f32>()
+            })
+            .sum();
+        if sum.w > 0.0 { sum.truncate() / sum.w } else { Vec3::ZERO }
+    };
+    places.iter().map(velocity_at).collect()
 }
 
 /// The places of the samples.
