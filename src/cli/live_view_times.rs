@@ -8,7 +8,7 @@ use crate::io::{self, Loaded, PictureInfo};
 use crate::jobs::{Clock, LivePacing, background_pool, render_all_passes};
 use crate::photo::Picture;
 use crate::raytrace::{self, AtrousFilter, LiveCamera, LivePicture, RenderControl, Settings};
-use crate::scene::{CameraFrame, Scene};
+use crate::scene::{Assets, CameraFrame, Scene, Shape};
 use anyhow::Context;
 use glam::{Affine3A, Quat, Vec3};
 use serde::Serialize;
@@ -41,6 +41,9 @@ struct LiveViewReport {
     light_moved_ms: [f64; 2],
     /// A moved object.
     thing_moved_ms: [f64; 2],
+    /// A tank whose water moved on by a step, with its simulation; none without a tank.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    water_moved_ms: Option<[f64; 2]>,
     /// A dimmed light, for which no ray is traced.
     dimmed_ms: [f64; 2],
     /// A slightly turned view.
@@ -85,8 +88,8 @@ pub fn run(loaded: &Loaded, size: (u32, u32), frames: u32, output: Option<&Path>
 }
 
 /// A live view under measurement.
-struct Bench<'a> {
-    loaded: &'a Loaded,
+struct Bench {
+    assets: Assets,
     pacing: LivePacing,
     scene: Scene,
     frame: CameraFrame,
@@ -96,14 +99,14 @@ struct Bench<'a> {
     updates_ms: Vec<f64>,
 }
 
-impl<'a> Bench<'a> {
-    fn new(loaded: &'a Loaded, size: (u32, u32)) -> Result<Self, Failure> {
+impl Bench {
+    fn new(loaded: &Loaded, size: (u32, u32)) -> Result<Self, Failure> {
         let pacing = LivePacing::new(Arc::default(), Clock::default())
             .context("no threads to trace with")
             .map_err(Failure::Machine)?;
         let frame = loaded.scene.camera_frame(size.0 as f32 / size.1 as f32);
         Ok(Bench {
-            loaded,
+            assets: loaded.assets.clone(),
             pacing,
             scene: loaded.scene.clone(),
             frame,
@@ -116,7 +119,7 @@ impl<'a> Bench<'a> {
     /// Traces scene and view as they are now. Returns the time to the first picture, milliseconds.
     fn open(&mut self) -> Result<f64, Failure> {
         let (began, scene) = (Instant::now(), Arc::new(self.scene.clone()));
-        self.pacing.update(scene, &self.loaded.assets, LiveCamera::pinhole(self.frame, self.size))?;
+        self.pacing.update(scene, &self.assets, LiveCamera::pinhole(self.frame, self.size))?;
         self.updates_ms.push(began.elapsed().as_secs_f64() * 1e3);
         while self.pacing.step(true, &self.control).is_none() {}
         Ok(began.elapsed().as_secs_f64() * 1e3)
@@ -152,6 +155,7 @@ impl<'a> Bench<'a> {
         })?;
         self.work_until(|pacing| pacing.picture().completed_steps() > LivePicture::HISTORY_STEPS);
         let reused = f64::from(self.pacing.picture().reprojected_fraction());
+        let water_moved_ms = self.has_tank().then(|| self.time_water(frames)).transpose()?;
         self.updates_ms.clear();
         let light_moved_ms =
             self.time(frames, |bench| bench.scene.lights.iter_mut().take(1).for_each(|l| l.position.y += STEP_M))?;
@@ -174,6 +178,7 @@ impl<'a> Bench<'a> {
             prepared_ms: quantiles(&mut self.updates_ms),
             light_moved_ms,
             thing_moved_ms,
+            water_moved_ms,
             dimmed_ms,
             view_turned_ms,
             reused,
@@ -184,6 +189,30 @@ impl<'a> Bench<'a> {
             frames_beside,
             frames_beside_render,
         })
+    }
+
+    fn has_tank(&self) -> bool {
+        self.scene.objects.iter().any(|object| matches!(object.shape, Shape::Tank(_)))
+    }
+
+    /// Returns median and 90th percentile of the times to the first picture after a step of the water.
+    fn time_water(&mut self, frames: usize) -> Result<[f64; 2], Failure> {
+        self.work_until(|pacing| pacing.picture().stride() == Some(1));
+        let mut times = Vec::with_capacity(frames);
+        for _ in 0..frames {
+            let began = Instant::now();
+            for object in &mut self.scene.objects {
+                if let Shape::Tank(tank) = &mut object.shape {
+                    tank.time_s += 1.0 / tank.steps_per_s();
+                }
+            }
+            let mut assets = self.assets.clone();
+            io::load_assets(&self.scene, None, &mut assets);
+            self.assets = assets;
+            let simulated_ms = began.elapsed().as_secs_f64() * 1e3;
+            times.push(simulated_ms + self.open()?);
+        }
+        Ok(quantiles(&mut times))
     }
 
     /// Returns the time that smoothing adds to the development of a picture: the fastest of some trials.
@@ -214,7 +243,7 @@ impl<'a> Bench<'a> {
     /// Turns the view while all cores render a picture.
     fn turn_beside_a_render(&mut self) {
         let control = RenderControl::new();
-        let Ok(prepared) = raytrace::prepare(&self.scene, &self.loaded.assets) else { return };
+        let Ok(prepared) = raytrace::prepare(&self.scene, &self.assets) else { return };
         let (width, height) = self.size;
         let settings = Settings { width, height, spp: 1 << 16, ..Settings::default() };
         std::thread::scope(|scope| {
@@ -242,7 +271,10 @@ impl LiveViewReport {
             ("the view turned", self.view_turned_ms),
             ("a light moved", self.light_moved_ms),
             ("an object moved", self.thing_moved_ms),
-        ] {
+        ]
+        .into_iter()
+        .chain(self.water_moved_ms.map(|times| ("the water moved on", times)))
+        {
             terminal::result(format!(
                 "{change}: first picture after {median:.0} ms (median of {frames}), 90 % within {most:.0} ms"
             ));

@@ -4,8 +4,11 @@
 //! four pixels around the projected position that show the same surface: object, material, normal and tangent plane
 //! agree (Nehab et al. 2007, "Accelerating Real-Time Shading with Reverse Reprojection Caching"). Disoccluded pixels
 //! find none and are traced. The weight of view-dependent reflection falls with the angle by which the view has turned
-//! about the surface, to zero at the width of the gloss. The weight is at most [`MAX_WEIGHT`] samples, so that the
-//! accumulated mean converges to the new view.
+//! about the surface, to zero at the width of the gloss. The weight is limited, so that the accumulated mean converges
+//! to the new view.
+//!
+//! When water moves on, the picture before is a history, too: the water itself, which is clear, is never taken from it;
+//! the land around it is, where the surface is the same, with less weight, since the light on it has changed.
 
 use super::camera::LiveCamera;
 use super::live_film::LiveFilm;
@@ -15,25 +18,29 @@ use crate::math;
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
-/// Largest weight of a reprojected pixel, in samples.
+/// Largest weight of a reprojected pixel after the camera moved, in samples.
 pub const MAX_WEIGHT: f32 = 16.0;
+/// The same after water moved.
+pub const FLOW_WEIGHT: f32 = 4.0;
 
 /// Smallest bilinear weight of the neighbours that show the surface.
 const MIN_COVERAGE: f32 = 0.3;
 
-/// A picture of the live view before the camera moved.
+/// A picture of the live view before the camera or water moved.
 #[derive(Debug)]
 pub struct ReprojectionHistory {
     film: LiveFilm,
     camera: LiveCamera,
     /// Spacing of the pixels that have a value.
     stride: u32,
+    /// Largest weight of a reprojected pixel, in samples.
+    max_weight: f32,
 }
 
 impl ReprojectionHistory {
     /// Keeps a picture whose pixels have values at every `stride`th. Pixels at edges are excluded: their samples come
     /// from both sides.
-    pub fn new(mut film: LiveFilm, camera: LiveCamera, stride: u32) -> Self {
+    pub fn new(mut film: LiveFilm, camera: LiveCamera, stride: u32, max_weight: f32) -> Self {
         let edges: Vec<Vec<usize>> =
             film.tiles.par_iter().map(|tile| edge_pixels(&film, &camera, stride, tile)).collect();
         for (tile, edges) in film.tiles.iter_mut().zip(edges) {
@@ -41,7 +48,7 @@ impl ReprojectionHistory {
                 tile.primary_hits[pixel].alpha = PrimaryHit::VIEW_DEPENDENT;
             }
         }
-        ReprojectionHistory { film, camera, stride }
+        ReprojectionHistory { film, camera, stride, max_weight }
     }
 
     /// Returns the film, to reuse its memory.
@@ -52,7 +59,7 @@ impl ReprojectionHistory {
     /// Writes the history of a surface seen from `eye` to `layers`: sum and weight. Returns false where there is none.
     pub fn reproject(&self, hit: &PrimaryHit, eye: Vec3, layers: &mut [Vec4]) -> bool {
         // Limit the weight by the angle between the two views
-        let max_weight = MAX_WEIGHT * self.view_agreement(hit, eye);
+        let max_weight = self.max_weight * self.view_agreement(hit, eye);
         if max_weight < 1.0 {
             return false;
         }

@@ -2,7 +2,7 @@
 //!
 //! [`LivePicture::update`] receives every edit and every camera move and keeps the samples that are still valid: all of them
 //! when a light is dimmed, coloured or switched; the other lights' layers when one light moves; the history,
-//! reprojected, when the camera moves. [`LivePicture::trace`] then traces a given number of paths, the coarsest tiles
+//! reprojected, when the camera moves; and what is not water when water moves on. [`LivePicture::trace`] then traces a given number of paths, the coarsest tiles
 //! first, until every tile is converged. There is no clock here: the caller measures the speed and chooses the number
 //! of paths.
 
@@ -31,7 +31,7 @@ use super::retrace::Retrace;
 use crate::photo::Picture;
 use crate::scene::{Assets, LightId, Scene};
 use glam::Vec3;
-use history::ReprojectionHistory;
+use history::{FLOW_WEIGHT, MAX_WEIGHT, ReprojectionHistory};
 use live_film::LiveFilm;
 use live_tile::LiveTile;
 use photons::LivePhotons;
@@ -109,8 +109,11 @@ impl LivePicture {
             let origin = camera.natural_origin(prepared.scene.room.as_ref());
             prepared.origin.distance(origin) > MAX_ORIGIN_DISTANCE_M
         };
-        let kept = self.prepared.as_ref().zip(self.view.as_ref());
-        let kept = kept.filter(|(prepared, _)| !is_far(prepared) && prepared.assets.is_same(assets));
+        let kept = self.prepared.as_ref().zip(self.view.as_ref()).filter(|(prepared, _)| !is_far(prepared));
+        if kept.is_some_and(|(prepared, view)| change::only_flows(&prepared.scene, &view.film.layers, scene)) {
+            return self.flow(scene.clone(), assets, camera);
+        }
+        let kept = kept.filter(|(prepared, _)| prepared.assets.is_same(assets));
         let (to_trace, retrace) = match kept {
             Some((prepared, view)) => change::between(&prepared.scene, &view.film.layers, scene),
             None => (scene.clone(), Retrace::Everything),
@@ -129,6 +132,20 @@ impl LivePicture {
         self.recycled = self.view.take().map(|view| view.film).or(self.recycled.take());
         (self.prepared, self.history) = (None, None);
         let origin = camera.natural_origin(scene.room.as_ref());
+        self.begin(scene, assets, camera, origin)
+    }
+
+    /// Prepares a scene whose water has moved on; the picture becomes the history if it is better than the one there is.
+    fn flow(&mut self, scene: Scene, assets: &Assets, camera: LiveCamera) -> Result<(), PrepareError> {
+        let (Some(prepared), Some(view)) = (self.prepared.take(), self.view.take()) else {
+            return self.restart(scene, assets, camera);
+        };
+        self.retire(view.film, view.camera, &camera, FLOW_WEIGHT);
+        self.begin(scene, assets, camera, prepared.origin)
+    }
+
+    /// Prepares the scene and begins a picture of it.
+    fn begin(&mut self, scene: Scene, assets: &Assets, camera: LiveCamera, origin: Vec3) -> Result<(), PrepareError> {
         let full = prepare::prepare_all(&scene, assets, origin, assign_layers, &self.cache)?;
         let (layers, camera) = (full.layers.clone(), camera.around(origin, scene.room.as_ref()));
         let film_layers = (0..layers.len()).map(Some).collect();
@@ -183,16 +200,21 @@ impl LivePicture {
         let layers = view.film.layers.clone();
         let old_film = std::mem::take(&mut view.film);
         (prepared.retraced, prepared.photons) = (None, LivePhotons::default());
-        if camera.has_aperture() || old_camera.has_aperture() {
-            (self.history, self.recycled) = (None, Some(old_film));
-        } else if let Some(stride) = old_film.stride().filter(|stride| self.is_better_history(&old_film, *stride)) {
-            self.recycled = self.history.take().map(ReprojectionHistory::into_film).or(self.recycled.take());
-            self.history = Some(ReprojectionHistory::new(old_film, old_camera, stride));
-        } else {
-            self.recycled = Some(old_film);
-        }
+        self.retire(old_film, old_camera, &camera, MAX_WEIGHT);
         if let Some(view) = &mut self.view {
             view.film = LiveFilm::recycling(self.recycled.take(), camera.size, layers);
+        }
+    }
+
+    /// Makes a picture the history for another camera if it is better than the one there is; keeps its memory otherwise.
+    fn retire(&mut self, film: LiveFilm, camera: LiveCamera, next: &LiveCamera, max_weight: f32) {
+        if camera.has_aperture() || next.has_aperture() {
+            (self.history, self.recycled) = (None, Some(film));
+        } else if let Some(stride) = film.stride().filter(|stride| self.is_better_history(&film, *stride)) {
+            self.recycled = self.history.take().map(ReprojectionHistory::into_film).or(self.recycled.take());
+            self.history = Some(ReprojectionHistory::new(film, camera, stride, max_weight));
+        } else {
+            self.recycled = Some(film);
         }
     }
 

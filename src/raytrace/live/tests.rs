@@ -4,9 +4,11 @@ use super::*;
 use crate::raytrace::geometry::PassedBodies;
 use crate::raytrace::{Settings, render};
 use crate::scene::{
-    Aim, Camera, CameraFrame, Emitter, Light, Material, Object, ObjectId, Output, Room, Shape, Transform,
+    Aim, Asset, AssetKey, Camera, CameraFrame, Emitter, Light, Material, Object, ObjectId, Output, Room, Shape, Tank,
+    Transform, tessellate,
 };
 use glam::Affine3A;
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 
 const SIZE: (u32, u32) = (60, 40);
@@ -185,6 +187,61 @@ fn a_small_pan_reprojects_most_of_a_matte_scene_correctly() {
 }
 
 #[test]
+fn land_keeps_its_samples_when_water_moves_on_and_water_is_traced_anew() {
+    // In place of a simulation: a matte wall, and a clear box before it that rises
+    let tank_at = |time_s: f32| Tank { time_s, ..Tank::default() };
+    let mut assets = Assets::default();
+    for time_s in [0.0, 1.0] {
+        let part = |shape: Shape, offset: Vec3, name: &str| {
+            let mut mesh = tessellate(&shape).unwrap().with_single_part(name);
+            mesh.positions.iter_mut().for_each(|position| *position += offset);
+            mesh
+        };
+        let mut mesh = part(Shape::Box { size_m: Vec3::new(8.0, 6.0, 0.2) }, Vec3::Z * -1.0, "ground");
+        let rise = Vec3::new(0.0, -0.4 + 0.3 * time_s, 0.0);
+        mesh.append(&part(Shape::Box { size_m: Vec3::new(0.8, 0.6, 0.3) }, rise, "water"));
+        assets.insert(AssetKey::tank(Cow::Owned(tank_at(time_s))), Asset::Tank(Arc::new(mesh)));
+    }
+    let mut scene = studio(matte());
+    let water = Material { base_color: [1.0; 3], transmission: 1.0, roughness: 0.0, ..Material::default() };
+    scene.objects = vec![Object {
+        part_materials: vec![("water".to_owned(), water)],
+        ..object(0, Shape::Tank(Box::new(tank_at(0.0))), Vec3::ZERO, matte())
+    }];
+    let mut live = LivePicture::default();
+    live.update(&scene, &assets, view(&scene, 0.0)).unwrap();
+    trace_to(&mut live, ALL_TRACED + 8);
+    scene.objects[0].shape = Shape::Tank(Box::new(tank_at(1.0)));
+    live.update(&scene, &assets, view(&scene, 0.0)).unwrap();
+    trace_to(&mut live, ALL_HITS);
+    let film = &live.view.as_ref().unwrap().film;
+    let pixels = film.tiles.iter().flat_map(|tile| (0..tile.pixels()).map(move |pixel| (tile, pixel)));
+    let (mut land, mut kept, mut water, mut stale) = (0, 0, 0, 0);
+    for (tile, pixel) in pixels {
+        let weight = tile.sums.at(0, pixel).w;
+        assert!(weight <= FLOW_WEIGHT, "{weight}");
+        if tile.primary_hits[pixel].alpha < 0.0 {
+            (water, stale) = (water + 1, stale + usize::from(weight > 1.0));
+        } else {
+            (land, kept) = (land + 1, kept + usize::from(weight > 1.0));
+        }
+    }
+    assert!(water > 30 && stale == 0, "{stale} of {water} pixels of water have old light");
+    assert!(kept > land * 3 / 4, "{kept} of {land} pixels of land");
+    // It converges to the light of a view that never saw the water elsewhere
+    converge(&mut live);
+    let mut fresh = LivePicture::default();
+    fresh.update(&scene, &assets, view(&scene, 0.0)).unwrap();
+    converge(&mut fresh);
+    let brightness = mean(&live.develop(&scene)) / mean(&fresh.develop(&scene));
+    assert!((brightness - 1.0).abs() < 0.02, "{brightness}");
+    // Anything else discards the samples
+    scene.objects[0].transform.position.x += 0.1;
+    live.update(&scene, &assets, view(&scene, 0.0)).unwrap();
+    assert!(live.history.is_none() && !live.has_picture());
+}
+
+#[test]
 fn disoccluded_pixels_are_traced() {
     let scene = studio(matte());
     let mut live = started(&scene);
@@ -256,7 +313,7 @@ fn errors_of_the_history_fade_with_the_number_of_samples() {
             live.trace(1, &RenderControl::new());
         }
         let wrong = mean(&live.develop(&scene)) / mean(&rendered) - 1.0;
-        let expected = 2.0 * history::MAX_WEIGHT / (history::MAX_WEIGHT + samples as f32);
+        let expected = 2.0 * MAX_WEIGHT / (MAX_WEIGHT + samples as f32);
         assert!(wrong < 1.1 * expected + 0.01, "{wrong} after {samples} samples, {expected} expected at most");
     }
 }
