@@ -180,6 +180,7 @@ pub(super) fn differ(traced: &Scene, now: &Scene) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Emitter, Head, HeadDial, Object, Output, Tank};
 
     #[test]
     fn every_light_gives_its_whole_light_over_the_moments() {
@@ -205,6 +206,29 @@ mod tests {
             times.iter().zip([1.0, 3.0, 5.0, 7.0]).all(|(time, expected)| (time - expected).abs() < 1e-4),
             "{times:?}"
         );
+    }
+
+    #[test]
+    fn a_flash_of_another_duration_makes_a_picture_of_moving_water_stale() {
+        let head =
+            |t01_s| Head { name: String::new(), dial: HeadDial::UNKNOWN, sync_s: None, hss_loss_stops: None, t01_s };
+        let studio = |fluid: bool, t01_s: f32, shutter_s: f32| {
+            let tank = Tank { fluid: fluid.then(Box::default), ..Tank::default() };
+            let flash = Output::FlashGuideNumber(40.0);
+            let lights = vec![Light { head: Some(head(Some(t01_s))), ..Light::new(Emitter::Point, flash) }];
+            let camera = Camera { shutter_s, ..Camera::default() };
+            let objects = vec![Object::new("Tank", Shape::Tank(Box::new(tank)))];
+            Scene { objects, lights, camera, ..Scene::default() }
+        };
+        assert!(differ(&studio(true, 0.001, 0.01), &studio(true, 0.002, 0.01)));
+        assert!(!differ(&studio(false, 0.001, 0.01), &studio(false, 0.002, 0.01)));
+        // The shutter is of no account for a flash
+        assert!(!differ(&studio(true, 0.001, 0.01), &studio(true, 0.001, 0.02)));
+        let mut bulb = studio(true, 0.001, 0.01);
+        bulb.lights[0].power.output = Output::Lumens(100.0);
+        let mut longer = bulb.clone();
+        longer.camera.shutter_s = 0.02;
+        assert!(differ(&bulb, &longer) && !differ(&bulb, &bulb.clone()));
     }
 
     #[test]
