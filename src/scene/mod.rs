@@ -77,8 +77,8 @@ pub use room::Room;
 pub use strands::{StrandPart, StrandPoint, Strands};
 pub use surface_layers::{Anisotropy, Clearcoat, Sheen};
 pub use tank::{
-    Block, CellContent, Drop, FLUID_FRAMES_PER_S, Fluid, Jet, Obstacle, ObstacleForm, Spring, TANK_STEPS_PER_S, Tank,
-    TankLook, Terrain,
+    Block, BrushStroke, CellContent, Drop, FLUID_FRAMES_PER_S, Fluid, Jet, Obstacle, ObstacleForm, Spring,
+    TANK_STEPS_PER_S, Tank, TankLook, Terrain,
 };
 pub use tessellate::{ROOM_STANDS_BACK_M, room_mesh, tessellate};
 pub use texture::{MaterialTextures, Texture, TextureRef, TextureSlot};

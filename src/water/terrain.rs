@@ -1,8 +1,8 @@
-//! The start of a tank: its ground, its still water and its blocks.
+//! The start of a tank: its ground, its still water, its blocks and the strokes of the brush.
 
 use super::grid::{FULL, Grid};
-use crate::scene::{Block, CellContent, Tank, Terrain, Texture};
-use glam::{IVec2, Vec2};
+use crate::scene::{Block, BrushStroke, CellContent, Tank, Terrain, Texture};
+use glam::{IVec2, Vec2, Vec3};
 
 /// Octaves of the noise of hills.
 const OCTAVES: u32 = 5;
@@ -26,7 +26,35 @@ pub fn start(tank: &Tank, heights: Option<&Texture>) -> Grid {
         }
     }
     tank.blocks.iter().for_each(|block| place(&mut grid, block));
+    tank.strokes.iter().for_each(|stroke| paint(&mut grid, tank, stroke));
     grid
+}
+
+/// Fills the cells whose middle is within the radius of a stroke's path.
+fn paint(grid: &mut Grid, tank: &Tank, stroke: &BrushStroke) {
+    let in_cells = |point: &Vec3| (*point - tank.low_m()) / tank.cell_m;
+    let radius = stroke.radius_m / tank.cell_m;
+    let path: Vec<Vec3> = stroke.path_m.iter().map(in_cells).collect();
+    let lone = path.first().filter(|_| path.len() == 1).map(|point| [*point, *point]);
+    for [from, to] in path.windows(2).map(|pair| [pair[0], pair[1]]).chain(lone) {
+        let (low, high) = (from.min(to) - radius, from.max(to) + radius);
+        let range =
+            |axis: usize| low[axis].max(0.0) as usize..(high[axis].max(0.0) as usize + 1).min(grid.size()[axis]);
+        let [xs, ys, zs] = [range(0), range(1), range(2)];
+        for z in zs {
+            for x in xs.clone() {
+                for y in ys.clone() {
+                    let middle = Vec3::new(x as f32, y as f32, z as f32) + 0.5;
+                    let along = to - from;
+                    let part = (middle - from).dot(along) / along.length_squared().max(f32::MIN_POSITIVE);
+                    if middle.distance(from + along * part.clamp(0.0, 1.0)) <= radius {
+                        let cell = grid.index([x, y, z]);
+                        fill(grid, cell, stroke.content);
+                    }
+                }
+            }
+        }
+    }
 }
 
 fn place(grid: &mut Grid, block: &Block) {
@@ -37,16 +65,20 @@ fn place(grid: &mut Grid, block: &Block) {
         for x in xs.clone() {
             for y in ys.clone() {
                 let cell = grid.index([x, y, z]);
-                match content {
-                    CellContent::Air => grid.set_ground(cell, 0),
-                    CellContent::Ground => grid.set_ground(cell, FULL),
-                    CellContent::Metal => grid.set_metal(cell),
-                    CellContent::Water => {
-                        grid.set_ground(cell, 0);
-                        grid.set_level(cell, FULL);
-                    }
-                }
+                fill(grid, cell, content);
             }
+        }
+    }
+}
+
+fn fill(grid: &mut Grid, cell: usize, content: CellContent) {
+    match content {
+        CellContent::Air => grid.set_ground(cell, 0),
+        CellContent::Ground => grid.set_ground(cell, FULL),
+        CellContent::Metal => grid.set_metal(cell),
+        CellContent::Water => {
+            grid.set_ground(cell, 0);
+            grid.set_level(cell, FULL);
         }
     }
 }
@@ -176,6 +208,36 @@ mod tests {
         assert_eq!(heights_m(&tank, None), [0.1; 16]);
         let empty = Texture::opaque(0, 0, Vec::new());
         assert_eq!(heights_m(&tank, Some(&empty)), [0.1; 16]);
+    }
+
+    #[test]
+    fn a_stroke_fills_the_cells_about_its_path_in_order() {
+        let stroke = |content, cells: f32, path: &[[f32; 3]]| BrushStroke {
+            content,
+            radius_m: 0.1 * cells,
+            path_m: path.iter().map(|point| (Vec3::from(*point) - Vec3::new(4.0, 0.0, 4.0)) * 0.1).collect(),
+        };
+        let tank = Tank {
+            cells: [8, 8, 8],
+            cell_m: 0.1,
+            terrain: Terrain::Flat { height_m: 0.0 },
+            water_m: 0.0,
+            strokes: vec![
+                stroke(CellContent::Ground, 1.01, &[[1.5, 1.5, 4.5], [5.5, 1.5, 4.5]]),
+                stroke(CellContent::Water, 0.1, &[[3.5, 1.5, 4.5]]),
+                // Beyond the tank
+                stroke(CellContent::Metal, 2.0, &[[-50.0, 1.5, 4.5], [90.0, 40.0, 4.5]]),
+                stroke(CellContent::Metal, 1.0, &[]),
+            ],
+            ..Tank::default()
+        };
+        let grid = start(&tank, None);
+        let cells = |is: &dyn Fn(usize) -> bool| (0..512).filter(|cell| is(*cell)).count();
+        // Five cells along the path with four neighbours each, and one beyond each end; one of them is water now
+        assert_eq!(cells(&|cell| grid.ground(cell) == FULL && !grid.is_metal(cell)), 5 * 5 + 2 - 1);
+        assert_eq!(cells(&|cell| grid.water(cell) > 0), 1);
+        assert_eq!(grid.water(grid.index([3, 1, 4])), FULL);
+        assert_eq!(cells(&|cell| grid.is_metal(cell)), 0);
     }
 
     #[test]

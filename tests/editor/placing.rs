@@ -28,7 +28,7 @@ fn a_highlight_is_dragged_over_a_ball_and_the_light_follows_in_one_step() {
     let (start, depth) = (scene(&window).lights[0].clone(), undo_depth(&window));
     let centre = scene(&window).objects[ball].transform.position;
     press(&mut window, Modifiers::NONE, Key::P);
-    assert!(window.state().viewport().place_light.is_some());
+    assert!(window.state().viewport().tool.is_some());
     let [from, to] = [Vec3::new(0.0, 0.05, 0.2), Vec3::new(-0.1, 0.12, 0.2)].map(|p| shown_at(&window, centre + p));
     drag(&mut window, PointerButton::Primary, from, to);
     let (scene, light) = (scene(&window), &scene(&window).lights[0]);
@@ -41,7 +41,7 @@ fn a_highlight_is_dragged_over_a_ball_and_the_light_follows_in_one_step() {
     assert!((distance(light) - distance(&start)).abs() < 1e-3, "at its distance");
     assert_eq!(undo_depth(&window), depth + 1);
     press(&mut window, Modifiers::NONE, Key::Escape);
-    assert!(window.state().viewport().place_light.is_none() && !window.state().selection().is_empty());
+    assert!(window.state().viewport().tool.is_none() && !window.state().selection().is_empty());
     press(&mut window, Modifiers::COMMAND, Key::Z);
     assert_eq!(super::scene(&window).lights[0], start);
 }
@@ -119,9 +119,9 @@ fn esc_cancels_the_drag_of_a_highlight_and_then_the_mode() {
     button(&mut window, at + vec2(9.0, 0.0), false);
     settle(&mut window);
     assert_eq!((&scene(&window).lights[0], undo_depth(&window)), (&start, depth));
-    assert!(window.state().viewport().place_light.is_some());
+    assert!(window.state().viewport().tool.is_some());
     press(&mut window, Modifiers::NONE, Key::Escape);
-    assert!(window.state().viewport().place_light.is_none());
+    assert!(window.state().viewport().tool.is_none());
 }
 
 #[test]
@@ -190,7 +190,7 @@ fn a_locked_light_is_not_placed_and_a_message_says_why() {
     press(&mut window, Modifiers::NONE, Key::K);
     for key in [Key::P, Key::L] {
         press(&mut window, Modifiers::NONE, key);
-        assert!(window.state().viewport().place_light.is_none());
+        assert!(window.state().viewport().tool.is_none());
     }
     assert!(window.state().toasts().texts(ToastKind::Info).iter().any(|text| text.contains("locked")));
     press(&mut window, Modifiers::NONE, Key::X);

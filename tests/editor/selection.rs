@@ -154,9 +154,9 @@ fn a_right_click_on_a_light_in_the_viewport_opens_its_menu() {
     assert_eq!(window.state().selection().items(), [Item::Light(light.id)]);
     window.get_by_label_contains("Place its highlight").click();
     settle(&mut window);
-    assert!(window.state().viewport().place_light.is_some());
+    assert!(window.state().viewport().tool.is_some());
     press(&mut window, Modifiers::NONE, Key::Escape);
-    assert!(window.state().viewport().place_light.is_none());
+    assert!(window.state().viewport().tool.is_none());
 }
 
 #[test]

@@ -30,7 +30,12 @@ pub(super) fn tank() -> impl Strategy<Value = Tank> {
         litres_per_s,
         switches_s: switches.into_iter().map(f32::from).collect(),
     });
-    let lists = (proptest::collection::vec(block, 0..3), proptest::collection::vec(spring, 0..3));
+    let stroke = (0..4_usize, 0.0..16.0_f32, proptest::collection::vec(vector(-0.1, 0.1), 0..4));
+    let lists = (
+        proptest::collection::vec(block, 0..3),
+        proptest::collection::vec(spring, 0..3),
+        proptest::collection::vec(stroke, 0..3),
+    );
     (
         [1..=128_u16, 1..=128, 1..=128],
         number(1e-5, 1e5),
@@ -41,12 +46,20 @@ pub(super) fn tank() -> impl Strategy<Value = Tank> {
         any::<bool>(),
         proptest::option::of(fluid()),
     )
-        .prop_map(|(cells, cell_m, terrain, (blocks, springs), water_m, time_s, is_smooth, fluid)| {
+        .prop_map(move |(cells, cell_m, terrain, (blocks, springs, strokes), water_m, time_s, is_smooth, fluid)| {
             let tank = Tank {
                 cells,
                 cell_m,
                 terrain,
                 blocks,
+                strokes: strokes
+                    .into_iter()
+                    .map(|(content, cells, path_m)| BrushStroke {
+                        content: contents[content],
+                        radius_m: cells * cell_m,
+                        path_m,
+                    })
+                    .collect(),
                 water_m,
                 springs,
                 time_s,
@@ -58,6 +71,7 @@ pub(super) fn tank() -> impl Strategy<Value = Tank> {
                 Some(fluid) => Tank {
                     cells: cells.map(|side| side % 40 + 1),
                     blocks: Vec::new(),
+                    strokes: Vec::new(),
                     water_m: 0.0,
                     time_s: 0.05 * time_s,
                     fluid: Some(Box::new(fluid)),

@@ -92,12 +92,20 @@ fn a_figure_out_of_range_that_looks_somewhere_is_refused_and_never_built() {
 fn a_tank_out_of_bounds_is_refused_and_never_built() {
     let tank = "Tank((cells: (8, 8, 8), cell_m: 0.1, terrain: Flat(height_m: 0.1), \
                 springs: [(at_m: (0.0, 0.1, 0.0), litres_per_s: 1.0)], \
-                blocks: [(from: (0, 0, 0), to: (1, 1, 1), content: Metal)], time_s: 2.0))";
+                blocks: [(from: (0, 0, 0), to: (1, 1, 1), content: Metal)], \
+                strokes: [(content: Water, radius_m: 0.2, path_m: [(0.0, 0.3, 0.1)])], time_s: 2.0))";
     let with = |text: &str| SMALL.replacen("Sphere(radius_m: 0.1)", text, 1);
     assert!(parse_scene(&with(tank)).unwrap().1.is_empty());
     let many = |item: &str, count: usize| format!("[{}]", vec![item; count].join(", "));
     let blocks = many("(from: (0, 0, 0), to: (1, 1, 1), content: Air)", 300);
+    let strokes = many("(content: Water, radius_m: 0.2, path_m: [])", 300);
+    let path = many("(0.0, 0.3, 0.1)", 5000);
     let cases: &[(&str, &str, &[&str])] = &[
+        ("radius_m: 0.2", "radius_m: 1.7", &["shape.strokes[0].radius_m", "1.7", "16 cells"]),
+        ("radius_m: 0.2", "radius_m: NaN", &["shape.strokes[0].radius_m", "NaN"]),
+        ("(0.0, 0.3, 0.1)", "(0.0, 1e30, 0.1)", &["shape.strokes[0].path_m[0]", "y"]),
+        ("[(0.0, 0.3, 0.1)]", &path, &["shape.strokes", "5000 points", "4096"]),
+        ("[(content: Water, radius_m: 0.2, path_m: [(0.0, 0.3, 0.1)])]", &strokes, &["shape.strokes", "300", "256"]),
         ("(8, 8, 8)", "(0, 8, 8)", &["shape.cells", "0 cells", "1 to 256", "line 16"]),
         ("(8, 8, 8)", "(257, 8, 8)", &["shape.cells", "257"]),
         ("(8, 8, 8)", "(256, 256, 256)", &["shape.cells", "16777216", "2097152"]),

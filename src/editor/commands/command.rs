@@ -8,6 +8,7 @@ use crate::editor::document::framing::Framing;
 use crate::editor::document::gear_shelf::GearEntry;
 use crate::editor::document::item::Item;
 use crate::editor::document::light_mix::Fader;
+use crate::editor::viewport::tools::tank_brush::Brush;
 use crate::photo::PictureDisplay;
 use crate::scene::{LightId, ObjectId, TextureSlot, VariantId};
 use crate::setup::DialPlan;
@@ -152,6 +153,8 @@ pub enum Command {
     CameraFromView,
     /// Lets the water of a tank run in the studio; none holds it.
     PlayTank(Option<ObjectId>),
+    /// Paints cells of a tank in the view, with a brush; none ends it.
+    SetBrush(Option<Brush>),
     /// Sets the speed of the water that runs, as a multiple of nature's.
     SetTankSpeed(f32),
     /// Selects the renderer of the live view.

@@ -24,7 +24,7 @@ use crate::editor::viewport::tools::handle_pointer::HandlePointer;
 use crate::editor::viewport::tools::handle_view::HandleView;
 use crate::editor::viewport::tools::joint_handles::JointHandles;
 use crate::editor::viewport::tools::marquee_selection::MarqueeSelection;
-use crate::editor::viewport::tools::place_light_drag::PlaceLightDrag;
+use crate::editor::viewport::tools::pointer_tool::PointerTool;
 use crate::editor::viewport::tools::transform_handles::TransformHandles;
 use crate::preview::{Channel, Overlay, Pick, is_dark};
 use crate::raytrace::GeometryCache;
@@ -62,8 +62,8 @@ pub struct Viewport {
     pub camera_follows: bool,
     /// True if handles snap; Ctrl inverts it.
     pub snap: bool,
-    /// The drag that places a light, if active.
-    pub place_light: Option<PlaceLightDrag>,
+    /// The tool that has the pointer, if one is active.
+    pub tool: Option<PointerTool>,
     /// The GPU or CPU preview.
     pub preview: PreviewHost,
     /// The traced view.
@@ -81,7 +81,7 @@ impl Viewport {
             view: StudioView::default(),
             camera_follows: false,
             snap: false,
-            place_light: None,
+            tool: None,
             preview,
             traced_view,
             scopes: LiveScopes::new(cache),
@@ -91,12 +91,12 @@ impl Viewport {
         }
     }
 
-    /// Returns true while handles, a light feature or a box are dragged: keys are numbers then, and Esc cancels the
+    /// Returns true while handles, a tool or a box are dragged: keys are numbers then, and Esc cancels the
     /// drag.
     pub fn is_dragging(&self) -> bool {
-        let is_placing = self.place_light.as_ref().is_some_and(PlaceLightDrag::is_dragging);
+        let is_at_work = self.tool.as_ref().is_some_and(PointerTool::is_dragging);
         let handles = self.handles.is_dragging() || self.joints.is_dragging();
-        handles || is_placing || self.marquee.is_some()
+        handles || is_at_work || self.marquee.is_some()
     }
 
     /// Uploads the images of the views to the window's current device.
@@ -115,13 +115,13 @@ impl Viewport {
         self.handles.wants_pointer() || self.joints.wants_pointer()
     }
 
-    /// Cancels a drag of handles, a light feature or a box; the button may still be down.
+    /// Cancels a drag of handles, a tool or a box; the button may still be down.
     pub fn cancel_drag(&mut self) {
         self.marquee = None;
         self.handles.cancel();
         self.joints.cancel();
-        if let Some(place_light) = &mut self.place_light {
-            place_light.cancel();
+        if let Some(tool) = &mut self.tool {
+            tool.cancel();
         }
     }
 
@@ -133,15 +133,14 @@ impl Viewport {
         self.navigate(ui, &response, input, out);
         let scene = input.document.scene();
         let (frame, picture) = self.frame(scene, input, rect);
-        // A change of the selection ends the placing of a light.
-        let chosen = input.selection.lights().last().copied();
-        self.place_light = self.place_light.take().filter(|place_light| Some(place_light.placing().light) == chosen);
-        if let Some(place_light) = &mut self.place_light {
+        // A change of the selection ends a tool
+        self.tool = self.tool.take().filter(|tool| tool.is_for(input.selection));
+        if let Some(tool) = &mut self.tool {
             self.handles.reset();
             self.joints.reset();
             self.marquee = None;
-            if !place_light.drag(ui, &response, input.document, &frame, out) {
-                self.place_light = None;
+            if !tool.drag(ui, &response, input.document, &frame, out) {
+                self.tool = None;
             }
         } else {
             self.handle_drag(ui, &response, rect, &frame, input, out);
@@ -384,8 +383,8 @@ impl Viewport {
             markers::paint_labels(&painter, scene, &frame, rect, input.selection, all, side.is_none());
         }
         markers::paint_meter(&painter, scene, &frame, rect);
-        if let Some(place_light) = &self.place_light {
-            place_light.paint(&painter, scene, &frame, rect);
+        if let Some(tool) = &self.tool {
+            tool.paint(&painter, scene, &frame, rect);
         } else if !items_with_handles(scene, input).is_empty() {
             let pointer = ui.input(|i| i.pointer.latest_pos());
             self.handles.paint(&painter, pointer);

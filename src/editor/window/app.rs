@@ -21,6 +21,7 @@ use crate::editor::ui::wake::wake;
 use crate::editor::ui::window_part::WindowPart;
 use crate::editor::viewport::live::preview_host::{PreviewHost, ViewOptions};
 use crate::editor::viewport::live::traced_view::TracedView;
+use crate::editor::viewport::tools::pointer_tool::PointerTool;
 use crate::editor::viewport::viewport_area::{Viewport, ViewportInput};
 use crate::editor::window::app_state::{BackgroundState, Diagnostics, PanelState, ViewState, WindowState};
 use crate::editor::window::dialogs::FileDialogs;
@@ -313,8 +314,9 @@ impl App {
             });
             WindowPart::Inspector.note(ui.ctx(), ui.available_rect_before_wrap());
             let (patterns, gear) = (&self.background.pattern, self.panels.gear.list());
-            let player = &self.panels.tank_player;
-            inspector::inspector_ui(ui, &self.document, &self.selection, patterns, gear, player, out);
+            let brush = self.views.viewport.tool.as_ref().and_then(PointerTool::brush);
+            let tank_tools = inspector::TankTools { player: &self.panels.tank_player, brush };
+            inspector::inspector_ui(ui, &self.document, &self.selection, patterns, gear, tank_tools, out);
         });
         (self.panels.left, self.panels.right) = (left, right);
         CentralPanel::default().frame(Frame::new()).show(ui, |ui| self.central_ui(ui, out)).response.rect

@@ -17,6 +17,8 @@ use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::viewport::tools::place_light::{LightPlacement, can_be_placed};
 use crate::editor::viewport::tools::place_light_drag::PlaceLightDrag;
+use crate::editor::viewport::tools::pointer_tool::PointerTool;
+use crate::editor::viewport::tools::tank_brush::TankBrush;
 use crate::editor::window::app::App;
 use crate::scene::{Aim, Emitter, LightId, Object, Scene, Solo, VariantId};
 use eframe::egui::{Context, ViewportCommand};
@@ -135,6 +137,12 @@ impl App {
             Command::ToggleLiveMode => self.views.viewport.traced_view.toggle(),
             Command::SetHandles(handle) => self.views.handles = handle,
             Command::PlayTank(tank) => self.play_tank(tank),
+            Command::SetBrush(brush) => {
+                self.views.viewport.tool = brush.map(|brush| PointerTool::Brush(TankBrush::new(brush)));
+                if brush.is_some() && !matches!(self.views.central, CentralView::Studio | CentralView::Camera) {
+                    self.views.central = CentralView::Studio;
+                }
+            }
             Command::SetTankSpeed(speed) => self.panels.tank_player.set_speed(speed),
             Command::FrameFigure(id, framing) => {
                 let (scene, assets) = (self.document.scene(), self.document.assets());
@@ -261,7 +269,7 @@ impl App {
             (CentralView::Light(_), _) => self.leave_light(),
             (_, Some(id)) => {
                 self.views.before_light = self.views.central;
-                (self.views.central, self.views.viewport.place_light) = (CentralView::Light(id), None);
+                (self.views.central, self.views.viewport.tool) = (CentralView::Light(id), None);
             }
             (_, None) => self.toasts.info("Select the light to look through."),
         }
@@ -273,7 +281,9 @@ impl App {
     }
 
     fn toggle_placing(&mut self, by: PlaceLightBy) {
-        if self.views.viewport.place_light.take().is_some_and(|drag| drag.placing().by == by) {
+        if let Some(PointerTool::PlaceLight(drag)) = self.views.viewport.tool.take()
+            && drag.placing().by == by
+        {
             return;
         }
         let scene = self.document.scene();
@@ -286,7 +296,8 @@ impl App {
         } else if !can_be_placed(light) {
             self.toasts.info("Light from all round has no place.");
         } else {
-            self.views.viewport.place_light = Some(PlaceLightDrag::new(LightPlacement { light: light.id, by }));
+            let drag = PlaceLightDrag::new(LightPlacement { light: light.id, by });
+            self.views.viewport.tool = Some(PointerTool::PlaceLight(drag));
             if !matches!(self.views.central, CentralView::Studio | CentralView::Camera) {
                 self.views.central = CentralView::Studio;
             }
@@ -304,8 +315,8 @@ impl App {
             (self.panels.show_help, self.panels.show_about) = (false, false);
         } else if self.panels.show_preferences {
             self.panels.show_preferences = false;
-        } else if self.views.viewport.place_light.is_some() {
-            self.views.viewport.place_light = None;
+        } else if self.views.viewport.tool.is_some() {
+            self.views.viewport.tool = None;
         } else if matches!(self.views.central, CentralView::Light(_)) {
             self.leave_light();
         } else if self.panels.show_dials {

@@ -252,7 +252,7 @@ impl App {
         self.panels.dial_wishes.clear();
         self.background.transport.reset();
         self.background.room_audit.reset();
-        self.views.viewport.place_light = None;
+        self.views.viewport.tool = None;
         if matches!(self.views.central, CentralView::Picture | CentralView::Light(_)) {
             self.views.central = CentralView::Studio;
         }

@@ -2,7 +2,7 @@
 
 use super::defaults::{Triple, is_default};
 use super::fluid::FluidV1;
-use crate::scene::{Block, CellContent, Spring, Tank, TankLook, Terrain};
+use crate::scene::{Block, BrushStroke, CellContent, Spring, Tank, TankLook, Terrain};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +15,8 @@ pub(super) struct TankV1 {
     terrain: TerrainV1,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     blocks: Vec<BlockV1>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    strokes: Vec<BrushStrokeV1>,
     #[serde(default, skip_serializing_if = "is_default")]
     water_m: f32,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -42,6 +44,14 @@ struct BlockV1 {
     from: (u16, u16, u16),
     to: (u16, u16, u16),
     content: CellContentV1,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename = "BrushStroke", deny_unknown_fields)]
+struct BrushStrokeV1 {
+    content: CellContentV1,
+    radius_m: f32,
+    path_m: Vec<Triple>,
 }
 
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -88,8 +98,13 @@ same_variants!(TankLookV1 <=> TankLook { Smooth, Cubes });
 
 impl From<TankV1> for Tank {
     fn from(file: TankV1) -> Self {
-        let TankV1 { cells, cell_m, terrain, blocks, water_m, springs, time_s, look, fluid } = file;
+        let TankV1 { cells, cell_m, terrain, blocks, strokes, water_m, springs, time_s, look, fluid } = file;
         let block = |BlockV1 { from, to, content }| Block { from: from.into(), to: to.into(), content: content.into() };
+        let stroke = |BrushStrokeV1 { content, radius_m, path_m }: BrushStrokeV1| BrushStroke {
+            content: content.into(),
+            radius_m,
+            path_m: path_m.into_iter().map(Vec3::from).collect(),
+        };
         let spring =
             |SpringV1 { at_m, litres_per_s, switches_s }| Spring { at_m: Vec3::from(at_m), litres_per_s, switches_s };
         Tank {
@@ -97,6 +112,7 @@ impl From<TankV1> for Tank {
             cell_m,
             terrain: terrain.into(),
             blocks: blocks.into_iter().map(block).collect(),
+            strokes: strokes.into_iter().map(stroke).collect(),
             water_m,
             springs: springs.into_iter().map(spring).collect(),
             time_s,
@@ -108,8 +124,13 @@ impl From<TankV1> for Tank {
 
 impl From<Tank> for TankV1 {
     fn from(tank: Tank) -> Self {
-        let Tank { cells, cell_m, terrain, blocks, water_m, springs, time_s, look, fluid } = tank;
+        let Tank { cells, cell_m, terrain, blocks, strokes, water_m, springs, time_s, look, fluid } = tank;
         let block = |Block { from, to, content }| BlockV1 { from: from.into(), to: to.into(), content: content.into() };
+        let stroke = |BrushStroke { content, radius_m, path_m }: BrushStroke| BrushStrokeV1 {
+            content: content.into(),
+            radius_m,
+            path_m: path_m.into_iter().map(|point| point.to_array()).collect(),
+        };
         let spring =
             |Spring { at_m, litres_per_s, switches_s }| SpringV1 { at_m: at_m.to_array(), litres_per_s, switches_s };
         TankV1 {
@@ -117,6 +138,7 @@ impl From<Tank> for TankV1 {
             cell_m,
             terrain: terrain.into(),
             blocks: blocks.into_iter().map(block).collect(),
+            strokes: strokes.into_iter().map(stroke).collect(),
             water_m,
             springs: springs.into_iter().map(spring).collect(),
             time_s,

@@ -1,8 +1,10 @@
 //! The water tank: a block of cells of air, water, ground and metal, as the recipe from which room `water` makes it.
 
+mod brush;
 mod fluid;
 mod spring;
 
+pub use brush::BrushStroke;
 pub use fluid::{Drop, FLUID_FRAMES_PER_S, Fluid, Jet, Obstacle, ObstacleForm};
 pub use spring::Spring;
 
@@ -25,6 +27,8 @@ pub struct Tank {
     pub terrain: Terrain,
     /// Boxes of cells that replace the ground and the still water, in order.
     pub blocks: Vec<Block>,
+    /// Strokes of the brush, after the blocks, in order.
+    pub strokes: Vec<BrushStroke>,
     /// Height of the still water at the start, metres above the underside; 0 for none.
     pub water_m: f32,
     /// The springs.
@@ -178,7 +182,7 @@ impl Tank {
 
     /// Returns every value that the mesh depends on, as bits: the key of caches.
     fn key(&self) -> Vec<u32> {
-        let Tank { cells, cell_m, terrain, blocks, water_m, springs, time_s, look, fluid } = self;
+        let Tank { cells, cell_m, terrain, blocks, strokes, water_m, springs, time_s, look, fluid } = self;
         let bits = |value: f32| (value + 0.0).to_bits();
         let mut key = cells.map(u32::from).to_vec();
         key.extend([bits(*cell_m), bits(*water_m), bits(*time_s), *look as u32, blocks.len() as u32]);
@@ -195,6 +199,8 @@ impl Tank {
             key.extend(from.iter().chain(to).map(|&cell| u32::from(cell)));
             key.push(*content as u32);
         }
+        key.push(strokes.len() as u32);
+        key.extend(strokes.iter().flat_map(BrushStroke::key));
         for Spring { at_m, litres_per_s, switches_s } in springs {
             key.extend(at_m.to_array().map(bits));
             key.extend([bits(*litres_per_s), switches_s.len() as u32]);
@@ -216,6 +222,7 @@ impl Default for Tank {
             cell_m: 0.01,
             terrain: Terrain::Hills { seed: 5, low_m: 0.03, high_m: 0.28, period_m: 0.4 },
             blocks: Vec::new(),
+            strokes: Vec::new(),
             water_m: 0.11,
             springs: Vec::new(),
             time_s: 0.0,
@@ -271,8 +278,9 @@ mod tests {
             seed: 1,
         };
         let fluid = Some(Box::new(fluid));
-        let tank = Tank { blocks: vec![block], springs: vec![spring], fluid, ..Tank::default() };
-        let changes: [fn(&mut Tank); 29] = [
+        let stroke = BrushStroke { content: CellContent::Air, radius_m: 0.02, path_m: vec![Vec3::Y] };
+        let tank = Tank { blocks: vec![block], strokes: vec![stroke], springs: vec![spring], fluid, ..Tank::default() };
+        let changes: [fn(&mut Tank); 33] = [
             |t| t.cells[1] = 8,
             |t| t.cell_m = 0.02,
             |t| t.terrain = Terrain::Flat { height_m: 0.1 },
@@ -281,6 +289,10 @@ mod tests {
             |t| t.terrain = Terrain::Picture { path: "a.png".to_owned(), low_m: 0.1, high_m: 0.2 },
             |t| t.terrain = Terrain::Picture { path: "b.png".to_owned(), low_m: 0.1, high_m: 0.2 },
             |t| t.blocks.clear(),
+            |t| t.strokes.clear(),
+            |t| t.strokes[0].radius_m = 0.03,
+            |t| t.strokes[0].path_m[0].z = 0.01,
+            |t| t.strokes[0].content = CellContent::Metal,
             |t| t.blocks[0].from[0] = 0,
             |t| t.blocks[0].to[2] = 9,
             |t| t.blocks[0].content = CellContent::Air,

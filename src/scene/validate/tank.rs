@@ -2,10 +2,13 @@
 
 use super::check::{Allowed, Check, SIZE};
 use super::fluid::check_fluid;
-use crate::scene::{Spring, Tank, Terrain};
+use crate::scene::{BrushStroke, Spring, Tank, Terrain};
 
 /// Heights in a tank, metres.
 const HEIGHT: Allowed = Allowed::between(0.0, 1e5, "m");
+
+/// Coordinates of a point of a stroke, metres.
+const POINT: Allowed = Allowed::between(-1e5, 1e5, "m");
 
 pub(super) fn check_tank(tank: &Tank, check: &mut Check) {
     check_cells(tank, check);
@@ -21,6 +24,7 @@ pub(super) fn check_tank(tank: &Tank, check: &mut Check) {
             check.error(&format!("shape.blocks[{index}].to"), "a block must not end before it begins".to_owned());
         }
     }
+    check_strokes(tank, check);
     if tank.springs.len() > Tank::MAX_SPRINGS {
         let count = tank.springs.len();
         check
@@ -32,6 +36,25 @@ pub(super) fn check_tank(tank: &Tank, check: &mut Check) {
     check.number("shape.time_s", tank.time_s, Allowed::between(0.0, tank.longest_s(), "s, for so many cells"));
     if let Some(fluid) = &tank.fluid {
         check_fluid(fluid, tank, check);
+    }
+}
+
+fn check_strokes(tank: &Tank, check: &mut Check) {
+    let (count, points) = (tank.strokes.len(), tank.stroke_points());
+    if count > Tank::MAX_STROKES || points > Tank::MAX_STROKE_POINTS {
+        let (strokes, most) = (Tank::MAX_STROKES, Tank::MAX_STROKE_POINTS);
+        let message =
+            format!("{count} strokes of {points} points are too many; at most {strokes} of {most} are allowed");
+        check.error("shape.strokes", message);
+        return;
+    }
+    let largest_m = BrushStroke::MAX_RADIUS_CELLS * tank.cell_m;
+    for (index, stroke) in tank.strokes.iter().enumerate() {
+        let place = format!("shape.strokes[{index}]");
+        check.number(&format!("{place}.radius_m"), stroke.radius_m, Allowed::between(0.0, largest_m, "m, 16 cells"));
+        for (index, point) in stroke.path_m.iter().enumerate() {
+            check.vector(&format!("{place}.path_m[{index}]"), *point, POINT);
+        }
     }
 }
 

@@ -27,17 +27,27 @@ use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::document::tank_player::TankPlayer;
 use crate::editor::ui::widgets::{row, small_button};
+use crate::editor::viewport::tools::tank_brush::Brush;
 use crate::gear::GearList;
 use crate::jobs::PatternJob;
 use crate::scene::Light;
 use eframe::egui::{self, RichText, ScrollArea, TextEdit, Ui};
+
+/// What works on water tanks in the window.
+#[derive(Clone, Copy, Debug)]
+pub struct TankTools<'a> {
+    /// Lets their water run.
+    pub player: &'a TankPlayer,
+    /// The brush, while it is in use.
+    pub brush: Option<Brush>,
+}
 
 /// The input of a section of the inspector and its commands.
 struct InspectorContext<'a> {
     document: &'a Document,
     patterns: &'a PatternJob,
     gear: &'a GearList,
-    player: &'a TankPlayer,
+    tank_tools: TankTools<'a>,
     out: &'a mut Vec<Command>,
 }
 
@@ -48,12 +58,12 @@ pub fn inspector_ui(
     selection: &Selection,
     patterns: &PatternJob,
     gear: &GearList,
-    player: &TankPlayer,
+    tank_tools: TankTools<'_>,
     out: &mut Vec<Command>,
 ) {
     ScrollArea::vertical().id_salt("inspector").auto_shrink([false, false]).show(ui, |ui| {
         ui.add_space(4.0);
-        let mut context = InspectorContext { document, patterns, gear, player, out };
+        let mut context = InspectorContext { document, patterns, gear, tank_tools, out };
         if selection.len() > 1 {
             several_ui(ui, &mut context, selection);
         }

@@ -34,7 +34,7 @@ pub(super) fn object_ui(ui: &mut Ui, context: &mut InspectorContext<'_>, id: Obj
     });
     ui.separator();
     match &mut object.shape {
-        Shape::Tank(tank) => tank_ui(ui, id, tank, context.player, context.out),
+        Shape::Tank(tank) => tank_ui(ui, id, tank, context.tank_tools, context.out),
         Shape::Figure(_) => {
             if original.visible {
                 face_rows(ui, context.patterns.face(id));

@@ -1,11 +1,12 @@
 //! The sections of a water tank: its time, its springs, its ground and its cells.
 
 use super::fluid::{fluid_rows, motion_row};
-use super::text_ui;
+use super::{TankTools, text_ui};
 use crate::editor::commands::command::Command;
 use crate::editor::document::tank_player::TankPlayer;
 use crate::editor::ui::widgets::{self, METRES, NumberField, fact, row, section};
-use crate::scene::{ObjectId, Spring, Tank, TankLook, Terrain};
+use crate::editor::viewport::tools::tank_brush::Brush;
+use crate::scene::{BrushStroke, CellContent, ObjectId, Spring, Tank, TankLook, Terrain};
 use eframe::egui::{DragValue, Ui};
 use glam::Vec3;
 
@@ -21,10 +22,10 @@ const SPEEDS: [(f32, &str, &str); 5] = [
 const FLOW_L_S: f32 = 0.1;
 
 /// Draws the sections of a tank.
-pub(super) fn tank_ui(ui: &mut Ui, id: ObjectId, tank: &mut Tank, player: &TankPlayer, out: &mut Vec<Command>) {
+pub(super) fn tank_ui(ui: &mut Ui, id: ObjectId, tank: &mut Tank, tools: TankTools<'_>, out: &mut Vec<Command>) {
     section(ui, "Water", true, |ui| {
         motion_row(ui, tank);
-        time_rows(ui, id, tank, player, out);
+        time_rows(ui, id, tank, tools.player, out);
         row(ui, "Still water", "Height of the water at the start, above the underside", |ui| {
             NumberField::new(0.2, 0.0, 10_000.0, 1, " cm").scaled_ui(ui, &mut tank.water_m, 100.0)
         });
@@ -42,6 +43,7 @@ pub(super) fn tank_ui(ui: &mut Ui, id: ObjectId, tank: &mut Tank, player: &TankP
         None => section(ui, "Springs", true, |ui| spring_rows(ui, tank)),
     }
     section(ui, "Ground", true, |ui| ground_rows(ui, tank));
+    section(ui, "Brush", true, |ui| brush_rows(ui, id, tank, tools.brush, out));
     section(ui, "Cells", false, |ui| cell_rows(ui, tank));
     tank.time_s = tank.time_s.min(tank.longest_s());
 }
@@ -180,6 +182,47 @@ fn ground_rows(ui: &mut Ui, tank: &mut Tank) {
             });
         }
     }
+}
+
+fn brush_rows(ui: &mut Ui, id: ObjectId, tank: &mut Tank, active: Option<Brush>, out: &mut Vec<Command>) {
+    let active = active.filter(|brush| brush.tank == id);
+    let remembered = ui.scope_id().with("brush");
+    let mut brush = active.unwrap_or_else(|| {
+        ui.data(|data| data.get_temp(remembered))
+            .filter(|brush: &Brush| brush.tank == id)
+            .unwrap_or(Brush::new(id, tank))
+    });
+    let before = brush;
+    row(ui, "Paint", "What a drag over the tank in the view fills its cells with", |ui| {
+        let contents = [
+            (CellContent::Ground, "Ground", "Matte ground"),
+            (CellContent::Water, "Water", "Water that is there at the start"),
+            (CellContent::Metal, "Metal", "Metal"),
+            (CellContent::Air, "Air", "Takes away what is there: holes, caves"),
+        ];
+        widgets::choice(ui, &mut brush.content, &contents);
+    });
+    let largest_m = BrushStroke::MAX_RADIUS_CELLS * tank.cell_m;
+    row(ui, "Radius", "Of the brush, on the surface under the pointer", |ui| {
+        NumberField::new(0.05, 0.01, 100.0 * largest_m, 2, " cm").scaled_ui(ui, &mut brush.radius_m, 100.0)
+    });
+    ui.data_mut(|data| data.insert_temp(remembered, brush));
+    row(ui, "Brush", "Its strokes belong to the start: the water goes back there", |ui| {
+        let text = if active.is_some() { "Put it down" } else { "Paint in the view" };
+        if ui.button(text).clicked() {
+            out.push(Command::SetBrush(active.is_none().then_some(brush)));
+        } else if active.is_some() && brush != before {
+            out.push(Command::SetBrush(Some(brush)));
+        }
+    });
+    row(ui, "Strokes", "Each can be undone; together they can be cleared", |ui| {
+        ui.label(tank.strokes.len().to_string());
+        ui.add_enabled_ui(!tank.strokes.is_empty(), |ui| {
+            if ui.button("Clear strokes").clicked() {
+                tank.strokes.clear();
+            }
+        });
+    });
 }
 
 fn cell_rows(ui: &mut Ui, tank: &mut Tank) {

@@ -30,7 +30,8 @@ pub fn hit(
     hits.min_by(|a, b| a.t.total_cmp(&b.t))
 }
 
-fn hit_object(object: &Object, assets: &Assets, origin: Vec3, direction: Vec3) -> Option<SurfaceHit> {
+/// Returns the nearest hit of a ray with one object.
+pub fn hit_object(object: &Object, assets: &Assets, origin: Vec3, direction: Vec3) -> Option<SurfaceHit> {
     let world_from_object = object.transform.world_from_object();
     let object_from_world = Some(world_from_object.inverse()).filter(Affine3A::is_finite)?;
     let (o, d) = (object_from_world.transform_point3(origin), object_from_world.transform_vector3(direction));
