@@ -162,7 +162,8 @@ fn list<T>(
     row(ui, "", "", |ui| {
         let has_room = things.len() < Fluid::MAX_THINGS;
         ui.add_enabled_ui(has_room, |ui| {
-            if ui.button(format!("Add: {label}")).on_hover_text(tip).clicked() {
+            let article = if label.starts_with(['A', 'E', 'I', 'O', 'U']) { "an" } else { "a" };
+            if ui.button(format!("Add {article} {}", label.to_lowercase())).on_hover_text(tip).clicked() {
                 things.push(new());
             }
         });
