@@ -14,9 +14,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Length of a slice of work after an edit, and of one when nothing has changed for a while.
-const SLICES: [Duration; 2] = [Duration::from_millis(25), Duration::from_millis(80)];
+const SLICES: [Duration; 2] = [Duration::from_millis(20), Duration::from_millis(80)];
 /// Time after an edit until which slices are short. At its end a first picture is shown, however coarse it is.
-const FIRST_PICTURE: Duration = Duration::from_millis(70);
+const FIRST_PICTURE: Duration = Duration::from_millis(55);
 /// Time between two pictures, at first and in the end.
 const PICTURE_INTERVALS: [Duration; 2] = [Duration::from_millis(120), Duration::from_millis(1500)];
 /// Expected paths per second and thread before anything is measured.
@@ -126,7 +126,7 @@ impl LivePacing {
     pub fn step(&mut self, user_is_active: bool, control: &RenderControl) -> Option<LiveImage> {
         self.trace_slice(user_is_active, control);
         self.log_nonfinite();
-        self.image_if_due()
+        self.image_if_due(user_is_active)
     }
 
     fn trace_slice(&mut self, user_is_active: bool, control: &RenderControl) {
@@ -157,7 +157,7 @@ impl LivePacing {
     }
 
     /// Returns the picture if it is time to show one.
-    fn image_if_due(&mut self) -> Option<LiveImage> {
+    fn image_if_due(&mut self, user_is_active: bool) -> Option<LiveImage> {
         let (is_done, now) = (self.picture.is_converged(), self.clock.now());
         let age = now - self.edited;
         let is_due = match self.last_shown {
@@ -171,15 +171,15 @@ impl LivePacing {
             return None;
         }
         self.has_shown_end = is_done;
-        let image = self.develop();
+        let image = self.develop(user_is_active);
         self.last_shown = Some(self.clock.now());
         Some(image)
     }
 
-    fn develop(&mut self) -> LiveImage {
+    fn develop(&mut self, user_is_active: bool) -> LiveImage {
         let every = self.picture.display_stride();
         let Self { picture: traced, filter, scene, tone, pools, .. } = self;
-        pools[0].install(|| {
+        pools[usize::from(!user_is_active)].install(|| {
             // A picture of half the resolution is the history of before the view moved, which has little noise.
             let picture = match filter.as_mut().filter(|_| every != 2 && !traced.is_converged()) {
                 Some(filter) => traced.develop_filtered(scene, every, filter),
@@ -224,7 +224,7 @@ mod tests {
         let mut pacing = LivePacing::new(Arc::default(), ticking()).unwrap();
         let camera = LiveCamera::pinhole(scene.camera_frame(1.5), (48, 32));
         pacing.update(scene.clone(), &loaded.assets, camera).unwrap();
-        assert!(!pacing.has_shown() && pacing.image_if_due().is_none(), "there is nothing to show yet");
+        assert!(!pacing.has_shown() && pacing.image_if_due(true).is_none(), "there is nothing to show yet");
         let control = RenderControl::new();
         let mut images = Vec::new();
         while !pacing.is_idle() {
@@ -232,7 +232,7 @@ mod tests {
         }
         assert!(images.len() > 1 && !images[0].is_done && images.last().is_some_and(|image| image.is_done));
         assert!(images.last().is_some_and(|image| (image.width, image.height) == (48, 32)));
-        assert!(pacing.image_if_due().is_none(), "nothing new");
+        assert!(pacing.image_if_due(true).is_none(), "nothing new");
         // Adaptive sampling ends before the largest number of samples.
         assert!(pacing.picture().spp() < 512);
         let rays = control.rays();
@@ -279,11 +279,11 @@ mod tests {
             while pacing.picture().stride() != Some(1) {
                 pacing.picture.trace(1, &control);
             }
-            let unfinished = pacing.develop();
+            let unfinished = pacing.develop(true);
             while !pacing.picture().is_converged() {
                 pacing.picture.trace(10_000, &control);
             }
-            (unfinished, pacing.develop())
+            (unfinished, pacing.develop(true))
         };
         let ((noisy, plain), (smooth, end)) = (pictures(false), pictures(true));
         assert_eq!(plain, end, "a finished picture is not smoothed");

@@ -236,6 +236,6 @@ mod tests {
         let Pulse::Flash { decay_s } = (Pulse::Flash { decay_s: 0.001 / LN_10 }) else { unreachable!() };
         let level = |time_s: f64| (-time_s / decay_s).exp();
         assert!((level(0.001) - 0.1).abs() < 1e-9);
-        assert!((level(0.001 / 3.3219) - 0.5).abs() < 1e-4);
+        assert!((level(0.001 / std::f64::consts::LOG2_10) - 0.5).abs() < 1e-4);
     }
 }

@@ -297,7 +297,7 @@ impl App {
             self.toasts.info("Light from all round has no place.");
         } else {
             let drag = PlaceLightDrag::new(LightPlacement { light: light.id, by });
-            self.views.viewport.tool = Some(PointerTool::PlaceLight(drag));
+            self.views.viewport.tool = Some(PointerTool::PlaceLight(Box::new(drag)));
             if !matches!(self.views.central, CentralView::Studio | CentralView::Camera) {
                 self.views.central = CentralView::Studio;
             }

@@ -13,7 +13,7 @@ use eframe::egui::{Painter, Rect, Response, Ui};
 #[derive(Clone, Debug)]
 pub enum PointerTool {
     /// Places a light by its highlight, its light or its shadow.
-    PlaceLight(PlaceLightDrag),
+    PlaceLight(Box<PlaceLightDrag>),
     /// Paints cells of a water tank.
     Brush(TankBrush),
 }

@@ -37,7 +37,7 @@ impl Brush {
 #[derive(Clone, Debug)]
 pub struct TankBrush {
     brush: Brush,
-    held: Option<HeldStroke>,
+    held: Option<Box<HeldStroke>>,
     /// True after a stroke was cancelled, until the button is released.
     cancelled: bool,
     /// The surface under the pointer.
@@ -109,7 +109,7 @@ impl TankBrush {
         let Some(hit) = self.at else { return true };
         if pressed && !alt && response.contains_pointer() && !self.is_full {
             let (before, assets) = (object.clone(), document.assets().clone());
-            self.held = Some(HeldStroke { before, assets, path_m: Vec::new() });
+            self.held = Some(Box::new(HeldStroke { before, assets, path_m: Vec::new() }));
             out.push(Command::PlayTank(None));
         }
         if let Some(painted) = self.held.as_mut().and_then(|held| held.painted_to(self.brush, hit.point)) {
