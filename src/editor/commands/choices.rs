@@ -1,6 +1,6 @@
 //! Choices that commands carry: the central view, the handles, the live view and the way to place a light.
 
-use crate::scene::{LightId, VariantId};
+use crate::scene::{CellContent, LightId, ObjectId, Tank, VariantId};
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -170,5 +170,23 @@ impl PlaceLightBy {
             PlaceLightBy::Shadow => "where the shadow of its aim shall fall from",
         };
         format!("Press or drag on a surface {what} {light}.    Esc ends")
+    }
+}
+
+/// A brush for a tank.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Brush {
+    /// The tank.
+    pub tank: ObjectId,
+    /// What it fills cells with.
+    pub content: CellContent,
+    /// Its radius, metres.
+    pub radius_m: f32,
+}
+
+impl Brush {
+    /// Returns the brush that a tank has at first: water, two cells wide.
+    pub fn new(id: ObjectId, tank: &Tank) -> Self {
+        Brush { tank: id, content: CellContent::Water, radius_m: 2.0 * tank.cell_m }
     }
 }

@@ -1,5 +1,6 @@
 //! The commands of menus, shortcuts, panels and viewport. A change of the scene is an [`Action`] inside a command.
 
+use crate::editor::commands::choices::Brush;
 use crate::editor::commands::choices::{CentralView, Comparison, HandleMode, LiveMode, PlaceLightBy, ViewSide};
 use crate::editor::commands::file_purpose::FilePurpose;
 use crate::editor::commands::preferences::Preferences;
@@ -8,7 +9,6 @@ use crate::editor::document::framing::Framing;
 use crate::editor::document::gear_shelf::GearEntry;
 use crate::editor::document::item::Item;
 use crate::editor::document::light_mix::Fader;
-use crate::editor::viewport::tools::tank_brush::Brush;
 use crate::photo::PictureDisplay;
 use crate::scene::{LightId, ObjectId, TextureSlot, VariantId};
 use crate::setup::DialPlan;

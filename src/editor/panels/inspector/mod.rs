@@ -20,6 +20,7 @@ mod surface_layers;
 mod tank;
 mod unit_slider;
 
+use crate::editor::commands::choices::Brush;
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::item::{Item, name_of_all};
@@ -27,7 +28,6 @@ use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::document::tank_player::TankPlayer;
 use crate::editor::ui::widgets::{row, small_button};
-use crate::editor::viewport::tools::tank_brush::Brush;
 use crate::gear::GearList;
 use crate::jobs::PatternJob;
 use crate::scene::Light;

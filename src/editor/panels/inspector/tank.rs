@@ -2,10 +2,10 @@
 
 use super::fluid::{fluid_rows, motion_row};
 use super::{TankTools, text_ui};
+use crate::editor::commands::choices::Brush;
 use crate::editor::commands::command::Command;
 use crate::editor::document::tank_player::TankPlayer;
 use crate::editor::ui::widgets::{self, METRES, NumberField, fact, row, section};
-use crate::editor::viewport::tools::tank_brush::Brush;
 use crate::scene::{BrushStroke, CellContent, ObjectId, Spring, Tank, TankLook, Terrain};
 use eframe::egui::{DragValue, Ui};
 use glam::Vec3;

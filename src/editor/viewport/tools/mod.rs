@@ -13,6 +13,7 @@ pub mod place_light_drag;
 pub mod pointer_tool;
 pub mod surface_pick;
 pub mod tank_brush;
+pub mod tool_pointer;
 pub mod transform_handles;
 pub mod transform_selection;
 pub mod typed_number;

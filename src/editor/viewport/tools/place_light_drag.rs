@@ -8,9 +8,9 @@ use crate::editor::ui::theme;
 use crate::editor::viewport::overlays::markers::{paint_banner, paint_text, place_of};
 use crate::editor::viewport::tools::place_light::{LightPlacement, PlaceLightError, placed_light};
 use crate::editor::viewport::tools::surface_pick::{self, SurfaceHit};
+use crate::editor::viewport::tools::tool_pointer::ToolPointer;
 use crate::scene::{CameraFrame, Light, ObjectId, Scene};
-use eframe::egui::{Align2, Color32, CursorIcon, Painter, Rect, Response, Stroke, Ui, vec2};
-use glam::Vec2;
+use eframe::egui::{Align2, Color32, Painter, Rect, Stroke, vec2};
 
 /// The state of placing a light.
 #[derive(Clone, Debug)]
@@ -47,37 +47,23 @@ impl PlaceLightDrag {
     }
 
     /// Handles the mouse. Returns false if the light no longer exists.
-    pub fn drag(
-        &mut self,
-        ui: &Ui,
-        response: &Response,
-        document: &Document,
-        frame: &CameraFrame,
-        out: &mut Vec<Command>,
-    ) -> bool {
+    pub fn drag(&mut self, pointer: &ToolPointer, document: &Document, out: &mut Vec<Command>) -> bool {
         let scene = document.scene();
         let Some(light) = scene.light(self.placing.light) else { return false };
-        let (position, pressed, down, alt) = ui.input(|i| {
-            let pointer = &i.pointer;
-            (pointer.latest_pos(), pointer.primary_pressed(), pointer.primary_down(), i.modifiers.alt)
-        });
-        if !down {
+        if !pointer.is_down {
             (self.held, self.cancelled) = (None, false);
         }
-        let Some(position) = position.filter(|_| response.contains_pointer() || self.held.is_some()) else {
+        let Some((eye, direction)) = pointer.ray(self.held.is_some()) else {
             self.at = None;
             return true;
         };
-        ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
-        let point = (position - response.rect.min) / response.rect.size();
-        let (eye, direction) = (frame.position(), frame.direction(Vec2::new(point.x, point.y)));
         let only = self.held.as_ref().map(|(_, object)| *object);
         let Some(hit) = surface_pick::hit(scene, document.assets(), eye, direction, only) else {
             // Beyond the object's edge the light keeps its position.
             self.at = self.at.filter(|_| self.held.is_some());
             return true;
         };
-        if pressed && !alt && response.contains_pointer() {
+        if pointer.is_pressed {
             self.held = Some((light.clone(), hit.object));
         }
         // The distance is that of the press, so that a distance shortened by the floor is restored later in the drag.

@@ -1,13 +1,15 @@
 //! The tool that has the pointer in place of handles and selection, if one is active.
 
+use crate::editor::commands::choices::Brush;
 use crate::editor::commands::command::Command;
 use crate::editor::document::item::Item;
 use crate::editor::document::selection::Selection;
 use crate::editor::document::studio_document::Document;
 use crate::editor::viewport::tools::place_light_drag::PlaceLightDrag;
-use crate::editor::viewport::tools::tank_brush::{Brush, TankBrush};
+use crate::editor::viewport::tools::tank_brush::TankBrush;
+use crate::editor::viewport::tools::tool_pointer::ToolPointer;
 use crate::scene::{CameraFrame, Scene};
-use eframe::egui::{Painter, Rect, Response, Ui};
+use eframe::egui::{CursorIcon, Painter, Rect, Response, Ui};
 
 /// A tool that has the pointer.
 #[derive(Clone, Debug)]
@@ -60,9 +62,13 @@ impl PointerTool {
         frame: &CameraFrame,
         out: &mut Vec<Command>,
     ) -> bool {
+        let pointer = ToolPointer::of(ui, response, frame);
+        if pointer.is_inside || self.is_dragging() {
+            ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+        }
         match self {
-            PointerTool::PlaceLight(drag) => drag.drag(ui, response, document, frame, out),
-            PointerTool::Brush(brush) => brush.drag(ui, response, document, frame, out),
+            PointerTool::PlaceLight(drag) => drag.drag(&pointer, document, out),
+            PointerTool::Brush(brush) => brush.drag(&pointer, document, out),
         }
     }
 

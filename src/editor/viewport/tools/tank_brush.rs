@@ -1,37 +1,21 @@
 //! The brush that paints cells of a water tank in the view.
 
+use crate::editor::commands::choices::Brush;
 use crate::editor::commands::command::Command;
 use crate::editor::document::action::Action;
 use crate::editor::document::studio_document::Document;
 use crate::editor::viewport::overlays::markers::{paint_banner, place_of};
 use crate::editor::viewport::tools::surface_pick::{self, SurfaceHit};
-use crate::scene::{Assets, BrushStroke, CameraFrame, CellContent, Object, ObjectId, Scene, Shape, Tank};
-use eframe::egui::{Color32, CursorIcon, Painter, Rect, Response, Shape as PaintedShape, Stroke, Ui};
-use glam::{Vec2, Vec3};
+use crate::editor::viewport::tools::tool_pointer::ToolPointer;
+use crate::scene::{Assets, BrushStroke, CameraFrame, Object, Scene, Shape, Tank};
+use eframe::egui::{Color32, Painter, Rect, Shape as PaintedShape, Stroke};
+use glam::Vec3;
 use std::f32::consts::TAU;
 
 /// Distance between two points of a stroke, as a part of its radius.
 const SPACING: f32 = 0.4;
 /// Corners of the circle that shows the size of the brush.
 const CORNERS: usize = 48;
-
-/// A brush for a tank.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Brush {
-    /// The tank.
-    pub tank: ObjectId,
-    /// What it fills cells with.
-    pub content: CellContent,
-    /// Its radius, metres.
-    pub radius_m: f32,
-}
-
-impl Brush {
-    /// Returns the brush that a tank has at first: water, two cells wide.
-    pub fn new(id: ObjectId, tank: &Tank) -> Self {
-        Brush { tank: id, content: CellContent::Water, radius_m: 2.0 * tank.cell_m }
-    }
-}
 
 /// The brush at work.
 #[derive(Clone, Debug)]
@@ -78,36 +62,22 @@ impl TankBrush {
     }
 
     /// Handles the mouse. Returns false if the tank no longer exists.
-    pub fn drag(
-        &mut self,
-        ui: &Ui,
-        response: &Response,
-        document: &Document,
-        frame: &CameraFrame,
-        out: &mut Vec<Command>,
-    ) -> bool {
+    pub fn drag(&mut self, pointer: &ToolPointer, document: &Document, out: &mut Vec<Command>) -> bool {
         let Some(object) = document.scene().object(self.brush.tank) else { return false };
         let Shape::Tank(tank) = &object.shape else { return false };
-        let (position, pressed, down, alt) = ui.input(|i| {
-            let pointer = &i.pointer;
-            (pointer.latest_pos(), pointer.primary_pressed(), pointer.primary_down(), i.modifiers.alt)
-        });
-        if !down {
+        if !pointer.is_down {
             (self.held, self.cancelled) = (None, false);
         }
         self.is_full = self.held.is_none() && !tank.has_room_for_strokes();
-        let Some(position) = position.filter(|_| response.contains_pointer() || self.held.is_some()) else {
+        let Some((eye, direction)) = pointer.ray(self.held.is_some()) else {
             self.at = None;
             return true;
         };
-        ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
-        let point = (position - response.rect.min) / response.rect.size();
-        let (eye, direction) = (frame.position(), frame.direction(Vec2::new(point.x, point.y)));
         let (surface, assets) =
             self.held.as_ref().map_or((object, document.assets()), |held| (&held.before, &held.assets));
         self.at = surface_pick::hit_object(surface, assets, eye, direction);
         let Some(hit) = self.at else { return true };
-        if pressed && !alt && response.contains_pointer() && !self.is_full {
+        if pointer.is_pressed && !self.is_full {
             let (before, assets) = (object.clone(), document.assets().clone());
             self.held = Some(Box::new(HeldStroke { before, assets, path_m: Vec::new() }));
             out.push(Command::PlayTank(None));
