@@ -9,7 +9,7 @@ use crate::photo::text::{power_fraction, signed_stops};
 use crate::photo::thirds::Dial;
 use crate::raytrace::{GeometryCache, RenderControl};
 use crate::scene::Scene;
-use crate::setup::{DialPlan, MeteredAt, PlannedDial, SetupTransport, WishOutcome, solve_dials, wishes};
+use crate::setup::{DialPlan, MeteredAt, PlannedDial, SetupTransport, WishOutcome, named_levels, solve_dials, wishes};
 use anyhow::Context;
 use serde::Serialize;
 use std::fmt::Write;
@@ -87,12 +87,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(path) = &arguments.write {
         io::check_file(path)?;
     }
+    let wanted = arguments.want.join(",");
+    // Metering takes seconds: refuse what is no wish in any studio before it.
+    named_levels(&wanted)?;
     let pool = input::thread_pool(arguments.threads.unwrap_or(0).into())?;
     let loaded = pool.install(|| arguments.studio.load())?;
     let (cache, control) = (GeometryCache::default(), RenderControl::new());
     let setup = pool.install(|| SetupTransport::measure(&loaded.scene, &loaded.assets, &cache, &control));
     let setup = setup.context("can't meter the studio")?.ok_or(Failure::Interrupted)?;
-    let plan = solve_dials(&setup, &wishes(&arguments.want.join(","), &setup)?);
+    let plan = solve_dials(&setup, &wishes(&wanted, &setup)?);
     for outcome in &plan.outcomes {
         if let Some(note) = outcome.note() {
             terminal::warning(format_args!("{}={} cannot be met: {note}", outcome.wish.name, outcome.wish.level));

@@ -3,6 +3,7 @@
 use super::error::LoadError;
 use super::load_progress::LoadProgress;
 use super::scene_file::{self, Loaded};
+use crate::scene::Scene;
 use std::sync::LazyLock;
 
 /// A studio preset.
@@ -21,6 +22,14 @@ pub struct Preset {
 }
 
 impl Preset {
+    /// Returns the studio without its assets, which takes a figure's time less.
+    ///
+    /// # Errors
+    /// As [`parse_scene`](super::parse_scene).
+    pub fn scene(&self) -> Result<Scene, LoadError> {
+        scene_file::parse_scene(self.text).map(|(scene, _)| scene)
+    }
+
     /// Loads the studio with its assets.
     ///
     /// # Errors
@@ -113,7 +122,7 @@ mod tests {
     #[test]
     fn portraits_have_a_flash_and_studios_of_continuous_light_have_none() {
         for preset in presets() {
-            let scene = preset.load().unwrap().scene;
+            let scene = preset.scene().unwrap();
             let flashes = scene.lights.iter().any(|light| light.power.output.is_flash());
             match preset.group {
                 PresetGroup::Portrait | PresetGroup::Groups => assert!(flashes, "{}", preset.name),

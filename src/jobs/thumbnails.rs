@@ -204,7 +204,7 @@ mod tests {
     fn every_shipped_studio_has_a_thumbnail_in_its_cameras_shape() {
         for (index, preset) in io::presets().iter().enumerate() {
             let [width, height] = draw_studio(index, 168).unwrap().size;
-            let aspect = preset.load().unwrap().scene.camera.aspect();
+            let aspect = preset.scene().unwrap().camera.aspect();
             assert!((width as f32 / height as f32 - aspect).abs() < 0.02, "{}", preset.name);
         }
     }

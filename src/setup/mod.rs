@@ -21,7 +21,7 @@ pub use measurement_job::MeasurementJob;
 pub use metering::{Background, LightExposure, MeteredAt, MeteredSetup};
 pub use room_audit::{AuditedLight, CeilingTrial, RoomAudit, RoomSurface};
 pub use transport::{LightTransport, SetupTransport};
-pub use wish::{Wish, WishError, WishLevel, WishTarget, check_wishes, wishes};
+pub use wish::{Wish, WishError, WishLevel, WishTarget, check_wishes, named_levels, wishes};
 
 #[cfg(test)]
 mod tests;

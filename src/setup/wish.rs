@@ -158,15 +158,26 @@ pub enum WishError {
 /// When a name or level cannot be understood, or the wishes contradict each other.
 pub fn wishes(text: &str, setup: &SetupTransport) -> Result<Vec<Wish>, WishError> {
     let mut wishes: Vec<Wish> = Vec::new();
-    for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {
-        let named = item.rsplit_once('=').filter(|(name, _)| !name.trim().is_empty());
-        let (name, text) = named.ok_or_else(|| WishError::NoLevel(item.to_owned()))?;
-        let unknown = || WishError::UnknownLevel { name: name.trim().to_owned(), level: text.trim().to_owned() };
-        let level = WishLevel::parse(text).ok_or_else(unknown)?;
-        wishes.extend(targets(name.trim(), setup)?.into_iter().map(|(name, target)| Wish { name, target, level }));
+    for (name, level) in named_levels(text)? {
+        wishes.extend(targets(name, setup)?.into_iter().map(|(name, target)| Wish { name, target, level }));
     }
     check_wishes(&wishes, setup)?;
     Ok(wishes)
+}
+
+/// Reads the names and levels of wishes, for no studio yet.
+///
+/// # Errors
+/// When a wish has no level, or one that cannot be understood.
+pub fn named_levels(text: &str) -> Result<Vec<(&str, WishLevel)>, WishError> {
+    text.split(',').map(str::trim).filter(|item| !item.is_empty()).map(named_level).collect()
+}
+
+fn named_level(item: &str) -> Result<(&str, WishLevel), WishError> {
+    let named = item.rsplit_once('=').filter(|(name, _)| !name.trim().is_empty());
+    let (name, text) = named.ok_or_else(|| WishError::NoLevel(item.to_owned()))?;
+    let unknown = || WishError::UnknownLevel { name: name.trim().to_owned(), level: text.trim().to_owned() };
+    Ok((name.trim(), WishLevel::parse(text).ok_or_else(unknown)?))
 }
 
 /// Fails for wishes that contradict each other or have no meaning in a studio.

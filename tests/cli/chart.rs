@@ -18,7 +18,7 @@ fn json(output: &Output) -> Vec<Value> {
 fn the_path_tracer_converges_and_the_other_methods_keep_their_bias() {
     let folder = tempfile::tempdir().unwrap();
     // Hair is noisy: at sixteen samples it would hide the bias of the other methods.
-    let mut scene = catchlight::io::find_preset("three_point").unwrap().load().unwrap().scene;
+    let mut scene = catchlight::io::find_preset("three_point").unwrap().scene().unwrap();
     for object in &mut scene.objects {
         if let Shape::Figure(figure) = &mut object.shape {
             figure.hair = HairStyle::Bald;

@@ -285,7 +285,7 @@ fn the_series_for_open_job_description_renders_studios_and_variants_and_complete
     }
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
-    let mut scene = catchlight::io::find_preset("product_still_life").unwrap().load().unwrap().scene;
+    let mut scene = catchlight::io::find_preset("product_still_life").unwrap().scene().unwrap();
     scene.add_variant("Dim".to_owned()).unwrap();
     scene.lights.iter_mut().for_each(|light| light.power.dial_stops -= 1.0);
     catchlight::io::save_scene(&scene, &path.join("still.ron")).unwrap();

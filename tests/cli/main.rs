@@ -118,7 +118,7 @@ fn explain_prints_the_shortcuts_of_the_render_plan_with_reasons() {
     let output = catchlight(folder.path(), &arguments);
     assert!(stdout(&output).contains("no glass: no refraction"), "{}", stdout(&output));
     assert!(!stdout(&output).contains("focus breathing"), "{}", stdout(&output));
-    let mut scene = catchlight::io::presets()[0].load().unwrap().scene;
+    let mut scene = catchlight::io::presets()[0].scene().unwrap();
     scene.camera.focus_breathing = true;
     scene.camera.focal_length_mm = 100.0;
     scene.camera.focus = catchlight::scene::Focus::Distance(0.2);

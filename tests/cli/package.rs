@@ -46,7 +46,7 @@ fn the_desktop_entry_opens_what_the_type_of_studios_describes() {
         .collect();
     assert_eq!(matches.len(), 2);
     for preset in catchlight::io::presets() {
-        let written = catchlight::io::write_scene(&preset.load().unwrap().scene);
+        let written = catchlight::io::write_scene(&preset.scene().unwrap());
         for (end, text) in &matches {
             for file in [preset.text, written.as_str()] {
                 assert!(file.find(text).is_some_and(|at| at <= *end), "{} {text}", preset.file_name);

@@ -5,7 +5,7 @@ use catchlight::scene::Scene;
 
 /// Writes a studio whose variant "Dim" has its key a stop lower, and returns it.
 fn write_studio(folder: &std::path::Path) -> Scene {
-    let mut scene = catchlight::io::find_preset("three_point").unwrap().load().unwrap().scene;
+    let mut scene = catchlight::io::find_preset("three_point").unwrap().scene().unwrap();
     scene.add_variant("Dim".to_owned()).unwrap();
     scene.lights[0].power.dial_stops -= 1.0;
     catchlight::io::save_scene(&scene, &folder.join("studio.ron")).unwrap();

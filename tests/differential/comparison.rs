@@ -43,7 +43,7 @@ const BIAS: f64 = 5e-4;
 const MIN_HITS: f64 = 400.0;
 
 /// The work of a comparison.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
     /// Brute-force samples of each of the small picture's pixels.
     pub brute_force_spp: u32,
@@ -55,7 +55,7 @@ pub struct Effort {
 
 impl Effort {
     /// The effort for a scene in the gate.
-    pub const GATE: Effort = Effort { brute_force_spp: 1200, seeds: 24, paths_spp: 24, photons_spp: 4 };
+    pub const GATE: Effort = Effort { brute_force_spp: 2400, seeds: 10, paths_spp: 24, photons_spp: 4 };
 
     /// Returns so many times the effort.
     pub fn times(self, factor: u32) -> Self {

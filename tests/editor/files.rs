@@ -228,7 +228,7 @@ fn a_lesson_sheet_is_exported_for_the_selected_light() {
     let folder = tempfile::tempdir().unwrap();
     let [lesson, wrong] = ["lesson.html", "lesson.pdf"].map(|name| folder.path().join(name));
     // A ball in the figure's place: a lesson has three renders
-    let mut studio = catchlight::io::presets()[0].load().unwrap().scene;
+    let mut studio = catchlight::io::presets()[0].scene().unwrap();
     for object in &mut studio.objects {
         if matches!(object.shape, Shape::Figure(_)) {
             object.shape = Shape::Sphere { radius_m: 0.2 };

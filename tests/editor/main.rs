@@ -120,7 +120,7 @@ fn window(options: EditorOptions) -> Window {
 
 /// Returns the first shipped studio with another shape for its figure.
 fn preset_with(shape: impl Fn(&Figure) -> Shape) -> Scene {
-    let mut scene = catchlight::io::presets()[0].load().unwrap().scene;
+    let mut scene = catchlight::io::presets()[0].scene().unwrap();
     for object in &mut scene.objects {
         if let Shape::Figure(figure) = &object.shape {
             object.shape = shape(figure);

@@ -53,7 +53,7 @@ fn preferences_take_effect_at_once_and_at_the_next_start() {
 #[test]
 fn new_studios_have_the_preferred_meter_constant_and_are_as_bright() {
     let Some(mut window) = preset_window() else { return };
-    let before = catchlight::io::presets()[0].load().unwrap().scene.camera;
+    let before = catchlight::io::presets()[0].scene().unwrap().camera;
     let preferences = Preferences { meter_constant: 500.0, ..Preferences::default() };
     run(&mut window, Command::SetPreferences(preferences));
     assert_eq!(scene(&window).camera.meter_constant, 250.0, "the open studio keeps its own");

@@ -196,7 +196,7 @@ fn memory() -> u64 {
 
 #[test]
 fn random_actions_undo_to_the_first_studio_and_every_studio_saves_and_loads_alike() {
-    let scenes: Vec<Scene> = presets().iter().map(|preset| preset.load().unwrap().scene).collect();
+    let scenes: Vec<Scene> = presets().iter().map(|preset| preset.scene().unwrap()).collect();
     let parts = Parts::of_presets(&scenes);
     let (started, first_seed) = (Instant::now(), first_seed());
     let (mut studios, mut steps, mut warm) = (0, 0, 0);

@@ -7,7 +7,7 @@ fn every_shipped_studio_has_the_layout_of_the_tracer_and_is_not_black() {
     let Some((_gpu, mut renderer)) = renderer() else { return };
     for preset in catchlight::io::presets() {
         let name = preset.file_name;
-        let loaded = hairless(preset.load().unwrap());
+        let loaded = hairless(shipped(preset.file_name));
         let (width, height) = loaded.scene.camera.picture_size(300);
         let input = PreviewInput::camera_view(&loaded.scene, &loaded.assets, (width, height));
         let picture = renderer.picture(&input).unwrap();
@@ -45,7 +45,7 @@ fn direct_light_on_a_figure_agrees_with_the_tracer() {
         ("split", 0.08, 0.45),
     ];
     for (name, median_limit, tenth_limit) in studios {
-        let mut loaded = hairless(catchlight::io::find_preset(name).unwrap().load().unwrap());
+        let mut loaded = hairless(shipped(name));
         // Replace mirrors and glass, since the preview does not trace reflections, and skin, which has a test of its own
         for object in &mut loaded.scene.objects {
             // Clear glass may be white, other surfaces not.
@@ -89,7 +89,7 @@ fn direct_light_on_a_figure_agrees_with_the_tracer() {
 #[test]
 fn chrome_gold_and_glass_are_close_to_the_traced_picture() {
     let Some((_gpu, mut renderer)) = renderer() else { return };
-    let loaded = catchlight::io::find_preset("product_still_life").unwrap().load().unwrap();
+    let loaded = shipped("product_still_life");
     let (width, height) = (192, 108);
     let input = PreviewInput::camera_view(&loaded.scene, &loaded.assets, (width, height));
     let ours = renderer.linear_picture(&input).unwrap();

@@ -54,7 +54,7 @@ fn bounced_and_direct_light_of_each_shipped_studio_are_within_a_tenth_of_a_stop(
         let name = preset.file_name.trim_end_matches(".ron");
         let is_rim = name == RIM_STUDIO;
         let long_edge = if is_rim { FINE_LONG_EDGE } else { LONG_EDGE };
-        let blocks = compared_blocks(&mut renderer, &coarse_and_hairless(preset.load().unwrap()), long_edge);
+        let blocks = compared_blocks(&mut renderer, &coarse_and_hairless(shipped(preset.file_name)), long_edge);
         assert!(blocks.len() > 100, "{name}: {} blocks to compare", blocks.len());
         let [bounced, shown, estimate] = [
             errors(&blocks, |block| block.traced_direct + block.preview - block.direct),

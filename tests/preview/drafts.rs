@@ -14,7 +14,7 @@ fn differences(a: &image::RgbImage, b: &image::RgbImage) -> (f32, u8) {
 fn a_draft_is_close_to_the_full_picture_and_leaves_no_trace_in_it() {
     let Some(mut renderer) = shared_renderer() else { return };
     for name in ["three_point", "product_still_life", "gel_portrait"] {
-        let with_hair = catchlight::io::find_preset(name).unwrap().load().unwrap();
+        let with_hair = shipped(name);
         // One pixel in nine or fewer is shaded: fine highlights and shadow edges are lost. Of strands, which are a pixel
         // wide, a quarter is drawn, four times as wide.
         for (loaded, mean_limit, most_limit) in [(hairless(with_hair.clone()), 1.5, 40), (with_hair, 5.0, 90)] {

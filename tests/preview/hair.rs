@@ -131,7 +131,7 @@ fn hair_of_shipped_portraits_has_the_light_of_the_tracer() {
     let Some(mut renderer) = shared_renderer() else { return };
     let mut wrong = Vec::new();
     for (studio, light, limit) in PORTRAITS {
-        let mut loaded = catchlight::io::find_preset(studio).unwrap().load().unwrap();
+        let mut loaded = shipped(studio);
         loaded.scene.lights.retain(|l| l.name == light);
         loaded.scene.objects.retain(|object| matches!(object.shape, Shape::Figure(_)));
         loaded.scene.room = None;

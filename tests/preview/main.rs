@@ -16,7 +16,7 @@ use catchlight::scene::{
     ObjectId, Output, Room, Scene, Shape, Texture, TextureRef, Transform,
 };
 use glam::{Vec2, Vec3};
-use people::{coarse_and_hairless, hairless};
+use people::{coarse_and_hairless, hairless, shipped};
 use std::f32::consts::PI;
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
 

@@ -9,7 +9,7 @@ const SPREAD_STOPS: f32 = 0.3;
 /// Returns the face of a figure under a hard light from the side, framed so that a pixel is about a millimetre, and the
 /// sizes of its picture. Skin is `soft` or hard.
 fn face(is_soft: bool) -> (Loaded, (u32, u32)) {
-    let mut loaded = hairless(catchlight::io::find_preset("split").unwrap().load().unwrap());
+    let mut loaded = hairless(shipped("split"));
     let man = &mut loaded.scene.objects[0];
     man.material.subsurface = is_soft.then_some(Subsurface { mean_free_path_mm: [2.6, 2.0, 1.6] });
     man.material.roughness = 0.7;

@@ -1,8 +1,8 @@
 //! Adaptive sampling by `--noise`: more samples where the noise is, without bias.
 
-use crate::people::coarse_and_hairless;
+use crate::people::{coarse_and_hairless, shipped};
 use crate::studio::measure::film_with;
-use catchlight::io::{find_preset, presets};
+use catchlight::io::presets;
 use catchlight::photo::Picture;
 use catchlight::raytrace::{self, RenderControl, Settings};
 use std::ops::ControlFlow;
@@ -13,7 +13,7 @@ fn mean(picture: &Picture) -> f64 {
 
 #[test]
 fn tiles_with_little_noise_stop_early_without_bias() {
-    let loaded = coarse_and_hairless(find_preset("three_point").unwrap().load().unwrap());
+    let loaded = coarse_and_hairless(shipped("three_point"));
     let size = Settings { width: 128, height: 96, spp: 512, ..Settings::default() };
     let limit = 0.06;
     let film = film_with(&loaded.scene, &loaded.assets, &Settings { noise_stops: Some(limit), ..size.clone() });
@@ -40,7 +40,7 @@ fn the_estimated_noise_of_every_shipped_studio_is_the_scatter_over_sixteen_seeds
     const SPP: [u32; 2] = [4, 8];
     let mut ratios = [0.0; SPP.len()];
     for preset in presets() {
-        let loaded = preset.load().unwrap();
+        let loaded = shipped(preset.file_name);
         let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
         let mut sampled: [Vec<Sampled>; SPP.len()] = Default::default();
         for seed in 0..SEEDS {

@@ -1,6 +1,6 @@
 //! Renders every studio preset: finite, lit, the same bits for any number of threads.
 
-use crate::people::coarse_and_hairless;
+use crate::people::{coarse_and_hairless, shipped};
 use crate::studio::measure::film_with;
 use catchlight::io;
 use catchlight::raytrace::{self, Film, Method, RenderControl, RenderScene, Settings};
@@ -15,7 +15,7 @@ fn render(scene: &RenderScene, settings: &Settings, threads: usize) -> Film {
 fn every_preset_renders_finite_and_lit() {
     assert!(io::presets().len() >= 8);
     for preset in io::presets() {
-        let loaded = preset.load().unwrap();
+        let loaded = shipped(preset.file_name);
         assert!(loaded.warnings.is_empty(), "{}: {:?}", preset.file_name, loaded.warnings);
         let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
         let (width, height) = loaded.scene.camera.picture_size(48);
@@ -34,7 +34,7 @@ fn one_thread_and_many_give_the_same_bits() {
     for (name, method) in
         [("three_point", Method::Path), ("product_still_life", Method::Path), ("split", Method::Direct)]
     {
-        let loaded = io::find_preset(name).unwrap().load().unwrap();
+        let loaded = shipped(name);
         let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
         let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
         let prepared_alone = one.install(|| raytrace::prepare(&loaded.scene, &loaded.assets)).unwrap();
@@ -51,7 +51,7 @@ fn one_thread_and_many_give_the_same_bits() {
 
 #[test]
 fn a_seed_changes_only_the_noise() {
-    let loaded = coarse_and_hairless(io::find_preset("three_point").unwrap().load().unwrap());
+    let loaded = coarse_and_hairless(shipped("three_point"));
     let picture = |seed| {
         let settings = Settings { width: 32, height: 32, spp: 64, seed, ..Settings::default() };
         film_with(&loaded.scene, &loaded.assets, &settings).develop(&loaded.scene)
@@ -65,7 +65,7 @@ fn a_seed_changes_only_the_noise() {
 
 #[test]
 fn a_cancelled_render_keeps_its_complete_passes() {
-    let loaded = io::find_preset("three_point").unwrap().load().unwrap();
+    let loaded = shipped("three_point");
     let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
     let settings = Settings { width: 40, height: 40, spp: 64, ..Settings::default() };
     let control = RenderControl::new();
@@ -82,7 +82,7 @@ fn a_cancelled_render_keeps_its_complete_passes() {
 
 #[test]
 fn a_render_ends_at_its_noise_target() {
-    let loaded = coarse_and_hairless(io::find_preset("three_point").unwrap().load().unwrap());
+    let loaded = coarse_and_hairless(shipped("three_point"));
     let prepared = raytrace::prepare(&loaded.scene, &loaded.assets).unwrap();
     let settings = Settings { width: 64, height: 64, spp: 4096, noise_stops: Some(0.1), ..Settings::default() };
     let film = render(&prepared, &settings, 2);

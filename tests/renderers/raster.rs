@@ -1,6 +1,6 @@
 //! The software rasterizer against the ray tracer's first hits, closed forms and itself.
 
-use crate::people::coarse_and_hairless;
+use crate::people::{coarse_and_hairless, shipped};
 use crate::studio;
 use catchlight::photo::exposure;
 use catchlight::raster::{self, NO_OBJECT, Shading};
@@ -17,7 +17,7 @@ fn draw(scene: &Scene, size: (u32, u32), shading: Shading) -> raster::Framebuffe
 #[test]
 fn visible_objects_agree_with_primary_rays_in_every_studio() {
     for preset in catchlight::io::presets() {
-        let loaded = coarse_and_hairless(preset.load().unwrap());
+        let loaded = coarse_and_hairless(shipped(preset.file_name));
         let (width, height) = loaded.scene.camera.picture_size(900);
         let camera = loaded.scene.camera_frame(width as f32 / height as f32);
         let ours = raster::draw(&loaded.scene, &loaded.assets, &camera, (width, height), Shading::Lambert).objects;
@@ -104,7 +104,7 @@ fn gouraud_misses_the_highlight_inside_a_large_triangle_and_pixel_shading_shows_
 
 #[test]
 fn pictures_do_not_depend_on_the_number_of_threads_and_every_size_is_drawn() {
-    let loaded = catchlight::io::find_preset("three_point").unwrap().load().unwrap();
+    let loaded = shipped("three_point");
     let camera = loaded.scene.camera_frame(1.5);
     let draw_with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -36,7 +36,7 @@ fn of_role(scene: &Scene, role: Role) -> impl Iterator<Item = f32> + '_ {
 
 fn scene(file: &str) -> Scene {
     let preset = presets().iter().find(|p| p.file_name == file);
-    preset.and_then(|p| p.load().ok()).map(|loaded| loaded.scene).unwrap_or_default()
+    preset.unwrap().scene().unwrap()
 }
 
 #[test]

@@ -1,8 +1,18 @@
-//! Shipped studios whose people have no hair, or coarse skin, for tests of renderers that draw either differently.
+//! Shipped studios, also those whose people have no hair, or coarse skin, for tests of renderers that draw either
+//! differently.
 
-use catchlight::io::Loaded;
+use catchlight::io::{Loaded, find_preset, presets};
 use catchlight::scene::{FigureMeshes, Mesh, Strands};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock, OnceLock};
+
+/// Returns a shipped studio. Each is loaded once by all tests of a crate: its people take the time.
+pub fn shipped(name: &str) -> Loaded {
+    static LOADED: LazyLock<Vec<OnceLock<Loaded>>> =
+        LazyLock::new(|| presets().iter().map(|_| OnceLock::new()).collect());
+    let wanted = find_preset(name).unwrap();
+    let index = presets().iter().position(|preset| preset == wanted).unwrap();
+    LOADED[index].get_or_init(|| wanted.load().unwrap()).clone()
+}
 
 /// Returns a studio whose people have no hair: strands are compared by tests of their own.
 #[allow(dead_code, reason = "not every test crate compares pictures of fine meshes")]

@@ -34,7 +34,7 @@ mod tests {
 
     #[test]
     fn a_copied_light_keeps_its_aim_as_a_point_and_with_its_subject_as_an_object() {
-        let scene = io::presets()[0].load().unwrap().scene;
+        let scene = io::presets()[0].scene().unwrap();
         let (light, object) = (&scene.lights[0], &scene.objects[0]);
         assert!(matches!(light.aim, Aim::Object { object: at, .. } if at == object.id));
         let alone = pasted(&copied_text(&scene, &[Item::Light(light.id)]).unwrap()).unwrap();
@@ -48,7 +48,7 @@ mod tests {
 
     #[test]
     fn pasted_items_have_new_names_and_keep_what_they_aim_and_look_at() {
-        let mut scene = io::presets()[0].load().unwrap().scene;
+        let mut scene = io::presets()[0].scene().unwrap();
         let (light, object) = (scene.lights[0].id, scene.objects[0].id);
         if let Shape::Figure(figure) = &mut scene.objects[0].shape {
             figure.gaze = Gaze::Light(light);
@@ -76,7 +76,7 @@ mod tests {
 
     #[test]
     fn a_light_that_a_solo_switched_off_is_copied_with_its_switch() {
-        let mut scene = io::presets()[0].load().unwrap().scene;
+        let mut scene = io::presets()[0].scene().unwrap();
         let [first, second] = [scene.lights[0].id, scene.lights[1].id];
         switches::solo(&mut scene, vec![first]).unwrap();
         assert!(!scene.light(second).unwrap().on);
@@ -90,7 +90,7 @@ mod tests {
         for text in ["", "hello", "(format: 1)", &camera_alone] {
             assert_eq!(pasted(text), None, "{text}");
         }
-        let scene = io::presets()[0].load().unwrap().scene;
+        let scene = io::presets()[0].scene().unwrap();
         assert_eq!(copied_text(&scene, &[Item::Camera, Item::Room]), None);
     }
 }

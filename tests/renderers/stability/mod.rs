@@ -48,8 +48,13 @@ fn base_scene() -> Scene {
 /// Asserts that all methods render finite values that are not negative, with the same bits on one and three threads.
 /// Returns the path-traced picture.
 fn assert_robust(scene: &Scene, assets: &Assets) -> Picture {
+    assert_robust_at((45, 30), scene, assets)
+}
+
+/// As `assert_robust`, in a picture of so many pixels.
+fn assert_robust_at((width, height): (u32, u32), scene: &Scene, assets: &Assets) -> Picture {
     let prepared = raytrace::prepare(scene, assets).unwrap();
-    let settings = Settings { width: 45, height: 30, spp: 4, ..Settings::default() };
+    let settings = Settings { width, height, spp: 4, ..Settings::default() };
     let with = |threads: usize, method: Method| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let settings = Settings { method, ..settings.clone() };
