@@ -6,18 +6,20 @@
 use adapter::headless_gpu;
 use catchlight::editor::{
     Action, App, CentralView, Command, CompareMode, Comparison, DialogAnswer, EditorOptions, Fader, FileDialogs, Item,
-    LiveMode, PictureSize, Preferences, Quality, StudioSource, ToastKind, ViewOptions,
+    LeftRenderers, LiveMode, PictureSize, Preferences, Quality, StudioSource, ToastKind, ViewOptions,
 };
 use catchlight::scene::{Aim, ColorSource, Figure, HairStyle, Scene, Shape};
 use catchlight::sheet::LessonSeries;
 use eframe::egui::{
     self, Event, Key, Modifiers, PointerButton, Pos2, ViewportCommand, ViewportEvent, ViewportId, vec2,
 };
+use eframe::egui_wgpu::{RenderState, RendererOptions, WgpuSetup, WgpuSetupExisting};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use egui_kittest::wgpu::{create_render_state, default_wgpu_setup};
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Condvar, Mutex, OnceLock};
+use std::sync::{Arc, Condvar, LazyLock, Mutex, OnceLock};
 use std::time::Duration;
 
 #[path = "../studio/adapter.rs"]
@@ -108,7 +110,8 @@ fn wait_until(window: &mut Window, condition: impl Fn(&App) -> bool) {
 /// Returns true if there is a GPU adapter. Without one the test prints that and passes, unless `CATCHLIGHT_REQUIRE_GPU`
 /// is set.
 fn has_adapter() -> bool {
-    headless_gpu().is_some()
+    static FOUND: LazyLock<bool> = LazyLock::new(|| headless_gpu().is_some());
+    *FOUND
 }
 
 /// Pixels per point of a window unless a test is about pixels: the GPU is emulated, and its time grows with them.
@@ -164,12 +167,32 @@ fn plain_options() -> EditorOptions {
 /// A window on the studio of the options, or else on [`plain_preset`], with a [`plain_view`].
 fn window_at(pixels_per_point: f32, options: EditorOptions) -> Window {
     let initial = options.initial.clone().or_else(|| Some(plain_preset()));
-    let options = EditorOptions { initial, view_options: plain_view(), ..options };
+    let left_renderers = shared_gpu().left_renderers.clone();
+    let options = EditorOptions { initial, view_options: plain_view(), left_renderers, ..options };
     let builder = Harness::builder().with_size(vec2(1440.0, 900.0)).with_step_dt(1.0 / 30.0).with_max_steps(60);
     let builder = builder.with_pixels_per_point(pixels_per_point);
-    let mut window = builder.wgpu().build_eframe(move |creation| App::new(creation, options));
+    let setup = WgpuSetup::Existing(shared_gpu().setup.clone());
+    let mut window = builder.wgpu_setup(setup).build_eframe(move |creation| App::new(creation, options));
     settle(&mut window);
     window
+}
+
+/// The device that the windows of all tests share, but those that lose theirs, and what they have compiled on it.
+struct SharedGpu {
+    setup: WgpuSetupExisting,
+    left_renderers: LeftRenderers,
+}
+
+fn shared_gpu() -> &'static SharedGpu {
+    static SHARED: LazyLock<SharedGpu> = LazyLock::new(|| {
+        let setup = default_wgpu_setup();
+        let instance = pollster::block_on(setup.new_instance());
+        let state = create_render_state(setup, RendererOptions::PREDICTABLE);
+        let RenderState { adapter, device, queue, .. } = state;
+        let setup = WgpuSetupExisting { instance, adapter, device, queue };
+        SharedGpu { setup, left_renderers: LeftRenderers::default() }
+    });
+    &SHARED
 }
 
 fn window_with_answers(paths: impl IntoIterator<Item = PathBuf>) -> Window {

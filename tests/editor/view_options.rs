@@ -48,7 +48,7 @@ fn false_colour_is_one_click_away_and_one_back() {
 
 #[test]
 fn scopes_over_both_live_views_read_their_scene_linear_pictures() {
-    let Some(mut window) = preset_window() else { return };
+    let Some(mut window) = preset_window_at(0.5) else { return };
     let plain = view(&mut window);
     let depth = undo_depth(&window);
     for mode in [LiveMode::Quick, LiveMode::True] {

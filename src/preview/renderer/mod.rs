@@ -80,6 +80,11 @@ impl PreviewRenderer {
         guarded(device, &loss, || Ok(Self::compiled(GpuContext::new(device, queue, loss.clone()))))
     }
 
+    /// Sets the flag that is set when the device is lost, for a renderer that moves to another window.
+    pub fn watch(&mut self, loss: LossFlag) {
+        self.gpu.loss = loss;
+    }
+
     fn compiled(gpu: GpuContext) -> Self {
         let device = &gpu.device;
         // Create the resources, which bring their bind group layouts

@@ -13,12 +13,32 @@ use crate::scene::{CameraFrame, LightId};
 use eframe::egui::{Context, Painter, Rect, TextureId};
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Time without a change after which a draft is replaced by the full image.
 const SETTLED: Duration = Duration::from_millis(120);
+
+/// The preview's renderers that closed windows have left, with their devices. The next window on such a device takes one
+/// and need not compile its pipelines. Clones share them.
+#[derive(Clone, Debug, Default)]
+pub struct LeftRenderers(Arc<Mutex<Vec<(wgpu::Device, PreviewRenderer)>>>);
+
+impl LeftRenderers {
+    /// Takes a renderer for a device, whose loss now sets `loss`; none if no window has left one.
+    fn take(&self, device: &wgpu::Device, loss: &LossFlag) -> Option<PreviewRenderer> {
+        let mut left = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let index = left.iter().position(|(known, _)| known == device)?;
+        let (_, mut renderer) = left.swap_remove(index);
+        renderer.watch(loss.clone());
+        Some(renderer)
+    }
+
+    fn leave(&self, device: &wgpu::Device, renderer: PreviewRenderer) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).push((device.clone(), renderer));
+    }
+}
 
 #[derive(Debug)]
 enum PreviewStage {
@@ -94,6 +114,7 @@ pub struct PreviewHost {
     /// Display options.
     pub view_options: ViewOptions,
     stage: PreviewStage,
+    left: LeftRenderers,
     state: Option<RenderState>,
     /// Set when the window's device is lost.
     loss: LossFlag,
@@ -118,12 +139,23 @@ impl std::fmt::Debug for PreviewHost {
     }
 }
 
+impl Drop for PreviewHost {
+    fn drop(&mut self) {
+        if let (PreviewStage::Ready(renderer), Some(state)) = (self.take_stage(), &self.state)
+            && self.loss.reason().is_none()
+        {
+            self.left.leave(&state.device, *renderer);
+        }
+    }
+}
+
 impl PreviewHost {
-    /// Returns a host that builds the preview on the window's device.
-    pub fn new(state: Option<&RenderState>, ctx: &Context) -> Self {
+    /// Returns a host that builds the preview on the window's device, or takes one that another window has left.
+    pub fn new(state: Option<&RenderState>, left: LeftRenderers, ctx: &Context) -> Self {
         let mut host = PreviewHost {
             view_options: ViewOptions::default(),
             stage: PreviewStage::Failed(String::new()),
+            left,
             state: None,
             loss: LossFlag::default(),
             cpu_preview: CpuPreview::default(),
@@ -138,6 +170,10 @@ impl PreviewHost {
         };
         host.move_to(state, ctx);
         host
+    }
+
+    fn take_stage(&mut self) -> PreviewStage {
+        std::mem::replace(&mut self.stage, PreviewStage::Failed(String::new()))
     }
 
     /// Drops the window's device and its resources.
@@ -214,7 +250,11 @@ impl PreviewHost {
     /// Rebuilds the preview after a failure.
     pub fn restart(&mut self, ctx: &Context) {
         if let Some(state) = &self.state {
-            self.stage = start(state, self.loss.clone(), ctx);
+            let left = self.left.take(&state.device, &self.loss);
+            self.stage = left.map_or_else(
+                || start(state, self.loss.clone(), ctx),
+                |renderer| PreviewStage::Ready(Box::new(renderer)),
+            );
             (self.shown, self.draft_since) = (None, None);
         }
     }
