@@ -88,7 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         io::check_file(path)?;
     }
     let wanted = arguments.want.join(",");
-    // Metering takes seconds: refuse what is no wish in any studio before it.
+    // Report misspelt wishes before the metering, which takes seconds
     named_levels(&wanted)?;
     let pool = input::thread_pool(arguments.threads.unwrap_or(0).into())?;
     let loaded = pool.install(|| arguments.studio.load())?;

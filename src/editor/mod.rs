@@ -61,7 +61,7 @@ pub use picture::variant_pictures::VariantPictures;
 pub use ui::scopes::ScopeCharts;
 pub use ui::spot_readout::{SpotLux, SpotReading};
 pub use ui::toasts::{ToastKind, Toasts};
-pub use viewport::live::preview_host::{LeftRenderers, ViewOptions};
+pub use viewport::live::preview_host::{RendererPool, ViewOptions};
 pub use viewport::live::traced_view::TracedView;
 pub use viewport::studio_view::StudioView;
 pub use viewport::viewport_area::Viewport;

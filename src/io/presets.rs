@@ -22,7 +22,7 @@ pub struct Preset {
 }
 
 impl Preset {
-    /// Returns the studio without its assets, which takes a figure's time less.
+    /// Returns the studio without loading its assets: no figure is built, no water is run.
     ///
     /// # Errors
     /// As [`parse_scene`](super::parse_scene).

@@ -165,7 +165,7 @@ pub fn wishes(text: &str, setup: &SetupTransport) -> Result<Vec<Wish>, WishError
     Ok(wishes)
 }
 
-/// Reads the names and levels of wishes, for no studio yet.
+/// Reads the names and levels of wishes, as in [`wishes`], without a studio: names are not looked up.
 ///
 /// # Errors
 /// When a wish has no level, or one that cannot be understood.
@@ -173,6 +173,7 @@ pub fn named_levels(text: &str) -> Result<Vec<(&str, WishLevel)>, WishError> {
     text.split(',').map(str::trim).filter(|item| !item.is_empty()).map(named_level).collect()
 }
 
+/// Reads one wish: `Key=f/8`.
 fn named_level(item: &str) -> Result<(&str, WishLevel), WishError> {
     let named = item.rsplit_once('=').filter(|(name, _)| !name.trim().is_empty());
     let (name, text) = named.ok_or_else(|| WishError::NoLevel(item.to_owned()))?;

@@ -53,6 +53,9 @@ fn wishes_beyond_a_head_are_warned_of_and_wrong_ones_refused() {
         assert_eq!(output.status.code(), Some(1));
         assert!(stderr(&output).contains(message), "{}", stderr(&output));
     }
+    // A level that is none is reported before the studio is opened
+    let output = catchlight(folder.path(), &["solve", "no such studio", "--want", "key=8"]);
+    assert!(stderr(&output).contains("write f/8"), "{}", stderr(&output));
     let output =
         catchlight(folder.path(), &["solve", "three_point", "--want", "key=f/8", "--write", "no/such/set.ron"]);
     assert_eq!(output.status.code(), Some(1));

@@ -6,7 +6,7 @@
 use adapter::headless_gpu;
 use catchlight::editor::{
     Action, App, CentralView, Command, CompareMode, Comparison, DialogAnswer, EditorOptions, Fader, FileDialogs, Item,
-    LeftRenderers, LiveMode, PictureSize, Preferences, Quality, StudioSource, ToastKind, ViewOptions,
+    LiveMode, PictureSize, Preferences, Quality, RendererPool, StudioSource, ToastKind, ViewOptions,
 };
 use catchlight::scene::{Aim, ColorSource, Figure, HairStyle, Scene, Shape};
 use catchlight::sheet::LessonSeries;
@@ -167,8 +167,8 @@ fn plain_options() -> EditorOptions {
 /// A window on the studio of the options, or else on [`plain_preset`], with a [`plain_view`].
 fn window_at(pixels_per_point: f32, options: EditorOptions) -> Window {
     let initial = options.initial.clone().or_else(|| Some(plain_preset()));
-    let left_renderers = shared_gpu().left_renderers.clone();
-    let options = EditorOptions { initial, view_options: plain_view(), left_renderers, ..options };
+    let renderer_pool = shared_gpu().renderer_pool.clone();
+    let options = EditorOptions { initial, view_options: plain_view(), renderer_pool, ..options };
     let builder = Harness::builder().with_size(vec2(1440.0, 900.0)).with_step_dt(1.0 / 30.0).with_max_steps(60);
     let builder = builder.with_pixels_per_point(pixels_per_point);
     let setup = WgpuSetup::Existing(shared_gpu().setup.clone());
@@ -177,20 +177,22 @@ fn window_at(pixels_per_point: f32, options: EditorOptions) -> Window {
     window
 }
 
-/// The device that the windows of all tests share, but those that lose theirs, and what they have compiled on it.
+/// The device of all windows but those that lose theirs, and the pool of renderers on it.
 struct SharedGpu {
     setup: WgpuSetupExisting,
-    left_renderers: LeftRenderers,
+    renderer_pool: RendererPool,
 }
 
+/// Returns the device that tests share: compiling the pipelines takes as long as a short test.
 fn shared_gpu() -> &'static SharedGpu {
     static SHARED: LazyLock<SharedGpu> = LazyLock::new(|| {
         let setup = default_wgpu_setup();
+        // Nothing is presented: egui takes any instance
         let instance = pollster::block_on(setup.new_instance());
         let state = create_render_state(setup, RendererOptions::PREDICTABLE);
         let RenderState { adapter, device, queue, .. } = state;
         let setup = WgpuSetupExisting { instance, adapter, device, queue };
-        SharedGpu { setup, left_renderers: LeftRenderers::default() }
+        SharedGpu { setup, renderer_pool: RendererPool::default() }
     });
     &SHARED
 }

@@ -19,7 +19,7 @@ use crate::editor::ui::theme;
 use crate::editor::ui::toasts::Toasts;
 use crate::editor::ui::wake::wake;
 use crate::editor::ui::window_part::WindowPart;
-use crate::editor::viewport::live::preview_host::{LeftRenderers, PreviewHost, ViewOptions};
+use crate::editor::viewport::live::preview_host::{PreviewHost, RendererPool, ViewOptions};
 use crate::editor::viewport::live::traced_view::TracedView;
 use crate::editor::viewport::tools::pointer_tool::PointerTool;
 use crate::editor::viewport::viewport_area::{Viewport, ViewportInput};
@@ -52,8 +52,8 @@ pub struct EditorOptions {
     pub offers_tour: bool,
     /// What the live view shows at first.
     pub view_options: ViewOptions,
-    /// Renderers of the live view that earlier windows have left.
-    pub left_renderers: LeftRenderers,
+    /// Compiled renderers of the live view, for programs that open several windows on one device.
+    pub renderer_pool: RendererPool,
     /// Start of the program, for the time to the first frame.
     pub started: Instant,
 }
@@ -67,7 +67,7 @@ impl Default for EditorOptions {
             recovery_folder: None,
             offers_tour: false,
             view_options: ViewOptions::default(),
-            left_renderers: LeftRenderers::default(),
+            renderer_pool: RendererPool::default(),
             started: Instant::now(),
         }
     }
@@ -101,7 +101,7 @@ impl App {
     pub fn new(creation: &eframe::CreationContext<'_>, options: EditorOptions) -> Self {
         let ctx = &creation.egui_ctx;
         theme::install(ctx);
-        let mut preview = PreviewHost::new(creation.wgpu_render_state.as_ref(), options.left_renderers, ctx);
+        let mut preview = PreviewHost::new(creation.wgpu_render_state.as_ref(), options.renderer_pool, ctx);
         preview.view_options = options.view_options;
         let geometry: Arc<GeometryCache> = Arc::default();
         let mut app = App {

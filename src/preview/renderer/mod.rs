@@ -80,8 +80,8 @@ impl PreviewRenderer {
         guarded(device, &loss, || Ok(Self::compiled(GpuContext::new(device, queue, loss.clone()))))
     }
 
-    /// Sets the flag that is set when the device is lost, for a renderer that moves to another window.
-    pub fn watch(&mut self, loss: LossFlag) {
+    /// Replaces the flag that a loss of the device sets, for a renderer that moves to another window.
+    pub fn set_loss_flag(&mut self, loss: LossFlag) {
         self.gpu.loss = loss;
     }
 

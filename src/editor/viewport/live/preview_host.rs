@@ -20,22 +20,23 @@ use std::time::{Duration, Instant};
 /// Time without a change after which a draft is replaced by the full image.
 const SETTLED: Duration = Duration::from_millis(120);
 
-/// The preview's renderers that closed windows have left, with their devices. The next window on such a device takes one
-/// and need not compile its pipelines. Clones share them.
+/// A pool of the preview's renderers, with their devices: a closed window gives its renderer back, and the next window
+/// on that device takes it and need not compile the pipelines. Clones share the pool.
 #[derive(Clone, Debug, Default)]
-pub struct LeftRenderers(Arc<Mutex<Vec<(wgpu::Device, PreviewRenderer)>>>);
+pub struct RendererPool(Arc<Mutex<Vec<(wgpu::Device, PreviewRenderer)>>>);
 
-impl LeftRenderers {
-    /// Takes a renderer for a device, whose loss now sets `loss`; none if no window has left one.
+impl RendererPool {
+    /// Takes a renderer of a device, whose loss then sets `loss`; none if the pool has none.
     fn take(&self, device: &wgpu::Device, loss: &LossFlag) -> Option<PreviewRenderer> {
-        let mut left = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let index = left.iter().position(|(known, _)| known == device)?;
-        let (_, mut renderer) = left.swap_remove(index);
-        renderer.watch(loss.clone());
+        let mut pool = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let index = pool.iter().position(|(known, _)| known == device)?;
+        let (_, mut renderer) = pool.swap_remove(index);
+        renderer.set_loss_flag(loss.clone());
         Some(renderer)
     }
 
-    fn leave(&self, device: &wgpu::Device, renderer: PreviewRenderer) {
+    /// Puts the renderer of a closed window into the pool.
+    fn give_back(&self, device: &wgpu::Device, renderer: PreviewRenderer) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).push((device.clone(), renderer));
     }
 }
@@ -114,7 +115,7 @@ pub struct PreviewHost {
     /// Display options.
     pub view_options: ViewOptions,
     stage: PreviewStage,
-    left: LeftRenderers,
+    pool: RendererPool,
     state: Option<RenderState>,
     /// Set when the window's device is lost.
     loss: LossFlag,
@@ -144,18 +145,18 @@ impl Drop for PreviewHost {
         if let (PreviewStage::Ready(renderer), Some(state)) = (self.take_stage(), &self.state)
             && self.loss.reason().is_none()
         {
-            self.left.leave(&state.device, *renderer);
+            self.pool.give_back(&state.device, *renderer);
         }
     }
 }
 
 impl PreviewHost {
-    /// Returns a host that builds the preview on the window's device, or takes one that another window has left.
-    pub fn new(state: Option<&RenderState>, left: LeftRenderers, ctx: &Context) -> Self {
+    /// Returns a host that builds the preview on the window's device, or takes one from the pool.
+    pub fn new(state: Option<&RenderState>, pool: RendererPool, ctx: &Context) -> Self {
         let mut host = PreviewHost {
             view_options: ViewOptions::default(),
             stage: PreviewStage::Failed(String::new()),
-            left,
+            pool,
             state: None,
             loss: LossFlag::default(),
             cpu_preview: CpuPreview::default(),
@@ -172,6 +173,7 @@ impl PreviewHost {
         host
     }
 
+    /// Returns the stage and leaves a failed one.
     fn take_stage(&mut self) -> PreviewStage {
         std::mem::replace(&mut self.stage, PreviewStage::Failed(String::new()))
     }
@@ -250,8 +252,8 @@ impl PreviewHost {
     /// Rebuilds the preview after a failure.
     pub fn restart(&mut self, ctx: &Context) {
         if let Some(state) = &self.state {
-            let left = self.left.take(&state.device, &self.loss);
-            self.stage = left.map_or_else(
+            let pooled = self.pool.take(&state.device, &self.loss);
+            self.stage = pooled.map_or_else(
                 || start(state, self.loss.clone(), ctx),
                 |renderer| PreviewStage::Ready(Box::new(renderer)),
             );
