@@ -12,7 +12,6 @@ use super::skinning::skin;
 use super::subdivide::QuadMesh;
 use crate::scene::{Bottom, Extent, Figure, FigureMeshes, Mesh, MeshPart};
 use glam::{Affine3A, Quat, Vec2, Vec3};
-use std::collections::HashMap;
 use std::sync::{Arc, LazyLock};
 
 /// Names of a figure's parts, each with a material of its own.
@@ -29,6 +28,8 @@ const SHOE: u8 = 8;
 const REGIONS: [(u8, &str); 3] = [(9, "lips"), (10, "fingernails"), (11, "inside-mouth")];
 /// Skin reaches this far below the edge of a garment, metres.
 const OVERLAP_M: f32 = 0.03;
+/// Distance of a collar from the cage of the skin, metres.
+const COLLAR_M: f32 = 0.002;
 /// Heights of the cut of a bust, as a part of the way from hips to neck.
 const BUST_CUT: f32 = 0.42;
 /// Distance of the pupils in front of the origin in the rest pose, as a part of the height.
@@ -195,6 +196,8 @@ fn cage(data: &BodyData, figure: &Figure, body: &PosedBody) -> QuadMesh {
         add_part(&mut mesh, &Patch::new(data, group, &body.positions, &is_kept), part);
     }
     // Garments
+    let near_neck =
+        Patch::new(data, "body", &body.positions, &|quad| quad.iter().all(|&v| edges.is_near_neckline(v, figure.top)));
     let skirt = figure.bottom == Bottom::Skirt;
     let legs = if skirt { "helper-skirt" } else { "helper-tights" };
     let garments: [(Garment, u8, &str, &EdgeField); 3] = [
@@ -209,6 +212,9 @@ fn cage(data: &BodyData, figure: &Figure, body: &PosedBody) -> QuadMesh {
         let loose =
             |v: u16| if skirt && garment == Garment::Bottom { 0.0 } else { edges.looseness(v, garment, figure.top) };
         patch.move_outwards(&loose);
+        if garment == Garment::Top {
+            patch.lay_on(&near_neck, COLLAR_M, &|v| edges.nearness_to_neckline(v, figure.top));
+        }
         add_part(&mut mesh, &patch, part);
     }
     mesh
@@ -238,21 +244,30 @@ fn split_skin(data: &BodyData, mesh: &mut QuadMesh) {
 /// Splits quads into triangles, by part, with a vertex for each pair of position and texture coordinates.
 fn to_mesh(quads: &QuadMesh, normals: &[Vec3], colors: &[Vec3]) -> Mesh {
     let mut mesh = Mesh::default();
-    let mut vertices: HashMap<(u32, [u32; 2]), u32> = HashMap::with_capacity(quads.positions.len() * 5 / 4);
+    // The vertices of each position form a list, one for each pair of texture coordinates
+    const END: u32 = u32::MAX;
+    let (mut first, mut next) = (vec![END; quads.positions.len()], Vec::with_capacity(quads.positions.len() * 5 / 4));
+    let mut vertex_of = |mesh: &mut Mesh, position: u32, uv: Vec2| {
+        let position = position as usize;
+        let mut vertex = first[position];
+        while vertex != END && mesh.uvs[vertex as usize] != uv {
+            vertex = next[vertex as usize];
+        }
+        if vertex == END {
+            vertex = mesh.positions.len() as u32;
+            next.push(std::mem::replace(&mut first[position], vertex));
+            mesh.positions.push(quads.positions[position]);
+            mesh.normals.push(normals[position]);
+            mesh.colors.push(colors[position]);
+            mesh.uvs.push(uv);
+        }
+        vertex
+    };
     for (part, name) in PARTS.into_iter().enumerate() {
         let start = mesh.triangles.len() as u32;
         for index in (0..quads.quads.len()).filter(|&i| usize::from(quads.parts[i]) == part) {
-            let corners: [u32; 4] = std::array::from_fn(|k| {
-                let (vertex, uv) = (quads.quads[index][k], quads.uvs[index][k]);
-                *vertices.entry((vertex, uv.to_array().map(f32::to_bits))).or_insert_with(|| {
-                    mesh.positions.push(quads.positions[vertex as usize]);
-                    mesh.normals.push(normals[vertex as usize]);
-                    mesh.colors.push(colors[vertex as usize]);
-                    mesh.uvs.push(uv);
-                    mesh.positions.len() as u32 - 1
-                })
-            });
-            let [a, b, c, d] = corners;
+            let [a, b, c, d] =
+                std::array::from_fn(|k| vertex_of(&mut mesh, quads.quads[index][k], quads.uvs[index][k]));
             mesh.triangles.extend([[a, b, c], [a, c, d]]);
         }
         let end = mesh.triangles.len() as u32;

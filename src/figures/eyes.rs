@@ -111,10 +111,12 @@ fn iris_color(around: usize, ring: usize) -> Vec3 {
     let mut random = Random::new(around as u32, 7);
     let [fibre, collarette] = [random.unit(), random.unit()];
     let inner = 1.0 - ((outwards - 0.1) / (0.2 + 0.15 * collarette)).clamp(0.0, 1.0);
-    let streak = 0.55 + 0.3 * fibre + 0.15 * inner;
+    let streak = 0.45 + 0.35 * fibre;
+    // The inner zone is lighter and warmer.
+    let tint = Vec3::ONE.lerp(Vec3::new(1.0, 0.8, 0.45), inner) * (streak + 0.25 * inner);
     // The pupil's edge is a thin dark line.
     let rim = if ring == IRIS_RINGS as usize { 0.4 } else { 1.0 };
-    Vec3::splat(streak * rim * (1.0 - 0.75 * limbus * limbus))
+    tint * rim * (1.0 - 0.8 * limbus)
 }
 
 /// Appends a surface of revolution about Z from points (radius, z), outside to the front.

@@ -1,6 +1,7 @@
 //! The materials of a figure's parts, and skin tones.
 
-use crate::scene::{Figure, Material, MaterialPreset};
+use super::skin_textures::skin_textures;
+use crate::scene::{Figure, Material, MaterialPreset, MaterialTextures};
 
 /// A skin tone: a class of the individual typology angle ITA = atan((L* - 50) / b*) (Chardon et al. 1991, "Skin colour
 /// typology and suntanning pathways"), with the reflectance of its middle. Redness a* is a typical value.
@@ -23,7 +24,7 @@ pub const SKIN_TONES: [SkinTone; 6] = [
 ];
 
 impl SkinTone {
-    /// Returns skin of this tone. Skin with more melanin lets light less far in.
+    /// Returns skin of this tone for a figure. Skin with more melanin lets light less far in.
     pub fn material(&self) -> Material {
         let [lightness, ..] = self.lab;
         let preset = match lightness {
@@ -31,7 +32,7 @@ impl SkinTone {
             l if l > 50.0 => MaterialPreset::SkinMedium,
             _ => MaterialPreset::SkinDark,
         };
-        Material { base_color: self.base_color(), ..preset.material() }
+        Material { base_color: self.base_color(), textures: skin_textures(), ..preset.material() }
     }
 
     /// Returns the reflectance, scene-linear Rec.709.
@@ -68,7 +69,7 @@ pub fn default_parts(skin: &Material, figure: &Figure) -> Vec<(String, Material)
     let cloth = |base_color| Material { base_color, ..MaterialPreset::MatteFabric.material() };
     let [r, g, b] = skin.base_color;
     let light = 0.2126 * r + 0.7152 * g + 0.0722 * b;
-    let iris = if light > 0.3 { [0.2, 0.15, 0.085] } else { [0.1, 0.05, 0.025] };
+    let iris = if light > 0.3 { [0.13, 0.095, 0.05] } else { [0.07, 0.035, 0.018] };
     // Eyes of old people are less white.
     let age = ((figure.body.age_years - 40.0) / 50.0).clamp(0.0, 1.0);
     let white = MaterialPreset::Eye.material();
@@ -84,7 +85,7 @@ pub fn default_parts(skin: &Material, figure: &Figure) -> Vec<(String, Material)
         ("top", cloth([0.16, 0.2, 0.26])),
         ("bottom", cloth([0.035, 0.045, 0.07])),
         ("lips", lips),
-        ("nails", Material { roughness: 0.3, ..skin.clone() }),
+        ("nails", Material { roughness: 0.3, textures: MaterialTextures::default(), ..skin.clone() }),
         ("mouth", Material { base_color: [0.25, 0.07, 0.06], roughness: 0.3, ..gloss([0.0; 3]) }),
         ("hair", MaterialPreset::HairDarkBrown.material()),
         ("beard", MaterialPreset::HairDarkBrown.material()),

@@ -26,6 +26,7 @@ mod ready;
 mod regions;
 mod skeleton;
 mod skin_colors;
+mod skin_textures;
 mod skinning;
 mod subdivide;
 mod two_bone_ik;
@@ -40,6 +41,7 @@ pub use materials::{SKIN_TONES, SkinTone, default_parts};
 pub use named_poses::{NamedExpression, NamedPose};
 pub use ready::{READY, ReadyFigure, randomised};
 pub use skeleton::Side;
+pub use skin_textures::{builtin_texture, skin_textures};
 
 use crate::scene::{Figure, FigureMeshes};
 pub use build::PARTS;

@@ -73,8 +73,33 @@ impl Patch {
         }
     }
 
+    /// Moves vertices towards a height over a surface, metres, by a weight of 0 to 1. The surface is flat round each of
+    /// its vertices.
+    pub fn lay_on(&mut self, surface: &Patch, height_m: f32, weight: &dyn Fn(u16) -> f32) {
+        let normals = surface.normals();
+        for (position, &source) in self.positions.iter_mut().zip(&self.sources) {
+            let weight = weight(source);
+            let distance = |other: &Vec3| other.distance_squared(*position);
+            let nearest = (0..normals.len())
+                .filter(|_| weight > 0.0)
+                .min_by(|&a, &b| distance(&surface.positions[a]).total_cmp(&distance(&surface.positions[b])));
+            if let Some(nearest) = nearest {
+                let height = (*position - surface.positions[nearest]).dot(normals[nearest]);
+                *position += normals[nearest] * (weight * (height_m - height));
+            }
+        }
+    }
+
     /// Moves every vertex along its normal by an offset in metres.
     pub fn move_outwards(&mut self, offset: &dyn Fn(u16) -> f32) {
+        let normals = self.normals();
+        for ((position, normal), &source) in self.positions.iter_mut().zip(normals).zip(&self.sources) {
+            *position += normal * offset(source);
+        }
+    }
+
+    /// Returns the unit normals of the vertices.
+    fn normals(&self) -> Vec<Vec3> {
         let mut normals = vec![Vec3::ZERO; self.positions.len()];
         for quad in &self.quads {
             let [a, b, c, d] = quad.map(|v| self.positions[v as usize]);
@@ -82,8 +107,6 @@ impl Patch {
                 normals[v as usize] += (c - a).cross(d - b);
             }
         }
-        for ((position, normal), &source) in self.positions.iter_mut().zip(normals).zip(&self.sources) {
-            *position += normal.normalize_or_zero() * offset(source);
-        }
+        normals.iter().map(|normal| normal.normalize_or_zero()).collect()
     }
 }

@@ -60,6 +60,9 @@ fn along(p: Vec3, a: Vec3, b: Vec3) -> f32 {
     (p - a).dot(b - a) / (b - a).length_squared().max(1e-9)
 }
 
+/// Distance from the neckline at which a garment hangs freely, metres.
+const COLLAR_END_M: f32 = 0.06;
+
 /// The edges of garments, in the rest pose of the base mesh. A field is positive inside of a garment, about the distance
 /// to its edge in metres.
 #[derive(Clone, Debug)]
@@ -152,10 +155,19 @@ impl Edges {
         }
     }
 
+    /// Returns 1 where the collar of an upper garment lies on the neck, falling to 0 within 6 cm of its edge.
+    pub fn nearness_to_neckline(&self, vertex: u16, top: Top) -> f32 {
+        1.0 - (self.to_neckline(vertex, top) / COLLAR_END_M).clamp(0.0, 1.0)
+    }
+
+    /// Returns true for skin on which a collar may lie.
+    pub fn is_near_neckline(&self, vertex: u16, top: Top) -> bool {
+        self.to_neckline(vertex, top).abs() < 2.0 * COLLAR_END_M
+    }
+
     /// Returns how far a garment stands off from the body, metres.
     pub fn looseness(&self, vertex: u16, garment: Garment, top: Top) -> f32 {
-        // A collar lies on the neck.
-        let from_neck = (self.to_neckline(vertex, top) / 0.06).clamp(0.0, 1.0);
+        let from_neck = 1.0 - self.nearness_to_neckline(vertex, top);
         match (garment, self.place(vertex)) {
             (Garment::Shoe, _) => 0.003,
             (Garment::Top, Place::Arm(at)) => 0.006 + 0.006 * at.min(1.0),

@@ -5,6 +5,7 @@
 
 use super::body_data::BodyData;
 use super::hair::{beard_density, brow_density, scalp_density};
+use super::random::Random;
 use crate::scene::{Beard, Figure, HairStyle};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -17,6 +18,8 @@ pub const NO_SKIN: Vec3 = Vec3::splat(1e3);
 const BLOOD: Vec3 = Vec3::new(0.97, 0.76, 0.73);
 /// Factor where the skin is thin over veins.
 const VEINS: Vec3 = Vec3::new(0.87, 0.82, 0.85);
+/// Factor on the lids: thin skin over muscle, with the roots of lashes.
+const LIDS: Vec3 = Vec3::new(0.7, 0.52, 0.5);
 /// Factor between the roots of dense hair, which shade each other.
 const ROOTS: Vec3 = Vec3::new(0.36, 0.33, 0.31);
 /// Factor between the roots of white hair, which pass more light.
@@ -26,23 +29,36 @@ const STUBBLE: Vec3 = Vec3::new(0.62, 0.62, 0.63);
 
 /// A region on both sides of the base mesh.
 #[derive(Clone, Copy, Debug)]
-struct Region {
+pub(super) struct Region {
     /// Middle, metres from between the eyes, on the left.
     middle: Vec3,
     /// Distance along each axis at which the strength has fallen to 1/e.
     radius: Vec3,
-    /// Factor of the base colour at full strength.
+    /// Factor at full strength.
     color: Vec3,
     /// Strength in the middle.
     strength: f32,
 }
 
-const fn region(middle: [f32; 3], radius: [f32; 3], color: Vec3, strength: f32) -> Region {
+/// Returns a region of a factor and its strength in the middle.
+pub(super) const fn region(middle: [f32; 3], radius: [f32; 3], color: Vec3, strength: f32) -> Region {
     Region { middle: Vec3::from_array(middle), radius: Vec3::from_array(radius), color, strength }
 }
 
+/// Returns the product of the factors of regions at a place on the left, metres from between the eyes.
+pub(super) fn factor_at(on_left: Vec3, regions: &[Region]) -> Vec3 {
+    let mut factor = Vec3::ONE;
+    for region in regions {
+        let distance = ((on_left - region.middle) / region.radius).length_squared();
+        if distance < 7.0 {
+            factor *= Vec3::ONE.lerp(region.color, region.strength * (-distance).exp());
+        }
+    }
+    factor
+}
+
 /// Regions of the face.
-const FACE: [Region; 7] = [
+const FACE: [Region; 8] = [
     region([0.044, -0.04, 0.012], [0.02, 0.017, 0.03], BLOOD, 0.55),
     region([0.0, -0.038, 0.042], [0.014, 0.011, 0.016], BLOOD, 0.6),
     region([0.015, -0.042, 0.025], [0.006, 0.007, 0.012], BLOOD, 0.5),
@@ -50,6 +66,8 @@ const FACE: [Region; 7] = [
     region([0.084, -0.012, -0.086], [0.012, 0.034, 0.03], BLOOD, 0.8),
     region([0.026, -0.014, 0.014], [0.015, 0.006, 0.02], VEINS, 0.6),
     region([0.028, 0.009, 0.014], [0.017, 0.006, 0.02], VEINS, 0.5),
+    // The lids and their edges
+    region([0.031, -0.001, 0.014], [0.019, 0.0075, 0.016], LIDS, 0.75),
 ];
 
 /// Returns the regions of face and joints.
@@ -83,14 +101,7 @@ fn color_at(place: Vec3, regions: &[Region], figure: &Figure) -> Vec3 {
     if place == NO_SKIN {
         return Vec3::ONE;
     }
-    let on_left = place.with_x(place.x.abs());
-    let mut color = Vec3::ONE;
-    for region in regions {
-        let distance = ((on_left - region.middle) / region.radius).length_squared();
-        if distance < 7.0 {
-            color *= Vec3::ONE.lerp(region.color, region.strength * (-distance).exp());
-        }
-    }
+    let mut color = factor_at(place.with_x(place.x.abs()), regions) * mottled(place, figure.seed);
     // Only the head has hair
     if place.y < -0.16 {
         return color;
@@ -108,6 +119,33 @@ fn color_at(place: Vec3, regions: &[Region], figure: &Figure) -> Vec3 {
         color *= Vec3::ONE.lerp(STUBBLE, beard * blurred(beard_density, place, 0.008));
     }
     color * Vec3::ONE.lerp(STUBBLE, 0.8 * brow_density(place))
+}
+
+/// Returns the factor of the skin's unevenness at a place: blotches of blood and of melanin, some millimetres and a
+/// centimetre and a half across.
+fn mottled(place: Vec3, seed: u32) -> Vec3 {
+    const BLOOD_SPREAD: Vec3 = Vec3::new(0.012, 0.05, 0.045);
+    const MELANIN_SPREAD: Vec3 = Vec3::new(0.03, 0.04, 0.05);
+    let blood = 0.6 * noise(place / 0.015, seed) + 0.4 * noise(place / 0.006, seed.wrapping_add(1));
+    let melanin = 0.5 * noise(place / 0.011, seed.wrapping_add(2)) + 0.5 * noise(place / 0.0045, seed.wrapping_add(3));
+    // Darker than the base colour, on the whole: factors stay below 1
+    (Vec3::ONE - BLOOD_SPREAD * (1.0 + blood) - MELANIN_SPREAD * (1.0 + melanin)).clamp(Vec3::ZERO, Vec3::ONE)
+}
+
+/// Returns noise at a point: about -1 to 1, smooth over a distance of 1 (Perlin 1985, values at lattice points).
+fn noise(point: Vec3, seed: u32) -> f32 {
+    let cell = point.floor();
+    let t = point - cell;
+    let t = t * t * (3.0 - 2.0 * t);
+    let cell = cell.as_ivec3();
+    let value = |dx: i32, dy: i32, dz: i32| {
+        let [x, y, z] = [cell.x + dx, cell.y + dy, cell.z + dz].map(|c| c as u32 & 0x3ff);
+        2.0 * Random::new(seed, x | y << 10 | z << 20).unit() - 1.0
+    };
+    let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
+    let along_x = |dy, dz| mix(value(0, dy, dz), value(1, dy, dz), t.x);
+    let along_y = |dz| mix(along_x(0, dz), along_x(1, dz), t.y);
+    mix(along_y(0), along_y(1), t.z)
 }
 
 /// Returns the mean density of hair within a distance of a place, metres.
@@ -129,11 +167,13 @@ mod tests {
         let [cheek, forehead, scalp, nothing] =
             [Vec3::new(-0.044, -0.04, 0.012), Vec3::new(0.0, 0.04, 0.028), Vec3::new(0.01, 0.12, -0.07), NO_SKIN];
         let colors = skin_colors(&[cheek, forehead, scalp, nothing], &figure);
-        assert!(colors[0].y < 0.9 && colors[0].x > 0.95, "{}", colors[0]);
-        assert!(colors[1].min_element() > 0.97, "{}", colors[1]);
+        let redness = |color: Vec3| color.x / color.y;
+        assert!(redness(colors[0]) > 1.08 * redness(colors[1]), "{} {}", colors[0], colors[1]);
+        // Blotches take up to 8 % of red.
+        assert!(colors[0].x > 0.9 && colors[1].min_element() > 0.8, "{} {}", colors[0], colors[1]);
         assert!(colors[2].max_element() < 0.4, "{}", colors[2]);
         assert_eq!(colors[3], Vec3::ONE);
-        assert!(skin_colors(&[scalp], &bald)[0].min_element() > 0.97);
+        assert!(skin_colors(&[scalp], &bald)[0].min_element() > 0.8);
         assert!(colors.iter().all(|color| color.min_element() > 0.0 && color.max_element() <= 1.0));
     }
 
@@ -143,6 +183,6 @@ mod tests {
         let knuckle = |name: &str| data.positions[usize::from(data.bones[data.bone(name).unwrap()].head)];
         let places = ["finger3-1.L", "finger3-1.R"].map(|name| knuckle(name) - data.eyes_middle());
         let colors = skin_colors(&places, &READY[0].figure());
-        assert!(colors.iter().all(|color| color.y < 0.9), "{colors:?}");
+        assert!(colors.iter().all(|color| color.y < 0.85 * color.x), "{colors:?}");
     }
 }

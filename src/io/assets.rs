@@ -8,6 +8,7 @@ use super::load_progress::LoadProgress;
 use super::photometric::{PhotometricFile, read_photometric_file};
 use super::texture_memory::TextureMemory;
 use super::{figures, importers, tanks, texture};
+use crate::figures::builtin_texture;
 use crate::scene::{Asset, AssetField, AssetKey, AssetRef, Assets, Finding, Scene, TextureRef};
 use rayon::prelude::*;
 use std::collections::HashSet;
@@ -100,12 +101,22 @@ fn load(
             Ok(LoadedAsset { asset: Asset::Tank(mesh), warnings: warning.into_iter().collect() })
         }
         AssetRef::Texture(reference) => {
-            let file = files.find(reference.path())?;
-            let decoded = match **reference {
-                TextureRef::File(_) => texture::load(&file)?,
-                TextureRef::Embedded { image, .. } => texture::decode(&images.image(&file, image)?, &file)?,
+            let (file, decoded) = match &**reference {
+                TextureRef::Builtin(texture) => {
+                    let asset = Asset::Texture(builtin_texture(*texture));
+                    return Ok(LoadedAsset { asset, warnings: Vec::new() });
+                }
+                TextureRef::File(path) => {
+                    let file = files.find(path)?;
+                    (file.clone(), texture::load(&file)?)
+                }
+                TextureRef::Embedded { model, image } => {
+                    let file = files.find(model)?;
+                    let decoded = texture::decode(&images.image(&file, *image)?, &file)?;
+                    (file, decoded)
+                }
             };
-            let warnings = decoded.warning.map(|warning| format!("{}: {warning}", reference.path()));
+            let warnings = decoded.warning.map(|warning| format!("{reference}: {warning}"));
             let asset = Asset::Texture(memory.share(decoded.texture, &file)?);
             Ok(LoadedAsset { asset, warnings: warnings.into_iter().collect() })
         }

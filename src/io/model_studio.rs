@@ -157,6 +157,10 @@ impl<'a> AssetNames<'a> {
                 TextureRef::Embedded { .. } => self.path.clone(),
                 TextureRef::File(path) if folder.is_empty() => path.clone(),
                 TextureRef::File(path) => format!("{folder}/{path}"),
+                TextureRef::Builtin(_) => {
+                    *texture = Some(reference);
+                    continue;
+                }
             };
             if let (TextureRef::File(source), false) = (&reference, self.imported.is_empty()) {
                 let beside = self.file.parent().unwrap_or(Path::new("")).join(source);

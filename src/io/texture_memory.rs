@@ -36,10 +36,13 @@ impl TextureMemory {
     /// Returns true if the textures of `missing` may exceed the limit, as far as their files' headers tell.
     pub fn may_overflow(&self, missing: &[(AssetField, AssetKey)], files: AssetFiles<'_>) -> bool {
         let size = |key: &AssetKey| match key {
-            AssetRef::Texture(reference) if matches!(**reference, TextureRef::File(_)) => {
-                let (width, height) = texture::size(&files.find(reference.path()).ok()?)?;
-                Some(bytes(width, height))
-            }
+            AssetRef::Texture(reference) => match &**reference {
+                TextureRef::File(path) => {
+                    let (width, height) = texture::size(&files.find(path).ok()?)?;
+                    Some(bytes(width, height))
+                }
+                TextureRef::Embedded { .. } | TextureRef::Builtin(_) => None,
+            },
             _ => None,
         };
         let held: u64 = self.lock().iter().map(|texture| bytes(texture.width, texture.height)).sum();

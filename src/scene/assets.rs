@@ -63,7 +63,7 @@ impl<'a> AssetRef<'a> {
             AssetRef::Mesh(path) | AssetRef::Photometry(path) | AssetRef::Environment(path) => Some(path),
             AssetRef::Figure(_) => None,
             AssetRef::Tank(tank) => tank.height_picture(),
-            AssetRef::Texture(texture) => Some(texture.path()),
+            AssetRef::Texture(texture) => texture.path(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Texture images, references to them, and the texture slots of a material.
 
-use super::TexturePlacement;
+use super::{BuiltinTexture, TexturePlacement};
 use std::fmt;
 
 /// A decoded image of 8 bits a channel, rows from the top.
@@ -23,7 +23,8 @@ impl Texture {
     }
 }
 
-/// The source of a texture's bytes, a PNG or JPEG image. Paths are relative to the scene file, `/` between folders.
+/// The source of a texture: a PNG or JPEG image, or the program. Paths are relative to the scene file, `/` between
+/// folders.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum TextureRef {
     /// An image file.
@@ -35,6 +36,8 @@ pub enum TextureRef {
         /// Index of the image in the model, from 0.
         image: u32,
     },
+    /// A texture that the program draws.
+    Builtin(BuiltinTexture),
 }
 
 /// Separates a model's path from the index of its image: the JSON pointer to the image in glTF (RFC 6901, section 6).
@@ -46,8 +49,12 @@ impl TextureRef {
         TextureRef::File(path.into())
     }
 
-    /// Reads the text form that scene files use: `PATH`, or `MODEL#/images/N` for image N of a model.
+    /// Reads the text form that scene files use: `PATH`, `MODEL#/images/N` for image N of a model, or the name of a
+    /// built-in texture.
     pub fn parse(text: &str) -> Self {
+        if let Some(texture) = BuiltinTexture::ALL.into_iter().find(|texture| texture.name() == text) {
+            return TextureRef::Builtin(texture);
+        }
         let embedded = text.rsplit_once(IMAGE_POINTER).and_then(|(model, image)| {
             let image: u32 = image.parse().ok()?;
             let reference = TextureRef::Embedded { model: model.to_owned(), image };
@@ -57,19 +64,21 @@ impl TextureRef {
         embedded.unwrap_or_else(|| TextureRef::file(text))
     }
 
-    /// Returns the path of the file that holds the image: the image file, or the model.
-    pub fn path(&self) -> &str {
+    /// Returns the path of the file that holds the image: the image file, or the model; `None` for a built-in texture.
+    pub fn path(&self) -> Option<&str> {
         match self {
-            TextureRef::File(path) => path,
-            TextureRef::Embedded { model, .. } => model,
+            TextureRef::File(path) => Some(path),
+            TextureRef::Embedded { model, .. } => Some(model),
+            TextureRef::Builtin(_) => None,
         }
     }
 
-    /// Returns the same image in a file at another path.
+    /// Returns the same image in a file at another path; a built-in texture as it is.
     pub fn at_path(self, path: String) -> Self {
         match self {
             TextureRef::File(_) => TextureRef::File(path),
             TextureRef::Embedded { image, .. } => TextureRef::Embedded { model: path, image },
+            TextureRef::Builtin(_) => self,
         }
     }
 }
@@ -79,6 +88,7 @@ impl fmt::Display for TextureRef {
         match self {
             TextureRef::File(path) => f.write_str(path),
             TextureRef::Embedded { model, image } => write!(f, "{model}{IMAGE_POINTER}{image}"),
+            TextureRef::Builtin(texture) => f.write_str(texture.name()),
         }
     }
 }
@@ -222,6 +232,8 @@ mod tests {
             ("chair.glb#/images/03", TextureRef::file("chair.glb#/images/03")),
             ("chair.glb#/images/x", TextureRef::file("chair.glb#/images/x")),
             ("chair.glb#3", TextureRef::file("chair.glb#3")),
+            ("builtin:skin-gloss", TextureRef::Builtin(BuiltinTexture::SkinGloss)),
+            ("builtin:skin", TextureRef::file("builtin:skin")),
         ] {
             let reference = TextureRef::parse(text);
             assert_eq!(reference, expected);

@@ -328,7 +328,7 @@ fn a_gltf_model_comes_in_with_the_image_inside_and_travels_with_the_studio() {
     assert_eq!((errors(&window), window.state().toasts().texts(ToastKind::Warning)), (Vec::new(), Vec::new()));
     let object = scene(&window).objects.last().unwrap().clone();
     let texture = object.material.textures.base_color.clone().unwrap();
-    assert!(object.name == "label" && object.part_materials.is_empty() && texture.path() == "models/label.gltf");
+    assert!(object.name == "label" && object.part_materials.is_empty() && texture.path() == Some("models/label.gltf"));
     assert_eq!(window.state().document().assets().texture(&texture).unwrap().rgb[0], [9, 90, 200]);
     // Saved, the model lies beside the studio, and the image in it is found again
     run(&mut window, Command::SaveAs);

@@ -108,11 +108,15 @@ impl App {
         for slot in TextureSlot::ALL {
             let texture = material.textures.get_mut(slot);
             if let Some(reference) = texture.take() {
-                let file = folder.join(reference.path());
-                let kind_folder = match reference {
-                    TextureRef::File(_) => "textures",
-                    TextureRef::Embedded { .. } => "models",
+                let (path, kind_folder) = match &reference {
+                    TextureRef::File(path) => (path, "textures"),
+                    TextureRef::Embedded { model, .. } => (model, "models"),
+                    TextureRef::Builtin(_) => {
+                        *texture = Some(reference);
+                        continue;
+                    }
                 };
+                let file = folder.join(path);
                 let path = self.document.asset_path_for(&file, kind_folder);
                 self.document.note_import(path.clone(), file);
                 *texture = Some(reference.at_path(path));

@@ -10,7 +10,7 @@ use glam::Vec3;
 /// Hairs of both brows.
 const BROW_HAIRS: usize = 1100;
 /// Upper and lower lashes of an eye.
-const LASHES: [usize; 2] = [130, 70];
+const LASHES: [usize; 2] = [340, 70];
 
 /// Grows a beard: down and out of the skin.
 pub fn grow_beard(body: &HairBody, figure: &Figure, style: &Style, strands: &mut Strands) {
@@ -92,7 +92,7 @@ pub fn grow_lashes(body: &HairBody, figure: &Figure, strands: &mut Strands) {
                 continue;
             }
             let is_upper = rims.iter().map(|[a, _]| a.y - eye.y).sum::<f32>() > 0.0;
-            let length = if is_upper { 0.0085 } else { 0.005 };
+            let length = if is_upper { 0.0115 } else { 0.0055 };
             let mut random = Random::new(figure.seed, 500_000 + row as u32 * 2 + u32::from(side == "r"));
             for _ in 0..count {
                 let [a, b] = rims[((random.unit() * rims.len() as f32) as usize).min(rims.len() - 1)];
@@ -108,12 +108,13 @@ fn lash(body: &HairBody, root: Vec3, eye: Vec3, is_upper: bool, length: f32, ran
     const STEPS: usize = 6;
     let up = if is_upper { 1.0 } else { -0.8 };
     let fan = (root.x - eye.x) * 22.0;
-    let mut direction = Vec3::new(fan + 0.12 * random.bell(), 0.1 * random.bell() - 0.1, 1.0).normalize_or(Vec3::Z);
+    let droop = if is_upper { 0.35 } else { 0.1 };
+    let mut direction = Vec3::new(fan + 0.12 * random.bell(), 0.1 * random.bell() - droop, 1.0).normalize_or(Vec3::Z);
     let mut position = root;
     let mut points = Vec::with_capacity(STEPS + 1);
     for k in 0..=STEPS {
         let t = k as f32 / STEPS as f32;
-        let radius_m = 55e-6 * (1.0 - 0.8 * t);
+        let radius_m = if is_upper { 75e-6 } else { 50e-6 } * (1.0 - 0.8 * t);
         points.push(StrandPoint { position: body.head.transform_point3(position), radius_m });
         position += direction * length / STEPS as f32;
         direction = (direction + Vec3::Y * up * 0.22).normalize_or(Vec3::Z);

@@ -1,7 +1,7 @@
 //! Grows the hair of a head: guides that follow the comb, and strands between them.
 
 use super::hair_body::HairBody;
-use super::obstacles::Obstacles;
+use super::obstacles::{Obstacles, ShoulderSide};
 use super::roots::{Root, scatter};
 use super::style::{Comb, Style, scalp_density};
 use crate::figures::random::Random;
@@ -34,6 +34,8 @@ const PARTING_DENSITY: f32 = 5.0;
 const CROSSING_M: f32 = 0.006;
 /// Segments of a guide.
 const STEPS: usize = 24;
+/// Longest step in which a guide grows, metres: longer ones would leave the curve of the head.
+const LONGEST_STEP_M: f32 = 0.006;
 
 /// Grows the strands of a style.
 pub fn grow_head(body: &HairBody, figure: &Figure, style: &Style, strands: &mut Strands) {
@@ -118,7 +120,7 @@ impl CombField<'_> {
                 return self.obstacles.above_head(centre + ray * 0.01, height);
             }
             direction = (direction + self.down * self.style.weight).normalize_or(self.down);
-            position = self.obstacles.pushed_out(position + direction * step, 0.0);
+            position = self.obstacles.pushed_out(position + direction * step, 0.0, ShoulderSide::Back);
             position
         };
         std::iter::once(root.position).chain((1..=STEPS).map(point)).collect()
@@ -127,15 +129,20 @@ impl CombField<'_> {
     /// Grows a guide that follows comb and gravity.
     fn loose(&self, root: &Root, length: f32, jitter: Vec3) -> Vec<Vec3> {
         let style = self.style;
-        let step = length / STEPS as f32;
+        let steps_per_segment = (length / STEPS as f32 / LONGEST_STEP_M).ceil().max(1.0) as usize;
+        let steps = STEPS * steps_per_segment;
+        let step = length / steps as f32;
         let jitter = jitter * style.frizz;
+        // Hair before the ears falls over the chest.
+        let is_front = root.position.z > self.obstacles.skull_centre().z;
+        let side = if is_front { ShoulderSide::Front } else { ShoulderSide::Back };
         let mut direction =
             (root.normal * style.lift + self.comb(root.position, root.normal) * (1.0 - style.lift) + jitter)
                 .normalize();
         let mut position = root.position;
         let mut points = vec![position];
-        for k in 0..STEPS {
-            let along = k as f32 / STEPS as f32;
+        for k in 0..steps {
+            let along = k as f32 / steps as f32;
             let outwards = (position - self.obstacles.skull_centre()).normalize_or(Vec3::Y);
             // The comb holds what lies on the head; below, hair falls.
             let held = 1.0 - self.obstacles.height_over_head(position) / HELD_M;
@@ -146,10 +153,13 @@ impl CombField<'_> {
             direction = (direction + pull).normalize_or(self.down);
             // Hair lies on the hair below it: the volume builds up over the first centimetres.
             let margin = style.volume_m * (along * length / 0.03).min(1.0);
-            let next = self.obstacles.pushed_out(self.beside_face(position + direction * step, root), margin);
+            let next = self.beside_face(position + direction * step, root);
+            let next = self.obstacles.pushed_out(next, margin, side);
             direction = (next - position).normalize_or(direction);
             position += direction * step;
-            points.push(position);
+            if (k + 1) % steps_per_segment == 0 {
+                points.push(position);
+            }
         }
         points
     }
@@ -166,10 +176,11 @@ impl CombField<'_> {
     fn beside_face(&self, p: Vec3, root: &Root) -> Vec3 {
         let Comb::FromParting(left) = self.style.comb else { return p };
         let side = if root.position.x >= left { 1.0 } else { -1.0 };
-        // From the hairline to the temples, over the height of a forehead, and as far as the jaw
-        let free = FACE_HALF_WIDTH_M * ((HAIRLINE_M - p.y) / 0.05).min((p.y - BELOW_JAW_M) / 0.08).clamp(0.0, 1.0);
-        let is_before_face = p.z > FACE_FROM_Z && p.x * side < free;
-        if is_before_face { p.with_x(free * side) } else { p }
+        // From the parting at the hairline to the temples, over the height of a forehead, and as far as the jaw
+        let widening = ((HAIRLINE_M - p.y) / 0.05).min((p.y - BELOW_JAW_M) / 0.08).clamp(0.0, 1.0);
+        let edge = left + (FACE_HALF_WIDTH_M * side - left) * widening;
+        let is_before_face = p.z > FACE_FROM_Z && (p.x - edge) * side < 0.0;
+        if is_before_face { p.with_x(edge) } else { p }
     }
 
     /// Returns the length of the hair at a root: between that of the sides and that of the top.
@@ -228,13 +239,17 @@ fn follow(root: &Root, guides: &[Guide], field: &CombField, mut random: Random) 
     // Beside a parting some strands cross to the other side, and hide the skin between both
     let crossing = CROSSING_M * nearness_to_parting(style, root.position.x) * random.bell();
     let near = nearest_guides(root.position + Vec3::X * crossing, guides);
-    // Guides on the other side of a parting are no neighbours: they go another way.
+    // Guides on the other side of a parting, or of the shoulders, are no neighbours: they go another way.
     let first = &guides[near[0].1];
-    let reach = first.points[STEPS / 2] - first.root.position;
+    let reach = |guide: &Guide, step: usize| guide.points[step] - guide.root.position;
+    let goes_along = |guide: &Guide| {
+        let is_near = |step| reach(guide, step).dot(reach(first, step)) > 0.5 * reach(first, step).length_squared();
+        is_near(STEPS / 2) && guide.points[STEPS].distance(first.points[STEPS]) < 0.5 * reach(first, STEPS).length()
+    };
     let weights: Vec<(f32, &Guide)> = near
         .iter()
         .map(|&(distance, index)| (1.0 / (distance + 1e-6), &guides[index]))
-        .filter(|(_, guide)| (guide.points[STEPS / 2] - guide.root.position).dot(reach) > 0.5 * reach.length_squared())
+        .filter(|(_, guide)| goes_along(guide))
         .collect();
     let sum: f32 = weights.iter().map(|(w, _)| w).sum();
     let shorter = 1.0 - 0.25 * random.unit() * random.unit();
@@ -267,7 +282,8 @@ fn follow(root: &Root, guides: &[Guide], field: &CombField, mut random: Random) 
             p += turn * tangent.any_orthonormal_vector() * style.curl_m * (along * 4.0).min(1.0);
         }
         // A guide's shape from another root may lead into the skin, or before the face
-        let p = if k == 0 { p } else { field.obstacles.above_head(field.beside_face(p, &first.root), CLEARANCE_M) };
+        let aside = |p| field.beside_face(p, &first.root);
+        let p = if k == 0 { p } else { aside(field.obstacles.above_head(aside(p), CLEARANCE_M)) };
         points.push((p, style.radius_m * (1.0 - 0.7 * along * along)));
     }
     points

@@ -66,7 +66,9 @@ pub fn grow(body: &HairBody, figure: &Figure) -> Strands {
 
 #[cfg(test)]
 mod tests {
-    use crate::figures::{READY, build};
+    use crate::figures::{READY, build, head_frame};
+    use crate::scene::{Figure, HairStyle};
+    use glam::Vec3;
 
     #[test]
     fn hair_grows_on_every_ready_figure_and_the_live_view_has_a_fifth_of_it() {
@@ -89,6 +91,21 @@ mod tests {
             let (low, high) = meshes.fine.strands.bounds().unwrap();
             assert!(low.y > 0.5 * height && high.y < height + 0.06, "{low} {high}");
             assert_eq!(build(&figure).fine, meshes.fine, "equal parameters make equal meshes");
+        }
+    }
+
+    #[test]
+    fn hair_with_a_parting_falls_beside_the_face() {
+        for style in [HairStyle::Bob, HairStyle::Long] {
+            let figure = Figure { hair: style, ..READY[0].figure() };
+            let strands = build(&figure).fine.strands.with_parts(|part| part == "hair");
+            let to_head = head_frame(&figure).inverse();
+            let is_before_face = |p: Vec3| p.x.abs() < 0.055 && (-0.1..0.02).contains(&p.y) && p.z > -0.02;
+            let before: Vec<Vec<Vec3>> = (0..strands.len())
+                .map(|index| strands.strand(index).iter().map(|p| to_head.transform_point3(p.position)).collect())
+                .filter(|points: &Vec<Vec3>| points.iter().any(|p| is_before_face(*p)))
+                .collect();
+            assert!(before.is_empty(), "{style:?}: {} strands, for example {:?}", before.len(), before[0]);
         }
     }
 }

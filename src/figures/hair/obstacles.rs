@@ -13,13 +13,34 @@ struct Capsule {
 }
 
 impl Capsule {
-    fn pushed_out(&self, p: Vec3) -> Vec3 {
+    /// Returns a point moved along a unit vector until it is outside.
+    fn pushed_out(&self, mut p: Vec3, towards: Vec3) -> Vec3 {
+        const STEPS: usize = 16;
+        const NEAR_M: f32 = 0.0002;
+        for _ in 0..STEPS {
+            let missing = self.radius - self.distance_from_axis(p);
+            if missing < NEAR_M {
+                break;
+            }
+            p += towards * missing;
+        }
+        p
+    }
+
+    fn distance_from_axis(&self, p: Vec3) -> f32 {
         let [a, b] = self.ends;
         let t = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-9)).clamp(0.0, 1.0);
-        let nearest = a.lerp(b, t);
-        let away = p - nearest;
-        if away.length() < self.radius { nearest + away.normalize_or(Vec3::Z) * self.radius } else { p }
+        p.distance(a.lerp(b, t))
     }
+}
+
+/// The side of the shoulders on which hair falls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShoulderSide {
+    /// Over the chest.
+    Front,
+    /// Over the back.
+    Back,
 }
 
 /// Head and shoulders.
@@ -29,6 +50,8 @@ pub struct Obstacles {
     skull_radii: Vec3,
     head: HeadSurface,
     body: Vec<Capsule>,
+    /// Unit vector in which the chest faces.
+    forward: Vec3,
 }
 
 impl Obstacles {
@@ -55,7 +78,9 @@ impl Obstacles {
             capsule(neck.lerp(right, 0.35), chest.lerp(right, 0.25), 0.27 * span),
         ];
         let head = HeadSurface::new(body, skull_centre, over_ears);
-        Obstacles { skull_centre, skull_radii, head, body: body_capsules }
+        let up = to_head.transform_vector3(Vec3::Y);
+        let forward = (left - right).cross(up).normalize_or(Vec3::Z);
+        Obstacles { skull_centre, skull_radii, head, body: body_capsules, forward }
     }
 
     /// Returns the middle of the skull.
@@ -78,8 +103,12 @@ impl Obstacles {
         self.head.pushed_out(p, height)
     }
 
-    /// Returns a point moved out of neck and shoulders, and to at least this height over the head, metres.
-    pub fn pushed_out(&self, p: Vec3, height: f32) -> Vec3 {
-        self.body.iter().fold(self.above_head(p, height), |p, capsule| capsule.pushed_out(p))
+    /// Returns a point moved to a side of neck and shoulders, and to at least this height over the head, metres.
+    pub fn pushed_out(&self, p: Vec3, height: f32, side: ShoulderSide) -> Vec3 {
+        let towards = match side {
+            ShoulderSide::Front => self.forward,
+            ShoulderSide::Back => -self.forward,
+        };
+        self.body.iter().fold(self.above_head(p, height), |p, capsule| capsule.pushed_out(p, towards))
     }
 }

@@ -91,7 +91,7 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
             lift: 0.15,
             grip: 0.5,
             weight: 0.7,
-            gather: 0.12,
+            gather: 0.06,
             volume_m: 0.008,
             clumping: 0.55,
             frizz: 0.06,
@@ -105,7 +105,7 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
             lift: 0.12,
             grip: 0.5,
             weight: 0.7,
-            gather: 0.22,
+            gather: 0.08,
             volume_m: 0.007,
             curl_m: 0.003,
             turns_per_m: 5.0,
@@ -197,7 +197,9 @@ pub fn beard_density(place: Vec3) -> f32 {
     let upper = if x > 0.055 { 0.005 } else { -0.038 - 0.25 * (0.055 - x).max(0.0) };
     let lower = -0.128 - 0.35 * (z + 0.02).min(0.0).abs().min(0.05) + 0.9 * (x - 0.03).max(0.0);
     let lips = (x / 0.027).powi(2) + ((y + 0.068) / 0.0115).powi(2);
-    let is_skin = z > -0.075 && lips > 1.0 && !(x < 0.02 && y > -0.052);
-    let edge = ((upper - y) / 0.008).min((y - lower) / 0.012).clamp(0.0, 1.0);
-    if is_skin { edge } else { 0.0 }
+    let is_skin = z > -0.078 && lips > 1.0 && !(x < 0.02 && y > -0.052);
+    let edge = ((upper - y) / 0.008).min((y - lower) / 0.025).clamp(0.0, 1.0);
+    // It thins out towards the sides of the neck
+    let front = ((z + 0.078) / 0.02 - ((-0.1 - y) / 0.02).clamp(0.0, 1.0)).clamp(0.0, 1.0);
+    if is_skin { edge * front } else { 0.0 }
 }

@@ -80,7 +80,9 @@ fn check_layers(field: &str, material: &Material, check: &mut Check) {
 fn check_textures(field: &str, material: &Material, check: &mut Check) {
     let name = |part: &str| format!("{field}.{part}");
     for (slot, texture) in material.textures.iter() {
-        check.asset_path(&name(slot.field()), texture.path());
+        if let Some(path) = texture.path() {
+            check.asset_path(&name(slot.field()), path);
+        }
     }
     check.number(&name("normal_scale"), material.textures.normal_scale, Allowed::between(-16.0, 16.0, ""));
     for slot in TextureSlot::ALL {

@@ -147,9 +147,13 @@ fn texture_row(ui: &mut Ui, slot: TextureSlot, texture: &mut Option<TextureRef>)
         TextureSlot::Normal => ("Normal map", "A picture of fine relief: it tilts the surface for the light"),
     };
     let mut choose = false;
-    row(ui, label, tip, |ui| match texture.as_ref().map(TextureRef::to_string) {
-        Some(path) => {
-            let name = path.rsplit('/').next().unwrap_or(&path).to_owned();
+    row(ui, label, tip, |ui| match texture {
+        Some(reference) => {
+            let path = reference.to_string();
+            let name = match reference {
+                TextureRef::Builtin(texture) => texture.label(),
+                TextureRef::File(_) | TextureRef::Embedded { .. } => path.rsplit('/').next().unwrap_or(&path),
+            };
             choose = ui.button(name).on_hover_text(format!("{path}. Click to choose another.")).clicked();
             if ui.button("Remove").on_hover_text("Take the texture away").clicked() {
                 *texture = None;
