@@ -42,11 +42,15 @@ const fn oily(middle: [f32; 3], radius: [f32; 3], strength: f32) -> Region {
 /// How many times the relief repeats along U and V of the base mesh, so that it has its size on the face.
 const REPEATS: f32 = 40.0;
 
+/// Factor of the relief's slopes on skin, whose roughness holds the rest of them.
+const RELIEF_SCALE: f32 = 0.4;
+
 /// Returns the textures of a figure's skin.
 pub fn skin_textures() -> MaterialTextures {
     let mut textures = MaterialTextures {
         metallic_roughness: Some(TextureRef::Builtin(BuiltinTexture::SkinGloss)),
         normal: Some(TextureRef::Builtin(BuiltinTexture::SkinRelief)),
+        normal_scale: RELIEF_SCALE,
         ..MaterialTextures::default()
     };
     textures.placements[TextureSlot::Normal as usize].scale = [REPEATS; 2];

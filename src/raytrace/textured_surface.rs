@@ -35,7 +35,8 @@ impl RenderScene {
 
     /// Replaces the shading normal by that of the normal map, bent so that the mirror direction of the ray stays above
     /// the surface. The diffuse lobe has no such direction: it keeps the normal of the map, or relief that leans away
-    /// from the viewer would be lit as if it faced him.
+    /// from the viewer would be lit as if it faced him. Light that comes out of a soft surface was spread under it, farther
+    /// than relief is wide: it has the normal without the map.
     fn with_normal_map(&self, surface: SurfaceInteraction, direction: Vec3, hit: &Hit) -> SurfaceInteraction {
         let material = self.material_of(&surface);
         let (Some(map), Primitive::Triangle(triangle)) = (self.texture(material, TextureSlot::Normal), &hit.primitive)
@@ -52,7 +53,8 @@ impl RenderScene {
         let side = if direction.dot(surface.geometric_normal) > 0.0 { -1.0 } else { 1.0 };
         let view_dir = -direction.normalize_or_zero();
         let normal = bend_above(relief_normal * side, surface.geometric_normal * side, view_dir) * side;
-        SurfaceInteraction { normal, relief_normal, ..surface }
+        let is_soft = self.plan.subsurface && material.extinction_per_m().is_some();
+        SurfaceInteraction { normal, relief_normal: if is_soft { surface.normal } else { relief_normal }, ..surface }
     }
 
     /// Returns the material of a surface.
