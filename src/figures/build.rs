@@ -29,7 +29,7 @@ const REGIONS: [(u8, &str); 3] = [(9, "lips"), (10, "fingernails"), (11, "inside
 /// Skin reaches this far below the edge of a garment, metres.
 const OVERLAP_M: f32 = 0.03;
 /// Distance of a collar from the cage of the skin, metres.
-const COLLAR_M: f32 = 0.002;
+const COLLAR_M: f32 = 0.007;
 /// Heights of the cut of a bust, as a part of the way from hips to neck.
 const BUST_CUT: f32 = 0.42;
 /// Distance of the pupils in front of the origin in the rest pose, as a part of the height.
@@ -213,7 +213,7 @@ fn cage(data: &BodyData, figure: &Figure, body: &PosedBody) -> QuadMesh {
             |v: u16| if skirt && garment == Garment::Bottom { 0.0 } else { edges.looseness(v, garment, figure.top) };
         patch.move_outwards(&loose);
         if garment == Garment::Top {
-            patch.lay_on(&near_neck, COLLAR_M, &|v| edges.nearness_to_neckline(v, figure.top));
+            patch.lay_on(&near_neck, COLLAR_M, &|v| edges.nearness_to_neckline(v, figure.top).powi(8));
         }
         add_part(&mut mesh, &patch, part);
     }

@@ -26,8 +26,8 @@ const FACE_M: f32 = 0.2;
 /// Regions of the face that shine, as factors of the roughness of skin: forehead, nose and chin have the most oil, and the
 /// edges of the lids are wet.
 const OILY: [Region; 7] = [
-    oily([0.0, 0.05, 0.03], [0.036, 0.024, 0.04], 0.3),
-    oily([0.0, -0.018, 0.04], [0.009, 0.026, 0.03], 0.3),
+    oily([0.0, 0.05, 0.03], [0.036, 0.024, 0.04], 0.22),
+    oily([0.0, -0.018, 0.04], [0.009, 0.026, 0.03], 0.25),
     oily([0.0, -0.04, 0.045], [0.013, 0.01, 0.02], 0.22),
     oily([0.0, -0.098, 0.03], [0.018, 0.012, 0.02], 0.2),
     oily([0.032, -0.022, 0.015], [0.02, 0.008, 0.02], 0.14),
@@ -43,7 +43,7 @@ const fn oily(middle: [f32; 3], radius: [f32; 3], strength: f32) -> Region {
 const REPEATS: f32 = 40.0;
 
 /// Factor of the relief's slopes on skin, whose roughness holds the rest of them.
-const RELIEF_SCALE: f32 = 0.4;
+const RELIEF_SCALE: f32 = 0.25;
 
 /// Returns the textures of a figure's skin.
 pub fn skin_textures() -> MaterialTextures {
@@ -162,7 +162,7 @@ mod tests {
             f32::from(gloss.rgb[y * GLOSS_SIZE + x][1]) / 255.0
         };
         let [forehead, cheek] = [Vec3::new(0.0, 0.05, 0.03), Vec3::new(0.05, -0.05, 0.0)].map(factor);
-        assert!(forehead < 0.8 && cheek > 0.9, "{forehead} {cheek}");
+        assert!(forehead < 0.85 && cheek > 0.92, "{forehead} {cheek}");
         let hand = data.positions[usize::from(data.bones[data.bone("finger3-1.L").unwrap()].head)] - data.eyes_middle();
         assert!(factor(hand) > 0.99);
     }
