@@ -1,7 +1,7 @@
 //! The materials of a figure's parts, and skin tones.
 
 use super::skin_textures::skin_textures;
-use crate::scene::{Figure, Material, MaterialPreset, MaterialTextures};
+use crate::scene::{Figure, Material, MaterialPreset, MaterialTextures, Object, Shape};
 
 /// A skin tone: a class of the individual typology angle ITA = atan((L* - 50) / b*) (Chardon et al. 1991, "Skin colour
 /// typology and suntanning pathways"), with the reflectance of its middle. Redness a* is a typical value.
@@ -96,9 +96,40 @@ pub fn default_parts(skin: &Material, figure: &Figure) -> Vec<(String, Material)
     parts.into_iter().map(|(part, material)| (part.to_owned(), material)).collect()
 }
 
+/// Parts whose materials follow from the skin's.
+const PARTS_OF_SKIN: [&str; 2] = ["lips", "nails"];
+
+/// Gives a figure skin of a tone, with lips and nails that suit it.
+pub fn give_skin(object: &mut Object, tone: &SkinTone) {
+    object.material = tone.material();
+    let Shape::Figure(figure) = &object.shape else { return };
+    for (part, material) in default_parts(&object.material, figure) {
+        let own = object.part_materials.iter_mut().find(|(known, _)| *known == part);
+        if let (Some((_, own)), true) = (own, PARTS_OF_SKIN.contains(&part.as_str())) {
+            *own = material;
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lips_and_nails_follow_the_tone_of_the_skin() {
+        let figure = Figure::default();
+        let [light, dark] = [SKIN_TONES[0], SKIN_TONES[5]];
+        let shape = Shape::Figure(Box::new(figure));
+        let parts = default_parts(&light.material(), &figure);
+        let object = Object::new("Woman", shape);
+        let mut object = Object { material: light.material(), part_materials: parts.clone(), ..object };
+        give_skin(&mut object, &dark);
+        assert_eq!(object.material, dark.material());
+        for ((part, before), (_, after)) in parts.iter().zip(&object.part_materials) {
+            assert_eq!(before != after, PARTS_OF_SKIN.contains(&part.as_str()), "{part}");
+            assert!(before == after || after.base_color[0] < before.base_color[0]);
+        }
+    }
 
     #[test]
     fn skin_tones_darken_in_order_and_have_the_luminance_of_their_lightness() {

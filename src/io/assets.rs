@@ -146,7 +146,17 @@ fn consequence(key: &AssetKey) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Material, MaterialTextures, Room};
+    use crate::scene::{BuiltinTexture, Material, MaterialTextures, Room};
+
+    #[test]
+    fn builtin_textures_need_no_folder() {
+        for texture in BuiltinTexture::ALL {
+            let mut assets = Assets::default();
+            let reference = TextureRef::parse(texture.name());
+            let warnings = load_assets(&room_with(reference.clone()), None, &mut assets);
+            assert!(warnings.is_empty() && assets.texture(&reference).is_some(), "{warnings:?}");
+        }
+    }
 
     fn room_with(texture: TextureRef) -> Scene {
         let floor = Material { textures: MaterialTextures::with_base_color(texture), ..Material::default() };

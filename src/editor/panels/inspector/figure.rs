@@ -114,7 +114,7 @@ fn person_rows(ui: &mut Ui, object: &mut Object) {
             let color = tone.base_color();
             let square = swatch(ui, shown(color), vec2(20.0, 20.0)).interact(Sense::click()).on_hover_text(tone.label);
             if square.clicked() {
-                object.material = tone.material();
+                figures::give_skin(object, &tone);
             }
         }
     });
