@@ -212,6 +212,7 @@ fn cage(data: &BodyData, figure: &Figure, body: &PosedBody) -> QuadMesh {
         let loose =
             |v: u16| if skirt && garment == Garment::Bottom { 0.0 } else { edges.looseness(v, garment, figure.top) };
         patch.move_outwards(&loose);
+        // Only the edge of a collar lies close: further out the garment hangs from the shoulders
         if garment == Garment::Top {
             patch.lay_on(&near_neck, COLLAR_M, &|v| edges.nearness_to_neckline(v, figure.top).powi(8));
         }

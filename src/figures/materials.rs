@@ -104,9 +104,12 @@ pub fn give_skin(object: &mut Object, tone: &SkinTone) {
     object.material = tone.material();
     let Shape::Figure(figure) = &object.shape else { return };
     for (part, material) in default_parts(&object.material, figure) {
-        let own = object.part_materials.iter_mut().find(|(known, _)| *known == part);
-        if let (Some((_, own)), true) = (own, PARTS_OF_SKIN.contains(&part.as_str())) {
-            *own = material;
+        if PARTS_OF_SKIN.contains(&part.as_str()) {
+            object
+                .part_materials
+                .iter_mut()
+                .filter(|(known, _)| *known == part)
+                .for_each(|own| own.1 = material.clone());
         }
     }
 }

@@ -73,8 +73,8 @@ impl Patch {
         }
     }
 
-    /// Moves vertices towards a height over a surface, metres, by a weight of 0 to 1. The surface is flat round each of
-    /// its vertices.
+    /// Moves vertices to a height over a surface, metres: by a weight of 0 (not at all) to 1 (all the way). The surface is
+    /// taken as flat round each of its vertices.
     pub fn lay_on(&mut self, surface: &Patch, height_m: f32, weight: &dyn Fn(u16) -> f32) {
         let normals = surface.normals();
         for (position, &source) in self.positions.iter_mut().zip(&self.sources) {
