@@ -127,16 +127,72 @@ fn the_longitudinal_density_is_reciprocal_and_the_azimuthal_one_integrates_to_on
 #[test]
 fn reflection_leaves_a_fibre_like_a_mirror_on_its_surface() {
     // The mean azimuth of R at an offset is that of a mirror with the normal of the cylinder there.
-    let fibre = fibre(0.9, (0.3, 0.1));
     for h in [-0.7_f32, -0.2, 0.5] {
-        let wo = Vec3::X;
-        // The tangent is Z, the point lies at -h along Z x X = Y.
-        let bsdf = FibreBsdf::new(&fibre, Vec3::Z, h, wo);
+        let (sin_theta, wo) = (0.0, Vec3::X);
+        let (_, sin_gamma_t) = attenuations(Vec3::ONE, sin_theta, 1.0, h);
+        let azimuth = azimuths(h, sin_gamma_t)[0];
+        // The tangent is Z, the azimuth counts from X towards Y, the point lies at -h along Y.
         let normal = Vec3::new((1.0 - h * h).sqrt(), -h, 0.0);
         let mirrored = 2.0 * wo.dot(normal) * normal - wo;
-        let azimuth = bsdf.azimuths[0];
-        let mean = bsdf.facing * azimuth.cos() + bsdf.across * azimuth.sin();
+        let mean = Vec3::new(azimuth.cos(), azimuth.sin(), 0.0);
         assert!((mean - mirrored).length() < 1e-5, "{h}: {mean} for {mirrored}");
+    }
+}
+
+/// Returns mean and variance of a value over the offsets at which rays meet a fibre.
+fn over_offsets(value: impl Fn(f32) -> f32) -> (f64, f64) {
+    const STEPS: u32 = 1024;
+    let values = (0..STEPS).map(|i| f64::from(value(2.0 * (i as f32 + 0.5) / STEPS as f32 - 1.0)));
+    let (sum, squares) = values.fold((0.0, 0.0), |(sum, squares), value| (sum + value, squares + value * value));
+    let mean = sum / f64::from(STEPS);
+    (mean, squares / f64::from(STEPS) - mean * mean)
+}
+
+/// Returns the value that a fibre along Z has at one offset (Chiang et al. 2016).
+fn at_offset(fibre: &TracedFibre, h: f32, wo: Vec3, direction: Vec3) -> Vec3 {
+    let bsdf = FibreBsdf::new(fibre, Vec3::Z, h, wo);
+    let (attenuation, sin_gamma_t) = attenuations(fibre.absorption, wo.z, safe_sqrt(1.0 - wo.z * wo.z), h);
+    let azimuths = azimuths(h, sin_gamma_t);
+    let azimuth = direction.dot(bsdf.across).atan2(direction.dot(bsdf.facing));
+    let lobe = |lobe: usize| {
+        let (sin_o, cos_o) = bsdf.outgoing[lobe];
+        let along =
+            fibre.longitudinal[lobe].density(direction.z, safe_sqrt(1.0 - direction.z * direction.z), sin_o, cos_o);
+        let around = azimuths.get(lobe).map_or(1.0 / TAU, |&mean| fibre.azimuthal.density(azimuth - mean));
+        attenuation[lobe] * (along * around)
+    };
+    (0..LOBES).map(lobe).sum()
+}
+
+#[test]
+fn the_mean_over_the_width_is_that_of_all_offsets_with_a_twentieth_of_their_variance() {
+    let fibre = fibre(0.7, (0.3, 0.3));
+    let mut rng = TestRng::new(34);
+    let (mut ours, mut single) = (0.0, 0.0);
+    for _ in 0..100 {
+        let (wo, direction) = (outgoing(rng.range(-0.9, 0.9)), rng.direction());
+        let (expected, single_variance) = over_offsets(|h| at_offset(&fibre, h, wo, direction).x);
+        let (mean, variance) = over_offsets(|h| FibreBsdf::new(&fibre, Vec3::Z, h, wo).eval(direction).0.x);
+        assert!((mean - expected).abs() < 0.01 * expected + 1e-5, "{wo} {direction}: {mean} for {expected}");
+        (ours, single) = (ours + variance, single + single_variance);
+    }
+    assert!(ours < 0.05 * single, "variance {ours} for {single}");
+}
+
+#[test]
+fn black_fibres_reflect_as_a_smooth_cylinder_does() {
+    // N of R over all offsets of a smooth cylinder is cos(phi / 2) / 4 times the reflectance at the offset sin(phi / 2)
+    // (Marschner et al. 2003). Blue light leaves black fibres by R alone.
+    let fibre = fibre(1.0, (0.3, 0.05));
+    for phi in [0.3_f32, 1.2, 2.2] {
+        let half = 0.5 * phi;
+        let reflectance = fresnel::dielectric(half.cos(), IOR);
+        let (sin_o, cos_o) = FibreBsdf::new(&fibre, Vec3::Z, 0.0, Vec3::X).outgoing[0];
+        let along = fibre.longitudinal[0].density(0.0, 1.0, sin_o, cos_o);
+        let expected = f64::from(along * reflectance * half.cos() / 4.0);
+        let direction = Vec3::new(phi.cos(), phi.sin(), 0.0);
+        let (mean, _) = over_offsets(|h| FibreBsdf::new(&fibre, Vec3::Z, h, Vec3::X).eval(direction).0.z);
+        assert!((mean / expected - 1.0).abs() < 0.02, "{phi}: {mean} for {expected}");
     }
 }
 
