@@ -45,12 +45,20 @@ pub(super) const fn region(middle: [f32; 3], radius: [f32; 3], color: Vec3, stre
     Region { middle: Vec3::from_array(middle), radius: Vec3::from_array(radius), color, strength }
 }
 
+/// Squared distance, in radii, at which a region has no strength.
+const NEGLIGIBLE: f32 = 7.0;
+
 /// Returns the product of the factors of regions at a place on the left, metres from between the eyes.
 pub(super) fn factor_at(on_left: Vec3, regions: &[Region]) -> Vec3 {
     let mut factor = Vec3::ONE;
     for region in regions {
-        let distance = ((on_left - region.middle) / region.radius).length_squared();
-        if distance < 7.0 {
+        // Most places are far above or below
+        let offset = on_left - region.middle;
+        if offset.y.abs() > NEGLIGIBLE.sqrt() * region.radius.y {
+            continue;
+        }
+        let distance = (offset / region.radius).length_squared();
+        if distance < NEGLIGIBLE {
             factor *= Vec3::ONE.lerp(region.color, region.strength * (-distance).exp());
         }
     }

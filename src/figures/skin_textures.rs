@@ -7,6 +7,7 @@ use super::random::Random;
 use super::skin_colors::{Region, factor_at, region};
 use crate::scene::{BuiltinTexture, MaterialTextures, Texture, TextureRef, TextureSlot};
 use glam::{IVec2, Vec2, Vec3};
+use rayon::prelude::*;
 use std::sync::{Arc, LazyLock};
 
 /// Side of the gloss map, pixels: 1 mm a pixel on the face.
@@ -103,6 +104,7 @@ fn skin_gloss(data: &BodyData) -> Texture {
 fn skin_relief() -> Texture {
     let side = RELIEF_SIZE as i32;
     let heights: Vec<f32> = (0..side * side)
+        .into_par_iter()
         .map(|pixel| {
             relief_height(Vec2::new((pixel % side) as f32, (pixel / side) as f32) * CELLS as f32 / side as f32)
         })

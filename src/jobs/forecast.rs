@@ -104,6 +104,12 @@ impl Forecast {
         self.estimate_by(pixels, f64::from(spp), &|_| f64::from(spp))
     }
 
+    /// Returns the samples per pixel that a render of `pixels` pixels takes in so many seconds, at most; 0 where one of
+    /// every pixel takes longer.
+    pub fn samples_in(&self, pixels: u64, seconds: f64) -> u32 {
+        ((seconds - self.build_s) * self.samples_s / pixels.max(1) as f64).max(0.0) as u32
+    }
+
     /// Returns time and noise of a render of `pixels` pixels that ends when each tile has no more noise than `target`, or
     /// so many samples.
     pub fn estimate_by_noise(&self, pixels: u64, target: NoiseTarget, most_spp: u32) -> Estimate {
@@ -161,6 +167,8 @@ mod tests {
         let four = forecast.estimate(10_000, 64);
         assert!((four.seconds - 8.5).abs() < 1e-9);
         assert!((error(four) / error(same) - 0.5).abs() < 1e-9);
+        // 3 s less the half second of preparation are 20 samples of every pixel
+        assert_eq!([0.1, 0.6, 3.0].map(|seconds| forecast.samples_in(10_000, seconds)), [0, 0, 20]);
         let faster = forecast.clone().with_noise_at(4, 0.5).estimate(10_000, 64);
         assert!(faster.noise_stops < four.noise_stops, "samples that converged faster at first do so later");
         assert_eq!(forecast.with_noise_at(4, f32::INFINITY).convergence, CONVERGENCE[0]);

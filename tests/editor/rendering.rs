@@ -98,6 +98,12 @@ fn the_quality_chart_forecasts_time_and_noise_and_uses_measured_renders() {
     let settings = window.state().rendering().settings;
     assert_eq!(settings.quality, Quality::Good);
     assert!(window.query_by_label_contains("Noise against time; chosen: ").is_some());
+    // A time chooses the samples that fit into it.
+    click(&mut window, "Best picture in 10 s");
+    let settings = window.state().rendering().settings;
+    let fitting = forecast.estimate(60 * 40, settings.samples).seconds;
+    assert_eq!((settings.quality, settings.method), (Quality::Custom, catchlight::raytrace::Method::Path));
+    assert!(fitting <= 10.0 && fitting > 5.0, "{fitting} s for {} samples", settings.samples);
     // What a render took counts from then on.
     window.state_mut().rendering_mut().settings.samples = 32;
     window.state_mut().rendering_mut().settings.quality = Quality::Custom;

@@ -1,16 +1,20 @@
-//! The chart of noise against render time, with the draft, good, final and current settings.
+//! The chart of noise against render time, with the draft, good, final and current settings, and the best pictures in
+//! a time.
 
-use crate::editor::picture::render_settings::{Quality, RenderSettings};
+use crate::editor::picture::render_settings::{MOST_SAMPLES, Quality, RenderSettings};
 use crate::editor::ui::theme;
 use crate::editor::ui::units::duration_text;
-use crate::jobs::{Estimate, Forecaster};
-use crate::raytrace::NoiseTarget;
+use crate::editor::ui::widgets::{named, row};
+use crate::jobs::{Estimate, Forecast, Forecaster};
+use crate::raytrace::{Method, NoiseTarget};
 use crate::scene::Camera;
-use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, vec2};
+use eframe::egui::{Align2, Button, Color32, FontId, Painter, Pos2, Rect, RichText, Sense, Stroke, Ui, vec2};
 use std::time::Duration;
 
 /// Height of the chart, points.
 const HEIGHT: f32 = 110.0;
+/// Times in which a picture may be wanted, seconds.
+const BUDGETS: [(f64, &str); 4] = [(1.0, "1 s"), (10.0, "10 s"), (60.0, "1 min"), (600.0, "10 min")];
 /// Limits of noise of the chart's line, stops.
 const LINE: [f32; 11] = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03, 0.015, 0.008, 0.004, 0.002, 0.001];
 
@@ -40,6 +44,7 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
             settings.quality = quality;
         }
     }
+    budget_row(ui, settings, forecast, pixels);
     let chosen = of(settings.quality);
     if settings.quality == Quality::Custom {
         let text = format!("{} samples: {}", settings.samples, estimate_text(chosen));
@@ -47,7 +52,7 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
     }
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     let label = format!("Noise against time; chosen: {}", estimate_text(chosen));
-    crate::editor::ui::widgets::named(ui, &response, &label);
+    named(ui, &response, &label);
     response.on_hover_text(
         "Line: estimate. Rings: draft, good, final. Dot: your choice. Crosses: renders as they came out.",
     );
@@ -56,6 +61,25 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
     let measured: Vec<Estimate> =
         forecaster.measured().iter().map(|estimate| shown.shown_estimate(*estimate)).collect();
     QualityChart::around(rect, &line).paint(&ui.painter_at(rect), &line, &marks, chosen, &measured);
+}
+
+/// Draws the times in which a picture may be wanted. Each selects the samples that fit into it: of all methods, light
+/// paths have the smallest error for their time, with the denoiser where it is on.
+fn budget_row(ui: &mut Ui, settings: &mut RenderSettings, forecast: &Forecast, pixels: u64) {
+    row(ui, "Best in", "The most light paths through each pixel that fit into a time", |ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for (seconds, label) in BUDGETS {
+            let samples = forecast.samples_in(pixels, seconds).min(MOST_SAMPLES);
+            let is_chosen = settings.quality == Quality::Custom && settings.samples == samples;
+            let button = ui.add_enabled(samples > 0, Button::selectable(is_chosen, label));
+            named(ui, &button, &format!("Best picture in {label}"));
+            let estimate = settings.shown_estimate(forecast.estimate(pixels, samples));
+            let button = button.on_hover_text(format!("{samples} samples: {}", estimate_text(estimate)));
+            if button.on_disabled_hover_text("One light path through each pixel takes longer").clicked() {
+                (settings.quality, settings.samples, settings.method) = (Quality::Custom, samples, Method::Path);
+            }
+        }
+    });
 }
 
 /// Formats an estimate: `6 s, 0.10 stops`.

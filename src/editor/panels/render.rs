@@ -4,7 +4,7 @@ use crate::editor::commands::choices::CentralView;
 use crate::editor::commands::command::Command;
 use crate::editor::document::studio_document::Document;
 use crate::editor::panels::quality;
-use crate::editor::picture::render_settings::{PictureSize, Quality, RenderSettings, method_label};
+use crate::editor::picture::render_settings::{MOST_SAMPLES, PictureSize, Quality, RenderSettings, method_label};
 use crate::editor::picture::rendering::{OUT_OF_DATE, Rendering};
 use crate::editor::ui::theme;
 use crate::editor::ui::units::duration_text;
@@ -96,7 +96,7 @@ fn quality_rows(ui: &mut Ui, settings: &mut RenderSettings) {
     if settings.quality == Quality::Custom {
         row(ui, "Samples", "Light paths through each pixel", |ui| {
             let mut samples = settings.samples as f32;
-            NumberField::new(1.0, 1.0, 65_536.0, 0, "").ui(ui, &mut samples);
+            NumberField::new(1.0, 1.0, MOST_SAMPLES as f32, 0, "").ui(ui, &mut samples);
             settings.samples = samples as u32;
         });
     }

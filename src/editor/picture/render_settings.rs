@@ -8,6 +8,9 @@ use crate::scene::Camera;
 /// clear glass.
 const DENOISED_NOISE: f32 = 1.0 / 3.0;
 
+/// The largest number of samples per pixel that can be chosen.
+pub const MOST_SAMPLES: u32 = 65_536;
+
 /// The quality of a render: the noise that its picture may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quality {

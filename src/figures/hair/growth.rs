@@ -32,6 +32,8 @@ const PARTING_M: f32 = 0.008;
 const PARTING_DENSITY: f32 = 5.0;
 /// Scatter of the place from which a strand beside a parting takes its way, metres.
 const CROSSING_M: f32 = 0.006;
+/// Scatter of the level at which hair is cut, metres.
+const CUT_SCATTER_M: f32 = 0.004;
 /// Segments of a guide.
 const STEPS: usize = 24;
 /// Longest step in which a guide grows, metres: longer ones would leave the curve of the head.
@@ -286,5 +288,15 @@ fn follow(root: &Root, guides: &[Guide], field: &CombField, mut random: Random) 
         let p = if k == 0 { p } else { aside(field.obstacles.above_head(aside(p), CLEARANCE_M)) };
         points.push((p, style.radius_m * (1.0 - 0.7 * along * along)));
     }
+    cut(&mut points, field.down, style.cut_m + CUT_SCATTER_M * random.bell());
     points
+}
+
+/// Cuts a strand where it falls to a level, metres from between the eyes.
+fn cut(points: &mut Vec<(Vec3, f32)>, down: Vec3, level_m: f32) {
+    let Some(end) = points.iter().position(|(p, _)| p.dot(down) > level_m).filter(|&end| end > 0) else { return };
+    let [(a, radius_a), (b, radius_b)] = [points[end - 1], points[end]];
+    let t = (level_m - a.dot(down)) / (b - a).dot(down);
+    points.truncate(end);
+    points.push((a.lerp(b, t), radius_a + (radius_b - radius_a) * t));
 }

@@ -95,6 +95,20 @@ mod tests {
     }
 
     #[test]
+    fn a_bob_is_cut_at_one_level() {
+        let figure = Figure { hair: HairStyle::Bob, ..READY[0].figure() };
+        let strands = build(&figure).fine.strands.with_parts(|part| part == "hair");
+        let to_head = head_frame(&figure).inverse();
+        let ends: Vec<f32> = (0..strands.len())
+            .map(|index| strands.strand(index).iter().map(|p| to_head.transform_point3(p.position).y))
+            .map(|heights| heights.fold(f32::INFINITY, f32::min))
+            .collect();
+        assert!(ends.iter().all(|&end| end > -0.15), "one ends at {:?}", ends.iter().copied().reduce(f32::min));
+        let at_level = ends.iter().filter(|end| (-0.15..-0.12).contains(*end)).count();
+        assert!(at_level * 5 > strands.len() * 3, "{at_level} of {} reach the level", strands.len());
+    }
+
+    #[test]
     fn hair_with_a_parting_falls_beside_the_face() {
         for style in [HairStyle::Bob, HairStyle::Long] {
             let figure = Figure { hair: style, ..READY[0].figure() };

@@ -26,6 +26,8 @@ pub struct Style {
     pub radius_m: f32,
     /// Lengths on top of the head and at the sides, metres.
     pub length_m: [f32; 2],
+    /// Level at which falling hair is cut, metres under the eyes; infinite where it ends by its length.
+    pub cut_m: f32,
     /// Direction of the comb.
     pub comb: Comb,
     /// Part of the normal in the first direction: 0 lies flat, 1 stands up.
@@ -52,6 +54,7 @@ const SHORT: Style = Style {
     strands: 30_000,
     radius_m: 65e-6,
     length_m: [0.05, 0.018],
+    cut_m: f32::INFINITY,
     comb: Comb::FromWhorl,
     lift: 0.55,
     grip: 0.22,
@@ -86,7 +89,8 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
         HairStyle::Bob => Style {
             strands: 38_000,
             radius_m: 75e-6,
-            length_m: [0.24, 0.15],
+            length_m: [0.28, 0.19],
+            cut_m: 0.135,
             comb: Comb::FromParting(0.025),
             lift: 0.15,
             grip: 0.5,
@@ -101,6 +105,7 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
             strands: 38_000,
             radius_m: 80e-6,
             length_m: [0.44, 0.38],
+            cut_m: f32::INFINITY,
             comb: Comb::FromParting(0.02),
             lift: 0.12,
             grip: 0.5,
@@ -128,6 +133,7 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
             strands: 30_000,
             radius_m: 75e-6,
             length_m: [0.13, 0.11],
+            cut_m: f32::INFINITY,
             comb: Comb::Out,
             lift: 0.7,
             grip: 0.22,

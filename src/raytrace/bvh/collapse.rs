@@ -137,10 +137,13 @@ impl Splits {
                 *cover
             } else if node.is_leaf() {
                 SubtreeCover::leaf(area, node.prim_count)
-            } else {
+            } else if let [.., left, right] = finished.as_slice() {
                 // Both children are finished, the right one last.
-                let [right, left] = [(); 2].map(|()| finished.pop().unwrap_or(SubtreeCover::EMPTY));
-                SubtreeCover::parent(area, &left, &right, max_leaf)
+                let cover = SubtreeCover::parent(area, left, right, max_leaf);
+                finished.truncate(finished.len() - 2);
+                cover
+            } else {
+                SubtreeCover::EMPTY
             };
             self.0[index].store(u64::from_le_bytes(cover.split), Ordering::Relaxed);
             finished.push(cover);
