@@ -77,6 +77,16 @@ impl TileJob<'_> {
         if self.control.is_cancelled() {
             return false;
         }
+        tile.blocks.begin_pass();
+        let mut bands = tile.bands();
+        bands.par_iter_mut().with_max_len(1).for_each(|band| self.trace(band));
+        tile.set_bands(&bands);
+        tile.blocks.finish_pass(self.pass.samples);
+        true
+    }
+
+    /// Traces the samples of a band of a tile.
+    fn trace(&self, band: &mut FilmTile) {
         let Settings { method, max_depth, seed, .. } = *self.settings;
         let SamplePass { first_sample, samples } = self.pass;
         let view_axis = self.camera.forward();
@@ -86,24 +96,19 @@ impl TileJob<'_> {
             PixelSampler { tracer, camera: self.camera, method, limits }
         };
         let mut pixel_samplers: Vec<_> = self.scene.moments().iter().map(in_moment).collect();
-        tile.blocks.begin_pass();
-        for pixel in 0..tile.pixels() {
-            let (x, y) = tile.position(pixel);
+        for pixel in 0..band.pixels() {
+            let (x, y) = band.position(pixel);
             for index in first_sample..first_sample + samples {
                 let sample = SampleId { x, y, index, seed };
-                let mut gate = tile.sample_sink(pixel, sample, &self.scene.layer_times, view_axis);
+                let mut gate = band.sample_sink(pixel, sample, &self.scene.layer_times, view_axis);
                 let moment = self.scene.moment_of(&Sampler::of(sample));
                 pixel_samplers[moment].sample(sample, &mut gate);
                 let luminance = gate.sink.luminance * self.scene.exposure;
-                tile.blocks.add(pixel, luminance);
+                band.blocks.add(pixel, luminance);
             }
         }
-        tile.blocks.finish_pass(samples);
-        let rays = pixel_samplers.iter().map(|sampler| sampler.tracer.caster.rays).sum::<u64>();
-        let samples = tile.pixels() as u64 * u64::from(samples);
-        tile.rays += rays;
-        tile.traced_samples += samples;
-        self.control.count(rays, samples);
-        true
+        band.rays = pixel_samplers.iter().map(|sampler| sampler.tracer.caster.rays).sum();
+        band.traced_samples = band.pixels() as u64 * u64::from(samples);
+        self.control.count(band.rays, band.traced_samples);
     }
 }

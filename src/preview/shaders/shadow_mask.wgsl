@@ -88,7 +88,7 @@ fn to_face(v: vec3f, by_x: bool, by_y: bool, sign: f32) -> vec3f {
 }
 
 // Projects a shading point onto a shadow map, with the depth gradient of its plane.
-fn receiver(slot: u32, position: vec3f, geometric_normal: vec3f, dither: f32) -> Receiver {
+fn receiver(slot: u32, position: vec3f, geometric_normal: vec3f, is_fibre: bool, dither: f32) -> Receiver {
     let texel = shadows.slots[slot].field.x / f32(textureDimensions(shadow_maps).x);
     let to_light = shadows.slots[slot].position - position;
     let distance = select(length(to_light), 1.0, shadows.slots[slot].kind == 2u);
@@ -141,8 +141,9 @@ fn receiver(slot: u32, position: vec3f, geometric_normal: vec3f, dither: f32) ->
     r.inside = (parallel || local.z > 0.0) && all(r.at > vec2f(0.0)) && all(r.at < vec2f(resolution));
     // Choose the side of the map. The far side of solids gives tight contact shadows. The near side serves receivers
     // that face away from the emitter's centre, which the body itself occludes. Across the terminator the choice is
-    // dithered, and the blur turns it into a blend
-    let near_side = dither < saturate(1.0 - 6.0 * facing);
+    // dithered, and the blur turns it into a blend. Fibres take the near side: what occludes lashes and brows from behind
+    // is the whole head, whose far side they lie on
+    let near_side = is_fibre || dither < saturate(1.0 - 6.0 * facing);
     r.layer = i32(2u * layer + select(1u, 0u, near_side));
     r.resolution = resolution;
     return r;
@@ -169,7 +170,7 @@ fn blocker_at(r: Receiver, tap: vec2f, spread: vec2f) -> vec2f {
 // Returns the visibility through one slot: 1 lit, 0 in full shadow. `turn` rotates the taps, `dither` is uniform in
 // 0..1.
 fn slot_visibility(slot: u32, position: vec3f, geometric_normal: vec3f, is_fibre: bool, turn: vec2f, dither: f32) -> f32 {
-    var r = receiver(slot, position, geometric_normal, dither);
+    var r = receiver(slot, position, geometric_normal, is_fibre, dither);
     let parallel = shadows.slots[slot].kind == 2u;
     let near = shadows.slots[slot].near_m;
     // The gap in metres is near / receiver - near / blocker in perspective, and linear in a parallel view

@@ -11,6 +11,7 @@ use super::stored::stored_fields;
 use crate::photo::AovPicture;
 use crate::raytrace::sink::{FirstHit, FirstObject, SeenSurface};
 use glam::Vec3;
+use std::ops::Range;
 
 /// The AOVs of a tile's pixels.
 #[derive(Clone, Debug)]
@@ -70,6 +71,30 @@ impl AovTile {
         (self.albedo[pixel], self.normal[pixel]) = (albedo, normal);
         (self.seen_albedo[pixel], self.seen_normal[pixel]) = (albedo, normal);
         (self.depth_m[pixel], self.object_id[pixel]) = (picture.depth_m[at], picture.object_id[at]);
+    }
+
+    /// Returns a copy of some pixels.
+    pub fn range(&self, pixels: Range<usize>) -> Self {
+        let copy = |values: &[Vec3]| values[pixels.clone()].to_vec();
+        AovTile {
+            albedo: copy(&self.albedo),
+            normal: copy(&self.normal),
+            seen_albedo: copy(&self.seen_albedo),
+            seen_normal: copy(&self.seen_normal),
+            depth_m: self.depth_m[pixels.clone()].to_vec(),
+            object_id: self.object_id[pixels.clone()].to_vec(),
+        }
+    }
+
+    /// Replaces the pixels from `first` on by those of a copy.
+    pub fn set_range(&mut self, first: usize, range: &Self) {
+        let pixels = first..first + range.depth_m.len();
+        self.albedo[pixels.clone()].copy_from_slice(&range.albedo);
+        self.normal[pixels.clone()].copy_from_slice(&range.normal);
+        self.seen_albedo[pixels.clone()].copy_from_slice(&range.seen_albedo);
+        self.seen_normal[pixels.clone()].copy_from_slice(&range.seen_normal);
+        self.depth_m[pixels.clone()].copy_from_slice(&range.depth_m);
+        self.object_id[pixels].copy_from_slice(&range.object_id);
     }
 
     /// Returns true if both have the same number of pixels.

@@ -18,6 +18,7 @@
 use super::stored::stored_fields;
 use crate::photo::MIDDLE_GREY;
 use std::f64::consts::LN_2;
+use std::ops::Range;
 
 /// Mean picture value (8 stops below middle grey) under which a tile is too dark for a noise estimate.
 const DARK: f32 = MIDDLE_GREY / 256.0;
@@ -102,6 +103,19 @@ impl SampleBlocks {
     #[inline]
     pub fn add(&mut self, pixel: usize, luminance: f32) {
         self.sums[1][pixel] += luminance;
+    }
+
+    /// Returns a copy of some pixels.
+    pub fn range(&self, pixels: Range<usize>) -> Self {
+        let sums = [0, 1].map(|block| self.sums[block][pixels.clone()].to_vec());
+        SampleBlocks { sums, ..*self }
+    }
+
+    /// Replaces the pixels from `first` on by those of a copy.
+    pub fn set_range(&mut self, first: usize, range: &Self) {
+        for (sums, values) in self.sums.iter_mut().zip(&range.sums) {
+            sums[first..first + values.len()].copy_from_slice(values);
+        }
     }
 
     /// Counts a pass of `samples` samples of every pixel.

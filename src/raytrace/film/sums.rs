@@ -3,7 +3,7 @@
 use super::stored::Stored;
 use glam::Vec3;
 use std::io::{self, Read, Write};
-use std::ops::AddAssign;
+use std::ops::{AddAssign, Range};
 
 /// Sums of one tile; layer by layer, pixels in rows. The value is `Vec3` where all pixels have the same number of
 /// samples, and `Vec4` with its weight as w where each pixel counts its own.
@@ -44,6 +44,19 @@ impl<V: Copy + Default + AddAssign> LayerSums<V> {
     /// The layers in order, each with all its pixels.
     pub fn layers(&self) -> impl ExactSizeIterator<Item = &[V]> {
         self.sums.chunks_exact(self.pixels)
+    }
+
+    /// Returns a copy of some pixels.
+    pub fn range(&self, pixels: Range<usize>) -> Self {
+        let sums = self.layers().flat_map(|layer| &layer[pixels.clone()]).copied().collect();
+        LayerSums { pixels: pixels.len(), sums }
+    }
+
+    /// Replaces the pixels from `first` on by those of a copy.
+    pub fn set_range(&mut self, first: usize, range: &Self) {
+        for (layer, values) in self.sums.chunks_exact_mut(self.pixels).zip(range.layers()) {
+            layer[first..first + values.len()].copy_from_slice(values);
+        }
     }
 
     /// Sets everything to zero.
@@ -100,5 +113,16 @@ mod tests {
         sums.remap(&[Some(2), None]);
         assert_eq!(sums.layers().collect::<Vec<_>>(), [[20.0, 21.0], [0.0, 0.0]]);
         assert_eq!((sums.at(0, 1), sums.pixels()), (21.0, 2));
+    }
+
+    #[test]
+    fn a_range_of_pixels_is_copied_out_and_back() {
+        let mut sums = LayerSums::new(4, 2);
+        (0..2).for_each(|layer| (0..4).for_each(|pixel| sums.add(layer, pixel, (10 * layer + pixel) as f32)));
+        let mut middle = sums.range(1..3);
+        assert_eq!(middle.layers().collect::<Vec<_>>(), [[1.0, 2.0], [11.0, 12.0]]);
+        middle.add(1, 0, 0.5);
+        sums.set_range(1, &middle);
+        assert_eq!(sums.layers().collect::<Vec<_>>(), [[0.0, 1.0, 2.0, 3.0], [10.0, 11.5, 12.0, 13.0]]);
     }
 }

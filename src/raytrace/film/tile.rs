@@ -9,8 +9,11 @@ use crate::raytrace::sink::{FirstHit, RadianceSink, SeenSurface};
 use glam::Vec3;
 use std::io::{self, Read, Write};
 
-/// Edge length of a tile, pixels. Each tile is written by one thread, without locks.
+/// Edge length of a tile, pixels.
 pub const TILE: u32 = 32;
+
+/// Rows of a tile that a thread traces. When few tiles are left with too much noise, their bands keep all threads busy.
+const BAND: u32 = 4;
 
 /// The samples of a square of pixels.
 #[derive(Clone, Debug)]
@@ -79,6 +82,41 @@ impl FilmTile {
             return Err(invalid());
         }
         Ok(FilmTile { sums, blocks, nonfinite, aovs, ..*self })
+    }
+
+    /// Returns copies of its bands of [`BAND`] rows, from top to bottom, which count their own rays and samples. Threads add
+    /// samples to bands at the same time; [`FilmTile::set_bands`] puts them back.
+    pub fn bands(&self) -> Vec<FilmTile> {
+        let step = (BAND * self.width) as usize;
+        let band = |first: usize| {
+            let pixels = first..(first + step).min(self.pixels());
+            FilmTile {
+                y: self.y + first as u32 / self.width,
+                sums: self.sums.range(pixels.clone()),
+                blocks: self.blocks.range(pixels.clone()),
+                aovs: self.aovs.as_ref().map(|aovs| Box::new(aovs.range(pixels))),
+                nonfinite: NonFiniteReport::default(),
+                rays: 0,
+                traced_samples: 0,
+                ..*self
+            }
+        };
+        (0..self.pixels()).step_by(step).map(band).collect()
+    }
+
+    /// Replaces its pixels by those of its bands, and adds what they count.
+    pub fn set_bands(&mut self, bands: &[FilmTile]) {
+        for band in bands {
+            let first = ((band.y - self.y) * self.width) as usize;
+            self.sums.set_range(first, &band.sums);
+            self.blocks.set_range(first, &band.blocks);
+            if let Some((aovs, of_band)) = self.aovs.as_mut().zip(band.aovs.as_ref()) {
+                aovs.set_range(first, of_band);
+            }
+            self.nonfinite.merge(&band.nonfinite);
+            self.rays += band.rays;
+            self.traced_samples += band.traced_samples;
+        }
     }
 
     /// Number of pixels.
@@ -165,5 +203,39 @@ impl RadianceSink for PixelSink<'_> {
         if let Some(PixelAovs { tile, .. }) = &mut self.aovs {
             tile.add_seen(self.pixel, &surface());
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bands_hold_all_pixels_and_go_back_to_their_places() {
+        let (width, height) = (5, 10);
+        let mut tile = FilmTile::new((32, 64), (width, height), 2, true);
+        let expected = |x: u32, y: u32| Vec3::new(x as f32, y as f32, 1.0);
+        // The second time, samples are added to what the tile has
+        for pass in 1..=2 {
+            let mut bands = tile.bands();
+            let rows: Vec<(u32, usize)> = bands.iter().map(|band| (band.y, band.pixels())).collect();
+            assert_eq!(rows, [(64, 20), (68, 20), (72, 10)]);
+            for band in &mut bands {
+                for pixel in 0..band.pixels() {
+                    let (x, y) = band.position(pixel);
+                    band.sums.add(1, pixel, expected(x, y));
+                    band.blocks.add(pixel, y as f32);
+                }
+                (band.rays, band.traced_samples) = (7, band.pixels() as u64);
+            }
+            tile.set_bands(&bands);
+            tile.blocks.finish_pass(1);
+            assert_eq!((tile.rays, tile.traced_samples), (21 * pass, 50 * pass));
+        }
+        for pixel in 0..tile.pixels() {
+            let (x, y) = tile.position(pixel);
+            assert_eq!((tile.sums.at(0, pixel), tile.sums.at(1, pixel)), (Vec3::ZERO, 2.0 * expected(x, y)));
+        }
+        assert_eq!((tile.spp(), tile.mean()), (2, 68.5));
     }
 }
