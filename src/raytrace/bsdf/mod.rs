@@ -61,6 +61,10 @@ pub use surface::SurfaceBsdf;
 
 /// The BSDF at a shading point for one outgoing direction.
 #[derive(Clone, Copy, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "lives on the stack for one vertex; scenes without fibres are traced as fast as with a small variant"
+)]
 pub enum Bsdf<'a> {
     /// Of a surface.
     Surface(SurfaceBsdf<'a>),
