@@ -6,7 +6,7 @@ use egui_kittest::wgpu::WgpuTestRenderer;
 
 /// A renderer for a window, and the device that it draws on.
 fn renderer() -> (WgpuTestRenderer, wgpu::Device) {
-    let state = create_render_state(default_wgpu_setup(), RendererOptions::PREDICTABLE);
+    let state = create_render_state(gpu_setup(), RendererOptions::PREDICTABLE);
     let device = state.device.clone();
     (WgpuTestRenderer::from_render_state(state), device)
 }

@@ -183,10 +183,20 @@ struct SharedGpu {
     renderer_pool: RendererPool,
 }
 
+/// Returns the setup of devices in tests. It has no OpenGL: a window lists all adapters of its instance, and EGL contexts
+/// that are dropped on several threads at the same time are in each other's way.
+fn gpu_setup() -> WgpuSetup {
+    let mut setup = default_wgpu_setup();
+    if let WgpuSetup::CreateNew(new) = &mut setup {
+        new.instance_descriptor.backends.remove(eframe::wgpu::Backends::GL);
+    }
+    setup
+}
+
 /// Returns the device that tests share: compiling the pipelines takes as long as a short test.
 fn shared_gpu() -> &'static SharedGpu {
     static SHARED: LazyLock<SharedGpu> = LazyLock::new(|| {
-        let setup = default_wgpu_setup();
+        let setup = gpu_setup();
         // Nothing is presented: egui takes any instance
         let instance = pollster::block_on(setup.new_instance());
         let state = create_render_state(setup, RendererOptions::PREDICTABLE);
