@@ -292,7 +292,7 @@ fn follow(root: &Root, guides: &[Guide], field: &CombField, mut random: Random) 
     points
 }
 
-/// Cuts a strand where it falls to a level, metres from between the eyes.
+/// Ends a strand at the point where it falls below a level, metres under the eyes along `down`.
 fn cut(points: &mut Vec<(Vec3, f32)>, down: Vec3, level_m: f32) {
     let Some(end) = points.iter().position(|(p, _)| p.dot(down) > level_m).filter(|&end| end > 0) else { return };
     let [(a, radius_a), (b, radius_b)] = [points[end - 1], points[end]];

@@ -103,11 +103,11 @@ pub struct FibreBsdf<'a> {
     outgoing: [(f32, f32); LOBES],
     /// R, TT and TRT at each offset.
     peaks: [[AzimuthalPeak; OFFSETS]; LOBES - 1],
-    /// Attenuation of each lobe, all offsets together.
+    /// Attenuation of each lobe, summed over the offsets, by which lobes are sampled.
     attenuation: [Vec3; LOBES],
 }
 
-/// A lobe of the light that enters a fibre at one offset.
+/// The azimuthal lobe of R, TT or TRT for rays that meet a fibre at one offset.
 #[derive(Clone, Copy, Debug, Default)]
 struct AzimuthalPeak {
     /// Azimuth that the cylinder's surface would give.
@@ -172,6 +172,7 @@ impl<'a> FibreBsdf<'a> {
         (value, luminance(value) / self.total_luminance())
     }
 
+    /// Returns the luminance of the albedo.
     fn total_luminance(&self) -> f32 {
         luminance(self.attenuation.into_iter().sum())
     }
