@@ -105,10 +105,10 @@ fn invalid_rays_and_missing_files_are_errors_with_a_reason() {
 }
 
 #[test]
-fn scaling_reports_one_row_per_number_of_triangles_lights_and_pixels() {
+fn scaling_reports_one_row_per_number_of_triangles_lights_pixels_and_threads() {
     let folder = tempfile::tempdir().unwrap();
-    let few = ["--scaling", "--triangles", "2000,8000", "--lights", "1,9", "--sizes", "32x24,64x48", "--json"];
-    let rows = json(&chart(folder.path(), &few));
+    let few = "--scaling --triangles 2000,8000 --lights 1,9 --sizes 32x24,64x48 --threads 1,3 --json";
+    let rows = json(&chart(folder.path(), &few.split(' ').collect::<Vec<_>>()));
     let column = |varies: &str, key: &str| -> Vec<f64> {
         rows.iter().filter(|row| row["varies"] == varies).map(|row| row[key].as_f64().unwrap()).collect()
     };
@@ -116,6 +116,11 @@ fn scaling_reports_one_row_per_number_of_triangles_lights_and_pixels() {
     assert_eq!(column("pixels", "paths"), [768.0, 3072.0]);
     let triangles = column("triangles", "triangles");
     assert!(triangles[1] - triangles[0] > 5000.0, "{triangles:?}");
+    // Efficiency compares with the first number of threads
+    let (threads, efficiency, trace_s) =
+        (column("threads", "count"), column("threads", "efficiency"), column("threads", "trace_s"));
+    assert_eq!((threads, efficiency[0]), (vec![1.0, 3.0], 1.0));
+    assert!((efficiency[1] - trace_s[0] / (3.0 * trace_s[1])).abs() < 1e-9, "{efficiency:?} {trace_s:?}");
     assert!(rows.iter().all(|row| row["trace_s"].as_f64().unwrap() > 0.0 && row["prepare_s"].as_f64().unwrap() > 0.0));
 }
 

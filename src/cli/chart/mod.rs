@@ -52,7 +52,7 @@ pub struct Arguments {
     /// Measure only this method of --traversal; may be given several times.
     #[arg(long, value_parser = traversal::parse_method, requires = "traversal")]
     way: Vec<IntersectionMethod>,
-    /// Measure build time, trace time and memory against the number of triangles, lights and pixels.
+    /// Measure build time, trace time and memory against the number of triangles, lights, pixels and threads.
     #[arg(long, conflicts_with_all = ["traversal", "scenes"])]
     scaling: bool,
     /// Compare the noise that renders state with their scatter over 16 seeds, on the studios [default: all shipped

@@ -1,11 +1,13 @@
-//! `catchlight chart --scaling`: build time, trace time and memory against the number of triangles, lights and pixels.
+//! `catchlight chart --scaling`: build time, trace time and memory against the number of triangles, lights, pixels and
+//! threads.
 //!
 //! In theory the build time is linear in the number of triangles and a ray's time in its logarithm; the time of light
-//! sampling is linear in the number of lights if each is evaluated; that of a picture is linear in its pixels.
+//! sampling is linear in the number of lights if each is evaluated; that of a picture is linear in its pixels, and
+//! inverse to the number of threads while each has a core.
 
 use crate::cli::failure::Failure;
 use crate::cli::{input, light_crowd, terminal};
-use crate::io;
+use crate::io::{self, Loaded};
 use crate::jobs::render_all_passes;
 use crate::raytrace::{self, RenderControl, Settings};
 use crate::scene::{
@@ -28,20 +30,23 @@ pub struct ScalingRange {
     /// Numbers of lights of --scaling, around five figures.
     #[arg(long, value_delimiter = ',', value_name = "N,...", requires = "scaling", value_parser = clap::value_parser!(u32).range(1..=100_000), default_values_t = [1, 10, 100, 1000])]
     lights: Vec<u32>,
-    /// Picture sizes of --scaling.
+    /// Picture sizes of --scaling; the first one is that of the study of threads, too.
     #[arg(long, value_delimiter = ',', value_name = "WIDTHxHEIGHT,...", requires = "scaling", value_parser = input::parse_size, default_value = "640x480,1920x1080,3840x2160,7680x4320")]
     sizes: Vec<(u32, u32)>,
+    /// Numbers of threads of --scaling [default: 1, 2, 4 ... and the number of cores].
+    #[arg(long, value_delimiter = ',', value_name = "N,...", requires = "scaling", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    threads: Option<Vec<u32>>,
 }
 
 /// Picture size of the studies of triangles and lights.
 const SIZE: (u32, u32) = (320, 240);
-/// Samples per pixel of the studies of triangles and lights.
+/// Samples per pixel of the studies of triangles, lights and threads.
 const SPP: u32 = 4;
 
 /// One measurement.
 #[derive(Debug, Serialize)]
 struct ScalingRow {
-    /// Varied quantity: `triangles`, `lights` or `pixels`.
+    /// Varied quantity: `triangles`, `lights`, `pixels` or `threads`.
     varies: &'static str,
     /// Value of the varied quantity.
     count: u64,
@@ -55,6 +60,9 @@ struct ScalingRow {
     paths: u64,
     /// Growth of the process's resident memory by the build, MB; null where the system does not report it.
     memory_mb: Option<f64>,
+    /// Part of the trace's speedup that the threads would bring if each were as fast as with the first number of them;
+    /// null in the other studies.
+    efficiency: Option<f64>,
 }
 
 /// Measures and prints.
@@ -74,12 +82,43 @@ pub fn run(range: &ScalingRange, json: bool) -> Result<(), Failure> {
         let pixels = u64::from(width) * u64::from(height);
         rows.push(measure("pixels", pixels, &studio.scene, &studio.assets, (width, height), 1)?);
     }
+    let counts = range.threads.clone().unwrap_or_else(up_to_all_cores);
+    if let Some(size) = range.sizes.first() {
+        rows.extend(measure_threads(&counts, &studio, *size)?);
+    }
     if json {
         terminal::result(serde_json::to_string(&rows).context("can't write the results")?);
     } else {
         terminal::result(table(&rows).trim_end());
     }
     Ok(())
+}
+
+/// Returns the powers of two below the number of cores, and that number.
+fn up_to_all_cores() -> Vec<u32> {
+    let cores = std::thread::available_parallelism().map_or(1, |cores| u32::try_from(cores.get()).unwrap_or(1));
+    let powers = std::iter::successors(Some(1_u32), |threads| threads.checked_mul(2));
+    powers.take_while(|threads| *threads < cores).chain([cores]).collect()
+}
+
+/// Measures a studio with numbers of threads.
+fn measure_threads(counts: &[u32], studio: &Loaded, size: (u32, u32)) -> Result<Vec<ScalingRow>, Failure> {
+    let mut rows: Vec<ScalingRow> = Vec::new();
+    for &threads in counts {
+        let pool = input::thread_pool(threads as usize)?;
+        let mut row = pool.install(|| measure("threads", threads.into(), &studio.scene, &studio.assets, size, SPP))?;
+        let first = rows.first().unwrap_or(&row);
+        row.efficiency = Some(first.thread_seconds() / row.thread_seconds());
+        rows.push(row);
+    }
+    Ok(rows)
+}
+
+impl ScalingRow {
+    /// Returns the time of all threads together while they trace, in the study of threads.
+    fn thread_seconds(&self) -> f64 {
+        self.trace_s * self.count as f64
+    }
 }
 
 fn measure(
@@ -114,6 +153,7 @@ fn measure(
         mrays_s: control.rays() as f64 / trace_s.max(1e-9) / 1e6,
         paths: u64::from(width) * u64::from(height) * u64::from(spp),
         memory_mb,
+        efficiency: None,
     })
 }
 
@@ -170,18 +210,19 @@ fn bumpy_mesh(triangles: u64) -> Mesh {
 
 fn table(rows: &[ScalingRow]) -> String {
     let mut text =
-        "| varies | count | triangles | lights | prepare, s | trace, s | Mrays/s | us a path | memory, MB |\n\
-                    |---|---|---|---|---|---|---|---|---|\n"
+        "| varies | count | triangles | lights | prepare, s | trace, s | Mrays/s | us a path | memory, MB | efficiency |\n\
+                    |---|---|---|---|---|---|---|---|---|---|\n"
             .to_owned();
     for row in rows {
-        let ScalingRow { varies, count, triangles, lights, prepare_s, trace_s, mrays_s, paths, memory_mb } = row;
+        let ScalingRow { varies, count, triangles, lights, prepare_s, trace_s, mrays_s, paths, .. } = row;
         let path_us = trace_s / *paths as f64 * 1e6;
-        let memory = memory_mb.map_or("-".to_owned(), |mb| format!("{mb:.0}"));
+        let memory = row.memory_mb.map_or("-".to_owned(), |mb| format!("{mb:.0}"));
+        let efficiency = row.efficiency.map_or("-".to_owned(), |part| format!("{:.0} %", part * 100.0));
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
             "| {varies} | {count} | {triangles} | {lights} | {prepare_s:.3} | {trace_s:.3} | {mrays_s:.2} | {path_us:.2} \
-             | {memory} |"
+             | {memory} | {efficiency} |"
         );
     }
     text
