@@ -44,7 +44,8 @@ fn fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     }
     if CHANNEL == NORMAL {
         let normal = unpack_direction(packed.x);
-        value = select(0.5 + 0.5 * normal, normal, LINEAR);
+        // 0 is code 128 of 255: half of the range lies between two codes, and adapters round it either way
+        value = select((128.0 + 127.0 * normal) / 255.0, normal, LINEAR);
     }
     if CHANNEL == ROUGHNESS {
         value = vec3f(gloss.x);
