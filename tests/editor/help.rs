@@ -66,3 +66,18 @@ fn the_studio_can_be_used_during_the_tour() {
     click(&mut window, "Add Octa 120");
     assert_eq!((scene(&window).lights.len(), card(&window)), (lights + 1, Some(1)));
 }
+
+#[test]
+fn the_tour_leaves_a_render_free_and_goes_on_with_the_picture() {
+    let Some(mut window) = preset_window() else { return };
+    for (pages, after_render) in [(0, None), (4, Some(6))] {
+        run(&mut window, Command::StartTour);
+        for _ in 0..pages {
+            click(&mut window, "Next");
+        }
+        assert_eq!(card(&window), Some(pages + 1));
+        run(&mut window, Command::Render);
+        run(&mut window, Command::CancelRender);
+        assert_eq!(card(&window), after_render);
+    }
+}

@@ -72,6 +72,13 @@ impl Tour {
         self.card.take().is_some()
     }
 
+    /// Leaves the picture that is being rendered free: the card on rendering gives way to that on the picture, any other
+    /// one closes.
+    pub fn show_picture(&mut self) {
+        self.card = self.card.filter(|card| CARDS.get(*card).is_some_and(|(part, ..)| *part == WindowPart::Render));
+        self.card = self.card.map(|card| card + 1);
+    }
+
     /// Draws the open card. `show_light` is the command that shows a light in the inspector, if there is one.
     pub fn ui(&mut self, ctx: &Context, show_light: Option<Command>, out: &mut Vec<Command>) {
         let Some(index) = self.card else { return };

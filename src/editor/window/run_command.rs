@@ -384,6 +384,7 @@ impl App {
         let folder = self.document.folder().map(std::path::Path::to_owned);
         self.rendering.start(self.document.scene(), &self.document.finished_assets(), folder, ctx);
         self.views.central = CentralView::Picture;
+        self.panels.tour.show_picture();
     }
 }
 
