@@ -76,8 +76,7 @@ fn the_tour_leaves_a_render_free_and_goes_on_with_the_picture() {
             click(&mut window, "Next");
         }
         assert_eq!(card(&window), Some(pages + 1));
-        run(&mut window, Command::Render);
-        run(&mut window, Command::CancelRender);
+        render_tiny(&mut window);
         assert_eq!(card(&window), after_render);
     }
 }
