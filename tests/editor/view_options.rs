@@ -27,6 +27,20 @@ fn apart(a: &RgbaImage, b: &RgbaImage) -> f64 {
     off.sum::<f64>() / a.as_raw().len() as f64
 }
 
+/// Asserts that the view is as it was before, and writes both images if it is not.
+fn assert_restored(window: &mut Window, before: &RgbaImage, name: &str) {
+    let after = view(window);
+    assert_eq!(after.dimensions(), before.dimensions(), "{name}");
+    let difference = apart(&after, before);
+    if difference >= 0.01 {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+        for (kind, image) in [("before", before), ("after", &after)] {
+            image.save(folder.join(format!("editor_{name}_{kind}.png"))).unwrap();
+        }
+        panic!("{name}: {difference} codes; see {}/editor_{name}_*.png", folder.display());
+    }
+}
+
 /// Opens the menu by its button and clicks entries.
 fn choose(window: &mut Window, button: &str, entries: &[&str]) {
     click(window, button);
@@ -88,8 +102,7 @@ fn scopes_over_both_live_views_read_their_scene_linear_pictures() {
         assert!(!histogram(&window), "{mode:?}");
     }
     run(&mut window, Command::SetLiveMode(LiveMode::Quick));
-    let difference = apart(&view(&mut window), &plain);
-    assert!(difference < 0.01, "without scopes the view is as before: {difference}");
+    assert_restored(&mut window, &plain, "without_scopes");
     assert_eq!(undo_depth(&window), depth, "a look is no change of the studio");
 }
 
@@ -109,7 +122,7 @@ fn every_channel_changes_the_image_and_lit_restores_it() {
         seen.push((channel.label(), picture));
     }
     choose(&mut window, seen.last().unwrap().0, &["Lit"]);
-    assert!(apart(&view(&mut window), &lit) < 0.01);
+    assert_restored(&mut window, &lit, "lit_after_channels");
     assert_eq!(undo_depth(&window), 0, "a look is no change of the studio");
 }
 
