@@ -60,8 +60,8 @@ struct ScalingRow {
     paths: u64,
     /// Growth of the process's resident memory by the build, MB; null where the system does not report it.
     memory_mb: Option<f64>,
-    /// Part of the trace's speedup that the threads would bring if each were as fast as with the first number of them;
-    /// null in the other studies.
+    /// Parallel efficiency: the speedup over the first number of threads, divided by the ratio of both numbers. Null in
+    /// the other studies.
     efficiency: Option<f64>,
 }
 

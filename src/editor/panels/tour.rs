@@ -72,8 +72,8 @@ impl Tour {
         self.card.take().is_some()
     }
 
-    /// Leaves the picture that is being rendered free: the card on rendering gives way to that on the picture, any other
-    /// one closes.
+    /// Moves on from the card on rendering to that on the picture, and closes any other card, so that none lies over a
+    /// picture that is being rendered.
     pub fn show_picture(&mut self) {
         self.card = self.card.filter(|card| CARDS.get(*card).is_some_and(|(part, ..)| *part == WindowPart::Render));
         self.card = self.card.map(|card| card + 1);
