@@ -160,6 +160,10 @@ fn an_offered_studio_can_be_put_off_and_discarded() {
     drop(later);
     let mut discarding = window(options(folder.path(), None, &[]));
     let opened = scene(&discarding).clone();
+    // The buttons stay where they are when the picture arrives, whatever its shape.
+    wait_until(&mut discarding, |app| app.thumbnails().drawn() == 1);
+    let picture = discarding.get_by_label("Picture of the unsaved studio").rect();
+    assert_eq!(picture.width(), picture.height(), "the frame is that of the picture");
     click(&mut discarding, "Discard");
     assert!(!is_offered(&discarding) && kept(folder.path()).is_empty());
     assert_eq!(*scene(&discarding), opened);

@@ -1,9 +1,9 @@
 //! The prompt that offers an unsaved studio after a crash.
 
-use crate::editor::panels::thumbnails::Thumbnail;
+use crate::editor::panels::thumbnails::{Thumbnail, UNSAVED_POINTS};
 use crate::editor::ui::widgets::{self, Question};
 use crate::io::RecoveryInfo;
-use eframe::egui::{self, RichText, Sense, Ui};
+use eframe::egui::{self, RichText, Sense, Ui, Vec2};
 use std::time::Duration;
 
 /// An unsaved studio on offer.
@@ -50,9 +50,8 @@ pub fn recovery_ui(ctx: &egui::Context, unsaved: &UnsavedStudio<'_>) -> Option<R
     };
     widgets::question_dialog(ctx, &question, |ui| {
         ui.horizontal_top(|ui| {
-            // The text stays where it is when the picture arrives.
-            let size = picture.map_or(egui::Vec2::splat(150.0), |picture| picture.size());
-            let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+            // Text and buttons stay where they are when the picture arrives, whatever its shape.
+            let (rect, response) = ui.allocate_exact_size(Vec2::splat(UNSAVED_POINTS), Sense::hover());
             let name = "Picture of the unsaved studio";
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
             if let Some(picture) = picture {

@@ -12,7 +12,7 @@ use std::time::SystemTime;
 /// Longer side of a studio's thumbnail, points.
 pub const STUDIO_POINTS: f32 = 84.0;
 /// Longer side of an unsaved studio's thumbnail, points.
-const UNSAVED_POINTS: f32 = 150.0;
+pub const UNSAVED_POINTS: f32 = 150.0;
 /// Side of a thing's thumbnail, points.
 pub const THING_POINTS: f32 = 30.0;
 /// Pixels per point, along each side: the density of a high-resolution display. Others show means of four pixels.
@@ -41,11 +41,6 @@ impl Thumbnail {
     fn of(image_texture: &ImageTexture) -> Option<Self> {
         let size = image_texture.size()?.map(|pixels| pixels as f32 / PIXELS_PER_POINT);
         Some(Thumbnail { texture: image_texture.id()?, size: size.into() })
-    }
-
-    /// Returns its size, points.
-    pub fn size(&self) -> egui::Vec2 {
-        self.size
     }
 
     /// Paints it in the middle of `rect`.
