@@ -9,6 +9,7 @@ use crate::raytrace::{Film, RenderControl};
 use crate::scene::{Scene, SceneChange};
 use std::cell::RefCell;
 use std::sync::{Arc, Weak};
+use std::time::{Duration, Instant};
 
 /// A developed film.
 #[derive(Debug)]
@@ -27,6 +28,30 @@ pub struct Developed<I> {
     pub spp: u32,
     /// Name of the method, for the picture's file.
     pub method: &'static str,
+    /// Time that its development took.
+    pub took: Duration,
+    /// When it was developed.
+    pub at: Instant,
+}
+
+impl<I> Developed<I> {
+    /// Returns how long the next film of a render should still wait that has run for some time: development takes the
+    /// processors from tracing.
+    pub fn pause(&self, rendered: Duration) -> Duration {
+        pause_after(self.took, rendered).saturating_sub(self.at.elapsed())
+    }
+}
+
+/// Time between two pictures of a running render, in times of a development: it takes a fifth of the processors, at
+/// most.
+const DEVELOPMENTS_APART: u32 = 4;
+/// Part of a render's time in which nothing new is seen, and the longest pause for it.
+const PART_APART: f64 = 0.1;
+const LONGEST_APART: Duration = Duration::from_secs(10);
+
+/// Returns the pause after a development in a render that has run for some time.
+fn pause_after(took: Duration, rendered: Duration) -> Duration {
+    (took * DEVELOPMENTS_APART).max(rendered.mul_f64(PART_APART).min(LONGEST_APART))
 }
 
 /// What is made of a film.
@@ -104,6 +129,7 @@ impl<I: Send + 'static> FilmDeveloper<I> {
             let mut denoised = DenoisedFilm::default();
             let mut last: Option<LastPicture> = None;
             while let Some((request, control)) = inbox.next() {
+                let started = Instant::now();
                 let show = |picture: &DevelopedPicture| {
                     inbox.publish(Developed {
                         film: Arc::downgrade(&request.film),
@@ -113,6 +139,8 @@ impl<I: Send + 'static> FilmDeveloper<I> {
                         image: to_image(&picture.picture, &request.development),
                         spp: request.film.spp(),
                         method: request.film.method(),
+                        took: started.elapsed(),
+                        at: Instant::now(),
                     });
                 };
                 if let Some(last) = last.as_ref().filter(|last| last.is_of(&request)) {
@@ -228,6 +256,16 @@ mod tests {
         let sum = |picture: &Picture| picture.rgb.iter().flatten().sum::<f32>();
         assert!((sum(&relit) / sum(&whole) - 1.0).abs() < 1e-4, "{} {}", sum(&relit), sum(&whole));
         assert_eq!(published(&without_aovs, &scene, true, true).0, [None]);
+    }
+
+    #[test]
+    fn the_pictures_of_a_running_render_leave_it_most_of_the_time() {
+        let pause = |took: f64, rendered: f64| {
+            pause_after(Duration::from_secs_f64(took), Duration::from_secs_f64(rendered)).as_secs_f64()
+        };
+        assert_eq!(pause(0.5, 1.0), 2.0, "a development takes a fifth of the time");
+        assert_eq!(pause(0.5, 60.0), 6.0, "less in a long render, which changes slowly");
+        assert_eq!(pause(0.5, 6000.0), 10.0, "and is still seen to go on");
     }
 
     #[test]

@@ -28,6 +28,8 @@ pub struct Forecast {
     dark: f64,
     /// The error falls with the samples to the power of minus this.
     convergence: f64,
+    /// Time of the denoiser for a pixel, seconds.
+    denoiser_s: f64,
 }
 
 /// Error of the pixels of a tile.
@@ -76,7 +78,7 @@ impl Forecast {
         let convergence = CONVERGENCE[0];
         tiles.sort_by(|a, b| a.at(1.0, convergence).total_cmp(&b.at(1.0, convergence)));
         let dark = 1.0 - tiles.len() as f64 / count as f64;
-        Some(Forecast { build_s, samples_s, tiles, dark, convergence })
+        Some(Forecast { build_s, samples_s, tiles, dark, convergence, denoiser_s: 0.0 })
     }
 
     /// Returns the noise of the render, stops: the median of its tiles.
@@ -94,9 +96,20 @@ impl Forecast {
         Forecast { convergence, ..self }
     }
 
-    /// Takes over the convergence of another forecast.
-    pub(super) fn with_convergence_of(self, other: Option<&Forecast>) -> Self {
-        Forecast { convergence: other.map_or(CONVERGENCE[0], |known| known.convergence), ..self }
+    /// Takes over what a pilot measures and a render does not: the convergence, and the denoiser's time.
+    pub(super) fn with_pilot(self, pilot: Option<&Forecast>) -> Self {
+        let Some(&Forecast { convergence, denoiser_s, .. }) = pilot else { return self };
+        Forecast { convergence, denoiser_s, ..self }
+    }
+
+    /// Takes over the denoiser's time for a pixel, seconds.
+    pub(super) fn with_denoiser(self, seconds: f64) -> Self {
+        Forecast { denoiser_s: seconds, ..self }
+    }
+
+    /// Returns the denoiser's time for a picture of so many pixels, seconds; 0 if it is not known.
+    pub fn denoiser_s(&self, pixels: u64) -> f64 {
+        self.denoiser_s * pixels as f64
     }
 
     /// Returns time and noise of a render of `pixels` pixels with `spp` samples each.
@@ -169,6 +182,9 @@ mod tests {
         assert!((error(four) / error(same) - 0.5).abs() < 1e-9);
         // 3 s less the half second of preparation are 20 samples of every pixel
         assert_eq!([0.1, 0.6, 3.0].map(|seconds| forecast.samples_in(10_000, seconds)), [0, 0, 20]);
+        assert_eq!(forecast.denoiser_s(1000), 0.0);
+        let denoised = forecast.clone().with_denoiser(0.002);
+        assert_eq!([&denoised, &forecast.clone().with_pilot(Some(&denoised))].map(|f| f.denoiser_s(1000)), [2.0; 2]);
         let faster = forecast.clone().with_noise_at(4, 0.5).estimate(10_000, 64);
         assert!(faster.noise_stops < four.noise_stops, "samples that converged faster at first do so later");
         assert_eq!(forecast.with_noise_at(4, f32::INFINITY).convergence, CONVERGENCE[0]);

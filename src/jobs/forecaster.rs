@@ -9,7 +9,8 @@ use super::monitor::RenderMonitor;
 use super::render::{RenderInput, RenderStage, render};
 use super::threads::{Priority, background_pool};
 use super::worker::{Inbox, Interrupt, Wake, Worker, WorkerSettings};
-use crate::raytrace::{GeometryCache, Method, RenderControl, Settings};
+use crate::denoise::{Quality, denoise};
+use crate::raytrace::{Film, GeometryCache, Method, RenderControl, Settings};
 use crate::scene::{Assets, Camera, Scene};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -111,7 +112,7 @@ impl Forecaster {
             self.measured.clear();
             self.subject = Some(subject);
         }
-        self.forecast = Some(forecast.with_convergence_of(self.forecast.as_ref()));
+        self.forecast = Some(forecast.with_pilot(self.forecast.as_ref()));
         self.changed = None;
         self.worker.reset();
         self.measured.push(measured);
@@ -136,7 +137,7 @@ impl Forecaster {
 /// Returns the pilot's settings for a camera.
 fn pilot_settings(camera: &Camera, method: Method) -> Settings {
     let (width, height) = camera.picture_size(PILOT_EDGE);
-    Settings { width, height, method, spp: PILOT_SPP, ..Settings::default() }
+    Settings { width, height, method, spp: PILOT_SPP, aovs: true, ..Settings::default() }
 }
 
 /// Renders a pilot on as many threads as a render has. None if the studio cannot be rendered or the picture is black.
@@ -152,11 +153,20 @@ fn run(pilot: &Pilot, cache: &GeometryCache, control: &Arc<RenderControl>) -> Op
         _ => {}
     });
     let rendered = rendered.ok()?;
-    let forecast = Forecast::from_render(rendered.build_s, rendered.trace_s, &rendered.film)?;
+    let forecast = Forecast::from_render(rendered.build_s, rendered.trace_s, &rendered.film)?
+        .with_denoiser(measure_denoiser(scene, &rendered.film, control)?);
     Some(match first_noise {
         Some(noise) => forecast.with_noise_at(FIRST_SPP, noise),
         None => forecast,
     })
+}
+
+/// Returns the time of the final picture's denoiser for a pixel, seconds. None once cancelled.
+fn measure_denoiser(scene: &Scene, film: &Film, control: &RenderControl) -> Option<f64> {
+    let (picture, aovs) = (film.develop(scene), film.denoiser_aovs()?);
+    let started = Instant::now();
+    denoise(&picture, &aovs, Quality::Best, &|| control.is_cancelled()).ok()?;
+    Some(started.elapsed().as_secs_f64() / picture.rgb.len() as f64)
 }
 
 #[cfg(test)]

@@ -101,7 +101,9 @@ fn the_quality_chart_forecasts_time_and_noise_and_uses_measured_renders() {
     // A time chooses the samples that fit into it.
     click(&mut window, "Best picture in 10 s");
     let settings = window.state().rendering().settings;
-    let fitting = forecast.estimate(60 * 40, settings.samples).seconds;
+    let denoiser_s = forecast.denoiser_s(60 * 40);
+    let fitting = forecast.estimate(60 * 40, settings.samples).seconds + denoiser_s;
+    assert!(denoiser_s > 1e-4, "the denoiser's time is measured: {denoiser_s}");
     assert_eq!((settings.quality, settings.method), (Quality::Custom, catchlight::raytrace::Method::Path));
     assert!(fitting <= 10.0 && fitting > 5.0, "{fitting} s for {} samples", settings.samples);
     // What a render took counts from then on.

@@ -29,13 +29,14 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
         return;
     };
     let shown = *settings;
+    let denoiser_s = forecast.denoiser_s(pixels);
     let by_noise = |noise_stops: f32, most_samples: u32| {
         let target = NoiseTarget::new(shown.traced_noise_stops(noise_stops));
-        shown.shown_estimate(forecast.estimate_by_noise(pixels, target, most_samples))
+        shown.shown_estimate(forecast.estimate_by_noise(pixels, target, most_samples), denoiser_s)
     };
     let of = |quality: Quality| match quality.noise_stops().zip(shown.most_samples(quality)) {
         Some((noise, most)) => by_noise(noise, most),
-        None => shown.shown_estimate(forecast.estimate(pixels, shown.samples)),
+        None => shown.shown_estimate(forecast.estimate(pixels, shown.samples), denoiser_s),
     };
     for (quality, word) in Quality::BY_NOISE {
         let text = format!("{word}: {}", estimate_text(of(quality)));
@@ -59,21 +60,23 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
     let marks = Quality::BY_NOISE.map(|(quality, _)| of(quality));
     let line = LINE.map(|noise| by_noise(noise, u32::MAX));
     let measured: Vec<Estimate> =
-        forecaster.measured().iter().map(|estimate| shown.shown_estimate(*estimate)).collect();
+        forecaster.measured().iter().map(|estimate| shown.shown_estimate(*estimate, denoiser_s)).collect();
     QualityChart::around(rect, &line).paint(&ui.painter_at(rect), &line, &marks, chosen, &measured);
 }
 
 /// Draws the times in which a picture may be wanted. Each selects the samples that fit into it: of all methods, light
 /// paths have the smallest error for their time, with the denoiser where it is on.
 fn budget_row(ui: &mut Ui, settings: &mut RenderSettings, forecast: &Forecast, pixels: u64) {
+    let denoiser_s = forecast.denoiser_s(pixels);
+    let after_tracing_s = if settings.denoise { denoiser_s } else { 0.0 };
     row(ui, "Best in", "The most light paths through each pixel that fit into a time", |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         for (seconds, label) in BUDGETS {
-            let samples = forecast.samples_in(pixels, seconds).min(MOST_SAMPLES);
+            let samples = forecast.samples_in(pixels, seconds - after_tracing_s).min(MOST_SAMPLES);
             let is_chosen = settings.quality == Quality::Custom && settings.samples == samples;
             let button = ui.add_enabled(samples > 0, Button::selectable(is_chosen, label));
             named(ui, &button, &format!("Best picture in {label}"));
-            let estimate = settings.shown_estimate(forecast.estimate(pixels, samples));
+            let estimate = settings.shown_estimate(forecast.estimate(pixels, samples), denoiser_s);
             let button = button.on_hover_text(format!("{samples} samples: {}", estimate_text(estimate)));
             if button.on_disabled_hover_text("One light path through each pixel takes longer").clicked() {
                 (settings.quality, settings.samples, settings.method) = (Quality::Custom, samples, Method::Path);

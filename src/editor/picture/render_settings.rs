@@ -108,10 +108,11 @@ impl RenderSettings {
         quality.most_samples().map(|most| (most as f32 * part).ceil() as u32)
     }
 
-    /// Returns the estimate of the picture as it is shown.
-    pub fn shown_estimate(&self, traced: Estimate) -> Estimate {
-        let part = if self.denoise { f64::from(DENOISED_NOISE) } else { 1.0 };
-        Estimate { noise_stops: traced.noise_stops * part, ..traced }
+    /// Returns the estimate of the picture as it is shown, of one that is traced. The denoiser would take `denoiser_s`
+    /// seconds.
+    pub fn shown_estimate(&self, traced: Estimate, denoiser_s: f64) -> Estimate {
+        let (part, denoiser_s) = if self.denoise { (f64::from(DENOISED_NOISE), denoiser_s) } else { (1.0, 0.0) };
+        Estimate { noise_stops: traced.noise_stops * part, seconds: traced.seconds + denoiser_s }
     }
 
     /// Returns the settings of a render.

@@ -287,11 +287,16 @@ impl Rendering {
             let denoise = self.settings.denoise;
             let display = self.display;
             let development = Development { max_side, denoise, is_final: is_final && denoise, display };
-            let is_requested = self.requested.as_ref().is_some_and(|requested| {
-                (requested.film, requested.development) == (Arc::as_ptr(film), development)
+            let last = self.requested.as_ref().filter(|requested| {
+                requested.development == development
                     && !SceneChange::between(&requested.scene, scene).needs_development()
             });
-            if !is_requested {
+            let is_requested = last.is_some_and(|requested| requested.film == Arc::as_ptr(film));
+            // A film that only has more samples can wait
+            let pause = last.and_then(|_| self.pause());
+            if let Some(pause) = pause.filter(|_| !is_requested) {
+                ctx.request_repaint_after(pause);
+            } else if !is_requested {
                 self.developer.request(film.clone(), scene.clone(), development, &wake(ctx));
                 self.requested = Some(Requested { film: Arc::as_ptr(film), scene: scene.clone(), development });
             }
@@ -309,6 +314,18 @@ impl Rendering {
         if self.is_running() {
             ctx.request_repaint_after(Duration::from_millis(250));
         }
+    }
+
+    /// Returns how long the next film of a running render should still wait, if it should.
+    fn pause(&self) -> Option<Duration> {
+        /// Time between two looks whether the development has ended.
+        const WHILE_BUSY: Duration = Duration::from_millis(250);
+        let job = self.job.as_ref().filter(|job| job.phase().is_running())?;
+        if self.developer.is_busy() {
+            return Some(WHILE_BUSY);
+        }
+        let pause = self.developed.as_ref()?.pause(job.progress().elapsed);
+        (!pause.is_zero()).then_some(pause)
     }
 
     /// Takes the outcome of a render that was not cancelled, with the job that made it.
