@@ -1,7 +1,9 @@
 //! The materials of a figure's parts, and skin tones.
 
+use super::skin_colors::mean_of_blotches;
 use super::skin_textures::skin_textures;
 use crate::scene::{Figure, Material, MaterialPreset, MaterialTextures, Object, Shape};
+use glam::Vec3;
 
 /// A skin tone: a class of the individual typology angle ITA = atan((L* - 50) / b*) (Chardon et al. 1991, "Skin colour
 /// typology and suntanning pathways"), with the reflectance of its middle. Redness a* is a typical value.
@@ -24,7 +26,8 @@ pub const SKIN_TONES: [SkinTone; 6] = [
 ];
 
 impl SkinTone {
-    /// Returns skin of this tone for a figure. Skin with more melanin lets light less far in.
+    /// Returns skin of this tone for a figure: with its blotches, it has the tone's reflectance on average. Skin with more
+    /// melanin lets light less far in.
     pub fn material(&self) -> Material {
         let [lightness, ..] = self.lab;
         let preset = match lightness {
@@ -32,7 +35,8 @@ impl SkinTone {
             l if l > 50.0 => MaterialPreset::SkinMedium,
             _ => MaterialPreset::SkinDark,
         };
-        Material { base_color: self.base_color(), textures: skin_textures(), ..preset.material() }
+        let base_color = (Vec3::from(self.base_color()) / mean_of_blotches()).min(Vec3::ONE).to_array();
+        Material { base_color, textures: skin_textures(), ..preset.material() }
     }
 
     /// Returns the reflectance, scene-linear Rec.709.
@@ -117,6 +121,8 @@ pub fn give_skin(object: &mut Object, tone: &SkinTone) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figures::skin_colors::skin_colors;
+    use crate::scene::HairStyle;
 
     #[test]
     fn lips_and_nails_follow_the_tone_of_the_skin() {
@@ -131,6 +137,20 @@ mod tests {
         for ((part, before), (_, after)) in parts.iter().zip(&object.part_materials) {
             assert_eq!(before != after, PARTS_OF_SKIN.contains(&part.as_str()), "{part}");
             assert!(before == after || after.base_color[0] < before.base_color[0]);
+        }
+    }
+
+    #[test]
+    fn skin_with_blotches_has_the_reflectance_of_its_tone_on_average() {
+        let figure = Figure { hair: HairStyle::Bald, ..Figure::default() };
+        // Places on the back, where no region has a colour of its own
+        let place = |i: usize| Vec3::new((i % 40) as f32 * 0.004 - 0.08, -0.4 - (i / 40) as f32 * 0.005, -0.2);
+        let factors = skin_colors(&(0..2000).map(place).collect::<Vec<_>>(), &figure);
+        let mean = factors.iter().sum::<Vec3>() / factors.len() as f32;
+        for tone in SKIN_TONES {
+            let shown = Vec3::from(tone.material().base_color) * mean;
+            let error = shown / Vec3::from(tone.base_color()) - Vec3::ONE;
+            assert!(error.abs().max_element() < 0.01, "{}: {error}", tone.label);
         }
     }
 

@@ -27,6 +27,15 @@ const WHITE_ROOTS: Vec3 = Vec3::new(0.72, 0.7, 0.68);
 /// Factor between the roots of beard and brows.
 const STUBBLE: Vec3 = Vec3::new(0.62, 0.62, 0.63);
 
+/// How far blotches of blood and of melanin darken the skin, on average.
+const BLOOD_SPREAD: Vec3 = Vec3::new(0.012, 0.05, 0.045);
+const MELANIN_SPREAD: Vec3 = Vec3::new(0.03, 0.04, 0.05);
+
+/// Mean factor of the skin's unevenness. Blotches only darken: factors stay below 1.
+pub fn mean_of_blotches() -> Vec3 {
+    Vec3::ONE - BLOOD_SPREAD - MELANIN_SPREAD
+}
+
 /// A region on both sides of the base mesh.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Region {
@@ -132,11 +141,8 @@ fn region_color(place: Vec3, figure: &Figure) -> Vec3 {
 /// Returns the factor of the skin's unevenness at a place: blotches of blood and of melanin, some millimetres and a
 /// centimetre and a half across.
 fn mottled(place: Vec3, seed: u32) -> Vec3 {
-    const BLOOD_SPREAD: Vec3 = Vec3::new(0.012, 0.05, 0.045);
-    const MELANIN_SPREAD: Vec3 = Vec3::new(0.03, 0.04, 0.05);
     let blood = 0.6 * noise(place / 0.015, seed) + 0.4 * noise(place / 0.006, seed.wrapping_add(1));
     let melanin = 0.5 * noise(place / 0.011, seed.wrapping_add(2)) + 0.5 * noise(place / 0.0045, seed.wrapping_add(3));
-    // Darker than the base colour, on the whole: factors stay below 1
     (Vec3::ONE - BLOOD_SPREAD * (1.0 + blood) - MELANIN_SPREAD * (1.0 + melanin)).clamp(Vec3::ZERO, Vec3::ONE)
 }
 
