@@ -31,7 +31,7 @@ const STUBBLE: Vec3 = Vec3::new(0.62, 0.62, 0.63);
 const BLOOD_SPREAD: Vec3 = Vec3::new(0.012, 0.05, 0.045);
 const MELANIN_SPREAD: Vec3 = Vec3::new(0.03, 0.04, 0.05);
 
-/// Mean factor of the skin's unevenness. Blotches only darken: factors stay below 1.
+/// Returns the mean factor of the blotches, which only darken: factors stay below 1.
 pub fn mean_of_blotches() -> Vec3 {
     Vec3::ONE - BLOOD_SPREAD - MELANIN_SPREAD
 }

@@ -29,7 +29,7 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
         return;
     };
     let shown = *settings;
-    let denoiser_s = forecast.denoiser_s(pixels);
+    let denoiser_s = shown.denoiser_s(forecast, pixels);
     let by_noise = |noise_stops: f32, most_samples: u32| {
         let target = NoiseTarget::new(shown.traced_noise_stops(noise_stops));
         shown.shown_estimate(forecast.estimate_by_noise(pixels, target, most_samples), denoiser_s)
@@ -67,12 +67,11 @@ pub fn quality_ui(ui: &mut Ui, settings: &mut RenderSettings, camera: &Camera, f
 /// Draws the times in which a picture may be wanted. Each selects the samples that fit into it: of all methods, light
 /// paths have the smallest error for their time, with the denoiser where it is on.
 fn budget_row(ui: &mut Ui, settings: &mut RenderSettings, forecast: &Forecast, pixels: u64) {
-    let denoiser_s = forecast.denoiser_s(pixels);
-    let after_tracing_s = if settings.denoise { denoiser_s } else { 0.0 };
+    let denoiser_s = settings.denoiser_s(forecast, pixels);
     row(ui, "Best in", "The most light paths through each pixel that fit into a time", |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         for (seconds, label) in BUDGETS {
-            let samples = forecast.samples_in(pixels, seconds - after_tracing_s).min(MOST_SAMPLES);
+            let samples = forecast.samples_in(pixels, seconds - denoiser_s).min(MOST_SAMPLES);
             let is_chosen = settings.quality == Quality::Custom && settings.samples == samples;
             let button = ui.add_enabled(samples > 0, Button::selectable(is_chosen, label));
             named(ui, &button, &format!("Best picture in {label}"));

@@ -1,6 +1,6 @@
 //! The settings of the render panel: size, quality and method.
 
-use crate::jobs::Estimate;
+use crate::jobs::{Estimate, Forecast};
 use crate::raytrace::{Method, Settings};
 use crate::scene::Camera;
 
@@ -108,10 +108,14 @@ impl RenderSettings {
         quality.most_samples().map(|most| (most as f32 * part).ceil() as u32)
     }
 
-    /// Returns the estimate of the picture as it is shown, of one that is traced. The denoiser would take `denoiser_s`
-    /// seconds.
+    /// Returns the time from the traced picture to the shown one, seconds.
+    pub fn denoiser_s(&self, forecast: &Forecast, pixels: u64) -> f64 {
+        if self.denoise { forecast.denoiser_s(pixels) } else { 0.0 }
+    }
+
+    /// Returns the estimate of the picture as it is shown, `denoiser_s` seconds after it is traced.
     pub fn shown_estimate(&self, traced: Estimate, denoiser_s: f64) -> Estimate {
-        let (part, denoiser_s) = if self.denoise { (f64::from(DENOISED_NOISE), denoiser_s) } else { (1.0, 0.0) };
+        let part = if self.denoise { f64::from(DENOISED_NOISE) } else { 1.0 };
         Estimate { noise_stops: traced.noise_stops * part, seconds: traced.seconds + denoiser_s }
     }
 
