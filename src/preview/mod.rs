@@ -55,7 +55,7 @@ mod targets;
 pub use channel::{Channel, Gloss};
 pub use error::PreviewError;
 pub use frame_times::FrameTimes;
-pub use gpu::device::{Gpu, LossFlag};
+pub use gpu::device::{Gpu, LossFlag, is_cpu_rasteriser};
 pub use input::{Options, Overlay, Pick, PreviewInput, is_dark};
 pub use overlay::gizmo::{Gizmos, GpuLine, GpuTint};
 pub use overlay::pick::{ObjectMask, PickHit, REACH_PX};

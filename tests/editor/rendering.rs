@@ -74,6 +74,15 @@ fn a_render_can_be_cancelled_and_keeps_what_it_has() {
     wait_until(&mut window, |app| app.rendering().developed().is_some());
     // The small picture has just come into the panel: a frame for the layout to settle.
     window.run_steps(2);
+    // Where the processors draw the window, its progress takes little of their time.
+    let is_drawn_by_cpu = window.state().viewport().preview.window_is_drawn_by_cpu();
+    let progress_ms = if is_drawn_by_cpu { 900..=1000 } else { 200..=250 };
+    let delay_ms = |window: &mut Window| {
+        window.step();
+        window.output().viewport_output[&ViewportId::ROOT].repaint_delay.as_millis()
+    };
+    let longest = (0..20).map(|_| delay_ms(&mut window)).max().unwrap_or(0);
+    assert!(progress_ms.contains(&longest), "the progress is drawn after {longest} ms, not {progress_ms:?}");
     window.get_by_label("Cancel").click();
     settle(&mut window);
     assert!(!window.state().rendering().is_running());

@@ -310,19 +310,14 @@ impl Rendering {
             Some(Err(message)) => self.develop_failure = Some(message),
             None => {}
         }
-        // The progress changes between snapshots.
-        if self.is_running() {
-            ctx.request_repaint_after(Duration::from_millis(250));
-        }
     }
 
     /// Returns how long the next film of a running render should still wait, if it should.
     fn pause(&self) -> Option<Duration> {
-        /// Time between two looks whether the development has ended.
-        const WHILE_BUSY: Duration = Duration::from_millis(250);
         let job = self.job.as_ref().filter(|job| job.phase().is_running())?;
         if self.developer.is_busy() {
-            return Some(WHILE_BUSY);
+            // Its end wakes the window.
+            return Some(Duration::MAX);
         }
         let pause = self.developed.as_ref()?.pause(job.progress().elapsed);
         (!pause.is_zero()).then_some(pause)

@@ -204,6 +204,9 @@ impl App {
         self.variant_pictures.follow(&mut self.rendering, scene);
         self.rendering.update(scene, ctx);
         self.variant_pictures.update(&self.rendering, self.views.picture.comparison, scene, ctx);
+        if self.rendering.is_running() {
+            ctx.request_repaint_after(self.progress_time());
+        }
         self.update_forecast();
         let document = &self.document;
         self.background.meter.update(document.scene(), document.assets(), document.revision(), &wake(ctx));
@@ -225,6 +228,13 @@ impl App {
         if matches!(self.views.central, CentralView::Light(id) if self.document.scene().light(id).is_none()) {
             self.views.central = CentralView::Studio;
         }
+    }
+
+    /// Returns the time between two drawings of a render's progress.
+    fn progress_time(&self) -> Duration {
+        // A software rasteriser takes 40 ms of all processors for a frame, at four frames a second a sixth of the render.
+        let is_drawn_by_cpu = self.views.viewport.preview.window_is_drawn_by_cpu();
+        if is_drawn_by_cpu { Duration::from_secs(1) } else { Duration::from_millis(250) }
     }
 
     /// Updates the forecast from a finished render, if the studio has not changed.

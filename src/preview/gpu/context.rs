@@ -1,6 +1,6 @@
 //! The device that a renderer draws on.
 
-use super::device::{LossFlag, guarded};
+use super::device::{LossFlag, guarded, is_cpu_rasteriser};
 use crate::preview::PreviewError;
 use eframe::wgpu;
 
@@ -16,8 +16,7 @@ pub(crate) struct GpuContext {
 
 impl GpuContext {
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, loss: LossFlag) -> Self {
-        let is_cpu = device.adapter_info().device_type == wgpu::DeviceType::Cpu;
-        GpuContext { device: device.clone(), queue: queue.clone(), loss, is_cpu }
+        GpuContext { device: device.clone(), queue: queue.clone(), loss, is_cpu: is_cpu_rasteriser(device) }
     }
 
     /// Runs GPU work and returns driver errors as values, see [`guarded`].

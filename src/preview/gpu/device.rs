@@ -16,6 +16,11 @@ pub struct Gpu {
     pub name: String,
 }
 
+/// Returns true if a device's adapter is a software rasteriser that runs on the CPU.
+pub fn is_cpu_rasteriser(device: &wgpu::Device) -> bool {
+    device.adapter_info().device_type == wgpu::DeviceType::Cpu
+}
+
 impl Gpu {
     /// Opens the fastest adapter of the machine, a CPU rasteriser if there is no other. The environment variables
     /// `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` restrict the choice.

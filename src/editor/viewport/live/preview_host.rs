@@ -8,7 +8,9 @@ use crate::editor::ui::wake::wake;
 use crate::editor::viewport::live::cpu_preview::CpuPreview;
 use crate::jobs::BounceJob;
 use crate::photo::{Picture, PictureDisplay};
-use crate::preview::{Channel, Gloss, LossFlag, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer};
+use crate::preview::{
+    Channel, Gloss, LossFlag, Options, Overlay, Pick, PreviewError, PreviewInput, PreviewRenderer, is_cpu_rasteriser,
+};
 use crate::scene::{CameraFrame, LightId};
 use eframe::egui::{Context, Painter, Rect, TextureId};
 use eframe::egui_wgpu::RenderState;
@@ -209,6 +211,11 @@ impl PreviewHost {
     /// Returns true if there is a device to build the preview on.
     pub fn has_device(&self) -> bool {
         self.state.is_some()
+    }
+
+    /// Returns true if the processors draw the window's frames: each takes time from a render.
+    pub fn window_is_drawn_by_cpu(&self) -> bool {
+        self.state.as_ref().is_some_and(|state| is_cpu_rasteriser(&state.device))
     }
 
     /// Returns the reason why the CPU draws the view, if it does.
