@@ -56,6 +56,32 @@ impl SkinTone {
     }
 }
 
+/// A colour of eyes. The values are typical.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EyeColor {
+    /// Its name.
+    pub label: &'static str,
+    /// Reflectance of the iris at its light fibres, scene-linear Rec.709.
+    pub base_color: [f32; 3],
+}
+
+/// Colours of eyes from dark to light.
+pub const EYE_COLORS: [EyeColor; 6] = [
+    EyeColor { label: "Dark brown", base_color: [0.07, 0.035, 0.018] },
+    EyeColor { label: "Brown", base_color: [0.14, 0.07, 0.03] },
+    EyeColor { label: "Hazel", base_color: [0.13, 0.095, 0.05] },
+    EyeColor { label: "Green", base_color: [0.13, 0.15, 0.075] },
+    EyeColor { label: "Blue", base_color: [0.12, 0.19, 0.27] },
+    EyeColor { label: "Grey", base_color: [0.2, 0.22, 0.23] },
+];
+
+impl EyeColor {
+    /// Returns the material of the iris.
+    pub fn material(&self) -> Material {
+        Material { base_color: self.base_color, ..MaterialPreset::Eye.material() }
+    }
+}
+
 /// Natural colours of hair.
 pub const HAIR_COLORS: [MaterialPreset; 7] = [
     MaterialPreset::HairBlack,
@@ -73,7 +99,8 @@ pub fn default_parts(skin: &Material, figure: &Figure) -> Vec<(String, Material)
     let cloth = |base_color| Material { base_color, ..MaterialPreset::MatteFabric.material() };
     let [r, g, b] = skin.base_color;
     let light = 0.2126 * r + 0.7152 * g + 0.0722 * b;
-    let iris = if light > 0.3 { [0.13, 0.095, 0.05] } else { [0.07, 0.035, 0.018] };
+    let [dark_brown, _, hazel, ..] = EYE_COLORS;
+    let iris = if light > 0.3 { hazel } else { dark_brown };
     // Eyes of old people are less white.
     let age = ((figure.body.age_years - 40.0) / 50.0).clamp(0.0, 1.0);
     let white = MaterialPreset::Eye.material();
@@ -82,7 +109,7 @@ pub fn default_parts(skin: &Material, figure: &Figure) -> Vec<(String, Material)
     let lips = Material { base_color: [0.86 * r, 0.56 * g, 0.6 * b], roughness: 0.34, ..skin.clone() };
     let parts = [
         ("eyes", white),
-        ("iris", gloss(iris)),
+        ("iris", iris.material()),
         ("pupil", gloss([0.005; 3])),
         ("teeth", Material { base_color: [0.62, 0.58, 0.49], roughness: 0.25, ..gloss([0.0; 3]) }),
         ("tongue", Material { base_color: [0.35, 0.12, 0.1], roughness: 0.3, ..gloss([0.0; 3]) }),
@@ -98,6 +125,28 @@ pub fn default_parts(skin: &Material, figure: &Figure) -> Vec<(String, Material)
         ("shoes", Material { base_color: [0.03, 0.025, 0.02], roughness: 0.4, ..Material::default() }),
     ];
     parts.into_iter().map(|(part, material)| (part.to_owned(), material)).collect()
+}
+
+/// Parts that have the colour of the hair.
+pub(super) const PARTS_OF_HAIR: [&str; 3] = ["hair", "beard", "brows"];
+
+/// Gives a figure eyes of a colour.
+pub fn give_eyes(object: &mut Object, color: &EyeColor) {
+    give_parts(object, &["iris"], &color.material());
+}
+
+/// Gives a figure hair, a beard and brows of one colour.
+pub fn give_hair(object: &mut Object, color: MaterialPreset) {
+    give_parts(object, &PARTS_OF_HAIR, &color.material());
+}
+
+fn give_parts(object: &mut Object, names: &[&str], material: &Material) {
+    for name in names {
+        match object.part_materials.iter_mut().find(|(part, _)| part == name) {
+            Some((_, own)) => *own = material.clone(),
+            None => object.part_materials.push(((*name).to_owned(), material.clone())),
+        }
+    }
 }
 
 /// Parts whose materials follow from the skin's.
@@ -138,6 +187,27 @@ mod tests {
             assert_eq!(before != after, PARTS_OF_SKIN.contains(&part.as_str()), "{part}");
             assert!(before == after || after.base_color[0] < before.base_color[0]);
         }
+    }
+
+    #[test]
+    fn eyes_and_hair_take_a_colour_and_nothing_else_changes() {
+        let shape = Shape::Figure(Box::default());
+        let parts = default_parts(&SKIN_TONES[1].material(), &Figure::default());
+        let before = Object { part_materials: parts, ..Object::new("Woman", shape) };
+        let mut object = before.clone();
+        // A file need not name every part
+        object.part_materials.retain(|(part, _)| part != "beard");
+        give_eyes(&mut object, &EYE_COLORS[4]);
+        give_hair(&mut object, MaterialPreset::HairRed);
+        for (part, material) in &before.part_materials {
+            let expected = match part.as_str() {
+                "iris" => EYE_COLORS[4].material(),
+                "hair" | "beard" | "brows" => MaterialPreset::HairRed.material(),
+                _ => material.clone(),
+            };
+            assert_eq!(*object.material_of(part), expected, "{part}");
+        }
+        assert_eq!(object.part_materials.len(), before.part_materials.len());
     }
 
     #[test]

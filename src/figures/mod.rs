@@ -37,7 +37,9 @@ pub use eyes::Cornea;
 pub use gaze::{as_variant, follow_gazes, gaze_falls_short, show_variant};
 pub use joints::{Joint, PosableBody};
 pub use makehuman::read_body;
-pub use materials::{SKIN_TONES, SkinTone, default_parts, give_skin};
+pub use materials::{
+    EYE_COLORS, EyeColor, HAIR_COLORS, SKIN_TONES, SkinTone, default_parts, give_eyes, give_hair, give_skin,
+};
 pub use named_poses::{NamedExpression, NamedPose};
 pub use ready::{READY, ReadyFigure, randomised};
 pub use skeleton::Side;

@@ -1,6 +1,6 @@
 //! The figures on the shelf, and random ones.
 
-use super::materials::{HAIR_COLORS, SKIN_TONES, default_parts};
+use super::materials::{EYE_COLORS, HAIR_COLORS, PARTS_OF_HAIR, SKIN_TONES, default_parts};
 use super::named_poses::{NamedExpression, NamedPose};
 use super::random::Random;
 use crate::scene::{Beard, Body, Bottom, Face, Figure, HairStyle, Material, ParameterSet, Top};
@@ -22,6 +22,8 @@ pub struct ReadyFigure {
     bottom: Bottom,
     /// Index into [`SKIN_TONES`].
     tone: usize,
+    /// Index into [`EYE_COLORS`].
+    eye_color: usize,
     /// Index into [`HAIR_COLORS`].
     hair_color: usize,
     top_color: [f32; 3],
@@ -71,6 +73,7 @@ const BASE: ReadyFigure = ReadyFigure {
     top: Top::ShortSleeves,
     bottom: Bottom::Trousers,
     tone: 1,
+    eye_color: 2,
     hair_color: 1,
     top_color: [0.16, 0.2, 0.26],
     bottom_color: [0.035, 0.045, 0.07],
@@ -85,6 +88,7 @@ pub const READY: [ReadyFigure; 12] = [
         face: Face { cheekbones: 0.3, lips: 0.2, nose_width: -0.2, ..FACE },
         expression: NamedExpression::SoftSmile,
         hair: HairStyle::Long,
+        eye_color: 1,
         hair_color: 2,
         ..BASE
     },
@@ -95,6 +99,7 @@ pub const READY: [ReadyFigure; 12] = [
         face: Face { jaw: 0.3, nose_bridge: 0.3, brows: -0.2, ..FACE },
         expression: NamedExpression::Serious,
         beard: Beard::Stubble,
+        eye_color: 4,
         hair_color: 1,
         top: Top::LongSleeves,
         top_color: [0.12, 0.12, 0.125],
@@ -109,6 +114,7 @@ pub const READY: [ReadyFigure; 12] = [
         pose: NamedPose::Relaxed,
         hair: HairStyle::Curly,
         tone: 4,
+        eye_color: 0,
         hair_color: 0,
         top: Top::Straps,
         top_color: [0.55, 0.5, 0.42],
@@ -122,6 +128,7 @@ pub const READY: [ReadyFigure; 12] = [
         pose: NamedPose::ArmsCrossed,
         hair: HairStyle::Crop,
         tone: 5,
+        eye_color: 0,
         hair_color: 0,
         top_color: [0.5, 0.5, 0.48],
         ..BASE
@@ -133,6 +140,7 @@ pub const READY: [ReadyFigure; 12] = [
         face: Face { width: -0.1, lips: 0.1, ..FACE },
         pose: NamedPose::ThreeQuarter,
         hair: HairStyle::Bob,
+        eye_color: 0,
         hair_color: 0,
         top_color: [0.35, 0.04, 0.05],
         bottom: Bottom::Skirt,
@@ -146,6 +154,7 @@ pub const READY: [ReadyFigure; 12] = [
         pose: NamedPose::HandsJoined,
         beard: Beard::Full,
         tone: 3,
+        eye_color: 1,
         hair_color: 0,
         top: Top::LongSleeves,
         top_color: [0.08, 0.11, 0.09],
@@ -159,6 +168,7 @@ pub const READY: [ReadyFigure; 12] = [
         expression: NamedExpression::SoftSmile,
         pose: NamedPose::Seated,
         hair: HairStyle::TiedBack,
+        eye_color: 4,
         hair_color: 5,
         tone: 0,
         top: Top::LongSleeves,
@@ -171,6 +181,7 @@ pub const READY: [ReadyFigure; 12] = [
         body: Body { age_years: 75.0, height_m: 1.72, muscle: 0.35, ..MAN },
         face: Face { nose_length: 0.3, ears: 0.4, lips: -0.3, ..FACE },
         pose: NamedPose::Seated,
+        eye_color: 5,
         hair_color: 6,
         tone: 1,
         top: Top::LongSleeves,
@@ -184,6 +195,7 @@ pub const READY: [ReadyFigure; 12] = [
         expression: NamedExpression::Smile,
         pose: NamedPose::Waving,
         hair: HairStyle::Bob,
+        eye_color: 4,
         hair_color: 4,
         tone: 0,
         top_color: [0.6, 0.42, 0.06],
@@ -194,6 +206,7 @@ pub const READY: [ReadyFigure; 12] = [
         tip: "1.40 m, green top, upright.",
         body: Body { age_years: 10.0, height_m: 1.4, sex: 1.0, asian: 0.5, african: 0.5, european: 0.0, ..WOMAN },
         tone: 3,
+        eye_color: 0,
         hair_color: 0,
         top_color: [0.07, 0.2, 0.08],
         bottom: Bottom::Shorts,
@@ -207,6 +220,7 @@ pub const READY: [ReadyFigure; 12] = [
         pose: NamedPose::OverShoulder,
         hair: HairStyle::TiedBack,
         tone: 3,
+        eye_color: 1,
         hair_color: 1,
         top: Top::Straps,
         top_color: [0.03, 0.03, 0.032],
@@ -219,6 +233,7 @@ pub const READY: [ReadyFigure; 12] = [
         face: Face { width: -0.2, cheekbones: 0.3, ..FACE },
         pose: NamedPose::Leaning,
         hair: HairStyle::Long,
+        eye_color: 1,
         hair_color: 1,
         tone: 2,
         top_color: [0.6, 0.6, 0.58],
@@ -251,9 +266,11 @@ impl ReadyFigure {
                 material.base_color = color;
             }
         }
-        for name in ["hair", "beard", "brows"] {
-            if let Some((_, material)) = parts.iter_mut().find(|(part, _)| part == name) {
-                *material = HAIR_COLORS[self.hair_color].material();
+        for (part, material) in &mut parts {
+            match part.as_str() {
+                "iris" => *material = EYE_COLORS[self.eye_color].material(),
+                hair if PARTS_OF_HAIR.contains(&hair) => *material = HAIR_COLORS[self.hair_color].material(),
+                _ => {}
             }
         }
         (skin, parts)

@@ -1,10 +1,15 @@
 //! The BLAS of strands: a BVH over their segments.
 //!
-//! Segments are not divided into shorter pieces with tighter boxes: on a head of hair, two or four pieces a segment made
-//! rays 13 to 25 % slower, for there are more leaves, with fewer segments each. Nor are boxes turned along the hair
-//! (Woop et al. 2014, "Exploiting Local Orientation Similarity for Efficient Ray Traversal of Hair and Fur"): subtrees
-//! of a thousand segments, each built in a frame along them, halved the leaves that a ray tests, and made a portrait 4 %
-//! faster, as the time goes into reading nodes and leaves from memory.
+//! On a portrait with long hair a ray that enters the box of the hair visits 15 nodes and 20 leaves, and one leaf in
+//! thirty is hit. Three ways to shorten that were measured and are not taken:
+//!
+//! - Segments divided into two or four pieces with tighter boxes: rays 13 to 25 % slower, for there are more leaves, with
+//!   fewer segments each.
+//! - Boxes turned along the hair (Woop et al. 2014, "Exploiting Local Orientation Similarity for Efficient Ray Traversal
+//!   of Hair and Fur"), subtrees of a thousand segments each in a frame of its own: half the leaves, and 4 % faster, not
+//!   worth the code.
+//! - Points of 16 bits relative to their leaf, 192 bytes a leaf instead of 320: 9 % slower. The arithmetic of the tests
+//!   takes the time, not the memory.
 
 use super::blas::{Blas, LeafPacket};
 use super::simd::{Kernels, RibbonRay, SegmentHit, SegmentPacket};

@@ -1,6 +1,8 @@
 //! Panels: sliders, names, lists, the inspector.
 
 use super::*;
+use catchlight::figures;
+use catchlight::scene::MaterialPreset;
 
 #[test]
 fn a_slider_drag_is_one_undo_step_and_the_next_one_another() {
@@ -99,6 +101,26 @@ fn a_figure_from_the_list_has_its_mesh_and_becomes_the_target_of_new_lights() {
     click(&mut window, "Add Softbox 60 x 60");
     let light = scene(&window).lights.last().unwrap();
     assert!(matches!(light.aim, Aim::Object { object, .. } if object == id));
+}
+
+#[test]
+fn eyes_and_hair_of_a_figure_take_the_colour_of_a_square_at_a_click() {
+    let Some(mut window) = preset_window() else { return };
+    click(&mut window, "Figures");
+    click(&mut window, "Add Woman, 34, long hair");
+    let before = scene(&window).objects.last().unwrap().clone();
+    let [blue, red] = [figures::EYE_COLORS[4].material(), MaterialPreset::HairRed.material()];
+    for (square, parts, material) in
+        [("Eyes: Blue", vec!["iris"], blue), ("Hair colour: red", vec!["hair", "beard", "brows"], red)]
+    {
+        window.get_by_label(square).scroll_to_me();
+        settle(&mut window);
+        click(&mut window, square);
+        let object = scene(&window).objects.last().unwrap();
+        assert!(parts.into_iter().all(|part| *object.material_of(part) == material), "{square}");
+        press(&mut window, Modifiers::COMMAND, Key::Z);
+        assert_eq!(scene(&window).objects.last().unwrap(), &before, "one step of undo");
+    }
 }
 
 #[test]

@@ -4,13 +4,13 @@ use crate::editor::commands::command::Command;
 use crate::editor::commands::item_menu::{FACE_TIP, FRAMING_TIP};
 use crate::editor::document::framing::Framing;
 use crate::editor::ui::widgets::{row, section, swatch};
-use crate::figures::{self, NamedExpression, NamedPose, SKIN_TONES};
+use crate::figures::{self, EYE_COLORS, HAIR_COLORS, NamedExpression, NamedPose, SKIN_TONES};
 use crate::jobs::{Catchlight, Face, sentence};
 use crate::scene::{
-    Arm, Beard, Body, Bottom, Figure, Gaze, HairStyle, Leg, Object, ObjectId, Parameter, ParameterSet, SEAT_RANGE_M,
-    Scene, Shape, Top,
+    Arm, Beard, Body, Bottom, Figure, Gaze, HairStyle, Leg, MaterialPreset, Object, ObjectId, Parameter, ParameterSet,
+    SEAT_RANGE_M, Scene, Shape, Top,
 };
-use eframe::egui::{Color32, ComboBox, Label, Sense, Slider, TextStyle, Ui, vec2};
+use eframe::egui::{Color32, ComboBox, Label, Role, Sense, Slider, TextStyle, Ui, WidgetInfo, vec2};
 
 /// Draws the lighting pattern on a figure's face, and its catchlights. The height does not depend on the texts: what is
 /// below stays where it is in a drag.
@@ -109,15 +109,45 @@ fn person_rows(ui: &mut Ui, object: &mut Object) {
             _ => row(ui, parameter.label, "", |ui| slider(ui, value, parameter)),
         }
     }
-    row(ui, "Skin tone", "Classes of the individual typology angle, from very light to dark", |ui| {
-        for tone in SKIN_TONES {
-            let color = tone.base_color();
-            let square = swatch(ui, shown(color), vec2(20.0, 20.0)).interact(Sense::click()).on_hover_text(tone.label);
+    let tip = "Classes of the individual typology angle, from very light to dark";
+    if let Some(tone) = color_choice(ui, "Skin tone", tip, SKIN_TONES, |tone| (tone.label, tone.base_color())) {
+        figures::give_skin(object, &tone);
+    }
+    let tip = "Of the iris, from dark to light";
+    if let Some(color) = color_choice(ui, "Eyes", tip, EYE_COLORS, |color| (color.label, color.base_color)) {
+        figures::give_eyes(object, &color);
+    }
+    let tip = "Of hair, beard and brows. Each of them has a colour of its own below, dyes as well";
+    let look = |color: &MaterialPreset| {
+        let name = color.label();
+        (name.strip_prefix("Hair, ").unwrap_or(name), color.material().base_color)
+    };
+    if let Some(color) = color_choice(ui, "Hair colour", tip, HAIR_COLORS, look) {
+        figures::give_hair(object, color);
+    }
+}
+
+/// Draws a row of coloured squares, and returns the choice whose square is clicked. `look`: its name and reflectance.
+fn color_choice<C>(
+    ui: &mut Ui,
+    label: &str,
+    tip: &str,
+    choices: impl IntoIterator<Item = C>,
+    look: impl Fn(&C) -> (&'static str, [f32; 3]),
+) -> Option<C> {
+    let mut clicked = None;
+    row(ui, label, tip, |ui| {
+        for choice in choices {
+            let (name, color) = look(&choice);
+            let square = swatch(ui, shown(color), vec2(20.0, 20.0)).interact(Sense::click()).on_hover_text(name);
+            // Named for screen readers, and for tests
+            square.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("{label}: {name}")));
             if square.clicked() {
-                figures::give_skin(object, &tone);
+                clicked = Some(choice);
             }
         }
     });
+    clicked
 }
 
 /// Draws what the eyes follow. `falls_short`: they are turned as far as eyes go, and do not meet it.
