@@ -22,8 +22,6 @@ const FACE_HALF_WIDTH_M: f32 = 0.064;
 const HAIRLINE_M: f32 = 0.075;
 const BELOW_JAW_M: f32 = -0.19;
 const FACE_FROM_Z: f32 = -0.045;
-/// The most by which a strand stays farther from the face than that, metres.
-const BESIDE_FACE_SLACK_M: f32 = 0.008;
 /// Place of a tie, in half axes of the skull, and its height over the skin, metres.
 const TIE: Vec3 = Vec3::new(0.0, 0.15, -1.0);
 const TIE_HEIGHT_M: f32 = 0.018;
@@ -101,12 +99,7 @@ impl CombField<'_> {
     fn grow(&self, root: &Root, mut random: Random) -> Vec<Vec3> {
         let length = self.length(root) * (1.0 + 0.08 * random.bell());
         let jitter = Vec3::new(random.bell(), random.bell(), random.bell());
-        let slack_m = BESIDE_FACE_SLACK_M * random.unit();
-        if self.style.comb == Comb::ToTie {
-            self.tied(root, length, jitter)
-        } else {
-            self.loose(root, length, jitter, slack_m)
-        }
+        if self.style.comb == Comb::ToTie { self.tied(root, length, jitter) } else { self.loose(root, length, jitter) }
     }
 
     /// Grows a guide along the head to the tie, and from there as a tail.
@@ -136,7 +129,7 @@ impl CombField<'_> {
     }
 
     /// Grows a guide that follows comb and gravity.
-    fn loose(&self, root: &Root, length: f32, jitter: Vec3, slack_m: f32) -> Vec<Vec3> {
+    fn loose(&self, root: &Root, length: f32, jitter: Vec3) -> Vec<Vec3> {
         let style = self.style;
         let steps_per_segment = (length / STEPS as f32 / LONGEST_STEP_M).ceil().max(1.0) as usize;
         let steps = STEPS * steps_per_segment;
@@ -162,7 +155,7 @@ impl CombField<'_> {
             direction = (direction + pull).normalize_or(self.down);
             // Hair lies on the hair below it: the volume builds up over the first centimetres.
             let margin = style.volume_m * (along * length / 0.03).min(1.0);
-            let next = self.beside_face(position + direction * step, root, slack_m);
+            let next = self.beside_face(position + direction * step, root);
             let next = self.obstacles.pushed_out(next, margin, side);
             direction = (next - position).normalize_or(direction);
             position += direction * step;
@@ -181,14 +174,13 @@ impl CombField<'_> {
         to_nape.normalize_or_zero() * below * ((to_nape.length() - 0.05) / 0.05).clamp(0.0, 1.0)
     }
 
-    /// Returns a point of hair with a parting moved aside from the face, to the side where its root is combed. A slack of
-    /// its own for each strand keeps them from all lying on one line.
-    fn beside_face(&self, p: Vec3, root: &Root, slack_m: f32) -> Vec3 {
+    /// Returns a point of hair with a parting moved aside from the face, to the side where its root is combed.
+    fn beside_face(&self, p: Vec3, root: &Root) -> Vec3 {
         let Comb::FromParting(left) = self.style.comb else { return p };
         let side = if root.position.x >= left { 1.0 } else { -1.0 };
         // From the parting at the hairline to the temples, over the height of a forehead, and as far as the jaw
         let widening = ((HAIRLINE_M - p.y) / 0.05).min((p.y - BELOW_JAW_M) / 0.08).clamp(0.0, 1.0);
-        let edge = left + ((FACE_HALF_WIDTH_M + slack_m) * side - left) * widening;
+        let edge = left + (FACE_HALF_WIDTH_M * side - left) * widening;
         let is_before_face = p.z > FACE_FROM_Z && (p.x - edge) * side < 0.0;
         // Above the hairline strands may cross the parting, or they would all lie on one line there
         let moved = (4.0 * widening).min(1.0);
@@ -264,11 +256,10 @@ fn follow(root: &Root, guides: &[Guide], field: &CombField, mut random: Random) 
         .filter(|(_, guide)| goes_along(guide))
         .collect();
     let sum: f32 = weights.iter().map(|(w, _)| w).sum();
-    let shorter = 1.0 - style.layering * random.unit();
+    let shorter = 1.0 - 0.25 * random.unit() * random.unit();
     let phase = TAU * random.unit() * (1.0 - style.clumping);
     let spread = Vec3::new(random.bell(), random.bell(), random.bell()) * style.frizz * 0.05 * style.length_m[0];
     let offset = root.position - first.root.position;
-    let slack_m = BESIDE_FACE_SLACK_M * random.unit();
     // As many segments as length and curls need
     let length = style.length_m[0].max(style.length_m[1]);
     let curls = length * style.turns_per_m * 7.0;
@@ -295,7 +286,7 @@ fn follow(root: &Root, guides: &[Guide], field: &CombField, mut random: Random) 
             p += turn * tangent.any_orthonormal_vector() * style.curl_m * (along * 4.0).min(1.0);
         }
         // A guide's shape from another root may lead into the skin, or before the face
-        let aside = |p| field.beside_face(p, &first.root, slack_m);
+        let aside = |p| field.beside_face(p, &first.root);
         let p = if k == 0 { p } else { aside(field.obstacles.above_head(aside(p), CLEARANCE_M)) };
         points.push((p, style.radius_m * (1.0 - 0.7 * along * along)));
     }

@@ -28,8 +28,6 @@ pub struct Style {
     pub length_m: [f32; 2],
     /// Level at which falling hair is cut, metres under the eyes; infinite where it ends by its length.
     pub cut_m: f32,
-    /// Largest part by which strands are shorter than that: 0 ends in a line, 0.3 thins out over a hand's breadth.
-    pub layering: f32,
     /// Direction of the comb.
     pub comb: Comb,
     /// Part of the normal in the first direction: 0 lies flat, 1 stands up.
@@ -57,7 +55,6 @@ const SHORT: Style = Style {
     radius_m: 65e-6,
     length_m: [0.05, 0.018],
     cut_m: f32::INFINITY,
-    layering: 0.12,
     comb: Comb::FromWhorl,
     lift: 0.55,
     grip: 0.22,
@@ -109,7 +106,6 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
             radius_m: 80e-6,
             length_m: [0.44, 0.38],
             cut_m: f32::INFINITY,
-            layering: 0.35,
             comb: Comb::FromParting(0.02),
             lift: 0.12,
             grip: 0.5,
@@ -138,7 +134,6 @@ pub fn of_head(hair: HairStyle) -> Option<Style> {
             radius_m: 75e-6,
             length_m: [0.13, 0.11],
             cut_m: f32::INFINITY,
-            layering: 0.12,
             comb: Comb::Out,
             lift: 0.7,
             grip: 0.22,
