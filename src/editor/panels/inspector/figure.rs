@@ -10,7 +10,7 @@ use crate::scene::{
     Arm, Beard, Body, Bottom, Figure, Gaze, HairStyle, Leg, MaterialPreset, Object, ObjectId, Parameter, ParameterSet,
     SEAT_RANGE_M, Scene, Shape, Top,
 };
-use eframe::egui::{Color32, ComboBox, Label, Role, Sense, Slider, TextStyle, Ui, WidgetInfo, vec2};
+use eframe::egui::{Align, Color32, ComboBox, Label, Layout, Role, Sense, Slider, TextStyle, Ui, WidgetInfo, vec2};
 
 /// Draws the lighting pattern on a figure's face, and its catchlights. The height does not depend on the texts: what is
 /// below stays where it is in a drag.
@@ -22,17 +22,23 @@ pub(super) fn face_rows(ui: &mut Ui, face: Option<Result<&Face, &str>>) {
     };
     let tip = "The pattern of the key light's shadows on the face. The key is the light that gives the face the most \
                direct light. Broad: the side that is turned to the camera is lit; short: the other one";
-    row(ui, "Light on face", tip, |ui| {
-        ui.set_min_height(3.0 * ui.text_style_height(&TextStyle::Body));
-        ui.add(Label::new(text).wrap())
-    });
+    row(ui, "Light on face", tip, |ui| lines_of_text(ui, 3, text));
     let tip = "The lights that are reflected in the eyes, as on a clock that the camera sees. Surrounds and surfaces that \
                glow do not count";
     let face = face.and_then(Result::ok);
     row(ui, "Catchlights", tip, |ui| {
-        ui.set_min_height(2.0 * ui.text_style_height(&TextStyle::Body));
         draw_iris(ui, face.map_or(&[], |face| &face.catchlights));
-        ui.add(Label::new(face.map(Face::catchlight_line).unwrap_or_default()).wrap())
+        lines_of_text(ui, 2, face.map(Face::catchlight_line).unwrap_or_default());
+    });
+}
+
+/// Draws a text that wraps, in the rest of a row, as high as so many lines.
+fn lines_of_text(ui: &mut Ui, lines: u8, text: String) {
+    let width = ui.available_size_before_wrap().x;
+    let size = vec2(width, f32::from(lines) * ui.text_style_height(&TextStyle::Body));
+    ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
+        ui.set_min_size(size);
+        ui.add(Label::new(text).wrap());
     });
 }
 
