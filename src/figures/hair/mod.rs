@@ -109,6 +109,25 @@ mod tests {
     }
 
     #[test]
+    fn strands_that_cross_a_parting_do_not_gather_on_its_line() {
+        // Those that crossed it were all moved to the plane of the parting.
+        let figure = Figure { hair: HairStyle::Long, ..READY[0].figure() };
+        let strands = build(&figure).fine.strands.with_parts(|part| part == "hair");
+        let to_head = head_frame(&figure).inverse();
+        let points = (0..strands.len()).flat_map(|index| &strands.strand(index)[1..]);
+        let top: Vec<f32> = points
+            .map(|p| to_head.transform_point3(p.position))
+            .filter(|p| p.y > 0.08 && p.z > -0.04)
+            .map(|p| p.x)
+            .collect();
+        // The parting is at 20 mm: compare the fullest tenth of a millimetre near it with the mean
+        let near = |x: f32, half: f32| top.iter().filter(|other| (*other - x).abs() < half).count();
+        let fullest = (-50..=50).map(|step| near(0.02 + step as f32 * 1e-4, 0.5e-4)).max().unwrap();
+        let mean = near(0.02, 0.005) as f32 / 100.0;
+        assert!(mean > 5.0 && (fullest as f32) < 5.0 * mean, "{fullest} in a tenth of a millimetre, {mean} on average");
+    }
+
+    #[test]
     fn hair_with_a_parting_falls_beside_the_face() {
         for style in [HairStyle::Bob, HairStyle::Long] {
             let figure = Figure { hair: style, ..READY[0].figure() };
