@@ -4,13 +4,16 @@ use crate::editor::commands::command::Command;
 use crate::editor::commands::item_menu::{FACE_TIP, FRAMING_TIP};
 use crate::editor::document::framing::Framing;
 use crate::editor::ui::widgets::{row, section, swatch};
-use crate::figures::{self, EYE_COLORS, HAIR_COLORS, NamedExpression, NamedPose, SKIN_TONES};
+use crate::figures::{self, EYE_COLORS, EyeColor, HAIR_COLORS, NamedExpression, NamedPose, SKIN_TONES, SkinTone};
 use crate::jobs::{Catchlight, Face, sentence};
 use crate::scene::{
     Arm, Beard, Body, Bottom, Figure, Gaze, HairStyle, Leg, MaterialPreset, Object, ObjectId, Parameter, ParameterSet,
     SEAT_RANGE_M, Scene, Shape, Top,
 };
-use eframe::egui::{Align, Color32, ComboBox, Label, Layout, Role, Sense, Slider, TextStyle, Ui, WidgetInfo, vec2};
+use eframe::egui::{
+    Align, Color32, ComboBox, CornerRadius, Label, Layout, Role, Sense, Slider, StrokeKind, TextStyle, Ui, WidgetInfo,
+    vec2,
+};
 
 /// Draws the lighting pattern on a figure's face, and its catchlights. The height does not depend on the texts: what is
 /// below stays where it is in a drag.
@@ -116,38 +119,46 @@ fn person_rows(ui: &mut Ui, object: &mut Object) {
         }
     }
     let tip = "Classes of the individual typology angle, from very light to dark";
-    if let Some(tone) = color_choice(ui, "Skin tone", tip, SKIN_TONES, |tone| (tone.label, tone.base_color())) {
+    let look = |tone: &SkinTone| (tone.label, tone.base_color(), object.material == tone.material());
+    if let Some(tone) = color_choice(ui, "Skin tone", tip, SKIN_TONES, look) {
         figures::give_skin(object, &tone);
     }
     let tip = "Of the iris, from dark to light";
-    if let Some(color) = color_choice(ui, "Eyes", tip, EYE_COLORS, |color| (color.label, color.base_color)) {
+    let look = |eyes: &EyeColor| (eyes.label, eyes.base_color, *object.material_of("iris") == eyes.material());
+    if let Some(color) = color_choice(ui, "Eyes", tip, EYE_COLORS, look) {
         figures::give_eyes(object, &color);
     }
     let tip = "Of hair, beard and brows. Each of them has a colour of its own below, dyes as well";
     let look = |color: &MaterialPreset| {
-        let name = color.label();
-        (name.strip_prefix("Hair, ").unwrap_or(name), color.material().base_color)
+        let (name, material) = (color.label(), color.material());
+        let is_worn = *object.material_of("hair") == material;
+        (name.strip_prefix("Hair, ").unwrap_or(name), material.base_color, is_worn)
     };
     if let Some(color) = color_choice(ui, "Hair colour", tip, HAIR_COLORS, look) {
         figures::give_hair(object, color);
     }
 }
 
-/// Draws a row of coloured squares, and returns the choice whose square is clicked. `look`: its name and reflectance.
+/// Draws a row of coloured squares, and returns the choice whose square is clicked. `look` returns the name and the
+/// reflectance of a choice, and whether the figure has it now: a frame round the square shows that.
 fn color_choice<C>(
     ui: &mut Ui,
     label: &str,
     tip: &str,
     choices: impl IntoIterator<Item = C>,
-    look: impl Fn(&C) -> (&'static str, [f32; 3]),
+    look: impl Fn(&C) -> (&'static str, [f32; 3], bool),
 ) -> Option<C> {
     let mut clicked = None;
     row(ui, label, tip, |ui| {
         for choice in choices {
-            let (name, color) = look(&choice);
+            let (name, color, is_current) = look(&choice);
             let square = swatch(ui, shown(color), vec2(20.0, 20.0)).interact(Sense::click()).on_hover_text(name);
             // Named for screen readers, and for tests
-            square.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("{label}: {name}")));
+            square.widget_info(|| WidgetInfo::selected(Role::Button, true, is_current, format!("{label}: {name}")));
+            if is_current {
+                let stroke = ui.visuals().widgets.active.fg_stroke;
+                ui.painter().rect_stroke(square.rect, CornerRadius::same(3), stroke, StrokeKind::Outside);
+            }
             if square.clicked() {
                 clicked = Some(choice);
             }
